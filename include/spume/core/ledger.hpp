@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// The ledger: how often every stage ran, for how long, and on how many particles, pairs and bytes. Always on
+// (two clock reads a stage). The driver prints it as a table and writes it as ledger.json.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace spume {
+
+class Ledger {
+ public:
+  struct Entry {
+    std::string stage;
+    std::int64_t calls = 0;
+    double seconds = 0;
+    double particles = 0;  // particles handled, summed over calls
+    double pairs = 0;      // particle pairs handled, summed over calls
+    double bytes = 0;      // bytes moved to and from memory by count, summed over calls; 0 when not counted
+  };
+
+  // Times a stage from construction to destruction.
+  class Scope {
+   public:
+    Scope(Ledger& ledger, std::size_t entry, double particles, double pairs, double bytes);
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+    ~Scope();
+
+   private:
+    Ledger& ledger_;
+    std::size_t entry_;
+    std::chrono::steady_clock::time_point start_;
+    double particles_, pairs_, bytes_;
+  };
+
+  // The entry is found by name, or appended: entries keep the order of their first call.
+  [[nodiscard]] Scope time(std::string_view stage, double particles = 0, double pairs = 0, double bytes = 0);
+
+  // Adds work to a stage that a caller timed or counted itself (solver iterations).
+  void count(std::string_view stage, std::int64_t calls, double seconds, double particles, double pairs);
+
+  const std::vector<Entry>& entries() const { return entries_; }
+  double total_seconds() const;
+  void clear() { entries_.clear(); }
+
+ private:
+  std::size_t find(std::string_view stage);
+  std::vector<Entry> entries_;
+};
+
+}  // namespace spume

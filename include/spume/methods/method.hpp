@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// What the driver knows of a method: it advances, reports, saves and restores. It knows nothing of files.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "spume/core/array.hpp"
+#include "spume/core/ledger.hpp"
+#include "spume/scene/scene.hpp"
+
+namespace spume {
+
+// One stage of the plan: what it does, whether this scene runs it, and why (not).
+struct Stage {
+  std::string name;
+  bool on = true;
+  std::string reason;
+};
+
+// One array of the state, for `spume check`: exists only because an active stage names it.
+struct ArrayInfo {
+  std::string name;
+  double bytes = 0;
+};
+
+// The step a method would take next, and what limits it ("courant", "viscous", "capillary").
+struct StepLimit {
+  double dt = 0;
+  std::string limited_by;
+};
+
+// A named particle quantity of a snapshot or a checkpoint. Components are separate arrays; exactly one of the
+// two pointers of a component is set.
+struct NamedField {
+  std::string name;
+  std::vector<const double*> f64;          // per component, or empty
+  std::vector<const std::int64_t*> i64;    // per component, or empty
+};
+
+// A family of particles to be drawn: "fluid", "bubbles".
+struct Family {
+  std::string name;
+  std::size_t size = 0;
+  std::vector<const double*> position;  // one array per dimension
+  std::vector<NamedField> fields;
+};
+
+// One column of series.csv.
+struct SeriesColumn {
+  std::string name;
+  std::string unit;  // in words, "m/s", or "1" without dimension
+};
+
+// State as named blobs: the checkpoint writes what `save` gives and hands it back to `load` unchanged.
+class StateWriter {
+ public:
+  virtual ~StateWriter() = default;
+  virtual void f64(const std::string& name, std::span<const double> values) = 0;
+  virtual void i64(const std::string& name, std::span<const std::int64_t> values) = 0;
+};
+class StateReader {
+ public:
+  virtual ~StateReader() = default;
+  // Resizes `values` to what was saved; throws FileError when the name is absent or has another type.
+  virtual void f64(const std::string& name, Array<double>& values) = 0;
+  virtual void i64(const std::string& name, Array<std::int64_t>& values) = 0;
+};
+
+// Values of the fields at a point or averaged over a region, for probes.
+struct PointSample {
+  double pressure = 0;
+  Vec3 velocity{};
+  double coverage = 0;  // kernel sum at the point: near 1 inside the liquid, 0 in air
+};
+
+class Method {
+ public:
+  virtual ~Method() = default;
+
+  virtual std::vector<Stage> plan() const = 0;
+  virtual std::vector<ArrayInfo> arrays() const = 0;
+  virtual std::size_t particle_count() const = 0;
+
+  virtual double time() const = 0;
+  virtual std::int64_t step_count() const = 0;
+  virtual StepLimit step_limit() const = 0;
+
+  // Advances by dt. Throws StepFailure and leaves the state as it was before the call when the result is not
+  // acceptable.
+  virtual void step(double dt, Ledger& ledger) = 0;
+
+  virtual std::vector<SeriesColumn> series_columns() const = 0;  // without step, t, dt: the driver adds those
+  virtual void series_values(std::span<double> values) = 0;
+
+  virtual std::vector<Family> snapshot() = 0;  // pointers stay valid until the next step
+  virtual PointSample sample(const Vec3& position) = 0;
+  // Height of the free surface above the bottom wall along the last axis through `position`: the highest
+  // point where the kernel sum reaches 1/2; the bottom when the column is empty.
+  virtual double elevation(const Vec3& position) = 0;
+  // Largest coordinate along `axis` where liquid of kernel sum 1/2 is found below `height` (the last axis).
+  virtual double front(int axis, double height) = 0;
+
+  virtual void save(StateWriter& writer) const = 0;
+  virtual void load(StateReader& reader) = 0;
+};
+
+}  // namespace spume

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// The scene: what a method needs to know of a case, in numbers. One unit system throughout: a case in
+// non-dimensional groups arrives as density 1, viscosity 1/Re, gravity 1/Fr^2, sound speed 1/Ma.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "spume/core/array.hpp"
+
+namespace spume {
+
+using Vec3 = std::array<double, 3>;
+
+// A compiled expression of x, y, z and t. Copies share nothing, so each thread may own one.
+class Expression {
+ public:
+  virtual ~Expression() = default;
+  virtual double operator()(double x, double y, double z, double t) const = 0;
+  virtual std::unique_ptr<Expression> clone() const = 0;
+};
+
+// One expression per dimension; a null component is zero.
+struct VectorExpression {
+  std::array<std::shared_ptr<const Expression>, 3> component;
+  Vec3 operator()(const Vec3& position, double t) const;  // not thread-safe: clone per thread
+  VectorExpression clone() const;
+};
+
+enum class BoundaryKind { periodic, free_slip, no_slip, open };
+
+// One side of the domain. `velocity` (walls only) may have a normal component: the wall then moves, and its
+// displacement is the time integral of that component.
+struct Side {
+  BoundaryKind kind = BoundaryKind::open;
+  std::optional<VectorExpression> velocity;
+};
+
+// A solid box inside the domain. Faces that lie on or beyond a wall of the domain bound no liquid.
+struct SolidBox {
+  Vec3 lower{}, upper{};
+  BoundaryKind kind = BoundaryKind::free_slip;
+};
+
+struct Domain {
+  int dimensions = 3;
+  Vec3 lower{}, upper{};                         // the third entry is 0 in two dimensions
+  std::array<std::array<Side, 2>, 3> sides;      // sides[axis][0] at lower, [1] at upper
+  std::vector<SolidBox> boxes;
+  bool periodic(int axis) const { return sides[axis][0].kind == BoundaryKind::periodic; }
+};
+
+struct Fluid {
+  double density = 1;
+  double kinematic_viscosity = 0;
+  double sound_speed = 0;  // 0: incompressible
+  Vec3 gravity{};          // uniform acceleration, points along minus the last axis; zero without gravity
+};
+
+// Liquid particles at the start, one array per component (z arrays are empty in two dimensions).
+struct InitialParticles {
+  Array<double> position[3];
+  Array<double> velocity[3];
+  Array<std::int32_t> region;  // index of the [[liquid]] entry
+  double volume = 0;           // of every particle
+  std::size_t size() const { return position[0].size(); }
+};
+
+struct Scene {
+  std::string title;
+  std::string method;
+  Domain domain;
+  Fluid fluid;
+  double spacing = 0;
+  bool free_surface = false;  // false: the liquid fills a closed or periodic domain
+  std::optional<VectorExpression> body_force;  // acceleration, beside gravity
+  std::uint64_t seed = 1;
+  InitialParticles particles;
+};
+
+}  // namespace spume

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "spume/core/array.hpp"
+
+#include <atomic>
+#include <cstdlib>
+
+#include "spume/core/parallel.hpp"
+
+namespace spume {
+namespace {
+
+std::atomic<std::int64_t> held_bytes{0};
+std::atomic<std::int64_t> peak_bytes{0};
+std::atomic<std::int64_t> allocations{0};
+
+}  // namespace
+
+ArrayStatistics array_statistics() { return {held_bytes.load(), peak_bytes.load(), allocations.load()}; }
+
+namespace detail {
+
+void* allocate_aligned(std::size_t bytes) {
+  if (bytes == 0) return nullptr;
+  const std::size_t rounded = (bytes + 63) / 64 * 64;
+  void* pointer = std::aligned_alloc(64, rounded);
+  if (pointer == nullptr) throw std::bad_alloc();
+  auto* raw = static_cast<unsigned char*>(pointer);
+  parallel_blocks(rounded, std::size_t{1} << 16,
+                  [&](std::size_t, std::size_t first, std::size_t last) { std::memset(raw + first, 0, last - first); });
+  const std::int64_t now = held_bytes += static_cast<std::int64_t>(bytes);
+  std::int64_t peak = peak_bytes.load();
+  while (now > peak && !peak_bytes.compare_exchange_weak(peak, now)) {
+  }
+  ++allocations;
+  return pointer;
+}
+
+void release_aligned(void* pointer, std::size_t bytes) noexcept {
+  if (pointer == nullptr) return;
+  held_bytes -= static_cast<std::int64_t>(bytes);
+  std::free(pointer);
+}
+
+}  // namespace detail
+}  // namespace spume
