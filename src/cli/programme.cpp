@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <new>
 
@@ -73,6 +74,16 @@ struct CommandLine {
     options_app->add_option("section", section, "only this section");
   }
 
+  std::string complaint(int argc, char** argv, const CLI::ParseError& error) const {
+    const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
+    std::string names;
+    for (const CLI::App* verb : verbs) names += (names.empty() ? "" : ", ") + verb->get_name();
+    if (argc < 2) return "a verb is missing; there are " + names;
+    const bool known = std::any_of(verbs.begin(), verbs.end(), [&](auto* verb) { return verb->get_name() == argv[1]; });
+    if (!known && argv[1][0] != '-') return "unknown verb '" + std::string(argv[1]) + "'; there are " + names;
+    return error.what();
+  }
+
   int carry_out(const Programme& programme) {
     use_threads(threads);
     if (run_app->parsed()) return run_verb(run, programme);
@@ -97,7 +108,7 @@ int run_programme(int argc, char** argv, const Programme& programme) {
     line.app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return line.app.exit(error);
-    std::fprintf(stderr, "error: %s; see spume --help\n", error.what());
+    std::fprintf(stderr, "error: %s; see spume --help\n", line.complaint(argc, argv, error).c_str());
     return exit_input;
   }
   try {

@@ -2,7 +2,9 @@
 #include "spume/io/file.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -34,6 +36,24 @@ void sync_folder_of(const std::filesystem::path& path) {
   const Descriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   // Some file systems refuse to sync a folder; the rename itself has then still happened.
   if (descriptor >= 0) ::fsync(descriptor);
+}
+
+// Why the file cannot grow from `size` by `bytes`, as an error number; 0 when it can.
+int refusal(int descriptor, off_t size, std::int64_t bytes) {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+      static_cast<rlim_t>(size + bytes) > limit.rlim_cur)
+    return EFBIG;
+  if (::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, size, bytes) == 0) return 0;
+  const int reason = errno;
+  if (reason == ENOSPC || reason == EDQUOT) {
+    // Blocks that were found before the disk was full are given back.
+    [[maybe_unused]] const int result = ::ftruncate(descriptor, size);
+    return reason;
+  }
+  struct statvfs system {};
+  const bool known = ::fstatvfs(descriptor, &system) == 0;
+  return known && system.f_bavail * system.f_frsize < static_cast<std::uint64_t>(bytes) ? ENOSPC : 0;
 }
 
 }  // namespace
@@ -86,11 +106,8 @@ ReservedSpace::ReservedSpace(std::filesystem::path path, std::int64_t bytes) : p
   if (descriptor < 0) throw_file_error(path_, "write", errno);
   struct stat status {};
   if (::fstat(descriptor, &status) != 0) throw_file_error(path_, "write", errno);
-  if (::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, status.st_size, bytes) == 0) return;
-  const int reason = errno;
-  if (reason == EOPNOTSUPP || reason == ENOSYS || reason == EINTR) return;
-  if (::ftruncate(descriptor, status.st_size) != 0) throw_file_error(path_, "write", errno);
-  throw_file_error(path_, "write", reason);
+  if (const int reason = refusal(descriptor, status.st_size, bytes); reason != 0)
+    throw_file_error(path_, "write", reason);
 }
 
 ReservedSpace::~ReservedSpace() {

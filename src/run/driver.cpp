@@ -92,6 +92,7 @@ RunState Simulation::run(Observer& observer) {
       recorder_->snapshot(*method_);
       if (loaded_->options.output.spectrum_every > 0) recorder_->spectrum(*method_);
     }
+    if (unrecorded_dt_) record(*unrecorded_dt_);
     RunState state = RunState::finished;
     while (!schedule_.finished(method_->time())) {
       if (signals.requested()) {
@@ -120,6 +121,7 @@ RunState Simulation::run(Observer& observer) {
     throw;
   } catch (const FileError& failure) {
     folder_.log(failure.what());
+    save_what_is_left();
     try {
       write_summary("file error", failure.what());
     } catch (const FileError&) {
@@ -180,7 +182,14 @@ void Simulation::give_up(const StepFailure& failure, double dt, int attempts) {
 }
 
 void Simulation::record(double dt) {
-  const auto due = schedule_.arrive(method_->time());
+  recorder_->mark();
+  next_before_record_ = schedule_.next();
+  unrecorded_dt_ = dt;
+  record_due(schedule_.arrive(method_->time()), dt);
+  unrecorded_dt_.reset();
+}
+
+void Simulation::record_due(const Schedule::Due& due, double dt) {
   if (due.series) {
     const auto scope = ledger_.time("series and probes");
     recorder_->series(*method_, dt, retries_);
@@ -214,17 +223,30 @@ void Simulation::save_checkpoint() {
   const auto scope = ledger_.time("checkpoints", static_cast<double>(method_->particle_count()));
   recorder_->sync();
   CheckpointWriter file(folder_ / "checkpoint.h5", {program_version(), program_commit(), loaded_->options.resolved});
-  const auto next = schedule_.next();
-  const double clock[] = {method_->time(), control_.cap(), earlier_wall_seconds_ + wall_seconds()};
+  // The record of a step counts only when it is complete.
+  const auto next = unrecorded_dt_ ? next_before_record_ : schedule_.next();
+  const double clock[] = {method_->time(), control_.cap(), earlier_wall_seconds_ + wall_seconds(),
+                          unrecorded_dt_.value_or(0)};
   const std::int64_t counters[] = {method_->step_count(), retries_, next[0], next[1], next[2]};
   file.f64("driver/clock", clock);
   file.i64("driver/counters", counters);
-  for (const auto& [name, count] : recorder_->extent()) file.i64("driver/extent/" + name, std::span(&count, 1));
+  for (const auto& [name, count] : unrecorded_dt_ ? recorder_->marked() : recorder_->extent())
+    file.i64("driver/extent/" + name, std::span(&count, 1));
   CheckpointStateWriter writer(file, "method/");
   method_->save(writer);
   file.commit();
   checkpoint_step_ = method_->step_count();
   checkpointed_ = Clock::now();
+}
+
+void Simulation::save_what_is_left() {
+  if (steps_this_run_ == 0 || checkpoint_step_ == method_->step_count()) return;
+  try {
+    save_checkpoint();
+    folder_.log("the state is saved: with space on the disk, spume resume goes on where the record broke off");
+  } catch (const FileError& failure) {
+    folder_.log(failure.what());
+  }
 }
 
 void Simulation::load_checkpoint(const std::filesystem::path& path) {
@@ -233,15 +255,17 @@ void Simulation::load_checkpoint(const std::filesystem::path& path) {
   Array<std::int64_t> counters;
   file.f64("driver/clock", clock);
   file.i64("driver/counters", counters);
-  if (clock.size() != 3 || counters.size() != 5)
+  if (clock.size() != 4 || counters.size() != 5)
     throw FileError("cannot read checkpoint '" + path.string() + "': the driver's state has another size");
-  if (schedule_.finished(clock[0]))
+  const bool complete = clock[3] == 0;
+  if (schedule_.finished(clock[0]) && complete)
     throw InputError("the run in '" + folder_.path().string() + "' is already at t = " + exact(clock[0]) +
                      "; give a later time with --until");
   CheckpointStateReader reader(file, "method/");
   method_->load(reader);
   control_.set_cap(clock[1]);
   earlier_wall_seconds_ = clock[2];
+  if (!complete) unrecorded_dt_ = clock[3];
   retries_ = counters[1];
   schedule_.set_next({counters[2], counters[3], counters[4]});
   if (method_->time() != clock[0] || method_->step_count() != counters[0])

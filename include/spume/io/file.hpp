@@ -24,7 +24,8 @@ void sync_and_rename(const std::filesystem::path& from, const std::filesystem::p
 
 // Blocks promised to a file for writing `bytes` past its end, given back by the destructor where unused. A full
 // disk is thereby noticed before the file is touched, not in the middle of an update of its metadata. File
-// systems that cannot promise space are taken at their word. Throws FileError when the space is not there.
+// systems that cannot promise space are asked how much is free. Throws FileError when the space is not there or
+// the file would exceed the user's limit.
 class ReservedSpace {
  public:
   ReservedSpace(std::filesystem::path path, std::int64_t bytes);

@@ -80,7 +80,9 @@ class Simulation {
   double take_step(Observer& observer, StepLimit& limit);  // the length of the accepted step
   [[noreturn]] void give_up(const StepFailure& failure, double dt, int attempts);
   void record(double dt);
+  void record_due(const Schedule::Due& due, double dt);
   void save_checkpoint();
+  void save_what_is_left();
   void load_checkpoint(const std::filesystem::path& path);
   void write_summary(const std::string& state, const std::string& message);
   void report(Observer& observer, double dt, const StepLimit& limit);
@@ -98,6 +100,9 @@ class Simulation {
   double particle_steps_ = 0;
   double earlier_wall_seconds_ = 0;
   std::optional<std::int64_t> checkpoint_step_;
+  // The length of a step whose record could not be finished; a resumed run records it first.
+  std::optional<double> unrecorded_dt_;
+  std::array<std::int64_t, 3> next_before_record_{};
   Clock::time_point started_ = Clock::now();
   Clock::time_point checkpointed_ = Clock::now();
   struct Mark {  // start of the window over which the rate is measured
