@@ -3,16 +3,27 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
+#include <string>
 
 #include "spume/cli/programme.hpp"
 
 namespace spume {
 namespace {
 
-bool set_when_absent(const char* name, const char* value) {
-  if (std::getenv(name) != nullptr) return false;
-  setenv(name, value, 1);
-  return true;
+constexpr const char* mark = "SPUME_SETTINGS";  // names of the variables that this program has set for itself
+
+void set_when_absent(const std::string& name, const char* value, std::string& names) {
+  if (std::getenv(name.c_str()) != nullptr) return;
+  setenv(name.c_str(), value, 1);
+  names += name + ' ';
+}
+
+// The runtime has read the settings; programs started from here make their own choice.
+void forget(const char* names) {
+  std::istringstream words(names);
+  for (std::string name; words >> name;) unsetenv(name.c_str());
+  unsetenv(mark);
 }
 
 bool names_threads(int argc, char** argv) {
@@ -25,17 +36,20 @@ bool names_threads(int argc, char** argv) {
 }  // namespace
 
 void restart_with_patient_threads(int argc, char** argv) {
+  if (const char* names = std::getenv(mark); names != nullptr) return forget(std::string(names).c_str());
+  std::string names;
   // Passive alone would sleep between any two regions; about 50 us of spinning bridges the gaps of a Krylov loop
   // and is too short to hurt anyone.
-  bool changed = set_when_absent("GOMP_SPINCOUNT", "1000");
-  changed |= set_when_absent("OMP_WAIT_POLICY", "passive");
+  set_when_absent("GOMP_SPINCOUNT", "1000", names);
+  set_when_absent("OMP_WAIT_POLICY", "passive", names);
   // Bound threads stay with the memory that they touched first. With fewer threads than cores, binding would put
   // every such program on the same first cores, so it is left to the system then.
-  if (!names_threads(argc, argv)) changed |= set_when_absent("OMP_PROC_BIND", "true");
-  // The mark stops a second restart where the environment does not take the settings.
-  if (!changed || !set_when_absent("SPUME_RESTARTED", "1")) return;
+  if (!names_threads(argc, argv)) set_when_absent("OMP_PROC_BIND", "true", names);
+  if (names.empty()) return;
+  setenv(mark, names.c_str(), 1);
   // Where the system refuses, the program simply goes on with the settings it has.
   execv("/proc/self/exe", argv);
+  forget(names.c_str());
 }
 
 }  // namespace spume

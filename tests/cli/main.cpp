@@ -22,6 +22,7 @@ const std::vector<spume::OptionInfo>& fake_options() {
 
 int main(int argc, char** argv) {
   if (argc > 1 && std::strcmp(argv[1], "--as-spume") == 0) {
+    spume::restart_with_patient_threads(argc, argv);
     argv[1] = argv[0];
     return spume::run_programme(argc - 1, argv + 1,
                                 {spume::test::load_fake_case, spume::test::make_fake_method, fake_options});

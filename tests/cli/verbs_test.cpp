@@ -215,14 +215,28 @@ TEST_F(Verbs, OptionsListOneSectionOrAll) {
   EXPECT_EQ(time.out.find("[output]"), std::string::npos);
 }
 
+TEST_F(Verbs, ThreadsWaitPassivelyUnlessTheUserSaysOtherwise) {
+  unsetenv("OMP_WAIT_POLICY");
+  setenv("OMP_DISPLAY_ENV", "verbose", 1);  // the runtime prints what it has read, once per start
+  EXPECT_THAT(spume({"options"}).err, HasSubstr("GOMP_SPINCOUNT = '1000'"));
+  setenv("GOMP_SPINCOUNT", "77", 1);
+  EXPECT_THAT(spume({"options"}).err, HasSubstr("GOMP_SPINCOUNT = '77'"));
+  unsetenv("GOMP_SPINCOUNT");
+  unsetenv("OMP_DISPLAY_ENV");
+}
+
 TEST_F(Verbs, ScriptsGetTheirArgumentsAndTheirExitCodeIsPassedOn) {
   std::filesystem::create_directory(folder_ / "tools");
-  test::write_contents(folder_ / "tools" / "verify.py", "import sys\nprint(sys.argv[1:])\nsys.exit(1)\n");
+  test::write_contents(
+      folder_ / "tools" / "verify.py",
+      "import sys\nprint(sys.argv[1:])\n"
+      "import os\nprint(sorted(k for k in os.environ if 'SPUME_S' in k or 'GOMP' in k))\nsys.exit(1)\n");
   test::write_contents(folder_ / "tools" / "plot.py", "import sys\nprint('plot', sys.argv[1:])\n");
   setenv("SPUME_HOME", folder_.path().c_str(), 1);
   const Outcome verify = spume({"verify", "couette", "--quick"});
   EXPECT_EQ(verify.code, 1) << verify.err;
   EXPECT_THAT(verify.out, HasSubstr("test_cli', 'couette', '--quick']"));
+  EXPECT_THAT(verify.out, HasSubstr("\n[]\n")) << "settings for this process are not handed on";
   EXPECT_THAT(spume({"plot", "results"}).out, HasSubstr("plot ['results']"));
   setenv("SPUME_HOME", "/nowhere", 1);
   EXPECT_EQ(spume({"verify"}).code, 2);
