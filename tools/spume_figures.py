@@ -104,7 +104,7 @@ def draw_slices(run, snapshots, name, path):
     for axis in axes.flat[len(loaded):]:
         axis.remove()
     for axis, (time, x, y, values) in zip(axes.flat, loaded):
-        discs = draw_particles(axis, x, y, values, spacing, FIELDS.get(name, "viridis"), norm)
+        discs = draw_particles(axis, x, y, values, 1.1 * spacing, FIELDS.get(name, "viridis"), norm)
         axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", title=f"t = {time:.4g}")
     for axis in axes[-1, :]:
         axis.set_xlabel("x")
@@ -120,9 +120,10 @@ def smooth(image, mask, sigma):
     kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
 
     def blur(a):
-        for axis in (0, 1):
-            a = np.apply_along_axis(lambda line: np.convolve(line, kernel, mode="same"), axis, a)
-        return a
+        padded = np.pad(a, ((reach, reach), (0, 0)))
+        a = sum(w * padded[k: k + a.shape[0]] for k, w in enumerate(kernel))
+        padded = np.pad(a, ((0, 0), (reach, reach)))
+        return sum(w * padded[:, k: k + a.shape[1]] for k, w in enumerate(kernel))
 
     weight = blur(mask.astype(float))
     return np.where(mask, blur(np.where(mask, image, 0.0)) / np.maximum(weight, 1e-12), 0.0)
@@ -144,25 +145,22 @@ def shaded_liquid(position, values, radius, azimuth, elevation, pixels, norm):
     shape = (int(np.ceil((high[1] - low[1]) * scale)), pixels)
     reach = max(1.0, radius * scale)
     column, row = (u - low[0]) * scale, (v - low[1]) * scale
+    order = np.argsort(depth)  # far first: where several particles share a pixel, the last, nearest, one is kept
+    row, column = np.round(row[order]).astype(int), np.round(column[order]).astype(int)
+    depth, values = depth[order], values[order]
     surface = np.full(shape[0] * shape[1], -np.inf)
     colour = np.zeros_like(surface)
-    order = np.argsort(depth)  # far first, so that what is nearer overwrites
+    layer, layer_colour = np.empty_like(surface), np.empty_like(surface)
     span = np.arange(-int(np.ceil(reach)), int(np.ceil(reach)) + 1)
-    for di in span:
-        for dj in span:
-            offset2 = (di * di + dj * dj) / reach**2
-            if offset2 > 1:
-                continue
-            i, j = np.round(row[order]).astype(int) + di, np.round(column[order]).astype(int) + dj
-            inside = (i >= 0) & (i < shape[0]) & (j >= 0) & (j < shape[1])
-            pixel = i[inside] * shape[1] + j[inside]
-            raised = depth[order][inside] + radius * np.sqrt(1 - offset2)
-            # Several particles of one pass may share a pixel: the last, nearest, of them counts.
-            last = len(pixel) - 1 - np.unique(pixel[::-1], return_index=True)[1]
-            target, candidate = pixel[last], raised[last]
-            nearer = candidate > surface[target]
-            surface[target[nearer]] = candidate[nearer]
-            colour[target[nearer]] = values[order][inside][last][nearer]
+    for di, dj in ((di, dj) for di in span for dj in span if di * di + dj * dj <= reach**2):
+        inside = (row + di >= 0) & (row + di < shape[0]) & (column + dj >= 0) & (column + dj < shape[1])
+        pixel = (row[inside] + di) * shape[1] + column[inside] + dj
+        layer.fill(-np.inf)
+        layer[pixel] = depth[inside] + radius * np.sqrt(1 - (di * di + dj * dj) / reach**2)
+        layer_colour[pixel] = values[inside]
+        nearer = layer > surface
+        surface[nearer] = layer[nearer]
+        colour[nearer] = layer_colour[nearer]
     surface, colour = surface.reshape(shape), colour.reshape(shape)
     mask = np.isfinite(surface)
     # Twice: once to merge the discs, once over pixels of like depth only, so that a crest stays apart from the trough.
@@ -179,7 +177,7 @@ def shaded_liquid(position, values, radius, azimuth, elevation, pixels, norm):
     half = light + np.array([0.0, 0.0, 1.0])
     glint = np.clip(normal @ (half / np.linalg.norm(half)), 0, 1) ** 60
     rgb = WATER(norm(smooth(colour, mask, 0.5 * reach)))[..., :3]
-    rgb = np.clip(rgb * (0.45 + 0.75 * diffuse)[..., None] + 0.45 * glint[..., None], 0, 1)
+    rgb = np.clip(rgb * (0.6 + 0.6 * diffuse)[..., None] + 0.45 * glint[..., None], 0, 1)
     rgba = np.concatenate([rgb, mask[..., None].astype(float)], axis=-1)
     return rgba, (low[0], high[0], low[1], high[1])
 
