@@ -218,6 +218,11 @@ def read_case(path):
         raise MissingResult(f"{path}: cannot be read ({error})") from error
 
 
+def standard(runs):
+    """The run named "standard"; where there is none, the first."""
+    return runs.get("standard") or next(iter(runs.values()))
+
+
 def relative_rms(measured, exact, scale):
     """Root mean square of the difference (over all components), divided by the scale."""
     difference = np.asarray(measured, float) - np.asarray(exact, float)
