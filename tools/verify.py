@@ -34,8 +34,8 @@ def verification_of(folder, quick):
     return short if isinstance(short, dict) else table if short else None
 
 
-def verify_case(program, folder, table, out, threads):
-    """Yields rows (quantity, value, bound, verdict, seconds) of one case."""
+def verify_case(program, folder, table, out, threads, draw):
+    """Yields rows (quantity, value, bound, verdict, seconds) of one case; draw also writes its comparison figures."""
     runs, seconds = {}, 0.0
     for run in table.get("run") or [{"name": "run"}]:
         print(f"running {folder.name}: {run['name']}", file=sys.stderr, flush=True)
@@ -51,7 +51,7 @@ def verify_case(program, folder, table, out, threads):
         yield quantity, value, bound, verdict, seconds
     for quantity in bounds.keys() - measured.keys():
         yield quantity, math.nan, bounds[quantity], "FAIL", seconds
-    if hasattr(module, "curves"):
+    if draw and hasattr(module, "curves"):
         from spume_figures import draw_curves
 
         plots = out / "plots"
@@ -98,7 +98,7 @@ def main():
             out = keep / folder.name
             try:
                 out.mkdir(parents=True)
-                rows = list(verify_case(program.resolve(), folder, table, out, arguments.threads))
+                rows = list(verify_case(program.resolve(), folder, table, out, arguments.threads, bool(arguments.keep)))
             except (RunFailed, MissingResult) as error:
                 print(f"{folder.name}: {error}", file=sys.stderr, flush=True)
                 rows = [("(not measured)", math.nan, None, "FAIL", math.nan)]
