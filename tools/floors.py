@@ -15,7 +15,7 @@ FLOOR = {
     "cli": 7,
 }
 # Folders of one floor are strangers, save for these one-way acquaintances.
-SAME_FLOOR = {("neighbours", "scene"), ("io", "scene"), ("solvers", "operators"), ("fourier", "operators")}
+SAME_FLOOR = {("neighbours", "scene"), ("io", "scene"), ("operators", "fourier"), ("solvers", "operators")}
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]spume/([a-z_]+)/')
 
 
