@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Error against spacing and against run time: convergence.py PROGRAM CASE SPACING... [--set K=V] [--until T] [--keep DIR].
+"""Error against spacing and against run time.
+
+    convergence.py PROGRAM CASE SPACING... [--set K=V] [--until T] [--threads N] [--keep DIR]
 
 Prints a table and, with --keep, writes convergence.csv and convergence.png beside the runs.
 """
@@ -57,11 +59,13 @@ def write(keep, rows, names):
     from spume_figures import draw_curves
 
     lines = [",".join(("spacing", "seconds", *names))]
-    lines += [",".join(f"{value:.8g}" for value in (spacing, seconds, *errors.values())) for spacing, seconds, errors in rows]
+    for spacing, seconds, errors in rows:
+        lines.append(",".join(f"{value:.8g}" for value in (spacing, seconds, *errors.values())))
     (keep / "convergence.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     by = [("error_against_spacing", "spacing", 0), ("error_against_time", "wall seconds", 1)]
     draw_curves([{"file": file, "x": label, "y": "error", "log": "xy",
-                  "curves": [(name, [r[column] for r in rows], [abs(r[2][name]) for r in rows], "o-") for name in names]}
+                  "curves": [(name, [r[column] for r in rows], [abs(r[2][name]) for r in rows], "o-")
+                             for name in names]}
                  for file, label, column in by], keep)
 
 

@@ -24,7 +24,8 @@ def violations(root):
         for file in sorted(p for p in base.rglob("*") if p.suffix in (".hpp", ".cpp")):
             folder = file.relative_to(base).parts[0]
             if folder not in FLOOR:
-                yield f"{file.relative_to(root)}:1: error: folder '{folder}' is on no floor; the floors are {', '.join(FLOOR)}"
+                known = ", ".join(FLOOR)
+                yield f"{file.relative_to(root)}:1: error: folder '{folder}' is on no floor; the floors are {known}"
                 continue
             for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
                 match = INCLUDE.match(line)
@@ -35,7 +36,8 @@ def violations(root):
                 if target not in FLOOR:
                     yield f"{place}: error: '{target}' is on no floor"
                 elif FLOOR[target] > FLOOR[folder]:
-                    yield f"{place}: error: {folder} (floor {FLOOR[folder]}) includes {target} (floor {FLOOR[target]}); an include never goes up"
+                    yield (f"{place}: error: {folder} (floor {FLOOR[folder]}) includes {target} (floor {FLOOR[target]}); "
+                           "an include never goes up")
                 elif FLOOR[target] == FLOOR[folder] and (folder, target) not in SAME_FLOOR:
                     yield f"{place}: error: {folder} includes {target} of the same floor"
 

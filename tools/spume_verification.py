@@ -84,7 +84,8 @@ def run_case(program, folder, out, settings=(), until=None, threads=None):
     seconds = time.monotonic() - start
     if done.returncode != 0:
         messages = (done.stdout + done.stderr).strip().splitlines()[-25:]
-        raise RunFailed(f"exit code {done.returncode} from: {' '.join(command)}\n" + "\n".join(f"    {m}" for m in messages))
+        words = "\n".join(f"    {message}" for message in messages)
+        raise RunFailed(f"exit code {done.returncode} from: {' '.join(command)}\n{words}")
     return Results(out, wall_seconds=seconds)
 
 

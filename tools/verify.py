@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Runs validation cases and prints error against bound: verify.py PROGRAM [CASE...] [--quick] [--threads N] [--keep DIR].
+"""Runs validation cases and prints error against bound.
+
+    verify.py PROGRAM [CASE...] [--quick] [--threads N] [--keep DIR]
 
 Exit code 0 when every bound holds, 1 when one does not or a run failed, 2 when the request makes no sense.
 """
@@ -16,6 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from spume_results import MissingResult, read_case
 from spume_verification import RunFailed, case_folder, cases_with_verification, load_measure, run_case, within
 
+NAMES = ("quantity", "measured", "bound", "verdict", "seconds")
 COLUMNS = "{:<22} {:<34} {:>12} {:>18}  {:<6} {:>8}"
 
 
@@ -91,7 +94,8 @@ def main():
     with tempfile.TemporaryDirectory(prefix="spume-verify-") as scratch:
         keep = arguments.keep or Path(scratch)
         if arguments.keep and any((keep / folder.name).exists() for folder, _ in chosen):
-            print(f"error: {keep}: holds earlier runs, and nothing is overwritten; give another folder", file=sys.stderr)
+            print(f"error: {keep}: holds earlier runs, and nothing is overwritten; give another folder",
+                  file=sys.stderr)
             return 2
         failed, report = [], {}
         for folder, table in chosen:
@@ -108,11 +112,12 @@ def main():
             except Exception:  # a fault in one measure.py must not hide the verdicts of the other cases
                 traceback.print_exc()
                 rows = [("(measure.py failed)", math.nan, None, "FAIL", math.nan)]
-            report[folder.name] = [dict(zip(("quantity", "measured", "bound", "verdict", "seconds"), row)) for row in rows]
+            report[folder.name] = [dict(zip(NAMES, row)) for row in rows]
             if not failed and len(report) == 1:
                 print(COLUMNS.format("case", "quantity", "measured", "bound", "", "seconds"))
             for quantity, value, bound, verdict, seconds in rows:
-                print(COLUMNS.format(folder.name, quantity, f"{value:.5g}", text_of(bound), verdict, f"{seconds:.1f}"), flush=True)
+                print(COLUMNS.format(folder.name, quantity, f"{value:.5g}", text_of(bound), verdict, f"{seconds:.1f}"),
+                      flush=True)
                 if verdict == "FAIL":
                     failed.append(f"{folder.name}: {quantity}")
         if arguments.keep:
