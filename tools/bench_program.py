@@ -95,7 +95,8 @@ def main():
     program, names = Path(sys.argv[1]), sys.argv[2:] or list(MEASUREMENTS)
     unknown = [name for name in names if name not in MEASUREMENTS]
     if unknown or not program.is_file():
-        print(f"error: {', '.join(unknown) or program}: unknown; measurements are {', '.join(MEASUREMENTS)}", file=sys.stderr)
+        print(f"error: {', '.join(unknown) or program}: not there; the measurements are {', '.join(MEASUREMENTS)}",
+              file=sys.stderr)
         return 2
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     with tempfile.TemporaryDirectory(prefix="spume-bench-") as scratch:

@@ -60,5 +60,6 @@ def curves(runs):
         _, k, energy, _ = spectra[0]
         peak = int(np.argmax(energy))
         spectra.append(("slope -5/3", k[peak:], energy[peak] * (k[peak:] / k[peak]) ** (-5 / 3), "k--"))
-        figures.append({"file": "spectrum_closures", "x": "wavenumber", "y": "energy / total", "log": "xy", "curves": spectra})
+        figures.append({"file": "spectrum_closures", "x": "wavenumber", "y": "energy / total", "log": "xy",
+                        "curves": spectra})
     return figures

@@ -54,10 +54,8 @@ def overturning_time(run):
 
 
 def wave_energy(run):
-    """Kinetic plus potential energy above that of the same liquid at rest: depth 1/2 below z = 0, rho = g = 1."""
-    lower, upper = run.bounds()
-    area = (upper[0] - lower[0]) * (upper[1] - lower[1])
-    rest = -0.5 * area * lower[2] ** 2
+    """Kinetic plus potential energy above that of the same mass spread evenly from the bed to z = 0, with g = 1."""
+    rest = 0.5 * run.bounds()[0][2] * run.series["mass"][0]
     return run.series["kinetic_energy"] + run.series["potential_energy"] - rest
 
 

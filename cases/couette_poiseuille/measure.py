@@ -54,10 +54,10 @@ def curves(runs):
         y = np.linspace(0, 1, 201)
         lines = []
         snapshots = run.snapshots()
-        for snapshot in (snapshots[i] for i in sorted({1, len(snapshots) // 4, len(snapshots) - 1}) if i < len(snapshots)):
-            if snapshot.time <= 0:
-                continue
-            lines.append((f"Spume, t = {snapshot.time:.2g}", snapshot.field("velocity")[:, 0], snapshot.position[:, 1], "."))
-            lines.append((f"exact, t = {snapshot.time:.2g}", exact(run)(y, snapshot.time, viscosity(run)), y, "k--"))
+        for index in sorted({1, len(snapshots) // 4, len(snapshots) - 1} & set(range(1, len(snapshots)))):
+            snapshot = snapshots[index]
+            label = f"t = {snapshot.time:.2g}"
+            lines.append((f"Spume, {label}", snapshot.field("velocity")[:, 0], snapshot.position[:, 1], "."))
+            lines.append((f"exact, {label}", exact(run)(y, snapshot.time, viscosity(run)), y, "k--"))
         figures.append({"file": f"profiles_{exact(run).__name__}", "x": "velocity", "y": "y", "curves": lines})
     return figures

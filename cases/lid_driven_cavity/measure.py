@@ -33,7 +33,7 @@ def reference(kind, re, table=REFERENCE):
 
 
 def errors(run):
-    """Largest difference from the published table over the lid speed, per profile; the same from the independent solution;
+    """Largest difference from the published table over the lid speed, per profile; from the independent solution;
     and how much the flow still changes from output to output."""
     measured = {}
     for kind in LINES:

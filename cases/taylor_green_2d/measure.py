@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""u = -exp(-8 pi^2 t/Re) cos(2 pi x) sin(2 pi y), v = exp(-8 pi^2 t/Re) sin(2 pi x) cos(2 pi y), K = exp(-16 pi^2 t/Re)/4."""
+"""u = -exp(-8 pi^2 t/Re) cos(2 pi x) sin(2 pi y), v = exp(-8 pi^2 t/Re) sin(2 pi x) cos(2 pi y),
+K = exp(-16 pi^2 t/Re)/4."""
 import numpy as np
 
 from spume_results import observed_order, relative_rms, standard

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Steady lid-driven cavity by vorticity and stream function, central differences, Heun steps: streamfunction.py > CSV rows.
+"""Steady lid-driven cavity by vorticity and stream function, central differences, Heun steps; prints CSV rows.
 
     dw/dt + u dw/dx + v dw/dy = lap w / Re,   lap psi = -w,   u = dpsi/dy, v = -dpsi/dx,
 
