@@ -347,6 +347,37 @@ TEST(Load, DefaultsOfTheTableAreTheDefaultsOfTheCase) {
   EXPECT_EQ(loaded.output.h5part_view, standard.output.h5part_view);
 }
 
+TEST(Load, SidesOfAThreeDimensionalDomainAreNamedAfterTheirAxis) {
+  const LoadedCase loaded = load_text(
+      "method = \"les-sph\"\n[domain]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\nleft = \"free-slip\"\n"
+      "back = \"no-slip\"\ntop = \"no-slip\"\n[domain.wall_velocity]\nback = [\"z\", 0, 0]\n"
+      "[resolution]\nspacing = 0.1\n[time]\nend = 1\n[fluid]\nfroude = 2\n[[liquid]]\n");
+  const auto& sides = loaded.scene.domain.sides;
+  EXPECT_EQ(sides[0][0].kind, BoundaryKind::free_slip);
+  EXPECT_EQ(sides[0][1].kind, BoundaryKind::open);
+  EXPECT_EQ(sides[1][0].kind, BoundaryKind::open);
+  EXPECT_EQ(sides[1][1].kind, BoundaryKind::no_slip);
+  EXPECT_EQ(sides[2][0].kind, BoundaryKind::open);
+  EXPECT_EQ(sides[2][1].kind, BoundaryKind::no_slip);
+  EXPECT_EQ((*sides[1][1].velocity)({0, 0, 0.5}, 0), (Vec3{0.5, 0, 0}));
+  EXPECT_EQ(loaded.scene.fluid.gravity, (Vec3{0, 0, -0.25}));
+}
+
+TEST(Load, DamagedOverridesNeverCrash) {
+  std::mt19937 random(3);
+  const std::string letters = "fluidmach.0123=[]{}\"' \n#,-domainsolidprobeliquidupper";
+  for (int i = 0; i < 2000; ++i) {
+    std::string assignment =
+        i % 2 ? "" : std::vector<std::string>{"liquid.", "domain.", "probe.", "time"}[random() % 4];
+    for (unsigned n = random() % 16; n > 0; --n) assignment += letters[random() % letters.size()];
+    try {
+      load_text(small_case(), {assignment});
+    } catch (const InputError& error) {
+      for (const Problem& problem : error.problems()) ASSERT_NE(problem.text, "") << assignment;
+    }
+  }
+}
+
 TEST(Load, EveryOptionIsDescribed) {
   ASSERT_GT(option_table().size(), 60u);
   for (const OptionInfo& option : option_table()) {
