@@ -68,6 +68,11 @@ void mark_override(Node& node, const std::string& override_text) {
   for (Node& child : node.children) mark_override(child, override_text);
 }
 
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
 Node* element(Node& array, const std::string& index_text) {
   std::size_t index = 0;
   const char* last = index_text.data() + index_text.size();
@@ -179,17 +184,14 @@ void apply_override(Node& document, const std::string& assignment, const std::ve
   }
   std::vector<std::string> path;
   std::istringstream parts(assignment.substr(0, equals));
-  for (std::string part; std::getline(parts, part, '.');) {
-    const std::size_t first = part.find_first_not_of(" \t"), last = part.find_last_not_of(" \t");
-    path.push_back(first == std::string::npos ? "" : part.substr(first, last - first + 1));
-  }
+  for (std::string part; std::getline(parts, part, '.');) path.push_back(trimmed(part));
   if (path.empty() || std::find(path.begin(), path.end(), "") != path.end()) {
     problems.add(place, "expected section.key=value, for example --set fluid.mach=0.1");
     return;
   }
 
   Node value;
-  const std::string raw = assignment.substr(equals + 1);
+  const std::string raw = trimmed(assignment.substr(equals + 1));
   try {
     value = parse_value(raw);
   } catch (const InputError&) {
@@ -302,7 +304,13 @@ std::string shortest(double value) {
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
   char buffer[64];
   const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value);
-  return error == std::errc{} ? std::string(buffer, end) : std::string();
+  if (error != std::errc{}) return {};
+  std::string text(buffer, end);
+  // 1e-06 reads as 1e-6.
+  const std::size_t exponent = text.find('e');
+  if (exponent != std::string::npos && text[exponent + 2] == '0') text.erase(exponent + 2, 1);
+  if (exponent != std::string::npos && text[exponent + 1] == '+') text.erase(exponent + 1, 1);
+  return text;
 }
 
 std::string to_toml_string(const std::string& text) {

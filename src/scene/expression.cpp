@@ -4,8 +4,10 @@
 #include <muParser.h>
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <set>
 
@@ -139,7 +141,11 @@ class ConstantExpression final : public Expression {
 struct Recipe {
   int dimensions = 3;
   std::string text;
-  std::vector<std::pair<std::string, std::string>> parts;  // varying constants, each after those it uses
+  struct Part {
+    std::string name, text;
+    unsigned coordinates;  // bits of the coordinates that it depends on
+  };
+  std::vector<Part> parts;  // varying constants, each after those it uses
   std::vector<std::pair<std::string, double>> numbers;
 };
 
@@ -150,7 +156,7 @@ class ParsedExpression final : public Expression {
     for (std::size_t i = 0; i < recipe_->parts.size(); ++i) {
       parts_.push_back(std::make_unique<mu::Parser>());
       prepare(*parts_.back(), i);
-      parts_.back()->SetExpr(recipe_->parts[i].second);
+      parts_.back()->SetExpr(recipe_->parts[i].text);
     }
     prepare(main_, recipe_->parts.size());
     main_.SetExpr(recipe_->text);
@@ -161,8 +167,18 @@ class ParsedExpression final : public Expression {
   }
 
   double operator()(double x, double y, double z, double t) const override {
-    coordinates_ = {x, y, z, t};
-    for (std::size_t i = 0; i < parts_.size(); ++i) part_values_[i] = parts_[i]->Eval();
+    // A part is evaluated again only when a coordinate that it depends on has other bits: down a column of
+    // particles the shape of the surface is computed once. Bits, because 1/x differs between 0 and -0.
+    const std::array<double, 4> now{x, y, z, t};
+    unsigned changed = fresh_ ? 15u : 0u;
+    for (std::size_t c = 0; c < 4; ++c) {
+      changed |= std::bit_cast<std::uint64_t>(now[c]) != std::bit_cast<std::uint64_t>(coordinates_[c]) ? 1u << c : 0u;
+    }
+    coordinates_ = now;
+    fresh_ = false;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      if (recipe_->parts[i].coordinates & changed) part_values_[i] = parts_[i]->Eval();
+    }
     return main_.Eval();
   }
 
@@ -176,11 +192,12 @@ class ParsedExpression final : public Expression {
     if (recipe_->dimensions == 3) parser.DefineVar("z", &coordinates_[2]);
     parser.DefineVar("t", &coordinates_[3]);
     for (const auto& [name, number] : recipe_->numbers) parser.DefineConst(name, number);
-    for (std::size_t i = 0; i < parts_known; ++i) parser.DefineVar(recipe_->parts[i].first, &part_values_[i]);
+    for (std::size_t i = 0; i < parts_known; ++i) parser.DefineVar(recipe_->parts[i].name, &part_values_[i]);
   }
 
   std::shared_ptr<const Recipe> recipe_;
   mutable std::array<double, 4> coordinates_{};
+  mutable bool fresh_ = true;  // no part has a value yet
   mutable std::vector<double> part_values_;
   std::vector<std::unique_ptr<mu::Parser>> parts_;
   mu::Parser main_;
@@ -193,12 +210,12 @@ ExpressionScope::ExpressionScope(int dimensions) : dimensions_(dimensions) {}
 ExpressionScope::Names ExpressionScope::names_in(const std::string& text) const {
   Names names;
   for (const Name& name : scan_names(text)) {
-    const bool coordinate = name.text == "x" || name.text == "y" || name.text == "z" || name.text == "t";
-    if (coordinate) {
+    const std::size_t coordinate = name.text.size() == 1 ? std::string("xyzt").find(name.text) : std::string::npos;
+    if (coordinate != std::string::npos) {
       if (name.text == "z" && dimensions_ == 2) {
         throw ExpressionError(name.position, "z in a two-dimensional case; up is y");
       }
-      names.coordinates = true;
+      names.coordinates |= 1u << coordinate;
     } else if (constants_.count(name.text)) {
       if (std::find(names.constants.begin(), names.constants.end(), name.text) == names.constants.end()) {
         names.constants.push_back(name.text);
@@ -219,7 +236,7 @@ ExpressionScope::Names ExpressionScope::names_in(const std::string& text) const 
 void ExpressionScope::order_varying(const std::string& name, std::vector<std::string>& ordered) const {
   if (std::find(ordered.begin(), ordered.end(), name) != ordered.end()) return;
   const Constant& constant = constants_.at(name);
-  if (!constant.varying) return;
+  if (constant.coordinates == 0) return;
   for (const std::string& used : constant.uses) order_varying(used, ordered);
   ordered.push_back(name);
 }
@@ -229,15 +246,15 @@ std::unique_ptr<Expression> ExpressionScope::build(const std::string& text, cons
   recipe->dimensions = dimensions_;
   recipe->text = text;
   std::vector<std::string> ordered;
-  bool varying = names.coordinates;
+  unsigned coordinates = names.coordinates;
   for (const std::string& name : names.constants) {
     if (constants_.at(name).faulty) return constant_expression(std::nan(""));
-    varying = varying || constants_.at(name).varying;
+    coordinates |= constants_.at(name).coordinates;
     order_varying(name, ordered);
   }
   std::set<std::string> numbers(names.constants.begin(), names.constants.end());
   for (const std::string& name : ordered) {
-    recipe->parts.emplace_back(name, constants_.at(name).text);
+    recipe->parts.push_back({name, constants_.at(name).text, constants_.at(name).coordinates});
     numbers.insert(constants_.at(name).uses.begin(), constants_.at(name).uses.end());
   }
   for (const std::string& name : numbers) {
@@ -245,7 +262,7 @@ std::unique_ptr<Expression> ExpressionScope::build(const std::string& text, cons
   }
   try {
     auto parsed = std::make_unique<ParsedExpression>(recipe);
-    if (varying) return parsed;
+    if (coordinates != 0) return parsed;
     return constant_expression((*parsed)(0, 0, 0, 0));
   } catch (const mu::Parser::exception_type& error) {
     rethrow(error, text);
@@ -280,7 +297,6 @@ std::vector<ExpressionScope::Fault> ExpressionScope::define(
     constants_[name].faulty = true;
     faults.push_back({index[name], position, text});
   };
-  std::set<std::string> direct;  // constants whose own text names a coordinate
   for (const auto& [name, i] : index) {
     Constant& constant = constants_[name];
     try {
@@ -288,7 +304,7 @@ std::vector<ExpressionScope::Fault> ExpressionScope::define(
       check_parentheses(constant.text);
       const Names names = names_in(constant.text);
       constant.uses = names.constants;
-      if (names.coordinates) direct.insert(name);
+      constant.coordinates = names.coordinates;
     } catch (const ExpressionError& error) {
       fail(name, error.position(), error.what());
     }
@@ -310,18 +326,17 @@ std::vector<ExpressionScope::Fault> ExpressionScope::define(
     }
     state[name] = 1;
     path.push_back(name);
-    constant.varying = direct.count(name) > 0;
     for (const std::string& used : constant.uses) {
       self(self, used);
-      constant.varying = constant.varying || constants_[used].varying;
+      constant.coordinates |= constants_[used].coordinates;
       constant.faulty = constant.faulty || constants_[used].faulty;
     }
     path.pop_back();
     state[name] = 2;
     if (constant.faulty) return;
     try {
-      const auto expression = build(constant.text, {constant.uses, constant.varying});
-      if (constant.varying) return;
+      const auto expression = build(constant.text, {constant.uses, constant.coordinates});
+      if (constant.coordinates != 0) return;
       constant.number = (*expression)(0, 0, 0, 0);
       if (!std::isfinite(*constant.number)) fail(name, 0, "its value is not finite");
     } catch (const ExpressionError& error) {

@@ -53,10 +53,10 @@ inline std::vector<std::string> problems_of(const std::string& text, const std::
     load_case(file.path(), overrides);
   } catch (const InputError& error) {
     for (const Problem& problem : error.problems()) {
-      if (problem.line > 0) EXPECT_EQ(problem.file, file.path());
-      found.push_back((problem.line > 0 ? std::to_string(problem.line) + ":" + std::to_string(problem.column)
-                                        : problem.file) +
-                      " " + problem.text);
+      EXPECT_TRUE(problem.line == 0 || problem.file == file.path()) << problem.message();
+      found.push_back(
+          (problem.line > 0 ? std::to_string(problem.line) + ":" + std::to_string(problem.column) : problem.file) +
+          " " + problem.text);
     }
   }
   return found;
@@ -64,22 +64,23 @@ inline std::vector<std::string> problems_of(const std::string& text, const std::
 
 // A closed 2-D box full of liquid, 10 x 10 particles; `extra` goes at the end.
 inline std::string small_case(const std::string& extra = "", const std::string& fluid = "reynolds = 100\n") {
-  return "method = \"les-sph\"\n"           // 1
-         "[domain]\n"                       // 2
-         "lower = [0, 0]\n"                 // 3
-         "upper = [1, 1]\n"                 // 4
-         "x = \"periodic\"\n"               // 5
-         "y = \"periodic\"\n"               // 6
-         "[resolution]\n"                   // 7
-         "spacing = 0.1\n"                  // 8
-         "[time]\n"                         // 9
-         "end = 1\n"                        // 10
-         "[fluid]\n" + fluid +              // 11, 12
-         "[[liquid]]\n" +                   // 13
-         extra;                             // 14
+  return "method = \"les-sph\"\n"  // 1
+         "[domain]\n"              // 2
+         "lower = [0, 0]\n"        // 3
+         "upper = [1, 1]\n"        // 4
+         "x = \"periodic\"\n"      // 5
+         "y = \"periodic\"\n"      // 6
+         "[resolution]\n"          // 7
+         "spacing = 0.1\n"         // 8
+         "[time]\n"                // 9
+         "end = 1\n"               // 10
+         "[fluid]\n" +
+         fluid +           // 11, 12
+         "[[liquid]]\n" +  // 13
+         extra;            // 14
 }
 
-inline const std::string plunging_breaker = R"(title  = "Plunging breaker"
+inline const std::string plunging_breaker = R"toml(title  = "Plunging breaker"
 method = "les-sph"
 
 [domain]                      # three entries: 3-D, z is up
@@ -115,6 +116,6 @@ end = 2.5
 
 [output]
 every = 0.05
-)";
+)toml";
 
 }  // namespace spume::test

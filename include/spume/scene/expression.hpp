@@ -55,13 +55,13 @@ class ExpressionScope {
   struct Constant {
     std::string text;
     std::vector<std::string> uses;  // names of constants
-    bool varying = false;           // depends on x, y, z or t
+    unsigned coordinates = 0;       // which of x, y, z, t its value depends on: bits 0 to 3
     bool faulty = false;
     std::optional<double> number;
   };
   struct Names {  // what a text refers to
     std::vector<std::string> constants;
-    bool coordinates = false;
+    unsigned coordinates = 0;  // named directly: bits 0 to 3
   };
   Names names_in(const std::string& text) const;
   std::unique_ptr<Expression> build(const std::string& text, const Names& names) const;
