@@ -91,6 +91,7 @@ void CellMultigrid::choose_box(std::span<const double> const (&position)[3], std
   const double most_cells = std::max(fewest_cells, most_cells_per_particle * static_cast<double>(particles_));
   for (double size = geometry_.cell_size; !empty_; size *= 2) {
     double total = 1;
+    bool countable = true;
     for (std::size_t a = 0; a < dimensions; ++a) {
       Axis& axis = axis_[a];
       axis.periodic = geometry_.periodic[a];
@@ -108,8 +109,9 @@ void CellMultigrid::choose_box(std::span<const double> const (&position)[3], std
       const double lowest = std::floor((liquid.lower[a] - axis.origin) / axis.width);
       const double highest = std::floor((liquid.upper[a] - axis.origin) / axis.width);
       total *= axis.count > 0 && axis.periodic ? axis.count : highest - lowest + 2 + box_alignment;
+      countable = countable && std::max(std::abs(lowest), std::abs(highest)) < INT_MAX / 4;
     }
-    if (total > most_cells) continue;
+    if (total > most_cells || !countable) continue;
     for (std::size_t a = 0; a < dimensions; ++a) {
       const Axis& axis = axis_[a];
       width_[a] = axis.width;

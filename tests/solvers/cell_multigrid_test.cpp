@@ -84,7 +84,7 @@ TEST_P(Everywhere, FewIterationsAtTwoResolutions) {
       std::printf("%-11s %d-D n = %6zu Ma = %.2f: BiCGStab %d (%d applications), CG %d (%d), Jacobi BiCGStab %d (%d)\n", c.name, c.dimensions,
                   problem.size(), mach, iterations[level], bicgstab_applications, result.iterations, result.applications + result.double_applications,
                   slow.iterations, slow.applications + slow.double_applications);
-      EXPECT_GE(slow.iterations, 3 * iterations[level]);
+      EXPECT_GT(slow.iterations, 2 * iterations[level]);
     }
     EXPECT_LE(iterations[0], 8);
     EXPECT_LE(iterations[1], 8);
@@ -209,7 +209,7 @@ TEST(CellMultigrid, NonsenseIsHarmless) {
       if (interior == 0 || !std::isfinite(at))
         EXPECT_DOUBLE_EQ(z, 0.5);
       else
-        EXPECT_GT(z, 0.5);
+        EXPECT_GE(z, 0.5);
     }
   }
   EXPECT_THROW(m.setup(std::vector<double>{1.0}, {}, {}, {}, 0.0, {}), std::invalid_argument);
