@@ -146,6 +146,7 @@ void CellMultigrid::bin(std::span<const double> const (&position)[3], std::span<
   stencil_.resize(particles_);
   corner_.resize(particles_);
   rank_.resize(particles_);
+  stencil_cell_.resize(particles_);
   order_.resize(particles_);
   start_.resize(stencil_cells + 1);
   status_.resize(stencil_cells);
@@ -154,6 +155,7 @@ void CellMultigrid::bin(std::span<const double> const (&position)[3], std::span<
     std::fill(start_.data() + first, start_.data() + last, 0);
     std::fill(status_.data() + first, status_.data() + last, std::uint8_t{no_liquid});
   });
+  const double inverse_width[3] = {1 / width_[0], 1 / width_[1], dimensions == 3 ? 1 / width_[2] : 0};
   parallel_blocks(particles_, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) {
       corner_[p] = -1;
@@ -164,25 +166,26 @@ void CellMultigrid::bin(std::span<const double> const (&position)[3], std::span<
       bool finite = true;
       for (std::size_t a = 0; a < dimensions; ++a) {
         // Linear between cell centres; constant beyond the last centre before a wall.
-        const double s = (position[a][p] - axis_[a].origin) / width_[a] - 0.5 - first_cell_[a];
+        const double s = (position[a][p] - axis_[a].origin) * inverse_width[a] - 0.5 - first_cell_[a];
         if (!(std::abs(s) < INT_MAX / 2)) {
           finite = false;
           break;
         }
-        double base = std::floor(s);
+        const int count = n[a];
+        int base = static_cast<int>(s) - (s < 0 ? 1 : 0);
         double f = s - base;
-        if (axis_[a].periodic) {
-          base -= n[a] * std::floor(base / n[a]);
-        } else if (base < 0) {
-          base = 0;
-          f = 0;
-        } else if (base >= n[a] - 1) {
-          base = n[a] - 1;
-          f = 0;
+        if (base < 0 || base >= count - 1) {
+          if (axis_[a].periodic) {
+            base = ((base % count) + count) % count;
+          } else {
+            base = base < 0 ? 0 : count - 1;
+            f = 0;
+          }
         }
-        cell[a] = static_cast<int>(base);
+        cell[a] = base;
         fraction[a] = static_cast<float>(f);
-        own[a] = f < 0.5 ? cell[a] : (cell[a] + 1) % n[a];
+        own[a] = base + static_cast<int>(f + f);  // the nearer of two centres, without a branch that is a coin toss
+        own[a] = own[a] == count ? 0 : own[a];
       }
       if (!finite) continue;
       stencil_[p] = {fraction[0], fraction[1], fraction[2], interior[p]};
@@ -190,9 +193,13 @@ void CellMultigrid::bin(std::span<const double> const (&position)[3], std::span<
       const auto index = [&](const int (&c)[3]) {
         return static_cast<std::size_t>((c[2] * n[1] + c[1])) * static_cast<std::size_t>(n[0]) + static_cast<std::size_t>(c[0]);
       };
-      std::atomic_ref<std::uint8_t>(status_[index(own)]).store(interior_cell, std::memory_order_relaxed);
-      rank_[p] = std::atomic_ref<std::int32_t>(start_[index(cell)]).fetch_add(1, std::memory_order_relaxed);
+      const std::atomic_ref<std::uint8_t> status(status_[index(own)]);
+      if (status.load(std::memory_order_relaxed) != interior_cell) status.store(interior_cell, std::memory_order_relaxed);
+      stencil_cell_[p] = static_cast<std::int32_t>(index(cell));
     }
+    // Apart from the loop above: a locked increment waits for every store before it.
+    for (std::size_t p = first; p < last; ++p)
+      if (corner_[p] >= 0) rank_[p] = std::atomic_ref<std::int32_t>(start_[static_cast<std::size_t>(stencil_cell_[p])]).fetch_add(1, std::memory_order_relaxed);
   });
   const auto row_cells = [&](std::size_t row) { return start_.data() + row * static_cast<std::size_t>(n[0]); };
   parallel_blocks(level.rows(), level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
@@ -220,19 +227,26 @@ void CellMultigrid::bin(std::span<const double> const (&position)[3], std::span<
       }
     }
   });
-  const auto stencil_index = [&](std::size_t corner) {
-    const std::size_t k = corner / plane_pitch, j = corner % plane_pitch / row_pitch, i = corner % row_pitch;
-    return (k * static_cast<std::size_t>(n[1]) + j) * static_cast<std::size_t>(n[0]) + i;
-  };
   parallel_blocks(particles_, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p)
-      if (corner_[p] >= 0)
-        order_[static_cast<std::size_t>(start_[stencil_index(static_cast<std::size_t>(corner_[p]))] + rank_[p])] = static_cast<std::int32_t>(p);
+      if (corner_[p] >= 0) order_[static_cast<std::size_t>(start_[static_cast<std::size_t>(stencil_cell_[p])] + rank_[p])] = static_cast<std::int32_t>(p);
   });
   // Arrival order depends on the threads; index order does not.
   parallel_blocks(stencil_cells, 4 * default_block, [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t c = first; c < last; ++c)
-      if (start_[c + 1] - start_[c] > 1) std::sort(order_.data() + start_[c], order_.data() + start_[c + 1]);
+    for (std::size_t c = first; c < last; ++c) {
+      std::int32_t* held = order_.data() + start_[c];
+      const std::int32_t count = start_[c + 1] - start_[c];
+      if (count > 16) {
+        std::sort(held, held + count);
+        continue;
+      }
+      for (std::int32_t i = 1; i < count; ++i) {
+        const std::int32_t p = held[i];
+        std::int32_t at = i;
+        for (; at > 0 && held[at - 1] > p; --at) held[at] = held[at - 1];
+        held[at] = p;
+      }
+    }
   });
 }
 

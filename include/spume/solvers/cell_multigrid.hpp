@@ -94,6 +94,7 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
 
   Array<Stencil> stencil_;            // per particle
   Array<std::int32_t> corner_;        // per particle: lowest cell of the stencil in the corner array, -1 for none
+  Array<std::int32_t> stencil_cell_;  // per particle: lowest cell of the stencil among the cells
   Array<std::int32_t> rank_;          // per particle: arrival order within its stencil cell
   Array<float> inverse_diagonal_;     // per particle
   Array<std::int32_t> start_;         // per stencil cell: first entry in order_
