@@ -46,8 +46,8 @@ struct Cloud {
 
 void report(benchmark::State& state, std::size_t particles) {
   state.counters["particles"] = static_cast<double>(particles);
-  state.counters["per_particle"] =
-      benchmark::Counter(static_cast<double>(particles), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["per_particle"] = benchmark::Counter(
+      static_cast<double>(particles), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void cell_multigrid_setup(benchmark::State& state) {

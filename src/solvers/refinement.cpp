@@ -23,16 +23,19 @@ RefinementResult solve_refined(LinearOperator<double>& exact, LinearOperator<flo
                                std::span<const double> b, std::span<double> x, const RefinementOptions& options,
                                RefinementWorkspace& work) {
   const std::size_t n = b.size();
-  if (x.size() != n || exact.size() != n || fast.size() != n || (!options.weights.empty() && options.weights.size() != n))
+  if (x.size() != n || exact.size() != n || fast.size() != n ||
+      (!options.weights.empty() && options.weights.size() != n))
     throw std::invalid_argument("solve_refined: operators, right-hand side, solution and weights must have one length");
   Array<double>& r = work.residual;
   r.resize(n);
   work.right_hand_side.resize(n);
   work.correction.resize(n);
   work.weights.resize(options.weights.size());
-  parallel_for(options.weights.size(), [&](std::size_t i) { work.weights[i] = static_cast<float>(options.weights[i]); });
+  parallel_for(options.weights.size(),
+               [&](std::size_t i) { work.weights[i] = static_cast<float>(options.weights[i]); });
   const auto weight = [&](std::size_t i) { return options.weights.empty() ? 1.0 : options.weights[i]; };
-  const double total_weight = options.remove_mean ? fused_sums<1>(n, [&](std::size_t i) { return std::array{weight(i)}; })[0] : 1.0;
+  const double total_weight =
+      options.remove_mean ? fused_sums<1>(n, [&](std::size_t i) { return std::array{weight(i)}; })[0] : 1.0;
   // r -= w sum(r) / sum(w) when the mean is removed; the norm of what remains.
   const auto project = [&](double sum) {
     const double share = options.remove_mean ? sum / total_weight : 0.0;
@@ -86,8 +89,9 @@ RefinementResult solve_refined(LinearOperator<double>& exact, LinearOperator<flo
     inner.max_iterations = options.max_iterations - result.iterations;
     const std::span<const float> rhs = work.right_hand_side;
     const std::span<float> e = work.correction;
-    const KrylovResult solved = options.method == KrylovMethod::bicgstab ? bicgstab<float>(fast, m, rhs, e, inner, work.krylov)
-                                                                         : conjugate_gradients<float>(fast, m, rhs, e, inner, work.krylov);
+    const KrylovResult solved = options.method == KrylovMethod::bicgstab
+                                    ? bicgstab<float>(fast, m, rhs, e, inner, work.krylov)
+                                    : conjugate_gradients<float>(fast, m, rhs, e, inner, work.krylov);
     result.iterations += solved.iterations;
     result.applications += solved.applications;
     parallel_for(n, [&](std::size_t i) { x[i] += norm_r * static_cast<double>(e[i]); });

@@ -34,10 +34,10 @@ struct SphSetup {
   std::array<bool, 3> periodic{};
   std::array<std::array<bool, 2>, 3> wall{};
   std::function<bool(double, double, double)> liquid = [](double, double, double) { return true; };
-  bool surface = true;       // false: no particle is pinned (closed or periodic domains)
+  bool surface = true;  // false: no particle is pinned (closed or periodic domains)
   bool smooth_penalty = true;
-  double helmholtz = 0;      // Ma^2 / dt^2
-  double jitter = 0.2;       // of the spacing
+  double helmholtz = 0;  // Ma^2 / dt^2
+  double jitter = 0.2;   // of the spacing
 };
 
 struct SphSystem {

@@ -25,7 +25,9 @@ std::vector<double> noise(std::size_t n, unsigned seed) {
   return values;
 }
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); }
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
 
 std::vector<double> applied(CellMultigrid& m, const std::vector<double>& r) {
   std::vector<double> z(r.size());
@@ -39,7 +41,9 @@ struct Case {
   int dimensions;
   double coarse, fine;
 };
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name << ' ' << c.dimensions << "-D"; }
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.name << ' ' << c.dimensions << "-D";
+}
 
 class Everywhere : public testing::TestWithParam<Case> {};
 
@@ -57,7 +61,8 @@ TEST_P(Everywhere, IsSymmetricAndPositive) {
   }
 }
 
-// The bar of the project is 8 BiCGStab iterations to 1e-6 from a warm start; here from zero, for twice the resolution too.
+// The bar of the project is 8 BiCGStab iterations to 1e-6 from a warm start; here from zero, for twice the resolution
+// too.
 TEST_P(Everywhere, FewIterationsAtTwoResolutions) {
   const Case& c = GetParam();
   for (const double mach : {0.0, 0.05}) {
@@ -69,7 +74,8 @@ TEST_P(Everywhere, FewIterationsAtTwoResolutions) {
       options.zero_guess = true;
       options.remove_mean = problem.singular;
       std::vector<double> x(problem.size());
-      RefinementResult result = solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, x, options, work);
+      RefinementResult result =
+          solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, x, options, work);
       EXPECT_TRUE(result.converged);
       iterations[level] = result.iterations;
       const int bicgstab_applications = result.applications + result.double_applications;
@@ -80,10 +86,13 @@ TEST_P(Everywhere, FewIterationsAtTwoResolutions) {
       JacobiPreconditioner<float> jacobi(problem.system.diagonal);
       options.method = KrylovMethod::bicgstab;
       RefinementResult slow = solve_refined(problem.exact, problem.fast, jacobi, problem.b, x, options, work);
-      RecordProperty(std::string("iterations_") + (mach > 0 ? "compressible_" : "incompressible_") + (level == 0 ? "coarse" : "fine"), iterations[level]);
-      std::printf("%-11s %d-D n = %6zu Ma = %.2f: BiCGStab %d (%d applications), CG %d (%d), Jacobi BiCGStab %d (%d)\n", c.name, c.dimensions,
-                  problem.size(), mach, iterations[level], bicgstab_applications, result.iterations, result.applications + result.double_applications,
-                  slow.iterations, slow.applications + slow.double_applications);
+      RecordProperty(std::string("iterations_") + (mach > 0 ? "compressible_" : "incompressible_") +
+                         (level == 0 ? "coarse" : "fine"),
+                     iterations[level]);
+      std::printf("%-11s %d-D n = %6zu Ma = %.2f: BiCGStab %d (%d applications), CG %d (%d), Jacobi BiCGStab %d (%d)\n",
+                  c.name, c.dimensions, problem.size(), mach, iterations[level], bicgstab_applications,
+                  result.iterations, result.applications + result.double_applications, slow.iterations,
+                  slow.applications + slow.double_applications);
       EXPECT_GT(slow.iterations, 2 * iterations[level]);
     }
     EXPECT_LE(iterations[0], 8);
@@ -92,11 +101,12 @@ TEST_P(Everywhere, FewIterationsAtTwoResolutions) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Everywhere,
-                         testing::Values(Case{"open wave", open_wave, 2, 0.02, 0.01}, Case{"open wave", open_wave, 3, 0.05, 0.025},
-                                         Case{"closed box", closed_box, 2, 0.02, 0.01}, Case{"closed box", closed_box, 3, 0.04, 0.025},
-                                         Case{"periodic", periodic_box, 2, 0.02, 0.01}, Case{"periodic", periodic_box, 3, 0.04, 0.025},
-                                         Case{"drops", drops, 2, 0.02, 0.01}, Case{"drops", drops, 3, 0.05, 0.03}));
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, Everywhere,
+    testing::Values(Case{"open wave", open_wave, 2, 0.02, 0.01}, Case{"open wave", open_wave, 3, 0.05, 0.025},
+                    Case{"closed box", closed_box, 2, 0.02, 0.01}, Case{"closed box", closed_box, 3, 0.04, 0.025},
+                    Case{"periodic", periodic_box, 2, 0.02, 0.01}, Case{"periodic", periodic_box, 3, 0.04, 0.025},
+                    Case{"drops", drops, 2, 0.02, 0.01}, Case{"drops", drops, 3, 0.05, 0.03}));
 
 TEST(CellMultigrid, SolidBoxInTheLiquidCostsFewIterations) {
   // The particles see no mirror images in the box, which is its zero normal gradient: no neighbour, no flux.
@@ -139,7 +149,8 @@ TEST(CellMultigrid, ApplicationIsTheSameToTheBitForAnyThreadCount) {
   std::vector<double> first;
   for (const int threads : {1, 2, 3, 7}) {
     omp_set_num_threads(threads);
-    problem.multigrid.setup(problem.system.x, problem.system.y, problem.system.z, problem.system.interior, setup.helmholtz, problem.system.diagonal);
+    problem.multigrid.setup(problem.system.x, problem.system.y, problem.system.z, problem.system.interior,
+                            setup.helmholtz, problem.system.diagonal);
     const std::vector<double> z = applied(problem.multigrid, r);
     if (threads == 1) first = z;
     EXPECT_EQ(z, first) << threads << " threads";
@@ -183,7 +194,8 @@ TEST(CellMultigrid, FarParticlesDoNotBlowUpTheBox) {
   EXPECT_LE(static_cast<double>(cells[0]) * cells[1] * cells[2], 65536.0);
   for (const double z : applied(problem.multigrid, noise(s.size(), 1))) EXPECT_TRUE(std::isfinite(z));
   // Back among the others the cells are fine again, and the preconditioner good.
-  problem.multigrid.setup(problem.system.x, problem.system.y, problem.system.z, problem.system.interior, 0.0, problem.system.diagonal);
+  problem.multigrid.setup(problem.system.x, problem.system.y, problem.system.z, problem.system.interior, 0.0,
+                          problem.system.diagonal);
   std::vector<double> x(problem.size());
   KrylovWorkspace<double> work;
   EXPECT_LE(bicgstab<double>(problem.exact, problem.multigrid, problem.b, x, {}, work).iterations, 8);
@@ -199,7 +211,8 @@ TEST(CellMultigrid, NonsenseIsHarmless) {
   std::vector<double> none;
   m.apply(std::span<const double>(none), std::span<double>(none));
   // One particle, inside and pinned; far outside the domain; at a non-finite place.
-  for (const double at : {0.5, -3.0, 1e300, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double at :
+       {0.5, -3.0, 1e300, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     for (const float interior : {1.0F, 0.0F}) {
       const std::vector<double> p{at}, r{1.0};
       const std::vector<float> w{interior}, d{2.0F};

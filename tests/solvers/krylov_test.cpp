@@ -40,7 +40,9 @@ struct Case {
   int dimensions;
   double spacing, mach;
 };
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name << ' ' << c.dimensions << "-D Ma " << c.mach; }
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.name << ' ' << c.dimensions << "-D Ma " << c.mach;
+}
 
 class Direct : public testing::TestWithParam<Case> {};
 
@@ -56,7 +58,8 @@ TEST_P(Direct, EverySolverAgreesWithTheFactorisation) {
   options.tolerance = 1e-11;
   options.max_iterations = 2000;
   options.remove_mean = problem.singular;
-  for (Preconditioner<double>* m : {static_cast<Preconditioner<double>*>(&jacobi), static_cast<Preconditioner<double>*>(&problem.multigrid)}) {
+  for (Preconditioner<double>* m :
+       {static_cast<Preconditioner<double>*>(&jacobi), static_cast<Preconditioner<double>*>(&problem.multigrid)}) {
     std::vector<double> x(problem.size(), 0.5);  // a guess that must be used, not assumed to be zero
     KrylovResult result = bicgstab<double>(problem.exact, *m, problem.b, x, options, work);
     EXPECT_TRUE(result.converged);
@@ -74,19 +77,21 @@ TEST_P(Direct, EverySolverAgreesWithTheFactorisation) {
   for (const KrylovMethod method : {KrylovMethod::bicgstab, KrylovMethod::conjugate_gradients}) {
     refinement.method = method;
     std::vector<double> x(problem.size(), 0.5);
-    const RefinementResult result = solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, x, refinement, refinement_work);
+    const RefinementResult result =
+        solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, x, refinement, refinement_work);
     EXPECT_TRUE(result.converged);
     EXPECT_LT(relative_difference(x, exact), 1e-7);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Systems, Direct,
-                         testing::Values(Case{"open wave", open_wave, 2, 0.02, 0.05}, Case{"open wave", open_wave, 2, 0.02, 0},
-                                         Case{"open wave", open_wave, 3, 1.0 / 14, 0.05}, Case{"open wave", open_wave, 3, 1.0 / 14, 0},
-                                         Case{"closed box", closed_box, 2, 0.02, 0.05}, Case{"closed box", closed_box, 2, 0.02, 0},
-                                         Case{"closed box", closed_box, 3, 0.0625, 0}, Case{"periodic", periodic_box, 2, 0.02, 0},
-                                         Case{"periodic", periodic_box, 3, 0.0625, 0.05}, Case{"drops", drops, 2, 0.02, 0},
-                                         Case{"drops", drops, 3, 0.07, 0}));
+INSTANTIATE_TEST_SUITE_P(
+    Systems, Direct,
+    testing::Values(Case{"open wave", open_wave, 2, 0.02, 0.05}, Case{"open wave", open_wave, 2, 0.02, 0},
+                    Case{"open wave", open_wave, 3, 1.0 / 14, 0.05}, Case{"open wave", open_wave, 3, 1.0 / 14, 0},
+                    Case{"closed box", closed_box, 2, 0.02, 0.05}, Case{"closed box", closed_box, 2, 0.02, 0},
+                    Case{"closed box", closed_box, 3, 0.0625, 0}, Case{"periodic", periodic_box, 2, 0.02, 0},
+                    Case{"periodic", periodic_box, 3, 0.0625, 0.05}, Case{"drops", drops, 2, 0.02, 0},
+                    Case{"drops", drops, 3, 0.07, 0}));
 
 TEST(Krylov, ReportedResidualIsTheMeasuredOne) {
   Problem problem(open_wave(3, 0.05, 0));
@@ -94,8 +99,9 @@ TEST(Krylov, ReportedResidualIsTheMeasuredOne) {
   KrylovOptions<double> options;
   for (const bool gradients : {false, true}) {
     std::vector<double> x(problem.size()), ax(problem.size());
-    const KrylovResult result = gradients ? conjugate_gradients<double>(problem.exact, problem.multigrid, problem.b, x, options, work)
-                                          : bicgstab<double>(problem.exact, problem.multigrid, problem.b, x, options, work);
+    const KrylovResult result =
+        gradients ? conjugate_gradients<double>(problem.exact, problem.multigrid, problem.b, x, options, work)
+                  : bicgstab<double>(problem.exact, problem.multigrid, problem.b, x, options, work);
     problem.exact.apply(x, ax);
     double rr = 0, bb = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -188,7 +194,8 @@ TEST(Krylov, NonFiniteInputIsReportedAtOnce) {
       EXPECT_TRUE(result.breakdown);
       EXPECT_FALSE(result.converged);
     }
-    const RefinementResult refined = solve_refined(problem.exact, problem.fast, problem.multigrid, b, x, {}, refinement_work);
+    const RefinementResult refined =
+        solve_refined(problem.exact, problem.fast, problem.multigrid, b, x, {}, refinement_work);
     EXPECT_TRUE(refined.breakdown);
     EXPECT_FALSE(refined.converged);
     EXPECT_EQ(problem.exact.applications, 0);
@@ -210,8 +217,9 @@ TEST(Krylov, UnreachableToleranceEnds) {
   options.max_iterations = 200;
   for (const bool gradients : {false, true}) {
     std::vector<double> x(problem.size(), 0.0);
-    const KrylovResult result = gradients ? conjugate_gradients<double>(problem.exact, problem.multigrid, problem.b, x, options, work)
-                                          : bicgstab<double>(problem.exact, problem.multigrid, problem.b, x, options, work);
+    const KrylovResult result =
+        gradients ? conjugate_gradients<double>(problem.exact, problem.multigrid, problem.b, x, options, work)
+                  : bicgstab<double>(problem.exact, problem.multigrid, problem.b, x, options, work);
     EXPECT_FALSE(result.converged);
     EXPECT_LE(result.iterations, 200);
   }
@@ -240,13 +248,16 @@ TEST(Krylov, SolutionIsTheSameToTheBitForAnyThreadCount) {
   std::vector<double> first, first_gradients;
   for (const int threads : {1, 2, 3}) {
     omp_set_num_threads(threads);
-    problem.multigrid.setup(problem.system.x, problem.system.y, problem.system.z, problem.system.interior, 0.0, problem.system.diagonal);
+    problem.multigrid.setup(problem.system.x, problem.system.y, problem.system.z, problem.system.interior, 0.0,
+                            problem.system.diagonal);
     RefinementWorkspace refinement_work;
     std::vector<double> x(problem.size(), 0.0), y(problem.size(), 0.0);
     RefinementOptions options;
-    EXPECT_TRUE(solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, x, options, refinement_work).converged);
+    EXPECT_TRUE(solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, x, options, refinement_work)
+                    .converged);
     options.method = KrylovMethod::conjugate_gradients;
-    EXPECT_TRUE(solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, y, options, refinement_work).converged);
+    EXPECT_TRUE(solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, y, options, refinement_work)
+                    .converged);
     if (threads == 1) {
       first = x;
       first_gradients = y;

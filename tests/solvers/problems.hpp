@@ -10,7 +10,9 @@
 namespace spume::reference {
 
 // dt at courant 0.2 of a unit speed: Ma^2 / dt^2.
-inline double helmholtz_of(double mach, double spacing) { return mach * mach / (0.04 * spacing * spacing); }
+inline double helmholtz_of(double mach, double spacing) {
+  return mach * mach / (0.04 * spacing * spacing);
+}
 
 inline SphSetup open_wave(int dimensions, double spacing, double mach) {
   SphSetup s;

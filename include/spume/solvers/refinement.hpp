@@ -18,7 +18,7 @@ enum class KrylovMethod { bicgstab, conjugate_gradients };
 
 struct RefinementOptions {
   KrylovMethod method = KrylovMethod::bicgstab;
-  double tolerance = 1e-6;  // on ||b - A x|| / ||b|| in double
+  double tolerance = 1e-6;   // on ||b - A x|| / ||b|| in double
   int max_iterations = 500;  // of the inner solver, all corrections together
   // Largest reduction asked of one float solve. Measured on the SPH operator at 1e-6: 1e-3 takes two corrections and 10
   // to 16 float applications; 1e-2 takes three corrections; from 1e-5 on the float recurrence stalls in rounding.
