@@ -15,7 +15,9 @@ std::atomic<std::int64_t> allocations{0};
 
 }  // namespace
 
-ArrayStatistics array_statistics() { return {held_bytes.load(), peak_bytes.load(), allocations.load()}; }
+ArrayStatistics array_statistics() {
+  return {held_bytes.load(), peak_bytes.load(), allocations.load()};
+}
 
 namespace detail {
 

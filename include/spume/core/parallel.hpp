@@ -19,7 +19,9 @@ namespace spume {
 // work, small enough that 64 threads share 1e5 particles evenly.
 inline constexpr std::size_t default_block = 512;
 
-inline std::size_t block_count(std::size_t n, std::size_t block) { return (n + block - 1) / block; }
+inline std::size_t block_count(std::size_t n, std::size_t block) {
+  return (n + block - 1) / block;
+}
 
 // Calls body(block_index, first, last) for every block of [0, n). Blocks are scheduled statically in
 // contiguous runs, so that a thread touches the memory that it touched first; an exception thrown in a
@@ -81,7 +83,8 @@ T parallel_reduce(std::size_t n, T start, Value&& value, Combine&& combine) {
   if (n == 0) return start;
   const std::size_t block = std::max(default_block, (n + max_reduction_blocks - 1) / max_reduction_blocks);
   std::array<T, max_reduction_blocks> partial;
-  parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t last) { partial[b] = value(first, last); });
+  parallel_blocks(n, block,
+                  [&](std::size_t b, std::size_t first, std::size_t last) { partial[b] = value(first, last); });
   T result = start;
   for (std::size_t b = 0; b < block_count(n, block); ++b) result = combine(result, partial[b]);
   return result;
@@ -115,6 +118,8 @@ double parallel_max(std::size_t n, double start, Term&& term) {
 }
 
 // Number of threads a parallel loop will use.
-inline int thread_count() { return omp_get_max_threads(); }
+inline int thread_count() {
+  return omp_get_max_threads();
+}
 
 }  // namespace spume

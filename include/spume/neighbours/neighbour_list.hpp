@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Neighbour lists of particles: for each particle the particles and images within the reach, itself excluded.
+//
+// Points are numbered particles first (0 .. n-1), then images (n .. n+m-1), then one sentinel (n+m) far from
+// everything. Lists are padded with the sentinel to a multiple of 8, so that pair loops have no remainder:
+// kernels vanish at the sentinel. The order within a list depends on the sorted particles alone, never on the
+// thread count.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "spume/core/array.hpp"
+#include "spume/neighbours/cell_grid.hpp"
+#include "spume/neighbours/images.hpp"
+
+namespace spume {
+
+class NeighbourList {
+ public:
+  // Positions must be sorted by `particles` (a CellTable of `grid`). Coordinates are kept as floats relative to
+  // `origin`: a domain 1000 spacings across is resolved to 6e-5 spacings.
+  void build(const CellGrid& grid, const CellTable& particles, const double* x, const double* y, const double* z,
+             std::size_t n, const Images& images, const std::array<double, 3>& origin);
+
+  std::size_t particles() const { return count_.size(); }
+  std::size_t points() const { return points_; }  // particles and images
+  std::int32_t sentinel() const { return static_cast<std::int32_t>(points_); }
+  std::int64_t pair_count() const { return pairs_; }  // directed, without padding
+  std::int32_t count(std::size_t i) const { return count_[i]; }
+  const std::int32_t* begin(std::size_t i) const { return index_.data() + first_[i]; }
+  const std::int32_t* padded_end(std::size_t i) const { return begin(i) + (count_[i] + 7) / 8 * 8; }
+  std::span<const std::int32_t> of(std::size_t i) const { return {begin(i), static_cast<std::size_t>(count_[i])}; }
+  // Float coordinates relative to the origin, sentinel included.
+  const float* coordinate(int axis) const { return coordinate_[axis].data(); }
+  double bytes() const;
+
+ private:
+  template <int dimensions>
+  bool search(const CellGrid& grid, const CellTable& particles, const Images& images);
+
+  std::array<Array<float>, 3> coordinate_;
+  Array<std::int32_t> index_, count_;
+  Array<std::int64_t> first_;
+  std::size_t points_ = 0;
+  std::int64_t pairs_ = 0;
+  std::array<double, 3> origin_{};
+  std::array<float, 3> image_free_lower_{}, image_free_upper_{};
+};
+
+}  // namespace spume
