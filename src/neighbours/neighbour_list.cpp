@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/simd.hpp"
@@ -89,6 +90,17 @@ template <class V, class T>
   std::memcpy(p, &v, sizeof v);
 }
 
+// table[index[l]] of the eight lanes.
+[[gnu::always_inline]] inline i32x8 gather_int(const std::int32_t* table, i32x8 index) {
+#if defined(__AVX2__)
+  return i32x8(_mm256_i32gather_epi32(table, __m256i(index), 4));
+#else
+  i32x8 v;
+  for (int l = 0; l < simd::lanes; ++l) v[l] = table[index[l]];
+  return v;
+#endif
+}
+
 // Entries that a list of `count` neighbours takes.
 inline std::int32_t padded(std::int32_t count) {
   return (count + simd::lanes - 1) / simd::lanes * simd::lanes;
@@ -115,27 +127,42 @@ struct Block {
   std::int32_t first, last;
 };
 
-// Cuts runs of sorted points into blocks. Most runs have at most three: these are written without a branch, as the
-// lengths of runs are unpredictable.
-class Blocks {
- public:
-  explicit Blocks(Array<Block>& memory) : memory_(memory) {}
-  [[gnu::always_inline]] void add(std::int32_t first, std::int32_t last) {
-    const auto more = static_cast<std::size_t>((last - first + simd::lanes - 1) / simd::lanes);
-    if (size_ + more + 3 > memory_.size()) memory_.resize(2 * (size_ + more + 3));
-    Block* out = memory_.data() + size_;
-    for (int k = 0; k < 3; ++k) out[k] = {first + k * simd::lanes, last};
-    for (std::size_t k = 3; k < more; ++k) out[k] = {first + static_cast<std::int32_t>(k) * simd::lanes, last};
-    size_ += more;
-  }
-  std::size_t size() const { return size_; }
-  const Block* begin() const { return memory_.data(); }
-  const Block* end() const { return memory_.data() + size_; }
+// Runs of sorted points, one per row.
+struct Runs {
+  // The most rows that come near a group along y or z, none narrower than CellGrid::row_fraction reaches, in whole
+  // vectors; twice for images, and once more as packed stores write whole vectors.
+  static constexpr std::size_t rows_near =
+      (static_cast<std::size_t>((2 + group_width) / CellGrid::row_fraction) + 3 + simd::lanes - 1) / simd::lanes *
+      simd::lanes;
+  std::array<std::int32_t, 2 * rows_near * rows_near + simd::lanes> first, last;
+  std::size_t size = 0;
 
- private:
-  Array<Block>& memory_;
-  std::size_t size_ = 0;
+  // Adds the rows of the mask: points table[from[l]] to table[to[l]], counted from base.
+  [[gnu::always_inline]] void add(const std::int32_t* table, i32x8 from, i32x8 to, std::int32_t base, unsigned rows) {
+    const Packing packing = packing_of(rows);
+    store_packed(gather_int(table, from) + base, packing, first.data() + size);
+    store_packed(gather_int(table, to) + base, packing, last.data() + size);
+    size += static_cast<std::size_t>(std::popcount(rows));
+  }
 };
+
+// Cuts runs into blocks. Most runs have at most three: these are written without a branch, as the lengths of runs
+// are unpredictable.
+[[gnu::noinline]] std::span<const Block> cut(const Runs& runs, Array<Block>& memory) {
+  std::size_t most = 3;
+  for (std::size_t r = 0; r < runs.size; ++r)
+    most += static_cast<std::size_t>((runs.last[r] - runs.first[r] + simd::lanes - 1) / simd::lanes);
+  if (most > memory.size()) memory.resize(2 * most);
+  Block* out = memory.data();
+  for (std::size_t r = 0; r < runs.size; ++r) {
+    const std::int32_t first = runs.first[r], last = runs.last[r];
+    for (int k = 0; k < 3; ++k) out[k] = {first + k * simd::lanes, last};
+    const std::int32_t blocks = (last - first + simd::lanes - 1) / simd::lanes;
+    for (std::int32_t k = 3; k < blocks; ++k) out[k] = {first + k * simd::lanes, last};
+    out += blocks;
+  }
+  return {memory.data(), out};
+}
 
 // Candidates of a group, packed. The memory is one array per thread, which grows and is reused.
 struct Candidates {
@@ -176,8 +203,8 @@ Group next_group(const std::array<const float*, 3>& point, std::size_t first, st
 // Adds the points of the blocks that lie within the reach of the group's box. Rounding is monotone, so none is
 // dropped that is within the reach of a particle of the group.
 template <int dimensions>
-void gather(const std::array<const float*, 3>& point, const Blocks& blocks, const Group& group, float reach2,
-            Candidates& candidates) {
+[[gnu::noinline]] void gather(const std::array<const float*, 3>& point, std::span<const Block> blocks,
+                              const Group& group, float reach2, Candidates& candidates) {
   std::size_t size = 0;
   const Candidates to = candidates;
   const std::array<const float*, 3> from = point;
@@ -204,9 +231,8 @@ void gather(const std::array<const float*, 3>& point, const Blocks& blocks, cons
 
 // Writes the candidates within the reach of point i, itself excluded; returns the end of what was written.
 template <int dimensions>
-[[gnu::noinline]] std::int32_t* select(const Candidates candidates,
-                                                   const std::array<const float*, 3>& point, std::size_t i,
-                                                   float reach2, std::int32_t* out) {
+[[gnu::noinline]] std::int32_t* select(const Candidates candidates, const std::array<const float*, 3>& point,
+                                       std::size_t i, float reach2, std::int32_t* out) {
   std::array<f32x8, 3> centre{};
   for (int axis = 0; axis < dimensions; ++axis) centre[axis] = simd::splat(point[axis][i]);
   const i32x8 self = i32x8{} + static_cast<std::int32_t>(i);
@@ -274,8 +300,9 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
   const bool any_image = images.size() > 0;
   const std::array<float, 3> free_lower = image_free_lower_, free_upper = image_free_upper_;
 
-  // Blocks of the points that may lie within the reach of the group.
-  const auto find_blocks = [&, reach, margin, columns, any_image](const Group& group, Blocks& blocks) {
+  // Runs of the points that may lie within the reach of the group.
+  const auto find_runs = [&](const Group& group, Runs& runs) {
+    runs.size = 0;
     bool with_images = false;
     for (int axis = 0; axis < dimensions && any_image; ++axis)
       with_images = with_images || group.lower[axis] < free_lower[axis] || group.upper[axis] > free_upper[axis];
@@ -290,16 +317,12 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
         const f32x8 left2 = (cull2 - dz * dz) - dy * dy;
         const f32x8 half = simd::sqrt(simd::max(left2, simd::splat(0))) + margin;
         const i32x8 row = load_int(grid.row_ranks(iz) + iy) * columns;
-        alignas(32) std::array<std::int32_t, simd::lanes> first_cell, end_cell;
-        store_int(first_cell.data(), row + column_at(group.lower[0] - half));
-        store_int(end_cell.data(), row + column_at(group.upper[0] + half) + 1);
+        const i32x8 from = row + column_at(group.lower[0] - half);
+        const i32x8 to = row + column_at(group.upper[0] + half) + 1;
         unsigned rows = mask_of(i32x8(left2 > 0.0F));
         if (y_last - iy < simd::lanes - 1) rows &= (2U << (y_last - iy)) - 1U;
-        for (; rows != 0; rows &= rows - 1U) {
-          const int l = std::countr_zero(rows);
-          blocks.add(first_particle[first_cell[l]], first_particle[end_cell[l]]);
-          if (with_images) blocks.add(image_base + first_image[first_cell[l]], image_base + first_image[end_cell[l]]);
-        }
+        runs.add(first_particle, from, to, 0, rows);
+        if (with_images) runs.add(first_image, from, to, image_base, rows);
       }
     }
   };
@@ -320,12 +343,13 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
     Array<Block>& block_memory = thread_blocks;
     Array<float>& candidate_memory = thread_candidates;
     Array<std::int32_t>& collected = thread_collected;
+    Runs runs;
     std::size_t filled = 0;
     std::int64_t pairs = 0;
     for (std::size_t i = begin; i < end;) {
       const Group group = next_group<dimensions>(point, i, end, reach);
-      Blocks blocks(block_memory);
-      find_blocks(group, blocks);
+      find_runs(group, runs);
+      const std::span<const Block> blocks = cut(runs, block_memory);
       Candidates candidates(candidate_memory, simd::lanes * blocks.size());
       gather<dimensions>(point, blocks, group, reach2, candidates);
       // Vector loads read up to seven candidates past the end: the sentinel is nobody's neighbour.
