@@ -16,7 +16,7 @@ namespace spume {
 enum class KernelKind { wendland_c2, quintic_spline };
 enum class TurbulenceModel { none, mixed_scale, smagorinsky, dynamic_shepard, dynamic_lagrangian };
 enum class PressureSolver { bicgstab, cg };
-enum class Preconditioner { none, jacobi, multigrid };
+enum class PreconditionerKind { none, jacobi, multigrid };
 enum class Precision { mixed, f64 };
 
 struct ResolutionOptions {
@@ -32,7 +32,7 @@ struct TurbulenceOptions {
 
 struct PressureOptions {
   PressureSolver solver = PressureSolver::bicgstab;
-  Preconditioner preconditioner = Preconditioner::multigrid;
+  PreconditionerKind preconditioner = PreconditionerKind::multigrid;
   Precision precision = Precision::mixed;
   double tolerance = 1e-6;    // residual relative to the right-hand side
   int max_iterations = 500;

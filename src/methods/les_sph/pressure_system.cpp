@@ -56,7 +56,7 @@ struct PressureSystem::Operator final : LinearOperator<float> {
 };
 
 PressureSystem::PressureSystem(const Liquid& liquid) {
-  if (liquid.options.pressure.preconditioner == spume::Preconditioner::multigrid)
+  if (liquid.options.pressure.preconditioner == PreconditionerKind::multigrid)
     multigrid_ = std::make_unique<CellMultigrid>(cell_geometry(liquid));
 }
 
