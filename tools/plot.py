@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Standard pictures of a run: plot.py DIR writes DIR/plots/*.png and prints their names.
+"""Standard pictures of a run: plot.py DIR [--times T...] writes DIR/plots/*.png and prints their names.
 
 Every picture is drawn from what the folder holds; what it does not hold is left out with one line saying so.
 Exit code 0 when at least one picture was written, 2 when there was nothing to draw.
@@ -158,9 +158,12 @@ PICTURES = (plot_energy, plot_numerics, plot_slices, plot_side_view, plot_spectr
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("directory", metavar="DIR", help="the folder of a run")
-    folder = parser.parse_args().directory
+    parser.add_argument("--times", metavar="T", nargs="+", type=float, default=(), help="times that particles are drawn at")
+    arguments = parser.parse_args()
+    folder = arguments.directory
     try:
         run = Results(folder)
+        run.picture_times = arguments.times
     except MissingResult as error:
         print(f"error: {error}; give the folder that 'spume run' made", file=sys.stderr)
         return 2
@@ -170,7 +173,7 @@ def main():
         try:
             out.mkdir(exist_ok=True)
             files += picture(run, out)
-        except MissingResult as error:
+        except (MissingResult, ValueError, IndexError, np.linalg.LinAlgError) as error:
             print(f"{picture.__name__[5:].replace('_', ' ')} left out: {error}", file=sys.stderr)
         except OSError as error:
             print(f"error: {error.filename}: {error.strerror}", file=sys.stderr)

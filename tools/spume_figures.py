@@ -33,11 +33,17 @@ def has_free_surface(run):
         return bool(np.nanmax(surface, initial=0) > 0)
     except MissingResult:
         domain = run.case["domain"]
-        return "open" in domain.values()
+        axes = {"x": ("left", "right"), "y": ("front", "back"), "z": ("bottom", "top")}
+        if run.dimensions == 2:
+            axes = {"x": ("left", "right"), "y": ("bottom", "top")}
+        return any(domain.get(axis) != "periodic" and "open" in [domain.get(side, "open") for side in sides]
+                   for axis, sides in axes.items())
 
 
-def chosen_steps(snapshots, most=6):
-    """Evenly spaced snapshots, the last one included; the first only when there are few."""
+def chosen_steps(run, snapshots, most=6):
+    """Indices of the snapshots nearest to run.picture_times; without these, evenly spaced from first to last."""
+    if run.picture_times:
+        return np.unique([int(np.argmin(np.abs(snapshots.times - time))) for time in run.picture_times])
     count = len(snapshots)
     return np.unique(np.linspace(0, count - 1, min(most, count)).round().astype(int))
 
@@ -78,7 +84,7 @@ def draw_slices(run, snapshots, name, path):
     """Panels of particles coloured by one field; in 3-D the particles within half a spacing of the middle plane y."""
     lower, upper = run.bounds()
     spacing = run.spacing
-    steps = chosen_steps(snapshots)
+    steps = chosen_steps(run, snapshots)
     loaded = []
     for step in steps:
         snapshot = snapshots[int(step)]
@@ -187,7 +193,7 @@ def draw_side_view(run, snapshots, path):
     lower, upper = run.bounds()
     length, width = (upper - lower)[:2]
     copies = max(1, int(round(0.45 * length / width))) if run.case["domain"].get("y") == "periodic" else 1
-    steps = chosen_steps(snapshots)
+    steps = chosen_steps(run, snapshots)
     speeds = [snapshots[int(step)].field("speed") for step in steps]
     norm = field_norm("speed", speeds)
     images = []

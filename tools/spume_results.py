@@ -132,7 +132,9 @@ class Snapshots:
 
 
 class Results:
-    """The folder of one run."""
+    """The folder of one run. picture_times: the times that pictures show, where someone has chosen them."""
+
+    picture_times = ()
 
     def __init__(self, folder, wall_seconds=None):
         self.folder = Path(folder)

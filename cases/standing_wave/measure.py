@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from spume_results import read_csv, standard
+from spume_results import MissingResult, read_csv, standard
 
 K = 2 * np.pi
 PERIOD = 2 * np.pi / np.sqrt(K)
@@ -69,6 +69,9 @@ def waves(run):
     t, rates = amplitude_rate(run)
     nu, end = viscosity(run), t[-1]
     rows = np.isclose(REFERENCE["nu"], nu) & (REFERENCE["t"] <= end * 1.0001)
+    if rows.sum() < 5:
+        raise MissingResult(f"{REFERENCE.path}: holds too few values for viscosity {nu:g} up to t = {end:g}; its viscosities"
+                            f" are {', '.join(f'{value:g}' for value in np.unique(REFERENCE['nu']))}")
     guess = 2 * nu * K**2, np.sqrt(K)
     exact = differentiated(*fit(REFERENCE["t"][rows], REFERENCE["a_over_a0"][rows], *guess))
     return fit(t, rates / float(run.case["constants"]["steepness"]), *guess), exact

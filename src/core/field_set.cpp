@@ -65,6 +65,7 @@ FieldSet::Field& FieldSet::find_or_add(std::string_view name, Lifetime lifetime,
     return *field;
   }
   fields_.push_back(std::make_unique<Field>(Field{std::string(name), lifetime, std::move(empty)}));
+  std::visit([&](auto& values) { values.resize(size_); }, fields_.back()->values);
   return *fields_.back();
 }
 

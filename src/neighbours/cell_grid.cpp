@@ -12,11 +12,6 @@
 namespace spume {
 namespace {
 
-// Cell sides as fractions of the reach: the list build was fastest with rows half a reach across and cells a
-// quarter of a reach long.
-constexpr double row_fraction = 0.5;
-constexpr double column_fraction = 0.25;
-
 std::uint64_t spread_bits(std::uint64_t v) {
   v = (v | v << 16) & 0x0000ffff0000ffffULL;
   v = (v | v << 8) & 0x00ff00ff00ff00ffULL;
@@ -73,7 +68,7 @@ CellGrid::CellGrid(int dimensions, const std::array<double, 3>& lower, const std
       keys[r] = {dimensions == 2 ? r : spread_bits(iy) | spread_bits(iz) << 1, static_cast<std::int32_t>(r)};
     }
   std::sort(keys.begin(), keys.end());
-  row_rank_.resize(rows);
+  row_rank_.resize(rows + 8);
   for (std::size_t rank = 0; rank < rows; ++rank) row_rank_[keys[rank].second] = static_cast<std::int32_t>(rank);
 }
 

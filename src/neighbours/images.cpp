@@ -65,6 +65,9 @@ void Images::add_box_images(const ImageRules& rules, std::size_t n) {
         p.box_face = static_cast<std::int16_t>(6 * b + 2 * axis + side);
         path[axis][side] = find_path(p);
       }
+    // Of two faces equally near up to rounding the earlier one owns an image: a lattice beside a box has many such
+    // points, and each must be filled once.
+    const double tie = 1e-6 * rules.reach;
     // Depth of a point below a face of the box; faces that bound no liquid never are the nearest.
     const auto depth = [&](const std::array<double, 3>& r, int axis, int side) {
       if (!box.face[axis][side]) return std::numeric_limits<double>::infinity();
@@ -88,7 +91,9 @@ void Images::add_box_images(const ImageRules& rules, std::size_t n) {
           for (int a = 0; a < dimensions && nearest; ++a)
             for (int s = 0; s < 2; ++s) {
               const double other = depth(image, a, s);
-              if (other < 0 || (other < distance && (a != axis || s != side))) nearest = false;
+              const bool earlier = 2 * a + s < 2 * axis + side;
+              const bool same = a == axis && s == side;
+              if (other < 0 || (!same && other < distance + (earlier ? tie : -tie))) nearest = false;
             }
           if (nearest) sink(image, static_cast<std::int32_t>(k), path[axis][side]);
         }
@@ -156,6 +161,17 @@ void Images::build(const ImageRules& rules, const CellGrid& grid, const double* 
   for (int axis = 0; axis < rules.dimensions; ++axis) add_axis_images(rules, axis, n);
 
   const std::size_t m = source_.size();
+  // A particle outside a mirror side has its image inside.
+  for (int axis = 0; axis < rules.dimensions; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      if (rules.sides[axis][side] != ImageKind::mirror) continue;
+      const double plane = side == 0 ? rules.lower[axis] : rules.upper[axis];
+      const double depth = parallel_max(m, 0.0, [&](std::size_t k) {
+        if (paths_[static_cast<std::size_t>(path_[k])].side[axis] != side) return 0.0;
+        return side == 0 ? position_[axis][k] - plane : plane - position_[axis][k];
+      });
+      (side == 0 ? image_free_lower_ : image_free_upper_)[axis] = side == 0 ? plane + depth : plane - depth;
+    }
   table_.build(grid, position_[0].data(), position_[1].data(), rules.dimensions == 3 ? position_[2].data() : nullptr,
                m);
   const std::int32_t* order = table_.order().data();

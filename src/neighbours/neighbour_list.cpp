@@ -7,7 +7,8 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <vector>
+#include <limits>
+#include <span>
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/simd.hpp"
@@ -36,7 +37,18 @@ constexpr std::array<std::uint64_t, 256> make_lane_table() {
 constexpr auto lane_table = make_lane_table();
 
 // Packs the lanes of v that are set in the mask to the front.
-#if defined(__AVX2__)
+#if defined(__AVX512VL__)
+using Packing = __mmask8;
+[[gnu::always_inline]] inline Packing packing_of(unsigned mask) {
+  return static_cast<__mmask8>(mask);
+}
+[[gnu::always_inline]] inline void store_packed(i32x8 v, Packing packing, std::int32_t* out) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm256_maskz_compress_epi32(packing, __m256i(v)));
+}
+[[gnu::always_inline]] inline void store_packed(f32x8 v, Packing packing, float* out) {
+  _mm256_storeu_ps(out, _mm256_maskz_compress_ps(packing, __m256(v)));
+}
+#elif defined(__AVX2__)
 using Packing = __m256i;
 [[gnu::always_inline]] inline Packing packing_of(unsigned mask) {
   return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(lane_table[mask])));
@@ -74,30 +86,100 @@ template <class V, class T>
   return v;
 }
 
-// Particles that follow each other in the sorted order and lie close together: their candidates are gathered
-// once. Eight in a row measured best: fewer repeat the gathering, more lengthen the candidate list.
-constexpr std::size_t group_size = 8;
+[[gnu::always_inline]] inline void store_int(std::int32_t* p, i32x8 v) {
+  std::memcpy(p, &v, sizeof v);
+}
 
+// table[index[l]] of the eight lanes.
+[[gnu::always_inline]] inline i32x8 gather_int(const std::int32_t* table, i32x8 index) {
+#if defined(__AVX2__)
+  return i32x8(_mm256_i32gather_epi32(table, __m256i(index), 4));
+#else
+  i32x8 v;
+  for (int l = 0; l < simd::lanes; ++l) v[l] = table[index[l]];
+  return v;
+#endif
+}
+
+// Entries that a list of `count` neighbours takes.
+inline std::int32_t padded(std::int32_t count) {
+  return (count + simd::lanes - 1) / simd::lanes * simd::lanes;
+}
+
+// Far enough for every kernel to vanish, near enough for finite squares.
+float sentinel_coordinate(float reach) {
+  return 1e6F * reach;
+}
+
+// Particles that follow each other in the sorted order and lie close together: their candidates are gathered
+// once. GROUPCOMMENT
+constexpr std::size_t group_size = 8;
+// The longest box of a group along x and across, in reaches.
+constexpr float group_length = 2.5F;
+constexpr float group_width = 0.75F;
 struct Group {
   std::size_t first = 0, last = 0;
   std::array<float, 3> lower{}, upper{};
 };
 
-// Candidates of a group, packed; arrays grow and are reused. One set per thread.
-struct Candidates {
-  std::array<Array<float>, 3> coordinate;
-  Array<std::int32_t> index;
+// Up to eight consecutive sorted points: first .. min(last, first + 8).
+struct Block {
+  std::int32_t first, last;
+};
+
+// Runs of sorted points, one per row.
+struct Runs {
+  // The most rows that come near a group along y or z, none narrower than CellGrid::row_fraction reaches, in whole
+  // vectors; twice for images, and once more as packed stores write whole vectors.
+  static constexpr std::size_t rows_near =
+      (static_cast<std::size_t>((2 + group_width) / CellGrid::row_fraction) + 3 + simd::lanes - 1) / simd::lanes *
+      simd::lanes;
+  std::array<std::int32_t, 2 * rows_near * rows_near + simd::lanes> first, last;
   std::size_t size = 0;
 
-  void reserve(std::size_t wanted) {
-    if (wanted <= index.size()) return;
-    for (auto& axis : coordinate) axis.resize(wanted + wanted / 2);
-    index.resize(wanted + wanted / 2);
+  // Adds the rows of the mask: points table[from[l]] to table[to[l]], counted from base.
+  [[gnu::always_inline]] void add(const std::int32_t* table, i32x8 from, i32x8 to, std::int32_t base, unsigned rows) {
+    const Packing packing = packing_of(rows);
+    store_packed(gather_int(table, from) + base, packing, first.data() + size);
+    store_packed(gather_int(table, to) + base, packing, last.data() + size);
+    size += static_cast<std::size_t>(std::popcount(rows));
   }
 };
 
-// The next group from `first` on: at most group_size particles whose box is no longer than `length` along x and
-// one and a half rows across.
+// Cuts runs into blocks. Most runs have at most three: these are written without a branch, as the lengths of runs
+// are unpredictable.
+[[gnu::noinline]] std::span<const Block> cut(const Runs& runs, Array<Block>& memory) {
+  std::size_t most = 3;
+  for (std::size_t r = 0; r < runs.size; ++r)
+    most += static_cast<std::size_t>((runs.last[r] - runs.first[r] + simd::lanes - 1) / simd::lanes);
+  if (most > memory.size()) memory.resize(2 * most);
+  Block* out = memory.data();
+  for (std::size_t r = 0; r < runs.size; ++r) {
+    const std::int32_t first = runs.first[r], last = runs.last[r];
+    for (int k = 0; k < 3; ++k) out[k] = {first + k * simd::lanes, last};
+    const std::int32_t blocks = (last - first + simd::lanes - 1) / simd::lanes;
+    for (std::int32_t k = 3; k < blocks; ++k) out[k] = {first + k * simd::lanes, last};
+    out += blocks;
+  }
+  return {memory.data(), out};
+}
+
+// Candidates of a group, packed. The memory is one array per thread, which grows and is reused.
+struct Candidates {
+  std::array<float*, 3> coordinate{};
+  std::int32_t* index = nullptr;
+  std::size_t size = 0;
+
+  Candidates(Array<float>& memory, std::size_t most) {
+    // Vector loads and stores reach up to seven elements past the end.
+    const std::size_t stride = (most + 2 * simd::lanes) / simd::lanes * simd::lanes;
+    if (memory.size() < 4 * stride) memory.resize(4 * stride + stride);
+    for (int axis = 0; axis < 3; ++axis) coordinate[axis] = memory.data() + axis * stride;
+    index = reinterpret_cast<std::int32_t*>(memory.data() + 3 * stride);
+  }
+};
+
+// The next group from `first` on: at most group_size particles in a box that is not too long.
 template <int dimensions>
 Group next_group(const std::array<const float*, 3>& point, std::size_t first, std::size_t end, float reach) {
   Group group{first, first, {}, {}};
@@ -109,7 +191,7 @@ Group next_group(const std::array<const float*, 3>& point, std::size_t first, st
       const float x = point[axis][group.last];
       lower[axis] = std::min(lower[axis], x);
       upper[axis] = std::max(upper[axis], x);
-      close = close && upper[axis] - lower[axis] <= (axis == 0 ? 2.5F : 0.75F) * reach;
+      close = close && upper[axis] - lower[axis] <= (axis == 0 ? group_length : group_width) * reach;
     }
     if (!close) break;
     group.lower = lower;
@@ -118,54 +200,54 @@ Group next_group(const std::array<const float*, 3>& point, std::size_t first, st
   return group;
 }
 
-// Adds points [first, last) that lie within the reach of the group's box.
+// Adds the points of the blocks that lie within the reach of the group's box. Rounding is monotone, so none is
+// dropped that is within the reach of a particle of the group.
 template <int dimensions>
-[[gnu::always_inline]] inline void gather(const std::array<const float*, 3>& point, std::int32_t first,
-                                          std::int32_t last, const Group& group, float reach2, Candidates& candidates) {
-  candidates.reserve(candidates.size + static_cast<std::size_t>(last - first) + 16);
-  std::size_t size = candidates.size;
+[[gnu::noinline]] void gather(const std::array<const float*, 3>& point, std::span<const Block> blocks,
+                              const Group& group, float reach2, Candidates& candidates) {
+  std::size_t size = 0;
+  const Candidates to = candidates;
+  const std::array<const float*, 3> from = point;
   const i32x8 lane = {0, 1, 2, 3, 4, 5, 6, 7};
-  for (std::int32_t j = first; j < last; j += simd::lanes) {
+  for (const Block block : blocks) {
     std::array<f32x8, 3> x{};
     f32x8 distance2{};
     for (int axis = 0; axis < dimensions; ++axis) {
-      x[axis] = simd::load(point[axis] + j);
-      const f32x8 outside =
-          simd::max(simd::max(group.lower[axis] - x[axis], x[axis] - group.upper[axis]), simd::splat(0));
+      x[axis] = simd::load(from[axis] + block.first);
+      const f32x8 nearest =
+          simd::min(simd::max(x[axis], simd::splat(group.lower[axis])), simd::splat(group.upper[axis]));
+      const f32x8 outside = x[axis] - nearest;
       distance2 = distance2 + outside * outside;
     }
-    unsigned mask = mask_of(i32x8(distance2 < reach2));
-    if (last - j < simd::lanes) mask &= (1U << (last - j)) - 1U;
+    const i32x8 index = lane + block.first;
+    const unsigned mask = mask_of(i32x8(distance2 < reach2) & (index < block.last));
     const Packing packing = packing_of(mask);
-    for (int axis = 0; axis < dimensions; ++axis)
-      store_packed(x[axis], packing, candidates.coordinate[axis].data() + size);
-    store_packed(lane + j, packing, candidates.index.data() + size);
+    for (int axis = 0; axis < dimensions; ++axis) store_packed(x[axis], packing, to.coordinate[axis] + size);
+    store_packed(index, packing, to.index + size);
     size += static_cast<std::size_t>(std::popcount(mask));
   }
   candidates.size = size;
 }
 
-// Writes the candidates within the reach of point i, itself excluded; returns how many.
+// Writes the candidates within the reach of point i, itself excluded; returns the end of what was written.
 template <int dimensions>
-[[gnu::always_inline]] inline std::int32_t select(const Candidates& candidates,
-                                                  const std::array<const float*, 3>& point, std::size_t i, float reach2,
-                                                  std::int32_t* out) {
-  std::int32_t* const start = out;
+[[gnu::noinline]] std::int32_t* select(const Candidates candidates, const std::array<const float*, 3>& point,
+                                       std::size_t i, float reach2, std::int32_t* out) {
   std::array<f32x8, 3> centre{};
   for (int axis = 0; axis < dimensions; ++axis) centre[axis] = simd::splat(point[axis][i]);
   const i32x8 self = i32x8{} + static_cast<std::int32_t>(i);
   for (std::size_t j = 0; j < candidates.size; j += simd::lanes) {
     f32x8 distance2{};
     for (int axis = 0; axis < dimensions; ++axis) {
-      const f32x8 d = simd::load(candidates.coordinate[axis].data() + j) - centre[axis];
+      const f32x8 d = simd::load(candidates.coordinate[axis] + j) - centre[axis];
       distance2 = distance2 + d * d;
     }
-    const i32x8 index = load_int(candidates.index.data() + j);
+    const i32x8 index = load_int(candidates.index + j);
     const unsigned mask = mask_of(i32x8(distance2 < reach2) & (index != self));
     store_packed(index, packing_of(mask), out);
     out += std::popcount(mask);
   }
-  return static_cast<std::int32_t>(out - start);
+  return out;
 }
 
 }  // namespace
@@ -175,6 +257,7 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
   const std::size_t n = count_.size();
   const auto reach = static_cast<float>(grid.reach());
   const float reach2 = reach * reach;
+  const float far = sentinel_coordinate(reach);
   const std::array<const float*, 3> point{coordinate_[0].data(), coordinate_[1].data(), coordinate_[2].data()};
   const std::int32_t* first_particle = particles.first();
   const std::int32_t* first_image = images.table().first();
@@ -192,78 +275,107 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
     const float cell = (x - lower[axis]) * inverse[axis];
     return cell > 0 ? static_cast<int>(std::min(cell, static_cast<float>(last_cell[axis]))) : 0;
   };
-  // Distance from the group to row c along an axis; border rows also hold what was clamped into them.
-  const auto distance_to = [&](int axis, int c, const Group& group) {
-    const float below = c == 0 ? -INFINITY : lower[axis] + static_cast<float>(c) * side[axis];
-    const float above = c == last_cell[axis] ? INFINITY : lower[axis] + static_cast<float>(c + 1) * side[axis];
-    return std::max({0.0F, below - group.upper[axis], group.lower[axis] - above});
-  };
   // Cells were assigned from double coordinates: a margin of rounding size keeps the row cull conservative.
-  const float margin = 1e-4F * reach;
+  float extent = 0;
+  for (int axis = 0; axis < dimensions; ++axis)
+    extent = std::max(
+        {extent, std::abs(lower[axis]), std::abs(lower[axis] + static_cast<float>(last_cell[axis] + 1) * side[axis])});
+  const float margin = 1e-4F * reach + 4 * std::numeric_limits<float>::epsilon() * extent;
   const float cull2 = (reach + margin) * (reach + margin);
 
-  const auto gather_group = [&](const Group& group, Candidates& candidates) {
-    candidates.size = 0;
+  // Distances from the group to eight rows from c on along an axis; border rows also hold what was clamped into them.
+  const auto distance_to = [=](int axis, int c, const Group& group) {
+    const i32x8 cell = i32x8{0, 1, 2, 3, 4, 5, 6, 7} + c;
+    const f32x8 start = lower[axis] + __builtin_convertvector(cell, f32x8) * side[axis];
+    const f32x8 below = cell == 0 ? simd::splat(-INFINITY) : start;
+    const f32x8 above = cell == last_cell[axis] ? simd::splat(INFINITY) : start + side[axis];
+    return simd::max(simd::max(below - group.upper[axis], group.lower[axis] - above), simd::splat(0));
+  };
+  const auto column_at = [=](f32x8 x) {
+    const f32x8 column = (x - lower[0]) * inverse[0];
+    const f32x8 within = simd::min(simd::max(column, simd::splat(0)), simd::splat(static_cast<float>(last_cell[0])));
+    return __builtin_convertvector(within, i32x8);
+  };
+  const std::int32_t columns = grid.columns();
+  const bool any_image = images.size() > 0;
+  const std::array<float, 3> free_lower = image_free_lower_, free_upper = image_free_upper_;
+
+  // Runs of the points that may lie within the reach of the group.
+  const auto find_runs = [&](const Group& group, Runs& runs) {
+    runs.size = 0;
     bool with_images = false;
-    for (int axis = 0; axis < dimensions && images.size() > 0; ++axis)
-      with_images =
-          with_images || group.lower[axis] < image_free_lower_[axis] || group.upper[axis] > image_free_upper_[axis];
+    for (int axis = 0; axis < dimensions && any_image; ++axis)
+      with_images = with_images || group.lower[axis] < free_lower[axis] || group.upper[axis] > free_upper[axis];
     const int z_first = dimensions == 3 ? cell_at(2, group.lower[2] - reach - margin) : 0;
     const int z_last = dimensions == 3 ? cell_at(2, group.upper[2] + reach + margin) : 0;
     const int y_first = cell_at(1, group.lower[1] - reach - margin);
     const int y_last = cell_at(1, group.upper[1] + reach + margin);
     for (int iz = z_first; iz <= z_last; ++iz) {
-      const float dz = dimensions == 3 ? distance_to(2, iz, group) : 0;
-      for (int iy = y_first; iy <= y_last; ++iy) {
-        const float dy = distance_to(1, iy, group);
-        const float left2 = cull2 - dy * dy - dz * dz;
-        if (left2 <= 0) continue;
-        const float half = std::sqrt(left2) + margin;
-        const std::int64_t row = std::int64_t{grid.row(iy, iz)} * grid.columns();
-        const std::int64_t c0 = row + cell_at(0, group.lower[0] - half);
-        const std::int64_t c1 = row + cell_at(0, group.upper[0] + half) + 1;
-        gather<dimensions>(point, first_particle[c0], first_particle[c1], group, reach2, candidates);
-        if (with_images && first_image[c1] > first_image[c0])
-          gather<dimensions>(point, image_base + first_image[c0], image_base + first_image[c1], group, reach2,
-                             candidates);
+      const float dz = dimensions == 3 ? distance_to(2, iz, group)[0] : 0;
+      for (int iy = y_first; iy <= y_last; iy += simd::lanes) {
+        const f32x8 dy = distance_to(1, iy, group);
+        const f32x8 left2 = (cull2 - dz * dz) - dy * dy;
+        const f32x8 half = simd::sqrt(simd::max(left2, simd::splat(0))) + margin;
+        const i32x8 row = load_int(grid.row_ranks(iz) + iy) * columns;
+        const i32x8 from = row + column_at(group.lower[0] - half);
+        const i32x8 to = row + column_at(group.upper[0] + half) + 1;
+        unsigned rows = mask_of(i32x8(left2 > 0.0F));
+        if (y_last - iy < simd::lanes - 1) rows &= (2U << (y_last - iy)) - 1U;
+        runs.add(first_particle, from, to, 0, rows);
+        if (with_images) runs.add(first_image, from, to, image_base, rows);
       }
-    }
-    // Vector loads read up to seven candidates past the end: the sentinel is nobody's neighbour.
-    candidates.reserve(candidates.size + 16);
-    for (std::size_t k = candidates.size; k < candidates.size + simd::lanes; ++k) {
-      for (int axis = 0; axis < dimensions; ++axis) candidates.coordinate[axis][k] = point[axis][points_];
-      candidates.index[k] = sentinel();
     }
   };
 
   std::atomic<std::int64_t> used{0};
   std::atomic<std::int64_t> found{0};
   const auto capacity = static_cast<std::int64_t>(index_.capacity());
+  std::int32_t* const counts = count_.data();
+  std::int64_t* const firsts = first_.data();
+  std::int32_t* const indices = index_.data();
+  const std::int32_t nobody = sentinel();
 
-  parallel_blocks_dynamic(n, list_block, [&](std::size_t, std::size_t begin, std::size_t end) {
-    thread_local Candidates candidates;
-    thread_local Array<std::int32_t> collected;
+  parallel_blocks_dynamic(n, list_block, [=, &used, &found](std::size_t, std::size_t begin, std::size_t end) {
+    // One set per thread, kept from build to build.
+    thread_local Array<Block> thread_blocks;
+    thread_local Array<float> thread_candidates;
+    thread_local Array<std::int32_t> thread_collected;
+    Array<Block>& block_memory = thread_blocks;
+    Array<float>& candidate_memory = thread_candidates;
+    Array<std::int32_t>& collected = thread_collected;
+    Runs runs;
     std::size_t filled = 0;
     std::int64_t pairs = 0;
     for (std::size_t i = begin; i < end;) {
       const Group group = next_group<dimensions>(point, i, end, reach);
-      gather_group(group, candidates);
-      collected.resize(std::max(collected.size(), filled + group_size * (candidates.size + 16)));
+      find_runs(group, runs);
+      const std::span<const Block> blocks = cut(runs, block_memory);
+      Candidates candidates(candidate_memory, simd::lanes * blocks.size());
+      gather<dimensions>(point, blocks, group, reach2, candidates);
+      // Vector loads read up to seven candidates past the end: the sentinel is nobody's neighbour.
+      for (int axis = 0; axis < dimensions; ++axis)
+        simd::store(candidates.coordinate[axis] + candidates.size, simd::splat(far));
+
+      const std::size_t wanted = filled + (group.last - i) * (candidates.size + 2 * simd::lanes);
+      if (wanted > collected.size()) collected.resize(wanted);
       for (; i < group.last; ++i) {
-        count_[i] = select<dimensions>(candidates, point, i, reach2, collected.data() + filled);
-        filled += static_cast<std::size_t>(count_[i]);
-        pairs += count_[i];
-        while (filled % 8 != 0) collected[filled++] = sentinel();
+        std::int32_t* const start = collected.data() + filled;
+        std::int32_t* const stop = select<dimensions>(candidates, point, i, reach2, start);
+        store_int(stop, i32x8{} + nobody);
+        const auto count = static_cast<std::int32_t>(stop - start);
+        counts[i] = count;
+        pairs += count;
+        filled += static_cast<std::size_t>(padded(count));
       }
     }
     found += pairs;
     const std::int64_t target = used.fetch_add(static_cast<std::int64_t>(filled));
     if (target + static_cast<std::int64_t>(filled) > capacity) return;
-    std::memcpy(index_.data() + target, collected.data(), filled * sizeof(std::int32_t));
+    std::memcpy(indices + target, collected.data(), filled * sizeof(std::int32_t));
     std::int64_t running = target;
     for (std::size_t i = begin; i < end; ++i) {
-      first_[i] = running;
-      running += (count_[i] + 7) / 8 * 8;
+      firsts[i] = running;
+      running += padded(counts[i]);
     }
   });
   pairs_ = found;
@@ -296,8 +408,7 @@ void NeighbourList::build(const CellGrid& grid, const CellTable& particles, cons
     const double zero = origin[axis];
     parallel_for(n, [=](std::size_t i) { out[i] = static_cast<float>(in[i] - zero); });
     parallel_for(m, [=](std::size_t i) { out[n + i] = static_cast<float>(image[i] - zero); });
-    // Far enough for every kernel to vanish, near enough for finite squares.
-    for (int k = 0; k <= simd::lanes; ++k) out[points_ + k] = 1e6F * static_cast<float>(grid.reach());
+    for (int k = 0; k <= simd::lanes; ++k) out[points_ + k] = sentinel_coordinate(static_cast<float>(grid.reach()));
   }
 
   // The box that no image comes near: outside it lists look at images too.

@@ -13,9 +13,12 @@ ParticleSpectrum energy_spectrum(const ParticleSpectrumInput& particles) {
   if (!(particles.spacing > 0))
     throw InputError("an energy spectrum was asked for with a particle spacing of " +
                      std::to_string(particles.spacing) + "; expected a positive number");
+  if (particles.dimensions != 2 && particles.dimensions != 3)
+    throw InputError("an energy spectrum was asked for in " + std::to_string(particles.dimensions) +
+                     " dimensions; expected 2 or 3");
   const auto components = static_cast<std::size_t>(particles.dimensions);
   UniformGrid grid{particles.dimensions, particles.lower, particles.upper, {1, 1, 1}};
-  for (int axis = 0; axis < particles.dimensions && axis < 3; ++axis) {
+  for (int axis = 0; axis < particles.dimensions; ++axis) {
     const double natural = std::round(grid.length(axis) / particles.spacing);
     grid.points[axis] = particles.points[axis] > 0 ? particles.points[axis]
                                                    : static_cast<std::size_t>(std::fmin(std::fmax(natural, 1), 1e6));

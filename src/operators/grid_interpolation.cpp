@@ -21,8 +21,8 @@ using detail::StencilOrder;
 // Candidates of one cell, copied together so that all grid points of the cell read contiguous memory.
 template <int Dimensions>
 struct Workspace {
-  std::vector<std::array<double, Dimensions>> position;
-  std::vector<double> fields;  // candidate-major
+  std::vector<double> fields;  // of the candidates, candidate-major
+  std::vector<double> sums;
   ConsistentStencil<Dimensions> stencil;
 };
 
@@ -54,17 +54,12 @@ GridInterpolationReport interpolate(const UniformGrid& grid, const GridInterpola
   const auto point = [&](Workspace<Dimensions>& work, const std::array<double, 3>& x, std::size_t index,
                          GridInterpolationReport& report) {
     auto& stencil = work.stencil;
-    stencil.clear();
-    for (std::size_t n = 0; n < work.position.size(); ++n) {
-      std::array<double, Dimensions> offset;
-      for (int axis = 0; axis < Dimensions; ++axis) offset[axis] = (work.position[n][axis] - x[axis]) * (1 / reach);
-      stencil.append(offset, n);
-    }
+    stencil.select(x, reach);
     stencil.evaluate_kernel();
     StencilOrder order = StencilOrder::none;
     if (stencil.nearest() <= covered_distance || stencil.filled(volume) >= 0.5)
       order = stencil.solve(largest_amplification);
-    for (std::size_t f = 0; f < fields; ++f) values[f][index] = 0;
+    work.sums.assign(fields, 0.0);
     if (!mask.empty()) mask[index] = order == StencilOrder::none ? 0 : 1;
     switch (order) {
       case StencilOrder::cubic:
@@ -78,14 +73,14 @@ GridInterpolationReport interpolate(const UniformGrid& grid, const GridInterpola
         break;
       case StencilOrder::none:
         ++report.outside;
-        return;
+        break;
     }
-    for (std::size_t f = 0; f < fields; ++f) {
-      double sum = 0;
-      for (std::size_t n = 0; n < stencil.count(); ++n)
-        sum += stencil.weight(n) * work.fields[stencil.source(n) * fields + f];
-      values[f][index] = sum;
+    const std::size_t used = order == StencilOrder::none ? 0 : stencil.count();
+    for (std::size_t n = 0; n < used; ++n) {
+      const double* sample = &work.fields[stencil.source(n) * fields];
+      for (std::size_t f = 0; f < fields; ++f) work.sums[f] += stencil.weight(n) * sample[f];
     }
+    for (std::size_t f = 0; f < fields; ++f) values[f][index] = work.sums[f];
   };
 
   std::vector<Workspace<Dimensions>> workspaces(static_cast<std::size_t>(thread_count()));
@@ -97,15 +92,12 @@ GridInterpolationReport interpolate(const UniformGrid& grid, const GridInterpola
         for (int axis = 0; axis < 3; ++axis)
           if (first[axis][c[axis]] == first[axis][c[axis] + 1]) return;
         auto& work = workspaces[static_cast<std::size_t>(omp_get_thread_num())];
-        work.position.clear();
+        work.stencil.clear_candidates();
         work.fields.clear();
         bins.for_each_around(c[0], c[1], c[2], [&](std::size_t particle, const std::array<double, 3>& x) {
-          std::array<double, Dimensions> kept;
-          for (int axis = 0; axis < Dimensions; ++axis) kept[axis] = x[axis];
-          work.position.push_back(kept);
+          work.stencil.append_candidate(x);
           for (std::size_t f = 0; f < fields; ++f) work.fields.push_back(particles.fields[f][particle]);
         });
-        work.stencil.reserve(work.position.size());
         for (std::size_t k = first[2][c[2]]; k < first[2][c[2] + 1]; ++k)
           for (std::size_t j = first[1][c[1]]; j < first[1][c[1] + 1]; ++j)
             for (std::size_t i = first[0][c[0]]; i < first[0][c[0] + 1]; ++i)

@@ -65,6 +65,52 @@ void velocity_gradient(const SweepContext& context, Records& records_, const std
 }
 
 template <int dimensions, class Kernel>
+void shift_curvature(const SweepContext& context, Records& records_, const std::array<const float*, 9>& gradient,
+                     const VelocityImageRule& rule, const std::vector<std::array<float, 3>>& reflection,
+                     const std::array<const float*, 3>& shift, const std::array<const float*, 6>& correction,
+                     const std::array<float*, 3>& out) {
+  constexpr int entries = dimensions * dimensions;
+  constexpr int width = record_width(dimensions, entries);
+  const NeighbourList& list = *context.list;
+  const std::size_t n = list.particles();
+  float* records = records_.prepare(context, entries);
+  parallel_for(n, [&](std::size_t i) {
+    for (int k = 0; k < entries; ++k) records[i * width + dimensions + k] = gradient[k][i];
+  });
+  parallel_for(context.images->size(), [&](std::size_t m) {
+    const auto source = static_cast<std::size_t>(context.images->source()[m]);
+    const auto path = static_cast<std::size_t>(context.images->path()[m]);
+    for (int a = 0; a < dimensions; ++a)
+      for (int b = 0; b < dimensions; ++b)
+        records[(n + m) * width + dimensions + a * dimensions + b] =
+            rule.sign[path][a] * reflection[path][b] * gradient[a * dimensions + b][source];
+  });
+  const KernelScale<dimensions, Kernel> scale(context);
+
+  sweep(n, [&](std::size_t i) {
+    std::array<float, dimensions> s;
+    for (int a = 0; a < dimensions; ++a) s[a] = shift[a][i];
+    // L is symmetric: (L sum g d f) . s = sum g f (d . L s).
+    const std::array<float, dimensions> direction = correct<dimensions>(correction, i, s);
+    std::array<f32x8, dimensions> sum{};
+    std::array<float, entries> own;
+    for (int k = 0; k < entries; ++k) own[k] = records[i * width + dimensions + k];
+    for_each_batch<dimensions, entries>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      f32x8 along{};
+      for (int a = 0; a < dimensions; ++a) along = along + b.d[a] * direction[a];
+      const f32x8 weight = -scale.gradient * Kernel::f(b.q) * along;
+      for (int a = 0; a < dimensions; ++a) {
+        f32x8 difference{};
+        for (int c = 0; c < dimensions; ++c)
+          difference = difference + s[c] * (b.payload[a * dimensions + c] - own[a * dimensions + c]);
+        sum[a] = sum[a] + weight * difference;
+      }
+    });
+    for (int a = 0; a < dimensions; ++a) out[a][i] = 0.5F * simd::sum(sum[a]);
+  });
+}
+
+template <int dimensions, class Kernel>
 void viscous(const SweepContext& context, Records& records_, const std::array<const double*, 3>& velocity,
              const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out) {
   const NeighbourList& list = *context.list;
@@ -211,6 +257,15 @@ void velocity_gradient_sweep(const SweepContext& context, Records& records,
     if (out.filtered[0] != nullptr)
       velocity_gradient<dimensions, Kernel, true>(context, records, velocity, rule, correction, out);
     else velocity_gradient<dimensions, Kernel, false>(context, records, velocity, rule, correction, out);
+  });
+}
+
+void shift_curvature_sweep(const SweepContext& context, Records& records, const std::array<const float*, 9>& gradient,
+                           const VelocityImageRule& rule, const std::vector<std::array<float, 3>>& reflection,
+                           const std::array<const float*, 3>& shift, const std::array<const float*, 6>& correction,
+                           const std::array<float*, 3>& out) {
+  with_kernel(context, [&]<int dimensions, class Kernel>() {
+    shift_curvature<dimensions, Kernel>(context, records, gradient, rule, reflection, shift, correction, out);
   });
 }
 

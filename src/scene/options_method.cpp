@@ -107,8 +107,11 @@ Section shifting() {
               option("coefficient", "1", "0.25", between(0, 1), "displacement = -coefficient h^2 grad C", group,
                      &S::coefficient),
               option("limit", "h", "0.1", above_up_to(0, 0.5), "largest displacement per step", group, &S::limit),
-              option("velocity_correction", "", "true", {}, "carry the velocity along: u += (shift . grad) u", group,
-                     &S::velocity_correction),
+              word_option("velocity_correction", "\"second-order\"", "Taylor terms that give the velocity at the new place",
+                          group, &S::velocity_correction,
+                          {{"none", ShiftCorrection::none},
+                           {"first-order", ShiftCorrection::first_order},
+                           {"second-order", ShiftCorrection::second_order}}),
           }};
 }
 

@@ -38,19 +38,27 @@ int even_count(double length, double cell_size) {
   return best;
 }
 
-bool holds_liquid(std::uint8_t status) { return status == interior_cell || status == hole; }
+bool holds_liquid(std::uint8_t status) {
+  return status == interior_cell || status == hole;
+}
 
-int floor_to(int i, int step) { return (i >= 0 ? i / step : -((-i + step - 1) / step)) * step; }
+int floor_to(int i, int step) {
+  return (i >= 0 ? i / step : -((-i + step - 1) / step)) * step;
+}
 
 }  // namespace
 
-CellMultigrid::CellMultigrid(const CellGeometry& geometry) { set_geometry(geometry); }
+CellMultigrid::CellMultigrid(const CellGeometry& geometry) {
+  set_geometry(geometry);
+}
 
 void CellMultigrid::set_geometry(const CellGeometry& geometry) {
-  if (geometry.dimensions != 2 && geometry.dimensions != 3) throw std::invalid_argument("CellMultigrid: dimensions must be 2 or 3");
+  if (geometry.dimensions != 2 && geometry.dimensions != 3)
+    throw std::invalid_argument("CellMultigrid: dimensions must be 2 or 3");
   if (!(geometry.cell_size > 0)) throw std::invalid_argument("CellMultigrid: the cell size must be positive");
   for (std::size_t a = 0; a < static_cast<std::size_t>(geometry.dimensions); ++a)
-    if (!(geometry.upper[a] > geometry.lower[a])) throw std::invalid_argument("CellMultigrid: upper must exceed lower on every axis");
+    if (!(geometry.upper[a] > geometry.lower[a]))
+      throw std::invalid_argument("CellMultigrid: upper must exceed lower on every axis");
   geometry_ = geometry;
 }
 
@@ -91,6 +99,7 @@ void CellMultigrid::choose_box(std::span<const double> const (&position)[3], std
   const double most_cells = std::max(fewest_cells, most_cells_per_particle * static_cast<double>(particles_));
   for (double size = geometry_.cell_size; !empty_; size *= 2) {
     double total = 1;
+    bool countable = true;
     for (std::size_t a = 0; a < dimensions; ++a) {
       Axis& axis = axis_[a];
       axis.periodic = geometry_.periodic[a];
@@ -108,8 +117,9 @@ void CellMultigrid::choose_box(std::span<const double> const (&position)[3], std
       const double lowest = std::floor((liquid.lower[a] - axis.origin) / axis.width);
       const double highest = std::floor((liquid.upper[a] - axis.origin) / axis.width);
       total *= axis.count > 0 && axis.periodic ? axis.count : highest - lowest + 2 + box_alignment;
+      countable = countable && std::max(std::abs(lowest), std::abs(highest)) < INT_MAX / 4;
     }
-    if (total > most_cells) continue;
+    if (total > most_cells || !countable) continue;
     for (std::size_t a = 0; a < dimensions; ++a) {
       const Axis& axis = axis_[a];
       width_[a] = axis.width;
@@ -119,8 +129,10 @@ void CellMultigrid::choose_box(std::span<const double> const (&position)[3], std
         continue;
       }
       // One empty cell beyond the liquid, unless there is a wall.
-      int first = floor_to(static_cast<int>(std::floor((liquid.lower[a] - axis.origin) / axis.width)) - 1, box_alignment);
-      int last = -floor_to(-(static_cast<int>(std::floor((liquid.upper[a] - axis.origin) / axis.width)) + 2), box_alignment);
+      int first =
+          floor_to(static_cast<int>(std::floor((liquid.lower[a] - axis.origin) / axis.width)) - 1, box_alignment);
+      int last =
+          -floor_to(-(static_cast<int>(std::floor((liquid.upper[a] - axis.origin) / axis.width)) + 2), box_alignment);
       const int end = axis.count > 0 ? axis.count : 0;
       if (axis.lower_wall) first = std::max(first, 0);
       if (axis.upper_wall) last = std::min(last, end);
@@ -144,6 +156,7 @@ void CellMultigrid::bin(std::span<const double> const (&position)[3], std::span<
   stencil_.resize(particles_);
   corner_.resize(particles_);
   rank_.resize(particles_);
+  stencil_cell_.resize(particles_);
   order_.resize(particles_);
   start_.resize(stencil_cells + 1);
   status_.resize(stencil_cells);
@@ -152,6 +165,7 @@ void CellMultigrid::bin(std::span<const double> const (&position)[3], std::span<
     std::fill(start_.data() + first, start_.data() + last, 0);
     std::fill(status_.data() + first, status_.data() + last, std::uint8_t{no_liquid});
   });
+  const double inverse_width[3] = {1 / width_[0], 1 / width_[1], dimensions == 3 ? 1 / width_[2] : 0};
   parallel_blocks(particles_, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) {
       corner_[p] = -1;
@@ -162,35 +176,46 @@ void CellMultigrid::bin(std::span<const double> const (&position)[3], std::span<
       bool finite = true;
       for (std::size_t a = 0; a < dimensions; ++a) {
         // Linear between cell centres; constant beyond the last centre before a wall.
-        const double s = (position[a][p] - axis_[a].origin) / width_[a] - 0.5 - first_cell_[a];
+        const double s = (position[a][p] - axis_[a].origin) * inverse_width[a] - 0.5 - first_cell_[a];
         if (!(std::abs(s) < INT_MAX / 2)) {
           finite = false;
           break;
         }
-        double base = std::floor(s);
+        const int count = n[a];
+        int base = static_cast<int>(s) - (s < 0 ? 1 : 0);
         double f = s - base;
-        if (axis_[a].periodic) {
-          base -= n[a] * std::floor(base / n[a]);
-        } else if (base < 0) {
-          base = 0;
-          f = 0;
-        } else if (base >= n[a] - 1) {
-          base = n[a] - 1;
-          f = 0;
+        if (base < 0 || base >= count - 1) {
+          if (axis_[a].periodic) {
+            base = ((base % count) + count) % count;
+          } else {
+            base = base < 0 ? 0 : count - 1;
+            f = 0;
+          }
         }
-        cell[a] = static_cast<int>(base);
+        cell[a] = base;
         fraction[a] = static_cast<float>(f);
-        own[a] = f < 0.5 ? cell[a] : (cell[a] + 1) % n[a];
+        own[a] = base + static_cast<int>(f + f);  // the nearer of two centres, without a branch that is a coin toss
+        own[a] = own[a] == count ? 0 : own[a];
       }
       if (!finite) continue;
       stencil_[p] = {fraction[0], fraction[1], fraction[2], interior[p]};
-      corner_[p] = static_cast<std::int32_t>(static_cast<std::size_t>(cell[2]) * plane_pitch + static_cast<std::size_t>(cell[1]) * row_pitch + static_cast<std::size_t>(cell[0]));
-      const auto index = [&](const int (&c)[3]) {
-        return static_cast<std::size_t>((c[2] * n[1] + c[1])) * static_cast<std::size_t>(n[0]) + static_cast<std::size_t>(c[0]);
+      corner_[p] =
+          static_cast<std::int32_t>(static_cast<std::size_t>(cell[2]) * plane_pitch +
+                                    static_cast<std::size_t>(cell[1]) * row_pitch + static_cast<std::size_t>(cell[0]));
+      const auto index = [&](const int(&c)[3]) {
+        return static_cast<std::size_t>((c[2] * n[1] + c[1])) * static_cast<std::size_t>(n[0]) +
+               static_cast<std::size_t>(c[0]);
       };
-      std::atomic_ref<std::uint8_t>(status_[index(own)]).store(interior_cell, std::memory_order_relaxed);
-      rank_[p] = std::atomic_ref<std::int32_t>(start_[index(cell)]).fetch_add(1, std::memory_order_relaxed);
+      const std::atomic_ref<std::uint8_t> status(status_[index(own)]);
+      if (status.load(std::memory_order_relaxed) != interior_cell)
+        status.store(interior_cell, std::memory_order_relaxed);
+      stencil_cell_[p] = static_cast<std::int32_t>(index(cell));
     }
+    // Apart from the loop above: a locked increment waits for every store before it.
+    for (std::size_t p = first; p < last; ++p)
+      if (corner_[p] >= 0)
+        rank_[p] = std::atomic_ref<std::int32_t>(start_[static_cast<std::size_t>(stencil_cell_[p])])
+                       .fetch_add(1, std::memory_order_relaxed);
   });
   const auto row_cells = [&](std::size_t row) { return start_.data() + row * static_cast<std::size_t>(n[0]); };
   parallel_blocks(level.rows(), level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
@@ -218,19 +243,28 @@ void CellMultigrid::bin(std::span<const double> const (&position)[3], std::span<
       }
     }
   });
-  const auto stencil_index = [&](std::size_t corner) {
-    const std::size_t k = corner / plane_pitch, j = corner % plane_pitch / row_pitch, i = corner % row_pitch;
-    return (k * static_cast<std::size_t>(n[1]) + j) * static_cast<std::size_t>(n[0]) + i;
-  };
   parallel_blocks(particles_, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p)
       if (corner_[p] >= 0)
-        order_[static_cast<std::size_t>(start_[stencil_index(static_cast<std::size_t>(corner_[p]))] + rank_[p])] = static_cast<std::int32_t>(p);
+        order_[static_cast<std::size_t>(start_[static_cast<std::size_t>(stencil_cell_[p])] + rank_[p])] =
+            static_cast<std::int32_t>(p);
   });
   // Arrival order depends on the threads; index order does not.
   parallel_blocks(stencil_cells, 4 * default_block, [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t c = first; c < last; ++c)
-      if (start_[c + 1] - start_[c] > 1) std::sort(order_.data() + start_[c], order_.data() + start_[c + 1]);
+    for (std::size_t c = first; c < last; ++c) {
+      std::int32_t* held = order_.data() + start_[c];
+      const std::int32_t count = start_[c + 1] - start_[c];
+      if (count > 16) {
+        std::sort(held, held + count);
+        continue;
+      }
+      for (std::int32_t i = 1; i < count; ++i) {
+        const std::int32_t p = held[i];
+        std::int32_t at = i;
+        for (; at > 0 && held[at - 1] > p; --at) held[at] = held[at - 1];
+        held[at] = p;
+      }
+    }
   });
 }
 
@@ -252,12 +286,15 @@ void CellMultigrid::mark_solids() {
       first[a] = static_cast<int>(std::floor(std::clamp<double>(lower[a], 0, n[a])));
       last[a] = static_cast<int>(std::ceil(std::clamp<double>(upper[a] + 1e-6, 0, n[a])));
     }
-    const auto overlap = [&](std::size_t a, int i) { return std::max(0.0, std::min(upper[a], i + 1.0) - std::max(lower[a], double(i))); };
+    const auto overlap = [&](std::size_t a, int i) {
+      return std::max(0.0, std::min(upper[a], i + 1.0) - std::max(lower[a], double(i)));
+    };
     for (int k = first[2]; k < last[2]; ++k) {
       for (int j = first[1]; j < last[1]; ++j) {
         for (int i = first[0]; i < last[0]; ++i) {
           const int at[3] = {i, j, k};
-          const std::size_t c = static_cast<std::size_t>(k * n[1] + j) * static_cast<std::size_t>(n[0]) + static_cast<std::size_t>(i);
+          const std::size_t c =
+              static_cast<std::size_t>(k * n[1] + j) * static_cast<std::size_t>(n[0]) + static_cast<std::size_t>(i);
           const double part[3] = {overlap(0, i), overlap(1, j), dimensions == 3 ? overlap(2, k) : 1.0};
           open_volume_[c] -= static_cast<float>(part[0] * part[1] * part[2]);
           for (std::size_t a = 0; a < dimensions; ++a) {
@@ -294,7 +331,9 @@ void CellMultigrid::fill_holes() {
             there[a] += step;
             if ((there[a] < 0 || there[a] >= n[a]) && !axis_[a].periodic) continue;
             there[a] = (there[a] + n[a]) % n[a];
-            const std::uint8_t next = status(static_cast<std::size_t>(there[2] * n[1] + there[1]) * row_cells + static_cast<std::size_t>(there[0])).load(std::memory_order_relaxed);
+            const std::uint8_t next = status(static_cast<std::size_t>(there[2] * n[1] + there[1]) * row_cells +
+                                             static_cast<std::size_t>(there[0]))
+                                          .load(std::memory_order_relaxed);
             liquid = liquid || next == interior_cell;
             enclosed = enclosed && (next == interior_cell || next == solid_cell);
           }
@@ -311,7 +350,8 @@ void CellMultigrid::set_coefficients(double helmholtz) {
   const int dimensions = geometry_.dimensions;
   const double volume = width_[0] * width_[1] * (dimensions == 3 ? width_[2] : 1.0);
   float face[3] = {0, 0, 0};
-  for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a) face[a] = static_cast<float>(volume / (width_[a] * width_[a]));
+  for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a)
+    face[a] = static_cast<float>(volume / (width_[a] * width_[a]));
   const float mass = static_cast<float>(helmholtz * volume);
   const bool solids = !geometry_.solids.empty();
   const auto index = [&](int i, int j, int k) {
@@ -361,7 +401,8 @@ void CellMultigrid::setup(std::span<const double> x, std::span<const double> y, 
   if (y.size() != particles_ || interior.size() != particles_ || diagonal.size() != particles_ ||
       (geometry_.dimensions == 3 && z.size() != particles_))
     throw std::invalid_argument("CellMultigrid::setup: all spans must have one entry per particle");
-  if (!(helmholtz >= 0)) throw std::invalid_argument("CellMultigrid::setup: the Helmholtz coefficient must not be negative");
+  if (!(helmholtz >= 0))
+    throw std::invalid_argument("CellMultigrid::setup: the Helmholtz coefficient must not be negative");
   inverse_diagonal_.resize(particles_);
   parallel_for(particles_, [&](std::size_t i) { inverse_diagonal_[i] = diagonal[i] > 0 ? 1.0F / diagonal[i] : 0.0F; });
   const std::span<const double> position[3] = {x, y, z};
@@ -373,7 +414,8 @@ void CellMultigrid::setup(std::span<const double> x, std::span<const double> y, 
   set_coefficients(helmholtz);
   const auto& n = hierarchy_.finest().cells;
   partial_.resize(4 * hierarchy_.finest().rows() * hierarchy_.finest().pitch());
-  corner_value_.resize((static_cast<std::size_t>(n[0]) + 1) * (static_cast<std::size_t>(n[1]) + 1) * (static_cast<std::size_t>(n[2]) + 1));
+  corner_value_.resize((static_cast<std::size_t>(n[0]) + 1) * (static_cast<std::size_t>(n[1]) + 1) *
+                       (static_cast<std::size_t>(n[2]) + 1));
 }
 
 // Sums r over the particles of every row of stencil cells into the four rows of cell centres that it touches.
@@ -382,41 +424,42 @@ void CellMultigrid::spread(const float* r) {
   const auto& n = level.cells;
   const std::size_t pitch = level.pitch();
   const int sides = geometry_.dimensions == 3 ? 4 : 2;
-  parallel_blocks(level.rows(), std::max<std::size_t>(1, level.rows_per_block() / 4), [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t row = first; row < last; ++row) {
-      float* to[4];
-      for (int s = 0; s < sides; ++s) {
-        to[s] = partial_.data() + (static_cast<std::size_t>(s) * level.rows() + row) * pitch;
-        std::fill_n(to[s], pitch, 0.0F);
-      }
-      const std::int32_t* start = start_.data() + row * static_cast<std::size_t>(n[0]);
-      if (row_total_[row] == row_total_[row + 1]) continue;
-      for (int i = 0; i < n[0]; ++i) {
-        if (start[i] == start[i + 1]) continue;
-        float sum[8] = {};
-        for (std::int32_t o = start[i]; o < start[i + 1]; ++o) {
-          const auto p = static_cast<std::size_t>(order_[static_cast<std::size_t>(o)]);
-          const Stencil& s = stencil_[p];
-          const float value = s.weight * r[p];
-          const float high_z = value * s.fz, low_z = value - high_z;
-          const float high_high = high_z * s.fy, high_low = high_z - high_high;
-          const float low_high = low_z * s.fy, low_low = low_z - low_high;
-          const float y_z[4] = {low_low, low_high, high_low, high_high};
-          for (int c = 0; c < 4; ++c) {
-            const float upper = y_z[c] * s.fx;
-            sum[c] += y_z[c] - upper;
-            sum[4 + c] += upper;
-          }
-        }
-        for (int c = 0; c < sides; ++c) {
-          to[c][i] += sum[c];
-          to[c][i + 1] += sum[4 + c];
-        }
-      }
-      if (axis_[0].periodic)
-        for (int c = 0; c < sides; ++c) to[c][0] += to[c][n[0]];
-    }
-  });
+  parallel_blocks(level.rows(), std::max<std::size_t>(1, level.rows_per_block() / 4),
+                  [&](std::size_t, std::size_t first, std::size_t last) {
+                    for (std::size_t row = first; row < last; ++row) {
+                      float* to[4];
+                      for (int s = 0; s < sides; ++s) {
+                        to[s] = partial_.data() + (static_cast<std::size_t>(s) * level.rows() + row) * pitch;
+                        std::fill_n(to[s], pitch, 0.0F);
+                      }
+                      const std::int32_t* start = start_.data() + row * static_cast<std::size_t>(n[0]);
+                      if (row_total_[row] == row_total_[row + 1]) continue;
+                      for (int i = 0; i < n[0]; ++i) {
+                        if (start[i] == start[i + 1]) continue;
+                        float sum[8] = {};
+                        for (std::int32_t o = start[i]; o < start[i + 1]; ++o) {
+                          const auto p = static_cast<std::size_t>(order_[static_cast<std::size_t>(o)]);
+                          const Stencil& s = stencil_[p];
+                          const float value = s.weight * r[p];
+                          const float high_z = value * s.fz, low_z = value - high_z;
+                          const float high_high = high_z * s.fy, high_low = high_z - high_high;
+                          const float low_high = low_z * s.fy, low_low = low_z - low_high;
+                          const float y_z[4] = {low_low, low_high, high_low, high_high};
+                          for (int c = 0; c < 4; ++c) {
+                            const float upper = y_z[c] * s.fx;
+                            sum[c] += y_z[c] - upper;
+                            sum[4 + c] += upper;
+                          }
+                        }
+                        for (int c = 0; c < sides; ++c) {
+                          to[c][i] += sum[c];
+                          to[c][i + 1] += sum[4 + c];
+                        }
+                      }
+                      if (axis_[0].periodic)
+                        for (int c = 0; c < sides; ++c) to[c][0] += to[c][n[0]];
+                    }
+                  });
 }
 
 // Adds the rows of partial sums up to the right-hand side of the cells.
@@ -431,7 +474,8 @@ void CellMultigrid::collect() {
       const int j = static_cast<int>(row) % n[1], k = static_cast<int>(row) / n[1];
       const int below = j > 0 ? j - 1 : n[1] - 1, behind = k > 0 ? k - 1 : n[2] - 1;
       const auto part = [&](int side, int jj, int kk) {
-        return partial_.data() + (static_cast<std::size_t>(side) * level.rows() + static_cast<std::size_t>(kk * n[1] + jj)) * pitch;
+        return partial_.data() +
+               (static_cast<std::size_t>(side) * level.rows() + static_cast<std::size_t>(kk * n[1] + jj)) * pitch;
       };
       const float* p0 = part(0, j, k);
       const float* p1 = part(1, below, k);
@@ -467,14 +511,16 @@ void CellMultigrid::apply_any(std::span<const Real> r, std::span<Real> z) {
   const auto& n = level.cells;
   const std::size_t row_pitch = static_cast<std::size_t>(n[0]) + 1;
   const std::size_t rows_per_plane = static_cast<std::size_t>(n[1]) + 1;
-  parallel_blocks(rows_per_plane * (static_cast<std::size_t>(n[2]) + 1), level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t row = first; row < last; ++row) {
-      const std::size_t j = row % rows_per_plane % static_cast<std::size_t>(n[1]);
-      const std::size_t k = row / rows_per_plane % static_cast<std::size_t>(n[2]);
-      const float* from = level.solution.data() + level.row_start(k * static_cast<std::size_t>(n[1]) + j);
-      std::copy_n(from, row_pitch, corner_value_.data() + row * row_pitch);
-    }
-  });
+  parallel_blocks(rows_per_plane * (static_cast<std::size_t>(n[2]) + 1), level.rows_per_block(),
+                  [&](std::size_t, std::size_t first, std::size_t last) {
+                    for (std::size_t row = first; row < last; ++row) {
+                      const std::size_t j = row % rows_per_plane % static_cast<std::size_t>(n[1]);
+                      const std::size_t k = row / rows_per_plane % static_cast<std::size_t>(n[2]);
+                      const float* from =
+                          level.solution.data() + level.row_start(k * static_cast<std::size_t>(n[1]) + j);
+                      std::copy_n(from, row_pitch, corner_value_.data() + row * row_pitch);
+                    }
+                  });
   const std::size_t up_y = row_pitch, up_z = row_pitch * rows_per_plane;
   const bool three_dimensional = geometry_.dimensions == 3;
   const float* value = corner_value_.data();
@@ -495,7 +541,11 @@ void CellMultigrid::apply_any(std::span<const Real> r, std::span<Real> z) {
   });
 }
 
-void CellMultigrid::apply(std::span<const float> r, std::span<float> z) { apply_any(r, z); }
-void CellMultigrid::apply(std::span<const double> r, std::span<double> z) { apply_any(r, z); }
+void CellMultigrid::apply(std::span<const float> r, std::span<float> z) {
+  apply_any(r, z);
+}
+void CellMultigrid::apply(std::span<const double> r, std::span<double> z) {
+  apply_any(r, z);
+}
 
 }  // namespace spume

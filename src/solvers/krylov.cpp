@@ -30,14 +30,19 @@ double squared_norm(std::span<const Real> x) {
 template <class Real>
 class Solve {
  public:
-  Solve(LinearOperator<Real>& a, std::span<const Real> b, std::span<Real> x, const KrylovOptions<Real>& options, KrylovWorkspace<Real>& work)
+  Solve(LinearOperator<Real>& a, std::span<const Real> b, std::span<Real> x, const KrylovOptions<Real>& options,
+        KrylovWorkspace<Real>& work)
       : a_(a), b_(b), x_(x), options_(options), work_(work), n_(b.size()) {
     if (x.size() != n_ || a.size() != n_ || (!options.weights.empty() && options.weights.size() != n_))
-      throw std::invalid_argument("Krylov solver: operator, right-hand side, solution and weights must have one length");
-    for (Array<Real>* vector : {&work.residual, &work.shadow, &work.direction, &work.preconditioned, &work.image, &work.second_image, &work.second_preconditioned})
+      throw std::invalid_argument(
+          "Krylov solver: operator, right-hand side, solution and weights must have one length");
+    for (Array<Real>* vector : {&work.residual, &work.shadow, &work.direction, &work.preconditioned, &work.image,
+                                &work.second_image, &work.second_preconditioned})
       vector->resize(n_);
     if (options.remove_mean)
-      total_weight_ = options.weights.empty() ? static_cast<double>(n_) : fused_sums<1>(n_, [&](std::size_t i) { return std::array{static_cast<double>(options_.weights[i])}; })[0];
+      total_weight_ = options.weights.empty() ? static_cast<double>(n_) : fused_sums<1>(n_, [&](std::size_t i) {
+        return std::array{static_cast<double>(options_.weights[i])};
+      })[0];
   }
 
   KrylovResult result;
@@ -138,7 +143,9 @@ class Solve {
   KrylovResult finish() {
     if (norm_b > 0 && std::isfinite(norm_b)) result.relative_residual = norm_r / norm_b;
     if (options_.remove_mean && !result.breakdown) {
-      const double mean = fused_sums<1>(n_, [&](std::size_t i) { return std::array{weight(i) * static_cast<double>(x_[i])}; })[0] / total_weight_;
+      const double mean =
+          fused_sums<1>(n_, [&](std::size_t i) { return std::array{weight(i) * static_cast<double>(x_[i])}; })[0] /
+          total_weight_;
       parallel_for(n_, [&](std::size_t i) { x_[i] -= static_cast<Real>(mean); });
     }
     return result;
@@ -147,11 +154,14 @@ class Solve {
   bool restart_needed = true;
 
  private:
-  double weight(std::size_t i) const { return options_.weights.empty() ? 1.0 : static_cast<double>(options_.weights[i]); }
+  double weight(std::size_t i) const {
+    return options_.weights.empty() ? 1.0 : static_cast<double>(options_.weights[i]);
+  }
 
   // r -= w sum(r) / sum(w): the constant's component of a residual, in the weights of the rows.
   void project(Array<Real>& r) {
-    const double share = fused_sums<1>(n_, [&](std::size_t i) { return std::array{static_cast<double>(r[i])}; })[0] / total_weight_;
+    const double share =
+        fused_sums<1>(n_, [&](std::size_t i) { return std::array{static_cast<double>(r[i])}; })[0] / total_weight_;
     parallel_for(n_, [&](std::size_t i) { r[i] -= static_cast<Real>(weight(i) * share); });
   }
 
@@ -170,8 +180,8 @@ class Solve {
 }  // namespace
 
 template <class Real>
-KrylovResult conjugate_gradients(LinearOperator<Real>& a, Preconditioner<Real>& m, std::span<const Real> b, std::span<Real> x,
-                                 const KrylovOptions<Real>& options, KrylovWorkspace<Real>& work) {
+KrylovResult conjugate_gradients(LinearOperator<Real>& a, Preconditioner<Real>& m, std::span<const Real> b,
+                                 std::span<Real> x, const KrylovOptions<Real>& options, KrylovWorkspace<Real>& work) {
   Solve<Real> solve(a, b, x, options, work);
   const std::size_t n = b.size();
   Array<Real>&r = work.residual, &p = work.direction, &z = work.preconditioned, &ap = work.image;
@@ -179,7 +189,8 @@ KrylovResult conjugate_gradients(LinearOperator<Real>& a, Preconditioner<Real>& 
   bool done = solve.begin();
   while (!done) {
     m.apply(r, z);
-    const double rho_new = fused_sums<1>(n, [&](std::size_t i) { return std::array{static_cast<double>(r[i]) * static_cast<double>(z[i])}; })[0];
+    const double rho_new = fused_sums<1>(
+        n, [&](std::size_t i) { return std::array{static_cast<double>(r[i]) * static_cast<double>(z[i])}; })[0];
     const Real beta = solve.restart_needed ? Real(0) : static_cast<Real>(rho_new / rho);
     rho = rho_new;
     if (solve.restart_needed)
@@ -295,10 +306,11 @@ KrylovResult bicgstab(LinearOperator<Real>& a, Preconditioner<Real>& m, std::spa
   return solve.finish();
 }
 
-#define SPUME_INSTANTIATE(Real)                                                                                         \
-  template KrylovResult conjugate_gradients<Real>(LinearOperator<Real>&, Preconditioner<Real>&, std::span<const Real>,  \
-                                                  std::span<Real>, const KrylovOptions<Real>&, KrylovWorkspace<Real>&); \
-  template KrylovResult bicgstab<Real>(LinearOperator<Real>&, Preconditioner<Real>&, std::span<const Real>,             \
+#define SPUME_INSTANTIATE(Real)                                                                                        \
+  template KrylovResult conjugate_gradients<Real>(LinearOperator<Real>&, Preconditioner<Real>&, std::span<const Real>, \
+                                                  std::span<Real>, const KrylovOptions<Real>&,                         \
+                                                  KrylovWorkspace<Real>&);                                             \
+  template KrylovResult bicgstab<Real>(LinearOperator<Real>&, Preconditioner<Real>&, std::span<const Real>,            \
                                        std::span<Real>, const KrylovOptions<Real>&, KrylovWorkspace<Real>&);
 SPUME_INSTANTIATE(float)
 SPUME_INSTANTIATE(double)

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "operators/direct_stencil.hpp"
 #include "operators/jittered_particles.hpp"
 #include "spume/core/error.hpp"
 
@@ -105,6 +106,23 @@ TEST_P(GridInterpolation, CubicPolynomialsOfThePeriodicDistanceAreReproducedAcro
   EXPECT_GT(checked, dimensions == 2 ? 1000 : 500);
 }
 
+TEST_P(GridInterpolation, AgreesWithDirectlySolvedStencils) {
+  const int dimensions = GetParam();
+  const std::size_t across = dimensions == 2 ? 24 : 10;
+  const JitteredParticles particles(dimensions, across, 0.3);
+  const Array<double> field =
+      particles.sample([](const auto& p) { return std::exp(p[0]) * std::sin(9 * p[1] + p[2]); });
+  const UniformGrid grid = unit_grid(dimensions, across + 1);
+  const Interpolated result = interpolate(grid, particles, field, true);
+  for (std::size_t n = 0; n < grid.size(); n += 13) {
+    const auto stencil =
+        testing::direct_stencil(particles, grid_point(grid, n), GridInterpolationOptions{}.support * particles.spacing);
+    double expected = 0;
+    for (std::size_t j = 0; j < stencil.weight.size(); ++j) expected += stencil.weight[j] * field[stencil.particle[j]];
+    EXPECT_NEAR(result.values[n], expected, 10 * reproduction_tolerance) << n;
+  }
+}
+
 TEST_P(GridInterpolation, PositionsOutsideThePeriodicBoxAreWrapped) {
   const int dimensions = GetParam();
   const std::size_t across = dimensions == 2 ? 24 : 10;
@@ -140,7 +158,7 @@ TEST_P(GridInterpolation, ErrorOfASmoothPeriodicFieldFallsWithTheFourthPowerOfTh
   EXPECT_LE(order, 4.5);
 }
 
-TEST_P(GridInterpolation, ResultIsTheSameForAnyNumberOfThreadsAndOrderOfFields) {
+TEST_P(GridInterpolation, ResultIsTheSameForAnyNumberOfThreads) {
   const int dimensions = GetParam();
   const std::size_t across = dimensions == 2 ? 60 : 16;
   const JitteredParticles particles(dimensions, across, 0.4);

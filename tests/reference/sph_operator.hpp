@@ -34,10 +34,10 @@ struct SphSetup {
   std::array<bool, 3> periodic{};
   std::array<std::array<bool, 2>, 3> wall{};
   std::function<bool(double, double, double)> liquid = [](double, double, double) { return true; };
-  bool surface = true;       // false: no particle is pinned (closed or periodic domains)
+  bool surface = true;  // false: no particle is pinned (closed or periodic domains)
   bool smooth_penalty = true;
-  double helmholtz = 0;      // Ma^2 / dt^2
-  double jitter = 0.2;       // of the spacing
+  double helmholtz = 0;  // Ma^2 / dt^2
+  double jitter = 0.2;   // of the spacing
 };
 
 struct SphSystem {
@@ -155,6 +155,7 @@ inline SphSystem assemble(const SphSetup& setup) {
   }
   std::vector<std::vector<std::pair<std::size_t, double>>> neighbours(n);
   std::vector<double> kernel_sum(n, 0);
+  std::vector<int> neighbour_count(n, 0);
 #pragma omp parallel for schedule(dynamic, 64)
   for (std::size_t i = 0; i < n; ++i) {
     const std::array<double, 3> pi{s.x[i], s.y[i], s.z[i]};
@@ -170,6 +171,7 @@ inline SphSystem assemble(const SphSetup& setup) {
             const double r = std::sqrt(r2);
             if (r >= support) continue;
             kernel_sum[i] += s.volume * wendland(r, h, d);
+            ++neighbour_count[i];
             if (points[q].source != i)  // a particle and its own mirror image have the same pressure
               neighbours[i].emplace_back(points[q].source, -2 * wendland_gradient_over_r(r, h, d));
           }
@@ -179,9 +181,14 @@ inline SphSystem assemble(const SphSetup& setup) {
   s.pinned.assign(n, 0);
   std::vector<double> blend(n, 1);
   if (setup.surface) {
+    // The uppermost layer of a flat surface has 0.63 of the neighbours of a particle inside, the next 0.87.
+    const double pi = 3.14159265358979323846, reach = support / dx;
+    const double inside = d == 2 ? pi * reach * reach : 4.0 / 3 * pi * reach * reach * reach;
+    for (std::size_t i = 0; i < n; ++i) s.pinned[i] = neighbour_count[i] + 1 < 0.74 * inside;
     for (std::size_t i = 0; i < n; ++i) {
-      s.pinned[i] = kernel_sum[i] < 0.80;
-      blend[i] = setup.smooth_penalty ? std::clamp((kernel_sum[i] - 0.80) / 0.12, 0.05, 1.0) : 1.0;
+      bool below_surface = false;
+      for (const auto& [j, w] : neighbours[i]) below_surface = below_surface || s.pinned[j];
+      if (setup.smooth_penalty && below_surface) blend[i] = std::clamp((kernel_sum[i] - 0.82) / 0.14, 0.05, 1.0);
       s.interior[i] = s.pinned[i] ? 0.0F : static_cast<float>(blend[i]);
     }
   }

@@ -30,7 +30,7 @@ class FieldSet {
   // Asking for an existing name with another type or lifetime is a programming error (std::logic_error).
   template <class T>
   Array<T>& add(std::string_view name, Lifetime lifetime) {
-    return std::get<Array<T>>(find_or_add(name, lifetime, Array<T>(size_)).values);
+    return std::get<Array<T>>(find_or_add(name, lifetime, Array<T>()).values);
   }
 
   bool has(std::string_view name) const;

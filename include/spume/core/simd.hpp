@@ -32,6 +32,10 @@ inline constexpr int lanes = 8;
   return v;
 }
 
+[[gnu::always_inline]] inline void store(float* p, f32x8 v) {
+  std::memcpy(p, &v, sizeof v);
+}
+
 [[gnu::always_inline]] inline f32x4 load4(const float* p) {
   f32x4 v;
   std::memcpy(&v, p, sizeof v);
@@ -53,6 +57,14 @@ inline constexpr int lanes = 8;
   return f32x8(_mm256_max_ps(__m256(a), __m256(b)));
 #else
   return a > b ? a : b;
+#endif
+}
+
+[[gnu::always_inline]] inline f32x8 min(f32x8 a, f32x8 b) {
+#if defined(__AVX__)
+  return f32x8(_mm256_min_ps(__m256(a), __m256(b)));
+#else
+  return a < b ? a : b;
 #endif
 }
 

@@ -16,6 +16,10 @@ namespace spume {
 
 class CellGrid {
  public:
+  // Least cell sides as fractions of the reach, across rows and along them.
+  static constexpr double row_fraction = 0.5;
+  static constexpr double column_fraction = 0.25;
+
   CellGrid() = default;
   // `reach`: the largest distance at which neighbours are sought. `expected_particles` bounds the number of
   // cells (at most 4 per particle plus 2^20): a mostly empty large box gets coarser cells.
@@ -35,6 +39,8 @@ class CellGrid {
   }
   // Rank of row (iy, iz) in the order of rows.
   std::int32_t row(int iy, int iz) const { return row_rank_[static_cast<std::size_t>(iz) * count_[1] + iy]; }
+  // Ranks of the rows of iz, by iy; eight readable elements follow the last.
+  const std::int32_t* row_ranks(int iz) const { return row_rank_.data() + static_cast<std::size_t>(iz) * count_[1]; }
   std::int64_t cell(double x, double y, double z) const {
     return std::int64_t{row(index(1, y), dimensions_ == 3 ? index(2, z) : 0)} * count_[0] + index(0, x);
   }

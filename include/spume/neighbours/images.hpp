@@ -4,7 +4,8 @@
 // An image is a copy of one particle under reflections and shifts along the axes. Axes are treated one after
 // the other, each on the particles and all images made before, which fills edges and corners. Solid boxes
 // come first: a particle is mirrored in a face when the image lies inside the box and that face is the
-// nearest one to the image, so that the box is filled once, also at its edges.
+// nearest one to the image, so that the box is filled once, also at its edges. Precondition: a periodic side is at
+// least one reach long (one copy on either side suffices).
 #pragma once
 
 #include <array>

@@ -26,8 +26,8 @@ struct ParticleSpectrum {
 };
 
 // Velocity interpolated to a uniform grid (interpolate_to_grid, fourth order), then energy_spectrum of the grid. The
-// interpolation attenuates short waves: at one grid point per particle the energy of waves longer than 8 spacings is
-// kept within 1 %, half of the Nyquist wavenumber (4 spacings) loses about 10 %. Throws InputError as
+// interpolation attenuates short waves: on a lattice jittered by a quarter spacing, waves longer than 8 spacings keep
+// their energy within 1.5 %, those of 4 spacings (half of the Nyquist wavenumber) lose 10 to 16 %. Throws InputError as
 // interpolate_to_grid does.
 ParticleSpectrum energy_spectrum(const ParticleSpectrumInput& particles);
 

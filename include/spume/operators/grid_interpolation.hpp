@@ -20,7 +20,8 @@ struct GridInterpolationInput {
 
 struct GridInterpolationOptions {
   // Radius of the stencil in particle spacings: 21 particles for 10 conditions in two dimensions, 74 for 20 in three.
-  // The error grows as its fourth power; at 2.2 a lattice jittered by 0.4 spacings has refused stencils, at 2.6 none.
+  // The error grows as its fourth power. At 2.4 a lattice jittered by 0.4 spacings in two dimensions and stencils
+  // beside a wall in three are refused here and there; at 2.6 none but in corners and edges.
   double support = 2.6;
   // A stencil is refused when sum |w_j|, the factor by which it can amplify noise of the field, exceeds this.
   // Inside the liquid it is between 1 and 2; extrapolation across a free surface makes it large.

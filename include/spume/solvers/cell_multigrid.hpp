@@ -30,12 +30,12 @@ struct CellGeometry {
   struct Box {
     std::array<double, 3> lower{}, upper{};
   };
-  int dimensions = 3;                            // 2: z is ignored
-  std::array<double, 3> lower{}, upper{};        // domain
+  int dimensions = 3;                      // 2: z is ignored
+  std::array<double, 3> lower{}, upper{};  // domain
   std::array<bool, 3> periodic{};
-  std::array<std::array<bool, 2>, 3> wall{};     // wall[axis][0] at lower, [1] at upper; otherwise open
-  std::vector<Box> solids;                       // impermeable boxes inside the domain
-  double cell_size = 0;                          // about 1.5 particle spacings; adjusted to fit between walls
+  std::array<std::array<bool, 2>, 3> wall{};  // wall[axis][0] at lower, [1] at upper; otherwise open
+  std::vector<Box> solids;                    // impermeable boxes inside the domain
+  double cell_size = 0;                       // about 1.5 particle spacings; adjusted to fit between walls
 };
 
 class CellMultigrid final : public Preconditioner<float>, public Preconditioner<double> {
@@ -71,7 +71,7 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
   struct Axis {
     double origin = 0;  // coordinate of the lower face of cell 0 of the whole axis
     double width = 1;
-    int count = 0;      // cells of the whole axis between walls or periodic sides, 0 when a side is open
+    int count = 0;  // cells of the whole axis between walls or periodic sides, 0 when a side is open
     bool lower_wall = false, upper_wall = false, periodic = false;
   };
 
@@ -87,13 +87,14 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
 
   CellGeometry geometry_;
   std::array<Axis, 3> axis_{};
-  std::array<double, 3> width_{};     // cell width in use
-  std::array<int, 3> first_cell_{};   // index along the whole axis of the first cell of the box
+  std::array<double, 3> width_{};    // cell width in use
+  std::array<int, 3> first_cell_{};  // index along the whole axis of the first cell of the box
   std::size_t particles_ = 0;
-  bool empty_ = true;                 // no interior particle: M = D^-1
+  bool empty_ = true;  // no interior particle: M = D^-1
 
   Array<Stencil> stencil_;            // per particle
   Array<std::int32_t> corner_;        // per particle: lowest cell of the stencil in the corner array, -1 for none
+  Array<std::int32_t> stencil_cell_;  // per particle: lowest cell of the stencil among the cells
   Array<std::int32_t> rank_;          // per particle: arrival order within its stencil cell
   Array<float> inverse_diagonal_;     // per particle
   Array<std::int32_t> start_;         // per stencil cell: first entry in order_
@@ -101,9 +102,9 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
   Array<std::int32_t> row_total_;     // particles per row of stencil cells
   Array<std::uint8_t> status_;        // per cell: empty, interior or solid
   Array<float> open_volume_, open_face_[3];  // open fractions, only with solids
-  Array<float> partial_;              // spread sums per row of stencil cells and side
-  Array<float> corner_value_;         // cell values with wrapped upper neighbours
-  Array<float> residual_, correction_;  // float copies for double vectors
+  Array<float> partial_;                     // spread sums per row of stencil cells and side
+  Array<float> corner_value_;                // cell values with wrapped upper neighbours
+  Array<float> residual_, correction_;       // float copies for double vectors
   CellHierarchy hierarchy_;
 };
 

@@ -27,7 +27,7 @@ struct KrylovOptions {
 
 struct KrylovResult {
   int iterations = 0;
-  int applications = 0;  // of the operator
+  int applications = 0;          // of the operator
   double relative_residual = 0;  // measured when `confirm` is set or no iteration was made, else the recurrence's
   bool converged = false;
   bool breakdown = false;  // non-finite numbers, or no progress after restarts: x holds the last finite iterate
@@ -42,8 +42,8 @@ struct KrylovWorkspace {
 // Conjugate gradients: A and M symmetric positive (semi-)definite. One application per iteration.
 // M. Hestenes, E. Stiefel, J. Res. Nat. Bur. Stand. 49 (1952), preconditioned form.
 template <class Real>
-KrylovResult conjugate_gradients(LinearOperator<Real>& a, Preconditioner<Real>& m, std::span<const Real> b, std::span<Real> x,
-                                 const KrylovOptions<Real>& options, KrylovWorkspace<Real>& work);
+KrylovResult conjugate_gradients(LinearOperator<Real>& a, Preconditioner<Real>& m, std::span<const Real> b,
+                                 std::span<Real> x, const KrylovOptions<Real>& options, KrylovWorkspace<Real>& work);
 
 // BiCGStab, right-preconditioned, so that the recurrence carries the true residual. Two applications per iteration.
 // H. van der Vorst, SIAM J. Sci. Stat. Comput. 13 (1992). Restarts from the current residual when an inner product

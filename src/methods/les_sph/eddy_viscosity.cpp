@@ -147,6 +147,23 @@ void differentiate_velocity(Liquid& liquid) {
   else find_strain<3>(liquid);
 }
 
+void find_shift_correction(Liquid& liquid) {
+  const int d = liquid.dimensions;
+  if (liquid.plan.shift_curvature) {
+    std::array<const float*, 9> gradient{};
+    for (int k = 0; k < d * d; ++k) gradient[k] = liquid.velocity_gradient[k]->data();
+    shift_curvature_sweep(liquid.context, liquid.records, gradient, liquid.velocity_rule, liquid.reflection,
+                          liquid.read(liquid.shift), liquid.read_correction(), liquid.write(liquid.shift_velocity));
+  }
+  parallel_for(liquid.size(), [&](std::size_t i) {
+    for (int a = 0; a < d; ++a) {
+      float sum = liquid.plan.shift_curvature ? (*liquid.shift_velocity[a])[i] : 0.0F;
+      for (int b = 0; b < d; ++b) sum += (*liquid.velocity_gradient[a * d + b])[i] * (*liquid.shift[b])[i];
+      (*liquid.shift_velocity[a])[i] = sum;
+    }
+  });
+}
+
 void find_eddy_viscosity(Liquid& liquid, double dt) {
   if (liquid.dynamic_closure()) {
     if (liquid.dimensions == 2) find_dynamic_viscosity<2>(liquid, dt);

@@ -35,6 +35,7 @@ void LesSph::step(double dt, Ledger& ledger) {
   if (plan.free_surface) stage("surface", [&] { find_surface(liquid); });
   if (plan.shifting) stage("shift", [&] { choose_shift(liquid); });
   if (plan.velocity_gradient) pair_stage("gradients", [&] { differentiate_velocity(liquid); });
+  if (plan.shift_correction) pair_stage("shift correction", [&] { find_shift_correction(liquid); });
   if (plan.eddy_viscosity) stage("eddy viscosity", [&] { find_eddy_viscosity(liquid, dt); });
   pair_stage("prediction", [&] { predict_velocity(liquid, dt); });
   pressure_->solve_step(liquid, dt, ledger);
@@ -56,7 +57,12 @@ void LesSph::start(Ledger& ledger) {
     find_neighbours(liquid_);
     measure_geometry(liquid_);
     if (liquid_.plan.free_surface) find_surface(liquid_);
+    differentiate_velocity(liquid_);
     pressure_->solve_initial(liquid_, ledger);
+    if (!liquid_.plan.velocity_gradient) {
+      for (int k = 0; k < liquid_.dimensions * liquid_.dimensions; ++k) liquid_.velocity_gradient[k]->release();
+      liquid_.strain->release();
+    }
   }
   liquid_.started = true;
 }

@@ -159,13 +159,12 @@ void accept(Liquid& liquid, double dt) {
     Vec3 r{}, u{};
     for (int axis = 0; axis < d; ++axis) {
       u[axis] = (*liquid.predicted[axis])[i];
-      r[axis] = (*liquid.position[axis])[i] + 0.5 * dt * ((*liquid.velocity[axis])[i] + u[axis]);
+      r[axis] = (*liquid.intermediate[axis])[i];
     }
     if (liquid.plan.shifting) {
       for (int axis = 0; axis < d; ++axis) r[axis] += (*liquid.shift[axis])[i];
-      if (liquid.plan.velocity_gradient && liquid.options.shifting.velocity_correction)
-        for (int a = 0; a < d; ++a)
-          for (int b = 0; b < d; ++b) u[a] += (*liquid.velocity_gradient[a * d + b])[i] * (*liquid.shift[b])[i];
+      if (liquid.plan.shift_correction)
+        for (int axis = 0; axis < d; ++axis) u[axis] += (*liquid.shift_velocity[axis])[i];
     }
     keep_inside(liquid, liquid.next_walls, r, &u);
     for (int axis = 0; axis < d; ++axis) {

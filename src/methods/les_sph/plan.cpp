@@ -22,7 +22,9 @@ Plan make_plan(const LoadedCase& loaded) {
   const TurbulenceModel model = options.turbulence.model;
   plan.eddy_viscosity = model != TurbulenceModel::none;
   plan.test_filter = plan.eddy_viscosity && model != TurbulenceModel::smagorinsky;
-  plan.velocity_gradient = plan.eddy_viscosity || (plan.shifting && options.shifting.velocity_correction);
+  plan.shift_correction = plan.shifting && options.shifting.velocity_correction != ShiftCorrection::none;
+  plan.shift_curvature = plan.shifting && options.shifting.velocity_correction == ShiftCorrection::second_order;
+  plan.velocity_gradient = plan.eddy_viscosity || plan.shift_correction;
   plan.viscosity = plan.eddy_viscosity || scene.fluid.kinematic_viscosity > 0;
   plan.gravity = std::any_of(scene.fluid.gravity.begin(), scene.fluid.gravity.end(), [](double g) { return g != 0; });
   plan.body_force = scene.body_force.has_value();
@@ -52,6 +54,8 @@ std::vector<Stage> Plan::stages(const LoadedCase& loaded) const {
   list.push_back({"shift", shifting, shifting ? "Fickian shifting" : "shifting.on = false"});
   list.push_back({"gradients", velocity_gradient,
                   eddy_viscosity ? "strain of the closure" : velocity_gradient ? "velocity correction of the shift" : "nobody needs them"});
+  list.push_back({"shift curvature", shift_curvature,
+                  shift_curvature ? "second-order velocity correction of the shift" : "shifting.velocity_correction"});
   list.push_back({"eddy viscosity", eddy_viscosity, model()});
   list.push_back({"viscosity", viscosity, viscosity ? "molecular or eddy viscosity" : "inviscid"});
   list.push_back({"body force", body_force, body_force ? "forces.body" : "none given"});

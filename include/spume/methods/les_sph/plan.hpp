@@ -16,6 +16,8 @@ struct Plan {
   bool free_surface = false;
   bool shifting = false;
   bool velocity_gradient = false;  // closure or shift correction
+  bool shift_correction = false;   // velocity follows the shift to first or second order
+  bool shift_curvature = false;    // to second order
   bool eddy_viscosity = false;
   bool test_filter = false;        // mixed-scale and dynamic closures
   bool viscosity = false;

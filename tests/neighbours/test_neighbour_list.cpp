@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "neighbours/neighbourhood.hpp"
+
+namespace spume::test {
+namespace {
+
+constexpr auto none = ImageKind::none;
+constexpr auto periodic = ImageKind::periodic;
+constexpr auto mirror = ImageKind::mirror;
+
+// Float coordinates are off by half a unit in the last place of the largest one; a distance by that of both
+// ends in each axis, and by the rounding of its own sum of squares (four roundings of 2^-24).
+double distance_tolerance(const Neighbourhood& hood) {
+  double extent = 0;
+  for (const Point& p : hood.all())
+    for (int axis = 0; axis < hood.rules.dimensions; ++axis)
+      extent = std::max(extent, std::abs(p[axis] - hood.origin[axis]));
+  const double half_unit = 0.5 * std::numeric_limits<float>::epsilon();
+  return half_unit * (2 * std::sqrt(3.0) * extent + 4 * hood.rules.reach);
+}
+
+void expect_lists_match_brute_force(const Neighbourhood& hood) {
+  const std::vector<Point> all = hood.all();
+  const double tolerance = distance_tolerance(hood);
+  ASSERT_EQ(hood.list.particles(), hood.n);
+  ASSERT_EQ(hood.list.points(), all.size());
+  std::int64_t pairs = 0;
+  for (std::size_t i = 0; i < hood.n; ++i) {
+    const auto expected = reference::neighbours(all, i, hood.rules.dimensions, hood.rules.reach, tolerance);
+    const auto list = hood.list.of(i);
+    const std::set<std::int32_t> found(list.begin(), list.end());
+    ASSERT_EQ(found.size(), list.size()) << "a neighbour of " << i << " twice";
+    ASSERT_TRUE(std::includes(found.begin(), found.end(), expected.certain.begin(), expected.certain.end()))
+        << "a neighbour of " << i << " is missing";
+    ASSERT_TRUE(std::includes(expected.possible.begin(), expected.possible.end(), found.begin(), found.end()))
+        << "the list of " << i << " holds a point that is too far";
+    for (const std::int32_t* j = hood.list.begin(i) + hood.list.count(i); j < hood.list.padded_end(i); ++j)
+      ASSERT_EQ(*j, hood.list.sentinel());
+    pairs += hood.list.count(i);
+  }
+  EXPECT_EQ(hood.list.pair_count(), pairs);
+}
+
+void expect_pairs_symmetric(const Neighbourhood& hood) {
+  for (std::size_t i = 0; i < hood.n; ++i)
+    for (const std::int32_t j : hood.list.of(i)) {
+      if (static_cast<std::size_t>(j) >= hood.n) continue;
+      const auto back = hood.list.of(static_cast<std::size_t>(j));
+      ASSERT_NE(std::find(back.begin(), back.end(), static_cast<std::int32_t>(i)), back.end())
+          << j << " is a neighbour of " << i << " but not the other way round";
+    }
+}
+
+std::vector<std::vector<std::int32_t>> lists_of(const NeighbourList& list) {
+  std::vector<std::vector<std::int32_t>> lists(list.particles());
+  for (std::size_t i = 0; i < lists.size(); ++i) lists[i].assign(list.begin(i), list.padded_end(i));
+  return lists;
+}
+
+struct SceneCase {
+  const char* name;
+  int dimensions;
+  double reach;
+  std::array<ImageKind, 3> sides;
+  std::vector<Point> points;
+};
+void PrintTo(const SceneCase& scene, std::ostream* out) {
+  *out << scene.name;
+}
+
+std::vector<Point> with_outsiders(std::vector<Point> points, int dimensions) {
+  for (std::size_t i = 0; i < 60; ++i) {
+    Point p = uniform(i, 3);
+    for (int axis = 0; axis < dimensions; ++axis) p[axis] = 3 * p[axis] - 1;
+    if (dimensions == 2) p[2] = 0;
+    points.push_back(p);
+  }
+  return points;
+}
+
+class EveryScene : public testing::TestWithParam<SceneCase> {};
+
+TEST_P(EveryScene, ListsEqualBruteForceAndPairsAreSymmetric) {
+  const SceneCase& scene = GetParam();
+  const Neighbourhood hood(
+      unit_box_rules(scene.dimensions, scene.reach, scene.sides[0], scene.sides[1], scene.sides[2]), scene.points);
+  expect_lists_match_brute_force(hood);
+  expect_pairs_symmetric(hood);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Neighbours, EveryScene,
+    testing::Values(
+        SceneCase{"random_2d", 2, 0.11, {none, none, none}, random_points(900, 2)},
+        SceneCase{"random_3d", 3, 0.23, {none, none, none}, random_points(1500, 3)},
+        SceneCase{"random_periodic_2d", 2, 0.11, {periodic, periodic, none}, random_points(900, 2)},
+        SceneCase{"random_periodic_3d", 3, 0.23, {periodic, periodic, periodic}, random_points(900, 3)},
+        SceneCase{"random_mirror_2d", 2, 0.11, {mirror, mirror, none}, random_points(900, 2)},
+        SceneCase{"random_mixed_3d", 3, 0.23, {periodic, mirror, none}, random_points(900, 3)},
+        SceneCase{"clustered_2d", 2, 0.06, {periodic, mirror, none}, clustered_points(900, 2, 0.06)},
+        SceneCase{"clustered_3d", 3, 0.1, {mirror, periodic, mirror}, clustered_points(1200, 3, 0.1)},
+        // On a lattice of ten cells with a reach of three spacings, distances equal the reach up to rounding and
+        // points lie on borders of the quarter-reach columns.
+        SceneCase{"lattice_at_reach_2d", 2, 0.3, {periodic, mirror, none}, lattice_points(10, 2, 0)},
+        SceneCase{"lattice_at_reach_3d", 3, 0.3, {periodic, mirror, none}, lattice_points(10, 3, 0)},
+        SceneCase{"jittered_lattice_3d", 3, 0.26, {periodic, periodic, mirror}, lattice_points(10, 3, 0.4)},
+        SceneCase{"outside_the_grid_2d", 2, 0.11, {none, none, none}, with_outsiders(random_points(400, 2), 2)},
+        SceneCase{"outside_the_grid_3d", 3, 0.23, {none, none, none}, with_outsiders(random_points(600, 3), 3)},
+        SceneCase{"reach_as_large_as_the_domain", 3, 1.0, {periodic, periodic, none}, random_points(60, 3)}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+class SmallSets : public testing::TestWithParam<int> {};
+
+TEST_P(SmallSets, NoParticleNoNeighbours) {
+  const Neighbourhood hood(unit_box_rules(GetParam(), 0.1, periodic, mirror, none), {});
+  EXPECT_EQ(hood.list.particles(), 0U);
+  EXPECT_EQ(hood.list.points(), 0U);
+  EXPECT_EQ(hood.list.pair_count(), 0);
+}
+
+TEST_P(SmallSets, OneParticleInTheOpenHasNoNeighbourAndItsOwnImageNearAWall) {
+  const Neighbourhood open(unit_box_rules(GetParam(), 0.1, none, none, none), {{0.01, 0.5, 0}});
+  EXPECT_EQ(open.list.count(0), 0);
+  const Neighbourhood wall(unit_box_rules(GetParam(), 0.1, mirror, none, none), {{0.01, 0.5, 0}});
+  EXPECT_THAT(wall.list.of(0), testing::ElementsAre(1));
+}
+
+TEST_P(SmallSets, CoincidentParticlesAreEachOthersNeighbours) {
+  const Neighbourhood hood(unit_box_rules(GetParam(), 0.1, none, none, none), {{0.3, 0.3, 0}, {0.3, 0.3, 0}});
+  EXPECT_THAT(hood.list.of(0), testing::ElementsAre(1));
+  EXPECT_THAT(hood.list.of(1), testing::ElementsAre(0));
+}
+
+TEST_P(SmallSets, ManyCoincidentParticlesAreAllNeighbours) {
+  const Neighbourhood hood(unit_box_rules(GetParam(), 0.1, none, none, none), std::vector<Point>(700, {0.3, 0.3, 0}));
+  EXPECT_EQ(hood.list.pair_count(), 700 * 699);
+}
+
+INSTANTIATE_TEST_SUITE_P(Neighbours, SmallSets, testing::Values(2, 3));
+
+TEST(NeighbourList, CellBordersLoseNoNeighbour) {
+  // Pairs a little nearer than the reach, one end on a corner of a cell, in all directions.
+  for (const int dimensions : {2, 3}) {
+    const double reach = 0.1;
+    const ImageRules rules = unit_box_rules(dimensions, reach, none, none, none);
+    for (int corner = 0; corner < 12; ++corner)
+      for (int direction = 0; direction < 26; ++direction) {
+        const int step[3] = {direction % 3 - 1, direction / 3 % 3 - 1, dimensions == 3 ? direction / 9 - 1 : 0};
+        const double length = std::sqrt(double(step[0] * step[0] + step[1] * step[1] + step[2] * step[2]));
+        if (length == 0) continue;
+        const Point a{0.2 + 0.025 * corner, 0.2 + 0.05 * corner, dimensions == 3 ? 0.2 + 0.05 * corner : 0};
+        Point b = a;
+        for (int axis = 0; axis < dimensions; ++axis) b[axis] += reach * (1 - 1e-5) * step[axis] / length;
+        const Neighbourhood hood(rules, {a, b});
+        ASSERT_EQ(hood.list.pair_count(), 2) << corner << ' ' << direction;
+      }
+  }
+}
+
+TEST(NeighbourList, PairsFarFromTheOriginOfALongDomainStaySymmetricAndComplete) {
+  // 20,000 reaches long: float coordinates at the ends resolve 1e-3 reaches, much more than a rounding of the reach.
+  ImageRules rules = unit_box_rules(2, 0.01, none, none, none);
+  rules.lower = {-100, -100, 0};
+  rules.upper = {100, 100, 0};
+  std::vector<Point> points = random_points(1200, 2);
+  for (Point& p : points) {
+    p[0] = 99.8 + 0.2 * p[0];
+    p[1] = 99.8 + 0.2 * p[1];
+  }
+  Neighbourhood hood(rules, points);
+  expect_lists_match_brute_force(hood);
+  expect_pairs_symmetric(hood);
+}
+
+TEST(NeighbourList, ListsReachImagesInsideASolidBox) {
+  for (const int dimensions : {2, 3}) {
+    ImageRules rules = unit_box_rules(dimensions, 0.21, mirror, periodic, mirror);
+    rules.boxes.push_back({{0.3, 0.3, 0.3}, {0.8, 0.7, 0.9}, {{{true, true}, {true, true}, {true, true}}}});
+    std::vector<Point> liquid;
+    for (const Point& p : random_points(dimensions == 2 ? 700 : 1100, dimensions)) {
+      bool inside = true;
+      for (int axis = 0; axis < dimensions; ++axis)
+        inside = inside && p[axis] > rules.boxes[0].lower[axis] && p[axis] < rules.boxes[0].upper[axis];
+      if (!inside) liquid.push_back(p);
+    }
+    const Neighbourhood hood(rules, liquid);
+    expect_lists_match_brute_force(hood);
+    expect_pairs_symmetric(hood);
+  }
+}
+
+TEST(NeighbourList, ImageOfAParticleOutsideAWallIsSeenFromWithinItsReach) {
+  // The first particle has left through the wall by 0.02; its image lies 0.02 inside.
+  // Enough others lie between for the last particle to be searched on its own.
+  std::vector<Point> points{{-0.02, 0.51, 0}, {0.115, 0.51, 0}};
+  for (int k = 0; k < 63; ++k) points.push_back({0.06 + 1e-4 * k, 0.54, 0});
+  const Neighbourhood hood(unit_box_rules(2, 0.1, mirror, none, none), points);
+  expect_lists_match_brute_force(hood);
+}
+
+TEST(NeighbourList, ThreadCountDoesNotChangeLists) {
+  const ImageRules rules = unit_box_rules(3, 0.13, periodic, mirror, none);
+  const auto points = lattice_points(20, 3, 0.4);
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(1);
+  const auto one = lists_of(Neighbourhood(rules, points).list);
+  for (const int threads : {2, 3, 5}) {
+    omp_set_num_threads(threads);
+    EXPECT_EQ(lists_of(Neighbourhood(rules, points).list), one) << threads;
+  }
+  omp_set_num_threads(before);
+}
+
+TEST(NeighbourList, SecondBuildOfTheSameInputAllocatesNothingAndEqualsTheFirst) {
+  const int before = omp_get_max_threads();
+  // With one thread the per-thread scratch of the first build serves the second whatever the schedule.
+  omp_set_num_threads(1);
+  ImageRules rules = unit_box_rules(3, 0.13, periodic, mirror, mirror);
+  rules.boxes.push_back({{0.4, 0.4, 0}, {0.6, 0.7, 0.5}, {{{true, true}, {true, true}, {false, true}}}});
+  Neighbourhood hood(rules, lattice_points(20, 3, 0.4));
+  const auto first = lists_of(hood.list);
+  hood.build();
+  const auto allocations = array_statistics().allocations;
+  hood.build();
+  EXPECT_EQ(array_statistics().allocations, allocations);
+  EXPECT_EQ(lists_of(hood.list), first);
+  omp_set_num_threads(before);
+}
+
+TEST(NeighbourList, CoordinatesAreFloatsRelativeToTheOriginWithAFarSentinel) {
+  const Neighbourhood hood(unit_box_rules(3, 0.2, periodic, mirror, none), random_points(50, 3));
+  const auto all = hood.all();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < all.size(); ++i)
+      ASSERT_EQ(hood.list.coordinate(axis)[i], static_cast<float>(all[i][axis] - hood.origin[axis]));
+    EXPECT_GE(hood.list.coordinate(axis)[hood.list.sentinel()], 1e5F * 0.2F);
+  }
+}
+
+}  // namespace
+}  // namespace spume::test
