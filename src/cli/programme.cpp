@@ -26,9 +26,11 @@ void use_threads(const std::optional<int>& threads) {
 void print_problems(const InputError& error) {
   std::fprintf(stderr, "%s\n", error.what());
   const auto& problems = error.problems();
-  if (problems.size() > 1)
-    std::fprintf(stderr, "%zu problems in %s; nothing was run\n", problems.size(),
-                 problems.front().file.empty() ? "the command line" : problems.front().file.c_str());
+  if (problems.size() < 2) return;
+  const std::string& file = problems.front().file;
+  const bool one_file = !file.empty() && std::all_of(problems.begin(), problems.end(),
+                                                     [&](auto& problem) { return problem.file == file; });
+  std::fprintf(stderr, "%zu problems%s; nothing was run\n", problems.size(), one_file ? (" in " + file).c_str() : "");
 }
 
 struct CommandLine {

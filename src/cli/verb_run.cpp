@@ -28,8 +28,8 @@ std::string closing_text(const Simulation& simulation, RunState state) {
 }
 
 int carry_out(Simulation& simulation, bool quiet) {
-  const std::string start = start_table(simulation.loaded(), simulation.method(), thread_count()) + "  results     " +
-                            simulation.folder().string() + '\n';
+  const std::string start =
+      start_table(simulation.loaded(), simulation.method(), thread_count(), simulation.folder().string());
   simulation.log(start);
   if (!quiet) std::printf("%s\n", start.c_str()), std::fflush(stdout);
   TerminalObserver observer(quiet);

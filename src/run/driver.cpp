@@ -135,6 +135,8 @@ double Simulation::take_step(Observer& observer, StepLimit& limit) {
   const double t = method_->time();
   for (int attempt = 1;; ++attempt) {
     limit = method_->step_limit();
+    if (const double largest = loaded_->options.time.max_step; largest > 0 && limit.dt > largest)
+      limit = {largest, "max_step"};
     const double allowed = control_.allowed(limit.dt);
     if (allowed < limit.dt) limit.limited_by = "a refused step";
     const double dt = schedule_.step(t, allowed);

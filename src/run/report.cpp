@@ -24,10 +24,6 @@ __attribute__((format(printf, 1, 2))) std::string format(const char* pattern, ..
   return text;
 }
 
-std::string line(const std::string& label, const std::string& value) {
-  return format("  %-12s", label.c_str()) + value + '\n';
-}
-
 std::string box_text(const Domain& domain) {
   std::string text;
   for (std::size_t axis = 0; axis < static_cast<std::size_t>(domain.dimensions); ++axis)
@@ -92,7 +88,7 @@ std::int64_t peak_resident_bytes() {
   return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
 }
 
-std::string start_table(const LoadedCase& loaded, const Method& method, int threads) {
+std::string start_table(const LoadedCase& loaded, const Method& method, int threads, const std::string& folder) {
   const Case& options = loaded.options;
   const Scene& scene = loaded.scene;
   const StepLimit limit = method.step_limit();
@@ -101,13 +97,19 @@ std::string start_table(const LoadedCase& loaded, const Method& method, int thre
     std::string& list = stage.on ? on : off;
     list += (list.empty() ? "" : ", ") + stage.name;
   }
+  std::size_t width = 10;
+  for (const auto& [name, value] : options.groups) width = std::max(width, name.size());
+  const auto line = [&](const std::string& label, const std::string& value) {
+    return "  " + label + std::string(width + 2 - label.size(), ' ') + value + '\n';
+  };
   std::string text = "Spume " + program_version() + " (" + program_commit() + ")\n";
   text += line("case", options.title.empty() ? options.path : options.title + "  (" + options.path + ')');
   text += line("method", options.method);
   text += line("box", box_text(scene.domain));
   text += line("boundaries", boundary_text(scene.domain));
   text += line("particles", std::to_string(method.particle_count()) + ", spacing " + short_number(scene.spacing));
-  for (const auto& [name, value] : options.groups) text += line(name, value);
+  for (const auto& [name, value] : options.groups)
+    if (name != "particles") text += line(name, value);
   text += line("first step", format("%.3e, limited by %s", limit.dt, limit.limited_by.c_str()));
   text += line("until", short_number(options.time.end));
   text += line("on", on.empty() ? "nothing" : on);
@@ -115,6 +117,7 @@ std::string start_table(const LoadedCase& loaded, const Method& method, int thre
   text += line("threads", std::to_string(threads) + ", " + vector_instructions());
   text += line("memory", human_bytes(array_bytes(method)) + " of " + human_bytes(machine_memory_bytes()));
   text += line("seed", std::to_string(options.seed));
+  if (!folder.empty()) text += line("results", folder);
   return text;
 }
 

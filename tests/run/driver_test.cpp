@@ -146,6 +146,15 @@ TEST_F(Driver, RefusedStepsAreHalvedAndGrowBack) {
   for (std::size_t i = 1; i < watch.steps.size(); ++i) EXPECT_LE(watch.steps[i], 2.0000001 * watch.steps[i - 1]);
 }
 
+TEST_F(Driver, NoStepExceedsTheLargestThatTheCaseAllows) {
+  write_case("end = 0.2\n");
+  LoadedCase loaded = load_fake_case((folder_ / "case.toml").string(), {});
+  loaded.options.time.max_step = 0.003;
+  Watch watch;
+  Simulation::start(std::move(loaded), make_fake_method, folder_ / "run")->run(watch);
+  EXPECT_THAT(watch.steps, Each(Le(0.003)));
+}
+
 TEST_F(Driver, RefusedStepsResumeBitForBit) {
   write_case(std::string(full_case) + "largest_dt = 0.004\ndt = 0.01\n");
   Watch watch, stopping(30), continuing;

@@ -20,8 +20,9 @@ std::string short_number(double value);      // "%.4g"
 double machine_memory_bytes();
 std::int64_t peak_resident_bytes();  // of this process
 
-// Case, box, particles, spacing, groups, step limit and what binds, stages, threads, memory, seed, commit.
-std::string start_table(const LoadedCase& loaded, const Method& method, int threads);
+// Case, box, particles, spacing, groups, step limit and what binds, stages, threads, memory, seed, commit,
+// and the folder of the results when there is one.
+std::string start_table(const LoadedCase& loaded, const Method& method, int threads, const std::string& folder = {});
 std::string plan_table(const std::vector<Stage>& plan);
 std::string array_table(const std::vector<ArrayInfo>& arrays, std::size_t particles);
 
