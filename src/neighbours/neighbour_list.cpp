@@ -112,11 +112,11 @@ float sentinel_coordinate(float reach) {
 }
 
 // Particles that follow each other in the sorted order and lie close together: their candidates are gathered
-// once. GROUPCOMMENT
-constexpr std::size_t group_size = 8;
+// once. Fewer repeat the gathering, more lengthen the candidate list.
+constexpr std::size_t group_size = 16;
 // The longest box of a group along x and across, in reaches.
 constexpr float group_length = 2.5F;
-constexpr float group_width = 0.75F;
+constexpr float group_width = 1.2F;
 struct Group {
   std::size_t first = 0, last = 0;
   std::array<float, 3> lower{}, upper{};

@@ -16,8 +16,9 @@ namespace spume {
 
 class CellGrid {
  public:
-  // Least cell sides as fractions of the reach, across rows and along them.
-  static constexpr double row_fraction = 0.5;
+  // Least cell sides as fractions of the reach, across rows and along them: rows half or three quarters of a reach
+  // across made the list build 1.3 times slower, as runs get short and groups long and thin.
+  static constexpr double row_fraction = 1;
   static constexpr double column_fraction = 0.25;
 
   CellGrid() = default;
