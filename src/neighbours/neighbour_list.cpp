@@ -107,6 +107,19 @@ inline std::int32_t padded(std::int32_t count) {
   return (count + simd::lanes - 1) / simd::lanes * simd::lanes;
 }
 
+// Copies whole vectors between aligned arrays past the caches: lists are far larger than these and are written once,
+// so fetching the lines that are to be overwritten is a waste of a third of the traffic.
+inline void stream(const std::int32_t* from, std::size_t size, std::int32_t* to) {
+#if defined(__AVX__)
+  for (std::size_t k = 0; k < size; k += simd::lanes)
+    _mm256_stream_si256(reinterpret_cast<__m256i*>(to + k),
+                        _mm256_load_si256(reinterpret_cast<const __m256i*>(from + k)));
+  _mm_sfence();
+#else
+  std::memcpy(to, from, size * sizeof(std::int32_t));
+#endif
+}
+
 // Far enough for every kernel to vanish, near enough for finite squares.
 float sentinel_coordinate(float reach) {
   return 1e6F * reach;
@@ -386,7 +399,7 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
     found += pairs;
     const std::int64_t target = used.fetch_add(static_cast<std::int64_t>(filled));
     if (target + static_cast<std::int64_t>(filled) > capacity) return;
-    std::memcpy(indices + target, collected.data(), filled * sizeof(std::int32_t));
+    stream(collected.data(), filled, indices + target);
     std::int64_t running = target;
     for (std::size_t i = begin; i < end; ++i) {
       firsts[i] = running;
