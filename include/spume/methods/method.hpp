@@ -104,6 +104,9 @@ class Method {
   // Largest coordinate along `axis` where liquid of kernel sum 1/2 is found below `height` (the last axis).
   virtual double front(int axis, double height) = 0;
 
+  // Energy spectrum of the present state: E(k) at `wavenumber`, both resized; false when the method has none.
+  virtual bool spectrum(std::vector<double>& /*wavenumber*/, std::vector<double>& /*energy*/) { return false; }
+
   virtual void save(StateWriter& writer) const = 0;
   virtual void load(StateReader& reader) = 0;
 };

@@ -16,8 +16,9 @@ namespace spume {
 enum class KernelKind { wendland_c2, quintic_spline };
 enum class TurbulenceModel { none, mixed_scale, smagorinsky, dynamic_shepard, dynamic_lagrangian };
 enum class PressureSolver { bicgstab, cg };
-enum class Preconditioner { none, jacobi, multigrid };
+enum class PreconditionerKind { none, jacobi, multigrid };
 enum class Precision { mixed, f64 };
+enum class ShiftCorrection { none, first_order, second_order };
 
 struct ResolutionOptions {
   double smoothing_ratio = 1.3;  // h / spacing
@@ -32,7 +33,7 @@ struct TurbulenceOptions {
 
 struct PressureOptions {
   PressureSolver solver = PressureSolver::bicgstab;
-  Preconditioner preconditioner = Preconditioner::multigrid;
+  PreconditionerKind preconditioner = PreconditionerKind::multigrid;
   Precision precision = Precision::mixed;
   double tolerance = 1e-6;    // residual relative to the right-hand side
   int max_iterations = 500;
@@ -44,7 +45,7 @@ struct ShiftingOptions {
   bool on = true;
   double coefficient = 0.25;         // displacement = -coefficient h^2 grad C
   double limit = 0.1;                // largest displacement / h per step
-  bool velocity_correction = true;   // u += (shift . grad) u after a shift
+  ShiftCorrection velocity_correction = ShiftCorrection::second_order;  // Taylor terms of u at the new place
 };
 
 struct SurfaceOptions {

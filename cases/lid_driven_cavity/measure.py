@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: MIT
+"""Centre-line profiles against Ghia, Ghia and Shin (1982), averaged over the last five outputs."""
+from pathlib import Path
+
+import numpy as np
+
+from spume_results import read_csv
+
+REFERENCE = read_csv(Path(__file__).parent / "reference" / "ghia1982.csv")
+CHECK = read_csv(Path(__file__).parent / "reference" / "streamfunction.csv")
+# profile -> line probe, its coordinate, its velocity component
+LINES = {"u": ("vertical", "y", "velocity_x"), "v": ("horizontal", "x", "velocity_y")}
+
+
+def column(run):
+    re = float(run.case["fluid"]["reynolds"])
+    return f"re{re:.0f}"
+
+
+def profile(run, kind, outputs=5):
+    name, coordinate, component = LINES[kind]
+    count = min(outputs, len(run.line_times(name)))
+    lines = [run.line(name, -1 - k) for k in range(count)]
+    return lines[0][coordinate], np.mean([line[component] for line in lines], axis=0)
+
+
+def reference(kind, re, table=REFERENCE):
+    """Coordinates and velocities of the table; the point that the publication misprints is left out (see README)."""
+    rows = table["profile"] == kind
+    coordinate, velocity = table["coordinate"][rows], table[re][rows]
+    printed_right = ~((kind == "v") & (re == "re400") & (coordinate == 0.9063))
+    return coordinate[printed_right], velocity[printed_right]
+
+
+def errors(run):
+    """Largest difference from the published table over the lid speed, per profile; from the independent solution;
+    and how much the flow still changes from output to output."""
+    measured = {}
+    for kind in LINES:
+        coordinate, velocity = profile(run, kind)
+        for quantity, table in (("error", REFERENCE), ("difference_streamfunction", CHECK)):
+            x, expected = reference(kind, column(run), table)
+            measured[f"{kind}_{quantity}"] = float(np.max(np.abs(np.interp(x, coordinate, velocity) - expected)))
+        name, _, component = LINES[kind]
+        if len(run.line_times(name)) > 1:
+            change = run.line(name, -1)[component] - run.line(name, -2)[component]
+            measured[f"{kind}_change"] = float(np.sqrt(np.mean(change**2)))
+    return measured
+
+
+def measure(runs):
+    return {f"{quantity}_{column(run)}": value for run in runs.values() for quantity, value in errors(run).items()}
+
+
+def curves(runs):
+    figures = []
+    for kind, (_, coordinate_name, _) in LINES.items():
+        lines = []
+        for run, colour in zip(runs.values(), ("C0", "C1")):
+            coordinate, velocity = profile(run, kind)
+            lines.append((f"Spume, {column(run)}", coordinate, velocity, f"{colour}-"))
+            lines.append((f"Ghia et al., {column(run)}", *reference(kind, column(run)), f"{colour}o"))
+        figures.append({"file": f"profile_{kind}", "x": coordinate_name, "y": kind, "curves": lines})
+    return figures

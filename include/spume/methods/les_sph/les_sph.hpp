@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Semi-implicit, weakly compressible LES-SPH of a liquid with a free surface (King et al. 2022, sections 2.1 and
+// 3.1 to 3.3): fractional step with an implicit isothermal pressure.
+//
+// Pressure is solved for as q = p - rho a . x, a being the uniform acceleration along axes that are not periodic:
+// the hydrostatic part is then represented exactly, walls have zero normal gradient of q, and a liquid at rest
+// stays at rest to rounding.
+#pragma once
+
+#include <memory>
+
+#include "spume/methods/les_sph/liquid.hpp"
+#include "spume/methods/method.hpp"
+
+namespace spume::les_sph {
+
+class PressureSystem;
+class PointSampler;
+
+class LesSph final : public Method {
+ public:
+  explicit LesSph(const LoadedCase& loaded);
+  ~LesSph() override;
+
+  std::vector<Stage> plan() const override;
+  std::vector<ArrayInfo> arrays() const override;
+  std::size_t particle_count() const override { return liquid_.size(); }
+  double time() const override { return liquid_.time; }
+  std::int64_t step_count() const override { return liquid_.steps; }
+  StepLimit step_limit() const override;
+  void step(double dt, Ledger& ledger) override;
+  std::vector<SeriesColumn> series_columns() const override;
+  void series_values(std::span<double> values) override;
+  std::vector<Family> snapshot() override;
+  PointSample sample(const Vec3& position) override;
+  double elevation(const Vec3& position) override;
+  double front(int axis, double height) override;
+  bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override;
+  void save(StateWriter& writer) const override;
+  void load(StateReader& reader) override;
+
+  const Liquid& liquid() const { return liquid_; }
+  const PressureSystem& pressure_system() const { return *pressure_; }
+
+ private:
+  void start(Ledger& ledger);  // finds the pressure of the initial velocity field
+  void ensure_started();
+  PointSampler& sampler();
+
+  Liquid liquid_;
+  std::unique_ptr<PressureSystem> pressure_;
+  std::unique_ptr<PointSampler> sampler_;
+};
+
+}  // namespace spume::les_sph

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+// The liquid: state between steps, what a step computes on the way, and what the stages share. An array exists
+// only when the plan names a stage that uses it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "spume/core/field_set.hpp"
+#include "spume/methods/les_sph/plan.hpp"
+#include "spume/neighbours/cell_grid.hpp"
+#include "spume/neighbours/images.hpp"
+#include "spume/neighbours/neighbour_list.hpp"
+#include "spume/operators/sph_operators.hpp"
+#include "spume/scene/case.hpp"
+
+namespace spume::les_sph {
+
+// One array per dimension; null beyond the dimensions of the scene or when no stage needs the vector.
+using VectorField = std::array<Array<double>*, 3>;
+using FloatVectorField = std::array<Array<float>*, 3>;
+using WallPositions = std::array<std::array<double, 2>, 3>;  // [axis][0 lower, 1 upper]
+
+struct Liquid {
+  explicit Liquid(const LoadedCase& loaded);
+
+  const LoadedCase& loaded;
+  const Case& options;
+  const Scene& scene;
+  const Plan plan;
+  const int dimensions;
+  const double smoothing_length;
+  const double volume;             // of every particle
+  const LatticeConstants lattice;  // sums on an undisturbed lattice
+  const double surface_threshold;  // div r below which a particle lies at the surface
+  const Vec3 origin;               // of the float coordinates
+
+  // State between steps (sorted, saved).
+  double time = 0;
+  std::int64_t steps = 0;
+  bool started = false;  // the first pressure has been found
+  FieldSet fields;
+  VectorField position{}, velocity{};
+  Array<double>* pressure = nullptr;
+  Array<std::int64_t>* identifier = nullptr;
+  std::array<Array<double>*, 2> lagrangian_average{};  // I_LM and I_MM of the Lagrangian dynamic closure
+  WallPositions walls{};
+
+  // Found within a step.
+  VectorField intermediate{};              // r* of step (i)
+  VectorField predicted{};                 // u* and then u^{n+1}
+  Array<double>* reduced_pressure = nullptr;  // q = p + potential
+  Array<double>* potential = nullptr;         // -rho a . r*, null without uniform acceleration
+  Array<float>* kernel_sum = nullptr;
+  Array<float>* divergence_of_position = nullptr;
+  Array<float>* coupling = nullptr;
+  std::array<Array<float>*, 6> correction{};
+  Array<std::uint8_t> uncorrected;         // gradient correction fell back to the identity
+  Array<std::uint8_t> at_surface;          // pressure is given
+  Array<float> interior_weight;            // 0 at the surface, 1 inside, smooth between
+  Array<std::int32_t> surface_particles;
+  FloatVectorField normal{}, smoothed_normal{};
+  FloatVectorField shift{};                // displacement; first the concentration gradient
+  FloatVectorField shift_velocity{};       // what the shift adds to the velocity
+  std::array<Array<float>*, 9> velocity_gradient{};
+  FloatVectorField filtered_velocity{};
+  Array<float>* strain = nullptr;          // |S| = sqrt(2 S:S)
+  Array<float>* eddy_viscosity = nullptr;  // nu_t, in the units of nu
+  Array<float>* diffusivity = nullptr;     // (nu + nu_t) scaled for the viscous sweep
+  std::vector<Array<float>> test_filter_scratch;  // products of the dynamic closures and their filtered values
+  FloatVectorField acceleration{};         // viscous; then the gradient of q
+  WallPositions next_walls{};
+  Vec3 uniform_acceleration{};   // along axes that are not periodic: part of the potential
+  Vec3 periodic_acceleration{};  // along periodic axes: added to the velocity
+  bool uniform_body_force = false;
+
+  CellGrid grid;
+  CellTable table;
+  Images images;
+  NeighbourList list;
+  Records records;
+  SweepContext context;
+  VelocityImageRule velocity_rule;
+  std::vector<std::array<float, 3>> reflection;
+
+  // Of the accepted state.
+  double max_speed = 0;
+  double max_eddy_viscosity = 0;
+  double max_divergence = 0;
+  double dissipation = 0;  // integral of rho (nu + nu_t) |S|^2
+
+  std::size_t size() const { return fields.size(); }
+  bool dynamic_closure() const;
+  std::array<const double*, 3> read(const VectorField& v) const;
+  std::array<const float*, 3> read(const FloatVectorField& v) const;
+  std::array<float*, 3> write(const FloatVectorField& v) const;
+  std::array<const float*, 6> read_correction() const;
+  double potential_at(const Vec3& r) const;  // -rho a . r
+};
+
+// The stages of a step, in its order. Each reads and writes the liquid; numbers refer to King et al., section 3.3.
+
+void move_to_intermediate(Liquid& liquid, double dt);     // (i)
+void sort_particles(Liquid& liquid);
+void make_images(Liquid& liquid, double dt);              // (ii)
+void find_neighbours(Liquid& liquid);                     // (ii)
+void measure_geometry(Liquid& liquid);
+void find_surface(Liquid& liquid);
+void choose_shift(Liquid& liquid);                        // (iii)
+void differentiate_velocity(Liquid& liquid);              // (v)
+void find_shift_correction(Liquid& liquid);
+void find_eddy_viscosity(Liquid& liquid, double dt);
+void predict_velocity(Liquid& liquid, double dt);         // (viii)
+void project_velocity(Liquid& liquid, double dt);         // (x)
+void accept(Liquid& liquid, double dt);                   // (xi)
+
+// Boundaries.
+ImageRules image_rules(const Liquid& liquid, const WallPositions& walls);
+// Wall planes at t + dt, from the time integral of the walls' normal velocities.
+WallPositions advanced_walls(const Liquid& liquid, double dt);
+// How images change velocities, and the reflections of geometric vectors, for walls at time t.
+void update_image_rules(Liquid& liquid, double t);
+// Periodic wrap; a point beyond a wall or inside a solid is reflected back, its velocity too when given.
+void keep_inside(const Liquid& liquid, const WallPositions& walls, Vec3& position, Vec3* velocity);
+
+// Largest speed and eddy viscosity of the present state, for the step limit.
+void update_extremes(Liquid& liquid);
+
+}  // namespace spume::les_sph

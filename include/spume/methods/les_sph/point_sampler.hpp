@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Liquid fields at arbitrary points, for probes. Points near walls see the mirrored liquid.
+#pragma once
+
+#include "spume/methods/les_sph/liquid.hpp"
+#include "spume/methods/method.hpp"
+
+namespace spume::les_sph {
+
+class PointSampler {
+ public:
+  // Bins the particles of the present state; call again when the liquid has moved.
+  void update(const Liquid& liquid);
+  std::int64_t step() const { return step_; }
+
+  // Weighted linear fit of pressure and velocity over the particles in the support (Shepard average where they are
+  // too few); coverage is the kernel sum.
+  PointSample sample(const Liquid& liquid, const Vec3& point) const;
+  double coverage(const Liquid& liquid, const Vec3& point) const;
+  // Highest point of the column where the coverage reaches one half, found on steps of a quarter spacing and refined
+  // by bisection; the bottom of the domain when there is none.
+  double elevation(const Liquid& liquid, const Vec3& point) const;
+  double front(const Liquid& liquid, int axis, double height) const;
+
+ private:
+  template <class Visit>
+  void visit(const Liquid& liquid, const Vec3& point, Visit&& visit) const;
+
+  CellTable table_;
+  std::int64_t step_ = -1;
+};
+
+}  // namespace spume::les_sph

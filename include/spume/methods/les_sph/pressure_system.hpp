@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// The pressure equation of a step, King (3.17) with alpha = 1, for q = p + potential:
+//
+//   -lap q + M p = -div u* / dt + M p^n,   M = 1 / (c dt)^2  (zero when incompressible),
+//
+// rho = 1 here; p is divided by the density on the way in and multiplied on the way out. Rows are divided by
+// d / div r, which makes the Laplacian exact for quadratic fields up to the anisotropy of the arrangement, and
+// multiplied by the particle volume, which makes the matrix symmetric. Surface particles hold p = 0; below them a
+// penalty on p fades out over the blend width of div r.
+#pragma once
+
+#include <memory>
+
+#include "spume/core/ledger.hpp"
+#include "spume/methods/les_sph/liquid.hpp"
+#include "spume/operators/pressure_operator.hpp"
+#include "spume/solvers/cell_multigrid.hpp"
+#include "spume/solvers/krylov.hpp"
+
+namespace spume::les_sph {
+
+struct SolveReport {
+  int iterations = 0;
+  int applications = 0;  // of the matrix, in either precision
+  double relative_residual = 0;
+  bool converged = true;
+};
+
+class PressureSystem {
+ public:
+  explicit PressureSystem(const Liquid& liquid);
+
+  // Velocity at r* of a step dt -> liquid.reduced_pressure. Throws StepFailure when the solve does not converge.
+  void solve_step(Liquid& liquid, double dt, Ledger& ledger);
+
+  // The pressure that the present velocity field needs: lap p = -tr(grad u . grad u), incompressible.
+  void solve_initial(Liquid& liquid, Ledger& ledger);
+
+  const SolveReport& report() const { return report_; }
+  double bytes() const;
+
+ private:
+  struct Operator;
+
+  void set_matrix(const Liquid& liquid, double helmholtz);
+  void set_right_hand_side(const Liquid& liquid, double helmholtz, double source_scale, const double* divergence);
+  void solve(Liquid& liquid, double helmholtz, Ledger& ledger);
+  void remove_constant(Liquid& liquid) const;
+
+  Array<double> divergence_, right_hand_side_, residual_;
+  Array<float> potential_laplacian_, extra_, diagonal_, row_scale_;
+  Array<float> correction_right_, correction_, interior_;
+  double reference_norm_ = 0;  // norm of the right-hand side in terms of p
+  PressureOperator operator_;
+  std::unique_ptr<CellMultigrid> multigrid_;
+  KrylovWorkspace<float> work_;
+  SolveReport report_;
+};
+
+}  // namespace spume::les_sph

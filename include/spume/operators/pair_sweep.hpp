@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+// The loop under every particle sweep. A sweep packs what it reads per neighbour into interleaved records (one
+// streaming pass), then visits each particle's list eight neighbours at a time.
+//
+// A record is `dimensions` float coordinates followed by the payload, padded to a multiple of four floats;
+// records are numbered as the points of the neighbour list: particles, images, sentinel.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "spume/core/array.hpp"
+#include "spume/core/kernel.hpp"
+#include "spume/core/parallel.hpp"
+#include "spume/core/simd.hpp"
+#include "spume/neighbours/neighbour_list.hpp"
+#include "spume/scene/case.hpp"
+
+namespace spume {
+
+constexpr int record_width(int dimensions, int payload) { return (dimensions + payload + 3) / 4 * 4; }
+
+// What all sweeps of a step share: the lists, the resolution, and the images' relation to particles.
+struct SweepContext {
+  const NeighbourList* list = nullptr;
+  const Images* images = nullptr;
+  int dimensions = 3;
+  KernelKind kernel = KernelKind::wendland_c2;
+  double smoothing_length = 0;
+  double volume = 0;  // of every particle
+};
+
+// Kernel factors with the particle volume folded in, in the precision of the pair loop.
+template <int dimensions, class Kernel>
+struct KernelScale {
+  float inverse_h;
+  float value;     // V sigma / h^d:      V W      = value * w(q)
+  float gradient;  // V sigma / h^(d+2):  V grad W = gradient * F(q) (r_i - r_j)
+
+  explicit KernelScale(const SweepContext& context) {
+    const double h = context.smoothing_length;
+    const double h_d = dimensions == 3 ? h * h * h : h * h;
+    const double scale = context.volume * Kernel::normalisation(dimensions) / h_d;
+    inverse_h = static_cast<float>(1 / h);
+    value = static_cast<float>(scale);
+    gradient = static_cast<float>(scale / (h * h));
+  }
+};
+
+// Eight neighbours of one particle: q = r / h, d = r_j - r_i, and their payloads.
+template <int dimensions, int payload_floats>
+struct Batch {
+  simd::f32x8 q;
+  std::array<simd::f32x8, dimensions> d;
+  std::array<simd::f32x8, payload_floats> payload;
+};
+
+// Calls body(batch) for the padded list of particle i.
+template <int dimensions, int payload, class Body>
+[[gnu::always_inline]] inline void for_each_batch(const NeighbourList& list, const float* records, std::size_t i,
+                                                  float inverse_h, Body&& body) {
+  constexpr int width = record_width(dimensions, payload);
+  std::array<simd::f32x8, dimensions> centre;
+  for (int axis = 0; axis < dimensions; ++axis) centre[axis] = simd::splat(records[i * width + axis]);
+  const std::int32_t* const end = list.padded_end(i);
+  for (const std::int32_t* index = list.begin(i); index != end; index += simd::lanes) {
+    std::array<simd::f32x8, width> value;
+    for (int block = 0; block < width / 4; ++block)
+      simd::load_records<width>(records, index, block, value.data() + 4 * block);
+    Batch<dimensions, payload> batch;
+    simd::f32x8 r2{};
+    for (int axis = 0; axis < dimensions; ++axis) {
+      batch.d[axis] = value[axis] - centre[axis];
+      r2 = r2 + batch.d[axis] * batch.d[axis];
+    }
+    batch.q = simd::sqrt(r2) * inverse_h;
+    for (int p = 0; p < payload; ++p) batch.payload[p] = value[dimensions + p];
+    body(batch);
+  }
+}
+
+// Sweeps all particles in parallel: body(i).
+template <class Body>
+void sweep(std::size_t particles, Body&& body) {
+  parallel_blocks_dynamic(particles, 256, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) body(i);
+  });
+}
+
+// Calls body.template operator()<dimensions, Kernel>() for the context's dimension and kernel.
+template <class Body>
+void with_kernel(const SweepContext& context, Body&& body) {
+  const bool wendland = context.kernel == KernelKind::wendland_c2;
+  if (context.dimensions == 2) {
+    if (wendland) body.template operator()<2, WendlandC2>();
+    else body.template operator()<2, QuinticSpline>();
+  } else {
+    if (wendland) body.template operator()<3, WendlandC2>();
+    else body.template operator()<3, QuinticSpline>();
+  }
+}
+
+// Record storage, sized for the widest sweep and reused by all. `coordinates_width` tells for which width the
+// coordinates in it are valid, so that consecutive sweeps of one width rewrite only the payload.
+class Records {
+ public:
+  // Prepares records of the given payload: coordinates of all points written, sentinel payload zero.
+  float* prepare(const SweepContext& context, int payload);
+  // Positions changed: coordinates must be written again.
+  void invalidate() { coordinates_width_ = 0; }
+  double bytes() const { return 4.0 * static_cast<double>(storage_.capacity()); }
+
+ private:
+  Array<float> storage_;
+  int coordinates_width_ = 0;
+};
+
+}  // namespace spume

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// The pressure matrix of the liquid, applied without being stored. Row i, times the particle volume V so that
+// the matrix is symmetric for equal volumes:
+//
+//   (A q)_i = V [ sum_j 2 g_ij (q_i - q_j) + extra_i q_i ],
+//
+// the negative Morris Laplacian plus a diagonal (compressibility, penalty below a free surface). Masked rows
+// belong to particles with a given value: they give zero, and vectors must be zero there.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "spume/operators/pair_sweep.hpp"
+
+namespace spume {
+
+struct PressureMatrix {
+  const float* extra = nullptr;
+  const std::uint8_t* masked = nullptr;  // null: no masked rows
+};
+
+struct PressureDots {
+  double wy = 0, yy = 0;
+};
+
+// y = A x in float, with sum w y and sum y y accumulated in double in fixed blocks.
+class PressureOperator {
+ public:
+  void bind(const SweepContext& context, Records& records, const PressureMatrix& matrix);
+  PressureDots apply(std::span<const float> x, std::span<float> y, std::span<const float> w);
+
+  // r = b - A q with q in double: differences are exact and sums are double, so that the residual of a smooth
+  // field does not drown in rounding (a float field of 100 spacings per wave would leave 1e-3). Masked rows
+  // give zero, but their q enters their neighbours' rows.
+  void residual(std::span<const double> q, std::span<const double> b, std::span<double> r);
+
+  std::size_t size() const { return context_.list->particles(); }
+
+ private:
+  SweepContext context_;
+  Records* records_ = nullptr;
+  PressureMatrix matrix_;
+  Array<PressureDots> partial_;
+};
+
+}  // namespace spume

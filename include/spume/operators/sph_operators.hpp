@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// The SPH operators of the liquid (King et al. 2022, section 3.1.2), one sweep each, many sums in a sweep.
+//
+// With d = r_j - r_i and g_ij = -V F(q) sigma / h^(d+2) >= 0, the particle volume times the kernel gradient is
+// V grad_i W_ij = g_ij d, and
+//   corrected gradient   (3.8)   grad f  = L sum_j g (f_j - f_i) d,   L = (sum_j g d (x) d)^-1   (Bonet-Lok)
+//   Morris Laplacian     (3.9)   lap f   = sum_j 2 g (f_j - f_i)
+//   div-grad             (3.10)  div(k grad f) = sum_j 2 g k_ij (f_j - f_i), k_ij the harmonic mean
+//   Shepard filter       (3.7)   f^ = (W(0) f_i + sum_j W f_j) / (W(0) + sum_j W)
+// Arrays hold one entry per particle unless stated; symmetric matrices are xx, xy, yy in 2-D and
+// xx, xy, xz, yy, yz, zz in 3-D. Results do not depend on the thread count.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "spume/operators/image_values.hpp"
+#include "spume/operators/pair_sweep.hpp"
+
+namespace spume {
+
+// Shape of the particle arrangement around each particle. Null pointers are not computed.
+struct GeometryOut {
+  float* kernel_sum = nullptr;                       // sum_j V W, itself included
+  float* divergence_of_position = nullptr;           // tr(sum g d (x) d): d in the bulk, less at a surface
+  float* coupling = nullptr;                         // sum_j 2 g: diagonal of the negative Laplacian
+  std::array<float*, 6> correction{};                // L; the identity where the sum is near singular
+  std::uint8_t* uncorrected = nullptr;               // 1 where L fell back to the identity
+  std::array<float*, 3> concentration_gradient{};    // (3.11): sum_j (1 + 1/4 (W/W(dr))^4) V grad W
+  std::array<float*, 3> normal{};                    // (3.13) times h, outward: -h sum_j V grad W
+};
+struct GeometryOptions {
+  bool shifting = true;
+  bool normals = true;
+  double spacing = 0;  // dr of the tensile term's W(dr)
+};
+void geometry_sweep(const SweepContext& context, Records& records, const GeometryOptions& options,
+                    const GeometryOut& out);
+
+// grad u (component-major: [a * dimensions + b] = d u_a / d x_b) and, when `filtered` is set, the Shepard filter of u.
+struct VelocityGradientOut {
+  std::array<float*, 9> gradient{};
+  std::array<float*, 3> filtered{};
+};
+void velocity_gradient_sweep(const SweepContext& context, Records& records,
+                             const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
+                             const std::array<const float*, 6>& correction, const VelocityGradientOut& out);
+
+// The second-order Taylor term of a displacement s: out_a = 1/2 s_b s_c d2 u_a / (d x_b d x_c), from the corrected
+// derivative along s of the velocity gradient. `rule` is that of the velocity, `reflection` that of geometric vectors.
+void shift_curvature_sweep(const SweepContext& context, Records& records, const std::array<const float*, 9>& gradient,
+                           const VelocityImageRule& rule, const std::vector<std::array<float, 3>>& reflection,
+                           const std::array<const float*, 3>& shift, const std::array<const float*, 6>& correction,
+                           const std::array<float*, 3>& out);
+
+// (3.10) on each velocity component with coefficient kappa per particle; out: acceleration.
+void viscous_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
+                   const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out);
+
+// Corrected divergence of u, and -lap of a scalar potential in the same pass (potential may be null).
+void divergence_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
+                      const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
+                      const double* potential, double* divergence, float* negative_laplacian);
+
+// Corrected gradient of a scalar. Differences are formed from value - reference in float, so that a large constant
+// part costs no digits.
+void gradient_sweep(const SweepContext& context, Records& records, const double* values, double reference,
+                    const std::array<const float*, 6>& correction, const std::array<float*, 3>& out);
+
+// Shepard filter of a geometric vector for the listed particles only.
+void filter_vector_subset(const SweepContext& context, Records& records, const std::array<const float*, 3>& values,
+                          const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> subset,
+                          const std::array<float*, 3>& out);
+
+// Shepard filter of scalars, two at a time at the cost of one pass.
+void filter_scalars(const SweepContext& context, Records& records, std::span<const float* const> values,
+                    std::span<float* const> out);
+
+// Values of the geometry sums on an infinite lattice at this kernel and h / dr.
+struct LatticeConstants {
+  double divergence_of_position;  // about 2.94 in 3-D at h / dr = 1.3
+  double kernel_sum;
+};
+LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smoothing_ratio);
+
+}  // namespace spume

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// The simulation driver: one case, one method, one folder, from the start or a checkpoint to the end.
+//
+// Steps follow the method's limit, shortened so that they land on output, series, spectrum and end times. A refused
+// step (StepFailure) is retried with half its length up to time.max_retries times in a row.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "spume/core/error.hpp"
+#include "spume/core/ledger.hpp"
+#include "spume/methods/method.hpp"
+#include "spume/run/folder.hpp"
+#include "spume/run/recorder.hpp"
+#include "spume/run/schedule.hpp"
+#include "spume/scene/case.hpp"
+
+namespace spume {
+
+using MethodFactory = std::function<std::unique_ptr<Method>(const LoadedCase&)>;
+using CaseLoader = std::function<LoadedCase(const std::string& path, const std::vector<std::string>& overrides)>;
+
+// How a run stands, for the progress line.
+struct Progress {
+  std::int64_t step = 0;
+  double time = 0, end = 0, dt = 0;
+  std::string limited_by;
+  double particle_steps_per_second = 0;  // over the last seconds
+  double remaining_seconds = 0;          // of wall time; not finite while unknown
+};
+
+// Whoever watches a run. Called on the driver's thread after every step, and for every event in words.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  virtual void progress(const Progress& progress) = 0;
+  virtual void note(const std::string& text) = 0;
+};
+
+enum class RunState { finished, interrupted };
+
+class Simulation {
+ public:
+  // Makes the method first and the folder only when that succeeded. `until` replaces time.end.
+  // Throws InputError, FileError.
+  static std::unique_ptr<Simulation> start(LoadedCase loaded, const MethodFactory& make_method,
+                                           const std::optional<std::filesystem::path>& folder);
+  // Continues the run in `folder` from its checkpoint, bit for bit as if it had never stopped. Throws InputError
+  // (no run there, `until` not after the checkpoint), FileError (unreadable checkpoint or results).
+  static std::unique_ptr<Simulation> resume(const std::filesystem::path& folder, const CaseLoader& load_case,
+                                            const MethodFactory& make_method, std::optional<double> until);
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+  ~Simulation();
+
+  // Runs to the end, or until SIGINT or SIGTERM. Throws NumericalFailure after leaving a snapshot and a checkpoint
+  // of the last good state, FileError when a result cannot be written.
+  RunState run(Observer& observer);
+
+  const LoadedCase& loaded() const { return *loaded_; }
+  const Method& method() const { return *method_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
+  const Ledger& ledger() const { return ledger_; }
+  void log(const std::string& text) { folder_.log(text); }
+  std::int64_t steps_this_run() const { return steps_this_run_; }
+  double wall_seconds() const;  // since run() began
+  double particle_steps() const { return particle_steps_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Simulation(std::unique_ptr<LoadedCase> loaded, std::unique_ptr<Method> method, RunFolder folder);
+
+  double take_step(Observer& observer, StepLimit& limit);  // the length of the accepted step
+  [[noreturn]] void give_up(const StepFailure& failure, double dt, int attempts);
+  void record(double dt);
+  void record_due(const Schedule::Due& due, double dt);
+  void save_checkpoint();
+  void save_what_is_left();
+  void load_checkpoint(const std::filesystem::path& path);
+  void write_summary(const std::string& state, const std::string& message);
+  void report(Observer& observer, double dt, const StepLimit& limit);
+
+  std::unique_ptr<LoadedCase> loaded_;
+  std::unique_ptr<Method> method_;
+  RunFolder folder_;
+  Schedule schedule_;
+  StepControl control_;
+  std::unique_ptr<Recorder> recorder_;
+  Ledger ledger_;
+  bool fresh_ = true;
+  std::int64_t retries_ = 0;
+  std::int64_t steps_this_run_ = 0;
+  double particle_steps_ = 0;
+  double earlier_wall_seconds_ = 0;
+  std::optional<std::int64_t> checkpoint_step_;
+  // The length of a step whose record could not be finished; a resumed run records it first.
+  std::optional<double> unrecorded_dt_;
+  std::array<std::int64_t, 3> next_before_record_{};
+  Clock::time_point started_ = Clock::now();
+  Clock::time_point checkpointed_ = Clock::now();
+  struct Mark {  // start of the window over which the rate is measured
+    Clock::time_point wall;
+    double time = 0;
+    double particle_steps = 0;
+  };
+  std::array<Mark, 2> marks_;
+};
+
+}  // namespace spume

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// Additive two-scale preconditioner for the particle pressure operator:
+//
+//   z = D^-1 r + S P B P^T S r,
+//
+// with D the diagonal of the particle matrix, S = diag(interior weight), P the (bi-, tri-)linear interpolation from
+// cell centres to particles and B one multigrid V-cycle for the cell-integrated Helmholtz operator
+// -laplacian + helmholtz. The particle matrix is volume-weighted, A_ij = -V_i V_j w_ij with
+// sum_j V_j w_ij (q_i - q_j) ~ -laplacian q, so P^T r is the residual integrated over cells and no further scaling
+// is needed. z = M r is symmetric and positive definite: conjugate gradients may use it.
+//
+// Cells without an interior particle hold zero pressure; walls and solid boxes have zero normal gradient; periodic
+// axes wrap. Everything inside is float, applies to float and double vectors, is bit-identical for any thread count
+// and allocates nothing once sizes have settled.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "spume/core/array.hpp"
+#include "spume/solvers/cell_hierarchy.hpp"
+#include "spume/solvers/linear_operator.hpp"
+
+namespace spume {
+
+struct CellGeometry {
+  struct Box {
+    std::array<double, 3> lower{}, upper{};
+  };
+  int dimensions = 3;                      // 2: z is ignored
+  std::array<double, 3> lower{}, upper{};  // domain
+  std::array<bool, 3> periodic{};
+  std::array<std::array<bool, 2>, 3> wall{};  // wall[axis][0] at lower, [1] at upper; otherwise open
+  std::vector<Box> solids;                    // impermeable boxes inside the domain
+  double cell_size = 0;                       // about 1.5 particle spacings; adjusted to fit between walls
+};
+
+class CellMultigrid final : public Preconditioner<float>, public Preconditioner<double> {
+ public:
+  // Throws std::invalid_argument when the sizes make no sense.
+  explicit CellMultigrid(const CellGeometry& geometry);
+
+  // For walls or solids that move: takes effect at the next setup().
+  void set_geometry(const CellGeometry& geometry);
+
+  // Bins the particles and builds the levels. All spans have one entry per particle; z is ignored in two dimensions.
+  //   interior     in [0, 1]: 0 for rows that are masked or pinned to zero (they are then preconditioned by the
+  //                diagonal alone), 1 inside the liquid
+  //   helmholtz    Ma^2 / dt^2 in 1/length^2, zero for an incompressible liquid
+  //   diagonal     A_ii
+  // Particles with non-finite positions take part through the diagonal only. Particles outside a wall count for the
+  // cell at that wall.
+  void setup(std::span<const double> x, std::span<const double> y, std::span<const double> z,
+             std::span<const float> interior, double helmholtz, std::span<const float> diagonal);
+
+  void apply(std::span<const float> r, std::span<float> z) override;
+  void apply(std::span<const double> r, std::span<double> z) override;
+
+  std::array<int, 3> cells() const { return hierarchy_.finest().cells; }
+  std::array<double, 3> cell_width() const { return width_; }
+  int level_count() const { return hierarchy_.level_count(); }
+
+ private:
+  // Position of a particle between the centres of its 2^d nearest cells, and its interior weight.
+  struct Stencil {
+    float fx, fy, fz, weight;
+  };
+  struct Axis {
+    double origin = 0;  // coordinate of the lower face of cell 0 of the whole axis
+    double width = 1;
+    int count = 0;  // cells of the whole axis between walls or periodic sides, 0 when a side is open
+    bool lower_wall = false, upper_wall = false, periodic = false;
+  };
+
+  void choose_box(std::span<const double> const (&position)[3], std::span<const float> interior);
+  void bin(std::span<const double> const (&position)[3], std::span<const float> interior);
+  void mark_solids();
+  void fill_holes();
+  void set_coefficients(double helmholtz);
+  void spread(const float* r);
+  void collect();
+  template <class Real>
+  void apply_any(std::span<const Real> r, std::span<Real> z);
+
+  CellGeometry geometry_;
+  std::array<Axis, 3> axis_{};
+  std::array<double, 3> width_{};    // cell width in use
+  std::array<int, 3> first_cell_{};  // index along the whole axis of the first cell of the box
+  std::size_t particles_ = 0;
+  bool empty_ = true;  // no interior particle: M = D^-1
+
+  Array<Stencil> stencil_;            // per particle
+  Array<std::int32_t> corner_;        // per particle: lowest cell of the stencil in the corner array, -1 for none
+  Array<std::int32_t> stencil_cell_;  // per particle: lowest cell of the stencil among the cells
+  Array<std::int32_t> rank_;          // per particle: arrival order within its stencil cell
+  Array<float> inverse_diagonal_;     // per particle
+  Array<std::int32_t> start_;         // per stencil cell: first entry in order_
+  Array<std::int32_t> order_;         // particles sorted by stencil cell, then by index
+  Array<std::int32_t> row_total_;     // particles per row of stencil cells
+  Array<std::uint8_t> status_;        // per cell: empty, interior or solid
+  Array<float> open_volume_, open_face_[3];  // open fractions, only with solids
+  Array<float> partial_;                     // spread sums per row of stencil cells and side
+  Array<float> corner_value_;                // cell values with wrapped upper neighbours
+  Array<float> residual_, correction_;       // float copies for double vectors
+  CellHierarchy hierarchy_;
+};
+
+}  // namespace spume

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+#include <string>
+
+#include "spume/cli/programme.hpp"
+
+namespace spume {
+namespace {
+
+constexpr const char* mark = "SPUME_SETTINGS";  // names of the variables that this program has set for itself
+
+void set_when_absent(const std::string& name, const char* value, std::string& names) {
+  if (std::getenv(name.c_str()) != nullptr) return;
+  setenv(name.c_str(), value, 1);
+  names += name + ' ';
+}
+
+// The runtime has read the settings; programs started from here make their own choice.
+void forget(const char* names) {
+  std::istringstream words(names);
+  for (std::string name; words >> name;) unsetenv(name.c_str());
+  unsetenv(mark);
+}
+
+bool names_threads(int argc, char** argv) {
+  if (std::getenv("OMP_NUM_THREADS") != nullptr) return true;
+  for (int i = 1; i < argc; ++i)
+    if (std::strncmp(argv[i], "--threads", 9) == 0) return true;
+  return false;
+}
+
+}  // namespace
+
+void restart_with_patient_threads(int argc, char** argv) {
+  if (const char* names = std::getenv(mark); names != nullptr) return forget(std::string(names).c_str());
+  std::string names;
+  // Passive alone would sleep between any two regions; about 50 us of spinning bridges the gaps of a Krylov loop
+  // and is too short to hurt anyone.
+  set_when_absent("GOMP_SPINCOUNT", "1000", names);
+  set_when_absent("OMP_WAIT_POLICY", "passive", names);
+  // Bound threads stay with the memory that they touched first. With fewer threads than cores, binding would put
+  // every such program on the same first cores, so it is left to the system then.
+  if (!names_threads(argc, argv)) set_when_absent("OMP_PROC_BIND", "true", names);
+  if (names.empty()) return;
+  setenv(mark, names.c_str(), 1);
+  // Where the system refuses, the program simply goes on with the settings it has.
+  execv("/proc/self/exe", argv);
+  forget(names.c_str());
+}
+
+}  // namespace spume

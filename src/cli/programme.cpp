@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "spume/cli/programme.hpp"
+
+#include <omp.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <new>
+
+#include "spume/core/error.hpp"
+#include "spume/run/version.hpp"
+#include "verbs.hpp"
+
+namespace spume {
+namespace {
+
+void use_threads(const std::optional<int>& threads) {
+  if (!threads) return;
+  if (*threads < 1)
+    throw InputError("--threads is " + std::to_string(*threads) + "; give a number of threads from 1 up");
+  omp_set_num_threads(*threads);
+}
+
+// Every message of an InputError is complete; several get a last line that counts them.
+void print_problems(const InputError& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  const auto& problems = error.problems();
+  if (problems.size() < 2) return;
+  const std::string& file = problems.front().file;
+  const bool one_file = !file.empty() && std::all_of(problems.begin(), problems.end(),
+                                                     [&](auto& problem) { return problem.file == file; });
+  std::fprintf(stderr, "%zu problems%s; nothing was run\n", problems.size(), one_file ? (" in " + file).c_str() : "");
+}
+
+struct CommandLine {
+  CLI::App app{"Spume simulates bubbly flows with particles and spectra."};
+  RunArguments run;
+  std::optional<int> threads;
+  std::string file, folder, section;
+  std::vector<std::string> cases;
+  CLI::App *run_app, *check_app, *resume_app, *info_app, *verify_app, *plot_app, *options_app;
+
+  CommandLine() {
+    app.name("spume");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "Spume " + program_version() + " (" + program_commit() + ")");
+    run_app = app.add_subcommand("run", "validate a case, run it, record the results");
+    check_app = app.add_subcommand("check", "everything but running: the plan, memory and time estimate");
+    resume_app = app.add_subcommand("resume", "continue a run bit for bit from its last checkpoint");
+    info_app = app.add_subcommand("info", "what a result, a checkpoint, a run folder or a case holds");
+    verify_app = app.add_subcommand("verify", "run validation cases and print error against bound");
+    plot_app = app.add_subcommand("plot", "standard pictures (PNG) of a run");
+    options_app = app.add_subcommand("options", "every option of a case: unit, default, range");
+
+    for (CLI::App* verb : {run_app, check_app}) {
+      verb->add_option("case", run.input, "case file, or the folder that holds its case.toml")->required();
+      verb->add_option("--set", run.overrides, "section.key=value: replaces a value of the case; may be repeated")
+          ->take_all()
+          ->expected(1)
+          ->allow_extra_args(false);
+    }
+    run_app->add_option("-o,--output", run.folder, "new folder for the results (default: runs/<case>-<n>)");
+    resume_app->add_option("dir", run.input, "folder of the run")->required();
+    for (CLI::App* verb : {run_app, resume_app}) {
+      verb->add_option("--until", run.until, "end time instead of the case's");
+      verb->add_flag("-q,--quiet", run.quiet, "print nothing but errors");
+    }
+    for (CLI::App* verb : {run_app, check_app, resume_app})
+      verb->add_option("--threads", threads, "number of threads (default: all cores)");
+    info_app->add_option("file", file, "result, checkpoint, run folder or case")->required();
+    verify_app->add_option("cases", cases, "names or folders of cases (default: all)");
+    verify_app->allow_extras();
+    verify_app->prefix_command();
+    plot_app->add_option("dir", folder, "folder of the run")->required();
+    options_app->add_option("section", section, "only this section");
+  }
+
+  std::string complaint(int argc, char** argv, const CLI::ParseError& error) const {
+    const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
+    std::string names;
+    for (const CLI::App* verb : verbs) names += (names.empty() ? "" : ", ") + verb->get_name();
+    if (argc < 2) return "a verb is missing; there are " + names;
+    const bool known = std::any_of(verbs.begin(), verbs.end(), [&](auto* verb) { return verb->get_name() == argv[1]; });
+    if (!known && argv[1][0] != '-') return "unknown verb '" + std::string(argv[1]) + "'; there are " + names;
+    return error.what();
+  }
+
+  int carry_out(const Programme& programme) {
+    use_threads(threads);
+    if (run_app->parsed()) return run_verb(run, programme);
+    if (check_app->parsed()) return check_verb(run, programme);
+    if (resume_app->parsed()) return resume_verb(run, programme);
+    if (info_app->parsed()) return info_verb(file, programme);
+    if (options_app->parsed()) return options_verb(section, programme);
+    if (plot_app->parsed()) return script_verb("plot.py", {folder});
+    std::vector<std::string> arguments = {own_executable()};
+    arguments.insert(arguments.end(), cases.begin(), cases.end());
+    const auto extra = verify_app->remaining();
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    return script_verb("verify.py", arguments);
+  }
+};
+
+}  // namespace
+
+int run_programme(int argc, char** argv, const Programme& programme) {
+  CommandLine line;
+  try {
+    line.app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return line.app.exit(error);
+    std::fprintf(stderr, "error: %s; see spume --help\n", line.complaint(argc, argv, error).c_str());
+    return exit_input;
+  }
+  try {
+    return line.carry_out(programme);
+  } catch (const InputError& error) {
+    print_problems(error);
+    return exit_input;
+  } catch (const FileError& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return exit_input;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr,
+                 "error: not enough memory for this case; increase resolution.spacing or use a larger machine\n");
+    return exit_input;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return exit_numerical;
+  }
+}
+
+}  // namespace spume

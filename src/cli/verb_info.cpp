@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "spume/core/error.hpp"
+#include "spume/io/checkpoint.hpp"
+#include "spume/io/file.hpp"
+#include "spume/io/vtkhdf.hpp"
+#include "spume/run/report.hpp"
+#include "verbs.hpp"
+
+namespace spume {
+namespace {
+
+namespace fs = std::filesystem;
+
+void describe_particles(const fs::path& path) {
+  const VtkhdfContents contents = read_vtkhdf_contents(path);
+  std::printf("%s: particles over time (VTKHDF), %zu snapshots\n", path.c_str(), contents.times.size());
+  if (!contents.times.empty()) {
+    const auto [fewest, most] = std::minmax_element(contents.sizes.begin(), contents.sizes.end());
+    std::printf("  time       %.10g to %.10g\n", contents.times.front(), contents.times.back());
+    std::printf("  particles  %lld", static_cast<long long>(*fewest));
+    if (*most != *fewest) std::printf(" to %lld", static_cast<long long>(*most));
+    std::printf("\n");
+  }
+  for (const auto& field : contents.fields)
+    std::printf("  field      %s%s\n", field.name.c_str(),
+                field.components > 1 ? (" (" + std::to_string(field.components) + " components)").c_str() : "");
+}
+
+void describe_checkpoint(const fs::path& path) {
+  const CheckpointReader file(path);
+  Array<double> clock;
+  Array<std::int64_t> counters;
+  std::printf("%s: checkpoint, format %d\n", path.c_str(), checkpoint_format);
+  std::printf("  written by Spume %s (%s)\n", file.origin().program_version.c_str(), file.origin().commit.c_str());
+  if (file.has("driver/clock") && file.has("driver/counters")) {
+    file.f64("driver/clock", clock);
+    file.i64("driver/counters", counters);
+    if (!clock.empty() && !counters.empty())
+      std::printf("  step %lld, t = %.10g\n", static_cast<long long>(counters[0]), clock[0]);
+  }
+  for (const auto& entry : file.entries())
+    std::printf("  %-32s %s  %lld\n", entry.name.c_str(), entry.type.c_str(), static_cast<long long>(entry.size));
+}
+
+void describe_folder(const fs::path& folder) {
+  std::printf("%s: run folder\n", folder.c_str());
+  if (fs::exists(folder / "summary.json")) {
+    try {
+      const auto summary = nlohmann::json::parse(read_text(folder / "summary.json"));
+      for (const char* key : {"title", "method", "state", "message", "time", "end", "steps", "retries", "particles",
+                              "program_version", "commit", "threads", "wall_seconds", "particle_steps_per_second"})
+        if (summary.contains(key) && summary[key] != "")
+          std::printf("  %-26s %s\n", key,
+                      summary[key].is_string() ? summary[key].get<std::string>().c_str() : summary[key].dump().c_str());
+    } catch (const nlohmann::json::exception& error) {
+      throw FileError("cannot read '" + (folder / "summary.json").string() + "': " + error.what());
+    }
+  } else {
+    std::printf("  no summary.json: the run goes on, or was stopped without being able to write one\n");
+  }
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file() && !entry.is_symlink()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  for (const auto& file : files)
+    std::printf("  %-26s %s\n", file.filename().c_str(), human_bytes(static_cast<double>(fs::file_size(file))).c_str());
+  for (const auto& file : files)
+    if (file.extension() == ".vtkhdf") describe_particles(file);
+}
+
+void describe_case(const std::string& path, const Programme& programme) {
+  const LoadedCase loaded = programme.load_case(path, {});
+  std::printf("%s: case for method %s, %d-D, %zu particles, spacing %g, until t = %g\n", path.c_str(),
+              loaded.options.method.c_str(), loaded.scene.domain.dimensions, loaded.scene.particles.size(),
+              loaded.scene.spacing, loaded.options.time.end);
+  for (const auto& [name, value] : loaded.options.groups) std::printf("  %-12s %s\n", name.c_str(), value.c_str());
+}
+
+bool starts_with(const fs::path& path, const std::string& mark) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string head(mark.size(), '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return stream && head == mark;
+}
+
+}  // namespace
+
+int info_verb(const std::string& file, const Programme& programme) {
+  const fs::path path = file;
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    if (fs::exists(path / "log.txt"))
+      describe_folder(path);
+    else
+      describe_case(file, programme);
+  } else if (!fs::exists(path, ignored)) {
+    throw InputError("there is no file '" + file + "'; give a result, a checkpoint, a run folder or a case");
+  } else if (path.extension() == ".toml") {
+    describe_case(file, programme);
+  } else if (starts_with(path, "\x89HDF\r\n\x1a\n")) {
+    describe_particles(path);
+  } else if (path.extension() == ".h5" || starts_with(path, "SPUME CHECKPOINT")) {
+    describe_checkpoint(path);
+  } else {
+    throw InputError("'" + file +
+                     "' is neither a result (.vtkhdf), a checkpoint (.h5), a run folder nor a case (.toml)");
+  }
+  return exit_done;
+}
+
+}  // namespace spume

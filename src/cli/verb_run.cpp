@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstdio>
+#include <new>
+
+#include "spume/cli/terminal.hpp"
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+#include "spume/run/report.hpp"
+#include "verbs.hpp"
+
+namespace spume {
+namespace {
+
+void require_positive(const std::optional<double>& until) {
+  if (until && !(*until > 0 && std::isfinite(*until)))
+    throw InputError("--until is " + short_number(*until) + "; give a time above 0");
+}
+
+std::string closing_text(const Simulation& simulation, RunState state) {
+  const double wall = simulation.wall_seconds();
+  char text[256];
+  std::snprintf(text, sizeof text, "%s at t = %.6g after %lld steps in %s, %.3g M particle-steps/s\n",
+                state == RunState::finished ? "finished" : "interrupted", simulation.method().time(),
+                static_cast<long long>(simulation.steps_this_run()), human_duration(wall).c_str(),
+                simulation.particle_steps() / wall / 1e6);
+  return text;
+}
+
+int carry_out(Simulation& simulation, bool quiet) {
+  const std::string start =
+      start_table(simulation.loaded(), simulation.method(), thread_count(), simulation.folder().string());
+  simulation.log(start);
+  if (!quiet) std::printf("%s\n", start.c_str()), std::fflush(stdout);
+  TerminalObserver observer(quiet);
+  try {
+    const RunState state = simulation.run(observer);
+    observer.finish();
+    const std::string closing = closing_text(simulation, state);
+    simulation.log(closing);
+    if (!quiet)
+      std::printf("\n%s\n%sresults in %s\n", ledger_table(simulation.ledger(), simulation.wall_seconds()).c_str(),
+                  closing.c_str(), simulation.folder().c_str());
+    return state == RunState::finished ? exit_done : exit_interrupted;
+  } catch (const FileError& error) {
+    observer.finish();
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return simulation.steps_this_run() > 0 ? exit_numerical : exit_input;
+  } catch (const NumericalFailure& failure) {
+    observer.finish();
+    std::fprintf(stderr, "error: %s\n", failure.what());
+    return exit_numerical;
+  } catch (const std::bad_alloc&) {
+    observer.finish();
+    std::fprintf(stderr, "error: not enough memory to go on at t = %g; the last checkpoint in %s can be continued\n",
+                 simulation.method().time(), simulation.folder().c_str());
+    return exit_numerical;
+  }
+}
+
+}  // namespace
+
+int run_verb(const RunArguments& arguments, const Programme& programme) {
+  require_positive(arguments.until);
+  LoadedCase loaded = programme.load_case(arguments.input, arguments.overrides);
+  if (arguments.until) loaded.options.time.end = *arguments.until;
+  std::optional<std::filesystem::path> folder;
+  if (arguments.folder) folder = *arguments.folder;
+  const auto simulation = Simulation::start(std::move(loaded), programme.make_method, folder);
+  return carry_out(*simulation, arguments.quiet);
+}
+
+int resume_verb(const RunArguments& arguments, const Programme& programme) {
+  require_positive(arguments.until);
+  const auto simulation =
+      Simulation::resume(arguments.input, programme.load_case, programme.make_method, arguments.until);
+  return carry_out(*simulation, arguments.quiet);
+}
+
+}  // namespace spume

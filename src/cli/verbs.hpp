@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// One function per verb; each returns an exit code and leaves errors to its caller.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "spume/cli/programme.hpp"
+
+namespace spume {
+
+struct RunArguments {
+  std::string input;  // case or run folder
+  std::optional<std::string> folder;
+  std::vector<std::string> overrides;
+  std::optional<double> until;
+  bool quiet = false;
+};
+
+int run_verb(const RunArguments& arguments, const Programme& programme);
+int resume_verb(const RunArguments& arguments, const Programme& programme);
+int check_verb(const RunArguments& arguments, const Programme& programme);
+int info_verb(const std::string& file, const Programme& programme);
+int options_verb(const std::string& section, const Programme& programme);
+
+// Replaces this process by /usr/bin/python3 with a script of tools/ and the arguments.
+int script_verb(const std::string& script, const std::vector<std::string>& arguments);
+std::string own_executable();
+
+}  // namespace spume

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// Where the particles are: intermediate positions, order, images, lists, surface and shift.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "spume/core/parallel.hpp"
+#include "spume/methods/les_sph/liquid.hpp"
+
+namespace spume::les_sph {
+
+void move_to_intermediate(Liquid& liquid, double dt) {
+  liquid.next_walls = advanced_walls(liquid, dt);
+  const int d = liquid.dimensions;
+  parallel_for(liquid.size(), [&](std::size_t i) {
+    Vec3 r{};
+    for (int axis = 0; axis < d; ++axis)
+      r[axis] = (*liquid.position[axis])[i] + dt * (*liquid.velocity[axis])[i];
+    keep_inside(liquid, liquid.next_walls, r, nullptr);
+    for (int axis = 0; axis < d; ++axis) (*liquid.intermediate[axis])[i] = r[axis];
+  });
+}
+
+void sort_particles(Liquid& liquid) {
+  const auto build = [&] {
+    const auto r = liquid.read(liquid.intermediate);
+    liquid.table.build(liquid.grid, r[0], r[1], r[2], liquid.size());
+  };
+  build();
+  if (!liquid.table.already_sorted()) liquid.fields.permute(liquid.table.order());
+}
+
+void make_images(Liquid& liquid, double dt) {
+  const auto r = liquid.read(liquid.intermediate);
+  liquid.images.build(image_rules(liquid, liquid.next_walls), liquid.grid, r[0], r[1], r[2], liquid.size());
+  update_image_rules(liquid, liquid.time + dt);
+}
+
+void find_neighbours(Liquid& liquid) {
+  const auto r = liquid.read(liquid.intermediate);
+  liquid.list.build(liquid.grid, liquid.table, r[0], r[1], r[2], liquid.size(), liquid.images, liquid.origin);
+  liquid.records.invalidate();
+}
+
+void measure_geometry(Liquid& liquid) {
+  GeometryOptions options;
+  options.shifting = liquid.plan.shifting;
+  options.normals = liquid.plan.free_surface;
+  options.spacing = liquid.scene.spacing;
+  GeometryOut out;
+  out.kernel_sum = liquid.kernel_sum->data();
+  out.divergence_of_position = liquid.divergence_of_position->data();
+  out.coupling = liquid.coupling->data();
+  for (std::size_t k = 0; k < out.correction.size(); ++k)
+    out.correction[k] = liquid.correction[k] == nullptr ? nullptr : liquid.correction[k]->data();
+  liquid.uncorrected.resize(liquid.size());
+  out.uncorrected = liquid.uncorrected.data();
+  out.concentration_gradient = liquid.write(liquid.shift);
+  out.normal = liquid.write(liquid.normal);
+  geometry_sweep(liquid.context, liquid.records, options, out);
+}
+
+void find_surface(Liquid& liquid) {
+  const std::size_t n = liquid.size();
+  liquid.at_surface.resize(n);
+  liquid.interior_weight.resize(n);
+  const double width = liquid.options.surface.blend_width;
+  parallel_for(n, [&](std::size_t i) {
+    const double above = (*liquid.divergence_of_position)[i] - liquid.surface_threshold;
+    liquid.at_surface[i] = above < 0 ? 1 : 0;
+    liquid.interior_weight[i] =
+        above < 0 ? 0.0F
+        : above < width ? static_cast<float>(0.5 * (1 - std::cos(std::numbers::pi * above / width)))
+                        : 1.0F;
+  });
+  // In particle order, by blocks: counted, then written.
+  constexpr std::size_t block = 4096;
+  std::array<std::size_t, max_reduction_blocks + 1> start{};
+  const std::size_t size = std::max(block, (n + max_reduction_blocks - 1) / max_reduction_blocks);
+  parallel_blocks(n, size, [&](std::size_t b, std::size_t first, std::size_t last) {
+    start[b + 1] = static_cast<std::size_t>(std::count(liquid.at_surface.data() + first, liquid.at_surface.data() + last, 1));
+  });
+  for (std::size_t b = 0; b < block_count(n, size); ++b) start[b + 1] += start[b];
+  liquid.surface_particles.resize(start[block_count(n, size)]);
+  parallel_blocks(n, size, [&](std::size_t b, std::size_t first, std::size_t last) {
+    std::size_t slot = start[b];
+    for (std::size_t i = first; i < last; ++i)
+      if (liquid.at_surface[i] != 0) liquid.surface_particles[slot++] = static_cast<std::int32_t>(i);
+  });
+  if (liquid.plan.shifting)
+    filter_vector_subset(liquid.context, liquid.records, liquid.read(liquid.normal), liquid.reflection,
+                         liquid.surface_particles, liquid.write(liquid.smoothed_normal));
+}
+
+void choose_shift(Liquid& liquid) {
+  const int d = liquid.dimensions;
+  const double h = liquid.smoothing_length;
+  const double coefficient = liquid.options.shifting.coefficient * h * h;
+  const double limit = liquid.options.shifting.limit * h;
+  parallel_for(liquid.size(), [&](std::size_t i) {
+    std::array<double, 3> shift{};
+    for (int axis = 0; axis < d; ++axis) shift[axis] = -coefficient * (*liquid.shift[axis])[i];
+    if (liquid.plan.free_surface && liquid.at_surface[i] != 0) {
+      // King (3.12), sign and tangential projection corrected: only the part along the surface is kept.
+      double along = 0, norm2 = 1e-30;
+      for (int axis = 0; axis < d; ++axis) {
+        const double normal = (*liquid.smoothed_normal[axis])[i];
+        along += normal * shift[axis];
+        norm2 += normal * normal;
+      }
+      for (int axis = 0; axis < d; ++axis) shift[axis] -= along / norm2 * (*liquid.smoothed_normal[axis])[i];
+      if (liquid.list.count(i) == 0) shift = {};
+    }
+    double length2 = 0;
+    for (int axis = 0; axis < d; ++axis) length2 += shift[axis] * shift[axis];
+    const double scale = length2 > limit * limit ? limit / std::sqrt(length2) : 1;
+    for (int axis = 0; axis < d; ++axis) (*liquid.shift[axis])[i] = static_cast<float>(scale * shift[axis]);
+  });
+}
+
+}  // namespace spume::les_sph

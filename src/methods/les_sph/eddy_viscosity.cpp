@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// Velocity gradients and the closures of the sub-resolution stress.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "spume/core/parallel.hpp"
+#include "spume/methods/les_sph/liquid.hpp"
+#include "spume/physics/turbulence/closures.hpp"
+
+namespace spume::les_sph {
+namespace {
+
+template <int d>
+turbulence::Gradient<d> gradient_at(const Liquid& liquid, std::size_t i) {
+  turbulence::Gradient<d> gradient;
+  for (int k = 0; k < d * d; ++k) gradient[k] = (*liquid.velocity_gradient[k])[i];
+  return gradient;
+}
+
+template <int d>
+void find_strain(Liquid& liquid) {
+  parallel_for(liquid.size(), [&](std::size_t i) {
+    const auto strain = turbulence::strain_rate<d, double>(gradient_at<d>(liquid, i));
+    (*liquid.strain)[i] = static_cast<float>(turbulence::strain_magnitude<d, double>(strain));
+  });
+}
+
+template <int d>
+void find_static_viscosity(Liquid& liquid) {
+  const TurbulenceOptions& options = liquid.options.turbulence;
+  const double width = liquid.smoothing_length;
+  const bool mixed = options.model == TurbulenceModel::mixed_scale;
+  parallel_for(liquid.size(), [&](std::size_t i) {
+    const double strain = (*liquid.strain)[i];
+    double viscosity = 0;
+    if (mixed) {
+      std::array<double, d> u, filtered;
+      for (int a = 0; a < d; ++a) {
+        u[a] = (*liquid.velocity[a])[i];
+        filtered[a] = (*liquid.filtered_velocity[a])[i];
+      }
+      const double energy = turbulence::test_filter_energy<d, double>(u, filtered);
+      viscosity = turbulence::mixed_scale_viscosity(strain, energy, width, options.mixed_scale_constant);
+    } else {
+      viscosity = turbulence::smagorinsky_viscosity(strain, width, options.smagorinsky_constant);
+    }
+    (*liquid.eddy_viscosity)[i] = static_cast<float>(viscosity);
+  });
+}
+
+// Test-filtered products of the dynamic closure: components of u u, S and |S| S, filtered two at a time.
+template <int d>
+struct TestFilter {
+  static constexpr int symmetric = d * (d + 1) / 2;
+  static constexpr int count = 3 * symmetric;
+  std::span<Array<float>> value, filtered;
+
+  explicit TestFilter(Liquid& liquid) {
+    liquid.test_filter_scratch.resize(2 * count);
+    for (auto& array : liquid.test_filter_scratch) array.resize(liquid.size());
+    value = std::span(liquid.test_filter_scratch).first(count);
+    filtered = std::span(liquid.test_filter_scratch).last(count);
+  }
+
+  void run(Liquid& liquid) {
+    const std::size_t n = liquid.size();
+    parallel_for(n, [&](std::size_t i) {
+      const auto strain = turbulence::strain_rate<d, double>(gradient_at<d>(liquid, i));
+      for (int a = 0; a < d; ++a)
+        for (int b = a; b < d; ++b) {
+          const std::size_t k = turbulence::symmetric_index<d>(a, b);
+          value[k][i] = static_cast<float>((*liquid.velocity[a])[i] * (*liquid.velocity[b])[i]);
+          value[symmetric + k][i] = static_cast<float>(strain[k]);
+          value[2 * symmetric + k][i] = static_cast<float>(strain[k]) * (*liquid.strain)[i];
+        }
+    });
+    std::array<const float*, count> in;
+    std::array<float*, count> out;
+    for (int k = 0; k < count; ++k) {
+      in[k] = value[k].data();
+      out[k] = filtered[k].data();
+    }
+    filter_scalars(liquid.context, liquid.records, in, out);
+  }
+
+  turbulence::TestFiltered<d> at(const Liquid& liquid, std::size_t i) const {
+    turbulence::TestFiltered<d> result;
+    for (int a = 0; a < d; ++a) result.velocity[a] = (*liquid.filtered_velocity[a])[i];
+    for (int k = 0; k < symmetric; ++k) {
+      result.velocity_product[k] = filtered[k][i];
+      result.strain[k] = filtered[symmetric + k][i];
+      result.strain_times_magnitude[k] = filtered[2 * symmetric + k][i];
+    }
+    return result;
+  }
+};
+
+template <int d>
+void find_dynamic_viscosity(Liquid& liquid, double dt) {
+  TestFilter<d> test_filter(liquid);
+  test_filter.run(liquid);
+  const std::size_t n = liquid.size();
+  const double width = liquid.smoothing_length;
+  const double ratio = turbulence::test_filter_width_ratio(width, turbulence::wendland_variance<d>(liquid.smoothing_length));
+  const double nu = liquid.scene.fluid.kinematic_viscosity;
+  const bool lagrangian = liquid.options.turbulence.model == TurbulenceModel::dynamic_lagrangian;
+
+  Array<float>&leonard = test_filter.value[0], &germano = test_filter.value[1];
+  parallel_for(n, [&](std::size_t i) {
+    const auto c = turbulence::germano_contractions<d, double>(test_filter.at(liquid, i), width, ratio);
+    if (lagrangian) {
+      const turbulence::GermanoContractions<double> memory{(*liquid.lagrangian_average[0])[i],
+                                                           (*liquid.lagrangian_average[1])[i]};
+      const auto average = turbulence::lagrangian_average(memory, c, width, dt);
+      // Written when the step is accepted would need two more arrays; a rejected step only ages the memory.
+      (*liquid.lagrangian_average[0])[i] = average.leonard_germano;
+      (*liquid.lagrangian_average[1])[i] = average.germano_germano;
+      (*liquid.eddy_viscosity)[i] =
+          static_cast<float>(turbulence::dynamic_viscosity(average, (*liquid.strain)[i], width, nu));
+    } else {
+      leonard[i] = static_cast<float>(c.leonard_germano);
+      germano[i] = static_cast<float>(c.germano_germano);
+    }
+  });
+  if (lagrangian) return;
+  const std::array<const float*, 2> in{leonard.data(), germano.data()};
+  const std::array<float*, 2> out{test_filter.filtered[0].data(), test_filter.filtered[1].data()};
+  filter_scalars(liquid.context, liquid.records, in, out);
+  parallel_for(n, [&](std::size_t i) {
+    const turbulence::GermanoContractions<double> average{out[0][i], out[1][i]};
+    (*liquid.eddy_viscosity)[i] =
+        static_cast<float>(turbulence::dynamic_viscosity(average, (*liquid.strain)[i], width, nu));
+  });
+}
+
+}  // namespace
+
+void differentiate_velocity(Liquid& liquid) {
+  VelocityGradientOut out;
+  for (int k = 0; k < liquid.dimensions * liquid.dimensions; ++k) out.gradient[k] = liquid.velocity_gradient[k]->data();
+  if (liquid.plan.test_filter) out.filtered = liquid.write(liquid.filtered_velocity);
+  velocity_gradient_sweep(liquid.context, liquid.records, liquid.read(liquid.velocity), liquid.velocity_rule,
+                          liquid.read_correction(), out);
+  if (liquid.dimensions == 2) find_strain<2>(liquid);
+  else find_strain<3>(liquid);
+}
+
+void find_shift_correction(Liquid& liquid) {
+  const int d = liquid.dimensions;
+  if (liquid.plan.shift_curvature) {
+    std::array<const float*, 9> gradient{};
+    for (int k = 0; k < d * d; ++k) gradient[k] = liquid.velocity_gradient[k]->data();
+    shift_curvature_sweep(liquid.context, liquid.records, gradient, liquid.velocity_rule, liquid.reflection,
+                          liquid.read(liquid.shift), liquid.read_correction(), liquid.write(liquid.shift_velocity));
+  }
+  parallel_for(liquid.size(), [&](std::size_t i) {
+    for (int a = 0; a < d; ++a) {
+      float sum = liquid.plan.shift_curvature ? (*liquid.shift_velocity[a])[i] : 0.0F;
+      for (int b = 0; b < d; ++b) sum += (*liquid.velocity_gradient[a * d + b])[i] * (*liquid.shift[b])[i];
+      (*liquid.shift_velocity[a])[i] = sum;
+    }
+  });
+}
+
+void find_eddy_viscosity(Liquid& liquid, double dt) {
+  if (liquid.dynamic_closure()) {
+    if (liquid.dimensions == 2) find_dynamic_viscosity<2>(liquid, dt);
+    else find_dynamic_viscosity<3>(liquid, dt);
+  } else {
+    if (liquid.dimensions == 2) find_static_viscosity<2>(liquid);
+    else find_static_viscosity<3>(liquid);
+  }
+}
+
+}  // namespace spume::les_sph

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+// The step, and what the driver asks of the method.
+#include "spume/methods/les_sph/les_sph.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+#include "spume/methods/les_sph/point_sampler.hpp"
+#include "spume/methods/les_sph/pressure_system.hpp"
+#include "spume/operators/energy_spectrum.hpp"
+
+namespace spume::les_sph {
+
+void LesSph::step(double dt, Ledger& ledger) {
+  if (!liquid_.started) start(ledger);
+  Liquid& liquid = liquid_;
+  const Plan& plan = liquid.plan;
+  const auto n = static_cast<double>(liquid.size());
+  const auto stage = [&](const char* name, auto&& work) {
+    const auto scope = ledger.time(name, n);
+    work();
+  };
+  const auto pair_stage = [&](const char* name, auto&& work) {
+    const auto scope = ledger.time(name, n, static_cast<double>(liquid.list.pair_count()));
+    work();
+  };
+  stage("move", [&] { move_to_intermediate(liquid, dt); });
+  stage("sort", [&] { sort_particles(liquid); });
+  if (plan.images) stage("images", [&] { make_images(liquid, dt); });
+  stage("neighbours", [&] { find_neighbours(liquid); });
+  pair_stage("geometry", [&] { measure_geometry(liquid); });
+  if (plan.free_surface) stage("surface", [&] { find_surface(liquid); });
+  if (plan.shifting) stage("shift", [&] { choose_shift(liquid); });
+  if (plan.velocity_gradient) pair_stage("gradients", [&] { differentiate_velocity(liquid); });
+  if (plan.shift_correction) pair_stage("shift correction", [&] { find_shift_correction(liquid); });
+  if (plan.eddy_viscosity) stage("eddy viscosity", [&] { find_eddy_viscosity(liquid, dt); });
+  pair_stage("prediction", [&] { predict_velocity(liquid, dt); });
+  pressure_->solve_step(liquid, dt, ledger);
+  pair_stage("projection", [&] { project_velocity(liquid, dt); });
+  stage("accept", [&] { accept(liquid, dt); });
+}
+
+LesSph::LesSph(const LoadedCase& loaded)
+    : liquid_(loaded), pressure_(std::make_unique<PressureSystem>(liquid_)) {}
+
+LesSph::~LesSph() = default;
+
+// A Helmholtz step needs p^n: without this solve the first step would start from zero pressure.
+void LesSph::start(Ledger& ledger) {
+  if (liquid_.size() > 0) {
+    move_to_intermediate(liquid_, 0);
+    sort_particles(liquid_);
+    if (liquid_.plan.images) make_images(liquid_, 0);
+    find_neighbours(liquid_);
+    measure_geometry(liquid_);
+    if (liquid_.plan.free_surface) find_surface(liquid_);
+    differentiate_velocity(liquid_);
+    pressure_->solve_initial(liquid_, ledger);
+    if (!liquid_.plan.velocity_gradient) {
+      for (int k = 0; k < liquid_.dimensions * liquid_.dimensions; ++k) liquid_.velocity_gradient[k]->release();
+      liquid_.strain->release();
+    }
+  }
+  liquid_.started = true;
+}
+
+void LesSph::ensure_started() {
+  Ledger unrecorded;
+  if (!liquid_.started) start(unrecorded);
+}
+
+std::vector<Stage> LesSph::plan() const { return liquid_.plan.stages(liquid_.loaded); }
+
+std::vector<ArrayInfo> LesSph::arrays() const {
+  std::vector<ArrayInfo> list;
+  for (const auto& field : liquid_.fields.fields())
+    list.push_back({field->name, std::visit([](const auto& array) { return static_cast<double>(array.capacity() * sizeof(array[0])); }, field->values)});
+  list.push_back({"cell table", liquid_.table.bytes()});
+  list.push_back({"images", liquid_.images.bytes()});
+  list.push_back({"neighbour lists", liquid_.list.bytes()});
+  list.push_back({"sweep records", liquid_.records.bytes()});
+  list.push_back({"pressure system", pressure_->bytes()});
+  return list;
+}
+
+StepLimit LesSph::step_limit() const {
+  const double h = liquid_.smoothing_length;
+  const TimeOptions& options = liquid_.options.time;
+  double acceleration2 = 0;
+  for (const double g : liquid_.scene.fluid.gravity) acceleration2 += g * g;
+  // From rest the speed that gravity gives over one smoothing length stands in for the largest speed.
+  const double speed = std::max(liquid_.max_speed, std::sqrt(std::sqrt(acceleration2) * h));
+  StepLimit limit{1e300, "nothing"};
+  const auto bound = [&](double dt, const char* name) {
+    if (dt < limit.dt) limit = {dt, name};
+  };
+  if (speed > 0) bound(options.courant * h / speed, "courant");
+  const double viscosity = liquid_.scene.fluid.kinematic_viscosity + liquid_.max_eddy_viscosity;
+  if (viscosity > 0) bound(options.viscous * h * h / viscosity, "viscous");
+  if (options.max_step > 0) bound(options.max_step, "max_step");
+  // A force on a liquid at rest: the first steps follow the time scale of the run.
+  if (speed == 0 && options.max_step == 0) bound(options.end / 1000, "end of run");
+  return limit;
+}
+
+std::vector<SeriesColumn> LesSph::series_columns() const {
+  std::vector<SeriesColumn> columns{{"kinetic_energy", "rho u^2 / 2, integral"},
+                                    {"potential_energy", "rho g z, integral"},
+                                    {"total_energy", "kinetic + potential"},
+                                    {"dissipation", "rho (nu + nu_t) |S|^2, integral"},
+                                    {"max_speed", "speed"},
+                                    {"mass", "mass"}};
+  const char* const momentum[3] = {"momentum_x", "momentum_y", "momentum_z"};
+  for (int axis = 0; axis < liquid_.dimensions; ++axis) columns.push_back({momentum[axis], "mass times speed"});
+  columns.push_back({"max_divergence", "of the predicted velocity, 1 / time"});
+  columns.push_back({"pressure_iterations", "1"});
+  columns.push_back({"pressure_residual", "relative"});
+  columns.push_back({"surface_particles", "1"});
+  return columns;
+}
+
+void LesSph::series_values(std::span<double> values) {
+  ensure_started();
+  const Liquid& liquid = liquid_;
+  const int d = liquid.dimensions;
+  const std::size_t n = liquid.size();
+  const double mass = liquid.scene.fluid.density * liquid.volume;
+  const Vec3& gravity = liquid.scene.fluid.gravity;
+  const double kinetic = mass * parallel_sum(n, [&](std::size_t i) {
+    double speed2 = 0;
+    for (int axis = 0; axis < d; ++axis) speed2 += (*liquid.velocity[axis])[i] * (*liquid.velocity[axis])[i];
+    return speed2 / 2;
+  });
+  const double potential = mass * parallel_sum(n, [&](std::size_t i) {
+    double sum = 0;
+    for (int axis = 0; axis < d; ++axis) sum -= gravity[axis] * (*liquid.position[axis])[i];
+    return sum;
+  });
+  std::size_t k = 0;
+  const auto put = [&](double value) { values[k++] = value; };
+  put(kinetic);
+  put(potential);
+  put(kinetic + potential);
+  put(liquid.dissipation);
+  put(liquid.max_speed);
+  put(mass * static_cast<double>(n));
+  for (int axis = 0; axis < d; ++axis)
+    put(mass * parallel_sum(n, [&](std::size_t i) { return (*liquid.velocity[axis])[i]; }));
+  put(liquid.max_divergence);
+  put(pressure_->report().iterations);
+  put(pressure_->report().relative_residual);
+  put(static_cast<double>(liquid.surface_particles.size()));
+}
+
+std::vector<Family> LesSph::snapshot() {
+  ensure_started();
+  Family fluid;
+  fluid.name = "fluid";
+  fluid.size = liquid_.size();
+  NamedField velocity{"velocity", {}, {}};
+  for (int axis = 0; axis < liquid_.dimensions; ++axis) {
+    fluid.position.push_back(liquid_.position[axis]->data());
+    velocity.f64.push_back(liquid_.velocity[axis]->data());
+  }
+  fluid.fields.push_back(velocity);
+  fluid.fields.push_back({"pressure", {liquid_.pressure->data()}, {}});
+  fluid.fields.push_back({"id", {}, {liquid_.identifier->data()}});
+  return {fluid};
+}
+
+PointSampler& LesSph::sampler() {
+  ensure_started();
+  if (!sampler_) sampler_ = std::make_unique<PointSampler>();
+  if (sampler_->step() != liquid_.steps) sampler_->update(liquid_);
+  return *sampler_;
+}
+
+PointSample LesSph::sample(const Vec3& position) { return sampler().sample(liquid_, position); }
+double LesSph::elevation(const Vec3& position) { return sampler().elevation(liquid_, position); }
+double LesSph::front(int axis, double height) { return sampler().front(liquid_, axis, height); }
+
+bool LesSph::spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) {
+  const Domain& domain = liquid_.scene.domain;
+  for (int axis = 0; axis < liquid_.dimensions; ++axis)
+    if (!domain.periodic(axis)) return false;
+  ParticleSpectrumInput input;
+  input.dimensions = liquid_.dimensions;
+  input.lower = domain.lower;
+  input.upper = domain.upper;
+  input.spacing = liquid_.scene.spacing;
+  for (int axis = 0; axis < liquid_.dimensions; ++axis) {
+    input.position[axis] = *liquid_.position[axis];
+    input.velocity[axis] = *liquid_.velocity[axis];
+  }
+  const ParticleSpectrum result = energy_spectrum(input);
+  wavenumber = result.spectrum.wavenumber;
+  energy = result.spectrum.energy;
+  return true;
+}
+
+void LesSph::save(StateWriter& writer) const {
+  const double scalars[] = {liquid_.time, liquid_.max_speed, liquid_.max_eddy_viscosity, liquid_.max_divergence,
+                            liquid_.dissipation};
+  const std::int64_t counters[] = {liquid_.steps, liquid_.started ? 1 : 0, static_cast<std::int64_t>(liquid_.size())};
+  writer.f64("scalars", scalars);
+  writer.i64("counters", counters);
+  const auto& w = liquid_.walls;
+  const double walls[] = {w[0][0], w[0][1], w[1][0], w[1][1], w[2][0], w[2][1]};
+  writer.f64("walls", walls);
+  for (const auto& field : liquid_.fields.fields()) {
+    if (field->lifetime != Lifetime::carried) continue;
+    if (const auto* f64 = std::get_if<Array<double>>(&field->values)) writer.f64(field->name, *f64);
+    if (const auto* i64 = std::get_if<Array<std::int64_t>>(&field->values)) writer.i64(field->name, *i64);
+  }
+}
+
+void LesSph::load(StateReader& reader) {
+  Array<double> scalars, walls;
+  Array<std::int64_t> counters;
+  reader.f64("scalars", scalars);
+  reader.i64("counters", counters);
+  reader.f64("walls", walls);
+  if (scalars.size() != 5 || counters.size() != 3 || walls.size() != 6)
+    throw FileError("the checkpoint was written by another version of the method");
+  const auto n = static_cast<std::size_t>(counters[2]);
+  liquid_.fields.resize(n);
+  for (const auto& field : liquid_.fields.fields()) {
+    if (field->lifetime != Lifetime::carried) continue;
+    if (auto* f64 = std::get_if<Array<double>>(&field->values)) reader.f64(field->name, *f64);
+    if (auto* i64 = std::get_if<Array<std::int64_t>>(&field->values)) reader.i64(field->name, *i64);
+    if (std::visit([](const auto& array) { return array.size(); }, field->values) != n)
+      throw FileError("the checkpoint's array '" + field->name + "' does not have one value per particle");
+  }
+  liquid_.time = scalars[0];
+  liquid_.max_speed = scalars[1];
+  liquid_.max_eddy_viscosity = scalars[2];
+  liquid_.max_divergence = scalars[3];
+  liquid_.dissipation = scalars[4];
+  liquid_.steps = counters[0];
+  liquid_.started = counters[1] != 0;
+  for (int axis = 0; axis < 3; ++axis) liquid_.walls[axis] = {walls[2 * axis], walls[2 * axis + 1]};
+}
+
+}  // namespace spume::les_sph

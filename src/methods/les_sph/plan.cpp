@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "spume/methods/les_sph/plan.hpp"
+
+#include <algorithm>
+
+namespace spume::les_sph {
+
+Plan make_plan(const LoadedCase& loaded) {
+  const Scene& scene = loaded.scene;
+  const Case& options = loaded.options;
+  Plan plan;
+  for (int axis = 0; axis < scene.domain.dimensions; ++axis)
+    for (const Side& side : scene.domain.sides[axis]) {
+      plan.images = plan.images || side.kind != BoundaryKind::open;
+      if (!side.velocity) continue;
+      plan.moving_walls = true;
+      plan.displaced_walls = plan.displaced_walls || side.velocity->component[axis] != nullptr;
+    }
+  plan.images = plan.images || !scene.domain.boxes.empty();
+  plan.free_surface = scene.free_surface;
+  plan.shifting = options.shifting.on;
+  const TurbulenceModel model = options.turbulence.model;
+  plan.eddy_viscosity = model != TurbulenceModel::none;
+  plan.test_filter = plan.eddy_viscosity && model != TurbulenceModel::smagorinsky;
+  plan.shift_correction = plan.shifting && options.shifting.velocity_correction != ShiftCorrection::none;
+  plan.shift_curvature = plan.shifting && options.shifting.velocity_correction == ShiftCorrection::second_order;
+  plan.velocity_gradient = plan.eddy_viscosity || plan.shift_correction;
+  plan.viscosity = plan.eddy_viscosity || scene.fluid.kinematic_viscosity > 0;
+  plan.gravity = std::any_of(scene.fluid.gravity.begin(), scene.fluid.gravity.end(), [](double g) { return g != 0; });
+  plan.body_force = scene.body_force.has_value();
+  plan.compressible = scene.fluid.sound_speed > 0;
+  plan.closed = !scene.free_surface;
+  return plan;
+}
+
+std::vector<Stage> Plan::stages(const LoadedCase& loaded) const {
+  const auto model = [&] {
+    switch (loaded.options.turbulence.model) {
+      case TurbulenceModel::mixed_scale: return "mixed-scale closure";
+      case TurbulenceModel::smagorinsky: return "Smagorinsky closure";
+      case TurbulenceModel::dynamic_shepard: return "dynamic closure, Shepard averages";
+      case TurbulenceModel::dynamic_lagrangian: return "dynamic closure, Lagrangian averages";
+      case TurbulenceModel::none: break;
+    }
+    return "no closure: turbulence.model = \"none\"";
+  };
+  std::vector<Stage> list;
+  list.push_back({"move", true, "particles to their intermediate positions"});
+  list.push_back({"sort", true, "particles in cell order"});
+  list.push_back({"images", images, images ? "periodic sides, walls or solids" : "every side is open"});
+  list.push_back({"neighbours", true, "lists within the kernel support"});
+  list.push_back({"geometry", true, "gradient correction, div r, concentration"});
+  list.push_back({"surface", free_surface, free_surface ? "the liquid has a free surface" : "the liquid fills the domain"});
+  list.push_back({"shift", shifting, shifting ? "Fickian shifting" : "shifting.on = false"});
+  list.push_back({"gradients", velocity_gradient,
+                  eddy_viscosity ? "strain of the closure" : velocity_gradient ? "velocity correction of the shift" : "nobody needs them"});
+  list.push_back({"shift curvature", shift_curvature,
+                  shift_curvature ? "second-order velocity correction of the shift" : "shifting.velocity_correction"});
+  list.push_back({"eddy viscosity", eddy_viscosity, model()});
+  list.push_back({"viscosity", viscosity, viscosity ? "molecular or eddy viscosity" : "inviscid"});
+  list.push_back({"body force", body_force, body_force ? "forces.body" : "none given"});
+  list.push_back({"divergence", true, compressible ? "right-hand side of the Helmholtz equation" : "right-hand side of the Poisson equation"});
+  list.push_back({"pressure", true, closed ? "closed domain: the constant is removed" : "zero pressure at the free surface"});
+  list.push_back({"project", true, "pressure gradient and final positions"});
+  return list;
+}
+
+}  // namespace spume::les_sph

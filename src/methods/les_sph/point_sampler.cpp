@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "spume/methods/les_sph/point_sampler.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "spume/core/parallel.hpp"
+
+namespace spume::les_sph {
+namespace {
+
+// A point and its reflections: summing the particles around each copy is summing particles and images around the
+// point.
+struct Copy {
+  Vec3 point;
+  std::array<double, 3> sign;  // reflection of geometric offsets and of the velocity
+};
+
+std::vector<Copy> copies_of(const Liquid& liquid, const Vec3& point) {
+  const Domain& domain = liquid.scene.domain;
+  const double reach = liquid.grid.reach();
+  std::vector<Copy> copies{{point, {1, 1, 1}}};
+  for (int axis = 0; axis < liquid.dimensions; ++axis) {
+    const std::size_t made = copies.size();
+    const double length = liquid.walls[axis][1] - liquid.walls[axis][0];
+    for (int side = 0; side < 2; ++side) {
+      const double plane = liquid.walls[axis][side];
+      if (std::abs(point[axis] - plane) >= reach || domain.sides[axis][side].kind == BoundaryKind::open) continue;
+      for (std::size_t c = 0; c < made; ++c) {
+        Copy copy = copies[c];
+        if (domain.periodic(axis)) {
+          copy.point[axis] += side == 0 ? length : -length;
+        } else {
+          copy.point[axis] = 2 * plane - copy.point[axis];
+          copy.sign[axis] = -1;
+        }
+        copies.push_back(copy);
+      }
+    }
+  }
+  return copies;
+}
+
+}  // namespace
+
+void PointSampler::update(const Liquid& liquid) {
+  const auto r = liquid.read(liquid.position);
+  table_.build(liquid.grid, r[0], r[1], r[2], liquid.size());
+  step_ = liquid.steps;
+}
+
+// visit(particle, W V, offset r_j - point, copy) for every particle or image in the support of the point.
+template <class Visit>
+void PointSampler::visit(const Liquid& liquid, const Vec3& point, Visit&& visit) const {
+  const CellGrid& grid = liquid.grid;
+  const int d = liquid.dimensions;
+  const double reach = grid.reach();
+  with_kernel(liquid.context, [&]<int dimensions, class Kernel>() {
+    const double h = liquid.smoothing_length;
+    const double scale = liquid.volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions);
+    for (const Copy& copy : copies_of(liquid, point)) {
+      const auto range = [&](int axis) {
+        return std::pair(grid.index(axis, copy.point[axis] - reach), grid.index(axis, copy.point[axis] + reach));
+      };
+      const auto [x0, x1] = range(0);
+      const auto [y0, y1] = range(1);
+      const auto [z0, z1] = d == 3 ? range(2) : std::pair(0, 0);
+      for (int iz = z0; iz <= z1; ++iz)
+        for (int iy = y0; iy <= y1; ++iy) {
+          const std::int64_t row = std::int64_t{grid.row(iy, iz)} * grid.columns();
+          for (std::int32_t k = table_.first()[row + x0]; k < table_.first()[row + x1 + 1]; ++k) {
+            const auto j = static_cast<std::size_t>(table_.order()[static_cast<std::size_t>(k)]);
+            Vec3 offset{};
+            double r2 = 0;
+            for (int axis = 0; axis < d; ++axis) {
+              offset[axis] = copy.sign[axis] * ((*liquid.position[axis])[j] - copy.point[axis]);
+              r2 += offset[axis] * offset[axis];
+            }
+            if (r2 < reach * reach) visit(j, scale * Kernel::w(std::sqrt(r2) / h), offset, copy);
+          }
+        }
+    }
+  });
+}
+
+double PointSampler::coverage(const Liquid& liquid, const Vec3& point) const {
+  double sum = 0;
+  visit(liquid, point, [&](std::size_t, double weight, const Vec3&, const Copy&) { sum += weight; });
+  return sum;
+}
+
+PointSample PointSampler::sample(const Liquid& liquid, const Vec3& point) const {
+  const int d = liquid.dimensions;
+  Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
+  Eigen::Matrix4d values = Eigen::Matrix4d::Zero();  // columns: pressure, velocity
+  PointSample sample;
+  int count = 0;
+  visit(liquid, point, [&](std::size_t j, double weight, const Vec3& offset, const Copy& copy) {
+    Eigen::Vector4d basis(1, 0, 0, 0), value((*liquid.pressure)[j], 0, 0, 0);
+    for (int axis = 0; axis < d; ++axis) {
+      basis[axis + 1] = offset[axis] / liquid.smoothing_length;
+      value[axis + 1] = copy.sign[axis] * (*liquid.velocity[axis])[j];
+    }
+    moments += weight * basis * basis.transpose();
+    values += weight * basis * value.transpose();
+    sample.coverage += weight;
+    ++count;
+  });
+  if (count == 0) return sample;
+  const auto block = moments.topLeftCorner(d + 1, d + 1);
+  const Eigen::LDLT<Eigen::MatrixXd> factor(block);
+  Eigen::RowVector4d result = values.row(0) / sample.coverage;
+  // A linear fit needs neighbours on all sides; in spray and thin sheets the average is the safer value.
+  if (count > 2 * (d + 1) && factor.info() == Eigen::Success && factor.rcond() > 1e-3) {
+    const Eigen::MatrixXd fitted = factor.solve(values.topRows(d + 1));
+    result = fitted.row(0);
+  }
+  sample.pressure = result[0];
+  for (int axis = 0; axis < d; ++axis) sample.velocity[axis] = result[axis + 1];
+  return sample;
+}
+
+double PointSampler::elevation(const Liquid& liquid, const Vec3& point) const {
+  const int up = liquid.dimensions - 1;
+  const double bottom = liquid.scene.domain.lower[up];
+  const double step = liquid.scene.spacing / 4;
+  const double highest = parallel_max(liquid.size(), bottom, [&](std::size_t i) { return (*liquid.position[up])[i]; });
+  Vec3 r = point;
+  const auto wet = [&](double z) {
+    r[up] = z;
+    return coverage(liquid, r) >= 0.5;
+  };
+  double above = highest + 2 * step;
+  double z = above;
+  while (z > bottom && !wet(z)) {
+    above = z;
+    z -= step;
+  }
+  if (z <= bottom) return bottom;
+  for (int k = 0; k < 20; ++k) {
+    const double middle = 0.5 * (z + above);
+    (wet(middle) ? z : above) = middle;
+  }
+  return z;
+}
+
+double PointSampler::front(const Liquid& liquid, int axis, double height) const {
+  const int up = liquid.dimensions - 1;
+  const double lowest = liquid.scene.domain.lower[axis];
+  const double farthest = parallel_max(liquid.size(), lowest, [&](std::size_t i) {
+    if ((*liquid.position[up])[i] >= height) return lowest;
+    Vec3 r{};
+    for (int a = 0; a < liquid.dimensions; ++a) r[a] = (*liquid.position[a])[i];
+    return coverage(liquid, r) >= 0.5 ? r[axis] : lowest;
+  });
+  return farthest > lowest ? farthest + 0.5 * liquid.scene.spacing : lowest;
+}
+
+}  // namespace spume::les_sph

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+#include "spume/methods/les_sph/pressure_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+
+namespace spume::les_sph {
+namespace {
+
+// Between a free particle and one held at p = 0 the penalty grows as (1 - b) / b; its largest value only has to
+// dwarf the coupling.
+constexpr double smallest_weight = 1e-3;
+
+CellGeometry cell_geometry(const Liquid& liquid) {
+  const Domain& domain = liquid.scene.domain;
+  CellGeometry geometry;
+  geometry.dimensions = liquid.dimensions;
+  geometry.cell_size = liquid.options.pressure.cell_ratio * liquid.scene.spacing;
+  for (int axis = 0; axis < liquid.dimensions; ++axis) {
+    geometry.lower[axis] = liquid.next_walls[axis][0];
+    geometry.upper[axis] = liquid.next_walls[axis][1];
+    geometry.periodic[axis] = domain.periodic(axis);
+    for (int side = 0; side < 2; ++side) {
+      const BoundaryKind kind = domain.sides[axis][side].kind;
+      geometry.wall[axis][side] = kind == BoundaryKind::free_slip || kind == BoundaryKind::no_slip;
+    }
+  }
+  for (const SolidBox& box : domain.boxes) geometry.solids.push_back({box.lower, box.upper});
+  return geometry;
+}
+
+double norm(std::span<const double> values) {
+  return std::sqrt(parallel_sum(values.size(), [&](std::size_t i) { return values[i] * values[i]; }));
+}
+
+}  // namespace
+
+// The particle matrix as the Krylov solvers see it.
+struct PressureSystem::Operator final : LinearOperator<float> {
+  Operator(PressureOperator& matrix, int& applications) : matrix_(matrix), applications_(applications) {}
+  std::size_t size() const override { return matrix_.size(); }
+  void apply(std::span<const float> x, std::span<float> y) override {
+    matrix_.apply(x, y, x);
+    ++applications_;
+  }
+  Dots apply_with_dots(std::span<const float> x, std::span<float> y, std::span<const float> w) override {
+    const PressureDots dots = matrix_.apply(x, y, w);
+    ++applications_;
+    return {dots.wy, dots.yy};
+  }
+  PressureOperator& matrix_;
+  int& applications_;
+};
+
+PressureSystem::PressureSystem(const Liquid& liquid) {
+  if (liquid.options.pressure.preconditioner == PreconditionerKind::multigrid)
+    multigrid_ = std::make_unique<CellMultigrid>(cell_geometry(liquid));
+}
+
+void PressureSystem::set_matrix(const Liquid& liquid, double helmholtz) {
+  const std::size_t n = liquid.size();
+  for (auto* array : {&extra_, &diagonal_, &row_scale_}) array->resize(n);
+  const double bulk = liquid.lattice.divergence_of_position;
+  const auto volume = static_cast<float>(liquid.volume);
+  parallel_for(n, [&](std::size_t i) {
+    // Far below the bulk value div r tells of missing neighbours, not of the arrangement.
+    const double div_r = std::max<double>((*liquid.divergence_of_position)[i], 0.5 * bulk);
+    const double scale = div_r / liquid.dimensions;  // what the row is multiplied by
+    row_scale_[i] = static_cast<float>(scale);
+    double extra = helmholtz * scale;
+    if (liquid.plan.free_surface) {
+      const double weight = std::max<double>(liquid.interior_weight[i], smallest_weight);
+      extra += (1 - weight) / weight * (*liquid.coupling)[i];
+    }
+    extra_[i] = static_cast<float>(extra);
+    const bool masked = liquid.plan.free_surface && liquid.at_surface[i] != 0;
+    diagonal_[i] = masked ? 0.0F : volume * ((*liquid.coupling)[i] + extra_[i]);
+  });
+}
+
+// Right-hand side for q, times the volume, and its norm in terms of p.
+void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz, double source_scale,
+                                         const double* source) {
+  const std::size_t n = liquid.size();
+  right_hand_side_.resize(n);
+  const double density = liquid.scene.fluid.density;
+  const bool surface = liquid.plan.free_surface;
+  const double squares = parallel_reduce(
+      n, 0.0,
+      [&](std::size_t first, std::size_t last) {
+        double sum = 0;
+        for (std::size_t i = first; i < last; ++i) {
+          if (surface && liquid.at_surface[i] != 0) {
+            right_hand_side_[i] = 0;
+            continue;
+          }
+          const double known = (source_scale * source[i] + helmholtz * (*liquid.pressure)[i] / density) * row_scale_[i];
+          const double potential = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
+          right_hand_side_[i] = liquid.volume * (known + extra_[i] * potential);
+          const double in_pressure =
+              liquid.volume * (known - (liquid.potential == nullptr ? 0.0F : potential_laplacian_[i]));
+          sum += in_pressure * in_pressure;
+        }
+        return sum;
+      },
+      [](double a, double b) { return a + b; });
+  reference_norm_ = std::sqrt(squares);
+}
+
+void PressureSystem::solve(Liquid& liquid, double helmholtz, Ledger& ledger) {
+  const std::size_t n = liquid.size();
+  const PressureOptions& options = liquid.options.pressure;
+  const bool surface = liquid.plan.free_surface;
+  for (auto* array : {&correction_, &correction_right_}) array->resize(n);
+  residual_.resize(n);
+
+  const PressureMatrix matrix{extra_.data(), surface ? liquid.at_surface.data() : nullptr};
+  operator_.bind(liquid.context, liquid.records, matrix);
+  report_ = {};
+  Operator a(operator_, report_.applications);
+  JacobiPreconditioner<float> jacobi(diagonal_);
+  spume::Preconditioner<float>* preconditioner = &jacobi;
+  if (multigrid_ != nullptr) {
+    const auto scope = ledger.time("preconditioner setup", static_cast<double>(n));
+    if (liquid.plan.displaced_walls) multigrid_->set_geometry(cell_geometry(liquid));
+    if (!surface) {
+      interior_.resize(n);
+      parallel_for(n, [&](std::size_t i) { interior_[i] = 1; });
+    }
+    const auto r = liquid.read(liquid.intermediate);
+    const auto span = [&](int axis) { return axis < liquid.dimensions ? std::span(r[axis], n) : std::span<const double>(); };
+    multigrid_->setup(span(0), span(1), span(2), surface ? std::span<const float>(liquid.interior_weight) : interior_,
+                      helmholtz, diagonal_);
+    preconditioner = multigrid_.get();
+  }
+
+  // Iterative refinement: residuals in double, corrections in float. A correction gains at most three digits:
+  // rounding in float spoils more.
+  constexpr double digits_per_correction = 1e-3;
+  const double target = options.tolerance * reference_norm_;
+  const bool singular = liquid.plan.closed && helmholtz == 0;
+  for (int round = 0;; ++round) {
+    operator_.residual(*liquid.reduced_pressure, right_hand_side_, residual_);
+    ++report_.applications;
+    if (singular) {
+      const double mean = parallel_sum(n, [&](std::size_t i) { return residual_[i]; }) / static_cast<double>(n);
+      parallel_for(n, [&](std::size_t i) { residual_[i] -= mean; });
+    }
+    const double size = norm(residual_);
+    report_.relative_residual = reference_norm_ > 0 ? size / reference_norm_ : 0;
+    if (size <= target) return;
+    const int left = options.max_iterations - report_.iterations;
+    if (!std::isfinite(size) || left <= 0 || round > 20) {
+      report_.converged = false;
+      return;
+    }
+    // Scaled to order one: float keeps its range for any units.
+    parallel_for(n, [&](std::size_t i) { correction_right_[i] = static_cast<float>(residual_[i] / size); });
+    KrylovOptions<float> krylov;
+    krylov.tolerance = std::clamp(0.5 * target / size, digits_per_correction, 0.5);
+    krylov.max_iterations = left;
+    krylov.zero_guess = true;
+    krylov.confirm = false;
+    krylov.remove_mean = singular;
+    const KrylovResult result =
+        options.solver == PressureSolver::cg
+            ? conjugate_gradients<float>(a, *preconditioner, correction_right_, correction_, krylov, work_)
+            : bicgstab<float>(a, *preconditioner, correction_right_, correction_, krylov, work_);
+    report_.iterations += std::max(result.iterations, 1);
+    parallel_for(n, [&](std::size_t i) { (*liquid.reduced_pressure)[i] += size * correction_[i]; });
+  }
+}
+
+void PressureSystem::remove_constant(Liquid& liquid) const {
+  const std::size_t n = liquid.size();
+  const double mean = parallel_sum(n, [&](std::size_t i) {
+                        return (*liquid.reduced_pressure)[i] - (liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]);
+                      }) / static_cast<double>(std::max<std::size_t>(n, 1));
+  parallel_for(n, [&](std::size_t i) { (*liquid.reduced_pressure)[i] -= mean; });
+}
+
+void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
+  const std::size_t n = liquid.size();
+  const double pairs = static_cast<double>(liquid.list.pair_count());
+  const double density = liquid.scene.fluid.density;
+  const double c = liquid.scene.fluid.sound_speed;
+  const double helmholtz = c > 0 ? 1 / (c * c * dt * dt) : 0;
+  divergence_.resize(n);
+  if (liquid.potential != nullptr) potential_laplacian_.resize(n);
+  {
+    const auto scope = ledger.time("divergence", static_cast<double>(n), pairs);
+    divergence_sweep(liquid.context, liquid.records, liquid.read(liquid.predicted), liquid.velocity_rule,
+                     liquid.read_correction(), liquid.potential == nullptr ? nullptr : liquid.potential->data(),
+                     divergence_.data(), potential_laplacian_.data());
+    liquid.max_divergence = parallel_max(n, 0.0, [&](std::size_t i) { return std::abs(divergence_[i]); });
+    set_matrix(liquid, helmholtz);
+    set_right_hand_side(liquid, helmholtz, -1 / dt, divergence_.data());
+  }
+  // Start from the pressure that the particle carries; surface particles hold p = 0.
+  parallel_for(n, [&](std::size_t i) {
+    const bool held = liquid.plan.free_surface && liquid.at_surface[i] != 0;
+    const double carried = held || !liquid.options.pressure.warm_start ? 0.0 : (*liquid.pressure)[i] / density;
+    (*liquid.reduced_pressure)[i] = carried + (liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]);
+  });
+  {
+    const auto scope = ledger.time("pressure", static_cast<double>(n));
+    solve(liquid, helmholtz, ledger);
+  }
+  ledger.count("pressure applications", report_.applications, 0, 0, pairs * report_.applications);
+  if (!report_.converged) {
+    StepFailure::Details details;
+    details.cause = "the pressure solve did not converge in " + std::to_string(report_.iterations) + " iterations";
+    details.option = "pressure.max_iterations";
+    details.value = report_.relative_residual;
+    throw StepFailure(details);
+  }
+  if (liquid.plan.closed) remove_constant(liquid);
+}
+
+void PressureSystem::solve_initial(Liquid& liquid, Ledger& ledger) {
+  const std::size_t n = liquid.size();
+  const int d = liquid.dimensions;
+  divergence_.resize(n);
+  if (liquid.potential != nullptr) {
+    potential_laplacian_.resize(n);
+    divergence_sweep(liquid.context, liquid.records, liquid.read(liquid.velocity), liquid.velocity_rule,
+                     liquid.read_correction(), liquid.potential->data(), divergence_.data(),
+                     potential_laplacian_.data());
+  }
+  // -lap p = tr(grad u . grad u), from the divergence of the momentum equation.
+  parallel_for(n, [&](std::size_t i) {
+    double trace = 0;
+    for (int a = 0; a < d; ++a)
+      for (int b = 0; b < d; ++b)
+        trace += double{(*liquid.velocity_gradient[a * d + b])[i]} * (*liquid.velocity_gradient[b * d + a])[i];
+    divergence_[i] = trace;
+  });
+  set_matrix(liquid, 0);
+  set_right_hand_side(liquid, 0, 1, divergence_.data());
+  parallel_for(n, [&](std::size_t i) {
+    (*liquid.reduced_pressure)[i] = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
+  });
+  const auto scope = ledger.time("first pressure", static_cast<double>(n));
+  solve(liquid, 0, ledger);
+  if (liquid.plan.closed) remove_constant(liquid);
+}
+
+double PressureSystem::bytes() const {
+  double total = 0;
+  for (const auto* array : {&divergence_, &right_hand_side_, &residual_}) total += 8.0 * static_cast<double>(array->capacity());
+  for (const auto* array : {&potential_laplacian_, &extra_, &diagonal_, &row_scale_, &correction_right_, &correction_, &interior_})
+    total += 4.0 * static_cast<double>(array->capacity());
+  for (const auto* array : {&work_.residual, &work_.shadow, &work_.direction, &work_.preconditioned, &work_.image, &work_.second_image, &work_.second_preconditioned})
+    total += 4.0 * static_cast<double>(array->capacity());
+  return total;
+}
+
+}  // namespace spume::les_sph

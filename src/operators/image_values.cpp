@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "spume/operators/image_values.hpp"
+
+namespace spume {
+namespace {
+
+template <class T>
+void pack_scalar_any(const SweepContext& context, float* records, int width, int slot, const T* values) {
+  const std::size_t n = context.list->particles();
+  const std::size_t m = context.images->size();
+  const std::int32_t* source = context.images->source();
+  float* out = records + context.dimensions + slot;
+  const auto w = static_cast<std::size_t>(width);
+  parallel_for(n, [=](std::size_t i) { out[i * w] = static_cast<float>(values[i]); });
+  parallel_for(m, [=](std::size_t k) { out[(n + k) * w] = static_cast<float>(values[source[k]]); });
+}
+
+}  // namespace
+
+void pack_scalar(const SweepContext& context, float* records, int width, int slot, const double* values) {
+  pack_scalar_any(context, records, width, slot, values);
+}
+void pack_scalar(const SweepContext& context, float* records, int width, int slot, const float* values) {
+  pack_scalar_any(context, records, width, slot, values);
+}
+
+void pack_velocity(const SweepContext& context, float* records, int width, int slot,
+                   const std::array<const double*, 3>& velocity, const VelocityImageRule& rule) {
+  const int dimensions = context.dimensions;
+  const std::size_t n = context.list->particles();
+  const std::int32_t* source = context.images->source();
+  const std::int32_t* path = context.images->path();
+  float* out = records + dimensions + slot;
+  const auto w = static_cast<std::size_t>(width);
+  parallel_for(n, [=](std::size_t i) {
+    for (int axis = 0; axis < dimensions; ++axis) out[i * w + axis] = static_cast<float>(velocity[axis][i]);
+  });
+  const bool moving = !rule.offset[0].empty();
+  parallel_for(context.images->size(), [&, out, w, n, moving](std::size_t k) {
+    const auto& sign = rule.sign[path[k]];
+    for (int axis = 0; axis < dimensions; ++axis) {
+      const float value = sign[axis] * static_cast<float>(velocity[axis][source[k]]);
+      out[(n + k) * w + axis] = moving ? value + rule.offset[axis][k] : value;
+    }
+  });
+}
+
+void pack_vector(const SweepContext& context, float* records, int width, int slot,
+                 const std::array<const float*, 3>& values, const std::vector<std::array<float, 3>>& reflection) {
+  const int dimensions = context.dimensions;
+  const std::size_t n = context.list->particles();
+  const std::int32_t* source = context.images->source();
+  const std::int32_t* path = context.images->path();
+  float* out = records + dimensions + slot;
+  const auto w = static_cast<std::size_t>(width);
+  parallel_for(n, [=](std::size_t i) {
+    for (int axis = 0; axis < dimensions; ++axis) out[i * w + axis] = values[axis][i];
+  });
+  parallel_for(context.images->size(), [&, out, w, n](std::size_t k) {
+    for (int axis = 0; axis < dimensions; ++axis)
+      out[(n + k) * w + axis] = reflection[path[k]][axis] * values[axis][source[k]];
+  });
+}
+
+}  // namespace spume

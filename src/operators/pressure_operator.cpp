@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "spume/operators/pressure_operator.hpp"
+
+namespace spume {
+namespace {
+
+using simd::f32x8;
+using simd::f64x4;
+
+constexpr std::size_t block = 256;
+
+template <int dimensions, class Kernel>
+void apply_rows(const SweepContext& context, const float* records, const PressureMatrix& matrix, const float* w,
+                float* y, PressureDots* partial) {
+  constexpr int width = record_width(dimensions, 1);
+  const NeighbourList& list = *context.list;
+  const KernelScale<dimensions, Kernel> scale(context);
+  const auto volume = static_cast<float>(context.volume);
+  const float factor = -2 * scale.gradient * volume;
+  parallel_blocks_dynamic(list.particles(), block, [&](std::size_t b, std::size_t first, std::size_t last) {
+    PressureDots dots;
+    for (std::size_t i = first; i < last; ++i) {
+      if (matrix.masked != nullptr && matrix.masked[i] != 0) {
+        y[i] = 0;
+        continue;
+      }
+      const float own_value = records[i * width + dimensions];
+      const f32x8 own = simd::splat(own_value);
+      f32x8 sum{};
+      for_each_batch<dimensions, 1>(list, records, i, scale.inverse_h, [&](const auto& batch) {
+        sum = sum + Kernel::f(batch.q) * (own - batch.payload[0]);
+      });
+      const float value = factor * simd::sum(sum) + volume * matrix.extra[i] * own_value;
+      y[i] = value;
+      dots.wy += double{w[i]} * value;
+      dots.yy += double{value} * value;
+    }
+    partial[b] = dots;
+  });
+}
+
+template <int dimensions, class Kernel>
+void residual_rows(const SweepContext& context, const float* records, const PressureMatrix& matrix, const double* q,
+                   const double* b, double* r) {
+  constexpr int width = record_width(dimensions, 2);
+  const NeighbourList& list = *context.list;
+  const KernelScale<dimensions, Kernel> scale(context);
+  const auto volume = static_cast<float>(context.volume);
+  const float factor = -2 * scale.gradient * volume;
+  sweep(list.particles(), [&](std::size_t i) {
+    if (matrix.masked != nullptr && matrix.masked[i] != 0) {
+      r[i] = 0;
+      return;
+    }
+    const f32x8 high = simd::splat(records[i * width + dimensions]);
+    const f32x8 low = simd::splat(records[i * width + dimensions + 1]);
+    f64x4 sum_low{}, sum_high{};
+    for_each_batch<dimensions, 2>(list, records, i, scale.inverse_h, [&](const auto& batch) {
+      const f32x8 f = Kernel::f(batch.q);
+      const f32x8 coarse = high - batch.payload[0];
+      const f32x8 fine = low - batch.payload[1];
+      sum_low = sum_low + simd::to_f64_low(f) * (simd::to_f64_low(coarse) + simd::to_f64_low(fine));
+      sum_high = sum_high + simd::to_f64_high(f) * (simd::to_f64_high(coarse) + simd::to_f64_high(fine));
+    });
+    r[i] = b[i] - (double{factor} * simd::sum(sum_low + sum_high) + double{volume * matrix.extra[i]} * q[i]);
+  });
+}
+
+}  // namespace
+
+void PressureOperator::bind(const SweepContext& context, Records& records, const PressureMatrix& matrix) {
+  context_ = context;
+  records_ = &records;
+  matrix_ = matrix;
+  partial_.resize(block_count(context.list->particles(), block));
+}
+
+PressureDots PressureOperator::apply(std::span<const float> x, std::span<float> y, std::span<const float> w) {
+  float* records = records_->prepare(context_, 1);
+  const std::size_t n = size();
+  const auto width = static_cast<std::size_t>(record_width(context_.dimensions, 1));
+  const std::int32_t* source = context_.images->source();
+  float* out = records + context_.dimensions;
+  parallel_for(n, [&, out, width](std::size_t i) { out[i * width] = x[i]; });
+  parallel_for(context_.images->size(), [&, out, width, n](std::size_t k) { out[(n + k) * width] = x[source[k]]; });
+  with_kernel(context_, [&]<int dimensions, class Kernel>() {
+    apply_rows<dimensions, Kernel>(context_, records, matrix_, w.data(), y.data(), partial_.data());
+  });
+  PressureDots total;
+  for (const auto& part : partial_) {
+    total.wy += part.wy;
+    total.yy += part.yy;
+  }
+  return total;
+}
+
+void PressureOperator::residual(std::span<const double> q, std::span<const double> b, std::span<double> r) {
+  float* records = records_->prepare(context_, 2);
+  const std::size_t n = size();
+  const auto width = static_cast<std::size_t>(record_width(context_.dimensions, 2));
+  const std::int32_t* source = context_.images->source();
+  float* out = records + context_.dimensions;
+  const auto split = [=](float* record, double value) {
+    record[0] = static_cast<float>(value);
+    record[1] = static_cast<float>(value - double{record[0]});
+  };
+  parallel_for(n, [&, out, width](std::size_t i) { split(out + i * width, q[i]); });
+  parallel_for(context_.images->size(), [&, out, width, n](std::size_t k) { split(out + (n + k) * width, q[source[k]]); });
+  with_kernel(context_, [&]<int dimensions, class Kernel>() {
+    residual_rows<dimensions, Kernel>(context_, records, matrix_, q.data(), b.data(), r.data());
+  });
+}
+
+}  // namespace spume

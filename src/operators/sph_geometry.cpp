@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include "spume/operators/sph_operators.hpp"
+
+namespace spume {
+namespace {
+
+using simd::f32x8;
+
+// The inverse is used while it amplifies by less than this: a plane surface needs 1.5 to 2, an edge about 4;
+// beyond it the neighbours lie nearly in a plane or on a line and the inverse would amplify noise.
+constexpr double largest_correction = 6;
+
+// Inverse of a symmetric matrix; false when it is singular or amplifies too much.
+bool invert(const std::array<double, 6>& m, int dimensions, std::array<double, 6>& inverse) {
+  double norm2 = 0;
+  if (dimensions == 2) {
+    const double det = m[0] * m[2] - m[1] * m[1];
+    if (!(det > 1e-12)) return false;
+    inverse = {m[2] / det, -m[1] / det, m[0] / det, 0, 0, 0};
+    norm2 = inverse[0] * inverse[0] + 2 * inverse[1] * inverse[1] + inverse[2] * inverse[2];
+  } else {
+    const double c00 = m[3] * m[5] - m[4] * m[4];
+    const double c01 = m[2] * m[4] - m[1] * m[5];
+    const double c02 = m[1] * m[4] - m[2] * m[3];
+    const double det = m[0] * c00 + m[1] * c01 + m[2] * c02;
+    if (!(det > 1e-12)) return false;
+    inverse = {c00 / det,
+               c01 / det,
+               c02 / det,
+               (m[0] * m[5] - m[2] * m[2]) / det,
+               (m[1] * m[2] - m[0] * m[4]) / det,
+               (m[0] * m[3] - m[1] * m[1]) / det};
+    norm2 = inverse[0] * inverse[0] + inverse[3] * inverse[3] + inverse[5] * inverse[5] +
+            2 * (inverse[1] * inverse[1] + inverse[2] * inverse[2] + inverse[4] * inverse[4]);
+  }
+  return norm2 < dimensions * largest_correction * largest_correction;
+}
+
+template <int dimensions, class Kernel, bool shifting>
+void geometry(const SweepContext& context, Records& records_, const GeometryOptions& options, const GeometryOut& out) {
+  constexpr int matrix = dimensions == 2 ? 3 : 6;
+  const NeighbourList& list = *context.list;
+  const float* records = records_.prepare(context, 0);
+  const KernelScale<dimensions, Kernel> scale(context);
+  const auto centre = static_cast<float>(scale.value * Kernel::w(0.0));
+  const auto h = static_cast<float>(context.smoothing_length);
+  const auto inverse_reference = static_cast<float>(1 / Kernel::w(options.spacing / context.smoothing_length));
+
+  sweep(list.particles(), [&](std::size_t i) {
+    f32x8 kernel_sum{}, coupling{};
+    std::array<f32x8, matrix> m{};
+    std::array<f32x8, dimensions> normal{}, concentration{};
+    for_each_batch<dimensions, 0>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      const f32x8 w = Kernel::w(b.q);
+      const f32x8 g = -scale.gradient * Kernel::f(b.q);
+      kernel_sum = kernel_sum + w;
+      coupling = coupling + g;
+      int slot = 0;
+      for (int a = 0; a < dimensions; ++a) {
+        const f32x8 gd = g * b.d[a];
+        normal[a] = normal[a] + gd;
+        for (int c = a; c < dimensions; ++c) m[slot] = m[slot] + gd * b.d[c], ++slot;
+      }
+      if constexpr (shifting) {
+        const f32x8 ratio = w * inverse_reference;
+        const f32x8 ratio2 = ratio * ratio;
+        const f32x8 tensile = g + 0.25F * g * ratio2 * ratio2;
+        for (int a = 0; a < dimensions; ++a) concentration[a] = concentration[a] + tensile * b.d[a];
+      }
+    });
+    std::array<double, 6> sum{}, inverse{};
+    for (int k = 0; k < matrix; ++k) sum[k] = simd::sum(m[k]);
+    const double trace = dimensions == 2 ? sum[0] + sum[2] : sum[0] + sum[3] + sum[5];
+    const bool corrected = invert(sum, dimensions, inverse);
+    if (!corrected) inverse = dimensions == 2 ? std::array<double, 6>{1, 0, 1} : std::array<double, 6>{1, 0, 0, 1, 0, 1};
+    for (int k = 0; k < matrix; ++k) out.correction[k][i] = static_cast<float>(inverse[k]);
+    out.uncorrected[i] = corrected ? 0 : 1;
+    out.divergence_of_position[i] = static_cast<float>(trace);
+    out.kernel_sum[i] = centre + scale.value * simd::sum(kernel_sum);
+    out.coupling[i] = 2 * simd::sum(coupling);
+    for (int a = 0; a < dimensions; ++a) {
+      if (options.normals) out.normal[a][i] = -h * simd::sum(normal[a]);
+      if constexpr (shifting) out.concentration_gradient[a][i] = simd::sum(concentration[a]);
+    }
+  });
+}
+
+}  // namespace
+
+void geometry_sweep(const SweepContext& context, Records& records, const GeometryOptions& options,
+                    const GeometryOut& out) {
+  with_kernel(context, [&]<int dimensions, class Kernel>() {
+    if (options.shifting) geometry<dimensions, Kernel, true>(context, records, options, out);
+    else geometry<dimensions, Kernel, false>(context, records, options, out);
+  });
+}
+
+LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smoothing_ratio) {
+  SweepContext context;
+  context.dimensions = dimensions;
+  context.kernel = kernel;
+  LatticeConstants result{};
+  with_kernel(context, [&]<int d, class Kernel>() {
+    const double h = smoothing_ratio;
+    const double scale = Kernel::normalisation(d) / std::pow(h, d);
+    const int n = static_cast<int>(Kernel::support * h) + 1;
+    for (int k = d == 3 ? -n : 0; k <= (d == 3 ? n : 0); ++k)
+      for (int j = -n; j <= n; ++j)
+        for (int i = -n; i <= n; ++i) {
+          const double r2 = i * i + j * j + k * k;
+          const double q = std::sqrt(r2) / h;
+          result.kernel_sum += scale * Kernel::w(q);
+          result.divergence_of_position -= scale / (h * h) * Kernel::f(q) * r2;
+        }
+  });
+  return result;
+}
+
+}  // namespace spume

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: MIT
+#include "spume/operators/sph_operators.hpp"
+
+namespace spume {
+namespace {
+
+using simd::f32x8;
+
+// Row a, column c of a symmetric matrix stored as its upper triangle.
+template <int dimensions>
+constexpr int symmetric_index(int a, int c) {
+  const int low = a < c ? a : c, high = a < c ? c : a;
+  return dimensions == 2 ? low + high : (low == 0 ? high : low + high + 1);
+}
+
+// The corrected vector L v of particle i.
+template <int dimensions>
+std::array<float, dimensions> correct(const std::array<const float*, 6>& correction, std::size_t i,
+                                      const std::array<float, dimensions>& v) {
+  std::array<float, dimensions> result{};
+  for (int a = 0; a < dimensions; ++a)
+    for (int c = 0; c < dimensions; ++c) result[a] += correction[symmetric_index<dimensions>(a, c)][i] * v[c];
+  return result;
+}
+
+template <int dimensions, class Kernel, bool filter>
+void velocity_gradient(const SweepContext& context, Records& records_, const std::array<const double*, 3>& velocity,
+                       const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
+                       const VelocityGradientOut& out) {
+  const NeighbourList& list = *context.list;
+  float* records = records_.prepare(context, dimensions);
+  constexpr int width = record_width(dimensions, dimensions);
+  pack_velocity(context, records, width, 0, velocity, rule);
+  const KernelScale<dimensions, Kernel> scale(context);
+  const auto centre = static_cast<float>(Kernel::w(0.0));
+
+  sweep(list.particles(), [&](std::size_t i) {
+    std::array<f32x8, dimensions> own{}, filtered{};
+    for (int a = 0; a < dimensions; ++a) own[a] = simd::splat(records[i * width + dimensions + a]);
+    std::array<std::array<f32x8, dimensions>, dimensions> m{};
+    f32x8 kernel_sum{};
+    for_each_batch<dimensions, dimensions>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      const f32x8 g = -scale.gradient * Kernel::f(b.q);
+      std::array<f32x8, dimensions> gd;
+      for (int c = 0; c < dimensions; ++c) gd[c] = g * b.d[c];
+      for (int a = 0; a < dimensions; ++a) {
+        const f32x8 difference = b.payload[a] - own[a];
+        for (int c = 0; c < dimensions; ++c) m[a][c] = m[a][c] + difference * gd[c];
+      }
+      if constexpr (filter) {
+        const f32x8 w = Kernel::w(b.q);
+        kernel_sum = kernel_sum + w;
+        for (int a = 0; a < dimensions; ++a) filtered[a] = filtered[a] + w * b.payload[a];
+      }
+    });
+    const float weight = filter ? 1 / (centre + simd::sum(kernel_sum)) : 0;
+    for (int a = 0; a < dimensions; ++a) {
+      std::array<float, dimensions> row{};
+      for (int c = 0; c < dimensions; ++c) row[c] = simd::sum(m[a][c]);
+      row = correct<dimensions>(correction, i, row);
+      for (int c = 0; c < dimensions; ++c) out.gradient[a * dimensions + c][i] = row[c];
+      if constexpr (filter) out.filtered[a][i] = (centre * own[a][0] + simd::sum(filtered[a])) * weight;
+    }
+  });
+}
+
+template <int dimensions, class Kernel>
+void shift_curvature(const SweepContext& context, Records& records_, const std::array<const float*, 9>& gradient,
+                     const VelocityImageRule& rule, const std::vector<std::array<float, 3>>& reflection,
+                     const std::array<const float*, 3>& shift, const std::array<const float*, 6>& correction,
+                     const std::array<float*, 3>& out) {
+  constexpr int entries = dimensions * dimensions;
+  constexpr int width = record_width(dimensions, entries);
+  const NeighbourList& list = *context.list;
+  const std::size_t n = list.particles();
+  float* records = records_.prepare(context, entries);
+  parallel_for(n, [&](std::size_t i) {
+    for (int k = 0; k < entries; ++k) records[i * width + dimensions + k] = gradient[k][i];
+  });
+  parallel_for(context.images->size(), [&](std::size_t m) {
+    const auto source = static_cast<std::size_t>(context.images->source()[m]);
+    const auto path = static_cast<std::size_t>(context.images->path()[m]);
+    for (int a = 0; a < dimensions; ++a)
+      for (int b = 0; b < dimensions; ++b)
+        records[(n + m) * width + dimensions + a * dimensions + b] =
+            rule.sign[path][a] * reflection[path][b] * gradient[a * dimensions + b][source];
+  });
+  const KernelScale<dimensions, Kernel> scale(context);
+
+  sweep(n, [&](std::size_t i) {
+    std::array<float, dimensions> s;
+    for (int a = 0; a < dimensions; ++a) s[a] = shift[a][i];
+    // L is symmetric: (L sum g d f) . s = sum g f (d . L s).
+    const std::array<float, dimensions> direction = correct<dimensions>(correction, i, s);
+    std::array<f32x8, dimensions> sum{};
+    std::array<float, entries> own;
+    for (int k = 0; k < entries; ++k) own[k] = records[i * width + dimensions + k];
+    for_each_batch<dimensions, entries>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      f32x8 along{};
+      for (int a = 0; a < dimensions; ++a) along = along + b.d[a] * direction[a];
+      const f32x8 weight = -scale.gradient * Kernel::f(b.q) * along;
+      for (int a = 0; a < dimensions; ++a) {
+        f32x8 difference{};
+        for (int c = 0; c < dimensions; ++c)
+          difference = difference + s[c] * (b.payload[a * dimensions + c] - own[a * dimensions + c]);
+        sum[a] = sum[a] + weight * difference;
+      }
+    });
+    for (int a = 0; a < dimensions; ++a) out[a][i] = 0.5F * simd::sum(sum[a]);
+  });
+}
+
+template <int dimensions, class Kernel>
+void viscous(const SweepContext& context, Records& records_, const std::array<const double*, 3>& velocity,
+             const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out) {
+  const NeighbourList& list = *context.list;
+  float* records = records_.prepare(context, dimensions + 1);
+  constexpr int width = record_width(dimensions, dimensions + 1);
+  pack_velocity(context, records, width, 0, velocity, rule);
+  pack_scalar(context, records, width, dimensions, kappa);
+  const KernelScale<dimensions, Kernel> scale(context);
+
+  sweep(list.particles(), [&](std::size_t i) {
+    std::array<f32x8, dimensions> own{}, sum{};
+    for (int a = 0; a < dimensions; ++a) own[a] = simd::splat(records[i * width + dimensions + a]);
+    const f32x8 own_kappa = simd::splat(kappa[i]);
+    for_each_batch<dimensions, dimensions + 1>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      // Harmonic mean 2 k_i k_j / (k_i + k_j), zero when both vanish (also at the sentinel).
+      const f32x8 kappa_j = b.payload[dimensions];
+      const f32x8 mean = own_kappa * kappa_j / simd::max(own_kappa + kappa_j, simd::splat(1e-30F));
+      const f32x8 weight = (-4.0F * scale.gradient) * Kernel::f(b.q) * mean;
+      for (int a = 0; a < dimensions; ++a) sum[a] = sum[a] + weight * (b.payload[a] - own[a]);
+    });
+    for (int a = 0; a < dimensions; ++a) out[a][i] = simd::sum(sum[a]);
+  });
+}
+
+template <int dimensions, class Kernel>
+void divergence_of(const SweepContext& context, Records& records_, const std::array<const double*, 3>& velocity,
+                   const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
+                   const double* potential, double* divergence, float* negative_laplacian) {
+  const NeighbourList& list = *context.list;
+  float* records = records_.prepare(context, dimensions + 1);
+  constexpr int width = record_width(dimensions, dimensions + 1);
+  pack_velocity(context, records, width, 0, velocity, rule);
+  if (potential != nullptr) pack_scalar(context, records, width, dimensions, potential);
+  const KernelScale<dimensions, Kernel> scale(context);
+
+  sweep(list.particles(), [&](std::size_t i) {
+    std::array<f32x8, dimensions> own{};
+    for (int a = 0; a < dimensions; ++a) own[a] = simd::splat(records[i * width + dimensions + a]);
+    const f32x8 own_potential = simd::splat(records[i * width + 2 * dimensions]);
+    std::array<std::array<f32x8, dimensions>, dimensions> m{};
+    f32x8 laplacian{};
+    for_each_batch<dimensions, dimensions + 1>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      const f32x8 g = -scale.gradient * Kernel::f(b.q);
+      std::array<f32x8, dimensions> gd;
+      for (int c = 0; c < dimensions; ++c) gd[c] = g * b.d[c];
+      for (int a = 0; a < dimensions; ++a) {
+        const f32x8 difference = b.payload[a] - own[a];
+        for (int c = 0; c < dimensions; ++c) m[a][c] = m[a][c] + difference * gd[c];
+      }
+      laplacian = laplacian + g * (own_potential - b.payload[dimensions]);
+    });
+    double result = 0;
+    for (int a = 0; a < dimensions; ++a)
+      for (int c = 0; c < dimensions; ++c)
+        result += double{correction[symmetric_index<dimensions>(a, c)][i]} * simd::sum(m[a][c]);
+    divergence[i] = result;
+    if (potential != nullptr) negative_laplacian[i] = 2 * simd::sum(laplacian);
+  });
+}
+
+template <int dimensions, class Kernel>
+void gradient_of(const SweepContext& context, Records& records_, const double* values, double reference,
+                 const std::array<const float*, 6>& correction, const std::array<float*, 3>& out) {
+  const NeighbourList& list = *context.list;
+  const std::size_t n = list.particles();
+  float* records = records_.prepare(context, 1);
+  constexpr int width = record_width(dimensions, 1);
+  const std::int32_t* source = context.images->source();
+  parallel_for(n, [=](std::size_t i) { records[i * width + dimensions] = static_cast<float>(values[i] - reference); });
+  parallel_for(context.images->size(), [=](std::size_t k) {
+    records[(n + k) * width + dimensions] = static_cast<float>(values[source[k]] - reference);
+  });
+  const KernelScale<dimensions, Kernel> scale(context);
+
+  sweep(n, [&](std::size_t i) {
+    const f32x8 own = simd::splat(records[i * width + dimensions]);
+    std::array<f32x8, dimensions> sum{};
+    for_each_batch<dimensions, 1>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      const f32x8 weight = -scale.gradient * Kernel::f(b.q) * (b.payload[0] - own);
+      for (int a = 0; a < dimensions; ++a) sum[a] = sum[a] + weight * b.d[a];
+    });
+    std::array<float, dimensions> v{};
+    for (int a = 0; a < dimensions; ++a) v[a] = simd::sum(sum[a]);
+    v = correct<dimensions>(correction, i, v);
+    for (int a = 0; a < dimensions; ++a) out[a][i] = v[a];
+  });
+}
+
+template <int dimensions, class Kernel>
+void filter_subset(const SweepContext& context, Records& records_, const std::array<const float*, 3>& values,
+                   const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> subset,
+                   const std::array<float*, 3>& out) {
+  const NeighbourList& list = *context.list;
+  float* records = records_.prepare(context, dimensions);
+  constexpr int width = record_width(dimensions, dimensions);
+  pack_vector(context, records, width, 0, values, reflection);
+  const KernelScale<dimensions, Kernel> scale(context);
+  const auto centre = static_cast<float>(Kernel::w(0.0));
+
+  sweep(subset.size(), [&](std::size_t s) {
+    const auto i = static_cast<std::size_t>(subset[s]);
+    std::array<f32x8, dimensions> filtered{};
+    f32x8 kernel_sum{};
+    for_each_batch<dimensions, dimensions>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      const f32x8 w = Kernel::w(b.q);
+      kernel_sum = kernel_sum + w;
+      for (int a = 0; a < dimensions; ++a) filtered[a] = filtered[a] + w * b.payload[a];
+    });
+    const float weight = 1 / (centre + simd::sum(kernel_sum));
+    for (int a = 0; a < dimensions; ++a) out[a][i] = (centre * values[a][i] + simd::sum(filtered[a])) * weight;
+  });
+}
+
+template <int dimensions, class Kernel, int count>
+void filter_some(const SweepContext& context, Records& records_, std::span<const float* const> values,
+                 std::span<float* const> out) {
+  const NeighbourList& list = *context.list;
+  float* records = records_.prepare(context, count);
+  constexpr int width = record_width(dimensions, count);
+  for (int k = 0; k < count; ++k) pack_scalar(context, records, width, k, values[k]);
+  const KernelScale<dimensions, Kernel> scale(context);
+  const auto centre = static_cast<float>(Kernel::w(0.0));
+
+  sweep(list.particles(), [&](std::size_t i) {
+    std::array<f32x8, count> filtered{};
+    f32x8 kernel_sum{};
+    for_each_batch<dimensions, count>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      const f32x8 w = Kernel::w(b.q);
+      kernel_sum = kernel_sum + w;
+      for (int k = 0; k < count; ++k) filtered[k] = filtered[k] + w * b.payload[k];
+    });
+    const float weight = 1 / (centre + simd::sum(kernel_sum));
+    for (int k = 0; k < count; ++k)
+      out[k][i] = (centre * records[i * width + dimensions + k] + simd::sum(filtered[k])) * weight;
+  });
+}
+
+}  // namespace
+
+void velocity_gradient_sweep(const SweepContext& context, Records& records,
+                             const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
+                             const std::array<const float*, 6>& correction, const VelocityGradientOut& out) {
+  with_kernel(context, [&]<int dimensions, class Kernel>() {
+    if (out.filtered[0] != nullptr)
+      velocity_gradient<dimensions, Kernel, true>(context, records, velocity, rule, correction, out);
+    else velocity_gradient<dimensions, Kernel, false>(context, records, velocity, rule, correction, out);
+  });
+}
+
+void shift_curvature_sweep(const SweepContext& context, Records& records, const std::array<const float*, 9>& gradient,
+                           const VelocityImageRule& rule, const std::vector<std::array<float, 3>>& reflection,
+                           const std::array<const float*, 3>& shift, const std::array<const float*, 6>& correction,
+                           const std::array<float*, 3>& out) {
+  with_kernel(context, [&]<int dimensions, class Kernel>() {
+    shift_curvature<dimensions, Kernel>(context, records, gradient, rule, reflection, shift, correction, out);
+  });
+}
+
+void viscous_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
+                   const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out) {
+  with_kernel(context, [&]<int dimensions, class Kernel>() {
+    viscous<dimensions, Kernel>(context, records, velocity, rule, kappa, out);
+  });
+}
+
+void divergence_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
+                      const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
+                      const double* potential, double* divergence, float* negative_laplacian) {
+  with_kernel(context, [&]<int dimensions, class Kernel>() {
+    divergence_of<dimensions, Kernel>(context, records, velocity, rule, correction, potential, divergence,
+                                      negative_laplacian);
+  });
+}
+
+void gradient_sweep(const SweepContext& context, Records& records, const double* values, double reference,
+                    const std::array<const float*, 6>& correction, const std::array<float*, 3>& out) {
+  with_kernel(context, [&]<int dimensions, class Kernel>() {
+    gradient_of<dimensions, Kernel>(context, records, values, reference, correction, out);
+  });
+}
+
+void filter_vector_subset(const SweepContext& context, Records& records, const std::array<const float*, 3>& values,
+                          const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> subset,
+                          const std::array<float*, 3>& out) {
+  with_kernel(context, [&]<int dimensions, class Kernel>() {
+    filter_subset<dimensions, Kernel>(context, records, values, reflection, subset, out);
+  });
+}
+
+void filter_scalars(const SweepContext& context, Records& records, std::span<const float* const> values,
+                    std::span<float* const> out) {
+  with_kernel(context, [&]<int dimensions, class Kernel>() {
+    std::size_t k = 0;
+    for (; k + 1 < values.size(); k += 2)
+      filter_some<dimensions, Kernel, 2>(context, records, values.subspan(k, 2), out.subspan(k, 2));
+    if (k < values.size())
+      filter_some<dimensions, Kernel, 1>(context, records, values.subspan(k, 1), out.subspan(k, 1));
+  });
+}
+
+}  // namespace spume

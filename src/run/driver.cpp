@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: MIT
+#include "spume/run/driver.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+#include "spume/io/file.hpp"
+#include "spume/run/report.hpp"
+#include "spume/run/signals.hpp"
+#include "spume/run/state_file.hpp"
+#include "spume/run/version.hpp"
+
+namespace spume {
+namespace {
+
+double seconds_between(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+Schedule::Times times_of(const Case& options) {
+  return {options.time.end, options.output.every, options.output.series_every, options.output.spectrum_every};
+}
+
+std::string exact(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.10g", value);
+  return text;
+}
+
+std::string place_of(const StepFailure::Details& details, int dimensions) {
+  std::string text;
+  if (details.particle >= 0) {
+    text = "particle " + std::to_string(details.particle) + " at (";
+    for (int axis = 0; axis < dimensions; ++axis) text += (axis == 0 ? "" : ", ") + exact(details.position[axis]);
+    text += "), ";
+  }
+  return text + "value " + short_number(details.value);
+}
+
+}  // namespace
+
+Simulation::Simulation(std::unique_ptr<LoadedCase> loaded, std::unique_ptr<Method> method, RunFolder folder)
+    : loaded_(std::move(loaded)),
+      method_(std::move(method)),
+      folder_(std::move(folder)),
+      schedule_(times_of(loaded_->options)) {
+  loaded_->scene.particles = {};
+}
+
+Simulation::~Simulation() = default;
+
+std::unique_ptr<Simulation> Simulation::start(LoadedCase loaded, const MethodFactory& make_method,
+                                              const std::optional<std::filesystem::path>& folder) {
+  auto owned = std::make_unique<LoadedCase>(std::move(loaded));
+  auto method = make_method(*owned);
+  RunFolder made = RunFolder::create(owned->options.path, folder);
+  write_text_atomically(made / "case.toml", owned->options.resolved);
+  return std::unique_ptr<Simulation>(new Simulation(std::move(owned), std::move(method), std::move(made)));
+}
+
+std::unique_ptr<Simulation> Simulation::resume(const std::filesystem::path& folder, const CaseLoader& load_case,
+                                               const MethodFactory& make_method, std::optional<double> until) {
+  RunFolder opened = RunFolder::open(folder);
+  auto loaded = std::make_unique<LoadedCase>(load_case((opened / "case.toml").string(), {}));
+  if (until) loaded->options.time.end = *until;
+  auto method = make_method(*loaded);
+  const auto checkpoint = opened / "checkpoint.h5";
+  std::unique_ptr<Simulation> simulation(new Simulation(std::move(loaded), std::move(method), std::move(opened)));
+  simulation->load_checkpoint(checkpoint);
+  return simulation;
+}
+
+double Simulation::wall_seconds() const {
+  return seconds_between(started_, Clock::now());
+}
+
+RunState Simulation::run(Observer& observer) {
+  const StopSignals signals;
+  started_ = checkpointed_ = Clock::now();
+  marks_.fill({started_, method_->time(), 0});
+  const auto watch = [&](const std::string& text) {
+    folder_.log(text);
+    observer.note(text);
+  };
+  try {
+    if (fresh_) {
+      recorder_ = std::make_unique<Recorder>(folder_.path(), *loaded_, *method_, std::nullopt);
+      recorder_->series(*method_, 0, 0);
+      recorder_->snapshot(*method_);
+      if (loaded_->options.output.spectrum_every > 0) recorder_->spectrum(*method_);
+    }
+    if (unrecorded_dt_) record(*unrecorded_dt_);
+    RunState state = RunState::finished;
+    while (!schedule_.finished(method_->time())) {
+      if (signals.requested()) {
+        state = RunState::interrupted;
+        break;
+      }
+      StepLimit limit;
+      const double dt = take_step(observer, limit);
+      record(dt);
+      report(observer, dt, limit);
+      if (seconds_between(checkpointed_, Clock::now()) > loaded_->options.output.checkpoint_every) save_checkpoint();
+    }
+    if (checkpoint_step_ != method_->step_count()) save_checkpoint();
+    if (state == RunState::interrupted) {
+      // After the checkpoint: a resumed run drops this snapshot again and stays equal to one that never stopped.
+      recorder_->snapshot(*method_);
+      watch("interrupted at step " + std::to_string(method_->step_count()) + ", t = " + exact(method_->time()) +
+            "; continue with: spume resume " + folder_.path().string());
+    }
+    recorder_->sync();
+    write_summary(state == RunState::finished ? "finished" : "interrupted", "");
+    return state;
+  } catch (const NumericalFailure& failure) {
+    folder_.log(failure.what());
+    write_summary("numerical failure", failure.what());
+    throw;
+  } catch (const FileError& failure) {
+    folder_.log(failure.what());
+    save_what_is_left();
+    try {
+      write_summary("file error", failure.what());
+    } catch (const FileError&) {
+      // The disk that refused the result refuses the summary too; the first error is the one to report.
+    }
+    throw;
+  }
+}
+
+double Simulation::take_step(Observer& observer, StepLimit& limit) {
+  const double t = method_->time();
+  for (int attempt = 1;; ++attempt) {
+    limit = method_->step_limit();
+    if (const double largest = loaded_->options.time.max_step; largest > 0 && limit.dt > largest)
+      limit = {largest, "max_step"};
+    const double allowed = control_.allowed(limit.dt);
+    if (allowed < limit.dt) limit.limited_by = "a refused step";
+    const double dt = schedule_.step(t, allowed);
+    try {
+      if (!(allowed > 0) || !(t + dt > t) || !std::isfinite(dt))
+        throw StepFailure({"the time step is too small to advance the time", "time.courant", -1, {0, 0, 0}, limit.dt});
+      const auto particles = static_cast<double>(method_->particle_count());
+      method_->step(dt, ledger_);
+      control_.accepted(limit.dt);
+      ++steps_this_run_;
+      particle_steps_ += particles;
+      return dt;
+    } catch (const StepFailure& failure) {
+      if (attempt > loaded_->options.time.max_retries || !(dt > 0)) give_up(failure, dt, attempt);
+      ++retries_;
+      control_.refused(dt);
+      const std::string text = "step " + std::to_string(method_->step_count() + 1) + " at t = " + exact(t) +
+                               " refused with dt = " + short_number(dt) + ": " + failure.details().cause + " (" +
+                               place_of(failure.details(), loaded_->scene.domain.dimensions) +
+                               "); trying dt = " + short_number(dt / 2);
+      folder_.log(text);
+      observer.note(text);
+    }
+  }
+}
+
+void Simulation::give_up(const StepFailure& failure, double dt, int attempts) {
+  const auto& details = failure.details();
+  std::string text = "numerical failure at step " + std::to_string(method_->step_count() + 1) +
+                     ", t = " + exact(method_->time()) + ": " + details.cause + "\n  " +
+                     place_of(details, loaded_->scene.domain.dimensions) + "\n  refused " + std::to_string(attempts) +
+                     (attempts == 1 ? " time" : " times") + ", the last time with dt = " + short_number(dt);
+  if (!details.option.empty()) text += "\n  most likely helps: change " + details.option;
+  try {
+    // The order matters: a resumed run drops what was recorded after its checkpoint.
+    if (checkpoint_step_ != method_->step_count()) save_checkpoint();
+    recorder_->snapshot(*method_);
+    recorder_->sync();
+    text += "\n  the last good state, step " + std::to_string(method_->step_count()) + ", is in " +
+            (folder_ / "checkpoint.h5").string() + " and is the last snapshot";
+  } catch (const FileError& error) {
+    text += "\n  the last good state could not be saved: " + std::string(error.what());
+  }
+  throw NumericalFailure(text);
+}
+
+void Simulation::record(double dt) {
+  recorder_->mark();
+  next_before_record_ = schedule_.next();
+  unrecorded_dt_ = dt;
+  record_due(schedule_.arrive(method_->time()), dt);
+  unrecorded_dt_.reset();
+}
+
+void Simulation::record_due(const Schedule::Due& due, double dt) {
+  if (due.series) {
+    const auto scope = ledger_.time("series and probes");
+    recorder_->series(*method_, dt, retries_);
+  }
+  if (due.output) {
+    const auto scope = ledger_.time("snapshots", static_cast<double>(method_->particle_count()));
+    recorder_->snapshot(*method_);
+    recorder_->flush();
+  }
+  if (due.spectrum) {
+    const auto scope = ledger_.time("spectra", static_cast<double>(method_->particle_count()));
+    recorder_->spectrum(*method_);
+  }
+}
+
+void Simulation::report(Observer& observer, double dt, const StepLimit& limit) {
+  // The rate is that of the last 5 to 10 seconds: two marks take turns as the start of the window.
+  const auto now = Clock::now();
+  if (seconds_between(marks_[1].wall, now) > 5) {
+    marks_[0] = marks_[1];
+    marks_[1] = {now, method_->time(), particle_steps_};
+  }
+  const double wall = seconds_between(marks_[0].wall, now);
+  Progress progress{method_->step_count(), method_->time(), schedule_.end(), dt, limit.limited_by, 0, 0};
+  progress.particle_steps_per_second = (particle_steps_ - marks_[0].particle_steps) / wall;
+  progress.remaining_seconds = (progress.end - progress.time) * wall / (progress.time - marks_[0].time);
+  observer.progress(progress);
+}
+
+void Simulation::save_checkpoint() {
+  const auto scope = ledger_.time("checkpoints", static_cast<double>(method_->particle_count()));
+  recorder_->sync();
+  CheckpointWriter file(folder_ / "checkpoint.h5", {program_version(), program_commit(), loaded_->options.resolved});
+  // The record of a step counts only when it is complete.
+  const auto next = unrecorded_dt_ ? next_before_record_ : schedule_.next();
+  const double clock[] = {method_->time(), control_.cap(), earlier_wall_seconds_ + wall_seconds(),
+                          unrecorded_dt_.value_or(0)};
+  const std::int64_t counters[] = {method_->step_count(), retries_, next[0], next[1], next[2]};
+  file.f64("driver/clock", clock);
+  file.i64("driver/counters", counters);
+  for (const auto& [name, count] : unrecorded_dt_ ? recorder_->marked() : recorder_->extent())
+    file.i64("driver/extent/" + name, std::span(&count, 1));
+  CheckpointStateWriter writer(file, "method/");
+  method_->save(writer);
+  file.commit();
+  checkpoint_step_ = method_->step_count();
+  checkpointed_ = Clock::now();
+}
+
+void Simulation::save_what_is_left() {
+  if (steps_this_run_ == 0 || checkpoint_step_ == method_->step_count()) return;
+  try {
+    save_checkpoint();
+    folder_.log("the state is saved: with space on the disk, spume resume goes on where the record broke off");
+  } catch (const FileError& failure) {
+    folder_.log(failure.what());
+  }
+}
+
+void Simulation::load_checkpoint(const std::filesystem::path& path) {
+  const CheckpointReader file(path);
+  Array<double> clock;
+  Array<std::int64_t> counters;
+  file.f64("driver/clock", clock);
+  file.i64("driver/counters", counters);
+  if (clock.size() != 4 || counters.size() != 5)
+    throw FileError("cannot read checkpoint '" + path.string() + "': the driver's state has another size");
+  const bool complete = clock[3] == 0;
+  if (schedule_.finished(clock[0]) && complete)
+    throw InputError("the run in '" + folder_.path().string() + "' is already at t = " + exact(clock[0]) +
+                     "; give a later time with --until");
+  CheckpointStateReader reader(file, "method/");
+  method_->load(reader);
+  control_.set_cap(clock[1]);
+  earlier_wall_seconds_ = clock[2];
+  if (!complete) unrecorded_dt_ = clock[3];
+  retries_ = counters[1];
+  schedule_.set_next({counters[2], counters[3], counters[4]});
+  if (method_->time() != clock[0] || method_->step_count() != counters[0])
+    throw FileError("cannot read checkpoint '" + path.string() + "': method and driver disagree about the step");
+
+  Recorder::Extent extent;
+  const std::string prefix = "driver/extent/";
+  for (const auto& entry : file.entries()) {
+    if (!entry.name.starts_with(prefix)) continue;
+    Array<std::int64_t> count;
+    file.i64(entry.name, count);
+    extent[entry.name.substr(prefix.size())] = count.empty() ? 0 : count[0];
+  }
+  if (file.origin().case_text != loaded_->options.resolved)
+    folder_.log("case.toml has changed since the checkpoint; continuing with the changed case");
+  folder_.log("continuing from step " + std::to_string(counters[0]) + ", t = " + exact(clock[0]));
+  recorder_ = std::make_unique<Recorder>(folder_.path(), *loaded_, *method_, extent);
+  checkpoint_step_ = counters[0];
+  fresh_ = false;
+}
+
+void Simulation::write_summary(const std::string& state, const std::string& message) {
+  RunFigures figures;
+  figures.state = state;
+  figures.message = message;
+  figures.time = method_->time();
+  figures.end = schedule_.end();
+  figures.steps = method_->step_count();
+  figures.steps_this_run = steps_this_run_;
+  figures.retries = retries_;
+  figures.particles = method_->particle_count();
+  figures.threads = thread_count();
+  figures.wall_seconds = wall_seconds();
+  figures.total_wall_seconds = earlier_wall_seconds_ + figures.wall_seconds;
+  figures.particle_steps = particle_steps_;
+  if (recorder_) figures.final_values = recorder_->last_row();
+  write_text_atomically(folder_ / "summary.json", summary_json(*loaded_, figures));
+  write_text_atomically(folder_ / "ledger.json", ledger_json(ledger_, figures.wall_seconds));
+  folder_.log(ledger_table(ledger_, figures.wall_seconds));
+}
+
+}  // namespace spume

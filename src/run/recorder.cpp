@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+#include "spume/run/recorder.hpp"
+
+#include <cmath>
+
+#include "spume/core/error.hpp"
+#include "spume/run/version.hpp"
+
+namespace spume {
+namespace {
+
+constexpr const char* axes[] = {"x", "y", "z"};
+
+std::vector<SeriesHeading> series_headings(const Method& method) {
+  std::vector<SeriesHeading> columns = {{"step", "1"}, {"t", "time"}, {"dt", "time"}};
+  for (const auto& column : method.series_columns()) columns.push_back({column.name, column.unit});
+  columns.push_back({"retries", "steps refused so far"});
+  return columns;
+}
+
+std::vector<SeriesHeading> probe_headings(const LoadedCase& loaded) {
+  std::vector<SeriesHeading> columns = {{"t", "time"}};
+  for (const auto& probe : loaded.options.probes) {
+    if (probe.kind == ProbeKind::point) {
+      columns.push_back({probe.name + "_pressure", "pressure"});
+      for (int axis = 0; axis < loaded.scene.domain.dimensions; ++axis)
+        columns.push_back({probe.name + "_velocity_" + axes[axis], "velocity"});
+    } else if (probe.kind != ProbeKind::line) {
+      columns.push_back({probe.name, "length"});
+    }
+  }
+  return columns;
+}
+
+const std::vector<SeriesHeading> line_headings = {{"t", "time"},
+                                                  {"name", ""},
+                                                  {"s", "length"},
+                                                  {"x", "length"},
+                                                  {"y", "length"},
+                                                  {"z", "length"},
+                                                  {"velocity_x", "velocity"},
+                                                  {"velocity_y", "velocity"},
+                                                  {"velocity_z", "velocity"},
+                                                  {"pressure", "pressure"}};
+const std::vector<SeriesHeading> spectrum_headings = {
+    {"t", "time"}, {"wavenumber", "1/length"}, {"energy", "velocity^2 length"}};
+
+void probe_values(Method& method, const LoadedCase& loaded, std::vector<double>& row) {
+  row.assign(1, method.time());
+  for (const auto& probe : loaded.options.probes) {
+    switch (probe.kind) {
+      case ProbeKind::point: {
+        const PointSample sample = method.sample(probe.position);
+        row.push_back(sample.pressure);
+        row.insert(row.end(), sample.velocity.begin(), sample.velocity.begin() + loaded.scene.domain.dimensions);
+        break;
+      }
+      case ProbeKind::elevation:
+        row.push_back(method.elevation(probe.position));
+        break;
+      case ProbeKind::front:
+        row.push_back(method.front(probe.axis, probe.height));
+        break;
+      case ProbeKind::line:
+        break;
+    }
+  }
+}
+
+ParticleSnapshot snapshot_of(const Family& family) {
+  ParticleSnapshot snapshot{family.size, family.position, {}};
+  for (const auto& field : family.fields) snapshot.fields.push_back({field.name, field.f64, field.i64});
+  return snapshot;
+}
+
+}  // namespace
+
+Recorder::Recorder(std::filesystem::path folder, const LoadedCase& loaded, const Method& method,
+                   const std::optional<Extent>& resume)
+    : folder_(std::move(folder)),
+      loaded_(loaded),
+      resume_(resume),
+      series_columns_(series_headings(method)),
+      probe_columns_(probe_headings(loaded)) {
+  if (!resume_) return;
+  // Files that began after the checkpoint do not belong to the state that continues.
+  for (const char* name : table_names)
+    if (resume_->count(name) == 0) std::filesystem::remove(folder_ / (std::string(name) + ".csv"));
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    const auto name = entry.path().stem().string();
+    if (entry.path().extension() != ".vtkhdf") continue;
+    VtkhdfFile file(entry.path(), {loaded.options.output.h5part_view, {}});
+    const auto kept = resume_->find(name + ".vtkhdf");
+    file.keep_steps(kept == resume_->end() ? 0 : kept->second);
+  }
+  for (const auto& [name, count] : *resume_)
+    if (count > 0 && name.ends_with(".vtkhdf") && !std::filesystem::exists(folder_ / name))
+      throw FileError("cannot continue '" + (folder_ / name).string() + "': the file is gone");
+  if (resume_->count("series") != 0) table("series", "", series_columns_);
+  if (resume_->count("probes") != 0) table("probes", "", probe_columns_);
+  if (resume_->count("lines") != 0) table("lines", "", line_headings);
+  if (resume_->count("spectrum") != 0) table("spectrum", "", spectrum_headings);
+}
+
+SeriesFile& Recorder::table(const std::string& name, const std::string& title,
+                            const std::vector<SeriesHeading>& columns) {
+  const auto found = tables_.find(name);
+  if (found != tables_.end()) return found->second;
+  const auto path = folder_ / (name + ".csv");
+  const bool continues = resume_ && resume_->count(name) != 0;
+  return tables_
+      .emplace(name, continues ? SeriesFile::resume(path, columns, resume_->at(name))
+                               : SeriesFile::create(path, title, columns))
+      .first->second;
+}
+
+void Recorder::series(Method& method, double dt, std::int64_t retries) {
+  series_row_.assign(series_columns_.size(), std::nan(""));
+  series_row_[0] = static_cast<double>(method.step_count());
+  series_row_[1] = method.time();
+  series_row_[2] = dt;
+  method.series_values(std::span(series_row_).subspan(3, series_row_.size() - 4));
+  series_row_.back() = static_cast<double>(retries);
+  table("series", loaded_.options.title + ": quantities of the whole domain over time", series_columns_)
+      .row(series_row_);
+  if (probe_columns_.size() == 1) return;
+  probe_values(method, loaded_, probe_row_);
+  table("probes", loaded_.options.title + ": probes over time", probe_columns_).row(probe_row_);
+}
+
+void Recorder::lines(Method& method) {
+  for (const auto& probe : loaded_.options.probes) {
+    if (probe.kind != ProbeKind::line) continue;
+    SeriesFile& file = table("lines", loaded_.options.title + ": values along lines at output times", line_headings);
+    const int last = std::max(probe.samples - 1, 1);
+    for (int i = 0; i < std::max(probe.samples, 1); ++i) {
+      const double fraction = static_cast<double>(i) / last;
+      Vec3 position{};
+      double distance = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double run = fraction * (probe.end[axis] - probe.position[axis]);
+        position[axis] = probe.position[axis] + run;
+        distance += run * run;
+      }
+      const PointSample sample = method.sample(position);
+      const double time = method.time();
+      const double values[] = {std::sqrt(distance), position[0],        position[1],        position[2],
+                               sample.velocity[0],  sample.velocity[1], sample.velocity[2], sample.pressure};
+      file.row(std::span(&time, 1), probe.name, values);
+    }
+  }
+}
+
+void Recorder::snapshot(Method& method) {
+  for (const auto& family : method.snapshot()) {
+    const std::string name = family.name + ".vtkhdf";
+    auto found = families_.find(name);
+    if (found == families_.end()) {
+      const VtkhdfFile::Options options{
+          loaded_.options.output.h5part_view,
+          {{"case", loaded_.options.resolved}, {"program_version", program_version()}, {"commit", program_commit()}}};
+      found = families_.emplace(name, VtkhdfFile(folder_ / name, options)).first;
+    }
+    found->second.append(method.time(), snapshot_of(family));
+  }
+  lines(method);
+}
+
+void Recorder::spectrum(Method& method) {
+  std::vector<double> wavenumber, energy;
+  if (!method.spectrum(wavenumber, energy)) return;
+  SeriesFile& file = table("spectrum", loaded_.options.title + ": energy spectra", spectrum_headings);
+  for (std::size_t i = 0; i < wavenumber.size(); ++i) {
+    const double row[] = {method.time(), wavenumber[i], energy[i]};
+    file.row(row);
+  }
+}
+
+void Recorder::flush() {
+  for (auto& [name, file] : tables_) file.flush();
+}
+
+void Recorder::sync() {
+  for (auto& [name, file] : tables_) file.sync();
+}
+
+Recorder::Extent Recorder::extent() const {
+  Extent extent;
+  // Families that have not been written since the run was continued keep the extent they had.
+  if (resume_)
+    for (const auto& [name, count] : *resume_)
+      if (name.ends_with(".vtkhdf")) extent[name] = count;
+  for (const auto& [name, file] : tables_) extent[name] = file.rows();
+  for (const auto& [name, file] : families_) extent[name] = file.steps();
+  return extent;
+}
+
+void Recorder::mark() {
+  for (const auto& [name, file] : tables_) marked_[name] = file.rows();
+  for (const auto& [name, file] : families_) marked_[name] = file.steps();
+}
+
+Recorder::Extent Recorder::marked() const {
+  Extent extent = marked_;
+  if (resume_) extent.insert(resume_->begin(), resume_->end());
+  return extent;
+}
+
+std::vector<std::pair<std::string, double>> Recorder::last_row() const {
+  std::vector<std::pair<std::string, double>> row;
+  for (std::size_t i = 0; i < series_row_.size(); ++i) row.emplace_back(series_columns_[i].name, series_row_[i]);
+  return row;
+}
+
+}  // namespace spume

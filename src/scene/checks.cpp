@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: MIT
+#include "checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+namespace spume {
+namespace {
+
+const std::string axis_names[3] = {"x", "y", "z"};
+
+// A list with one entry per direction; absent lists pass.
+bool has_size(const Draft& draft, const std::string& name, std::size_t size, std::size_t wanted, Problems& problems) {
+  const Node* node = draft.node(name);
+  if (!node || !draft.usable(name) || size == wanted) return draft.usable(name);
+  problems.add(*node, name + " must have " + std::to_string(wanted) + " entries in a " + std::to_string(wanted) +
+                          "-D domain, found " + std::to_string(size));
+  return false;
+}
+
+bool ordered(const Draft& draft, const std::string& name, const std::vector<double>& lower,
+             const std::vector<double>& upper, Problems& problems) {
+  for (std::size_t a = 0; a < lower.size() && a < upper.size(); ++a) {
+    if (lower[a] < upper[a]) continue;
+    problems.add(*draft.node(name + ".upper"), name + ".upper must lie above " + name + ".lower: " + axis_names[a] +
+                                                   " runs from " + brief(lower[a]) + " to " + brief(upper[a]));
+    return false;
+  }
+  return true;
+}
+
+bool domain_known(const Draft& draft) {
+  return draft.dimensions > 0;
+}
+
+// The largest spacing, rounded down to three digits, that satisfies `length >= factor * spacing`.
+std::string largest_spacing(double length, double factor) {
+  const double spacing = length / factor;
+  const double unit = std::pow(10.0, std::floor(std::log10(spacing)) - 2);
+  return brief(std::floor(spacing / unit) * unit);
+}
+
+bool is_wall(const Draft& draft, const std::string& side) {
+  const auto found = draft.sides.find(side);
+  return found != draft.sides.end() && found->second != BoundaryKind::open;
+}
+
+void check_sides(const Draft& draft, Problems& problems) {
+  const int dimensions = draft.dimensions;
+  std::set<std::string> valid;
+  for (int axis = 0; axis < dimensions; ++axis) {
+    for (const std::string& side : side_names(axis, dimensions)) {
+      valid.insert(side);
+      if (draft.periodic[static_cast<std::size_t>(axis)] && draft.sides.count(side)) {
+        problems.add_key(*draft.node("domain." + side), "domain." + side + " is a side of the periodic direction " +
+                                                            axis_names[axis] + "; remove one of the two");
+      }
+    }
+  }
+  if (draft.periodic[2] && dimensions == 2) {
+    problems.add_key(*draft.node("domain.z"), "domain.z names a direction that a 2-D domain does not have");
+  }
+  for (const auto& entry : draft.sides) {
+    if (valid.count(entry.first)) continue;
+    problems.add_key(*draft.node("domain." + entry.first),
+                     "domain." + entry.first + " is a side of a 3-D domain; a 2-D one has left, right, bottom, top");
+  }
+  for (const auto& [side, velocity] : draft.wall_velocity) {
+    const std::string name = "domain.wall_velocity." + side;
+    if (!valid.count(side)) {
+      problems.add_key(*draft.node(name), name + ": a 2-D domain has left, right, bottom, top");
+    } else if (!is_wall(draft, side) && draft.usable("domain." + side)) {
+      problems.add_key(*draft.node(name),
+                       name + " moves a side that is not a wall; add  " + side + " = \"no-slip\"  to [domain]");
+    }
+    has_size(draft, name, velocity.size(), static_cast<std::size_t>(dimensions), problems);
+  }
+}
+
+// The part of a message that places an interval outside another.
+std::string span_in_words(std::size_t axis, double low, double high) {
+  return axis_names[axis] + " from " + brief(low) + " to " + brief(high);
+}
+
+}  // namespace
+
+std::string brief(double value) {
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.6g", value);
+  return buffer;
+}
+
+std::array<std::string, 2> side_names(int axis, int dimensions) {
+  if (axis == dimensions - 1) return {"bottom", "top"};
+  return axis == 0 ? std::array<std::string, 2>{"left", "right"} : std::array<std::string, 2>{"front", "back"};
+}
+
+double support_ratio(const ResolutionOptions& resolution) {
+  return (resolution.kernel == KernelKind::wendland_c2 ? 2 : 3) * resolution.smoothing_ratio;
+}
+
+bool uses_si(const FluidDraft& fluid) {
+  return fluid.density || fluid.viscosity || fluid.gravity || fluid.sound_speed;
+}
+
+void check_domain(Draft& draft, Problems& problems) {
+  if (!draft.usable("domain.lower") || !draft.usable("domain.upper") || !draft.usable("domain")) return;
+  for (const char* name : {"domain.lower", "domain.upper"}) {
+    const std::size_t size = name[7] == 'l' ? draft.lower.size() : draft.upper.size();
+    if (size != 2 && size != 3) {
+      problems.add(*draft.node(name),
+                   std::string(name) + " must have 2 entries (2-D) or 3 (3-D), found " + std::to_string(size));
+      return;
+    }
+  }
+  if (!has_size(draft, "domain.upper", draft.upper.size(), draft.lower.size(), problems)) return;
+  if (!ordered(draft, "domain", draft.lower, draft.upper, problems)) return;
+  draft.dimensions = static_cast<int>(draft.lower.size());
+  check_sides(draft, problems);
+  if (!draft.body_force.empty() || draft.node("forces.body")) {
+    has_size(draft, "forces.body", draft.body_force.size(), draft.lower.size(), problems);
+  }
+}
+
+void check_resolution(const Draft& draft, Problems& problems) {
+  if (!domain_known(draft) || !draft.usable("resolution.spacing")) return;
+  const double spacing = draft.options.spacing;
+  const Node& node = *draft.node("resolution.spacing");
+  for (std::size_t a = 0; a < draft.lower.size(); ++a) {
+    const double length = draft.upper[a] - draft.lower[a];
+    if (spacing > length) {
+      problems.add(node, "resolution.spacing = " + brief(spacing) + " is larger than the domain, which is " +
+                             brief(length) + " long in " + axis_names[a] +
+                             "; set spacing <= " + largest_spacing(length, 10));
+      return;
+    }
+  }
+  if (!draft.usable("resolution.smoothing_ratio") || !draft.usable("resolution.kernel")) return;
+  // Below this length a particle meets two images of the same neighbour, or those of both walls.
+  const double least = 2 * support_ratio(draft.options.resolution) + 1;
+  for (std::size_t a = 0; a < draft.lower.size(); ++a) {
+    const double length = draft.upper[a] - draft.lower[a];
+    const auto sides = side_names(static_cast<int>(a), draft.dimensions);
+    const bool walls = is_wall(draft, sides[0]) && is_wall(draft, sides[1]);
+    if ((!draft.periodic[a] && !walls) || length >= least * spacing * (1 - 1e-9)) continue;
+    problems.add(node, (draft.periodic[a] ? "the periodic length in " + axis_names[a]
+                                          : "the distance between the walls " + sides[0] + " and " + sides[1]) +
+                           ", " + brief(length) + ", is shorter than two kernel supports and a spacing, " +
+                           brief(least * spacing) + "; set spacing <= " + largest_spacing(length, least) +
+                           " or lengthen the domain to " + brief(least * spacing));
+  }
+}
+
+void check_solids(const Draft& draft, Problems& problems) {
+  if (!domain_known(draft) || !draft.usable("solid")) return;
+  const std::size_t dimensions = draft.lower.size();
+  for (std::size_t k = 0; k < draft.solids.size(); ++k) {
+    const SolidDraft& solid = draft.solids[k];
+    const std::string name = "solid." + std::to_string(k);
+    const bool sized = has_size(draft, name + ".lower", solid.lower.size(), dimensions, problems) &
+                       has_size(draft, name + ".upper", solid.upper.size(), dimensions, problems);
+    if (!sized || !ordered(draft, name, solid.lower, solid.upper, problems)) continue;
+    for (std::size_t a = 0; a < dimensions; ++a) {
+      if (solid.upper[a] <= draft.lower[a] || solid.lower[a] >= draft.upper[a]) {
+        problems.add(*draft.node(name),
+                     name + " lies outside the domain: " + span_in_words(a, solid.lower[a], solid.upper[a]) +
+                         ", the domain's " + span_in_words(a, draft.lower[a], draft.upper[a]));
+        break;
+      }
+      const bool usable = draft.usable("resolution.spacing") && draft.usable("resolution.smoothing_ratio") &&
+                          draft.usable("resolution.kernel");
+      const bool both_faces = solid.lower[a] > draft.lower[a] && solid.upper[a] < draft.upper[a];
+      const double least = 2 * support_ratio(draft.options.resolution);
+      const double thickness = solid.upper[a] - solid.lower[a];
+      if (!usable || !both_faces || thickness >= least * draft.options.spacing * (1 - 1e-9)) continue;
+      problems.add(*draft.node(name),
+                   name + " is " + brief(thickness) + " thick in " + axis_names[a] +
+                       "; the mirror images of its two faces would meet below two kernel supports, " +
+                       brief(least * draft.options.spacing) + ": set spacing <= " + largest_spacing(thickness, least) +
+                       " or thicken the box");
+    }
+  }
+}
+
+void check_fluid(const Draft& draft, Problems& problems) {
+  const FluidDraft& fluid = draft.fluid;
+  const std::vector<std::string> groups{"reynolds", "froude", "mach"};
+  const std::vector<std::string> si{"density", "viscosity", "gravity", "sound_speed"};
+  std::string first_group;
+  for (const std::string& key : groups) {
+    if (first_group.empty() && draft.node("fluid." + key)) first_group = key;
+  }
+  bool any_si = false;
+  for (const std::string& key : si) {
+    const Node* node = draft.node("fluid." + key);
+    any_si = any_si || node;
+    if (node && !first_group.empty()) {
+      problems.add_key(*node, "fluid." + key + " is an SI value and fluid." + first_group +
+                                  " a group; give either reynolds, froude, mach or density, viscosity, gravity, "
+                                  "sound_speed");
+    }
+  }
+  if (any_si && first_group.empty() && !draft.node("fluid.density") && !fluid.density) {
+    problems.add(*draft.node("fluid"), "missing key 'density' in [fluid]; add  density = <number>  # kg/m3, > 0");
+  }
+}
+
+void check_liquids(const Draft& draft, Problems& problems) {
+  if (draft.liquids.empty() && draft.usable("liquid")) {
+    problems.add(Place{1, 1}, "no liquid: add a region, for example  [[liquid]]  with  lower, upper  or  where");
+    return;
+  }
+  if (!domain_known(draft) || !draft.usable("liquid")) return;
+  const std::size_t dimensions = draft.lower.size();
+  for (std::size_t k = 0; k < draft.liquids.size(); ++k) {
+    const LiquidDraft& liquid = draft.liquids[k];
+    const std::string name = "liquid." + std::to_string(k);
+    const Node& node = *draft.node(name);
+    bool sized = true;
+    const auto check_size = [&](const char* key, std::size_t size) {
+      sized = has_size(draft, name + "." + key, size, dimensions, problems) && sized;
+    };
+    check_size("lower", liquid.lower.size());
+    check_size("upper", liquid.upper.size());
+    check_size("centre", liquid.centre.size());
+    check_size("velocity", liquid.velocity.size());
+    if (draft.node(name + ".centre") && !draft.node(name + ".radius")) {
+      problems.add(node,
+                   "missing key 'radius' in [[liquid]], which has a centre; add  radius = <number>  # length, > 0");
+    }
+    if (draft.node(name + ".radius") && !draft.node(name + ".centre")) {
+      problems.add(
+          node, "missing key 'centre' in [[liquid]], which has a radius; add  centre = [<number>, <number>]  # length");
+    }
+    if (liquid.conform && !draft.node(name + ".where")) {
+      problems.add(*draft.node(name + ".conform"),
+                   name + ".conform needs the surface; add  where = \"<expression>\"  # positive below it");
+    }
+    if (liquid.conform && draft.node(name + ".centre")) {
+      problems.add(*draft.node(name + ".conform"),
+                   name + ".conform ends columns on the surface where = 0; remove centre and radius");
+    }
+    if (!sized) continue;
+    if (!liquid.lower.empty() && !liquid.upper.empty() && !ordered(draft, name, liquid.lower, liquid.upper, problems)) {
+      continue;
+    }
+    const bool ball = !liquid.centre.empty() && liquid.radius;
+    for (std::size_t a = 0; a < dimensions; ++a) {
+      const double slack = 1e-9 * (draft.upper[a] - draft.lower[a]);
+      double low = liquid.lower.empty() ? draft.lower[a] : liquid.lower[a];
+      double high = liquid.upper.empty() ? draft.upper[a] : liquid.upper[a];
+      if (ball && liquid.lower.empty() && liquid.upper.empty()) {
+        low = liquid.centre[a] - *liquid.radius;
+        high = liquid.centre[a] + *liquid.radius;
+      }
+      if (low >= draft.lower[a] - slack && high <= draft.upper[a] + slack) continue;
+      problems.add(node, name + " reaches outside the domain: " + span_in_words(a, low, high) + ", the domain's " +
+                             span_in_words(a, draft.lower[a], draft.upper[a]));
+      break;
+    }
+  }
+}
+
+void check_probes(Draft& draft, Problems& problems) {
+  if (!domain_known(draft) || !draft.usable("probe")) return;
+  const std::size_t dimensions = draft.lower.size();
+  std::set<std::string> names;
+  for (std::size_t k = 0; k < draft.probes.size(); ++k) {
+    ProbeDraft& probe = draft.probes[k];
+    ProbeOptions& options = probe.options;
+    const std::string name = "probe." + std::to_string(k);
+    const Node& node = *draft.node(name);
+    if (draft.usable(name + ".name")) {
+      const bool plain = !options.name.empty() && options.name.find_first_of(",\"\n\r#") == std::string::npos;
+      if (!plain)
+        problems.add(*draft.node(name + ".name"),
+                     name + ".name heads a column: no commas, quotes or line breaks, not empty");
+      if (plain && !names.insert(options.name).second) {
+        problems.add(*draft.node(name + ".name"), "another probe has the name '" + options.name + "' already");
+      }
+    }
+    if (!draft.usable(name + ".kind")) continue;
+
+    // An elevation probe needs the foot of its column only.
+    const auto place = [&](const char* key, std::vector<double> values, Vec3& target) {
+      const Node* given = draft.node(name + "." + key);
+      if (!draft.usable(name + "." + key)) return;
+      if (!given) {
+        problems.add(node, std::string("missing key '") + key + "' in [[probe]]; add  " + key + " = [" +
+                               (dimensions == 2 ? "<x>, <y>" : "<x>, <y>, <z>") + "]  # length");
+        return;
+      }
+      if (options.kind == ProbeKind::elevation && values.size() + 1 == dimensions) values.push_back(draft.lower.back());
+      if (!has_size(draft, name + "." + key, values.size(), dimensions, problems)) return;
+      for (std::size_t a = 0; a < dimensions; ++a) {
+        target[a] = values[a];
+        const double slack = 1e-9 * (draft.upper[a] - draft.lower[a]);
+        if (values[a] >= draft.lower[a] - slack && values[a] <= draft.upper[a] + slack) continue;
+        problems.add(*given, name + "." + key + " lies outside the domain: " + axis_names[a] + " = " +
+                                 brief(values[a]) + ", the domain's " +
+                                 span_in_words(a, draft.lower[a], draft.upper[a]));
+        return;
+      }
+    };
+    if (options.kind == ProbeKind::front) {
+      if (options.axis + 1 >= static_cast<int>(dimensions)) {
+        const Node* axis = draft.node(name + ".axis");
+        problems.add(axis ? *axis : node, name + ".axis must be horizontal: x" + (dimensions == 3 ? " or y" : ""));
+      }
+      options.height = probe.height.value_or(draft.upper.back());
+      if (options.height <= draft.lower.back()) {
+        problems.add(*draft.node(name + ".height"),
+                     name + ".height lies at or below the bottom of the domain, " + brief(draft.lower.back()));
+      }
+    } else {
+      place("position", probe.position, options.position);
+    }
+    if (options.kind == ProbeKind::line) place("end", probe.end, options.end);
+  }
+  draft.options.probes.clear();
+  for (const ProbeDraft& probe : draft.probes) draft.options.probes.push_back(probe.options);
+}
+
+}  // namespace spume

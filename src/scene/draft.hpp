@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// What the reader gathers from a case file before geometry and expressions are built.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "document.hpp"
+#include "spume/scene/case.hpp"
+
+namespace spume {
+
+struct ExpressionText {
+  std::string text;
+  const Node* node = nullptr;  // for the place of an error; null for a default
+};
+
+struct LiquidDraft {
+  std::optional<ExpressionText> where;
+  std::vector<double> lower, upper, centre;
+  std::optional<double> radius;
+  std::vector<ExpressionText> velocity;
+  bool conform = false;
+};
+
+struct SolidDraft {
+  std::vector<double> lower, upper;
+  BoundaryKind wall = BoundaryKind::free_slip;
+};
+
+struct ProbeDraft {
+  ProbeOptions options;
+  std::vector<double> position, end;
+  std::optional<double> height;
+};
+
+struct FluidDraft {
+  std::optional<double> reynolds, froude, mach;
+  std::optional<double> density, viscosity, gravity, sound_speed;
+};
+
+struct Draft {
+  Case options;
+  std::vector<double> lower, upper;
+  std::array<bool, 3> periodic{};
+  std::map<std::string, BoundaryKind> sides;                         // by name: left, right, ...
+  std::map<std::string, std::vector<ExpressionText>> wall_velocity;  // by name of the side
+  FluidDraft fluid;
+  std::vector<LiquidDraft> liquids;
+  std::vector<SolidDraft> solids;
+  std::vector<ProbeDraft> probes;
+  std::vector<ExpressionText> body_force;
+  double jitter = 0;
+
+  int dimensions = 0;                        // 0 while the domain is not understood
+  std::map<std::string, const Node*> given;  // "section.key" or "section.0.key" -> value, sections included
+  std::map<std::string, bool> bad;           // keys whose value was refused
+
+  const Node* node(const std::string& name) const {
+    const auto found = given.find(name);
+    return found == given.end() ? nullptr : found->second;
+  }
+  bool usable(const std::string& name) const { return bad.count(name) == 0; }
+};
+
+}  // namespace spume

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Places the liquid particles of the start.
+//
+// Lattice: cell centres lower + (k + 1/2) d per axis. Where both sides of an axis are walls or the axis is
+// periodic, d is the length over the nearest integer count; otherwise d is the spacing, measured from the wall
+// if there is one. Every particle has the volume of a lattice cell.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "document.hpp"
+#include "spume/scene/case.hpp"
+
+namespace spume {
+
+// A [[liquid]] entry, compiled. The region is the intersection of what is given.
+struct LiquidRegion {
+  std::string name;                         // "liquid.0"
+  const Node* node = nullptr;               // for messages
+  std::shared_ptr<const Expression> where;  // null: everywhere
+  Vec3 lower{}, upper{};                    // box, the domain where none is given
+  bool ball = false;
+  Vec3 centre{};
+  double radius = 0;
+  VectorExpression velocity;
+  bool conform = false;
+};
+
+struct Lattice {
+  int dimensions = 3;
+  Vec3 origin{};                         // lower corner of the first cell
+  Vec3 spacing{};                        // 1 in directions that do not exist
+  std::array<double, 3> count{1, 1, 1};  // whole numbers, as double because a foolish case may overflow
+  double volume() const { return spacing[0] * spacing[1] * spacing[2]; }
+  double sites() const { return count[0] * count[1] * count[2]; }
+};
+
+Lattice make_lattice(const Domain& domain, double spacing);
+
+// Fills scene.particles and sets scene.free_surface. Reports empty and overlapping regions, values that are not
+// finite, and counts beyond 2^31.
+void fill_scene(Scene& scene, const Lattice& lattice, const std::vector<LiquidRegion>& regions, double jitter,
+                Problems& problems);
+
+}  // namespace spume

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include "spume/scene/load.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "checks.hpp"
+#include "fill.hpp"
+#include "reader.hpp"
+#include "resolved.hpp"
+#include "spume/scene/expression.hpp"
+
+namespace spume {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t largest_file = 16u << 20;
+
+std::string find_case_file(const std::string& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    const fs::path inside = fs::path(path) / "case.toml";
+    if (fs::exists(inside, ignored)) return inside.string();
+    throw InputError("the folder '" + path + "' holds no case.toml");
+  }
+  if (fs::exists(path, ignored)) return path;
+  const fs::path named = fs::path("cases") / path / "case.toml";
+  if (!path.empty() && fs::exists(named, ignored)) return named.string();
+  std::vector<std::string> names;
+  for (fs::directory_iterator entry("cases", ignored), end; !ignored && entry != end; entry.increment(ignored)) {
+    names.push_back(entry->path().filename().string());
+  }
+  throw InputError("there is no case '" + path + "': neither a file, nor a folder, nor cases/" + path + "/case.toml" +
+                   did_you_mean(path, names));
+}
+
+std::string read_text(const std::string& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) throw InputError("'" + file + "' is not a file");
+  if (fs::file_size(file, error) > largest_file)
+    throw InputError("'" + file + "' is larger than 16 MiB, too large for a case");
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in) throw InputError("cannot read '" + file + "': " + std::strerror(errno));
+  return std::move(text).str();
+}
+
+std::string name_of_case(const std::string& file) {
+  const fs::path path(file);
+  if (path.filename() != "case.toml") return path.stem().string();
+  std::error_code ignored;
+  return fs::absolute(path, ignored).parent_path().filename().string();
+}
+
+// Compiles expressions and reports their faults at their place.
+class Compiler {
+ public:
+  Compiler(int dimensions, const std::string& source, Problems& problems)
+      : scope_(dimensions), source_(source), problems_(problems) {}
+
+  void define_constants(const Node* table) {
+    if (!table || table->kind != Node::Kind::table) return;
+    std::vector<std::pair<std::string, std::string>> constants;
+    std::vector<const Node*> nodes;
+    for (std::size_t i = 0; i < table->keys.size(); ++i) {
+      const Node& node = table->children[i];
+      if (node.kind != Node::Kind::string && !node.is_number()) {
+        problems_.add(
+            node, "constants." + table->keys[i] + " must be a number or an expression, found " + kind_in_words(node));
+        continue;
+      }
+      constants.emplace_back(table->keys[i], node.kind == Node::Kind::string ? node.text : to_toml(node));
+      nodes.push_back(&node);
+    }
+    for (const auto& fault : scope_.define(constants)) {
+      const std::string text = "constants." + constants[fault.constant].first + ": " + fault.text;
+      if (fault.position == std::string::npos)
+        problems_.add_key(*nodes[fault.constant], text);
+      else
+        problems_.add_in_string(*nodes[fault.constant], fault.position, text, source_);
+    }
+  }
+
+  std::shared_ptr<const Expression> compile(const ExpressionText& text, const std::string& name) {
+    try {
+      return scope_.compile(text.text);
+    } catch (const ExpressionError& error) {
+      problems_.add_in_string(*text.node, error.position(), name + ": " + error.what(), source_);
+      return nullptr;
+    }
+  }
+
+  // Components that are zero everywhere are left out.
+  VectorExpression compile(const std::vector<ExpressionText>& texts, const std::string& name) {
+    VectorExpression vector;
+    for (std::size_t a = 0; a < texts.size() && a < 3; ++a) {
+      const auto component = compile(texts[a], name + "[" + std::to_string(a) + "]");
+      if (component && constant_value(*component) != 0.0) vector.component[a] = component;
+    }
+    return vector;
+  }
+
+  const ExpressionScope& scope() const { return scope_; }
+
+ private:
+  ExpressionScope scope_;
+  const std::string& source_;
+  Problems& problems_;
+};
+
+bool any(const VectorExpression& vector) {
+  return vector.component[0] || vector.component[1] || vector.component[2];
+}
+
+Vec3 to_vec3(const std::vector<double>& values) {
+  Vec3 vector{};
+  for (std::size_t a = 0; a < values.size() && a < 3; ++a) vector[a] = values[a];
+  return vector;
+}
+
+Domain make_domain(const Draft& draft, Compiler& compiler) {
+  Domain domain;
+  domain.dimensions = draft.dimensions;
+  domain.lower = to_vec3(draft.lower);
+  domain.upper = to_vec3(draft.upper);
+  for (int axis = 0; axis < draft.dimensions; ++axis) {
+    const auto names = side_names(axis, draft.dimensions);
+    for (std::size_t end = 0; end < 2; ++end) {
+      Side& side = domain.sides[static_cast<std::size_t>(axis)][end];
+      if (draft.periodic[static_cast<std::size_t>(axis)])
+        side.kind = BoundaryKind::periodic;
+      else if (draft.sides.count(names[end]))
+        side.kind = draft.sides.at(names[end]);
+      const auto velocity = draft.wall_velocity.find(names[end]);
+      if (velocity == draft.wall_velocity.end()) continue;
+      VectorExpression moving = compiler.compile(velocity->second, "domain.wall_velocity." + names[end]);
+      if (any(moving)) side.velocity = std::move(moving);
+    }
+  }
+  for (const SolidDraft& solid : draft.solids) {
+    domain.boxes.push_back({to_vec3(solid.lower), to_vec3(solid.upper), solid.wall});
+  }
+  return domain;
+}
+
+Fluid make_fluid(const Draft& draft) {
+  const FluidDraft& given = draft.fluid;
+  Fluid fluid;
+  double gravity = 0;
+  if (uses_si(given)) {
+    fluid.density = given.density.value_or(1);
+    fluid.kinematic_viscosity = given.viscosity.value_or(0) / fluid.density;
+    fluid.sound_speed = given.sound_speed.value_or(0);
+    gravity = given.gravity.value_or(0);
+  } else {
+    fluid.kinematic_viscosity = given.reynolds ? 1 / *given.reynolds : 0;
+    fluid.sound_speed = given.mach && *given.mach > 0 ? 1 / *given.mach : 0;
+    gravity = given.froude ? 1 / (*given.froude * *given.froude) : 0;
+  }
+  if (gravity > 0) fluid.gravity[static_cast<std::size_t>(draft.dimensions) - 1] = -gravity;
+  return fluid;
+}
+
+std::vector<LiquidRegion> make_regions(const Draft& draft, Compiler& compiler) {
+  std::vector<LiquidRegion> regions;
+  for (std::size_t k = 0; k < draft.liquids.size(); ++k) {
+    const LiquidDraft& liquid = draft.liquids[k];
+    LiquidRegion region;
+    region.name = "liquid." + std::to_string(k);
+    region.node = draft.node(region.name);
+    if (liquid.where) region.where = compiler.compile(*liquid.where, region.name + ".where");
+    region.lower = to_vec3(liquid.lower.empty() ? draft.lower : liquid.lower);
+    region.upper = to_vec3(liquid.upper.empty() ? draft.upper : liquid.upper);
+    region.ball = !liquid.centre.empty() && liquid.radius;
+    if (region.ball) {
+      region.centre = to_vec3(liquid.centre);
+      region.radius = *liquid.radius;
+    }
+    region.velocity = compiler.compile(liquid.velocity, region.name + ".velocity");
+    region.conform = liquid.conform;
+    regions.push_back(std::move(region));
+  }
+  return regions;
+}
+
+}  // namespace
+
+LoadedCase load_case(const std::string& path, const std::vector<std::string>& overrides) {
+  const std::string file = find_case_file(path);
+  const std::string source = read_text(file);
+  Node document = parse_document(source, file);
+
+  Problems problems(file);
+  std::vector<std::string> repeated;
+  for (const Section& section : sections()) {
+    if (section.repeated) repeated.push_back(section.name);
+  }
+  for (const std::string& assignment : overrides) apply_override(document, assignment, repeated, problems);
+
+  Draft draft;
+  draft.options.path = file;
+  draft.options.title = name_of_case(file);
+  read_document(document, draft, problems);
+  check_domain(draft, problems);
+  check_resolution(draft, problems);
+  check_solids(draft, problems);
+  check_fluid(draft, problems);
+  check_liquids(draft, problems);
+  check_probes(draft, problems);
+
+  // Without a valid domain the expressions are still held against three dimensions.
+  Compiler compiler(draft.dimensions == 0 ? 3 : draft.dimensions, source, problems);
+  compiler.define_constants(draft.node("constants"));
+  LoadedCase loaded;
+  Scene& scene = loaded.scene;
+  scene.domain = make_domain(draft, compiler);
+  const std::vector<LiquidRegion> regions = make_regions(draft, compiler);
+  VectorExpression body_force = compiler.compile(draft.body_force, "forces.body");
+  problems.throw_if_any();
+
+  if (any(body_force)) scene.body_force = std::move(body_force);
+  scene.title = draft.options.title;
+  scene.method = draft.options.method;
+  scene.fluid = make_fluid(draft);
+  scene.spacing = draft.options.spacing;
+  scene.seed = draft.options.seed;
+  const Lattice lattice = make_lattice(scene.domain, scene.spacing);
+  fill_scene(scene, lattice, regions, draft.jitter, problems);
+  problems.throw_if_any();
+
+  draft.options.groups = describe_groups(draft, scene, lattice, compiler.scope());
+  draft.options.resolved = resolved_text(document, draft);
+  loaded.options = std::move(draft.options);
+  return loaded;
+}
+
+}  // namespace spume

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+// Options of the method, of time, and of what a run records.
+#include <type_traits>
+#include <utility>
+
+#include "option.hpp"
+
+namespace spume {
+namespace {
+
+// A setter for a member of a group of options: set(&Case::time, &TimeOptions::end).
+template <class Group, class Member>
+std::function<void(Draft&, const Value&)> set(Group Case::*group, Member Group::*member) {
+  return [group, member](Draft& d, const Value& v) {
+    Member& target = d.options.*group.*member;
+    if constexpr (std::is_same_v<Member, bool>) {
+      target = v.boolean;
+    } else if constexpr (std::is_same_v<Member, int>) {
+      target = static_cast<int>(v.integer);
+    } else if constexpr (std::is_same_v<Member, double>) {
+      target = v.number;
+    } else {
+      target = v.texts;
+    }
+  };
+}
+
+// An option whose words stand for the values of an enumeration.
+template <class Group, class Word>
+Option word_option(const char* key, const char* standard, const char* description, Group Case::*group,
+                   Word Group::*member,
+                   const std::vector<std::pair<std::string, std::type_identity_t<Word>>>& meanings) {
+  Option option{.key = key, .type = OptionType::word, .default_text = standard, .description = description};
+  for (const auto& meaning : meanings) option.words.push_back(meaning.first);
+  option.set = [=](Draft& d, const Value& v) {
+    for (const auto& [word, value] : meanings) {
+      if (word == v.text) d.options.*group.*member = value;
+    }
+  };
+  return option;
+}
+
+template <class Group, class Member>
+Option option(const char* key, const char* unit, const char* standard, Range range, const char* description,
+              Group Case::*group, Member Group::*member) {
+  const OptionType type = std::is_same_v<Member, bool>     ? OptionType::boolean
+                          : std::is_same_v<Member, int>    ? OptionType::integer
+                          : std::is_same_v<Member, double> ? OptionType::number
+                                                           : OptionType::strings;
+  return {.key = key,
+          .type = type,
+          .unit = unit,
+          .default_text = standard,
+          .range = range,
+          .description = description,
+          .set = set(group, member)};
+}
+
+Section turbulence() {
+  const auto group = &Case::turbulence;
+  using T = TurbulenceOptions;
+  return {.name = "turbulence",
+          .options = {
+              word_option("model", "\"none\"", "closure of the unresolved stresses", group, &T::model,
+                          {{"none", TurbulenceModel::none},
+                           {"mixed-scale", TurbulenceModel::mixed_scale},
+                           {"smagorinsky", TurbulenceModel::smagorinsky},
+                           {"dynamic-shepard", TurbulenceModel::dynamic_shepard},
+                           {"dynamic-lagrangian", TurbulenceModel::dynamic_lagrangian}}),
+              option("mixed_scale_constant", "1", "0.06", between(0, 1), "C_M of the mixed-scale model", group,
+                     &T::mixed_scale_constant),
+              option("smagorinsky_constant", "1", "0.18", between(0, 1), "C_s of the Smagorinsky model", group,
+                     &T::smagorinsky_constant),
+          }};
+}
+
+Section pressure() {
+  const auto group = &Case::pressure;
+  using P = PressureOptions;
+  return {
+      .name = "pressure",
+      .options = {
+          word_option("solver", "\"bicgstab\"", "Krylov method of the pressure equation", group, &P::solver,
+                      {{"bicgstab", PressureSolver::bicgstab}, {"cg", PressureSolver::cg}}),
+          word_option("preconditioner", "\"multigrid\"", "multigrid: Jacobi plus one V-cycle on cells", group,
+                      &P::preconditioner,
+                      {{"none", PreconditionerKind::none},
+                       {"jacobi", PreconditionerKind::jacobi},
+                       {"multigrid", PreconditionerKind::multigrid}}),
+          word_option("precision", "\"mixed\"", "mixed: inner products and updates in double, operator in float", group,
+                      &P::precision, {{"mixed", Precision::mixed}, {"double", Precision::f64}}),
+          option("tolerance", "1", "1e-6", above_up_to(0, 0.1), "residual relative to the right-hand side", group,
+                 &P::tolerance),
+          option("max_iterations", "", "500", between(1, 1e6), "iterations after which a solve has failed", group,
+                 &P::max_iterations),
+          option("cell_ratio", "spacing", "1.5", between(1, 8), "side of the multigrid cells", group, &P::cell_ratio),
+          option("warm_start", "", "true", {}, "start from the extrapolated last pressure", group, &P::warm_start),
+      }};
+}
+
+Section shifting() {
+  const auto group = &Case::shifting;
+  using S = ShiftingOptions;
+  return {.name = "shifting",
+          .options = {
+              option("on", "", "true", {}, "move particles towards an even distribution", group, &S::on),
+              option("coefficient", "1", "0.25", between(0, 1), "displacement = -coefficient h^2 grad C", group,
+                     &S::coefficient),
+              option("limit", "h", "0.1", above_up_to(0, 0.5), "largest displacement per step", group, &S::limit),
+              word_option("velocity_correction", "\"second-order\"", "Taylor terms that give the velocity at the new place",
+                          group, &S::velocity_correction,
+                          {{"none", ShiftCorrection::none},
+                           {"first-order", ShiftCorrection::first_order},
+                           {"second-order", ShiftCorrection::second_order}}),
+          }};
+}
+
+Section surface() {
+  const auto group = &Case::surface;
+  using S = SurfaceOptions;
+  return {.name = "surface",
+          .options = {
+              option("threshold", "1", "0.0", between(0, 3),
+                     "div r below which a particle is on the surface; 0: 2.3 in 3-D, 1.5 in 2-D", group, &S::threshold),
+              option("blend_width", "1", "0.32", between(0, 1), "span of div r over which pressure rows blend", group,
+                     &S::blend_width),
+          }};
+}
+
+Section time() {
+  const auto group = &Case::time;
+  using T = TimeOptions;
+  Option end{.key = "end",
+             .type = OptionType::number,
+             .unit = "time",
+             .required = true,
+             .range = positive(),
+             .description = "time at which the run ends",
+             .set = set(group, &T::end)};
+  return {
+      .name = "time",
+      .options = {
+          end,
+          option("courant", "1", "0.2", above_up_to(0, 1), "step limit by speed: Courant number", group, &T::courant),
+          option("viscous", "1", "0.2", above_up_to(0, 1), "step limit by viscosity, eddy viscosity included", group,
+                 &T::viscous),
+          option("max_step", "time", "0.0", not_negative(), "largest step; 0: none", group, &T::max_step),
+          option("max_retries", "", "6", between(0, 30), "halvings of a refused step before the run gives up", group,
+                 &T::max_retries),
+      }};
+}
+
+Section output() {
+  const auto group = &Case::output;
+  using O = OutputOptions;
+  return {
+      .name = "output",
+      .options = {
+          option("every", "time", "0.0", not_negative(), "snapshot interval; 0: start and end only", group, &O::every),
+          option("series_every", "time", "0.0", not_negative(), "interval of series.csv; 0: every step", group,
+                 &O::series_every),
+          option("checkpoint_every", "s of wall time", "300.0", not_negative(), "checkpoint interval", group,
+                 &O::checkpoint_every),
+          option("spectrum_every", "time", "0.0", not_negative(), "interval of energy spectra; 0: none", group,
+                 &O::spectrum_every),
+          option("fields", "", "[]", {}, "fields of a snapshot; empty: the method's standard set", group, &O::fields),
+          option("h5part_view", "", "true", {}, "let ParaView's H5Part reader open the snapshots too", group,
+                 &O::h5part_view),
+      }};
+}
+
+Section probe() {
+  return {.name = "probe",
+          .repeated = true,
+          .begin_entry = [](Draft& d) { d.probes.emplace_back(); },
+          .options = {
+              {.key = "name",
+               .type = OptionType::string,
+               .required = true,
+               .description = "name of its columns in probes.csv",
+               .set = [](Draft& d, const Value& v) { d.probes.back().options.name = v.text; }},
+              {.key = "kind",
+               .type = OptionType::word,
+               .default_text = "\"point\"",
+               .words = {"point", "elevation", "front", "line"},
+               .description = "what is recorded",
+               .set =
+                   [](Draft& d, const Value& v) {
+                     d.probes.back().options.kind = v.text == "point"       ? ProbeKind::point
+                                                    : v.text == "elevation" ? ProbeKind::elevation
+                                                    : v.text == "front"     ? ProbeKind::front
+                                                                            : ProbeKind::line;
+                   }},
+              {.key = "position",
+               .type = OptionType::numbers,
+               .unit = "length",
+               .absent = "required but for front",
+               .description = "point; foot of the column (elevation); start of a line",
+               .set = [](Draft& d, const Value& v) { d.probes.back().position = v.numbers; }},
+              {.key = "end",
+               .type = OptionType::numbers,
+               .unit = "length",
+               .absent = "required for line",
+               .description = "end of a line",
+               .set = [](Draft& d, const Value& v) { d.probes.back().end = v.numbers; }},
+              {.key = "samples",
+               .type = OptionType::integer,
+               .default_text = "2",
+               .range = between(2, 1e6),
+               .description = "points of a line, ends included",
+               .set = [](Draft& d, const Value& v) { d.probes.back().options.samples = static_cast<int>(v.integer); }},
+              {.key = "axis",
+               .type = OptionType::word,
+               .default_text = "\"x\"",
+               .words = {"x", "y", "z"},
+               .description = "front: axis along which the liquid's largest coordinate is sought",
+               .set = [](Draft& d, const Value& v) { d.probes.back().options.axis = v.text[0] - 'x'; }},
+              {.key = "height",
+               .type = OptionType::number,
+               .unit = "length",
+               .absent = "top of the domain",
+               .description = "front: looks below this height",
+               .set = [](Draft& d, const Value& v) { d.probes.back().height = v.number; }},
+          }};
+}
+
+Section verify() {
+  return {.name = "verify",
+          .options = {{.key = "*",
+                       .type = OptionType::free_table,
+                       .absent = "none",
+                       .description = "references and bounds for `spume verify`"}}};
+}
+
+}  // namespace
+
+std::vector<Section> method_sections() {
+  return {turbulence(), pressure(), shifting(), surface(), time(), output(), probe(), verify()};
+}
+
+}  // namespace spume

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "draft.hpp"
+#include "fill.hpp"
+#include "spume/scene/expression.hpp"
+
+namespace spume {
+
+// The case as TOML: every option with its value, and in a comment its origin (default, case, --set) and unit.
+// Reading the text gives the same case again.
+std::string resolved_text(const Node& document, const Draft& draft);
+
+// Groups and constants for the start-up table, as text: those given, those that follow, the equivalent in
+// water, the particle count and the effective spacing.
+std::map<std::string, std::string> describe_groups(const Draft& draft, const Scene& scene, const Lattice& lattice,
+                                                   const ExpressionScope& scope);
+
+}  // namespace spume

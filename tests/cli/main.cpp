@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// The tests of the command line start this executable again, with "--as-spume" first, as the program with the fake
+// method of tests/run: exit codes, signals and files are then those of a real process.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "run/fake_method.hpp"
+#include "spume/cli/programme.hpp"
+
+namespace {
+
+const std::vector<spume::OptionInfo>& fake_options() {
+  static const std::vector<spume::OptionInfo> table = {
+      {"", "title", "text", "", "\"\"", "", "Name of the case"},
+      {"time", "end", "number", "time", "(required)", "> 0", "Time at which the run ends"},
+      {"output", "every", "number", "time", "0", ">= 0", "Time between snapshots"}};
+  return table;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc > 1 && std::strcmp(argv[1], "--as-spume") == 0) {
+    spume::restart_with_patient_threads(argc, argv);
+    argv[1] = argv[0];
+    return spume::run_programme(argc - 1, argv + 1,
+                                {spume::test::load_fake_case, spume::test::make_fake_method, fake_options});
+  }
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "spume/io/vtkhdf.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace spume {
+namespace {
+
+using test::contents;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+class Verbs : public testing::Test {
+ protected:
+  void write_case(const std::string& text) { test::write_contents(folder_ / "case.toml", text); }
+
+  // Starts the program in the test's folder with its output in files.
+  pid_t launch(std::vector<std::string> arguments, rlim_t largest_file = RLIM_INFINITY) {
+    const pid_t child = fork();
+    if (child != 0) return child;
+    if (chdir(folder_.path().c_str()) != 0) _exit(99);
+    const auto redirect = [](const char* file, int to) { dup2(open(file, O_WRONLY | O_CREAT | O_TRUNC, 0644), to); };
+    redirect("out", STDOUT_FILENO);
+    redirect("err", STDERR_FILENO);
+    const rlimit limit{largest_file, largest_file};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    setenv("OMP_NUM_THREADS", "2", 1);
+    std::vector<char*> words;
+    std::string program = "/proc/self/exe", mark = "--as-spume";
+    words.push_back(program.data());
+    words.push_back(mark.data());
+    for (auto& argument : arguments) words.push_back(argument.data());
+    words.push_back(nullptr);
+    execv(program.c_str(), words.data());
+    _exit(98);
+  }
+  Outcome finish(pid_t child) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status), contents(folder_ / "out"),
+            contents(folder_ / "err")};
+  }
+  Outcome spume(const std::vector<std::string>& arguments) { return finish(launch(arguments)); }
+  void wait_for(const std::filesystem::path& path) {
+    for (int i = 0; i < 1000 && !std::filesystem::exists(path); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Verbs, RunPrintsTablesAndNumbersItsFolders) {
+  write_case("title = \"Turning\"\nend = 0.2\nevery = 0.1\n");
+  const Outcome first = spume({"run", "case.toml"});
+  EXPECT_EQ(first.code, 0) << first.err;
+  for (const char* part :
+       {"case        Turning", "threads     2", "share", "ns/part", "finished at t = 0.2", "results in"})
+    EXPECT_THAT(first.out, HasSubstr(part));
+  EXPECT_EQ(first.out.find('\r'), std::string::npos) << "a pipe gets plain lines";
+  EXPECT_EQ(spume({"run", "case.toml", "--quiet"}).out, "");
+  const auto name = folder_.path().filename().string();
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "runs" / (name + "-1") / "summary.json"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "runs" / (name + "-2") / "summary.json"));
+}
+
+TEST_F(Verbs, BadCommandLinesAndCasesExitWith2AndCreateNothing) {
+  write_case("end = 0.2\n");
+  test::write_contents(folder_ / "bad.toml", "title = \"no end\"\n");
+  test::write_contents(folder_ / "broken.toml", "end = = 3\n");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {{}, "a verb is missing"},
+      {{"fly"}, "unknown verb 'fly'"},
+      {{"run"}, "case is required"},
+      {{"run", "case.toml", "--fast"}, "--fast"},
+      {{"run", "case.toml", "--threads", "0"}, "--threads is 0; give a number of threads from 1 up"},
+      {{"run", "case.toml", "--threads", "-2"}, "--threads is -2"},
+      {{"run", "case.toml", "--threads", "two"}, "two"},
+      {{"run", "case.toml", "--until", "-1"}, "--until is -1"},
+      {{"run", "bad.toml"}, "bad.toml:1:1: error: missing key 'end'"},
+      {{"run", "broken.toml"}, "broken.toml:1:"},
+      {{"check", "bad.toml"}, "missing key"},
+      {{"run", "none.toml"}, "none.toml"},
+      {{"resume", "none"}, "there is no run folder 'none'"},
+      {{"info", "none"}, "there is no file 'none'"},
+      {{"options", "nonsense"}, "there is no section 'nonsense'; there are time, output"},
+      {{"run", "case.toml", "--set", "particles=-1"}, "the method needs particles"},
+      {{"run", "case.toml", "--set", "particles=9000000000000"}, "not enough memory"},
+      {{"run", "case.toml", "-o", "/proc/run"}, "/proc/run"}};
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = spume(arguments);
+    EXPECT_EQ(outcome.code, 2) << testing::PrintToString(arguments);
+    EXPECT_THAT(outcome.err, HasSubstr(message)) << testing::PrintToString(arguments);
+    EXPECT_THAT(outcome.err, HasSubstr("error: "));
+    EXPECT_EQ(outcome.out, "");
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "runs"));
+}
+
+TEST_F(Verbs, SettingsReachTheCaseAndRepeat) {
+  write_case("end = 0.2\n");
+  EXPECT_EQ(spume({"run", "case.toml", "--set", "end=0.1", "--set", "particles=3", "-o", "out-dir"}).code, 0);
+  EXPECT_THAT(contents(folder_ / "out-dir" / "summary.json"), HasSubstr("\"particles\": 3"));
+  EXPECT_THAT(contents(folder_ / "out-dir" / "summary.json"), HasSubstr("\"end\": 0.1"));
+}
+
+TEST_F(Verbs, AnExistingResultIsRefused) {
+  write_case("end = 0.1\n");
+  EXPECT_EQ(spume({"run", "case.toml", "-o", "results"}).code, 0);
+  const Outcome again = spume({"run", "case.toml", "-o", "results"});
+  EXPECT_EQ(again.code, 2);
+  EXPECT_THAT(again.err, HasSubstr("'results' is not empty"));
+}
+
+TEST_F(Verbs, NumericalFailureExitsWith3) {
+  write_case("end = 1.0\nfails_from = 0.3\n");
+  const Outcome outcome = spume({"run", "case.toml", "-o", "results"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("error: numerical failure at step"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "results" / "checkpoint.h5"));
+}
+
+TEST_F(Verbs, InterruptExitsWith130AndResumeGoesOn) {
+  write_case("end = 1.0\nevery = 0.05\nsleep = 0.01\n");
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const std::string name = "results-" + std::to_string(signal);
+    const pid_t child = launch({"run", "case.toml", "-o", name});
+    wait_for(folder_ / name / "fluid.vtkhdf");
+    kill(child, signal);
+    const Outcome outcome = finish(child);
+    EXPECT_EQ(outcome.code, 130) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("spume resume " + name));
+    EXPECT_EQ(spume({"resume", name, "--until", "0.4"}).code, 0);
+    EXPECT_THAT(contents(folder_ / name / "summary.json"), HasSubstr("\"time\": 0.4"));
+  }
+}
+
+TEST_F(Verbs, ASecondSignalEndsAtOnce) {
+  write_case("end = 1.0\nsleep = 30.0\n");
+  const pid_t child = launch({"run", "case.toml", "-o", "results"});
+  wait_for(folder_ / "results" / "series.csv");
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const auto start = std::chrono::steady_clock::now();
+  kill(child, SIGINT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  kill(child, SIGINT);
+  EXPECT_EQ(finish(child).code, 130);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+}
+
+// A limit on the size of files stands for a full disk: the write that crosses it fails in the same way.
+TEST_F(Verbs, AFileThatCannotGrowEndsTheRunWithItsNameAndTheReason) {
+  write_case("end = 1.0\nevery = 0.01\nparticles = 5000\n");
+  const Outcome outcome = finish(launch({"run", "case.toml", "-o", "results"}, 3'000'000));
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("cannot write 'results/fluid.vtkhdf': File too large"));
+  // What was recorded before is whole, and the run goes on from where the record broke off.
+  const auto recorded = read_vtkhdf_contents(folder_ / "results" / "fluid.vtkhdf");
+  EXPECT_GE(recorded.times.size(), 3u);
+  EXPECT_EQ(spume({"resume", "results"}).code, 0);
+  EXPECT_EQ(spume({"run", "case.toml", "-o", "whole"}).code, 0);
+  EXPECT_EQ(contents(folder_ / "results" / "series.csv"), contents(folder_ / "whole" / "series.csv"));
+  EXPECT_EQ(read_vtkhdf_contents(folder_ / "results" / "fluid.vtkhdf").times,
+            read_vtkhdf_contents(folder_ / "whole" / "fluid.vtkhdf").times);
+}
+
+TEST_F(Verbs, NoRoomBeforeTheFirstStepExitsWith2) {
+  write_case("end = 1.0\nparticles = 5000\n");
+  const Outcome outcome = finish(launch({"run", "case.toml", "-o", "results"}, 100'000));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("File too large"));
+}
+
+TEST_F(Verbs, CheckPrintsPlanMemoryAndTime) {
+  write_case("end = 1.0\n");
+  const Outcome outcome = spume({"check", "case.toml"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* part :
+       {"bubbles  off  the case has no [bubbles]", "48.0 B per particle", "limited by", "machine has"})
+    EXPECT_THAT(outcome.out, HasSubstr(part));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "runs"));
+}
+
+TEST_F(Verbs, InfoDescribesEveryKindOfFile) {
+  write_case("end = 0.1\nevery = 0.05\n");
+  ASSERT_EQ(spume({"run", "case.toml", "-o", "results"}).code, 0);
+  EXPECT_THAT(spume({"info", "results"}).out, HasSubstr("finished"));
+  EXPECT_THAT(spume({"info", "results/fluid.vtkhdf"}).out, HasSubstr("3 snapshots"));
+  EXPECT_THAT(spume({"info", "results/checkpoint.h5"}).out, HasSubstr("method/position_0"));
+  EXPECT_THAT(spume({"info", "case.toml"}).out, HasSubstr("method fake"));
+  test::write_contents(folder_ / "bad.h5", "hello");
+  const Outcome bad = spume({"info", "bad.h5"});
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_THAT(bad.err, HasSubstr("not a Spume checkpoint"));
+}
+
+TEST_F(Verbs, OptionsListOneSectionOrAll) {
+  EXPECT_THAT(spume({"options"}).out, HasSubstr("[output]"));
+  const Outcome time = spume({"options", "time"});
+  EXPECT_THAT(time.out, HasSubstr("Time at which the run ends"));
+  EXPECT_EQ(time.out.find("[output]"), std::string::npos);
+}
+
+TEST_F(Verbs, ThreadsWaitPassivelyUnlessTheUserSaysOtherwise) {
+  unsetenv("OMP_WAIT_POLICY");
+  setenv("OMP_DISPLAY_ENV", "verbose", 1);  // the runtime prints what it has read, once per start
+  EXPECT_THAT(spume({"options"}).err, HasSubstr("GOMP_SPINCOUNT = '1000'"));
+  setenv("GOMP_SPINCOUNT", "77", 1);
+  EXPECT_THAT(spume({"options"}).err, HasSubstr("GOMP_SPINCOUNT = '77'"));
+  unsetenv("GOMP_SPINCOUNT");
+  unsetenv("OMP_DISPLAY_ENV");
+}
+
+TEST_F(Verbs, ScriptsGetTheirArgumentsAndTheirExitCodeIsPassedOn) {
+  std::filesystem::create_directory(folder_ / "tools");
+  test::write_contents(
+      folder_ / "tools" / "verify.py",
+      "import sys\nprint(sys.argv[1:])\n"
+      "import os\nprint(sorted(k for k in os.environ if 'SPUME_S' in k or 'GOMP' in k))\nsys.exit(1)\n");
+  test::write_contents(folder_ / "tools" / "plot.py", "import sys\nprint('plot', sys.argv[1:])\n");
+  setenv("SPUME_HOME", folder_.path().c_str(), 1);
+  const Outcome verify = spume({"verify", "couette", "--quick"});
+  EXPECT_EQ(verify.code, 1) << verify.err;
+  EXPECT_THAT(verify.out, HasSubstr("test_cli', 'couette', '--quick']"));
+  EXPECT_THAT(verify.out, HasSubstr("\n[]\n")) << "settings for this process are not handed on";
+  EXPECT_THAT(spume({"plot", "results"}).out, HasSubstr("plot ['results']"));
+  setenv("SPUME_HOME", "/nowhere", 1);
+  EXPECT_EQ(spume({"verify"}).code, 2);
+  unsetenv("SPUME_HOME");
+}
+
+}  // namespace
+}  // namespace spume

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+#include "spume/run/driver.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "run/fake_method.hpp"
+#include "spume/core/error.hpp"
+#include "spume/io/checkpoint.hpp"
+#include "spume/io/hdf5.hpp"
+#include "spume/io/vtkhdf.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace spume {
+namespace {
+
+using test::contents;
+using test::load_fake_case;
+using test::make_fake_method;
+using test::TemporaryFolder;
+using testing::Each;
+using testing::HasSubstr;
+using testing::Le;
+
+// Watches a run; asks it to stop after a step, as a user would.
+class Watch final : public Observer {
+ public:
+  explicit Watch(std::int64_t stop_after = -1) : stop_after_(stop_after) {}
+  void progress(const Progress& progress) override {
+    steps.push_back(progress.dt);
+    if (progress.step == stop_after_) raise(SIGINT);
+  }
+  void note(const std::string& text) override { notes.push_back(text); }
+  std::vector<double> steps;
+  std::vector<std::string> notes;
+
+ private:
+  std::int64_t stop_after_;
+};
+
+class Driver : public testing::Test {
+ protected:
+  void write_case(const std::string& text) { test::write_contents(folder_ / "case.toml", text); }
+  std::unique_ptr<Simulation> start(const std::string& name) {
+    return Simulation::start(load_fake_case((folder_ / "case.toml").string(), {}), make_fake_method, folder_ / name);
+  }
+  std::unique_ptr<Simulation> resume(const std::string& name, std::optional<double> until = {}) {
+    return Simulation::resume(folder_ / name, load_fake_case, make_fake_method, until);
+  }
+  nlohmann::json summary(const std::string& name) {
+    return nlohmann::json::parse(contents(folder_ / name / "summary.json"));
+  }
+  std::vector<float> stored(const std::string& name, const std::string& array) {
+    const auto file = hdf5::File::open(folder_ / name / "fluid.vtkhdf", false);
+    const auto data = file.dataset(array);
+    const auto space = file.take(H5Dget_space(data), H5Sclose, "read");
+    std::vector<float> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+    file.check(H5Dread(data, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read");
+    return values;
+  }
+  void expect_equal_results(const std::string& a, const std::string& b) {
+    for (const char* file : {"series.csv", "probes.csv", "lines.csv", "spectrum.csv"}) {
+      EXPECT_FALSE(contents(folder_ / a / file).empty()) << file;
+      EXPECT_EQ(contents(folder_ / a / file), contents(folder_ / b / file)) << file;
+    }
+    const auto first = read_vtkhdf_contents(folder_ / a / "fluid.vtkhdf");
+    const auto second = read_vtkhdf_contents(folder_ / b / "fluid.vtkhdf");
+    EXPECT_EQ(first.times, second.times);
+    for (const char* array : {"/VTKHDF/Points", "/VTKHDF/PointData/velocity", "/VTKHDF/PointData/id",
+                              "/VTKHDF/Vertices/Offsets", "/VTKHDF/Steps/PointOffsets"})
+      EXPECT_EQ(stored(a, array), stored(b, array)) << array;
+  }
+  TemporaryFolder folder_;
+};
+
+constexpr const char* full_case =
+    "end = 1.0\nevery = 0.13\nseries_every = 0.02\nspectrum_every = 0.3\nprobes = true\ndimensions = 3\n";
+
+TEST_F(Driver, RecordsStartEveryOutputTimeAndEnd) {
+  write_case("end = 1.0\nevery = 0.3\n");
+  Watch watch;
+  EXPECT_EQ(start("run")->run(watch), RunState::finished);
+  EXPECT_THAT(read_vtkhdf_contents(folder_ / "run" / "fluid.vtkhdf").times,
+              testing::Pointwise(testing::DoubleEq(), {0.0, 0.3, 0.6, 0.9, 1.0}));
+  EXPECT_EQ(summary("run")["state"], "finished");
+  EXPECT_EQ(summary("run")["final"]["t"], 1.0);
+  EXPECT_EQ(summary("run")["steps"], static_cast<std::int64_t>(watch.steps.size()));
+  for (const char* file : {"case.toml", "checkpoint.h5", "ledger.json", "log.txt", "series.csv"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "run" / file)) << file;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "run" / "probes.csv"));
+}
+
+TEST_F(Driver, ProbesHaveTheirColumns) {
+  write_case("end = 0.05\nprobes = true\n");
+  Watch watch;
+  start("run")->run(watch);
+  EXPECT_THAT(contents(folder_ / "run" / "probes.csv"),
+              HasSubstr("\nt,tip_pressure,tip_velocity_x,tip_velocity_y,gauge,toe\n0,0.5,1,0.25,0.5,1.2\n"));
+  EXPECT_THAT(contents(folder_ / "run" / "lines.csv"),
+              HasSubstr("\nt,name,s,x,y,z,velocity_x,velocity_y,velocity_z,pressure\n0,cut,0,0,0,0,1,0,0,0\n"
+                        "0,cut,2.5,1.5,2,0,1,2,0,1.5\n0,cut,5,3,4,0,1,4,0,3\n"));
+}
+
+TEST_F(Driver, InterruptedAndResumedRunEqualsAnUninterruptedOne) {
+  write_case(full_case);
+  Watch watch;
+  EXPECT_EQ(start("whole")->run(watch), RunState::finished);
+  for (const std::int64_t stop : {1, 17, 40}) {
+    const std::string name = "stopped-" + std::to_string(stop);
+    Watch stopping(stop), continuing;
+    EXPECT_EQ(start(name)->run(stopping), RunState::interrupted);
+    EXPECT_EQ(static_cast<std::int64_t>(stopping.steps.size()), stop);
+    EXPECT_EQ(summary(name)["state"], "interrupted");
+    EXPECT_EQ(resume(name)->run(continuing), RunState::finished);
+    EXPECT_EQ(stopping.steps.size() + continuing.steps.size(), watch.steps.size());
+    expect_equal_results("whole", name);
+  }
+}
+
+TEST_F(Driver, ARunKilledAfterItsCheckpointLosesNothingWhenResumed) {
+  write_case(full_case);
+  Watch watch, stopping(20), again(33), last;
+  start("whole")->run(watch);
+  start("killed")->run(stopping);
+  // The checkpoint of step 20 with the results of step 33 is what a kill between two checkpoints leaves.
+  std::filesystem::copy_file(folder_ / "killed" / "checkpoint.h5", folder_ / "old.h5");
+  resume("killed")->run(again);
+  std::filesystem::copy_file(folder_ / "old.h5", folder_ / "killed" / "checkpoint.h5",
+                             std::filesystem::copy_options::overwrite_existing);
+  resume("killed")->run(last);
+  expect_equal_results("whole", "killed");
+}
+
+TEST_F(Driver, RefusedStepsAreHalvedAndGrowBack) {
+  write_case("end = 1.0\nlargest_dt = 0.004\ndt = 0.01\n");
+  Watch watch;
+  EXPECT_EQ(start("run")->run(watch), RunState::finished);
+  EXPECT_THAT(watch.steps, Each(Le(0.004)));
+  ASSERT_FALSE(watch.notes.empty());
+  EXPECT_THAT(watch.notes[0], HasSubstr("particle 7 at (0.25, 0.5), value 3.5"));
+  EXPECT_EQ(summary("run")["retries"], static_cast<std::int64_t>(watch.notes.size()));
+  for (std::size_t i = 1; i < watch.steps.size(); ++i) EXPECT_LE(watch.steps[i], 2.0000001 * watch.steps[i - 1]);
+}
+
+TEST_F(Driver, NoStepExceedsTheLargestThatTheCaseAllows) {
+  write_case("end = 0.2\n");
+  LoadedCase loaded = load_fake_case((folder_ / "case.toml").string(), {});
+  loaded.options.time.max_step = 0.003;
+  Watch watch;
+  Simulation::start(std::move(loaded), make_fake_method, folder_ / "run")->run(watch);
+  EXPECT_THAT(watch.steps, Each(Le(0.003)));
+}
+
+TEST_F(Driver, RefusedStepsResumeBitForBit) {
+  write_case(std::string(full_case) + "largest_dt = 0.004\ndt = 0.01\n");
+  Watch watch, stopping(30), continuing;
+  start("whole")->run(watch);
+  start("stopped")->run(stopping);
+  resume("stopped")->run(continuing);
+  expect_equal_results("whole", "stopped");
+}
+
+TEST_F(Driver, GivesUpWithWordsAndLeavesTheLastGoodState) {
+  write_case("end = 1.0\nfails_from = 0.5\nmax_retries = 3\nevery = 0.4\n");
+  Watch watch;
+  std::string message;
+  try {
+    start("run")->run(watch);
+  } catch (const NumericalFailure& failure) {
+    message = failure.what();
+  }
+  for (const char* part : {"numerical failure at step", "a particle moved further than its spacing",
+                           "particle 7 at (0.25, 0.5), value 3.5", "refused 4 times", "time.courant", "checkpoint.h5"})
+    EXPECT_THAT(message, HasSubstr(part));
+  const auto times = read_vtkhdf_contents(folder_ / "run" / "fluid.vtkhdf").times;
+  ASSERT_EQ(times.size(), 3u);
+  EXPECT_GE(times.back(), 0.5);
+  const CheckpointReader checkpoint(folder_ / "run" / "checkpoint.h5");
+  Array<double> clock;
+  checkpoint.f64("driver/clock", clock);
+  EXPECT_EQ(static_cast<float>(clock[0]), static_cast<float>(times.back()));
+  EXPECT_EQ(summary("run")["state"], "numerical failure");
+}
+
+TEST_F(Driver, AFinishedRunContinuesOnlyToALaterTime) {
+  write_case("end = 0.5\nevery = 0.25\n");
+  Watch watch;
+  start("run")->run(watch);
+  EXPECT_THROW(resume("run"), InputError);
+  EXPECT_THROW(resume("run", 0.4), InputError);
+  EXPECT_EQ(resume("run", 0.75)->run(watch), RunState::finished);
+  EXPECT_THAT(read_vtkhdf_contents(folder_ / "run" / "fluid.vtkhdf").times, testing::ElementsAre(0, 0.25, 0.5, 0.75));
+}
+
+TEST_F(Driver, AFullFolderIsNeverOverwritten) {
+  write_case("end = 0.1\n");
+  Watch watch;
+  start("run")->run(watch);
+  const std::string before = contents(folder_ / "run" / "series.csv");
+  EXPECT_THROW(start("run"), InputError);
+  EXPECT_EQ(contents(folder_ / "run" / "series.csv"), before);
+}
+
+TEST_F(Driver, NothingIsCreatedForACaseThatTheMethodRefuses) {
+  write_case("end = 0.1\nparticles = -1\n");
+  EXPECT_THROW(start("run"), InputError);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "run"));
+}
+
+TEST_F(Driver, TwoProgramsDoNotWorkInOneFolder) {
+  write_case("end = 0.1\n");
+  Watch watch;
+  start("run")->run(watch);
+  const auto first = resume("run", 0.2);
+  EXPECT_THROW(resume("run", 0.3), InputError);
+}
+
+TEST_F(Driver, ResumeNamesWhatIsWrong) {
+  write_case("end = 0.3\n");
+  EXPECT_THROW(resume("none"), InputError);
+  Watch stopping(5);
+  start("run")->run(stopping);
+  const auto checkpoint = folder_ / "run" / "checkpoint.h5";
+  const std::string good = contents(checkpoint);
+  test::write_contents(checkpoint, good.substr(0, good.size() - 100));
+  EXPECT_THROW(resume("run"), FileError);
+  test::write_contents(checkpoint, good);
+  std::filesystem::remove(folder_ / "run" / "series.csv");
+  EXPECT_THROW(resume("run"), FileError);
+}
+
+}  // namespace
+}  // namespace spume

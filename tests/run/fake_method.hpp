@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+// A small deterministic method and a loader of cases for it: points that turn about the origin and repel from an
+// oscillating centre, so that every step depends on all the digits of time and state.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "spume/core/error.hpp"
+#include "spume/methods/method.hpp"
+#include "spume/scene/case.hpp"
+
+namespace spume::test {
+
+struct FakeBehaviour {
+  std::int64_t particles = 50;
+  double dt = 0.013;
+  double largest_dt = 1e30;  // steps beyond it are refused
+  double fails_from = 1e30;  // every step at or after this time is refused
+  double sleep = 0;          // wall seconds per step
+};
+
+class FakeMethod final : public Method {
+ public:
+  FakeMethod(const FakeBehaviour& behaviour, int dimensions) : behaviour_(behaviour), dimensions_(dimensions) {
+    const auto n = static_cast<std::size_t>(behaviour.particles);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      position_[axis].resize(n);
+      velocity_[axis].resize(n);
+    }
+    id_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double angle = 0.7 * static_cast<double>(i);
+      position_[0][i] = std::cos(angle);
+      position_[1][i] = std::sin(angle);
+      position_[2][i] = dimensions == 3 ? 0.1 * static_cast<double>(i) : 0;
+      id_[i] = static_cast<std::int64_t>(i);
+    }
+  }
+
+  std::vector<Stage> plan() const override {
+    return {{"turn", true, "always"}, {"bubbles", false, "the case has no [bubbles]"}};
+  }
+  std::vector<ArrayInfo> arrays() const override {
+    return {{"position", 24.0 * static_cast<double>(id_.size())}, {"velocity", 24.0 * static_cast<double>(id_.size())}};
+  }
+  std::size_t particle_count() const override { return id_.size(); }
+  double time() const override { return time_; }
+  std::int64_t step_count() const override { return step_; }
+  StepLimit step_limit() const override {
+    return {behaviour_.dt * (1 + 0.3 * std::sin(10 * time_)), std::sin(10 * time_) > 0 ? "courant" : "viscous"};
+  }
+
+  void step(double dt, Ledger& ledger) override {
+    const auto scope = ledger.time("turn", static_cast<double>(id_.size()), 0, 48.0 * static_cast<double>(id_.size()));
+    if (behaviour_.sleep > 0) std::this_thread::sleep_for(std::chrono::duration<double>(behaviour_.sleep));
+    if (time_ >= behaviour_.fails_from || dt > behaviour_.largest_dt)
+      throw StepFailure({"a particle moved further than its spacing", "time.courant", 7, {0.25, 0.5, 0}, 3.5});
+    const double centre = 0.1 * std::sin(time_);
+    for (std::size_t i = 0; i < id_.size(); ++i) {
+      velocity_[0][i] = -position_[1][i];
+      velocity_[1][i] = position_[0][i] - centre;
+      for (std::size_t axis = 0; axis < 2; ++axis) position_[axis][i] += dt * velocity_[axis][i];
+    }
+    time_ += dt;
+    ++step_;
+  }
+
+  std::vector<SeriesColumn> series_columns() const override { return {{"radius", "m"}, {"moment", "m2"}}; }
+  void series_values(std::span<double> values) override {
+    values[0] = std::hypot(position_[0][0], position_[1][0]);
+    values[1] = 0;
+    for (std::size_t i = 0; i < id_.size(); ++i) values[1] += position_[0][i] * position_[0][i];
+  }
+  std::vector<Family> snapshot() override {
+    Family fluid{"fluid", id_.size(), {}, {{"velocity", {}, {}}, {"pressure", {}, {}}, {"id", {}, {}}}};
+    for (int axis = 0; axis < dimensions_; ++axis) {
+      fluid.position.push_back(position_[axis].data());
+      fluid.fields[0].f64.push_back(velocity_[axis].data());
+    }
+    fluid.fields[1].f64.push_back(position_[0].data());
+    fluid.fields[2].i64.push_back(id_.data());
+    return {fluid};
+  }
+  PointSample sample(const Vec3& at) override { return {at[0] + time_, {position_[0][0], at[1], at[2]}, 1}; }
+  double elevation(const Vec3& at) override { return at[0] + position_[1][0]; }
+  double front(int axis, double height) override {
+    return *std::max_element(position_[axis].begin(), position_[axis].end()) + height;
+  }
+  bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override {
+    wavenumber = {1, 2};
+    energy = {time_, position_[0][1]};
+    return true;
+  }
+  void save(StateWriter& writer) const override {
+    const std::int64_t step[] = {step_};
+    const double time[] = {time_};
+    writer.i64("step", step);
+    writer.f64("time", time);
+    writer.i64("id", id_);
+    for (int axis = 0; axis < 3; ++axis) {
+      writer.f64("position_" + std::to_string(axis), position_[axis]);
+      writer.f64("velocity/" + std::to_string(axis), velocity_[axis]);
+    }
+  }
+  void load(StateReader& reader) override {
+    Array<std::int64_t> step;
+    Array<double> time;
+    reader.i64("step", step);
+    reader.f64("time", time);
+    reader.i64("id", id_);
+    for (int axis = 0; axis < 3; ++axis) {
+      reader.f64("position_" + std::to_string(axis), position_[axis]);
+      reader.f64("velocity/" + std::to_string(axis), velocity_[axis]);
+    }
+    step_ = step[0];
+    time_ = time[0];
+  }
+
+ private:
+  FakeBehaviour behaviour_;
+  int dimensions_;
+  double time_ = 0;
+  std::int64_t step_ = 0;
+  Array<double> position_[3], velocity_[3];
+  Array<std::int64_t> id_;
+};
+
+// A flat TOML file: title, end, every, series_every, spectrum_every, checkpoint_every, dimensions, max_retries,
+// probes (true or false) and the members of FakeBehaviour. Overrides are key=value.
+inline LoadedCase load_fake_case(const std::string& path, const std::vector<std::string>& overrides) {
+  toml::table table;
+  try {
+    table = toml::parse_file(path);
+    for (const auto& line : overrides)
+      for (const auto& [key, value] : toml::parse(line)) table.insert_or_assign(key, value);
+  } catch (const toml::parse_error& error) {
+    throw InputError({Problem{path, static_cast<int>(error.source().begin.line),
+                              static_cast<int>(error.source().begin.column), std::string(error.description())}});
+  }
+  const auto number = [&](const char* key, double fallback) { return table[key].value<double>().value_or(fallback); };
+  if (!table.contains("end")) throw InputError({Problem{path, 1, 1, "missing key 'end'"}});
+  LoadedCase loaded;
+  Case& options = loaded.options;
+  options.path = path;
+  options.title = table["title"].value<std::string>().value_or("Turning points");
+  options.method = "fake";
+  options.time.end = number("end", 0);
+  options.time.max_retries = static_cast<int>(number("max_retries", 4));
+  options.output.every = number("every", 0);
+  options.output.series_every = number("series_every", 0);
+  options.output.spectrum_every = number("spectrum_every", 0);
+  options.output.checkpoint_every = number("checkpoint_every", 300);
+  loaded.scene.domain.dimensions = static_cast<int>(number("dimensions", 2));
+  loaded.scene.domain.upper = {1, 1, 1};
+  loaded.scene.spacing = 0.1;
+  if (table["probes"].value<bool>().value_or(false))
+    options.probes = {{"tip", ProbeKind::point, {0.5, 0.25, 0}, {}, 2, 0, 0},
+                      {"gauge", ProbeKind::elevation, {0.5, 0, 0}, {}, 2, 0, 0},
+                      {"toe", ProbeKind::front, {}, {}, 2, 0, 0.2},
+                      {"cut", ProbeKind::line, {0, 0, 0}, {3, 4, 0}, 3, 0, 0}};
+  std::ostringstream text;
+  text << table << '\n';
+  options.resolved = text.str();
+  return loaded;
+}
+
+inline std::unique_ptr<Method> make_fake_method(const LoadedCase& loaded) {
+  const toml::table table = toml::parse(loaded.options.resolved);
+  FakeBehaviour behaviour;
+  behaviour.particles = table["particles"].value<std::int64_t>().value_or(behaviour.particles);
+  behaviour.dt = table["dt"].value<double>().value_or(behaviour.dt);
+  behaviour.largest_dt = table["largest_dt"].value<double>().value_or(behaviour.largest_dt);
+  behaviour.fails_from = table["fails_from"].value<double>().value_or(behaviour.fails_from);
+  behaviour.sleep = table["sleep"].value<double>().value_or(behaviour.sleep);
+  if (behaviour.particles < 0) throw InputError("the method needs particles");
+  if (behaviour.particles > 1'000'000'000'000) throw std::bad_alloc();
+  return std::make_unique<FakeMethod>(behaviour, loaded.scene.domain.dimensions);
+}
+
+}  // namespace spume::test

@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: MIT
+"""Every measure is held against run folders written from exact solutions (small error) and from wrong ones (large)."""
+import shutil
+import tempfile
+import tomllib
+import unittest
+from pathlib import Path
+
+import paths
+import numpy as np
+from spume_results import Results, read_csv
+from spume_verification import CASES, case_folder, load_measure
+from synthetic import lattice, new_folder, series_of, write_snapshots, write_table
+
+
+class CaseTest(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        self.count = 0
+
+    def run_of(self, name):
+        """A new run folder with the case's own file as the resolved case, and the case's measure.py."""
+        self.count += 1
+        folder = new_folder(self.scratch.name, f"{name}-{self.count}")
+        shutil.copy(CASES / name / "case.toml", folder / "case.toml")
+        return folder, load_measure(CASES / name)
+
+
+class EveryCase(unittest.TestCase):
+    def test_has_file_readme_measure_and_bounds(self):
+        folders = sorted(p.parent for p in CASES.glob("*/case.toml"))
+        self.assertEqual(len(folders), 10)
+        titles = set()
+        for folder in folders:
+            with self.subTest(case=folder.name):
+                case = tomllib.loads((folder / "case.toml").read_text())
+                titles.add(case["title"])
+                self.assertTrue(case["verify"]["bounds"])
+                self.assertTrue((folder / "README.md").is_file())
+                self.assertTrue(callable(load_measure(folder).measure))
+                extent = np.subtract(case["domain"]["upper"], case["domain"]["lower"])
+                for axis, letter in enumerate("xyz"[: len(extent)]):
+                    if case["domain"].get(letter) == "periodic":
+                        cells = extent[axis] / case["resolution"]["spacing"]
+                        self.assertAlmostEqual(cells, round(cells), places=6, msg="a whole number of particles must fit")
+        self.assertEqual(len(titles), 10, "plots find a case by its title")
+
+    def test_is_found_by_name_folder_and_file(self):
+        expected = CASES / "beltrami"
+        for name in ("beltrami", str(expected), str(expected / "case.toml")):
+            self.assertEqual(case_folder(name), expected)
+
+
+class TaylorGreen(CaseTest):
+    def errors(self, factor, spacing=0.05):
+        folder, module = self.run_of("taylor_green_2d")
+        grid = lattice([0, 0], [1, 1], spacing)
+        t = np.linspace(0, 1, 101)
+        write_table(folder / "series.csv", series_of(t, kinetic_energy=0.25 * np.exp(-16 * np.pi**2 * t / 100 * factor)))
+        write_snapshots(folder / "fluid.vtkhdf", [0, 1], lambda t: grid,
+                        {"velocity": lambda p, t: factor * module.exact_velocity(p, t, 100)})
+        return module.measure({"run": Results(folder)})
+
+    def test_exact_solution_has_no_error(self):
+        measured = self.errors(1)
+        self.assertLess(measured["velocity_error"], 1e-6)
+        self.assertLess(measured["decay_rate_error"], 1e-9)
+
+    def test_two_per_cent_too_much_is_seen(self):
+        measured = self.errors(1.02)
+        # rms of the exact velocity at t = 1: exp(-8 pi^2/100)/sqrt(2)
+        self.assertAlmostEqual(measured["velocity_error"], 0.02 * np.exp(-0.08 * np.pi**2) / np.sqrt(2), places=6)
+        self.assertAlmostEqual(measured["decay_rate_error"], 0.02, places=9)
+
+
+class Beltrami(CaseTest):
+    def test_field_agrees_with_the_published_points(self):
+        module = load_measure(CASES / "beltrami")
+        table = read_csv(CASES / "beltrami" / "reference" / "beltrami_antuono2020_points.csv")
+        for label, k in (("k=2pi", 2 * np.pi), ("k=4pi", 4 * np.pi)):
+            rows = table["case"] == label
+            if rows.any():
+                points = np.column_stack([table[c][rows] for c in "xyz"])
+                velocity = np.column_stack([table[c][rows] for c in "uvw"])
+                np.testing.assert_allclose(module.beltrami(points, k), velocity, atol=2e-12)
+
+    def test_expressions_of_both_cases_are_the_field(self):
+        module = load_measure(CASES / "beltrami")
+        points = np.random.default_rng(1).random((50, 3))
+        names = {"sin": np.sin, "cos": np.cos, "sqrt": np.sqrt, "pi": np.pi}
+        for case, k, expressions in (
+                ("beltrami", 2 * np.pi, lambda c: c["liquid"][0]["velocity"]),
+                ("beltrami_turbulence", 4 * np.pi,
+                 lambda c: [e.split("ramp*")[1].rsplit(": 0")[0] for e in c["forces"]["body"]])):
+            table = tomllib.loads((CASES / case / "case.toml").read_text())
+            scope = names | dict(zip("xyz", points.T)) | {"k": k, "amplitude": module.AMPLITUDE}
+            field = np.column_stack([eval(e.replace("amplitude*", ""), scope) for e in expressions(table)])
+            np.testing.assert_allclose(module.AMPLITUDE * field, module.beltrami(points, k), atol=1e-12)
+
+    def test_exact_decay_and_wrong_decay(self):
+        for factor, expected in ((1.0, 0.0), (1.01, None)):
+            folder, module = self.run_of("beltrami")
+            grid = lattice([0, 0, 0], [1, 1, 1], 0.125)
+            rate = 3 * (2 * np.pi) ** 2 / 50 * factor
+            t = np.linspace(0, 0.25, 51)
+            write_table(folder / "series.csv", series_of(t, kinetic_energy=0.5 * np.exp(-2 * rate * t)))
+            write_snapshots(folder / "fluid.vtkhdf", [0, 0.25], lambda t: grid,
+                            {"velocity": lambda p, t: np.exp(-rate * t) * module.beltrami(p)})
+            measured = module.measure({"run": Results(folder)})
+            if expected is None:
+                self.assertAlmostEqual(measured["energy_error"], 1 - np.exp(-2 * 0.25 * rate * 0.01 / 1.01), places=6)
+            else:
+                self.assertLess(measured["energy_error"], 1e-9)
+                self.assertLess(measured["velocity_error"], 1e-6)
+
+
+class Channel(CaseTest):
+    def test_series_meet_start_wall_and_steady_state(self):
+        module = load_measure(CASES / "couette_poiseuille")
+        y = np.linspace(0, 1, 41)
+        np.testing.assert_allclose(module.couette(y, 100, 0.1), y, atol=1e-12)
+        np.testing.assert_allclose(module.poiseuille(y, 100, 0.1), 4 * y * (1 - y), atol=1e-12)
+        np.testing.assert_allclose(module.poiseuille(y, 0, 0.1), 0, atol=1e-5)
+        # Halfway in time the equation du/dt = nu d2u/dy2 + G holds.
+        for solution, force in ((module.couette, 0), (module.poiseuille, 0.8)):
+            h, t = 1e-3, 1.0
+            rate = (solution(y, t + h, 0.1) - solution(y, t - h, 0.1)) / (2 * h)
+            inner = y[1:-1]
+            curvature = sum(w * solution(inner + s * h, t, 0.1) for w, s in ((1, 1), (-2, 0), (1, -1))) / h**2
+            np.testing.assert_allclose(rate[1:-1], 0.1 * curvature + force, atol=1e-5)
+
+    def test_error_of_a_shifted_profile(self):
+        folder, module = self.run_of("couette_poiseuille")
+        grid = lattice([0, 0], [0.5, 1], 0.025)
+        write_snapshots(folder / "fluid.vtkhdf", [0, 0.5, 5], lambda t: grid, {
+            "velocity": lambda p, t: np.column_stack([module.couette(p[:, 1], t, 0.1) + 0.02, 0 * p[:, 0]])})
+        measured = module.measure({"couette": Results(folder)})
+        self.assertAlmostEqual(measured["couette_error"], 0.02, places=6)
+
+
+class Hydrostatic(CaseTest):
+    def test_pressure_speed_and_drift(self):
+        folder, module = self.run_of("hydrostatic")
+        grid = lattice([0, 0], [1, 1], 0.05)
+        t = np.linspace(0, 10, 101)
+        write_table(folder / "series.csv", series_of(t, max_speed=np.where(t < 5, 1, 5e-4), mass=1,
+                                                     potential_energy=0.5 - 1e-4 * t))
+        write_snapshots(folder / "fluid.vtkhdf", [0, 10], lambda t: grid, {"pressure": lambda p, t: 1 - p[:, 1] + 0.003})
+        measured = module.measure({"run": Results(folder)})
+        self.assertAlmostEqual(measured["pressure_error"], 0.003, places=6)
+        self.assertAlmostEqual(measured["late_speed"], 5e-4)
+        self.assertAlmostEqual(measured["height_drift"], 5e-4)
+        self.assertEqual(measured["mass_drift"], 0)
+
+
+class Cavity(CaseTest):
+    def test_table_interpolated_onto_the_lines_has_a_small_error(self):
+        folder, module = self.run_of("lid_driven_cavity")
+        s = np.linspace(0, 1, 201)
+        columns = {key: [] for key in ("t", "name", "s", "x", "y", "velocity_x", "velocity_y", "pressure")}
+        for kind, name in (("u", "vertical"), ("v", "horizontal")):
+            x, velocity = module.reference(kind, "re100")
+            order = np.argsort(x)
+            values = np.interp(s, x[order], velocity[order])
+            columns["t"] += [20.0] * 201
+            columns["name"] += [name] * 201
+            for key in ("s", "x", "y"):
+                columns[key] += list(s)
+            columns["velocity_x"] += list(values + 0.01)
+            columns["velocity_y"] += list(values)
+            columns["pressure"] += [0.0] * 201
+        write_table(folder / "lines.csv", columns)
+        measured = module.measure({"re100": Results(folder)})
+        # The lines sample the piecewise linear table at other places: its corners cost up to slope change x 0.0025.
+        self.assertAlmostEqual(measured["u_error_re100"], 0.01, delta=0.006)
+        self.assertLess(measured["v_error_re100"], 0.006)
+
+
+class StandingWave(CaseTest):
+    def measured(self, omega_factor=1.0, amplitude_factor=1.0):
+        folder, module = self.run_of("standing_wave")
+        rows = np.isclose(module.REFERENCE["nu"], 1e-3) & (module.REFERENCE["t"] < 3.01 * module.PERIOD)
+        wave = module.fit(module.REFERENCE["t"][rows], module.REFERENCE["a_over_a0"][rows], 0.08, 2.5)
+        c, s, gamma, omega = module.differentiated(*wave)
+        grid = lattice([0, -1], [1, 0], 1 / 32)
+
+        def velocity(p, t):
+            rate = 0.015 * amplitude_factor * np.exp(-gamma * t) * (
+                c * np.cos(omega * omega_factor * t) + s * np.sin(omega * omega_factor * t))
+            x, y = 2 * np.pi * p[:, 0], 2 * np.pi * p[:, 1]
+            return rate * np.exp(y)[:, None] * np.column_stack([-np.sin(x), np.cos(x)])
+
+        times = np.arange(121) * module.PERIOD / 40
+        write_snapshots(folder / "fluid.vtkhdf", times, lambda t: grid, {"velocity": velocity})
+        write_table(folder / "series.csv", series_of(times, mass=1))
+        return module.measure({"run": Results(folder)})
+
+    def test_exact_wave_has_no_error(self):
+        measured = self.measured()
+        self.assertLess(measured["phase_error"], 1e-5)
+        self.assertLess(measured["amplitude_error"], 1e-4)
+
+    def test_slow_and_weak_wave_is_measured_right(self):
+        measured = self.measured(0.98, 0.95)
+        self.assertAlmostEqual(measured["phase_error"], 0.02, delta=1e-3)
+        self.assertAlmostEqual(measured["amplitude_error"], 0.05, delta=2e-3)
+
+    def test_fit_describes_the_exact_solution(self):
+        module = load_measure(CASES / "standing_wave")
+        rows = np.isclose(module.REFERENCE["nu"], 1e-3) & (module.REFERENCE["t"] < 3.01 * module.PERIOD)
+        t, a = module.REFERENCE["t"][rows], module.REFERENCE["a_over_a0"][rows]
+        c, s, gamma, omega = module.fit(t, a, 0.08, 2.5)
+        model = np.exp(-gamma * t) * (c * np.cos(omega * t) + s * np.sin(omega * t))
+        self.assertLess(np.max(np.abs(model - a)), 3e-3)
+
+
+class DamBreaks(CaseTest):
+    def test_front_of_the_experiment_itself(self):
+        folder, module = self.run_of("dam_break_2d")
+        z, t = np.linspace(1, 4, 100), None
+        time, reached = module.points(2.25, 9.0)
+        t = np.interp(z, np.concatenate([[1.0], reached]), np.concatenate([[0.0], time])) / np.sqrt(2)
+        write_table(folder / "probes.csv", {"t": t, "front": 1.04 * z})
+        write_table(folder / "series.csv", series_of(t, mass=1))
+        measured = module.measure({"run": Results(folder)})
+        self.assertAlmostEqual(measured["front_error_2.25_inch"], 0.04, delta=0.01)
+
+    def test_gauges_of_the_experiment_itself(self):
+        folder, module = self.run_of("dam_break_3d")
+        reference = module.REFERENCE
+        columns = {"t": reference["t"]} | {g: reference[g] for g in ("H1", "H2", "H3", "H4")}
+        columns["H2"] = columns["H2"] + 0.05 * module.DEPTH
+        columns["P1_pressure"] = reference["P1"]
+        write_table(folder / "probes.csv", columns)
+        write_table(folder / "series.csv", series_of(reference["t"], mass=1))
+        measured = module.measure({"run": Results(folder)})
+        self.assertAlmostEqual(measured["H2_error"], 0.05, places=6)
+        self.assertLess(measured["H4_error"], 1e-9)
+        self.assertAlmostEqual(measured["P1_arrival"], 0.396, delta=0.001)
+        self.assertAlmostEqual(measured["P1_peak_time"], 0.415, delta=0.008)
+
+
+class BreakingWave(CaseTest):
+    def test_overhang_is_told_from_a_steep_wave_and_from_spray(self):
+        module = load_measure(CASES / "breaking_wave")
+        spacing = 0.02
+        grid = lattice([0, 0, -0.3], [1, 0.2, 0.3], spacing)
+        x, z = grid[:, 0], grid[:, 2]
+        wave = grid[z < 0.1 * np.cos(2 * np.pi * x)]
+        ring = np.hypot(x - 0.3, z - 0.1)
+        jet = grid[(ring < 0.12) & (ring > 0.06) & (x > 0.3) & (z > 0.1)]
+        spray = np.column_stack([np.linspace(0.4, 0.6, 11), np.full(11, 0.1), np.full(11, 0.2)])
+        self.assertFalse(module.is_overturning(wave, spacing, 0.1))
+        self.assertFalse(module.is_overturning(np.concatenate([wave, spray]), spacing, 0.1))
+        self.assertTrue(module.is_overturning(np.concatenate([wave, jet]), spacing, 0.1))
+
+    def test_energy_of_still_water_is_zero_and_growth_is_seen(self):
+        folder, module = self.run_of("breaking_wave")
+        t = np.linspace(0, 1.8, 181)
+        still = -0.5 * 0.2 * 0.25
+        write_table(folder / "series.csv", series_of(t, kinetic_energy=0.01 - 0.004 * t + 0.0002 * (t > 1),
+                                                     potential_energy=still, mass=0.1))
+        run = Results(folder)
+        np.testing.assert_allclose(module.wave_energy(run)[0], 0.01)
+        self.assertAlmostEqual(module.energy_growth(run), (0.0002 - 0.004 * 0.01) / 0.01, places=6)
+
+    def test_breaking_index_ignores_stray_particles(self):
+        folder, module = self.run_of("breaking_wave")
+        grid = lattice([0, 0, -0.5], [1, 0.2, 0], 0.05)
+
+        def velocity(p, t):
+            u = np.where(p[:, 2] > -0.06, 0.2, 0.0)
+            u[:50] = 5.0
+            return np.column_stack([u, 0 * u, 0 * u])
+
+        write_snapshots(folder / "fluid.vtkhdf", [0, 1], lambda t: grid, {"velocity": velocity})
+        # At the case's spacing, 0.01, one hundred particles must exceed the value.
+        self.assertAlmostEqual(module.breaking_index(Results(folder)), 0.2 * np.sqrt(2 * np.pi), places=5)
+
+
+class BeltramiTurbulence(CaseTest):
+    def test_energy_at_the_end_of_the_ramp_and_time_of_transition(self):
+        runs = {}
+        for name, time in (("standard", 2.0), ("mixed-scale", 2.0), ("smagorinsky", 3.0)):
+            folder, module = self.run_of("beltrami_turbulence")
+            t = np.linspace(0, 5, 501)
+            ramp = np.interp(t, module.REFERENCE["t"], module.REFERENCE["K"])
+            energy = np.where(t <= 1, ramp, 0.142022455 - 0.05 * (np.tanh(4 * (t - time)) - np.tanh(4 * (1 - time))))
+            write_table(folder / "series.csv", series_of(t, kinetic_energy=energy))
+            runs[name] = Results(folder)
+        measured = module.measure(runs)
+        self.assertLess(measured["ramp_energy_error"], 1e-6)
+        self.assertAlmostEqual(measured["transition_time_mixed-scale"], 2.0, delta=0.05)
+        self.assertAlmostEqual(measured["transition_mixed_scale_after_smagorinsky"], -1.0, delta=0.05)
+
+    def test_force_of_the_case_gives_the_reference_energy(self):
+        module = load_measure(CASES / "beltrami_turbulence")
+        strength = 3 * (4 * np.pi) ** 2 * 1.25e-3
+        t = np.linspace(0, 1, 100001)
+        ramp = np.where(t < 0.1, 10 * t, np.where(t < 0.9, 1, 10 * (1 - t)))
+        # <|B|^2>/2 = 1/2 for the unit Beltrami field
+        self.assertAlmostEqual(0.5 * (strength * np.trapz(ramp, t)) ** 2, module.REFERENCE["K"][-1], places=6)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+import tempfile
+import unittest
+from pathlib import Path
+
+import paths  # noqa: F401  (import path)
+import numpy as np
+from spume_results import MissingResult, Results, observed_order, read_csv, relative_rms
+from synthetic import lattice, new_folder, series_of, write_case, write_snapshots, write_table
+
+
+class ReadingResults(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        self.folder = new_folder(self.scratch.name, "run")
+
+    def test_series_gives_columns_and_units(self):
+        write_table(self.folder / "series.csv", series_of([0, 1, 2], kinetic_energy=[3, 2, 1]), {"kinetic_energy": "J"})
+        series = Results(self.folder).series
+        np.testing.assert_array_equal(series["kinetic_energy"], [3, 2, 1])
+        self.assertEqual(series.label("kinetic_energy"), "kinetic energy [J]")
+
+    def test_last_line_cut_short_is_left_out(self):
+        (self.folder / "series.csv").write_text("t,dt\n0,1\n1,1\n2,")
+        self.assertEqual(len(Results(self.folder).series["t"]), 3)
+        (self.folder / "series.csv").write_text("t,dt\n0,1\n1,1\n2")
+        self.assertEqual(len(Results(self.folder).series["t"]), 2)
+
+    def test_absent_column_names_what_there_is(self):
+        write_table(self.folder / "series.csv", series_of([0, 1]))
+        with self.assertRaisesRegex(MissingResult, "no column 'entropy'; it has step, t, dt"):
+            Results(self.folder).series["entropy"]
+
+    def test_absent_file_and_folder_are_said(self):
+        with self.assertRaisesRegex(MissingResult, "series.csv: cannot be read"):
+            Results(self.folder).series
+        with self.assertRaisesRegex(MissingResult, "not a folder"):
+            Results(self.folder / "nowhere")
+
+    def test_snapshots_of_changing_size_keep_their_own_rows(self):
+        grid = lattice([0, 0], [1, 1], 0.25)
+        write_snapshots(self.folder / "fluid.vtkhdf", [0, 0.5, 1], lambda t: grid[: 16 - int(4 * t)],
+                        {"velocity": lambda p, t: p * t, "pressure": lambda p, t: p[:, 0] + t})
+        snapshots = Results(self.folder).snapshots()
+        self.assertEqual([len(s) for s in snapshots], [16, 14, 12])
+        last = snapshots[-1]
+        self.assertEqual(last.time, 1.0)
+        np.testing.assert_allclose(last.position[:, :2], grid[:12], atol=1e-6)
+        np.testing.assert_allclose(last.field("pressure"), grid[:12, 0] + 1, atol=1e-6)
+        np.testing.assert_allclose(last.field("speed"), np.linalg.norm(grid[:12], axis=1), atol=1e-6)
+        with self.assertRaises(IndexError):
+            snapshots[3]
+        with self.assertRaisesRegex(MissingResult, "no field 'alpha'"):
+            last.field("alpha")
+
+    def test_damaged_snapshot_file_is_said(self):
+        (self.folder / "fluid.vtkhdf").write_bytes(b"not HDF5 at all")
+        with self.assertRaisesRegex(MissingResult, "not a VTKHDF file"):
+            Results(self.folder).snapshots()
+
+    def test_line_of_a_time(self):
+        write_table(self.folder / "lines.csv", {"t": [0, 0, 1, 1], "name": ["a", "a", "a", "b"], "s": [0, 1, 0, 9.0]})
+        run = Results(self.folder)
+        self.assertEqual(run.line_names(), ["a", "b"])
+        np.testing.assert_array_equal(run.line("a", 0)["s"], [0, 1])
+        np.testing.assert_array_equal(run.line("a")["s"], [0])
+
+    def test_case_gives_spacing_and_dimensions(self):
+        write_case(self.folder, "A title", [0, 0], [2, 1], 0.1, x="periodic")
+        run = Results(self.folder)
+        self.assertEqual((run.spacing, run.dimensions), (0.1, 2))
+
+    def test_reference_with_comments_and_text(self):
+        path = Path(self.scratch.name) / "reference.csv"
+        path.write_text('# source, 1952\nname,value\n"a, b",1.5\nc,\n')
+        table = read_csv(path)
+        self.assertEqual(list(table["name"]), ["a, b", "c"])
+        self.assertTrue(np.isnan(table["value"][1]))
+
+
+class Norms(unittest.TestCase):
+    def test_relative_rms_of_a_vector_field(self):
+        self.assertAlmostEqual(relative_rms([[3, 4], [0, 0]], [[0, 0], [0, 0]], 5), np.sqrt(0.5))
+
+    def test_observed_order_of_second_order_errors(self):
+        spacings = np.array([0.04, 0.02, 0.01])
+        self.assertAlmostEqual(observed_order(spacings, 3 * spacings**2), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: MIT
+"""plot.py, verify.py, convergence.py and floors.py as commands, with a stand-in for the program."""
+import json
+import stat
+import subprocess
+import sys
+import tempfile
+import textwrap
+import unittest
+from pathlib import Path
+
+import paths
+import numpy as np
+from synthetic import lattice, new_folder, series_of, write_case, write_snapshots, write_table
+
+TOOLS = paths.ROOT / "tools"
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+def call(tool, *arguments):
+    return subprocess.run([sys.executable, str(TOOLS / tool), *map(str, arguments)], capture_output=True, text=True)
+
+
+class Scratch(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        self.path = Path(self.scratch.name)
+
+
+class Plotting(Scratch):
+    def pictures(self, folder):
+        done = call("plot.py", folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        files = [Path(line) for line in done.stdout.splitlines()]
+        for file in files:
+            self.assertTrue(file.read_bytes().startswith(PNG), file)
+        return {file.name for file in files}, done.stderr
+
+    def test_two_dimensional_run_with_everything(self):
+        folder = new_folder(self.path, "run")
+        write_case(folder, "Taylor-Green vortices in two dimensions", [0, 0], [1, 1], 0.1, x="periodic", y="periodic")
+        with (folder / "case.toml").open("a") as file:
+            file.write("[fluid]\nreynolds = 100\n")
+        t = np.linspace(0, 1, 50)
+        write_table(folder / "series.csv", series_of(t, kinetic_energy=np.exp(-t), dissipation=np.exp(-t), mass=1,
+                                                     pressure_iterations=7, max_speed=1), {"t": "s"})
+        grid = lattice([0, 0], [1, 1], 0.1)
+        write_snapshots(folder / "fluid.vtkhdf", [0, 0.5, 1], lambda t: grid,
+                        {"velocity": lambda p, t: p, "pressure": lambda p, t: p[:, 0], "id": lambda p, t: p[:, 0]})
+        write_table(folder / "probes.csv", {"t": t, "A_pressure": t, "A_velocity_x": t, "front": t})
+        write_table(folder / "lines.csv", {"t": [0.0] * 3, "name": ["centre"] * 3, "s": [0, 1, 2], "x": [0, 1, 2],
+                                           "velocity_x": [1, 2, 3], "pressure": [1, 2, 3]})
+        write_table(folder / "spectrum.csv", {"t": np.repeat([0.0, 1.0], 9), "wavenumber": np.tile(np.arange(9), 2),
+                                              "energy": np.tile(np.arange(9.0, 0, -1), 2)})
+        names, complaints = self.pictures(folder)
+        self.assertEqual(names, {"energy.png", "numerics.png", "speed.png", "pressure.png", "spectrum.png", "probes.png",
+                                 "line_centre.png", "kinetic_energy_exact.png"})
+        self.assertEqual(complaints, "")
+
+    def test_three_dimensional_run_with_a_surface_is_shaded(self):
+        folder = new_folder(self.path, "run")
+        write_case(folder, "Some wave", [0, 0, -0.5], [1, 0.2, 0.5], 0.05, x="periodic", y="periodic", top="open")
+        write_table(folder / "series.csv", series_of([0, 1.0], kinetic_energy=1, potential_energy=[1, 2],
+                                                     surface_particles=10))
+        grid = lattice([0, 0, -0.5], [1, 0.2, 0], 0.05)
+        write_snapshots(folder / "fluid.vtkhdf", [0, 1], lambda t: grid, {"velocity": lambda p, t: p})
+        names, _ = self.pictures(folder)
+        self.assertEqual(names, {"energy.png", "numerics.png", "speed.png", "side_view.png"})
+
+    def test_series_alone_is_enough_and_the_rest_is_said(self):
+        folder = new_folder(self.path, "run")
+        write_table(folder / "series.csv", series_of([0, 1.0], kinetic_energy=1))
+        names, complaints = self.pictures(folder)
+        self.assertEqual(names, {"energy.png", "numerics.png"})
+        self.assertIn("slices left out", complaints)
+
+    def test_nothing_to_draw_and_no_folder_are_errors(self):
+        for folder in (new_folder(self.path, "empty"), self.path / "nowhere"):
+            done = call("plot.py", folder)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("error:", done.stderr)
+
+
+# Answers `run CASE -o DIR ...` with a series that holds the exact Taylor-Green decay times a factor, or fails.
+PROGRAM = """\
+    #!{python}
+    import sys
+    sys.path[:0] = [{here!r}]
+    from pathlib import Path
+    import numpy as np
+    from synthetic import *
+    arguments = sys.argv[1:]
+    settings = [arguments[i + 1] for i, a in enumerate(arguments) if a == "--set"]
+    spacing = next((float(s.split("=")[1]) for s in settings if s.startswith("resolution.spacing")), 0.01)
+    if {fail}:
+        print("step 7: speed is not finite", file=sys.stderr)
+        sys.exit(3)
+    assert arguments[0] == "run" and "--quiet" in arguments
+    folder = Path(arguments[arguments.index("-o") + 1])
+    folder.mkdir()
+    (folder / "case.toml").write_text(Path(arguments[1]).read_text().replace("spacing = 0.01", f"spacing = {{spacing}}"))
+    t = np.linspace(0, 1, 101)
+    factor = 1 + {error} * (spacing / 0.01) ** 2
+    write_table(folder / "series.csv", series_of(t, kinetic_energy=0.25 * np.exp(-0.16 * np.pi**2 * t * factor)))
+    grid = lattice([0, 0], [1, 1], 0.05)
+    x, y = 2 * np.pi * grid.T
+    u = np.exp(-0.08 * np.pi**2) * np.column_stack([-np.cos(x) * np.sin(y), np.sin(x) * np.cos(y)])
+    write_snapshots(folder / "fluid.vtkhdf", [0, 1], lambda t: grid, {{"velocity": lambda p, t: factor * u}})
+"""
+
+
+class Verifying(Scratch):
+    def program(self, error=0.001, fail=False):
+        path = self.path / "program"
+        path.write_text(textwrap.dedent(PROGRAM).format(python=sys.executable, here=str(Path(__file__).parent),
+                                                        error=error, fail=fail))
+        path.chmod(path.stat().st_mode | stat.S_IXUSR)
+        return path
+
+    def test_passes_and_keeps_runs_plots_and_figures(self):
+        done = call("verify.py", self.program(), "taylor_green_2d", "--keep", self.path / "kept", "--threads", 2)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("every bound holds", done.stdout)
+        report = json.loads((self.path / "kept" / "verify.json").read_text())["taylor_green_2d"]
+        values = {row["quantity"]: row["measured"] for row in report}
+        self.assertAlmostEqual(values["decay_rate_error"], 0.001, places=9)
+        self.assertAlmostEqual(values["observed_order"], 2, places=2)
+        self.assertTrue((self.path / "kept" / "taylor_green_2d" / "plots" / "kinetic_energy_exact.png").is_file())
+        again = call("verify.py", self.program(), "taylor_green_2d", "--keep", self.path / "kept")
+        self.assertEqual(again.returncode, 2)
+        self.assertIn("nothing is overwritten", again.stderr)
+
+    def test_bound_exceeded_is_exit_code_1(self):
+        done = call("verify.py", self.program(error=0.02), "taylor_green_2d")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stdout, r"decay_rate_error +0\.02 +<= 0\.01 +FAIL")
+
+    def test_quick_runs_the_short_form(self):
+        done = call("verify.py", self.program(), "taylor_green_2d", "--quick", "--keep", self.path / "kept")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        runs = {p.name for p in (self.path / "kept" / "taylor_green_2d").iterdir()} - {"plots"}
+        self.assertEqual(runs, {"coarse"})
+
+    def test_failing_program_is_exit_code_1_with_its_words(self):
+        done = call("verify.py", self.program(fail=True), "taylor_green_2d")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("exit code 3", done.stderr)
+        self.assertIn("step 7: speed is not finite", done.stderr)
+
+    def test_bad_requests_are_exit_code_2(self):
+        self.assertEqual(call("verify.py", self.program(), "no_such_case").returncode, 2)
+        self.assertEqual(call("verify.py", self.path / "missing", "beltrami").returncode, 2)
+
+    def test_convergence_table_shows_the_order(self):
+        done = call("convergence.py", self.program(), "taylor_green_2d", 0.04, 0.02, 0.01, "--keep", self.path / "kept")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"observed order +2\.00 +2\.00")
+        self.assertTrue((self.path / "kept" / "error_against_time.png").is_file())
+
+
+class Floors(Scratch):
+    def check(self, includes):
+        for path, text in includes.items():
+            file = self.path / path
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text)
+        return call("floors.py", self.path)
+
+    def test_downward_include_is_allowed(self):
+        done = self.check({"src/run/a.cpp": '#include "spume/core/array.hpp"\n',
+                           "src/io/b.cpp": '#include "spume/scene/case.hpp"\n'})
+        self.assertEqual((done.returncode, done.stdout), (0, ""))
+
+    def test_upward_and_sideways_includes_are_named(self):
+        done = self.check({"include/spume/core/a.hpp": '#pragma once\n#include "spume/io/x.hpp"\n',
+                           "src/scene/b.cpp": '#include "spume/io/x.hpp"\n', "src/tricks/c.cpp": "\n"})
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("include/spume/core/a.hpp:2: error: core (floor 1) includes io (floor 2)", done.stdout)
+        self.assertIn("src/scene/b.cpp:1: error: scene includes io of the same floor", done.stdout)
+        self.assertIn("'tricks' is on no floor", done.stdout)
+
+    def test_this_repository_keeps_to_its_floors(self):
+        done = call("floors.py", paths.ROOT)
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,114 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Speed and memory of whole runs: bench_program.py PROGRAM [NAME...]; the names are the keys of MEASUREMENTS.
+
+step      particle-steps per second of breaking_wave, 126,300 particles (width 0.25), before breaking, 2 threads
+collapse  wall seconds per simulated second of bench/cases/collapse.toml, 100,000 particles, 2 threads
+threads   the step's speed on 2 threads over that on 1, alternating runs
+shared    time of two runs at once on the same cores over the time of one alone
+memory    peak memory of the step's run per particle, everything counted
+"""
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from spume_results import MissingResult, Results
+from spume_verification import CASES
+
+COLLAPSE = CASES.parent / "bench" / "cases" / "collapse.toml"
+WAVE = CASES / "breaking_wave" / "case.toml"
+WIDE = ["--set", "domain.upper=[1, 0.25, 0.5]", "--set", "output.every=0"]
+
+
+class Bench:
+    def __init__(self, program, scratch):
+        self.program, self.scratch, self.count = program, Path(scratch), 0
+
+    def start(self, case, *arguments):
+        self.count += 1
+        out = self.scratch / f"run-{self.count}"
+        command = [str(self.program), "run", str(case), "-o", str(out), "--quiet", *arguments]
+        return subprocess.Popen(command, stdout=subprocess.DEVNULL), out
+
+    def run(self, case, *arguments):
+        """Results and wall seconds of one run, start-up and output included."""
+        begin = time.monotonic()
+        process, out = self.start(case, *arguments)
+        if process.wait() != 0:
+            raise MissingResult(f"exit code {process.returncode} from {self.program} run {case}")
+        return Results(out), time.monotonic() - begin
+
+    def particle_steps_per_second(self, threads, until):
+        run, seconds = self.run(WAVE, *WIDE, "--threads", str(threads), "--until", str(until))
+        particles = len(run.snapshots()[0])
+        steps = int(run.series["step"][-1])
+        return particles * steps / seconds, particles, steps
+
+
+def step(bench):
+    rate, particles, steps = bench.particle_steps_per_second(2, 0.2)
+    return f"{rate / 1e6:.3f} M particle-steps/s ({particles} particles, {steps} steps, 2 threads)"
+
+
+def collapse(bench):
+    run, seconds = bench.run(COLLAPSE, "--threads", "2", "--until", "0.5")
+    return f"{seconds / run.series['t'][-1]:.1f} wall seconds per simulated second to t = 0.5 s, 2 threads"
+
+
+def threads(bench):
+    rates = {1: [], 2: []}
+    for _ in range(2):  # alternating, the best of each counts: other load on the machine slows, it never speeds up
+        for count in (1, 2):
+            rates[count].append(bench.particle_steps_per_second(count, 0.05)[0])
+    return f"2 threads are {max(rates[2]) / max(rates[1]):.2f} times as fast as 1"
+
+
+def shared(bench):
+    arguments = (WAVE, *WIDE, "--threads", "2", "--until", "0.05")
+    _, alone = bench.run(*arguments)
+    begin = time.monotonic()
+    both = [bench.start(*arguments)[0] for _ in range(2)]
+    if any([process.wait() != 0 for process in both]):
+        raise MissingResult("one of two runs at once failed")
+    return f"two runs at once take {(time.monotonic() - begin) / alone:.2f} times as long as one ({os.cpu_count()} cores)"
+
+
+def memory(bench):
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+    run, _ = bench.run(WAVE, *WIDE, "--until", "0.01")
+    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+    particles = len(run.snapshots()[0])
+    # ru_maxrss is the largest child so far, so a larger one before would hide this run.
+    note = "" if peak > before else " (an earlier run was as large)"
+    return f"{peak * 1024 / particles:.0f} bytes per particle at peak, {particles} particles{note}"
+
+
+MEASUREMENTS = {"memory": memory, "step": step, "collapse": collapse, "threads": threads, "shared": shared}
+
+
+def main():
+    program, names = Path(sys.argv[1]), sys.argv[2:] or list(MEASUREMENTS)
+    unknown = [name for name in names if name not in MEASUREMENTS]
+    if unknown or not program.is_file():
+        print(f"error: {', '.join(unknown) or program}: not there; the measurements are {', '.join(MEASUREMENTS)}",
+              file=sys.stderr)
+        return 2
+    os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+    with tempfile.TemporaryDirectory(prefix="spume-bench-") as scratch:
+        bench = Bench(program.resolve(), scratch)
+        for name in names:
+            try:
+                print(f"{name:<10} {MEASUREMENTS[name](bench)}", flush=True)
+            except MissingResult as error:
+                print(f"error: {name}: {error}", file=sys.stderr)
+                return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,191 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Standard pictures of a run: plot.py DIR [--times T...] writes DIR/plots/*.png and prints their names.
+
+Every picture is drawn from what the folder holds; what it does not hold is left out with one line saying so.
+Exit code 0 when at least one picture was written, 2 when there was nothing to draw.
+"""
+import argparse
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from spume_figures import FIELDS, draw_curves, draw_side_view, draw_slices, finish, has_free_surface
+from spume_results import MissingResult, Results
+from spume_verification import find_case, load_measure
+
+
+def plot_energy(run, out):
+    """Kinetic energy, and with gravity the changes of potential and total energy, and the rate of dissipation."""
+    series = run.series
+    t = series["t"]
+    has_potential = "potential_energy" in series and np.ptp(series["potential_energy"]) > 0
+    dissipates = "dissipation" in series and np.nanmax(np.abs(series["dissipation"]), initial=0) > 0
+    figure, axes = plt.subplots(1, 1 + dissipates, figsize=(5.2 * (1 + dissipates), 3.8), squeeze=False)
+    left = axes[0, 0]
+    left.plot(t, series["kinetic_energy"], label="kinetic")
+    if has_potential:
+        rest = series["potential_energy"][0]
+        left.plot(t, series["potential_energy"] - rest, label="potential, change from the start")
+        left.plot(t, series["kinetic_energy"] + series["potential_energy"] - rest, "k", label="sum")
+    left.set(xlabel=series.label("t"), ylabel=series.label("kinetic_energy") if not has_potential else "energy")
+    left.legend()
+    if dissipates:
+        axes[0, 1].plot(t, series["dissipation"], color="C3")
+        axes[0, 1].set(xlabel=series.label("t"), ylabel=series.label("dissipation"))
+    return [finish(figure, out / "energy.png")]
+
+
+def plot_numerics(run, out):
+    """What tells whether the run was healthy: step, iterations, largest speed, divergence, drift of mass."""
+    series = run.series
+    panels = [(name, series[name]) for name in ("dt", "pressure_iterations", "max_speed", "max_divergence",
+                                                 "pressure_residual", "surface_particles") if name in series]
+    if "mass" in series and series["mass"][0]:
+        panels.append(("relative drift of mass", series["mass"] / series["mass"][0] - 1))
+    panels = [(name, values) for name, values in panels if np.isfinite(values).any()]
+    if not panels:
+        return []
+    columns = min(3, len(panels))
+    rows = -(-len(panels) // columns)
+    figure, axes = plt.subplots(rows, columns, figsize=(4.2 * columns, 2.8 * rows), squeeze=False)
+    for axis in axes.flat[len(panels):]:
+        axis.remove()
+    for axis, (name, values) in zip(axes.flat, panels):
+        axis.plot(series["t"], values, linewidth=0.9)
+        axis.set(xlabel=series.label("t"), ylabel=series.label(name))
+        positive = values[np.isfinite(values) & (values > 0)]
+        if len(positive) and positive.max() > 300 * np.median(positive):
+            axis.set_yscale("log")
+    return [finish(figure, out / "numerics.png")]
+
+
+def plot_slices(run, out):
+    """Particles coloured by each field at up to six times; in 3-D those of the middle plane."""
+    snapshots = run.snapshots()
+    names = [name for name in FIELDS if name == "speed" or name in snapshots.names]
+    return [draw_slices(run, snapshots, name, out / f"{name}.png") for name in names if len(snapshots)]
+
+
+def plot_side_view(run, out):
+    """The liquid of a 3-D scene with a free surface, shaded, seen from the side and above."""
+    if run.dimensions != 3 or not has_free_surface(run):
+        return []
+    return [draw_side_view(run, run.snapshots(), out / "side_view.png")]
+
+
+def plot_spectra(run, out):
+    spectrum = run.spectrum
+    times = np.unique(spectrum["t"])
+    chosen = times[np.unique(np.linspace(0, len(times) - 1, min(6, len(times))).astype(int))]
+    figure, axis = plt.subplots(figsize=(5.2, 4.2))
+    for time, colour in zip(chosen, plt.cm.viridis(np.linspace(0, 0.9, len(chosen)))):
+        rows = (spectrum["t"] == time) & (spectrum["wavenumber"] > 0) & (spectrum["energy"] > 0)
+        axis.loglog(spectrum["wavenumber"][rows], spectrum["energy"][rows], color=colour, label=f"t = {time:.3g}")
+    # The reference slope passes through the last spectrum, a little above it, in the middle of its range.
+    if rows.sum() > 4:
+        k, energy = spectrum["wavenumber"][rows], spectrum["energy"][rows]
+        middle = len(k) // 4
+        span = k[max(1, middle // 2): max(4, int(0.6 * len(k)))]
+        axis.loglog(span, 2.5 * energy[middle] * (span / k[middle]) ** (-5 / 3), "k--", label="slope -5/3")
+        axis.set_ylim(bottom=max(energy.max() * 1e-8, 0.3 * energy.min()))
+    axis.set(xlabel=spectrum.label("wavenumber"), ylabel=spectrum.label("energy"))
+    axis.legend(fontsize=8)
+    return [finish(figure, out / "spectrum.png")]
+
+
+def plot_probes(run, out):
+    """Every probe against time, one panel per quantity."""
+    probes = run.probes
+    groups = {}
+    for name in probes:
+        if name == "t" or not np.isfinite(probes[name]).any():
+            continue
+        for suffix in ("_pressure", "_velocity_x", "_velocity_y", "_velocity_z"):
+            if name.endswith(suffix):
+                groups.setdefault(suffix[1:].replace("_", " "), []).append((name[: -len(suffix)], name))
+                break
+        else:
+            groups.setdefault("elevation, front", []).append((name, name))
+    if not groups:
+        return []
+    figure, axes = plt.subplots(len(groups), 1, figsize=(6.4, 2.8 * len(groups)), squeeze=False)
+    for axis, (quantity, members) in zip(axes.flat, groups.items()):
+        for label, name in members:
+            axis.plot(probes["t"], probes[name], linewidth=1, label=label)
+        axis.set(xlabel=probes.label("t"), ylabel=quantity)
+        axis.legend(fontsize=8, ncol=2)
+    return [finish(figure, out / "probes.png")]
+
+
+def plot_lines(run, out):
+    """Profiles along every line probe at up to six times."""
+    files = []
+    for name in run.line_names():
+        times = run.line_times(name)
+        chosen = np.unique(np.linspace(0, len(times) - 1, min(6, len(times))).astype(int))
+        quantities = [q for q in ("velocity_x", "velocity_y", "velocity_z", "pressure") if q in run.lines]
+        figure, axes = plt.subplots(1, len(quantities), figsize=(3.8 * len(quantities), 3.6), squeeze=False)
+        for index, colour in zip(chosen, plt.cm.viridis(np.linspace(0, 0.9, len(chosen)))):
+            profile = run.line(name, index)
+            for axis, quantity in zip(axes.flat, quantities):
+                axis.plot(profile["s"], profile[quantity], color=colour, label=f"t = {times[index]:.3g}")
+                axis.set(xlabel=f"distance along {name}", ylabel=run.lines.label(quantity))
+        axes.flat[0].legend(fontsize=8)
+        files.append(finish(figure, out / f"line_{name}.png"))
+    return files
+
+
+def plot_reference(run, out):
+    """The comparison that the case's own measure.py defines."""
+    case = find_case(run)
+    module = load_measure(case) if case else None
+    if module is None or not hasattr(module, "curves"):
+        return []
+    return draw_curves(module.curves({"run": run}), out)
+
+
+PICTURES = (plot_energy, plot_numerics, plot_slices, plot_side_view, plot_spectra, plot_probes, plot_lines,
+            plot_reference)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("directory", metavar="DIR", help="the folder of a run")
+    parser.add_argument("--times", metavar="T", nargs="+", type=float, default=(), help="times that particles are drawn at")
+    arguments = parser.parse_args()
+    folder = arguments.directory
+    try:
+        run = Results(folder)
+        run.picture_times = arguments.times
+    except MissingResult as error:
+        print(f"error: {error}; give the folder that 'spume run' made", file=sys.stderr)
+        return 2
+    out = run.folder / "plots"
+    files = []
+    for picture in PICTURES:
+        try:
+            out.mkdir(exist_ok=True)
+            files += picture(run, out)
+        except (MissingResult, ValueError, IndexError, np.linalg.LinAlgError) as error:
+            print(f"{picture.__name__[5:].replace('_', ' ')} left out: {error}", file=sys.stderr)
+        except OSError as error:
+            print(f"error: {error.filename}: {error.strerror}", file=sys.stderr)
+            return 2
+        finally:
+            plt.close("all")
+    for file in files:
+        print(file)
+    if not files:
+        print(f"error: {folder}: nothing to draw", file=sys.stderr)
+    return 0 if files else 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: MIT
+"""What a run left in its folder, as numpy arrays.
+
+    run = Results("runs/breaking_wave-1")
+    run.series["t"], run.series["kinetic_energy"]     one row per step
+    run.probes["front"]                               one row per step
+    run.line("centre", -1)["velocity_x"]              one profile, here of the last time
+    run.snapshots("fluid")[-1].position               (N, 3), with .time and .fields["velocity"] (N, 3)
+    run.case["resolution"]["spacing"]                 the resolved case file
+
+Every reader raises MissingResult, with the path and what would have written it, when there is nothing to read.
+"""
+import csv
+import json
+import re
+import tomllib
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+
+class MissingResult(Exception):
+    """A file or a column that a run did not write."""
+
+
+class Table(dict):
+    """Columns by name; `units` by name and `comments` (the lines above the header) as text."""
+
+    def __init__(self, path, columns, comments=()):
+        super().__init__(columns)
+        self.path = path
+        self.comments = list(comments)
+        self.units = {}
+        for line in self.comments:
+            for name, unit in re.findall(r"(\w+)\s*(?:[:=]|(?=\[))\s*([^,;]+)", line):
+                if name in self:
+                    self.units[name] = unit.strip(" []")
+
+    def __missing__(self, name):
+        raise MissingResult(f"{self.path}: no column '{name}'; it has {', '.join(self) or 'none'}")
+
+    def __len__(self):
+        return 0 if not self.keys() else len(next(iter(self.values())))
+
+    def label(self, name):
+        unit = self.units.get(name)
+        return name.replace("_", " ") + (f" [{unit}]" if unit and unit not in ("1", "-") else "")
+
+
+def read_csv(path):
+    """A CSV file with `#` lines first and then the column names. Numbers become float arrays, else text arrays."""
+    path = Path(path)
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except OSError as error:
+        raise MissingResult(f"{path}: cannot be read ({error.strerror})") from error
+    comments = [line.lstrip("# ") for line in lines if line.startswith("#")]
+    rows = [row for row in csv.reader(line for line in lines if line.strip() and not line.startswith("#"))]
+    if not rows:
+        raise MissingResult(f"{path}: holds no header line")
+    header = [name.strip() for name in rows[0]]
+    # The last line of a run that was killed may be cut short.
+    data = [row for row in rows[1:] if len(row) == len(header)]
+    columns = {}
+    for index, name in enumerate(header):
+        text = [row[index] for row in data]
+        try:
+            columns[name] = np.array([float(value) if value.strip() else np.nan for value in text])
+        except ValueError:
+            columns[name] = np.array(text, dtype=str)
+    return Table(path, columns, comments)
+
+
+class Snapshot:
+    """Particles at one time: position (N, 3) and fields by name, (N,) or (N, components)."""
+
+    def __init__(self, time, position, fields):
+        self.time = time
+        self.position = position
+        self.fields = fields
+
+    def __len__(self):
+        return len(self.position)
+
+    def field(self, name):
+        if name == "speed":
+            return np.linalg.norm(self.field("velocity"), axis=1)
+        if name not in self.fields:
+            raise MissingResult(f"snapshot at t = {self.time:g}: no field '{name}'; it has {', '.join(self.fields)}")
+        return self.fields[name]
+
+
+class Snapshots:
+    """The steps of a VTKHDF PolyData file with temporal data; index it for one Snapshot."""
+
+    def __init__(self, path):
+        import h5py
+
+        self.path = Path(path)
+        if not self.path.exists():
+            raise MissingResult(f"{self.path}: not there; set output.every in the case to have snapshots written")
+        try:
+            # A run that is still writing holds the lock; reading finished steps is safe.
+            with h5py.File(self.path, "r", locking=False) as file:
+                root = file["VTKHDF"]
+                steps = root["Steps"]
+                self.times = np.array(steps["Values"], dtype=float)[: int(steps.attrs["NSteps"])]
+                self._first = np.array(steps["PointOffsets"], dtype=np.int64)
+                self._count = np.array(root["NumberOfPoints"], dtype=np.int64)
+                self.names = list(root["PointData"]) if "PointData" in root else []
+        except (OSError, KeyError) as error:
+            raise MissingResult(f"{self.path}: not a VTKHDF file with steps ({error})") from error
+
+    def __len__(self):
+        return len(self.times)
+
+    def __getitem__(self, index):
+        import h5py
+
+        if not -len(self) <= index < len(self):
+            raise IndexError(index)
+        index %= len(self)
+        rows = slice(int(self._first[index]), int(self._first[index] + self._count[index]))
+        with h5py.File(self.path, "r", locking=False) as file:
+            root = file["VTKHDF"]
+            fields = {name: np.array(root["PointData"][name][rows]) for name in self.names}
+            return Snapshot(float(self.times[index]), np.array(root["Points"][rows], dtype=float), fields)
+
+    def nearest(self, time):
+        return self[int(np.argmin(np.abs(self.times - time)))]
+
+
+class Results:
+    """The folder of one run. picture_times: the times that pictures show, where someone has chosen them."""
+
+    picture_times = ()
+
+    def __init__(self, folder, wall_seconds=None):
+        self.folder = Path(folder)
+        self._wall_seconds = wall_seconds
+        if not self.folder.is_dir():
+            raise MissingResult(f"{self.folder}: not a folder")
+
+    def has(self, name):
+        return (self.folder / name).exists()
+
+    @cached_property
+    def series(self):
+        return read_csv(self.folder / "series.csv")
+
+    @cached_property
+    def probes(self):
+        return read_csv(self.folder / "probes.csv")
+
+    @cached_property
+    def lines(self):
+        return read_csv(self.folder / "lines.csv")
+
+    @cached_property
+    def spectrum(self):
+        return read_csv(self.folder / "spectrum.csv")
+
+    @cached_property
+    def case(self):
+        return read_case(self.folder / "case.toml")
+
+    @cached_property
+    def summary(self):
+        return self._json("summary.json")
+
+    @cached_property
+    def ledger(self):
+        return self._json("ledger.json")
+
+    @property
+    def wall_seconds(self):
+        return self._wall_seconds if self._wall_seconds is not None else self.summary.get("wall_seconds")
+
+    def snapshots(self, family="fluid"):
+        return Snapshots(self.folder / f"{family}.vtkhdf")
+
+    def line_names(self):
+        return list(dict.fromkeys(self.lines["name"]))
+
+    def line_times(self, name):
+        return np.unique(self.lines["t"][self.lines["name"] == name])
+
+    def line(self, name, time_index=-1):
+        """The profile of a line probe at one of its times: columns s, x, y, z, velocity_x, ..., pressure."""
+        times = self.line_times(name)
+        if not len(times):
+            raise MissingResult(f"{self.lines.path}: no line '{name}'; it has {', '.join(self.line_names())}")
+        rows = (self.lines["name"] == name) & (self.lines["t"] == times[time_index])
+        return Table(self.lines.path, {key: column[rows] for key, column in self.lines.items() if key != "name"})
+
+    @property
+    def spacing(self):
+        return float(self.case["resolution"]["spacing"])
+
+    @property
+    def dimensions(self):
+        return len(self.case["domain"]["lower"])
+
+    def bounds(self):
+        """Lower and upper corner of the domain, in 2 or 3 numbers."""
+        return np.array(self.case["domain"]["lower"], float), np.array(self.case["domain"]["upper"], float)
+
+    def _json(self, name):
+        try:
+            return json.loads((self.folder / name).read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise MissingResult(f"{self.folder / name}: cannot be read ({error})") from error
+
+
+def read_case(path):
+    try:
+        return tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, tomllib.TOMLDecodeError) as error:
+        raise MissingResult(f"{path}: cannot be read ({error})") from error
+
+
+def standard(runs):
+    """The run named "standard"; where there is none, the first."""
+    return runs.get("standard") or next(iter(runs.values()))
+
+
+def relative_rms(measured, exact, scale):
+    """Root mean square of the difference (over all components), divided by the scale."""
+    difference = np.asarray(measured, float) - np.asarray(exact, float)
+    return float(np.sqrt(np.mean(np.sum(difference.reshape(len(difference), -1) ** 2, axis=1))) / scale)
+
+
+def observed_order(spacings, errors):
+    """Slope of log error against log spacing by least squares."""
+    return float(np.polyfit(np.log(spacings), np.log(errors), 1)[0])

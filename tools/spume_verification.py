@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""Validation cases: where they are, how one is run, and what its measure.py says about the runs.
+
+cases/<name>/case.toml holds the case and, in [verify], what is run and which bounds hold:
+
+    [verify]
+    quick = true                      # takes seconds, so tools/test runs it; or a table like [verify] for a shorter one
+    [[verify.run]]                    # none: the case as it stands, under the name "run"
+    name = "coarse"
+    set = ["resolution.spacing=0.02"] # as --set on the command line
+    until = 1.0                       # as --until
+    [verify.bounds]
+    velocity_error = 0.01             # upper bound, or [lower, upper]
+
+cases/<name>/measure.py defines
+    measure(runs) -> {quantity: value}         runs: {name: Results}; quantities without a bound are reported only
+    curves(runs)  -> [figure]                  optional; see spume_figures.draw_curves
+    errors(run)   -> {quantity: value}         optional; errors of one run, for convergence tables
+"""
+import importlib.util
+import subprocess
+import time
+from pathlib import Path
+
+from spume_results import MissingResult, Results, read_case
+
+CASES = Path(__file__).resolve().parent.parent / "cases"
+
+
+class RunFailed(Exception):
+    """The program ended with another exit code than 0."""
+
+
+def case_folder(name):
+    """The folder of a case given by name, by folder or by its case.toml."""
+    for folder in (Path(name), Path(name).parent, CASES / name):
+        if (folder / "case.toml").is_file() and (folder != Path(name).parent or Path(name).name == "case.toml"):
+            return folder.resolve()
+    known = ", ".join(sorted(path.parent.name for path in CASES.glob("*/case.toml")))
+    raise MissingResult(f"{name}: not a case; the cases are {known}")
+
+
+def cases_with_verification():
+    return [path.parent for path in sorted(CASES.glob("*/case.toml")) if "verify" in read_case(path)]
+
+
+def find_case(run):
+    """The folder of the case that a run came from: the one in cases/ with the same title; None when there is none."""
+    try:
+        title = run.case.get("title")
+    except MissingResult:
+        return None
+    for path in sorted(CASES.glob("*/case.toml")):
+        try:
+            if title and read_case(path).get("title") == title:
+                return path.parent
+        except MissingResult:
+            continue
+    return None
+
+
+def load_measure(folder):
+    """The module measure.py of a case; None when it has none."""
+    path = Path(folder) / "measure.py"
+    if not path.is_file():
+        return None
+    specification = importlib.util.spec_from_file_location(f"measure_{Path(folder).name}", path)
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return module
+
+
+def run_case(program, folder, out, settings=(), until=None, threads=None):
+    """Runs the program on a case into the folder out, which must not exist; returns its Results."""
+    command = [str(program), "run", str(Path(folder) / "case.toml"), "-o", str(out), "--quiet"]
+    for setting in settings:
+        command += ["--set", setting]
+    if until is not None:
+        command += ["--until", repr(float(until))]
+    if threads is not None:
+        command += ["--threads", str(threads)]
+    start = time.monotonic()
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    seconds = time.monotonic() - start
+    if done.returncode != 0:
+        messages = (done.stdout + done.stderr).strip().splitlines()[-25:]
+        words = "\n".join(f"    {message}" for message in messages)
+        raise RunFailed(f"exit code {done.returncode} from: {' '.join(command)}\n{words}")
+    return Results(out, wall_seconds=seconds)
+
+
+def within(value, bound):
+    """True when the value lies within the bound: an upper bound for its magnitude, or [lower, upper]."""
+    if isinstance(bound, list):
+        return bound[0] <= value <= bound[1]
+    return abs(value) <= bound
