@@ -67,8 +67,8 @@ struct Particles {
   void make_list() { list.build(grid, table, x.data(), y.data(), z.data(), n, images, {0.5, 0.5, 0.5}); }
 
   void count(benchmark::State& state, double per_particle) const {
-    state.counters["ns_per_particle"] = benchmark::Counter(
-        static_cast<double>(n) * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    state.counters["time_per_particle"] = benchmark::Counter(
+        static_cast<double>(n), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
     if (per_particle > 0)
       state.counters["pairs_per_second"] =
           benchmark::Counter(static_cast<double>(n) * per_particle, benchmark::Counter::kIsIterationInvariantRate);

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/simd.hpp"
@@ -104,6 +105,19 @@ template <class V, class T>
 // Entries that a list of `count` neighbours takes.
 inline std::int32_t padded(std::int32_t count) {
   return (count + simd::lanes - 1) / simd::lanes * simd::lanes;
+}
+
+// Copies whole vectors between aligned arrays past the caches: lists are far larger than these and are written once,
+// so fetching the lines that are to be overwritten is a waste of a third of the traffic.
+inline void stream(const std::int32_t* from, std::size_t size, std::int32_t* to) {
+#if defined(__AVX__)
+  for (std::size_t k = 0; k < size; k += simd::lanes)
+    _mm256_stream_si256(reinterpret_cast<__m256i*>(to + k),
+                        _mm256_load_si256(reinterpret_cast<const __m256i*>(from + k)));
+  _mm_sfence();
+#else
+  std::memcpy(to, from, size * sizeof(std::int32_t));
+#endif
 }
 
 // Far enough for every kernel to vanish, near enough for finite squares.
@@ -229,22 +243,28 @@ template <int dimensions>
   candidates.size = size;
 }
 
-// Writes the candidates within the reach of point i, itself excluded; returns the end of what was written.
+// Where point i stands among the candidates; those of a group mostly follow each other.
+inline std::size_t slot_of(const Candidates& candidates, std::size_t i, std::size_t guess) {
+  const auto wanted = static_cast<std::int32_t>(i);
+  if (guess < candidates.size && candidates.index[guess] == wanted) return guess;
+  const std::int32_t *begin = candidates.index, *end = begin + candidates.size;
+  return static_cast<std::size_t>(std::find(begin, end, wanted) - begin);
+}
+
+// Writes the candidates within the reach of a point; returns the end of what was written.
 template <int dimensions>
-[[gnu::noinline]] std::int32_t* select(const Candidates candidates, const std::array<const float*, 3>& point,
-                                       std::size_t i, float reach2, std::int32_t* out) {
-  std::array<f32x8, 3> centre{};
-  for (int axis = 0; axis < dimensions; ++axis) centre[axis] = simd::splat(point[axis][i]);
-  const i32x8 self = i32x8{} + static_cast<std::int32_t>(i);
-  for (std::size_t j = 0; j < candidates.size; j += simd::lanes) {
+[[gnu::noinline]] std::int32_t* select(const Candidates& candidates, const std::array<float, 3>& centre, float reach2,
+                                       std::int32_t* out) {
+  const Candidates from = candidates;
+  const std::array<float, 3> r = centre;
+  for (std::size_t j = 0; j < from.size; j += simd::lanes) {
     f32x8 distance2{};
     for (int axis = 0; axis < dimensions; ++axis) {
-      const f32x8 d = simd::load(candidates.coordinate[axis] + j) - centre[axis];
-      distance2 = distance2 + d * d;
+      const f32x8 d = simd::load(from.coordinate[axis] + j) - r[axis];
+      distance2 = axis == 0 ? d * d : distance2 + d * d;
     }
-    const i32x8 index = load_int(candidates.index + j);
-    const unsigned mask = mask_of(i32x8(distance2 < reach2) & (index != self));
-    store_packed(index, packing_of(mask), out);
+    const unsigned mask = mask_of(i32x8(distance2 < reach2));
+    store_packed(load_int(from.index + j), packing_of(mask), out);
     out += std::popcount(mask);
   }
   return out;
@@ -358,9 +378,17 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
 
       const std::size_t wanted = filled + (group.last - i) * (candidates.size + 2 * simd::lanes);
       if (wanted > collected.size()) collected.resize(wanted);
+      std::size_t slot = 0;
       for (; i < group.last; ++i) {
         std::int32_t* const start = collected.data() + filled;
-        std::int32_t* const stop = select<dimensions>(candidates, point, i, reach2, start);
+        std::array<float, 3> centre{};
+        for (int axis = 0; axis < dimensions; ++axis) centre[axis] = point[axis][i];
+        // A particle is not its own neighbour: while it is searched for, its candidate stands far away.
+        slot = slot_of(candidates, i, slot + 1);
+        float& own = candidates.coordinate[0][slot];
+        const float kept = std::exchange(own, far);
+        std::int32_t* const stop = select<dimensions>(candidates, centre, reach2, start);
+        own = kept;
         store_int(stop, i32x8{} + nobody);
         const auto count = static_cast<std::int32_t>(stop - start);
         counts[i] = count;
@@ -371,7 +399,7 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
     found += pairs;
     const std::int64_t target = used.fetch_add(static_cast<std::int64_t>(filled));
     if (target + static_cast<std::int64_t>(filled) > capacity) return;
-    std::memcpy(indices + target, collected.data(), filled * sizeof(std::int32_t));
+    stream(collected.data(), filled, indices + target);
     std::int64_t running = target;
     for (std::size_t i = begin; i < end; ++i) {
       firsts[i] = running;
