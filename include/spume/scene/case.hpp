@@ -16,7 +16,7 @@ namespace spume {
 enum class KernelKind { wendland_c2, quintic_spline };
 enum class TurbulenceModel { none, mixed_scale, smagorinsky, dynamic_shepard, dynamic_lagrangian };
 enum class PressureSolver { bicgstab, cg };
-enum class PreconditionerKind { none, jacobi, multigrid };
+enum class PreconditionerKind { jacobi, multigrid };
 enum class Precision { mixed, f64 };
 enum class ShiftCorrection { none, first_order, second_order };
 

@@ -3,6 +3,7 @@
 #include "spume/methods/les_sph/les_sph.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -43,7 +44,16 @@ void LesSph::step(double dt, Ledger& ledger) {
   stage("accept", [&] { accept(liquid, dt); });
 }
 
-LesSph::LesSph(const LoadedCase& loaded) : liquid_(loaded), pressure_(std::make_unique<PressureSystem>(liquid_)) {}
+LesSph::LesSph(const LoadedCase& loaded) : liquid_(loaded), pressure_(std::make_unique<PressureSystem>(liquid_)) {
+  const std::array<const char*, 6> known{"velocity",    "pressure",       "id",
+                                         "dissipation", "eddy_viscosity", "divergence_of_position"};
+  for (const std::string& name : loaded.options.output.fields)
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      std::string list;
+      for (const char* field : known) list += std::string(list.empty() ? "" : ", ") + field;
+      throw InputError("output.fields names '" + name + "', which les-sph does not have; it has " + list);
+    }
+}
 
 LesSph::~LesSph() = default;
 
@@ -170,9 +180,33 @@ std::vector<Family> LesSph::snapshot() {
     fluid.position.push_back(liquid_.position[axis]->data());
     velocity.f64.push_back(liquid_.velocity[axis]->data());
   }
-  fluid.fields.push_back(velocity);
-  fluid.fields.push_back({"pressure", {liquid_.pressure->data()}, {}});
-  fluid.fields.push_back({"id", {}, {liquid_.identifier->data()}});
+  const auto& wanted = liquid_.options.output.fields;
+  const auto want = [&](const char* name, bool standard) {
+    return wanted.empty() ? standard : std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+  };
+  if (want("velocity", true)) fluid.fields.push_back(velocity);
+  if (want("pressure", true)) fluid.fields.push_back({"pressure", {liquid_.pressure->data()}, {}});
+  if (want("id", true)) fluid.fields.push_back({"id", {}, {liquid_.identifier->data()}});
+  // Fields of the last step, in the units of the case; zero before the first.
+  const auto add_derived = [&](const char* name, bool standard, auto&& value) {
+    if (!want(name, standard)) return;
+    Array<double>& values = snapshot_[name];
+    values.resize(liquid_.size());
+    parallel_for(liquid_.size(), [&](std::size_t i) { values[i] = value(i); });
+    fluid.fields.push_back({name, {values.data()}, {}});
+  };
+  const double nu = liquid_.scene.fluid.kinematic_viscosity;
+  const auto eddy = [&](std::size_t i) {
+    return liquid_.eddy_viscosity == nullptr ? 0.0 : double{(*liquid_.eddy_viscosity)[i]};
+  };
+  if (liquid_.plan.velocity_gradient)
+    add_derived("dissipation", liquid_.plan.eddy_viscosity, [&](std::size_t i) {
+      const double strain = (*liquid_.strain)[i];
+      return (nu + eddy(i)) * strain * strain;
+    });
+  if (liquid_.plan.eddy_viscosity) add_derived("eddy_viscosity", false, eddy);
+  add_derived("divergence_of_position", false,
+              [&](std::size_t i) { return double{(*liquid_.divergence_of_position)[i]}; });
   return {fluid};
 }
 

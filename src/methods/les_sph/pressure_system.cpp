@@ -65,6 +65,21 @@ struct PressureSystem::Operator final : LinearOperator<float> {
   int& applications_;
 };
 
+// The same in double, for comparison: A x = -(0 - A x).
+struct PressureSystem::DoubleOperator final : LinearOperator<double> {
+  DoubleOperator(PressureOperator& matrix, int& applications, std::span<const double> zero)
+      : matrix_(matrix), applications_(applications), zero_(zero) {}
+  std::size_t size() const override { return matrix_.size(); }
+  void apply(std::span<const double> x, std::span<double> y) override {
+    matrix_.residual(x, zero_, y);
+    parallel_for(y.size(), [&](std::size_t i) { y[i] = -y[i]; });
+    ++applications_;
+  }
+  PressureOperator& matrix_;
+  int& applications_;
+  std::span<const double> zero_;
+};
+
 PressureSystem::PressureSystem(const Liquid& liquid) {
   if (liquid.options.pressure.preconditioner == PreconditionerKind::multigrid)
     multigrid_ = std::make_unique<CellMultigrid>(cell_geometry(liquid));
@@ -120,19 +135,71 @@ void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz,
   reference_norm_ = std::sqrt(squares);
 }
 
+namespace {
+
+// Krylov options of one correction: the residual has the norm `size` and shall fall below `target`.
+template <class Real>
+KrylovOptions<Real> correction_options(double size, double target, double most_digits, int left, bool singular) {
+  KrylovOptions<Real> krylov;
+  krylov.tolerance = std::clamp(0.5 * target / size, most_digits, 0.5);
+  krylov.max_iterations = left;
+  krylov.zero_guess = true;
+  krylov.confirm = false;
+  krylov.remove_mean = singular;
+  return krylov;
+}
+
+template <class Real>
+KrylovResult run_krylov(PressureSolver solver, LinearOperator<Real>& a, spume::Preconditioner<Real>& m,
+                        std::span<const Real> b, std::span<Real> x, const KrylovOptions<Real>& options,
+                        KrylovWorkspace<Real>& work) {
+  return solver == PressureSolver::cg ? conjugate_gradients<Real>(a, m, b, x, options, work)
+                                      : bicgstab<Real>(a, m, b, x, options, work);
+}
+
+}  // namespace
+
+// Residuals are scaled to order one: float keeps its range for any units. A correction gains at most three digits,
+// rounding in float spoils more.
+KrylovResult PressureSystem::correct(Liquid& liquid, double size, double target, int left, bool singular) {
+  const std::size_t n = liquid.size();
+  for (auto* array : {&correction_, &correction_right_}) array->resize(n);
+  Operator a(operator_, report_.applications);
+  JacobiPreconditioner<float> jacobi(diagonal_);
+  spume::Preconditioner<float>* preconditioner = &jacobi;
+  if (multigrid_ != nullptr) preconditioner = multigrid_.get();
+  parallel_for(n, [&](std::size_t i) { correction_right_[i] = static_cast<float>(residual_[i] / size); });
+  const auto options = correction_options<float>(size, target, 1e-3, left, singular);
+  const KrylovResult result = run_krylov<float>(liquid.options.pressure.solver, a, *preconditioner, correction_right_,
+                                                correction_, options, work_);
+  parallel_for(n, [&](std::size_t i) { (*liquid.reduced_pressure)[i] += size * correction_[i]; });
+  return result;
+}
+
+KrylovResult PressureSystem::correct_in_double(Liquid& liquid, double size, double target, int left, bool singular) {
+  const std::size_t n = liquid.size();
+  for (auto* array : {&double_correction_, &zero_, &double_diagonal_}) array->resize(n);
+  parallel_for(n, [&](std::size_t i) { double_diagonal_[i] = diagonal_[i]; });
+  DoubleOperator a(operator_, report_.applications, zero_);
+  JacobiPreconditioner<double> jacobi(double_diagonal_);
+  spume::Preconditioner<double>* preconditioner = &jacobi;
+  if (multigrid_ != nullptr) preconditioner = multigrid_.get();
+  const auto options = correction_options<double>(size, target, 1e-12, left, singular);
+  const KrylovResult result = run_krylov<double>(liquid.options.pressure.solver, a, *preconditioner, residual_,
+                                                 double_correction_, options, double_work_);
+  parallel_for(n, [&](std::size_t i) { (*liquid.reduced_pressure)[i] += double_correction_[i]; });
+  return result;
+}
+
 void PressureSystem::solve(Liquid& liquid, double helmholtz, Ledger& ledger) {
   const std::size_t n = liquid.size();
   const PressureOptions& options = liquid.options.pressure;
   const bool surface = liquid.plan.free_surface;
-  for (auto* array : {&correction_, &correction_right_}) array->resize(n);
   residual_.resize(n);
 
   const PressureMatrix matrix{extra_.data(), surface ? liquid.at_surface.data() : nullptr};
   operator_.bind(liquid.context, liquid.records, matrix);
   report_ = {};
-  Operator a(operator_, report_.applications);
-  JacobiPreconditioner<float> jacobi(diagonal_);
-  spume::Preconditioner<float>* preconditioner = &jacobi;
   if (multigrid_ != nullptr) {
     const auto scope = ledger.time("preconditioner setup", static_cast<double>(n));
     if (liquid.plan.displaced_walls) multigrid_->set_geometry(cell_geometry(liquid));
@@ -146,12 +213,9 @@ void PressureSystem::solve(Liquid& liquid, double helmholtz, Ledger& ledger) {
     };
     multigrid_->setup(span(0), span(1), span(2), surface ? std::span<const float>(liquid.interior_weight) : interior_,
                       helmholtz, diagonal_);
-    preconditioner = multigrid_.get();
   }
 
-  // Iterative refinement: residuals in double, corrections in float. A correction gains at most three digits:
-  // rounding in float spoils more.
-  constexpr double digits_per_correction = 1e-3;
+  // Iterative refinement: residuals in double, corrections in float.
   const double target = options.tolerance * reference_norm_;
   const bool singular = liquid.plan.closed && helmholtz == 0;
   for (int round = 0;; ++round) {
@@ -169,20 +233,10 @@ void PressureSystem::solve(Liquid& liquid, double helmholtz, Ledger& ledger) {
       report_.converged = false;
       return;
     }
-    // Scaled to order one: float keeps its range for any units.
-    parallel_for(n, [&](std::size_t i) { correction_right_[i] = static_cast<float>(residual_[i] / size); });
-    KrylovOptions<float> krylov;
-    krylov.tolerance = std::clamp(0.5 * target / size, digits_per_correction, 0.5);
-    krylov.max_iterations = left;
-    krylov.zero_guess = true;
-    krylov.confirm = false;
-    krylov.remove_mean = singular;
-    const KrylovResult result =
-        options.solver == PressureSolver::cg
-            ? conjugate_gradients<float>(a, *preconditioner, correction_right_, correction_, krylov, work_)
-            : bicgstab<float>(a, *preconditioner, correction_right_, correction_, krylov, work_);
+    const KrylovResult result = options.precision == Precision::mixed
+                                    ? correct(liquid, size, target, left, singular)
+                                    : correct_in_double(liquid, size, target, left, singular);
     report_.iterations += std::max(result.iterations, 1);
-    parallel_for(n, [&](std::size_t i) { (*liquid.reduced_pressure)[i] += size * correction_[i]; });
   }
 }
 
