@@ -45,7 +45,8 @@ struct ShiftingOptions {
   bool on = true;
   double coefficient = 0.25;         // displacement = -coefficient h^2 grad C
   double limit = 0.1;                // largest displacement / h per step
-  ShiftCorrection velocity_correction = ShiftCorrection::second_order;  // Taylor terms of u at the new place
+  bool remove_drift = true;          // subtract what neighbours share of the shift
+  ShiftCorrection velocity_correction = ShiftCorrection::first_order;  // Taylor terms of u at the new place
 };
 
 struct SurfaceOptions {
@@ -57,6 +58,7 @@ struct TimeOptions {
   double end = 0;
   double courant = 0.2;
   double viscous = 0.2;
+  bool centred = true;       // velocities free of divergence half a step ahead: second order in time
   double max_step = 0;       // 0: none
   int max_retries = 6;
 };

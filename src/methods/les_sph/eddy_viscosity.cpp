@@ -103,7 +103,8 @@ void find_dynamic_viscosity(Liquid& liquid, double dt) {
   test_filter.run(liquid);
   const std::size_t n = liquid.size();
   const double width = liquid.smoothing_length;
-  const double ratio = turbulence::test_filter_width_ratio(width, turbulence::wendland_variance<d>(liquid.smoothing_length));
+  const double ratio =
+      turbulence::test_filter_width_ratio(width, turbulence::wendland_variance<d>(liquid.smoothing_length));
   const double nu = liquid.scene.fluid.kinematic_viscosity;
   const bool lagrangian = liquid.options.turbulence.model == TurbulenceModel::dynamic_lagrangian;
 
@@ -143,8 +144,10 @@ void differentiate_velocity(Liquid& liquid) {
   if (liquid.plan.test_filter) out.filtered = liquid.write(liquid.filtered_velocity);
   velocity_gradient_sweep(liquid.context, liquid.records, liquid.read(liquid.velocity), liquid.velocity_rule,
                           liquid.read_correction(), out);
-  if (liquid.dimensions == 2) find_strain<2>(liquid);
-  else find_strain<3>(liquid);
+  if (liquid.dimensions == 2)
+    find_strain<2>(liquid);
+  else
+    find_strain<3>(liquid);
 }
 
 void find_shift_correction(Liquid& liquid) {
@@ -166,11 +169,15 @@ void find_shift_correction(Liquid& liquid) {
 
 void find_eddy_viscosity(Liquid& liquid, double dt) {
   if (liquid.dynamic_closure()) {
-    if (liquid.dimensions == 2) find_dynamic_viscosity<2>(liquid, dt);
-    else find_dynamic_viscosity<3>(liquid, dt);
+    if (liquid.dimensions == 2)
+      find_dynamic_viscosity<2>(liquid, dt);
+    else
+      find_dynamic_viscosity<3>(liquid, dt);
   } else {
-    if (liquid.dimensions == 2) find_static_viscosity<2>(liquid);
-    else find_static_viscosity<3>(liquid);
+    if (liquid.dimensions == 2)
+      find_static_viscosity<2>(liquid);
+    else
+      find_static_viscosity<3>(liquid);
   }
 }
 

@@ -43,8 +43,7 @@ void LesSph::step(double dt, Ledger& ledger) {
   stage("accept", [&] { accept(liquid, dt); });
 }
 
-LesSph::LesSph(const LoadedCase& loaded)
-    : liquid_(loaded), pressure_(std::make_unique<PressureSystem>(liquid_)) {}
+LesSph::LesSph(const LoadedCase& loaded) : liquid_(loaded), pressure_(std::make_unique<PressureSystem>(liquid_)) {}
 
 LesSph::~LesSph() = default;
 
@@ -72,12 +71,17 @@ void LesSph::ensure_started() {
   if (!liquid_.started) start(unrecorded);
 }
 
-std::vector<Stage> LesSph::plan() const { return liquid_.plan.stages(liquid_.loaded); }
+std::vector<Stage> LesSph::plan() const {
+  return liquid_.plan.stages(liquid_.loaded);
+}
 
 std::vector<ArrayInfo> LesSph::arrays() const {
   std::vector<ArrayInfo> list;
   for (const auto& field : liquid_.fields.fields())
-    list.push_back({field->name, std::visit([](const auto& array) { return static_cast<double>(array.capacity() * sizeof(array[0])); }, field->values)});
+    list.push_back(
+        {field->name,
+         std::visit([](const auto& array) { return static_cast<double>(array.capacity() * sizeof(array[0])); },
+                    field->values)});
   list.push_back({"cell table", liquid_.table.bytes()});
   list.push_back({"images", liquid_.images.bytes()});
   list.push_back({"neighbour lists", liquid_.list.bytes()});
@@ -130,15 +134,16 @@ void LesSph::series_values(std::span<double> values) {
   const double mass = liquid.scene.fluid.density * liquid.volume;
   const Vec3& gravity = liquid.scene.fluid.gravity;
   const double kinetic = mass * parallel_sum(n, [&](std::size_t i) {
-    double speed2 = 0;
-    for (int axis = 0; axis < d; ++axis) speed2 += (*liquid.velocity[axis])[i] * (*liquid.velocity[axis])[i];
-    return speed2 / 2;
-  });
+                           double speed2 = 0;
+                           for (int axis = 0; axis < d; ++axis)
+                             speed2 += (*liquid.velocity[axis])[i] * (*liquid.velocity[axis])[i];
+                           return speed2 / 2;
+                         });
   const double potential = mass * parallel_sum(n, [&](std::size_t i) {
-    double sum = 0;
-    for (int axis = 0; axis < d; ++axis) sum -= gravity[axis] * (*liquid.position[axis])[i];
-    return sum;
-  });
+                             double sum = 0;
+                             for (int axis = 0; axis < d; ++axis) sum -= gravity[axis] * (*liquid.position[axis])[i];
+                             return sum;
+                           });
   std::size_t k = 0;
   const auto put = [&](double value) { values[k++] = value; };
   put(kinetic);
@@ -178,9 +183,15 @@ PointSampler& LesSph::sampler() {
   return *sampler_;
 }
 
-PointSample LesSph::sample(const Vec3& position) { return sampler().sample(liquid_, position); }
-double LesSph::elevation(const Vec3& position) { return sampler().elevation(liquid_, position); }
-double LesSph::front(int axis, double height) { return sampler().front(liquid_, axis, height); }
+PointSample LesSph::sample(const Vec3& position) {
+  return sampler().sample(liquid_, position);
+}
+double LesSph::elevation(const Vec3& position) {
+  return sampler().elevation(liquid_, position);
+}
+double LesSph::front(int axis, double height) {
+  return sampler().front(liquid_, axis, height);
+}
 
 bool LesSph::spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) {
   const Domain& domain = liquid_.scene.domain;
