@@ -62,8 +62,7 @@ TEST(LesSphConservation, AMovingFrameSeesTheSameFlow) {
   const Overrides tight{"pressure.tolerance=1e-7"};
   Simulation rest(taylor_green, tight);
   Overrides moving_frame = tight;
-  moving_frame.push_back(
-      "liquid.0.velocity=[\"1-cos(2*pi*x)*sin(2*pi*y)\", \"sin(2*pi*x)*cos(2*pi*y)\"]");
+  moving_frame.push_back("liquid.0.velocity=[\"1-cos(2*pi*x)*sin(2*pi*y)\", \"sin(2*pi*x)*cos(2*pi*y)\"]");
   Simulation moving(taylor_green, moving_frame);
   const int steps = 5;
   rest.steps(steps, dt);

@@ -7,8 +7,8 @@
 namespace spume::test {
 namespace {
 
-// The potential of gravity is part of the unknown: at rest its gradient is zero up to the solver's tolerance, here 1e-10
-// of the hydrostatic source. Rounding of float coordinates and pressures enters speeds as 1e-6 g t.
+// The potential of gravity is part of the unknown: at rest its gradient is zero up to the solver's tolerance, here
+// 1e-10 of the hydrostatic source. Rounding of float coordinates and pressures enters speeds as 1e-6 g t.
 TEST(LesSphFlow, StillLiquidStaysAtRest) {
   for (const std::string& text : {closed_box, tank}) {
     Simulation run(text, {"pressure.tolerance=1e-10"});
@@ -63,7 +63,7 @@ std::string in_the_air(int dimensions, const std::string& liquid) {
 TEST(LesSphFlow, AnIsolatedParticleFallsFreely) {
   for (const int d : {2, 3}) {
     Simulation run(in_the_air(d, d == 2 ? "lower = [0.5, 0.5]\nupper = [0.55, 0.55]\n"
-                                 : "lower = [0.5, 0.5, 0.5]\nupper = [0.55, 0.55, 0.55]\n"));
+                                        : "lower = [0.5, 0.5, 0.5]\nupper = [0.55, 0.55, 0.55]\n"));
     ASSERT_EQ(run.method.particle_count(), 1U);
     const double dt = 0.01;
     const double start = run.state().position[0][d - 1];
@@ -80,8 +80,9 @@ TEST(LesSphFlow, AnIsolatedParticleFallsFreely) {
 // of some per cent of the hydrostatic one over a spacing.
 TEST(LesSphFlow, ADropFallsFreelyAndNearlyKeepsItsShape) {
   for (const int d : {2, 3}) {
-    Simulation run(in_the_air(d, d == 2 ? "centre = [0.5, 0.6]\nradius = 0.2\n" : "centre = [0.5, 0.5, 0.6]\nradius = 0.2\n"),
-            {"shifting.on=false"});
+    Simulation run(
+        in_the_air(d, d == 2 ? "centre = [0.5, 0.6]\nradius = 0.2\n" : "centre = [0.5, 0.5, 0.6]\nradius = 0.2\n"),
+        {"shifting.on=false"});
     ASSERT_GT(run.method.particle_count(), 20U);
     const double dt = 0.005;
     run.steps(5, dt);
@@ -128,6 +129,42 @@ TEST(LesSphFlow, WallsAtRestSlowAStreamAndSlippingOnesDoNot) {
       }
     }
   }
+}
+
+// Around the edges of a solid the matrix is not symmetric; the equation of a closed domain must have a solution all the
+// same.
+TEST(LesSphFlow, ALidDrivesAClosedBoxAroundASolid) {
+  Simulation run(closed_box + "[[solid]]\nlower = [0.35, 0.35]\nupper = [0.65, 0.65]\nwall = \"no-slip\"\n",
+                 {"domain.wall_velocity.top=[\"1\", \"0\"]"});
+  run.steps(20, 0.005);
+  EXPECT_LT(max_speed(run.state()), 1);
+  EXPECT_GT(max_speed(run.state()), 0.1);
+}
+
+// Per step at most shifting.limit h; at the surface along it.
+TEST(LesSphFlow, AShiftIsShortAndFollowsTheSurface) {
+  Simulation run(dam_break);
+  double longest = 0, along_normal = 0, largest_at_surface = 0;
+  for (int k = 0; k < 20; ++k) {
+    run.steps(1, 0.004);
+    const les_sph::Liquid& liquid = run.method.liquid();
+    for (std::size_t i = 0; i < liquid.size(); ++i) {
+      double length2 = 0, normal2 = 1e-30, along = 0;
+      for (int axis = 0; axis < 2; ++axis) {
+        const double s = (*liquid.shift[axis])[i], n = (*liquid.smoothed_normal[axis])[i];
+        length2 += s * s;
+        normal2 += n * n;
+        along += s * n;
+      }
+      longest = std::max(longest, std::sqrt(length2) / liquid.smoothing_length);
+      if (liquid.at_surface[i] == 0) continue;
+      along_normal = std::max(along_normal, std::abs(along) / std::sqrt(normal2) / liquid.smoothing_length);
+      largest_at_surface = std::max(largest_at_surface, std::sqrt(length2) / liquid.smoothing_length);
+    }
+  }
+  EXPECT_LE(longest, 0.1 * (1 + 1e-6));
+  EXPECT_GT(longest, 0);
+  EXPECT_LE(along_normal, 1e-5) << "of a largest shift of " << largest_at_surface << " h";
 }
 
 // A uniform force along a periodic axis accelerates everything alike.

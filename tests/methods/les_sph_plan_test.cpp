@@ -54,7 +54,7 @@ TEST(LesSphPlan, APeriodicBoxHasNoSurface) {
 }
 
 TEST(LesSphPlan, EveryStageHasItsArraysOnlyWhenItRuns) {
-  Simulation plain(taylor_green, {"shifting.on=false"});
+  Simulation plain(taylor_green, {"shifting.on=false", "time.centred=false"});
   plain.steps(2, 0.004);
   const auto without = arrays_of(plain);
   EXPECT_FALSE(runs(plain, "shift"));
@@ -68,6 +68,9 @@ TEST(LesSphPlan, EveryStageHasItsArraysOnlyWhenItRuns) {
   shifted.steps(2, 0.004);
   EXPECT_FALSE(any_contains(arrays_of(shifted), "shift_velocity"));
   EXPECT_TRUE(any_contains(arrays_of(shifted), "shift"));
+
+  Simulation first_order(taylor_green);
+  EXPECT_FALSE(runs(first_order, "shift curvature"));
 
   Simulation smagorinsky(taylor_green, {"turbulence.model=\"smagorinsky\""});
   smagorinsky.steps(2, 0.004);

@@ -77,6 +77,31 @@ TEST_P(SavedState, ARefusedStepCanBeRepeatedShorter) {
     }
 }
 
+// Probes look at the present state, also when it is not that of the last look at the same step count.
+TEST(LesSphSamples, FollowALoadedState) {
+  Simulation here(taylor_green), there(taylor_green, {"liquid.0.velocity=[\"1\", \"0\"]"});
+  here.steps(1, 0.004);
+  there.steps(1, 0.02);
+  const Vec3 point{0.31, 0.42, 0};
+  here.method.sample(point);
+  MemoryState saved;
+  there.method.save(saved);
+  here.method.load(saved);
+  EXPECT_EQ(here.method.sample(point).velocity, there.method.sample(point).velocity);
+  EXPECT_EQ(here.method.sample(point).coverage, there.method.sample(point).coverage);
+}
+
+TEST(LesSphSamples, AreTheSameAfterARefusedStep) {
+  Simulation run(taylor_green);
+  run.steps(2, 0.004);
+  const Vec3 point{0.31, 0.42, 0};
+  const PointSample before = run.method.sample(point);
+  EXPECT_THROW(run.steps(1, 1e4), StepFailure);
+  const PointSample after = run.method.sample(point);
+  EXPECT_NEAR(after.coverage, before.coverage, 1e-12);
+  for (int axis = 0; axis < 2; ++axis) EXPECT_NEAR(after.velocity[axis], before.velocity[axis], 1e-12);
+}
+
 INSTANTIATE_TEST_SUITE_P(Cases, SavedState, ::testing::Values(taylor_green, taylor_green_3d, dam_break),
                          [](const auto& info) {
                            return info.index == 0 ? "Vortices2D" : info.index == 1 ? "Vortices3D" : "DamBreak";

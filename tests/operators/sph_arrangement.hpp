@@ -119,7 +119,8 @@ struct Arrangement {
     };
     for (std::size_t p = 0; p < paths.size(); ++p) {
       const auto point = transformed(p);
-      rule.sign.push_back({float(point.velocity_sign[0]), float(point.velocity_sign[1]), float(point.velocity_sign[2])});
+      rule.sign.push_back(
+          {float(point.velocity_sign[0]), float(point.velocity_sign[1]), float(point.velocity_sign[2])});
       reflection.push_back({float(point.reflection[0]), float(point.reflection[1]), float(point.reflection[2])});
     }
     if (!moving) return;
@@ -185,9 +186,7 @@ struct VectorArrays {
   }
   Array<T>& operator[](int a) { return component[a]; }
   const Array<T>& operator[](int a) const { return component[a]; }
-  std::array<const T*, 3> read() const {
-    return {component[0].data(), component[1].data(), component[2].data()};
-  }
+  std::array<const T*, 3> read() const { return {component[0].data(), component[1].data(), component[2].data()}; }
   std::array<T*, 3> write() { return {component[0].data(), component[1].data(), component[2].data()}; }
 };
 
@@ -227,8 +226,8 @@ inline std::vector<ArrangementSetup> all_setups() {
       const int last = d - 1;
       const auto add = [&](const std::string& name, const std::vector<Point>& points, auto&& change) {
         ArrangementSetup setup = base;
-        setup.name = name + (d == 2 ? ", 2-D, " : ", 3-D, ") +
-                     (kernel == KernelKind::wendland_c2 ? "Wendland" : "quintic");
+        setup.name =
+            name + (d == 2 ? ", 2-D, " : ", 3-D, ") + (kernel == KernelKind::wendland_c2 ? "Wendland" : "quintic");
         setup.points = points;
         change(setup);
         setups.push_back(setup);

@@ -176,11 +176,15 @@ TEST(SphExactness, AQuarterTurnTurnsTheResults) {
     const double bound = eps * slow.magnitude + linear_bound(a, ga, i, 2 * slow.magnitude);
     divergence.add_error(std::abs(div_a[i] - div_b[k]), bound, div_b[k], div_a[i], i);
     const auto viscous = a.twin.viscous(i, u, kappa);
-    force.add_error(std::abs(force_b[0][k] + force_a[1][i]), eps * viscous[1].magnitude, force_b[0][k], -force_a[1][i], i);
-    force.add_error(std::abs(force_b[1][k] - force_a[0][i]), eps * viscous[0].magnitude, force_b[1][k], force_a[0][i], i);
+    force.add_error(std::abs(force_b[0][k] + force_a[1][i]), eps * viscous[1].magnitude, force_b[0][k], -force_a[1][i],
+                    i);
+    force.add_error(std::abs(force_b[1][k] - force_a[0][i]), eps * viscous[0].magnitude, force_b[1][k], force_a[0][i],
+                    i);
     const auto n = a.twin.normal(i);
-    normal.add_error(std::abs(gb.normal[0][k] + ga.normal[1][i]), eps * n[1].magnitude, gb.normal[0][k], -ga.normal[1][i], i);
-    normal.add_error(std::abs(gb.normal[1][k] - ga.normal[0][i]), eps * n[0].magnitude, gb.normal[1][k], ga.normal[0][i], i);
+    normal.add_error(std::abs(gb.normal[0][k] + ga.normal[1][i]), eps * n[1].magnitude, gb.normal[0][k],
+                     -ga.normal[1][i], i);
+    normal.add_error(std::abs(gb.normal[1][k] - ga.normal[0][i]), eps * n[0].magnitude, gb.normal[1][k],
+                     ga.normal[0][i], i);
   }
 }
 
@@ -207,8 +211,10 @@ TEST(SphExactness, AUniformVelocityChangesNoDerivative) {
     viscous_sweep(a.context, a.records, u.read(), a.rule, kappa.data(), first.write());
     viscous_sweep(a.context, a.records, v.read(), a.rule, kappa.data(), second.write());
     Array<double> div_u(a.size()), div_v(a.size());
-    divergence_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), nullptr, div_u.data(), nullptr);
-    divergence_sweep(a.context, a.records, v.read(), a.rule, geometry.read_correction(), nullptr, div_v.data(), nullptr);
+    divergence_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), nullptr, div_u.data(),
+                     nullptr);
+    divergence_sweep(a.context, a.records, v.read(), a.rule, geometry.read_correction(), nullptr, div_v.data(),
+                     nullptr);
     for (std::size_t i = 0; i < a.size(); ++i) {
       ASSERT_EQ(div_u[i], div_v[i]);
       for (int axis = 0; axis < d; ++axis) ASSERT_EQ(first[axis][i], second[axis][i]);

@@ -47,9 +47,9 @@ TEST(SphGeometry, CorrectionIsTheInverseOfTheMomentsOrTheIdentity) {
         for (const Sum& m : row) moment_error += std::pow(m.magnitude * reference::tolerance(a.twin.neighbours(i)), 2);
       moment_error = std::sqrt(moment_error);
       const double norm2 = a.dimensions() * slow.mean_square;
-      const bool near_choice = std::abs(std::sqrt(slow.mean_square) / largest_correction - 1) <
-                                   2 * std::sqrt(norm2) * moment_error ||
-                               slow.determinant < 1e-6;
+      const bool near_choice =
+          std::abs(std::sqrt(slow.mean_square) / largest_correction - 1) < 2 * std::sqrt(norm2) * moment_error ||
+          slow.determinant < 1e-6;
       if (near_choice) continue;
       EXPECT_EQ(fast.uncorrected[i], slow.corrected ? 0 : 1) << i;
       ++(slow.corrected ? inverses : fallbacks);
@@ -98,7 +98,34 @@ TEST(SphGeometry, LatticeConstantsAreTheSumsOfAPeriodicLattice) {
         // The lattice itself is rounded to the grid of 2^-20: 2^-21 / spacing relative, second order in symmetric sums.
         EXPECT_NEAR(a.twin.kernel_sum(0).value, constants.kernel_sum, 1e-4);
         EXPECT_NEAR(a.twin.divergence_of_position(0).value, constants.divergence_of_position, 1e-4);
+        EXPECT_NEAR(a.twin.coupling(0).value * setup.spacing * setup.spacing, constants.coupling, 1e-3);
       }
+}
+
+// Layers of a lattice between two open sides, deep enough that the sides do not see each other.
+TEST(SphGeometry, LayersBelowASurfaceHaveTheSumsOfALattice) {
+  for (const int d : {2, 3})
+    for (const KernelKind kernel : {KernelKind::wendland_c2, KernelKind::quintic_spline}) {
+      const int across = kernel == KernelKind::wendland_c2 ? 14 : 16;
+      ArrangementSetup setup = lattice_setup(d, across, BoundaryKind::open);
+      setup.kernel = kernel;
+      Arrangement a(setup);
+      const Geometry fast(a);
+      VectorArrays<float> filtered(a.size(), d);
+      filter_vector(a.context, a.records, {fast.normal[0].data(), fast.normal[1].data(), fast.normal[2].data()},
+                    a.reflection, filtered.write());
+      const auto layers = lattice_surface(d, kernel, setup.smoothing_ratio);
+      const Array<double>& height = d == 3 ? a.hood.z : a.hood.y;
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        const auto layer = static_cast<std::size_t>((1 - height[i]) * across);
+        if (height[i] < 0.5 || layer >= layers.size()) continue;
+        const SurfaceLayer& expected = layers[layer];
+        ASSERT_NEAR(fast.divergence_of_position[i], expected.divergence_of_position, 1e-3) << layer;
+        ASSERT_NEAR(fast.normal[d - 1][i], expected.normal, 1e-3) << layer;
+        ASSERT_NEAR(-fast.concentration_gradient[d - 1][i] * setup.spacing, expected.concentration_gradient, 1e-3);
+        ASSERT_NEAR(filtered[d - 1][i], expected.smoothed_normal, 1e-3) << layer;
+      }
+    }
 }
 
 TEST(SphGeometry, NormalsPointOutOfTheLiquidAndVanishInside) {

@@ -202,7 +202,8 @@ class SphSums {
   }
   // d u_a / d x_b = L_bc m_ac
   template <class Velocity>
-  std::array<std::array<Sum, 3>, 3> velocity_gradient(std::size_t i, const Velocity& u, const Matrix& correction) const {
+  std::array<std::array<Sum, 3>, 3> velocity_gradient(std::size_t i, const Velocity& u,
+                                                      const Matrix& correction) const {
     const auto m = velocity_difference_moments(i, u);
     std::array<std::array<Sum, 3>, 3> gradient{};
     for (int a = 0; a < dimensions(); ++a)
@@ -321,7 +322,9 @@ class SphSums {
     double r, w, g, largest_w, largest_g;
   };
 
-  double weight(double r) const { return volume_ * kernel_.normalisation() / std::pow(h_, dimensions()) * kernel_.w(r / h_); }
+  double weight(double r) const {
+    return volume_ * kernel_.normalisation() / std::pow(h_, dimensions()) * kernel_.w(r / h_);
+  }
   double slope(double r) const {
     return -volume_ * kernel_.normalisation() / std::pow(h_, dimensions() + 2) * kernel_.f(r / h_);
   }
