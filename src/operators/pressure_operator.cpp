@@ -105,7 +105,8 @@ void PressureOperator::residual(std::span<const double> q, std::span<const doubl
     record[1] = static_cast<float>(value - double{record[0]});
   };
   parallel_for(n, [&, out, width](std::size_t i) { split(out + i * width, q[i]); });
-  parallel_for(context_.images->size(), [&, out, width, n](std::size_t k) { split(out + (n + k) * width, q[source[k]]); });
+  parallel_for(context_.images->size(),
+               [&, out, width, n](std::size_t k) { split(out + (n + k) * width, q[source[k]]); });
   with_kernel(context_, [&]<int dimensions, class Kernel>() {
     residual_rows<dimensions, Kernel>(context_, records, matrix_, q.data(), b.data(), r.data());
   });
