@@ -5,6 +5,8 @@
 
 namespace spume {
 
-std::unique_ptr<Method> make_method(const LoadedCase& loaded) { return std::make_unique<les_sph::LesSph>(loaded); }
+std::unique_ptr<Method> make_method(const LoadedCase& loaded) {
+  return std::make_unique<les_sph::LesSph>(loaded);
+}
 
 }  // namespace spume

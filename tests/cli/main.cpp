@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The tests of the command line start this executable again, with "--as-spume" first, as the program with the fake
-// method of tests/run: exit codes, signals and files are then those of a real process.
+// method of tests/support: exit codes, signals and files are then those of a real process.
 #include <gtest/gtest.h>
 
 #include <cstring>
 
-#include "run/fake_method.hpp"
 #include "spume/cli/programme.hpp"
+#include "support/fake_method.hpp"
 
 namespace {
 

@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "run/fake_method.hpp"
 #include "spume/core/error.hpp"
 #include "spume/io/checkpoint.hpp"
 #include "spume/io/hdf5.hpp"
 #include "spume/io/vtkhdf.hpp"
+#include "support/fake_method.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace spume {

@@ -37,8 +37,8 @@ struct StepLimit {
 // two pointers of a component is set.
 struct NamedField {
   std::string name;
-  std::vector<const double*> f64;          // per component, or empty
-  std::vector<const std::int64_t*> i64;    // per component, or empty
+  std::vector<const double*> f64;        // per component, or empty
+  std::vector<const std::int64_t*> i64;  // per component, or empty
 };
 
 // A family of particles to be drawn: "fluid", "bubbles".

@@ -48,8 +48,8 @@ struct SolidBox {
 
 struct Domain {
   int dimensions = 3;
-  Vec3 lower{}, upper{};                         // the third entry is 0 in two dimensions
-  std::array<std::array<Side, 2>, 3> sides;      // sides[axis][0] at lower, [1] at upper
+  Vec3 lower{}, upper{};                     // the third entry is 0 in two dimensions
+  std::array<std::array<Side, 2>, 3> sides;  // sides[axis][0] at lower, [1] at upper
   std::vector<SolidBox> boxes;
   bool periodic(int axis) const { return sides[axis][0].kind == BoundaryKind::periodic; }
 };
@@ -76,7 +76,7 @@ struct Scene {
   Domain domain;
   Fluid fluid;
   double spacing = 0;
-  bool free_surface = false;  // false: the liquid fills a closed or periodic domain
+  bool free_surface = false;                   // false: the liquid fills a closed or periodic domain
   std::optional<VectorExpression> body_force;  // acceleration, beside gravity
   std::uint64_t seed = 1;
   InitialParticles particles;

@@ -305,7 +305,7 @@ void PressureSystem::solve_initial(Liquid& liquid, Ledger& ledger) {
   }
   // -lap p = tr(grad u . grad u), from the divergence of the momentum equation.
   parallel_for(n, [&](std::size_t i) { divergence_[i] = gradient_trace(liquid, i); });
-  set_matrix(liquid, 0);
+  set_matrix(liquid, regularisation(liquid));
   set_right_hand_side(liquid, 0, 1, divergence_.data());
   parallel_for(n, [&](std::size_t i) {
     (*liquid.reduced_pressure)[i] = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
@@ -313,7 +313,13 @@ void PressureSystem::solve_initial(Liquid& liquid, Ledger& ledger) {
   const auto scope = ledger.time("first pressure", static_cast<double>(n));
   solve(liquid, 0, ledger);
   if (liquid.plan.closed) remove_constant(liquid);
+  const double density = liquid.scene.fluid.density;
+  parallel_for(n, [&](std::size_t i) {
+    (*liquid.pressure)[i] = density * ((*liquid.reduced_pressure)[i] -
+                                       (liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]));
+  });
 }
+
 
 double PressureSystem::bytes() const {
   double total = 0;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A small deterministic method and a loader of cases for it: points that turn about the origin and repel from an
-// oscillating centre, so that every step depends on all the digits of time and state.
-#pragma once
+#include "support/fake_method.hpp"
 
 #include <toml++/toml.h>
 
@@ -9,16 +7,15 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <memory>
-#include <string>
+#include <new>
+#include <sstream>
 #include <thread>
-#include <vector>
 
 #include "spume/core/error.hpp"
-#include "spume/methods/method.hpp"
-#include "spume/scene/case.hpp"
 
 namespace spume::test {
+
+namespace {
 
 struct FakeBehaviour {
   std::int64_t particles = 50;
@@ -134,9 +131,9 @@ class FakeMethod final : public Method {
   Array<std::int64_t> id_;
 };
 
-// A flat TOML file: title, end, every, series_every, spectrum_every, checkpoint_every, dimensions, max_retries,
-// probes (true or false) and the members of FakeBehaviour. Overrides are key=value.
-inline LoadedCase load_fake_case(const std::string& path, const std::vector<std::string>& overrides) {
+}  // namespace
+
+LoadedCase load_fake_case(const std::string& path, const std::vector<std::string>& overrides) {
   toml::table table;
   try {
     table = toml::parse_file(path);
@@ -173,7 +170,7 @@ inline LoadedCase load_fake_case(const std::string& path, const std::vector<std:
   return loaded;
 }
 
-inline std::unique_ptr<Method> make_fake_method(const LoadedCase& loaded) {
+std::unique_ptr<Method> make_fake_method(const LoadedCase& loaded) {
   const toml::table table = toml::parse(loaded.options.resolved);
   FakeBehaviour behaviour;
   behaviour.particles = table["particles"].value<std::int64_t>().value_or(behaviour.particles);
