@@ -57,10 +57,14 @@ void residual_rows(const SweepContext& context, const float* records, const Pres
     f64x4 sum_low{}, sum_high{};
     for_each_batch<dimensions, 2>(list, records, i, scale.inverse_h, [&](const auto& batch) {
       const f32x8 f = Kernel::f(batch.q);
-      const f32x8 coarse = high - batch.payload[0];
+      // The leading parts are subtracted in double: near a zero of q they differ by more than a factor of two, and
+      // a float difference would round.
       const f32x8 fine = low - batch.payload[1];
-      sum_low = sum_low + simd::to_f64_low(f) * (simd::to_f64_low(coarse) + simd::to_f64_low(fine));
-      sum_high = sum_high + simd::to_f64_high(f) * (simd::to_f64_high(coarse) + simd::to_f64_high(fine));
+      const f32x8 other = batch.payload[0];
+      sum_low =
+          sum_low + simd::to_f64_low(f) * ((simd::to_f64_low(high) - simd::to_f64_low(other)) + simd::to_f64_low(fine));
+      sum_high = sum_high + simd::to_f64_high(f) *
+                                ((simd::to_f64_high(high) - simd::to_f64_high(other)) + simd::to_f64_high(fine));
     });
     r[i] = b[i] - (double{factor} * simd::sum(sum_low + sum_high) + double{volume * matrix.extra[i]} * q[i]);
   });

@@ -30,7 +30,7 @@ TEST(LesSphFlow, StillLiquidStaysAtRest) {
 }
 
 // A compressible liquid starts from its own hydrostatic pressure: without it the first steps are a sound wave.
-TEST(LesSphFlow, DISABLED_CompressibleStillLiquidStaysAtRestFromTheFirstStep) {
+TEST(LesSphFlow, CompressibleStillLiquidStaysAtRestFromTheFirstStep) {
   for (const std::string& text : {closed_box, tank}) {
     Simulation run(text, {"fluid.mach=0.05", "pressure.tolerance=1e-7"});
     run.steps(1, 0.005);
@@ -39,7 +39,7 @@ TEST(LesSphFlow, DISABLED_CompressibleStillLiquidStaysAtRestFromTheFirstStep) {
 }
 
 // lap p = -div(u . grad u): p = -(cos 4 pi x + cos 4 pi y) / 4 for the vortices of this sense.
-TEST(LesSphFlow, DISABLED_FirstPressureBelongsToTheInitialVelocity) {
+TEST(LesSphFlow, FirstPressureBelongsToTheInitialVelocity) {
   Simulation run(taylor_green);
   run.method.snapshot();  // finds it
   const State s = run.state();
@@ -145,7 +145,7 @@ TEST(LesSphFlow, ALidDrivesACompressibleBoxAroundASolid) {
 
 // Around the edges of a solid the matrix is not symmetric: its left null vector is not the constant, and a right-hand
 // side without mean need not be in its range.
-TEST(LesSphFlow, DISABLED_ALidDrivesAnIncompressibleBoxAroundASolid) {
+TEST(LesSphFlow, ALidDrivesAnIncompressibleBoxAroundASolid) {
   run_around_a_solid("0");
 }
 
@@ -153,8 +153,8 @@ struct ShiftBounds {
   double longest = 0, along_normal = 0, at_surface = 0;  // in h
 };
 
-ShiftBounds shifts_of_a_dam_break() {
-  Simulation run(dam_break);
+ShiftBounds shifts_of_a_dam_break(const std::vector<std::string>& overrides = {}) {
+  Simulation run(dam_break, overrides);
   ShiftBounds bounds;
   for (int k = 0; k < 20; ++k) {
     run.steps(1, 0.004);
@@ -183,8 +183,9 @@ TEST(LesSphFlow, AShiftIsShorterThanItsLimit) {
   EXPECT_GT(bounds.longest, 0);
 }
 
-TEST(LesSphFlow, DISABLED_AShiftFollowsTheSurface) {
-  const ShiftBounds bounds = shifts_of_a_dam_break();
+// Removing the drift may move surface particles across the surface, with their neighbours; the shift itself does not.
+TEST(LesSphFlow, AShiftFollowsTheSurface) {
+  const ShiftBounds bounds = shifts_of_a_dam_break({"shifting.remove_drift=false"});
   EXPECT_LE(bounds.along_normal, 1e-5) << "of a largest shift of " << bounds.at_surface << " h";
 }
 

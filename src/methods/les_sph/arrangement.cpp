@@ -96,7 +96,12 @@ void choose_shift(Liquid& liquid) {
   const int d = liquid.dimensions;
   const double h = liquid.smoothing_length;
   const double coefficient = liquid.options.shifting.coefficient * h * h;
-  const double limit = liquid.options.shifting.limit * h;
+  const double longest = liquid.options.shifting.limit * h;
+  const auto limit = [=](std::array<double, 3>& shift) {
+    const double length = std::hypot(shift[0], shift[1], shift[2]);
+    if (length > longest)
+      for (double& component : shift) component *= longest / length;
+  };
   parallel_for(liquid.size(), [&](std::size_t i) {
     std::array<double, 3> shift{};
     for (int axis = 0; axis < d; ++axis) shift[axis] = -coefficient * (*liquid.shift[axis])[i];
@@ -111,10 +116,8 @@ void choose_shift(Liquid& liquid) {
       for (int axis = 0; axis < d; ++axis) shift[axis] -= along / norm2 * (*liquid.smoothed_normal[axis])[i];
       if (liquid.list.count(i) == 0) shift = {};
     }
-    double length2 = 0;
-    for (int axis = 0; axis < d; ++axis) length2 += shift[axis] * shift[axis];
-    const double scale = length2 > limit * limit ? limit / std::sqrt(length2) : 1;
-    for (int axis = 0; axis < d; ++axis) (*liquid.shift[axis])[i] = static_cast<float>(scale * shift[axis]);
+    limit(shift);
+    for (int axis = 0; axis < d; ++axis) (*liquid.shift[axis])[i] = static_cast<float>(shift[axis]);
   });
   if (!liquid.plan.drift_removal) return;
   // What neighbours share of the shift transports liquid without any force: near a surface it lifts the liquid step by
@@ -123,7 +126,11 @@ void choose_shift(Liquid& liquid) {
   filter_vector(liquid.context, liquid.records, liquid.read(liquid.shift), liquid.reflection,
                 liquid.write(liquid.acceleration));
   parallel_for(liquid.size(), [&](std::size_t i) {
-    for (int axis = 0; axis < d; ++axis) (*liquid.shift[axis])[i] -= (*liquid.acceleration[axis])[i];
+    std::array<double, 3> shift{};
+    for (int axis = 0; axis < d; ++axis)
+      shift[axis] = double{(*liquid.shift[axis])[i]} - (*liquid.acceleration[axis])[i];
+    limit(shift);
+    for (int axis = 0; axis < d; ++axis) (*liquid.shift[axis])[i] = static_cast<float>(shift[axis]);
   });
 }
 

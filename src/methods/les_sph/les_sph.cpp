@@ -14,9 +14,18 @@
 #include "spume/operators/energy_spectrum.hpp"
 
 namespace spume::les_sph {
+namespace {
+
+// r* is sorted with the state but found anew by every step.
+bool saved(const FieldSet::Field& field) {
+  return field.lifetime == Lifetime::carried && field.name.rfind("intermediate_position", 0) != 0;
+}
+
+}  // namespace
 
 void LesSph::step(double dt, Ledger& ledger) {
   if (!liquid_.started) start(ledger);
+  sampler_.reset();  // sorting changes what its bins refer to, also when the step is refused
   Liquid& liquid = liquid_;
   const Plan& plan = liquid.plan;
   const auto n = static_cast<double>(liquid.size());
@@ -67,6 +76,7 @@ void LesSph::start(Ledger& ledger) {
     measure_geometry(liquid_);
     if (liquid_.plan.free_surface) find_surface(liquid_);
     differentiate_velocity(liquid_);
+    predict_velocity(liquid_, 0);  // for the potential of the uniform acceleration
     pressure_->solve_initial(liquid_, ledger);
     if (!liquid_.plan.velocity_gradient) {
       for (int k = 0; k < liquid_.dimensions * liquid_.dimensions; ++k) liquid_.velocity_gradient[k]->release();
@@ -106,7 +116,7 @@ StepLimit LesSph::step_limit() const {
   double acceleration2 = 0;
   for (const double g : liquid_.scene.fluid.gravity) acceleration2 += g * g;
   // From rest the speed that gravity gives over one smoothing length stands in for the largest speed.
-  const double speed = std::max(liquid_.max_speed, std::sqrt(std::sqrt(acceleration2) * h));
+  const double speed = std::max(liquid_.limiting_speed, std::sqrt(std::sqrt(acceleration2) * h));
   StepLimit limit{1e300, "nothing"};
   const auto bound = [&](double dt, const char* name) {
     if (dt < limit.dt) limit = {dt, name};
@@ -247,8 +257,9 @@ bool LesSph::spectrum(std::vector<double>& wavenumber, std::vector<double>& ener
 }
 
 void LesSph::save(StateWriter& writer) const {
-  const double scalars[] = {liquid_.time, liquid_.max_speed, liquid_.max_eddy_viscosity, liquid_.max_divergence,
-                            liquid_.dissipation};
+  const double scalars[] = {liquid_.time,           liquid_.max_speed,
+                            liquid_.limiting_speed, liquid_.max_eddy_viscosity,
+                            liquid_.max_divergence, liquid_.dissipation};
   const std::int64_t counters[] = {liquid_.steps, liquid_.started ? 1 : 0, static_cast<std::int64_t>(liquid_.size())};
   writer.f64("scalars", scalars);
   writer.i64("counters", counters);
@@ -256,24 +267,25 @@ void LesSph::save(StateWriter& writer) const {
   const double walls[] = {w[0][0], w[0][1], w[1][0], w[1][1], w[2][0], w[2][1]};
   writer.f64("walls", walls);
   for (const auto& field : liquid_.fields.fields()) {
-    if (field->lifetime != Lifetime::carried) continue;
+    if (!saved(*field)) continue;
     if (const auto* f64 = std::get_if<Array<double>>(&field->values)) writer.f64(field->name, *f64);
     if (const auto* i64 = std::get_if<Array<std::int64_t>>(&field->values)) writer.i64(field->name, *i64);
   }
 }
 
 void LesSph::load(StateReader& reader) {
+  sampler_.reset();
   Array<double> scalars, walls;
   Array<std::int64_t> counters;
   reader.f64("scalars", scalars);
   reader.i64("counters", counters);
   reader.f64("walls", walls);
-  if (scalars.size() != 5 || counters.size() != 3 || walls.size() != 6)
+  if (scalars.size() != 6 || counters.size() != 3 || walls.size() != 6)
     throw FileError("the checkpoint was written by another version of the method");
   const auto n = static_cast<std::size_t>(counters[2]);
   liquid_.fields.resize(n);
   for (const auto& field : liquid_.fields.fields()) {
-    if (field->lifetime != Lifetime::carried) continue;
+    if (!saved(*field)) continue;
     if (auto* f64 = std::get_if<Array<double>>(&field->values)) reader.f64(field->name, *f64);
     if (auto* i64 = std::get_if<Array<std::int64_t>>(&field->values)) reader.i64(field->name, *i64);
     if (std::visit([](const auto& array) { return array.size(); }, field->values) != n)
@@ -281,9 +293,10 @@ void LesSph::load(StateReader& reader) {
   }
   liquid_.time = scalars[0];
   liquid_.max_speed = scalars[1];
-  liquid_.max_eddy_viscosity = scalars[2];
-  liquid_.max_divergence = scalars[3];
-  liquid_.dissipation = scalars[4];
+  liquid_.limiting_speed = scalars[2];
+  liquid_.max_eddy_viscosity = scalars[3];
+  liquid_.max_divergence = scalars[4];
+  liquid_.dissipation = scalars[5];
   liquid_.steps = counters[0];
   liquid_.started = counters[1] != 0;
   for (int axis = 0; axis < 3; ++axis) liquid_.walls[axis] = {walls[2 * axis], walls[2 * axis + 1]};

@@ -118,11 +118,20 @@ void project_velocity(Liquid& liquid, double dt) {
 
 void update_extremes(Liquid& liquid) {
   const int d = liquid.dimensions;
-  liquid.max_speed = std::sqrt(parallel_max(liquid.size(), 0.0, [&](std::size_t i) {
+  const auto speed2_at = [&](std::size_t i) {
     double speed2 = 0;
     for (int axis = 0; axis < d; ++axis) speed2 += (*liquid.velocity[axis])[i] * (*liquid.velocity[axis])[i];
     return speed2;
-  }));
+  };
+  liquid.max_speed = std::sqrt(parallel_max(liquid.size(), 0.0, speed2_at));
+  // Particles with fewer neighbours than a surface would give exchange next to nothing: one droplet need not
+  // hold up the whole liquid. `accept` still refuses a step in which any particle crosses half its support.
+  const int spray = d == 3 ? 8 : 3;
+  const bool listed = liquid.list.particles() == liquid.size();
+  liquid.limiting_speed =
+      listed ? std::sqrt(parallel_max(liquid.size(), 0.0,
+                                      [&](std::size_t i) { return liquid.list.count(i) < spray ? 0.0 : speed2_at(i); }))
+             : liquid.max_speed;
   if (liquid.eddy_viscosity != nullptr && liquid.started)
     liquid.max_eddy_viscosity =
         parallel_max(liquid.size(), 0.0, [&](std::size_t i) { return double{(*liquid.eddy_viscosity)[i]}; });

@@ -42,6 +42,18 @@ double gradient_trace(const Liquid& liquid, std::size_t i) {
   return trace;
 }
 
+// Images in solids are those of the nearest face, which is not mutual at a box edge: the matrix of a closed
+// incompressible box around a solid is then not symmetric, its right-hand side is not compatible, and removing the mean
+// does not help. A compressibility of 1e-3 over the square of the domain, far below that of the smallest wave number
+// (2 pi)^2, makes the constant solvable; it is removed afterwards.
+double regularisation(const Liquid& liquid, double helmholtz) {
+  if (!liquid.plan.closed || helmholtz > 0 || liquid.scene.domain.boxes.empty()) return 0;
+  double length = 0;
+  for (int axis = 0; axis < liquid.dimensions; ++axis)
+    length = std::max(length, liquid.scene.domain.upper[axis] - liquid.scene.domain.lower[axis]);
+  return 1e-3 / (length * length);
+}
+
 double norm(std::span<const double> values) {
   return std::sqrt(parallel_sum(values.size(), [&](std::size_t i) { return values[i] * values[i]; }));
 }
@@ -217,7 +229,7 @@ void PressureSystem::solve(Liquid& liquid, double helmholtz, Ledger& ledger) {
 
   // Iterative refinement: residuals in double, corrections in float.
   const double target = options.tolerance * reference_norm_;
-  const bool singular = liquid.plan.closed && helmholtz == 0;
+  const bool singular = liquid.plan.closed && helmholtz == 0 && regularisation(liquid, helmholtz) == 0;
   for (int round = 0;; ++round) {
     operator_.residual(*liquid.reduced_pressure, right_hand_side_, residual_);
     ++report_.applications;
@@ -270,7 +282,7 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
     // does not cost the energy dt |grad p|^2 / 2 per time.
     if (liquid.options.time.centred)
       parallel_for(n, [&](std::size_t i) { divergence_[i] -= 0.5 * dt * gradient_trace(liquid, i); });
-    set_matrix(liquid, helmholtz);
+    set_matrix(liquid, helmholtz + regularisation(liquid, helmholtz));
     set_right_hand_side(liquid, helmholtz, -1 / dt, divergence_.data());
   }
   // Start from the pressure that the particle carries; surface particles hold p = 0.
@@ -305,7 +317,7 @@ void PressureSystem::solve_initial(Liquid& liquid, Ledger& ledger) {
   }
   // -lap p = tr(grad u . grad u), from the divergence of the momentum equation.
   parallel_for(n, [&](std::size_t i) { divergence_[i] = gradient_trace(liquid, i); });
-  set_matrix(liquid, regularisation(liquid));
+  set_matrix(liquid, regularisation(liquid, 0));
   set_right_hand_side(liquid, 0, 1, divergence_.data());
   parallel_for(n, [&](std::size_t i) {
     (*liquid.reduced_pressure)[i] = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
@@ -315,11 +327,10 @@ void PressureSystem::solve_initial(Liquid& liquid, Ledger& ledger) {
   if (liquid.plan.closed) remove_constant(liquid);
   const double density = liquid.scene.fluid.density;
   parallel_for(n, [&](std::size_t i) {
-    (*liquid.pressure)[i] = density * ((*liquid.reduced_pressure)[i] -
-                                       (liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]));
+    (*liquid.pressure)[i] =
+        density * ((*liquid.reduced_pressure)[i] - (liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]));
   });
 }
-
 
 double PressureSystem::bytes() const {
   double total = 0;
