@@ -74,7 +74,8 @@ void geometry(const SweepContext& context, Records& records_, const GeometryOpti
     for (int k = 0; k < matrix; ++k) sum[k] = simd::sum(m[k]);
     const double trace = dimensions == 2 ? sum[0] + sum[2] : sum[0] + sum[3] + sum[5];
     const bool corrected = invert(sum, dimensions, inverse);
-    if (!corrected) inverse = dimensions == 2 ? std::array<double, 6>{1, 0, 1} : std::array<double, 6>{1, 0, 0, 1, 0, 1};
+    if (!corrected)
+      inverse = dimensions == 2 ? std::array<double, 6>{1, 0, 1} : std::array<double, 6>{1, 0, 0, 1, 0, 1};
     for (int k = 0; k < matrix; ++k) out.correction[k][i] = static_cast<float>(inverse[k]);
     out.uncorrected[i] = corrected ? 0 : 1;
     out.divergence_of_position[i] = static_cast<float>(trace);
@@ -92,9 +93,66 @@ void geometry(const SweepContext& context, Records& records_, const GeometryOpti
 void geometry_sweep(const SweepContext& context, Records& records, const GeometryOptions& options,
                     const GeometryOut& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    if (options.shifting) geometry<dimensions, Kernel, true>(context, records, options, out);
-    else geometry<dimensions, Kernel, false>(context, records, options, out);
+    if (options.shifting)
+      geometry<dimensions, Kernel, true>(context, records, options, out);
+    else
+      geometry<dimensions, Kernel, false>(context, records, options, out);
   });
+}
+
+std::vector<SurfaceLayer> lattice_surface(int dimensions, KernelKind kernel, double smoothing_ratio) {
+  SweepContext context;
+  context.dimensions = dimensions;
+  context.kernel = kernel;
+  std::vector<SurfaceLayer> layers;
+  with_kernel(context, [&]<int d, class Kernel>() {
+    const double h = smoothing_ratio;
+    const double scale = Kernel::normalisation(d) / std::pow(h, d);
+    const double w_reference = Kernel::w(1 / h);
+    const int n = static_cast<int>(Kernel::support * h) + 1;
+    // Sums over one layer at distance k, in units of the spacing: W, g, g d_z with the tensile factor, g d.d.
+    struct LayerSum {
+      double w = 0, g = 0, tensile = 0, gr2 = 0;
+    };
+    std::vector<LayerSum> sum(static_cast<std::size_t>(n) + 1);
+    for (int k = 0; k <= n; ++k)
+      for (int j = d == 3 ? -n : 0; j <= (d == 3 ? n : 0); ++j)
+        for (int i = -n; i <= n; ++i) {
+          const double r2 = i * i + j * j + k * k;
+          const double q = std::sqrt(r2) / h;
+          LayerSum& layer = sum[static_cast<std::size_t>(k)];
+          layer.w += scale * Kernel::w(q);
+          if (r2 == 0) continue;
+          const double g = -scale / (h * h) * Kernel::f(q);
+          layer.g += g;
+          layer.tensile += g * (1 + 0.25 * std::pow(Kernel::w(q) / w_reference, 4));
+          layer.gr2 += g * r2;
+        }
+    // Layer 0 lies at the surface; the layers above it are missing.
+    const int depth = 2 * n + 1;
+    for (int layer = 0; layer <= depth; ++layer) {
+      SurfaceLayer result{};
+      for (int k = -n; k <= n; ++k) {
+        if (layer + k < 0) continue;
+        const LayerSum& s = sum[static_cast<std::size_t>(std::abs(k))];
+        result.normal += h * s.g * k;
+        result.concentration_gradient += s.tensile * k;
+        result.divergence_of_position += s.gr2;
+      }
+      layers.push_back(result);
+    }
+    for (int layer = 0; layer <= depth; ++layer) {
+      double filtered = 0, weight = 0;
+      for (int k = -n; k <= n; ++k) {
+        if (layer + k < 0) continue;
+        const double w = sum[static_cast<std::size_t>(std::abs(k))].w;
+        weight += w;
+        if (layer + k <= depth) filtered += w * layers[static_cast<std::size_t>(layer + k)].normal;
+      }
+      layers[static_cast<std::size_t>(layer)].smoothed_normal = filtered / weight;
+    }
+  });
+  return layers;
 }
 
 LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smoothing_ratio) {
@@ -112,6 +170,7 @@ LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smo
           const double r2 = i * i + j * j + k * k;
           const double q = std::sqrt(r2) / h;
           result.kernel_sum += scale * Kernel::w(q);
+          if (r2 > 0) result.coupling -= 2 * scale / (h * h) * Kernel::f(q);
           result.divergence_of_position -= scale / (h * h) * Kernel::f(q) * r2;
         }
   });

@@ -199,9 +199,10 @@ void gradient_of(const SweepContext& context, Records& records_, const double* v
   });
 }
 
-template <int dimensions, class Kernel>
-void filter_subset(const SweepContext& context, Records& records_, const std::array<const float*, 3>& values,
-                   const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> subset,
+// particle_at(s): the s-th of `count` particles to filter.
+template <int dimensions, class Kernel, class ParticleAt>
+void filter_listed(const SweepContext& context, Records& records_, const std::array<const float*, 3>& values,
+                   const std::vector<std::array<float, 3>>& reflection, std::size_t count, ParticleAt&& particle_at,
                    const std::array<float*, 3>& out) {
   const NeighbourList& list = *context.list;
   float* records = records_.prepare(context, dimensions);
@@ -210,8 +211,8 @@ void filter_subset(const SweepContext& context, Records& records_, const std::ar
   const KernelScale<dimensions, Kernel> scale(context);
   const auto centre = static_cast<float>(Kernel::w(0.0));
 
-  sweep(subset.size(), [&](std::size_t s) {
-    const auto i = static_cast<std::size_t>(subset[s]);
+  sweep(count, [&](std::size_t s) {
+    const std::size_t i = particle_at(s);
     std::array<f32x8, dimensions> filtered{};
     f32x8 kernel_sum{};
     for_each_batch<dimensions, dimensions>(list, records, i, scale.inverse_h, [&](const auto& b) {
@@ -256,7 +257,8 @@ void velocity_gradient_sweep(const SweepContext& context, Records& records,
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     if (out.filtered[0] != nullptr)
       velocity_gradient<dimensions, Kernel, true>(context, records, velocity, rule, correction, out);
-    else velocity_gradient<dimensions, Kernel, false>(context, records, velocity, rule, correction, out);
+    else
+      velocity_gradient<dimensions, Kernel, false>(context, records, velocity, rule, correction, out);
   });
 }
 
@@ -296,7 +298,17 @@ void filter_vector_subset(const SweepContext& context, Records& records, const s
                           const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> subset,
                           const std::array<float*, 3>& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    filter_subset<dimensions, Kernel>(context, records, values, reflection, subset, out);
+    filter_listed<dimensions, Kernel>(
+        context, records, values, reflection, subset.size(),
+        [&](std::size_t s) { return static_cast<std::size_t>(subset[s]); }, out);
+  });
+}
+
+void filter_vector(const SweepContext& context, Records& records, const std::array<const float*, 3>& values,
+                   const std::vector<std::array<float, 3>>& reflection, const std::array<float*, 3>& out) {
+  with_kernel(context, [&]<int dimensions, class Kernel>() {
+    filter_listed<dimensions, Kernel>(
+        context, records, values, reflection, context.list->particles(), [](std::size_t s) { return s; }, out);
   });
 }
 

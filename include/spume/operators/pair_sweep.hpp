@@ -19,7 +19,9 @@
 
 namespace spume {
 
-constexpr int record_width(int dimensions, int payload) { return (dimensions + payload + 3) / 4 * 4; }
+constexpr int record_width(int dimensions, int payload) {
+  return (dimensions + payload + 3) / 4 * 4;
+}
 
 // What all sweeps of a step share: the lists, the resolution, and the images' relation to particles.
 struct SweepContext {
@@ -93,11 +95,15 @@ template <class Body>
 void with_kernel(const SweepContext& context, Body&& body) {
   const bool wendland = context.kernel == KernelKind::wendland_c2;
   if (context.dimensions == 2) {
-    if (wendland) body.template operator()<2, WendlandC2>();
-    else body.template operator()<2, QuinticSpline>();
+    if (wendland)
+      body.template operator()<2, WendlandC2>();
+    else
+      body.template operator()<2, QuinticSpline>();
   } else {
-    if (wendland) body.template operator()<3, WendlandC2>();
-    else body.template operator()<3, QuinticSpline>();
+    if (wendland)
+      body.template operator()<3, WendlandC2>();
+    else
+      body.template operator()<3, QuinticSpline>();
   }
 }
 

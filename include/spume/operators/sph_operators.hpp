@@ -21,13 +21,13 @@ namespace spume {
 
 // Shape of the particle arrangement around each particle. Null pointers are not computed.
 struct GeometryOut {
-  float* kernel_sum = nullptr;                       // sum_j V W, itself included
-  float* divergence_of_position = nullptr;           // tr(sum g d (x) d): d in the bulk, less at a surface
-  float* coupling = nullptr;                         // sum_j 2 g: diagonal of the negative Laplacian
-  std::array<float*, 6> correction{};                // L; the identity where the sum is near singular
-  std::uint8_t* uncorrected = nullptr;               // 1 where L fell back to the identity
-  std::array<float*, 3> concentration_gradient{};    // (3.11): sum_j (1 + 1/4 (W/W(dr))^4) V grad W
-  std::array<float*, 3> normal{};                    // (3.13) times h, outward: -h sum_j V grad W
+  float* kernel_sum = nullptr;                     // sum_j V W, itself included
+  float* divergence_of_position = nullptr;         // tr(sum g d (x) d): d in the bulk, less at a surface
+  float* coupling = nullptr;                       // sum_j 2 g: diagonal of the negative Laplacian
+  std::array<float*, 6> correction{};              // L; the identity where the sum is near singular
+  std::uint8_t* uncorrected = nullptr;             // 1 where L fell back to the identity
+  std::array<float*, 3> concentration_gradient{};  // (3.11): sum_j (1 + 1/4 (W/W(dr))^4) V grad W
+  std::array<float*, 3> normal{};                  // (3.13) times h, outward: -h sum_j V grad W
 };
 struct GeometryOptions {
   bool shifting = true;
@@ -67,7 +67,9 @@ void divergence_sweep(const SweepContext& context, Records& records, const std::
 void gradient_sweep(const SweepContext& context, Records& records, const double* values, double reference,
                     const std::array<const float*, 6>& correction, const std::array<float*, 3>& out);
 
-// Shepard filter of a geometric vector for the listed particles only.
+// Shepard filter of a geometric vector, for all particles or for the listed ones only.
+void filter_vector(const SweepContext& context, Records& records, const std::array<const float*, 3>& values,
+                   const std::vector<std::array<float, 3>>& reflection, const std::array<float*, 3>& out);
 void filter_vector_subset(const SweepContext& context, Records& records, const std::array<const float*, 3>& values,
                           const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> subset,
                           const std::array<float*, 3>& out);
@@ -80,7 +82,18 @@ void filter_scalars(const SweepContext& context, Records& records, std::span<con
 struct LatticeConstants {
   double divergence_of_position;  // about 2.94 in 3-D at h / dr = 1.3
   double kernel_sum;
+  double coupling;  // sum_j 2 g times dr^2
 };
+// The sums below a plane surface of a lattice, layer by layer from the surface down to where they vanish. Layers are
+// told apart by the smoothed normal, which falls with depth.
+struct SurfaceLayer {
+  double smoothed_normal;         // |n^|, dimensionless
+  double normal;                  // |n*| times h
+  double concentration_gradient;  // magnitude times dr, towards the liquid
+  double divergence_of_position;
+};
+std::vector<SurfaceLayer> lattice_surface(int dimensions, KernelKind kernel, double smoothing_ratio);
+
 LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smoothing_ratio);
 
 }  // namespace spume

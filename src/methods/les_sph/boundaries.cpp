@@ -9,11 +9,14 @@
 namespace spume::les_sph {
 namespace {
 
-bool is_wall(BoundaryKind kind) { return kind == BoundaryKind::free_slip || kind == BoundaryKind::no_slip; }
+bool is_wall(BoundaryKind kind) {
+  return kind == BoundaryKind::free_slip || kind == BoundaryKind::no_slip;
+}
 
 // A face of a solid bounds liquid unless it lies on or beyond a side of the domain.
 bool face_bounds_liquid(const Domain& domain, const SolidBox& box, int axis, int side, double tolerance) {
-  return side == 0 ? box.lower[axis] > domain.lower[axis] + tolerance : box.upper[axis] < domain.upper[axis] - tolerance;
+  return side == 0 ? box.lower[axis] > domain.lower[axis] + tolerance
+                   : box.upper[axis] < domain.upper[axis] - tolerance;
 }
 
 }  // namespace
@@ -59,7 +62,8 @@ WallPositions advanced_walls(const Liquid& liquid, double dt) {
       const double t = liquid.time;
       // Simpson's rule in time: exact for walls whose velocity is cubic over a step.
       const double mean = ((*velocity)(centre, t)[axis] + 4 * (*velocity)(centre, t + dt / 2)[axis] +
-                           (*velocity)(centre, t + dt)[axis]) / 6;
+                           (*velocity)(centre, t + dt)[axis]) /
+                          6;
       walls[axis][side] += mean * dt;
     }
   return walls;

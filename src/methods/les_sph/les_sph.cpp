@@ -3,6 +3,7 @@
 #include "spume/methods/les_sph/les_sph.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -43,8 +44,16 @@ void LesSph::step(double dt, Ledger& ledger) {
   stage("accept", [&] { accept(liquid, dt); });
 }
 
-LesSph::LesSph(const LoadedCase& loaded)
-    : liquid_(loaded), pressure_(std::make_unique<PressureSystem>(liquid_)) {}
+LesSph::LesSph(const LoadedCase& loaded) : liquid_(loaded), pressure_(std::make_unique<PressureSystem>(liquid_)) {
+  const std::array<const char*, 6> known{"velocity",    "pressure",       "id",
+                                         "dissipation", "eddy_viscosity", "divergence_of_position"};
+  for (const std::string& name : loaded.options.output.fields)
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      std::string list;
+      for (const char* field : known) list += std::string(list.empty() ? "" : ", ") + field;
+      throw InputError("output.fields names '" + name + "', which les-sph does not have; it has " + list);
+    }
+}
 
 LesSph::~LesSph() = default;
 
@@ -72,12 +81,17 @@ void LesSph::ensure_started() {
   if (!liquid_.started) start(unrecorded);
 }
 
-std::vector<Stage> LesSph::plan() const { return liquid_.plan.stages(liquid_.loaded); }
+std::vector<Stage> LesSph::plan() const {
+  return liquid_.plan.stages(liquid_.loaded);
+}
 
 std::vector<ArrayInfo> LesSph::arrays() const {
   std::vector<ArrayInfo> list;
   for (const auto& field : liquid_.fields.fields())
-    list.push_back({field->name, std::visit([](const auto& array) { return static_cast<double>(array.capacity() * sizeof(array[0])); }, field->values)});
+    list.push_back(
+        {field->name,
+         std::visit([](const auto& array) { return static_cast<double>(array.capacity() * sizeof(array[0])); },
+                    field->values)});
   list.push_back({"cell table", liquid_.table.bytes()});
   list.push_back({"images", liquid_.images.bytes()});
   list.push_back({"neighbour lists", liquid_.list.bytes()});
@@ -130,15 +144,16 @@ void LesSph::series_values(std::span<double> values) {
   const double mass = liquid.scene.fluid.density * liquid.volume;
   const Vec3& gravity = liquid.scene.fluid.gravity;
   const double kinetic = mass * parallel_sum(n, [&](std::size_t i) {
-    double speed2 = 0;
-    for (int axis = 0; axis < d; ++axis) speed2 += (*liquid.velocity[axis])[i] * (*liquid.velocity[axis])[i];
-    return speed2 / 2;
-  });
+                           double speed2 = 0;
+                           for (int axis = 0; axis < d; ++axis)
+                             speed2 += (*liquid.velocity[axis])[i] * (*liquid.velocity[axis])[i];
+                           return speed2 / 2;
+                         });
   const double potential = mass * parallel_sum(n, [&](std::size_t i) {
-    double sum = 0;
-    for (int axis = 0; axis < d; ++axis) sum -= gravity[axis] * (*liquid.position[axis])[i];
-    return sum;
-  });
+                             double sum = 0;
+                             for (int axis = 0; axis < d; ++axis) sum -= gravity[axis] * (*liquid.position[axis])[i];
+                             return sum;
+                           });
   std::size_t k = 0;
   const auto put = [&](double value) { values[k++] = value; };
   put(kinetic);
@@ -165,9 +180,33 @@ std::vector<Family> LesSph::snapshot() {
     fluid.position.push_back(liquid_.position[axis]->data());
     velocity.f64.push_back(liquid_.velocity[axis]->data());
   }
-  fluid.fields.push_back(velocity);
-  fluid.fields.push_back({"pressure", {liquid_.pressure->data()}, {}});
-  fluid.fields.push_back({"id", {}, {liquid_.identifier->data()}});
+  const auto& wanted = liquid_.options.output.fields;
+  const auto want = [&](const char* name, bool standard) {
+    return wanted.empty() ? standard : std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+  };
+  if (want("velocity", true)) fluid.fields.push_back(velocity);
+  if (want("pressure", true)) fluid.fields.push_back({"pressure", {liquid_.pressure->data()}, {}});
+  if (want("id", true)) fluid.fields.push_back({"id", {}, {liquid_.identifier->data()}});
+  // Fields of the last step, in the units of the case; zero before the first.
+  const auto add_derived = [&](const char* name, bool standard, auto&& value) {
+    if (!want(name, standard)) return;
+    Array<double>& values = snapshot_[name];
+    values.resize(liquid_.size());
+    parallel_for(liquid_.size(), [&](std::size_t i) { values[i] = value(i); });
+    fluid.fields.push_back({name, {values.data()}, {}});
+  };
+  const double nu = liquid_.scene.fluid.kinematic_viscosity;
+  const auto eddy = [&](std::size_t i) {
+    return liquid_.eddy_viscosity == nullptr ? 0.0 : double{(*liquid_.eddy_viscosity)[i]};
+  };
+  if (liquid_.plan.velocity_gradient)
+    add_derived("dissipation", liquid_.plan.eddy_viscosity, [&](std::size_t i) {
+      const double strain = (*liquid_.strain)[i];
+      return (nu + eddy(i)) * strain * strain;
+    });
+  if (liquid_.plan.eddy_viscosity) add_derived("eddy_viscosity", false, eddy);
+  add_derived("divergence_of_position", false,
+              [&](std::size_t i) { return double{(*liquid_.divergence_of_position)[i]}; });
   return {fluid};
 }
 
@@ -178,9 +217,15 @@ PointSampler& LesSph::sampler() {
   return *sampler_;
 }
 
-PointSample LesSph::sample(const Vec3& position) { return sampler().sample(liquid_, position); }
-double LesSph::elevation(const Vec3& position) { return sampler().elevation(liquid_, position); }
-double LesSph::front(int axis, double height) { return sampler().front(liquid_, axis, height); }
+PointSample LesSph::sample(const Vec3& position) {
+  return sampler().sample(liquid_, position);
+}
+double LesSph::elevation(const Vec3& position) {
+  return sampler().elevation(liquid_, position);
+}
+double LesSph::front(int axis, double height) {
+  return sampler().front(liquid_, axis, height);
+}
 
 bool LesSph::spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) {
   const Domain& domain = liquid_.scene.domain;

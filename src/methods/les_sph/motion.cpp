@@ -70,8 +70,7 @@ void predict_velocity(Liquid& liquid, double dt) {
   parallel_for(liquid.size(), [&](std::size_t i) {
     for (int axis = 0; axis < d; ++axis) {
       const double viscous = liquid.plan.viscosity ? (*liquid.acceleration[axis])[i] : 0.0;
-      (*liquid.predicted[axis])[i] =
-          (*liquid.velocity[axis])[i] + dt * (viscous + liquid.periodic_acceleration[axis]);
+      (*liquid.predicted[axis])[i] = (*liquid.velocity[axis])[i] + dt * (viscous + liquid.periodic_acceleration[axis]);
     }
   });
   if (liquid.plan.body_force && !liquid.uniform_body_force) add_body_force(liquid, t, dt);
@@ -102,8 +101,10 @@ void project_velocity(Liquid& liquid, double dt) {
             r2 += dr[axis] * dr[axis];
           }
           // Images mirror the potential of their source.
-          const std::size_t source = static_cast<std::size_t>(j) < n ? static_cast<std::size_t>(j)
-                                                                     : static_cast<std::size_t>(liquid.images.source()[j - static_cast<std::int32_t>(n)]);
+          const std::size_t source =
+              static_cast<std::size_t>(j) < n
+                  ? static_cast<std::size_t>(j)
+                  : static_cast<std::size_t>(liquid.images.source()[j - static_cast<std::int32_t>(n)]);
           if (liquid.potential != nullptr) slope = (*liquid.potential)[source] - (*liquid.potential)[i];
           const double g = -scale.gradient * Kernel::f(std::sqrt(r2) * scale.inverse_h);
           for (int axis = 0; axis < dimensions; ++axis) seen[axis] += g * dr[axis] * slope;
@@ -171,8 +172,8 @@ void accept(Liquid& liquid, double dt) {
       (*liquid.position[axis])[i] = r[axis];
       (*liquid.velocity[axis])[i] = u[axis];
     }
-    (*liquid.pressure)[i] = density * ((*liquid.reduced_pressure)[i] -
-                                       (liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]));
+    (*liquid.pressure)[i] =
+        density * ((*liquid.reduced_pressure)[i] - (liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]));
   });
   liquid.walls = liquid.next_walls;
   liquid.time += dt;
@@ -181,10 +182,10 @@ void accept(Liquid& liquid, double dt) {
   if (liquid.plan.velocity_gradient) {
     const double nu = liquid.scene.fluid.kinematic_viscosity;
     liquid.dissipation = liquid.scene.fluid.density * liquid.volume * parallel_sum(n, [&](std::size_t i) {
-      const double strain = (*liquid.strain)[i];
-      const double eddy = liquid.eddy_viscosity == nullptr ? 0.0 : (*liquid.eddy_viscosity)[i];
-      return (nu + eddy) * strain * strain;
-    });
+                           const double strain = (*liquid.strain)[i];
+                           const double eddy = liquid.eddy_viscosity == nullptr ? 0.0 : (*liquid.eddy_viscosity)[i];
+                           return (nu + eddy) * strain * strain;
+                         });
   }
 }
 

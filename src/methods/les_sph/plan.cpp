@@ -22,9 +22,10 @@ Plan make_plan(const LoadedCase& loaded) {
   const TurbulenceModel model = options.turbulence.model;
   plan.eddy_viscosity = model != TurbulenceModel::none;
   plan.test_filter = plan.eddy_viscosity && model != TurbulenceModel::smagorinsky;
+  plan.drift_removal = plan.shifting && options.shifting.remove_drift;
   plan.shift_correction = plan.shifting && options.shifting.velocity_correction != ShiftCorrection::none;
   plan.shift_curvature = plan.shifting && options.shifting.velocity_correction == ShiftCorrection::second_order;
-  plan.velocity_gradient = plan.eddy_viscosity || plan.shift_correction;
+  plan.velocity_gradient = plan.eddy_viscosity || plan.shift_correction || options.time.centred;
   plan.viscosity = plan.eddy_viscosity || scene.fluid.kinematic_viscosity > 0;
   plan.gravity = std::any_of(scene.fluid.gravity.begin(), scene.fluid.gravity.end(), [](double g) { return g != 0; });
   plan.body_force = scene.body_force.has_value();
@@ -36,11 +37,16 @@ Plan make_plan(const LoadedCase& loaded) {
 std::vector<Stage> Plan::stages(const LoadedCase& loaded) const {
   const auto model = [&] {
     switch (loaded.options.turbulence.model) {
-      case TurbulenceModel::mixed_scale: return "mixed-scale closure";
-      case TurbulenceModel::smagorinsky: return "Smagorinsky closure";
-      case TurbulenceModel::dynamic_shepard: return "dynamic closure, Shepard averages";
-      case TurbulenceModel::dynamic_lagrangian: return "dynamic closure, Lagrangian averages";
-      case TurbulenceModel::none: break;
+      case TurbulenceModel::mixed_scale:
+        return "mixed-scale closure";
+      case TurbulenceModel::smagorinsky:
+        return "Smagorinsky closure";
+      case TurbulenceModel::dynamic_shepard:
+        return "dynamic closure, Shepard averages";
+      case TurbulenceModel::dynamic_lagrangian:
+        return "dynamic closure, Lagrangian averages";
+      case TurbulenceModel::none:
+        break;
     }
     return "no closure: turbulence.model = \"none\"";
   };
@@ -50,17 +56,23 @@ std::vector<Stage> Plan::stages(const LoadedCase& loaded) const {
   list.push_back({"images", images, images ? "periodic sides, walls or solids" : "every side is open"});
   list.push_back({"neighbours", true, "lists within the kernel support"});
   list.push_back({"geometry", true, "gradient correction, div r, concentration"});
-  list.push_back({"surface", free_surface, free_surface ? "the liquid has a free surface" : "the liquid fills the domain"});
+  list.push_back(
+      {"surface", free_surface, free_surface ? "the liquid has a free surface" : "the liquid fills the domain"});
   list.push_back({"shift", shifting, shifting ? "Fickian shifting" : "shifting.on = false"});
   list.push_back({"gradients", velocity_gradient,
-                  eddy_viscosity ? "strain of the closure" : velocity_gradient ? "velocity correction of the shift" : "nobody needs them"});
+                  eddy_viscosity      ? "strain of the closure"
+                  : velocity_gradient ? "velocity correction of the shift"
+                                      : "nobody needs them"});
   list.push_back({"shift curvature", shift_curvature,
                   shift_curvature ? "second-order velocity correction of the shift" : "shifting.velocity_correction"});
   list.push_back({"eddy viscosity", eddy_viscosity, model()});
   list.push_back({"viscosity", viscosity, viscosity ? "molecular or eddy viscosity" : "inviscid"});
   list.push_back({"body force", body_force, body_force ? "forces.body" : "none given"});
-  list.push_back({"divergence", true, compressible ? "right-hand side of the Helmholtz equation" : "right-hand side of the Poisson equation"});
-  list.push_back({"pressure", true, closed ? "closed domain: the constant is removed" : "zero pressure at the free surface"});
+  list.push_back(
+      {"divergence", true,
+       compressible ? "right-hand side of the Helmholtz equation" : "right-hand side of the Poisson equation"});
+  list.push_back(
+      {"pressure", true, closed ? "closed domain: the constant is removed" : "zero pressure at the free surface"});
   list.push_back({"project", true, "pressure gradient and final positions"});
   return list;
 }

@@ -7,7 +7,9 @@
 // stays at rest to rounding.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <string>
 
 #include "spume/methods/les_sph/liquid.hpp"
 #include "spume/methods/method.hpp"
@@ -48,6 +50,7 @@ class LesSph final : public Method {
   PointSampler& sampler();
 
   Liquid liquid_;
+  std::map<std::string, Array<double>> snapshot_;  // derived fields of the last snapshot
   std::unique_ptr<PressureSystem> pressure_;
   std::unique_ptr<PointSampler> sampler_;
 };

@@ -48,28 +48,28 @@ struct Liquid {
   WallPositions walls{};
 
   // Found within a step.
-  VectorField intermediate{};              // r* of step (i)
-  VectorField predicted{};                 // u* and then u^{n+1}
+  VectorField intermediate{};                 // r* of step (i)
+  VectorField predicted{};                    // u* and then u^{n+1}
   Array<double>* reduced_pressure = nullptr;  // q = p + potential
   Array<double>* potential = nullptr;         // -rho a . r*, null without uniform acceleration
   Array<float>* kernel_sum = nullptr;
   Array<float>* divergence_of_position = nullptr;
   Array<float>* coupling = nullptr;
   std::array<Array<float>*, 6> correction{};
-  Array<std::uint8_t> uncorrected;         // gradient correction fell back to the identity
-  Array<std::uint8_t> at_surface;          // pressure is given
-  Array<float> interior_weight;            // 0 at the surface, 1 inside, smooth between
+  Array<std::uint8_t> uncorrected;  // gradient correction fell back to the identity
+  Array<std::uint8_t> at_surface;   // pressure is given
+  Array<float> interior_weight;     // 0 at the surface, 1 inside, smooth between
   Array<std::int32_t> surface_particles;
   FloatVectorField normal{}, smoothed_normal{};
-  FloatVectorField shift{};                // displacement; first the concentration gradient
-  FloatVectorField shift_velocity{};       // what the shift adds to the velocity
+  FloatVectorField shift{};           // displacement; first the concentration gradient
+  FloatVectorField shift_velocity{};  // what the shift adds to the velocity
   std::array<Array<float>*, 9> velocity_gradient{};
   FloatVectorField filtered_velocity{};
-  Array<float>* strain = nullptr;          // |S| = sqrt(2 S:S)
-  Array<float>* eddy_viscosity = nullptr;  // nu_t, in the units of nu
-  Array<float>* diffusivity = nullptr;     // (nu + nu_t) scaled for the viscous sweep
+  Array<float>* strain = nullptr;                 // |S| = sqrt(2 S:S)
+  Array<float>* eddy_viscosity = nullptr;         // nu_t, in the units of nu
+  Array<float>* diffusivity = nullptr;            // (nu + nu_t) scaled for the viscous sweep
   std::vector<Array<float>> test_filter_scratch;  // products of the dynamic closures and their filtered values
-  FloatVectorField acceleration{};         // viscous; then the gradient of q
+  FloatVectorField acceleration{};                // viscous; then the gradient of q
   WallPositions next_walls{};
   Vec3 uniform_acceleration{};   // along axes that are not periodic: part of the potential
   Vec3 periodic_acceleration{};  // along periodic axes: added to the velocity
@@ -101,19 +101,19 @@ struct Liquid {
 
 // The stages of a step, in its order. Each reads and writes the liquid; numbers refer to King et al., section 3.3.
 
-void move_to_intermediate(Liquid& liquid, double dt);     // (i)
+void move_to_intermediate(Liquid& liquid, double dt);  // (i)
 void sort_particles(Liquid& liquid);
-void make_images(Liquid& liquid, double dt);              // (ii)
-void find_neighbours(Liquid& liquid);                     // (ii)
+void make_images(Liquid& liquid, double dt);  // (ii)
+void find_neighbours(Liquid& liquid);         // (ii)
 void measure_geometry(Liquid& liquid);
 void find_surface(Liquid& liquid);
-void choose_shift(Liquid& liquid);                        // (iii)
-void differentiate_velocity(Liquid& liquid);              // (v)
+void choose_shift(Liquid& liquid);            // (iii)
+void differentiate_velocity(Liquid& liquid);  // (v)
 void find_shift_correction(Liquid& liquid);
 void find_eddy_viscosity(Liquid& liquid, double dt);
-void predict_velocity(Liquid& liquid, double dt);         // (viii)
-void project_velocity(Liquid& liquid, double dt);         // (x)
-void accept(Liquid& liquid, double dt);                   // (xi)
+void predict_velocity(Liquid& liquid, double dt);  // (viii)
+void project_velocity(Liquid& liquid, double dt);  // (x)
+void accept(Liquid& liquid, double dt);            // (xi)
 
 // Boundaries.
 ImageRules image_rules(const Liquid& liquid, const WallPositions& walls);

@@ -10,21 +10,22 @@
 namespace spume::les_sph {
 
 struct Plan {
-  bool images = false;             // some side is periodic or a wall, or there are solid boxes
-  bool moving_walls = false;       // some wall has a velocity
-  bool displaced_walls = false;    // some wall velocity has a normal component
+  bool images = false;           // some side is periodic or a wall, or there are solid boxes
+  bool moving_walls = false;     // some wall has a velocity
+  bool displaced_walls = false;  // some wall velocity has a normal component
   bool free_surface = false;
   bool shifting = false;
   bool velocity_gradient = false;  // closure or shift correction
+  bool drift_removal = false;      // of the shift
   bool shift_correction = false;   // velocity follows the shift to first or second order
   bool shift_curvature = false;    // to second order
   bool eddy_viscosity = false;
-  bool test_filter = false;        // mixed-scale and dynamic closures
+  bool test_filter = false;  // mixed-scale and dynamic closures
   bool viscosity = false;
-  bool gravity = false;            // any uniform acceleration
-  bool body_force = false;         // varies in space
-  bool compressible = false;       // Ma > 0
-  bool closed = false;             // pressure known up to a constant
+  bool gravity = false;       // any uniform acceleration
+  bool body_force = false;    // varies in space
+  bool compressible = false;  // Ma > 0
+  bool closed = false;        // pressure known up to a constant
 
   std::vector<Stage> stages(const LoadedCase& loaded) const;
 };

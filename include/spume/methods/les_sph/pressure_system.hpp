@@ -41,10 +41,14 @@ class PressureSystem {
 
  private:
   struct Operator;
+  struct DoubleOperator;
 
   void set_matrix(const Liquid& liquid, double helmholtz);
   void set_right_hand_side(const Liquid& liquid, double helmholtz, double source_scale, const double* divergence);
   void solve(Liquid& liquid, double helmholtz, Ledger& ledger);
+  // One correction of reduced_pressure by a Krylov solve in float, or in double with pressure.precision = "double".
+  KrylovResult correct(Liquid& liquid, double size, double target, int left, bool singular);
+  KrylovResult correct_in_double(Liquid& liquid, double size, double target, int left, bool singular);
   void remove_constant(Liquid& liquid) const;
 
   Array<double> divergence_, right_hand_side_, residual_;
@@ -54,6 +58,8 @@ class PressureSystem {
   PressureOperator operator_;
   std::unique_ptr<CellMultigrid> multigrid_;
   KrylovWorkspace<float> work_;
+  Array<double> double_correction_, double_diagonal_, zero_;  // empty in mixed precision
+  KrylovWorkspace<double> double_work_;
   SolveReport report_;
 };
 

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// A scene pays for nothing it does not use: neither a stage nor an array.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "methods/les_sph_simulation.hpp"
+
+namespace spume::test {
+namespace {
+
+std::set<std::string> arrays_of(Simulation& run) {
+  std::set<std::string> names;
+  for (const ArrayInfo& array : run.method.arrays())
+    if (array.bytes > 0) names.insert(array.name);
+  return names;
+}
+
+bool runs(const Simulation& run, const std::string& stage) {
+  for (const Stage& s : run.method.plan())
+    if (s.name == stage) return s.on;
+  ADD_FAILURE() << "no stage '" << stage << "'";
+  return false;
+}
+
+bool any_contains(const std::set<std::string>& names, const std::string& part) {
+  for (const std::string& name : names)
+    if (name.find(part) != std::string::npos) return true;
+  return false;
+}
+
+TEST(LesSphPlan, TwoDimensionsHaveNoThirdComponent) {
+  for (const std::string& text : {taylor_green, dam_break, square_patch}) {
+    Simulation run(text);
+    run.steps(2, 0.004);
+    for (const std::string& name : arrays_of(run)) EXPECT_FALSE(name.ends_with("_z")) << name;
+  }
+  Simulation run(taylor_green_3d);
+  run.steps(1, 0.004);
+  EXPECT_TRUE(arrays_of(run).contains("position_z"));
+}
+
+TEST(LesSphPlan, APeriodicBoxHasNoSurface) {
+  Simulation run(taylor_green);
+  run.steps(2, 0.004);
+  const auto arrays = arrays_of(run);
+  EXPECT_FALSE(runs(run, "surface"));
+  EXPECT_FALSE(any_contains(arrays, "normal"));
+  EXPECT_FALSE(any_contains(arrays, "eddy_viscosity"));
+  EXPECT_FALSE(any_contains(arrays, "filtered_velocity"));
+  EXPECT_FALSE(any_contains(arrays, "potential"));
+  EXPECT_FALSE(any_contains(arrays, "average"));
+  EXPECT_TRUE(runs(run, "images"));
+}
+
+TEST(LesSphPlan, EveryStageHasItsArraysOnlyWhenItRuns) {
+  Simulation plain(taylor_green, {"shifting.on=false", "time.centred=false"});
+  plain.steps(2, 0.004);
+  const auto without = arrays_of(plain);
+  EXPECT_FALSE(runs(plain, "shift"));
+  EXPECT_FALSE(runs(plain, "gradients"));
+  EXPECT_FALSE(runs(plain, "shift curvature"));
+  EXPECT_FALSE(any_contains(without, "shift"));
+  EXPECT_FALSE(any_contains(without, "velocity_gradient"));
+  EXPECT_FALSE(any_contains(without, "strain"));
+
+  Simulation shifted(taylor_green, {"shifting.velocity_correction=\"none\""});
+  shifted.steps(2, 0.004);
+  EXPECT_FALSE(any_contains(arrays_of(shifted), "shift_velocity"));
+  EXPECT_TRUE(any_contains(arrays_of(shifted), "shift"));
+
+  Simulation first_order(taylor_green);
+  EXPECT_FALSE(runs(first_order, "shift curvature"));
+
+  Simulation smagorinsky(taylor_green, {"turbulence.model=\"smagorinsky\""});
+  smagorinsky.steps(2, 0.004);
+  EXPECT_TRUE(any_contains(arrays_of(smagorinsky), "eddy_viscosity"));
+  EXPECT_FALSE(any_contains(arrays_of(smagorinsky), "filtered_velocity"));
+
+  Simulation lagrangian(taylor_green, {"turbulence.model=\"dynamic-lagrangian\""});
+  lagrangian.steps(2, 0.004);
+  EXPECT_TRUE(any_contains(arrays_of(lagrangian), "average"));
+}
+
+TEST(LesSphPlan, AnOpenInviscidPatchNeedsNeitherImagesNorViscosityNorPotential) {
+  Simulation run(square_patch);
+  run.steps(2, 0.004);
+  EXPECT_FALSE(runs(run, "images"));
+  EXPECT_FALSE(runs(run, "viscosity"));
+  EXPECT_FALSE(runs(run, "body force"));
+  EXPECT_TRUE(runs(run, "surface"));
+  const auto arrays = arrays_of(run);
+  EXPECT_FALSE(arrays.contains("images"));
+  EXPECT_FALSE(any_contains(arrays, "diffusivity"));
+  EXPECT_FALSE(any_contains(arrays, "potential"));
+}
+
+}  // namespace
+}  // namespace spume::test

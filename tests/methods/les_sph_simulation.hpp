@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+// les-sph on tiny cases: a case from text, its method, and its state in the order of the identifiers.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene/helpers.hpp"
+#include "spume/core/error.hpp"
+#include "spume/methods/les_sph/les_sph.hpp"
+
+namespace spume::test {
+
+using Overrides = std::vector<std::string>;
+
+// One value per particle and component, by identifier.
+struct State {
+  int dimensions = 0;
+  std::vector<Vec3> position, velocity;
+  std::vector<double> pressure;
+  bool operator==(const State&) const = default;
+};
+
+struct Simulation {
+  LoadedCase loaded;
+  les_sph::LesSph method;
+  Ledger ledger;
+
+  explicit Simulation(const std::string& text, const Overrides& overrides = {})
+      : loaded(load_text(text, overrides)), method(loaded) {}
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  void steps(int count, double dt) {
+    for (int k = 0; k < count; ++k) method.step(dt, ledger);
+  }
+  State state() const {
+    const les_sph::Liquid& liquid = method.liquid();
+    State s;
+    s.dimensions = liquid.dimensions;
+    s.position.resize(liquid.size());
+    s.velocity.resize(liquid.size());
+    s.pressure.resize(liquid.size());
+    for (std::size_t i = 0; i < liquid.size(); ++i) {
+      const auto k = static_cast<std::size_t>((*liquid.identifier)[i]);
+      for (int axis = 0; axis < liquid.dimensions; ++axis) {
+        s.position[k][axis] = (*liquid.position[axis])[i];
+        s.velocity[k][axis] = (*liquid.velocity[axis])[i];
+      }
+      s.pressure[k] = (*liquid.pressure)[i];
+    }
+    return s;
+  }
+  std::map<std::string, double> series() {
+    const auto columns = method.series_columns();
+    std::vector<double> values(columns.size());
+    method.series_values(values);
+    std::map<std::string, double> result;
+    for (std::size_t k = 0; k < columns.size(); ++k) result[columns[k].name] = values[k];
+    return result;
+  }
+};
+
+inline double max_speed(const State& s) {
+  double most = 0;
+  for (const Vec3& u : s.velocity) most = std::max(most, std::hypot(u[0], u[1], u[2]));
+  return most;
+}
+
+// A checkpoint in memory.
+class MemoryState final : public StateWriter, public StateReader {
+ public:
+  void f64(const std::string& name, std::span<const double> values) override {
+    f64_[name] = {values.begin(), values.end()};
+  }
+  void i64(const std::string& name, std::span<const std::int64_t> values) override {
+    i64_[name] = {values.begin(), values.end()};
+  }
+  void f64(const std::string& name, Array<double>& values) override { copy(f64_, name, values); }
+  void i64(const std::string& name, Array<std::int64_t>& values) override { copy(i64_, name, values); }
+
+ private:
+  template <class T>
+  static void copy(const std::map<std::string, std::vector<T>>& from, const std::string& name, Array<T>& values) {
+    const auto found = from.find(name);
+    if (found == from.end()) throw FileError("no array '" + name + "'");
+    values.resize(found->second.size());
+    std::copy(found->second.begin(), found->second.end(), values.begin());
+  }
+  std::map<std::string, std::vector<double>> f64_;
+  std::map<std::string, std::vector<std::int64_t>> i64_;
+};
+
+// --- cases, all about one unit across
+
+// Vortices in a doubly periodic square, 20 x 20 particles.
+inline const std::string taylor_green = R"toml(method = "les-sph"
+[domain]
+lower = [0, 0]
+upper = [1, 1]
+x = "periodic"
+y = "periodic"
+[resolution]
+spacing = 0.05
+[fluid]
+reynolds = 100
+[[liquid]]
+velocity = ["-cos(2*pi*x)*sin(2*pi*y)", "sin(2*pi*x)*cos(2*pi*y)"]
+[time]
+end = 1
+)toml";
+
+// Vortices in a triply periodic cube, 10^3 particles.
+inline const std::string taylor_green_3d = R"toml(method = "les-sph"
+[domain]
+lower = [0, 0, 0]
+upper = [1, 1, 1]
+x = "periodic"
+y = "periodic"
+z = "periodic"
+[resolution]
+spacing = 0.1
+[fluid]
+reynolds = 100
+[[liquid]]
+velocity = ["sin(2*pi*x)*cos(2*pi*y)*cos(2*pi*z)", "-cos(2*pi*x)*sin(2*pi*y)*cos(2*pi*z)", "0"]
+[time]
+end = 1
+)toml";
+
+// A square box full of liquid.
+inline const std::string closed_box = R"toml(method = "les-sph"
+[domain]
+lower = [0, 0]
+upper = [1, 1]
+left = "no-slip"
+right = "no-slip"
+bottom = "no-slip"
+top = "no-slip"
+[resolution]
+spacing = 0.05
+[fluid]
+reynolds = 100
+froude = 1
+[[liquid]]
+[time]
+end = 1
+max_step = 0.005
+)toml";
+
+// A stream along x between two walls.
+inline const std::string channel = R"toml(method = "les-sph"
+[domain]
+lower = [0, 0]
+upper = [0.5, 1]
+x = "periodic"
+bottom = "no-slip"
+top = "no-slip"
+[resolution]
+spacing = 0.05
+[fluid]
+reynolds = 100
+[[liquid]]
+velocity = ["1", "0"]
+[time]
+end = 1
+)toml";
+
+// Still water in a tank; the uppermost particles lie on the surface.
+inline const std::string tank = R"toml(method = "les-sph"
+[domain]
+lower = [0, 0]
+upper = [1, 1.5]
+left = "free-slip"
+right = "free-slip"
+bottom = "free-slip"
+[resolution]
+spacing = 0.05
+[fluid]
+reynolds = 1000
+froude = 1
+[[liquid]]
+where = "1 - y"
+conform = true
+[time]
+end = 1
+max_step = 0.005
+)toml";
+
+inline const std::string dam_break = R"toml(method = "les-sph"
+[domain]
+lower = [0, 0]
+upper = [2, 1.5]
+left = "free-slip"
+right = "free-slip"
+bottom = "free-slip"
+[resolution]
+spacing = 0.05
+[fluid]
+reynolds = 1e4
+froude = 1
+mach = 0.05
+[[liquid]]
+lower = [0, 0]
+upper = [0.5, 1]
+[turbulence]
+model = "mixed-scale"
+[time]
+end = 1
+)toml";
+
+inline const std::string dam_break_3d = R"toml(method = "les-sph"
+[domain]
+lower = [0, 0, 0]
+upper = [1, 0.7, 1]
+left = "free-slip"
+right = "free-slip"
+front = "free-slip"
+back = "free-slip"
+bottom = "free-slip"
+[resolution]
+spacing = 0.1
+[fluid]
+reynolds = 1e4
+froude = 1
+[[liquid]]
+lower = [0, 0, 0]
+upper = [0.5, 0.7, 0.8]
+[time]
+end = 1
+)toml";
+
+// A spinning square without walls or gravity.
+inline const std::string square_patch = R"toml(method = "les-sph"
+[domain]
+lower = [-1, -1]
+upper = [1, 1]
+[resolution]
+spacing = 0.05
+[fluid]
+mach = 0
+[[liquid]]
+lower = [-0.5, -0.5]
+upper = [0.5, 0.5]
+velocity = ["y", "-x"]
+[time]
+end = 1
+)toml";
+
+}  // namespace spume::test

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// State between steps: saved and restored to the bit, untouched by a refused step; nothing is allocated on the way.
+#include <gtest/gtest.h>
+
+#include "methods/les_sph_simulation.hpp"
+
+namespace spume::test {
+namespace {
+
+class SavedState : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(SavedState, ARestoredRunContinuesToTheSameBits) {
+  const Overrides overrides{"turbulence.model=\"dynamic-lagrangian\""};
+  for (const Overrides& set : {Overrides{}, overrides}) {
+    Simulation straight(GetParam(), set);
+    straight.steps(3, 0.004);
+    MemoryState saved;
+    straight.method.save(saved);
+    straight.steps(2, 0.004);
+
+    Simulation restored(GetParam(), set);
+    restored.method.load(saved);
+    EXPECT_EQ(restored.method.step_count(), 3);
+    restored.steps(2, 0.004);
+    EXPECT_EQ(restored.method.time(), straight.method.time());
+    EXPECT_TRUE(restored.state() == straight.state());
+    EXPECT_EQ(restored.method.step_limit().dt, straight.method.step_limit().dt);
+  }
+}
+
+// A method that has already run elsewhere forgets it.
+TEST_P(SavedState, LoadingReplacesAnyEarlierState) {
+  Simulation straight(GetParam());
+  straight.steps(2, 0.004);
+  MemoryState saved;
+  straight.method.save(saved);
+  Simulation other(GetParam());
+  other.steps(5, 0.003);
+  other.method.load(saved);
+  EXPECT_TRUE(other.state() == straight.state());
+  straight.steps(1, 0.004);
+  other.steps(1, 0.004);
+  EXPECT_TRUE(other.state() == straight.state());
+}
+
+TEST_P(SavedState, ARefusedStepLeavesIt) {
+  Simulation run(GetParam());
+  run.steps(2, 0.004);
+  MemoryState saved;
+  run.method.save(saved);
+
+  Simulation strict(GetParam(), {"pressure.max_iterations=1", "pressure.tolerance=1e-14"});
+  strict.method.load(saved);
+  const State before = strict.state();
+  const double dt_before = strict.method.step_limit().dt;
+  EXPECT_THROW(strict.steps(1, 0.004), StepFailure);
+  EXPECT_TRUE(strict.state() == before);
+  EXPECT_EQ(strict.method.time(), run.method.time());
+  EXPECT_EQ(strict.method.step_count(), 2);
+  EXPECT_EQ(strict.method.step_limit().dt, dt_before);
+}
+
+// A step far too long moves a particle across its support: refused as well, and a shorter one succeeds.
+TEST_P(SavedState, ARefusedStepCanBeRepeatedShorter) {
+  Simulation run(GetParam()), untroubled(GetParam());
+  run.steps(2, 0.004);
+  untroubled.steps(2, 0.004);
+  EXPECT_THROW(run.steps(1, 1e4), StepFailure);
+  run.steps(1, 0.004);
+  untroubled.steps(1, 0.004);
+  // The refused step sorted the particles at other places, and sums run in their order.
+  const State a = run.state(), b = untroubled.state();
+  for (std::size_t i = 0; i < a.velocity.size(); ++i)
+    for (int axis = 0; axis < a.dimensions; ++axis) {
+      ASSERT_NEAR(a.position[i][axis], b.position[i][axis], 1e-5);
+      ASSERT_NEAR(a.velocity[i][axis], b.velocity[i][axis], 1e-3);
+    }
+}
+
+// Probes look at the present state, also when it is not that of the last look at the same step count.
+TEST(LesSphSamples, DISABLED_FollowALoadedState) {
+  Simulation here(taylor_green), there(taylor_green, {"liquid.0.velocity=[\"1\", \"0.5\"]"});
+  here.steps(1, 0.004);
+  there.steps(1, 0.05);
+  const Vec3 point{0.31, 0.42, 0};
+  here.method.sample(point);
+  MemoryState saved;
+  there.method.save(saved);
+  here.method.load(saved);
+  const PointSample a = here.method.sample(point), b = there.method.sample(point);
+  EXPECT_NEAR(a.coverage, b.coverage, 1e-12);
+  for (int axis = 0; axis < 2; ++axis) EXPECT_NEAR(a.velocity[axis], b.velocity[axis], 1e-12);
+}
+
+TEST(LesSphSamples, DISABLED_AreTheSameAfterARefusedStep) {
+  Simulation run(taylor_green);
+  run.steps(2, 0.004);
+  const Vec3 point{0.31, 0.42, 0};
+  const PointSample before = run.method.sample(point);
+  EXPECT_THROW(run.steps(1, 1e4), StepFailure);
+  const PointSample after = run.method.sample(point);
+  EXPECT_NEAR(after.coverage, before.coverage, 1e-12);
+  for (int axis = 0; axis < 2; ++axis) EXPECT_NEAR(after.velocity[axis], before.velocity[axis], 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, SavedState, ::testing::Values(taylor_green, taylor_green_3d, dam_break),
+                         [](const auto& info) {
+                           return info.index == 0 ? "Vortices2D" : info.index == 1 ? "Vortices3D" : "DamBreak";
+                         });
+
+TEST(LesSphAllocations, ASteadyRunAllocatesNothing) {
+  for (const std::string& text : {taylor_green, taylor_green_3d, dam_break}) {
+    Simulation run(text);
+    run.steps(10, 0.004);
+    const auto before = array_statistics();
+    run.steps(5, 0.004);
+    EXPECT_EQ(array_statistics().allocations, before.allocations) << text;
+    EXPECT_EQ(array_statistics().bytes, before.bytes);
+  }
+}
+
+}  // namespace
+}  // namespace spume::test

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+// The geometry sweep against its slow twin, and what it gives on lattices and in degenerate arrangements.
+#include <gtest/gtest.h>
+
+#include "operators/sph_arrangement.hpp"
+
+namespace spume::test {
+namespace {
+
+// The root mean square row of L beyond which the sweep uses the identity.
+constexpr double largest_correction = 6;
+
+TEST(SphGeometry, AgreesWithTheSlowTwinOnEveryArrangement) {
+  for (Arrangement& a : all_arrangements()) {
+    SCOPED_TRACE(a.setup.name);
+    const Geometry fast(a);
+    Comparison kernel("kernel sum"), trace("div r"), coupling("coupling"), concentration("concentration gradient"),
+        normal("normal");
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const std::size_t count = a.twin.neighbours(i);
+      kernel.add(fast.kernel_sum[i], a.twin.kernel_sum(i), count, i);
+      trace.add(fast.divergence_of_position[i], a.twin.divergence_of_position(i), count, i);
+      coupling.add(fast.coupling[i], a.twin.coupling(i), count, i);
+      const auto c = a.twin.concentration_gradient(i, a.setup.spacing);
+      const auto n = a.twin.normal(i);
+      for (int axis = 0; axis < a.dimensions(); ++axis) {
+        concentration.add(fast.concentration_gradient[axis][i], c[axis], count, i);
+        normal.add(fast.normal[axis][i], n[axis], count, i);
+      }
+    }
+  }
+}
+
+// |dL| <= |L|^2 |dM| to first order. Where |L| |dM| is not small, or the choice of the fallback hangs on rounding, only
+// the choice itself is left open.
+TEST(SphGeometry, CorrectionIsTheInverseOfTheMomentsOrTheIdentity) {
+  std::size_t fallbacks = 0, inverses = 0;
+  for (Arrangement& a : all_arrangements()) {
+    SCOPED_TRACE(a.setup.name);
+    const Geometry fast(a);
+    Comparison correction("gradient correction");
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const auto slow = a.twin.correction(i, largest_correction);
+      const auto moments = a.twin.moments(i);
+      double moment_error = 0;
+      for (const auto& row : moments)
+        for (const Sum& m : row) moment_error += std::pow(m.magnitude * reference::tolerance(a.twin.neighbours(i)), 2);
+      moment_error = std::sqrt(moment_error);
+      const double norm2 = a.dimensions() * slow.mean_square;
+      const bool near_choice =
+          std::abs(std::sqrt(slow.mean_square) / largest_correction - 1) < 2 * std::sqrt(norm2) * moment_error ||
+          slow.determinant < 1e-6;
+      if (near_choice) continue;
+      EXPECT_EQ(fast.uncorrected[i], slow.corrected ? 0 : 1) << i;
+      ++(slow.corrected ? inverses : fallbacks);
+      const double bound = slow.corrected ? 2 * norm2 * moment_error + 1e-6 * std::sqrt(norm2) : 1e-12;
+      const auto matrix = fast.correction_of(i, a.dimensions());
+      for (int r = 0; r < a.dimensions(); ++r)
+        for (int c = 0; c < a.dimensions(); ++c)
+          correction.add_error(std::abs(matrix[r][c] - slow.inverse[r][c]), bound, matrix[r][c], slow.inverse[r][c], i);
+    }
+  }
+  EXPECT_GT(inverses, 1000U);
+  EXPECT_GT(fallbacks, 10U);
+}
+
+ArrangementSetup lattice_setup(int dimensions, int across, BoundaryKind last) {
+  ArrangementSetup setup;
+  setup.dimensions = dimensions;
+  setup.spacing = 1.0 / across;
+  setup.points = lattice_points(across, dimensions, 0);
+  for (int axis = 0; axis + 1 < dimensions; ++axis) setup.set_sides(axis, BoundaryKind::periodic);
+  setup.set_sides(dimensions - 1, last);
+  return setup;
+}
+
+// The figures of the physics guide for the Wendland kernel at h / dr = 1.3.
+TEST(SphGeometry, DivergenceOfPositionOnALatticeHasItsKnownValues) {
+  EXPECT_NEAR(lattice_constants(3, KernelKind::wendland_c2, 1.3).divergence_of_position, 2.94, 0.005);
+  Arrangement a(lattice_setup(3, 8, BoundaryKind::open));
+  const Geometry fast(a);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double layer = std::floor(std::min(a.hood.z[i], 1 - a.hood.z[i]) / a.setup.spacing);
+    const double expected = layer == 0 ? 2.03 : layer == 1 ? 2.88 : 2.94;
+    EXPECT_NEAR(fast.divergence_of_position[i], expected, 0.005) << "layer " << layer;
+  }
+}
+
+TEST(SphGeometry, LatticeConstantsAreTheSumsOfAPeriodicLattice) {
+  for (const int d : {2, 3})
+    for (const KernelKind kernel : {KernelKind::wendland_c2, KernelKind::quintic_spline})
+      for (const double ratio : {1.2, 1.3, 1.5}) {
+        ArrangementSetup setup = lattice_setup(d, d == 2 ? 16 : 10, BoundaryKind::periodic);
+        setup.kernel = kernel;
+        setup.smoothing_ratio = ratio;
+        Arrangement a(setup);
+        const LatticeConstants constants = lattice_constants(d, kernel, ratio);
+        // The lattice itself is rounded to the grid of 2^-20: 2^-21 / spacing relative, second order in symmetric sums.
+        EXPECT_NEAR(a.twin.kernel_sum(0).value, constants.kernel_sum, 1e-4);
+        EXPECT_NEAR(a.twin.divergence_of_position(0).value, constants.divergence_of_position, 1e-4);
+        EXPECT_NEAR(a.twin.coupling(0).value * setup.spacing * setup.spacing, constants.coupling, 1e-3);
+      }
+}
+
+// Layers of a lattice between two open sides, deep enough that the sides do not see each other.
+TEST(SphGeometry, LayersBelowASurfaceHaveTheSumsOfALattice) {
+  for (const int d : {2, 3})
+    for (const KernelKind kernel : {KernelKind::wendland_c2, KernelKind::quintic_spline}) {
+      const int across = kernel == KernelKind::wendland_c2 ? 14 : 16;
+      ArrangementSetup setup = lattice_setup(d, across, BoundaryKind::open);
+      setup.kernel = kernel;
+      Arrangement a(setup);
+      const Geometry fast(a);
+      VectorArrays<float> filtered(a.size(), d);
+      filter_vector(a.context, a.records, {fast.normal[0].data(), fast.normal[1].data(), fast.normal[2].data()},
+                    a.reflection, filtered.write());
+      const auto layers = lattice_surface(d, kernel, setup.smoothing_ratio);
+      const Array<double>& height = d == 3 ? a.hood.z : a.hood.y;
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        const auto layer = static_cast<std::size_t>((1 - height[i]) * across);
+        if (height[i] < 0.5 || layer >= layers.size()) continue;
+        const SurfaceLayer& expected = layers[layer];
+        ASSERT_NEAR(fast.divergence_of_position[i], expected.divergence_of_position, 1e-3) << layer;
+        ASSERT_NEAR(fast.normal[d - 1][i], expected.normal, 1e-3) << layer;
+        ASSERT_NEAR(-fast.concentration_gradient[d - 1][i] * setup.spacing, expected.concentration_gradient, 1e-3);
+        ASSERT_NEAR(filtered[d - 1][i], expected.smoothed_normal, 1e-3) << layer;
+      }
+    }
+}
+
+TEST(SphGeometry, NormalsPointOutOfTheLiquidAndVanishInside) {
+  Arrangement a(lattice_setup(3, 8, BoundaryKind::open));
+  const Geometry fast(a);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double layer = std::floor(std::min(a.hood.z[i], 1 - a.hood.z[i]) / a.setup.spacing);
+    const double outward = a.hood.z[i] > 0.5 ? fast.normal[2][i] : -fast.normal[2][i];
+    if (layer == 0) {
+      EXPECT_GT(outward, 0.2);
+    } else if (layer >= 2) {
+      EXPECT_NEAR(outward, 0, 1e-5);
+    }
+    EXPECT_NEAR(fast.normal[0][i], 0, 1e-5);
+    EXPECT_NEAR(fast.normal[1][i], 0, 1e-5);
+  }
+}
+
+class FewParticles : public ::testing::TestWithParam<int> {};
+
+TEST_P(FewParticles, OneAloneHasItsOwnKernelAndNothingElse) {
+  ArrangementSetup setup;
+  setup.dimensions = GetParam();
+  setup.points = {{0.5, 0.5, setup.dimensions == 3 ? 0.5 : 0}};
+  Arrangement a(setup);
+  const Geometry fast(a);
+  const double centre = a.twin.kernel_sum(0).value;
+  EXPECT_NEAR(fast.kernel_sum[0], centre, 1e-6 * centre);
+  EXPECT_EQ(fast.divergence_of_position[0], 0);
+  EXPECT_EQ(fast.coupling[0], 0);
+  EXPECT_EQ(fast.uncorrected[0], 1);
+  const auto identity = fast.correction_of(0, setup.dimensions);
+  for (int r = 0; r < setup.dimensions; ++r)
+    for (int c = 0; c < setup.dimensions; ++c) EXPECT_EQ(identity[r][c], r == c ? 1 : 0);
+  for (int axis = 0; axis < setup.dimensions; ++axis) {
+    EXPECT_EQ(fast.normal[axis][0], 0);
+    EXPECT_EQ(fast.concentration_gradient[axis][0], 0);
+  }
+}
+
+TEST_P(FewParticles, TwoInOnePlaceStayFinite) {
+  ArrangementSetup setup;
+  setup.dimensions = GetParam();
+  setup.points.assign(2, {0.5, 0.5, setup.dimensions == 3 ? 0.5 : 0});
+  for (const KernelKind kernel : {KernelKind::wendland_c2, KernelKind::quintic_spline}) {
+    setup.kernel = kernel;
+    Arrangement a(setup);
+    const Geometry fast(a);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_NEAR(fast.kernel_sum[i], a.twin.kernel_sum(i).value, 1e-6 * a.twin.kernel_sum(i).value);
+      EXPECT_NEAR(fast.coupling[i], a.twin.coupling(i).value, 1e-5 * a.twin.coupling(i).value);
+      EXPECT_EQ(fast.divergence_of_position[i], 0);
+      EXPECT_EQ(fast.uncorrected[i], 1);
+      for (int axis = 0; axis < setup.dimensions; ++axis) EXPECT_EQ(fast.concentration_gradient[axis][i], 0);
+    }
+  }
+}
+
+TEST_P(FewParticles, NoneAtAllIsNoError) {
+  ArrangementSetup setup;
+  setup.dimensions = GetParam();
+  Arrangement a(setup);
+  const Geometry fast(a);
+  EXPECT_TRUE(fast.kernel_sum.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Dimensions, FewParticles, ::testing::Values(2, 3));
+
+}  // namespace
+}  // namespace spume::test

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+// The field sweeps against their slow twins, on random fields over every arrangement. The twins are given the float
+// correction matrices of the geometry sweep: a sweep is held to its own arithmetic.
+#include <gtest/gtest.h>
+
+#include "operators/sph_arrangement.hpp"
+
+namespace spume::test {
+namespace {
+
+VectorArrays<double> random_velocity(const Arrangement& a, std::uint32_t draw) {
+  VectorArrays<double> u;
+  for (int axis = 0; axis < a.dimensions(); ++axis) u[axis] = a.random(draw + static_cast<std::uint32_t>(axis));
+  return u;
+}
+
+template <class T>
+Array<float> to_float(const Array<T>& values) {
+  Array<float> result(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) result[i] = static_cast<float>(values[i]);
+  return result;
+}
+
+TEST(SphOperators, VelocityGradientAndFilterAgreeWithTheSlowTwin) {
+  for (Arrangement& a : all_arrangements()) {
+    SCOPED_TRACE(a.setup.name);
+    const int d = a.dimensions();
+    const Geometry geometry(a);
+    const auto u = random_velocity(a, 11);
+    std::array<Array<float>, 9> gradient;
+    VectorArrays<float> filtered(a.size(), d);
+    VelocityGradientOut out;
+    for (int k = 0; k < d * d; ++k) {
+      gradient[k].resize(a.size());
+      out.gradient[k] = gradient[k].data();
+    }
+    out.filtered = filtered.write();
+    velocity_gradient_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), out);
+    Comparison gradients("velocity gradient"), filter("filtered velocity");
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const std::size_t count = a.twin.neighbours(i);
+      const auto slow = a.twin.velocity_gradient(i, u, geometry.correction_of(i, d));
+      const auto mean = a.twin.filtered_velocity(i, u);
+      for (int r = 0; r < d; ++r) {
+        for (int c = 0; c < d; ++c) gradients.add(gradient[r * d + c][i], slow[r][c], count, i);
+        filter.add(filtered[r][i], mean[r], count, i);
+      }
+    }
+    // The gradient is the same bits with and without the filter beside it.
+    std::array<Array<float>, 9> alone;
+    VelocityGradientOut only;
+    for (int k = 0; k < d * d; ++k) {
+      alone[k].resize(a.size());
+      only.gradient[k] = alone[k].data();
+    }
+    velocity_gradient_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), only);
+    for (int k = 0; k < d * d; ++k)
+      EXPECT_TRUE(std::equal(alone[k].begin(), alone[k].end(), gradient[k].begin())) << "component " << k;
+  }
+}
+
+TEST(SphOperators, ViscousForceAgreesWithTheSlowTwin) {
+  for (Arrangement& a : all_arrangements()) {
+    SCOPED_TRACE(a.setup.name);
+    const auto u = random_velocity(a, 21);
+    // Coefficients over six decades, some zero.
+    Array<float> kappa(a.size());
+    const auto random = a.random(24);
+    for (std::size_t i = 0; i < a.size(); ++i)
+      kappa[i] = random[i] > 0.9 ? 0.0F : static_cast<float>(std::pow(10.0, 3 * random[i] - 3));
+    VectorArrays<float> fast(a.size(), a.dimensions());
+    viscous_sweep(a.context, a.records, u.read(), a.rule, kappa.data(), fast.write());
+    Comparison comparison("viscous acceleration");
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const auto slow = a.twin.viscous(i, u, kappa);
+      for (int axis = 0; axis < a.dimensions(); ++axis)
+        comparison.add(fast[axis][i], slow[axis], a.twin.neighbours(i), i);
+    }
+  }
+}
+
+TEST(SphOperators, DivergenceAndPotentialLaplacianAgreeWithTheSlowTwin) {
+  for (Arrangement& a : all_arrangements()) {
+    SCOPED_TRACE(a.setup.name);
+    const Geometry geometry(a);
+    const auto u = random_velocity(a, 31);
+    const auto potential = a.random(35);
+    Array<double> fast(a.size()), alone(a.size());
+    Array<float> laplacian(a.size());
+    divergence_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), potential.data(), fast.data(),
+                     laplacian.data());
+    divergence_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), nullptr, alone.data(),
+                     nullptr);
+    Comparison divergence("divergence"), second("negative Laplacian");
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const std::size_t count = a.twin.neighbours(i);
+      divergence.add(fast[i], a.twin.divergence(i, u, geometry.correction_of(i, a.dimensions())), count, i);
+      second.add(laplacian[i], a.twin.negative_laplacian(i, potential), count, i);
+      EXPECT_EQ(fast[i], alone[i]) << "particle " << i << " depends on the potential";
+    }
+  }
+}
+
+TEST(SphOperators, GradientAgreesWithTheSlowTwin) {
+  for (Arrangement& a : all_arrangements()) {
+    SCOPED_TRACE(a.setup.name);
+    const Geometry geometry(a);
+    auto values = a.random(41);
+    for (double& value : values) value += 1e6;  // a large constant part costs no digits
+    VectorArrays<float> fast(a.size(), a.dimensions());
+    gradient_sweep(a.context, a.records, values.data(), 1e6, geometry.read_correction(), fast.write());
+    Comparison comparison("gradient");
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const auto slow = a.twin.gradient(i, values, 1e6, geometry.correction_of(i, a.dimensions()));
+      for (int axis = 0; axis < a.dimensions(); ++axis)
+        comparison.add(fast[axis][i], slow[axis], a.twin.neighbours(i), i);
+    }
+  }
+}
+
+TEST(SphOperators, ShiftCurvatureAgreesWithTheSlowTwin) {
+  for (Arrangement& a : all_arrangements()) {
+    SCOPED_TRACE(a.setup.name);
+    const int d = a.dimensions();
+    const Geometry geometry(a);
+    std::array<Array<float>, 9> gradient;
+    std::array<const float*, 9> read{};
+    for (int k = 0; k < d * d; ++k) {
+      gradient[k] = to_float(a.random(50 + static_cast<std::uint32_t>(k)));
+      read[k] = gradient[k].data();
+    }
+    VectorArrays<float> shift, fast(a.size(), d);
+    for (int axis = 0; axis < d; ++axis) {
+      auto values = a.random(60 + static_cast<std::uint32_t>(axis));
+      for (double& value : values) value *= 0.1 * a.setup.spacing;
+      shift[axis] = to_float(values);
+    }
+    shift_curvature_sweep(a.context, a.records, read, a.rule, a.reflection, shift.read(), geometry.read_correction(),
+                          fast.write());
+    Comparison comparison("shift curvature");
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      reference::Vector s{};
+      for (int axis = 0; axis < d; ++axis) s[axis] = shift[axis][i];
+      const auto slow = a.twin.shift_curvature(i, gradient, s, geometry.correction_of(i, d));
+      for (int axis = 0; axis < d; ++axis) comparison.add(fast[axis][i], slow[axis], a.twin.neighbours(i), i);
+    }
+  }
+}
+
+TEST(SphOperators, ShepardFiltersAgreeWithTheSlowTwin) {
+  for (Arrangement& a : all_arrangements()) {
+    SCOPED_TRACE(a.setup.name);
+    const int d = a.dimensions();
+    std::array<Array<float>, 3> in, out;
+    for (int k = 0; k < 3; ++k) {
+      in[k] = to_float(a.random(70 + static_cast<std::uint32_t>(k)));
+      out[k].resize(a.size());
+    }
+    const std::array<const float*, 3> read{in[0].data(), in[1].data(), in[2].data()};
+    const std::array<float*, 3> write{out[0].data(), out[1].data(), out[2].data()};
+    filter_scalars(a.context, a.records, read, write);  // a pair, then a single
+    Comparison scalars("filtered scalar"), vectors("filtered vector");
+    for (std::size_t i = 0; i < a.size(); ++i)
+      for (int k = 0; k < 3; ++k) scalars.add(out[k][i], a.twin.filtered_scalar(i, in[k]), a.twin.neighbours(i), i);
+
+    filter_vector(a.context, a.records, read, a.reflection, write);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const auto slow = a.twin.filtered_vector(i, in);
+      for (int axis = 0; axis < d; ++axis) vectors.add(out[axis][i], slow[axis], a.twin.neighbours(i), i);
+    }
+
+    std::vector<std::int32_t> subset;
+    for (std::size_t i = 0; i < a.size(); i += 3) subset.push_back(static_cast<std::int32_t>(i));
+    for (auto& array : out) array.fill(-7);
+    filter_vector_subset(a.context, a.records, read, a.reflection, subset, write);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      if (i % 3 != 0) {
+        EXPECT_EQ(out[0][i], -7) << "particle " << i << " is not in the subset";
+        continue;
+      }
+      const auto slow = a.twin.filtered_vector(i, in);
+      for (int axis = 0; axis < d; ++axis) vectors.add(out[axis][i], slow[axis], a.twin.neighbours(i), i);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spume::test

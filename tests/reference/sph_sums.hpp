@@ -1,0 +1,399 @@
+// SPDX-License-Identifier: MIT
+// Slow twins of the SPH operators: every sum over all pairs of particles and explicit images, in double, from the
+// definitions in sph_operators.hpp and pressure_operator.hpp.
+//
+// A sum carries its magnitude beside its value: the sum of |V W(0)| or |V F(0)| times the moduli of the other
+// factors over the neighbours in the support. Rounding errors of a float sum are a multiple of it, see tolerance().
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "reference/brute_force.hpp"
+#include "spume/scene/case.hpp"
+
+namespace spume::reference {
+
+// w(q) and F(q) = w'(q) / q of the kernels, from their printed forms.
+struct PlainKernel {
+  KernelKind kind = KernelKind::wendland_c2;
+  int dimensions = 3;
+
+  double support() const { return kind == KernelKind::wendland_c2 ? 2 : 3; }
+  double normalisation() const {
+    const double pi = std::numbers::pi;
+    if (kind == KernelKind::wendland_c2) return dimensions == 2 ? 7 / (4 * pi) : 21 / (16 * pi);
+    return dimensions == 2 ? 7 / (478 * pi) : 1 / (120 * pi);
+  }
+  double w(double q) const {
+    if (q >= support()) return 0;
+    if (kind == KernelKind::wendland_c2) return std::pow(1 - q / 2, 4) * (2 * q + 1);
+    double sum = std::pow(3 - q, 5);
+    if (q < 2) sum -= 6 * std::pow(2 - q, 5);
+    if (q < 1) sum += 15 * std::pow(1 - q, 5);
+    return sum;
+  }
+  double f(double q) const {
+    if (q >= support()) return 0;
+    if (kind == KernelKind::wendland_c2) return -5 * std::pow(1 - q / 2, 3);
+    if (q < 1e-3) return -120;  // the limit; the next term is 120 q^2
+    double sum = std::pow(3 - q, 4);
+    if (q < 2) sum -= 6 * std::pow(2 - q, 4);
+    if (q < 1) sum += 15 * std::pow(1 - q, 4);
+    return -5 * sum / q;
+  }
+};
+
+// What the sides do to velocities; `wall` is the uniform velocity of a side.
+struct Boundaries {
+  std::array<std::array<BoundaryKind, 2>, 3> sides{};
+  std::array<std::array<Vec3, 2>, 3> wall{};
+  std::vector<BoundaryKind> boxes;
+};
+
+struct Sum {
+  double value = 0, magnitude = 0;
+  void add(double factor, double largest_factor, double term, double largest_term) {
+    value += factor * term;
+    magnitude += largest_factor * largest_term;
+  }
+};
+
+using Vector = std::array<double, 3>;
+using Matrix = std::array<std::array<double, 3>, 3>;
+
+class SphSums {
+ public:
+  // A particle (source = itself) or an image of one.
+  struct SphPoint {
+    Point position{};
+    std::size_t source = 0;
+    Vector velocity_sign{1, 1, 1}, velocity_offset{}, reflection{1, 1, 1};
+  };
+
+  SphSums(const PlainKernel& kernel, double smoothing_length, double volume, const std::vector<Point>& particles,
+          const ImageRules& rules, const Boundaries& boundaries)
+      : kernel_(kernel), h_(smoothing_length), volume_(volume), n_(particles.size()) {
+    for (std::size_t i = 0; i < n_; ++i) points_.push_back({particles[i], i, {1, 1, 1}, {}, {1, 1, 1}});
+    for (const Image& image : images(rules, particles)) points_.push_back(transformed(image, boundaries));
+  }
+
+  // What an image carries, from the reflections of its path in their order.
+  static SphPoint transformed(const Image& image, const Boundaries& boundaries) {
+    SphPoint point{image.position, static_cast<std::size_t>(image.source), {1, 1, 1}, {}, {1, 1, 1}};
+    if (image.path[0] >= 0)
+      reflect(point, image.path[0] % 6 / 2, boundaries.boxes[static_cast<std::size_t>(image.path[0] / 6)], {});
+    for (int axis = 0; axis < 3; ++axis)
+      if (const int side = image.path[static_cast<std::size_t>(axis) + 1]; side >= 0)
+        reflect(point, axis, boundaries.sides[axis][side], boundaries.wall[axis][side]);
+    return point;
+  }
+
+  std::size_t size() const { return n_; }
+  int dimensions() const { return kernel_.dimensions; }
+  const std::vector<SphPoint>& points() const { return points_; }
+
+  std::size_t neighbours(std::size_t i) const {
+    std::size_t count = 0;
+    each(i, [&](const Pair&) { ++count; });
+    return count;
+  }
+
+  // --- shape of the arrangement
+
+  Sum kernel_sum(std::size_t i) const {
+    Sum sum;
+    sum.add(weight(0), weight(0), 1, 1);
+    each(i, [&](const Pair& p) { sum.add(p.w, p.largest_w, 1, 1); });
+    return sum;
+  }
+  Sum divergence_of_position(std::size_t i) const {
+    Sum sum;
+    each(i, [&](const Pair& p) { sum.add(p.g, p.largest_g, p.r * p.r, p.r * p.r); });
+    return sum;
+  }
+  Sum coupling(std::size_t i) const {
+    Sum sum;
+    each(i, [&](const Pair& p) { sum.add(2 * p.g, 2 * p.largest_g, 1, 1); });
+    return sum;
+  }
+  // sum g d (x) d
+  std::array<std::array<Sum, 3>, 3> moments(std::size_t i) const {
+    std::array<std::array<Sum, 3>, 3> m{};
+    each(i, [&](const Pair& p) {
+      for (int a = 0; a < dimensions(); ++a)
+        for (int b = 0; b < dimensions(); ++b)
+          m[a][b].add(p.g, p.largest_g, p.d[a] * p.d[b], std::abs(p.d[a] * p.d[b]));
+    });
+    return m;
+  }
+  struct Correction {
+    Matrix inverse{};
+    double mean_square = 0;  // ||L||^2 / d: the fallback looks at its root
+    double determinant = 0;
+    bool corrected = true;
+  };
+  // `largest`: the root mean square entry per row above which the identity replaces the inverse.
+  Correction correction(std::size_t i, double largest) const {
+    const auto sums = moments(i);
+    const int d = dimensions();
+    Matrix m{};
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) m[a][b] = a < d && b < d ? sums[a][b].value : (a == b ? 1.0 : 0.0);
+    Correction result;
+    result.determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) {
+        const int a1 = (a + 1) % 3, a2 = (a + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
+        result.inverse[b][a] = (m[a1][b1] * m[a2][b2] - m[a1][b2] * m[a2][b1]) / result.determinant;
+      }
+    for (int a = 0; a < d; ++a)
+      for (int b = 0; b < d; ++b) result.mean_square += result.inverse[a][b] * result.inverse[a][b] / d;
+    result.corrected = result.determinant > 1e-12 && result.mean_square < largest * largest;
+    if (!result.corrected)
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) result.inverse[a][b] = a == b ? 1 : 0;
+    return result;
+  }
+  std::array<Sum, 3> concentration_gradient(std::size_t i, double spacing) const {
+    const double reference = kernel_.w(spacing / h_);
+    std::array<Sum, 3> sum{};
+    each(i, [&](const Pair& p) {
+      const double ratio = kernel_.w(p.r / h_) / reference, largest = kernel_.w(0) / reference;
+      const double factor = 1 + 0.25 * std::pow(ratio, 4), most = 1 + 0.25 * std::pow(largest, 4);
+      for (int a = 0; a < dimensions(); ++a) sum[a].add(p.g * factor, p.largest_g * most, p.d[a], std::abs(p.d[a]));
+    });
+    return sum;
+  }
+  std::array<Sum, 3> normal(std::size_t i) const {
+    std::array<Sum, 3> sum{};
+    each(i, [&](const Pair& p) {
+      for (int a = 0; a < dimensions(); ++a) sum[a].add(-h_ * p.g, h_ * p.largest_g, p.d[a], std::abs(p.d[a]));
+    });
+    return sum;
+  }
+
+  // --- fields; a velocity has one array per dimension
+
+  template <class Velocity>
+  double velocity_at(const Velocity& u, const SphPoint& point, int a) const {
+    return point.velocity_sign[a] * u[a][point.source] + point.velocity_offset[a];
+  }
+
+  // sum g (u_j - u_i)_a d_b without the correction
+  template <class Velocity>
+  std::array<std::array<Sum, 3>, 3> velocity_difference_moments(std::size_t i, const Velocity& u) const {
+    std::array<std::array<Sum, 3>, 3> m{};
+    each(i, [&](const Pair& p) {
+      for (int a = 0; a < dimensions(); ++a) {
+        const double other = velocity_at(u, *p.point, a), own = u[a][i];
+        for (int b = 0; b < dimensions(); ++b)
+          m[a][b].add(p.g, p.largest_g, (other - own) * p.d[b], (std::abs(other) + std::abs(own)) * std::abs(p.d[b]));
+      }
+    });
+    return m;
+  }
+  // d u_a / d x_b = L_bc m_ac
+  template <class Velocity>
+  std::array<std::array<Sum, 3>, 3> velocity_gradient(std::size_t i, const Velocity& u,
+                                                      const Matrix& correction) const {
+    const auto m = velocity_difference_moments(i, u);
+    std::array<std::array<Sum, 3>, 3> gradient{};
+    for (int a = 0; a < dimensions(); ++a)
+      for (int b = 0; b < dimensions(); ++b)
+        for (int c = 0; c < dimensions(); ++c) {
+          gradient[a][b].value += correction[b][c] * m[a][c].value;
+          gradient[a][b].magnitude += std::abs(correction[b][c]) * m[a][c].magnitude;
+        }
+    return gradient;
+  }
+  template <class Velocity>
+  Sum divergence(std::size_t i, const Velocity& u, const Matrix& correction) const {
+    const auto gradient = velocity_gradient(i, u, correction);
+    Sum sum;
+    for (int a = 0; a < dimensions(); ++a) {
+      sum.value += gradient[a][a].value;
+      sum.magnitude += gradient[a][a].magnitude;
+    }
+    return sum;
+  }
+  template <class Velocity>
+  std::array<Sum, 3> filtered_velocity(std::size_t i, const Velocity& u) const {
+    return filtered(i, [&](const SphPoint& point, int a) { return velocity_at(u, point, a); });
+  }
+  template <class Velocity>
+  std::array<Sum, 3> filtered_vector(std::size_t i, const Velocity& v) const {
+    return filtered(i, [&](const SphPoint& point, int a) { return point.reflection[a] * v[a][point.source]; });
+  }
+  template <class Scalar>
+  Sum filtered_scalar(std::size_t i, const Scalar& f) const {
+    return filtered(i, [&](const SphPoint& point, int a) { return a == 0 ? double(f[point.source]) : 0.0; })[0];
+  }
+  template <class Velocity, class Scalar>
+  std::array<Sum, 3> viscous(std::size_t i, const Velocity& u, const Scalar& kappa) const {
+    std::array<Sum, 3> sum{};
+    each(i, [&](const Pair& p) {
+      const double ki = kappa[i], kj = kappa[p.point->source];
+      const double mean = ki + kj > 0 ? 2 * ki * kj / (ki + kj) : 0;
+      for (int a = 0; a < dimensions(); ++a) {
+        const double other = velocity_at(u, *p.point, a), own = u[a][i];
+        sum[a].add(2 * p.g * mean, 2 * p.largest_g * mean, other - own, std::abs(other) + std::abs(own));
+      }
+    });
+    return sum;
+  }
+  template <class Scalar>
+  Sum negative_laplacian(std::size_t i, const Scalar& f) const {
+    Sum sum;
+    each(i, [&](const Pair& p) {
+      const double other = f[p.point->source], own = f[i];
+      sum.add(2 * p.g, 2 * p.largest_g, own - other, std::abs(own) + std::abs(other));
+    });
+    return sum;
+  }
+  template <class Scalar>
+  std::array<Sum, 3> gradient(std::size_t i, const Scalar& f, double reference, const Matrix& correction) const {
+    std::array<Sum, 3> m{}, result{};
+    each(i, [&](const Pair& p) {
+      const double other = f[p.point->source] - reference, own = f[i] - reference;
+      for (int a = 0; a < dimensions(); ++a)
+        m[a].add(p.g, p.largest_g, (other - own) * p.d[a], (std::abs(other) + std::abs(own)) * std::abs(p.d[a]));
+    });
+    for (int a = 0; a < dimensions(); ++a)
+      for (int b = 0; b < dimensions(); ++b) {
+        result[a].value += correction[a][b] * m[b].value;
+        result[a].magnitude += std::abs(correction[a][b]) * m[b].magnitude;
+      }
+    return result;
+  }
+  // 1/2 s_b s_c d2 u_a / (d x_b d x_c); gradient[a * dimensions + b][i] = d u_a / d x_b.
+  template <class Gradient>
+  std::array<Sum, 3> shift_curvature(std::size_t i, const Gradient& gradient, const Vector& shift,
+                                     const Matrix& correction) const {
+    const int d = dimensions();
+    std::array<Sum, 3> sum{};
+    each(i, [&](const Pair& p) {
+      // grad along s of f: s . L sum g (f_j - f_i) d
+      double along = 0, largest_along = 0;
+      for (int b = 0; b < d; ++b)
+        for (int c = 0; c < d; ++c) {
+          along += shift[b] * correction[b][c] * p.d[c];
+          largest_along += std::abs(shift[b] * correction[b][c] * p.d[c]);
+        }
+      for (int a = 0; a < d; ++a)
+        for (int b = 0; b < d; ++b) {
+          const double sign = p.point->velocity_sign[a] * p.point->reflection[b];
+          const double other = sign * gradient[a * d + b][p.point->source], own = gradient[a * d + b][i];
+          sum[a].add(0.5 * p.g * along, 0.5 * p.largest_g * largest_along, shift[b] * (other - own),
+                     std::abs(shift[b]) * (std::abs(other) + std::abs(own)));
+        }
+    });
+    return sum;
+  }
+
+  // --- the pressure matrix: (A q)_i = V [ sum_j 2 g (q_i - q_j) + extra_i q_i ], zero in masked rows
+
+  template <class Scalar, class Extra, class Masked>
+  Sum pressure_row(std::size_t i, const Scalar& q, const Extra& extra, const Masked& masked) const {
+    Sum sum = negative_laplacian(i, q);
+    sum.value = volume_ * (sum.value + double(extra[i]) * q[i]);
+    sum.magnitude = volume_ * (sum.magnitude + std::abs(double(extra[i]) * q[i]));
+    return masked[i] != 0 ? Sum{} : sum;
+  }
+  // Calls entry(j, a_ij) for the couplings of row i, a particle's own images left out: they cancel.
+  template <class Entry>
+  void pressure_couplings(std::size_t i, Entry&& entry) const {
+    each(i, [&](const Pair& p) {
+      if (p.point->source != i) entry(p.point->source, -2 * volume_ * p.g);
+    });
+  }
+
+ private:
+  struct Pair {
+    const SphPoint* point;
+    Vector d;  // r_j - r_i
+    double r, w, g, largest_w, largest_g;
+  };
+
+  double weight(double r) const {
+    return volume_ * kernel_.normalisation() / std::pow(h_, dimensions()) * kernel_.w(r / h_);
+  }
+  double slope(double r) const {
+    return -volume_ * kernel_.normalisation() / std::pow(h_, dimensions() + 2) * kernel_.f(r / h_);
+  }
+
+  template <class Visit>
+  void each(std::size_t i, Visit&& visit) const {
+    for (std::size_t j = 0; j < points_.size(); ++j) {
+      if (j == i) continue;
+      Pair pair{&points_[j], {}, 0, 0, 0, 0, 0};
+      double r2 = 0;
+      for (int a = 0; a < dimensions(); ++a) {
+        pair.d[a] = points_[j].position[a] - points_[i].position[a];
+        r2 += pair.d[a] * pair.d[a];
+      }
+      pair.r = std::sqrt(r2);
+      if (pair.r >= kernel_.support() * h_) continue;
+      pair.w = weight(pair.r);
+      pair.g = slope(pair.r);
+      pair.largest_w = weight(0);
+      pair.largest_g = slope(0);
+      visit(pair);
+    }
+  }
+
+  static void reflect(SphPoint& point, int axis, BoundaryKind kind, const Vec3& wall) {
+    if (kind == BoundaryKind::periodic) return;
+    point.reflection[axis] *= -1;
+    for (int a = 0; a < 3; ++a) {
+      if (kind == BoundaryKind::free_slip && a != axis) continue;
+      point.velocity_sign[a] *= -1;
+      point.velocity_offset[a] = 2 * wall[a] - point.velocity_offset[a];
+    }
+  }
+  template <class Value>
+  std::array<Sum, 3> filtered(std::size_t i, Value&& value) const {
+    std::array<Sum, 3> sum{};
+    const Sum total = kernel_sum(i);
+    for (int a = 0; a < dimensions(); ++a) {
+      const double own = value(points_[i], a);
+      sum[a].add(weight(0), weight(0), own, std::abs(own));
+    }
+    each(i, [&](const Pair& p) {
+      for (int a = 0; a < dimensions(); ++a) {
+        const double v = value(*p.point, a);
+        sum[a].add(p.w, p.largest_w, v, std::abs(v));
+      }
+    });
+    for (int a = 0; a < dimensions(); ++a) {
+      sum[a].value /= total.value;
+      // The weights' sum is rounded too.
+      sum[a].magnitude = (sum[a].magnitude + std::abs(sum[a].value) * total.magnitude) / total.value;
+    }
+    return sum;
+  }
+
+  PlainKernel kernel_;
+  double h_, volume_;
+  std::size_t n_;
+  std::vector<SphPoint> points_;
+};
+
+// Bound on the rounding error of a float sum of `neighbours` terms added in eight lanes, in units of its magnitude,
+// eps = 2^-24. Differences of coordinates are exact when the coordinates are floats.
+//   kernel argument q = sqrt(sum d^2) * (1/h): 4 roundings; |q F'| <= 4 |F(0)| for both kernels       16 eps
+//   evaluation of the kernel, powers and cancelling quartics of the spline included                   16 eps
+//   factor V sigma / h^k, payload, product, correction                                                10 eps
+//   sum over a lane, then over lanes                                              (neighbours / 8 + 4) eps
+inline double tolerance(std::size_t neighbours) {
+  return (42 + 4 + static_cast<double>(neighbours) / 8) * std::ldexp(1.0, -24);
+}
+
+}  // namespace spume::reference
