@@ -116,7 +116,7 @@ inline void stream(const std::int32_t* from, std::size_t size, std::int32_t* to)
                         _mm256_load_si256(reinterpret_cast<const __m256i*>(from + k)));
   _mm_sfence();
 #else
-  std::memcpy(to, from, size * sizeof(std::int32_t));
+  std::copy_n(from, size, to);
 #endif
 }
 

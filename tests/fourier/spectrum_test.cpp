@@ -6,12 +6,19 @@
 
 #include <cmath>
 #include <numbers>
+#include <ostream>
 
 #include "spume/core/array.hpp"
 #include "spume/core/error.hpp"
 #include "spume/core/random.hpp"
 
 namespace spume {
+
+// Otherwise GoogleTest names a test by the bytes of its grid, padding included.
+void PrintTo(const UniformGrid& grid, std::ostream* out) {
+  *out << grid.points[0] << 'x' << grid.points[1] << 'x' << grid.points[2];
+}
+
 namespace {
 
 constexpr double pi = std::numbers::pi;
