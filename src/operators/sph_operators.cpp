@@ -110,7 +110,7 @@ void shift_curvature(const SweepContext& context, Records& records_, const std::
   });
 }
 
-template <int dimensions, class Kernel>
+template <int dimensions, class Kernel, bool stress>
 void viscous(const SweepContext& context, Records& records_, const std::array<const double*, 3>& velocity,
              const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out) {
   const NeighbourList& list = *context.list;
@@ -119,6 +119,7 @@ void viscous(const SweepContext& context, Records& records_, const std::array<co
   pack_velocity(context, records, width, 0, velocity, rule);
   pack_scalar(context, records, width, dimensions, kappa);
   const KernelScale<dimensions, Kernel> scale(context);
+  const auto tiny = static_cast<float>(1e-8 * context.smoothing_length * context.smoothing_length);
 
   sweep(list.particles(), [&](std::size_t i) {
     std::array<f32x8, dimensions> own{}, sum{};
@@ -128,8 +129,19 @@ void viscous(const SweepContext& context, Records& records_, const std::array<co
       // Harmonic mean 2 k_i k_j / (k_i + k_j), zero when both vanish (also at the sentinel).
       const f32x8 kappa_j = b.payload[dimensions];
       const f32x8 mean = own_kappa * kappa_j / simd::max(own_kappa + kappa_j, simd::splat(1e-30F));
-      const f32x8 weight = (-4.0F * scale.gradient) * Kernel::f(b.q) * mean;
-      for (int a = 0; a < dimensions; ++a) sum[a] = sum[a] + weight * (b.payload[a] - own[a]);
+      f32x8 weight = (-4.0F * scale.gradient) * Kernel::f(b.q) * mean;
+      if constexpr (stress) {
+        f32x8 along{}, r2{};
+        for (int a = 0; a < dimensions; ++a) {
+          along = along + (b.payload[a] - own[a]) * b.d[a];
+          r2 = r2 + b.d[a] * b.d[a];
+        }
+        // Coincident particles have no direction; the bound is far below any real distance.
+        weight = weight * static_cast<float>(dimensions + 2) * along / simd::max(r2, simd::splat(tiny));
+        for (int a = 0; a < dimensions; ++a) sum[a] = sum[a] + weight * b.d[a];
+      } else {
+        for (int a = 0; a < dimensions; ++a) sum[a] = sum[a] + weight * (b.payload[a] - own[a]);
+      }
     });
     for (int a = 0; a < dimensions; ++a) out[a][i] = simd::sum(sum[a]);
   });
@@ -272,9 +284,12 @@ void shift_curvature_sweep(const SweepContext& context, Records& records, const 
 }
 
 void viscous_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
-                   const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out) {
+                   const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out, bool stress) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    viscous<dimensions, Kernel>(context, records, velocity, rule, kappa, out);
+    if (stress)
+      viscous<dimensions, Kernel, true>(context, records, velocity, rule, kappa, out);
+    else
+      viscous<dimensions, Kernel, false>(context, records, velocity, rule, kappa, out);
   });
 }
 

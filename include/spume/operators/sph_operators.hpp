@@ -54,8 +54,13 @@ void shift_curvature_sweep(const SweepContext& context, Records& records, const 
                            const std::array<float*, 3>& out);
 
 // (3.10) on each velocity component with coefficient kappa per particle; out: acceleration.
+// With `stress` set, div(2 kappa S) in the pair form of Monaghan & Gingold (1983) and Cleary (1998),
+//   sum_j 2 (d + 2) g k_ij ((u_j - u_i) . d) d / |d|^2 = k (lap u + 2 grad div u)
+// for constant k: its dissipation is 2 k S:S up to a free surface, which it leaves without shear stress. The Laplacian
+// dissipates k |grad u|^2, half as much in an irrotational wave.
 void viscous_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
-                   const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out);
+                   const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out,
+                   bool stress = false);
 
 // Corrected divergence of u, and -lap of a scalar potential in the same pass (potential may be null).
 void divergence_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,

@@ -25,8 +25,12 @@ struct ResolutionOptions {
   KernelKind kernel = KernelKind::wendland_c2;
 };
 
+// What diffuses momentum: div(nu grad u), or div(2 nu S), which also holds at a surface free of stress.
+enum class DiffusionForm { automatic, laplacian, stress };
+
 struct TurbulenceOptions {
   TurbulenceModel model = TurbulenceModel::none;
+  DiffusionForm diffusion = DiffusionForm::automatic;  // automatic: stress with a free surface
   double mixed_scale_constant = 0.06;
   double smagorinsky_constant = 0.18;
 };
@@ -35,22 +39,22 @@ struct PressureOptions {
   PressureSolver solver = PressureSolver::bicgstab;
   PreconditionerKind preconditioner = PreconditionerKind::multigrid;
   Precision precision = Precision::mixed;
-  double tolerance = 1e-6;    // residual relative to the right-hand side
+  double tolerance = 1e-6;  // residual relative to the right-hand side
   int max_iterations = 500;
-  double cell_ratio = 1.5;    // multigrid cell side / spacing
+  double cell_ratio = 1.5;  // multigrid cell side / spacing
   bool warm_start = true;
 };
 
 struct ShiftingOptions {
   bool on = true;
-  double coefficient = 0.25;         // displacement = -coefficient h^2 grad C
-  double limit = 0.1;                // largest displacement / h per step
-  bool remove_drift = true;          // subtract what neighbours share of the shift
+  double coefficient = 0.25;                                           // displacement = -coefficient h^2 grad C
+  double limit = 0.1;                                                  // largest displacement / h per step
+  bool remove_drift = true;                                            // subtract what neighbours share of the shift
   ShiftCorrection velocity_correction = ShiftCorrection::first_order;  // Taylor terms of u at the new place
 };
 
 struct SurfaceOptions {
-  double threshold = 0;     // div r below which a particle is a surface particle; 0: 2.3 in 3-D, 1.5 in 2-D
+  double threshold = 0;  // div r below which a particle is a surface particle; 0: 2.3 in 3-D, 1.5 in 2-D
   double blend_width = 0.32;
 };
 
@@ -58,16 +62,16 @@ struct TimeOptions {
   double end = 0;
   double courant = 0.2;
   double viscous = 0.2;
-  bool centred = true;       // velocities free of divergence half a step ahead: second order in time
-  double max_step = 0;       // 0: none
+  bool centred = true;  // velocities free of divergence half a step ahead: second order in time
+  double max_step = 0;  // 0: none
   int max_retries = 6;
 };
 
 struct OutputOptions {
-  double every = 0;             // snapshot interval in time; 0: start and end only
-  double series_every = 0;      // 0: every step
-  double checkpoint_every = 300; // wall seconds
-  double spectrum_every = 0;    // 0: no spectra
+  double every = 0;                 // snapshot interval in time; 0: start and end only
+  double series_every = 0;          // 0: every step
+  double checkpoint_every = 300;    // wall seconds
+  double spectrum_every = 0;        // 0: no spectra
   std::vector<std::string> fields;  // empty: the method's standard set
   bool h5part_view = true;
 };
@@ -77,15 +81,15 @@ enum class ProbeKind { point, elevation, front, line };
 struct ProbeOptions {
   std::string name;
   ProbeKind kind = ProbeKind::point;
-  Vec3 position{};       // point; foot of the column for elevation; start of a line
-  Vec3 end{};            // end of a line
-  int samples = 2;       // points of a line
-  int axis = 0;          // front
-  double height = 0;     // front: looks below this height
+  Vec3 position{};    // point; foot of the column for elevation; start of a line
+  Vec3 end{};         // end of a line
+  int samples = 2;    // points of a line
+  int axis = 0;       // front
+  double height = 0;  // front: looks below this height
 };
 
 struct Case {
-  std::string path;            // the file as given
+  std::string path;  // the file as given
   std::string title;
   std::string method;
   double spacing = 0;
@@ -99,7 +103,7 @@ struct Case {
   OutputOptions output;
   std::vector<ProbeOptions> probes;
   std::map<std::string, std::string> groups;  // derived and given groups and constants, as text, for the start-up table
-  std::string resolved;        // the case as TOML with defaults filled in and the origin of each value in comments
+  std::string resolved;  // the case as TOML with defaults filled in and the origin of each value in comments
 };
 
 // A case and the scene that it describes.

@@ -65,7 +65,7 @@ void predict_velocity(Liquid& liquid, double dt) {
   if (liquid.plan.viscosity) {
     find_diffusivity(liquid);
     viscous_sweep(liquid.context, liquid.records, liquid.read(liquid.velocity), liquid.velocity_rule,
-                  liquid.diffusivity->data(), liquid.write(liquid.acceleration));
+                  liquid.diffusivity->data(), liquid.write(liquid.acceleration), liquid.plan.viscous_stress);
   }
   parallel_for(liquid.size(), [&](std::size_t i) {
     for (int axis = 0; axis < d; ++axis) {

@@ -27,6 +27,9 @@ Plan make_plan(const LoadedCase& loaded) {
   plan.shift_curvature = plan.shifting && options.shifting.velocity_correction == ShiftCorrection::second_order;
   plan.velocity_gradient = plan.eddy_viscosity || plan.shift_correction || options.time.centred;
   plan.viscosity = plan.eddy_viscosity || scene.fluid.kinematic_viscosity > 0;
+  const DiffusionForm form = options.turbulence.diffusion;
+  plan.viscous_stress =
+      plan.viscosity && (form == DiffusionForm::stress || (form == DiffusionForm::automatic && scene.free_surface));
   plan.gravity = std::any_of(scene.fluid.gravity.begin(), scene.fluid.gravity.end(), [](double g) { return g != 0; });
   plan.body_force = scene.body_force.has_value();
   plan.compressible = scene.fluid.sound_speed > 0;
@@ -66,7 +69,7 @@ std::vector<Stage> Plan::stages(const LoadedCase& loaded) const {
   list.push_back({"shift curvature", shift_curvature,
                   shift_curvature ? "second-order velocity correction of the shift" : "shifting.velocity_correction"});
   list.push_back({"eddy viscosity", eddy_viscosity, model()});
-  list.push_back({"viscosity", viscosity, viscosity ? "molecular or eddy viscosity" : "inviscid"});
+  list.push_back({"viscosity", viscosity, viscous_stress ? "div(2 nu S)" : viscosity ? "div(nu grad u)" : "inviscid"});
   list.push_back({"body force", body_force, body_force ? "forces.body" : "none given"});
   list.push_back(
       {"divergence", true,

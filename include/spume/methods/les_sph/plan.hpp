@@ -22,10 +22,11 @@ struct Plan {
   bool eddy_viscosity = false;
   bool test_filter = false;  // mixed-scale and dynamic closures
   bool viscosity = false;
-  bool gravity = false;       // any uniform acceleration
-  bool body_force = false;    // varies in space
-  bool compressible = false;  // Ma > 0
-  bool closed = false;        // pressure known up to a constant
+  bool viscous_stress = false;  // div(2 nu S) in place of div(nu grad u)
+  bool gravity = false;         // any uniform acceleration
+  bool body_force = false;      // varies in space
+  bool compressible = false;    // Ma > 0
+  bool closed = false;          // pressure known up to a constant
 
   std::vector<Stage> stages(const LoadedCase& loaded) const;
 };
