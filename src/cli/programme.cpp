@@ -39,6 +39,8 @@ struct CommandLine {
   std::optional<int> threads;
   std::string file, folder, section;
   std::vector<std::string> cases;
+  bool quick = false;
+  std::string keep;
   CLI::App *run_app, *check_app, *resume_app, *info_app, *verify_app, *plot_app, *options_app;
 
   CommandLine() {
@@ -66,12 +68,12 @@ struct CommandLine {
       verb->add_option("--until", run.until, "end time instead of the case's");
       verb->add_flag("-q,--quiet", run.quiet, "print nothing but errors");
     }
-    for (CLI::App* verb : {run_app, check_app, resume_app})
+    for (CLI::App* verb : {run_app, check_app, resume_app, verify_app})
       verb->add_option("--threads", threads, "number of threads (default: all cores)");
     info_app->add_option("file", file, "result, checkpoint, run folder or case")->required();
     verify_app->add_option("cases", cases, "names or folders of cases (default: all)");
-    verify_app->allow_extras();
-    verify_app->prefix_command();
+    verify_app->add_flag("--quick", quick, "only what takes seconds");
+    verify_app->add_option("--keep", keep, "keep the runs, their plots and verify.json in this folder");
     plot_app->add_option("dir", folder, "folder of the run")->required();
     options_app->add_option("section", section, "only this section");
   }
@@ -96,8 +98,9 @@ struct CommandLine {
     if (plot_app->parsed()) return script_verb("plot.py", {folder});
     std::vector<std::string> arguments = {own_executable()};
     arguments.insert(arguments.end(), cases.begin(), cases.end());
-    const auto extra = verify_app->remaining();
-    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    if (quick) arguments.push_back("--quick");
+    if (threads) arguments.insert(arguments.end(), {"--threads", std::to_string(*threads)});
+    if (!keep.empty()) arguments.insert(arguments.end(), {"--keep", keep});
     return script_verb("verify.py", arguments);
   }
 };

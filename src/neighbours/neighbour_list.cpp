@@ -412,9 +412,9 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
     index_.resize(static_cast<std::size_t>(wanted));
     return true;
   }
-  // A tenth more than this step needs, so that a flow that compresses slowly does not search twice again.
+  // A little more than this step needs, so that a flow that compresses slowly does not search twice again.
   index_.release();
-  index_.reserve(static_cast<std::size_t>(wanted + wanted / 10));
+  index_.reserve(static_cast<std::size_t>(wanted + wanted / 32));
   return false;
 }
 

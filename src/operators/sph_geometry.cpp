@@ -79,7 +79,7 @@ void geometry(const SweepContext& context, Records& records_, const GeometryOpti
     for (int k = 0; k < matrix; ++k) out.correction[k][i] = static_cast<float>(inverse[k]);
     out.uncorrected[i] = corrected ? 0 : 1;
     out.divergence_of_position[i] = static_cast<float>(trace);
-    out.kernel_sum[i] = centre + scale.value * simd::sum(kernel_sum);
+    if (out.kernel_sum != nullptr) out.kernel_sum[i] = centre + scale.value * simd::sum(kernel_sum);
     out.coupling[i] = 2 * simd::sum(coupling);
     for (int a = 0; a < dimensions; ++a) {
       if (options.normals) out.normal[a][i] = -h * simd::sum(normal[a]);

@@ -47,7 +47,6 @@ void measure_geometry(Liquid& liquid) {
   options.normals = liquid.plan.free_surface;
   options.spacing = liquid.scene.spacing;
   GeometryOut out;
-  out.kernel_sum = liquid.kernel_sum->data();
   out.divergence_of_position = liquid.divergence_of_position->data();
   out.coupling = liquid.coupling->data();
   for (std::size_t k = 0; k < out.correction.size(); ++k)

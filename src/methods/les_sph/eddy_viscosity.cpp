@@ -150,24 +150,11 @@ void differentiate_velocity(Liquid& liquid) {
     find_strain<3>(liquid);
 }
 
-void find_shift_correction(Liquid& liquid) {
-  const int d = liquid.dimensions;
-  if (liquid.plan.shift_curvature) {
-    std::array<const float*, 9> gradient{};
-    for (int k = 0; k < d * d; ++k) gradient[k] = liquid.velocity_gradient[k]->data();
-    shift_curvature_sweep(liquid.context, liquid.records, gradient, liquid.velocity_rule, liquid.reflection,
-                          liquid.read(liquid.shift), liquid.read_correction(), liquid.write(liquid.shift_velocity));
-  }
-  parallel_for(liquid.size(), [&](std::size_t i) {
-    // A one-sided gradient at the surface extrapolates: fed back through the shift it accelerates particles without
-    // any force (0.5 sqrt(g lambda) in a tenth of a period at 1/50). It fades out with the interior weight.
-    const float inside = liquid.plan.free_surface ? liquid.interior_weight[i] : 1.0F;
-    for (int a = 0; a < d; ++a) {
-      float sum = liquid.plan.shift_curvature ? (*liquid.shift_velocity[a])[i] : 0.0F;
-      for (int b = 0; b < d; ++b) sum += (*liquid.velocity_gradient[a * d + b])[i] * (*liquid.shift[b])[i];
-      (*liquid.shift_velocity[a])[i] = inside * sum;
-    }
-  });
+void find_shift_curvature(Liquid& liquid) {
+  std::array<const float*, 9> gradient{};
+  for (int k = 0; k < liquid.dimensions * liquid.dimensions; ++k) gradient[k] = liquid.velocity_gradient[k]->data();
+  shift_curvature_sweep(liquid.context, liquid.records, gradient, liquid.velocity_rule, liquid.reflection,
+                        liquid.read(liquid.shift), liquid.read_correction(), liquid.write(liquid.shift_velocity));
 }
 
 void find_eddy_viscosity(Liquid& liquid, double dt) {

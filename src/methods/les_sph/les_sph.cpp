@@ -45,7 +45,7 @@ void LesSph::step(double dt, Ledger& ledger) {
   if (plan.free_surface) stage("surface", [&] { find_surface(liquid); });
   if (plan.shifting) stage("shift", [&] { choose_shift(liquid); });
   if (plan.velocity_gradient) pair_stage("gradients", [&] { differentiate_velocity(liquid); });
-  if (plan.shift_correction) pair_stage("shift correction", [&] { find_shift_correction(liquid); });
+  if (plan.shift_curvature) pair_stage("shift curvature", [&] { find_shift_curvature(liquid); });
   if (plan.eddy_viscosity) stage("eddy viscosity", [&] { find_eddy_viscosity(liquid, dt); });
   pair_stage("prediction", [&] { predict_velocity(liquid, dt); });
   pressure_->solve_step(liquid, dt, ledger);

@@ -73,13 +73,12 @@ Liquid::Liquid(const LoadedCase& loaded_case)
   add_vector(fields, predicted, "predicted_velocity", d, Lifetime::scratch);
   reduced_pressure = &fields.add<double>("reduced_pressure", Lifetime::scratch);
   if (plan.gravity || plan.body_force) potential = &fields.add<double>("potential", Lifetime::scratch);
-  kernel_sum = &fields.add<float>("kernel_sum", Lifetime::scratch);
   divergence_of_position = &fields.add<float>("divergence_of_position", Lifetime::scratch);
   coupling = &fields.add<float>("coupling", Lifetime::scratch);
   for (int k = 0; k < d * (d + 1) / 2; ++k)
     correction[k] = &fields.add<float>("gradient_correction_" + std::to_string(k), Lifetime::scratch);
   if (plan.shifting) add_vector(fields, shift, "shift", d, Lifetime::scratch);
-  if (plan.shift_correction) add_vector(fields, shift_velocity, "shift_velocity", d, Lifetime::scratch);
+  if (plan.shift_curvature) add_vector(fields, shift_velocity, "shift_velocity", d, Lifetime::scratch);
   if (plan.free_surface) {
     add_vector(fields, normal, "normal", d, Lifetime::scratch);
     add_vector(fields, smoothed_normal, "smoothed_normal", d, Lifetime::scratch);

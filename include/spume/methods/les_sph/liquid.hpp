@@ -52,7 +52,6 @@ struct Liquid {
   VectorField predicted{};                    // u* and then u^{n+1}
   Array<double>* reduced_pressure = nullptr;  // q = p + potential
   Array<double>* potential = nullptr;         // -rho a . r*, null without uniform acceleration
-  Array<float>* kernel_sum = nullptr;
   Array<float>* divergence_of_position = nullptr;
   Array<float>* coupling = nullptr;
   std::array<Array<float>*, 6> correction{};
@@ -62,7 +61,7 @@ struct Liquid {
   Array<std::int32_t> surface_particles;
   FloatVectorField normal{}, smoothed_normal{};
   FloatVectorField shift{};           // displacement; first the concentration gradient
-  FloatVectorField shift_velocity{};  // what the shift adds to the velocity
+  FloatVectorField shift_velocity{};  // second-order part of what the shift adds to the velocity
   std::array<Array<float>*, 9> velocity_gradient{};
   FloatVectorField filtered_velocity{};
   Array<float>* strain = nullptr;                 // |S| = sqrt(2 S:S)
@@ -110,7 +109,7 @@ void measure_geometry(Liquid& liquid);
 void find_surface(Liquid& liquid);
 void choose_shift(Liquid& liquid);            // (iii)
 void differentiate_velocity(Liquid& liquid);  // (v)
-void find_shift_correction(Liquid& liquid);
+void find_shift_curvature(Liquid& liquid);
 void find_eddy_viscosity(Liquid& liquid, double dt);
 void predict_velocity(Liquid& liquid, double dt);  // (viii)
 void project_velocity(Liquid& liquid, double dt);  // (x)
