@@ -203,7 +203,7 @@ KrylovResult PressureSystem::correct_in_double(Liquid& liquid, double size, doub
   return result;
 }
 
-void PressureSystem::solve(Liquid& liquid, double helmholtz, Ledger& ledger) {
+void PressureSystem::solve(Liquid& liquid, double helmholtz, const char* stage, Ledger& ledger) {
   const std::size_t n = liquid.size();
   const PressureOptions& options = liquid.options.pressure;
   const bool surface = liquid.plan.free_surface;
@@ -227,6 +227,7 @@ void PressureSystem::solve(Liquid& liquid, double helmholtz, Ledger& ledger) {
                       helmholtz, diagonal_);
   }
 
+  const auto scope = ledger.time(stage, static_cast<double>(n));
   // Iterative refinement: residuals in double, corrections in float.
   const double target = options.tolerance * reference_norm_;
   const bool singular = liquid.plan.closed && helmholtz == 0 && regularisation(liquid, helmholtz) == 0;
@@ -297,11 +298,8 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
     const double carried = held || !liquid.options.pressure.warm_start ? 0.0 : (*liquid.pressure)[i] / density;
     (*liquid.reduced_pressure)[i] = carried + (liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]);
   });
-  {
-    const auto scope = ledger.time("pressure", static_cast<double>(n));
-    solve(liquid, helmholtz, ledger);
-  }
-  ledger.count("pressure applications", report_.applications, 0, 0, pairs * report_.applications);
+  solve(liquid, helmholtz, "pressure", ledger);
+  ledger.count("pressure", 0, 0, 0, pairs * report_.applications);
   if (!report_.converged) {
     StepFailure::Details details;
     details.cause = "the pressure solve did not converge in " + std::to_string(report_.iterations) + " iterations";
@@ -328,8 +326,7 @@ void PressureSystem::solve_initial(Liquid& liquid, Ledger& ledger) {
   parallel_for(n, [&](std::size_t i) {
     (*liquid.reduced_pressure)[i] = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
   });
-  const auto scope = ledger.time("first pressure", static_cast<double>(n));
-  solve(liquid, 0, ledger);
+  solve(liquid, 0, "first pressure", ledger);
   if (liquid.plan.closed) remove_constant(liquid);
   const double density = liquid.scene.fluid.density;
   parallel_for(n, [&](std::size_t i) {

@@ -45,7 +45,8 @@ class PressureSystem {
 
   void set_matrix(const Liquid& liquid, double helmholtz);
   void set_right_hand_side(const Liquid& liquid, double helmholtz, double source_scale, const double* divergence);
-  void solve(Liquid& liquid, double helmholtz, Ledger& ledger);
+  // Preconditioner setup and solve, timed apart: the solve under the name `stage`.
+  void solve(Liquid& liquid, double helmholtz, const char* stage, Ledger& ledger);
   // One correction of reduced_pressure by a Krylov solve in float, or in double with pressure.precision = "double".
   KrylovResult correct(Liquid& liquid, double size, double target, int left, bool singular);
   KrylovResult correct_in_double(Liquid& liquid, double size, double target, int left, bool singular);
