@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The search for overlaps around one particle.
+// The search for overlaps around one particle or point.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 namespace spume {
 
 // More particles in one cell than spheres of comparable size could fill it with mean that they lie on top of each
-// other. Each then looks only at those this near in the order of the cell: the cost stays proportional to the number of
+// other. Each then looks only at those near it in the order of the cell: the cost stays proportional to the number of
 // particles, and which overlaps go unseen in that step depends on the pair alone, so that both partners agree.
-inline constexpr std::int32_t crowd = 512;
+inline constexpr std::int32_t crowd = 256;
+inline constexpr std::int32_t crowd_window = 64;
 
 template <bool own_images, class Visit>
-void Exclusion::visit_cells(std::size_t k, Visit&& visit) const {
-  const Record here = records_[k];
+void Exclusion::visit_cells(const Record& here, std::int32_t rank, Visit&& visit) const {
   const double own_radius = 0.5 * static_cast<double>(here.diameter);
   const double reach = own_radius + 0.5 * largest_diameter_;
   const double place[3] = {here.x, here.y, here.z};
@@ -40,8 +40,7 @@ void Exclusion::visit_cells(std::size_t k, Visit&& visit) const {
     return (static_cast<std::size_t>(i) * cells_.count[1] + j) * static_cast<std::size_t>(cells_.count[2]) + l;
   };
   const std::size_t own_cell = number(own[0], own[1], own[2]);
-  const bool own_crowded = first[own_cell + 1] - first[own_cell] > crowd;
-  const auto rank = static_cast<std::int32_t>(k);
+  const bool own_crowded = rank >= 0 && first[own_cell + 1] - first[own_cell] > crowd;
 
   const auto scan = [&](std::int32_t begin, std::int32_t end, double shift_x, double shift_y, double shift_z) {
     for (std::int32_t m = begin; m < end; ++m) {
@@ -64,15 +63,15 @@ void Exclusion::visit_cells(std::size_t k, Visit&& visit) const {
   // One row of cells along z within the grid.
   const auto scan_row = [&](int i, int j, int l0, int l1, double shift_x, double shift_y, double shift_z) {
     const std::int32_t begin = first[number(i, j, l0)], end = first[number(i, j, l1) + 1];
-    if (!own_crowded && end - begin <= crowd) {
+    if (rank < 0 || (!own_crowded && end - begin <= crowd)) {
       scan(begin, end, shift_x, shift_y, shift_z);
       return;
     }
     for (int l = l0; l <= l1; ++l) {
       std::int32_t b = first[number(i, j, l)], e = first[number(i, j, l) + 1];
       if (own_crowded || e - b > crowd) {
-        b = std::max(b, rank - crowd);
-        e = std::min(e, rank + crowd + 1);
+        b = std::max(b, rank - crowd_window);
+        e = std::min(e, rank + crowd_window + 1);
       }
       scan(b, e, shift_x, shift_y, shift_z);
     }
@@ -97,10 +96,20 @@ void Exclusion::visit_cells(std::size_t k, Visit&& visit) const {
 
 template <class Visit>
 void Exclusion::for_each_overlap(std::size_t k, Visit&& visit) const {
+  visit_around(records_[k], static_cast<std::int32_t>(k), visit);
+}
+
+template <class Visit>
+void Exclusion::for_each_covering(const std::array<double, 3>& point, Visit&& visit) const {
+  visit_around({point[0], point[1], point[2], 0, -1}, -1, visit);
+}
+
+template <class Visit>
+void Exclusion::visit_around(const Record& here, std::int32_t rank, Visit&& visit) const {
   if (own_images_)
-    visit_cells<true>(k, visit);
+    visit_cells<true>(here, rank, visit);
   else
-    visit_cells<false>(k, visit);
+    visit_cells<false>(here, rank, visit);
 }
 
 }  // namespace spume

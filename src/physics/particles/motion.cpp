@@ -146,7 +146,7 @@ RelaxationCoefficients relaxation_coefficients(double h) {
     return {1 - h * phi1, phi1, phi2};
   }
   const double decay = std::exp(-h);
-  const double phi1 = (1 - decay) / h;
+  const double phi1 = -std::expm1(-h) / h;
   return {decay, phi1, (1 - phi1) / h};
 }
 

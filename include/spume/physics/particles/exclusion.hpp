@@ -68,6 +68,9 @@ class Exclusion {
   void prepare(const Spheres& spheres);
   template <class Visit>
   void for_each_overlap(std::size_t k, Visit&& visit) const;
+  // The same for every particle that covers the point; the overlap is then its depth below the surface.
+  template <class Visit>
+  void for_each_covering(const std::array<double, 3>& point, Visit&& visit) const;
   const Array<Record>& records() const { return records_; }
 
  private:
@@ -77,8 +80,10 @@ class Exclusion {
   };
   ExclusionReport match_by_rounds(const Spheres& spheres);
   ExclusionReport match_by_sorting(const Spheres& spheres);
+  template <class Visit>
+  void visit_around(const Record& here, std::int32_t rank, Visit&& visit) const;
   template <bool own_images, class Visit>
-  void visit_cells(std::size_t k, Visit&& visit) const;
+  void visit_cells(const Record& here, std::int32_t rank, Visit&& visit) const;
   Best strongest_free(const Spheres& spheres, std::size_t k) const;
   ExclusionReport summarise(std::size_t overlapping, int rounds) const;
 

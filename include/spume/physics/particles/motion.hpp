@@ -60,7 +60,7 @@ template <class Real>
 MotionStatistics move_particles(const MotionModel& model, const SplineField<Real>& field, double dt,
                                 Particles& particles, const ForceOutput& output = {});
 
-// phi functions of the exponential step for h >= 0, accurate to rounding.
+// phi functions of the exponential step for h >= 0, to a few roundings.
 struct RelaxationCoefficients {
   double decay;  // exp(-h)
   double phi1;   // (1 - exp(-h)) / h
