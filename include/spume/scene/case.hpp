@@ -19,6 +19,12 @@ enum class PressureSolver { bicgstab, cg };
 enum class PreconditionerKind { jacobi, multigrid };
 enum class Precision { mixed, f64 };
 enum class ShiftCorrection { none, first_order, second_order };
+enum class Integrator { ab2, rk3, rk4 };
+enum class Dealiasing { padded, two_thirds, none };
+enum class FieldPrecision { f64, f32 };
+enum class PlanEffort { estimate, measured };
+enum class ForcingKind { none, shell, linear };
+enum class InitialKind { rest, taylor_green, abc, random, expressions, checkpoint };
 
 struct ResolutionOptions {
   double smoothing_ratio = 1.3;  // h / spacing
@@ -56,6 +62,31 @@ struct ShiftingOptions {
 struct SurfaceOptions {
   double threshold = 0;  // div r below which a particle is a surface particle; 0: 2.3 in 3-D, 1.5 in 2-D
   double blend_width = 0.32;
+};
+
+struct SpectralOptions {
+  Integrator integrator = Integrator::ab2;
+  Dealiasing dealiasing = Dealiasing::padded;
+  FieldPrecision precision = FieldPrecision::f64;
+  PlanEffort plans = PlanEffort::estimate;
+};
+
+// Force of a homogeneous flow. Wavenumbers in units of 2 pi / the longest length of the box.
+struct ForcingOptions {
+  ForcingKind kind = ForcingKind::none;
+  double wavenumber = 1;  // shell: wavenumber <= |k| < wavenumber + width
+  double width = 1;
+  double injection = 0;  // shell: energy per mass and time
+  double rate = 0;       // linear: acceleration = rate * velocity
+};
+
+// Velocity at the start of a flow on a grid; expressions and the spectrum are in the scene.
+struct InitialOptions {
+  InitialKind kind = InitialKind::rest;
+  std::vector<double> amplitude;  // taylor-green: one speed; abc: three
+  int wavenumber = 1;             // taylor-green, abc: periods in the box
+  double energy = 0;              // random: mean kinetic energy per mass
+  std::string file;               // checkpoint
 };
 
 struct TimeOptions {
@@ -99,6 +130,9 @@ struct Case {
   PressureOptions pressure;
   ShiftingOptions shifting;
   SurfaceOptions surface;
+  SpectralOptions spectral;
+  ForcingOptions forcing;
+  InitialOptions initial;
   TimeOptions time;
   OutputOptions output;
   std::vector<ProbeOptions> probes;
