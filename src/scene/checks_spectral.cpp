@@ -133,6 +133,7 @@ void check_spectral(const Draft& draft, Problems& problems) {
   const std::vector<std::int64_t> grid = check_grid(draft, problems);
   check_forcing(draft, grid, problems);
   check_initial(draft, grid, problems);
+  check_particles(draft, problems);
   const FluidDraft& fluid = draft.fluid;
   const bool viscous = fluid.reynolds || (fluid.viscosity && *fluid.viscosity > 0);
   if (draft.options.spectral.integrator == Integrator::ab2 && !viscous && draft.usable("fluid.reynolds") &&

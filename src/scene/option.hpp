@@ -88,6 +88,7 @@ struct Section {
   std::function<void(Draft&)> begin_entry{};  // of a repeated section: appends an empty entry
   std::vector<Option> options{};
   Methods methods{};
+  bool optional = false;  // a case without it does without its subject: the resolved case leaves it out too
 };
 
 // The method that a document names; empty when it names none that exists.
@@ -99,6 +100,7 @@ const std::vector<Section>& sections();
 // Parts of the table, by subject.
 std::vector<Section> scene_sections();     // domain, solids, fluid, liquid
 std::vector<Section> method_sections();    // turbulence ... output, probes
+std::vector<Section> particle_sections();  // particles
 std::vector<Section> spectral_sections();  // spectral, forcing
 
 // "a number", "a list of expressions", ...

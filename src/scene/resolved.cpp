@@ -30,7 +30,7 @@ class Writer {
         const bool empty = !table && std::none_of(section.options.begin(), section.options.end(), [&](const Option& o) {
           return !o.default_text.empty() && belongs(o.methods, draft_.options.method);
         });
-        if (empty) continue;
+        if (empty || (!table && section.optional)) continue;
         if (!section.name.empty()) text_ += "\n[" + section.name + "]\n";
         options(section, table);
       }

@@ -24,6 +24,9 @@ enum class Dealiasing { padded, two_thirds, none };
 enum class FieldPrecision { f64, f32 };
 enum class PlanEffort { estimate, measured };
 enum class ForcingKind { none, shell, linear };
+enum class ParticleCoupling { one_way, two_way, four_way };
+enum class ParticlePlacement { random, lattice, clustered, file };
+enum class ParticleDrag { stokes, schiller_naumann };
 enum class InitialKind { rest, taylor_green, abc, random, expressions, checkpoint };
 
 struct ResolutionOptions {
@@ -89,6 +92,35 @@ struct InitialOptions {
   std::string file;               // checkpoint
 };
 
+// Small spheres in the flow of the spectral method; none when `count` and `volume_fraction` are zero.
+struct ParticleCaseOptions {
+  std::int64_t count = 0;
+  double volume_fraction = 0;  // sets the count
+  double diameter = 0;
+  double diameter_over_eta = 0;  // in Kolmogorov lengths of the injected energy
+  std::vector<double> diameters, shares;
+  double beta = 1;
+  double stokes = 0;         // response time in Kolmogorov times of the injected energy
+  double response_time = 0;  // 0 and stokes = 0: diameter^2 / (12 beta nu)
+  ParticleDrag drag = ParticleDrag::stokes;
+  std::vector<double> gravity;
+  ParticleCoupling coupling = ParticleCoupling::one_way;
+  bool matching_by_sorting = false;
+  double max_volume_fraction = 0.74048048969306104;  // pi / (3 sqrt 2), close packing
+  bool frozen = false;
+  std::int64_t spline_order = 4;
+  bool double_records = false;
+  std::int64_t sort_every = 8;
+  ParticlePlacement placement = ParticlePlacement::random;
+  std::int64_t clusters = 8;
+  double cluster_radius = 0.05;  // of the shortest side
+  std::string file;
+  std::int64_t overlap_samples = 20000;
+  std::int64_t lyapunov = 0;
+
+  bool any() const { return count > 0 || volume_fraction > 0; }
+};
+
 struct TimeOptions {
   double end = 0;
   double courant = 0.2;
@@ -133,6 +165,7 @@ struct Case {
   SpectralOptions spectral;
   ForcingOptions forcing;
   InitialOptions initial;
+  ParticleCaseOptions particles;
   TimeOptions time;
   OutputOptions output;
   std::vector<ProbeOptions> probes;
