@@ -14,9 +14,10 @@ std::size_t sort_block(std::size_t size) {
   return std::max<std::size_t>(4096, (size + 127) / 128);
 }
 
-int clamped(double place, int count) {
-  if (!(place > 0)) return 0;
-  return place < count - 1 ? static_cast<int>(place) : count - 1;
+// Without branches, so that the loop over points runs in vectors; not-a-number goes to cell 0.
+int clamped(double place, double last) {
+  const double low = place > 0 ? place : 0.0;
+  return static_cast<int>(low < last ? low : last);
 }
 
 }  // namespace
@@ -37,13 +38,15 @@ void CellOrder::build(const PeriodicCells& cells, const double* x, const double*
   const std::size_t block = sort_block(size);
   const std::size_t blocks = block_count(size, block);
   cell_.resize(size);
+  plane_.resize(size);
   order_.resize(size);
   plane_cell_.resize(size);
   plane_order_.resize(size);
   first_.resize(cells.size() + 1);
   block_start_.resize((blocks + 1) * planes + 1);
 
-  std::int32_t* cell = cell_.data();
+  std::int32_t* cell = cell_.data();  // within its plane
+  std::uint16_t* plane = plane_.data();
   std::int32_t* order = order_.data();
   std::int32_t* first = first_.data();
   std::int32_t* plane_cell = plane_cell_.data();
@@ -52,16 +55,20 @@ void CellOrder::build(const PeriodicCells& cells, const double* x, const double*
   const double inverse[3] = {cells.count[0] / cells.length[0], cells.count[1] / cells.length[1],
                              cells.count[2] / cells.length[2]};
 
-  parallel_blocks(size, block, [&, cell, start](std::size_t b, std::size_t from, std::size_t to) {
+  const double last[3] = {cells.count[0] - 1.0, cells.count[1] - 1.0, cells.count[2] - 1.0};
+  const double lower[3] = {cells.lower[0], cells.lower[1], cells.lower[2]};
+  const int count_z = cells.count[2];
+  parallel_blocks(size, block, [=](std::size_t b, std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      const int cx = clamped((x[i] - lower[0]) * inverse[0], last[0]);
+      const int cy = clamped((y[i] - lower[1]) * inverse[1], last[1]);
+      const int cz = clamped((z[i] - lower[2]) * inverse[2], last[2]);
+      plane[i] = static_cast<std::uint16_t>(cx);
+      cell[i] = cy * count_z + cz;
+    }
     std::int32_t* histogram = start + b * planes;
     std::fill_n(histogram, planes, 0);
-    for (std::size_t i = from; i < to; ++i) {
-      const int cx = clamped((x[i] - cells.lower[0]) * inverse[0], cells.count[0]);
-      const int cy = clamped((y[i] - cells.lower[1]) * inverse[1], cells.count[1]);
-      const int cz = clamped((z[i] - cells.lower[2]) * inverse[2], cells.count[2]);
-      cell[i] = (cx * cells.count[1] + cy) * cells.count[2] + cz;
-      ++histogram[cx];
-    }
+    for (std::size_t i = from; i < to; ++i) ++histogram[plane[i]];
   });
   std::int32_t* plane_start = start + blocks * planes;
   std::int32_t running = 0;
@@ -74,11 +81,10 @@ void CellOrder::build(const PeriodicCells& cells, const double* x, const double*
     }
   }
   plane_start[planes] = running;
-  const auto divisor = static_cast<std::uint32_t>(per_plane);
-  parallel_blocks(size, block, [&, cell, start](std::size_t b, std::size_t from, std::size_t to) {
+  parallel_blocks(size, block, [=](std::size_t b, std::size_t from, std::size_t to) {
     std::int32_t* cursor = start + b * planes;
     for (std::size_t i = from; i < to; ++i) {
-      const std::int32_t place = cursor[static_cast<std::uint32_t>(cell[i]) / divisor]++;
+      const std::int32_t place = cursor[plane[i]]++;
       plane_cell[place] = cell[i];
       plane_order[place] = static_cast<std::int32_t>(i);
     }
@@ -88,13 +94,13 @@ void CellOrder::build(const PeriodicCells& cells, const double* x, const double*
     std::int32_t* here = first + p * per_plane;
     const std::int32_t from = plane_start[p], to = plane_start[p + 1];
     std::fill_n(here, per_plane, 0);
-    for (std::int32_t k = from; k < to; ++k) ++first[plane_cell[k]];
+    for (std::int32_t k = from; k < to; ++k) ++here[plane_cell[k]];
     std::int32_t end = from;
     for (std::size_t c = 0; c < per_plane; ++c) {
       end += here[c];
       here[c] = end;
     }
-    for (std::int32_t k = to; k-- > from;) order[--first[plane_cell[k]]] = plane_order[k];
+    for (std::int32_t k = to; k-- > from;) order[--here[plane_cell[k]]] = plane_order[k];
   });
   first[cells.size()] = static_cast<std::int32_t>(size);
   already_sorted_ = parallel_reduce(
@@ -109,7 +115,8 @@ void CellOrder::build(const PeriodicCells& cells, const double* x, const double*
 
 double CellOrder::bytes() const {
   return 4.0 * static_cast<double>(cell_.capacity() + order_.capacity() + first_.capacity() + plane_cell_.capacity() +
-                                   plane_order_.capacity() + block_start_.capacity());
+                                   plane_order_.capacity() + block_start_.capacity()) +
+         2.0 * static_cast<double>(plane_.capacity());
 }
 
 }  // namespace spume

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/simd.hpp"
@@ -22,6 +23,38 @@ constexpr std::size_t planes_per_block = 8;
   std::memcpy(target, &sum, sizeof sum);
 }
 
+f64x4 absolute(f64x4 v) {
+  return v < 0 ? -v : v;
+}
+
+bool any_above(f64x4 v, double bound) {
+  return v[0] > bound || v[1] > bound || v[2] > bound || v[3] > bound;
+}
+
+// Component c of four records to component[c]; the records become zero.
+[[gnu::always_inline]] inline void take_points(double* records, f64x4 (&component)[4]) {
+  f64x4 r[4];
+  std::memcpy(r, records, sizeof r);
+  const f64x4 zero[4] = {};
+  std::memcpy(records, zero, sizeof zero);
+  const f64x4 a = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6), b = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+  const f64x4 c = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6), d = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+  component[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  component[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  component[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  component[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+template <class Real>
+[[gnu::always_inline]] inline void put_points(Real* target, f64x4 values, std::size_t points) {
+  using Target = std::conditional_t<std::is_same_v<Real, float>, simd::f32x4, f64x4>;
+  const Target converted = __builtin_convertvector(values, Target);
+  if (points == 4)
+    std::memcpy(target, &converted, sizeof converted);
+  else
+    std::memcpy(target, &converted, points * sizeof(Real));
+}
+
 DepositionReport combined(DepositionReport a, const DepositionReport& b) {
   a.force += b.force;
   a.clipped_force += b.clipped_force;
@@ -37,7 +70,7 @@ DepositionReport LinearDeposition::deposit(const CellOrder& order, const std::ar
                                            const double* amounts, double most_volume_fraction,
                                            const std::array<Real*, 3>& force, Real* volume_fraction) {
   const int nx = grid_.points[0], ny = grid_.points[1], nz = grid_.points[2];
-  const std::size_t row = 4 * (static_cast<std::size_t>(nz) + 2);  // off powers of two
+  const std::size_t row = 4 * (static_cast<std::size_t>(nz) + 4);  // off powers of two, and room for four points
   const std::size_t plane = row * static_cast<std::size_t>(ny);
   const std::int32_t* index = order.order().data();
   const std::int32_t* first = order.first();
@@ -80,29 +113,37 @@ DepositionReport LinearDeposition::deposit(const CellOrder& order, const std::ar
     }
   };
 
-  // Clips a finished plane, writes it out and empties it.
+  // Clips a finished plane, writes it out and empties it, four points at a time: rows are padded, so that a remainder
+  // reads sums that are zero.
   const auto finish = [&](int ix, double* sums, DepositionReport& report) {
+    f64x4 size{}, clipped{}, crowded_points{}, most{};
     for (int iy = 0; iy < ny; ++iy) {
       double* from = sums + static_cast<std::size_t>(iy) * row;
       const std::size_t to = grid_.row(ix, iy);
-      for (int iz = 0; iz < nz; ++iz) {
+      for (int iz = 0; iz < nz; iz += 4) {
         double* s = from + 4 * static_cast<std::size_t>(iz);
-        const double alpha = s[3];
-        const bool crowded = alpha > most_volume_fraction;
-        const double clip = crowded ? most_volume_fraction / alpha : 1.0;
-        const double size = std::sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
-        report.force += size;
-        if (crowded) {
-          report.clipped_force += (1 - clip) * size;
-          report.clipped_volume += 1;
+        f64x4 component[4];
+        take_points(s, component);
+        f64x4 magnitude = absolute(component[0]) + absolute(component[1]) + absolute(component[2]);
+        const f64x4 alpha = component[3];
+        most = alpha > most ? alpha : most;
+        size += magnitude;
+        if (any_above(alpha, most_volume_fraction)) {
+          const f64x4 one = f64x4{} + 1.0;
+          const f64x4 clip = alpha > most_volume_fraction ? most_volume_fraction / alpha : one;
+          clipped += (one - clip) * magnitude;
+          crowded_points += alpha > most_volume_fraction ? one : f64x4{};
+          for (int c = 0; c < 3; ++c) component[c] *= clip;
         }
-        report.most_volume_fraction = std::max(report.most_volume_fraction, alpha);
-        for (int c = 0; c < 3; ++c) force[c][to + iz] = static_cast<Real>(clip * s[c]);
-        if (volume_fraction != nullptr) volume_fraction[to + iz] = static_cast<Real>(alpha);
-        const f64x4 zero{};
-        std::memcpy(s, &zero, sizeof zero);
+        const auto points = static_cast<std::size_t>(std::min(4, nz - iz));
+        for (int c = 0; c < 3; ++c) put_points(force[c] + to + iz, component[c], points);
+        if (volume_fraction != nullptr) put_points(volume_fraction + to + iz, alpha, points);
       }
     }
+    report.force += simd::sum(size);
+    report.clipped_force += simd::sum(clipped);
+    report.clipped_volume += simd::sum(crowded_points);
+    for (int l = 0; l < 4; ++l) report.most_volume_fraction = std::max(report.most_volume_fraction, most[l]);
   };
 
   const std::size_t blocks = block_count(static_cast<std::size_t>(nx), planes_per_block);

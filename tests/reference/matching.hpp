@@ -21,11 +21,12 @@ inline std::vector<std::int32_t> greedy_matching(const Spheres& s, const std::ar
     for (std::size_t j = 0; j < i; ++j) {
       double d[3];
       for (int c = 0; c < 3; ++c) d[c] = nearest_image(s.position[c][i] - s.position[c][j], length[c]);
-      const double distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+      const double distance_2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
       const auto radius = [&](std::size_t p) {
         return 0.5 * static_cast<double>(static_cast<float>(s.diameter == nullptr ? s.common_diameter : s.diameter[p]));
       };
-      if (distance < radius(i) + radius(j)) pairs.push_back({radius(i) + radius(j) - distance, i, j});
+      if (overlapping(distance_2, radius(i) + radius(j)))
+        pairs.push_back({radius(i) + radius(j) - std::sqrt(distance_2), i, j});
     }
   std::sort(pairs.begin(), pairs.end(), [&](const Pair& a, const Pair& b) {
     return stronger_overlap(a.overlap, s.identifier[a.i], s.identifier[a.j], b.overlap, s.identifier[b.i],

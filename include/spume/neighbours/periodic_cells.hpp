@@ -40,6 +40,7 @@ class CellOrder {
 
  private:
   Array<std::int32_t> cell_, order_, first_, plane_cell_, plane_order_, block_start_;
+  Array<std::uint16_t> plane_;
   bool already_sorted_ = false;
 };
 

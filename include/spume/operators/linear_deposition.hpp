@@ -13,7 +13,7 @@
 namespace spume {
 
 struct DepositionReport {
-  double force = 0;           // integral over the box of the modulus of the force before clipping
+  double force = 0;           // integral over the box of |f_x| + |f_y| + |f_z| before clipping
   double clipped_force = 0;   // and of what clipping took away
   double clipped_volume = 0;  // volume of the grid cells where clipping acted
   double most_volume_fraction = 0;

@@ -52,6 +52,7 @@ void Exclusion::prepare(const Spheres& spheres) {
   const std::size_t n = spheres.size;
   // One particle per cell on average, and never less than a diameter: the printed radius misses overlaps.
   cells_ = PeriodicCells::with_side(lower_, length_, largest_diameter_, std::max<double>(64, static_cast<double>(n)));
+  for (int axis = 0; axis < 3; ++axis) inverse_side_[axis] = cells_.count[axis] / length_[axis];
   own_images_ = std::min({cells_.count[0], cells_.count[1], cells_.count[2]}) < 3;
   order_.build(cells_, spheres.position[0], spheres.position[1], spheres.position[2], n);
   records_.resize(n);

@@ -23,7 +23,7 @@ void Exclusion::visit_cells(const Record& here, std::int32_t rank, Visit&& visit
   const double place[3] = {here.x, here.y, here.z};
   int from[3], to[3], own[3];
   for (int axis = 0; axis < 3; ++axis) {
-    const double scale = cells_.count[axis] / length_[axis];
+    const double scale = inverse_side_[axis];
     const double cell = (place[axis] - lower_[axis]) * scale;
     own[axis] = std::clamp(static_cast<int>(cell), 0, cells_.count[axis] - 1);
     if (cells_.count[axis] < 3) {
@@ -42,22 +42,42 @@ void Exclusion::visit_cells(const Record& here, std::int32_t rank, Visit&& visit
   const std::size_t own_cell = number(own[0], own[1], own[2]);
   const bool own_crowded = rank >= 0 && first[own_cell + 1] - first[own_cell] > crowd;
 
+  // Overlaps are rare and unforeseeable: found ones are put down without a branch and visited together.
+  constexpr int room = 64;
+  std::int32_t found[room];
+  double found_distance_2[room];
+  int count = 0;
+  const auto visit_found = [&] {
+    for (int f = 0; f < count; ++f) {
+      const Record& there = records_[static_cast<std::size_t>(found[f])];
+      visit(found[f], own_radius + 0.5 * static_cast<double>(there.diameter) - std::sqrt(found_distance_2[f]));
+    }
+    count = 0;
+  };
+  const Record* records = records_.data();
   const auto scan = [&](std::int32_t begin, std::int32_t end, double shift_x, double shift_y, double shift_z) {
-    for (std::int32_t m = begin; m < end; ++m) {
-      const Record& there = records_[static_cast<std::size_t>(m)];
-      double dx = here.x - there.x, dy = here.y - there.y, dz = here.z - there.z;
-      if constexpr (own_images) {
-        dx = nearest_image(dx, length_[0]);
-        dy = nearest_image(dy, length_[1]);
-        dz = nearest_image(dz, length_[2]);
-      } else {
-        dx -= shift_x;
-        dy -= shift_y;
-        dz -= shift_z;
+    while (begin < end) {
+      const std::int32_t stop = std::min(end, begin + room - count);
+      for (std::int32_t m = begin; m < stop; ++m) {
+        const Record& there = records[m];
+        double dx = here.x - there.x, dy = here.y - there.y, dz = here.z - there.z;
+        if constexpr (own_images) {
+          dx = nearest_image(dx, length_[0]);
+          dy = nearest_image(dy, length_[1]);
+          dz = nearest_image(dz, length_[2]);
+        } else {
+          dx -= shift_x;
+          dy -= shift_y;
+          dz -= shift_z;
+        }
+        const double distance_2 = dx * dx + dy * dy + dz * dz;
+        const double touching = own_radius + 0.5 * static_cast<double>(there.diameter);
+        found[count] = m;
+        found_distance_2[count] = distance_2;
+        count += static_cast<int>(overlapping(distance_2, touching)) & static_cast<int>(m != rank);
       }
-      const double distance_2 = dx * dx + dy * dy + dz * dz;
-      const double touching = own_radius + 0.5 * static_cast<double>(there.diameter);
-      if (distance_2 < touching * touching && m != rank) visit(m, touching - std::sqrt(distance_2));
+      begin = stop;
+      if (count == room) visit_found();
     }
   };
   // One row of cells along z within the grid.
@@ -92,6 +112,7 @@ void Exclusion::visit_cells(const Record& here, std::int32_t rank, Visit&& visit
       if (to[2] >= nz) scan_row(wi, wj, 0, to[2] - nz, shift_x, shift_y, length_[2]);
     }
   }
+  visit_found();
 }
 
 template <class Visit>

@@ -87,7 +87,7 @@ class Exclusion {
   Best strongest_free(const Spheres& spheres, std::size_t k) const;
   ExclusionReport summarise(std::size_t overlapping, int rounds) const;
 
-  std::array<double, 3> lower_{}, length_{};
+  std::array<double, 3> lower_{}, length_{}, inverse_side_{};
   double largest_diameter_ = 0;
   bool own_images_ = false;  // some axis has fewer than three cells: nearest images by rounding
   PeriodicCells cells_;
@@ -97,6 +97,12 @@ class Exclusion {
   Array<std::uint8_t> taken_;
   Array<double> strength_;
 };
+
+// Whether spheres that touch at distance `touching` overlap at the square root of distance_2. Pairs that were moved apart
+// touch to rounding (of the diameters in single precision, 6e-8): they do not count.
+inline bool overlapping(double distance_2, double touching) {
+  return distance_2 < (1 - 1e-6) * touching * touching;
+}
 
 // True when the overlap (q1, a1-b1) is taken before (q2, a2-b2); the arguments a, b are identifiers in either order.
 bool stronger_overlap(double q1, std::int64_t a1, std::int64_t b1, double q2, std::int64_t a2, std::int64_t b2);
