@@ -3,16 +3,23 @@
 
 #include <algorithm>
 
-#include "lane_vector.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/fourier/lane_vector.hpp"
 
 namespace spume {
 
-using fourier::Block;
+using fourier::copy_block;
+using fourier::load;
+using fourier::store;
+using fourier::vector_width;
 
 template <class T>
-BoxTransform<T>::BoxTransform(const ModeLayout& layout, Planning planning)
-    : layout_(layout), real_transform_(layout.points[2], planning), work_(layout.size()) {
+BoxTransform<T>::BoxTransform(const ModeLayout& layout, Planning planning, const std::array<Complex*, 2>& work)
+    : layout_(layout), real_transform_(layout.points[2], planning), work_(work) {
+  if (work_[0] == nullptr) {
+    own_work_.resize(layout.size());
+    work_ = {own_work_.data(), own_work_.data() + layout.points[0] / 2 * layout.plane};
+  }
   for (std::size_t axis = 0; axis < 2; ++axis) transform_.emplace_back(layout.points[axis], planning);
   scratch_.resize(static_cast<std::size_t>(thread_count()));
   for (Scratch& scratch : scratch_) {
@@ -25,7 +32,7 @@ BoxTransform<T>::BoxTransform(const ModeLayout& layout, Planning planning)
 
 template <class T>
 double BoxTransform<T>::bytes() const {
-  double bytes = static_cast<double>(work_.capacity() * sizeof(Complex));
+  double bytes = static_cast<double>(own_work_.capacity() * sizeof(Complex));
   for (const Scratch& s : scratch_)
     bytes += static_cast<double>((s.line.capacity() + s.column.capacity() + s.modes.capacity()) * sizeof(Complex) +
                                  s.values.capacity() * sizeof(T));
@@ -35,7 +42,7 @@ double BoxTransform<T>::bytes() const {
 template <class T>
 void BoxTransform<T>::inverse(const Source& modes, const Visitor& visit) {
   const auto [nx, ny, nz] = layout_.points;
-  const std::size_t row = layout_.row, plane = layout_.plane;
+  const std::size_t row = layout_.row;
   const int threads = std::min(static_cast<int>(scratch_.size()), thread_count());
 #pragma omp parallel num_threads(threads)
   {
@@ -45,18 +52,15 @@ void BoxTransform<T>::inverse(const Source& modes, const Visitor& visit) {
       for (std::size_t first = 0; first < row; first += lanes<T>) {
         for (std::size_t ix = 0; ix < nx; ++ix) modes(ix, iy, first, &scratch.line[ix * lanes<T>]);
         transform_[0].inverse(scratch.line.data());
-        for (std::size_t ix = 0; ix < nx; ++ix)
-          Block<T>::load(&scratch.line[ix * lanes<T>]).store(&work_[ix * plane + iy * row + first]);
+        for (std::size_t ix = 0; ix < nx; ++ix) copy_block(&scratch.line[ix * lanes<T>], page(ix) + iy * row + first);
       }
 #pragma omp for schedule(static)
     for (std::size_t ix = 0; ix < nx; ++ix) {
-      Complex* const page = work_.data() + ix * plane;
+      Complex* const page = this->page(ix);
       for (std::size_t first = 0; first < row; first += lanes<T>) {
-        for (std::size_t iy = 0; iy < ny; ++iy)
-          Block<T>::load(page + iy * row + first).store(&scratch.column[iy * lanes<T>]);
+        for (std::size_t iy = 0; iy < ny; ++iy) copy_block(page + iy * row + first, &scratch.column[iy * lanes<T>]);
         transform_[1].inverse(scratch.column.data());
-        for (std::size_t iy = 0; iy < ny; ++iy)
-          Block<T>::load(&scratch.column[iy * lanes<T>]).store(page + iy * row + first);
+        for (std::size_t iy = 0; iy < ny; ++iy) copy_block(&scratch.column[iy * lanes<T>], page + iy * row + first);
       }
       for (std::size_t iy = 0; iy < ny; ++iy) {
         std::copy_n(page + iy * row, nz / 2, scratch.modes.data());
@@ -79,7 +83,7 @@ void BoxTransform<T>::inverse(const Source& modes, T* values, std::size_t z_stri
 template <class T>
 void BoxTransform<T>::forward(const T* values, std::size_t z_stride, const Sink& sink) {
   const auto [nx, ny, nz] = layout_.points;
-  const std::size_t row = layout_.row, plane = layout_.plane;
+  const std::size_t row = layout_.row;
   const T scale = static_cast<T>(1 / layout_.point_count());
   const int threads = std::min(static_cast<int>(scratch_.size()), thread_count());
 #pragma omp parallel num_threads(threads)
@@ -87,7 +91,7 @@ void BoxTransform<T>::forward(const T* values, std::size_t z_stride, const Sink&
     Scratch& scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())];
 #pragma omp for schedule(static)
     for (std::size_t ix = 0; ix < nx; ++ix) {
-      Complex* const page = work_.data() + ix * plane;
+      Complex* const page = this->page(ix);
       for (std::size_t iy = 0; iy < ny; ++iy) {
         std::copy_n(values + (ix * ny + iy) * z_stride, nz, scratch.values.data());
         real_transform_.forward(scratch.values.data(), scratch.modes.data());
@@ -95,11 +99,9 @@ void BoxTransform<T>::forward(const T* values, std::size_t z_stride, const Sink&
         std::fill(page + iy * row + nz / 2, page + (iy + 1) * row, Complex{});
       }
       for (std::size_t first = 0; first < row; first += lanes<T>) {
-        for (std::size_t iy = 0; iy < ny; ++iy)
-          Block<T>::load(page + iy * row + first).store(&scratch.column[iy * lanes<T>]);
+        for (std::size_t iy = 0; iy < ny; ++iy) copy_block(page + iy * row + first, &scratch.column[iy * lanes<T>]);
         transform_[1].forward(scratch.column.data());
-        for (std::size_t iy = 0; iy < ny; ++iy)
-          Block<T>::load(&scratch.column[iy * lanes<T>]).store(page + iy * row + first);
+        for (std::size_t iy = 0; iy < ny; ++iy) copy_block(&scratch.column[iy * lanes<T>], page + iy * row + first);
       }
     }
 #pragma omp for schedule(static)
@@ -107,7 +109,8 @@ void BoxTransform<T>::forward(const T* values, std::size_t z_stride, const Sink&
       if (iy == ny / 2) continue;
       for (std::size_t first = 0; first < row; first += lanes<T>) {
         for (std::size_t ix = 0; ix < nx; ++ix)
-          (scale * Block<T>::load(&work_[ix * plane + iy * row + first])).store(&scratch.line[ix * lanes<T>]);
+          for (std::size_t q = 0; q < lanes<T>; q += vector_width<T>)
+            store<T>(&scratch.line[ix * lanes<T> + q], scale * load(page(ix) + iy * row + first + q));
         transform_[0].forward(scratch.line.data());
         for (std::size_t ix = 0; ix < nx; ++ix)
           if (ix != nx / 2) sink(ix, iy, first, &scratch.line[ix * lanes<T>]);

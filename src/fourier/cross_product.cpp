@@ -5,13 +5,18 @@
 #include <cmath>
 #include <numbers>
 
-#include "lane_vector.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/fourier/lane_vector.hpp"
 
 namespace spume {
 
-using fourier::Block;
+using fourier::conjugate;
+using fourier::copy_block;
 using fourier::Factor;
+using fourier::load;
+using fourier::store;
+using fourier::times_i;
+using fourier::vector_width;
 
 // Rows of the plane that go through the z stage together: two groups of one row per lane.
 template <class T>
@@ -19,12 +24,13 @@ constexpr std::size_t group_rows = 2 * lanes<T>;
 
 template <class T>
 struct CrossProduct<T>::Scratch {
-  std::array<Array<Complex>, 5> line;        // lines of the x stage
-  std::array<Array<Complex>, 6> rows;        // of one remainder along y: half_[1] rows (rounded up) of modes along z
-  std::array<Array<Complex>, 3> sum;         // of the remainders along y: ny rows
-  std::array<Array<Complex>, 6> column;      // lines of the y stage
-  std::array<Array<Complex>, 12> turned;     // modes of a group of rows, by mode, one row per lane
-  std::array<Array<Complex>, 6> pair;        // two real fields as one complex: values along z of a group
+  std::array<Array<Complex>, 5> line;     // lines of the x stage
+  std::array<Array<Complex>, 6> rows;     // of one remainder along y: half_[1] rows (rounded up) of modes along z
+  std::array<Array<Complex>, 3> sum;      // of the remainders along y: ny rows
+  std::array<Array<Complex>, 6> column;   // lines of the y stage
+  std::array<Array<Complex>, 12> turned;  // modes of a group of rows, by mode, one row per lane
+  std::array<Array<Complex>, 6> pair;     // two real fields as one complex: values along z of a group
+  Array<Complex> pair_z;
   std::array<Array<Complex>, 3> pair_modes;  // their transforms, summed over the remainders along z
 };
 
@@ -43,9 +49,8 @@ CrossProduct<T>::CrossProduct(const ModeLayout& layout, bool padded, Planning pl
     for (const double k : layout.wavenumber[axis]) wavenumber_[axis].push_back(static_cast<T>(k));
     transform_.emplace_back(n, planning);
   }
-  lane_wavenumber_.resize(2 * layout.row);
-  for (std::size_t iz = 0; iz < layout.row; ++iz)
-    lane_wavenumber_[2 * iz] = lane_wavenumber_[2 * iz + 1] = wavenumber_[2][iz];
+  lane_wavenumber_.resize(layout.row);
+  for (std::size_t iz = 0; iz < layout.row; ++iz) lane_wavenumber_[iz] = {wavenumber_[2][iz], wavenumber_[2][iz]};
   for (auto& field : work_) field.resize(half_[0] * layout.plane);
   const std::size_t padded_rows = (half_[1] + group_rows<T> - 1) / group_rows<T> * group_rows<T>;
   for (int thread = 0; thread < thread_count(); ++thread) {
@@ -59,6 +64,7 @@ CrossProduct<T>::CrossProduct(const ModeLayout& layout, bool padded, Planning pl
     size(scratch->column, half_[1] * lanes<T>);
     size(scratch->turned, half_[2] * lanes<T>);
     size(scratch->pair, half_[2] * lanes<T>);
+    scratch->pair_z.resize(half_[2] * lanes<T>);
     size(scratch->pair_modes, 2 * half_[2] * lanes<T>);
     scratch_.push_back(std::move(scratch));
   }
@@ -83,6 +89,7 @@ double CrossProduct<T>::bytes() const {
     add(scratch->turned);
     add(scratch->pair);
     add(scratch->pair_modes);
+    values += static_cast<double>(scratch->pair_z.capacity());
   }
   return values * sizeof(Complex);
 }
@@ -93,7 +100,9 @@ VelocityPeak CrossProduct<T>::evaluate(const std::array<const Complex*, 3>& pote
   const int threads = std::min(static_cast<int>(scratch_.size()), thread_count());
   VelocityPeak peak;
   for (std::size_t remainder = 0; remainder < phases_; ++remainder) {
+    const double begin = omp_get_wtime();
     inverse_x(remainder, potential);
+    const double inverted = omp_get_wtime();
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (std::size_t j = 0; j < half_[0]; ++j) {
       peaks_[j] = {};
@@ -104,13 +113,18 @@ VelocityPeak CrossProduct<T>::evaluate(const std::array<const Complex*, 3>& pote
       peak.speed = p.speed > peak.speed || p.speed != p.speed ? p.speed : peak.speed;
       peak.rate = p.rate > peak.rate || p.rate != p.rate ? p.rate : peak.rate;
     }
+    const double formed = omp_get_wtime();
     forward_x(remainder, sum, finish);
+    seconds_[0] += inverted - begin;
+    seconds_[1] += formed - inverted;
+    seconds_[2] += omp_get_wtime() - formed;
   }
   return peak;
 }
 
 template <class T>
 void CrossProduct<T>::inverse_x(std::size_t remainder, const std::array<const Complex*, 3>& potential) {
+  using V = fourier::Vector<T>;
   const int threads = std::min(static_cast<int>(scratch_.size()), thread_count());
   const std::size_t n = half_[0], ny = layout_.points[1];
   const std::vector<Complex>& twist = twists_[0][remainder];
@@ -119,39 +133,41 @@ void CrossProduct<T>::inverse_x(std::size_t remainder, const std::array<const Co
     Scratch& scratch = *scratch_[static_cast<std::size_t>(omp_get_thread_num())];
     const T ky = wavenumber_[1][iy];
     for (std::size_t first = 0; first < layout_.row; first += lanes<T>) {
-      const auto kz = Block<T>::load(reinterpret_cast<const Complex*>(&lane_wavenumber_[2 * first]));
-      // Velocity of the modes at ix, twisted: u = i k x b.
-      const auto velocity = [&](std::size_t ix, Block<T> out[3]) {
-        const std::size_t at = ix * layout_.plane + iy * layout_.row + first;
-        const T kx = wavenumber_[0][ix];
-        const Factor<T> factor(Complex(-twist[ix].imag(), twist[ix].real()));  // i times the twist
-        const auto bx = Block<T>::load(potential[0] + at), by = Block<T>::load(potential[1] + at),
-                   bz = Block<T>::load(potential[2] + at);
-        out[0] = times(factor, ky * bz - kz * by);
-        out[1] = times(factor, kz * bx - kx * bz);
-        out[2] = times(factor, kx * by - ky * bx);
-      };
       for (std::size_t j = 0; j < n; ++j) {
-        Block<T> low[3], high[3];
-        velocity(j, low);
-        const T k = wavenumber_[0][j];
-        if (j == 0) {
-          for (auto& h : high) h = Block<T>::zero();
-          if (iy == 0 && first == 0)  // the mean velocity
-            for (int c = 0; c < 3; ++c) low[c].v[0][0] = potential[c][0].real();
-        } else {
-          velocity(n + j, high);
+        // i times the twist: u = i k x b.
+        const Factor<T> low(Complex(-twist[j].imag(), twist[j].real()));
+        const Factor<T> high(Complex(-twist[n + j].imag(), twist[n + j].real()));
+        const T k = wavenumber_[0][j], l = wavenumber_[0][n + j];
+        const std::size_t at = j * layout_.plane + iy * layout_.row + first, above = at + n * layout_.plane;
+        for (std::size_t q = 0; q < lanes<T>; q += vector_width<T>) {
+          const V kz = load(lane_wavenumber_.data() + first + q);
+          V bx = load(potential[0] + at + q), by = load(potential[1] + at + q), bz = load(potential[2] + at + q);
+          V u = low * (ky * bz - kz * by), v = low * (kz * bx - k * bz), w = low * (k * by - ky * bx);
+          V dv = k * v, dw = k * w;
+          if (j > 0) {
+            bx = load(potential[0] + above + q), by = load(potential[1] + above + q),
+            bz = load(potential[2] + above + q);
+            const V v_above = high * (kz * bx - l * bz), w_above = high * (l * by - ky * bx);
+            u += high * (ky * bz - kz * by);
+            v += v_above;
+            w += w_above;
+            dv += l * v_above;
+            dw += l * w_above;
+          }
+          const std::size_t to = j * lanes<T> + q;
+          store<T>(&scratch.line[0][to], u);
+          store<T>(&scratch.line[1][to], v);
+          store<T>(&scratch.line[2][to], w);
+          store<T>(&scratch.line[3][to], times_i<T>(dv));
+          store<T>(&scratch.line[4][to], times_i<T>(dw));
         }
-        const T l = wavenumber_[0][n + j];
-        for (int c = 0; c < 3; ++c) (low[c] + high[c]).store(&scratch.line[c][j * lanes<T>]);
-        times_i(k * low[1] + l * high[1]).store(&scratch.line[3][j * lanes<T>]);
-        times_i(k * low[2] + l * high[2]).store(&scratch.line[4][j * lanes<T>]);
       }
+      if (iy == 0 && first == 0)  // the mean velocity
+        for (std::size_t c = 0; c < 3; ++c) scratch.line[c][0] += potential[c][0].real();
       for (std::size_t f = 0; f < 5; ++f) {
         transform_[0].inverse(scratch.line[f].data());
         Complex* const out = work_[f].data() + iy * layout_.row + first;
-        for (std::size_t j = 0; j < n; ++j)
-          Block<T>::load(&scratch.line[f][j * lanes<T>]).store(out + j * layout_.plane);
+        for (std::size_t j = 0; j < n; ++j) copy_block(&scratch.line[f][j * lanes<T>], out + j * layout_.plane);
       }
     }
   }
@@ -168,36 +184,44 @@ void CrossProduct<T>::plane(std::size_t j, Scratch& scratch, VelocityPeak& peak)
 
 template <class T>
 void CrossProduct<T>::inverse_y(std::size_t remainder, std::size_t j, Scratch& scratch) const {
+  using V = fourier::Vector<T>;
   const std::size_t n = half_[1];
   const std::vector<Complex>& twist = twists_[1][remainder];
   for (std::size_t first = 0; first < layout_.row; first += lanes<T>) {
-    const auto kz = Block<T>::load(reinterpret_cast<const Complex*>(&lane_wavenumber_[2 * first]));
-    // Velocity and vorticity of the modes at iy, twisted, added to `out`.
-    const auto add = [&](std::size_t iy, Block<T> out[6]) {
-      const std::size_t at = j * layout_.plane + iy * layout_.row + first;
-      const T ky = wavenumber_[1][iy];
-      const Factor<T> factor(twist[iy]);
-      const auto u = times(factor, Block<T>::load(work_[0].data() + at));
-      const auto v = times(factor, Block<T>::load(work_[1].data() + at));
-      const auto w = times(factor, Block<T>::load(work_[2].data() + at));
-      out[0] = out[0] + u;
-      out[1] = out[1] + v;
-      out[2] = out[2] + w;
-      out[3] = out[3] + times_i(ky * w - kz * v);
-      out[4] = out[4] + (times_i(kz * u) - times(factor, Block<T>::load(work_[4].data() + at)));
-      out[5] = out[5] + (times(factor, Block<T>::load(work_[3].data() + at)) - times_i(ky * u));
-    };
+    const Complex* from[5];
+    for (std::size_t f = 0; f < 5; ++f) from[f] = work_[f].data() + j * layout_.plane + first;
     for (std::size_t jy = 0; jy < n; ++jy) {
-      Block<T> out[6];
-      for (auto& o : out) o = Block<T>::zero();
-      add(jy, out);
-      if (jy > 0) add(n + jy, out);
-      for (std::size_t f = 0; f < 6; ++f) out[f].store(&scratch.column[f][jy * lanes<T>]);
+      const Factor<T> low(twist[jy]), high(twist[n + jy]);
+      const T k = wavenumber_[1][jy], l = wavenumber_[1][n + jy];
+      const std::size_t at = jy * layout_.row, above = at + n * layout_.row;
+      for (std::size_t q = 0; q < lanes<T>; q += vector_width<T>) {
+        const V kz = load(lane_wavenumber_.data() + first + q);
+        V u = low * load(from[0] + at + q), v = low * load(from[1] + at + q), w = low * load(from[2] + at + q);
+        V vx = low * load(from[3] + at + q), wx = low * load(from[4] + at + q);
+        V uy = k * u, wy = k * w;
+        if (jy > 0) {
+          const V u_above = high * load(from[0] + above + q), w_above = high * load(from[2] + above + q);
+          u += u_above;
+          v += high * load(from[1] + above + q);
+          w += w_above;
+          vx += high * load(from[3] + above + q);
+          wx += high * load(from[4] + above + q);
+          uy += l * u_above;
+          wy += l * w_above;
+        }
+        const std::size_t to = jy * lanes<T> + q;
+        store<T>(&scratch.column[0][to], u);
+        store<T>(&scratch.column[1][to], v);
+        store<T>(&scratch.column[2][to], w);
+        store<T>(&scratch.column[3][to], times_i<T>(wy - kz * v));
+        store<T>(&scratch.column[4][to], times_i<T>(kz * u) - wx);
+        store<T>(&scratch.column[5][to], vx - times_i<T>(uy));
+      }
     }
     for (std::size_t f = 0; f < 6; ++f) {
       transform_[1].inverse(scratch.column[f].data());
       for (std::size_t jy = 0; jy < n; ++jy)
-        Block<T>::load(&scratch.column[f][jy * lanes<T>]).store(&scratch.rows[f][jy * layout_.row + first]);
+        copy_block(&scratch.column[f][jy * lanes<T>], &scratch.rows[f][jy * layout_.row + first]);
     }
   }
 }
@@ -206,7 +230,8 @@ void CrossProduct<T>::inverse_y(std::size_t remainder, std::size_t j, Scratch& s
 // component) as the real and imaginary part of one complex field: half the transforms, all of the same kind.
 template <class T>
 void CrossProduct<T>::rows(Scratch& scratch, VelocityPeak& peak) const {
-  using V = typename fourier::VectorOf<T>::Type;
+  using V = fourier::Vector<T>;
+  using Traits = fourier::VectorTraits<T>;
   constexpr std::size_t width = lanes<T>;
   const std::size_t n = half_[2], row = layout_.row;
   std::array<T, 3> per_spacing{};
@@ -235,62 +260,47 @@ void CrossProduct<T>::rows(Scratch& scratch, VelocityPeak& peak) const {
           for (std::size_t l = 0; l < width; ++l) out[l] = {a[l].real(), b[l].real()};
           for (std::size_t j = 1; j < n; ++j) {
             const Factor<T> low(twist[j]), high(twist[n + j]);
-            const auto positive = Block<T>::load(a + j * width) + times_i(Block<T>::load(b + j * width));
-            const auto negative = conjugate(Block<T>::load(a + (n - j) * width)) +
-                                  times_i(conjugate(Block<T>::load(b + (n - j) * width)));
-            (times(low, positive) + times(high, negative)).store(out + j * width);
+            for (std::size_t q = 0; q < width; q += vector_width<T>) {
+              const V positive = load(a + j * width + q) + times_i<T>(load(b + j * width + q));
+              const V negative =
+                  conjugate<T>(load(a + (n - j) * width + q)) + times_i<T>(conjugate<T>(load(b + (n - j) * width + q)));
+              store<T>(out + j * width + q, low * positive + high * negative);
+            }
           }
           transform_[2].inverse(out);
         }
       // In place of X, Y, Z = (u, omega_x), (v, omega_y), (w, omega_z): the product's components of both groups, as
       // (x, y) of group 0, (x, y) of group 1, and (z of group 0, z of group 1). Im(conj(Y) Z) = v omega_z - w omega_y.
-      for (std::size_t i = 0; i < n * width; i += width) {
-        Block<T> xy[2], z[2];
+      for (std::size_t i = 0; i < n * width; i += vector_width<T>) {
+        V z[2];
         for (std::size_t g = 0; g < 2; ++g) {
-          const auto x = Block<T>::load(&scratch.pair[3 * g][i]), y = Block<T>::load(&scratch.pair[3 * g + 1][i]),
-                     w = Block<T>::load(&scratch.pair[3 * g + 2][i]);
-          for (int q = 0; q < fourier::vectors_per_block; ++q) {
-            const V xs = __builtin_shuffle(x.v[q], fourier::VectorOf<T>::swap);
-            const V ys = __builtin_shuffle(y.v[q], fourier::VectorOf<T>::swap);
-            const V ws = __builtin_shuffle(w.v[q], fourier::VectorOf<T>::swap);
-            // Real entries of these hold the component: v omega_z - omega_y w and so on.
-            const V px = y.v[q] * ws - ys * w.v[q];
-            const V py = w.v[q] * xs - ws * x.v[q];
-            const V pz = x.v[q] * ys - xs * y.v[q];
-            // Imaginary entries hold its negative.
-            const V choose = fourier::VectorOf<T>::conjugate;
-            const V sign = (V{} + T(1) + choose) * T(0.5);   // 1 0 1 0
-            const V other = (V{} + T(1) - choose) * T(0.5);  // 0 1 0 1
-            xy[g].v[q] = sign * px - other * py;
-            z[g].v[q] = pz;
-            const V ax = x.v[q] < 0 ? -x.v[q] : x.v[q], ay = y.v[q] < 0 ? -y.v[q] : y.v[q],
-                    aw = w.v[q] < 0 ? -w.v[q] : w.v[q];
-            const V rate = (ax * per_spacing[0] + ay * per_spacing[1] + aw * per_spacing[2]) * sign;
-            const V square = (x.v[q] * x.v[q] + y.v[q] * y.v[q] + w.v[q] * w.v[q]) * sign;
-            largest = largest > rate ? largest : rate;
-            fastest = fastest > square ? fastest : square;
-          }
+          const V x = load(&scratch.pair[3 * g][i]), y = load(&scratch.pair[3 * g + 1][i]),
+                  w = load(&scratch.pair[3 * g + 2][i]);
+          const V xs = fourier::swap<T>(x), ys = fourier::swap<T>(y), ws = fourier::swap<T>(w);
+          // The real entries hold the component, the imaginary ones its negative.
+          store<T>(&scratch.pair[g][i],
+                   Traits::real_part * (y * ws - ys * w) - Traits::imaginary_part * (w * xs - ws * x));
+          z[g] = x * ys - xs * y;
+          const V ax = x < 0 ? -x : x, ay = y < 0 ? -y : y, aw = w < 0 ? -w : w;
+          const V rate = (ax * per_spacing[0] + ay * per_spacing[1] + aw * per_spacing[2]) * Traits::real_part;
+          const V square = (x * x + y * y + w * w) * Traits::real_part;
+          largest = largest > rate ? largest : rate;
+          fastest = fastest > square ? fastest : square;
         }
-        Block<T> zz;
-        for (int q = 0; q < fourier::vectors_per_block; ++q) {
-          const V choose = fourier::VectorOf<T>::conjugate;
-          const V sign = (V{} + T(1) + choose) * T(0.5), other = (V{} + T(1) - choose) * T(0.5);
-          zz.v[q] = sign * z[0].v[q] - other * z[1].v[q];
-        }
-        xy[0].store(&scratch.pair[0][i]);
-        xy[1].store(&scratch.pair[1][i]);
-        zz.store(&scratch.pair[2][i]);
+        store<T>(&scratch.pair_z[i], Traits::real_part * z[0] - Traits::imaginary_part * z[1]);
       }
       for (std::size_t p = 0; p < 3; ++p) {
-        Complex* const values = scratch.pair[p].data();
+        Complex* const values = p < 2 ? scratch.pair[p].data() : scratch.pair_z.data();
         transform_[2].forward(values);
         Complex* const sum = scratch.pair_modes[p].data();
         for (std::size_t j = 0; j < n; ++j) {
-          const auto modes = Block<T>::load(values + j * width);
-          (Block<T>::load(sum + j * width) + times(Factor<T>(std::conj(twist[j])), modes)).store(sum + j * width);
-          if (j == 0) continue;
-          Complex* const upper = sum + (n + j) * width;
-          (Block<T>::load(upper) + times(Factor<T>(std::conj(twist[n + j])), modes)).store(upper);
+          const Factor<T> low(std::conj(twist[j])), high(std::conj(twist[n + j]));
+          Complex *const lower = sum + j * width, *const upper = lower + n * width;
+          for (std::size_t q = 0; q < width; q += vector_width<T>) {
+            const V modes = load(values + j * width + q);
+            store<T>(lower + q, load(lower + q) + low * modes);
+            if (j > 0) store<T>(upper + q, load(upper + q) + high * modes);
+          }
         }
       }
     }
@@ -304,9 +314,11 @@ void CrossProduct<T>::rows(Scratch& scratch, VelocityPeak& peak) const {
       for (std::size_t iz = 0; iz < n; ++iz) {
         Complex a[width], b[width];
         const std::size_t partner = iz == 0 ? 0 : 2 * n - iz;
-        const auto plus = Block<T>::load(sum + iz * width), minus = conjugate(Block<T>::load(sum + partner * width));
-        (T(0.5) * (plus + minus)).store(a);
-        (T(-0.5) * times_i(plus - minus)).store(b);
+        for (std::size_t q = 0; q < width; q += vector_width<T>) {
+          const V plus = load(sum + iz * width + q), minus = conjugate<T>(load(sum + partner * width + q));
+          store<T>(a + q, T(0.5) * (plus + minus));
+          store<T>(b + q, T(-0.5) * times_i<T>(plus - minus));
+        }
         for (std::size_t l = 0; l < width; ++l) {
           first[l * row + iz] = a[l];
           second[l * row + iz] = b[l];
@@ -324,33 +336,35 @@ void CrossProduct<T>::rows(Scratch& scratch, VelocityPeak& peak) const {
 
 template <class T>
 void CrossProduct<T>::forward_y(std::size_t remainder, std::size_t j, Scratch& scratch) {
+  using V = fourier::Vector<T>;
   const std::size_t n = half_[1], row = layout_.row;
   const std::vector<Complex>& twist = twists_[1][remainder];
   const bool last = remainder + 1 == phases_;
   for (std::size_t first = 0; first < row; first += lanes<T>)
     for (std::size_t f = 0; f < 3; ++f) {
       Complex* const column = scratch.column[f].data();
-      for (std::size_t jy = 0; jy < n; ++jy)
-        Block<T>::load(&scratch.rows[f][jy * row + first]).store(column + jy * lanes<T>);
+      for (std::size_t jy = 0; jy < n; ++jy) copy_block(&scratch.rows[f][jy * row + first], column + jy * lanes<T>);
       transform_[1].forward(column);
       // The last remainder goes straight to the plane: its modes are no longer needed.
-      Complex* const sum = scratch.sum[f].data() + first;
-      Complex* const out = last ? work_[f].data() + j * layout_.plane + first : sum;
-      const auto add = [&](std::size_t iy, const Block<T>& modes) {
-        auto value = times(Factor<T>(std::conj(twist[iy])), modes);
-        if (remainder > 0) value = value + Block<T>::load(sum + iy * row);
-        value.store(out + iy * row);
-      };
+      const Complex* const sum = scratch.sum[f].data() + first;
+      Complex* const out = last ? work_[f].data() + j * layout_.plane + first : scratch.sum[f].data() + first;
       for (std::size_t jy = 0; jy < n; ++jy) {
-        const auto modes = Block<T>::load(column + jy * lanes<T>);
-        add(jy, modes);
-        if (jy > 0) add(n + jy, modes);
+        const Factor<T> low(std::conj(twist[jy])), high(std::conj(twist[n + jy]));
+        const std::size_t at = jy * row, above = at + n * row;
+        for (std::size_t q = 0; q < lanes<T>; q += vector_width<T>) {
+          const V modes = load(column + jy * lanes<T> + q);
+          V lower = low * modes, upper = high * modes;
+          if (remainder > 0) lower += load(sum + at + q), upper += load(sum + above + q);
+          store<T>(out + at + q, lower);
+          if (jy > 0) store<T>(out + above + q, upper);
+        }
       }
     }
 }
 
 template <class T>
 void CrossProduct<T>::forward_x(std::size_t remainder, const std::array<Complex*, 3>& sum, const Finish& finish) {
+  using V = fourier::Vector<T>;
   const int threads = std::min(static_cast<int>(scratch_.size()), thread_count());
   const std::size_t n = half_[0], ny = layout_.points[1];
   const std::vector<Complex>& twist = twists_[0][remainder];
@@ -364,22 +378,21 @@ void CrossProduct<T>::forward_x(std::size_t remainder, const std::array<Complex*
       for (std::size_t f = 0; f < 3; ++f) {
         Complex* const line = scratch.line[f].data();
         const Complex* const from = work_[f].data() + iy * layout_.row + first;
-        for (std::size_t j = 0; j < n; ++j) Block<T>::load(from + j * layout_.plane).store(line + j * lanes<T>);
+        for (std::size_t j = 0; j < n; ++j) copy_block(from + j * layout_.plane, line + j * lanes<T>);
         transform_[0].forward(line);
       }
       const auto mode = [&](std::size_t ix, std::size_t j) {
         const std::size_t at = ix * layout_.plane + iy * layout_.row + first;
         const Factor<T> factor(scale * std::conj(twist[ix]));
-        Block<T> value[3];
-        for (std::size_t f = 0; f < 3; ++f) {
-          value[f] = times(factor, Block<T>::load(&scratch.line[f][j * lanes<T>]));
-          if (remainder > 0) value[f] = value[f] + Block<T>::load(sum[f] + at);
-          if (!last) value[f].store(sum[f] + at);
-        }
-        if (!last) return;
         alignas(64) Complex product[3][lanes<T>];
+        for (std::size_t f = 0; f < 3; ++f)
+          for (std::size_t q = 0; q < lanes<T>; q += vector_width<T>) {
+            V value = factor * load(&scratch.line[f][j * lanes<T> + q]);
+            if (remainder > 0) value += load(sum[f] + at + q);
+            store<T>(last ? product[f] + q : sum[f] + at + q, value);
+          }
+        if (!last) return;
         const Complex* const pointers[3] = {product[0], product[1], product[2]};
-        for (std::size_t f = 0; f < 3; ++f) value[f].store(product[f]);
         finish(ix, iy, first, pointers);
       };
       for (std::size_t j = 0; j < n; ++j) mode(j, j);

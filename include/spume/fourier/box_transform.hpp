@@ -26,7 +26,9 @@ class BoxTransform {
   // Takes a block of modes; those with a vanishing partner (index n/2 along x or y) are not reported.
   using Sink = std::function<void(std::size_t ix, std::size_t iy, std::size_t first, const Complex* block)>;
 
-  explicit BoxTransform(const ModeLayout& layout, Planning planning = Planning::estimate);
+  // work: memory that is free whenever a transform runs, two pieces of nx/2 * layout.plane values; null: its own.
+  explicit BoxTransform(const ModeLayout& layout, Planning planning = Planning::estimate,
+                        const std::array<Complex*, 2>& work = {});
 
   // u(x) = sum over all modes of u_k exp(i k.x).
   void inverse(const Source& modes, const Visitor& visit);
@@ -44,7 +46,12 @@ class BoxTransform {
   ModeLayout layout_;
   std::vector<LaneTransform<T>> transform_;  // x, y
   RealLineTransform<T> real_transform_;
-  Array<Complex> work_;
+  Complex* page(std::size_t ix) const {
+    const std::size_t half = layout_.points[0] / 2;
+    return ix < half ? work_[0] + ix * layout_.plane : work_[1] + (ix - half) * layout_.plane;
+  }
+  Array<Complex> own_work_;
+  std::array<Complex*, 2> work_;
   std::vector<Scratch> scratch_;
 };
 

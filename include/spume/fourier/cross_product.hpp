@@ -52,7 +52,12 @@ class CrossProduct {
 
   ~CrossProduct();
 
+  // Its memory, free between evaluations: two pieces of half the planes each.
+  std::array<Complex*, 2> spare() { return {work_[0].data(), work_[1].data()}; }
+
   double bytes() const;
+  // Wall seconds so far: x stage inverse, planes, x stage forward with `finish`.
+  const std::array<double, 3>& stage_seconds() const { return seconds_; }
 
  private:
   struct Scratch;  // of a thread
@@ -71,11 +76,12 @@ class CrossProduct {
   std::array<std::size_t, 3> half_;  // n per axis
   std::array<Twists, 3> twists_;
   std::array<std::vector<T>, 3> wavenumber_;
-  Array<T> lane_wavenumber_;  // k_z per stored mode, twice, as blocks of lanes take it
+  Array<Complex> lane_wavenumber_;  // k_z per stored mode in both parts, as vectors take it
   std::vector<LaneTransform<T>> transform_;
   std::array<Array<Complex>, 5> work_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
   std::vector<VelocityPeak> peaks_;
+  std::array<double, 3> seconds_{};
 };
 
 }  // namespace spume
