@@ -15,6 +15,7 @@ namespace spume::spectral {
 template <class T>
 void Spectral<T>::step(double dt, Ledger& ledger) {
   ensure_started();
+  if (suspension_) suspension_->before_step(ledger);
   const auto points = static_cast<double>(particle_count());
   const auto before = flow_.stage_seconds();
   const double begin = omp_get_wtime();
@@ -28,6 +29,7 @@ void Spectral<T>::step(double dt, Ledger& ledger) {
     counted += after[i] - before[i];
   }
   ledger.count("rest of the step", 1, seconds - counted, points, 0);
+  if (suspension_) suspension_->after_step(dt, ledger);
 }
 
 template <class T>
@@ -36,6 +38,7 @@ Spectral<T>::Spectral(const LoadedCase& loaded) : loaded_(loaded), flow_(loaded)
     if (name != "velocity" && name != "vorticity" && name != "pressure")
       throw InputError("output.fields names '" + name +
                        "', which method \"spectral\" does not have; it has velocity, vorticity, pressure");
+  if (loaded.options.particles.any()) suspension_ = std::make_unique<Suspension<T>>(loaded, flow_);
 }
 
 template <class T>
@@ -46,6 +49,7 @@ void Spectral<T>::start() {
         "the forced shell holds no energy at the start, so that no force could inject any; choose "
         "[initial] or [forcing] so that the wavenumbers meet");
   flow_.evaluate_tendency();
+  if (suspension_) suspension_->start();
   started_ = true;
 }
 
@@ -86,6 +90,7 @@ std::vector<Stage> Spectral<T>::plan() const {
   list.push_back({"update", true, integrators[static_cast<int>(options.integrator)]});
   const bool viscous = flow_.viscosity() > 0;
   list.push_back({"viscosity", viscous, viscous ? "exact, by an integrating factor" : "inviscid"});
+  if (suspension_) suspension_->add_stages(list);
   return list;
 }
 
@@ -95,28 +100,31 @@ std::vector<ArrayInfo> Spectral<T>::arrays() const {
   double drawn = static_cast<double>(total_pressure_.capacity() * sizeof(std::complex<T>));
   for (const auto& set : drawn_)
     for (const auto& field : set) drawn += static_cast<double>(field.capacity() * sizeof(float));
+  if (suspension_) suspension_->add_arrays(list);
   if (drawn > 0) list.push_back({"snapshots and probes", drawn});
   return list;
 }
 
 template <class T>
 std::vector<SeriesColumn> Spectral<T>::series_columns() const {
-  return {{"kinetic_energy", "rho u^2 / 2, integral"},
-          {"dissipation", "rho nu |S|^2, integral"},
-          {"mean_energy", "u^2 / 2, mean"},
-          {"mean_dissipation", "mean"},
-          {"mean_injection", "by the force, mean"},
-          {"mean_enstrophy", "omega^2 / 2, mean"},
-          {"balance_residual", "of dE/dt since the last row, relative to dissipation"},
-          {"max_speed", "speed at the start of the step"},
-          {"rms_velocity", "u', speed"},
-          {"integral_scale", "length"},
-          {"taylor_scale", "length"},
-          {"kolmogorov_scale", "length"},
-          {"reynolds_lambda", "1"},
-          {"kmax_eta", "1"},
-          {"gradient_skewness", "of du/dx"},
-          {"gradient_flatness", "of du/dx"}};
+  std::vector<SeriesColumn> columns{{"kinetic_energy", "rho u^2 / 2, integral"},
+                                    {"dissipation", "rho nu |S|^2, integral"},
+                                    {"mean_energy", "u^2 / 2, mean"},
+                                    {"mean_dissipation", "mean"},
+                                    {"mean_injection", "by the force, mean"},
+                                    {"mean_enstrophy", "omega^2 / 2, mean"},
+                                    {"balance_residual", "of dE/dt since the last row, relative to dissipation"},
+                                    {"max_speed", "speed at the start of the step"},
+                                    {"rms_velocity", "u', speed"},
+                                    {"integral_scale", "length"},
+                                    {"taylor_scale", "length"},
+                                    {"kolmogorov_scale", "length"},
+                                    {"reynolds_lambda", "1"},
+                                    {"kmax_eta", "1"},
+                                    {"gradient_skewness", "of du/dx"},
+                                    {"gradient_flatness", "of du/dx"}};
+  if (suspension_) suspension_->add_columns(columns);
+  return columns;
 }
 
 template <class T>
@@ -131,23 +139,24 @@ void Spectral<T>::series_values(std::span<double> values) {
   const double residual =
       row_[3] > 0 && lost > 0 ? (budget.energy - row_[0] - (flow_.integrated_gain() - row_[1])) / lost : 0;
   row_ = {budget.energy, flow_.integrated_gain(), flow_.integrated_dissipation(), 1};
-  const double row[] = {mass * budget.energy,
-                        mass * budget.dissipation,
-                        budget.energy,
-                        budget.dissipation,
-                        budget.injection,
-                        scales.enstrophy,
-                        residual,
-                        flow_.peak().speed,
-                        scales.rms_velocity,
-                        scales.integral_scale,
-                        scales.taylor_scale,
-                        scales.kolmogorov_scale,
-                        scales.reynolds_lambda,
-                        scales.kmax_eta,
-                        moments.skewness,
-                        moments.flatness};
-  std::copy(std::begin(row), std::end(row), values.begin());
+  std::vector<double> row = {mass * budget.energy,
+                             mass * budget.dissipation,
+                             budget.energy,
+                             budget.dissipation,
+                             budget.injection,
+                             scales.enstrophy,
+                             residual,
+                             flow_.peak().speed,
+                             scales.rms_velocity,
+                             scales.integral_scale,
+                             scales.taylor_scale,
+                             scales.kolmogorov_scale,
+                             scales.reynolds_lambda,
+                             scales.kmax_eta,
+                             moments.skewness,
+                             moments.flatness};
+  if (suspension_) suspension_->values(row);
+  std::copy(row.begin(), row.end(), values.begin());
   if (scales.kmax_eta < 1 && !warned_) {
     warned_ = true;
     char text[200];
@@ -168,6 +177,12 @@ template <class T>
 bool Spectral<T>::wants(const std::string& field) const {
   const auto& fields = loaded_.options.output.fields;
   return fields.empty() ? field == "velocity" : std::find(fields.begin(), fields.end(), field) != fields.end();
+}
+
+template <class T>
+std::vector<Family> Spectral<T>::snapshot() {
+  ensure_started();
+  return suspension_ ? std::vector<Family>{suspension_->family()} : std::vector<Family>{};
 }
 
 template <class T>
@@ -259,11 +274,13 @@ bool Spectral<T>::spectrum(std::vector<double>& wavenumber, std::vector<double>&
 
 template <class T>
 std::vector<Distribution> Spectral<T>::distribution_headings() const {
-  return {{"gradient_pdf",
-           {{"gradient", "standard deviations"},
-            {"longitudinal", "probability density"},
-            {"transverse", "probability density"}},
-           {}}};
+  std::vector<Distribution> tables{{"gradient_pdf",
+                                    {{"gradient", "standard deviations"},
+                                     {"longitudinal", "probability density"},
+                                     {"transverse", "probability density"}},
+                                    {}}};
+  if (suspension_) suspension_->add_headings(tables);
+  return tables;
 }
 
 template <class T>
@@ -271,6 +288,8 @@ std::vector<Distribution> Spectral<T>::distributions() {
   ensure_started();
   const GradientDistribution pdf = gradient_distribution(flow_);
   std::vector<Distribution> tables = distribution_headings();
+  tables.resize(1);
+  if (suspension_) suspension_->add_distributions(tables);
   for (std::size_t i = 0; i < pdf.value.size(); ++i)
     tables[0].values.insert(tables[0].values.end(), {pdf.value[i], pdf.longitudinal[i], pdf.transverse[i]});
   return tables;
@@ -280,6 +299,7 @@ template <class T>
 void Spectral<T>::save(StateWriter& writer) const {
   flow_.save(writer);
   writer.f64("balance", row_);
+  if (suspension_) suspension_->save(writer);
 }
 
 template <class T>
@@ -289,6 +309,7 @@ void Spectral<T>::load(StateReader& reader) {
   reader.f64("balance", row);
   if (row.size() != row_.size()) throw FileError("the checkpoint was written by another version of the method");
   std::copy(row.begin(), row.end(), row_.begin());
+  if (suspension_) suspension_->load(reader);
   started_ = true;
   total_pressure_step_ = -1;
 }

@@ -67,4 +67,30 @@ SampledValue overlap_ratio(Exclusion& exclusion, const Spheres& spheres, std::si
   return {1 - ratio, std::sqrt(std::max(0.0, scatter)) / sums.weight};
 }
 
+std::vector<double> overlap_histogram(Exclusion& exclusion, const Spheres& spheres, int bins) {
+  exclusion.prepare(spheres);
+  const auto& records = exclusion.records();
+  const auto width = static_cast<std::size_t>(bins);
+  const std::size_t block = std::max(default_block, block_count(records.size(), 64));
+  std::vector<std::vector<double>> counts(block_count(records.size(), block), std::vector<double>(width, 0.0));
+  parallel_blocks(records.size(), block, [&](std::size_t b, std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k)
+      exclusion.for_each_overlap(k, [&](std::int32_t m, double overlap) {
+        const double touching = 0.5 * (static_cast<double>(records[k].diameter) +
+                                       static_cast<double>(records[static_cast<std::size_t>(m)].diameter));
+        counts[b][std::min(width - 1, static_cast<std::size_t>(overlap / touching * bins))] += 1;
+      });
+  });
+  std::vector<double> density(width, 0.0);
+  double total = 0;
+  for (const auto& part : counts)
+    for (std::size_t i = 0; i < width; ++i) {
+      density[i] += part[i];
+      total += part[i];
+    }
+  if (total > 0)
+    for (double& d : density) d *= bins / total;
+  return density;
+}
+
 }  // namespace spume

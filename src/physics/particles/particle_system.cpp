@@ -51,7 +51,6 @@ ParticleSystem::ParticleSystem(const PeriodicGrid& grid, const ParticleOptions& 
     deposition_ = LinearDeposition(grid);
     amounts_.resize(4 * options.count);
   }
-  if (collides()) exclusion_ = Exclusion(grid.lower, grid.length, largest_diameter(options));
   const double volume = parallel_sum(size(), [&](std::size_t i) { return sphere_volume(particles_.diameter_of(i)); });
   volume_fraction_ = volume / (grid.length[0] * grid.length[1] * grid.length[2]);
 }
@@ -104,7 +103,7 @@ void ParticleSystem::advance(double dt, const std::array<const Source*, 3>& velo
   order_is_current_ = false;
   if (collides()) {
     const auto scope = ledger.time("particle exclusion", n);
-    exclusion_report_ = exclusion_.match(spheres(), options_.matching);
+    exclusion_report_ = cells().match(spheres(), options_.matching);
     exclusion_.separate(spheres());
   }
   clock_[0] = dt;
@@ -145,9 +144,17 @@ Spheres ParticleSystem::spheres() {
 }
 
 SampledValue ParticleSystem::measure_overlap(std::size_t samples, std::uint32_t step) {
-  if (collides()) return overlap_ratio(exclusion_, spheres(), samples, options_.placement.seed, step);
-  Exclusion cells(grid_.lower, grid_.length, largest_diameter(options_));
-  return overlap_ratio(cells, spheres(), samples, options_.placement.seed, step);
+  return overlap_ratio(cells(), spheres(), samples, options_.placement.seed, step);
+}
+
+std::vector<double> ParticleSystem::overlap_histogram(int bins) {
+  return spume::overlap_histogram(cells(), spheres(), bins);
+}
+
+Exclusion& ParticleSystem::cells() {
+  if (!has_cells_) exclusion_ = Exclusion(grid_.lower, grid_.length, largest_diameter(options_));
+  has_cells_ = true;
+  return exclusion_;
 }
 
 std::vector<ParticleSystem::StateArray> ParticleSystem::state() {
@@ -180,7 +187,7 @@ std::vector<ParticleSystem::ArraySize> ParticleSystem::arrays() const {
                              {"velocity records", std::visit([](const auto& f) { return f.bytes(); }, field_)}};
   if (couples())
     out.push_back({"particle forces", 8.0 * static_cast<double>(amounts_.capacity()) + deposition_.bytes()});
-  if (collides()) out.push_back({"particle exclusion", exclusion_.bytes()});
+  if (has_cells_) out.push_back({"particle exclusion", exclusion_.bytes()});
   return out;
 }
 

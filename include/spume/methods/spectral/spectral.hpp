@@ -3,11 +3,13 @@
 // double precision, T.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "spume/methods/method.hpp"
 #include "spume/methods/spectral/flow.hpp"
+#include "spume/methods/spectral/suspension.hpp"
 
 namespace spume::spectral {
 
@@ -26,7 +28,7 @@ class Spectral final : public Method {
   void step(double dt, Ledger& ledger) override;
   std::vector<SeriesColumn> series_columns() const override;
   void series_values(std::span<double> values) override;
-  std::vector<Family> snapshot() override { return {}; }
+  std::vector<Family> snapshot() override;
   std::vector<GridFamily> grid_snapshot() override;
   PointSample sample(const Vec3& position) override;
   double elevation(const Vec3& position) override;  // no surface: not a number
@@ -39,6 +41,7 @@ class Spectral final : public Method {
   void load(StateReader& reader) override;
 
   Flow<T>& flow() { return flow_; }
+  const Suspension<T>* suspension() const { return suspension_.get(); }
 
  private:
   bool wants(const std::string& field) const;
@@ -46,6 +49,7 @@ class Spectral final : public Method {
 
   const LoadedCase& loaded_;
   Flow<T> flow_;
+  std::unique_ptr<Suspension<T>> suspension_;  // null without particles
   bool started_ = false;
   std::array<std::vector<Array<float>>, 3> drawn_;  // velocity, vorticity, pressure of the last snapshot
   Array<std::complex<T>> total_pressure_;           // for probes

@@ -98,8 +98,8 @@ class Exclusion {
   Array<double> strength_;
 };
 
-// Whether spheres that touch at distance `touching` overlap at the square root of distance_2. Pairs that were moved apart
-// touch to rounding (of the diameters in single precision, 6e-8): they do not count.
+// Whether spheres that touch at distance `touching` overlap at the square root of distance_2. Pairs that were moved
+// apart touch to rounding (of the diameters in single precision, 6e-8): they do not count.
 inline bool overlapping(double distance_2, double touching) {
   return distance_2 < (1 - 1e-6) * touching * touching;
 }

@@ -2,6 +2,8 @@
 // How much of the volume of spheres lies within others.
 #pragma once
 
+#include <vector>
+
 #include "spume/physics/particles/exclusion.hpp"
 
 namespace spume {
@@ -19,5 +21,9 @@ struct SampledValue {
 // smaller than with as many points drawn in the box. Points depend on (seed, step, sample) alone. Zero without spheres.
 SampledValue overlap_ratio(Exclusion& exclusion, const Spheres& spheres, std::size_t samples, std::uint64_t seed,
                            std::uint32_t step);
+
+// Probability density of overlap over touching distance among overlapping pairs, in `bins` equal bins of [0, 1]
+// (de Wit et al., figure 8); zeros without overlaps.
+std::vector<double> overlap_histogram(Exclusion& exclusion, const Spheres& spheres, int bins);
 
 }  // namespace spume

@@ -79,6 +79,13 @@ class ParticleSystem {
   // Of the present positions; builds the cells anew.
   SampledValue measure_overlap(std::size_t samples, std::uint32_t step);
 
+  // Overlapping pairs of the present positions by overlap over touching distance: probability density in `bins` bins of
+  // [0, 1]; zeros without overlaps.
+  std::vector<double> overlap_histogram(int bins);
+
+  // The field that particles see; null unless its records are in double precision.
+  const SplineField<double>* double_field() const { return std::get_if<SplineField<double>>(&field_); }
+
   // The state between steps, to be saved and restored under these names. Arrays of an empty system are found by their
   // names before a restore; call resume() after it.
   struct StateArray {
@@ -101,6 +108,7 @@ class ParticleSystem {
   Spheres spheres();
   void sort(Ledger& ledger);
   void order_by_cell();
+  Exclusion& cells();  // also without collisions, for measures
 
   PeriodicGrid grid_;
   ParticleOptions options_;
@@ -108,6 +116,7 @@ class ParticleSystem {
   std::variant<SplineField<double>, SplineField<float>> field_;
   LinearDeposition deposition_;
   Exclusion exclusion_;
+  bool has_cells_ = false;
   CellOrder order_;
   bool order_is_current_ = false;
   Array<double> amounts_;  // per particle, force and volume to be spread
