@@ -93,6 +93,8 @@ std::vector<Section> particle_sections() {
                word("matching", "\"rounds\"", {"rounds", "sorting"},
                     "how the strongest overlaps are found; both give the same pairs",
                     [](P& p, const std::string& w) { p.matching_by_sorting = w == "sorting"; }),
+               integer("collision_sweeps", "1", {1, 1000},
+                       "four-way: collisions a particle may have in a step; the paper's is 1", &P::collision_sweeps),
                number("max_volume_fraction", "1", "0.7405, close packing", above_up_to(0, 1),
                       "local volume fraction at which the force on the flow is clipped", &P::max_volume_fraction),
                boolean("frozen", "particles stay at rest where they are", &P::frozen),

@@ -106,6 +106,7 @@ struct ParticleCaseOptions {
   std::vector<double> gravity;
   ParticleCoupling coupling = ParticleCoupling::one_way;
   bool matching_by_sorting = false;
+  std::int64_t collision_sweeps = 1;
   double max_volume_fraction = 0.74048048969306104;  // pi / (3 sqrt 2), close packing
   bool frozen = false;
   std::int64_t spline_order = 4;

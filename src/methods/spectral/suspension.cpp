@@ -145,6 +145,7 @@ ParticleOptions particle_options(const LoadedCase& loaded) {
                  : in.coupling == ParticleCoupling::two_way ? Coupling::two_way
                                                             : Coupling::four_way;
   out.matching = in.matching_by_sorting ? MatchingMethod::sorting : MatchingMethod::rounds;
+  out.collision_sweeps = static_cast<int>(in.collision_sweeps);
   out.spline_order = static_cast<int>(in.spline_order);
   out.single_precision_records = !in.double_records;
   out.most_volume_fraction = in.max_volume_fraction;
@@ -243,7 +244,7 @@ void Suspension<T>::add_columns(std::vector<SeriesColumn>& list) const {
                              {"max_volume_fraction", "at a point"}});
   if (system_.collides())
     list.insert(list.end(), {{"overlapping", "of the particles, before the collisions"},
-                             {"collisions", "pairs moved apart, of the particles"}});
+                             {"collisions", "pairs moved apart in the step, of the particles"}});
   if (follows_exponents_) {
     for (int k = 1; k <= 6; ++k) list.push_back({"stretching_" + std::to_string(k), "log of growth since the start"});
     list.push_back({"kaplan_yorke_dimension", "since the start"});

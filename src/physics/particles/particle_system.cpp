@@ -105,6 +105,12 @@ void ParticleSystem::advance(double dt, const std::array<const Source*, 3>& velo
     const auto scope = ledger.time("particle exclusion", n);
     exclusion_report_ = cells().match(spheres(), options_.matching);
     exclusion_.separate(spheres());
+    std::size_t pairs = exclusion_report_.pairs;
+    for (int sweep = 1; sweep < options_.collision_sweeps && pairs > 0; ++sweep) {
+      pairs = exclusion_.match(spheres(), options_.matching).pairs;
+      exclusion_.separate(spheres());
+      exclusion_report_.pairs += pairs;
+    }
   }
   clock_[0] = dt;
   clock_[1] += 1;

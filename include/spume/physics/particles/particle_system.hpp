@@ -39,6 +39,9 @@ struct ParticleOptions {
   MotionModel motion;
   Coupling coupling = Coupling::one_way;
   MatchingMethod matching = MatchingMethod::rounds;
+  // Matchings a step, each on the places that the one before left: with 1 a particle collides once a step, and how much
+  // overlap stays depends on the step.
+  int collision_sweeps = 1;
   PlacementOptions placement;  // diameters too
   int spline_order = 4;
   bool single_precision_records = true;
