@@ -100,7 +100,7 @@ def plot_spectra(run, out):
         middle = len(k) // 4
         span = k[max(1, middle // 2): max(4, int(0.6 * len(k)))]
         axis.loglog(span, 2.5 * energy[middle] * (span / k[middle]) ** (-5 / 3), "k--", label="slope -5/3")
-        axis.set_ylim(bottom=max(energy.max() * 1e-8, 0.3 * energy.min()))
+        axis.set_ylim(max(energy.max() * 1e-8, 0.3 * energy.min()), 10 * energy.max())
     axis.set(xlabel=spectrum.label("wavenumber"), ylabel=spectrum.label("energy"))
     axis.legend(fontsize=8)
     return [finish(figure, out / "spectrum.png")]

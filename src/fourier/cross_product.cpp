@@ -18,6 +18,13 @@ using fourier::store;
 using fourier::times_i;
 using fourier::vector_width;
 
+// Two lines of the cache, one block.
+template <class T>
+[[gnu::always_inline]] inline void prefetch(const std::complex<T>* p) {
+  __builtin_prefetch(p);
+  __builtin_prefetch(p + lanes<T> / 2);
+}
+
 // Rows of the plane that go through the z stage together: two groups of one row per lane.
 template <class T>
 constexpr std::size_t group_rows = 2 * lanes<T>;
@@ -36,7 +43,10 @@ struct CrossProduct<T>::Scratch {
 
 template <class T>
 CrossProduct<T>::CrossProduct(const ModeLayout& layout, bool padded, Planning planning)
-    : layout_(layout), phases_(padded ? 3 : 2) {
+    : layout_(layout),
+      phases_(padded ? 3 : 2),
+      work_row_(layout.row + lanes<T>),
+      work_plane_(layout.points[1] * work_row_ + lanes<T>) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t n = half_[axis] = layout.points[axis] / 2;
     twists_[axis].resize(phases_);
@@ -51,7 +61,7 @@ CrossProduct<T>::CrossProduct(const ModeLayout& layout, bool padded, Planning pl
   }
   lane_wavenumber_.resize(layout.row);
   for (std::size_t iz = 0; iz < layout.row; ++iz) lane_wavenumber_[iz] = {wavenumber_[2][iz], wavenumber_[2][iz]};
-  for (auto& field : work_) field.resize(half_[0] * layout.plane);
+  for (auto& field : work_) field.resize(half_[0] * work_plane_);
   const std::size_t padded_rows = (half_[1] + group_rows<T> - 1) / group_rows<T> * group_rows<T>;
   for (int thread = 0; thread < thread_count(); ++thread) {
     auto scratch = std::make_unique<Scratch>();
@@ -59,8 +69,8 @@ CrossProduct<T>::CrossProduct(const ModeLayout& layout, bool padded, Planning pl
       for (auto& array : arrays) array.resize(values);
     };
     size(scratch->line, half_[0] * lanes<T>);
-    size(scratch->rows, padded_rows * layout.row);
-    size(scratch->sum, layout.points[1] * layout.row);
+    size(scratch->rows, padded_rows * work_row_);
+    size(scratch->sum, layout.points[1] * work_row_);
     size(scratch->column, half_[1] * lanes<T>);
     size(scratch->turned, half_[2] * lanes<T>);
     size(scratch->pair, half_[2] * lanes<T>);
@@ -139,6 +149,11 @@ void CrossProduct<T>::inverse_x(std::size_t remainder, const std::array<const Co
         const Factor<T> high(Complex(-twist[n + j].imag(), twist[n + j].real()));
         const T k = wavenumber_[0][j], l = wavenumber_[0][n + j];
         const std::size_t at = j * layout_.plane + iy * layout_.row + first, above = at + n * layout_.plane;
+        // The next block's lines lie a plane apart each: no prefetcher of the processor sees them coming.
+        for (std::size_t c = 0; c < 3; ++c) {
+          prefetch(potential[c] + at + lanes<T>);
+          prefetch(potential[c] + above + lanes<T>);
+        }
         for (std::size_t q = 0; q < lanes<T>; q += vector_width<T>) {
           const V kz = load(lane_wavenumber_.data() + first + q);
           V bx = load(potential[0] + at + q), by = load(potential[1] + at + q), bz = load(potential[2] + at + q);
@@ -166,8 +181,8 @@ void CrossProduct<T>::inverse_x(std::size_t remainder, const std::array<const Co
         for (std::size_t c = 0; c < 3; ++c) scratch.line[c][0] += potential[c][0].real();
       for (std::size_t f = 0; f < 5; ++f) {
         transform_[0].inverse(scratch.line[f].data());
-        Complex* const out = work_[f].data() + iy * layout_.row + first;
-        for (std::size_t j = 0; j < n; ++j) copy_block(&scratch.line[f][j * lanes<T>], out + j * layout_.plane);
+        Complex* const out = work_[f].data() + iy * work_row_ + first;
+        for (std::size_t j = 0; j < n; ++j) copy_block(&scratch.line[f][j * lanes<T>], out + j * work_plane_);
       }
     }
   }
@@ -189,11 +204,15 @@ void CrossProduct<T>::inverse_y(std::size_t remainder, std::size_t j, Scratch& s
   const std::vector<Complex>& twist = twists_[1][remainder];
   for (std::size_t first = 0; first < layout_.row; first += lanes<T>) {
     const Complex* from[5];
-    for (std::size_t f = 0; f < 5; ++f) from[f] = work_[f].data() + j * layout_.plane + first;
+    for (std::size_t f = 0; f < 5; ++f) from[f] = work_[f].data() + j * work_plane_ + first;
     for (std::size_t jy = 0; jy < n; ++jy) {
       const Factor<T> low(twist[jy]), high(twist[n + jy]);
       const T k = wavenumber_[1][jy], l = wavenumber_[1][n + jy];
-      const std::size_t at = jy * layout_.row, above = at + n * layout_.row;
+      const std::size_t at = jy * work_row_, above = at + n * work_row_;
+      for (const Complex* const f : from) {
+        prefetch(f + at + lanes<T>);
+        prefetch(f + above + lanes<T>);
+      }
       for (std::size_t q = 0; q < lanes<T>; q += vector_width<T>) {
         const V kz = load(lane_wavenumber_.data() + first + q);
         V u = low * load(from[0] + at + q), v = low * load(from[1] + at + q), w = low * load(from[2] + at + q);
@@ -221,7 +240,7 @@ void CrossProduct<T>::inverse_y(std::size_t remainder, std::size_t j, Scratch& s
     for (std::size_t f = 0; f < 6; ++f) {
       transform_[1].inverse(scratch.column[f].data());
       for (std::size_t jy = 0; jy < n; ++jy)
-        copy_block(&scratch.column[f][jy * lanes<T>], &scratch.rows[f][jy * layout_.row + first]);
+        copy_block(&scratch.column[f][jy * lanes<T>], &scratch.rows[f][jy * work_row_ + first]);
     }
   }
 }
@@ -233,39 +252,46 @@ void CrossProduct<T>::rows(Scratch& scratch, VelocityPeak& peak) const {
   using V = fourier::Vector<T>;
   using Traits = fourier::VectorTraits<T>;
   constexpr std::size_t width = lanes<T>;
-  const std::size_t n = half_[2], row = layout_.row;
+  const std::size_t n = half_[2], row = work_row_;
   std::array<T, 3> per_spacing{};
   for (std::size_t axis = 0; axis < 3; ++axis)
     per_spacing[axis] = static_cast<T>(static_cast<double>(layout_.points[axis]) / layout_.lengths[axis]);
   V fastest{}, largest{};
   T largest_rate = 0, largest_square = 0;
   for (std::size_t top = 0; top < half_[1]; top += group_rows<T>) {
-    // Modes by rows to modes by lanes.
+    // Modes by rows to modes by lanes, already paired: a + i b at k_z, and conj(a) + i conj(b), which stands at -k_z.
     for (std::size_t g = 0; g < 2; ++g)
-      for (std::size_t f = 0; f < 6; ++f) {
-        const Complex* const from = scratch.rows[f].data() + (top + g * width) * row;
-        Complex* const to = scratch.turned[6 * g + f].data();
-        for (std::size_t iz = 0; iz < n; ++iz)
-          for (std::size_t l = 0; l < width; ++l) to[iz * width + l] = from[l * row + iz];
-      }
+      for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t l = 0; l < width; ++l) {
+          const Complex* const a = scratch.rows[c].data() + (top + g * width + l) * row;
+          const Complex* const b = scratch.rows[3 + c].data() + (top + g * width + l) * row;
+          Complex* const positive = scratch.turned[6 * g + c].data() + l;
+          Complex* const negative = scratch.turned[6 * g + 3 + c].data() + l;
+          const Complex mean(a[0].real(), b[0].real());  // real parts alone: no rounding leaks from one to the other
+          for (std::size_t iz = 0; iz < n; iz += vector_width<T>) {
+            const V at_a = load(a + iz), at_b = load(b + iz);
+            const V plus = at_a + times_i<T>(at_b), minus = conjugate<T>(at_a) + times_i<T>(conjugate<T>(at_b));
+            for (std::size_t e = 0; e < vector_width<T> && iz + e < n; ++e) {
+              fourier::store_element<T>(positive + (iz + e) * width, plus, e);
+              fourier::store_element<T>(negative + (iz + e) * width, minus, e);
+            }
+          }
+          positive[0] = mean;
+        }
     for (auto& sum : scratch.pair_modes) std::fill(sum.begin(), sum.end(), Complex{});
     for (std::size_t remainder = 0; remainder < phases_; ++remainder) {
       const std::vector<Complex>& twist = twists_[2][remainder];
       for (std::size_t g = 0; g < 2; ++g)
         for (std::size_t c = 0; c < 3; ++c) {
-          const Complex* const a = scratch.turned[6 * g + c].data();
-          const Complex* const b = scratch.turned[6 * g + 3 + c].data();
+          const Complex* const positive = scratch.turned[6 * g + c].data();
+          const Complex* const negative = scratch.turned[6 * g + 3 + c].data();
           Complex* const out = scratch.pair[3 * g + c].data();
-          // k_z = 0: real parts alone, so that no rounding leaks from one field into the other.
-          for (std::size_t l = 0; l < width; ++l) out[l] = {a[l].real(), b[l].real()};
+          copy_block(positive, out);
           for (std::size_t j = 1; j < n; ++j) {
             const Factor<T> low(twist[j]), high(twist[n + j]);
-            for (std::size_t q = 0; q < width; q += vector_width<T>) {
-              const V positive = load(a + j * width + q) + times_i<T>(load(b + j * width + q));
-              const V negative =
-                  conjugate<T>(load(a + (n - j) * width + q)) + times_i<T>(conjugate<T>(load(b + (n - j) * width + q)));
-              store<T>(out + j * width + q, low * positive + high * negative);
-            }
+            for (std::size_t q = 0; q < width; q += vector_width<T>)
+              store<T>(out + j * width + q,
+                       low * load(positive + j * width + q) + high * load(negative + (n - j) * width + q));
           }
           transform_[2].inverse(out);
         }
@@ -312,16 +338,14 @@ void CrossProduct<T>::rows(Scratch& scratch, VelocityPeak& peak) const {
       Complex* const second =
           p < 2 ? scratch.rows[1].data() + (top + p * width) * row : scratch.rows[2].data() + (top + width) * row;
       for (std::size_t iz = 0; iz < n; ++iz) {
-        Complex a[width], b[width];
         const std::size_t partner = iz == 0 ? 0 : 2 * n - iz;
         for (std::size_t q = 0; q < width; q += vector_width<T>) {
           const V plus = load(sum + iz * width + q), minus = conjugate<T>(load(sum + partner * width + q));
-          store<T>(a + q, T(0.5) * (plus + minus));
-          store<T>(b + q, T(-0.5) * times_i<T>(plus - minus));
-        }
-        for (std::size_t l = 0; l < width; ++l) {
-          first[l * row + iz] = a[l];
-          second[l * row + iz] = b[l];
+          const V a = T(0.5) * (plus + minus), b = T(-0.5) * times_i<T>(plus - minus);
+          for (std::size_t e = 0; e < vector_width<T>; ++e) {
+            fourier::store_element<T>(first + (q + e) * row + iz, a, e);
+            fourier::store_element<T>(second + (q + e) * row + iz, b, e);
+          }
         }
       }
     }
@@ -337,17 +361,17 @@ void CrossProduct<T>::rows(Scratch& scratch, VelocityPeak& peak) const {
 template <class T>
 void CrossProduct<T>::forward_y(std::size_t remainder, std::size_t j, Scratch& scratch) {
   using V = fourier::Vector<T>;
-  const std::size_t n = half_[1], row = layout_.row;
+  const std::size_t n = half_[1], row = work_row_;
   const std::vector<Complex>& twist = twists_[1][remainder];
   const bool last = remainder + 1 == phases_;
-  for (std::size_t first = 0; first < row; first += lanes<T>)
+  for (std::size_t first = 0; first < layout_.row; first += lanes<T>)
     for (std::size_t f = 0; f < 3; ++f) {
       Complex* const column = scratch.column[f].data();
       for (std::size_t jy = 0; jy < n; ++jy) copy_block(&scratch.rows[f][jy * row + first], column + jy * lanes<T>);
       transform_[1].forward(column);
       // The last remainder goes straight to the plane: its modes are no longer needed.
       const Complex* const sum = scratch.sum[f].data() + first;
-      Complex* const out = last ? work_[f].data() + j * layout_.plane + first : scratch.sum[f].data() + first;
+      Complex* const out = last ? work_[f].data() + j * work_plane_ + first : scratch.sum[f].data() + first;
       for (std::size_t jy = 0; jy < n; ++jy) {
         const Factor<T> low(std::conj(twist[jy])), high(std::conj(twist[n + jy]));
         const std::size_t at = jy * row, above = at + n * row;
@@ -377,13 +401,17 @@ void CrossProduct<T>::forward_x(std::size_t remainder, const std::array<Complex*
     for (std::size_t first = 0; first < layout_.row; first += lanes<T>) {
       for (std::size_t f = 0; f < 3; ++f) {
         Complex* const line = scratch.line[f].data();
-        const Complex* const from = work_[f].data() + iy * layout_.row + first;
-        for (std::size_t j = 0; j < n; ++j) copy_block(from + j * layout_.plane, line + j * lanes<T>);
+        const Complex* const from = work_[f].data() + iy * work_row_ + first;
+        for (std::size_t j = 0; j < n; ++j) {
+          prefetch(from + j * work_plane_ + lanes<T>);
+          copy_block(from + j * work_plane_, line + j * lanes<T>);
+        }
         transform_[0].forward(line);
       }
       const auto mode = [&](std::size_t ix, std::size_t j) {
         const std::size_t at = ix * layout_.plane + iy * layout_.row + first;
         const Factor<T> factor(scale * std::conj(twist[ix]));
+        for (std::size_t f = 0; f < 3; ++f) prefetch<T>(sum[f] + at + lanes<T>);
         alignas(64) Complex product[3][lanes<T>];
         for (std::size_t f = 0; f < 3; ++f)
           for (std::size_t q = 0; q < lanes<T>; q += vector_width<T>) {

@@ -78,6 +78,8 @@ class CrossProduct {
   std::array<std::vector<T>, 3> wavenumber_;
   Array<Complex> lane_wavenumber_;  // k_z per stored mode in both parts, as vectors take it
   std::vector<LaneTransform<T>> transform_;
+  // A block longer than the rows of the layout: columns of a plane would meet in a few sets of the cache otherwise.
+  std::size_t work_row_, work_plane_;
   std::array<Array<Complex>, 5> work_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
   std::vector<VelocityPeak> peaks_;

@@ -17,6 +17,7 @@ struct VectorTraits;
 template <>
 struct VectorTraits<double> {
   using Type = double __attribute__((vector_size(32)));
+  using Element = double __attribute__((vector_size(16)));  // one complex number
   using Mask = long long __attribute__((vector_size(32)));
   static constexpr Mask swap{1, 0, 3, 2};
   static constexpr Type imaginary{-1, 1, -1, 1};
@@ -27,6 +28,7 @@ struct VectorTraits<double> {
 template <>
 struct VectorTraits<float> {
   using Type = float __attribute__((vector_size(32)));
+  using Element = float __attribute__((vector_size(8)));
   using Mask = int __attribute__((vector_size(32)));
   static constexpr Mask swap{1, 0, 3, 2, 5, 4, 7, 6};
   static constexpr Type imaginary{-1, 1, -1, 1, -1, 1, -1, 1};
@@ -57,6 +59,13 @@ template <class T>
 template <class T>
 [[gnu::always_inline]] inline void copy_block(const std::complex<T>* from, std::complex<T>* to) {
   for (std::size_t q = 0; q < lanes<T>; q += vector_width<T>) store<T>(to + q, load(from + q));
+}
+
+// Number e of a vector.
+template <class T>
+[[gnu::always_inline]] inline void store_element(std::complex<T>* p, Vector<T> v, std::size_t e) {
+  const typename VectorTraits<T>::Element element{v[2 * e], v[2 * e + 1]};
+  std::memcpy(static_cast<void*>(p), &element, sizeof element);
 }
 
 template <class T>

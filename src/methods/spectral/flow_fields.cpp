@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "spume/fourier/lane_vector.hpp"
+
 namespace spume::spectral {
 namespace {
 
@@ -18,16 +20,43 @@ std::array<T, 3> wavevector(const ModeLayout& layout, std::size_t ix, std::size_
           static_cast<T>(layout.wavenumber[2][iz])};
 }
 
-// Component c of i k x b; the mean velocity at k = 0.
+// Blocks of the velocity's modes u = i k x b, with the mean velocity at k = 0.
 template <class T>
-std::complex<T> velocity_mode(const ModeLayout& layout, const Modes<T>& b, std::size_t c, std::size_t ix,
-                              std::size_t iy, std::size_t iz) {
-  const std::size_t at = ix * layout.plane + iy * layout.row + iz, p = (c + 1) % 3, q = (c + 2) % 3;
-  if (at == 0) return b[c][0];
-  const auto k = wavevector<T>(layout, ix, iy, iz);
-  const T real = k[p] * b[q][at].real() - k[q] * b[p][at].real();
-  const T imaginary = k[p] * b[q][at].imag() - k[q] * b[p][at].imag();
-  return {-imaginary, real};
+class VelocityModes {
+  using V = fourier::Vector<T>;
+
+ public:
+  VelocityModes(const ModeLayout& layout, const Modes<T>& potential) : layout_(layout), b_(potential) {
+    for (std::size_t iz = 0; iz < layout.row; ++iz) {
+      const T k = static_cast<T>(layout.wavenumber[2][iz]);
+      kz_.push_back({k, k});
+    }
+  }
+  // Component c, times factor, times i k_axis when an axis is given.
+  template <bool gradient>
+  void block(std::size_t c, std::size_t axis, T factor, std::size_t ix, std::size_t iy, std::size_t first,
+             std::complex<T>* out) const {
+    const std::size_t at = ix * layout_.plane + iy * layout_.row + first, p = (c + 1) % 3, q = (c + 2) % 3;
+    const T kx = static_cast<T>(layout_.wavenumber[0][ix]), ky = static_cast<T>(layout_.wavenumber[1][iy]);
+    for (std::size_t l = 0; l < lanes<T>; l += fourier::vector_width<T>) {
+      const V k[3] = {V{} + kx, V{} + ky, fourier::load(&kz_[first + l])};
+      V u = factor * fourier::times_i<T>(k[p] * fourier::load(&b_[q][at + l]) - k[q] * fourier::load(&b_[p][at + l]));
+      if constexpr (gradient) u = fourier::times_i<T>(k[axis] * u);
+      fourier::store<T>(out + l, u);
+    }
+    if (!gradient && at == 0) out[0] = factor * b_[c][0];
+  }
+
+ private:
+  const ModeLayout& layout_;
+  const Modes<T>& b_;
+  std::vector<std::complex<T>> kz_;
+};
+
+template <class T>
+void multiply_along_z(const Multiplier<T>& multiplier, std::size_t first, std::complex<T>* block) {
+  if (multiplier[2].empty()) return;
+  for (std::size_t l = 0; l < lanes<T> && first + l < multiplier[2].size(); ++l) block[l] *= multiplier[2][first + l];
 }
 
 }  // namespace
@@ -35,16 +64,13 @@ std::complex<T> velocity_mode(const ModeLayout& layout, const Modes<T>& b, std::
 template <class T>
 void real_velocity(Flow<T>& flow, const Modes<T>& potential, const Multiplier<T>& multiplier,
                    const std::array<T*, 3>& values, std::size_t z_stride) {
-  const ModeLayout& layout = flow.layout();
+  const VelocityModes<T> velocity(flow.layout(), potential);
   for (std::size_t c = 0; c < 3; ++c)
     flow.box().inverse(
         [&](std::size_t ix, std::size_t iy, std::size_t first, std::complex<T>* block) {
-          const T plane = factor_of(multiplier, 0, ix) * factor_of(multiplier, 1, iy);
-          for (std::size_t l = 0; l < lanes<T>; ++l)
-            block[l] = plane * velocity_mode(layout, potential, c, ix, iy, first + l);
-          if (!multiplier[2].empty())
-            for (std::size_t l = 0; l < lanes<T> && first + l < layout.modes_z; ++l)
-              block[l] *= multiplier[2][first + l];
+          const T factor = factor_of(multiplier, 0, ix) * factor_of(multiplier, 1, iy);
+          velocity.template block<false>(c, 0, factor, ix, iy, first, block);
+          multiply_along_z(multiplier, first, block);
         },
         values[c], z_stride);
 }
@@ -56,15 +82,13 @@ void real_vorticity(Flow<T>& flow, const Modes<T>& potential, const Multiplier<T
   for (std::size_t c = 0; c < 3; ++c)
     flow.box().inverse(
         [&](std::size_t ix, std::size_t iy, std::size_t first, std::complex<T>* block) {
-          const T plane = factor_of(multiplier, 0, ix) * factor_of(multiplier, 1, iy);
+          const T factor = factor_of(multiplier, 0, ix) * factor_of(multiplier, 1, iy);
+          const std::complex<T>* const from = &potential[c][ix * layout.plane + iy * layout.row + first];
           for (std::size_t l = 0; l < lanes<T>; ++l) {
             const auto k = wavevector<T>(layout, ix, iy, first + l);
-            block[l] = plane * (k[0] * k[0] + k[1] * k[1] + k[2] * k[2]) *
-                       potential[c][ix * layout.plane + iy * layout.row + first + l];
+            block[l] = factor * (k[0] * k[0] + k[1] * k[1] + k[2] * k[2]) * from[l];
           }
-          if (!multiplier[2].empty())
-            for (std::size_t l = 0; l < lanes<T> && first + l < layout.modes_z; ++l)
-              block[l] *= multiplier[2][first + l];
+          multiply_along_z(multiplier, first, block);
         },
         values[c], z_stride);
 }
@@ -85,15 +109,10 @@ void force_modes(Flow<T>& flow, const std::array<const T*, 3>& values, std::size
 
 template <class T>
 typename BoxTransform<T>::Source gradient_source(const Flow<T>& flow, int component, int axis) {
-  const ModeLayout& layout = flow.layout();
-  const Modes<T>& potential = flow.potential();
   const auto c = static_cast<std::size_t>(component), a = static_cast<std::size_t>(axis);
-  return [&layout, &potential, c, a](std::size_t ix, std::size_t iy, std::size_t first, std::complex<T>* block) {
-    for (std::size_t l = 0; l < lanes<T>; ++l) {
-      const std::complex<T> u = velocity_mode(layout, potential, c, ix, iy, first + l);
-      const T k = wavevector<T>(layout, ix, iy, first + l)[a];
-      block[l] = {-k * u.imag(), k * u.real()};
-    }
+  return [velocity = VelocityModes<T>(flow.layout(), flow.potential()), c, a](
+             std::size_t ix, std::size_t iy, std::size_t first, std::complex<T>* block) {
+    velocity.template block<true>(c, a, T(1), ix, iy, first, block);
   };
 }
 
