@@ -18,6 +18,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from spume_figures import (FIELDS, draw_curves, draw_grid_slices, draw_side_view, draw_slices, finish,
                            has_free_surface)
+from spume_particle_figures import plot_particles
 from spume_results import MissingResult, Results, read_csv
 from spume_verification import find_case, load_measure
 
@@ -198,7 +199,7 @@ def plot_reference(run, out):
 
 
 PICTURES = (plot_energy, plot_numerics, plot_turbulence, plot_slices, plot_side_view, plot_spectra, plot_gradient_pdf,
-            plot_probes, plot_lines, plot_reference)
+            plot_particles, plot_probes, plot_lines, plot_reference)
 
 
 def main():

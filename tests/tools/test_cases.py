@@ -30,7 +30,6 @@ class CaseTest(unittest.TestCase):
 class EveryCase(unittest.TestCase):
     def test_has_file_readme_measure_and_bounds(self):
         folders = sorted(p.parent for p in CASES.glob("*/case.toml"))
-        self.assertEqual(len(folders), 10)
         titles = set()
         for folder in folders:
             with self.subTest(case=folder.name):
@@ -41,10 +40,10 @@ class EveryCase(unittest.TestCase):
                 self.assertTrue(callable(load_measure(folder).measure))
                 extent = np.subtract(case["domain"]["upper"], case["domain"]["lower"])
                 for axis, letter in enumerate("xyz"[: len(extent)]):
-                    if case["domain"].get(letter) == "periodic":
+                    if case["domain"].get(letter) == "periodic" and "spacing" in case["resolution"]:
                         cells = extent[axis] / case["resolution"]["spacing"]
                         self.assertAlmostEqual(cells, round(cells), places=6, msg="a whole number of particles must fit")
-        self.assertEqual(len(titles), 10, "plots find a case by its title")
+        self.assertEqual(len(titles), len(folders), "plots find a case by its title")
 
     def test_is_found_by_name_folder_and_file(self):
         expected = CASES / "beltrami"

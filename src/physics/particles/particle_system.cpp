@@ -69,6 +69,13 @@ void ParticleSystem::begin(const std::array<const Source*, 3>& velocity) {
                  nullptr);
         },
         field_);
+  motion_.mean_square_velocity = parallel_sum(size(),
+                                              [&](std::size_t i) {
+                                                double square = 0;
+                                                for (const auto* v : particles_.velocity) square += (*v)[i] * (*v)[i];
+                                                return square;
+                                              }) /
+                                 static_cast<double>(std::max<std::size_t>(size(), 1));
   // No step was made yet: bubbles without a force, but with their volume.
   for (std::size_t i = 0; i < amounts_.size() / 4; ++i) {
     for (int c = 0; c < 3; ++c) amounts_[4 * i + c] = 0;
