@@ -14,16 +14,10 @@ using fourier::conjugate;
 using fourier::copy_block;
 using fourier::Factor;
 using fourier::load;
+using fourier::prefetch_block;
 using fourier::store;
 using fourier::times_i;
 using fourier::vector_width;
-
-// Two lines of the cache, one block.
-template <class T>
-[[gnu::always_inline]] inline void prefetch(const std::complex<T>* p) {
-  __builtin_prefetch(p);
-  __builtin_prefetch(p + lanes<T> / 2);
-}
 
 // Rows of the plane that go through the z stage together: two groups of one row per lane.
 template <class T>
@@ -151,8 +145,8 @@ void CrossProduct<T>::inverse_x(std::size_t remainder, const std::array<const Co
         const std::size_t at = j * layout_.plane + iy * layout_.row + first, above = at + n * layout_.plane;
         // The next block's lines lie a plane apart each: no prefetcher of the processor sees them coming.
         for (std::size_t c = 0; c < 3; ++c) {
-          prefetch(potential[c] + at + lanes<T>);
-          prefetch(potential[c] + above + lanes<T>);
+          prefetch_block(potential[c] + at + lanes<T>);
+          prefetch_block(potential[c] + above + lanes<T>);
         }
         for (std::size_t q = 0; q < lanes<T>; q += vector_width<T>) {
           const V kz = load(lane_wavenumber_.data() + first + q);
@@ -210,8 +204,8 @@ void CrossProduct<T>::inverse_y(std::size_t remainder, std::size_t j, Scratch& s
       const T k = wavenumber_[1][jy], l = wavenumber_[1][n + jy];
       const std::size_t at = jy * work_row_, above = at + n * work_row_;
       for (const Complex* const f : from) {
-        prefetch(f + at + lanes<T>);
-        prefetch(f + above + lanes<T>);
+        prefetch_block(f + at + lanes<T>);
+        prefetch_block(f + above + lanes<T>);
       }
       for (std::size_t q = 0; q < lanes<T>; q += vector_width<T>) {
         const V kz = load(lane_wavenumber_.data() + first + q);
@@ -403,7 +397,7 @@ void CrossProduct<T>::forward_x(std::size_t remainder, const std::array<Complex*
         Complex* const line = scratch.line[f].data();
         const Complex* const from = work_[f].data() + iy * work_row_ + first;
         for (std::size_t j = 0; j < n; ++j) {
-          prefetch(from + j * work_plane_ + lanes<T>);
+          prefetch_block(from + j * work_plane_ + lanes<T>);
           copy_block(from + j * work_plane_, line + j * lanes<T>);
         }
         transform_[0].forward(line);
@@ -411,7 +405,7 @@ void CrossProduct<T>::forward_x(std::size_t remainder, const std::array<Complex*
       const auto mode = [&](std::size_t ix, std::size_t j) {
         const std::size_t at = ix * layout_.plane + iy * layout_.row + first;
         const Factor<T> factor(scale * std::conj(twist[ix]));
-        for (std::size_t f = 0; f < 3; ++f) prefetch<T>(sum[f] + at + lanes<T>);
+        for (std::size_t f = 0; f < 3; ++f) prefetch_block<T>(sum[f] + at + lanes<T>);
         alignas(64) Complex product[3][lanes<T>];
         for (std::size_t f = 0; f < 3; ++f)
           for (std::size_t q = 0; q < lanes<T>; q += vector_width<T>) {

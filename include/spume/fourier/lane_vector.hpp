@@ -55,6 +55,12 @@ template <class T>
 [[gnu::always_inline]] inline void store(std::complex<T>* p, Vector<T> v) {
   std::memcpy(static_cast<void*>(p), &v, sizeof v);
 }
+// Asks for two lines of the cache, lanes<T> numbers.
+template <class T>
+[[gnu::always_inline]] inline void prefetch_block(const std::complex<T>* p) {
+  __builtin_prefetch(p);
+  __builtin_prefetch(p + lanes<T> / 2);
+}
 // Copies lanes<T> numbers.
 template <class T>
 [[gnu::always_inline]] inline void copy_block(const std::complex<T>* from, std::complex<T>* to) {

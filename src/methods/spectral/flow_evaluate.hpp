@@ -26,6 +26,12 @@ VelocityPeak Flow<T>::evaluate(const Modes<T>& potential, Modes<T>& sum, Update&
     const double plane2 =
         layout_.wavenumber[0][ix] * layout_.wavenumber[0][ix] + layout_.wavenumber[1][iy] * layout_.wavenumber[1][iy];
     const bool near_shell = shell && plane2 < shell_high_;
+    // The next block of what the update reads: its lines lie planes apart.
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t next = ix * layout_.plane + iy * layout_.row + first + lanes<T>;
+      fourier::prefetch_block(potential_[c].data() + next);
+      fourier::prefetch_block(earlier_[c].data() + next);
+    }
     for (std::size_t q = 0; q < lanes<T>; q += fourier::vector_width<T>) {
       const std::size_t iz = first + q, at = ix * layout_.plane + iy * layout_.row + iz;
       const V kz = load(lane_wavenumber_.data() + iz);

@@ -29,23 +29,15 @@ constexpr Stage2N carpenter_kennedy[] = {
 // How much more than its limit a step may be when the speeds are known that it was chosen without.
 constexpr double tolerated_excess = 1.5;
 
-// Sums over the modes of one vector: u^2 and k^2 u^2.
-template <class T>
-struct Sums {
-  using V = fourier::Vector<T>;
-  V square{}, enstrophy{};
-
-  [[gnu::always_inline]] void add(const V b[3], V k2, V weight) {
-    const V norm = (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]) * weight;
-    square += k2 * norm;
-    enstrophy += k2 * k2 * norm;
+// Adds the modes of one vector.
+template <class Tally, class V>
+[[gnu::always_inline]] inline void add_to(Tally& tally, const V b[3], V k2, V weight) {
+  const V square = k2 * (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]) * weight, enstrophy = k2 * square;
+  for (std::size_t l = 0; l < tally.square.size(); ++l) {
+    tally.square[l] += static_cast<double>(square[l]);
+    tally.enstrophy[l] += static_cast<double>(enstrophy[l]);
   }
-  static double total(V v) {
-    double sum = 0;
-    for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l) sum += static_cast<double>(v[l]);
-    return sum;
-  }
-};
+}
 
 }  // namespace
 
@@ -91,10 +83,11 @@ void Flow<T>::require_acceptable(double dt, const EnergyBudget& fresh) const {
 template <class T>
 EnergyBudget Flow<T>::tallied(const Modes<T>& potential) const {
   EnergyBudget budget;
-  for (const Tally& tally : tallies_) {
-    budget.energy += tally.energy;
-    budget.dissipation += viscosity_ * tally.dissipation;
-  }
+  for (const Tally& tally : tallies_)
+    for (std::size_t l = 0; l < tally.square.size(); ++l) {
+      budget.energy += tally.square[l] / 2;
+      budget.dissipation += viscosity_ * tally.enstrophy[l];
+    }
   for (const auto& field : potential) budget.energy += std::norm(std::complex<double>(field[0])) / 2;
   return budget;
 }
@@ -133,10 +126,7 @@ void Flow<T>::adams_bashforth(double dt) {
                        fourier::store<T>(&earlier_[c][at], b[c]);
                        fourier::store<T>(&tendency_[c][at], k[c]);
                      }
-                     Sums<T> sums;
-                     sums.add(b, k2, load(lane_weight_.data() + iz));
-                     tallies_[iy].energy += Sums<T>::total(sums.square) / 2;
-                     tallies_[iy].dissipation += Sums<T>::total(sums.enstrophy);
+                     add_to(tallies_[iy], b, k2, load(lane_weight_.data() + iz));
                    });
   tendency_ready_ = true;
   const EnergyBudget fresh = tallied(earlier_);
@@ -182,10 +172,7 @@ void Flow<T>::self_start(double dt) {
                b[c] = decay * (decay * load(&potential_[c][at]) + whole * k[c]);
                fourier::store<T>(&next[c][at], b[c]);
              }
-             Sums<T> sums;
-             sums.add(b, k2, load(lane_weight_.data() + iz));
-             tallies_[iy].energy += Sums<T>::total(sums.square) / 2;
-             tallies_[iy].dissipation += Sums<T>::total(sums.enstrophy);
+             add_to(tallies_[iy], b, k2, load(lane_weight_.data() + iz));
            });
   const EnergyBudget fresh = tallied(next);
   require_acceptable(dt, fresh);
@@ -227,10 +214,7 @@ void Flow<T>::runge_kutta(double dt) {
                      fourier::store<T>(&earlier_[c][at], decay * q);
                      fourier::store<T>(&potential_[c][at], b[c]);
                    }
-                   Sums<T> sums;
-                   sums.add(b, k2, load(lane_weight_.data() + iz));
-                   tallies_[iy].energy += Sums<T>::total(sums.square) / 2;
-                   tallies_[iy].dissipation += Sums<T>::total(sums.enstrophy);
+                   add_to(tallies_[iy], b, k2, load(lane_weight_.data() + iz));
                  });
     if (s == 0) peak_ = peak;
     fresh = tallied(potential_);

@@ -89,8 +89,8 @@ class Flow {
   bool keeps(std::size_t ix, std::size_t iy, std::size_t iz) const;  // not cut by the two-thirds rule
 
  private:
-  struct alignas(64) Tally {  // of a row of modes: sums of u^2/2 and of k^2 u^2
-    double energy = 0, dissipation = 0;
+  struct alignas(64) Tally {  // of a row of modes: u^2 and k^2 u^2, summed by place in a vector
+    std::array<double, 32 / sizeof(T)> square{}, enstrophy{};
   };
   template <class Update>
   VelocityPeak evaluate(const Modes<T>& potential, Modes<T>& sum, Update&& update);
