@@ -62,10 +62,12 @@ void find_surface(Liquid& liquid) {
   const std::size_t n = liquid.size();
   liquid.at_surface.resize(n);
   liquid.interior_weight.resize(n);
+  liquid.held.resize(n);
   const double width = liquid.options.surface.blend_width;
   parallel_for(n, [&](std::size_t i) {
     const double above = (*liquid.divergence_of_position)[i] - liquid.surface_threshold;
     liquid.at_surface[i] = above < 0 ? 1 : 0;
+    liquid.held[i] = above < 0 && liquid.uncorrected[i] ? 1 : 0;
     liquid.interior_weight[i] = above < 0 ? 0.0F
                                 : above < width
                                     ? static_cast<float>(0.5 * (1 - std::cos(std::numbers::pi * above / width)))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/methods/les_sph/pressure_system.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -54,6 +55,25 @@ double regularisation(const Liquid& liquid, double helmholtz) {
   return 1e-3 / (length * length);
 }
 
+struct SurfaceCoupling { double coupling = 0, hydrostatic = 0; };
+SurfaceCoupling surface_coupling(const Liquid& liquid, std::size_t i) {
+  if (!(liquid.interior_weight[i] < 1) || liquid.uncorrected[i]) return {};
+  const int d = liquid.dimensions;
+  Eigen::Matrix3d inverse = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d m = Eigen::Vector3d::Zero(), a = m;
+  int k = 0;
+  for (int x = 0; x < d; ++x) {
+    m[x] = -(*liquid.normal[x])[i] / liquid.smoothing_length;
+    a[x] = liquid.uniform_acceleration[x];
+    for (int y = x; y < d; ++y, ++k) inverse(x, y) = inverse(y, x) = (*liquid.correction[k])[i];
+  }
+  const double norm = m.norm();
+  if (norm < 1e-6) return {};
+  const Eigen::Matrix3d moment = inverse.inverse();
+  const double depth = std::min(liquid.scene.spacing, m.dot(moment * m) / (2 * norm * norm * norm));
+  return {2 * norm / depth, depth * a.dot(m) / norm};
+}
+
 double norm(std::span<const double> values) {
   return std::sqrt(parallel_sum(values.size(), [&](std::size_t i) { return values[i] * values[i]; }));
 }
@@ -104,16 +124,19 @@ void PressureSystem::set_matrix(const Liquid& liquid, double helmholtz) {
   const auto volume = static_cast<float>(liquid.volume);
   parallel_for(n, [&](std::size_t i) {
     // Far below the bulk value div r tells of missing neighbours, not of the arrangement.
-    const double div_r = std::max<double>((*liquid.divergence_of_position)[i], 0.5 * bulk);
+    double div_r = std::max<double>((*liquid.divergence_of_position)[i], 0.5 * bulk);
+    if (liquid.plan.free_surface) div_r += (1 - double{liquid.interior_weight[i]}) * std::max(0.0, bulk - div_r);
     const double scale = div_r / liquid.dimensions;  // what the row is multiplied by
     row_scale_[i] = static_cast<float>(scale);
     double extra = helmholtz * scale;
     if (liquid.plan.free_surface) {
-      const double weight = std::max<double>(liquid.interior_weight[i], smallest_weight);
-      extra += (1 - weight) / weight * (*liquid.coupling)[i];
+      const double outside = 1 - double{liquid.interior_weight[i]};
+      const double full = liquid.lattice.coupling / (liquid.scene.spacing * liquid.scene.spacing);
+      const double missing = outside * std::max(0.0, full - (*liquid.coupling)[i]);
+      extra += std::max(missing, outside * surface_coupling(liquid, i).coupling);
     }
     extra_[i] = static_cast<float>(extra);
-    const bool masked = liquid.plan.free_surface && liquid.at_surface[i] != 0;
+    const bool masked = liquid.plan.free_surface && liquid.held[i] != 0;
     diagonal_[i] = masked ? 0.0F : volume * ((*liquid.coupling)[i] + extra_[i]);
   });
 }
@@ -130,13 +153,18 @@ void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz,
       [&](std::size_t first, std::size_t last) {
         double sum = 0;
         for (std::size_t i = first; i < last; ++i) {
-          if (surface && liquid.at_surface[i] != 0) {
+          if (surface && liquid.held[i] != 0) {
             right_hand_side_[i] = 0;
             continue;
           }
           const double known = (source_scale * source[i] + helmholtz * (*liquid.pressure)[i] / density) * row_scale_[i];
           const double potential = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
-          right_hand_side_[i] = liquid.volume * (known + extra_[i] * potential);
+          double ghost = 0;
+          if (surface && liquid.interior_weight[i] < 1) {
+            const SurfaceCoupling c = surface_coupling(liquid, i);
+            ghost = (extra_[i] - helmholtz * row_scale_[i]) * c.hydrostatic;
+          }
+          right_hand_side_[i] = liquid.volume * (known + extra_[i] * potential + ghost);
           const double in_pressure =
               liquid.volume * (known - (liquid.potential == nullptr ? 0.0F : potential_laplacian_[i]));
           sum += in_pressure * in_pressure;
@@ -209,21 +237,21 @@ void PressureSystem::solve(Liquid& liquid, double helmholtz, const char* stage, 
   const bool surface = liquid.plan.free_surface;
   residual_.resize(n);
 
-  const PressureMatrix matrix{extra_.data(), surface ? liquid.at_surface.data() : nullptr};
+  const PressureMatrix matrix{extra_.data(), surface ? liquid.held.data() : nullptr};
   operator_.bind(liquid.context, liquid.records, matrix);
   report_ = {};
   if (multigrid_ != nullptr) {
     const auto scope = ledger.time("preconditioner setup", static_cast<double>(n));
     if (liquid.plan.displaced_walls) multigrid_->set_geometry(cell_geometry(liquid));
-    if (!surface) {
+    {
       interior_.resize(n);
-      parallel_for(n, [&](std::size_t i) { interior_[i] = 1; });
+      parallel_for(n, [&](std::size_t i) { interior_[i] = surface && liquid.held[i] ? 0 : 1; });
     }
     const auto r = liquid.read(liquid.intermediate);
     const auto span = [&](int axis) {
       return axis < liquid.dimensions ? std::span(r[axis], n) : std::span<const double>();
     };
-    multigrid_->setup(span(0), span(1), span(2), surface ? std::span<const float>(liquid.interior_weight) : interior_,
+    multigrid_->setup(span(0), span(1), span(2), interior_,
                       helmholtz, diagonal_);
   }
 
@@ -294,7 +322,7 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
   }
   // Start from the pressure that the particle carries; surface particles hold p = 0.
   parallel_for(n, [&](std::size_t i) {
-    const bool held = liquid.plan.free_surface && liquid.at_surface[i] != 0;
+    const bool held = liquid.plan.free_surface && liquid.held[i] != 0;
     const double carried = held || !liquid.options.pressure.warm_start ? 0.0 : (*liquid.pressure)[i] / density;
     (*liquid.reduced_pressure)[i] = carried + (liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]);
   });

@@ -57,6 +57,7 @@ struct Liquid {
   std::array<Array<float>*, 6> correction{};
   Array<std::uint8_t> uncorrected;  // gradient correction fell back to the identity
   Array<std::uint8_t> at_surface;   // pressure is given
+  Array<std::uint8_t> held;
   Array<float> interior_weight;     // 0 at the surface, 1 inside, smooth between
   Array<std::int32_t> surface_particles;
   FloatVectorField normal{}, smoothed_normal{};
