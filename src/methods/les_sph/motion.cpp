@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Velocities and final positions: predictor, projection, acceptance.
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/methods/les_sph/free_surface.hpp"
 #include "spume/methods/les_sph/liquid.hpp"
 
 namespace spume::les_sph {
@@ -97,6 +97,7 @@ void project_velocity(Liquid& liquid, double dt) {
                       static_cast<double>(std::max<std::size_t>(n, 1));
   gradient_sweep(liquid.context, liquid.records, liquid.reduced_pressure->data(), mean, liquid.read_correction(),
                  liquid.write(liquid.acceleration));
+  if (liquid.plan.free_surface) complete_surface_gradient(liquid);
   const float* coordinate[3] = {liquid.list.coordinate(0), liquid.list.coordinate(1), liquid.list.coordinate(2)};
   parallel_for(n, [&](std::size_t i) {
     Vec3 gradient{};
@@ -125,28 +126,6 @@ void project_velocity(Liquid& liquid, double dt) {
         }
       });
       for (int axis = 0; axis < d; ++axis) gradient[axis] += -liquid.uniform_acceleration[axis] - seen[axis];
-    }
-    if (liquid.plan.free_surface && liquid.uncorrected[i] == 0 && liquid.interior_weight[i] < 1) {
-      const double outside = 1 - double{liquid.interior_weight[i]};
-      Eigen::Matrix3d inverse = Eigen::Matrix3d::Identity();
-      Eigen::Vector3d g = Eigen::Vector3d::Zero(), m = g, a = g;
-      int k = 0;
-      for (int x = 0; x < d; ++x) {
-        g[x] = gradient[x];
-        m[x] = -(*liquid.normal[x])[i] / liquid.smoothing_length;
-        a[x] = liquid.uniform_acceleration[x];
-        for (int y = x; y < d; ++y, ++k) inverse(x, y) = inverse(y, x) = (*liquid.correction[k])[i];
-      }
-      const Eigen::Matrix3d moment = inverse.inverse();
-      const double potential = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
-      const double p = (*liquid.reduced_pressure)[i] - potential;
-      const double m_norm = m.norm();
-      if (m_norm > 1e-6) {
-      const double depth = std::min(liquid.scene.spacing, m.dot(moment * m) / (2 * m_norm * m_norm * m_norm));
-      const double hydrostatic = depth * a.dot(m) / m_norm;
-      g = (moment + 2 * outside * depth / m_norm * m * m.transpose()).inverse() * (moment * g + 2 * outside * (p - hydrostatic) * m);
-      }
-      for (int x = 0; x < d; ++x) (*liquid.acceleration[x])[i] = gradient[x] = g[x];
     }
     for (int axis = 0; axis < d; ++axis) (*liquid.predicted[axis])[i] -= dt * gradient[axis];
   });

@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "spume/methods/les_sph/pressure_system.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/methods/les_sph/free_surface.hpp"
 
 namespace spume::les_sph {
 namespace {
-
-// Between a free particle and one held at p = 0 the penalty grows as (1 - b) / b; its largest value only has to
-// dwarf the coupling.
-constexpr double smallest_weight = 1e-3;
 
 CellGeometry cell_geometry(const Liquid& liquid) {
   const Domain& domain = liquid.scene.domain;
@@ -53,25 +49,6 @@ double regularisation(const Liquid& liquid, double helmholtz) {
   for (int axis = 0; axis < liquid.dimensions; ++axis)
     length = std::max(length, liquid.scene.domain.upper[axis] - liquid.scene.domain.lower[axis]);
   return 1e-3 / (length * length);
-}
-
-struct SurfaceCoupling { double coupling = 0, hydrostatic = 0; };
-SurfaceCoupling surface_coupling(const Liquid& liquid, std::size_t i) {
-  if (!(liquid.interior_weight[i] < 1) || liquid.uncorrected[i]) return {};
-  const int d = liquid.dimensions;
-  Eigen::Matrix3d inverse = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d m = Eigen::Vector3d::Zero(), a = m;
-  int k = 0;
-  for (int x = 0; x < d; ++x) {
-    m[x] = -(*liquid.normal[x])[i] / liquid.smoothing_length;
-    a[x] = liquid.uniform_acceleration[x];
-    for (int y = x; y < d; ++y, ++k) inverse(x, y) = inverse(y, x) = (*liquid.correction[k])[i];
-  }
-  const double norm = m.norm();
-  if (norm < 1e-6) return {};
-  const Eigen::Matrix3d moment = inverse.inverse();
-  const double depth = std::min(liquid.scene.spacing, m.dot(moment * m) / (2 * norm * norm * norm));
-  return {2 * norm / depth, depth * a.dot(m) / norm};
 }
 
 double norm(std::span<const double> values) {
@@ -123,21 +100,25 @@ void PressureSystem::set_matrix(const Liquid& liquid, double helmholtz) {
   const double bulk = liquid.lattice.divergence_of_position;
   const auto volume = static_cast<float>(liquid.volume);
   parallel_for(n, [&](std::size_t i) {
-    // Far below the bulk value div r tells of missing neighbours, not of the arrangement.
+    // Far below the bulk value div r tells of missing neighbours, not of the arrangement; the mirrored liquid makes up
+    // for those missing at a surface.
     double div_r = std::max<double>((*liquid.divergence_of_position)[i], 0.5 * bulk);
     if (liquid.plan.free_surface) div_r += (1 - double{liquid.interior_weight[i]}) * std::max(0.0, bulk - div_r);
     const double scale = div_r / liquid.dimensions;  // what the row is multiplied by
     row_scale_[i] = static_cast<float>(scale);
-    double extra = helmholtz * scale;
-    if (liquid.plan.free_surface) {
-      const double outside = 1 - double{liquid.interior_weight[i]};
-      const double full = liquid.lattice.coupling / (liquid.scene.spacing * liquid.scene.spacing);
-      const double missing = outside * std::max(0.0, full - (*liquid.coupling)[i]);
-      extra += std::max(missing, outside * surface_coupling(liquid, i).coupling);
-    }
-    extra_[i] = static_cast<float>(extra);
-    const bool masked = liquid.plan.free_surface && liquid.held[i] != 0;
-    diagonal_[i] = masked ? 0.0F : volume * ((*liquid.coupling)[i] + extra_[i]);
+    extra_[i] = static_cast<float>(helmholtz * scale);
+    const bool held = liquid.plan.free_surface && liquid.held[i] != 0;
+    diagonal_[i] = held ? 0.0F : volume * ((*liquid.coupling)[i] + extra_[i]);
+  });
+  if (!liquid.plan.free_surface) return;
+  surface_source_.resize(liquid.edge_particles.size());
+  parallel_for(liquid.edge_particles.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(liquid.edge_particles[k]);
+    const SurfaceRow row = surface_row(liquid, k);
+    extra_[i] += static_cast<float>(row.coupling);
+    diagonal_[i] += static_cast<float>(volume * row.coupling);
+    surface_source_[k] = row.coupling * row.hydrostatic_pressure;
+    if (liquid.potential != nullptr) potential_laplacian_[i] -= static_cast<float>(surface_source_[k]);
   });
 }
 
@@ -159,12 +140,7 @@ void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz,
           }
           const double known = (source_scale * source[i] + helmholtz * (*liquid.pressure)[i] / density) * row_scale_[i];
           const double potential = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
-          double ghost = 0;
-          if (surface && liquid.interior_weight[i] < 1) {
-            const SurfaceCoupling c = surface_coupling(liquid, i);
-            ghost = (extra_[i] - helmholtz * row_scale_[i]) * c.hydrostatic;
-          }
-          right_hand_side_[i] = liquid.volume * (known + extra_[i] * potential + ghost);
+          right_hand_side_[i] = liquid.volume * (known + extra_[i] * potential);
           const double in_pressure =
               liquid.volume * (known - (liquid.potential == nullptr ? 0.0F : potential_laplacian_[i]));
           sum += in_pressure * in_pressure;
@@ -173,6 +149,10 @@ void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz,
       },
       [](double a, double b) { return a + b; });
   reference_norm_ = std::sqrt(squares);
+  if (!surface) return;
+  parallel_for(liquid.edge_particles.size(), [&](std::size_t k) {
+    right_hand_side_[static_cast<std::size_t>(liquid.edge_particles[k])] += liquid.volume * surface_source_[k];
+  });
 }
 
 namespace {
@@ -243,16 +223,14 @@ void PressureSystem::solve(Liquid& liquid, double helmholtz, const char* stage, 
   if (multigrid_ != nullptr) {
     const auto scope = ledger.time("preconditioner setup", static_cast<double>(n));
     if (liquid.plan.displaced_walls) multigrid_->set_geometry(cell_geometry(liquid));
-    {
-      interior_.resize(n);
-      parallel_for(n, [&](std::size_t i) { interior_[i] = surface && liquid.held[i] ? 0 : 1; });
-    }
+    // Borrowed from the corrections, which start after the setup.
+    correction_.resize(n);
+    parallel_for(n, [&](std::size_t i) { correction_[i] = surface && liquid.held[i] != 0 ? 0.0F : 1.0F; });
     const auto r = liquid.read(liquid.intermediate);
     const auto span = [&](int axis) {
       return axis < liquid.dimensions ? std::span(r[axis], n) : std::span<const double>();
     };
-    multigrid_->setup(span(0), span(1), span(2), interior_,
-                      helmholtz, diagonal_);
+    multigrid_->setup(span(0), span(1), span(2), correction_, helmholtz, diagonal_);
   }
 
   const auto scope = ledger.time(stage, static_cast<double>(n));
@@ -320,7 +298,7 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
     set_matrix(liquid, helmholtz + regularisation(liquid, helmholtz));
     set_right_hand_side(liquid, helmholtz, -1 / dt, divergence_.data());
   }
-  // Start from the pressure that the particle carries; surface particles hold p = 0.
+  // Start from the pressure that the particle carries; held ones p = 0.
   parallel_for(n, [&](std::size_t i) {
     const bool held = liquid.plan.free_surface && liquid.held[i] != 0;
     const double carried = held || !liquid.options.pressure.warm_start ? 0.0 : (*liquid.pressure)[i] / density;
@@ -365,10 +343,9 @@ void PressureSystem::solve_initial(Liquid& liquid, Ledger& ledger) {
 
 double PressureSystem::bytes() const {
   double total = 0;
-  for (const auto* array : {&divergence_, &right_hand_side_, &residual_})
+  for (const auto* array : {&divergence_, &right_hand_side_, &residual_, &surface_source_})
     total += 8.0 * static_cast<double>(array->capacity());
-  for (const auto* array :
-       {&potential_laplacian_, &extra_, &diagonal_, &row_scale_, &correction_right_, &correction_, &interior_})
+  for (const auto* array : {&potential_laplacian_, &extra_, &diagonal_, &row_scale_, &correction_right_, &correction_})
     total += 4.0 * static_cast<double>(array->capacity());
   for (const auto* array : {&work_.residual, &work_.shadow, &work_.direction, &work_.preconditioned, &work_.image,
                             &work_.second_image, &work_.second_preconditioned})
