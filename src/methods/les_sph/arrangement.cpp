@@ -57,12 +57,35 @@ void measure_geometry(Liquid& liquid) {
   geometry_sweep(liquid.context, liquid.records, options, out);
 }
 
+namespace {
+
+// Largest speed relative to the liquid's mean velocity, without spray: the same in every frame.
+double relative_speed(const Liquid& liquid) {
+  const int d = liquid.dimensions;
+  const std::size_t n = liquid.size();
+  Vec3 mean{};
+  for (int axis = 0; axis < d; ++axis)
+    mean[axis] = parallel_sum(n, [&](std::size_t i) { return (*liquid.velocity[axis])[i]; }) /
+                 static_cast<double>(std::max<std::size_t>(n, 1));
+  return std::sqrt(parallel_max(n, 0.0, [&](std::size_t i) {
+    if (liquid.list.count(i) < spray_neighbours(d)) return 0.0;
+    double speed2 = 0;
+    for (int axis = 0; axis < d; ++axis) {
+      const double relative = (*liquid.velocity[axis])[i] - mean[axis];
+      speed2 += relative * relative;
+    }
+    return speed2;
+  }));
+}
+
+}  // namespace
+
 void choose_shift(Liquid& liquid, double dt) {
   const int d = liquid.dimensions;
   const double h = liquid.smoothing_length;
   // King (3.12) at the step that the courant limit allows, in proportion to the distance moved below it: a liquid at
   // rest is not shifted, and small steps do not shift more (and dissipate more) than large ones.
-  const double moved = std::min(1.0, liquid.limiting_speed * dt / (liquid.options.time.courant * h));
+  const double moved = std::min(1.0, relative_speed(liquid) * dt / (liquid.options.time.courant * h));
   const double coefficient = liquid.options.shifting.coefficient * h * h * moved;
   const double longest = liquid.options.shifting.limit * h;
   const auto limit = [=](std::array<double, 3>& shift) {
