@@ -2,7 +2,6 @@
 // Where the particles are: intermediate positions, order, images, lists, surface and shift.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "spume/core/parallel.hpp"
 #include "spume/methods/les_sph/liquid.hpp"
@@ -58,43 +57,36 @@ void measure_geometry(Liquid& liquid) {
   geometry_sweep(liquid.context, liquid.records, options, out);
 }
 
-void find_surface(Liquid& liquid) {
+namespace {
+
+// Largest speed relative to the liquid's mean velocity, without spray: the same in every frame.
+double relative_speed(const Liquid& liquid) {
+  const int d = liquid.dimensions;
   const std::size_t n = liquid.size();
-  liquid.at_surface.resize(n);
-  liquid.interior_weight.resize(n);
-  const double width = liquid.options.surface.blend_width;
-  parallel_for(n, [&](std::size_t i) {
-    const double above = (*liquid.divergence_of_position)[i] - liquid.surface_threshold;
-    liquid.at_surface[i] = above < 0 ? 1 : 0;
-    liquid.interior_weight[i] = above < 0 ? 0.0F
-                                : above < width
-                                    ? static_cast<float>(0.5 * (1 - std::cos(std::numbers::pi * above / width)))
-                                    : 1.0F;
-  });
-  // In particle order, by blocks: counted, then written.
-  constexpr std::size_t block = 4096;
-  std::array<std::size_t, max_reduction_blocks + 1> start{};
-  const std::size_t size = std::max(block, (n + max_reduction_blocks - 1) / max_reduction_blocks);
-  parallel_blocks(n, size, [&](std::size_t b, std::size_t first, std::size_t last) {
-    start[b + 1] =
-        static_cast<std::size_t>(std::count(liquid.at_surface.data() + first, liquid.at_surface.data() + last, 1));
-  });
-  for (std::size_t b = 0; b < block_count(n, size); ++b) start[b + 1] += start[b];
-  liquid.surface_particles.resize(start[block_count(n, size)]);
-  parallel_blocks(n, size, [&](std::size_t b, std::size_t first, std::size_t last) {
-    std::size_t slot = start[b];
-    for (std::size_t i = first; i < last; ++i)
-      if (liquid.at_surface[i] != 0) liquid.surface_particles[slot++] = static_cast<std::int32_t>(i);
-  });
-  if (liquid.plan.shifting)
-    filter_vector_subset(liquid.context, liquid.records, liquid.read(liquid.normal), liquid.reflection,
-                         liquid.surface_particles, liquid.write(liquid.smoothed_normal));
+  Vec3 mean{};
+  for (int axis = 0; axis < d; ++axis)
+    mean[axis] = parallel_sum(n, [&](std::size_t i) { return (*liquid.velocity[axis])[i]; }) /
+                 static_cast<double>(std::max<std::size_t>(n, 1));
+  return std::sqrt(parallel_max(n, 0.0, [&](std::size_t i) {
+    if (liquid.list.count(i) < spray_neighbours(d)) return 0.0;
+    double speed2 = 0;
+    for (int axis = 0; axis < d; ++axis) {
+      const double relative = (*liquid.velocity[axis])[i] - mean[axis];
+      speed2 += relative * relative;
+    }
+    return speed2;
+  }));
 }
 
-void choose_shift(Liquid& liquid) {
+}  // namespace
+
+void choose_shift(Liquid& liquid, double dt) {
   const int d = liquid.dimensions;
   const double h = liquid.smoothing_length;
-  const double coefficient = liquid.options.shifting.coefficient * h * h;
+  // King (3.12) at the step that the courant limit allows, in proportion to the distance moved below it: a liquid at
+  // rest is not shifted, and small steps do not shift more (and dissipate more) than large ones.
+  const double moved = std::min(1.0, relative_speed(liquid) * dt / (liquid.options.time.courant * h));
+  const double coefficient = liquid.options.shifting.coefficient * h * h * moved;
   const double longest = liquid.options.shifting.limit * h;
   const auto limit = [=](std::array<double, 3>& shift) {
     const double length = std::hypot(shift[0], shift[1], shift[2]);

@@ -5,6 +5,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/methods/les_sph/free_surface.hpp"
 #include "spume/methods/les_sph/liquid.hpp"
 
 namespace spume::les_sph {
@@ -96,6 +97,7 @@ void project_velocity(Liquid& liquid, double dt) {
                       static_cast<double>(std::max<std::size_t>(n, 1));
   gradient_sweep(liquid.context, liquid.records, liquid.reduced_pressure->data(), mean, liquid.read_correction(),
                  liquid.write(liquid.acceleration));
+  if (liquid.plan.free_surface) complete_surface_gradient(liquid);
   const float* coordinate[3] = {liquid.list.coordinate(0), liquid.list.coordinate(1), liquid.list.coordinate(2)};
   parallel_for(n, [&](std::size_t i) {
     Vec3 gradient{};
@@ -137,9 +139,9 @@ void update_extremes(Liquid& liquid) {
     return speed2;
   };
   liquid.max_speed = std::sqrt(parallel_max(liquid.size(), 0.0, speed2_at));
-  // Particles with fewer neighbours than a surface would give exchange next to nothing: one droplet need not
-  // hold up the whole liquid. `accept` still refuses a step in which any particle crosses half its support.
-  const int spray = d == 3 ? 8 : 3;
+  // One droplet need not hold up the whole liquid. `accept` still refuses a step in which any particle crosses half
+  // its support.
+  const int spray = spray_neighbours(d);
   const bool listed = liquid.list.particles() == liquid.size();
   liquid.limiting_speed =
       listed ? std::sqrt(parallel_max(liquid.size(), 0.0,

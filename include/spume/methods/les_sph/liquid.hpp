@@ -56,9 +56,12 @@ struct Liquid {
   Array<float>* coupling = nullptr;
   std::array<Array<float>*, 6> correction{};
   Array<std::uint8_t> uncorrected;  // gradient correction fell back to the identity
-  Array<std::uint8_t> at_surface;   // pressure is given
-  Array<float> interior_weight;     // 0 at the surface, 1 inside, smooth between
+  Array<std::uint8_t> at_surface;
+  Array<std::uint8_t> held;      // p = 0: at the surface with too few neighbours for a corrected gradient
+  Array<float> interior_weight;  // b: 0 at the surface, 1 inside, smooth between
   Array<std::int32_t> surface_particles;
+  Array<std::int32_t> edge_particles;  // b < 1 and not held
+  Array<float> edge_depth;             // of those: distance from the surface
   FloatVectorField normal{}, smoothed_normal{};
   FloatVectorField shift{};           // displacement; first the concentration gradient
   FloatVectorField shift_velocity{};  // second-order part of what the shift adds to the velocity
@@ -106,9 +109,8 @@ void sort_particles(Liquid& liquid);
 void make_images(Liquid& liquid, double dt);  // (ii)
 void find_neighbours(Liquid& liquid);         // (ii)
 void measure_geometry(Liquid& liquid);
-void find_surface(Liquid& liquid);
-void choose_shift(Liquid& liquid);            // (iii)
-void differentiate_velocity(Liquid& liquid);  // (v)
+void choose_shift(Liquid& liquid, double dt);  // (iii)
+void differentiate_velocity(Liquid& liquid);   // (v)
 void find_shift_curvature(Liquid& liquid);
 void find_eddy_viscosity(Liquid& liquid, double dt);
 void predict_velocity(Liquid& liquid, double dt);  // (viii)
@@ -123,6 +125,11 @@ WallPositions advanced_walls(const Liquid& liquid, double dt);
 void update_image_rules(Liquid& liquid, double t);
 // Periodic wrap; a point beyond a wall or inside a solid is reflected back, its velocity too when given.
 void keep_inside(const Liquid& liquid, const WallPositions& walls, Vec3& position, Vec3* velocity);
+
+// Particles with fewer neighbours than a surface gives are spray: they exchange next to nothing.
+constexpr int spray_neighbours(int dimensions) {
+  return dimensions == 3 ? 8 : 3;
+}
 
 // Largest speed and eddy viscosity of the present state, for the step limit.
 void update_extremes(Liquid& liquid);
