@@ -15,7 +15,9 @@ using fourier::copy_block;
 using fourier::Factor;
 using fourier::load;
 using fourier::prefetch_block;
+using fourier::release_streams;
 using fourier::store;
+using fourier::stream_block;
 using fourier::times_i;
 using fourier::vector_width;
 
@@ -132,6 +134,8 @@ void CrossProduct<T>::inverse_x(std::size_t remainder, const std::array<const Co
   const int threads = std::min(static_cast<int>(scratch_.size()), thread_count());
   const std::size_t n = half_[0], ny = layout_.points[1];
   const std::vector<Complex>& twist = twists_[0][remainder];
+  // Planes that will not stay in any cache are written past it, which saves reading them first.
+  const bool stream = static_cast<double>(work_[0].size() * work_.size() * sizeof(Complex)) > 3e7;
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (std::size_t iy = 0; iy < ny; ++iy) {
     Scratch& scratch = *scratch_[static_cast<std::size_t>(omp_get_thread_num())];
@@ -176,9 +180,13 @@ void CrossProduct<T>::inverse_x(std::size_t remainder, const std::array<const Co
       for (std::size_t f = 0; f < 5; ++f) {
         transform_[0].inverse(scratch.line[f].data());
         Complex* const out = work_[f].data() + iy * work_row_ + first;
-        for (std::size_t j = 0; j < n; ++j) copy_block(&scratch.line[f][j * lanes<T>], out + j * work_plane_);
+        if (stream)
+          for (std::size_t j = 0; j < n; ++j) stream_block(&scratch.line[f][j * lanes<T>], out + j * work_plane_);
+        else
+          for (std::size_t j = 0; j < n; ++j) copy_block(&scratch.line[f][j * lanes<T>], out + j * work_plane_);
       }
     }
+    release_streams();
   }
 }
 

@@ -9,6 +9,10 @@
 
 #include "spume/fourier/mode_layout.hpp"
 
+#if defined(__AVX__)
+#include <immintrin.h>
+#endif
+
 namespace spume::fourier {
 
 // 2 complex doubles or 4 complex floats, re im re im ...
@@ -72,6 +76,22 @@ template <class T>
 [[gnu::always_inline]] inline void store_element(std::complex<T>* p, Vector<T> v, std::size_t e) {
   const typename VectorTraits<T>::Element element{v[2 * e], v[2 * e + 1]};
   std::memcpy(static_cast<void*>(p), &element, sizeof element);
+}
+
+// Copies lanes<T> numbers past the cache, to 32-byte aligned memory; release_streams() before others read them.
+template <class T>
+[[gnu::always_inline]] inline void stream_block(const std::complex<T>* from, std::complex<T>* to) {
+#if defined(__AVX__)
+  for (std::size_t q = 0; q < lanes<T>; q += vector_width<T>)
+    _mm256_stream_pd(reinterpret_cast<double*>(to + q), _mm256_load_pd(reinterpret_cast<const double*>(from + q)));
+#else
+  copy_block(from, to);
+#endif
+}
+inline void release_streams() {
+#if defined(__AVX__)
+  _mm_sfence();
+#endif
 }
 
 template <class T>
