@@ -16,8 +16,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from spume_figures import FIELDS, draw_curves, draw_side_view, draw_slices, finish, has_free_surface
-from spume_results import MissingResult, Results
+from spume_figures import (FIELDS, draw_curves, draw_grid_slices, draw_side_view, draw_slices, finish,
+                           has_free_surface)
+from spume_particle_figures import plot_particles
+from spume_results import MissingResult, Results, read_csv
 from spume_verification import find_case, load_measure
 
 
@@ -67,7 +69,12 @@ def plot_numerics(run, out):
 
 
 def plot_slices(run, out):
-    """Particles coloured by each field at up to six times; in 3-D those of the middle plane."""
+    """Particles coloured by each field at up to six times; in 3-D those of the middle plane; or that plane of a grid."""
+    if run.on_grid:
+        snapshots = run.grid_snapshots()
+        derived = {"velocity": "speed", "vorticity": "enstrophy"}
+        names = [derived.get(name, name) for name in snapshots.names]
+        return [draw_grid_slices(run, snapshots, name, out / f"{name}.png") for name in names if len(snapshots)]
     snapshots = run.snapshots()
     names = [name for name in FIELDS if name == "speed" or name in snapshots.names]
     return [draw_slices(run, snapshots, name, out / f"{name}.png") for name in names if len(snapshots)]
@@ -75,7 +82,7 @@ def plot_slices(run, out):
 
 def plot_side_view(run, out):
     """The liquid of a 3-D scene with a free surface, shaded, seen from the side and above."""
-    if run.dimensions != 3 or not has_free_surface(run):
+    if run.dimensions != 3 or run.on_grid or not has_free_surface(run):
         return []
     return [draw_side_view(run, run.snapshots(), out / "side_view.png")]
 
@@ -94,10 +101,50 @@ def plot_spectra(run, out):
         middle = len(k) // 4
         span = k[max(1, middle // 2): max(4, int(0.6 * len(k)))]
         axis.loglog(span, 2.5 * energy[middle] * (span / k[middle]) ** (-5 / 3), "k--", label="slope -5/3")
-        axis.set_ylim(bottom=max(energy.max() * 1e-8, 0.3 * energy.min()))
+        axis.set_ylim(max(energy.max() * 1e-8, 0.3 * energy.min()), 10 * energy.max())
     axis.set(xlabel=spectrum.label("wavenumber"), ylabel=spectrum.label("energy"))
     axis.legend(fontsize=8)
     return [finish(figure, out / "spectrum.png")]
+
+
+def plot_turbulence(run, out):
+    """Scales and gradient statistics of a homogeneous flow against time."""
+    series = run.series
+    panels = [name for name in ("mean_dissipation", "reynolds_lambda", "kmax_eta", "integral_scale", "gradient_skewness",
+                                "gradient_flatness", "balance_residual") if name in series]
+    panels = [name for name in panels if np.isfinite(series[name]).any()]
+    if not panels:
+        return []
+    rows = -(-len(panels) // 3)
+    figure, axes = plt.subplots(rows, 3, figsize=(12.6, 2.8 * rows), squeeze=False)
+    for axis in axes.flat[len(panels):]:
+        axis.remove()
+    for axis, name in zip(axes.flat, panels):
+        axis.plot(series["t"], series[name], linewidth=0.9)
+        if name == "mean_dissipation" and np.any(series["mean_injection"] != 0):
+            axis.plot(series["t"], series["mean_injection"], "k--", label="injection")
+            axis.legend(fontsize=8)
+        axis.set(xlabel=series.label("t"), ylabel=series.label(name))
+    return [finish(figure, out / "turbulence.png")]
+
+
+def plot_gradient_pdf(run, out):
+    """Probability densities of the velocity gradients at the last time, beside the normal one."""
+    if not run.has("gradient_pdf.csv"):
+        return []
+    table = read_csv(run.folder / "gradient_pdf.csv")
+    rows = table["t"] == table["t"].max()
+    value = table["gradient"][rows]
+    figure, axis = plt.subplots(figsize=(5.2, 4.2))
+    for name in ("longitudinal", "transverse"):
+        density = table[name][rows]
+        axis.semilogy(value[density > 0], density[density > 0], label=name)
+    axis.semilogy(value, np.exp(-value**2 / 2) / np.sqrt(2 * np.pi), "k--", label="normal")
+    lowest = min(table[name][rows][table[name][rows] > 0].min() for name in ("longitudinal", "transverse"))
+    axis.set(xlabel="velocity gradient / standard deviation", ylabel="probability density", ylim=(lowest / 2, 2),
+             title=f"t = {table['t'].max():.4g}")
+    axis.legend(fontsize=8)
+    return [finish(figure, out / "gradient_pdf.png")]
 
 
 def plot_probes(run, out):
@@ -151,8 +198,8 @@ def plot_reference(run, out):
     return draw_curves(module.curves({"run": run}), out)
 
 
-PICTURES = (plot_energy, plot_numerics, plot_slices, plot_side_view, plot_spectra, plot_probes, plot_lines,
-            plot_reference)
+PICTURES = (plot_energy, plot_numerics, plot_turbulence, plot_slices, plot_side_view, plot_spectra, plot_gradient_pdf,
+            plot_particles, plot_probes, plot_lines, plot_reference)
 
 
 def main():

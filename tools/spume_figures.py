@@ -14,7 +14,8 @@ plt.rcParams.update({"figure.dpi": 130, "savefig.dpi": 130, "font.size": 9, "axe
                      "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False})
 
 # Fields drawn as slices, in this order, with a perceptual map each.
-FIELDS = {"speed": "viridis", "pressure": "cividis", "dissipation": "inferno", "vorticity": "RdBu_r"}
+FIELDS = {"speed": "viridis", "pressure": "cividis", "dissipation": "inferno", "vorticity": "RdBu_r",
+          "enstrophy": "inferno"}
 WATER = LinearSegmentedColormap.from_list("water", ["#06304d", "#0b5c7a", "#1f93a3", "#7fd0c8", "#f4fbf7"])
 
 
@@ -70,7 +71,7 @@ def field_norm(name, samples):
     if not len(values):
         return Normalize(0, 1)
     low, high = np.percentile(values, [0.5, 99.5])
-    if name == "dissipation" and high > 0:
+    if name in ("dissipation", "enstrophy") and high > 0:
         return LogNorm(max(high * 1e-4, 1e-300), high)
     if name == "speed":
         low = 0.0
@@ -117,6 +118,34 @@ def draw_slices(run, snapshots, name, path):
     for axis in axes[:, 0]:
         axis.set_ylabel("y" if run.dimensions == 2 else "z")
     figure.colorbar(discs, ax=[a for a in axes.flat if a.figure], label=name, shrink=0.85, extend="max")
+    return finish(figure, path)
+
+
+def draw_grid_slices(run, snapshots, name, path):
+    """The middle plane y of a field on a grid at up to six times."""
+    lower, upper = run.bounds()
+    loaded = []
+    for step in chosen_steps(run, snapshots):
+        snapshot = snapshots[int(step)]
+        values = snapshot.field(name)
+        loaded.append((snapshot.time, values[:, values.shape[1] // 2, :]))
+    norm = field_norm(name, [values.ravel() for _, values in loaded])
+    width, height = upper[0] - lower[0], upper[2] - lower[2]
+    rows, columns = panel_grid(len(loaded), width, height)
+    size = min(9.0 / columns / width, 7.0 / rows / height)
+    figure, axes = plt.subplots(rows, columns, squeeze=False, sharex=True, sharey=True, constrained_layout=True,
+                                figsize=(columns * width * size + 1.5, rows * (height * size + 0.35) + 0.5))
+    for axis in axes.flat[len(loaded):]:
+        axis.remove()
+    for axis, (time, values) in zip(axes.flat, loaded):
+        image = axis.imshow(values.T, origin="lower", extent=(lower[0], upper[0], lower[2], upper[2]), norm=norm,
+                            cmap=FIELDS.get(name, "viridis"), interpolation="bilinear")
+        axis.set(aspect="equal", title=f"t = {time:.4g}")
+    for axis in axes[-1, :]:
+        axis.set_xlabel("x")
+    for axis in axes[:, 0]:
+        axis.set_ylabel("z")
+    figure.colorbar(image, ax=[a for a in axes.flat if a.figure], label=name, shrink=0.85, extend="max")
     return finish(figure, path)
 
 

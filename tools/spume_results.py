@@ -131,6 +131,59 @@ class Snapshots:
         return self[int(np.argmin(np.abs(self.times - time)))]
 
 
+class GridSnapshot:
+    """Fields on a uniform grid at one time: fields by name, (nx, ny, nz) or (nx, ny, nz, components)."""
+
+    def __init__(self, time, origin, spacing, fields):
+        self.time = time
+        self.origin = origin
+        self.spacing = spacing
+        self.fields = fields
+
+    def field(self, name):
+        if name == "speed":
+            return np.linalg.norm(self.field("velocity"), axis=-1)
+        if name == "enstrophy":
+            return np.sum(self.field("vorticity") ** 2, axis=-1)
+        if name not in self.fields:
+            raise MissingResult(f"snapshot at t = {self.time:g}: no field '{name}'; it has {', '.join(self.fields)}")
+        return self.fields[name]
+
+
+class GridSnapshots:
+    """The steps of a VTKHDF ImageData file with temporal data; index it for one GridSnapshot."""
+
+    def __init__(self, path):
+        import h5py
+
+        self.path = Path(path)
+        if not self.path.exists():
+            raise MissingResult(f"{self.path}: not there; set output.every in the case to have snapshots written")
+        try:
+            with h5py.File(self.path, "r", locking=False) as file:
+                root = file["VTKHDF"]
+                self.times = np.array(root["Steps"]["Values"], dtype=float)[: int(root["Steps"].attrs["NSteps"])]
+                self.origin, self.spacing = np.array(root.attrs["Origin"]), np.array(root.attrs["Spacing"])
+                self.names = list(root["PointData"])
+        except (OSError, KeyError) as error:
+            raise MissingResult(f"{self.path}: not a VTKHDF file of fields on a grid ({error})") from error
+
+    def __len__(self):
+        return len(self.times)
+
+    def __getitem__(self, index):
+        import h5py
+
+        if not -len(self) <= index < len(self):
+            raise IndexError(index)
+        index %= len(self)
+        with h5py.File(self.path, "r", locking=False) as file:
+            data = file["VTKHDF"]["PointData"]
+            # The file holds z, y, x.
+            fields = {name: np.swapaxes(np.array(data[name][index]), 0, 2) for name in self.names}
+        return GridSnapshot(float(self.times[index]), self.origin, self.spacing, fields)
+
+
 class Results:
     """The folder of one run. picture_times: the times that pictures show, where someone has chosen them."""
 
@@ -180,6 +233,14 @@ class Results:
     def snapshots(self, family="fluid"):
         return Snapshots(self.folder / f"{family}.vtkhdf")
 
+    def grid_snapshots(self, family="fluid"):
+        return GridSnapshots(self.folder / f"{family}.vtkhdf")
+
+    @property
+    def on_grid(self):
+        """Whether the flow lives on a grid and not on particles."""
+        return "grid" in self.case.get("resolution", {})
+
     def line_names(self):
         return list(dict.fromkeys(self.lines["name"]))
 
@@ -196,7 +257,11 @@ class Results:
 
     @property
     def spacing(self):
-        return float(self.case["resolution"]["spacing"])
+        resolution = self.case["resolution"]
+        if "spacing" in resolution:
+            return float(resolution["spacing"])
+        lower, upper = self.bounds()
+        return float(np.min((upper - lower) / np.array(resolution["grid"])))
 
     @property
     def dimensions(self):

@@ -126,7 +126,8 @@ int run_programme(int argc, char** argv, const Programme& programme) {
     return exit_input;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr,
-                 "error: not enough memory for this case; increase resolution.spacing or use a larger machine\n");
+                 "error: not enough memory for this case; increase resolution.spacing, lower resolution.grid or use a "
+                 "larger machine\n");
     return exit_input;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "error: %s\n", error.what());

@@ -35,6 +35,7 @@ std::string time_estimate(const LoadedCase& loaded, Method& method) {
 int check_verb(const RunArguments& arguments, const Programme& programme) {
   LoadedCase loaded = programme.load_case(arguments.input, arguments.overrides);
   const auto method = programme.make_method(loaded);
+  method->start();
   loaded.scene.particles = {};
   std::printf("%s\nplan\n%s\n", start_table(loaded, *method, thread_count()).c_str(),
               plan_table(method->plan()).c_str());
@@ -47,7 +48,9 @@ int check_verb(const RunArguments& arguments, const Programme& programme) {
   const double memory = machine_memory_bytes();
   std::printf("arrays\n%s\nneeds %s and %s; machine has %s\n", array_table(arrays, method->particle_count()).c_str(),
               human_bytes(bytes).c_str(), time.c_str(), human_bytes(memory).c_str());
-  if (bytes > memory) std::printf("this machine's memory is too small for the case: increase resolution.spacing\n");
+  if (bytes > memory)
+    std::printf(
+        "this machine's memory is too small for the case: increase resolution.spacing or lower resolution.grid\n");
   return exit_done;
 }
 

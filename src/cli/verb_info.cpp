@@ -8,6 +8,7 @@
 #include "spume/io/checkpoint.hpp"
 #include "spume/io/file.hpp"
 #include "spume/io/vtkhdf.hpp"
+#include "spume/io/vtkhdf_grid.hpp"
 #include "spume/run/report.hpp"
 #include "verbs.hpp"
 
@@ -16,7 +17,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+void describe_grid(const fs::path& path) {
+  const GridContents contents = read_grid_contents(path);
+  std::printf("%s: fields on a grid over time (VTKHDF), %zu snapshots\n", path.c_str(), contents.times.size());
+  if (!contents.times.empty())
+    std::printf("  time       %.10g to %.10g\n", contents.times.front(), contents.times.back());
+  std::printf("  grid       %lld x %lld x %lld\n", static_cast<long long>(contents.points[0]),
+              static_cast<long long>(contents.points[1]), static_cast<long long>(contents.points[2]));
+  for (const auto& field : contents.fields) std::printf("  field      %s\n", field.c_str());
+}
+
 void describe_particles(const fs::path& path) {
+  if (is_grid_file(path)) return describe_grid(path);
+
   const VtkhdfContents contents = read_vtkhdf_contents(path);
   std::printf("%s: particles over time (VTKHDF), %zu snapshots\n", path.c_str(), contents.times.size());
   if (!contents.times.empty()) {
@@ -75,9 +88,14 @@ void describe_folder(const fs::path& folder) {
 
 void describe_case(const std::string& path, const Programme& programme) {
   const LoadedCase loaded = programme.load_case(path, {});
-  std::printf("%s: case for method %s, %d-D, %zu particles, spacing %g, until t = %g\n", path.c_str(),
-              loaded.options.method.c_str(), loaded.scene.domain.dimensions, loaded.scene.particles.size(),
-              loaded.scene.spacing, loaded.options.time.end);
+  const auto& grid = loaded.scene.grid;
+  if (grid[0] > 0)
+    std::printf("%s: case for method %s, grid %zu x %zu x %zu, until t = %g\n", path.c_str(),
+                loaded.options.method.c_str(), grid[0], grid[1], grid[2], loaded.options.time.end);
+  else
+    std::printf("%s: case for method %s, %d-D, %zu particles, spacing %g, until t = %g\n", path.c_str(),
+                loaded.options.method.c_str(), loaded.scene.domain.dimensions, loaded.scene.particles.size(),
+                loaded.scene.spacing, loaded.options.time.end);
   for (const auto& [name, value] : loaded.options.groups) std::printf("  %-12s %s\n", name.c_str(), value.c_str());
 }
 

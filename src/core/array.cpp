@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "spume/core/array.hpp"
 
+#include <sys/mman.h>
+
 #include <atomic>
 #include <cstdlib>
 
@@ -12,6 +14,7 @@ namespace {
 std::atomic<std::int64_t> held_bytes{0};
 std::atomic<std::int64_t> peak_bytes{0};
 std::atomic<std::int64_t> allocations{0};
+constexpr std::size_t huge_page = std::size_t{1} << 21;
 
 }  // namespace
 
@@ -24,8 +27,14 @@ namespace detail {
 void* allocate_aligned(std::size_t bytes) {
   if (bytes == 0) return nullptr;
   const std::size_t rounded = (bytes + 63) / 64 * 64;
-  void* pointer = std::aligned_alloc(64, rounded);
+  const bool large = rounded >= 2 * huge_page;
+  void* pointer = std::aligned_alloc(large ? huge_page : 64, rounded);
   if (pointer == nullptr) throw std::bad_alloc();
+#ifdef MADV_HUGEPAGE
+  // Strided passes over large fields miss the address cache at every line otherwise. The last, incomplete page stays
+  // small, so that no memory is wasted; a kernel without huge pages ignores the wish.
+  if (large) madvise(pointer, rounded / huge_page * huge_page, MADV_HUGEPAGE);
+#endif
   auto* raw = static_cast<unsigned char*>(pointer);
   parallel_blocks(rounded, std::size_t{1} << 16,
                   [&](std::size_t, std::size_t first, std::size_t last) { std::memset(raw + first, 0, last - first); });

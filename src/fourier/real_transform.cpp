@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "spume/fourier/real_transform.hpp"
 
-#include <fftw3.h>
-
 #include <map>
 #include <mutex>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 
+#include "fftw.hpp"
 #include "spume/core/array.hpp"
 #include "spume/core/parallel.hpp"
 
@@ -17,15 +16,10 @@ namespace spume {
 namespace {
 
 using Complex = std::complex<double>;
-
-// The planner of FFTW keeps global state: making and destroying plans is serialised.
-std::mutex& planner_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
+using fftw::planner_mutex;
 
 fftw_complex* fftw_pointer(Complex* values) {
-  return reinterpret_cast<fftw_complex*>(values);
+  return fftw::pointer(values);
 }
 
 }  // namespace

@@ -92,6 +92,23 @@ void File::close() {
   check(H5Fclose(id), "write");
 }
 
+void write_attribute(const File& file, hid_t object, const char* name, hid_t file_type, hid_t memory_type,
+                     std::optional<hsize_t> count, const void* value) {
+  const Id space = file.take(count ? H5Screate_simple(1, &*count, nullptr) : H5Screate(H5S_SCALAR), H5Sclose, "write");
+  const Id attribute =
+      file.take(H5Aexists(object, name) > 0 ? H5Aopen(object, name, H5P_DEFAULT)
+                                            : H5Acreate2(object, name, file_type, space, H5P_DEFAULT, H5P_DEFAULT),
+                H5Aclose, "write");
+  file.check(H5Awrite(attribute, memory_type, value), "write");
+}
+
+void write_fixed_string(const File& file, hid_t object, const char* name, const std::string& text) {
+  const Id type = file.take(H5Tcopy(H5T_C_S1), H5Tclose, "write");
+  H5Tset_size(type, text.size());
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  write_attribute(file, object, name, type, type, std::nullopt, text.data());
+}
+
 void write_text(const File& file, const std::string& name, std::string_view text) {
   const hsize_t size = text.size();
   const Id space = file.take(H5Screate_simple(1, &size, nullptr), H5Sclose, "write");

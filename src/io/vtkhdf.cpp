@@ -18,6 +18,7 @@ namespace {
 
 using hdf5::File;
 using hdf5::Id;
+using hdf5::write_attribute;
 
 constexpr std::array<const char*, 4> topologies = {"Vertices", "Lines", "Polygons", "Strips"};
 constexpr hsize_t metadata_chunk = 256;
@@ -51,16 +52,6 @@ void create_dataset(const File& file, const std::string& name, hid_t type, hsize
   H5Pset_create_intermediate_group(links, 1);
   const Id data =
       file.take(H5Dcreate2(file.id(), name.c_str(), type, space, links, creation, H5P_DEFAULT), H5Dclose, "write");
-}
-
-void write_attribute(const File& file, hid_t object, const char* name, hid_t file_type, hid_t memory_type,
-                     std::optional<hsize_t> count, const void* value) {
-  const Id space = file.take(count ? H5Screate_simple(1, &*count, nullptr) : H5Screate(H5S_SCALAR), H5Sclose, "write");
-  const Id attribute =
-      file.take(H5Aexists(object, name) > 0 ? H5Aopen(object, name, H5P_DEFAULT)
-                                            : H5Acreate2(object, name, file_type, space, H5P_DEFAULT, H5P_DEFAULT),
-                H5Aclose, "write");
-  file.check(H5Awrite(attribute, memory_type, value), "write");
 }
 
 void create_layout(const File& file, const ParticleSnapshot& snapshot,
@@ -99,12 +90,7 @@ void create_layout(const File& file, const ParticleSnapshot& snapshot,
   const Id root = file.take(H5Gopen2(file.id(), "/VTKHDF", H5P_DEFAULT), H5Gclose, "write");
   const std::int64_t version[2] = {2, 0};
   write_attribute(file, root, "Version", H5T_STD_I64LE, H5T_NATIVE_INT64, 2, version);
-  // The readers accept only a string of fixed length.
-  const std::string type_name = "PolyData";
-  const Id type = file.take(H5Tcopy(H5T_C_S1), H5Tclose, "write");
-  H5Tset_size(type, type_name.size());
-  H5Tset_strpad(type, H5T_STR_NULLPAD);
-  write_attribute(file, root, "Type", type, type, std::nullopt, type_name.data());
+  hdf5::write_fixed_string(file, root, "Type", "PolyData");
   const Id steps = file.take(H5Gopen2(file.id(), "/VTKHDF/Steps", H5P_DEFAULT), H5Gclose, "write");
   const std::int64_t none = 0;
   write_attribute(file, steps, "NSteps", H5T_STD_I64LE, H5T_NATIVE_INT64, std::nullopt, &none);

@@ -56,6 +56,7 @@ std::unique_ptr<Simulation> Simulation::start(LoadedCase loaded, const MethodFac
                                               const std::optional<std::filesystem::path>& folder) {
   auto owned = std::make_unique<LoadedCase>(std::move(loaded));
   auto method = make_method(*owned);
+  method->start();
   RunFolder made = RunFolder::create(owned->options.path, folder);
   write_text_atomically(made / "case.toml", owned->options.resolved);
   return std::unique_ptr<Simulation>(new Simulation(std::move(owned), std::move(method), std::move(made)));
@@ -92,6 +93,10 @@ RunState Simulation::run(Observer& observer) {
       recorder_->snapshot(*method_);
       if (loaded_->options.output.spectrum_every > 0) recorder_->spectrum(*method_);
     }
+    const auto pass_on_remarks = [&] {
+      for (const std::string& remark : method_->take_remarks()) watch(remark);
+    };
+    pass_on_remarks();
     if (unrecorded_dt_) record(*unrecorded_dt_);
     RunState state = RunState::finished;
     while (!schedule_.finished(method_->time())) {
@@ -102,6 +107,7 @@ RunState Simulation::run(Observer& observer) {
       StepLimit limit;
       const double dt = take_step(observer, limit);
       record(dt);
+      pass_on_remarks();
       report(observer, dt, limit);
       if (seconds_between(checkpointed_, Clock::now()) > loaded_->options.output.checkpoint_every) save_checkpoint();
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/run/recorder.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "spume/core/error.hpp"
@@ -67,6 +68,18 @@ void probe_values(Method& method, const LoadedCase& loaded, std::vector<double>&
   }
 }
 
+std::vector<SeriesHeading> distribution_columns(const Distribution& distribution) {
+  std::vector<SeriesHeading> columns = {{"t", "time"}};
+  for (const auto& column : distribution.columns) columns.push_back({column.name, column.unit});
+  return columns;
+}
+
+GridSnapshot snapshot_of(const GridFamily& family) {
+  GridSnapshot snapshot{family.points, family.origin, family.spacing, {}};
+  for (const auto& field : family.fields) snapshot.fields.push_back({field.name, field.components});
+  return snapshot;
+}
+
 ParticleSnapshot snapshot_of(const Family& family) {
   ParticleSnapshot snapshot{family.size, family.position, {}};
   for (const auto& field : family.fields) snapshot.fields.push_back({field.name, field.f64, field.i64});
@@ -89,9 +102,12 @@ Recorder::Recorder(std::filesystem::path folder, const LoadedCase& loaded, const
   for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
     const auto name = entry.path().stem().string();
     if (entry.path().extension() != ".vtkhdf") continue;
-    VtkhdfFile file(entry.path(), {loaded.options.output.h5part_view, {}});
-    const auto kept = resume_->find(name + ".vtkhdf");
-    file.keep_steps(kept == resume_->end() ? 0 : kept->second);
+    const auto found = resume_->find(name + ".vtkhdf");
+    const std::int64_t kept = found == resume_->end() ? 0 : found->second;
+    if (is_grid_file(entry.path()))
+      VtkhdfGridFile(entry.path(), {}).keep_steps(kept);
+    else
+      VtkhdfFile(entry.path(), {loaded.options.output.h5part_view, {}}).keep_steps(kept);
   }
   for (const auto& [name, count] : *resume_)
     if (count > 0 && name.ends_with(".vtkhdf") && !std::filesystem::exists(folder_ / name))
@@ -100,6 +116,12 @@ Recorder::Recorder(std::filesystem::path folder, const LoadedCase& loaded, const
   if (resume_->count("probes") != 0) table("probes", "", probe_columns_);
   if (resume_->count("lines") != 0) table("lines", "", line_headings);
   if (resume_->count("spectrum") != 0) table("spectrum", "", spectrum_headings);
+  for (const auto& distribution : method.distribution_headings()) {
+    if (resume_->count(distribution.name) != 0)
+      table(distribution.name, "", distribution_columns(distribution));
+    else
+      std::filesystem::remove(folder_ / (distribution.name + ".csv"));
+  }
 }
 
 SeriesFile& Recorder::table(const std::string& name, const std::string& title,
@@ -151,16 +173,24 @@ void Recorder::lines(Method& method) {
   }
 }
 
+std::vector<std::pair<std::string, std::string>> Recorder::notes() const {
+  return {{"case", loaded_.options.resolved}, {"program_version", program_version()}, {"commit", program_commit()}};
+}
+
 void Recorder::snapshot(Method& method) {
   for (const auto& family : method.snapshot()) {
     const std::string name = family.name + ".vtkhdf";
     auto found = families_.find(name);
     if (found == families_.end()) {
-      const VtkhdfFile::Options options{
-          loaded_.options.output.h5part_view,
-          {{"case", loaded_.options.resolved}, {"program_version", program_version()}, {"commit", program_commit()}}};
+      const VtkhdfFile::Options options{loaded_.options.output.h5part_view, notes()};
       found = families_.emplace(name, VtkhdfFile(folder_ / name, options)).first;
     }
+    found->second.append(method.time(), snapshot_of(family));
+  }
+  for (const auto& family : method.grid_snapshot()) {
+    const std::string name = family.name + ".vtkhdf";
+    auto found = grids_.find(name);
+    if (found == grids_.end()) found = grids_.emplace(name, VtkhdfGridFile(folder_ / name, notes())).first;
     found->second.append(method.time(), snapshot_of(family));
   }
   lines(method);
@@ -168,11 +198,22 @@ void Recorder::snapshot(Method& method) {
 
 void Recorder::spectrum(Method& method) {
   std::vector<double> wavenumber, energy;
-  if (!method.spectrum(wavenumber, energy)) return;
-  SeriesFile& file = table("spectrum", loaded_.options.title + ": energy spectra", spectrum_headings);
-  for (std::size_t i = 0; i < wavenumber.size(); ++i) {
-    const double row[] = {method.time(), wavenumber[i], energy[i]};
-    file.row(row);
+  if (method.spectrum(wavenumber, energy)) {
+    SeriesFile& file = table("spectrum", loaded_.options.title + ": energy spectra", spectrum_headings);
+    for (std::size_t i = 0; i < wavenumber.size(); ++i) {
+      const double row[] = {method.time(), wavenumber[i], energy[i]};
+      file.row(row);
+    }
+  }
+  for (const auto& distribution : method.distributions()) {
+    SeriesFile& file =
+        table(distribution.name, loaded_.options.title + ": " + distribution.name, distribution_columns(distribution));
+    const std::size_t columns = distribution.columns.size();
+    std::vector<double> row(columns + 1, method.time());
+    for (std::size_t i = 0; i + columns <= distribution.values.size(); i += columns) {
+      std::copy_n(distribution.values.begin() + static_cast<std::ptrdiff_t>(i), columns, row.begin() + 1);
+      file.row(row);
+    }
   }
 }
 
@@ -192,12 +233,14 @@ Recorder::Extent Recorder::extent() const {
       if (name.ends_with(".vtkhdf")) extent[name] = count;
   for (const auto& [name, file] : tables_) extent[name] = file.rows();
   for (const auto& [name, file] : families_) extent[name] = file.steps();
+  for (const auto& [name, file] : grids_) extent[name] = file.steps();
   return extent;
 }
 
 void Recorder::mark() {
   for (const auto& [name, file] : tables_) marked_[name] = file.rows();
   for (const auto& [name, file] : families_) marked_[name] = file.steps();
+  for (const auto& [name, file] : grids_) marked_[name] = file.steps();
 }
 
 Recorder::Extent Recorder::marked() const {

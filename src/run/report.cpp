@@ -107,7 +107,11 @@ std::string start_table(const LoadedCase& loaded, const Method& method, int thre
   text += line("method", options.method);
   text += line("box", box_text(scene.domain));
   text += line("boundaries", boundary_text(scene.domain));
-  text += line("particles", std::to_string(method.particle_count()) + ", spacing " + short_number(scene.spacing));
+  if (scene.grid[0] > 0)
+    text += line("grid", std::to_string(scene.grid[0]) + " x " + std::to_string(scene.grid[1]) + " x " +
+                             std::to_string(scene.grid[2]) + " points");
+  else
+    text += line("particles", std::to_string(method.particle_count()) + ", spacing " + short_number(scene.spacing));
   for (const auto& [name, value] : options.groups)
     if (name != "particles") text += line(name, value);
   text += line("first step", format("%.3e, limited by %s", limit.dt, limit.limited_by.c_str()));

@@ -12,7 +12,9 @@ void check_resolution(const Draft& draft, Problems& problems);
 void check_solids(const Draft& draft, Problems& problems);
 void check_fluid(const Draft& draft, Problems& problems);
 void check_liquids(const Draft& draft, Problems& problems);
-void check_probes(Draft& draft, Problems& problems);  // completes the probes of draft.options
+void check_spectral(const Draft& draft, Problems& problems);   // box, grid, forcing, initial state
+void check_particles(const Draft& draft, Problems& problems);  // of the spectral method
+void check_probes(Draft& draft, Problems& problems);           // completes the probes of draft.options
 
 // Names of the two sides of an axis: left/right, front/back (3-D), bottom/top.
 std::array<std::string, 2> side_names(int axis, int dimensions);

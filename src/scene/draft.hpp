@@ -54,6 +54,9 @@ struct Draft {
   std::vector<ProbeDraft> probes;
   std::vector<ExpressionText> body_force;
   double jitter = 0;
+  std::vector<std::int64_t> grid;  // one entry: the same along every axis
+  std::vector<ExpressionText> initial_velocity;
+  std::optional<ExpressionText> initial_spectrum;
 
   int dimensions = 0;                        // 0 while the domain is not understood
   std::map<std::string, const Node*> given;  // "section.key" or "section.0.key" -> value, sections included

@@ -290,6 +290,7 @@ std::vector<ExpressionScope::Fault> ExpressionScope::define(
       faults.push_back({i, std::string::npos, "this name is taken; choose another"});
     } else {
       index[name] = i;
+      constants_[name] = {};
       constants_[name].text = constants[i].second;
     }
   }

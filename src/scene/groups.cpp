@@ -42,9 +42,10 @@ void groups_of_si(const Draft& draft, const Scene& scene, std::map<std::string, 
   groups["Mach"] = fluid.sound_speed > 0 ? brief(speed / fluid.sound_speed) : "0 (incompressible)";
 }
 
-void groups_as_given(const Draft& draft, std::map<std::string, std::string>& groups) {
+void groups_as_given(const Draft& draft, const Scene& scene, std::map<std::string, std::string>& groups) {
   const FluidDraft& fluid = draft.fluid;
   groups["Reynolds"] = fluid.reynolds ? brief(*fluid.reynolds) : "infinite (inviscid)";
+  if (scene.grid[0] > 0) return;
   groups["Froude"] = fluid.froude ? brief(*fluid.froude) : "infinite (no gravity)";
   const bool compressible = fluid.mach && *fluid.mach > 0;
   groups["Mach"] = compressible ? brief(*fluid.mach) : "0 (incompressible)";
@@ -60,17 +61,21 @@ void groups_as_given(const Draft& draft, std::map<std::string, std::string>& gro
 
 }  // namespace
 
-std::map<std::string, std::string> describe_groups(const Draft& draft, const Scene& scene, const Lattice& lattice,
+std::map<std::string, std::string> describe_groups(const Draft& draft, const Scene& scene,
                                                    const ExpressionScope& scope) {
   std::map<std::string, std::string> groups;
   if (uses_si(draft.fluid))
     groups_of_si(draft, scene, groups);
   else
-    groups_as_given(draft, groups);
+    groups_as_given(draft, scene, groups);
   const Node* constants = draft.node("constants");
   for (std::size_t i = 0; constants && i < constants->keys.size(); ++i) {
     if (const auto value = scope.value(constants->keys[i])) groups["constant " + constants->keys[i]] = brief(*value);
   }
+  return groups;
+}
+
+void describe_lattice(const Scene& scene, const Lattice& lattice, std::map<std::string, std::string>& groups) {
   std::string effective;
   for (std::size_t a = 0; a < static_cast<std::size_t>(lattice.dimensions); ++a) {
     const bool differs = std::abs(lattice.spacing[a] / scene.spacing - 1) > 1e-9;
@@ -78,7 +83,6 @@ std::map<std::string, std::string> describe_groups(const Draft& draft, const Sce
   }
   if (!effective.empty()) groups["effective spacing"] = effective;
   groups["particles"] = std::to_string(scene.particles.size());
-  return groups;
 }
 
 }  // namespace spume

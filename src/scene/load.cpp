@@ -106,6 +106,15 @@ class Compiler {
     return vector;
   }
 
+  // In a spectrum k is the wavenumber, whatever the case calls k elsewhere: it takes the place of x.
+  std::shared_ptr<const Expression> compile_spectrum(const ExpressionText& text) {
+    const ExpressionScope plain = scope_;
+    scope_.define({{"k", "x"}});
+    auto spectrum = compile(text, "initial.spectrum");
+    scope_ = plain;
+    return spectrum;
+  }
+
   const ExpressionScope& scope() const { return scope_; }
 
  private:
@@ -167,6 +176,15 @@ Fluid make_fluid(const Draft& draft) {
   return fluid;
 }
 
+void set_grid(Scene& scene, const std::vector<std::int64_t>& grid) {
+  scene.spacing = std::numeric_limits<double>::infinity();
+  for (std::size_t a = 0; a < 3; ++a) {
+    scene.grid[a] = static_cast<std::size_t>(grid[grid.size() == 1 ? 0 : a]);
+    const double length = scene.domain.upper[a] - scene.domain.lower[a];
+    scene.spacing = std::min(scene.spacing, length / static_cast<double>(scene.grid[a]));
+  }
+}
+
 std::vector<LiquidRegion> make_regions(const Draft& draft, Compiler& compiler) {
   std::vector<LiquidRegion> regions;
   for (std::size_t k = 0; k < draft.liquids.size(); ++k) {
@@ -208,10 +226,14 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   draft.options.title = name_of_case(file);
   read_document(document, draft, problems);
   check_domain(draft, problems);
-  check_resolution(draft, problems);
+  const bool on_grid = draft.options.method == "spectral";
+  if (!on_grid) check_resolution(draft, problems);
   check_solids(draft, problems);
   check_fluid(draft, problems);
-  check_liquids(draft, problems);
+  if (on_grid)
+    check_spectral(draft, problems);
+  else
+    check_liquids(draft, problems);
   check_probes(draft, problems);
 
   // Without a valid domain the expressions are still held against three dimensions.
@@ -222,6 +244,8 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   scene.domain = make_domain(draft, compiler);
   const std::vector<LiquidRegion> regions = make_regions(draft, compiler);
   VectorExpression body_force = compiler.compile(draft.body_force, "forces.body");
+  VectorExpression initial_velocity = compiler.compile(draft.initial_velocity, "initial.velocity");
+  if (draft.initial_spectrum) scene.initial_spectrum = compiler.compile_spectrum(*draft.initial_spectrum);
   problems.throw_if_any();
 
   if (any(body_force)) scene.body_force = std::move(body_force);
@@ -230,11 +254,17 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   scene.fluid = make_fluid(draft);
   scene.spacing = draft.options.spacing;
   scene.seed = draft.options.seed;
-  const Lattice lattice = make_lattice(scene.domain, scene.spacing);
-  fill_scene(scene, lattice, regions, draft.jitter, problems);
-  problems.throw_if_any();
-
-  draft.options.groups = describe_groups(draft, scene, lattice, compiler.scope());
+  if (on_grid) {
+    if (draft.options.initial.kind == InitialKind::expressions) scene.initial_velocity = std::move(initial_velocity);
+    set_grid(scene, draft.grid);
+    draft.options.groups = describe_groups(draft, scene, compiler.scope());
+  } else {
+    const Lattice lattice = make_lattice(scene.domain, scene.spacing);
+    fill_scene(scene, lattice, regions, draft.jitter, problems);
+    problems.throw_if_any();
+    draft.options.groups = describe_groups(draft, scene, compiler.scope());
+    describe_lattice(scene, lattice, draft.options.groups);
+  }
   draft.options.resolved = resolved_text(document, draft);
   loaded.options = std::move(draft.options);
   return loaded;

@@ -2,6 +2,7 @@
 // The declaration of an option: all that the reader, the messages, `spume options` and the resolved case know.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <string>
@@ -11,7 +12,19 @@
 
 namespace spume {
 
-enum class OptionType { number, integer, boolean, string, word, expression, numbers, strings, expressions, free_table };
+enum class OptionType {
+  number,
+  integer,
+  boolean,
+  string,
+  word,
+  expression,
+  numbers,
+  strings,
+  expressions,
+  integers,
+  free_table
+};
 
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
@@ -42,10 +55,17 @@ struct Value {
   bool boolean = false;
   std::string text;
   std::vector<double> numbers;
+  std::vector<std::int64_t> integers;
   std::vector<std::string> texts;
   ExpressionText expression;
   std::vector<ExpressionText> expressions;
 };
+
+// Methods that an option or a section belongs to; empty: all.
+using Methods = std::vector<std::string>;
+inline bool belongs(const Methods& methods, const std::string& method) {
+  return methods.empty() || method.empty() || std::find(methods.begin(), methods.end(), method) != methods.end();
+}
 
 struct Option {
   std::string section = {};
@@ -59,6 +79,7 @@ struct Option {
   std::vector<std::string> words = {};
   std::string description = {};
   std::function<void(Draft&, const Value&)> set = {};
+  Methods methods = {};
 };
 
 struct Section {
@@ -66,14 +87,21 @@ struct Section {
   bool repeated = false;                      // written [[name]], any number of times
   std::function<void(Draft&)> begin_entry{};  // of a repeated section: appends an empty entry
   std::vector<Option> options{};
+  Methods methods{};
+  bool optional = false;  // a case without it does without its subject: the resolved case leaves it out too
 };
+
+// The method that a document names; empty when it names none that exists.
+std::string method_of(const Node& document);
 
 // All sections in the order of the resolved case; the first has no name.
 const std::vector<Section>& sections();
 
 // Parts of the table, by subject.
-std::vector<Section> scene_sections();   // domain, solids, fluid, liquid
-std::vector<Section> method_sections();  // turbulence ... output, probes
+std::vector<Section> scene_sections();     // domain, solids, fluid, liquid
+std::vector<Section> method_sections();    // turbulence ... output, probes
+std::vector<Section> particle_sections();  // particles
+std::vector<Section> spectral_sections();  // spectral, forcing
 
 // "a number", "a list of expressions", ...
 std::string type_in_words(OptionType type);

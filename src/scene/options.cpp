@@ -37,6 +37,8 @@ std::string type_in_words(OptionType type) {
       return "a list of strings";
     case OptionType::expressions:
       return "a list of expressions (strings or numbers)";
+    case OptionType::integers:
+      return "an integer or a list of integers";
     case OptionType::free_table:
       return "a table";
   }
@@ -51,10 +53,18 @@ std::string words_in_words(const std::vector<std::string>& words) {
   return text;
 }
 
+std::string method_of(const Node& document) {
+  const Node* node = document.find("method");
+  if (!node || node->kind != Node::Kind::string) return {};
+  const std::vector<std::string>& known = sections()[0].options[1].words;
+  return std::find(known.begin(), known.end(), node->text) == known.end() ? std::string{} : node->text;
+}
+
 const std::vector<Section>& sections() {
   static const std::vector<Section> table = [] {
     std::vector<Section> all;
-    for (auto part : {scene_sections(), method_sections()}) all.insert(all.end(), part.begin(), part.end());
+    for (auto part : {scene_sections(), method_sections(), spectral_sections(), particle_sections()})
+      all.insert(all.end(), part.begin(), part.end());
     for (Section& section : all) {
       for (Option& option : section.options) option.section = section.name;
     }
@@ -73,6 +83,9 @@ const std::vector<OptionInfo>& option_table() {
           if (type.rfind(article, 0) == 0) type.erase(0, article.size());
         }
         if (const std::size_t bracket = type.find(" ("); bracket != std::string::npos) type.erase(bracket);
+        std::string owners;
+        for (const std::string& method : option.methods.empty() ? section.methods : option.methods)
+          owners += (owners.empty() ? "" : ", ") + method;
         std::string default_text = option.default_text;
         if (option.required)
           default_text = "(required)";
@@ -80,7 +93,7 @@ const std::vector<OptionInfo>& option_table() {
           default_text = "(" + option.absent + ")";
         rows.push_back({option.section, option.key, type, option.unit, default_text,
                         option.words.empty() ? option.range.in_words() : "one of " + words_in_words(option.words),
-                        option.description});
+                        option.description + (owners.empty() ? "" : " [" + owners + "]")});
       }
     }
     return rows;

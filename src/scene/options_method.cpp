@@ -42,7 +42,7 @@ Option word_option(const char* key, const char* standard, const char* descriptio
 
 template <class Group, class Member>
 Option option(const char* key, const char* unit, const char* standard, Range range, const char* description,
-              Group Case::*group, Member Group::*member) {
+              Group Case::*group, Member Group::*member, const Methods& methods = {}) {
   const OptionType type = std::is_same_v<Member, bool>     ? OptionType::boolean
                           : std::is_same_v<Member, int>    ? OptionType::integer
                           : std::is_same_v<Member, double> ? OptionType::number
@@ -53,84 +53,94 @@ Option option(const char* key, const char* unit, const char* standard, Range ran
           .default_text = standard,
           .range = range,
           .description = description,
-          .set = set(group, member)};
+          .set = set(group, member),
+          .methods = methods};
 }
 
 Section turbulence() {
   const auto group = &Case::turbulence;
   using T = TurbulenceOptions;
   return {.name = "turbulence",
-          .options = {
-              word_option("model", "\"none\"", "closure of the unresolved stresses", group, &T::model,
-                          {{"none", TurbulenceModel::none},
-                           {"mixed-scale", TurbulenceModel::mixed_scale},
-                           {"smagorinsky", TurbulenceModel::smagorinsky},
-                           {"dynamic-shepard", TurbulenceModel::dynamic_shepard},
-                           {"dynamic-lagrangian", TurbulenceModel::dynamic_lagrangian}}),
-              word_option("diffusion", "\"automatic\"",
-                          "div(nu grad u) or div(2 nu S); automatic: stress with a surface", group, &T::diffusion,
-                          {{"automatic", DiffusionForm::automatic},
-                           {"laplacian", DiffusionForm::laplacian},
-                           {"stress", DiffusionForm::stress}}),
-              option("mixed_scale_constant", "1", "0.06", between(0, 1), "C_M of the mixed-scale model", group,
-                     &T::mixed_scale_constant),
-              option("smagorinsky_constant", "1", "0.18", between(0, 1), "C_s of the Smagorinsky model", group,
-                     &T::smagorinsky_constant),
-          }};
+          .options =
+              {
+                  word_option("model", "\"none\"", "closure of the unresolved stresses", group, &T::model,
+                              {{"none", TurbulenceModel::none},
+                               {"mixed-scale", TurbulenceModel::mixed_scale},
+                               {"smagorinsky", TurbulenceModel::smagorinsky},
+                               {"dynamic-shepard", TurbulenceModel::dynamic_shepard},
+                               {"dynamic-lagrangian", TurbulenceModel::dynamic_lagrangian}}),
+                  word_option("diffusion", "\"automatic\"",
+                              "div(nu grad u) or div(2 nu S); automatic: stress with a surface", group, &T::diffusion,
+                              {{"automatic", DiffusionForm::automatic},
+                               {"laplacian", DiffusionForm::laplacian},
+                               {"stress", DiffusionForm::stress}}),
+                  option("mixed_scale_constant", "1", "0.06", between(0, 1), "C_M of the mixed-scale model", group,
+                         &T::mixed_scale_constant),
+                  option("smagorinsky_constant", "1", "0.18", between(0, 1), "C_s of the Smagorinsky model", group,
+                         &T::smagorinsky_constant),
+              },
+          .methods = {"les-sph"}};
 }
 
 Section pressure() {
   const auto group = &Case::pressure;
   using P = PressureOptions;
-  return {
-      .name = "pressure",
-      .options = {
-          word_option("solver", "\"bicgstab\"", "Krylov method of the pressure equation", group, &P::solver,
-                      {{"bicgstab", PressureSolver::bicgstab}, {"cg", PressureSolver::cg}}),
-          word_option("preconditioner", "\"multigrid\"", "multigrid: Jacobi plus one V-cycle on cells", group,
-                      &P::preconditioner,
-                      {{"jacobi", PreconditionerKind::jacobi}, {"multigrid", PreconditionerKind::multigrid}}),
-          word_option("precision", "\"mixed\"", "mixed: residuals in double, corrections in float", group,
-                      &P::precision, {{"mixed", Precision::mixed}, {"double", Precision::f64}}),
-          option("tolerance", "1", "1e-6", above_up_to(0, 0.1), "residual relative to the right-hand side", group,
-                 &P::tolerance),
-          option("max_iterations", "", "500", between(1, 1e6), "iterations after which a solve has failed", group,
-                 &P::max_iterations),
-          option("cell_ratio", "spacing", "1.5", between(1, 8), "side of the multigrid cells", group, &P::cell_ratio),
-          option("warm_start", "", "true", {}, "start from the last pressure, carried by the particles", group,
-                 &P::warm_start),
-      }};
+  return {.name = "pressure",
+          .options =
+              {
+                  word_option("solver", "\"bicgstab\"", "Krylov method of the pressure equation", group, &P::solver,
+                              {{"bicgstab", PressureSolver::bicgstab}, {"cg", PressureSolver::cg}}),
+                  word_option("preconditioner", "\"multigrid\"", "multigrid: Jacobi plus one V-cycle on cells", group,
+                              &P::preconditioner,
+                              {{"jacobi", PreconditionerKind::jacobi}, {"multigrid", PreconditionerKind::multigrid}}),
+                  word_option("precision", "\"mixed\"", "mixed: residuals in double, corrections in float", group,
+                              &P::precision, {{"mixed", Precision::mixed}, {"double", Precision::f64}}),
+                  option("tolerance", "1", "1e-6", above_up_to(0, 0.1), "residual relative to the right-hand side",
+                         group, &P::tolerance),
+                  option("max_iterations", "", "500", between(1, 1e6), "iterations after which a solve has failed",
+                         group, &P::max_iterations),
+                  option("cell_ratio", "spacing", "1.5", between(1, 8), "side of the multigrid cells", group,
+                         &P::cell_ratio),
+                  option("warm_start", "", "true", {}, "start from the last pressure, carried by the particles", group,
+                         &P::warm_start),
+              },
+          .methods = {"les-sph"}};
 }
 
 Section shifting() {
   const auto group = &Case::shifting;
   using S = ShiftingOptions;
   return {.name = "shifting",
-          .options = {
-              option("on", "", "true", {}, "move particles towards an even distribution", group, &S::on),
-              option("coefficient", "1", "0.25", between(0, 1), "displacement = -coefficient h^2 grad C", group,
-                     &S::coefficient),
-              option("limit", "h", "0.1", above_up_to(0, 0.5), "largest displacement per step", group, &S::limit),
-              option("remove_drift", "", "true", {}, "subtract what neighbours share of the shift: no net transport",
-                     group, &S::remove_drift),
-              word_option("velocity_correction", "\"first-order\"",
-                          "Taylor terms that give the velocity at the new place", group, &S::velocity_correction,
-                          {{"none", ShiftCorrection::none},
-                           {"first-order", ShiftCorrection::first_order},
-                           {"second-order", ShiftCorrection::second_order}}),
-          }};
+          .options =
+              {
+                  option("on", "", "true", {}, "move particles towards an even distribution", group, &S::on),
+                  option("coefficient", "1", "0.25", between(0, 1), "displacement = -coefficient h^2 grad C", group,
+                         &S::coefficient),
+                  option("limit", "h", "0.1", above_up_to(0, 0.5), "largest displacement per step", group, &S::limit),
+                  option("remove_drift", "", "true", {},
+                         "subtract what neighbours share of the shift: no net transport", group, &S::remove_drift),
+                  word_option("velocity_correction", "\"first-order\"",
+                              "Taylor terms that give the velocity at the new place", group, &S::velocity_correction,
+                              {{"none", ShiftCorrection::none},
+                               {"first-order", ShiftCorrection::first_order},
+                               {"second-order", ShiftCorrection::second_order}}),
+              },
+          .methods = {"les-sph"}};
 }
 
 Section surface() {
   const auto group = &Case::surface;
   using S = SurfaceOptions;
-  return {.name = "surface",
-          .options = {
+  return {
+      .name = "surface",
+      .options =
+          {
               option("threshold", "1", "0.0", between(0, 3),
                      "div r below which a particle is on the surface; 0: 2.3 in 3-D, 1.5 in 2-D", group, &S::threshold),
               option("blend_width", "1", "0.32", between(0, 1), "span of div r over which pressure rows blend", group,
                      &S::blend_width),
-          }};
+          },
+      .methods = {"les-sph"}};
 }
 
 Section time() {
@@ -149,9 +159,9 @@ Section time() {
           end,
           option("courant", "1", "0.2", above_up_to(0, 1), "step limit by speed: Courant number", group, &T::courant),
           option("centred", "", "true", {}, "velocities free of divergence half a step ahead: second order in time",
-                 group, &T::centred),
+                 group, &T::centred, {"les-sph"}),
           option("viscous", "1", "0.2", above_up_to(0, 1), "step limit by viscosity, eddy viscosity included", group,
-                 &T::viscous),
+                 &T::viscous, {"les-sph"}),
           option("max_step", "time", "0.0", not_negative(), "largest step; 0: none", group, &T::max_step),
           option("max_retries", "", "6", between(0, 30), "halvings of a refused step before the run gives up", group,
                  &T::max_retries),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 
 namespace spume {
 namespace {
@@ -18,6 +19,7 @@ std::string example_value(const Option& option) {
     case OptionType::number:
       return "<number>";
     case OptionType::integer:
+    case OptionType::integers:
       return "<integer>";
     case OptionType::boolean:
       return "true";
@@ -37,8 +39,8 @@ std::string example_value(const Option& option) {
 // Reads one section's table into the draft.
 class SectionReader {
  public:
-  SectionReader(Draft& draft, Problems& problems, const Section& section, std::string prefix)
-      : draft_(draft), problems_(problems), section_(section), prefix_(std::move(prefix)) {}
+  SectionReader(Draft& draft, Problems& problems, const Section& section, std::string prefix, std::string method)
+      : draft_(draft), problems_(problems), section_(section), prefix_(std::move(prefix)), method_(std::move(method)) {}
 
   // `table` is null for a section that the file does not name; `document` then gives the place.
   void read(const Node* table, const Node& document) {
@@ -47,13 +49,20 @@ class SectionReader {
       const std::string name = prefix_.empty() ? option.key : prefix_ + "." + option.key;
       const Node* node = table ? table->find(option.key) : nullptr;
       Value value;
-      if (node) {
+      if (!belongs(option.methods, method_)) {
+        if (!node) continue;
+        problems_.add_key(*node, name + " belongs to method " + words_in_words(option.methods) +
+                                     ", and this case is of method " + to_toml_string(method_) + "; remove it");
+        draft_.bad[name] = true;
+      } else if (node) {
         draft_.given[name] = node;
         if (convert(option, name, *node, value)) {
           option.set(draft_, value);
         } else {
           draft_.bad[name] = true;
         }
+      } else if (option.required && method_.empty() && !option.methods.empty()) {
+        draft_.bad[name] = true;  // nobody knows whether it is needed
       } else if (option.required) {
         draft_.bad[name] = true;
         missing(option, table, document);
@@ -133,6 +142,8 @@ class SectionReader {
         return word(option, name, node, value);
       case OptionType::expression:
         return expression(node, value.expression) ? true : wrong_type(option, name, node);
+      case OptionType::integers:
+        return integers(option, name, node, value);
       case OptionType::numbers:
       case OptionType::strings:
       case OptionType::expressions:
@@ -147,8 +158,9 @@ class SectionReader {
     if (node.kind != Node::Kind::string) return wrong_type(option, name, node);
     value.text = node.text;
     if (std::find(option.words.begin(), option.words.end(), node.text) != option.words.end()) return true;
-    if (name == "method" && (node.text == "spectral" || node.text == "gfd" || node.text == "wcsph")) {
-      return refuse(node, "method \"" + node.text + "\" is not available in this version; use \"les-sph\"");
+    if (name == "method" && (node.text == "gfd" || node.text == "wcsph")) {
+      return refuse(
+          node, "method \"" + node.text + "\" is not available in this version; use " + words_in_words(option.words));
     }
     if (node.text == "periodic" && section_.name == "domain") {
       return refuse(node, name + " is one side; a periodic direction is written by its axis: x = \"periodic\"");
@@ -156,6 +168,23 @@ class SectionReader {
     const std::string best = nearest(node.text, option.words);
     return refuse(node, name + " must be " + words_in_words(option.words) + ", found " + to_toml(node) +
                             (best.empty() ? "" : "; did you mean \"" + best + "\"?"));
+  }
+
+  // One integer stands for a list of one.
+  bool integers(const Option& option, const std::string& name, const Node& node, Value& value) {
+    if (node.kind != Node::Kind::array && node.kind != Node::Kind::integer) return wrong_type(option, name, node);
+    const std::span<const Node> elements =
+        node.kind == Node::Kind::array ? std::span<const Node>(node.children) : std::span<const Node>(&node, 1);
+    bool good = true;
+    for (const Node& element : elements) {
+      if (element.kind != Node::Kind::integer) {
+        good = refuse(element, name + " must hold integers, found " + kind_in_words(element));
+      } else if (!in_range(option, name, element, element.number)) {
+        good = false;
+      }
+      value.integers.push_back(element.integer);
+    }
+    return good;
   }
 
   bool list(const Option& option, const std::string& name, const Node& node, Value& value) {
@@ -192,6 +221,7 @@ class SectionReader {
   Problems& problems_;
   const Section& section_;
   std::string prefix_;
+  std::string method_;
 };
 
 bool is_free(const Section& section) {
@@ -235,7 +265,8 @@ void refuse_unknown_keys(const Node& table, const std::string& name, bool repeat
   }
 }
 
-void read_repeated(const Section& section, const Node* list, const Node& document, Draft& draft, Problems& problems) {
+void read_repeated(const Section& section, const Node* list, const Node& document, const std::string& method,
+                   Draft& draft, Problems& problems) {
   if (!list) return;
   if (list->kind != Node::Kind::array) {
     problems.add_key(*list, list->kind == Node::Kind::table ? "[" + section.name + "] must be written [[" +
@@ -255,7 +286,7 @@ void read_repeated(const Section& section, const Node* list, const Node& documen
     }
     section.begin_entry(draft);
     draft.given[prefix] = &entry;
-    SectionReader(draft, problems, section, prefix).read(&entry, document);
+    SectionReader(draft, problems, section, prefix, method).read(&entry, document);
     refuse_unknown_keys(entry, section.name, true, problems);
   }
 }
@@ -273,11 +304,18 @@ const Node* find_section(const Node& document, const std::string& name) {
 }
 
 void read_document(const Node& document, Draft& draft, Problems& problems) {
+  const std::string method = method_of(document);
   for (const Section& section : sections()) {
     const Node* table = find_section(document, section.name);
+    if (!belongs(section.methods, method)) {
+      if (table)
+        problems.add_key(*table, "[" + section.name + "] belongs to method " + words_in_words(section.methods) +
+                                     ", and this case is of method " + to_toml_string(method) + "; remove the section");
+      continue;
+    }
     if (table) draft.given[section.name] = table;
     if (section.repeated) {
-      read_repeated(section, table, document, draft, problems);
+      read_repeated(section, table, document, method, draft, problems);
       continue;
     }
     if (table && table->kind != Node::Kind::table) {
@@ -287,7 +325,7 @@ void read_document(const Node& document, Draft& draft, Problems& problems) {
       continue;
     }
     if (is_free(section)) continue;
-    SectionReader(draft, problems, section, section.name).read(table, document);
+    SectionReader(draft, problems, section, section.name, method).read(table, document);
     if (table) refuse_unknown_keys(*table, section.name, false, problems);
   }
 }

@@ -16,6 +16,7 @@ class Writer {
 
   std::string write() {
     for (const Section& section : sections()) {
+      if (!belongs(section.methods, draft_.options.method)) continue;
       const Node* table = find_section(document_, section.name);
       if (section.repeated) {
         for (std::size_t i = 0; table && i < table->children.size(); ++i) {
@@ -26,9 +27,10 @@ class Writer {
         if (table) free_table(section.name, *table);
       } else {
         // Sections in which nothing is set and nothing has a default would be all comments.
-        const bool empty = !table && std::none_of(section.options.begin(), section.options.end(),
-                                                  [](const Option& o) { return !o.default_text.empty(); });
-        if (empty) continue;
+        const bool empty = !table && std::none_of(section.options.begin(), section.options.end(), [&](const Option& o) {
+          return !o.default_text.empty() && belongs(o.methods, draft_.options.method);
+        });
+        if (empty || (!table && section.optional)) continue;
         if (!section.name.empty()) text_ += "\n[" + section.name + "]\n";
         options(section, table);
       }
@@ -55,6 +57,7 @@ class Writer {
 
   void options(const Section& section, const Node* table) {
     for (const Option& option : section.options) {
+      if (!belongs(option.methods, draft_.options.method)) continue;
       const Node* node = table ? table->find(option.key) : nullptr;
       const std::string unit = unit_in_case(option.unit);
       const std::string tail = unit.empty() || unit == "1" ? "" : ", " + unit;

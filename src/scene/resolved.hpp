@@ -15,8 +15,10 @@ namespace spume {
 std::string resolved_text(const Node& document, const Draft& draft);
 
 // Groups and constants for the start-up table, as text: those given, those that follow, the equivalent in
-// water, the particle count and the effective spacing.
-std::map<std::string, std::string> describe_groups(const Draft& draft, const Scene& scene, const Lattice& lattice,
+// water.
+std::map<std::string, std::string> describe_groups(const Draft& draft, const Scene& scene,
                                                    const ExpressionScope& scope);
+// Adds the particle count and, where it differs from the wanted one, the effective spacing.
+void describe_lattice(const Scene& scene, const Lattice& lattice, std::map<std::string, std::string>& groups);
 
 }  // namespace spume

@@ -86,7 +86,7 @@ TEST(Load, WordsAreOfferedAndOtherMethodsRefusedInWords) {
       ElementsAre("15:9 turbulence.model must be \"none\", \"mixed-scale\", \"smagorinsky\", \"dynamic-shepard\" "
                   "or \"dynamic-lagrangian\", found \"smagorinski\"; did you mean \"smagorinsky\"?"));
   EXPECT_THAT(problems_of(replaced(small_case(), "les-sph", "gfd")),
-              ElementsAre("1:10 method \"gfd\" is not available in this version; use \"les-sph\""));
+              ElementsAre("1:10 method \"gfd\" is not available in this version; use \"les-sph\" or \"spectral\""));
 }
 
 TEST(Load, SyntaxErrorsHaveTheirPlace) {

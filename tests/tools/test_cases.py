@@ -30,7 +30,7 @@ class CaseTest(unittest.TestCase):
 class EveryCase(unittest.TestCase):
     def test_has_file_readme_measure_and_bounds(self):
         folders = sorted(p.parent for p in CASES.glob("*/case.toml"))
-        self.assertEqual(len(folders), 10)
+        self.assertGreaterEqual(len(folders), 13)
         titles = set()
         for folder in folders:
             with self.subTest(case=folder.name):
@@ -41,15 +41,76 @@ class EveryCase(unittest.TestCase):
                 self.assertTrue(callable(load_measure(folder).measure))
                 extent = np.subtract(case["domain"]["upper"], case["domain"]["lower"])
                 for axis, letter in enumerate("xyz"[: len(extent)]):
-                    if case["domain"].get(letter) == "periodic":
+                    if "spacing" in case["resolution"] and case["domain"].get(letter) == "periodic":
                         cells = extent[axis] / case["resolution"]["spacing"]
                         self.assertAlmostEqual(cells, round(cells), places=6, msg="a whole number of particles must fit")
-        self.assertEqual(len(titles), 10, "plots find a case by its title")
+        self.assertEqual(len(titles), len(folders), "plots find a case by its title")
 
     def test_is_found_by_name_folder_and_file(self):
         expected = CASES / "beltrami"
         for name in ("beltrami", str(expected), str(expected / "case.toml")):
             self.assertEqual(case_folder(name), expected)
+
+
+class TaylorGreen1600(CaseTest):
+    def measured(self, name, factor=1.0, shift=0.0, until=10.0):
+        folder, module = self.run_of("taylor_green_1600")
+        reference = module.REFERENCE
+        rows = reference["t"] <= until
+        t = reference["t"][rows]
+        write_table(folder / "series.csv", series_of(t, mean_energy=reference["E"][rows] * factor,
+                                                     mean_dissipation=np.interp(t - shift, t, reference["eps"][rows]) * factor))
+        return module.measure({name: Results(folder)})
+
+    def test_reference_has_no_error_and_departures_are_seen(self):
+        exact = self.measured("n128")
+        self.assertLess(abs(exact["dissipation_error_n128"]), 1e-12)
+        self.assertLess(abs(exact["peak_error_n128"]), 1e-12)
+        self.assertAlmostEqual(self.measured("n128", 1.05)["peak_error_n128"], 0.05, places=9)
+        self.assertAlmostEqual(self.measured("n128", shift=0.3)["peak_time_error_n128"], 0.3, places=2)
+        self.assertLess(self.measured("n64", until=4)["energy_error_n64"], 1e-12)
+        self.assertAlmostEqual(self.measured("n64", 1.001, until=4)["energy_error_n64"], 1.25e-4, places=7)
+        # The reference's table holds E(0.1) with nine digits only.
+        self.assertLess(self.measured("n32", until=0.1)["energy_error_n32"], 5e-10)
+        self.assertGreater(self.measured("n32", 1 + 1e-7, until=0.1)["energy_error_n32"], 1e-8)
+
+
+class BeltramiExact(CaseTest):
+    def error(self, order, dt):
+        folder, module = self.run_of("beltrami_exact")
+        t = np.linspace(0, 0.5, 6)
+        columns = {}
+        for name, position in (("a", [0.13, 0.71, 0.37]), ("b", [0.55, 0.29, 0.83])):
+            velocity = module.exact_velocity(position, t, 1 / 50, 1.0) + dt**order
+            columns |= {f"{name}_velocity_{axis}": velocity[:, i] for i, axis in enumerate("xyz")}
+        write_table(folder / "probes.csv", {"t": t} | columns)
+        decay = np.exp(-2 * (2 * np.pi) ** 2 / 50 * t)
+        write_table(folder / "series.csv", series_of(t, mean_energy=1.5 * decay + 0.625))
+        return Results(folder)
+
+    def test_decay_and_orders_are_found(self):
+        module = load_measure(CASES / "beltrami_exact")
+        measured = module.measure({"still": self.error(2, 0.0), "ab2-1": self.error(2, 0.2), "ab2-2": self.error(2, 0.1),
+                                   "rk4-1": self.error(4, 0.2), "rk4-2": self.error(4, 0.1)})
+        self.assertLess(measured["decay_error"], 1e-11)
+        self.assertAlmostEqual(measured["order_ab2"], 2, places=6)
+        self.assertAlmostEqual(measured["order_rk4"], 4, places=6)
+
+
+class ForcedTurbulence(CaseTest):
+    def test_statistics_are_those_of_the_steady_part(self):
+        folder, module = self.run_of("forced_turbulence")
+        t = np.linspace(0, 25, 251)
+        late = t >= 10
+        write_table(folder / "series.csv", series_of(
+            t, mean_injection=0.1 * (1 + 1e-9 * (t > 20)), balance_residual=np.where(t > 0, 2e-4, 0),
+            gradient_skewness=np.where(late, -0.5, 0.3), gradient_flatness=4.0, kmax_eta=np.where(late, 1.6, 9),
+            reynolds_lambda=50.0, mean_dissipation=np.where(late, 0.1, 0.5)))
+        measured = module.measure({"run": Results(folder)})
+        self.assertAlmostEqual(measured["injection_error"], 1e-9, places=11)
+        self.assertAlmostEqual(measured["balance_residual"], 2e-4, places=9)
+        self.assertAlmostEqual(measured["skewness"], -0.5)
+        self.assertAlmostEqual(measured["dissipation_over_injection"], 1)
 
 
 class TaylorGreen(CaseTest):

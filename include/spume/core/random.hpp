@@ -9,7 +9,16 @@
 namespace spume {
 
 // What a stream of numbers is used for; a new use gets a new value, so that streams never coincide.
-enum class RandomPurpose : std::uint32_t { initial_jitter = 1, initial_field = 2, test = 100 };
+enum class RandomPurpose : std::uint32_t {
+  initial_jitter = 1,
+  initial_field = 2,
+  initial_position = 3,
+  diameter = 4,
+  parting = 5,
+  overlap = 6,
+  separation = 7,
+  test = 100
+};
 
 // Four uniform numbers in [0, 1) with 32 random bits each.
 std::array<double, 4> random_uniform(std::uint64_t seed, RandomPurpose purpose, std::uint64_t identifier,

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -68,6 +69,12 @@ class File {
   std::filesystem::path path_;
   Id id_;
 };
+
+// Makes or overwrites an attribute; without a count it is a scalar.
+void write_attribute(const File& file, hid_t object, const char* name, hid_t file_type, hid_t memory_type,
+                     std::optional<hsize_t> count, const void* value);
+// A string of fixed length: readers of VTKHDF accept no other.
+void write_fixed_string(const File& file, hid_t object, const char* name, const std::string& text);
 
 // A text as a one-dimensional dataset of bytes; missing groups of the name are made.
 void write_text(const File& file, const std::string& name, std::string_view text);

@@ -2,6 +2,7 @@
 // What the driver knows of a method: it advances, reports, saves and restores. It knows nothing of files.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -55,6 +56,25 @@ struct SeriesColumn {
   std::string unit;  // in words, "m/s", or "1" without dimension
 };
 
+// Fields on the points of a periodic grid, to be drawn: value (ix, iy, iz) lies at (ix * ny + iy) * nz + iz.
+struct GridFamily {
+  std::string name;
+  std::array<std::size_t, 3> points{};
+  Vec3 origin{}, spacing{};
+  struct Field {
+    std::string name;
+    std::vector<const float*> components;
+  };
+  std::vector<Field> fields;
+};
+
+// A distribution of the present state: rows of values, written with the time in front to <name>.csv.
+struct Distribution {
+  std::string name;
+  std::vector<SeriesColumn> columns;
+  std::vector<double> values;  // row by row
+};
+
 // State as named blobs: the checkpoint writes what `save` gives and hands it back to `load` unchanged.
 class StateWriter {
  public:
@@ -85,6 +105,9 @@ class Method {
   virtual std::vector<ArrayInfo> arrays() const = 0;
   virtual std::size_t particle_count() const = 0;
 
+  // Makes the state that a fresh run starts from; not called before `load`. Throws InputError.
+  virtual void start() {}
+
   virtual double time() const = 0;
   virtual std::int64_t step_count() const = 0;
   virtual StepLimit step_limit() const = 0;
@@ -96,7 +119,8 @@ class Method {
   virtual std::vector<SeriesColumn> series_columns() const = 0;  // without step, t, dt: the driver adds those
   virtual void series_values(std::span<double> values) = 0;
 
-  virtual std::vector<Family> snapshot() = 0;  // pointers stay valid until the next step
+  virtual std::vector<Family> snapshot() = 0;                     // pointers stay valid until the next step
+  virtual std::vector<GridFamily> grid_snapshot() { return {}; }  // likewise
   virtual PointSample sample(const Vec3& position) = 0;
   // Height of the free surface above the bottom wall along the last axis through `position`: the highest
   // point where the kernel sum reaches 1/2; the bottom when the column is empty.
@@ -106,6 +130,13 @@ class Method {
 
   // Energy spectrum of the present state: E(k) at `wavenumber`, both resized; false when the method has none.
   virtual bool spectrum(std::vector<double>& /*wavenumber*/, std::vector<double>& /*energy*/) { return false; }
+
+  // Distributions written at the times of spectra, and their names and columns without values.
+  virtual std::vector<Distribution> distributions() { return {}; }
+  virtual std::vector<Distribution> distribution_headings() const { return {}; }
+
+  // What the user should know about the run as it stands, in words; each remark is given once.
+  virtual std::vector<std::string> take_remarks() { return {}; }
 
   virtual void save(StateWriter& writer) const = 0;
   virtual void load(StateReader& reader) = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Everything a run writes while it goes on: series.csv, probes.csv, lines.csv, spectrum.csv and one
-// <family>.vtkhdf per family of particles.
+// Everything a run writes while it goes on: series.csv, probes.csv, lines.csv, spectrum.csv, one <distribution>.csv
+// per distribution (t, then its columns, at every spectrum time) and one <family>.vtkhdf per family of particles or
+// of fields on a grid.
 //
 // probes.csv has a row whenever series.csv has one: t, then <name>_pressure and <name>_velocity_x, _y (, _z) of a
 // point, <name> of an elevation or a front. lines.csv and spectrum.csv are long tables: t,name,s,x,y,z,velocity_x,
@@ -18,6 +19,7 @@
 
 #include "spume/io/series.hpp"
 #include "spume/io/vtkhdf.hpp"
+#include "spume/io/vtkhdf_grid.hpp"
 #include "spume/methods/method.hpp"
 #include "spume/scene/case.hpp"
 
@@ -45,6 +47,7 @@ class Recorder {
  private:
   SeriesFile& table(const std::string& name, const std::string& title, const std::vector<SeriesHeading>& columns);
   void lines(Method& method);
+  std::vector<std::pair<std::string, std::string>> notes() const;
 
   std::filesystem::path folder_;
   const LoadedCase& loaded_;
@@ -52,6 +55,7 @@ class Recorder {
   Extent marked_;
   std::map<std::string, SeriesFile> tables_;
   std::map<std::string, VtkhdfFile> families_;
+  std::map<std::string, VtkhdfGridFile> grids_;
   std::vector<SeriesHeading> series_columns_, probe_columns_;
   std::vector<double> series_row_, probe_row_;
 };

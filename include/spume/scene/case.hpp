@@ -19,6 +19,15 @@ enum class PressureSolver { bicgstab, cg };
 enum class PreconditionerKind { jacobi, multigrid };
 enum class Precision { mixed, f64 };
 enum class ShiftCorrection { none, first_order, second_order };
+enum class Integrator { ab2, rk3, rk4 };
+enum class Dealiasing { padded, two_thirds, none };
+enum class FieldPrecision { f64, f32 };
+enum class PlanEffort { estimate, measured };
+enum class ForcingKind { none, shell, linear };
+enum class ParticleCoupling { one_way, two_way, four_way };
+enum class ParticlePlacement { random, lattice, clustered, file };
+enum class ParticleDrag { stokes, schiller_naumann };
+enum class InitialKind { rest, taylor_green, abc, random, expressions, checkpoint };
 
 struct ResolutionOptions {
   double smoothing_ratio = 1.3;  // h / spacing
@@ -56,6 +65,61 @@ struct ShiftingOptions {
 struct SurfaceOptions {
   double threshold = 0;  // div r below which a particle is a surface particle; 0: 2.3 in 3-D, 1.5 in 2-D
   double blend_width = 0.32;
+};
+
+struct SpectralOptions {
+  Integrator integrator = Integrator::ab2;
+  Dealiasing dealiasing = Dealiasing::padded;
+  FieldPrecision precision = FieldPrecision::f64;
+  PlanEffort plans = PlanEffort::estimate;
+};
+
+// Force of a homogeneous flow. Wavenumbers in units of 2 pi / the longest length of the box.
+struct ForcingOptions {
+  ForcingKind kind = ForcingKind::none;
+  double wavenumber = 1;  // shell: wavenumber <= |k| < wavenumber + width
+  double width = 1;
+  double injection = 0;  // shell: energy per mass and time
+  double rate = 0;       // linear: acceleration = rate * velocity
+};
+
+// Velocity at the start of a flow on a grid; expressions and the spectrum are in the scene.
+struct InitialOptions {
+  InitialKind kind = InitialKind::rest;
+  std::vector<double> amplitude;  // taylor-green: one speed; abc: three
+  int wavenumber = 1;             // taylor-green, abc: periods in the box
+  double energy = 0;              // random: mean kinetic energy per mass
+  std::string file;               // checkpoint
+};
+
+// Small spheres in the flow of the spectral method; none when `count` and `volume_fraction` are zero.
+struct ParticleCaseOptions {
+  std::int64_t count = 0;
+  double volume_fraction = 0;  // sets the count
+  double diameter = 0;
+  double diameter_over_eta = 0;  // in Kolmogorov lengths of the injected energy
+  std::vector<double> diameters, shares;
+  double beta = 1;
+  double stokes = 0;         // response time in Kolmogorov times of the injected energy
+  double response_time = 0;  // 0 and stokes = 0: diameter^2 / (12 beta nu)
+  ParticleDrag drag = ParticleDrag::stokes;
+  std::vector<double> gravity;
+  ParticleCoupling coupling = ParticleCoupling::one_way;
+  bool matching_by_sorting = false;
+  std::int64_t collision_sweeps = 1;
+  double max_volume_fraction = 0.74048048969306104;  // pi / (3 sqrt 2), close packing
+  bool frozen = false;
+  std::int64_t spline_order = 4;
+  bool double_records = false;
+  std::int64_t sort_every = 8;
+  ParticlePlacement placement = ParticlePlacement::random;
+  std::int64_t clusters = 8;
+  double cluster_radius = 0.05;  // of the shortest side
+  std::string file;
+  std::int64_t overlap_samples = 20000;
+  std::int64_t lyapunov = 0;
+
+  bool any() const { return count > 0 || volume_fraction > 0; }
 };
 
 struct TimeOptions {
@@ -99,6 +163,10 @@ struct Case {
   PressureOptions pressure;
   ShiftingOptions shifting;
   SurfaceOptions surface;
+  SpectralOptions spectral;
+  ForcingOptions forcing;
+  InitialOptions initial;
+  ParticleCaseOptions particles;
   TimeOptions time;
   OutputOptions output;
   std::vector<ProbeOptions> probes;

@@ -75,9 +75,12 @@ struct Scene {
   std::string method;
   Domain domain;
   Fluid fluid;
-  double spacing = 0;
-  bool free_surface = false;                   // false: the liquid fills a closed or periodic domain
-  std::optional<VectorExpression> body_force;  // acceleration, beside gravity
+  double spacing = 0;                                  // of particles; on a grid the smallest of the three
+  std::array<std::size_t, 3> grid{};                   // points along x, y, z; zero for particle methods
+  bool free_surface = false;                           // false: the liquid fills a closed or periodic domain
+  std::optional<VectorExpression> body_force;          // acceleration, beside gravity
+  std::optional<VectorExpression> initial_velocity;    // of a flow on a grid
+  std::shared_ptr<const Expression> initial_spectrum;  // E(k) up to a factor; its first argument is k
   std::uint64_t seed = 1;
   InitialParticles particles;
 };

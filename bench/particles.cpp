@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+// Particles in a 128^3 flow: nanoseconds per particle of every routine.
+// Arguments: particles, 1 sorted or 0 in random order, threads.
+#include <benchmark/benchmark.h>
+#include <omp.h>
+
+#include <cmath>
+
+#include "spume/core/parallel.hpp"
+#include "spume/core/random.hpp"
+#include "spume/operators/linear_deposition.hpp"
+#include "spume/physics/particles/exclusion.hpp"
+#include "spume/physics/particles/motion.hpp"
+
+namespace spume {
+namespace {
+
+constexpr int points = 128;
+
+PeriodicGrid grid() {
+  PeriodicGrid grid;
+  grid.length = {2 * M_PI, 2 * M_PI, 2 * M_PI};
+  grid.points = {points, points, points};
+  grid.z_stride = points + 2;
+  return grid;
+}
+
+struct Flow {
+  std::array<Array<double>, 3> component;
+  explicit Flow(double phase) {
+    const PeriodicGrid g = grid();
+    for (int c = 0; c < 3; ++c) {
+      component[c].resize(g.storage());
+      parallel_for(g.point_count(), [&](std::size_t p) {
+        const std::size_t i = p / points / points, j = p / points % points, k = p % points;
+        component[c][g.row(static_cast<int>(i), static_cast<int>(j)) + k] =
+            std::sin(0.3 * static_cast<double>(i + j) + 0.1 * static_cast<double>(k) + c + phase);
+      });
+    }
+  }
+  std::array<const double*, 3> data() const { return {component[0].data(), component[1].data(), component[2].data()}; }
+};
+
+struct Swarm {
+  PeriodicGrid g = grid();
+  Particles particles{ParticleArrays{true, false}};
+  CellOrder order;
+  PeriodicCells cells = LinearDeposition(g).cells();
+
+  explicit Swarm(const benchmark::State& state) {
+    omp_set_num_threads(static_cast<int>(state.range(2)));
+    const auto n = static_cast<std::size_t>(state.range(0));
+    particles.fields.resize(n);
+    particles.common_diameter = 0.65 * 2 * M_PI / points;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto r = random_uniform(1, RandomPurpose::test, i, 0, 0);
+      for (int c = 0; c < 3; ++c) {
+        (*particles.position[c])[i] = g.length[c] * r[c];
+        (*particles.velocity[c])[i] = std::sin(7.0 * static_cast<double>(i) + c);
+      }
+      (*particles.identifier)[i] = static_cast<std::int64_t>(i);
+    }
+    if (state.range(1) == 1) {
+      sort();
+      particles.fields.permute(order.order());
+      // As a few steps later: a tenth of a spacing of drift.
+      for (std::size_t i = 0; i < n; ++i)
+        for (int c = 0; c < 3; ++c)
+          (*particles.position[c])[i] = wrap_periodic(
+              (*particles.position[c])[i] + 0.1 * g.spacing(c) * (*particles.velocity[c])[i], 0, g.length[c]);
+    }
+    sort();
+  }
+  void sort() {
+    const auto x = particles.positions();
+    order.build(cells, x[0], x[1], x[2], particles.size());
+  }
+  Spheres spheres() {
+    Spheres s;
+    for (int c = 0; c < 3; ++c) s.position[c] = particles.position[c]->data();
+    s.identifier = particles.identifier->data();
+    s.common_diameter = particles.common_diameter;
+    s.size = particles.size();
+    return s;
+  }
+  void count(benchmark::State& state) const {
+    state.counters["time_per_particle"] =
+        benchmark::Counter(static_cast<double>(particles.size()),
+                           benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  }
+};
+
+template <class Real>
+void particle_gather(benchmark::State& state) {
+  Swarm swarm(state);
+  SplineField<Real> field(swarm.g, 4);
+  field.fill(Flow(0).data());
+  std::array<Array<double>, 3> value;
+  for (auto& v : value) v.resize(swarm.particles.size());
+  for (auto _ : state)
+    gather(field, swarm.particles.size(), swarm.particles.positions(),
+           {value[0].data(), value[1].data(), value[2].data()}, nullptr);
+  swarm.count(state);
+}
+
+template <class Real>
+void particle_motion(benchmark::State& state) {
+  Swarm swarm(state);
+  SplineField<Real> field(swarm.g, 4);
+  field.fill(Flow(0).data());
+  field.fill(Flow(0.01).data());
+  MotionModel model;
+  model.beta = 3;
+  for (auto _ : state) move_particles(model, field, 1e-9, swarm.particles);
+  swarm.count(state);
+}
+
+void particle_field_records(benchmark::State& state) {
+  Swarm swarm(state);
+  SplineField<double> field(swarm.g, 4);
+  const Flow flow(0);
+  for (auto _ : state) field.fill(flow.data());
+  swarm.count(state);
+}
+
+void particle_sort(benchmark::State& state) {
+  Swarm swarm(state);
+  for (auto _ : state) swarm.sort();
+  swarm.count(state);
+}
+
+void particle_reorder(benchmark::State& state) {
+  Swarm swarm(state);
+  for (auto _ : state) swarm.particles.fields.permute(swarm.order.order());
+  swarm.count(state);
+}
+
+void particle_deposition(benchmark::State& state) {
+  Swarm swarm(state);
+  LinearDeposition deposition(swarm.g);
+  Flow force(0);
+  Array<double> amounts(4 * swarm.particles.size());
+  for (std::size_t i = 0; i < amounts.size(); ++i) amounts[i] = i % 4 == 3 ? 1e-9 : std::sin(static_cast<double>(i));
+  for (auto _ : state)
+    deposition.deposit<double>(swarm.order, swarm.particles.positions(), amounts.data(), 0.74,
+                               {force.component[0].data(), force.component[1].data(), force.component[2].data()},
+                               nullptr);
+  swarm.count(state);
+}
+
+void particle_exclusion(benchmark::State& state) {
+  Swarm swarm(state);
+  const PeriodicGrid g = grid();
+  Exclusion exclusion(g.lower, g.length, swarm.particles.common_diameter);
+  // The state of a run: overlaps of earlier steps are solved, and motion makes new ones.
+  const auto move = [&](int step) {
+    parallel_for(swarm.particles.size(), [&](std::size_t i) {
+      for (int c = 0; c < 3; ++c) {
+        double& x = (*swarm.particles.position[c])[i];
+        x = wrap_periodic(x + (step % 2 == 0 ? 0.05 : -0.05) * g.spacing(c) * (*swarm.particles.velocity[c])[i],
+                          g.lower[c], g.length[c]);
+      }
+    });
+  };
+  for (int i = 0; i < 20; ++i) {
+    move(i);
+    exclusion.match(swarm.spheres());
+    exclusion.separate(swarm.spheres());
+  }
+  ExclusionReport report;
+  int step = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    move(++step);
+    state.ResumeTiming();
+    report = exclusion.match(swarm.spheres());
+    exclusion.separate(swarm.spheres());
+  }
+  swarm.count(state);
+  state.counters["overlapping"] = static_cast<double>(report.overlapping);
+  state.counters["pairs"] = static_cast<double>(report.pairs);
+  state.counters["rounds"] = report.rounds;
+}
+
+void sizes(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"particles", "sorted", "threads"})
+      ->ArgsProduct({{100000, 1000000, 2097152}, {0, 1}, {1, 2}})
+      ->UseRealTime()
+      ->Unit(benchmark::kMillisecond);
+}
+BENCHMARK(particle_gather<double>)->Apply(sizes);
+BENCHMARK(particle_gather<float>)->Apply(sizes);
+BENCHMARK(particle_motion<double>)->Apply(sizes);
+BENCHMARK(particle_motion<float>)->Apply(sizes);
+BENCHMARK(particle_field_records)->Apply(sizes);
+BENCHMARK(particle_sort)->Apply(sizes);
+BENCHMARK(particle_reorder)->Apply(sizes);
+BENCHMARK(particle_deposition)->Apply(sizes);
+BENCHMARK(particle_exclusion)->Apply(sizes);
+
+}  // namespace
+}  // namespace spume

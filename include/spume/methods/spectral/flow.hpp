@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+// The flow of the spectral method: vector potential b with u = curl b, in a triply periodic box (de Wit et al. 2024,
+// appendix A):
+//   db/dt = -nu k^2 b + K,   K = k^-2 i k x (F[u x omega] + f)                                        (A5, A7)
+// The mode k = 0 of b holds the mean velocity itself, which only a force with a mean changes. The viscous term is
+// integrated exactly by the factor exp(-nu k^2 t).
+#pragma once
+
+#include <array>
+#include <complex>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "spume/fourier/box_transform.hpp"
+#include "spume/fourier/cross_product.hpp"
+#include "spume/methods/method.hpp"
+#include "spume/scene/case.hpp"
+
+namespace spume::spectral {
+
+template <class T>
+using Modes = std::array<Array<std::complex<T>>, 3>;
+
+template <class T>
+std::array<const std::complex<T>*, 3> view(const Modes<T>& modes) {
+  return {modes[0].data(), modes[1].data(), modes[2].data()};
+}
+
+// Rates of the energy of the mean square velocity, per mass.
+struct EnergyBudget {
+  double energy = 0;       // mean of u^2 / 2
+  double dissipation = 0;  // nu sum k^2 u_k^2
+  double injection = 0;    // by [forcing]
+  double work = 0;         // by the external force (particles)
+};
+
+template <class T>
+class Flow {
+ public:
+  using Complex = std::complex<T>;
+
+  // Arrays are made here; throws InputError when they cannot fit into the memory of the machine.
+  explicit Flow(const LoadedCase& loaded);
+
+  // Replaces the state by a field with div b = 0 and forgets the history of the integrator.
+  void set_potential(Modes<T>&& potential);
+
+  // Advances by dt; on StepFailure the potential is what it was.
+  void advance(double dt);
+
+  // K and the largest speeds of the present state, once per state (the first step makes use of both).
+  void evaluate_tendency();
+
+  // A force f per mass on the modes, for the next steps, projected on its solenoidal part by K; null pointers: none.
+  // The arrays stay the caller's and must live as long as they are set.
+  void set_force(const std::array<const Complex*, 3>& force) { force_ = force; }
+
+  const ModeLayout& layout() const { return layout_; }
+  const Modes<T>& potential() const { return potential_; }
+  // The state before the last step, while no tendency has been evaluated since; null before the first step.
+  const Modes<T>* previous() const;
+  double time() const { return time_; }
+  std::int64_t steps() const { return steps_; }
+  double viscosity() const { return viscosity_; }
+  const VelocityPeak& peak() const { return peak_; }
+  StepLimit step_limit() const;
+
+  // Transforms to and from the points of the grid, for use between steps.
+  BoxTransform<T>& box() { return box_; }
+
+  const EnergyBudget& budget() const { return budget_; }
+  // Integral of injection + work - dissipation, and of dissipation, over time since the start.
+  double integrated_gain() const { return integrated_gain_; }
+  double integrated_dissipation() const { return integrated_dissipation_; }
+
+  // Sum over all modes of Re(conj(i k x b) . f) for the present state: the work of a force.
+  EnergyBudget measure_budget() const;
+
+  // Bernoulli's p + u^2/2 (up to a constant), whose Laplacian is div(u x omega + f), as modes. Costs one tendency.
+  void total_pressure(Array<Complex>& modes);
+
+  std::vector<ArrayInfo> arrays() const;
+  void save(StateWriter& writer) const;
+  void load(StateReader& reader);
+  const std::array<double, 3>& stage_seconds() const { return product_.stage_seconds(); }
+  double largest_wavenumber() const;                                 // kept, the least along the axes
+  bool keeps(std::size_t ix, std::size_t iy, std::size_t iz) const;  // not cut by the two-thirds rule
+
+ private:
+  struct alignas(64) Tally {  // of a row of modes: u^2 and k^2 u^2, summed by place in a vector
+    std::array<double, 32 / sizeof(T)> square{}, enstrophy{};
+  };
+  template <class Update>
+  VelocityPeak evaluate(const Modes<T>& potential, Modes<T>& sum, Update&& update);
+  void adams_bashforth(double dt);
+  void self_start(double dt);
+  void runge_kutta(double dt);
+  void require_acceptable(double dt, const EnergyBudget& fresh) const;
+  void accept(double dt, const EnergyBudget& fresh);
+  EnergyBudget tallied(const Modes<T>& potential) const;
+  EnergyBudget with_forces(EnergyBudget fresh) const;
+  double forcing_coefficient(const Modes<T>& potential) const;
+  StepLimit limit_for(const VelocityPeak& peak) const;
+  // exp(-nu k_i^2 dt) per index of an axis; along z twice each, as vectors take it.
+  struct Decay {
+    std::vector<T> x, y;
+    Array<Complex> z;
+  };
+  void set_decay(Decay& decay, double dt) const;
+
+  ModeLayout layout_;
+  SpectralOptions options_;
+  ForcingOptions forcing_;
+  TimeOptions limits_;
+  double viscosity_;
+  CrossProduct<T> product_;
+  BoxTransform<T> box_;  // works in the memory of the product
+  std::array<std::vector<T>, 3> wavenumber_;
+  Array<Complex> lane_wavenumber_, lane_weight_;  // of a row of modes, in both parts
+  std::array<double, 3> cut_{};                   // two-thirds rule: |k| below it stays
+  double shell_low_ = 0, shell_high_ = 0;         // squares of the forced wavenumbers
+
+  // Adams-Bashforth: b, K of the present and K of the previous step. The update writes b of the next step over the
+  // old K, so that three sets suffice and a refused step leaves b as it was.
+  // Runge-Kutta: b, K, the register q of the 2N-storage scheme, and b of the step's start.
+  Modes<T> potential_, tendency_, earlier_, start_;
+  std::array<const Complex*, 3> force_{};
+  bool tendency_ready_ = false;
+  bool has_history_ = false;   // earlier_ holds K of the previous step
+  bool has_previous_ = false;  // b of the previous step is still in memory
+  double earlier_dt_ = 0;
+  double time_ = 0;
+  std::int64_t steps_ = 0;
+  VelocityPeak peak_;
+  EnergyBudget budget_;
+  double integrated_gain_ = 0, integrated_dissipation_ = 0;
+  std::vector<Tally> tallies_;
+  Decay decay_, earlier_decay_;
+};
+
+// Memory of a flow on a grid, in bytes, before anything is allocated.
+double flow_bytes(const std::array<std::size_t, 3>& grid, const SpectralOptions& options);
+
+}  // namespace spume::spectral

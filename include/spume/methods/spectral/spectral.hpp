@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// The spectral method: direct numerical simulation of a periodic flow (de Wit et al. 2024, appendix A). In single or
+// double precision, T.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "spume/methods/method.hpp"
+#include "spume/methods/spectral/flow.hpp"
+#include "spume/methods/spectral/suspension.hpp"
+
+namespace spume::spectral {
+
+template <class T>
+class Spectral final : public Method {
+ public:
+  explicit Spectral(const LoadedCase& loaded);
+
+  std::vector<Stage> plan() const override;
+  std::vector<ArrayInfo> arrays() const override;
+  std::size_t particle_count() const override;  // points of the grid
+  void start() override;
+  double time() const override { return flow_.time(); }
+  std::int64_t step_count() const override { return flow_.steps(); }
+  StepLimit step_limit() const override;
+  void step(double dt, Ledger& ledger) override;
+  std::vector<SeriesColumn> series_columns() const override;
+  void series_values(std::span<double> values) override;
+  std::vector<Family> snapshot() override;
+  std::vector<GridFamily> grid_snapshot() override;
+  PointSample sample(const Vec3& position) override;
+  double elevation(const Vec3& position) override;  // no surface: not a number
+  double front(int axis, double height) override;   // likewise
+  bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override;
+  std::vector<Distribution> distributions() override;
+  std::vector<Distribution> distribution_headings() const override;
+  std::vector<std::string> take_remarks() override;
+  void save(StateWriter& writer) const override;
+  void load(StateReader& reader) override;
+
+  Flow<T>& flow() { return flow_; }
+  const Suspension<T>* suspension() const { return suspension_.get(); }
+
+ private:
+  bool wants(const std::string& field) const;
+  void ensure_started();
+
+  const LoadedCase& loaded_;
+  Flow<T> flow_;
+  std::unique_ptr<Suspension<T>> suspension_;  // null without particles
+  bool started_ = false;
+  std::array<std::vector<Array<float>>, 3> drawn_;  // velocity, vorticity, pressure of the last snapshot
+  Array<std::complex<T>> total_pressure_;           // for probes
+  std::int64_t total_pressure_step_ = -1;
+  // Energy and integrals at the last row of the series: what the balance is taken over.
+  std::array<double, 4> row_{};  // energy, gain, dissipation, whether there was one
+  bool warned_ = false;
+  std::vector<std::string> remarks_;
+};
+
+}  // namespace spume::spectral

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Measures of how particles cluster: pair statistics and counts in boxes.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "spume/neighbours/periodic_cells.hpp"
+
+namespace spume {
+
+// Pairs by distance. `radius` holds the edges of logarithmic bins. Per bin, g = pairs over what a random distribution
+// would have (radial distribution function); per edge, correlation = mean number of particles within that distance of a
+// particle (correlation integral). The mean runs over the centres looked at.
+struct PairStatistics {
+  std::vector<double> radius;
+  std::vector<double> radial_distribution;  // one fewer than radius
+  std::vector<double> correlation;
+};
+
+// Distances from smallest to largest, below half of the shortest side; at most `centres` particles, evenly spread over
+// the order of the arrays, are looked at against all. Throws std::invalid_argument for other distances or no bins.
+PairStatistics pair_statistics(const std::array<double, 3>& lower, const std::array<double, 3>& length,
+                               const std::array<const double*, 3>& position, std::size_t size, double smallest,
+                               double largest, int bins, std::size_t centres);
+
+// Correlation dimension: slope of log correlation against log radius by least squares over the edges in
+// [from, to] that found a pair; 3 for a random distribution. Not a number when fewer than two did.
+double correlation_dimension(const PairStatistics& pairs, double from, double to);
+
+// Variance of the number of particles in a box over its mean, boxes counted as given per axis: 1 for a random
+// distribution. Zero without particles.
+double box_count_variance(const PeriodicCells& boxes, const std::array<const double*, 3>& position, std::size_t size);
+
+}  // namespace spume

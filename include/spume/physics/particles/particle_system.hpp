@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// Particles suspended in a periodic flow: motion, collisions and what they give back to the fluid, for a flow solver
+// that hands over its velocity once a step.
+//
+//   begin(u)                     velocity field at the start; particles take the velocity of the fluid
+//   repeat:
+//     feedback(f)                body force of the particles at the present time (two-way, four-way)
+//     ... the flow solver steps by dt with f ...
+//     advance(dt, u)             moves the particles over the same step, with the velocity at its end
+//
+// Velocities come as B-spline coefficients: divided by b_spline_prefilter along every axis in Fourier space. The field
+// of the step before is kept in the records, so the flow solver keeps no second snapshot.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "spume/core/ledger.hpp"
+#include "spume/operators/linear_deposition.hpp"
+#include "spume/operators/spline_field.hpp"
+#include "spume/physics/particles/exclusion.hpp"
+#include "spume/physics/particles/motion.hpp"
+#include "spume/physics/particles/overlap.hpp"
+#include "spume/physics/particles/placement.hpp"
+
+namespace spume {
+
+enum class Coupling {
+  one_way,   // the flow moves the particles
+  two_way,   // and the particles the flow
+  four_way,  // and they exclude each other
+};
+
+struct ParticleOptions {
+  std::size_t count = 0;
+  MotionModel motion;
+  Coupling coupling = Coupling::one_way;
+  MatchingMethod matching = MatchingMethod::rounds;
+  // Matchings a step, each on the places that the one before left: with 1 a particle collides once a step, and how much
+  // overlap stays depends on the step.
+  int collision_sweeps = 1;
+  PlacementOptions placement;  // diameters too
+  int spline_order = 4;
+  bool single_precision_records = true;
+  double most_volume_fraction = 0.74048048969306104;  // pi / (3 sqrt 2), close packing
+  int sort_every = 8;                                 // steps between sorts of the particles by grid cell
+  // Where in time the force is wanted, from the middle of the last step, in steps: 1/2 for multistep schemes that take
+  // it at the present time, 1 for a scheme that holds it over the coming step.
+  double force_lead = 0.5;
+};
+
+class ParticleSystem {
+ public:
+  // Throws InputError when the options contradict each other or the box: diameters that do not fit, a spline order that
+  // does not exist, two-way coupling of infinitely heavy particles (beta = 0).
+  ParticleSystem(const PeriodicGrid& grid, const ParticleOptions& options);
+
+  template <class Source>
+  void begin(const std::array<const Source*, 3>& velocity);
+  template <class Source>
+  void advance(double dt, const std::array<const Source*, 3>& velocity, Ledger& ledger);
+  // After load(): the present velocity again.
+  template <class Source>
+  void resume(const std::array<const Source*, 3>& velocity);
+
+  bool couples() const { return options_.coupling != Coupling::one_way; }
+  bool collides() const { return options_.coupling == Coupling::four_way; }
+  // Writes every point of `force`: acceleration of the fluid by the particles. Precondition: couples().
+  template <class Real>
+  void feedback(const std::array<Real*, 3>& force, Ledger& ledger);
+
+  std::size_t size() const { return particles_.size(); }
+  double volume_fraction() const { return volume_fraction_; }
+  const Particles& particles() const { return particles_; }
+  const ParticleOptions& options() const { return options_; }
+  const MotionStatistics& motion() const { return motion_; }
+  const ExclusionReport& exclusion() const { return exclusion_report_; }
+  const DepositionReport& deposition() const { return deposition_report_; }
+  // Of the present positions; builds the cells anew.
+  SampledValue measure_overlap(std::size_t samples, std::uint32_t step);
+
+  // Overlapping pairs of the present positions by overlap over touching distance: probability density in `bins` bins of
+  // [0, 1]; zeros without overlaps.
+  std::vector<double> overlap_histogram(int bins);
+
+  // The field that particles see; null unless its records are in double precision.
+  const SplineField<double>* double_field() const { return std::get_if<SplineField<double>>(&field_); }
+
+  // The state between steps, to be saved and restored under these names. Arrays of an empty system are found by their
+  // names before a restore; call resume() after it.
+  struct StateArray {
+    std::string name;
+    Array<double>* f64 = nullptr;
+    Array<std::int64_t>* i64 = nullptr;
+  };
+  std::vector<StateArray> state();
+  void restored();  // checks sizes after all arrays were filled; throws FileError
+
+  struct ArraySize {
+    std::string name;
+    double bytes;
+  };
+  std::vector<ArraySize> arrays() const;
+  // Before any allocation: bytes that a system with these options holds.
+  static double estimated_bytes(const PeriodicGrid& grid, const ParticleOptions& options);
+
+ private:
+  Spheres spheres();
+  void sort(Ledger& ledger);
+  void order_by_cell();
+  Exclusion& cells();  // also without collisions, for measures
+
+  PeriodicGrid grid_;
+  ParticleOptions options_;
+  Particles particles_;
+  std::variant<SplineField<double>, SplineField<float>> field_;
+  LinearDeposition deposition_;
+  Exclusion exclusion_;
+  bool has_cells_ = false;
+  CellOrder order_;
+  bool order_is_current_ = false;
+  Array<double> amounts_;  // per particle, force and volume to be spread
+  Array<double> clock_;    // length of the last step; steps made
+  double volume_fraction_ = 0;
+  MotionStatistics motion_;
+  ExclusionReport exclusion_report_;
+  DepositionReport deposition_report_;
+};
+
+}  // namespace spume

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Small spheres suspended in a periodic flow: what is carried between steps. An array exists only when the coupling
+// or the diameters ask for it.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "spume/core/array.hpp"
+#include "spume/core/field_set.hpp"
+
+namespace spume {
+
+struct ParticleArrays {
+  bool force = false;         // two-way: the force of the last step is kept to extrapolate from
+  bool polydisperse = false;  // every particle has its own diameter
+};
+
+struct Particles {
+  Particles() = default;
+  explicit Particles(const ParticleArrays& wanted) {
+    constexpr const char* axis_name[3] = {"x", "y", "z"};
+    const auto add = [&](const char* name, std::array<Array<double>*, 3>& vector) {
+      for (int axis = 0; axis < 3; ++axis)
+        vector[axis] = &fields.add<double>(std::string(name) + "_" + axis_name[axis], Lifetime::carried);
+    };
+    add("position", position);
+    add("velocity", velocity);
+    if (wanted.force) add("force", force);
+    if (wanted.polydisperse) diameter = &fields.add<double>("diameter", Lifetime::carried);
+    identifier = &fields.add<std::int64_t>("identifier", Lifetime::carried);
+  }
+
+  FieldSet fields;
+  std::array<Array<double>*, 3> position{}, velocity{};
+  std::array<Array<double>*, 3> force{};  // on the fluid, per density of the fluid: mean over the last step
+  Array<double>* diameter = nullptr;
+  Array<std::int64_t>* identifier = nullptr;
+  double common_diameter = 0;  // of every particle without arrays of their own; else the reference diameter
+
+  std::size_t size() const { return fields.size(); }
+  double diameter_of(std::size_t i) const { return diameter == nullptr ? common_diameter : (*diameter)[i]; }
+  std::array<const double*, 3> positions() const {
+    return {position[0]->data(), position[1]->data(), position[2]->data()};
+  }
+  std::array<const double*, 3> velocities() const {
+    return {velocity[0]->data(), velocity[1]->data(), velocity[2]->data()};
+  }
+};
+
+inline double sphere_volume(double diameter) {
+  return M_PI / 6 * diameter * diameter * diameter;
+}
+
+}  // namespace spume

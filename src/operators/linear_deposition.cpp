@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#include "spume/operators/linear_deposition.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "spume/core/parallel.hpp"
+#include "spume/core/simd.hpp"
+
+namespace spume {
+namespace {
+
+using simd::f64x4;
+
+// Cell planes per block of work: each block repeats one plane of its neighbour, 1/8 of half the work.
+constexpr std::size_t planes_per_block = 8;
+
+[[gnu::always_inline]] inline void add(double* target, double weight, f64x4 amount) {
+  f64x4 sum;
+  std::memcpy(&sum, target, sizeof sum);
+  sum += weight * amount;
+  std::memcpy(target, &sum, sizeof sum);
+}
+
+f64x4 absolute(f64x4 v) {
+  return v < 0 ? -v : v;
+}
+
+bool any_above(f64x4 v, double bound) {
+  return v[0] > bound || v[1] > bound || v[2] > bound || v[3] > bound;
+}
+
+// Component c of four records to component[c]; the records become zero.
+[[gnu::always_inline]] inline void take_points(double* records, f64x4 (&component)[4]) {
+  f64x4 r[4];
+  std::memcpy(r, records, sizeof r);
+  const f64x4 zero[4] = {};
+  std::memcpy(records, zero, sizeof zero);
+  const f64x4 a = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6), b = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+  const f64x4 c = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6), d = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+  component[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  component[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  component[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  component[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+template <class Real>
+[[gnu::always_inline]] inline void put_points(Real* target, f64x4 values, std::size_t points) {
+  using Target = std::conditional_t<std::is_same_v<Real, float>, simd::f32x4, f64x4>;
+  const Target converted = __builtin_convertvector(values, Target);
+  if (points == 4)
+    std::memcpy(target, &converted, sizeof converted);
+  else
+    std::memcpy(target, &converted, points * sizeof(Real));
+}
+
+DepositionReport combined(DepositionReport a, const DepositionReport& b) {
+  a.force += b.force;
+  a.clipped_force += b.clipped_force;
+  a.clipped_volume += b.clipped_volume;
+  a.most_volume_fraction = std::max(a.most_volume_fraction, b.most_volume_fraction);
+  return a;
+}
+
+}  // namespace
+
+template <class Real>
+DepositionReport LinearDeposition::deposit(const CellOrder& order, const std::array<const double*, 3>& position,
+                                           const double* amounts, double most_volume_fraction,
+                                           const std::array<Real*, 3>& force, Real* volume_fraction) {
+  const int nx = grid_.points[0], ny = grid_.points[1], nz = grid_.points[2];
+  const std::size_t row = 4 * (static_cast<std::size_t>(nz) + 4);  // off powers of two, and room for four points
+  const std::size_t plane = row * static_cast<std::size_t>(ny);
+  const std::int32_t* index = order.order().data();
+  const std::int32_t* first = order.first();
+  const std::size_t cells_per_plane = std::size_t(ny) * std::size_t(nz);
+  const double scale[3] = {grid_.inverse_spacing(0), grid_.inverse_spacing(1), grid_.inverse_spacing(2)};
+  const double inverse_volume = 1 / grid_.cell_volume();
+  const double cell_volume = grid_.cell_volume();
+
+  if (sums_.size() < static_cast<std::size_t>(thread_count())) sums_.resize(static_cast<std::size_t>(thread_count()));
+  for (auto& sums : sums_) sums.resize(2 * plane);
+
+  // Adds the particles of cell plane cx to the grid planes at its lower and upper side; null: not wanted.
+  const auto spread = [&](int cx, double* lower_plane, double* upper_plane) {
+    const std::int32_t from = first[static_cast<std::size_t>(cx) * cells_per_plane];
+    const std::int32_t to = first[(static_cast<std::size_t>(cx) + 1) * cells_per_plane];
+    for (std::int32_t k = from; k < to; ++k) {
+      const auto p = static_cast<std::size_t>(index[k]);
+      const double px = (position[0][p] - grid_.lower[0]) * scale[0];
+      const double py = (position[1][p] - grid_.lower[1]) * scale[1];
+      const double pz = (position[2][p] - grid_.lower[2]) * scale[2];
+      const int cy = std::clamp(static_cast<int>(py), 0, ny - 1), cz = std::clamp(static_cast<int>(pz), 0, nz - 1);
+      const double tx = px - cx, ty = py - cy, tz = pz - cz;
+      f64x4 amount;
+      std::memcpy(&amount, amounts + 4 * p, sizeof amount);
+      amount *= inverse_volume;
+      const f64x4 near_z = (1 - tz) * amount, far_z = tz * amount;
+      const std::size_t row_0 = static_cast<std::size_t>(cy) * row,
+                        row_1 = static_cast<std::size_t>(cy + 1 < ny ? cy + 1 : 0) * row;
+      const std::size_t z_0 = 4 * static_cast<std::size_t>(cz),
+                        z_1 = 4 * static_cast<std::size_t>(cz + 1 < nz ? cz + 1 : 0);
+      const auto corners = [&](double* target, double weight) {
+        const double w0 = weight * (1 - ty), w1 = weight * ty;
+        add(target + row_0 + z_0, w0, near_z);
+        add(target + row_0 + z_1, w0, far_z);
+        add(target + row_1 + z_0, w1, near_z);
+        add(target + row_1 + z_1, w1, far_z);
+      };
+      if (lower_plane != nullptr) corners(lower_plane, 1 - tx);
+      if (upper_plane != nullptr) corners(upper_plane, tx);
+    }
+  };
+
+  // Clips a finished plane, writes it out and empties it, four points at a time: rows are padded, so that a remainder
+  // reads sums that are zero.
+  const auto finish = [&](int ix, double* sums, DepositionReport& report) {
+    f64x4 size{}, clipped{}, crowded_points{}, most{};
+    for (int iy = 0; iy < ny; ++iy) {
+      double* from = sums + static_cast<std::size_t>(iy) * row;
+      const std::size_t to = grid_.row(ix, iy);
+      for (int iz = 0; iz < nz; iz += 4) {
+        double* s = from + 4 * static_cast<std::size_t>(iz);
+        f64x4 component[4];
+        take_points(s, component);
+        f64x4 magnitude = absolute(component[0]) + absolute(component[1]) + absolute(component[2]);
+        const f64x4 alpha = component[3];
+        most = alpha > most ? alpha : most;
+        size += magnitude;
+        if (any_above(alpha, most_volume_fraction)) {
+          const f64x4 one = f64x4{} + 1.0;
+          const f64x4 clip = alpha > most_volume_fraction ? most_volume_fraction / alpha : one;
+          clipped += (one - clip) * magnitude;
+          crowded_points += alpha > most_volume_fraction ? one : f64x4{};
+          for (int c = 0; c < 3; ++c) component[c] *= clip;
+        }
+        const auto points = static_cast<std::size_t>(std::min(4, nz - iz));
+        for (int c = 0; c < 3; ++c) put_points(force[c] + to + iz, component[c], points);
+        if (volume_fraction != nullptr) put_points(volume_fraction + to + iz, alpha, points);
+      }
+    }
+    report.force += simd::sum(size);
+    report.clipped_force += simd::sum(clipped);
+    report.clipped_volume += simd::sum(crowded_points);
+    for (int l = 0; l < 4; ++l) report.most_volume_fraction = std::max(report.most_volume_fraction, most[l]);
+  };
+
+  const std::size_t blocks = block_count(static_cast<std::size_t>(nx), planes_per_block);
+  std::array<DepositionReport, max_reduction_blocks> partial{};
+  const std::size_t stride = block_count(blocks, max_reduction_blocks);  // blocks per partial result
+  parallel_blocks(blocks, stride, [&](std::size_t group, std::size_t block_first, std::size_t block_last) {
+    double* below = sums_[static_cast<std::size_t>(omp_get_thread_num())].data();
+    double* above = below + plane;
+    DepositionReport report;
+    for (std::size_t b = block_first; b < block_last; ++b) {
+      const int from = static_cast<int>(b * planes_per_block);
+      const int to = std::min(nx, from + static_cast<int>(planes_per_block));
+      std::fill_n(below, 2 * plane, 0.0);
+      spread(from > 0 ? from - 1 : nx - 1, nullptr, below);
+      for (int ix = from; ix < to; ++ix) {
+        spread(ix, below, ix + 1 < to ? above : nullptr);
+        finish(ix, below, report);
+        std::swap(below, above);
+      }
+    }
+    partial[group] = report;
+  });
+  DepositionReport report;
+  for (const auto& p : partial) report = combined(report, p);
+  report.force *= cell_volume;
+  report.clipped_force *= cell_volume;
+  report.clipped_volume *= cell_volume;
+  return report;
+}
+
+double LinearDeposition::bytes() const {
+  double total = 0;
+  for (const auto& sums : sums_) total += 8.0 * static_cast<double>(sums.capacity());
+  return total;
+}
+
+template DepositionReport LinearDeposition::deposit(const CellOrder&, const std::array<const double*, 3>&,
+                                                    const double*, double, const std::array<double*, 3>&, double*);
+template DepositionReport LinearDeposition::deposit(const CellOrder&, const std::array<const double*, 3>&,
+                                                    const double*, double, const std::array<float*, 3>&, float*);
+
+}  // namespace spume

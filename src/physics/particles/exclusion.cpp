@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+#include "spume/physics/particles/exclusion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "exclusion_search.hpp"
+#include "spume/core/parallel.hpp"
+#include "spume/core/random.hpp"
+
+namespace spume {
+namespace {
+
+// A mixing of the pair, equal for both orders of its members (finaliser of MurmurHash3).
+std::uint64_t pair_hash(std::int64_t a, std::int64_t b) {
+  const auto low = static_cast<std::uint64_t>(std::min(a, b)), high = static_cast<std::uint64_t>(std::max(a, b));
+  std::uint64_t v = low * 0x9e3779b97f4a7c15ULL + high;
+  v = (v ^ v >> 33) * 0xff51afd7ed558ccdULL;
+  v = (v ^ v >> 33) * 0xc4ceb9fe1a85ec53ULL;
+  return v ^ v >> 33;
+}
+
+// A unit vector for particles that share one point; opposite for the two partners.
+std::array<double, 3> parting_direction(std::int64_t own, std::int64_t other) {
+  const auto r = random_uniform(0, RandomPurpose::parting, pair_hash(own, other), 0, 0);
+  const double cosine = 2 * r[0] - 1, angle = 2 * M_PI * r[1];
+  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) * (own < other ? 1 : -1);
+  return {sine * std::cos(angle), sine * std::sin(angle), own < other ? cosine : -cosine};
+}
+
+}  // namespace
+
+bool stronger_overlap(double q1, std::int64_t a1, std::int64_t b1, double q2, std::int64_t a2, std::int64_t b2) {
+  if (q1 != q2) return q1 > q2;
+  const std::uint64_t h1 = pair_hash(a1, b1), h2 = pair_hash(a2, b2);
+  if (h1 != h2) return h1 > h2;
+  const std::int64_t low1 = std::min(a1, b1), low2 = std::min(a2, b2);
+  return low1 != low2 ? low1 < low2 : std::max(a1, b1) < std::max(a2, b2);
+}
+
+Exclusion::Exclusion(const std::array<double, 3>& lower, const std::array<double, 3>& length, double largest_diameter)
+    : lower_(lower), length_(length), largest_diameter_(largest_diameter) {
+  const double shortest = std::min({length[0], length[1], length[2]});
+  if (!(largest_diameter > 0) || !(2 * largest_diameter < shortest))
+    throw std::invalid_argument("the largest diameter, " + std::to_string(largest_diameter) +
+                                ", must lie between 0 and half of the shortest side of the box");
+}
+
+void Exclusion::prepare(const Spheres& spheres) {
+  const std::size_t n = spheres.size;
+  // One particle per cell on average, and never less than a diameter: the printed radius misses overlaps.
+  cells_ = PeriodicCells::with_side(lower_, length_, largest_diameter_, std::max<double>(64, static_cast<double>(n)));
+  for (int axis = 0; axis < 3; ++axis) inverse_side_[axis] = cells_.count[axis] / length_[axis];
+  own_images_ = std::min({cells_.count[0], cells_.count[1], cells_.count[2]}) < 3;
+  order_.build(cells_, spheres.position[0], spheres.position[1], spheres.position[2], n);
+  records_.resize(n);
+  const std::int32_t* order = order_.order().data();
+  parallel_for(n, [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(order[k]);
+    records_[k] = {spheres.position[0][i], spheres.position[1][i], spheres.position[2][i],
+                   static_cast<float>(spheres.diameter == nullptr ? spheres.common_diameter : spheres.diameter[i]),
+                   order[k]};
+  });
+}
+
+ExclusionReport Exclusion::match(const Spheres& spheres, MatchingMethod method) {
+  prepare(spheres);
+  partner_.resize(spheres.size);
+  taken_.resize(spheres.size);
+  parallel_for(spheres.size, [&](std::size_t i) {
+    partner_[i] = -1;
+    taken_[i] = 0;
+  });
+  return method == MatchingMethod::rounds ? match_by_rounds(spheres) : match_by_sorting(spheres);
+}
+
+Exclusion::Best Exclusion::strongest_free(const Spheres& spheres, std::size_t k) const {
+  Best best{0, -1};
+  const auto identifier = [&](std::int32_t rank) {
+    return spheres.identifier[records_[static_cast<std::size_t>(rank)].index];
+  };
+  for_each_overlap(k, [&](std::int32_t m, double overlap) {
+    if (overlap < best.overlap || taken_[static_cast<std::size_t>(m)] != 0) return;
+    if (best.rank < 0 || overlap > best.overlap) {
+      best = {overlap, m};
+      return;
+    }
+    const std::int64_t own = identifier(static_cast<std::int32_t>(k));
+    if (stronger_overlap(overlap, own, identifier(m), best.overlap, own, identifier(best.rank))) best = {overlap, m};
+  });
+  return best;
+}
+
+// Here taken_, best_ and strength_ are by rank.
+ExclusionReport Exclusion::match_by_rounds(const Spheres& spheres) {
+  const std::size_t n = spheres.size;
+  best_.resize(n);
+  strength_.resize(n);
+  active_.resize(n);
+  next_active_.resize(n);
+  parallel_for(n, [&](std::size_t k) {
+    const Best best = strongest_free(spheres, k);
+    best_[k] = best.rank;
+    strength_[k] = best.overlap;
+  });
+
+  // Keeps the ranks with a free partner, in ascending order, by fixed blocks.
+  std::array<std::size_t, max_reduction_blocks + 1> start{};
+  const auto keep = [&](const std::int32_t* from, std::size_t count, Array<std::int32_t>& to) {
+    const std::size_t block = std::max(default_block, block_count(count, max_reduction_blocks));
+    const auto wanted = [&](std::size_t a) {
+      const std::size_t k = from == nullptr ? a : static_cast<std::size_t>(from[a]);
+      return best_[k] >= 0 && taken_[k] == 0;
+    };
+    parallel_blocks(count, block, [&](std::size_t b, std::size_t first, std::size_t last) {
+      std::size_t kept = 0;
+      for (std::size_t a = first; a < last; ++a) kept += wanted(a) ? 1 : 0;
+      start[b + 1] = kept;
+    });
+    const std::size_t blocks = block_count(count, block);
+    start[0] = 0;
+    for (std::size_t b = 0; b < blocks; ++b) start[b + 1] += start[b];
+    parallel_blocks(count, block, [&](std::size_t b, std::size_t first, std::size_t last) {
+      std::size_t place = start[b];
+      for (std::size_t a = first; a < last; ++a)
+        if (wanted(a)) to[place++] = from == nullptr ? static_cast<std::int32_t>(a) : from[a];
+    });
+    return count == 0 ? std::size_t{0} : start[blocks];
+  };
+  std::size_t left = keep(nullptr, n, active_);
+  const std::size_t overlapping = left;
+  int rounds = 0;
+  while (left > 0) {
+    // The globally strongest free pair is always the strongest for both, so that every round takes at least one.
+    ++rounds;
+    parallel_for(left, [&](std::size_t a) {
+      const auto k = static_cast<std::size_t>(active_[a]);
+      const std::int32_t m = best_[k];
+      if (best_[static_cast<std::size_t>(m)] != active_[a]) return;
+      taken_[k] = 1;
+      partner_[static_cast<std::size_t>(records_[k].index)] = records_[static_cast<std::size_t>(m)].index;
+    });
+    parallel_for(left, [&](std::size_t a) {
+      const auto k = static_cast<std::size_t>(active_[a]);
+      if (taken_[k] != 0 || taken_[static_cast<std::size_t>(best_[k])] == 0) return;
+      const Best best = strongest_free(spheres, k);
+      best_[k] = best.rank;
+    });
+    left = keep(active_.data(), left, next_active_);
+    active_.swap(next_active_);
+  }
+  return summarise(overlapping, rounds);
+}
+
+ExclusionReport Exclusion::match_by_sorting(const Spheres& spheres) {
+  struct Overlap {
+    double overlap;
+    std::int64_t own, other;
+    std::int32_t rank, other_rank;
+  };
+  const std::size_t n = spheres.size;
+  strength_.resize(n);
+  const std::size_t block = std::max(default_block, block_count(n, max_reduction_blocks));
+  std::vector<std::vector<Overlap>> lists(block_count(n, block));
+  const auto before = [](const Overlap& a, const Overlap& b) {
+    return stronger_overlap(a.overlap, a.own, a.other, b.overlap, b.own, b.other);
+  };
+  parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      const std::int64_t own = spheres.identifier[records_[k].index];
+      strength_[k] = 0;
+      for_each_overlap(k, [&](std::int32_t m, double overlap) {
+        strength_[k] = std::max(strength_[k], overlap);
+        const std::int64_t other = spheres.identifier[records_[static_cast<std::size_t>(m)].index];
+        if (own > other) lists[b].push_back({overlap, own, other, static_cast<std::int32_t>(k), m});
+      });
+    }
+    std::sort(lists[b].begin(), lists[b].end(), before);
+  });
+  for (std::size_t width = 1; width < lists.size(); width *= 2)
+    parallel_blocks(block_count(lists.size(), 2 * width), 1, [&](std::size_t pair, std::size_t, std::size_t) {
+      const std::size_t a = 2 * width * pair, b = a + width;
+      if (b >= lists.size()) return;
+      std::vector<Overlap> merged(lists[a].size() + lists[b].size());
+      std::merge(lists[a].begin(), lists[a].end(), lists[b].begin(), lists[b].end(), merged.begin(), before);
+      lists[a].swap(merged);
+      lists[b] = {};
+    });
+  if (!lists.empty())
+    for (const Overlap& o : lists[0]) {
+      auto& own = taken_[static_cast<std::size_t>(o.rank)];
+      auto& other = taken_[static_cast<std::size_t>(o.other_rank)];
+      if (own != 0 || other != 0) continue;
+      own = other = 1;
+      const std::int32_t i = records_[static_cast<std::size_t>(o.rank)].index;
+      const std::int32_t j = records_[static_cast<std::size_t>(o.other_rank)].index;
+      partner_[static_cast<std::size_t>(i)] = j;
+      partner_[static_cast<std::size_t>(j)] = i;
+    }
+  const auto overlapping = static_cast<std::size_t>(parallel_sum(n, [&](std::size_t k) { return strength_[k] > 0; }));
+  return summarise(overlapping, 1);
+}
+
+ExclusionReport Exclusion::summarise(std::size_t overlapping, int rounds) const {
+  const std::size_t n = partner_.size();
+  ExclusionReport report;
+  report.overlapping = overlapping;
+  report.rounds = rounds;
+  report.pairs = static_cast<std::size_t>(parallel_sum(n, [&](std::size_t i) { return partner_[i] >= 0 ? 0.5 : 0.0; }));
+  report.strongest = parallel_max(n, 0.0, [&](std::size_t k) { return strength_[k] / records_[k].diameter; });
+  return report;
+}
+
+void Exclusion::separate(const Spheres& spheres) const {
+  // Written only after every pair was read: both partners need both old places.
+  const auto shift_of = [&](std::size_t i) {
+    const auto j = static_cast<std::size_t>(partner_[i]);
+    std::array<double, 3> d;
+    double distance_2 = 0;
+    for (int c = 0; c < 3; ++c) {
+      d[c] = nearest_image(spheres.position[c][i] - spheres.position[c][j], length_[c]);
+      distance_2 += d[c] * d[c];
+    }
+    const double own = spheres.diameter == nullptr ? spheres.common_diameter : spheres.diameter[i];
+    const double other = spheres.diameter == nullptr ? spheres.common_diameter : spheres.diameter[j];
+    const double distance = std::sqrt(distance_2);
+    const double touching = 0.5 * (own + other);
+    if (distance > 1e-12 * touching)
+      for (double& component : d) component /= distance;
+    else
+      d = parting_direction(spheres.identifier[i], spheres.identifier[j]);
+    const double share = other * other * other / (own * own * own + other * other * other);
+    for (double& component : d) component *= share * (touching - distance);
+    return d;
+  };
+  parallel_for(spheres.size, [&](std::size_t i) {
+    const std::int32_t j = partner_[i];
+    // The partner with the smaller index moves both: no one else touches either.
+    if (j < 0 || static_cast<std::size_t>(j) < i) return;
+    const auto mine = shift_of(i), theirs = shift_of(static_cast<std::size_t>(j));
+    for (int c = 0; c < 3; ++c) {
+      double* x = spheres.position[c];
+      x[i] = wrap_periodic(x[i] + mine[c], lower_[c], length_[c]);
+      x[j] = wrap_periodic(x[j] + theirs[c], lower_[c], length_[c]);
+    }
+  });
+}
+
+double Exclusion::bytes() const {
+  return order_.bytes() + static_cast<double>(sizeof(Record) * records_.capacity() + 8 * strength_.capacity() +
+                                              4 * (partner_.capacity() + best_.capacity() + active_.capacity() +
+                                                   next_active_.capacity()) +
+                                              taken_.capacity());
+}
+
+}  // namespace spume

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+#include "spume/physics/particles/particle_system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+
+namespace spume {
+namespace {
+
+const ParticleOptions& checked(const PeriodicGrid& grid, const ParticleOptions& options) {
+  const auto& diameters = options.placement.diameters;
+  if (diameters.empty()) throw InputError("no particle diameter is given");
+  if (!options.placement.shares.empty() && options.placement.shares.size() != diameters.size())
+    throw InputError(std::to_string(options.placement.shares.size()) + " shares are given for " +
+                     std::to_string(diameters.size()) + " diameters");
+  const double shortest = std::min({grid.length[0], grid.length[1], grid.length[2]});
+  for (const double d : diameters)
+    if (!(d > 0) || !(2 * d < shortest))
+      throw InputError("a particle diameter of " + std::to_string(d) +
+                       " does not lie between 0 and half of the shortest side of the box, " + std::to_string(shortest));
+  if (options.count > std::size_t{1} << 30)
+    throw InputError(std::to_string(options.count) + " particles; at most 2^30 can be numbered");
+  if (options.coupling != Coupling::one_way && !(options.motion.beta > 0))
+    throw InputError("two-way coupling needs particles of finite density, beta > 0");
+  return options;
+}
+
+double largest_diameter(const ParticleOptions& options) {
+  return *std::max_element(options.placement.diameters.begin(), options.placement.diameters.end());
+}
+
+ParticleArrays arrays_for(const ParticleOptions& options) {
+  return {options.coupling != Coupling::one_way, options.placement.diameters.size() > 1};
+}
+
+}  // namespace
+
+ParticleSystem::ParticleSystem(const PeriodicGrid& grid, const ParticleOptions& options)
+    : grid_(grid), options_(checked(grid, options)), particles_(arrays_for(options)), clock_(2) {
+  particles_.common_diameter = options.placement.diameters.front();
+  particles_.fields.resize(options.count);
+  place_particles(options.placement, grid.lower, grid.length, particles_);
+  if (options.single_precision_records)
+    field_ = SplineField<float>(grid, options.spline_order);
+  else
+    field_ = SplineField<double>(grid, options.spline_order);
+  if (couples()) {
+    deposition_ = LinearDeposition(grid);
+    amounts_.resize(4 * options.count);
+  }
+  const double volume = parallel_sum(size(), [&](std::size_t i) { return sphere_volume(particles_.diameter_of(i)); });
+  volume_fraction_ = volume / (grid.length[0] * grid.length[1] * grid.length[2]);
+}
+
+template <class Source>
+void ParticleSystem::begin(const std::array<const Source*, 3>& velocity) {
+  resume(velocity);
+  order_by_cell();
+  particles_.fields.permute(order_.order());
+  order_is_current_ = false;
+  if (!options_.motion.frozen)
+    std::visit(
+        [&](const auto& field) {
+          gather(field, size(), particles_.positions(),
+                 {particles_.velocity[0]->data(), particles_.velocity[1]->data(), particles_.velocity[2]->data()},
+                 nullptr);
+        },
+        field_);
+  motion_.mean_square_velocity = parallel_sum(size(),
+                                              [&](std::size_t i) {
+                                                double square = 0;
+                                                for (const auto* v : particles_.velocity) square += (*v)[i] * (*v)[i];
+                                                return square;
+                                              }) /
+                                 static_cast<double>(std::max<std::size_t>(size(), 1));
+  // No step was made yet: bubbles without a force, but with their volume.
+  for (std::size_t i = 0; i < amounts_.size() / 4; ++i) {
+    for (int c = 0; c < 3; ++c) amounts_[4 * i + c] = 0;
+    amounts_[4 * i + 3] = sphere_volume(particles_.diameter_of(i));
+  }
+}
+
+template <class Source>
+void ParticleSystem::resume(const std::array<const Source*, 3>& velocity) {
+  std::visit([&](auto& field) { field.fill(velocity); }, field_);
+}
+
+template <class Source>
+void ParticleSystem::advance(double dt, const std::array<const Source*, 3>& velocity, Ledger& ledger) {
+  const auto n = static_cast<double>(size());
+  if (static_cast<std::int64_t>(clock_[1]) % options_.sort_every == 0) sort(ledger);
+  {
+    const auto scope = ledger.time("particle records", n);
+    std::visit([&](auto& field) { field.fill(velocity); }, field_);
+  }
+  {
+    const auto scope = ledger.time("particle motion", n);
+    ForceOutput output;
+    if (couples()) {
+      output.amounts = amounts_.data();
+      // From the middles of the last two steps to the time at which the force is wanted.
+      output.extrapolation = clock_[1] > 0 ? options_.force_lead * dt / (0.5 * (dt + clock_[0])) : 0;
+    }
+    motion_ = std::visit(
+        [&](const auto& field) { return move_particles(options_.motion, field, dt, particles_, output); }, field_);
+  }
+  order_is_current_ = false;
+  if (collides()) {
+    const auto scope = ledger.time("particle exclusion", n);
+    exclusion_report_ = cells().match(spheres(), options_.matching);
+    exclusion_.separate(spheres());
+    std::size_t pairs = exclusion_report_.pairs;
+    for (int sweep = 1; sweep < options_.collision_sweeps && pairs > 0; ++sweep) {
+      pairs = exclusion_.match(spheres(), options_.matching).pairs;
+      exclusion_.separate(spheres());
+      exclusion_report_.pairs += pairs;
+    }
+  }
+  clock_[0] = dt;
+  clock_[1] += 1;
+}
+
+template <class Real>
+void ParticleSystem::feedback(const std::array<Real*, 3>& force, Ledger& ledger) {
+  const auto scope = ledger.time("particle feedback", static_cast<double>(size()));
+  order_by_cell();
+  deposition_report_ = deposition_.deposit<Real>(order_, particles_.positions(), amounts_.data(),
+                                                 options_.most_volume_fraction, force, nullptr);
+}
+
+void ParticleSystem::order_by_cell() {
+  if (order_is_current_) return;
+  const auto x = particles_.positions();
+  order_.build({grid_.lower, grid_.length, grid_.points}, x[0], x[1], x[2], size());
+  order_is_current_ = true;
+}
+
+void ParticleSystem::sort(Ledger& ledger) {
+  const auto scope = ledger.time("particle sort", static_cast<double>(size()));
+  order_by_cell();
+  // The forces need not follow: the step that follows finds them anew.
+  if (!order_.already_sorted()) particles_.fields.permute(order_.order());
+  order_is_current_ = false;
+}
+
+Spheres ParticleSystem::spheres() {
+  Spheres s;
+  for (int c = 0; c < 3; ++c) s.position[c] = particles_.position[c]->data();
+  s.diameter = particles_.diameter == nullptr ? nullptr : particles_.diameter->data();
+  s.identifier = particles_.identifier->data();
+  s.common_diameter = particles_.common_diameter;
+  s.size = size();
+  return s;
+}
+
+SampledValue ParticleSystem::measure_overlap(std::size_t samples, std::uint32_t step) {
+  return overlap_ratio(cells(), spheres(), samples, options_.placement.seed, step);
+}
+
+std::vector<double> ParticleSystem::overlap_histogram(int bins) {
+  return spume::overlap_histogram(cells(), spheres(), bins);
+}
+
+Exclusion& ParticleSystem::cells() {
+  if (!has_cells_) exclusion_ = Exclusion(grid_.lower, grid_.length, largest_diameter(options_));
+  has_cells_ = true;
+  return exclusion_;
+}
+
+std::vector<ParticleSystem::StateArray> ParticleSystem::state() {
+  std::vector<StateArray> out;
+  for (const auto& field : particles_.fields.fields()) {
+    StateArray array{"particle_" + field->name};
+    if (auto* f64 = std::get_if<Array<double>>(&field->values)) array.f64 = f64;
+    if (auto* i64 = std::get_if<Array<std::int64_t>>(&field->values)) array.i64 = i64;
+    out.push_back(array);
+  }
+  out.push_back({"particle_clock", &clock_, nullptr});
+  if (couples()) out.push_back({"particle_amounts", &amounts_, nullptr});
+  return out;
+}
+
+void ParticleSystem::restored() {
+  order_is_current_ = false;
+  for (const StateArray& array : state()) {
+    const std::size_t wanted = array.f64 == &clock_ ? 2 : (array.f64 == &amounts_ ? 4 * size() : size());
+    const std::size_t found = array.f64 != nullptr ? array.f64->size() : array.i64->size();
+    if (found != wanted)
+      throw FileError("the checkpoint holds " + std::to_string(found) + " values of " + array.name +
+                      "; the case needs " + std::to_string(wanted));
+  }
+}
+
+std::vector<ParticleSystem::ArraySize> ParticleSystem::arrays() const {
+  std::vector<ArraySize> out{{"particle state", particles_.fields.bytes()},
+                             {"particle order", order_.bytes()},
+                             {"velocity records", std::visit([](const auto& f) { return f.bytes(); }, field_)}};
+  if (couples())
+    out.push_back({"particle forces", 8.0 * static_cast<double>(amounts_.capacity()) + deposition_.bytes()});
+  if (has_cells_) out.push_back({"particle exclusion", exclusion_.bytes()});
+  return out;
+}
+
+double ParticleSystem::estimated_bytes(const PeriodicGrid& grid, const ParticleOptions& options) {
+  const auto n = static_cast<double>(options.count);
+  const bool couples = options.coupling != Coupling::one_way, collides = options.coupling == Coupling::four_way;
+  // State, one scratch array of each type, and the order.
+  double per_particle = 8 * 7 + 16 + 16;
+  if (options.placement.diameters.size() > 1) per_particle += 8;
+  if (couples) per_particle += 8 * 3 + 8 * 4;
+  if (collides) per_particle += 32 + 16 + 8 + 16 + 1 + 4;
+  double points = 1;
+  for (int axis = 0; axis < 3; ++axis) points *= grid.points[axis] + options.spline_order - 1;
+  return per_particle * n + 4.0 * static_cast<double>(grid.point_count()) +
+         points * (options.single_precision_records ? 32 : 64);
+}
+
+template void ParticleSystem::begin(const std::array<const double*, 3>&);
+template void ParticleSystem::begin(const std::array<const float*, 3>&);
+template void ParticleSystem::advance(double, const std::array<const double*, 3>&, Ledger&);
+template void ParticleSystem::advance(double, const std::array<const float*, 3>&, Ledger&);
+template void ParticleSystem::resume(const std::array<const double*, 3>&);
+template void ParticleSystem::resume(const std::array<const float*, 3>&);
+template void ParticleSystem::feedback(const std::array<double*, 3>&, Ledger&);
+template void ParticleSystem::feedback(const std::array<float*, 3>&, Ledger&);
+
+}  // namespace spume

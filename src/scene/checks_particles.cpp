@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// What [particles] must satisfy beyond types and ranges.
+#include <algorithm>
+#include <cmath>
+
+#include "checks.hpp"
+
+namespace spume {
+
+void check_particles(const Draft& draft, Problems& problems) {
+  const Node* section = draft.node("particles");
+  if (!section) return;
+  const ParticleCaseOptions& p = draft.options.particles;
+  const auto has = [&](const char* key) { return draft.node(std::string("particles.") + key) != nullptr; };
+  const auto fault = [&](const char* key, const std::string& text) {
+    const Node* node = draft.node(std::string("particles.") + key);
+    problems.add(node ? *node : *section, std::string("particles.") + key + " " + text);
+  };
+  const auto exactly_one = [&](std::vector<const char*> keys, bool required, const char* example) {
+    const auto given = std::count_if(keys.begin(), keys.end(), has);
+    if (given > 1)
+      for (const char* key : keys)
+        if (has(key)) {
+          std::string others;
+          for (const char* other : keys)
+            if (other != key && has(other)) others += (others.empty() ? "" : ", ") + std::string(other);
+          fault(key, "and " + others + " exclude each other; keep one");
+          return;
+        }
+    if (given == 0 && required)
+      problems.add(*section, std::string("missing key '") + keys[0] + "' in [particles]; add  " + example);
+  };
+  exactly_one({"count", "volume_fraction"}, true, "count = <number>");
+  exactly_one({"diameter", "diameter_over_eta", "diameters"}, true, "diameter = <number>  # length, > 0");
+  exactly_one({"stokes", "response_time"}, false, "");
+  for (const char* key : {"stokes", "diameter_over_eta"})
+    if (has(key) && draft.options.forcing.kind != ForcingKind::shell)
+      fault(key, "is counted in Kolmogorov scales of the injected energy and needs forcing.kind = \"shell\"");
+
+  std::vector<double> diameters = p.diameters;
+  if (has("diameter")) diameters = {p.diameter};
+  const char* key = has("diameter") ? "diameter" : "diameters";
+  if (draft.dimensions == 3) {
+    double shortest = draft.upper[0] - draft.lower[0];
+    for (std::size_t a = 1; a < 3; ++a) shortest = std::min(shortest, draft.upper[a] - draft.lower[a]);
+    for (const double d : diameters)
+      if (!(d > 0) || !(2 * d < shortest)) {
+        fault(key, "must lie between 0 and half of the shortest side of the box, " + brief(shortest) + "; found " +
+                       brief(d));
+        break;
+      }
+    if (p.count > 0 && !diameters.empty()) {
+      double volume = 1, mean = 0, shares = 0;
+      for (std::size_t a = 0; a < 3; ++a) volume *= draft.upper[a] - draft.lower[a];
+      for (std::size_t i = 0; i < diameters.size(); ++i) {
+        const double share = i < p.shares.size() ? p.shares[i] : 1.0;
+        mean += share * std::pow(diameters[i], 3) * M_PI / 6;
+        shares += share;
+      }
+      const double fraction = static_cast<double>(p.count) * mean / shares / volume;
+      if (fraction > 0.74)
+        fault("count", "of these diameters fill " + brief(fraction) +
+                           " of the box, more than spheres can (0.74); take at most " +
+                           brief(std::floor(static_cast<double>(p.count) * 0.74 / fraction)));
+    }
+  }
+  if (has("shares") && p.shares.size() != p.diameters.size())
+    fault("shares", "must have one entry for each of the " + std::to_string(p.diameters.size()) + " diameters, found " +
+                        std::to_string(p.shares.size()));
+  if (std::any_of(p.shares.begin(), p.shares.end(), [](double s) { return !(s >= 0); }))
+    fault("shares", "must not be negative");
+  if (has("gravity") && p.gravity.size() != 3)
+    fault("gravity", "must have 3 entries, found " + std::to_string(p.gravity.size()));
+  if (has("spline_order") && p.spline_order % 2 != 0)
+    fault("spline_order", "must be 2, 4 or 6, found " + std::to_string(p.spline_order));
+  if (p.coupling != ParticleCoupling::one_way && has("beta") && p.beta == 0)
+    fault("beta",
+          "= 0 is infinitely heavy, which nothing in the flow can be coupled to; give a value above 0, or "
+          "particles.coupling = \"one-way\"");
+  if (!has("stokes") && !has("response_time") && has("beta") && p.beta == 0)
+    fault("beta", "= 0 has no response time of its own; add  stokes = <number>");
+  if (p.placement == ParticlePlacement::file && !has("file"))
+    problems.add(*section, "missing key 'file' in [particles]; add  file = \"<path of a CSV file>\"");
+  if (has("file") && p.placement != ParticlePlacement::file) fault("file", "belongs to particles.placement = \"file\"");
+  if (p.lyapunov > 0 && !p.double_records) fault("lyapunov", "needs particles.records = \"double\"");
+}
+
+}  // namespace spume

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "spume/io/vtkhdf_grid.hpp"
+
+#include <gtest/gtest.h>
+
+#include "spume/core/error.hpp"
+#include "spume/io/hdf5.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace spume {
+namespace {
+
+struct Fields {
+  std::vector<float> a, b, c;
+  GridSnapshot snapshot{{3, 4, 5}, {0.5, 0, -1}, {0.1, 0.2, 0.3}, {}};
+  explicit Fields(float shift) {
+    for (int i = 0; i < 60; ++i) {
+      a.push_back(static_cast<float>(i) + shift);
+      b.push_back(-static_cast<float>(i));
+      c.push_back(2 * static_cast<float>(i));
+    }
+    snapshot.fields = {{"velocity", {a.data(), b.data(), c.data()}}, {"pressure", {a.data()}}};
+  }
+};
+
+std::vector<float> read(const std::filesystem::path& path, const std::string& name) {
+  const auto file = hdf5::File::open(path, false);
+  const auto data = file.dataset(name);
+  const auto space = file.take(H5Dget_space(data), H5Sclose, "read");
+  std::vector<float> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  file.check(H5Dread(data, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read");
+  return values;
+}
+
+TEST(VtkhdfGrid, StepsAreStoredWithXFastest) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "fluid.vtkhdf";
+  VtkhdfGridFile file(path, {{"case", "text"}});
+  file.append(0, Fields(0).snapshot);
+  file.append(0.5, Fields(100).snapshot);
+  const std::vector<float> pressure = read(path, "/VTKHDF/PointData/pressure");
+  const std::vector<float> velocity = read(path, "/VTKHDF/PointData/velocity");
+  ASSERT_EQ(pressure.size(), 120u);
+  ASSERT_EQ(velocity.size(), 360u);
+  // Point (2, 1, 4) of the second step.
+  const std::size_t stored = 60 + (4 * 4 + 1) * 3 + 2, given = (2 * 4 + 1) * 5 + 4;
+  EXPECT_EQ(pressure[stored], 100 + static_cast<float>(given));
+  EXPECT_EQ(velocity[3 * stored + 1], -static_cast<float>(given));
+  EXPECT_EQ(velocity[3 * stored + 2], 2 * static_cast<float>(given));
+  const GridContents contents = read_grid_contents(path);
+  EXPECT_EQ(contents.times, (std::vector<double>{0, 0.5}));
+  EXPECT_EQ(contents.points, (std::array<std::int64_t, 3>{3, 4, 5}));
+  EXPECT_EQ(contents.fields, (std::vector<std::string>{"pressure", "velocity"}));
+  EXPECT_TRUE(is_grid_file(path));
+}
+
+TEST(VtkhdfGrid, ContinuesAfterTheStepsThatAreKept) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "fluid.vtkhdf";
+  {
+    VtkhdfGridFile file(path, {});
+    for (int step = 0; step < 3; ++step) file.append(step, Fields(static_cast<float>(step)).snapshot);
+  }
+  VtkhdfGridFile file(path, {});
+  EXPECT_EQ(file.steps(), 3);
+  file.keep_steps(1);
+  file.append(7, Fields(50).snapshot);
+  EXPECT_EQ(read_grid_contents(path).times, (std::vector<double>{0, 7}));
+  EXPECT_EQ(read(path, "/VTKHDF/PointData/pressure")[60], 50);
+  EXPECT_THROW(file.keep_steps(5), FileError);
+  file.keep_steps(0);
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST(VtkhdfGrid, AnotherGridIsRefused) {
+  const test::TemporaryFolder folder;
+  VtkhdfGridFile file(folder / "fluid.vtkhdf", {});
+  file.append(0, Fields(0).snapshot);
+  Fields other(0);
+  other.snapshot.points = {3, 5, 4};
+  EXPECT_THROW(file.append(1, other.snapshot), FileError);
+}
+
+}  // namespace
+}  // namespace spume

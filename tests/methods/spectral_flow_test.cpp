@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: MIT
+#include "methods/spectral_flow.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <numbers>
+
+#include "spume/core/parallel.hpp"
+#include "spume/io/checkpoint.hpp"
+#include "spume/methods/spectral/flow_fields.hpp"
+#include "spume/methods/spectral/flow_statistics.hpp"
+
+namespace spume {
+namespace {
+
+using spectral::Flow;
+using spectral::Modes;
+using test::beltrami_start;
+using test::random_start;
+using test::spectral_text;
+using test::SpectralRun;
+
+constexpr double pi = std::numbers::pi;
+
+// Largest difference of the velocity at a few points from that of beltrami_start.
+template <class T>
+double beltrami_error(SpectralRun<T>& run) {
+  const double t = run.method.time(), decay = std::exp(-pi * pi / 20 * t);
+  double worst = 0;
+  for (const Vec3& at : {Vec3{0.1, 0.2, 0.3}, Vec3{0.7, 1.1, 1.9}}) {
+    const Vec3 u = run.method.sample(at).velocity;
+    const double phase = pi * (at[2] - 0.9 * t);
+    worst = std::max({worst, std::abs(u[0] - 0.3 - decay * std::cos(phase)),
+                      std::abs(u[1] - 0.2 + decay * std::sin(phase)), std::abs(u[2] - 0.9)});
+  }
+  return worst;
+}
+
+double order_of(const std::string& integrator, double dt) {
+  double errors[2];
+  for (int i = 0; i < 2; ++i) {
+    SpectralRun<> run(spectral_text("[8, 4, 12]", beltrami_start(integrator)));
+    const double step = dt / (i + 1);
+    run.start().steps(static_cast<int>(std::lround(0.4 / step)), step);
+    errors[i] = beltrami_error(run);
+  }
+  EXPECT_GT(errors[1], 1e-13) << "rounding hides the order";
+  return std::log2(errors[0] / errors[1]);
+}
+
+TEST(SpectralFlow, IntegratorsHaveTheirOrderInBoxesOfAnyLengths) {
+  EXPECT_NEAR(order_of("ab2", 0.01), 2, 0.1);
+  EXPECT_NEAR(order_of("rk3", 0.02), 3, 0.1);
+  EXPECT_NEAR(order_of("rk4", 0.02), 4, 0.15);
+}
+
+TEST(SpectralFlow, ViscousDecayIsExactAtAnyStep) {
+  for (const char* integrator : {"ab2", "rk3", "rk4"}) {
+    SpectralRun<> run(spectral_text("[6, 8, 10]",
+                                    "[fluid]\nreynolds = 5\n[initial]\nkind = \"expressions\"\nvelocity = "
+                                    "[\"cos(pi*z)\", \"-sin(pi*z)\", 0]\n[spectral]\nintegrator = \"" +
+                                        std::string(integrator) + "\"\n"));
+    run.start().steps(10, 0.03);
+    // u is a Beltrami flow: K vanishes. A few roundings a step.
+    EXPECT_NEAR(run.series()["mean_energy"], 0.5 * std::exp(-2 * pi * pi / 5 * 0.3), 1e-14) << integrator;
+  }
+}
+
+TEST(SpectralFlow, SinglePrecisionFollowsDoubleToItsRounding) {
+  SpectralRun<float> run(spectral_text("[8, 4, 12]", beltrami_start("rk4", "precision = \"single\"\n")));
+  run.start().steps(20, 0.02);
+  EXPECT_LT(beltrami_error(run), 20 * 5 * std::numeric_limits<float>::epsilon());
+}
+
+TEST(SpectralFlow, VelocityIsSolenoidalAndRealToRounding) {
+  SpectralRun<> run(spectral_text("[12, 18, 20]", random_start));
+  run.start().steps(5, 0.01);
+  const ModeLayout& layout = run.method.flow().layout();
+  const Modes<double>& b = run.method.flow().potential();
+  double along = 0, scale = 0, asymmetry = 0;
+  for (std::size_t ix = 0; ix < 12; ++ix)
+    for (std::size_t iy = 0; iy < 18; ++iy)
+      for (std::size_t iz = 0; iz < 10; ++iz) {
+        const std::size_t at = ix * layout.plane + iy * layout.row + iz;
+        const double k[3] = {layout.wavenumber[0][ix], layout.wavenumber[1][iy], layout.wavenumber[2][iz]};
+        std::complex<double> sum = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+          sum += k[c] * b[c][at];
+          scale = std::max(scale, std::abs(k[c] * b[c][at]));
+        }
+        along = std::max(along, std::abs(sum));  // u = curl b is solenoidal anyway; b stays in its gauge
+        if (iz == 0) {
+          const std::size_t other = (ix == 0 ? 0 : 12 - ix) * layout.plane + (iy == 0 ? 0 : 18 - iy) * layout.row;
+          for (std::size_t c = 0; c < 3; ++c)
+            asymmetry = std::max(asymmetry, std::abs(b[c][at] - std::conj(b[c][other])));
+        }
+      }
+  EXPECT_LT(along, 1e-14 * scale);
+  EXPECT_LT(asymmetry, 1e-14 * scale);
+}
+
+TEST(SpectralFlow, InviscidFlowKeepsItsEnergy) {
+  for (const char* dealiasing : {"padded", "two-thirds"}) {
+    std::string text =
+        spectral_text("16", random_start + "[spectral]\nintegrator = \"rk4\"\ndealiasing = \"" + dealiasing + "\"\n");
+    text.replace(text.find("reynolds = 60\n"), 14, "");
+    SpectralRun<> run(text);
+    run.start();
+    const double before = run.series()["mean_energy"];
+    run.steps(10, 0.004);
+    // What is left is the error of the integrator.
+    EXPECT_NEAR(run.series()["mean_energy"] / before, 1, 1e-8) << dealiasing;
+  }
+}
+
+// Rates of change of the modes below 8 of 16 along each axis.
+std::vector<std::complex<double>> rates(const std::string& grid, const std::string& dealiasing) {
+  const std::string start =
+      "[fluid]\nreynolds = 60\n[initial]\nkind = \"random\"\nspectrum = \"k < 21 ? k : 0\"\nenergy = 0.5\n"
+      "[spectral]\ndealiasing = \"" +
+      dealiasing + "\"\n";
+  SpectralRun<> run(spectral_text(grid, start));
+  run.start();
+  const Modes<double> before = run.method.flow().potential();
+  const double dt = 1e-6;
+  run.steps(1, dt);
+  const ModeLayout& layout = run.method.flow().layout();
+  std::vector<std::complex<double>> result;
+  for (int sx = -7; sx < 8; ++sx)
+    for (int sy = -7; sy < 8; ++sy)
+      for (std::size_t iz = 0; iz < 8; ++iz)
+        for (std::size_t c = 0; c < 3; ++c) {
+          const auto index = [](int s, std::size_t n) {
+            return s < 0 ? n - static_cast<std::size_t>(-s) : static_cast<std::size_t>(s);
+          };
+          const std::size_t at =
+              index(sx, layout.points[0]) * layout.plane + index(sy, layout.points[1]) * layout.row + iz;
+          result.push_back((run.method.flow().potential()[c][at] - before[c][at]) / dt);
+        }
+  return result;
+}
+
+TEST(SpectralFlow, PaddedProductsAreFreeOfAliasingAndUnpaddedOnesAreNot) {
+  // On 24 points the products of modes below 8 need no padding.
+  const auto exact = rates("24", "none"), padded = rates("16", "padded"), aliased = rates("16", "none");
+  double scale = 0, error = 0, aliasing = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    scale = std::max(scale, std::abs(exact[i]));
+    error = std::max(error, std::abs(padded[i] - exact[i]));
+    aliasing = std::max(aliasing, std::abs(aliased[i] - exact[i]));
+  }
+  EXPECT_LT(error, 1e-4 * scale);  // dt times the rate of the fastest mode
+  EXPECT_GT(aliasing, 1e-2 * scale);
+}
+
+TEST(SpectralFlow, TwoThirdsRuleCutsModesThatPaddingKeeps) {
+  const std::string start =
+      "[fluid]\nreynolds = 60\n[initial]\nkind = \"expressions\"\nvelocity = "
+      "[\"exp(-((y-0.75)^2 + (z-1)^2)*400)\", 0, 0]\n[spectral]\ndealiasing = \"";
+  std::map<std::string, double> peak, lowest;
+  for (const std::string dealiasing : {"padded", "two-thirds"}) {
+    SpectralRun<> run(spectral_text("24", start + dealiasing + "\"\n"));
+    run.start();
+    const std::size_t size = 24 * 24 * 24;
+    Array<double> values(3 * size);
+    spectral::real_velocity(run.method.flow(), run.method.flow().potential(), {},
+                            {&values[0], &values[size], &values[2 * size]}, 24);
+    peak[dealiasing] = *std::max_element(values.begin(), values.begin() + size);
+    lowest[dealiasing] = *std::min_element(values.begin(), values.begin() + size);
+  }
+  // The narrow peak (figure 2 of the paper) loses height and gains oscillations around it.
+  EXPECT_LT(peak["two-thirds"], 0.8 * peak["padded"]);
+  EXPECT_LT(lowest["two-thirds"], 2 * lowest["padded"]);
+}
+
+TEST(SpectralFlow, ShellForceInjectsExactlyAndTheBalanceCloses) {
+  SpectralRun<> run(spectral_text("16", random_start +
+                                            "[forcing]\nkind = \"shell\"\nwavenumber = 1.5\nwidth = 2\ninjection = "
+                                            "0.7\n[spectral]\nintegrator = \"rk4\"\n"));
+  run.start();
+  run.series();
+  for (int i = 0; i < 5; ++i) {
+    run.steps(4, 0.005);
+    const auto row = run.series();
+    EXPECT_NEAR(row.at("mean_injection"), 0.7, 1e-14);
+    // The sums of the present state, from the modes themselves: both conjugates count.
+    EXPECT_NEAR(run.method.flow().measure_budget().injection, 0.7, 1e-13);
+    EXPECT_NEAR(run.method.flow().measure_budget().energy, row.at("mean_energy"), 1e-14);
+    EXPECT_LT(std::abs(row.at("balance_residual")), 1e-3);  // trapezoidal sums of dissipation: dt^2
+  }
+}
+
+TEST(SpectralFlow, LinearForceGrowsAsItsRateSays) {
+  SpectralRun<> run(spectral_text("[6, 8, 10]",
+                                  "[fluid]\nreynolds = 5\n[initial]\nkind = \"expressions\"\nvelocity = "
+                                  "[\"cos(pi*z)\", \"-sin(pi*z)\", 0]\n[forcing]\nkind = \"linear\"\nrate = "
+                                  "0.8\n[spectral]\nintegrator = \"rk4\"\n"));
+  run.start().steps(20, 0.01);
+  EXPECT_NEAR(run.series()["mean_energy"], 0.5 * std::exp(2 * (0.8 - pi * pi / 5) * 0.2), 1e-9);
+  EXPECT_NEAR(run.series()["mean_injection"], 2 * 0.8 * run.series()["mean_energy"], 1e-14);
+}
+
+TEST(SpectralFlow, ExternalForceIsProjectedAndItsMeanMovesTheFluid) {
+  SpectralRun<> run(spectral_text("[8, 12, 16]", "[fluid]\nreynolds = 50\n[initial]\nkind = \"rest\"\n"));
+  run.start();
+  Flow<double>& flow = run.method.flow();
+  const std::size_t nz = 16, stride = 18, size = 8 * 12 * stride;
+  Array<double> values(3 * size);
+  for (std::size_t ix = 0; ix < 8; ++ix)
+    for (std::size_t iy = 0; iy < 12; ++iy)
+      for (std::size_t iz = 0; iz < nz; ++iz) {
+        const std::size_t at = (ix * 12 + iy) * stride + iz;
+        const double x = static_cast<double>(ix) / 8, z = 2 * static_cast<double>(iz) / 16;
+        values[at] = 0.5 + std::sin(2 * pi * x);  // the wave along itself is a gradient: no flow
+        values[size + at] = std::cos(pi * z);
+        values[2 * size + at] = -0.25;
+      }
+  Modes<double> force;
+  spectral::force_modes(flow, {&values[0], &values[size], &values[2 * size]}, stride, force);
+  flow.set_force(spectral::view<double>(force));
+  const double dt = 0.001;
+  run.steps(1, dt);
+  const Vec3 u = run.method.sample({0.3, 0.4, 0.5}).velocity;
+  EXPECT_NEAR(u[0], 0.5 * dt, 1e-15);
+  EXPECT_NEAR(u[1], std::cos(pi * 0.5) * dt, 1e-6 * dt);
+  EXPECT_NEAR(u[2], -0.25 * dt, 1e-15);
+  EXPECT_NEAR(flow.measure_budget().work, dt * (0.25 + 0.0625 + 0.5), 1e-3 * dt);
+}
+
+TEST(SpectralFlow, ResumesBitForBit) {
+  for (const char* integrator : {"ab2", "rk3"}) {
+    const std::string text = spectral_text(
+        "[12, 16, 10]", random_start +
+                            "[forcing]\nkind = \"shell\"\nwidth = 3\ninjection = 1\n[spectral]\nintegrator = \"" +
+                            integrator + "\"\n");
+    SpectralRun<> whole(text), first(text), second(text);
+    whole.start().steps(3, 0.004).steps(1, 0.002).series();
+    whole.steps(3, 0.003);
+    first.start().steps(3, 0.004).steps(1, 0.002).series();
+    test::SavedState state = first.saved();
+    second.method.load(state);
+    second.steps(3, 0.003);
+    EXPECT_EQ(whole.saved().reals, second.saved().reals) << integrator;
+    EXPECT_EQ(whole.series(), second.series());
+  }
+}
+
+TEST(SpectralFlow, SameBitsForAnyNumberOfThreads) {
+  const int before = omp_get_max_threads();
+  std::vector<test::SavedState> states;
+  for (const int threads : {1, 3}) {
+    omp_set_num_threads(threads);
+    SpectralRun<> run(spectral_text("[12, 16, 10]", random_start));
+    run.start().steps(4, 0.004);
+    states.push_back(run.saved());
+  }
+  omp_set_num_threads(before);
+  EXPECT_EQ(states[0].reals, states[1].reals);
+}
+
+TEST(SpectralFlow, StepsBeyondStabilityAreRefusedAndTheStateStays) {
+  for (const char* integrator : {"ab2", "rk3", "rk4"}) {
+    SpectralRun<> run(
+        spectral_text("12", random_start + "[spectral]\nintegrator = \"" + std::string(integrator) + "\"\n"));
+    run.start().steps(2, 0.002);
+    const auto before = run.saved();
+    EXPECT_THROW(run.steps(1, 5 * run.method.step_limit().dt), StepFailure);
+    const auto after = run.saved();
+    for (const char* axis : {"potential_x", "potential_y", "potential_z"})
+      EXPECT_EQ(before.reals.at(axis), after.reals.at(axis)) << integrator;
+    EXPECT_EQ(run.method.step_count(), 2);
+    run.steps(2, 0.002);  // and goes on
+    EXPECT_NEAR(run.series()["mean_energy"], 0.5, 0.05);
+  }
+}
+
+TEST(SpectralFlow, AdamsBashforthIsLimitedByItsOwnInstability) {
+  SpectralRun<> run(spectral_text("32", random_start), {"fluid.reynolds=1e7", "time.courant=1"});
+  run.start();
+  EXPECT_EQ(run.method.step_limit().limited_by, "ab2 stability");
+}
+
+TEST(SpectralFlow, RandomFieldHasTheWantedSpectrumOnEveryGrid) {
+  SpectralRun<> coarse(spectral_text("[12, 18, 24]", random_start)), fine(spectral_text("[16, 24, 32]", random_start));
+  const auto spectrum = spectral::shell_spectrum(coarse.start().method.flow());
+  fine.start();
+  double energy = 0;
+  for (const double e : spectrum.energy) energy += e * spectrum.width;
+  EXPECT_NEAR(energy, 0.5, 1e-12);
+  const auto wanted = [](double k) { return k * k * std::exp(-k * k / 64); };
+  for (std::size_t n = 2; n < 8; ++n)
+    EXPECT_NEAR(spectrum.energy[n] / spectrum.energy[1],
+                wanted(spectrum.wavenumber[n]) / wanted(spectrum.wavenumber[1]), 1e-9);
+  // The same seed gives the same waves.
+  const auto phase = [](const SpectralRun<>& run) {
+    const auto& flow = const_cast<SpectralRun<>&>(run).method.flow();
+    return std::arg(flow.potential()[0][flow.layout().plane + 2 * flow.layout().row + 1]);
+  };
+  EXPECT_NEAR(phase(coarse), phase(fine), 1e-12);
+}
+
+TEST(SpectralFlow, RestartOnAnotherGridKeepsTheCommonModes) {
+  const test::CaseFile folder("");
+  const std::string file = folder.folder() + "/checkpoint.h5";
+  SpectralRun<> run(spectral_text("[12, 18, 24]", random_start));
+  run.start().steps(2, 0.002);
+  CheckpointWriter writer(file, {"", "", ""});
+  test::SavedState state = run.saved();
+  for (const auto& [name, values] : state.reals) writer.f64("method/" + name, values);
+  for (const auto& [name, values] : state.integers) writer.i64("method/" + name, values);
+  writer.commit();
+  const std::string rest = "[fluid]\nreynolds = 60\n[initial]\nkind = \"checkpoint\"\nfile = \"" + file + "\"\n";
+  SpectralRun<> same(spectral_text("[12, 18, 24]", rest)), fine(spectral_text("[20, 22, 36]", rest));
+  SpectralRun<float> coarse(spectral_text("[8, 12, 16]", rest + "[spectral]\nprecision = \"single\"\n"));
+  same.start(), fine.start(), coarse.start();
+  EXPECT_EQ(same.saved().reals.at("potential_x"), state.reals.at("potential_x"));
+  const Vec3 at{0.3, 0.8, 1.7};
+  for (std::size_t c = 0; c < 3; ++c)
+    EXPECT_NEAR(fine.method.sample(at).velocity[c], run.method.sample(at).velocity[c], 1e-13);
+  const auto& small = coarse.method.flow();
+  const auto& large = run.method.flow();
+  // Wavenumbers (-3, 5, 7) along x, y, z.
+  const auto mode = [](const auto& flow, std::size_t c) {
+    const ModeLayout& layout = flow.layout();
+    return std::complex<double>(flow.potential()[c][(layout.points[0] - 3) * layout.plane + 5 * layout.row + 7]);
+  };
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(std::abs(mode(small, c) - mode(large, c)), 0, 1e-9);
+  EXPECT_THROW(SpectralRun<>(spectral_text("16", rest), {"domain.upper=[1, 1.5, 2.5]"}).start(), InputError);
+  EXPECT_THROW(SpectralRun<>(spectral_text("16", rest), {"initial.file=\"/nowhere.h5\""}).start(), InputError);
+}
+
+TEST(SpectralFlow, SampledVelocityAndPressureAreThoseOfTheTaylorGreenVortex) {
+  SpectralRun<> run(
+      "method = \"spectral\"\n[domain]\nlower = [1, 0, 0]\nupper = [7.283185307179586, 6.283185307179586, "
+      "6.283185307179586]\nx = \"periodic\"\ny = \"periodic\"\nz = \"periodic\"\n[resolution]\ngrid = 16\n"
+      "[time]\nend = 1\n[fluid]\nreynolds = 100\n[initial]\nkind = \"taylor-green\"\n");
+  run.start();
+  const double x = 0.4, y = 0.9, z = 1.7;
+  const PointSample sample = run.method.sample({1 + x, y, z});
+  EXPECT_NEAR(sample.velocity[0], std::sin(x) * std::cos(y) * std::cos(z), 1e-14);
+  EXPECT_NEAR(sample.velocity[1], -std::cos(x) * std::sin(y) * std::cos(z), 1e-14);
+  EXPECT_NEAR(sample.pressure, (std::cos(2 * x) + std::cos(2 * y)) * (std::cos(2 * z) + 2) / 16, 1e-14);
+}
+
+TEST(SpectralFlow, SteadyStepAllocatesNothing) {
+  for (const char* integrator : {"ab2", "rk3"}) {
+    SpectralRun<> run(
+        spectral_text("16", random_start + "[spectral]\nintegrator = \"" + std::string(integrator) + "\"\n"));
+    run.start().steps(2, 0.002);
+    const auto before = array_statistics().allocations;
+    run.steps(3, 0.002);
+    EXPECT_EQ(array_statistics().allocations, before) << integrator;
+  }
+}
+
+TEST(SpectralFlow, TooLargeGridsAreRefusedBeforeAnythingIsAllocated) {
+  const LoadedCase loaded = test::load_text(spectral_text("16384", random_start));
+  EXPECT_THROW(spectral::Spectral<double> method(loaded), InputError);
+}
+
+TEST(SpectralFlow, ForceWithoutEnergyInItsShellIsRefused) {
+  SpectralRun<> run(spectral_text(
+      "16", "[fluid]\nreynolds = 60\n[initial]\nkind = \"rest\"\n[forcing]\nkind = \"shell\"\ninjection = 1\n"));
+  EXPECT_THROW(run.start(), InputError);
+}
+
+TEST(SpectralFlow, UnresolvedScalesAreRemarkedOnce) {
+  SpectralRun<> run(spectral_text("16", random_start), {"fluid.reynolds=1e5"});
+  run.start().series();
+  EXPECT_THAT(run.method.take_remarks(), testing::ElementsAre(testing::HasSubstr("k_max eta")));
+  run.series();
+  EXPECT_TRUE(run.method.take_remarks().empty());
+}
+
+}  // namespace
+}  // namespace spume

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// Particles in the flow of the spectral method.
+#include <gmock/gmock.h>
+#include <omp.h>
+
+#include "methods/spectral_flow.hpp"
+#include "spume/core/parallel.hpp"
+
+namespace spume {
+namespace {
+
+using test::random_start;
+using test::SavedState;
+using test::spectral_text;
+using test::SpectralRun;
+using testing::IsSupersetOf;
+
+const std::string bubbles =
+    "[particles]\ncount = 2000\ndiameter = 0.03\nbeta = 3\nresponse_time = 0.05\noverlap_samples = 500\nsort_every = "
+    "3\n";
+
+std::string suspension(const std::string& coupling) {
+  return spectral_text("[12, 16, 20]", random_start + bubbles + "coupling = \"" + coupling + "\"\n");
+}
+
+TEST(SpectralParticles, LeaveTheFlowAloneWithOneWayCoupling) {
+  SpectralRun<> with(suspension("one-way")), without(spectral_text("[12, 16, 20]", random_start));
+  with.start().steps(5, 0.002);
+  without.start().steps(5, 0.002);
+  const SavedState a = with.saved(), b = without.saved();
+  EXPECT_EQ(a.reals.at("potential_x"), b.reals.at("potential_x"));
+  EXPECT_EQ(a.reals.at("potential_z"), b.reals.at("potential_z"));
+}
+
+TEST(SpectralParticles, CostNothingWhereThereAreNone) {
+  SpectralRun<> run(spectral_text("[12, 16, 20]", random_start));
+  run.start().steps(2, 0.002);
+  EXPECT_EQ(run.method.suspension(), nullptr);
+  EXPECT_TRUE(run.method.snapshot().empty());
+  for (const auto& stage : run.method.plan()) EXPECT_EQ(stage.name.find("particle"), std::string::npos);
+  for (const auto& array : run.method.arrays()) EXPECT_EQ(array.name.find("particle"), std::string::npos);
+}
+
+TEST(SpectralParticles, ReportWhatTheirCouplingHas) {
+  SpectralRun<> run(suspension("four-way"));
+  run.start().steps(3, 0.002);
+  std::vector<std::string> names;
+  for (const auto& [name, value] : run.series()) {
+    names.push_back(name);
+    EXPECT_TRUE(std::isfinite(value) || name == "correlation_dimension") << name;
+  }
+  EXPECT_THAT(names, IsSupersetOf({"particle_rms_velocity", "overlap_ratio", "particle_work", "collisions"}));
+  const auto families = run.method.snapshot();
+  ASSERT_EQ(families.size(), 1U);
+  EXPECT_EQ(families[0].name, "bubbles");
+  EXPECT_EQ(families[0].size, 2000U);
+  const auto tables = run.method.distributions(), headings = run.method.distribution_headings();
+  ASSERT_EQ(tables.size(), headings.size());
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    EXPECT_EQ(tables[i].name, headings[i].name);
+    EXPECT_GT(tables[i].values.size(), 0U);
+    EXPECT_EQ(tables[i].values.size() % headings[i].columns.size(), 0U);
+  }
+}
+
+TEST(SpectralParticles, ContinueBitForBitFromACheckpoint) {
+  for (const std::string more : {"", "lyapunov = 5\nrecords = \"double\"\n"}) {
+    SpectralRun<> whole(suspension("four-way") + more), first(suspension("four-way") + more),
+        second(suspension("four-way") + more);
+    whole.start().steps(8, 0.002);
+    first.start().steps(3, 0.002);
+    SavedState state = first.saved();
+    second.method.load(state);
+    second.steps(5, 0.002);
+    const SavedState a = whole.saved(), b = second.saved();
+    EXPECT_EQ(a.reals, b.reals);
+    EXPECT_EQ(a.integers, b.integers);
+  }
+}
+
+TEST(SpectralParticles, AreTheSameForAnyNumberOfThreads) {
+  const int before = omp_get_max_threads();
+  std::vector<SavedState> states;
+  for (const int threads : {1, 3}) {
+    omp_set_num_threads(threads);
+    SpectralRun<> run(suspension("four-way"));
+    run.start().steps(4, 0.002);
+    states.push_back(run.saved());
+  }
+  omp_set_num_threads(before);
+  for (const char* name : {"particle_position_x", "particle_velocity_z", "particle_amounts"})
+    EXPECT_EQ(states[0].reals.at(name), states[1].reals.at(name)) << name;
+}
+
+// Bubbles at every grid point with volume fraction a turn the decay exp(-nu k^2 t) of a Beltrami flow into
+// exp(-nu k^2 t / (1 - a)): (11) of the paper, exactly, as u . grad u is a gradient.
+double coupled_decay_error(const std::string& integrator, double dt) {
+  SpectralRun<> run(
+      "method = \"spectral\"\n[domain]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\nx = \"periodic\"\ny = \"periodic\"\n"
+      "z = \"periodic\"\n[resolution]\ngrid = 12\n[time]\nend = 1\ncourant = 1\n[fluid]\nreynolds = 4\n[initial]\nkind "
+      "= \"abc\"\n"
+      "[spectral]\nintegrator = \"" +
+      integrator +
+      "\"\n[particles]\ncount = 1728\ndiameter = 0.0601117\nbeta = 3\nresponse_time = 1\nplacement = \"lattice\"\n"
+      "frozen = true\ncoupling = \"two-way\"\nspline_order = 6\nrecords = \"double\"\noverlap_samples = 0\n");
+  const double fraction = 1728 * M_PI / 6 * std::pow(0.0601117, 3);
+  const int steps = static_cast<int>(std::lround(0.04 / dt));
+  // No force is known in the first step; the rate is taken after it.
+  run.start().steps(steps, dt);
+  const double early = run.method.flow().budget().energy;
+  run.steps(2 * steps, dt);
+  const double rate = -std::log(run.method.flow().budget().energy / early) / (2 * 0.04) / 2;
+  return rate / (4 * M_PI * M_PI / 4 / (1 - fraction)) - 1;
+}
+
+TEST(SpectralParticles, UniformBubblesActAsMoreViscosity) {
+  for (const char* integrator : {"ab2", "rk4"}) {
+    const double coarse = std::abs(coupled_decay_error(integrator, 0.004));
+    const double fine = std::abs(coupled_decay_error(integrator, 0.002));
+    // nu k^2 dt = 0.02: an error of its square, times the fraction of 0.2.
+    EXPECT_LT(fine, 2e-4) << integrator;
+    EXPECT_GT(std::log2(coarse / fine), 1.6) << integrator << " " << coarse << " " << fine;
+  }
+}
+
+TEST(SpectralParticles, AMeanForceDrivesNoMeanFlow) {
+  SpectralRun<> run(
+      spectral_text("[8, 8, 8]", random_start + bubbles + "coupling = \"two-way\"\ngravity = [0, 0, -1]\n"));
+  run.start().steps(10, 0.002);
+  for (const auto& component : run.method.flow().potential()) EXPECT_EQ(component[0], std::complex<double>{});
+  EXPECT_GT(run.series().at("particle_rms_slip"), 0);
+}
+
+TEST(SpectralParticles, SinglePrecisionFlowsCarryThemToo) {
+  SpectralRun<float> run(suspension("four-way") + "[spectral]\nprecision = \"single\"\n");
+  SpectralRun<double> exact(suspension("four-way"));
+  run.start().steps(5, 0.002);
+  exact.start().steps(5, 0.002);
+  EXPECT_NEAR(run.series().at("particle_rms_velocity"), exact.series().at("particle_rms_velocity"), 1e-5);
+}
+
+}  // namespace
+}  // namespace spume

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+"""Measures of the cases with particles, on run folders written from known answers."""
+import shutil
+import tempfile
+import unittest
+
+import paths
+import numpy as np
+from spume_results import Results
+from spume_verification import CASES, load_measure
+from synthetic import new_folder, series_of, write_table
+
+
+class ParticleCase(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        self.count = 0
+
+    def run_of(self, case, t, **columns):
+        self.count += 1
+        folder = new_folder(self.scratch.name, f"{case}-{self.count}")
+        shutil.copy(CASES / case / "case.toml", folder / "case.toml")
+        write_table(folder / "series.csv", series_of(t, **columns))
+        return folder
+
+
+class Clustering(ParticleCase):
+    def test_dimension_from_rates_of_growth_after_a_transient(self):
+        t = np.linspace(0, 20, 81)
+        rates = [0.5, -0.25, -1.0, -2.0, -3.0, -4.0]
+        transient = np.where(t < 5, 3.0 * t, 15.0)
+        growth = {f"stretching_{k + 1}": rate * t + transient for k, rate in enumerate(rates)}
+        folder = self.run_of("clustering", t, mean_dissipation=0.1, correlation_dimension=1.5, kaplan_yorke_dimension=1,
+                             **growth)
+        measured = load_measure(CASES / "clustering").measure({"light": Results(folder)})
+        self.assertAlmostEqual(measured["light_dimension"], 2.25, places=9)
+
+    def test_kaplan_yorke_dimension(self):
+        dimension = load_measure(CASES / "clustering").kaplan_yorke
+        self.assertAlmostEqual(dimension([1, 0, -2, -5, -6, -7]), 2.5)
+        self.assertAlmostEqual(dimension([-1, -2, -3, -5, -6, -7]), 0)
+
+
+class Exclusion(ParticleCase):
+    def test_averages_the_end_of_the_run(self):
+        t = np.linspace(0, 10, 41)
+        columns = {"overlap_ratio_error": 1e-4, "clipped_force": np.where(t < 8, 1, 0.002), "reynolds_lambda": 35.0,
+                   "kmax_eta": 3.2}
+        excluded = Results(self.run_of("exclusion", t, overlap_ratio=np.where(t < 8, 0.5, 0.004), **columns))
+        free = Results(self.run_of("exclusion", t, overlap_ratio=0.07 * t, **columns))
+        measured = load_measure(CASES / "exclusion").measure({"free": free, "excluded": excluded})
+        self.assertAlmostEqual(measured["overlap_ratio"], 0.004)
+        self.assertAlmostEqual(measured["clipped_force"], 0.002)
+        self.assertAlmostEqual(measured["free_overlap_ratio"], 0.7)
+
+
+class UniformBubbles(ParticleCase):
+    def spectrum_of(self, energy):
+        folder = self.run_of("uniform_bubbles", [0, 1])
+        k = np.tile(np.arange(32.0), 2)
+        write_table(folder / "spectrum.csv", {"t": np.repeat([0.0, 1.0], 32), "wavenumber": k, "energy": energy(k)})
+        return Results(folder)
+
+    def test_error_up_to_half_of_the_largest_wavenumber(self):
+        base = lambda k: np.exp(-0.1 * k)
+        runs = {"enhanced": self.spectrum_of(base), "plain": self.spectrum_of(lambda k: 0.8 * base(k)),
+                "coupled": self.spectrum_of(lambda k: base(k) * np.where(k > 16, 2, 1.01)),
+                "coupled_coarse_step": self.spectrum_of(lambda k: base(k) * 1.04)}
+        measured = load_measure(CASES / "uniform_bubbles").measure(runs)
+        self.assertAlmostEqual(measured["spectrum_error"], 0.01, places=6)
+        self.assertAlmostEqual(measured["spectrum_error_over_coarse_step"], 0.25, places=6)
+        self.assertAlmostEqual(measured["effect_of_bubbles"], 1.01 / 0.8 - 1, places=6)
+
+
+if __name__ == "__main__":
+    unittest.main()
