@@ -66,6 +66,7 @@ struct Section {
   bool repeated = false;                      // written [[name]], any number of times
   std::function<void(Draft&)> begin_entry{};  // of a repeated section: appends an empty entry
   std::vector<Option> options{};
+  bool switches = false;  // naming the section switches on what it describes
 };
 
 // All sections in the order of the resolved case; the first has no name.
@@ -73,6 +74,7 @@ const std::vector<Section>& sections();
 
 // Parts of the table, by subject.
 std::vector<Section> scene_sections();   // domain, solids, fluid, liquid
+std::vector<Section> bubble_sections();  // bubbles, spargers, clouds
 std::vector<Section> method_sections();  // turbulence ... output, probes
 
 // "a number", "a list of expressions", ...

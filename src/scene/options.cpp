@@ -54,7 +54,8 @@ std::string words_in_words(const std::vector<std::string>& words) {
 const std::vector<Section>& sections() {
   static const std::vector<Section> table = [] {
     std::vector<Section> all;
-    for (auto part : {scene_sections(), method_sections()}) all.insert(all.end(), part.begin(), part.end());
+    for (auto part : {scene_sections(), bubble_sections(), method_sections()})
+      all.insert(all.end(), part.begin(), part.end());
     for (Section& section : all) {
       for (Option& option : section.options) option.section = section.name;
     }

@@ -28,7 +28,7 @@ class Writer {
         // Sections in which nothing is set and nothing has a default would be all comments.
         const bool empty = !table && std::none_of(section.options.begin(), section.options.end(),
                                                   [](const Option& o) { return !o.default_text.empty(); });
-        if (empty) continue;
+        if (empty || (section.switches && !table)) continue;
         if (!section.name.empty()) text_ += "\n[" + section.name + "]\n";
         options(section, table);
       }

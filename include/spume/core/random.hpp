@@ -9,10 +9,22 @@
 namespace spume {
 
 // What a stream of numbers is used for; a new use gets a new value, so that streams never coincide.
-enum class RandomPurpose : std::uint32_t { initial_jitter = 1, initial_field = 2, test = 100 };
+enum class RandomPurpose : std::uint32_t {
+  initial_jitter = 1,
+  initial_field = 2,
+  bubble_fluctuation = 10,
+  bubble_breakup = 11,
+  bubble_entrainment = 12,
+  bubble_source = 13,
+  test = 100
+};
 
 // Four uniform numbers in [0, 1) with 32 random bits each.
 std::array<double, 4> random_uniform(std::uint64_t seed, RandomPurpose purpose, std::uint64_t identifier,
                                      std::uint32_t step, std::uint32_t draw);
+
+// Four independent standard normal numbers (Box and Muller 1958).
+std::array<double, 4> random_normal(std::uint64_t seed, RandomPurpose purpose, std::uint64_t identifier,
+                                    std::uint32_t step, std::uint32_t draw);
 
 }  // namespace spume

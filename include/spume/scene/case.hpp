@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "spume/scene/bubbles.hpp"
 #include "spume/scene/scene.hpp"
 
 namespace spume {
@@ -99,6 +100,7 @@ struct Case {
   PressureOptions pressure;
   ShiftingOptions shifting;
   SurfaceOptions surface;
+  BubbleOptions bubbles;
   TimeOptions time;
   OutputOptions output;
   std::vector<ProbeOptions> probes;

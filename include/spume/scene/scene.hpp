@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "spume/core/array.hpp"
+#include "spume/scene/bubbles.hpp"
 
 namespace spume {
 
@@ -79,6 +80,8 @@ struct Scene {
   bool free_surface = false;                   // false: the liquid fills a closed or periodic domain
   std::optional<VectorExpression> body_force;  // acceleration, beside gravity
   std::uint64_t seed = 1;
+  std::vector<Sparger> spargers;
+  std::vector<BubbleCloud> bubble_clouds;
   InitialParticles particles;
 };
 
