@@ -16,6 +16,7 @@ Population::Population(const Models& models) {
   birth_time = &fields.add<double>("bubble_birth_time", Lifetime::carried);
   identifier = &fields.add<std::int64_t>("bubble_identifier", Lifetime::carried);
   at_rest_in_liquid = &fields.add<std::int64_t>("bubble_at_rest_in_liquid", Lifetime::carried);
+  slip = &fields.add<double>("bubble_slip", Lifetime::carried);
   if (models.fluctuations) {
     vector(fluctuation, "fluctuation", Lifetime::carried);
     vector(next_fluctuation, "next_fluctuation", Lifetime::scratch);
@@ -49,6 +50,7 @@ std::size_t Population::settle(double t) {
       }
       (*volume)[slot] = bubble.volume;
       (*birth_time)[slot] = t;
+      (*slip)[slot] = 0;
       (*identifier)[slot] = next_identifier++;
       (*at_rest_in_liquid)[slot] = bubble.at_rest_in_liquid ? 1 : 0;
       if (deformation != nullptr) (*deformation)[slot] = (*dissipation_integral)[slot] = 0;

@@ -80,6 +80,7 @@ class Population {
   Array<double>* merge_time = nullptr;            // t_m, King section 3.4.3; not_merging: moves freely
   Array<std::int64_t>* identifier = nullptr;
   Array<std::int64_t>* at_rest_in_liquid = nullptr;  // 1 until the first step
+  Array<double>* slip = nullptr;                     // |u_l - u_b| at the last step, u_l resolved
   std::int64_t next_identifier = 0;
 
   // Found within a step, taken over when it is accepted.
