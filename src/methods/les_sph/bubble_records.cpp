@@ -34,15 +34,26 @@ void BubbleCoupling::add_columns(std::vector<SeriesColumn>& columns) const {
            {"entrainment_rate", "length^3/time, last step"},
            {"burst_rate", "1/time, last step"},
            {"bubble_slip", "speed, mean of |u_b - u_l|, u_l resolved"},
+           {"shift_norm", "speed, root mean square of the shift over dt"},
            {"smallest_volume_fraction", "1"},
            {"overfull_particles", "1, alpha < 1/2"}})
     columns.push_back({name, unit});
 }
 
-void BubbleCoupling::put_values(const Liquid&, std::vector<double>& values) const {
+void BubbleCoupling::put_values(const Liquid& liquid, std::vector<double>& values) const {
   const auto counts = bubbles::count_about(population_, options_.hinze_radius);
   const double per_time = last_step_ > 0 ? 1 / last_step_ : 0;
   const auto rate = [&](auto now, auto before) { return per_time * static_cast<double>(now - before); };
+  double shift_norm = 0;
+  if (liquid.plan.shifting && liquid.size() > 0)
+    shift_norm = per_time * std::sqrt(parallel_sum(liquid.size(),
+                                                   [&](std::size_t i) {
+                                                     double shift2 = 0;
+                                                     for (const auto* shift : liquid.shift)
+                                                       shift2 += double{(*shift)[i]} * (*shift)[i];
+                                                     return shift2;
+                                                   }) /
+                                      static_cast<double>(liquid.size()));
   values = {static_cast<double>(population_.size()),
             static_cast<double>(counts.above),
             static_cast<double>(counts.below),
@@ -57,6 +68,7 @@ void BubbleCoupling::put_values(const Liquid&, std::vector<double>& values) cons
             rate(history_.entrained_volume, history_before_.entrained_volume),
             rate(history_.bursts, history_before_.bursts),
             mean_slip_,
+            shift_norm,
             least_volume_fraction_,
             static_cast<double>(overfull_)};
 }
