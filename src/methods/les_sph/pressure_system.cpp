@@ -146,12 +146,13 @@ void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz,
             right_hand_side_[i] = 0;
             continue;
           }
-          double own_source = source_scale * source[i], known_pressure = (*liquid.pressure)[i] / density;
+          double source_factor = source_scale, pressure_factor = helmholtz;
           if (liquid.plan.mixture_pressure)
-            own_source *= liquid.alpha_at(i);
+            source_factor *= liquid.alpha_at(i);
           else if (liquid.varying)
-            known_pressure *= (*liquid.volume_fraction)[i] / liquid.alpha_at(i);
-          const double known = (own_source + helmholtz * known_pressure) * row_scale_[i];
+            pressure_factor *= (*liquid.volume_fraction)[i] / liquid.alpha_at(i);
+          const double known =
+              (source_factor * source[i] + pressure_factor * (*liquid.pressure)[i] / density) * row_scale_[i];
           const double potential = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
           right_hand_side_[i] = liquid.volume * (known + extra_[i] * potential);
           const double in_pressure =
