@@ -16,6 +16,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+from spume_bubbles import PICTURES as BUBBLE_PICTURES
 from spume_figures import FIELDS, draw_curves, draw_side_view, draw_slices, finish, has_free_surface
 from spume_results import MissingResult, Results
 from spume_verification import find_case, load_measure
@@ -152,7 +153,7 @@ def plot_reference(run, out):
 
 
 PICTURES = (plot_energy, plot_numerics, plot_slices, plot_side_view, plot_spectra, plot_probes, plot_lines,
-            plot_reference)
+            *BUBBLE_PICTURES, plot_reference)
 
 
 def main():
