@@ -28,6 +28,7 @@ class CrossList {
     std::array<const float*, 3> point{};   // of the points, set after set; eight readable elements follow
     const float* centre_reach = nullptr;   // one of the two: the distance that counts
     const float* point_reach = nullptr;    // eight readable elements follow
+    const std::uint8_t* wanted = nullptr;  // centres with 0 get an empty list; null: all are wanted
     float largest_reach = 0;               // of all
   };
   // Sets without points are skipped. Allocates only while the lists grow.

@@ -3,6 +3,7 @@
 #include "spume/methods/les_sph/bubble_coupling.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace spume::les_sph {
@@ -134,6 +135,17 @@ void BubbleCoupling::build_lists(Liquid& liquid) {
   geometry.point_reach = point_reach_.data();
   const std::array<CrossList::Points, 2> particles{{{&liquid.table, n}, {&liquid.images.table(), m}}};
   particles_of_.build(geometry, nb, particles);
+  // Only particles that some bubble has found need a list. Threads may store the same 1 twice.
+  touched_.resize(n);
+  parallel_for(n, [&](std::size_t i) { touched_[i] = 0; });
+  parallel_for(nb, [&](std::size_t b) {
+    for (const std::int32_t j : particles_of_.of(b)) {
+      const auto k = static_cast<std::size_t>(j);
+      const std::size_t i = k < n ? k : static_cast<std::size_t>(liquid.images.source()[k - n]);
+      std::atomic_ref(touched_[i]).store(1, std::memory_order_relaxed);
+    }
+  });
+  geometry.wanted = touched_.data();
   std::swap(geometry.centre, geometry.point);
   geometry.point_reach = nullptr;
   geometry.centre_reach = liquid.reach.data();
@@ -194,10 +206,10 @@ std::vector<ArrayInfo> BubbleCoupling::arrays() const {
   };
   list.push_back({"bubbles", population_.fields.bytes()});
   list.push_back({"bubble lists", particles_of_.bytes() + bubbles_of_.bytes() + images_.bytes()});
-  list.push_back(
-      {"bubble records", bytes(point_[0], point_[1], point_[2], bubble_point_[0], bubble_point_[1], bubble_point_[2],
-                               point_reach_, liquid_records_, bubble_records_, interpolated_, dissipation_,
-                               next_merge_time_, reaction_[0], reaction_[1], reaction_[2], dead_, near_bubbles_)});
+  list.push_back({"bubble records",
+                  bytes(point_[0], point_[1], point_[2], bubble_point_[0], bubble_point_[1], bubble_point_[2],
+                        point_reach_, liquid_records_, bubble_records_, interpolated_, dissipation_, next_merge_time_,
+                        reaction_[0], reaction_[1], reaction_[2], dead_, touched_, near_bubbles_)});
   return list;
 }
 

@@ -106,7 +106,7 @@ class BubbleCoupling {
   Array<float> interpolated_;  // 17 per bubble: kernel sum, then the liquid at the bubble
   Array<double> dissipation_, next_merge_time_, next_slip_;
   std::array<Array<double>, 3> reaction_;  // M_b
-  Array<std::uint8_t> dead_;
+  Array<std::uint8_t> dead_, touched_;
   Array<std::int32_t> near_bubbles_;  // particles with bubbles in their reach
   std::array<Array<double>, 2> snapshot_;
 };
