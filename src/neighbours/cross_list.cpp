@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t list_block = 128;
 // Centres that follow each other and lie close together look for points once.
 constexpr std::size_t group_size = 16;
-constexpr float group_length = 0.75F, group_width = 0.6F;  // of its box, in reaches of the grid
+constexpr float group_length = 2, group_width = 1.1F;  // of its box, in reaches of the grid; rows of cells are 1 wide
 
 struct Group {
   std::array<std::size_t, group_size> member{};

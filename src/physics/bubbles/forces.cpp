@@ -58,7 +58,7 @@ double implicit_speed(const Slip& slip, const Vec3& w, double radius, double vis
   if (!(at_low > 0)) return 0;
   if (!(at_high < 0)) return high;
   int side = 0;
-  for (int k = 0; k < 60 && high - low > 1e-9 * high; ++k) {
+  for (int k = 0; k < 60 && high - low > 1e-8 * high; ++k) {
     // Regula falsi, Illinois: bracketed, so the jump of the drag law does no harm.
     const double s = low + (high - low) * at_low / (at_low - at_high);
     const double value = excess(s);
@@ -74,7 +74,7 @@ double implicit_speed(const Slip& slip, const Vec3& w, double radius, double vis
       if (side == -1) at_low *= 0.5;
       side = -1;
     }
-    if (std::abs(value) < 1e-9 * high) return s;
+    if (std::abs(value) < 1e-8 * high) return s;
   }
   return 0.5 * (low + high);
 }
