@@ -148,7 +148,10 @@ Vec3 advance_substepped(const Gas& gas, double radius, const Surroundings& liqui
   const Slip slip(gas, liquid);
   Vec3 u = velocity, w;
   for (std::size_t a = 0; a < 3; ++a) w[a] = liquid.velocity[a] - u[a];
-  const double fastest = std::max(length(w), terminal_speed(gas, radius));
+  // No steady slip is larger than that of either branch of the drag law alone.
+  const double push = length(slip.push);
+  const double steady = std::min(push / drag_rate(0, radius, gas.viscosity), std::sqrt(push * radius / (0.375 * 0.44)));
+  const double fastest = std::max(length(w), steady);
   const double explicit_limit = dt * slip.rate * (drag_rate(fastest, radius, gas.viscosity) + length(slip.spin));
   const double steps = std::ceil(std::max({1.0, spacing / radius, 1.5 * explicit_limit}));
   const double part = dt / steps;
