@@ -16,7 +16,6 @@
 namespace spume {
 namespace {
 
-
 // Particles handled at a time by one thread; their lists are collected in cache and copied to the shared array.
 constexpr std::size_t list_block = 256;
 
