@@ -30,7 +30,7 @@ class CaseTest(unittest.TestCase):
 class EveryCase(unittest.TestCase):
     def test_has_file_readme_measure_and_bounds(self):
         folders = sorted(p.parent for p in CASES.glob("*/case.toml"))
-        self.assertEqual(len(folders), 10)
+        self.assertEqual(len(folders), 16)
         titles = set()
         for folder in folders:
             with self.subTest(case=folder.name):
@@ -44,7 +44,7 @@ class EveryCase(unittest.TestCase):
                     if case["domain"].get(letter) == "periodic":
                         cells = extent[axis] / case["resolution"]["spacing"]
                         self.assertAlmostEqual(cells, round(cells), places=6, msg="a whole number of particles must fit")
-        self.assertEqual(len(titles), 10, "plots find a case by its title")
+        self.assertEqual(len(titles), 16, "plots find a case by its title")
 
     def test_is_found_by_name_folder_and_file(self):
         expected = CASES / "beltrami"
