@@ -179,8 +179,9 @@ std::vector<Chunk> Filler::fill_region(std::size_t r) {
 }
 
 // The column through p: the surface is the highest root of `where`, found from above in steps of half a
-// spacing and bisected to the last bit. With depth D the n particles stand D/(n - 1/2) apart: the highest on the
-// surface, the lowest half a distance above the bottom. A depth below a quarter spacing holds no particle.
+// spacing and bisected to the last bit. Over a depth D the n particles stand D/n apart, the highest half a distance
+// below the surface and the lowest half a distance above the bottom: the column's liquid ends on both. A depth below
+// a quarter spacing holds no particle.
 void Filler::conform_column(ThreadRegions& own, std::size_t r, Vec3 p, Chunk& chunk) const {
   const LiquidRegion& region = regions_[r];
   const std::size_t up = static_cast<std::size_t>(lattice_.dimensions) - 1;
@@ -227,11 +228,11 @@ void Filler::conform_column(ThreadRegions& own, std::size_t r, Vec3 p, Chunk& ch
   const double depth = surface - floor;
   if (!found || depth < 0.25 * spacing) return;
 
-  const auto distance = [&](double n) { return depth / (n - 0.5); };
-  double layers = std::max(1.0, std::floor(depth / spacing + 0.5));
+  const auto distance = [&](double n) { return depth / n; };
+  double layers = std::max(1.0, std::floor(depth / spacing));
   if (std::abs(distance(layers + 1) - spacing) < std::abs(distance(layers) - spacing)) ++layers;
   for (double k = layers - 1; k >= 0; --k) {
-    p[up] = surface - k * distance(layers);
+    p[up] = surface - (k + 0.5) * distance(layers);
     accept(own, r, p, chunk);
   }
 }

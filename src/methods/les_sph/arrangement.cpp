@@ -2,7 +2,6 @@
 // Where the particles are: intermediate positions, order, images, lists, surface and shift.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "spume/core/parallel.hpp"
 #include "spume/methods/les_sph/liquid.hpp"
@@ -59,41 +58,15 @@ void measure_geometry(Liquid& liquid) {
   geometry_sweep(liquid.context, liquid.records, options, out);
 }
 
-void find_surface(Liquid& liquid) {
-  const std::size_t n = liquid.size();
-  liquid.at_surface.resize(n);
-  liquid.interior_weight.resize(n);
-  const double width = liquid.options.surface.blend_width;
-  parallel_for(n, [&](std::size_t i) {
-    const double above = (*liquid.divergence_of_position)[i] - liquid.surface_threshold;
-    liquid.at_surface[i] = above < 0 ? 1 : 0;
-    liquid.interior_weight[i] = above < 0 ? 0.0F
-                                : above < width
-                                    ? static_cast<float>(0.5 * (1 - std::cos(std::numbers::pi * above / width)))
-                                    : 1.0F;
-  });
-  // In particle order, by blocks: counted, then written.
-  constexpr std::size_t block = 4096;
-  std::array<std::size_t, max_reduction_blocks + 1> start{};
-  const std::size_t size = std::max(block, (n + max_reduction_blocks - 1) / max_reduction_blocks);
-  parallel_blocks(n, size, [&](std::size_t b, std::size_t first, std::size_t last) {
-    start[b + 1] =
-        static_cast<std::size_t>(std::count(liquid.at_surface.data() + first, liquid.at_surface.data() + last, 1));
-  });
-  for (std::size_t b = 0; b < block_count(n, size); ++b) start[b + 1] += start[b];
-  liquid.surface_particles.resize(start[block_count(n, size)]);
-  parallel_blocks(n, size, [&](std::size_t b, std::size_t first, std::size_t last) {
-    std::size_t slot = start[b];
-    for (std::size_t i = first; i < last; ++i)
-      if (liquid.at_surface[i] != 0) liquid.surface_particles[slot++] = static_cast<std::int32_t>(i);
-  });
-  if (liquid.plan.shifting)
-    filter_vector_subset(liquid.context, liquid.records, liquid.read(liquid.normal), liquid.reflection,
-                         liquid.surface_particles, liquid.write(liquid.smoothed_normal));
-}
-
-void choose_shift(Liquid& liquid) {
+void choose_shift(Liquid& liquid, double dt) {
   const int d = liquid.dimensions;
+  // King (3.12) at the step that the courant limit allows, in proportion to the distance moved below it: a liquid at
+  // rest is not shifted, and small steps do not shift more (and dissipate more) than large ones. Particles that make
+  // room for bubbles have to move whatever the speed.
+  const double moved =
+      liquid.varying
+          ? 1.0
+          : std::min(1.0, liquid.limiting_speed * dt / (liquid.options.time.courant * liquid.smoothing_length));
   const auto limit = [&liquid](std::array<double, 3>& shift, std::size_t i) {
     const double longest = liquid.options.shifting.limit * liquid.width_at(i);
     const double length = std::hypot(shift[0], shift[1], shift[2]);
@@ -103,7 +76,7 @@ void choose_shift(Liquid& liquid) {
   parallel_for(liquid.size(), [&](std::size_t i) {
     std::array<double, 3> shift{};
     const double h = liquid.width_at(i);
-    const double coefficient = liquid.options.shifting.coefficient * h * h;
+    const double coefficient = liquid.options.shifting.coefficient * h * h * moved;
     for (int axis = 0; axis < d; ++axis) shift[axis] = -coefficient * (*liquid.shift[axis])[i];
     if (liquid.plan.free_surface && liquid.at_surface[i] != 0) {
       // King (3.12), sign and tangential projection corrected: only the part along the surface is kept.

@@ -5,6 +5,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/methods/les_sph/free_surface.hpp"
 #include "spume/methods/les_sph/liquid.hpp"
 
 namespace spume::les_sph {
@@ -99,6 +100,7 @@ void project_velocity(Liquid& liquid, double dt) {
                       static_cast<double>(std::max<std::size_t>(n, 1));
   gradient_sweep(liquid.context, liquid.records, liquid.reduced_pressure->data(), mean, liquid.read_correction(),
                  liquid.write(liquid.acceleration));
+  if (liquid.plan.free_surface) complete_surface_gradient(liquid);
   const float* coordinate[3] = {liquid.list.coordinate(0), liquid.list.coordinate(1), liquid.list.coordinate(2)};
   parallel_for(n, [&](std::size_t i) {
     Vec3 gradient{};

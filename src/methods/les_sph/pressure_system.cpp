@@ -6,13 +6,10 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/methods/les_sph/free_surface.hpp"
 
 namespace spume::les_sph {
 namespace {
-
-// Between a free particle and one held at p = 0 the penalty grows as (1 - b) / b; its largest value only has to
-// dwarf the coupling.
-constexpr double smallest_weight = 1e-3;
 
 CellGeometry cell_geometry(const Liquid& liquid) {
   const Domain& domain = liquid.scene.domain;
@@ -115,18 +112,25 @@ void PressureSystem::set_matrix(const Liquid& liquid, double helmholtz) {
   const double bulk = liquid.lattice.divergence_of_position;
   const auto volume = static_cast<float>(liquid.volume);
   parallel_for(n, [&](std::size_t i) {
-    // Far below the bulk value div r tells of missing neighbours, not of the arrangement.
-    const double div_r = std::max<double>((*liquid.divergence_of_position)[i], 0.5 * bulk);
+    // Far below the bulk value div r tells of missing neighbours, not of the arrangement; the mirrored liquid makes up
+    // for those missing at a surface.
+    double div_r = std::max<double>((*liquid.divergence_of_position)[i], 0.5 * bulk);
+    if (liquid.plan.free_surface) div_r += (1 - double{liquid.interior_weight[i]}) * std::max(0.0, bulk - div_r);
     const double scale = div_r / liquid.dimensions;  // what the row is multiplied by
     row_scale_[i] = static_cast<float>(scale);
-    double extra = helmholtz * scale;
-    if (liquid.plan.free_surface) {
-      const double weight = std::max<double>(liquid.interior_weight[i], smallest_weight);
-      extra += (1 - weight) / weight * (*liquid.coupling)[i];
-    }
-    extra_[i] = static_cast<float>(extra);
-    const bool masked = liquid.plan.free_surface && liquid.at_surface[i] != 0;
-    diagonal_[i] = masked ? 0.0F : volume * ((*liquid.coupling)[i] + extra_[i]);
+    extra_[i] = static_cast<float>(helmholtz * scale);
+    const bool held = liquid.plan.free_surface && liquid.held[i] != 0;
+    diagonal_[i] = held ? 0.0F : volume * ((*liquid.coupling)[i] + extra_[i]);
+  });
+  if (!liquid.plan.free_surface) return;
+  surface_source_.resize(liquid.edge_particles.size());
+  parallel_for(liquid.edge_particles.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(liquid.edge_particles[k]);
+    const SurfaceRow row = surface_row(liquid, k);
+    extra_[i] += static_cast<float>(row.coupling);
+    diagonal_[i] += static_cast<float>(volume * row.coupling);
+    surface_source_[k] = row.coupling * row.hydrostatic_pressure;
+    if (liquid.potential != nullptr) potential_laplacian_[i] -= static_cast<float>(surface_source_[k]);
   });
 }
 
@@ -142,7 +146,7 @@ void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz,
       [&](std::size_t first, std::size_t last) {
         double sum = 0;
         for (std::size_t i = first; i < last; ++i) {
-          if (surface && liquid.at_surface[i] != 0) {
+          if (surface && liquid.held[i] != 0) {
             right_hand_side_[i] = 0;
             continue;
           }
@@ -163,6 +167,10 @@ void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz,
       },
       [](double a, double b) { return a + b; });
   reference_norm_ = std::sqrt(squares);
+  if (!surface) return;
+  parallel_for(liquid.edge_particles.size(), [&](std::size_t k) {
+    right_hand_side_[static_cast<std::size_t>(liquid.edge_particles[k])] += liquid.volume * surface_source_[k];
+  });
 }
 
 namespace {
@@ -227,7 +235,7 @@ void PressureSystem::solve(Liquid& liquid, double helmholtz, const char* stage, 
   const bool surface = liquid.plan.free_surface;
   residual_.resize(n);
 
-  PressureMatrix matrix{extra_.data(), surface ? liquid.at_surface.data() : nullptr};
+  PressureMatrix matrix{extra_.data(), surface ? liquid.held.data() : nullptr};
   if (liquid.varying) {
     matrix.weight = weight_.data();
     matrix.row = row_.data();
@@ -237,16 +245,14 @@ void PressureSystem::solve(Liquid& liquid, double helmholtz, const char* stage, 
   if (multigrid_ != nullptr) {
     const auto scope = ledger.time("preconditioner setup", static_cast<double>(n));
     if (liquid.plan.displaced_walls) multigrid_->set_geometry(cell_geometry(liquid));
-    if (!surface) {
-      interior_.resize(n);
-      parallel_for(n, [&](std::size_t i) { interior_[i] = 1; });
-    }
+    // Borrowed from the corrections, which start after the setup.
+    correction_.resize(n);
+    parallel_for(n, [&](std::size_t i) { correction_[i] = surface && liquid.held[i] != 0 ? 0.0F : 1.0F; });
     const auto r = liquid.read(liquid.intermediate);
     const auto span = [&](int axis) {
       return axis < liquid.dimensions ? std::span(r[axis], n) : std::span<const double>();
     };
-    multigrid_->setup(span(0), span(1), span(2), surface ? std::span<const float>(liquid.interior_weight) : interior_,
-                      helmholtz, diagonal_);
+    multigrid_->setup(span(0), span(1), span(2), correction_, helmholtz, diagonal_);
   }
 
   const auto scope = ledger.time(stage, static_cast<double>(n));
@@ -314,9 +320,9 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
     set_matrix(liquid, helmholtz + regularisation(liquid, helmholtz));
     set_right_hand_side(liquid, helmholtz, -1 / dt, divergence_.data());
   }
-  // Start from the pressure that the particle carries; surface particles hold p = 0.
+  // Start from the pressure that the particle carries; held ones p = 0.
   parallel_for(n, [&](std::size_t i) {
-    const bool held = liquid.plan.free_surface && liquid.at_surface[i] != 0;
+    const bool held = liquid.plan.free_surface && liquid.held[i] != 0;
     const double carried = held || !liquid.options.pressure.warm_start ? 0.0 : (*liquid.pressure)[i] / density;
     (*liquid.reduced_pressure)[i] = carried + (liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]);
   });
@@ -359,10 +365,9 @@ void PressureSystem::solve_initial(Liquid& liquid, Ledger& ledger) {
 
 double PressureSystem::bytes() const {
   double total = 0;
-  for (const auto* array : {&divergence_, &right_hand_side_, &residual_})
+  for (const auto* array : {&divergence_, &right_hand_side_, &residual_, &surface_source_})
     total += 8.0 * static_cast<double>(array->capacity());
-  for (const auto* array :
-       {&potential_laplacian_, &extra_, &diagonal_, &row_scale_, &correction_right_, &correction_, &interior_})
+  for (const auto* array : {&potential_laplacian_, &extra_, &diagonal_, &row_scale_, &correction_right_, &correction_})
     total += 4.0 * static_cast<double>(array->capacity());
   for (const auto* array : {&work_.residual, &work_.shadow, &work_.direction, &work_.preconditioned, &work_.image,
                             &work_.second_image, &work_.second_preconditioned})

@@ -69,9 +69,12 @@ struct Liquid {
   Array<float>* coupling = nullptr;
   std::array<Array<float>*, 6> correction{};
   Array<std::uint8_t> uncorrected;  // gradient correction fell back to the identity
-  Array<std::uint8_t> at_surface;   // pressure is given
-  Array<float> interior_weight;     // 0 at the surface, 1 inside, smooth between
+  Array<std::uint8_t> at_surface;
+  Array<std::uint8_t> held;      // p = 0: at the surface with too few neighbours for a corrected gradient
+  Array<float> interior_weight;  // b: 0 at the surface, 1 inside, smooth between
   Array<std::int32_t> surface_particles;
+  Array<std::int32_t> edge_particles;  // b < 1 and not held
+  Array<float> edge_depth;             // of those: distance from the surface
   FloatVectorField normal{}, smoothed_normal{};
   FloatVectorField shift{};           // displacement; first the concentration gradient
   FloatVectorField shift_velocity{};  // second-order part of what the shift adds to the velocity
@@ -119,9 +122,8 @@ void sort_particles(Liquid& liquid);
 void make_images(Liquid& liquid, double dt);  // (ii)
 void find_neighbours(Liquid& liquid);         // (ii)
 void measure_geometry(Liquid& liquid);
-void find_surface(Liquid& liquid);
-void choose_shift(Liquid& liquid);            // (iii)
-void differentiate_velocity(Liquid& liquid);  // (v)
+void choose_shift(Liquid& liquid, double dt);  // (iii)
+void differentiate_velocity(Liquid& liquid);   // (v)
 void find_shift_curvature(Liquid& liquid);
 void find_eddy_viscosity(Liquid& liquid, double dt);
 void predict_velocity(Liquid& liquid, double dt);  // (viii)

@@ -5,8 +5,8 @@
 //
 // rho = 1 here; p is divided by the density on the way in and multiplied on the way out. Rows are divided by
 // d / div r, which makes the Laplacian exact for quadratic fields up to the anisotropy of the arrangement, and
-// multiplied by the particle volume, which makes the matrix symmetric. Surface particles hold p = 0; below them a
-// penalty on p fades out over the blend width of div r.
+// multiplied by the particle volume, which makes the matrix symmetric. p = 0 on the free surface enters by mirrored
+// liquid (free_surface.hpp); particles with too few neighbours for that hold p = 0 themselves.
 #pragma once
 
 #include <memory>
@@ -54,9 +54,10 @@ class PressureSystem {
   void set_weights(const Liquid& liquid);
 
   Array<double> divergence_, right_hand_side_, residual_;
+  Array<double> surface_source_;  // per edge particle
   Array<float> potential_laplacian_, extra_, diagonal_, row_scale_;
   Array<float> weight_, row_;  // with bubbles: PressureMatrix
-  Array<float> correction_right_, correction_, interior_;
+  Array<float> correction_right_, correction_;
   double reference_norm_ = 0;  // norm of the right-hand side in terms of p
   PressureOperator operator_;
   std::unique_ptr<CellMultigrid> multigrid_;
