@@ -8,6 +8,7 @@
 #include "methods/les_sph_simulation.hpp"
 #include "reference/sph_sums.hpp"
 #include "spume/core/random.hpp"
+#include "spume/methods/les_sph/free_surface.hpp"
 #include "spume/methods/les_sph/pressure_system.hpp"
 
 namespace spume::test {
@@ -55,25 +56,35 @@ struct PreparedStep {
     les_sph::predict_velocity(liquid, dt);
   }
 
-  bool held(std::size_t i) const { return liquid.plan.free_surface && liquid.at_surface[i] != 0; }
+  bool held(std::size_t i) const { return outside(i) == 1 && liquid.uncorrected[i] != 0; }
 
-  // What multiplies a row, and what is added to its diagonal: compressibility, and the penalty (1 - b) / b of the
-  // coupling below a surface, b being the blend in div r.
+  // 1 - b: by how much a particle lies at the surface.
+  double outside(std::size_t i) const { return liquid.plan.free_surface ? 1 - double{liquid.interior_weight[i]} : 0.0; }
+
+  // What multiplies a row: the trace of the second moment, filled up at a surface.
   double row_scale(std::size_t i) const {
-    return std::max<double>((*liquid.divergence_of_position)[i], 0.5 * liquid.lattice.divergence_of_position) /
-           liquid.dimensions;
+    const double bulk = liquid.lattice.divergence_of_position;
+    const double trace = std::max<double>((*liquid.divergence_of_position)[i], 0.5 * bulk);
+    return (trace + outside(i) * std::max(0.0, bulk - trace)) / liquid.dimensions;
   }
   double helmholtz() const {
     const double c = loaded.scene.fluid.sound_speed;
     return c > 0 ? 1 / (c * c * dt * dt) : 0;
   }
-  double extra(std::size_t i) const {
-    double result = helmholtz() * row_scale(i);
-    if (liquid.plan.free_surface) {
-      const double b = std::max<double>(liquid.interior_weight[i], 1e-3);
-      result += (1 - b) / b * (*liquid.coupling)[i];
+  // E and p0 of the mirrored liquid, from the twin's sums.
+  std::array<double, 2> surface_row(const SphSums& twin, std::size_t i) const {
+    if (outside(i) == 0 || liquid.uncorrected[i] != 0) return {};
+    const auto normal = twin.normal(i);  // -h m
+    double size2 = 0, along = 0;
+    for (int a = 0; a < liquid.dimensions; ++a) {
+      size2 += normal[a].value * normal[a].value;
+      along += normal[a].value * liquid.uniform_acceleration[a];
     }
-    return result;
+    const double spacing = loaded.scene.spacing;
+    const double depth = twin.surface_depth(i, spacing, 1.8 * spacing);
+    const double missing = liquid.lattice.coupling / (spacing * spacing) - twin.coupling(i).value;
+    const double mirrored = 2 * std::sqrt(size2) / liquid.smoothing_length / depth;
+    return {outside(i) * std::max({mirrored, missing, 0.0}), size2 > 0 ? -depth * along / std::sqrt(size2) : 0.0};
   }
 
   std::vector<double> direct_pressure() const {
@@ -101,7 +112,9 @@ struct PreparedStep {
         b[row] = potential(i);
         continue;
       }
-      double diagonal = liquid.volume * extra(i);
+      const auto [surface_coupling, hydrostatic] = surface_row(twin, i);
+      const double extra = helmholtz() * row_scale(i) + surface_coupling;
+      double diagonal = liquid.volume * extra;
       twin.pressure_couplings(i, [&](std::size_t j, double a) {
         entries.emplace_back(row, static_cast<Eigen::Index>(j), a);
         diagonal -= a;
@@ -117,8 +130,8 @@ struct PreparedStep {
         for (int r = 0; r < d; ++r)
           for (int c = 0; c < d; ++c) divergence -= 0.5 * dt * gradient[r][c].value * gradient[c][r].value;
       }
-      b[row] = liquid.volume *
-               ((-divergence / dt + helmholtz() * (*liquid.pressure)[i]) * row_scale(i) + extra(i) * potential(i));
+      b[row] = liquid.volume * ((-divergence / dt + helmholtz() * (*liquid.pressure)[i]) * row_scale(i) +
+                                extra * potential(i) + surface_coupling * hydrostatic);
     }
     if (singular) b.array() -= b.mean();
     Eigen::SparseMatrix<double> matrix(b.size(), b.size());

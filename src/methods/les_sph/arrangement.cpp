@@ -58,6 +58,29 @@ void measure_geometry(Liquid& liquid) {
   geometry_sweep(liquid.context, liquid.records, options, out);
 }
 
+namespace {
+
+// Largest speed relative to the liquid's mean velocity, without spray: the same in every frame.
+double relative_speed(const Liquid& liquid) {
+  const int d = liquid.dimensions;
+  const std::size_t n = liquid.size();
+  Vec3 mean{};
+  for (int axis = 0; axis < d; ++axis)
+    mean[axis] = parallel_sum(n, [&](std::size_t i) { return (*liquid.velocity[axis])[i]; }) /
+                 static_cast<double>(std::max<std::size_t>(n, 1));
+  return std::sqrt(parallel_max(n, 0.0, [&](std::size_t i) {
+    if (liquid.list.count(i) < spray_neighbours(d)) return 0.0;
+    double speed2 = 0;
+    for (int axis = 0; axis < d; ++axis) {
+      const double relative = (*liquid.velocity[axis])[i] - mean[axis];
+      speed2 += relative * relative;
+    }
+    return speed2;
+  }));
+}
+
+}  // namespace
+
 void choose_shift(Liquid& liquid, double dt) {
   const int d = liquid.dimensions;
   // King (3.12) at the step that the courant limit allows, in proportion to the distance moved below it: a liquid at
@@ -66,7 +89,7 @@ void choose_shift(Liquid& liquid, double dt) {
   const double moved =
       liquid.varying
           ? 1.0
-          : std::min(1.0, liquid.limiting_speed * dt / (liquid.options.time.courant * liquid.smoothing_length));
+          : std::min(1.0, relative_speed(liquid) * dt / (liquid.options.time.courant * liquid.smoothing_length));
   const auto limit = [&liquid](std::array<double, 3>& shift, std::size_t i) {
     const double longest = liquid.options.shifting.limit * liquid.width_at(i);
     const double length = std::hypot(shift[0], shift[1], shift[2]);

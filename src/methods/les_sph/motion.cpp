@@ -146,9 +146,9 @@ void update_extremes(Liquid& liquid) {
     return speed2;
   };
   liquid.max_speed = std::sqrt(parallel_max(liquid.size(), 0.0, speed2_at));
-  // Particles with fewer neighbours than a surface would give exchange next to nothing: one droplet need not
-  // hold up the whole liquid. `accept` still refuses a step in which any particle crosses half its support.
-  const int spray = d == 3 ? 8 : 3;
+  // One droplet need not hold up the whole liquid. `accept` still refuses a step in which any particle crosses half
+  // its support.
+  const int spray = spray_neighbours(d);
   const bool listed = liquid.list.particles() == liquid.size();
   liquid.limiting_speed =
       listed ? std::sqrt(parallel_max(liquid.size(), 0.0,

@@ -139,6 +139,11 @@ void update_image_rules(Liquid& liquid, double t);
 // Periodic wrap; a point beyond a wall or inside a solid is reflected back, its velocity too when given.
 void keep_inside(const Liquid& liquid, const WallPositions& walls, Vec3& position, Vec3* velocity);
 
+// Particles with fewer neighbours than a surface gives are spray: they exchange next to nothing.
+constexpr int spray_neighbours(int dimensions) {
+  return dimensions == 3 ? 8 : 3;
+}
+
 // Largest speed and eddy viscosity of the present state, for the step limit.
 void update_extremes(Liquid& liquid);
 
