@@ -15,13 +15,31 @@ namespace {
 // point.
 struct Copy {
   Vec3 point;
-  std::array<double, 3> sign;  // reflection of geometric offsets and of the velocity
+  std::array<double, 3> sign{1, 1, 1};  // reflection of geometric offsets
+  // Velocity of an image: sign * u + offset, 2 u_wall - u in the components that a wall holds.
+  std::array<double, 3> velocity_sign{1, 1, 1};
+  Vec3 velocity_offset{};
 };
+
+void reflect_velocity(const Liquid& liquid, int axis, int side, Copy& copy, const Vec3& point) {
+  const Side& wall = liquid.scene.domain.sides[axis][side];
+  Vec3 speed{};
+  if (wall.velocity) {
+    Vec3 foot = point;
+    foot[axis] = liquid.walls[axis][side];
+    speed = (*wall.velocity)(foot, liquid.time);
+  }
+  for (int a = 0; a < liquid.dimensions; ++a) {
+    if (a != axis && wall.kind == BoundaryKind::free_slip) continue;
+    copy.velocity_sign[a] = -copy.velocity_sign[a];
+    copy.velocity_offset[a] = 2 * speed[a] - copy.velocity_offset[a];
+  }
+}
 
 std::vector<Copy> copies_of(const Liquid& liquid, const Vec3& point) {
   const Domain& domain = liquid.scene.domain;
   const double reach = liquid.grid.reach();
-  std::vector<Copy> copies{{point, {1, 1, 1}}};
+  std::vector<Copy> copies{{.point = point}};
   for (int axis = 0; axis < liquid.dimensions; ++axis) {
     const std::size_t made = copies.size();
     const double length = liquid.walls[axis][1] - liquid.walls[axis][0];
@@ -35,6 +53,7 @@ std::vector<Copy> copies_of(const Liquid& liquid, const Vec3& point) {
         } else {
           copy.point[axis] = 2 * plane - copy.point[axis];
           copy.sign[axis] = -1;
+          reflect_velocity(liquid, axis, side, copy, point);
         }
         copies.push_back(copy);
       }
@@ -102,7 +121,7 @@ PointSample PointSampler::sample(const Liquid& liquid, const Vec3& point) const 
     Eigen::Vector4d basis(1, 0, 0, 0), value((*liquid.pressure)[j], 0, 0, 0);
     for (int axis = 0; axis < d; ++axis) {
       basis[axis + 1] = offset[axis] / liquid.smoothing_length;
-      value[axis + 1] = copy.sign[axis] * (*liquid.velocity[axis])[j];
+      value[axis + 1] = copy.velocity_sign[axis] * (*liquid.velocity[axis])[j] + copy.velocity_offset[axis];
     }
     moments += weight * basis * basis.transpose();
     values += weight * basis * value.transpose();
