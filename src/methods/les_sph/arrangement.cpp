@@ -85,11 +85,9 @@ void choose_shift(Liquid& liquid, double dt) {
   const int d = liquid.dimensions;
   // King (3.12) at the step that the courant limit allows, in proportion to the distance moved below it: a liquid at
   // rest is not shifted, and small steps do not shift more (and dissipate more) than large ones. Particles that make
-  // room for bubbles have to move whatever the speed.
+  // room for a bubble have to move whatever the speed.
   const double moved =
-      liquid.varying
-          ? 1.0
-          : std::min(1.0, relative_speed(liquid) * dt / (liquid.options.time.courant * liquid.smoothing_length));
+      std::min(1.0, relative_speed(liquid) * dt / (liquid.options.time.courant * liquid.smoothing_length));
   const auto limit = [&liquid](std::array<double, 3>& shift, std::size_t i) {
     const double longest = liquid.options.shifting.limit * liquid.width_at(i);
     const double length = std::hypot(shift[0], shift[1], shift[2]);
@@ -99,7 +97,7 @@ void choose_shift(Liquid& liquid, double dt) {
   parallel_for(liquid.size(), [&](std::size_t i) {
     std::array<double, 3> shift{};
     const double h = liquid.width_at(i);
-    const double coefficient = liquid.options.shifting.coefficient * h * h * moved;
+    const double coefficient = liquid.options.shifting.coefficient * h * h * (liquid.alpha_at(i) < 1 ? 1 : moved);
     for (int axis = 0; axis < d; ++axis) shift[axis] = -coefficient * (*liquid.shift[axis])[i];
     if (liquid.plan.free_surface && liquid.at_surface[i] != 0) {
       // King (3.12), sign and tangential projection corrected: only the part along the surface is kept.
