@@ -6,6 +6,7 @@ step      particle-steps per second of breaking_wave, 126,300 particles (width 0
 collapse  wall seconds per simulated second of bench/cases/collapse.toml, 100,000 particles, 2 threads
 threads   the step's speed on 2 threads over that on 1, alternating runs
 shared    time of two runs at once on the same cores over the time of one alone
+bubbles   wall microseconds of all bubble stages per bubble and step, one bubble per ten particles; share with none alive
 memory    peak memory of the step's run per particle, everything counted
 """
 import os
@@ -21,6 +22,7 @@ from spume_results import MissingResult, Results
 from spume_verification import CASES
 
 COLLAPSE = CASES.parent / "bench" / "cases" / "collapse.toml"
+BUBBLES = CASES.parent / "bench" / "cases" / "bubbles.toml"
 WAVE = CASES / "breaking_wave" / "case.toml"
 WIDE = ["--set", "domain.upper=[1, 0.25, 0.5]", "--set", "output.every=0"]
 
@@ -78,6 +80,19 @@ def shared(bench):
     return f"two runs at once take {(time.monotonic() - begin) / alone:.2f} times as long as one ({os.cpu_count()} cores)"
 
 
+def bubbles(bench):
+    def stages(*arguments):
+        run, _ = bench.run(BUBBLES, "--threads", "2", *arguments)
+        seconds = {entry["stage"]: entry["seconds"] for entry in run.ledger["stages"]}
+        return run, sum(s for name, s in seconds.items() if name.startswith("bubble")), sum(seconds.values())
+
+    run, spent, _ = stages()
+    work = float(run.series["bubbles"][1:].sum())
+    _, idle, whole = stages("--set", "bubble_cloud.0.time=100")
+    return (f"{1e6 * spent / work:.2f} us per bubble and step ({run.series['bubbles'][-1]:.0f} bubbles, 2 threads); "
+            f"without any alive {100 * idle / whole:.2f} % of the step")
+
+
 def memory(bench):
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
     run, _ = bench.run(WAVE, *WIDE, "--until", "0.01")
@@ -88,7 +103,8 @@ def memory(bench):
     return f"{peak * 1024 / particles:.0f} bytes per particle at peak, {particles} particles{note}"
 
 
-MEASUREMENTS = {"memory": memory, "step": step, "collapse": collapse, "threads": threads, "shared": shared}
+MEASUREMENTS = {"memory": memory, "step": step, "collapse": collapse, "threads": threads, "shared": shared,
+                "bubbles": bubbles}
 
 
 def main():

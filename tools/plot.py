@@ -16,6 +16,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+from spume_bubbles import PICTURES as BUBBLE_PICTURES
 from spume_figures import (FIELDS, draw_curves, draw_grid_slices, draw_side_view, draw_slices, finish,
                            has_free_surface)
 from spume_particle_figures import plot_particles
@@ -199,7 +200,7 @@ def plot_reference(run, out):
 
 
 PICTURES = (plot_energy, plot_numerics, plot_turbulence, plot_slices, plot_side_view, plot_spectra, plot_gradient_pdf,
-            plot_particles, plot_probes, plot_lines, plot_reference)
+            plot_particles, plot_probes, plot_lines, *BUBBLE_PICTURES, plot_reference)
 
 
 def main():

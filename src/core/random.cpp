@@ -3,6 +3,9 @@
 
 #include <Random123/philox.h>
 
+#include <cmath>
+#include <numbers>
+
 namespace spume {
 
 std::array<double, 4> random_uniform(std::uint64_t seed, RandomPurpose purpose, std::uint64_t identifier,
@@ -16,6 +19,19 @@ std::array<double, 4> random_uniform(std::uint64_t seed, RandomPurpose purpose, 
   const auto bits = r123::Philox4x32{}(counter, key);
   constexpr double scale = 1.0 / 4294967296.0;
   return {bits[0] * scale, bits[1] * scale, bits[2] * scale, bits[3] * scale};
+}
+
+std::array<double, 4> random_normal(std::uint64_t seed, RandomPurpose purpose, std::uint64_t identifier,
+                                    std::uint32_t step, std::uint32_t draw) {
+  const auto u = random_uniform(seed, purpose, identifier, step, draw);
+  std::array<double, 4> normal;
+  for (std::size_t pair = 0; pair < 4; pair += 2) {
+    const double length = std::sqrt(-2 * std::log(1 - u[pair]));  // 1 - u is never zero
+    const double angle = 2 * std::numbers::pi * u[pair + 1];
+    normal[pair] = length * std::cos(angle);
+    normal[pair + 1] = length * std::sin(angle);
+  }
+  return normal;
 }
 
 }  // namespace spume

@@ -6,90 +6,18 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <span>
 #include <utility>
 
+#include "packed_store.hpp"
 #include "spume/core/parallel.hpp"
-#include "spume/core/simd.hpp"
 
 namespace spume {
 namespace {
 
-using simd::f32x8;
-using simd::i32x8;
-
 // Particles handled at a time by one thread; their lists are collected in cache and copied to the shared array.
 constexpr std::size_t list_block = 256;
-
-// For each 8-bit mask the lanes that are set, in order, one byte each.
-constexpr std::array<std::uint64_t, 256> make_lane_table() {
-  std::array<std::uint64_t, 256> table{};
-  for (unsigned mask = 0; mask < 256; ++mask) {
-    std::uint64_t packed = 0;
-    int slot = 0;
-    for (unsigned lane = 0; lane < 8; ++lane)
-      if (mask >> lane & 1U) packed |= std::uint64_t{lane} << (8 * slot++);
-    table[mask] = packed;
-  }
-  return table;
-}
-constexpr auto lane_table = make_lane_table();
-
-// Packs the lanes of v that are set in the mask to the front.
-#if defined(__AVX512VL__)
-using Packing = __mmask8;
-[[gnu::always_inline]] inline Packing packing_of(unsigned mask) {
-  return static_cast<__mmask8>(mask);
-}
-[[gnu::always_inline]] inline void store_packed(i32x8 v, Packing packing, std::int32_t* out) {
-  _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm256_maskz_compress_epi32(packing, __m256i(v)));
-}
-[[gnu::always_inline]] inline void store_packed(f32x8 v, Packing packing, float* out) {
-  _mm256_storeu_ps(out, _mm256_maskz_compress_ps(packing, __m256(v)));
-}
-#elif defined(__AVX2__)
-using Packing = __m256i;
-[[gnu::always_inline]] inline Packing packing_of(unsigned mask) {
-  return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(lane_table[mask])));
-}
-[[gnu::always_inline]] inline void store_packed(i32x8 v, Packing packing, std::int32_t* out) {
-  _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm256_permutevar8x32_epi32(__m256i(v), packing));
-}
-[[gnu::always_inline]] inline void store_packed(f32x8 v, Packing packing, float* out) {
-  _mm256_storeu_ps(out, _mm256_permutevar8x32_ps(__m256(v), packing));
-}
-#else
-using Packing = std::uint64_t;
-[[gnu::always_inline]] inline Packing packing_of(unsigned mask) {
-  return lane_table[mask];
-}
-template <class V, class T>
-[[gnu::always_inline]] inline void store_packed(V v, Packing packing, T* out) {
-  for (int k = 0; k < 8; ++k, packing >>= 8) out[k] = v[packing & 7U];
-}
-#endif
-
-[[gnu::always_inline]] inline unsigned mask_of(i32x8 lanes) {
-#if defined(__AVX__)
-  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(__m256i(lanes))));
-#else
-  unsigned mask = 0;
-  for (int l = 0; l < 8; ++l) mask |= static_cast<unsigned>(lanes[l] != 0) << l;
-  return mask;
-#endif
-}
-
-[[gnu::always_inline]] inline i32x8 load_int(const std::int32_t* p) {
-  i32x8 v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
-}
-
-[[gnu::always_inline]] inline void store_int(std::int32_t* p, i32x8 v) {
-  std::memcpy(p, &v, sizeof v);
-}
 
 // table[index[l]] of the eight lanes.
 [[gnu::always_inline]] inline i32x8 gather_int(const std::int32_t* table, i32x8 index) {
@@ -273,11 +201,11 @@ template <int dimensions>
 }  // namespace
 
 template <int dimensions>
-bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, const Images& images) {
+bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, const Images& images,
+                           const float* own_reach) {
   const std::size_t n = count_.size();
-  const auto reach = static_cast<float>(grid.reach());
-  const float reach2 = reach * reach;
-  const float far = sentinel_coordinate(reach);
+  const auto least_reach = static_cast<float>(grid.reach());
+  const float far = sentinel_coordinate(least_reach);
   const std::array<const float*, 3> point{coordinate_[0].data(), coordinate_[1].data(), coordinate_[2].data()};
   const std::int32_t* first_particle = particles.first();
   const std::int32_t* first_image = images.table().first();
@@ -300,8 +228,7 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
   for (int axis = 0; axis < dimensions; ++axis)
     extent = std::max(
         {extent, std::abs(lower[axis]), std::abs(lower[axis] + static_cast<float>(last_cell[axis] + 1) * side[axis])});
-  const float margin = 1e-4F * reach + 4 * std::numeric_limits<float>::epsilon() * extent;
-  const float cull2 = (reach + margin) * (reach + margin);
+  const float margin = 1e-4F * least_reach + 4 * std::numeric_limits<float>::epsilon() * extent;
 
   // Distances from the group to eight rows from c on along an axis; border rows also hold what was clamped into them.
   const auto distance_to = [=](int axis, int c, const Group& group) {
@@ -321,7 +248,8 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
   const std::array<float, 3> free_lower = image_free_lower_, free_upper = image_free_upper_;
 
   // Runs of the points that may lie within the reach of the group.
-  const auto find_runs = [&](const Group& group, Runs& runs) {
+  const auto find_runs = [&](const Group& group, float reach, Runs& runs) {
+    const float cull2 = (reach + margin) * (reach + margin);
     runs.size = 0;
     bool with_images = false;
     for (int axis = 0; axis < dimensions && any_image; ++axis)
@@ -367,8 +295,11 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
     std::size_t filled = 0;
     std::int64_t pairs = 0;
     for (std::size_t i = begin; i < end;) {
-      const Group group = next_group<dimensions>(point, i, end, reach);
-      find_runs(group, runs);
+      const Group group = next_group<dimensions>(point, i, end, least_reach);
+      float reach = least_reach;
+      if (own_reach != nullptr) reach = *std::max_element(own_reach + group.first, own_reach + group.last);
+      float reach2 = reach * reach;
+      find_runs(group, reach, runs);
       const std::span<const Block> blocks = cut(runs, block_memory);
       Candidates candidates(candidate_memory, simd::lanes * blocks.size());
       gather<dimensions>(point, blocks, group, reach2, candidates);
@@ -387,6 +318,7 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
         slot = slot_of(candidates, i, slot + 1);
         float& own = candidates.coordinate[0][slot];
         const float kept = std::exchange(own, far);
+        if (own_reach != nullptr) reach2 = own_reach[i] * own_reach[i];
         std::int32_t* const stop = select<dimensions>(candidates, centre, reach2, start);
         own = kept;
         store_int(stop, i32x8{} + nobody);
@@ -420,6 +352,12 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
 
 void NeighbourList::build(const CellGrid& grid, const CellTable& particles, const double* x, const double* y,
                           const double* z, std::size_t n, const Images& images, const std::array<double, 3>& origin) {
+  build(grid, particles, x, y, z, n, images, origin, nullptr, grid.reach());
+}
+
+void NeighbourList::build(const CellGrid& grid, const CellTable& particles, const double* x, const double* y,
+                          const double* z, std::size_t n, const Images& images, const std::array<double, 3>& origin,
+                          const float* own_reach, double largest_reach) {
   const int dimensions = grid.dimensions();
   const std::size_t m = images.size();
   points_ = n + m;
@@ -444,7 +382,7 @@ void NeighbourList::build(const CellGrid& grid, const CellTable& particles, cons
     image_free_lower_[axis] = -INFINITY;
     image_free_upper_[axis] = INFINITY;
   }
-  const double reach = grid.reach();
+  const double reach = largest_reach;
   if (m > 0) {
     for (int axis = 0; axis < dimensions; ++axis) {
       image_free_lower_[axis] = static_cast<float>(images.image_free_lower(axis) + reach - origin[axis]);
@@ -452,7 +390,8 @@ void NeighbourList::build(const CellGrid& grid, const CellTable& particles, cons
     }
     if (images.inside_domain()) image_free_upper_[0] = -INFINITY;
   }
-  while (!(dimensions == 3 ? search<3>(grid, particles, images) : search<2>(grid, particles, images))) {
+  while (!(dimensions == 3 ? search<3>(grid, particles, images, own_reach)
+                           : search<2>(grid, particles, images, own_reach))) {
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "spume/operators/pressure_operator.hpp"
 
+#include "spume/operators/image_values.hpp"
+
 namespace spume {
 namespace {
 
@@ -10,13 +12,14 @@ using simd::f64x4;
 constexpr std::size_t block = 256;
 
 template <int dimensions, class Kernel>
-void apply_rows(const SweepContext& context, const float* records, const PressureMatrix& matrix, const float* w,
-                float* y, PressureDots* partial) {
+void apply_rows(const SweepContext& context, const float* records, const PressureMatrix& matrix,
+                [[maybe_unused]] const float* x, [[maybe_unused]] const float* weight_sum, const float* w, float* y,
+                PressureDots* partial) {
   constexpr int width = record_width(dimensions, 1);
   const NeighbourList& list = *context.list;
-  const KernelScale<dimensions, Kernel> scale(context);
+  const KernelScale<dimensions, Kernel> common(context);
   const auto volume = static_cast<float>(context.volume);
-  const float factor = -2 * scale.gradient * volume;
+  const float common_factor = -2 * common.gradient * volume;
   parallel_blocks_dynamic(list.particles(), block, [&](std::size_t b, std::size_t first, std::size_t last) {
     PressureDots dots;
     for (std::size_t i = first; i < last; ++i) {
@@ -24,13 +27,23 @@ void apply_rows(const SweepContext& context, const float* records, const Pressur
         y[i] = 0;
         continue;
       }
-      const float own_value = records[i * width + dimensions];
-      const f32x8 own = simd::splat(own_value);
-      f32x8 sum{};
-      for_each_batch<dimensions, 1>(list, records, i, scale.inverse_h, [&](const auto& batch) {
-        sum = sum + Kernel::f(batch.q) * (own - batch.payload[0]);
-      });
-      const float value = factor * simd::sum(sum) + volume * matrix.extra[i] * own_value;
+      float value = 0;
+      if constexpr (is_varying<Kernel>) {
+        const KernelScale<dimensions, Kernel> scale = common.at(context, i);
+        f32x8 sum{};
+        for_each_batch<dimensions, 1>(list, records, i, scale.inverse_h,
+                                      [&](const auto& batch) { sum = sum + Kernel::f(batch.q) * batch.payload[0]; });
+        const float factor = -2 * scale.gradient * volume * matrix.row[i];
+        value = factor * (weight_sum[i] * x[i] - simd::sum(sum)) + volume * matrix.extra[i] * x[i];
+      } else {
+        const float own_value = records[i * width + dimensions];
+        const f32x8 own = simd::splat(own_value);
+        f32x8 sum{};
+        for_each_batch<dimensions, 1>(list, records, i, common.inverse_h, [&](const auto& batch) {
+          sum = sum + Kernel::f(batch.q) * (own - batch.payload[0]);
+        });
+        value = common_factor * simd::sum(sum) + volume * matrix.extra[i] * own_value;
+      }
       y[i] = value;
       dots.wy += double{w[i]} * value;
       dots.yy += double{value} * value;
@@ -42,12 +55,15 @@ void apply_rows(const SweepContext& context, const float* records, const Pressur
 template <int dimensions, class Kernel>
 void residual_rows(const SweepContext& context, const float* records, const PressureMatrix& matrix, const double* q,
                    const double* b, double* r) {
-  constexpr int width = record_width(dimensions, 2);
+  constexpr int payload = 2 + volume_slots<Kernel>;
+  constexpr int width = record_width(dimensions, payload);
   const NeighbourList& list = *context.list;
-  const KernelScale<dimensions, Kernel> scale(context);
+  const KernelScale<dimensions, Kernel> common(context);
   const auto volume = static_cast<float>(context.volume);
-  const float factor = -2 * scale.gradient * volume;
   sweep(list.particles(), [&](std::size_t i) {
+    const KernelScale<dimensions, Kernel> scale = common.at(context, i);
+    float factor = -2 * scale.gradient * volume;
+    if constexpr (is_varying<Kernel>) factor *= matrix.row[i];
     if (matrix.masked != nullptr && matrix.masked[i] != 0) {
       r[i] = 0;
       return;
@@ -55,8 +71,8 @@ void residual_rows(const SweepContext& context, const float* records, const Pres
     const f32x8 high = simd::splat(records[i * width + dimensions]);
     const f32x8 low = simd::splat(records[i * width + dimensions + 1]);
     f64x4 sum_low{}, sum_high{};
-    for_each_batch<dimensions, 2>(list, records, i, scale.inverse_h, [&](const auto& batch) {
-      const f32x8 f = Kernel::f(batch.q);
+    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& batch) {
+      const f32x8 f = times_volume<Kernel>(Kernel::f(batch.q), batch);
       // The leading parts are subtracted in double: near a zero of q they differ by more than a factor of two, and
       // a float difference would round.
       const f32x8 fine = low - batch.payload[1];
@@ -70,6 +86,18 @@ void residual_rows(const SweepContext& context, const float* records, const Pres
   });
 }
 
+// sum_j F(q) weight_j of every row; the payload of the records is the weight.
+template <class Kernel>
+void sum_weights(const SweepContext& context, const float* records, float* sum) {
+  const KernelScale<3, Kernel> common(context);
+  sweep(context.list->particles(), [&](std::size_t i) {
+    f32x8 total{};
+    for_each_batch<3, 1>(*context.list, records, i, common.at(context, i).inverse_h,
+                         [&](const auto& batch) { total = total + Kernel::f(batch.q) * batch.payload[0]; });
+    sum[i] = simd::sum(total);
+  });
+}
+
 }  // namespace
 
 void PressureOperator::bind(const SweepContext& context, Records& records, const PressureMatrix& matrix) {
@@ -77,6 +105,13 @@ void PressureOperator::bind(const SweepContext& context, Records& records, const
   records_ = &records;
   matrix_ = matrix;
   partial_.resize(block_count(context.list->particles(), block));
+  if (matrix.weight == nullptr) return;
+  weight_sum_.resize(size());
+  float* values = records.prepare(context, 1);
+  pack_scalar(context, values, record_width(context.dimensions, 1), 0, matrix.weight);
+  with_kernel(context, [&]<int dimensions, class Kernel>() {
+    if constexpr (is_varying<Kernel>) sum_weights<Kernel>(context, values, weight_sum_.data());
+  });
 }
 
 PressureDots PressureOperator::apply(std::span<const float> x, std::span<float> y, std::span<const float> w) {
@@ -85,10 +120,17 @@ PressureDots PressureOperator::apply(std::span<const float> x, std::span<float> 
   const auto width = static_cast<std::size_t>(record_width(context_.dimensions, 1));
   const std::int32_t* source = context_.images->source();
   float* out = records + context_.dimensions;
-  parallel_for(n, [&, out, width](std::size_t i) { out[i * width] = x[i]; });
-  parallel_for(context_.images->size(), [&, out, width, n](std::size_t k) { out[(n + k) * width] = x[source[k]]; });
+  if (const float* weight = matrix_.weight; weight != nullptr) {
+    parallel_for(n, [&, out, width](std::size_t i) { out[i * width] = weight[i] * x[i]; });
+    parallel_for(context_.images->size(),
+                 [&, out, width, n](std::size_t k) { out[(n + k) * width] = weight[source[k]] * x[source[k]]; });
+  } else {
+    parallel_for(n, [&, out, width](std::size_t i) { out[i * width] = x[i]; });
+    parallel_for(context_.images->size(), [&, out, width, n](std::size_t k) { out[(n + k) * width] = x[source[k]]; });
+  }
   with_kernel(context_, [&]<int dimensions, class Kernel>() {
-    apply_rows<dimensions, Kernel>(context_, records, matrix_, w.data(), y.data(), partial_.data());
+    apply_rows<dimensions, Kernel>(context_, records, matrix_, x.data(), weight_sum_.data(), w.data(), y.data(),
+                                   partial_.data());
   });
   PressureDots total;
   for (const auto& part : partial_) {
@@ -99,9 +141,11 @@ PressureDots PressureOperator::apply(std::span<const float> x, std::span<float> 
 }
 
 void PressureOperator::residual(std::span<const double> q, std::span<const double> b, std::span<double> r) {
-  float* records = records_->prepare(context_, 2);
+  const int payload = matrix_.weight != nullptr ? 3 : 2;
+  float* records = records_->prepare(context_, payload);
   const std::size_t n = size();
-  const auto width = static_cast<std::size_t>(record_width(context_.dimensions, 2));
+  const auto width = static_cast<std::size_t>(record_width(context_.dimensions, payload));
+  if (matrix_.weight != nullptr) pack_scalar(context_, records, static_cast<int>(width), 2, matrix_.weight);
   const std::int32_t* source = context_.images->source();
   float* out = records + context_.dimensions;
   const auto split = [=](float* record, double value) {

@@ -42,20 +42,23 @@ template <int dimensions, class Kernel, bool shifting>
 void geometry(const SweepContext& context, Records& records_, const GeometryOptions& options, const GeometryOut& out) {
   constexpr int matrix = dimensions == 2 ? 3 : 6;
   const NeighbourList& list = *context.list;
-  const float* records = records_.prepare(context, 0);
-  const KernelScale<dimensions, Kernel> scale(context);
-  const auto centre = static_cast<float>(scale.value * Kernel::w(0.0));
-  const auto h = static_cast<float>(context.smoothing_length);
+  constexpr int payload = volume_slots<Kernel>;
+  float* records = records_.prepare(context, payload);
+  if constexpr (is_varying<Kernel>)
+    pack_scalar(context, records, record_width(dimensions, payload), 0, context.volume_ratio);
+  const KernelScale<dimensions, Kernel> common(context);
+  const auto centre_value = static_cast<float>(Kernel::w(0.0));
   const auto inverse_reference = static_cast<float>(1 / Kernel::w(options.spacing / context.smoothing_length));
 
   sweep(list.particles(), [&](std::size_t i) {
+    const KernelScale<dimensions, Kernel> scale = common.at(context, i);
     f32x8 kernel_sum{}, coupling{};
     std::array<f32x8, matrix> m{};
     std::array<f32x8, dimensions> normal{}, concentration{};
-    for_each_batch<dimensions, 0>(list, records, i, scale.inverse_h, [&](const auto& b) {
+    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
       const f32x8 w = Kernel::w(b.q);
-      const f32x8 g = -scale.gradient * Kernel::f(b.q);
-      kernel_sum = kernel_sum + w;
+      const f32x8 g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
+      kernel_sum = kernel_sum + times_volume<Kernel>(w, b);
       coupling = coupling + g;
       int slot = 0;
       for (int a = 0; a < dimensions; ++a) {
@@ -79,7 +82,10 @@ void geometry(const SweepContext& context, Records& records_, const GeometryOpti
     for (int k = 0; k < matrix; ++k) out.correction[k][i] = static_cast<float>(inverse[k]);
     out.uncorrected[i] = corrected ? 0 : 1;
     out.divergence_of_position[i] = static_cast<float>(trace);
+    const float centre = scale.value * centre_value * own_volume<Kernel>(context, i);
     if (out.kernel_sum != nullptr) out.kernel_sum[i] = centre + scale.value * simd::sum(kernel_sum);
+    auto h = static_cast<float>(context.smoothing_length);
+    if constexpr (is_varying<Kernel>) h *= context.length_ratio[i];
     out.coupling[i] = 2 * simd::sum(coupling);
     for (int a = 0; a < dimensions; ++a) {
       if (options.normals) out.normal[a][i] = -h * simd::sum(normal[a]);
@@ -150,6 +156,16 @@ std::vector<SurfaceLayer> lattice_surface(int dimensions, KernelKind kernel, dou
         if (layer + k <= depth) filtered += w * layers[static_cast<std::size_t>(layer + k)].normal;
       }
       layers[static_cast<std::size_t>(layer)].smoothed_normal = filtered / weight;
+    }
+    for (int layer = 0; layer <= depth; ++layer) {
+      double filtered = 0, weight = 0;
+      for (int k = -n; k <= n; ++k) {
+        if (layer + k < 0) continue;
+        const double w = sum[static_cast<std::size_t>(std::abs(k))].w;
+        weight += w;
+        if (layer + k <= depth) filtered += w * layers[static_cast<std::size_t>(layer + k)].smoothed_normal;
+      }
+      layers[static_cast<std::size_t>(layer)].twice_smoothed_normal = filtered / weight;
     }
   });
   return layers;

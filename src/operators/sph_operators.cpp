@@ -13,6 +13,12 @@ constexpr int symmetric_index(int a, int c) {
   return dimensions == 2 ? low + high : (low == 0 ? high : low + high + 1);
 }
 
+// Volumes of the particles as the last payload of a sweep under a varying kernel.
+template <class Kernel>
+void pack_volumes(const SweepContext& context, float* records, int width, int slot) {
+  if constexpr (is_varying<Kernel>) pack_scalar(context, records, width, slot, context.volume_ratio);
+}
+
 // The corrected vector L v of particle i.
 template <int dimensions>
 std::array<float, dimensions> correct(const std::array<const float*, 6>& correction, std::size_t i,
@@ -28,19 +34,23 @@ void velocity_gradient(const SweepContext& context, Records& records_, const std
                        const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
                        const VelocityGradientOut& out) {
   const NeighbourList& list = *context.list;
-  float* records = records_.prepare(context, dimensions);
-  constexpr int width = record_width(dimensions, dimensions);
+  constexpr int payload = dimensions + volume_slots<Kernel>;
+  float* records = records_.prepare(context, payload);
+  constexpr int width = record_width(dimensions, payload);
   pack_velocity(context, records, width, 0, velocity, rule);
-  const KernelScale<dimensions, Kernel> scale(context);
-  const auto centre = static_cast<float>(Kernel::w(0.0));
+  pack_volumes<Kernel>(context, records, width, dimensions);
+  const KernelScale<dimensions, Kernel> common(context);
+  const auto centre_value = static_cast<float>(Kernel::w(0.0));
 
   sweep(list.particles(), [&](std::size_t i) {
+    const KernelScale<dimensions, Kernel> scale = common.at(context, i);
+    const float centre = centre_value * own_volume<Kernel>(context, i);
     std::array<f32x8, dimensions> own{}, filtered{};
     for (int a = 0; a < dimensions; ++a) own[a] = simd::splat(records[i * width + dimensions + a]);
     std::array<std::array<f32x8, dimensions>, dimensions> m{};
     f32x8 kernel_sum{};
-    for_each_batch<dimensions, dimensions>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      const f32x8 g = -scale.gradient * Kernel::f(b.q);
+    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      const f32x8 g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
       std::array<f32x8, dimensions> gd;
       for (int c = 0; c < dimensions; ++c) gd[c] = g * b.d[c];
       for (int a = 0; a < dimensions; ++a) {
@@ -48,7 +58,7 @@ void velocity_gradient(const SweepContext& context, Records& records_, const std
         for (int c = 0; c < dimensions; ++c) m[a][c] = m[a][c] + difference * gd[c];
       }
       if constexpr (filter) {
-        const f32x8 w = Kernel::w(b.q);
+        const f32x8 w = times_volume<Kernel>(Kernel::w(b.q), b);
         kernel_sum = kernel_sum + w;
         for (int a = 0; a < dimensions; ++a) filtered[a] = filtered[a] + w * b.payload[a];
       }
@@ -70,10 +80,12 @@ void shift_curvature(const SweepContext& context, Records& records_, const std::
                      const std::array<const float*, 3>& shift, const std::array<const float*, 6>& correction,
                      const std::array<float*, 3>& out) {
   constexpr int entries = dimensions * dimensions;
-  constexpr int width = record_width(dimensions, entries);
+  constexpr int payload = entries + volume_slots<Kernel>;
+  constexpr int width = record_width(dimensions, payload);
   const NeighbourList& list = *context.list;
   const std::size_t n = list.particles();
-  float* records = records_.prepare(context, entries);
+  float* records = records_.prepare(context, payload);
+  pack_volumes<Kernel>(context, records, width, entries);
   parallel_for(n, [&](std::size_t i) {
     for (int k = 0; k < entries; ++k) records[i * width + dimensions + k] = gradient[k][i];
   });
@@ -85,9 +97,10 @@ void shift_curvature(const SweepContext& context, Records& records_, const std::
         records[(n + m) * width + dimensions + a * dimensions + b] =
             rule.sign[path][a] * reflection[path][b] * gradient[a * dimensions + b][source];
   });
-  const KernelScale<dimensions, Kernel> scale(context);
+  const KernelScale<dimensions, Kernel> common(context);
 
   sweep(n, [&](std::size_t i) {
+    const KernelScale<dimensions, Kernel> scale = common.at(context, i);
     std::array<float, dimensions> s;
     for (int a = 0; a < dimensions; ++a) s[a] = shift[a][i];
     // L is symmetric: (L sum g d f) . s = sum g f (d . L s).
@@ -95,10 +108,10 @@ void shift_curvature(const SweepContext& context, Records& records_, const std::
     std::array<f32x8, dimensions> sum{};
     std::array<float, entries> own;
     for (int k = 0; k < entries; ++k) own[k] = records[i * width + dimensions + k];
-    for_each_batch<dimensions, entries>(list, records, i, scale.inverse_h, [&](const auto& b) {
+    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
       f32x8 along{};
       for (int a = 0; a < dimensions; ++a) along = along + b.d[a] * direction[a];
-      const f32x8 weight = -scale.gradient * Kernel::f(b.q) * along;
+      const f32x8 weight = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b) * along;
       for (int a = 0; a < dimensions; ++a) {
         f32x8 difference{};
         for (int c = 0; c < dimensions; ++c)
@@ -114,22 +127,25 @@ template <int dimensions, class Kernel, bool stress>
 void viscous(const SweepContext& context, Records& records_, const std::array<const double*, 3>& velocity,
              const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out) {
   const NeighbourList& list = *context.list;
-  float* records = records_.prepare(context, dimensions + 1);
-  constexpr int width = record_width(dimensions, dimensions + 1);
+  constexpr int payload = dimensions + 1 + volume_slots<Kernel>;
+  float* records = records_.prepare(context, payload);
+  constexpr int width = record_width(dimensions, payload);
   pack_velocity(context, records, width, 0, velocity, rule);
   pack_scalar(context, records, width, dimensions, kappa);
-  const KernelScale<dimensions, Kernel> scale(context);
+  pack_volumes<Kernel>(context, records, width, dimensions + 1);
+  const KernelScale<dimensions, Kernel> common(context);
   const auto tiny = static_cast<float>(1e-8 * context.smoothing_length * context.smoothing_length);
 
   sweep(list.particles(), [&](std::size_t i) {
+    const KernelScale<dimensions, Kernel> scale = common.at(context, i);
     std::array<f32x8, dimensions> own{}, sum{};
     for (int a = 0; a < dimensions; ++a) own[a] = simd::splat(records[i * width + dimensions + a]);
     const f32x8 own_kappa = simd::splat(kappa[i]);
-    for_each_batch<dimensions, dimensions + 1>(list, records, i, scale.inverse_h, [&](const auto& b) {
+    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
       // Harmonic mean 2 k_i k_j / (k_i + k_j), zero when both vanish (also at the sentinel).
       const f32x8 kappa_j = b.payload[dimensions];
       const f32x8 mean = own_kappa * kappa_j / simd::max(own_kappa + kappa_j, simd::splat(1e-30F));
-      f32x8 weight = (-4.0F * scale.gradient) * Kernel::f(b.q) * mean;
+      f32x8 weight = times_volume<Kernel>((-4.0F * scale.gradient) * Kernel::f(b.q) * mean, b);
       if constexpr (stress) {
         f32x8 along{}, r2{};
         for (int a = 0; a < dimensions; ++a) {
@@ -152,20 +168,23 @@ void divergence_of(const SweepContext& context, Records& records_, const std::ar
                    const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
                    const double* potential, double* divergence, float* negative_laplacian) {
   const NeighbourList& list = *context.list;
-  float* records = records_.prepare(context, dimensions + 1);
-  constexpr int width = record_width(dimensions, dimensions + 1);
+  constexpr int payload = dimensions + 1 + volume_slots<Kernel>;
+  float* records = records_.prepare(context, payload);
+  constexpr int width = record_width(dimensions, payload);
   pack_velocity(context, records, width, 0, velocity, rule);
   if (potential != nullptr) pack_scalar(context, records, width, dimensions, potential);
-  const KernelScale<dimensions, Kernel> scale(context);
+  pack_volumes<Kernel>(context, records, width, dimensions + 1);
+  const KernelScale<dimensions, Kernel> common(context);
 
   sweep(list.particles(), [&](std::size_t i) {
+    const KernelScale<dimensions, Kernel> scale = common.at(context, i);
     std::array<f32x8, dimensions> own{};
     for (int a = 0; a < dimensions; ++a) own[a] = simd::splat(records[i * width + dimensions + a]);
     const f32x8 own_potential = simd::splat(records[i * width + 2 * dimensions]);
     std::array<std::array<f32x8, dimensions>, dimensions> m{};
     f32x8 laplacian{};
-    for_each_batch<dimensions, dimensions + 1>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      const f32x8 g = -scale.gradient * Kernel::f(b.q);
+    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      const f32x8 g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
       std::array<f32x8, dimensions> gd;
       for (int c = 0; c < dimensions; ++c) gd[c] = g * b.d[c];
       for (int a = 0; a < dimensions; ++a) {
@@ -188,20 +207,23 @@ void gradient_of(const SweepContext& context, Records& records_, const double* v
                  const std::array<const float*, 6>& correction, const std::array<float*, 3>& out) {
   const NeighbourList& list = *context.list;
   const std::size_t n = list.particles();
-  float* records = records_.prepare(context, 1);
-  constexpr int width = record_width(dimensions, 1);
+  constexpr int payload = 1 + volume_slots<Kernel>;
+  float* records = records_.prepare(context, payload);
+  constexpr int width = record_width(dimensions, payload);
+  pack_volumes<Kernel>(context, records, width, 1);
   const std::int32_t* source = context.images->source();
   parallel_for(n, [=](std::size_t i) { records[i * width + dimensions] = static_cast<float>(values[i] - reference); });
   parallel_for(context.images->size(), [=](std::size_t k) {
     records[(n + k) * width + dimensions] = static_cast<float>(values[source[k]] - reference);
   });
-  const KernelScale<dimensions, Kernel> scale(context);
+  const KernelScale<dimensions, Kernel> common(context);
 
   sweep(n, [&](std::size_t i) {
+    const KernelScale<dimensions, Kernel> scale = common.at(context, i);
     const f32x8 own = simd::splat(records[i * width + dimensions]);
     std::array<f32x8, dimensions> sum{};
-    for_each_batch<dimensions, 1>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      const f32x8 weight = -scale.gradient * Kernel::f(b.q) * (b.payload[0] - own);
+    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      const f32x8 weight = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q) * (b.payload[0] - own), b);
       for (int a = 0; a < dimensions; ++a) sum[a] = sum[a] + weight * b.d[a];
     });
     std::array<float, dimensions> v{};
@@ -217,18 +239,22 @@ void filter_listed(const SweepContext& context, Records& records_, const std::ar
                    const std::vector<std::array<float, 3>>& reflection, std::size_t count, ParticleAt&& particle_at,
                    const std::array<float*, 3>& out) {
   const NeighbourList& list = *context.list;
-  float* records = records_.prepare(context, dimensions);
-  constexpr int width = record_width(dimensions, dimensions);
+  constexpr int payload = dimensions + volume_slots<Kernel>;
+  float* records = records_.prepare(context, payload);
+  constexpr int width = record_width(dimensions, payload);
   pack_vector(context, records, width, 0, values, reflection);
-  const KernelScale<dimensions, Kernel> scale(context);
-  const auto centre = static_cast<float>(Kernel::w(0.0));
+  pack_volumes<Kernel>(context, records, width, dimensions);
+  const KernelScale<dimensions, Kernel> common(context);
+  const auto centre_value = static_cast<float>(Kernel::w(0.0));
 
   sweep(count, [&](std::size_t s) {
     const std::size_t i = particle_at(s);
+    const KernelScale<dimensions, Kernel> scale = common.at(context, i);
+    const float centre = centre_value * own_volume<Kernel>(context, i);
     std::array<f32x8, dimensions> filtered{};
     f32x8 kernel_sum{};
-    for_each_batch<dimensions, dimensions>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      const f32x8 w = Kernel::w(b.q);
+    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      const f32x8 w = times_volume<Kernel>(Kernel::w(b.q), b);
       kernel_sum = kernel_sum + w;
       for (int a = 0; a < dimensions; ++a) filtered[a] = filtered[a] + w * b.payload[a];
     });
@@ -241,17 +267,21 @@ template <int dimensions, class Kernel, int count>
 void filter_some(const SweepContext& context, Records& records_, std::span<const float* const> values,
                  std::span<float* const> out) {
   const NeighbourList& list = *context.list;
-  float* records = records_.prepare(context, count);
-  constexpr int width = record_width(dimensions, count);
+  constexpr int payload = count + volume_slots<Kernel>;
+  float* records = records_.prepare(context, payload);
+  constexpr int width = record_width(dimensions, payload);
   for (int k = 0; k < count; ++k) pack_scalar(context, records, width, k, values[k]);
-  const KernelScale<dimensions, Kernel> scale(context);
-  const auto centre = static_cast<float>(Kernel::w(0.0));
+  pack_volumes<Kernel>(context, records, width, count);
+  const KernelScale<dimensions, Kernel> common(context);
+  const auto centre_value = static_cast<float>(Kernel::w(0.0));
 
   sweep(list.particles(), [&](std::size_t i) {
+    const KernelScale<dimensions, Kernel> scale = common.at(context, i);
+    const float centre = centre_value * own_volume<Kernel>(context, i);
     std::array<f32x8, count> filtered{};
     f32x8 kernel_sum{};
-    for_each_batch<dimensions, count>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      const f32x8 w = Kernel::w(b.q);
+    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      const f32x8 w = times_volume<Kernel>(Kernel::w(b.q), b);
       kernel_sum = kernel_sum + w;
       for (int k = 0; k < count; ++k) filtered[k] = filtered[k] + w * b.payload[k];
     });

@@ -108,6 +108,7 @@ RunState Simulation::run(Observer& observer) {
       const double dt = take_step(observer, limit);
       record(dt);
       pass_on_remarks();
+      if (const std::string note = method_->note(); !note.empty()) folder_.log(note);
       report(observer, dt, limit);
       if (seconds_between(checkpointed_, Clock::now()) > loaded_->options.output.checkpoint_every) save_checkpoint();
     }

@@ -19,6 +19,12 @@ std::vector<SeriesHeading> series_headings(const Method& method) {
   return columns;
 }
 
+std::vector<SeriesHeading> headings_of(const RecordTable& table) {
+  std::vector<SeriesHeading> columns;
+  for (const auto& column : table.columns) columns.push_back({column.name, column.unit});
+  return columns;
+}
+
 std::vector<SeriesHeading> probe_headings(const LoadedCase& loaded) {
   std::vector<SeriesHeading> columns = {{"t", "time"}};
   for (const auto& probe : loaded.options.probes) {
@@ -94,7 +100,8 @@ Recorder::Recorder(std::filesystem::path folder, const LoadedCase& loaded, const
       loaded_(loaded),
       resume_(resume),
       series_columns_(series_headings(method)),
-      probe_columns_(probe_headings(loaded)) {
+      probe_columns_(probe_headings(loaded)),
+      method_tables_(method.tables()) {
   if (!resume_) return;
   // Files that began after the checkpoint do not belong to the state that continues.
   for (const char* name : table_names)
@@ -122,6 +129,8 @@ Recorder::Recorder(std::filesystem::path folder, const LoadedCase& loaded, const
     else
       std::filesystem::remove(folder_ / (distribution.name + ".csv"));
   }
+  for (const RecordTable& own : method_tables_)
+    if (resume_->count(own.name) != 0) table(own.name, "", headings_of(own));
 }
 
 SeriesFile& Recorder::table(const std::string& name, const std::string& title,
@@ -145,6 +154,7 @@ void Recorder::series(Method& method, double dt, std::int64_t retries) {
   series_row_.back() = static_cast<double>(retries);
   table("series", loaded_.options.title + ": quantities of the whole domain over time", series_columns_)
       .row(series_row_);
+  own_tables(method, true);
   if (probe_columns_.size() == 1) return;
   probe_values(method, loaded_, probe_row_);
   table("probes", loaded_.options.title + ": probes over time", probe_columns_).row(probe_row_);
@@ -194,6 +204,18 @@ void Recorder::snapshot(Method& method) {
     found->second.append(method.time(), snapshot_of(family));
   }
   lines(method);
+  own_tables(method, false);
+}
+
+void Recorder::own_tables(Method& method, bool with_series) {
+  for (const RecordTable& own : method_tables_) {
+    if (own.with_series != with_series) continue;
+    method.table_rows(own.name, own_rows_);
+    if (own_rows_.empty()) continue;
+    SeriesFile& file = table(own.name, loaded_.options.title + ": " + own.title, headings_of(own));
+    const std::size_t width = own.columns.size();
+    for (std::size_t k = 0; k < own_rows_.size(); k += width) file.row(std::span(own_rows_).subspan(k, width));
+  }
 }
 
 void Recorder::spectrum(Method& method) {

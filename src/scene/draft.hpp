@@ -42,6 +42,24 @@ struct FluidDraft {
   std::optional<double> density, viscosity, gravity, sound_speed;
 };
 
+struct SpargerDraft {
+  Sparger sparger;
+  std::vector<double> position, end;
+  std::optional<ExpressionText> rate;
+};
+
+struct BubbleCloudDraft {
+  BubbleCloud cloud;
+  std::vector<double> lower, upper, centre;
+  std::optional<double> radius;
+};
+
+struct BubbleDraft {
+  std::optional<double> weber, surface_tension, density_ratio, gas_density, hinze_radius, smallest_entrained_radius;
+  std::vector<SpargerDraft> spargers;
+  std::vector<BubbleCloudDraft> clouds;
+};
+
 struct Draft {
   Case options;
   std::vector<double> lower, upper;
@@ -52,6 +70,7 @@ struct Draft {
   std::vector<LiquidDraft> liquids;
   std::vector<SolidDraft> solids;
   std::vector<ProbeDraft> probes;
+  BubbleDraft bubbles;
   std::vector<ExpressionText> body_force;
   double jitter = 0;
   std::vector<std::int64_t> grid;  // one entry: the same along every axis

@@ -207,6 +207,26 @@ std::vector<LiquidRegion> make_regions(const Draft& draft, Compiler& compiler) {
   return regions;
 }
 
+void add_bubble_sources(const Draft& draft, Compiler& compiler, Scene& scene) {
+  for (std::size_t k = 0; k < draft.bubbles.spargers.size(); ++k) {
+    const SpargerDraft& given = draft.bubbles.spargers[k];
+    Sparger sparger = given.sparger;
+    sparger.position = to_vec3(given.position);
+    sparger.end = to_vec3(given.end);
+    if (given.rate) sparger.rate = compiler.compile(*given.rate, "sparger." + std::to_string(k) + ".rate");
+    scene.spargers.push_back(std::move(sparger));
+  }
+  for (const BubbleCloudDraft& given : draft.bubbles.clouds) {
+    BubbleCloud cloud = given.cloud;
+    cloud.lower = to_vec3(given.lower.empty() ? draft.lower : given.lower);
+    cloud.upper = to_vec3(given.upper.empty() ? draft.upper : given.upper);
+    cloud.ball = !given.centre.empty();
+    cloud.centre = to_vec3(given.centre);
+    cloud.radius = given.radius.value_or(0);
+    scene.bubble_clouds.push_back(cloud);
+  }
+}
+
 }  // namespace
 
 LoadedCase load_case(const std::string& path, const std::vector<std::string>& overrides) {
@@ -234,6 +254,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
     check_spectral(draft, problems);
   else
     check_liquids(draft, problems);
+  check_bubbles(draft, problems);
   check_probes(draft, problems);
 
   // Without a valid domain the expressions are still held against three dimensions.
@@ -246,6 +267,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   VectorExpression body_force = compiler.compile(draft.body_force, "forces.body");
   VectorExpression initial_velocity = compiler.compile(draft.initial_velocity, "initial.velocity");
   if (draft.initial_spectrum) scene.initial_spectrum = compiler.compile_spectrum(*draft.initial_spectrum);
+  add_bubble_sources(draft, compiler, scene);
   problems.throw_if_any();
 
   if (any(body_force)) scene.body_force = std::move(body_force);
@@ -261,6 +283,8 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   } else {
     const Lattice lattice = make_lattice(scene.domain, scene.spacing);
     fill_scene(scene, lattice, regions, draft.jitter, problems);
+    problems.throw_if_any();
+    check_bubble_sources(draft, scene, problems);
     problems.throw_if_any();
     draft.options.groups = describe_groups(draft, scene, compiler.scope());
     describe_lattice(scene, lattice, draft.options.groups);

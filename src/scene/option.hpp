@@ -99,6 +99,7 @@ const std::vector<Section>& sections();
 
 // Parts of the table, by subject.
 std::vector<Section> scene_sections();     // domain, solids, fluid, liquid
+std::vector<Section> bubble_sections();    // bubbles, spargers, clouds
 std::vector<Section> method_sections();    // turbulence ... output, probes
 std::vector<Section> particle_sections();  // particles
 std::vector<Section> spectral_sections();  // spectral, forcing

@@ -246,11 +246,6 @@ void refuse_unknown_keys(const Node& table, const std::string& name, bool repeat
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     const Node& child = table.children[i];
     const bool section = name.empty() && (child.kind == Node::Kind::table || child.kind == Node::Kind::array);
-    if (section && key == "bubbles") {
-      problems.add_key(child,
-                       "[bubbles] is not available in this version, which solves the liquid; remove the section");
-      continue;
-    }
     std::string hint = did_you_mean(key, known);
     if (hint.empty() && owner.count(key) && !owner[key].empty())
       hint = "; '" + key + "' belongs into [" + owner[key] + "]";

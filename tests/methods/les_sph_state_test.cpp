@@ -119,8 +119,8 @@ TEST(LesSphAllocations, ASteadyRunAllocatesNothing) {
   }
 }
 
-// A linear shear between walls at rest and in motion is linear in the mirrored liquid too: the fit is exact up to and on
-// the walls.
+// A linear shear between walls at rest and in motion is linear in the mirrored liquid too: the fit is exact up to and
+// on the walls.
 TEST(LesSphSamples, SeeTheVelocityOfNoSlipWalls) {
   Simulation run(R"(method = "les-sph"
 [domain]

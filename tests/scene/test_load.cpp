@@ -74,8 +74,6 @@ TEST(Load, UnknownSectionsAndMisplacedKeysGetASuggestion) {
               ElementsAre("15:1 unknown key 'whre' in [[liquid]]; did you mean 'where'?"));
   EXPECT_THAT(problems_of("titel = \"a\"\n" + small_case()),
               ElementsAre("1:1 unknown key 'titel'; did you mean 'title'?"));
-  EXPECT_THAT(problems_of(small_case("[bubbles]\nweber = 1e4\n")),
-              ElementsAre(HasSubstr("14:2 [bubbles] is not available in this version")));
   EXPECT_THAT(problems_of(replaced(small_case(), "[[liquid]]", "[liquid]")),
               ElementsAre(HasSubstr("13:2 [liquid] must be written [[liquid]]")));
 }

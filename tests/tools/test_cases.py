@@ -30,7 +30,7 @@ class CaseTest(unittest.TestCase):
 class EveryCase(unittest.TestCase):
     def test_has_file_readme_measure_and_bounds(self):
         folders = sorted(p.parent for p in CASES.glob("*/case.toml"))
-        self.assertGreaterEqual(len(folders), 13)
+        self.assertGreaterEqual(len(folders), 19)
         titles = set()
         for folder in folders:
             with self.subTest(case=folder.name):

@@ -17,11 +17,19 @@ enum class RandomPurpose : std::uint32_t {
   parting = 5,
   overlap = 6,
   separation = 7,
+  bubble_fluctuation = 10,
+  bubble_breakup = 11,
+  bubble_entrainment = 12,
+  bubble_source = 13,
   test = 100
 };
 
 // Four uniform numbers in [0, 1) with 32 random bits each.
 std::array<double, 4> random_uniform(std::uint64_t seed, RandomPurpose purpose, std::uint64_t identifier,
                                      std::uint32_t step, std::uint32_t draw);
+
+// Four independent standard normal numbers (Box and Muller 1958).
+std::array<double, 4> random_normal(std::uint64_t seed, RandomPurpose purpose, std::uint64_t identifier,
+                                    std::uint32_t step, std::uint32_t draw);
 
 }  // namespace spume

@@ -90,6 +90,13 @@ class StateReader {
   virtual void i64(const std::string& name, Array<std::int64_t>& values) = 0;
 };
 
+// A table beside series.csv that a method fills itself, written to <name>.csv.
+struct RecordTable {
+  std::string name, title;
+  std::vector<SeriesColumn> columns;
+  bool with_series = false;  // filled with every row of series.csv; else at output times
+};
+
 // Values of the fields at a point or averaged over a region, for probes.
 struct PointSample {
   double pressure = 0;
@@ -137,6 +144,12 @@ class Method {
 
   // What the user should know about the run as it stands, in words; each remark is given once.
   virtual std::vector<std::string> take_remarks() { return {}; }
+
+  // Tables of its own, and the rows that the present state adds to one, row after row.
+  virtual std::vector<RecordTable> tables() const { return {}; }
+  virtual void table_rows(const std::string& /*name*/, std::vector<double>& /*rows*/) {}
+  // What the log should know of the steps since the last call; "" for nothing.
+  virtual std::string note() { return {}; }
 
   virtual void save(StateWriter& writer) const = 0;
   virtual void load(StateReader& reader) = 0;

@@ -31,7 +31,21 @@ struct SweepContext {
   KernelKind kernel = KernelKind::wendland_c2;
   double smoothing_length = 0;
   double volume = 0;  // of every particle
+  // Particles that make room for bubbles: h_i / smoothing_length and V_i / volume. Null: alike.
+  const float* length_ratio = nullptr;
+  const float* volume_ratio = nullptr;
 };
+
+// A kernel under which particles differ in size: sweeps take h_i of the centre and the volume V_j of each neighbour,
+// which is one more float of payload, the last. With a plain kernel nothing of this is compiled.
+template <class Kernel>
+struct Varying : Kernel {};
+template <class Kernel>
+inline constexpr bool is_varying = false;
+template <class Kernel>
+inline constexpr bool is_varying<Varying<Kernel>> = true;
+template <class Kernel>
+inline constexpr int volume_slots = is_varying<Kernel> ? 1 : 0;
 
 // Kernel factors with the particle volume folded in, in the precision of the pair loop.
 template <int dimensions, class Kernel>
@@ -48,7 +62,41 @@ struct KernelScale {
     value = static_cast<float>(scale);
     gradient = static_cast<float>(scale / (h * h));
   }
+
+  // The factors at particle i.
+  KernelScale at([[maybe_unused]] const SweepContext& context, [[maybe_unused]] std::size_t i) const {
+    if constexpr (is_varying<Kernel>) {
+      KernelScale own = *this;
+      const float inverse = 1 / context.length_ratio[i];
+      const float inverse2 = inverse * inverse;
+      const float inverse_d = dimensions == 3 ? inverse2 * inverse : inverse2;
+      own.inverse_h *= inverse;
+      own.value *= inverse_d;
+      own.gradient *= inverse_d * inverse2;
+      return own;
+    } else {
+      return *this;
+    }
+  }
 };
+
+// x times the volumes of a batch of neighbours, over the volume that the kernel factors hold.
+template <class Kernel, class Batch>
+[[gnu::always_inline]] inline simd::f32x8 times_volume(simd::f32x8 x, [[maybe_unused]] const Batch& batch) {
+  if constexpr (is_varying<Kernel>)
+    return x * batch.payload.back();
+  else
+    return x;
+}
+// The same of the particle itself.
+template <class Kernel>
+[[gnu::always_inline]] inline float own_volume([[maybe_unused]] const SweepContext& context,
+                                               [[maybe_unused]] std::size_t i) {
+  if constexpr (is_varying<Kernel>)
+    return context.volume_ratio[i];
+  else
+    return 1;
+}
 
 // Eight neighbours of one particle: q = r / h, d = r_j - r_i, and their payloads.
 template <int dimensions, int payload_floats>
@@ -90,7 +138,8 @@ void sweep(std::size_t particles, Body&& body) {
   });
 }
 
-// Calls body.template operator()<dimensions, Kernel>() for the context's dimension and kernel.
+// Calls body.template operator()<dimensions, Kernel>() for the context's dimension and kernel; Varying<Kernel> where
+// particles differ in size (3-D only).
 template <class Body>
 void with_kernel(const SweepContext& context, Body&& body) {
   const bool wendland = context.kernel == KernelKind::wendland_c2;
@@ -99,6 +148,11 @@ void with_kernel(const SweepContext& context, Body&& body) {
       body.template operator()<2, WendlandC2>();
     else
       body.template operator()<2, QuinticSpline>();
+  } else if (context.length_ratio != nullptr) {
+    if (wendland)
+      body.template operator()<3, Varying<WendlandC2>>();
+    else
+      body.template operator()<3, Varying<QuinticSpline>>();
   } else {
     if (wendland)
       body.template operator()<3, WendlandC2>();

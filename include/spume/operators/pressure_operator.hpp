@@ -15,9 +15,14 @@
 
 namespace spume {
 
+// Where particles differ in size the sum is row_i sum_j 2 g_ij weight_j (q_i - q_j), with g at h_i: what the volumes
+// V_j and a coefficient that is a geometric mean need. Float products then take weight_j q_j as their one payload and
+// the sum of the weights from a sweep at bind, so that an application costs what it does with equal particles.
 struct PressureMatrix {
   const float* extra = nullptr;
   const std::uint8_t* masked = nullptr;  // null: no masked rows
+  const float* weight = nullptr;         // null: equal particles
+  const float* row = nullptr;            // with weight
 };
 
 struct PressureDots {
@@ -42,6 +47,7 @@ class PressureOperator {
   Records* records_ = nullptr;
   PressureMatrix matrix_;
   Array<PressureDots> partial_;
+  Array<float> weight_sum_;  // sum_j F(q) weight_j
 };
 
 }  // namespace spume

@@ -93,6 +93,7 @@ struct LatticeConstants {
 // told apart by the smoothed normal, which falls with depth.
 struct SurfaceLayer {
   double smoothed_normal;         // |n^|, dimensionless
+  double twice_smoothed_normal;   // interpolated from the smoothed one
   double normal;                  // |n*| times h
   double concentration_gradient;  // magnitude times dr, towards the liquid
   double divergence_of_position;

@@ -6,7 +6,7 @@
 // probes.csv has a row whenever series.csv has one: t, then <name>_pressure and <name>_velocity_x, _y (, _z) of a
 // point, <name> of an elevation or a front. lines.csv and spectrum.csv are long tables: t,name,s,x,y,z,velocity_x,
 // velocity_y,velocity_z,pressure at every output time, with s the distance from the start of the line, and
-// t,wavenumber,energy at every spectrum time.
+// t,wavenumber,energy at every spectrum time. Tables of the method (bubble_sizes.csv, bubble_traces.csv) are long too.
 #pragma once
 
 #include <cstdint>
@@ -48,6 +48,7 @@ class Recorder {
   SeriesFile& table(const std::string& name, const std::string& title, const std::vector<SeriesHeading>& columns);
   void lines(Method& method);
   std::vector<std::pair<std::string, std::string>> notes() const;
+  void own_tables(Method& method, bool with_series);
 
   std::filesystem::path folder_;
   const LoadedCase& loaded_;
@@ -57,10 +58,11 @@ class Recorder {
   std::map<std::string, VtkhdfFile> families_;
   std::map<std::string, VtkhdfGridFile> grids_;
   std::vector<SeriesHeading> series_columns_, probe_columns_;
-  std::vector<double> series_row_, probe_row_;
+  std::vector<RecordTable> method_tables_;
+  std::vector<double> series_row_, probe_row_, own_rows_;
 };
 
 // Names of the tables whose extents a checkpoint holds.
-inline constexpr const char* table_names[] = {"series", "probes", "lines", "spectrum"};
+inline constexpr const char* table_names[] = {"series", "probes", "lines", "spectrum", "bubble_sizes", "bubble_traces"};
 
 }  // namespace spume

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "spume/scene/bubbles.hpp"
 #include "spume/scene/scene.hpp"
 
 namespace spume {
@@ -167,6 +168,7 @@ struct Case {
   ForcingOptions forcing;
   InitialOptions initial;
   ParticleCaseOptions particles;
+  BubbleOptions bubbles;
   TimeOptions time;
   OutputOptions output;
   std::vector<ProbeOptions> probes;

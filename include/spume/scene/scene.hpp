@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "spume/core/array.hpp"
+#include "spume/scene/bubbles.hpp"
 
 namespace spume {
 
@@ -82,6 +83,8 @@ struct Scene {
   std::optional<VectorExpression> initial_velocity;    // of a flow on a grid
   std::shared_ptr<const Expression> initial_spectrum;  // E(k) up to a factor; its first argument is k
   std::uint64_t seed = 1;
+  std::vector<Sparger> spargers;
+  std::vector<BubbleCloud> bubble_clouds;
   InitialParticles particles;
 };
 

@@ -36,7 +36,8 @@ void make_images(Liquid& liquid, double dt) {
 
 void find_neighbours(Liquid& liquid) {
   const auto r = liquid.read(liquid.intermediate);
-  liquid.list.build(liquid.grid, liquid.table, r[0], r[1], r[2], liquid.size(), liquid.images, liquid.origin);
+  liquid.list.build(liquid.grid, liquid.table, r[0], r[1], r[2], liquid.size(), liquid.images, liquid.origin,
+                    liquid.varying ? liquid.reach.data() : nullptr, liquid.grid.reach() * liquid.largest_length_ratio);
   liquid.records.invalidate();
 }
 
@@ -82,19 +83,21 @@ double relative_speed(const Liquid& liquid) {
 
 void choose_shift(Liquid& liquid, double dt) {
   const int d = liquid.dimensions;
-  const double h = liquid.smoothing_length;
   // King (3.12) at the step that the courant limit allows, in proportion to the distance moved below it: a liquid at
-  // rest is not shifted, and small steps do not shift more (and dissipate more) than large ones.
-  const double moved = std::min(1.0, relative_speed(liquid) * dt / (liquid.options.time.courant * h));
-  const double coefficient = liquid.options.shifting.coefficient * h * h * moved;
-  const double longest = liquid.options.shifting.limit * h;
-  const auto limit = [=](std::array<double, 3>& shift) {
+  // rest is not shifted, and small steps do not shift more (and dissipate more) than large ones. Particles that make
+  // room for a bubble have to move whatever the speed.
+  const double moved =
+      std::min(1.0, relative_speed(liquid) * dt / (liquid.options.time.courant * liquid.smoothing_length));
+  const auto limit = [&liquid](std::array<double, 3>& shift, std::size_t i) {
+    const double longest = liquid.options.shifting.limit * liquid.width_at(i);
     const double length = std::hypot(shift[0], shift[1], shift[2]);
     if (length > longest)
       for (double& component : shift) component *= longest / length;
   };
   parallel_for(liquid.size(), [&](std::size_t i) {
     std::array<double, 3> shift{};
+    const double h = liquid.width_at(i);
+    const double coefficient = liquid.options.shifting.coefficient * h * h * (liquid.alpha_at(i) < 1 ? 1 : moved);
     for (int axis = 0; axis < d; ++axis) shift[axis] = -coefficient * (*liquid.shift[axis])[i];
     if (liquid.plan.free_surface && liquid.at_surface[i] != 0) {
       // King (3.12), sign and tangential projection corrected: only the part along the surface is kept.
@@ -107,7 +110,7 @@ void choose_shift(Liquid& liquid, double dt) {
       for (int axis = 0; axis < d; ++axis) shift[axis] -= along / norm2 * (*liquid.smoothed_normal[axis])[i];
       if (liquid.list.count(i) == 0) shift = {};
     }
-    limit(shift);
+    limit(shift, i);
     for (int axis = 0; axis < d; ++axis) (*liquid.shift[axis])[i] = static_cast<float>(shift[axis]);
   });
   if (!liquid.plan.drift_removal) return;
@@ -120,7 +123,7 @@ void choose_shift(Liquid& liquid, double dt) {
     std::array<double, 3> shift{};
     for (int axis = 0; axis < d; ++axis)
       shift[axis] = double{(*liquid.shift[axis])[i]} - (*liquid.acceleration[axis])[i];
-    limit(shift);
+    limit(shift, i);
     for (int axis = 0; axis < d; ++axis) (*liquid.shift[axis])[i] = static_cast<float>(shift[axis]);
   });
 }

@@ -25,7 +25,7 @@ ImageRules image_rules(const Liquid& liquid, const WallPositions& walls) {
   const Domain& domain = liquid.scene.domain;
   ImageRules rules;
   rules.dimensions = liquid.dimensions;
-  rules.reach = liquid.grid.reach();
+  rules.reach = liquid.grid.reach() * liquid.largest_length_ratio;
   for (int axis = 0; axis < liquid.dimensions; ++axis) {
     rules.lower[axis] = walls[axis][0];
     rules.upper[axis] = walls[axis][1];

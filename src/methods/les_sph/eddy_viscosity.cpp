@@ -30,10 +30,9 @@ void find_strain(Liquid& liquid) {
 template <int d>
 void find_static_viscosity(Liquid& liquid) {
   const TurbulenceOptions& options = liquid.options.turbulence;
-  const double width = liquid.smoothing_length;
   const bool mixed = options.model == TurbulenceModel::mixed_scale;
   parallel_for(liquid.size(), [&](std::size_t i) {
-    const double strain = (*liquid.strain)[i];
+    const double strain = (*liquid.strain)[i], width = liquid.width_at(i);
     double viscosity = 0;
     if (mixed) {
       std::array<double, d> u, filtered;

@@ -35,7 +35,7 @@ void list_particles(std::size_t n, Array<std::int32_t>& list, Chosen&& chosen) {
 // m = sum_j g d, from the outward normal -h m.
 Vec3 moment_of(const Liquid& liquid, std::size_t i) {
   Vec3 m{};
-  for (int axis = 0; axis < liquid.dimensions; ++axis) m[axis] = -(*liquid.normal[axis])[i] / liquid.smoothing_length;
+  for (int axis = 0; axis < liquid.dimensions; ++axis) m[axis] = -(*liquid.normal[axis])[i] / liquid.width_at(i);
   return m;
 }
 

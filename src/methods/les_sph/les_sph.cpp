@@ -9,6 +9,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/methods/les_sph/bubble_coupling.hpp"
 #include "spume/methods/les_sph/free_surface.hpp"
 #include "spume/methods/les_sph/point_sampler.hpp"
 #include "spume/methods/les_sph/pressure_system.hpp"
@@ -40,7 +41,9 @@ void LesSph::step(double dt, Ledger& ledger) {
   };
   stage("move", [&] { move_to_intermediate(liquid, dt); });
   stage("sort", [&] { sort_particles(liquid); });
+  if (plan.bubbles) stage("bubble volume", [&] { bubbles_->move(liquid, dt); });
   if (plan.images) stage("images", [&] { make_images(liquid, dt); });
+  if (plan.bubbles) stage("bubble volume", [&] { bubbles_->share_volume(liquid); });
   stage("neighbours", [&] { find_neighbours(liquid); });
   pair_stage("geometry", [&] { measure_geometry(liquid); });
   if (plan.free_surface) stage("surface", [&] { find_surface(liquid); });
@@ -48,15 +51,21 @@ void LesSph::step(double dt, Ledger& ledger) {
   if (plan.velocity_gradient) pair_stage("gradients", [&] { differentiate_velocity(liquid); });
   if (plan.shift_curvature) pair_stage("shift curvature", [&] { find_shift_curvature(liquid); });
   if (plan.eddy_viscosity) stage("eddy viscosity", [&] { find_eddy_viscosity(liquid, dt); });
+  if (plan.bubbles) stage("bubble forces", [&] { bubbles_->exchange_momentum(liquid, dt); });
   pair_stage("prediction", [&] { predict_velocity(liquid, dt); });
   pressure_->solve_step(liquid, dt, ledger);
   pair_stage("projection", [&] { project_velocity(liquid, dt); });
   stage("accept", [&] { accept(liquid, dt); });
+  if (plan.bubbles) stage("bubble events", [&] { bubbles_->accept(liquid, dt); });
 }
 
 LesSph::LesSph(const LoadedCase& loaded) : liquid_(loaded), pressure_(std::make_unique<PressureSystem>(liquid_)) {
-  const std::array<const char*, 6> known{"velocity",    "pressure",       "id",
-                                         "dissipation", "eddy_viscosity", "divergence_of_position"};
+  std::vector<const char*> known{"velocity",    "pressure",       "id",
+                                 "dissipation", "eddy_viscosity", "divergence_of_position"};
+  if (liquid_.plan.bubbles) {
+    bubbles_ = std::make_unique<BubbleCoupling>(liquid_);
+    known.push_back("volume_fraction");
+  }
   for (const std::string& name : loaded.options.output.fields)
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       std::string list;
@@ -72,11 +81,17 @@ void LesSph::start(Ledger& ledger) {
   if (liquid_.size() > 0) {
     move_to_intermediate(liquid_, 0);
     sort_particles(liquid_);
+    if (bubbles_) {
+      bubbles_->start(liquid_);
+      bubbles_->move(liquid_, 0);
+    }
     if (liquid_.plan.images) make_images(liquid_, 0);
+    if (bubbles_) bubbles_->share_volume(liquid_);
     find_neighbours(liquid_);
     measure_geometry(liquid_);
     if (liquid_.plan.free_surface) find_surface(liquid_);
     differentiate_velocity(liquid_);
+    if (bubbles_) liquid_.bubble_viscosity.resize(liquid_.size());
     predict_velocity(liquid_, 0);  // for the potential of the uniform acceleration
     pressure_->solve_initial(liquid_, ledger);
     if (!liquid_.plan.velocity_gradient) {
@@ -108,6 +123,8 @@ std::vector<ArrayInfo> LesSph::arrays() const {
   list.push_back({"neighbour lists", liquid_.list.bytes()});
   list.push_back({"sweep records", liquid_.records.bytes()});
   list.push_back({"pressure system", pressure_->bytes()});
+  if (bubbles_)
+    for (const ArrayInfo& array : bubbles_->arrays()) list.push_back(array);
   return list;
 }
 
@@ -125,6 +142,8 @@ StepLimit LesSph::step_limit() const {
   if (speed > 0) bound(options.courant * h / speed, "courant");
   const double viscosity = liquid_.scene.fluid.kinematic_viscosity + liquid_.max_eddy_viscosity;
   if (viscosity > 0) bound(options.viscous * h * h / viscosity, "viscous");
+  // A bubble crosses at most half a smoothing length.
+  if (bubbles_ && bubbles_->max_speed() > 0) bound(0.5 * h / bubbles_->max_speed(), "bubbles");
   if (options.max_step > 0) bound(options.max_step, "max_step");
   // A force on a liquid at rest: the first steps follow the time scale of the run.
   if (speed == 0 && options.max_step == 0) bound(options.end / 1000, "end of run");
@@ -144,6 +163,7 @@ std::vector<SeriesColumn> LesSph::series_columns() const {
   columns.push_back({"pressure_iterations", "1"});
   columns.push_back({"pressure_residual", "relative"});
   columns.push_back({"surface_particles", "1"});
+  if (bubbles_) bubbles_->add_columns(columns);
   return columns;
 }
 
@@ -179,6 +199,10 @@ void LesSph::series_values(std::span<double> values) {
   put(pressure_->report().iterations);
   put(pressure_->report().relative_residual);
   put(static_cast<double>(liquid.surface_particles.size()));
+  if (!bubbles_) return;
+  std::vector<double> of_bubbles;
+  bubbles_->put_values(liquid, of_bubbles);
+  for (const double value : of_bubbles) put(value);
 }
 
 std::vector<Family> LesSph::snapshot() {
@@ -218,7 +242,23 @@ std::vector<Family> LesSph::snapshot() {
   if (liquid_.plan.eddy_viscosity) add_derived("eddy_viscosity", false, eddy);
   add_derived("divergence_of_position", false,
               [&](std::size_t i) { return double{(*liquid_.divergence_of_position)[i]}; });
-  return {fluid};
+  if (!bubbles_) return {fluid};
+  if (want("volume_fraction", true)) fluid.fields.push_back({"volume_fraction", {liquid_.volume_fraction->data()}, {}});
+  if (bubbles_->population().empty()) return {fluid};
+  return {fluid, bubbles_->family(liquid_)};
+}
+
+std::vector<RecordTable> LesSph::tables() const {
+  return bubbles_ ? bubbles_->tables() : std::vector<RecordTable>{};
+}
+
+void LesSph::table_rows(const std::string& name, std::vector<double>& rows) {
+  ensure_started();
+  if (bubbles_) bubbles_->table_rows(liquid_, name, rows);
+}
+
+std::string LesSph::note() {
+  return bubbles_ ? bubbles_->note() : std::string();
 }
 
 PointSampler& LesSph::sampler() {
@@ -272,6 +312,7 @@ void LesSph::save(StateWriter& writer) const {
     if (const auto* f64 = std::get_if<Array<double>>(&field->values)) writer.f64(field->name, *f64);
     if (const auto* i64 = std::get_if<Array<std::int64_t>>(&field->values)) writer.i64(field->name, *i64);
   }
+  if (bubbles_) bubbles_->save(writer);
 }
 
 void LesSph::load(StateReader& reader) {
@@ -301,6 +342,7 @@ void LesSph::load(StateReader& reader) {
   liquid_.steps = counters[0];
   liquid_.started = counters[1] != 0;
   for (int axis = 0; axis < 3; ++axis) liquid_.walls[axis] = {walls[2 * axis], walls[2 * axis + 1]};
+  if (bubbles_) bubbles_->load(reader);
 }
 
 }  // namespace spume::les_sph

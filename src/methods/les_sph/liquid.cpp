@@ -68,6 +68,12 @@ Liquid::Liquid(const LoadedCase& loaded_case)
     lagrangian_average[1] = &fields.add<double>("average_germano_germano", Lifetime::carried);
   }
 
+  if (plan.bubbles) {
+    volume_fraction = &fields.add<double>("volume_fraction", Lifetime::carried);
+    add_vector(fields, material_acceleration, "material_acceleration", d, Lifetime::carried);
+    add_vector(fields, exchange, "bubble_exchange", d, Lifetime::scratch);
+  }
+
   // r* is sorted with the state: it is what the order refers to.
   add_vector(fields, intermediate, "intermediate_position", d, Lifetime::carried);
   add_vector(fields, predicted, "predicted_velocity", d, Lifetime::scratch);
@@ -101,6 +107,7 @@ Liquid::Liquid(const LoadedCase& loaded_case)
       (*velocity[axis])[i] = scene.particles.velocity[axis][i];
     }
     (*identifier)[i] = static_cast<std::int64_t>(i);
+    if (volume_fraction != nullptr) (*volume_fraction)[i] = 1;
   });
 
   const double reach = support_of(options.resolution.kernel) * smoothing_length;

@@ -45,8 +45,10 @@ void find_diffusivity(Liquid& liquid) {
   const double bulk = liquid.lattice.divergence_of_position;
   parallel_for(liquid.size(), [&](std::size_t i) {
     const double div_r = std::max<double>((*liquid.divergence_of_position)[i], 0.95 * bulk);
-    const double eddy = liquid.eddy_viscosity == nullptr ? 0.0 : (*liquid.eddy_viscosity)[i];
-    (*liquid.diffusivity)[i] = static_cast<float>((nu + eddy) * liquid.dimensions / div_r);
+    double eddy = liquid.eddy_viscosity == nullptr ? 0.0 : (*liquid.eddy_viscosity)[i];
+    if (liquid.varying) eddy += liquid.bubble_viscosity[i];
+    const double alpha = liquid.alpha_at(i);
+    (*liquid.diffusivity)[i] = static_cast<float>(alpha * (nu + eddy) * liquid.dimensions / div_r);
   });
 }
 
@@ -83,7 +85,8 @@ void predict_velocity(Liquid& liquid, double dt) {
   }
   parallel_for(liquid.size(), [&](std::size_t i) {
     for (int axis = 0; axis < d; ++axis) {
-      const double viscous = liquid.plan.viscosity ? (*liquid.acceleration[axis])[i] : 0.0;
+      double viscous = liquid.plan.viscosity ? (*liquid.acceleration[axis])[i] : 0.0;
+      if (liquid.varying) viscous = viscous / liquid.alpha_at(i) + (*liquid.exchange[axis])[i];
       (*liquid.predicted[axis])[i] = (*liquid.velocity[axis])[i] + dt * (viscous + liquid.periodic_acceleration[axis]);
     }
   });
@@ -107,7 +110,7 @@ void project_velocity(Liquid& liquid, double dt) {
       // isolated particle falls with the full acceleration.
       Vec3 seen{};
       with_kernel(liquid.context, [&]<int dimensions, class Kernel>() {
-        const KernelScale<dimensions, Kernel> scale(liquid.context);
+        const auto scale = KernelScale<dimensions, Kernel>(liquid.context).at(liquid.context, i);
         for (const std::int32_t j : liquid.list.of(i)) {
           double r2 = 0, slope = 0;
           std::array<double, dimensions> dr;
@@ -121,12 +124,16 @@ void project_velocity(Liquid& liquid, double dt) {
                   ? static_cast<std::size_t>(j)
                   : static_cast<std::size_t>(liquid.images.source()[j - static_cast<std::int32_t>(n)]);
           if (liquid.potential != nullptr) slope = (*liquid.potential)[source] - (*liquid.potential)[i];
-          const double g = -scale.gradient * Kernel::f(std::sqrt(r2) * scale.inverse_h);
+          const double g =
+              -scale.gradient * own_volume<Kernel>(liquid.context, source) * Kernel::f(std::sqrt(r2) * scale.inverse_h);
           for (int axis = 0; axis < dimensions; ++axis) seen[axis] += g * dr[axis] * slope;
         }
       });
       for (int axis = 0; axis < d; ++axis) gradient[axis] += -liquid.uniform_acceleration[axis] - seen[axis];
     }
+    // King (3.14b) with alpha du/dt: see bubble_coupling.hpp.
+    if (liquid.plan.mixture_pressure)
+      for (double& component : gradient) component /= liquid.alpha_at(i);
     for (int axis = 0; axis < d; ++axis) (*liquid.predicted[axis])[i] -= dt * gradient[axis];
   });
 }
@@ -150,6 +157,11 @@ void update_extremes(Liquid& liquid) {
   if (liquid.eddy_viscosity != nullptr && liquid.started)
     liquid.max_eddy_viscosity =
         parallel_max(liquid.size(), 0.0, [&](std::size_t i) { return double{(*liquid.eddy_viscosity)[i]}; });
+  if (liquid.varying && liquid.bubble_viscosity.size() == liquid.size())
+    liquid.max_eddy_viscosity = parallel_max(liquid.size(), 0.0, [&](std::size_t i) {
+      return double{liquid.bubble_viscosity[i]} +
+             (liquid.eddy_viscosity == nullptr ? 0.0 : double{(*liquid.eddy_viscosity)[i]});
+    });
 }
 
 void accept(Liquid& liquid, double dt) {
@@ -186,6 +198,9 @@ void accept(Liquid& liquid, double dt) {
       u[axis] = (*liquid.predicted[axis])[i];
       r[axis] = (*liquid.intermediate[axis])[i];
     }
+    if (liquid.plan.bubbles)
+      for (int axis = 0; axis < d; ++axis)
+        (*liquid.material_acceleration[axis])[i] = (u[axis] - (*liquid.velocity[axis])[i]) / dt;
     if (liquid.plan.shifting) {
       for (int axis = 0; axis < d; ++axis) r[axis] += (*liquid.shift[axis])[i];
       if (liquid.plan.shift_correction) add_shift_velocity(liquid, i, u);

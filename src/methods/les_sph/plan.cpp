@@ -2,6 +2,7 @@
 #include "spume/methods/les_sph/plan.hpp"
 
 #include <algorithm>
+#include <string>
 
 namespace spume::les_sph {
 
@@ -22,10 +23,13 @@ Plan make_plan(const LoadedCase& loaded) {
   const TurbulenceModel model = options.turbulence.model;
   plan.eddy_viscosity = model != TurbulenceModel::none;
   plan.test_filter = plan.eddy_viscosity && model != TurbulenceModel::smagorinsky;
+  plan.bubbles = options.bubbles.on;
+  plan.mixture_pressure = plan.bubbles && options.bubbles.closure == BubbleClosure::mixture_pressure;
+  plan.test_filter = plan.test_filter || (plan.bubbles && options.bubbles.fluctuations);
   plan.drift_removal = plan.shifting && options.shifting.remove_drift;
   plan.shift_correction = plan.shifting && options.shifting.velocity_correction != ShiftCorrection::none;
   plan.shift_curvature = plan.shifting && options.shifting.velocity_correction == ShiftCorrection::second_order;
-  plan.velocity_gradient = plan.eddy_viscosity || plan.shift_correction || options.time.centred;
+  plan.velocity_gradient = plan.eddy_viscosity || plan.shift_correction || options.time.centred || plan.bubbles;
   plan.viscosity = plan.eddy_viscosity || scene.fluid.kinematic_viscosity > 0;
   const DiffusionForm form = options.turbulence.diffusion;
   plan.viscous_stress =
@@ -57,6 +61,9 @@ std::vector<Stage> Plan::stages(const LoadedCase& loaded) const {
   list.push_back({"move", true, "particles to their intermediate positions"});
   list.push_back({"sort", true, "particles in cell order"});
   list.push_back({"images", images, images ? "periodic sides, walls or solids" : "every side is open"});
+  const BubbleOptions& gas = loaded.options.bubbles;
+  list.push_back(
+      {"bubble volume", bubbles, bubbles ? "volume fraction and sizes of particles" : "no section [bubbles]"});
   list.push_back({"neighbours", true, "lists within the kernel support"});
   list.push_back({"geometry", true, "gradient correction, div r, concentration"});
   list.push_back(
@@ -64,11 +71,16 @@ std::vector<Stage> Plan::stages(const LoadedCase& loaded) const {
   list.push_back({"shift", shifting, shifting ? "Fickian shifting" : "shifting.on = false"});
   list.push_back({"gradients", velocity_gradient,
                   eddy_viscosity      ? "strain of the closure"
+                  : bubbles           ? "vorticity at the bubbles"
                   : velocity_gradient ? "velocity correction of the shift"
                                       : "nobody needs them"});
   list.push_back({"shift curvature", shift_curvature,
                   shift_curvature ? "second-order velocity correction of the shift" : "shifting.velocity_correction"});
   list.push_back({"eddy viscosity", eddy_viscosity, model()});
+  list.push_back({"bubble forces", bubbles,
+                  !bubbles                                     ? "no section [bubbles]"
+                  : gas.integrator == BubbleIntegrator::stable ? "stable integrator"
+                                                               : "explicit sub-steps"});
   list.push_back({"viscosity", viscosity, viscous_stress ? "div(2 nu S)" : viscosity ? "div(nu grad u)" : "inviscid"});
   list.push_back({"body force", body_force, body_force ? "forces.body" : "none given"});
   list.push_back(
@@ -77,6 +89,16 @@ std::vector<Stage> Plan::stages(const LoadedCase& loaded) const {
   list.push_back(
       {"pressure", true, closed ? "closed domain: the constant is removed" : "zero pressure at the free surface"});
   list.push_back({"project", true, "pressure gradient and final positions"});
+  std::string events;
+  const auto event = [&](bool on, const char* name) {
+    if (on) events += (events.empty() ? "" : ", ") + std::string(name);
+  };
+  event(gas.entrainment, "entrainment");
+  event(gas.breakup, "breakup");
+  event(!loaded.scene.spargers.empty(), "spargers");
+  event(!loaded.scene.bubble_clouds.empty(), "clouds");
+  event(gas.surface_interaction && free_surface, "bursting");
+  list.push_back({"bubble events", bubbles, bubbles ? events : "no section [bubbles]"});
   return list;
 }
 

@@ -97,7 +97,8 @@ void PointSampler::visit(const Liquid& liquid, const Vec3& point, Visit&& visit)
               offset[axis] = copy.sign[axis] * ((*liquid.position[axis])[j] - copy.point[axis]);
               r2 += offset[axis] * offset[axis];
             }
-            if (r2 < reach * reach) visit(j, scale * Kernel::w(std::sqrt(r2) / h), offset, copy);
+            const double swelling = liquid.volume_fraction == nullptr ? 1.0 : 1 / (*liquid.volume_fraction)[j];
+            if (r2 < reach * reach) visit(j, swelling * scale * Kernel::w(std::sqrt(r2) / h), offset, copy);
           }
         }
     }

@@ -94,8 +94,20 @@ PressureSystem::PressureSystem(const Liquid& liquid) {
     multigrid_ = std::make_unique<CellMultigrid>(cell_geometry(liquid));
 }
 
+// V_j of (3.9), and with mixture-pressure alpha div((1/alpha) grad q), the left-hand side of King (3.17), by the
+// geometric mean of 1/alpha: alpha_i / sqrt(alpha_i alpha_j).
+void PressureSystem::set_weights(const Liquid& liquid) {
+  for (auto* array : {&weight_, &row_}) array->resize(liquid.size());
+  parallel_for(liquid.size(), [&](std::size_t i) {
+    const float root = liquid.plan.mixture_pressure ? std::sqrt(liquid.next_volume_fraction[i]) : 1.0F;
+    weight_[i] = liquid.volume_ratio[i] / root;
+    row_[i] = root;
+  });
+}
+
 void PressureSystem::set_matrix(const Liquid& liquid, double helmholtz) {
   const std::size_t n = liquid.size();
+  if (liquid.varying) set_weights(liquid);
   for (auto* array : {&extra_, &diagonal_, &row_scale_}) array->resize(n);
   const double bulk = liquid.lattice.divergence_of_position;
   const auto volume = static_cast<float>(liquid.volume);
@@ -138,7 +150,13 @@ void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz,
             right_hand_side_[i] = 0;
             continue;
           }
-          const double known = (source_scale * source[i] + helmholtz * (*liquid.pressure)[i] / density) * row_scale_[i];
+          double source_factor = source_scale, pressure_factor = helmholtz;
+          if (liquid.plan.mixture_pressure)
+            source_factor *= liquid.alpha_at(i);
+          else if (liquid.varying)
+            pressure_factor *= (*liquid.volume_fraction)[i] / liquid.alpha_at(i);
+          const double known =
+              (source_factor * source[i] + pressure_factor * (*liquid.pressure)[i] / density) * row_scale_[i];
           const double potential = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
           right_hand_side_[i] = liquid.volume * (known + extra_[i] * potential);
           const double in_pressure =
@@ -217,7 +235,11 @@ void PressureSystem::solve(Liquid& liquid, double helmholtz, const char* stage, 
   const bool surface = liquid.plan.free_surface;
   residual_.resize(n);
 
-  const PressureMatrix matrix{extra_.data(), surface ? liquid.held.data() : nullptr};
+  PressureMatrix matrix{extra_.data(), surface ? liquid.held.data() : nullptr};
+  if (liquid.varying) {
+    matrix.weight = weight_.data();
+    matrix.row = row_.data();
+  }
   operator_.bind(liquid.context, liquid.records, matrix);
   report_ = {};
   if (multigrid_ != nullptr) {

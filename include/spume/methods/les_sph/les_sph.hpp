@@ -16,6 +16,7 @@
 
 namespace spume::les_sph {
 
+class BubbleCoupling;
 class PressureSystem;
 class PointSampler;
 
@@ -38,11 +39,15 @@ class LesSph final : public Method {
   double elevation(const Vec3& position) override;
   double front(int axis, double height) override;
   bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override;
+  std::vector<RecordTable> tables() const override;
+  void table_rows(const std::string& name, std::vector<double>& rows) override;
+  std::string note() override;
   void save(StateWriter& writer) const override;
   void load(StateReader& reader) override;
 
   const Liquid& liquid() const { return liquid_; }
   const PressureSystem& pressure_system() const { return *pressure_; }
+  const BubbleCoupling* bubble_coupling() const { return bubbles_.get(); }  // null without bubbles
 
  private:
   void start(Ledger& ledger);  // finds the pressure of the initial velocity field
@@ -53,6 +58,7 @@ class LesSph final : public Method {
   std::map<std::string, Array<double>> snapshot_;  // derived fields of the last snapshot
   std::unique_ptr<PressureSystem> pressure_;
   std::unique_ptr<PointSampler> sampler_;
+  std::unique_ptr<BubbleCoupling> bubbles_;
 };
 
 }  // namespace spume::les_sph

@@ -47,6 +47,19 @@ struct Liquid {
   std::array<Array<double>*, 2> lagrangian_average{};  // I_LM and I_MM of the Lagrangian dynamic closure
   WallPositions walls{};
 
+  // With bubbles only. The next two are carried; the others belong to a step in which bubbles live.
+  Array<double>* volume_fraction = nullptr;  // alpha
+  VectorField material_acceleration{};       // Du/Dt of the last step
+  bool varying = false;                      // bubbles live: particles differ in size
+  double largest_length_ratio = 1;
+  Array<float> next_volume_fraction;        // alpha^{n+1}
+  Array<float> length_ratio, volume_ratio;  // h_i / h and V_i / V, as far as kernels expand
+  Array<float> reach;                       // support of h_i
+  Array<float> bubble_viscosity;
+  FloatVectorField exchange{};  // acceleration by the bubbles
+  double width_at(std::size_t i) const { return varying ? smoothing_length * length_ratio[i] : smoothing_length; }
+  double alpha_at(std::size_t i) const { return varying ? double{next_volume_fraction[i]} : 1.0; }
+
   // Found within a step.
   VectorField intermediate{};                 // r* of step (i)
   VectorField predicted{};                    // u* and then u^{n+1}

@@ -27,6 +27,8 @@ struct Plan {
   bool body_force = false;      // varies in space
   bool compressible = false;    // Ma > 0
   bool closed = false;          // pressure known up to a constant
+  bool bubbles = false;
+  bool mixture_pressure = false;  // closure of the momentum exchange with bubbles
 
   std::vector<Stage> stages(const LoadedCase& loaded) const;
 };

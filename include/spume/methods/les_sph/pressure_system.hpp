@@ -51,10 +51,12 @@ class PressureSystem {
   KrylovResult correct(Liquid& liquid, double size, double target, int left, bool singular);
   KrylovResult correct_in_double(Liquid& liquid, double size, double target, int left, bool singular);
   void remove_constant(Liquid& liquid) const;
+  void set_weights(const Liquid& liquid);
 
   Array<double> divergence_, right_hand_side_, residual_;
   Array<double> surface_source_;  // per edge particle
   Array<float> potential_laplacian_, extra_, diagonal_, row_scale_;
+  Array<float> weight_, row_;  // with bubbles: PressureMatrix
   Array<float> correction_right_, correction_;
   double reference_norm_ = 0;  // norm of the right-hand side in terms of p
   PressureOperator operator_;

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""Bubbles that rise to a surface: where they rest, how fast they brake, whether they come back down."""
+import numpy as np
+
+from spume_bubbles import surface_tension, traces
+from spume_results import standard
+
+SURFACE = 0.4
+HALF = 2.0  # the last half of the run begins here
+
+
+def weber(run, trace):
+    """Of the bubble and its largest upward speed, the terminal velocity before it brakes."""
+    return trace["radius"][0] * trace["velocity_z"].max() ** 2 / surface_tension(run)
+
+
+def braking_time(trace):
+    """From 95 to 30 % of the terminal velocity, the last and the first time of these."""
+    w = trace["velocity_z"] / trace["velocity_z"].max()
+    last_fast = np.nonzero(w > 0.95)[0][-1]
+    slow = np.nonzero((w < 0.3) & (np.arange(len(w)) > last_fast))[0]
+    times = trace["t"]
+    if not len(slow):
+        return float("nan")
+    # Straight lines between the rows of the table.
+    def crossing(level, after):
+        k = after
+        while w[k] > level:
+            k += 1
+        part = (w[k - 1] - level) / (w[k - 1] - w[k])
+        return times[k - 1] + part * (times[k] - times[k - 1])
+
+    return crossing(0.3, last_fast + 1) - crossing(0.95, last_fast + 1)
+
+
+def measure(runs):
+    run = standard(runs)
+    bubbles = sorted(traces(run).values(), key=lambda trace: trace["radius"][0])
+    depth = [(SURFACE - trace["z"]) / run.spacing for trace in bubbles]
+    late = [trace["t"] >= HALF for trace in bubbles]
+    rest = [float(np.mean(d[rows])) for d, rows in zip(depth, late)]
+    braking = [braking_time(trace) for trace in bubbles]
+    measured = {"bubbles": float(len(bubbles)),
+                "smallest_weber": weber(run, bubbles[0]), "largest_weber": weber(run, bubbles[-1]),
+                "deepest_rest": max(max(rest), 0.0), "highest_rest": max(-min(rest), 0.0),
+                "rebound": max(float(np.max(d - np.minimum.accumulate(d))) for d in depth),
+                "braking_order": float(np.sum(np.diff(braking) > 0)),
+                "resting_slip": max(float(np.abs(t["velocity_z"][rows]).max() / t["velocity_z"].max())
+                                    for t, rows in zip(bubbles, late))}
+    return measured
+
+
+def curves(runs):
+    run = standard(runs)
+    places, speeds = [], []
+    for trace in traces(run).values():
+        # Time counts from when the bubble is two spacings below the surface.
+        start = trace["t"][np.argmax(SURFACE - trace["z"] < 2 * run.spacing)]
+        label = f"We_b = {weber(run, trace):.2g}"
+        places.append((label, trace["t"] - start, (SURFACE - trace["z"]) / run.spacing, "-"))
+        speeds.append((label, trace["t"] - start, trace["velocity_z"] / trace["velocity_z"].max(), "-"))
+    return [{"file": "distance", "x": "time since two spacings below the surface", "y": "distance to the surface / spacing",
+             "curves": places},
+            {"file": "speed_of_approach", "x": "time since two spacings below the surface",
+             "y": "vertical speed / terminal velocity", "curves": speeds}]

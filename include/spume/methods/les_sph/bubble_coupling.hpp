@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Bubbles in the liquid of les-sph (King et al. 2022, sections 3.1.1 and 3.3): the volume they take, the liquid they
+// feel, the forces they return.
+//
+// Every pair of a bubble and a particle within the reach of the particle exists twice, in a list of the bubble (to
+// interpolate to it) and in a list of the particle (to sum up from bubbles without races). Weights are
+//   phi_ib = V_i W(r_b - r_i, h_i) / sum_k V_k W(r_b - r_k, h_k),
+// so that what all particles receive from a bubble is what it gave, also below a surface, and a uniform field is
+// interpolated exactly. Mirrored particles count; what they receive goes to their source.
+//
+// h_i follows the volume fraction of the step before, alpha the bubbles of this step: alpha = 1 - sum_b W V_b, the
+// fixed point of King (3.1). Below 1/2, where the fixed point fails, alpha is continued by 1 / (4 sum); kernels expand
+// as if alpha were 1/2; volumes of bubbles stay exact.
+//
+// Momentum: a particle carries a constant mass, so alpha du/dt = -grad(alpha p) + ... and not d(alpha u)/dt as printed
+// in (2.3), which is not Galilean invariant; (3.17) follows from this form. With q the pressure less its hydrostatic
+// part both closures receive the full reaction of the bubbles: the buoyancy taken out of M and (1 - alpha) g of the
+// mixture cancel. They differ in the coefficient of grad q alone, 1/alpha (mixture-pressure) or 1 (two-fluid).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "spume/core/ledger.hpp"
+#include "spume/methods/les_sph/liquid.hpp"
+#include "spume/methods/method.hpp"
+#include "spume/neighbours/cross_list.hpp"
+#include "spume/physics/bubbles/breakup.hpp"
+#include "spume/physics/bubbles/entrainment.hpp"
+#include "spume/physics/bubbles/forces.hpp"
+#include "spume/physics/bubbles/population.hpp"
+#include "spume/physics/bubbles/sources.hpp"
+#include "spume/physics/bubbles/statistics.hpp"
+#include "spume/physics/bubbles/surface_interaction.hpp"
+
+namespace spume::les_sph {
+
+class BubbleCoupling {
+ public:
+  explicit BubbleCoupling(const Liquid& liquid);
+
+  // The stages of a step, in its order. Without living bubbles each returns at once.
+  void move(Liquid& liquid, double dt);               // bubbles to r_b^{n+1}, sorted; sizes h_i of the particles
+  void share_volume(Liquid& liquid);                  // alpha^{n+1}
+  void exchange_momentum(Liquid& liquid, double dt);  // velocities of the bubbles, forces on the liquid
+  void accept(Liquid& liquid, double dt);             // takes the step over; births and deaths
+
+  // Clouds of the start, and the volume fraction that they make.
+  void start(Liquid& liquid);
+
+  const bubbles::Population& population() const { return population_; }
+  bubbles::Population& population() { return population_; }
+  const bubbles::History& history() const { return history_; }
+  double max_speed() const { return max_speed_; }
+
+  // What all bubbles gave to the liquid in the last exchange: sum of M_b, over the density of the liquid.
+  Vec3 total_reaction() const;
+
+  void add_columns(std::vector<SeriesColumn>& columns) const;
+  void put_values(const Liquid& liquid, std::vector<double>& values) const;
+  Family family(const Liquid& liquid);
+  std::vector<RecordTable> tables() const;
+  void table_rows(const Liquid& liquid, const std::string& name, std::vector<double>& rows);
+  std::string note();  // of what happened since the last call; "" for nothing
+  std::vector<ArrayInfo> arrays() const;
+  void save(StateWriter& writer) const;
+  void load(StateReader& reader);
+
+ private:
+  void measure_sizes(Liquid& liquid);
+  void build_lists(Liquid& liquid);
+  void pack_liquid(Liquid& liquid);
+  void smooth_normals(Liquid& liquid);
+  void move_bubbles(Liquid& liquid, double dt);
+  void interpolate(const Liquid& liquid);
+  void deposit(Liquid& liquid);
+  void bury();
+  void break_up(const Liquid& liquid, double dt);
+  void entrain(const Liquid& liquid, double dt);
+  double smoothed_dissipation(const Liquid& liquid, std::size_t i) const;
+
+  const BubbleOptions options_;
+  bubbles::Gas gas_;
+  bubbles::SurfaceModel surface_;
+  bubbles::BreakupModel breakup_;
+  bubbles::EntrainmentModel entrainment_;
+  double normal_at_surface_ = 0;                      // |n0|
+  std::vector<bubbles::ChildSizeTable> child_sizes_;  // one with breakup, else none
+
+  bubbles::Population population_;
+  bubbles::Sources sources_;
+  bubbles::History history_, history_before_;  // now, and before the last step
+  double last_step_ = 0;
+  double max_speed_ = 0;
+  double mean_slip_ = 0;
+  double least_volume_fraction_ = 1;
+  std::int64_t overfull_ = 0, most_overfull_ = 0;
+  std::int64_t trace_due_ = 0;
+  std::string note_;
+
+  Images images_;
+  CrossList particles_of_, bubbles_of_;  // of bubbles; of particles
+  std::array<Array<float>, 3> point_, bubble_point_;
+  Array<float> point_reach_;
+  Array<float> liquid_records_, bubble_records_;
+  Array<float> interpolated_;  // 17 per bubble: kernel sum, then the liquid at the bubble
+  Array<double> dissipation_, next_merge_time_, next_slip_;
+  std::array<Array<double>, 3> reaction_;  // M_b
+  Array<std::uint8_t> dead_, touched_;
+  Array<std::int32_t> near_bubbles_;  // particles with bubbles in their reach
+  std::array<Array<double>, 2> snapshot_;
+};
+
+}  // namespace spume::les_sph

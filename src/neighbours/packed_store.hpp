@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// Packed stores: the lanes of a vector that a mask names, side by side.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+#include "spume/core/simd.hpp"
+
+namespace spume {
+
+using simd::f32x8;
+using simd::i32x8;
+
+// For each 8-bit mask the lanes that are set, in order, one byte each.
+constexpr std::array<std::uint64_t, 256> make_lane_table() {
+  std::array<std::uint64_t, 256> table{};
+  for (unsigned mask = 0; mask < 256; ++mask) {
+    std::uint64_t packed = 0;
+    int slot = 0;
+    for (unsigned lane = 0; lane < 8; ++lane)
+      if (mask >> lane & 1U) packed |= std::uint64_t{lane} << (8 * slot++);
+    table[mask] = packed;
+  }
+  return table;
+}
+inline constexpr auto lane_table = make_lane_table();
+
+// Packs the lanes of v that are set in the mask to the front.
+#if defined(__AVX512VL__)
+using Packing = __mmask8;
+[[gnu::always_inline]] inline Packing packing_of(unsigned mask) {
+  return static_cast<__mmask8>(mask);
+}
+[[gnu::always_inline]] inline void store_packed(i32x8 v, Packing packing, std::int32_t* out) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm256_maskz_compress_epi32(packing, __m256i(v)));
+}
+[[gnu::always_inline]] inline void store_packed(f32x8 v, Packing packing, float* out) {
+  _mm256_storeu_ps(out, _mm256_maskz_compress_ps(packing, __m256(v)));
+}
+#elif defined(__AVX2__)
+using Packing = __m256i;
+[[gnu::always_inline]] inline Packing packing_of(unsigned mask) {
+  return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(lane_table[mask])));
+}
+[[gnu::always_inline]] inline void store_packed(i32x8 v, Packing packing, std::int32_t* out) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm256_permutevar8x32_epi32(__m256i(v), packing));
+}
+[[gnu::always_inline]] inline void store_packed(f32x8 v, Packing packing, float* out) {
+  _mm256_storeu_ps(out, _mm256_permutevar8x32_ps(__m256(v), packing));
+}
+#else
+using Packing = std::uint64_t;
+[[gnu::always_inline]] inline Packing packing_of(unsigned mask) {
+  return lane_table[mask];
+}
+template <class V, class T>
+[[gnu::always_inline]] inline void store_packed(V v, Packing packing, T* out) {
+  for (int k = 0; k < 8; ++k, packing >>= 8) out[k] = v[packing & 7U];
+}
+#endif
+
+[[gnu::always_inline]] inline unsigned mask_of(i32x8 lanes) {
+#if defined(__AVX__)
+  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(__m256i(lanes))));
+#else
+  unsigned mask = 0;
+  for (int l = 0; l < 8; ++l) mask |= static_cast<unsigned>(lanes[l] != 0) << l;
+  return mask;
+#endif
+}
+
+[[gnu::always_inline]] inline i32x8 load_int(const std::int32_t* p) {
+  i32x8 v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
+}
+
+[[gnu::always_inline]] inline void store_int(std::int32_t* p, i32x8 v) {
+  std::memcpy(p, &v, sizeof v);
+}
+
+}  // namespace spume

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "spume/physics/bubbles/forces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spume::bubbles {
+namespace {
+
+double dot(const Vec3& a, const Vec3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double length(const Vec3& a) {
+  return std::sqrt(dot(a, a));
+}
+
+// dw/dt = rate (push - K(|w|) w - w x spin), w = u_l - u_b.
+struct Slip {
+  double rate;  // beta / (1 + C_vm beta)
+  Vec3 push, spin;
+
+  Slip(const Gas& gas, const Surroundings& liquid) {
+    const double beta = gas.density_ratio;
+    rate = beta / (1 + gas.virtual_mass * beta);
+    const double inertia = gas.virtual_mass + (gas.fluid_inertia ? 1 : 0);
+    for (std::size_t a = 0; a < 3; ++a) {
+      push[a] = -inertia * liquid.acceleration[a] + (1 - 1 / beta) * gas.gravity[a];
+      spin[a] = gas.lift * liquid.vorticity[a];
+    }
+  }
+};
+
+// w of k w + w x spin = f, for k > 0.
+Vec3 balance(double k, const Vec3& f, const Vec3& spin) {
+  const Vec3 turned = cross(f, spin);
+  const double along = dot(f, spin) / k, scale = 1 / (k * k + dot(spin, spin));
+  Vec3 w;
+  for (std::size_t a = 0; a < 3; ++a) w[a] = scale * (k * f[a] - turned[a] + along * spin[a]);
+  return w;
+}
+
+// |w| at the end of a backward Euler step: the root of s = |w(K(s))|, which falls as s rises.
+double implicit_speed(const Slip& slip, const Vec3& w, double radius, double viscosity, double dt) {
+  const double h = slip.rate * dt;
+  Vec3 known, spin;
+  for (std::size_t a = 0; a < 3; ++a) {
+    known[a] = w[a] + h * slip.push[a];
+    spin[a] = h * slip.spin[a];
+  }
+  const auto excess = [&](double s) {
+    return length(balance(1 + h * drag_rate(s, radius, viscosity), known, spin)) - s;
+  };
+  double low = 0, high = length(known);  // the balance never lengthens what it is given
+  double at_low = excess(0), at_high = excess(high);
+  if (!(at_low > 0)) return 0;
+  if (!(at_high < 0)) return high;
+  int side = 0;
+  for (int k = 0; k < 60 && high - low > 1e-8 * high; ++k) {
+    // Regula falsi, Illinois: bracketed, so the jump of the drag law does no harm.
+    const double s = low + (high - low) * at_low / (at_low - at_high);
+    const double value = excess(s);
+    if (value == 0) return s;
+    if (value > 0) {
+      low = s;
+      at_low = value;
+      if (side == 1) at_high *= 0.5;
+      side = 1;
+    } else {
+      high = s;
+      at_high = value;
+      if (side == -1) at_low *= 0.5;
+      side = -1;
+    }
+    if (std::abs(value) < 1e-8 * high) return s;
+  }
+  return 0.5 * (low + high);
+}
+
+// The step `change` of a bubble's velocity, with braking: `slip_normal` is (u_l - u_b) . n before it.
+void brake(const Braking& braking, double dt, double slip_normal, Vec3& change) {
+  if (braking.share == 0) return;
+  const double along = dot(change, braking.normal);
+  const double relaxation = slip_normal * std::min(1.0, dt / std::max(braking.time_left, dt));
+  for (std::size_t a = 0; a < 3; ++a) change[a] += braking.share * (relaxation - along) * braking.normal[a];
+}
+
+}  // namespace
+
+double drag_coefficient(double bubble_reynolds) {
+  if (bubble_reynolds > 1000) return 0.44;
+  return 24 / bubble_reynolds * (1 + 0.15 * std::pow(bubble_reynolds, 0.687));
+}
+
+double drag_rate(double speed, double radius, double viscosity) {
+  const double bubble_reynolds = 2 * radius * speed / viscosity;
+  if (bubble_reynolds > 1000) return 0.375 * 0.44 * speed / radius;
+  return 4.5 * viscosity / (radius * radius) * (1 + 0.15 * std::pow(bubble_reynolds, 0.687));
+}
+
+double relaxation_time(const Gas& gas, double radius) {
+  return (1 / gas.density_ratio + gas.virtual_mass) / drag_rate(0, radius, gas.viscosity);
+}
+
+double terminal_speed(const Gas& gas, double radius) {
+  const double push = std::abs(1 - 1 / gas.density_ratio) * length(gas.gravity);
+  double low = 0, high = push / drag_rate(0, radius, gas.viscosity);  // the drag of Stokes is the least
+  for (int k = 0; k < 200 && high - low > 1e-15 * high; ++k) {
+    const double middle = 0.5 * (low + high);
+    (drag_rate(middle, radius, gas.viscosity) * middle < push ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+Vec3 advance_stable(const Gas& gas, double radius, const Surroundings& liquid, const Vec3& velocity, double dt,
+                    const Braking& braking) {
+  const Slip slip(gas, liquid);
+  Vec3 w;
+  for (std::size_t a = 0; a < 3; ++a) w[a] = liquid.velocity[a] - velocity[a];
+  const double at_start = drag_rate(length(w), radius, gas.viscosity);
+  const double at_end = drag_rate(implicit_speed(slip, w, radius, gas.viscosity, dt), radius, gas.viscosity);
+  const double weight = 1 / (2 + slip.rate * dt * at_end);
+  const double drag = weight * at_start + (1 - weight) * at_end;
+
+  const Vec3 steady = balance(drag, slip.push, slip.spin);
+  Vec3 rest;
+  for (std::size_t a = 0; a < 3; ++a) rest[a] = w[a] - steady[a];
+  // d rest/dt = rate (-drag rest + spin x rest): decay and rotation about the spin.
+  const double spin = length(slip.spin), angle = slip.rate * spin * dt;
+  if (angle > 0) {
+    Vec3 axis;
+    for (std::size_t a = 0; a < 3; ++a) axis[a] = slip.spin[a] / spin;
+    const Vec3 turned = cross(axis, rest);
+    const double cosine = std::cos(angle), sine = std::sin(angle), along = (1 - cosine) * dot(axis, rest);
+    for (std::size_t a = 0; a < 3; ++a) rest[a] = cosine * rest[a] + sine * turned[a] + along * axis[a];
+  }
+  const double decay = std::exp(-slip.rate * drag * dt);
+  Vec3 change;
+  for (std::size_t a = 0; a < 3; ++a) change[a] = w[a] - (steady[a] + decay * rest[a]);
+  brake(braking, dt, dot(w, braking.normal), change);
+  return {velocity[0] + change[0], velocity[1] + change[1], velocity[2] + change[2]};
+}
+
+Vec3 advance_substepped(const Gas& gas, double radius, const Surroundings& liquid, const Vec3& velocity, double dt,
+                        double spacing, const Braking& braking) {
+  const Slip slip(gas, liquid);
+  Vec3 u = velocity, w;
+  for (std::size_t a = 0; a < 3; ++a) w[a] = liquid.velocity[a] - u[a];
+  // No steady slip is larger than that of either branch of the drag law alone.
+  const double push = length(slip.push);
+  const double steady = std::min(push / drag_rate(0, radius, gas.viscosity), std::sqrt(push * radius / (0.375 * 0.44)));
+  const double fastest = std::max(length(w), steady);
+  const double explicit_limit = dt * slip.rate * (drag_rate(fastest, radius, gas.viscosity) + length(slip.spin));
+  const double steps = std::ceil(std::max({1.0, spacing / radius, 1.5 * explicit_limit}));
+  const double part = dt / steps;
+  Braking left = braking;
+  for (double k = 0; k < steps; ++k) {
+    for (std::size_t a = 0; a < 3; ++a) w[a] = liquid.velocity[a] - u[a];
+    const double drag = drag_rate(length(w), radius, gas.viscosity);
+    const Vec3 turned = cross(w, slip.spin);
+    Vec3 change;
+    for (std::size_t a = 0; a < 3; ++a) change[a] = -part * slip.rate * (slip.push[a] - drag * w[a] - turned[a]);
+    left.time_left = std::max(braking.time_left, dt) - k * part;
+    brake(left, part, dot(w, braking.normal), change);
+    for (std::size_t a = 0; a < 3; ++a) u[a] += change[a];
+  }
+  return u;
+}
+
+Vec3 reaction(const Gas& gas, double volume, const Surroundings& liquid, const Vec3& change, double dt,
+              bool pressure_holds_inertia) {
+  const double beta = gas.density_ratio;
+  Vec3 force;
+  for (std::size_t a = 0; a < 3; ++a) {
+    force[a] = volume * (-change[a] / (dt * beta) + (1 - beta) / beta * gas.gravity[a]);
+    if (gas.fluid_inertia && pressure_holds_inertia) force[a] += volume * liquid.acceleration[a];
+  }
+  return force;
+}
+
+}  // namespace spume::bubbles

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+// What the bubbles of a case must satisfy: gas and liquid, radii against the spacing, sources inside the liquid.
+#include <algorithm>
+#include <cmath>
+
+#include "checks.hpp"
+#include "spume/core/parallel.hpp"
+#include "spume/scene/expression.hpp"
+
+namespace spume {
+namespace {
+
+constexpr double most_bubbles = 1e8;
+
+// The largest spacing-based radius: a bubble must be smaller than the filter that surrounds it (King section 3.4.1).
+void check_sizes(const Draft& draft, const std::string& name, BubbleSizes& sizes, Problems& problems) {
+  const double spacing = draft.options.spacing;
+  if (!draft.usable(name + ".bubble_radius") || !(spacing > 0)) return;
+  const auto node_of = [&](const char* key) -> const Node& {
+    const Node* node = draft.node(name + "." + key);
+    return node ? *node : *draft.node(name);
+  };
+  const auto too_large = [&](const char* key, double radius) {
+    problems.add(node_of(key), name + "." + key + " = " + brief(radius) + " is larger than the spacing, " +
+                                   brief(spacing) +
+                                   ": the liquid around such a bubble cannot be taken as uniform; set " +
+                                   "resolution.spacing >= " + brief(radius) + " or smaller bubbles");
+  };
+  if (sizes.mean > spacing * (1 + 1e-12)) return too_large("bubble_radius", sizes.mean);
+  if (sizes.law == SizeLaw::monodisperse) {
+    sizes.minimum = sizes.maximum = sizes.mean;
+    return;
+  }
+  if (!(sizes.deviation > 0) && draft.usable(name + ".deviation"))
+    problems.add(node_of("deviation"),
+                 name + ".deviation must be positive for this law of sizes; or set sizes = \"monodisperse\"");
+  if (!draft.node(name + ".smallest")) sizes.minimum = sizes.mean / 10;
+  if (!draft.node(name + ".largest")) sizes.maximum = spacing;
+  if (sizes.maximum > spacing * (1 + 1e-12)) return too_large("largest", sizes.maximum);
+  if (sizes.minimum >= sizes.maximum || sizes.minimum > sizes.mean || sizes.maximum < sizes.mean)
+    problems.add(node_of("smallest"), name + ": the radii must satisfy smallest <= bubble_radius <= largest, found " +
+                                          brief(sizes.minimum) + ", " + brief(sizes.mean) + ", " +
+                                          brief(sizes.maximum));
+}
+
+bool three_entries(const Draft& draft, const std::string& name, const std::vector<double>& values, Problems& problems) {
+  const Node* node = draft.node(name);
+  if (!node || !draft.usable(name)) return false;
+  if (values.size() == 3) return true;
+  problems.add(*node, name + " must have 3 entries in a 3-D domain, found " + std::to_string(values.size()));
+  return false;
+}
+
+bool inside(const Draft& draft, const std::string& name, const std::vector<double>& values, Problems& problems) {
+  if (!three_entries(draft, name, values, problems) || draft.dimensions != 3) return false;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double slack = 1e-9 * (draft.upper[a] - draft.lower[a]);
+    if (values[a] >= draft.lower[a] - slack && values[a] <= draft.upper[a] + slack) continue;
+    problems.add(*draft.node(name), name + " lies outside the domain: " + "xyz"[a] + std::string(" = ") +
+                                        brief(values[a]) + ", the domain runs from " + brief(draft.lower[a]) + " to " +
+                                        brief(draft.upper[a]));
+    return false;
+  }
+  return true;
+}
+
+void check_gas(Draft& draft, Problems& problems) {
+  BubbleDraft& given = draft.bubbles;
+  BubbleOptions& options = draft.options.bubbles;
+  const bool si = uses_si(draft.fluid);
+  const auto wrong_set = [&](const char* key, const char* instead) {
+    if (const Node* node = draft.node(std::string("bubbles.") + key))
+      problems.add_key(*node, std::string("bubbles.") + key +
+                                  " belongs to the other set of units: [fluid] is given in " + (si ? "SI" : "groups") +
+                                  "; give " + instead);
+  };
+  wrong_set(si ? "weber" : "surface_tension", si ? "surface_tension" : "weber");
+  if (!si) wrong_set("gas_density", "density_ratio");
+  const double density = draft.fluid.density.value_or(1);
+  if (!si && given.weber) options.tension = 1 / *given.weber;
+  if (si && given.surface_tension) options.tension = *given.surface_tension / density;
+  options.density_ratio = given.density_ratio.value_or(si ? density / given.gas_density.value_or(1.2) : 1000 / 1.2);
+  options.hinze_radius = given.hinze_radius.value_or(std::pow(options.tension, 0.6) / 2);
+  options.smallest_entrained_radius = given.smallest_entrained_radius.value_or(options.hinze_radius / 20);
+
+  const char* key = si ? "surface_tension" : "weber";
+  const std::string needed = options.entrainment ? "entrainment" : options.breakup ? "breakup" : "";
+  if (options.tension == 0 && draft.usable(std::string("bubbles.") + key) &&
+      (!needed.empty() || options.surface_interaction))
+    problems.add(*draft.node("bubbles"),
+                 std::string("missing key '") + key + "' in [bubbles]: surface tension decides " +
+                     (needed.empty() ? "how long bubbles rest at the surface (surface_interaction)" : needed) +
+                     "; add  " + key + " = <number>  # > 0");
+  const bool inviscid = si ? draft.fluid.viscosity.value_or(0) == 0 : !draft.fluid.reynolds;
+  if (inviscid && draft.usable("fluid.reynolds") && draft.usable("fluid.viscosity"))
+    problems.add(*draft.node("bubbles"), std::string("bubbles need a viscous liquid, their drag depends on it; add  ") +
+                                             (si ? "fluid.viscosity" : "fluid.reynolds") + " = <number>");
+  for (const char* model : {"entrainment", "breakup", "fluctuations"}) {
+    const bool on = std::string(model) == "entrainment" ? options.entrainment
+                    : std::string(model) == "breakup"   ? options.breakup
+                                                        : options.fluctuations;
+    if (on && draft.options.turbulence.model == TurbulenceModel::none && draft.node("bubbles." + std::string(model)))
+      problems.add(*draft.node("bubbles." + std::string(model)),
+                   std::string("bubbles.") + model + " uses the unresolved turbulence of the liquid; set " +
+                       "turbulence.model = \"mixed-scale\", or " + model + " = false");
+  }
+  if (draft.options.pressure.solver == PressureSolver::cg && draft.node("pressure.solver"))
+    problems.add(*draft.node("pressure.solver"),
+                 "pressure.solver = \"cg\" needs a symmetric matrix, which a liquid with bubbles does not have; use "
+                 "\"bicgstab\"");
+}
+
+}  // namespace
+
+void check_bubbles(Draft& draft, Problems& problems) {
+  const Node* section = draft.node("bubbles");
+  draft.options.bubbles.on = section != nullptr;
+  for (const char* source : {"sparger", "bubble_cloud"})
+    if (const Node* node = draft.node(source); node && !section)
+      problems.add_key(*node, std::string("[[") + source + "]] makes bubbles; add a section [bubbles]");
+  if (!section) return;
+  if (draft.dimensions == 2) {
+    problems.add(*section,
+                 "bubbles are spheres and need a 3-D domain; give lower and upper three entries, or remove "
+                 "[bubbles]");
+    return;
+  }
+  check_gas(draft, problems);
+
+  for (std::size_t k = 0; k < draft.bubbles.spargers.size(); ++k) {
+    SpargerDraft& sparger = draft.bubbles.spargers[k];
+    const std::string name = "sparger." + std::to_string(k);
+    inside(draft, name + ".position", sparger.position, problems);
+    const auto missing = [&](const char* key, const char* shape) {
+      if (!draft.node(name + "." + key))
+        problems.add(*draft.node(name), std::string("missing key '") + key + "' in [[sparger]], which is a " + shape +
+                                            "; add  " + key + (key[0] == 'e' ? " = [<x>, <y>, <z>]" : " = <number>") +
+                                            "  # length");
+    };
+    if (sparger.sparger.shape == SpargerShape::disc) missing("radius", "disc");
+    if (sparger.sparger.shape == SpargerShape::line) missing("end", "line");
+    if (draft.node(name + ".end")) inside(draft, name + ".end", sparger.end, problems);
+    check_sizes(draft, name, sparger.sparger.sizes, problems);
+  }
+  for (std::size_t k = 0; k < draft.bubbles.clouds.size(); ++k) {
+    BubbleCloudDraft& cloud = draft.bubbles.clouds[k];
+    const std::string name = "bubble_cloud." + std::to_string(k);
+    for (const auto& [key, values] :
+         {std::pair{"lower", &cloud.lower}, {"upper", &cloud.upper}, {"centre", &cloud.centre}})
+      if (draft.node(name + "." + key)) inside(draft, name + "." + key, *values, problems);
+    if (cloud.lower.size() == 3 && cloud.upper.size() == 3)
+      for (std::size_t a = 0; a < 3; ++a)
+        if (!(cloud.lower[a] <= cloud.upper[a])) {
+          problems.add(*draft.node(name + ".upper"), name + ".upper must not lie below " + name + ".lower");
+          break;
+        }
+    check_sizes(draft, name, cloud.cloud.sizes, problems);
+  }
+}
+
+void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& problems) {
+  const InitialParticles& liquid = scene.particles;
+  const double volume = liquid.volume * static_cast<double>(liquid.size());
+  // Wet: some particle within the diagonal of a lattice cell.
+  const auto wet = [&](const Vec3& r) {
+    const double reach = 1.75 * scene.spacing;
+    return parallel_max(liquid.size(), 0.0, [&](std::size_t i) {
+             double distance2 = 0;
+             for (int a = 0; a < 3; ++a) {
+               const double d = liquid.position[a][i] - r[a];
+               distance2 += d * d;
+             }
+             return distance2 < reach * reach ? 1.0 : 0.0;
+           }) > 0;
+  };
+  for (std::size_t k = 0; k < scene.spargers.size(); ++k) {
+    const Sparger& sparger = scene.spargers[k];
+    const std::string name = "sparger." + std::to_string(k);
+    for (const char* key : {"position", "end"})
+      if (const Node* node = draft.node(name + "." + key); node &&
+                                                           (key[0] == 'p' || sparger.shape == SpargerShape::line) &&
+                                                           !wet(key[0] == 'p' ? sparger.position : sparger.end))
+        problems.add(*node, name + "." + key + " lies outside the liquid; move it below the surface");
+    if (!sparger.rate) continue;
+    const Node* node = draft.node(name + ".rate");
+    const double end = draft.options.time.end;
+    constexpr int samples = 400;
+    double gas = 0;
+    bool good = true;
+    for (int i = 0; i <= samples && good; ++i) {
+      const double t = end * i / samples;
+      const double rate = (*sparger.rate)(0, 0, 0, t);
+      good = std::isfinite(rate) && rate >= 0;
+      if (!good)
+        problems.add(*node,
+                     name + ".rate must be a number >= 0 at all times, found " + brief(rate) + " at t = " + brief(t));
+      gas += rate * end / samples;
+    }
+    if (!good) continue;
+    const double smallest = 4.18879 * std::pow(sparger.sizes.mean, 3);
+    if (gas > volume)
+      problems.add(*node, name + ".rate releases " + brief(gas) + " of gas by the end, more than the liquid holds, " +
+                              brief(volume) + ": check its unit, length3/time");
+    else if (gas / smallest > most_bubbles)
+      problems.add(*node, name + ".rate releases " + brief(gas / smallest) + " bubbles by the end; at most " +
+                              brief(most_bubbles) + " are possible: lower the rate or enlarge bubble_radius");
+  }
+  for (std::size_t k = 0; k < scene.bubble_clouds.size(); ++k) {
+    const BubbleCloud& cloud = scene.bubble_clouds[k];
+    const std::string name = "bubble_cloud." + std::to_string(k);
+    Vec3 centre = cloud.centre;
+    for (int a = 0; a < 3 && !cloud.ball; ++a) centre[a] = 0.5 * (cloud.lower[a] + cloud.upper[a]);
+    if (!wet(centre))
+      problems.add(*draft.node(name), name + " has its centre outside the liquid; move it below the surface");
+    const double gas = 4.18879 * std::pow(cloud.sizes.mean, 3) * static_cast<double>(cloud.number);
+    if (gas > volume)
+      problems.add(*draft.node(name), name + " holds " + brief(gas) + " of gas, more than the liquid, " +
+                                          brief(volume) + ": fewer or smaller bubbles");
+  }
+}
+
+}  // namespace spume

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: MIT
+"""Size distributions and trends of bubbles against populations whose law is known."""
+import unittest
+
+import paths
+import numpy as np
+from spume_bubbles import density, slope
+from spume_verification import CASES, load_measure
+
+
+def power_law(exponent, low, high, n, seed=1):
+    """n numbers with a density proportional to a^exponent between low and high."""
+    u = np.random.default_rng(seed).random(n)
+    k = exponent + 1
+    return (low**k + u * (high**k - low**k)) ** (1 / k)
+
+
+class Sizes(unittest.TestCase):
+    def test_density_integrates_to_one(self):
+        centre, value, count = density(power_law(-2, 0.1, 10, 5000))
+        self.assertEqual(count.sum(), 5000)
+        width = centre * (10**0.05 - 10**-0.05)
+        self.assertAlmostEqual(float(np.sum(value * width)), 1, delta=0.02)
+
+    def test_slope_is_the_exponent(self):
+        for exponent in (-10 / 3, -1.5, 0.5):
+            values = power_law(exponent, 0.1, 10, 20000)
+            self.assertAlmostEqual(slope(values, 0.2, 6), exponent, delta=0.1)
+
+    def test_slope_needs_bubbles(self):
+        self.assertTrue(np.isnan(slope(power_law(-2, 0.1, 10, 30), 3, 9)))
+
+
+class Plume(unittest.TestCase):
+    def test_centre_and_width_of_a_gaussian(self):
+        module = load_measure(CASES / "plume")
+        r = module.BIN * (np.arange(25) + 0.5)
+        centre, width = module.centre_and_width(r, 0.7 * np.exp(-((r / 0.11) ** 2)))
+        self.assertAlmostEqual(centre, 0.7, delta=0.01)
+        self.assertAlmostEqual(width, 0.11, delta=0.002)
+
+    def test_rank_correlation(self):
+        module = load_measure(CASES / "plume_polydisperse")
+        x = np.random.default_rng(2).random(500)
+        self.assertAlmostEqual(module.rank_correlation(x, np.exp(x)), 1, places=12)
+        self.assertAlmostEqual(module.rank_correlation(x, -(x**3)), -1, places=12)
+        self.assertLess(abs(module.rank_correlation(x, np.random.default_rng(3).random(500))), 0.15)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: MIT
+"""Bubbles of a run: the Hinze radius, slopes of the size distribution, and the pictures of plot.py."""
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.colors import LogNorm
+
+from spume_figures import chosen_steps, draw_particles, field_norm, finish
+from spume_results import MissingResult, read_csv
+
+
+def has_bubbles(run):
+    return "bubbles" in run.case
+
+
+def surface_tension(run):
+    """Over the density of the liquid; 1/We in groups. None when the case gives none."""
+    bubbles = run.case["bubbles"]
+    if "weber" in bubbles:
+        return 1 / float(bubbles["weber"])
+    if "surface_tension" in bubbles:
+        return float(bubbles["surface_tension"]) / float(run.case["fluid"]["density"])
+    return None
+
+
+def hinze_radius(run):
+    bubbles = run.case["bubbles"]
+    if "hinze_radius" in bubbles:
+        return float(bubbles["hinze_radius"])
+    tension = surface_tension(run)
+    if tension is None:
+        raise MissingResult(f"{run.folder}: without surface tension there is no Hinze radius")
+    return 0.5 * tension**0.6
+
+
+def radii(run, first, last=np.inf):
+    """Radii over the Hinze radius of all bubbles in the snapshots from time `first` to `last`."""
+    snapshots = run.snapshots("bubbles")
+    chosen = [snapshots[k].field("radius") for k, t in enumerate(snapshots.times) if first <= t <= last]
+    return np.concatenate(chosen) / hinze_radius(run) if chosen else np.empty(0)
+
+
+def density(values, per_decade=10):
+    """Centres, densities (integral one) and counts of the bins that hold something."""
+    low, high = np.floor(np.log10(values.min()) * per_decade), np.ceil(np.log10(values.max()) * per_decade)
+    edges = 10 ** (np.arange(low, high + 1.5) / per_decade)
+    count, edges = np.histogram(values, edges)
+    keep = count > 0
+    return (np.sqrt(edges[1:] * edges[:-1])[keep], (count / np.diff(edges) / count.sum())[keep], count[keep])
+
+
+def slope(values, low, high, least=20):
+    """Exponent of the density between two radii: least squares on bins that hold at least `least`, weighted by the
+    square root of their counts; nan where fewer than three do."""
+    centre, value, count = density(values)
+    keep = (centre >= low) & (centre <= high) & (count >= least)
+    if keep.sum() < 3:
+        return float("nan")
+    return float(np.polyfit(np.log(centre[keep]), np.log(value[keep]), 1, w=np.sqrt(count[keep]))[0])
+
+
+def plot_bubble_history(run, out):
+    """Counts, volumes and rates over time."""
+    if not has_bubbles(run):
+        return []
+    series = run.series
+    t = series["t"]
+    figure, axes = plt.subplots(1, 3, figsize=(13, 3.6))
+    for name, label in (("bubbles_above_hinze", "above the Hinze radius"), ("bubbles_below_hinze", "below it")):
+        axes[0].plot(t, series[name], label=label)
+    axes[0].set(xlabel=series.label("t"), ylabel="bubbles")
+    for name, label in (("bubble_volume", "alive"), ("injected_volume", "injected"), ("entrained_volume", "entrained"),
+                        ("burst_volume", "burst")):
+        if np.nanmax(series[name], initial=0) > 0:
+            axes[1].plot(t, series[name], label=label)
+    axes[1].set(xlabel=series.label("t"), ylabel="volume of gas")
+    # Rates from the cumulative columns over 50 equal spans: those of single steps are noise.
+    span = np.linspace(t[0], t[-1], 51)
+    middle = 0.5 * (span[1:] + span[:-1])
+    for name, label in (("breakups", "breakup"), ("entrained_bubbles", "entrainment"), ("bursts", "bursting")):
+        rate = np.diff(np.interp(span, t, series[name])) / np.diff(span)
+        if rate.max() > 0:
+            axes[2].plot(middle, rate, label=label)
+    axes[2].set(xlabel=series.label("t"), ylabel="bubbles per time")
+    for axis in axes:
+        if axis.get_legend_handles_labels()[0]:
+            axis.legend(fontsize=8)
+    return [finish(figure, out / "bubbles.png")]
+
+
+def plot_bubble_sizes(run, out):
+    """Size distributions at up to five times, with the slopes of Deane & Stokes (2002)."""
+    if not has_bubbles(run) or not run.has("bubble_sizes.csv"):
+        return []
+    sizes = read_csv(run.folder / "bubble_sizes.csv")
+    times = [t for t in np.unique(sizes["t"]) if sizes["count"][sizes["t"] == t].sum() >= 100]
+    if not times or len(np.unique(sizes["radius_over_hinze"])) < 4:
+        return []
+    chosen = np.unique(np.linspace(0, len(times) - 1, min(5, len(times))).astype(int))
+    figure, axis = plt.subplots(figsize=(5.6, 4.2))
+    for k, colour in zip(chosen, plt.cm.viridis(np.linspace(0, 0.9, len(chosen)))):
+        rows = sizes["t"] == times[k]
+        axis.loglog(sizes["radius_over_hinze"][rows], sizes["density"][rows], "o-", markersize=3, linewidth=0.9,
+                    color=colour, label=f"t = {times[k]:.3g}, {int(sizes['count'][rows].sum())} bubbles")
+    at_hinze = np.interp(0, np.log(sizes["radius_over_hinze"][rows]), sizes["density"][rows])
+    below, above = np.array([0.1, 1]), np.array([1, 8])
+    axis.loglog(below, at_hinze * below**-1.5, "k--", linewidth=1, label="slopes -3/2 and -10/3")
+    axis.loglog(above, at_hinze * above ** (-10 / 3), "k--", linewidth=1)
+    axis.set(xlabel="radius / Hinze radius", ylabel="density")
+    axis.legend(fontsize=7)
+    return [finish(figure, out / "bubble_sizes.png")]
+
+
+def bubble_circles(axis, x, y, radius, cmap, norm, hinze, least):
+    """Bubbles as circles of their size, none smaller than `least` across, coloured by radius over Hinze radius."""
+    order = np.argsort(radius)
+    diameter = np.maximum(2 * radius[order], least)
+    circles = EllipseCollection(diameter, diameter, np.zeros(len(order)), units="xy",
+                                offsets=np.column_stack([x[order], y[order]]), transOffset=axis.transData, cmap=cmap,
+                                norm=norm, linewidths=0.1, edgecolors="k")
+    circles.set_array(radius[order] / hinze)
+    axis.add_collection(circles)
+    return circles
+
+
+def plot_bubble_views(run, out):
+    """Up to five times from the side, over the liquid coloured by speed or dissipation, and from beneath."""
+    if not has_bubbles(run) or not run.has("bubbles.vtkhdf"):
+        return []
+    bubbles, fluid = run.snapshots("bubbles"), run.snapshots()
+    steps = chosen_steps(run, bubbles, most=5)
+    hinze = hinze_radius(run)
+    lower, upper = run.bounds()
+    shots = [bubbles[int(k)] for k in steps]
+    radius = np.concatenate([shot.field("radius") for shot in shots]) / hinze
+    norm = LogNorm(max(radius.min(), 0.05) * 0.999, radius.max() * 1.001)
+    name = "dissipation" if "dissipation" in fluid.names else "speed"
+    liquids = [fluid.nearest(shot.time) for shot in shots]
+    liquid_norm = field_norm(name, [liquid.field(name) for liquid in liquids])
+    low = max(lower[2], min(shot.position[:, 2].min() for shot in shots) - 0.1)
+    high = min(upper[2], max(np.percentile(liquid.position[:, 2], 99.98) for liquid in liquids) + 0.02)
+    width, height, depth = upper[0] - lower[0], high - low, upper[1] - lower[1]
+    scale = 5.5 / width
+    figure, axes = plt.subplots(len(shots), 2, squeeze=False, constrained_layout=True,
+                                figsize=(12.5, len(shots) * (scale * max(height, depth) + 0.45) + 0.4))
+    for (side, beneath), shot, liquid in zip(axes, shots, liquids):
+        near = np.abs(liquid.position[:, 1] - 0.5 * (lower[1] + upper[1])) <= 1.5 * run.spacing
+        draw_particles(side, liquid.position[near, 0], liquid.position[near, 2], liquid.field(name)[near],
+                       1.3 * run.spacing, "Blues", liquid_norm)
+        for axis, k in ((side, 2), (beneath, 1)):
+            circles = bubble_circles(axis, shot.position[:, 0], shot.position[:, k], shot.field("radius"), "inferno",
+                                     norm, hinze, 0.002 * width)
+            axis.set(aspect="equal", xlim=(lower[0], upper[0]))
+        side.set(ylim=(low, high), ylabel="z", title=f"t = {shot.time:.3g}, from the side")
+        beneath.set(ylim=(lower[1], upper[1]), ylabel="y", title=f"{len(shot)} bubbles, from beneath")
+    figure.colorbar(circles, ax=list(axes.flat), label="radius / Hinze radius", shrink=0.6)
+    return [finish(figure, out / "bubble_views.png")]
+
+
+def traces(run):
+    """Traces by identifier: tables of t, x, y, z, radius, slip in order of time."""
+    table = read_csv(run.folder / "bubble_traces.csv")
+    return {int(i): {name: table[name][table["id"] == i] for name in table} for i in np.unique(table["id"])}
+
+
+def plot_bubble_traces(run, out):
+    """Traces on distance from the axis of the domain and height, coloured by radius."""
+    if not has_bubbles(run) or not run.has("bubble_traces.csv"):
+        return []
+    lower, upper = run.bounds()
+    middle = 0.5 * (lower + upper)[:2]
+    table = read_csv(run.folder / "bubble_traces.csv")
+    lines, radius = [], []
+    distance = np.hypot(table["x"] - middle[0], table["y"] - middle[1])
+    for i in np.unique(table["id"])[:2000]:
+        rows = table["id"] == i
+        lines.append(np.column_stack([distance[rows], table["z"][rows]]))
+        radius.append(np.mean(table["radius"][rows]))
+    figure, axis = plt.subplots(figsize=(5.2, 5.6))
+    collection = LineCollection(lines, array=np.array(radius), cmap="viridis", linewidths=0.6)
+    axis.add_collection(collection)
+    axis.autoscale()
+    axis.set(xlabel="distance from the axis", ylabel="z")
+    figure.colorbar(collection, label="radius")
+    return [finish(figure, out / "bubble_traces.png")]
+
+
+PICTURES = (plot_bubble_history, plot_bubble_sizes, plot_bubble_views, plot_bubble_traces)
