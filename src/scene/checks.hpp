@@ -14,7 +14,7 @@ void check_fluid(const Draft& draft, Problems& problems);
 void check_liquids(const Draft& draft, Problems& problems);
 void check_spectral(const Draft& draft, Problems& problems);   // box, grid, forcing, initial state
 void check_particles(const Draft& draft, Problems& problems);  // of the spectral method
-void check_bubbles(Draft& draft, Problems& problems);  // completes draft.options.bubbles
+void check_bubbles(Draft& draft, Problems& problems);          // completes draft.options.bubbles
 // What can be told of spargers and clouds only beside the compiled rates and the initial liquid.
 void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& problems);
 void check_probes(Draft& draft, Problems& problems);  // completes the probes of draft.options

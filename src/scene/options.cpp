@@ -63,8 +63,7 @@ std::string method_of(const Node& document) {
 const std::vector<Section>& sections() {
   static const std::vector<Section> table = [] {
     std::vector<Section> all;
-    for (auto part :
-         {scene_sections(), bubble_sections(), method_sections(), spectral_sections(), particle_sections()})
+    for (auto part : {scene_sections(), bubble_sections(), method_sections(), spectral_sections(), particle_sections()})
       all.insert(all.end(), part.begin(), part.end());
     for (Section& section : all) {
       for (Option& option : section.options) option.section = section.name;
