@@ -43,15 +43,16 @@ double dot(const Vec3& a, const Vec3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Half the distance of the layers below particle i: sum w d_n^2 / (2 sum w d_n) over near neighbours. One spacing
-// where neighbours lie on all sides.
+// Half the distance of the layers below particle i: sum w d_n^3 / (2 sum w d_n^2) over near neighbours. Neighbours in
+// the same layer hardly count: with sum w d_n^2 / sum w d_n a particle that rises above them would seem to lie less
+// deep, and still water on a cubic lattice would heave.
 double depth_of(const Liquid& liquid, std::size_t i) {
   const double spacing = liquid.scene.spacing;
   const double reach2 = layer_reach * layer_reach * spacing * spacing;
   const Vec3 m = moment_of(liquid, i);
   const double size = std::sqrt(dot(m, m));
   if (!(size > 0)) return spacing;
-  double first = 0, second = 0;
+  double second = 0, third = 0;
   for (const std::int32_t j : liquid.list.of(i)) {
     double r2 = 0, along = 0;
     for (int axis = 0; axis < liquid.dimensions; ++axis) {
@@ -62,10 +63,10 @@ double depth_of(const Liquid& liquid, std::size_t i) {
     }
     if (r2 >= reach2) continue;
     const double weight = (1 - r2 / reach2) * (1 - r2 / reach2);
-    first += weight * along;
     second += weight * along * along;
+    third += weight * along * along * along;
   }
-  return second < 2 * spacing * first ? std::max(0.5 * second / first, 0.25 * spacing) : spacing;
+  return second > 0 ? std::clamp(0.5 * third / second, 0.25 * spacing, spacing) : spacing;
 }
 
 }  // namespace
