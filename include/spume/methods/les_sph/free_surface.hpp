@@ -8,10 +8,10 @@
 //   lap:    row i gains  E (p_i - p0_i),  E = 2 |m| / s,   p0_i = -s a . n  the hydrostatic pressure at depth s,
 //   grad:   L' (sum_j g (q_j - q_i) d + 2 (p_i - p0_i) m),   L' = (M + (2 s / |m|) m m^T)^-1,  M = sum_j g d d^T.
 //
-// Both are exact for linear fields. For s = n.M n / (2 |m|) the gradient along n is sum_j g (p_i + p_j) d, the adjoint
-// of the divergence sum_j g (u_j - u_i) . d: pressure then does no work of its own at the surface. Holding p = 0 in the
-// particles instead and taking one-sided gradients there let a standing wave of 64 particles gain 3 % of its energy per
-// unit of time; now it keeps it to 0.3 %.
+// Both are exact for linear fields, whatever s. It is half the distance of the layers below, and on a lattice the
+// gradient along n is then sum_j g (p_i + p_j) d, the adjoint of the divergence sum_j g (u_j - u_i) . d: pressure does
+// no work of its own at the surface. Holding p = 0 in the particles instead and taking one-sided gradients there let a
+// standing wave of 64 particles gain 3 % of its energy per unit of time; now it keeps it to 0.3 %.
 #pragma once
 
 #include "spume/methods/les_sph/liquid.hpp"
