@@ -183,17 +183,20 @@ class SphSums {
   // Mirrored liquid at a free surface: half the distance of the layers within `reach`, across m = sum g d.
   double surface_depth(std::size_t i, double spacing, double reach) const {
     const auto m = normal(i);
-    double size = 0, second = 0, third = 0;
+    double size = 0, first = 0, second = 0, third = 0;
     for (int a = 0; a < dimensions(); ++a) size += m[a].value * m[a].value;
     if (size == 0) return spacing;
     each(i, [&](const Pair& p) {
       double along = 0;
       for (int a = 0; a < dimensions(); ++a) along -= p.d[a] * m[a].value / std::sqrt(size);
       const double weight = p.r < reach ? std::pow(1 - p.r * p.r / (reach * reach), 2) : 0;
+      first += weight * along;
       second += weight * along * along;
       third += weight * along * along * along;
     });
-    return second > 0 ? std::clamp(third / second / 2, spacing / 4, spacing) : spacing;
+    const double low = second < 2 * spacing * first ? std::max(second / first / 2, spacing / 4) : spacing;
+    const double high = second > 0 ? std::clamp(third / second / 2, spacing / 4, spacing) : spacing;
+    return (2 * low + high) / 3;
   }
 
   // --- fields; a velocity has one array per dimension

@@ -43,16 +43,17 @@ double dot(const Vec3& a, const Vec3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Half the distance of the layers below particle i: sum w d_n^3 / (2 sum w d_n^2) over near neighbours. Neighbours in
-// the same layer hardly count: with sum w d_n^2 / sum w d_n a particle that rises above them would seem to lie less
-// deep, and still water on a cubic lattice would heave.
+// Half the distance of the layers below particle i, from near neighbours: two thirds of sum w d_n^2 / (2 sum w d_n) and
+// one third of sum w d_n^3 / (2 sum w d_n^2). By the first alone a particle that rises above its layer seems to lie
+// less deep, and still water on a cubic lattice heaves; by the second alone a standing wave of 32 particles gains 12 %
+// of its energy in half a period.
 double depth_of(const Liquid& liquid, std::size_t i) {
   const double spacing = liquid.scene.spacing;
   const double reach2 = layer_reach * layer_reach * spacing * spacing;
   const Vec3 m = moment_of(liquid, i);
   const double size = std::sqrt(dot(m, m));
   if (!(size > 0)) return spacing;
-  double second = 0, third = 0;
+  double first = 0, second = 0, third = 0;
   for (const std::int32_t j : liquid.list.of(i)) {
     double r2 = 0, along = 0;
     for (int axis = 0; axis < liquid.dimensions; ++axis) {
@@ -63,10 +64,13 @@ double depth_of(const Liquid& liquid, std::size_t i) {
     }
     if (r2 >= reach2) continue;
     const double weight = (1 - r2 / reach2) * (1 - r2 / reach2);
+    first += weight * along;
     second += weight * along * along;
     third += weight * along * along * along;
   }
-  return second > 0 ? std::clamp(0.5 * third / second, 0.25 * spacing, spacing) : spacing;
+  const double low = second < 2 * spacing * first ? std::max(0.5 * second / first, 0.25 * spacing) : spacing;
+  const double high = second > 0 ? std::clamp(0.5 * third / second, 0.25 * spacing, spacing) : spacing;
+  return (2 * low + high) / 3;
 }
 
 }  // namespace
