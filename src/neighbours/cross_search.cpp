@@ -50,56 +50,46 @@ std::span<const CrossSearch::Block> CrossSearch::blocks_near(const Box& box, flo
   std::size_t size = 0;
   std::array<Set, most_sets> near;
   std::size_t sets = 0;
-  const float far = reach + margin_, far2 = far * far;
-  const auto cell_at = [&](std::size_t a, float x) {
-    const float cell = (x - lower_[a]) * inverse_[a];
-    return cell > 0 ? static_cast<int>(std::min(cell, static_cast<float>(last_cell_[a]))) : 0;
-  };
-  // Distances to eight rows from c on; border rows also hold what lies beyond the grid.
-  const auto distance_to = [&](std::size_t a, int c) {
-    const i32x8 cell = i32x8{0, 1, 2, 3, 4, 5, 6, 7} + c;
-    const f32x8 start = lower_[a] + __builtin_convertvector(cell, f32x8) * side_[a];
-    const f32x8 below = cell == 0 ? simd::splat(-INFINITY) : start;
-    const f32x8 above = cell == last_cell_[a] ? simd::splat(INFINITY) : start + side_[a];
-    return simd::max(simd::max(below - box.upper[a], box.lower[a] - above), simd::splat(0));
-  };
-  const auto column_at = [&](f32x8 x) {
-    const f32x8 column = (x - lower_[0]) * inverse_[0];
-    const f32x8 within = simd::min(simd::max(column, simd::splat(0)), simd::splat(static_cast<float>(last_cell_[0])));
-    return __builtin_convertvector(within, i32x8);
-  };
+  const float far = reach + margin_;
   for (std::size_t s = 0; s < sets_; ++s) {
     bool free = true;
     for (std::size_t a = 0; a < 3; ++a)
       free = free && box.lower[a] - far > set_[s].free.lower[a] && box.upper[a] + far < set_[s].free.upper[a];
     if (!free) near[sets++] = set_[s];
   }
+  const auto cell_at = [&](std::size_t a, float x) {
+    const float cell = (x - lower_[a]) * inverse_[a];
+    return cell > 0 ? static_cast<int>(std::min(cell, static_cast<float>(last_cell_[a]))) : 0;
+  };
+  // Square of the distance to row c; border rows also hold what lies beyond the grid.
+  const auto distance2_to = [&](std::size_t a, int c) {
+    const float start = lower_[a] + static_cast<float>(c) * side_[a];
+    const float below = c == 0 ? 0 : start - box.upper[a];
+    const float above = c == last_cell_[a] ? 0 : box.lower[a] - (start + side_[a]);
+    const float distance = std::max({below, above, 0.0F});
+    return distance * distance;
+  };
+  // Every row is cut to the same columns: what a chord of its own would spare costs as much to find.
   const std::int32_t columns = grid_.columns();
-  const int z_last = cell_at(2, box.upper[2] + far);
+  const std::int32_t from = cell_at(0, box.lower[0] - far), to = cell_at(0, box.upper[0] + far) + 1;
   const int y_first = cell_at(1, box.lower[1] - far), y_last = cell_at(1, box.upper[1] + far);
-  for (int iz = cell_at(2, box.lower[2] - far); iz <= z_last; ++iz) {
-    const float dz = distance_to(2, iz)[0];
-    for (int iy = y_first; iy <= y_last; iy += simd::lanes) {
-      const f32x8 dy = distance_to(1, iy);
-      const f32x8 left2 = (far2 - dz * dz) - dy * dy;
-      const f32x8 half = simd::sqrt(simd::max(left2, simd::splat(0))) + margin_;
-      const i32x8 row = load_int(grid_.row_ranks(iz) + iy) * columns;
-      const i32x8 from = row + column_at(box.lower[0] - half), to = row + column_at(box.upper[0] + half) + 1;
-      unsigned rows = mask_of(i32x8(left2 > 0.0F));
-      if (y_last - iy < simd::lanes - 1) rows &= (2U << (y_last - iy)) - 1U;
-      for (; rows != 0; rows &= rows - 1) {
-        const int l = std::countr_zero(rows);
-        for (std::size_t s = 0; s < sets; ++s) {
-          const std::int32_t first = near[s].base + near[s].first[from[l]];
-          const std::int32_t last = near[s].base + near[s].first[to[l]];
-          const std::int32_t blocks = (last - first + simd::lanes - 1) / simd::lanes;
-          const std::size_t wanted = size + static_cast<std::size_t>(std::max(blocks, blocks_at_once));
-          if (wanted > found.blocks.size()) found.blocks.resize(2 * wanted);
-          Block* const out = found.blocks.data() + size;
-          for (int k = 0; k < blocks_at_once; ++k) out[k] = {first + k * simd::lanes, last};
-          for (std::int32_t k = blocks_at_once; k < blocks; ++k) out[k] = {first + k * simd::lanes, last};
-          size += static_cast<std::size_t>(blocks);
-        }
+  const int z_first = cell_at(2, box.lower[2] - far), z_last = cell_at(2, box.upper[2] + far);
+  for (int iz = z_first; iz <= z_last; ++iz) {
+    const float left2 = far * far - distance2_to(2, iz);
+    const std::int32_t* ranks = grid_.row_ranks(iz);
+    for (int iy = y_first; iy <= y_last; ++iy) {
+      if (distance2_to(1, iy) >= left2) continue;
+      const std::int64_t row = std::int64_t{ranks[iy]} * columns;
+      for (std::size_t s = 0; s < sets; ++s) {
+        const std::int32_t first = near[s].base + near[s].first[row + from];
+        const std::int32_t last = near[s].base + near[s].first[row + to];
+        const std::int32_t blocks = (last - first + simd::lanes - 1) / simd::lanes;
+        const std::size_t wanted = size + static_cast<std::size_t>(std::max(blocks, blocks_at_once));
+        if (wanted > found.blocks.size()) found.blocks.resize(2 * wanted);
+        Block* const out = found.blocks.data() + size;
+        for (int k = 0; k < blocks_at_once; ++k) out[k] = {first + k * simd::lanes, last};
+        for (std::int32_t k = blocks_at_once; k < blocks; ++k) out[k] = {first + k * simd::lanes, last};
+        size += static_cast<std::size_t>(blocks);
       }
     }
   }
