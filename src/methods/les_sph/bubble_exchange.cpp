@@ -17,6 +17,8 @@ using simd::f32x8;
 constexpr int velocity_at = 0, vorticity_at = 3, acceleration_at = 6, energy_at = 9, dissipation_at = 10,
               normal_at = 11, factor_at = 14, record = 16;
 
+constexpr std::size_t pack_block = 64;
+
 Vec3 vector_at(const float* from, int slot) {
   return {from[slot], from[slot + 1], from[slot + 2]};
 }
@@ -51,27 +53,56 @@ void BubbleCoupling::pack_liquid(Liquid& liquid) {
   const auto& gradient = liquid.velocity_gradient;
   const bool filtered = liquid.plan.test_filter, eddies = liquid.eddy_viscosity != nullptr;
   const bool normals = population_.merge_time != nullptr;
-  parallel_for(n, [&](std::size_t i) {
-    inverse_reach_[i] = 1 / liquid.reach[i];
-    if (near_[i] == 0) return;
-    float* value = liquid_records_.data() + i * record;
-    const float inverse = 1 / liquid.length_ratio[i], factor = liquid.volume_ratio[i] * inverse * inverse * inverse;
-    double energy = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
-      value[velocity_at + a] = factor * static_cast<float>((*liquid.velocity[a])[i]);
-      value[vorticity_at + a] = factor * ((*gradient[c * 3 + b])[i] - (*gradient[b * 3 + c])[i]);
-      value[acceleration_at + a] = factor * static_cast<float>((*liquid.material_acceleration[a])[i]);
-      value[normal_at + a] = normals ? factor * (*liquid.smoothed_normal[a])[i] : 0.0F;
-      if (!filtered) continue;
-      const double unresolved = (*liquid.velocity[a])[i] - double{(*liquid.filtered_velocity[a])[i]};
-      energy += 0.5 * unresolved * unresolved;
+  // One value at a time: more arrays than the processor can read ahead of would be read at once otherwise.
+  parallel_blocks(n, pack_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    const std::size_t size = last - first;
+    bool near = false;
+    for (std::size_t i = first; i < last; ++i) {
+      inverse_reach_[i] = 1 / liquid.reach[i];
+      near = near || near_[i] != 0;
     }
-    const float strain = (*liquid.strain)[i];
-    value[energy_at] = factor * static_cast<float>(energy);
-    value[dissipation_at] = eddies ? factor * (*liquid.eddy_viscosity)[i] * strain * strain : 0.0F;
-    value[factor_at] = factor;
-    value[factor_at + 1] = 0;
+    if (!near) return;
+    float* const records = liquid_records_.data() + first * record;
+    float factor[pack_block];
+    for (std::size_t k = 0; k < size; ++k) {
+      const float inverse = 1 / liquid.length_ratio[first + k];
+      factor[k] = liquid.volume_ratio[first + k] * inverse * inverse * inverse;
+    }
+    const auto put = [&](int slot, auto&& value) {
+      for (std::size_t k = 0; k < size; ++k) records[k * record + slot] = factor[k] * value(k);
+    };
+    const auto nothing = [](std::size_t) { return 0.0F; };
+    double energy[pack_block] = {};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis), b = (a + 1) % 3, c = (a + 2) % 3;
+      const double *velocity = liquid.velocity[a]->data() + first,
+                   *acceleration = liquid.material_acceleration[a]->data() + first;
+      const float *up = gradient[c * 3 + b]->data() + first, *down = gradient[b * 3 + c]->data() + first;
+      put(velocity_at + axis, [=](std::size_t k) { return static_cast<float>(velocity[k]); });
+      put(vorticity_at + axis, [=](std::size_t k) { return up[k] - down[k]; });
+      put(acceleration_at + axis, [=](std::size_t k) { return static_cast<float>(acceleration[k]); });
+      if (normals) {
+        const float* normal = liquid.smoothed_normal[a]->data() + first;
+        put(normal_at + axis, [=](std::size_t k) { return normal[k]; });
+      } else {
+        put(normal_at + axis, nothing);
+      }
+      if (!filtered) continue;
+      const float* mean = liquid.filtered_velocity[a]->data() + first;
+      for (std::size_t k = 0; k < size; ++k) {
+        const double unresolved = velocity[k] - double{mean[k]};
+        energy[k] += 0.5 * unresolved * unresolved;
+      }
+    }
+    put(energy_at, [&](std::size_t k) { return static_cast<float>(energy[k]); });
+    if (eddies) {
+      const float *viscosity = liquid.eddy_viscosity->data() + first, *strain = liquid.strain->data() + first;
+      put(dissipation_at, [=](std::size_t k) { return viscosity[k] * strain[k] * strain[k]; });
+    } else {
+      put(dissipation_at, nothing);
+    }
+    put(factor_at, [](std::size_t) { return 1.0F; });
+    put(factor_at + 1, nothing);
   });
   // Mirrored velocities, and pseudo-vectors the other way.
   parallel_for(m, [&](std::size_t k) {
