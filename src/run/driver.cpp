@@ -122,6 +122,15 @@ RunState Simulation::run(Observer& observer) {
     recorder_->sync();
     write_summary(state == RunState::finished ? "finished" : "interrupted", "");
     return state;
+  } catch (const StepFailure& failure) {
+    // What a method solves before its first step has no step to halve.
+    const std::string text = "numerical failure at step " + std::to_string(method_->step_count()) +
+                             ", t = " + exact(method_->time()) + ": " + failure.details().cause + "\n  " +
+                             place_of(failure.details(), loaded_->scene.domain.dimensions) +
+                             "\n  most likely helps: change " + failure.details().option;
+    folder_.log(text);
+    write_summary("numerical failure", text);
+    throw NumericalFailure(text);
   } catch (const NumericalFailure& failure) {
     folder_.log(failure.what());
     write_summary("numerical failure", failure.what());

@@ -190,6 +190,7 @@ void accept(Liquid& liquid, double dt) {
     details.option = "time.courant";
     throw StepFailure(details);
   }
+  liquid.energy_supply = limited_energy_supply(liquid, dt);
 
   const double density = liquid.scene.fluid.density;
   parallel_for(n, [&](std::size_t i) {
