@@ -8,6 +8,7 @@ threads   the step's speed on 2 threads over that on 1, alternating runs
 shared    time of two runs at once on the same cores over the time of one alone
 bubbles   wall microseconds of all bubble stages per bubble and step, one bubble per ten particles; share with none alive
 memory    peak memory of the step's run per particle, everything counted
+parts     time and arrays of a step with and without each optional part (see bench_parts.py)
 """
 import os
 import resource
@@ -18,6 +19,7 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import bench_parts
 from spume_results import MissingResult, Results
 from spume_verification import CASES
 
@@ -104,7 +106,7 @@ def memory(bench):
 
 
 MEASUREMENTS = {"memory": memory, "step": step, "collapse": collapse, "threads": threads, "shared": shared,
-                "bubbles": bubbles}
+                "bubbles": bubbles, "parts": bench_parts.table}
 
 
 def main():

@@ -45,7 +45,8 @@ def check_particles(run, scene, complaints):
             if np.any(beyond > 1e-9):
                 complaints.append(f"particles: {int(np.sum(beyond > 1e-9))} beyond the {names[side]} side")
     for solid in scene.case.get("solid", []):
-        inside = np.all((last.position > np.array(solid["lower"]) + 1e-6) & (last.position < np.array(solid["upper"]) - 1e-6), axis=1)
+        inside = np.all((last.position[:, :len(lower)] > np.array(solid["lower"]) + 1e-6)
+                        & (last.position[:, :len(lower)] < np.array(solid["upper"]) - 1e-6), axis=1)
         if np.any(inside):
             complaints.append(f"particles: {int(np.sum(inside))} inside a solid")
 
@@ -147,6 +148,8 @@ def judge(method, scene, folder, code, stderr, timed_out):
         figures = {"steps": int(run.series["step"][-1]), "reached": float(run.series["t"][-1]),
                    "retries": run.summary["retries"], "max_speed": float(np.max(run.series["max_speed"]))}
         CHECKS[method](run, scene, complaints)
+        if code == 3:  # it said itself that it makes energy
+            complaints = [text for text in complaints if not text.startswith(("energy", "momentum"))]
     except (MissingResult, KeyError, IndexError, OSError, ValueError) as error:
         complaints.append(f"results: {type(error).__name__}: {error}")
     if complaints:

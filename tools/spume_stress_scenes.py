@@ -98,8 +98,8 @@ def dam(rng, d):
     width, height = rng.uniform(0.15, 0.5), rng.uniform(0.2, 0.9)
     top = [float(width)] + [1.0] * (d - 2) + [float(height)]
     further = {}
-    thick = 6.0 * SPACING[d]
-    if rng.random() < 0.5 and width + thick < 0.9:
+    thick = 0.3  # two supports of any kernel that is drawn, in 2-D
+    if d == 2 and rng.random() < 0.6 and width + thick < 0.9:
         # An obstacle on the floor: its foot and the corners of the tank are the worst places for images.
         left = float(rng.uniform(width + 0.02, 1 - thick))
         further["solid"] = [{"lower": [left] + [0.0] * (d - 1), "upper": [left + thick] + [1.0] * (d - 2) + [0.2],
@@ -121,7 +121,8 @@ def drop_free(rng, d):
 
 
 def drop_impact(rng, d):
-    depth, radius = rng.uniform(0.05, 0.3), rng.uniform(0.05, 0.18)
+    depth, radius = rng.uniform(2, 10) * SPACING[2], rng.uniform(0.05 if d == 2 else 0.1, 0.18)
+    depth = max(depth, 1.2 * SPACING[d])
     speed = log_uniform(rng, 0.3, 10)
     c = [0.5] * (d - 1) + [float(depth + radius + 2 * SPACING[d])]
     u = [f"{rng.uniform(-1, 1):.3f}"] + ["0"] * (d - 2) + [f"-{speed:.4f}"]
@@ -142,7 +143,7 @@ def colliding_drops(rng, d):
 
 
 def sheet(rng, d):
-    half = rng.uniform(0.5, 2.5) * SPACING[d] / 2
+    half = rng.uniform(1.02, 3) * SPACING[d] / 2
     return dict(domain=box(d, [1] * d, **walls(d, "free-slip", ("top",))), froude=1.0, facts={"speed": 1.5},
                 liquid=[{"lower": [float(0.5 - half)] + [0.0] * (d - 2) + [0.1],
                          "upper": [float(0.5 + half)] + [1.0] * (d - 2) + [0.9]}])
@@ -194,9 +195,10 @@ def cluster(rng, d):
 def crumbs(rng, d):
     """Single particles and pairs, too few for any gradient."""
     liquid = []
-    for _ in range(6):
-        c = rng.uniform(0.2, 0.8, d)
-        liquid.append({"centre": [float(v) for v in c], "radius": float(rng.uniform(0.5, 1.6) * SPACING[d]),
+    for number in range(6):
+        c = [0.2 + 0.3 * (number % 3)] + [0.5] * (d - 2) + [0.3 + 0.4 * (number // 3)]
+        liquid.append({"centre": [float(v + rng.uniform(-0.02, 0.02)) for v in c],
+                       "radius": float(rng.uniform(0.9, 1.6) * SPACING[d]),
                        "velocity": [f"{v:.3f}" for v in rng.uniform(-1, 1, d)]})
     return dict(domain=box(d, [1] * d, **walls(d, "free-slip", ("top",))), liquid=liquid, froude=1.0,
                 facts={"speed": 2.0, "keeps_all": True})
@@ -257,7 +259,8 @@ def les_sph_scene(rng, kinds=None, fixed=None, plain=False, steps=120):
     values |= fixed or {}
     facts = {"speed": 1.0} | made.get("facts", {})
     spacing = SPACING[d]
-    fluid = {"reynolds": values["reynolds"], "mach": values["mach"]}
+    # The Mach number is that of the fastest liquid.
+    fluid = {"reynolds": values["reynolds"], "mach": values["mach"] / max(1.0, facts["speed"])}
     if made["froude"]:
         fluid["froude"] = made["froude"]
     # The diffusive limit of the step too: a run of Re = 1 takes shorter steps.
@@ -268,6 +271,8 @@ def les_sph_scene(rng, kinds=None, fixed=None, plain=False, steps=120):
             "time": {"end": steps * dt, "courant": values["courant"]}} | made.get("further", {})
     if "constants" in made:
         case["constants"] = made["constants"]
+    if kind == "bubbles" and any(case["bubbles"][key] for key in ("fluctuations", "breakup", "entrainment")):
+        case["turbulence"] = {"model": "mixed-scale"}
     seldom = lambda section, key, choices: not plain and rng.random() < 0.15 and case.setdefault(section, {}).update({key: pick(rng, choices)})
     if not plain and rng.random() < 0.4:
         case["turbulence"] = {"model": pick(rng, ["mixed-scale", "smagorinsky", "dynamic-shepard", "dynamic-lagrangian"])}
@@ -278,7 +283,6 @@ def les_sph_scene(rng, kinds=None, fixed=None, plain=False, steps=120):
     seldom("pressure", "precision", ["double"])
     seldom("pressure", "tolerance", [1e-3, 1e-9])
     seldom("time", "centred", [False])
-    seldom("shifting", "on", [False])
     seldom("shifting", "velocity_correction", ["none", "second-order"])
     case["seed"] = int(rng.integers(1, 1000))
     parameters = values | {"dimensions": d, "spacing": spacing} | made.get("parameters", {})

@@ -102,6 +102,7 @@ struct Liquid {
   // Of the accepted state.
   double max_speed = 0;
   double limiting_speed = 0;  // without spray, which only falls
+  double wall_speed = 0;      // largest of the moving walls where images see them
   double max_eddy_viscosity = 0;
   double max_divergence = 0;
   double dissipation = 0;    // integral of rho (nu + nu_t) |S|^2
