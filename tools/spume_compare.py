@@ -51,3 +51,9 @@ def judge(old, new, effect=0.04, confidence=0.98):
     ratio = float(np.median(ratios))
     word = "slower" if low > 1 and ratio > 1 + effect else "faster" if high < 1 and ratio < 1 - effect else ""
     return Verdict(ratio, low, high, word)
+
+
+def undecided(old, new, effect=0.04, confidence=0.98):
+    """Whether more rounds may show a difference: the median is past half the effect, the interval holds equality."""
+    verdict = judge(old, new, effect, confidence)
+    return not verdict.word and abs(verdict.ratio - 1) > effect / 2

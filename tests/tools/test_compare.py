@@ -12,7 +12,7 @@ import paths
 import numpy as np
 
 sys.path.insert(0, str(paths.ROOT / "tools"))
-from spume_compare import judge, sign_interval
+from spume_compare import judge, sign_interval, undecided
 
 
 def noisy_pairs(rng, slow, rounds=12):
@@ -57,6 +57,11 @@ class Statistics(unittest.TestCase):
     def test_a_difference_below_the_effect_is_none(self):
         self.assertEqual(judge([1.0] * 8, [1.03] * 8, effect=0.04).word, "")
         self.assertEqual(judge([1.0] * 8, [1.05] * 8, effect=0.04).word, "slower")
+
+    def test_more_rounds_are_asked_for_where_noise_hides_a_difference(self):
+        self.assertTrue(undecided([1.0] * 8, [1.1] * 6 + [0.9] * 2))
+        self.assertFalse(undecided([1.0] * 8, [1.1] * 8))
+        self.assertFalse(undecided([1.0] * 8, [1.01] * 6 + [0.9] * 2))
 
     def test_an_odd_number_of_rounds_is_refused(self):
         self.assertRaises(ValueError, judge, [1] * 7, [1] * 7)
