@@ -21,12 +21,13 @@ MEMORY = 4 << 30  # a damaged number must not take the machine's memory
 BASE = {
     "les-sph": """method = "les-sph"
 [domain]
-lower = [0, 0]
-upper = [1, 1]
+lower = [0, 0, 0]
+upper = [1, 1, 1]
 x = "periodic"
+y = "periodic"
 bottom = "no-slip"
 [resolution]
-spacing = 0.05
+spacing = 0.125
 [fluid]
 reynolds = 1e3
 froude = 1
@@ -34,21 +35,21 @@ mach = 0.05
 [constants]
 depth = 0.5
 [[liquid]]
-where = "depth + 0.1*cos(2*pi*x) - y"
+where = "depth + 0.1*cos(2*pi*x) - z"
 [turbulence]
 model = "mixed-scale"
 [bubbles]
 weber = 1e3
 fluctuations = true
 [[bubble_cloud]]
-lower = [0.3, 0.1]
-upper = [0.7, 0.3]
+lower = [0.3, 0.3, 0.1]
+upper = [0.7, 0.7, 0.3]
 number = 20
 bubble_radius = 0.01
 [[probe]]
 name = "middle"
 kind = "elevation"
-position = [0.5, 0]
+position = [0.5, 0.5, 0]
 [time]
 end = 1.0
 [output]

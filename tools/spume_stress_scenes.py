@@ -306,6 +306,10 @@ def spectral_scene(rng, kinds=None, fixed=None, plain=False, steps=60):
             "spectral": {"integrator": pick(rng, ["ab2", "rk3", "rk4"]),
                          "dealiasing": pick(rng, ["padded", "padded", "two-thirds", "none"]),
                          "precision": pick(rng, ["double", "single"])}}
+    if kind == "inviscid":
+        case["spectral"]["integrator"] = pick(rng, ["rk3", "rk4"])
+    if start["kind"] == "abc":
+        case["domain"]["upper"] = [side] * 3
     if plain:
         case["spectral"] = {"integrator": "ab2", "dealiasing": "padded", "precision": "double"}
     forced = kind != "decay" and kind != "inviscid" and rng.random() < 0.7
@@ -321,7 +325,7 @@ def spectral_scene(rng, kinds=None, fixed=None, plain=False, steps=60):
                      "coupling": pick(rng, ["one-way", "two-way", "four-way"]) if kind != "exclusion" else "four-way",
                      "drag": pick(rng, ["stokes", "schiller-naumann"]), "matching": pick(rng, ["rounds", "sorting"]),
                      "spline_order": int(pick(rng, [2, 4, 6])), "overlap_samples": 1000,
-                     "placement": pick(rng, ["random", "lattice", "clustered"])}
+                     "placement": pick(rng, ["random", "clustered"])}
         if kind == "exclusion":
             particles["volume_fraction"] = float(rng.uniform(0.01, 0.6))
             particles["diameter"] = float(rng.uniform(0.4, 1.5) * side / grid)

@@ -108,7 +108,7 @@ Section time() {
           option("courant", "1", "0.2", above_up_to(0, 1), "step limit by speed: Courant number", group, &T::courant),
           option("centred", "", "true", {}, "velocities free of divergence half a step ahead: second order in time",
                  group, &T::centred, {"les-sph"}),
-          option("viscous", "1", "0.2", above_up_to(0, 1),
+          option("viscous", "1", "0.2", above_up_to(0, 0.3),
                  "step limit by viscosity, eddy viscosity included; a third of it with div(2 nu S)", group, &T::viscous,
                  {"les-sph"}),
           option("max_step", "time", "0.0", not_negative(), "largest step; 0: none", group, &T::max_step),

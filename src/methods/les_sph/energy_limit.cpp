@@ -10,9 +10,14 @@
 namespace spume::les_sph {
 namespace {
 
-// Work of bubbles, moving walls and forces that vary in space is not followed.
-bool supply_is_known(const Liquid& liquid) {
-  return !liquid.plan.bubbles && !liquid.plan.moving_walls && (!liquid.plan.body_force || liquid.uniform_body_force);
+// The work of bubbles and of moving walls is not followed. What it may give is taken large: ten times the speed of a
+// wall, or of a fall from the top of the domain to its bottom, for all of the liquid.
+double unfollowed_supply(const Liquid& liquid, double strength) {
+  if (!liquid.plan.bubbles && !liquid.plan.moving_walls) return 0;
+  double size = 0;
+  for (int axis = 0; axis < liquid.dimensions; ++axis)
+    size = std::max(size, liquid.scene.domain.upper[axis] - liquid.scene.domain.lower[axis]);
+  return 50 * (liquid.wall_speed * liquid.wall_speed + strength * size);
 }
 
 double particle_mass(const Liquid& liquid) {
@@ -54,7 +59,8 @@ void start_energy(Liquid& liquid) {
 }
 
 double limited_energy_supply(const Liquid& liquid, double dt) {
-  if (!supply_is_known(liquid)) return liquid.energy_supply;
+  // The work of forces that vary in space has no such bound.
+  if (liquid.plan.body_force && !liquid.uniform_body_force) return liquid.energy_supply;
   const int d = liquid.dimensions;
   const double mass = particle_mass(liquid), all = mass * static_cast<double>(liquid.size());
   const Vec3& gravity = liquid.scene.fluid.gravity;
@@ -71,7 +77,8 @@ double limited_energy_supply(const Liquid& liquid, double dt) {
   const double available = supply - potential_energy(liquid, liquid.intermediate);
   // Particles rearrange within a spacing; float sums leave 1e-6 of a smoothing length in a step.
   const double noise = 1e-6 * liquid.smoothing_length / dt;
-  const double floor = all * (std::sqrt(strength2) * liquid.scene.spacing + noise * noise);
+  const double strength = std::sqrt(strength2);
+  const double floor = all * (strength * liquid.scene.spacing + noise * noise + unfollowed_supply(liquid, strength));
   if (kinetic <= 2 * std::max(available, 0.0) + floor) return supply;
   StepFailure::Details details;
   double fastest2 = -1;

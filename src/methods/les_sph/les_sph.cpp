@@ -37,6 +37,26 @@ void refuse_high_mach(const Liquid& liquid) {
   throw InputError(text);
 }
 
+// div(2 nu S) spreads the divergence of the velocity three times as fast as div(nu grad u) does.
+double diffusion_rate(const Liquid& liquid) {
+  return liquid.plan.viscous_stress ? 3 : 1;
+}
+
+// The step was chosen for the eddy viscosity of the step before; the first one knew none.
+void refuse_unstable_diffusion(const Liquid& liquid, double dt) {
+  const double largest =
+      parallel_max(liquid.size(), 0.0, [&](std::size_t i) { return double{(*liquid.eddy_viscosity)[i]}; });
+  const double viscosity = liquid.scene.fluid.kinematic_viscosity + largest;
+  const double h = liquid.smoothing_length;
+  // 0.29 h^2 / nu on a lattice in 3-D, 0.31 in 2-D.
+  if (viscosity * diffusion_rate(liquid) * dt <= 0.3 * h * h) return;
+  StepFailure::Details details;
+  details.cause = "the eddy viscosity has grown beyond what the step is stable with";
+  details.option = "time.viscous";
+  details.value = largest;
+  throw StepFailure(details);
+}
+
 }  // namespace
 
 void LesSph::step(double dt, Ledger& ledger) {
@@ -64,7 +84,11 @@ void LesSph::step(double dt, Ledger& ledger) {
   if (plan.shifting) stage("shift", [&] { choose_shift(liquid, dt); });
   if (plan.velocity_gradient) pair_stage("gradients", [&] { differentiate_velocity(liquid); });
   if (plan.shift_curvature) pair_stage("shift curvature", [&] { find_shift_curvature(liquid); });
-  if (plan.eddy_viscosity) stage("eddy viscosity", [&] { find_eddy_viscosity(liquid, dt); });
+  if (plan.eddy_viscosity)
+    stage("eddy viscosity", [&] {
+      find_eddy_viscosity(liquid, dt);
+      refuse_unstable_diffusion(liquid, dt);
+    });
   if (plan.bubbles) stage("bubble forces", [&] { bubbles_->exchange_momentum(liquid, dt); });
   pair_stage("prediction", [&] { predict_velocity(liquid, dt); });
   pressure_->solve_step(liquid, dt, ledger);
@@ -163,10 +187,9 @@ StepLimit LesSph::step_limit() const {
   };
   if (speed > 0) bound(options.courant * h / speed, "courant");
   const double viscosity = liquid_.scene.fluid.kinematic_viscosity + liquid_.max_eddy_viscosity;
-  // div(2 nu S) spreads the divergence of the velocity three times as fast as div(nu grad u) does: the explicit sum is
-  // stable up to 0.108 h^2 / nu on a lattice in 3-D and 0.112 in 2-D, div(nu grad u) up to 0.29 and 0.31.
-  const double rate = liquid_.plan.viscous_stress ? 3 : 1;
-  if (viscosity > 0) bound(options.viscous * h * h / (rate * viscosity), "viscous");
+  // The explicit sum of div(2 nu S) is stable up to 0.108 h^2 / nu on a lattice in 3-D and 0.112 in 2-D, that of
+  // div(nu grad u) up to 0.29 and 0.31.
+  if (viscosity > 0) bound(options.viscous * h * h / (diffusion_rate(liquid_) * viscosity), "viscous");
   // A bubble crosses at most half a smoothing length.
   if (bubbles_ && bubbles_->max_speed() > 0) bound(0.5 * h / bubbles_->max_speed(), "bubbles");
   if (options.max_step > 0) bound(options.max_step, "max_step");

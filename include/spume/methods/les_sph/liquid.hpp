@@ -149,8 +149,8 @@ constexpr int spray_neighbours(int dimensions) {
 // The energy that a flow may hold: kinetic, potential and stored in the pressure at the start (start_energy), and the
 // work of uniform forces. limited_energy_supply gives it at the end of a step and throws StepFailure if the kinetic
 // energy of the predicted velocities is more than twice the supply less the present potential energy. A consistent
-// scheme stays below once the supply; what an instability makes passes twice soon. Unlimited with bubbles, moving walls
-// and forces that vary in space, whose work is not followed.
+// scheme stays below once the supply; what an instability makes passes twice soon. Bubbles and moving walls add what
+// they may give at most; with forces that vary in space there is no limit.
 void start_energy(Liquid& liquid);
 double limited_energy_supply(const Liquid& liquid, double dt);
 
