@@ -337,6 +337,8 @@ def spectral_scene(rng, kinds=None, fixed=None, plain=False, steps=60):
     speed = 3 * math.sqrt(case["initial"].get("energy", 0.5))
     case["time"] = {"end": steps * values["courant"] * side / grid / max(speed, 0.05) / 3, "courant": values["courant"]}
     loaded = particles is not None and particles["coupling"] != "one-way"
+    # Statistics of pairs cost more than a step where particles cluster.
+    case["output"] = {"series_every": case["time"]["end"] / 30}
     parameters = values | {"grid": grid}
     if particles:
         parameters |= {key: particles[key] for key in ("diameter", "response_time", "beta", "volume_fraction") if key in particles}
