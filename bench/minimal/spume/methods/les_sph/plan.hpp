@@ -31,6 +31,7 @@ struct Plan {
   static constexpr bool closed = true;
   static constexpr bool bubbles = false;
   static constexpr bool mixture_pressure = false;
+  static constexpr bool density_relaxation = true;
 
   std::vector<Stage> stages(const LoadedCase&) const { return {}; }
 };
