@@ -115,9 +115,11 @@ def draw(rows, name, path):
 
     mine = [row for row in rows if row["sweep"] == name and row["error"] == row["error"]]
     figure, axis = plt.subplots(figsize=(7.5, 5), layout="constrained")
-    for option in dict.fromkeys(row["option"] for row in mine):
+    colours = plt.cm.tab20.colors
+    for number, option in enumerate(dict.fromkeys(row["option"] for row in mine)):
         here = [row for row in mine if row["option"] == option]
-        axis.plot([r["seconds"] for r in here], [r["error"] for r in here], "ks" if option == "default" else "o",
+        axis.plot([r["seconds"] for r in here], [r["error"] for r in here], "s" if option == "default" else "o",
+                  color="k" if option == "default" else colours[number % len(colours)],
                   markersize=8 if option == "default" else 5, label=option, zorder=3 if option == "default" else 2)
     best = front(mine)
     axis.step([r["seconds"] for r in best], [r["error"] for r in best], "k-", where="post", linewidth=1, label="front")
