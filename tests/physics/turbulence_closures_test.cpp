@@ -202,7 +202,7 @@ TEST(DynamicViscosity, IsClippedWhereTheTotalWouldBeNegative) {
 TEST(DynamicViscosity, TheCoefficientIsBounded) {
   EXPECT_EQ(dynamic_coefficient({1e-3, 1e-12}), dynamic_largest);
   EXPECT_EQ(dynamic_coefficient({0.2, 1.0}), 0.2);
-  EXPECT_EQ(dynamic_coefficient({-1e-3, 1e-12}), -1e9);  // backscatter is bounded by the viscosity
+  EXPECT_DOUBLE_EQ(dynamic_coefficient({-1e-3, 1e-12}), -1e9);  // backscatter is bounded by the viscosity
 }
 
 TEST(LagrangianAverage, StartsFromTheFirstStrainAndOneStepIsAsComputedByHand) {
