@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A step that makes energy from nothing is refused: without this an unstable run goes on for thousands of ever shorter
 // steps, finite to the end, and reports success.
+#include <algorithm>
 #include <cmath>
 
 #include "spume/core/error.hpp"
@@ -14,7 +15,10 @@ namespace {
 // wall, or of a fall from the top of the domain to its bottom, for all of the liquid.
 double unfollowed_supply(const Liquid& liquid, double strength) {
   if (!liquid.plan.bubbles && !liquid.plan.moving_walls) return 0;
-  double size = 0;
+  // Gravity drives bubbles also where a force on the liquid cancels it.
+  double size = 0, gravity2 = 0;
+  for (const double g : liquid.scene.fluid.gravity) gravity2 += g * g;
+  strength = std::max(strength, std::sqrt(gravity2));
   for (int axis = 0; axis < liquid.dimensions; ++axis)
     size = std::max(size, liquid.scene.domain.upper[axis] - liquid.scene.domain.lower[axis]);
   return 50 * (liquid.wall_speed * liquid.wall_speed + strength * size);
