@@ -53,7 +53,8 @@ class Exclusion {
 
   const Array<std::int32_t>& partner() const { return partner_; }
   const PeriodicCells& cells() const { return cells_; }
-  const CellOrder& order() const { return order_; }
+  // May be borrowed for another order; every search starts with its own.
+  CellOrder& order() { return order_; }
   double bytes() const;
 
   // Sorts the spheres into cells, for the two searches below; they look at the spheres as they are then.
