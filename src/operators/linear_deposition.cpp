@@ -56,6 +56,54 @@ template <class Real>
     std::memcpy(target, &converted, points * sizeof(Real));
 }
 
+struct Spreading {
+  DepositedParticles particles;
+  const std::int32_t* index;
+  double lower[3], scale[3], inverse_volume;
+  int points_z;
+};
+
+// Adds the particles index[from .. to) of the cell column (cx, cy) to rows of the grid planes at its lower and upper
+// side in x; null: not wanted, but with all_wanted. What the loop reads is copied first: sums are numbers like these,
+// and the compiler would read them again after every addition (a third of the time).
+template <bool all_wanted>
+void spread_range(const Spreading& given, std::int32_t from, std::int32_t to, int cx, int cy, double* lower_0,
+                  double* lower_1, double* upper_0, double* upper_1) {
+  const double* const x = given.particles.position[0];
+  const double* const y = given.particles.position[1];
+  const double* const z = given.particles.position[2];
+  const double* const force = given.particles.force;
+  const double* const diameter = given.particles.diameter;
+  const std::int32_t* const index = given.index;
+  const double origin_x = given.lower[0], origin_y = given.lower[1], origin_z = given.lower[2];
+  const double scale_x = given.scale[0], scale_y = given.scale[1], scale_z = given.scale[2];
+  const double inverse_volume = given.inverse_volume;
+  const auto fraction_of = [=](double d) { return M_PI / 6 * d * d * d * inverse_volume; };
+  const double common_fraction = fraction_of(given.particles.common_diameter);
+  const int nz = given.points_z;
+  for (std::int32_t k = from; k < to; ++k) {
+    const auto p = static_cast<std::size_t>(index[k]);
+    const double pz = (z[p] - origin_z) * scale_z;
+    const int cz = std::clamp(static_cast<int>(pz), 0, nz - 1);
+    const double tx = (x[p] - origin_x) * scale_x - cx, ty = (y[p] - origin_y) * scale_y - cy, tz = pz - cz;
+    f64x4 amount;
+    std::memcpy(&amount, force + 3 * p, sizeof amount);
+    amount *= inverse_volume;
+    amount[3] = diameter == nullptr ? common_fraction : fraction_of(diameter[p]);
+    const f64x4 near_z = (1 - tz) * amount, far_z = tz * amount;
+    const std::size_t z_0 = 4 * static_cast<std::size_t>(cz),
+                      z_1 = 4 * static_cast<std::size_t>(cz + 1 < nz ? cz + 1 : 0);
+    const auto corners = [&](double* target, double weight) {
+      add(target + z_0, weight, near_z);
+      add(target + z_1, weight, far_z);
+    };
+    if (all_wanted || lower_0 != nullptr) corners(lower_0, (1 - tx) * (1 - ty));
+    if (all_wanted || lower_1 != nullptr) corners(lower_1, (1 - tx) * ty);
+    if (all_wanted || upper_0 != nullptr) corners(upper_0, tx * (1 - ty));
+    if (all_wanted || upper_1 != nullptr) corners(upper_1, tx * ty);
+  }
+}
+
 DepositionReport combined(DepositionReport a, const DepositionReport& b) {
   a.force += b.force;
   a.clipped_force += b.clipped_force;
@@ -75,42 +123,24 @@ DepositionReport LinearDeposition::deposit(const CellOrder& order, const Deposit
   const std::size_t plane = row * static_cast<std::size_t>(std::min(ny, tile_rows));
   const std::int32_t* index = order.order().data();
   const std::int32_t* first = order.first();
-  const double scale[3] = {grid_.inverse_spacing(0), grid_.inverse_spacing(1), grid_.inverse_spacing(2)};
-  const double inverse_volume = 1 / grid_.cell_volume();
   const double cell_volume = grid_.cell_volume();
-  const auto volume_of = [](double d) { return M_PI / 6 * d * d * d; };
-  const double common_fraction = volume_of(particles.common_diameter) * inverse_volume;
 
   if (sums_.size() < static_cast<std::size_t>(thread_count())) sums_.resize(static_cast<std::size_t>(thread_count()));
   for (auto& sums : sums_) sums.resize(2 * plane);
 
-  // Adds the particles of the cell column (cx, cy) to rows of the grid planes at its lower and upper side in x; null:
-  // not wanted. A row is wanted or not in both planes.
+  const Spreading spreading{particles,
+                            index,
+                            {grid_.lower[0], grid_.lower[1], grid_.lower[2]},
+                            {grid_.inverse_spacing(0), grid_.inverse_spacing(1), grid_.inverse_spacing(2)},
+                            1 / cell_volume,
+                            nz};
   const auto spread_column = [&](int cx, int cy, double* lower_0, double* lower_1, double* upper_0, double* upper_1) {
     const std::size_t column = static_cast<std::size_t>(cx) * static_cast<std::size_t>(ny) + std::size_t(cy);
-    for (std::int32_t k = first[column]; k < first[column + 1]; ++k) {
-      const auto p = static_cast<std::size_t>(index[k]);
-      const double px = (particles.position[0][p] - grid_.lower[0]) * scale[0];
-      const double py = (particles.position[1][p] - grid_.lower[1]) * scale[1];
-      const double pz = (particles.position[2][p] - grid_.lower[2]) * scale[2];
-      const int cz = std::clamp(static_cast<int>(pz), 0, nz - 1);
-      const double tx = px - cx, ty = py - cy, tz = pz - cz;
-      f64x4 amount;
-      std::memcpy(&amount, particles.force + 3 * p, sizeof amount);
-      amount *= inverse_volume;
-      amount[3] = particles.diameter == nullptr ? common_fraction : volume_of(particles.diameter[p]) * inverse_volume;
-      const f64x4 near_z = (1 - tz) * amount, far_z = tz * amount;
-      const std::size_t z_0 = 4 * static_cast<std::size_t>(cz),
-                        z_1 = 4 * static_cast<std::size_t>(cz + 1 < nz ? cz + 1 : 0);
-      const auto corners = [&](double* target, double weight) {
-        add(target + z_0, weight, near_z);
-        add(target + z_1, weight, far_z);
-      };
-      if (lower_0 != nullptr) corners(lower_0, (1 - tx) * (1 - ty));
-      if (lower_1 != nullptr) corners(lower_1, (1 - tx) * ty);
-      if (upper_0 != nullptr) corners(upper_0, tx * (1 - ty));
-      if (upper_1 != nullptr) corners(upper_1, tx * ty);
-    }
+    const std::int32_t from = first[column], to = first[column + 1];
+    if (lower_0 != nullptr && lower_1 != nullptr && upper_0 != nullptr && upper_1 != nullptr)
+      spread_range<true>(spreading, from, to, cx, cy, lower_0, lower_1, upper_0, upper_1);
+    else
+      spread_range<false>(spreading, from, to, cx, cy, lower_0, lower_1, upper_0, upper_1);
   };
   // Adds cell plane cx to the rows [y_from, y_to) of its two grid planes.
   const auto spread = [&](int cx, int y_from, int y_to, double* lower_plane, double* upper_plane) {
