@@ -51,6 +51,9 @@ Section pressure() {
                          &P::cell_ratio),
                   option("warm_start", "", "true", {}, "start from the last pressure, carried by the particles", group,
                          &P::warm_start),
+                  option("density_relaxation", "steps", "50", between(0, 1e6),
+                         "steps at the courant limit over which uneven number density is evened out; 0: never", group,
+                         &P::density_relaxation),
               },
           .methods = {"les-sph"}};
 }

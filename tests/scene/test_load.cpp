@@ -327,6 +327,7 @@ TEST(Load, DefaultsOfTheTableAreTheDefaultsOfTheCase) {
   EXPECT_EQ(loaded.pressure.max_iterations, standard.pressure.max_iterations);
   EXPECT_EQ(loaded.pressure.cell_ratio, standard.pressure.cell_ratio);
   EXPECT_EQ(loaded.pressure.warm_start, standard.pressure.warm_start);
+  EXPECT_EQ(loaded.pressure.density_relaxation, standard.pressure.density_relaxation);
   EXPECT_EQ(loaded.shifting.on, standard.shifting.on);
   EXPECT_EQ(loaded.shifting.coefficient, standard.shifting.coefficient);
   EXPECT_EQ(loaded.shifting.limit, standard.shifting.limit);

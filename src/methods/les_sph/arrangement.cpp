@@ -58,36 +58,11 @@ void measure_geometry(Liquid& liquid) {
   geometry_sweep(liquid.context, liquid.records, options, out);
 }
 
-namespace {
-
-// Largest speed relative to the liquid's mean velocity, without spray: the same in every frame.
-double relative_speed(const Liquid& liquid) {
-  const int d = liquid.dimensions;
-  const std::size_t n = liquid.size();
-  Vec3 mean{};
-  for (int axis = 0; axis < d; ++axis)
-    mean[axis] = parallel_sum(n, [&](std::size_t i) { return (*liquid.velocity[axis])[i]; }) /
-                 static_cast<double>(std::max<std::size_t>(n, 1));
-  return std::sqrt(parallel_max(n, 0.0, [&](std::size_t i) {
-    if (liquid.list.count(i) < spray_neighbours(d)) return 0.0;
-    double speed2 = 0;
-    for (int axis = 0; axis < d; ++axis) {
-      const double relative = (*liquid.velocity[axis])[i] - mean[axis];
-      speed2 += relative * relative;
-    }
-    return speed2;
-  }));
-}
-
-}  // namespace
-
-void choose_shift(Liquid& liquid, double dt) {
+void choose_shift(Liquid& liquid) {
   const int d = liquid.dimensions;
   // King (3.12) at the step that the courant limit allows, in proportion to the distance moved below it: a liquid at
   // rest is not shifted, and small steps do not shift more (and dissipate more) than large ones. Particles that make
   // room for a bubble have to move whatever the speed.
-  const double moved =
-      std::min(1.0, relative_speed(liquid) * dt / (liquid.options.time.courant * liquid.smoothing_length));
   const auto limit = [&liquid](std::array<double, 3>& shift, std::size_t i) {
     const double longest = liquid.options.shifting.limit * liquid.width_at(i);
     const double length = std::hypot(shift[0], shift[1], shift[2]);
@@ -97,7 +72,8 @@ void choose_shift(Liquid& liquid, double dt) {
   parallel_for(liquid.size(), [&](std::size_t i) {
     std::array<double, 3> shift{};
     const double h = liquid.width_at(i);
-    const double coefficient = liquid.options.shifting.coefficient * h * h * (liquid.alpha_at(i) < 1 ? 1 : moved);
+    const double coefficient =
+        liquid.options.shifting.coefficient * h * h * (liquid.alpha_at(i) < 1 ? 1 : liquid.displacement);
     for (int axis = 0; axis < d; ++axis) shift[axis] = -coefficient * (*liquid.shift[axis])[i];
     if (liquid.plan.free_surface && liquid.at_surface[i] != 0) {
       // King (3.12), sign and tangential projection corrected: only the part along the surface is kept.

@@ -11,6 +11,7 @@
 #include "spume/core/parallel.hpp"
 #include "spume/methods/les_sph/bubble_coupling.hpp"
 #include "spume/methods/les_sph/free_surface.hpp"
+#include "spume/methods/les_sph/number_density.hpp"
 #include "spume/methods/les_sph/point_sampler.hpp"
 #include "spume/methods/les_sph/pressure_system.hpp"
 #include "spume/operators/energy_spectrum.hpp"
@@ -45,9 +46,10 @@ void LesSph::step(double dt, Ledger& ledger) {
   if (plan.images) stage("images", [&] { make_images(liquid, dt); });
   if (plan.bubbles) stage("bubble volume", [&] { bubbles_->share_volume(liquid); });
   stage("neighbours", [&] { find_neighbours(liquid); });
+  if (plan.shifting || plan.density_relaxation) liquid.displacement = displacement_fraction(liquid, dt);
   pair_stage("geometry", [&] { measure_geometry(liquid); });
   if (plan.free_surface) stage("surface", [&] { find_surface(liquid); });
-  if (plan.shifting) stage("shift", [&] { choose_shift(liquid, dt); });
+  if (plan.shifting) stage("shift", [&] { choose_shift(liquid); });
   if (plan.velocity_gradient) pair_stage("gradients", [&] { differentiate_velocity(liquid); });
   if (plan.shift_curvature) pair_stage("shift curvature", [&] { find_shift_curvature(liquid); });
   if (plan.eddy_viscosity) stage("eddy viscosity", [&] { find_eddy_viscosity(liquid, dt); });

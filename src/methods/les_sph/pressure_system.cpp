@@ -7,6 +7,7 @@
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/methods/les_sph/free_surface.hpp"
+#include "spume/methods/les_sph/number_density.hpp"
 
 namespace spume::les_sph {
 namespace {
@@ -317,6 +318,7 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
     // does not cost the energy dt |grad p|^2 / 2 per time.
     if (liquid.options.time.centred)
       parallel_for(n, [&](std::size_t i) { divergence_[i] -= 0.5 * dt * gradient_trace(liquid, i); });
+    if (liquid.plan.density_relaxation) even_out_density(liquid, dt, divergence_);
     set_matrix(liquid, helmholtz + regularisation(liquid, helmholtz));
     set_right_hand_side(liquid, helmholtz, -1 / dt, divergence_.data());
   }

@@ -89,6 +89,7 @@ struct Liquid {
   Vec3 uniform_acceleration{};   // along axes that are not periodic: part of the potential
   Vec3 periodic_acceleration{};  // along periodic axes: added to the velocity
   bool uniform_body_force = false;
+  double displacement = 0;  // displacement_fraction of the step
 
   CellGrid grid;
   CellTable table;
@@ -122,8 +123,8 @@ void sort_particles(Liquid& liquid);
 void make_images(Liquid& liquid, double dt);  // (ii)
 void find_neighbours(Liquid& liquid);         // (ii)
 void measure_geometry(Liquid& liquid);
-void choose_shift(Liquid& liquid, double dt);  // (iii)
-void differentiate_velocity(Liquid& liquid);   // (v)
+void choose_shift(Liquid& liquid);            // (iii)
+void differentiate_velocity(Liquid& liquid);  // (v)
 void find_shift_curvature(Liquid& liquid);
 void find_eddy_viscosity(Liquid& liquid, double dt);
 void predict_velocity(Liquid& liquid, double dt);  // (viii)

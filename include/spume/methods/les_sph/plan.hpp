@@ -20,7 +20,8 @@ struct Plan {
   bool shift_correction = false;   // velocity follows the shift to first or second order
   bool shift_curvature = false;    // to second order
   bool eddy_viscosity = false;
-  bool test_filter = false;  // mixed-scale and dynamic closures
+  bool test_filter = false;         // mixed-scale and dynamic closures
+  bool density_relaxation = false;  // of the number density, by the pressure
   bool viscosity = false;
   bool viscous_stress = false;  // div(2 nu S) in place of div(nu grad u)
   bool gravity = false;         // any uniform acceleration

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// How the number density is kept even.
+#include <gtest/gtest.h>
+
+#include "methods/les_sph_simulation.hpp"
+#include "spume/methods/les_sph/number_density.hpp"
+
+namespace spume::test {
+namespace {
+
+const std::string cavity = R"toml(method = "les-sph"
+[domain]
+lower = [0, 0]
+upper = [1, 1]
+left = "no-slip"
+right = "no-slip"
+bottom = "no-slip"
+top = "no-slip"
+[domain.wall_velocity]
+top = ["1", "0"]
+[resolution]
+spacing = 0.05
+[fluid]
+reynolds = 100
+[[liquid]]
+[time]
+end = 20
+)toml";
+
+// Particles in the upper half over those in the lower.
+double ratio_of_halves(const Overrides& overrides) {
+  Simulation run(cavity, overrides);
+  run.steps(1000, 0.01);
+  double upper = 0, lower = 0;
+  for (const Vec3& r : run.state().position) (r[1] > 0.5 ? upper : lower) += 1;
+  return upper / lower;
+}
+
+// 200 particles in each half, of which those within a tenth of a spacing of the middle (4) may be counted on either
+// side: 2 %, twice that in the ratio.
+TEST(NumberDensity, StaysEvenInACirculatingLiquid) {
+  EXPECT_NEAR(ratio_of_halves({}), 1, 0.04);
+}
+
+TEST(NumberDensity, DriftsApartWithoutRelaxation) {
+  EXPECT_LT(ratio_of_halves({"pressure.density_relaxation=0"}), 0.9);
+}
+
+TEST(NumberDensity, IsEvenedOutAtTheStatedRateWithoutAChangeOfTheMean) {
+  Simulation run(cavity, {"pressure.density_relaxation=20"});
+  const double dt = 0.01;
+  run.steps(50, dt);
+  const les_sph::Liquid& liquid = run.method.liquid();
+  std::vector<double> change(liquid.size(), 0.0);
+  les_sph::even_out_density(liquid, dt, change);
+  std::vector<double> excess(liquid.size());
+  double mean = 0, sum = 0, largest = 0;
+  for (std::size_t i = 0; i < liquid.size(); ++i) {
+    const double ratio = (*liquid.divergence_of_position)[i] / liquid.lattice.divergence_of_position;
+    excess[i] = std::min(std::max(ratio - 1, -0.1), 0.1);
+    mean += excess[i] / static_cast<double>(liquid.size());
+  }
+  for (std::size_t i = 0; i < liquid.size(); ++i) {
+    EXPECT_NEAR(change[i], -liquid.displacement / (20 * dt) * (excess[i] - mean), 1e-12);
+    sum += change[i];
+    largest = std::max(largest, std::abs(change[i]));
+  }
+  EXPECT_GT(largest, 0);
+  EXPECT_NEAR(sum, 0, 1e-12 * largest * static_cast<double>(liquid.size()));
+}
+
+// Particles that lack neighbours, at a surface or near a box, have no density to tell.
+TEST(NumberDensity, IsLeftAloneWhereSupportIsMissing) {
+  for (const std::string& text : {dam_break, closed_box + "[[solid]]\nlower = [0.35, 0.35]\nupper = [0.65, 0.65]\n"}) {
+    Simulation run(text);
+    run.steps(5, 0.004);
+    const les_sph::Liquid& liquid = run.method.liquid();
+    std::vector<double> change(liquid.size(), 0.0);
+    les_sph::even_out_density(liquid, 0.004, change);
+    int inside = 0;
+    for (std::size_t i = 0; i < liquid.size(); ++i) {
+      if (change[i] != 0) ++inside;
+      if (liquid.plan.free_surface && liquid.interior_weight[i] < 1) {
+        EXPECT_EQ(change[i], 0);
+      }
+      for (const SolidBox& box : liquid.scene.domain.boxes) {
+        const double x = (*liquid.intermediate[0])[i], y = (*liquid.intermediate[1])[i];
+        const bool beside = x > box.lower[0] - liquid.smoothing_length && x < box.upper[0] + liquid.smoothing_length &&
+                            y > box.lower[1] - liquid.smoothing_length && y < box.upper[1] + liquid.smoothing_length;
+        if (beside) {
+          EXPECT_EQ(change[i], 0);
+        }
+      }
+    }
+    EXPECT_GT(inside, 0);
+  }
+}
+
+TEST(NumberDensity, OfALiquidInUniformMotionIsNotTouched) {
+  Simulation run(taylor_green, {"liquid.0.velocity=[\"0.5\", \"0.25\"]"});
+  run.steps(3, 0.005);
+  EXPECT_EQ(run.method.liquid().displacement, 0);
+}
+
+}  // namespace
+}  // namespace spume::test
