@@ -179,8 +179,9 @@ TEST(SpectralParticles, CouplingThatNoReasonableStepBearsIsRefusedInWords) {
     }
     return std::string();
   };
-  EXPECT_THAT(refusal(heavy("ab2", "response_time = 1e-9\n")),
-              testing::AllOf(testing::HasSubstr("mass loading of 2.85"), testing::HasSubstr("raise the response time")));
+  EXPECT_THAT(
+      refusal(heavy("ab2", "response_time = 1e-9\n")),
+      testing::AllOf(testing::HasSubstr("mass loading of 2.85"), testing::HasSubstr("raise the response time")));
   EXPECT_THAT(refusal(heavy("ab2", "response_time = 1\nmax_volume_fraction = 0.7\n")),
               testing::HasSubstr("expected at most 0.55"));
   EXPECT_EQ(refusal(heavy("ab2", "response_time = 1\n")), "");

@@ -83,7 +83,6 @@ Exclusion::Strongest Exclusion::strongest_free(std::size_t k) const {
   const auto identifier = [&](std::int32_t rank) {
     return spheres_.identifier[index_of(static_cast<std::size_t>(rank))];
   };
-  const auto own = identifier(static_cast<std::int32_t>(k));
   search_around(centre_of(k), [&](const std::int32_t* rank, const double* overlap, int count) {
     for (int f = 0; f < count; ++f) {
       const std::int32_t m = rank[f];
@@ -92,10 +91,12 @@ Exclusion::Strongest Exclusion::strongest_free(std::size_t k) const {
       // Which of the remembered ones it comes before.
       bool before[remembered];
       for (int b = 0; b < remembered; ++b) before[b] = q > best.overlap[b];
-      if (q > 0 && (q == best.overlap[0] || q == best.overlap[1] || q == best.overlap[2])) [[unlikely]]
+      if (q > 0 && (q == best.overlap[0] || q == best.overlap[1] || q == best.overlap[2])) [[unlikely]] {
+        const std::int64_t own = identifier(static_cast<std::int32_t>(k));
         for (int b = 0; b < remembered; ++b)
           if (q == best.overlap[b])
             before[b] = stronger_overlap(q, own, identifier(m), best.overlap[b], own, identifier(best.rank[b]));
+      }
       for (int b = remembered - 1; b > 0; --b) {
         best.overlap[b] = before[b - 1] ? best.overlap[b - 1] : (before[b] ? q : best.overlap[b]);
         best.rank[b] = before[b - 1] ? best.rank[b - 1] : (before[b] ? m : best.rank[b]);
