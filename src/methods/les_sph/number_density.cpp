@@ -2,15 +2,20 @@
 #include "spume/methods/les_sph/number_density.hpp"
 
 #include <algorithm>
-#include <array>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 
 #include "spume/core/parallel.hpp"
 
 namespace spume::les_sph {
 namespace {
 
+// Steps when the case leaves the choice. With a surface the first deformation of a lattice, which raises div r by per
+// cents, and impacts would show: a plunging wave of 100 spacings gains 1.2 % of its energy with 150, 0.3 % with 300.
+constexpr double closed_steps = 50, open_steps = 300;
 constexpr double largest_excess = 0.1;
+constexpr double largest_disorder = 0.01;
 
 bool near_box(const Liquid& liquid, std::size_t i) {
   for (const SolidBox& box : liquid.scene.domain.boxes) {
@@ -25,8 +30,24 @@ bool near_box(const Liquid& liquid, std::size_t i) {
   return false;
 }
 
-bool has_full_support(const Liquid& liquid, std::size_t i) {
-  return (!liquid.plan.free_surface || liquid.interior_weight[i] == 1) && !near_box(liquid, i);
+// 1 for the particles that lack neighbours or stand beside those that do.
+void mark_surroundings_of_surface(const Liquid& liquid, Array<std::uint8_t>& near_surface) {
+  near_surface.resize(liquid.size());
+  parallel_for(liquid.size(), [&](std::size_t i) { near_surface[i] = 0; });
+  const auto mark = [&](std::size_t i) {
+    std::atomic_ref<std::uint8_t>(near_surface[i]).store(1, std::memory_order_relaxed);
+  };
+  const auto n = static_cast<std::int32_t>(liquid.size());
+  const auto mark_around = [&](std::span<const std::int32_t> particles) {
+    parallel_for(particles.size(), [&](std::size_t k) {
+      const auto i = static_cast<std::size_t>(particles[k]);
+      mark(i);
+      for (const std::int32_t j : liquid.list.of(i))
+        mark(static_cast<std::size_t>(j < n ? j : liquid.images.source()[j - n]));
+    });
+  };
+  mark_around(liquid.surface_particles);
+  mark_around(liquid.edge_particles);
 }
 
 double excess(const Liquid& liquid, std::size_t i) {
@@ -56,7 +77,12 @@ double displacement_fraction(const Liquid& liquid, double dt) {
   return fraction < 1e-12 ? 0.0 : std::min(1.0, fraction);  // less than positions can tell
 }
 
-void even_out_density(const Liquid& liquid, double dt, std::span<double> divergence) {
+void even_out_density(const Liquid& liquid, double dt, std::span<double> divergence,
+                      Array<std::uint8_t>& near_surface) {
+  if (liquid.plan.free_surface) mark_surroundings_of_surface(liquid, near_surface);
+  const auto has_full_support = [&](std::size_t i) {
+    return (!liquid.plan.free_surface || near_surface[i] == 0) && !near_box(liquid, i);
+  };
   struct Sum {
     double excess = 0, particles = 0;
   };
@@ -65,7 +91,7 @@ void even_out_density(const Liquid& liquid, double dt, std::span<double> diverge
       [&](std::size_t first, std::size_t last) {
         Sum sum;
         for (std::size_t i = first; i < last; ++i)
-          if (has_full_support(liquid, i)) {
+          if (has_full_support(i)) {
             sum.excess += excess(liquid, i);
             sum.particles += 1;
           }
@@ -74,10 +100,12 @@ void even_out_density(const Liquid& liquid, double dt, std::span<double> diverge
       [](const Sum& a, const Sum& b) {
         return Sum{a.excess + b.excess, a.particles + b.particles};
       });
-  const double mean = total.excess / std::max(total.particles, 1.0);
-  const double rate = liquid.displacement / (liquid.options.pressure.density_relaxation * dt);
+  const double mean = std::clamp(total.excess / std::max(total.particles, 1.0), -largest_disorder, largest_disorder);
+  const double chosen = liquid.options.pressure.density_relaxation;
+  const double steps = chosen > 0 ? chosen : liquid.plan.free_surface ? open_steps : closed_steps;
+  const double rate = liquid.displacement / (steps * dt);
   parallel_for(liquid.size(), [&](std::size_t i) {
-    if (has_full_support(liquid, i)) divergence[i] -= rate * (excess(liquid, i) - mean);
+    if (has_full_support(i)) divergence[i] -= rate * (excess(liquid, i) - mean);
   });
 }
 

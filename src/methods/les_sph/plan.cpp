@@ -27,7 +27,7 @@ Plan make_plan(const LoadedCase& loaded) {
   plan.mixture_pressure = plan.bubbles && options.bubbles.closure == BubbleClosure::mixture_pressure;
   plan.test_filter = plan.test_filter || (plan.bubbles && options.bubbles.fluctuations);
   plan.drift_removal = plan.shifting && options.shifting.remove_drift;
-  plan.density_relaxation = options.pressure.density_relaxation > 0;
+  plan.density_relaxation = options.pressure.density_relaxation < never_relaxed;
   plan.shift_correction = plan.shifting && options.shifting.velocity_correction != ShiftCorrection::none;
   plan.shift_curvature = plan.shifting && options.shifting.velocity_correction == ShiftCorrection::second_order;
   plan.velocity_gradient = plan.eddy_viscosity || plan.shift_correction || options.time.centred || plan.bubbles;
@@ -89,7 +89,7 @@ std::vector<Stage> Plan::stages(const LoadedCase& loaded) const {
        compressible ? "right-hand side of the Helmholtz equation" : "right-hand side of the Poisson equation"});
   list.push_back(
       {"density relaxation", density_relaxation,
-       density_relaxation ? "the pressure evens out the number density" : "pressure.density_relaxation = 0"});
+       density_relaxation ? "the pressure evens out the number density" : "pressure.density_relaxation = 1e6"});
   list.push_back(
       {"pressure", true, closed ? "closed domain: the constant is removed" : "zero pressure at the free surface"});
   list.push_back({"project", true, "pressure gradient and final positions"});

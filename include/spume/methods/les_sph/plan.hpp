@@ -9,6 +9,9 @@
 
 namespace spume::les_sph {
 
+// Steps of pressure.density_relaxation that mean never.
+constexpr double never_relaxed = 1e6;
+
 struct Plan {
   bool images = false;           // some side is periodic or a wall, or there are solid boxes
   bool moving_walls = false;     // some wall has a velocity

@@ -53,6 +53,7 @@ class PressureSystem {
   void remove_constant(Liquid& liquid) const;
   void set_weights(const Liquid& liquid);
 
+  Array<std::uint8_t> near_surface_;
   Array<double> divergence_, right_hand_side_, residual_;
   Array<double> surface_source_;  // per edge particle
   Array<float> potential_laplacian_, extra_, diagonal_, row_scale_;
