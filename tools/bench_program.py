@@ -11,6 +11,7 @@ figure9   milliseconds a step of collisions, motion and flow against the number 
           64^3 points (de Wit et al. 2024, figure 9): table and picture in runs/figure9; two threads, five minutes
 figure9_128  the same on 128^3 points and up to 2,000,000 particles, an hour: run only when named
 memory    peak memory of the step's run per particle, everything counted
+parts     time and arrays of a step with and without each optional part (see bench_parts.py)
 """
 import os
 import resource
@@ -21,6 +22,7 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import bench_parts
 from spume_results import MissingResult, Results
 from spume_verification import CASES
 
@@ -171,7 +173,7 @@ def figure9_128(bench):
 
 
 MEASUREMENTS = {"memory": memory, "step": step, "collapse": collapse, "threads": threads, "shared": shared,
-                "bubbles": bubbles, "figure9": figure9, "figure9_128": figure9_128}
+                "bubbles": bubbles, "parts": bench_parts.table, "figure9": figure9, "figure9_128": figure9_128}
 LONG = ("figure9_128",)
 
 

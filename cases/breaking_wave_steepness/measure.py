@@ -18,6 +18,13 @@ def onset(run, least=1e-5):
     return float(run.series["t"][np.argmax(passed)]) if passed.any() else float("inf")
 
 
+def speed_over_phase_speed(run):
+    """Largest speed of the liquid until the first bubble, over sqrt(g / k) sqrt(1 + chi^2): above 0.85 a wave breaks."""
+    before = run.series["entrained_volume"] == 0
+    phase_speed = np.sqrt((1 + steepness(run) ** 2) / (2 * np.pi))
+    return float(np.max(run.series["max_speed"][before]) / phase_speed)
+
+
 def gas_balance(run):
     s = run.series
     came = s["injected_volume"] + s["entrained_volume"]
@@ -34,6 +41,7 @@ def measure(runs):
     for chi, run in by_chi.items():
         measured[f"entrained_chi_{chi:03d}"] = entrained(run)
         measured[f"onset_chi_{chi:03d}"] = onset(run)
+        measured[f"speed_over_phase_speed_chi_{chi:03d}"] = speed_over_phase_speed(run)
     if {35, 40} <= by_chi.keys() and entrained(by_chi[40]) > 0:
         measured["volume_ratio_035_040"] = entrained(by_chi[35]) / entrained(by_chi[40])
     return measured

@@ -1,12 +1,27 @@
 # SPDX-License-Identifier: MIT
-"""Bubbles that rise to a surface: where they rest, how fast they brake, whether they come back down."""
+"""Bubbles that rise to a surface: where they rest, how fast they brake, whether they come back down.
+
+Places of rest count from the uppermost particles, where King's surface (p = 0) lies and the proximity of (3.30) is one;
+the liquid of this program ends half a spacing above them.
+"""
 import numpy as np
 
 from spume_bubbles import surface_tension, traces
 from spume_results import standard
 
 SURFACE = 0.4
-HALF = 2.0  # the last half of the run begins here
+HALF = 0.5    # of the run: from then on all have arrived
+FINAL = 0.9   # from then on the place of rest is taken
+
+
+def depth(trace, spacing):
+    """Below the surface of the liquid, in spacings."""
+    return (SURFACE - trace["z"]) / spacing
+
+
+def place_of_rest(trace, spacing, end):
+    """Below the uppermost particles, in spacings."""
+    return float(np.mean(depth(trace, spacing)[trace["t"] >= FINAL * end])) - 0.5
 
 
 def weber(run, trace):
@@ -36,14 +51,17 @@ def braking_time(trace):
 def measure(runs):
     run = standard(runs)
     bubbles = sorted(traces(run).values(), key=lambda trace: trace["radius"][0])
-    depth = [(SURFACE - trace["z"]) / run.spacing for trace in bubbles]
-    late = [trace["t"] >= HALF for trace in bubbles]
-    rest = [float(np.mean(d[rows])) for d, rows in zip(depth, late)]
+    end = run.series["t"][-1]
+    late = [trace["t"] >= HALF * end for trace in bubbles]
+    rest = [place_of_rest(trace, run.spacing, end) for trace in bubbles]
+    arrival = [float(depth(trace, run.spacing)[np.argmax(rows)]) - 0.5 for trace, rows in zip(bubbles, late)]
     braking = [braking_time(trace) for trace in bubbles]
     measured = {"bubbles": float(len(bubbles)),
                 "smallest_weber": weber(run, bubbles[0]), "largest_weber": weber(run, bubbles[-1]),
                 "deepest_rest": max(max(rest), 0.0), "highest_rest": max(-min(rest), 0.0),
-                "rebound": max(float(np.max(d - np.minimum.accumulate(d))) for d in depth),
+                "deepest_rest_below_liquid_surface": max(rest) + 0.5, "deepest_half_way": max(arrival),
+                "rebound": max(float(np.max(d - np.minimum.accumulate(d)))
+                               for d in (depth(trace, run.spacing) for trace in bubbles)),
                 "braking_order": float(np.sum(np.diff(braking) > 0)),
                 "resting_slip": max(float(np.abs(t["velocity_z"][rows]).max() / t["velocity_z"].max())
                                     for t, rows in zip(bubbles, late))}

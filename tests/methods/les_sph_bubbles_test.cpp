@@ -163,6 +163,51 @@ TEST(Bubbles, TakeTheirVolumeFromTheLiquid) {
   EXPECT_NEAR(gas, volume, 0.03 * volume);
 }
 
+// One step from a moving liquid: the volume fraction of every particle, and the liquid that every bubble sees, against
+// sums over all pairs and their periodic copies.
+TEST(Bubbles, AndLiquidSeeEachOtherThroughTheKernel) {
+  Simulation run(periodic_cube, {"liquid.0.velocity=[\"sin(2*pi*z/1.2)\",\"cos(2*pi*x/1.2)\",\"1\"]"});
+  run.steps(4, 0.01);
+  const State before = run.state();
+  run.steps(1, 0.01);
+  const les_sph::Liquid& liquid = run.method.liquid();
+  const auto& population = bubbles_of(run).population();
+  const double period = 1.2;
+  const auto offset = [&](double from, double to) {
+    const double d = to - from;
+    return d - period * std::round(d / period);
+  };
+  const auto weight = [&](std::size_t i, std::size_t b) {
+    double r2 = 0;
+    for (std::size_t a = 0; a < 3; ++a)
+      r2 += std::pow(offset((*liquid.intermediate[a])[i], (*population.next_position[a])[b]), 2);
+    const double h = liquid.smoothing_length * liquid.length_ratio[i];
+    return WendlandC2::normalisation(3) / (h * h * h) * WendlandC2::w(std::sqrt(r2) / h);
+  };
+  bool some = false;
+  for (std::size_t i = 0; i < liquid.size(); ++i) {
+    double sum = 0;
+    for (std::size_t b = 0; b < population.size(); ++b) sum += weight(i, b) * (*population.volume)[b];
+    EXPECT_NEAR((*liquid.volume_fraction)[i], 1 - sum, 1e-6);
+    some = some || sum > 0.01;
+  }
+  EXPECT_TRUE(some);
+  for (std::size_t b = 0; b < population.size(); ++b) {
+    double weights = 0;
+    Vec3 seen{};
+    for (std::size_t i = 0; i < liquid.size(); ++i) {
+      const double w = weight(i, b) * liquid.volume_ratio[i];
+      weights += w;
+      for (std::size_t a = 0; a < 3; ++a)
+        seen[a] += w * before.velocity[static_cast<std::size_t>((*liquid.identifier)[i])][a];
+    }
+    double slip2 = 0;
+    for (std::size_t a = 0; a < 3; ++a) slip2 += std::pow(seen[a] / weights - (*population.velocity[a])[b], 2);
+    // Velocities of the order of one in float.
+    EXPECT_NEAR((*population.slip)[b], std::sqrt(slip2), 2e-6) << b;
+  }
+}
+
 TEST(Bubbles, InStillLiquidWithoutGravityLeaveItAtRest) {
   Simulation run(periodic_cube, {"forces.body=[\"0\",\"0\",\"0\"]", "fluid.froude=1e30"});
   run.steps(10, 0.01);

@@ -46,6 +46,25 @@ class Plume(unittest.TestCase):
         self.assertAlmostEqual(module.rank_correlation(x, -(x**3)), -1, places=12)
         self.assertLess(abs(module.rank_correlation(x, np.random.default_rng(3).random(500))), 0.15)
 
+    def test_breaking_wave_is_faster_than_its_phase(self):
+        module = load_measure(CASES / "breaking_wave_steepness")
+
+        class Run:
+            case = {"constants": {"chi": 0.35}}
+            series = {"max_speed": np.array([0.2, 0.3, 0.9]), "entrained_volume": np.array([0.0, 0.0, 1.0])}
+
+        # sqrt(g / k) sqrt(1 + chi^2) = 0.4227; the speed of the spray after the first bubble does not count.
+        self.assertAlmostEqual(module.speed_over_phase_speed(Run), 0.3 / 0.4227, delta=1e-4)
+
+
+class SurfaceApproach(unittest.TestCase):
+    def test_place_of_rest_counts_from_the_uppermost_particles(self):
+        module = load_measure(CASES / "surface_approach")
+        t = np.linspace(0, 8, 81)
+        # Rises to 1.2 spacings of 0.02 below the surface of the liquid: 0.7 below the uppermost particles.
+        trace = {"t": t, "z": np.where(t < 4, 0.3, 0.4 - 1.2 * 0.02)}
+        self.assertAlmostEqual(module.place_of_rest(trace, 0.02, 8.0), 0.7, places=12)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -3,16 +3,20 @@
 #include "spume/methods/les_sph/bubble_coupling.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 namespace spume::les_sph {
 namespace {
 
-using simd::f32x8;
-
 // Kernels expand as if alpha were no less.
 constexpr double least_kernel_fraction = 0.5;
+
+// x^(-1/3) for x in [1/2, 1], to rounding and exact at 1: Newton's method from the chord, which is 2.7 % off at most.
+double inverse_cube_root(double x) {
+  double y = 1 + (1 - x) * 0.5198;
+  for (int k = 0; k < 4; ++k) y *= (4 - x * y * y * y) / 3;
+  return y;
+}
 
 bubbles::Population::Models models_of(const Liquid& liquid) {
   const BubbleOptions& options = liquid.options.bubbles;
@@ -87,112 +91,80 @@ void BubbleCoupling::measure_sizes(Liquid& liquid) {
   for (auto* array : {&liquid.next_volume_fraction, &liquid.length_ratio, &liquid.volume_ratio, &liquid.reach})
     array->resize(n);
   const double reach = liquid.grid.reach();
-  liquid.largest_length_ratio = parallel_max(n, 1.0, [&](std::size_t i) {
-    const double alpha = (*liquid.volume_fraction)[i];
-    const double ratio = alpha == 1 ? 1 : 1 / std::cbrt(std::max(alpha, least_kernel_fraction));
-    liquid.length_ratio[i] = static_cast<float>(ratio);
-    liquid.reach[i] = static_cast<float>(reach * ratio);
-    return ratio;
-  });
+  const double* fraction = liquid.volume_fraction->data();
+  float *length_ratio = liquid.length_ratio.data(), *reach_of = liquid.reach.data();
+  liquid.largest_length_ratio = parallel_reduce(
+      n, 1.0F,
+      [=](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+          const double ratio = inverse_cube_root(std::max(fraction[i], least_kernel_fraction));
+          length_ratio[i] = static_cast<float>(ratio);
+          reach_of[i] = static_cast<float>(reach * ratio);
+        }
+        return *std::max_element(length_ratio + first, length_ratio + last);
+      },
+      [](float a, float b) { return std::max(a, b); });
 }
 
-// Float coordinates of what the lists join, and the lists.
-void BubbleCoupling::build_lists(Liquid& liquid) {
-  const std::size_t n = liquid.size(), m = liquid.images.size(), nb = population_.size();
-  const auto centre = liquid.read(liquid.intermediate);
-  const auto pack = [&](std::array<Array<float>, 3>& to, std::size_t first, std::size_t size, int axis,
-                        const double* from) {
-    float* out = to[static_cast<std::size_t>(axis)].data() + first;
-    const double zero = liquid.origin[static_cast<std::size_t>(axis)];
-    parallel_for(size, [=](std::size_t k) { out[k] = static_cast<float>(from[k] - zero); });
-  };
+// The bubbles and their images as neighbours.
+void BubbleCoupling::place_bubbles(Liquid& liquid) {
+  const std::size_t nb = population_.size();
   images_.build(image_rules(liquid, liquid.next_walls), liquid.grid, population_.next_position[0]->data(),
                 population_.next_position[1]->data(), population_.next_position[2]->data(), nb);
+  const std::size_t all = nb + images_.size();
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    point_[a].resize(n + m + simd::lanes);
-    bubble_point_[a].resize(nb + images_.size() + simd::lanes);
-    pack(point_, 0, n, axis, centre[a]);
-    pack(point_, n, m, axis, liquid.images.position(axis));
-    pack(bubble_point_, 0, nb, axis, population_.next_position[a]->data());
-    pack(bubble_point_, nb, images_.size(), axis, images_.position(axis));
+    bubble_point_[a].resize(all + simd::lanes);
+    float* out = bubble_point_[a].data();
+    const double* bubble = population_.next_position[a]->data();
+    const double* image = images_.position(axis);
+    const double zero = liquid.origin[a];
+    parallel_for(nb, [=](std::size_t k) { out[k] = static_cast<float>(bubble[k] - zero); });
+    parallel_for(all - nb, [=](std::size_t k) { out[nb + k] = static_cast<float>(image[k] - zero); });
   }
-  point_reach_.resize(n + m + simd::lanes);
-  parallel_for(n, [&](std::size_t i) { point_reach_[i] = liquid.reach[i]; });
-  parallel_for(m, [&](std::size_t k) {
-    point_reach_[n + k] = liquid.reach[static_cast<std::size_t>(liquid.images.source()[k])];
-  });
+}
 
-  CrossList::Geometry geometry;
-  geometry.grid = &liquid.grid;
-  geometry.origin = liquid.origin;
-  geometry.largest_reach = static_cast<float>(liquid.grid.reach() * liquid.largest_length_ratio);
-  const auto pointers = [](const std::array<Array<float>, 3>& arrays) {
-    return std::array<const float*, 3>{arrays[0].data(), arrays[1].data(), arrays[2].data()};
-  };
-  geometry.centre = pointers(bubble_point_);
-  geometry.point = pointers(point_);
-  geometry.point_reach = point_reach_.data();
-  const std::array<CrossList::Points, 2> particles{{{&liquid.table, n}, {&liquid.images.table(), m}}};
-  particles_of_.build(geometry, nb, particles);
-  // Only particles that some bubble has found need a list. Threads may store the same 1 twice.
-  touched_.resize(n);
-  parallel_for(n, [&](std::size_t i) { touched_[i] = 0; });
-  parallel_for(nb, [&](std::size_t b) {
-    for (const std::int32_t j : particles_of_.of(b)) {
-      const auto k = static_cast<std::size_t>(j);
-      const std::size_t i = k < n ? k : static_cast<std::size_t>(liquid.images.source()[k - n]);
-      std::atomic_ref(touched_[i]).store(1, std::memory_order_relaxed);
-    }
-  });
-  geometry.wanted = touched_.data();
-  std::swap(geometry.centre, geometry.point);
-  geometry.point_reach = nullptr;
-  geometry.centre_reach = liquid.reach.data();
-  const std::array<CrossList::Points, 2> bubbles{{{&population_.table(), nb}, {&images_.table(), images_.size()}}};
-  bubbles_of_.build(geometry, n, bubbles);
+CrossSearch BubbleCoupling::bubble_search(const Liquid& liquid) const {
+  const CrossSearch::Points sets[] = {{&population_.table(), population_.size()}, images_as_points(images_)};
+  return {
+      liquid.grid, liquid.origin, {bubble_point_[0].data(), bubble_point_[1].data(), bubble_point_[2].data()}, sets};
+}
+
+CrossTargets BubbleCoupling::particle_targets(const Liquid& liquid) {
+  return {liquid.size(),           liquid.read(liquid.intermediate), liquid.origin,
+          liquid.smoothing_length, liquid.length_ratio.data(),       liquid.reach.data()};
 }
 
 void BubbleCoupling::share_volume(Liquid& liquid) {
   if (population_.empty()) return;
-  build_lists(liquid);
+  place_bubbles(liquid);
   const std::size_t n = liquid.size(), nb = population_.size(), all = nb + images_.size();
-  constexpr int width = 4;
-  bubble_records_.resize((all + 1) * 8);
+  constexpr std::size_t width = 4;
+  bubble_records_.resize(all * 8);
   float* records = bubble_records_.data();
   parallel_for(all, [&](std::size_t k) {
     const std::size_t b = k < nb ? k : static_cast<std::size_t>(images_.source()[k - nb]);
     for (std::size_t a = 0; a < 3; ++a) records[k * width + a] = bubble_point_[a][k];
     records[k * width + 3] = static_cast<float>((*population_.volume)[b]);
   });
-  for (std::size_t a = 0; a < 4; ++a) records[all * width + a] = a < 3 ? 1e6F * liquid.reach[0] : 0.0F;
 
+  near_.resize(n);
   with_kernel(liquid.context, [&]<int d, class Kernel>() {
     if constexpr (d == 3) {
       const double h = liquid.smoothing_length;
       const auto peak = static_cast<float>(Kernel::normalisation(3) / (h * h * h));
-      sweep(n, [&](std::size_t i) {
+      const auto store = [&](std::size_t i, const float* sums) {
+        near_[i] = sums != nullptr ? 1 : 0;
         double sum = 0;
-        if (bubbles_of_.count(i) > 0) {
+        if (sums != nullptr) {
           const float inverse = 1 / liquid.length_ratio[i];
-          const float inverse_h = inverse / static_cast<float>(h);
-          f32x8 total{};
-          for (const std::int32_t* k = bubbles_of_.begin(i); k != bubbles_of_.padded_end(i); k += simd::lanes) {
-            f32x8 v[4];
-            simd::load_records<width>(records, k, 0, v);
-            f32x8 r2{};
-            for (std::size_t a = 0; a < 3; ++a) {
-              const f32x8 offset = v[a] - point_[a][i];
-              r2 = r2 + offset * offset;
-            }
-            total = total + v[3] * Kernel::w(simd::sqrt(r2) * inverse_h);
-          }
-          sum = double{peak * inverse * inverse * inverse} * simd::sum(total);
+          sum = double{peak * inverse * inverse * inverse} * sums[0];
         }
         const double alpha = sum <= 0.5 ? 1 - sum : 1 / (4 * sum);
         liquid.next_volume_fraction[i] = static_cast<float>(alpha);
         liquid.volume_ratio[i] = static_cast<float>(1 / std::max(alpha, least_kernel_fraction));
-      });
+      };
+      sum_over_points<1, Kernel>(particle_targets(liquid), bubble_search(liquid), liquid.grid.reach(), records, store);
     }
   });
   liquid.context.length_ratio = liquid.length_ratio.data();
@@ -205,11 +177,11 @@ std::vector<ArrayInfo> BubbleCoupling::arrays() const {
     return (0.0 + ... + static_cast<double>(arrays.capacity() * sizeof(arrays[0])));
   };
   list.push_back({"bubbles", population_.fields.bytes()});
-  list.push_back({"bubble lists", particles_of_.bytes() + bubbles_of_.bytes() + images_.bytes()});
-  list.push_back({"bubble records",
-                  bytes(point_[0], point_[1], point_[2], bubble_point_[0], bubble_point_[1], bubble_point_[2],
-                        point_reach_, liquid_records_, bubble_records_, interpolated_, dissipation_, next_merge_time_,
-                        reaction_[0], reaction_[1], reaction_[2], dead_, touched_, near_bubbles_)});
+  list.push_back({"bubble images", images_.bytes()});
+  list.push_back(
+      {"bubble records", bytes(bubble_point_[0], bubble_point_[1], bubble_point_[2], inverse_reach_, liquid_records_,
+                               bubble_records_, interpolated_, dissipation_, next_merge_time_, reaction_[0],
+                               reaction_[1], reaction_[2], dead_, near_, near_particles_)});
   return list;
 }
 

@@ -12,13 +12,12 @@ namespace {
 
 using simd::f32x8;
 
-// A point of the liquid for bubbles: x y z 1/h | V/V_l (h0/h)^3 and padding | 16 values.
-constexpr int record = 24, values_at = 8, values = 16;
-// The values: velocity, vorticity, Du/Dt, unresolved energy, dissipation, normal.
+// What bubbles see of a particle, times its volume times its kernel's normalisation over h_i^3, in units of V / h^3:
+// one line of cache. The factor itself is the last, so that its sum comes with the others.
 constexpr int velocity_at = 0, vorticity_at = 3, acceleration_at = 6, energy_at = 9, dissipation_at = 10,
-              normal_at = 11;
-// Per bubble: kernel sum, then the interpolated values.
-constexpr int interpolated = 1 + values;
+              normal_at = 11, factor_at = 14, record = 16;
+
+constexpr std::size_t pack_block = 64;
 
 Vec3 vector_at(const float* from, int slot) {
   return {from[slot], from[slot + 1], from[slot + 2]};
@@ -34,66 +33,92 @@ void BubbleCoupling::smooth_normals(Liquid& liquid) {
   std::array<std::size_t, max_reduction_blocks + 1> start{};
   const std::size_t size = std::max<std::size_t>(4096, (n + max_reduction_blocks - 1) / max_reduction_blocks);
   parallel_blocks(n, size, [&](std::size_t block, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) start[block + 1] += bubbles_of_.count(i) > 0 ? 1 : 0;
+    for (std::size_t i = first; i < last; ++i) start[block + 1] += near_[i];
   });
   for (std::size_t block = 0; block < block_count(n, size); ++block) start[block + 1] += start[block];
-  near_bubbles_.resize(start[block_count(n, size)]);
+  near_particles_.resize(start[block_count(n, size)]);
   parallel_blocks(n, size, [&](std::size_t block, std::size_t first, std::size_t last) {
     std::size_t slot = start[block];
     for (std::size_t i = first; i < last; ++i)
-      if (bubbles_of_.count(i) > 0) near_bubbles_[slot++] = static_cast<std::int32_t>(i);
+      if (near_[i] != 0) near_particles_[slot++] = static_cast<std::int32_t>(i);
   });
-  filter_vector_subset(liquid.context, liquid.records, liquid.read(liquid.normal), liquid.reflection, near_bubbles_,
+  filter_vector_subset(liquid.context, liquid.records, liquid.read(liquid.normal), liquid.reflection, near_particles_,
                        liquid.write(liquid.smoothed_normal));
 }
 
 void BubbleCoupling::pack_liquid(Liquid& liquid) {
   const std::size_t n = liquid.size(), m = liquid.images.size();
   liquid_records_.resize((n + m) * record);
+  inverse_reach_.resize(n + m + simd::lanes);
   const auto& gradient = liquid.velocity_gradient;
   const bool filtered = liquid.plan.test_filter, eddies = liquid.eddy_viscosity != nullptr;
   const bool normals = population_.merge_time != nullptr;
-  const auto inverse_h = static_cast<float>(1 / liquid.smoothing_length);
-  parallel_for(n, [&](std::size_t i) {
-    if (bubbles_of_.count(i) == 0) return;
-    float* out = liquid_records_.data() + i * record;
-    const float inverse = 1 / liquid.length_ratio[i];
-    for (std::size_t a = 0; a < 3; ++a) out[a] = point_[a][i];
-    out[3] = inverse * inverse_h;
-    out[4] = liquid.volume_ratio[i] * inverse * inverse * inverse;
-    float* value = out + values_at;
-    double energy = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
-      value[velocity_at + a] = static_cast<float>((*liquid.velocity[a])[i]);
-      value[vorticity_at + a] = (*gradient[c * 3 + b])[i] - (*gradient[b * 3 + c])[i];
-      value[acceleration_at + a] = static_cast<float>((*liquid.material_acceleration[a])[i]);
-      value[normal_at + a] = normals ? (*liquid.smoothed_normal[a])[i] : 0.0F;
-      if (!filtered) continue;
-      const double unresolved = (*liquid.velocity[a])[i] - double{(*liquid.filtered_velocity[a])[i]};
-      energy += 0.5 * unresolved * unresolved;
+  // One value at a time: more arrays than the processor can read ahead of would be read at once otherwise.
+  parallel_blocks(n, pack_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    const std::size_t size = last - first;
+    bool near = false;
+    for (std::size_t i = first; i < last; ++i) {
+      inverse_reach_[i] = 1 / liquid.reach[i];
+      near = near || near_[i] != 0;
     }
-    const float strain = (*liquid.strain)[i];
-    value[energy_at] = static_cast<float>(energy);
-    value[dissipation_at] = eddies ? (*liquid.eddy_viscosity)[i] * strain * strain : 0.0F;
-    value[14] = value[15] = 0;
+    if (!near) return;
+    float* const records = liquid_records_.data() + first * record;
+    float factor[pack_block];
+    for (std::size_t k = 0; k < size; ++k) {
+      const float inverse = 1 / liquid.length_ratio[first + k];
+      factor[k] = liquid.volume_ratio[first + k] * inverse * inverse * inverse;
+    }
+    const auto put = [&](int slot, auto&& value) {
+      for (std::size_t k = 0; k < size; ++k) records[k * record + slot] = factor[k] * value(k);
+    };
+    const auto nothing = [](std::size_t) { return 0.0F; };
+    double energy[pack_block] = {};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis), b = (a + 1) % 3, c = (a + 2) % 3;
+      const double *velocity = liquid.velocity[a]->data() + first,
+                   *acceleration = liquid.material_acceleration[a]->data() + first;
+      const float *up = gradient[c * 3 + b]->data() + first, *down = gradient[b * 3 + c]->data() + first;
+      put(velocity_at + axis, [=](std::size_t k) { return static_cast<float>(velocity[k]); });
+      put(vorticity_at + axis, [=](std::size_t k) { return up[k] - down[k]; });
+      put(acceleration_at + axis, [=](std::size_t k) { return static_cast<float>(acceleration[k]); });
+      if (normals) {
+        const float* normal = liquid.smoothed_normal[a]->data() + first;
+        put(normal_at + axis, [=](std::size_t k) { return normal[k]; });
+      } else {
+        put(normal_at + axis, nothing);
+      }
+      if (!filtered) continue;
+      const float* mean = liquid.filtered_velocity[a]->data() + first;
+      for (std::size_t k = 0; k < size; ++k) {
+        const double unresolved = velocity[k] - double{mean[k]};
+        energy[k] += 0.5 * unresolved * unresolved;
+      }
+    }
+    put(energy_at, [&](std::size_t k) { return static_cast<float>(energy[k]); });
+    if (eddies) {
+      const float *viscosity = liquid.eddy_viscosity->data() + first, *strain = liquid.strain->data() + first;
+      put(dissipation_at, [=](std::size_t k) { return viscosity[k] * strain[k] * strain[k]; });
+    } else {
+      put(dissipation_at, nothing);
+    }
+    put(factor_at, [](std::size_t) { return 1.0F; });
+    put(factor_at + 1, nothing);
   });
   // Mirrored velocities, and pseudo-vectors the other way.
   parallel_for(m, [&](std::size_t k) {
     const auto source = static_cast<std::size_t>(liquid.images.source()[k]);
-    if (bubbles_of_.count(source) == 0) return;
+    inverse_reach_[n + k] = inverse_reach_[source];
+    if (near_[source] == 0) return;
     const auto path = static_cast<std::size_t>(liquid.images.path()[k]);
-    float* out = liquid_records_.data() + (n + k) * record;
-    const float* in = liquid_records_.data() + source * record;
-    std::copy_n(in, record, out);
+    float* value = liquid_records_.data() + (n + k) * record;
+    std::copy_n(liquid_records_.data() + source * record, record, value);
     const auto& sign = liquid.velocity_rule.sign[path];
     const auto& mirror = liquid.reflection[path];
     const float handedness = mirror[0] * mirror[1] * mirror[2];
     for (std::size_t a = 0; a < 3; ++a) {
-      out[a] = point_[a][n + k];
-      float* value = out + values_at;
       value[velocity_at + a] *= sign[a];
-      if (!liquid.velocity_rule.offset[a].empty()) value[velocity_at + a] += liquid.velocity_rule.offset[a][k];
+      if (!liquid.velocity_rule.offset[a].empty())
+        value[velocity_at + a] += value[factor_at] * liquid.velocity_rule.offset[a][k];
       value[vorticity_at + a] *= handedness * mirror[a];
       value[acceleration_at + a] *= sign[a];
       value[normal_at + a] *= mirror[a];
@@ -104,50 +129,53 @@ void BubbleCoupling::pack_liquid(Liquid& liquid) {
 // (3.6) over the sum of its weights; the sum itself tells how much liquid there is.
 void BubbleCoupling::interpolate(const Liquid& liquid) {
   const std::size_t nb = population_.size(), n = liquid.size();
-  interpolated_.resize(nb * interpolated);
+  interpolated_.resize(nb * record);
   dead_.resize(nb);
-  const float* records = liquid_records_.data();
+  const CrossSearch::Points sets[] = {{&liquid.table, n}, images_as_points(liquid.images)};
+  const CrossSearch search(liquid.grid, liquid.origin,
+                           {liquid.list.coordinate(0), liquid.list.coordinate(1), liquid.list.coordinate(2)}, sets);
+  const auto largest_reach = static_cast<float>(liquid.grid.reach() * liquid.largest_length_ratio);
   with_kernel(liquid.context, [&]<int d, class Kernel>() {
     if constexpr (d == 3) {
-      const KernelScale<3, Kernel> scale(liquid.context);
+      const float scale = KernelScale<3, Kernel>(liquid.context).value;
       parallel_blocks_dynamic(nb, 64, [&](std::size_t, std::size_t first, std::size_t last) {
+        thread_local CrossSearch::Found thread_found;
+        CrossSearch::Found& found = thread_found;
         for (std::size_t b = first; b < last; ++b) {
-          const float x = bubble_point_[0][b], y = bubble_point_[1][b], z = bubble_point_[2][b];
-          f32x8 low{}, high{};
-          float sum = 0;
-          bool all_at_surface = true;
-          const auto list = particles_of_.of(b);
-          for (std::size_t from = 0; from < list.size(); from += simd::lanes) {
-            // Eight weights at a time, then the values of each.
-            std::int32_t index[simd::lanes];
-            const std::size_t part = std::min<std::size_t>(simd::lanes, list.size() - from);
-            for (std::size_t l = 0; l < simd::lanes; ++l) index[l] = list[from + (l < part ? l : 0)];
-            f32x8 place[4], rest[4];
-            simd::load_records<record>(records, index, 0, place);
-            simd::load_records<record>(records, index, 1, rest);
-            const f32x8 dx = place[0] - x, dy = place[1] - y, dz = place[2] - z;
-            const f32x8 weight = rest[0] * Kernel::w(simd::sqrt(dx * dx + dy * dy + dz * dz) * place[3]) * scale.value;
-            for (std::size_t l = 0; l < part; ++l) {
-              const float* value = records + static_cast<std::int64_t>(index[l]) * record + values_at;
-              const float w = weight[static_cast<int>(l)];
-              sum += w;
-              low = low + w * simd::load(value);
-              high = high + w * simd::load(value + simd::lanes);
-            }
+          search.near_place({bubble_point_[0][b], bubble_point_[1][b], bubble_point_[2][b]}, largest_reach,
+                            inverse_reach_.data(), found);
+          float* const weight = found.share2.data();
+          for (std::size_t k = 0; k < found.size; k += simd::lanes)
+            simd::store(weight + k,
+                        Kernel::w(static_cast<float>(Kernel::support) * simd::sqrt(simd::load(weight + k))));
+          // Two sums, of even and odd places, as an addition takes longer than a load; the last place of an odd
+          // number weighs nothing.
+          f32x8 low{}, high{}, odd_low{}, odd_high{};
+          const float* const records = liquid_records_.data();
+          weight[found.size] = 0;
+          found.index[found.size] = found.size > 0 ? found.index[0] : 0;
+          for (std::size_t k = 0; k < found.size; k += 2) {
+            const float* even = records + static_cast<std::size_t>(found.index[k]) * record;
+            const float* odd = records + static_cast<std::size_t>(found.index[k + 1]) * record;
+            low = low + weight[k] * simd::load(even);
+            high = high + weight[k] * simd::load(even + simd::lanes);
+            odd_low = odd_low + weight[k + 1] * simd::load(odd);
+            odd_high = odd_high + weight[k + 1] * simd::load(odd + simd::lanes);
           }
           // In spray: few particles, all at the surface.
-          const bool few = list.size() < 20 && liquid.plan.free_surface;
-          for (std::size_t l = 0; few && l < list.size() && all_at_surface; ++l) {
-            const auto j = static_cast<std::size_t>(list[l]);
+          bool dead = found.size < 20 && liquid.plan.free_surface;
+          for (std::size_t k = 0; dead && k < found.size; ++k) {
+            const auto j = static_cast<std::size_t>(found.index[k]);
             const std::size_t i = j < n ? j : static_cast<std::size_t>(liquid.images.source()[j - n]);
-            all_at_surface = liquid.at_surface[i] != 0;
+            dead = liquid.at_surface[i] != 0;
           }
-          dead_[b] = few && all_at_surface ? 1 : 0;
-          float* out = interpolated_.data() + b * interpolated;
-          out[0] = sum;
-          const float share = sum > 0 ? 1 / sum : 0;
-          simd::store(out + 1, low * share);
-          simd::store(out + 1 + simd::lanes, high * share);
+          dead_[b] = dead ? 1 : 0;
+          const f32x8 first_half = low + odd_low, second_half = high + odd_high;
+          const float sum = second_half[factor_at - simd::lanes], share = sum > 0 ? 1 / sum : 0;
+          float* out = interpolated_.data() + b * record;
+          simd::store(out, first_half * share);
+          simd::store(out + simd::lanes, second_half * share);
+          out[factor_at] = scale * sum;
         }
       });
     }
@@ -168,8 +196,8 @@ void BubbleCoupling::move_bubbles(Liquid& liquid, double dt) {
   float* records = bubble_records_.data();  // x y z, M / N (3), viscosity, nothing
   parallel_blocks_dynamic(nb, 256, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t b = first; b < last; ++b) {
-      const float* values_here = interpolated_.data() + b * interpolated + 1;
-      const double sum = interpolated_[b * interpolated];
+      const float* values_here = interpolated_.data() + b * record;
+      const double sum = values_here[factor_at];
       bubbles::Surroundings around{vector_at(values_here, velocity_at), vector_at(values_here, vorticity_at),
                                    vector_at(values_here, acceleration_at)};
       const double volume = (*population_.volume)[b], radius = bubbles::radius_of(volume);
@@ -236,43 +264,27 @@ void BubbleCoupling::move_bubbles(Liquid& liquid, double dt) {
     std::copy_n(records + static_cast<std::size_t>(images_.source()[k]) * 8, 8, out);
     for (std::size_t a = 0; a < 3; ++a) out[a] = bubble_point_[a][nb + k];
   });
-  float* nobody = records + (nb + images_.size()) * 8;
-  for (int c = 0; c < 8; ++c) nobody[c] = c < 3 ? 1e6F * liquid.reach[0] : 0.0F;
 }
 
 void BubbleCoupling::deposit(Liquid& liquid) {
-  const std::size_t n = liquid.size();
-  const float* records = bubble_records_.data();
-  liquid.bubble_viscosity.resize(n);
+  liquid.bubble_viscosity.resize(liquid.size());
   with_kernel(liquid.context, [&]<int d, class Kernel>() {
     if constexpr (d == 3) {
       const double h = liquid.smoothing_length;
       const auto peak = static_cast<float>(Kernel::normalisation(3) / (h * h * h));
-      sweep(n, [&](std::size_t i) {
-        std::array<float, 4> total{};
-        if (bubbles_of_.count(i) > 0) {
-          const float inverse = 1 / liquid.length_ratio[i];
-          const float inverse_h = inverse / static_cast<float>(h);
-          std::array<f32x8, 4> sum{};
-          for (const std::int32_t* k = bubbles_of_.begin(i); k != bubbles_of_.padded_end(i); k += simd::lanes) {
-            f32x8 v[8];
-            simd::load_records<8>(records, k, 0, v);
-            simd::load_records<8>(records, k, 1, v + 4);
-            f32x8 r2{};
-            for (std::size_t a = 0; a < 3; ++a) {
-              const f32x8 offset = v[a] - point_[a][i];
-              r2 = r2 + offset * offset;
-            }
-            const f32x8 w = Kernel::w(simd::sqrt(r2) * inverse_h);
-            for (std::size_t c = 0; c < 4; ++c) sum[c] = sum[c] + w * v[3 + c];
-          }
-          const float scale = peak * inverse * inverse * inverse;
-          for (std::size_t c = 0; c < 4; ++c) total[c] = scale * simd::sum(sum[c]);
+      const auto store = [&](std::size_t i, const float* sums) {
+        if (sums == nullptr) {
+          for (auto* component : liquid.exchange) (*component)[i] = 0;
+          liquid.bubble_viscosity[i] = 0;
+          return;
         }
+        const float inverse = 1 / liquid.length_ratio[i], scale = peak * inverse * inverse * inverse;
         // Mass times acceleration is V_i times what arrives per volume: V_i / V_l of it.
-        for (std::size_t a = 0; a < 3; ++a) (*liquid.exchange[a])[i] = liquid.volume_ratio[i] * total[a];
-        liquid.bubble_viscosity[i] = total[3];
-      });
+        for (std::size_t a = 0; a < 3; ++a) (*liquid.exchange[a])[i] = liquid.volume_ratio[i] * (scale * sums[a]);
+        liquid.bubble_viscosity[i] = scale * sums[3];
+      };
+      sum_over_points<4, Kernel>(particle_targets(liquid), bubble_search(liquid), liquid.grid.reach(),
+                                 bubble_records_.data(), store);
     }
   });
 }

@@ -42,41 +42,53 @@ Vec3 balance(double k, const Vec3& f, const Vec3& spin) {
   return w;
 }
 
-// |w| at the end of a backward Euler step: the root of s = |w(K(s))|, which falls as s rises.
-double implicit_speed(const Slip& slip, const Vec3& w, double radius, double viscosity, double dt) {
+// Drag rate and its derivative with respect to the speed.
+struct Drag {
+  double rate, slope;
+
+  Drag(double speed, double radius, double viscosity) : rate(drag_rate(speed, radius, viscosity)), slope(0) {
+    if (2 * radius * speed / viscosity > 1000)
+      slope = 0.375 * 0.44 / radius;
+    else if (speed > 0)
+      slope = 0.687 * (rate - 4.5 * viscosity / (radius * radius)) / speed;
+  }
+};
+
+// Drag rate at the end of a backward Euler step: that at the root of s = |w(K(s))|, whose right side falls as s rises.
+// `speed` and `drag` are those at the start.
+double implicit_drag(const Slip& slip, const Vec3& w, double speed, Drag drag, double radius, double viscosity,
+                     double dt) {
   const double h = slip.rate * dt;
   Vec3 known, spin;
   for (std::size_t a = 0; a < 3; ++a) {
     known[a] = w[a] + h * slip.push[a];
     spin[a] = h * slip.spin[a];
   }
-  const auto excess = [&](double s) {
-    return length(balance(1 + h * drag_rate(s, radius, viscosity), known, spin)) - s;
-  };
-  double low = 0, high = length(known);  // the balance never lengthens what it is given
-  double at_low = excess(0), at_high = excess(high);
-  if (!(at_low > 0)) return 0;
-  if (!(at_high < 0)) return high;
-  int side = 0;
-  for (int k = 0; k < 60 && high - low > 1e-8 * high; ++k) {
-    // Regula falsi, Illinois: bracketed, so the jump of the drag law does no harm.
-    const double s = low + (high - low) * at_low / (at_low - at_high);
-    const double value = excess(s);
-    if (value == 0) return s;
-    if (value > 0) {
-      low = s;
-      at_low = value;
-      if (side == 1) at_high *= 0.5;
-      side = 1;
-    } else {
-      high = s;
-      at_high = value;
-      if (side == -1) at_low *= 0.5;
-      side = -1;
-    }
-    if (std::abs(value) < 1e-8 * high) return s;
+  // |balance(k, known, spin)|^2 = along^2 / k^2 + across^2 / (k^2 + spin^2).
+  const double known2 = dot(known, known), spin2 = dot(spin, spin), common = dot(known, spin);
+  const double along2 = spin2 > 0 ? common * common / spin2 : known2, across2 = std::max(0.0, known2 - along2);
+  if (!(known2 > 0)) return drag_rate(0, radius, viscosity);
+  double low = 0, high = std::sqrt(known2);  // the balance never lengthens what it is given
+  double s = speed;
+  if (!(s > 0) || !(s < high)) {
+    s = high;
+    drag = Drag(s, radius, viscosity);
   }
-  return 0.5 * (low + high);
+  // Newton's method for s / |w(K(s))| = 1, nearly a straight line; bracketed, so the jump of the drag law does no harm.
+  for (int k = 0; k < 100; ++k) {
+    const double damping = 1 + h * drag.rate, turning2 = damping * damping + spin2;
+    const double root2 = along2 / (damping * damping) + across2 / turning2, root = std::sqrt(root2);
+    const double fall = along2 / (damping * damping * damping) + across2 * damping / (turning2 * turning2);
+    (s < root ? low : high) = s;
+    const double change = (root - s) / (1 + s * h * drag.slope * fall / root2);
+    // What is left after this change is of the order of its square.
+    if (std::abs(change) < 1e-5 * s) return drag.rate + drag.slope * change;
+    s += change;
+    if (!(s > low && s < high)) s = 0.5 * (low + high);
+    if (high - low <= 1e-10 * high) break;
+    drag = Drag(s, radius, viscosity);
+  }
+  return drag.rate;
 }
 
 // The step `change` of a bubble's velocity, with braking: `slip_normal` is (u_l - u_b) . n before it.
@@ -119,10 +131,11 @@ Vec3 advance_stable(const Gas& gas, double radius, const Surroundings& liquid, c
   const Slip slip(gas, liquid);
   Vec3 w;
   for (std::size_t a = 0; a < 3; ++a) w[a] = liquid.velocity[a] - velocity[a];
-  const double at_start = drag_rate(length(w), radius, gas.viscosity);
-  const double at_end = drag_rate(implicit_speed(slip, w, radius, gas.viscosity, dt), radius, gas.viscosity);
+  const double speed = length(w);
+  const Drag at_start(speed, radius, gas.viscosity);
+  const double at_end = implicit_drag(slip, w, speed, at_start, radius, gas.viscosity, dt);
   const double weight = 1 / (2 + slip.rate * dt * at_end);
-  const double drag = weight * at_start + (1 - weight) * at_end;
+  const double drag = weight * at_start.rate + (1 - weight) * at_end;
 
   const Vec3 steady = balance(drag, slip.push, slip.spin);
   Vec3 rest;

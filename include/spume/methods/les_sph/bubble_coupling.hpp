@@ -2,8 +2,8 @@
 // Bubbles in the liquid of les-sph (King et al. 2022, sections 3.1.1 and 3.3): the volume they take, the liquid they
 // feel, the forces they return.
 //
-// Every pair of a bubble and a particle within the reach of the particle exists twice, in a list of the bubble (to
-// interpolate to it) and in a list of the particle (to sum up from bubbles without races). Weights are
+// Every pair of a bubble and a particle within the reach of the particle is looked at from both: from the bubble to
+// interpolate to it, from the particle to sum up from bubbles without races. Weights are
 //   phi_ib = V_i W(r_b - r_i, h_i) / sum_k V_k W(r_b - r_k, h_k),
 // so that what all particles receive from a bubble is what it gave, also below a surface, and a uniform field is
 // interpolated exactly. Mirrored particles count; what they receive goes to their source.
@@ -24,7 +24,7 @@
 #include "spume/core/ledger.hpp"
 #include "spume/methods/les_sph/liquid.hpp"
 #include "spume/methods/method.hpp"
-#include "spume/neighbours/cross_list.hpp"
+#include "spume/operators/cross_sums.hpp"
 #include "spume/physics/bubbles/breakup.hpp"
 #include "spume/physics/bubbles/entrainment.hpp"
 #include "spume/physics/bubbles/forces.hpp"
@@ -68,7 +68,9 @@ class BubbleCoupling {
 
  private:
   void measure_sizes(Liquid& liquid);
-  void build_lists(Liquid& liquid);
+  void place_bubbles(Liquid& liquid);
+  CrossSearch bubble_search(const Liquid& liquid) const;  // bubbles and their images
+  static CrossTargets particle_targets(const Liquid& liquid);
   void pack_liquid(Liquid& liquid);
   void smooth_normals(Liquid& liquid);
   void move_bubbles(Liquid& liquid, double dt);
@@ -99,15 +101,15 @@ class BubbleCoupling {
   std::string note_;
 
   Images images_;
-  CrossList particles_of_, bubbles_of_;  // of bubbles; of particles
-  std::array<Array<float>, 3> point_, bubble_point_;
-  Array<float> point_reach_;
+  std::array<Array<float>, 3> bubble_point_;  // bubbles and images, relative to the origin of the liquid
+  Array<float> inverse_reach_;                // of particles and images
   Array<float> liquid_records_, bubble_records_;
-  Array<float> interpolated_;  // 17 per bubble: kernel sum, then the liquid at the bubble
+  Array<float> interpolated_;  // per bubble the liquid at it and the kernel sum
   Array<double> dissipation_, next_merge_time_, next_slip_;
   std::array<Array<double>, 3> reaction_;  // M_b
-  Array<std::uint8_t> dead_, touched_;
-  Array<std::int32_t> near_bubbles_;  // particles with bubbles in their reach
+  Array<std::uint8_t> dead_;
+  Array<std::uint8_t> near_;            // particles with bubbles in their reach
+  Array<std::int32_t> near_particles_;  // the same as a list
   std::array<Array<double>, 2> snapshot_;
 };
 
