@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sort, images and neighbour lists: about 74 neighbours per particle in three dimensions.
 // Arguments: particles (about), 0 jittered lattice or 1 clustered, threads.
+#include "machine.hpp"
 #include "particle_cube.hpp"
 
 namespace spume {
@@ -10,6 +11,9 @@ void sort(benchmark::State& state) {
   Particles particles(state);
   for (auto _ : state) particles.sort();
   particles.count(state, 0);
+  // Three coordinates read and a key, an order and a count written and read again.
+  count_against_machine(state, {static_cast<double>(particles.n) * (24 + 3 * 8), 0, 0},
+                        static_cast<int>(state.range(2)));
 }
 
 void images(benchmark::State& state) {
@@ -25,6 +29,11 @@ void neighbour_list(benchmark::State& state) {
   const double per_particle = static_cast<double>(particles.list.pair_count()) / static_cast<double>(particles.n);
   particles.count(state, per_particle);
   state.counters["neighbours"] = per_particle;
+  // 27 cells of side one support hold 27 / (4 pi / 3) = 6.4 candidates per neighbour: 8 operations each. Each neighbour
+  // is written as an index of 4 bytes.
+  const auto pairs = static_cast<double>(particles.list.pair_count());
+  count_against_machine(state, {4 * pairs + 40 * static_cast<double>(particles.n), 8 * 6.4 * pairs, 0},
+                        static_cast<int>(state.range(2)));
 }
 
 void sizes(benchmark::internal::Benchmark* b) {

@@ -45,7 +45,7 @@ struct Swarm {
   PeriodicGrid g = grid();
   Particles particles{ParticleArrays{true, false}};
   CellOrder order;
-  PeriodicCells cells = LinearDeposition(g).cells();
+  PeriodicCells cells{g.lower, g.length, g.points};
 
   explicit Swarm(const benchmark::State& state) {
     omp_set_num_threads(static_cast<int>(state.range(2)));
@@ -74,6 +74,10 @@ struct Swarm {
   void sort() {
     const auto x = particles.positions();
     order.build(cells, x[0], x[1], x[2], particles.size());
+  }
+  void order_columns(const PeriodicCells& columns) {
+    const auto x = particles.positions();
+    order.build(columns, x[0], x[1], x[2], particles.size());
   }
   Spheres spheres() {
     Spheres s;
@@ -135,16 +139,20 @@ void particle_reorder(benchmark::State& state) {
   swarm.count(state);
 }
 
-void particle_deposition(benchmark::State& state) {
+// With the order that it needs.
+void particle_feedback(benchmark::State& state) {
   Swarm swarm(state);
   LinearDeposition deposition(swarm.g);
   Flow force(0);
-  Array<double> amounts(4 * swarm.particles.size());
-  for (std::size_t i = 0; i < amounts.size(); ++i) amounts[i] = i % 4 == 3 ? 1e-9 : std::sin(static_cast<double>(i));
-  for (auto _ : state)
-    deposition.deposit<double>(swarm.order, swarm.particles.positions(), amounts.data(), 0.74,
+  Array<double> amounts(3 * swarm.particles.size() + 1);
+  for (std::size_t i = 0; i < amounts.size(); ++i) amounts[i] = std::sin(static_cast<double>(i));
+  const DepositedParticles given{swarm.particles.positions(), amounts.data(), nullptr, 1e-3};
+  for (auto _ : state) {
+    swarm.order_columns(deposition.cells());
+    deposition.deposit<double>(swarm.order, given, 0.74,
                                {force.component[0].data(), force.component[1].data(), force.component[2].data()},
                                nullptr);
+  }
   swarm.count(state);
 }
 
@@ -195,7 +203,7 @@ BENCHMARK(particle_motion<float>)->Apply(sizes);
 BENCHMARK(particle_field_records)->Apply(sizes);
 BENCHMARK(particle_sort)->Apply(sizes);
 BENCHMARK(particle_reorder)->Apply(sizes);
-BENCHMARK(particle_deposition)->Apply(sizes);
+BENCHMARK(particle_feedback)->Apply(sizes);
 BENCHMARK(particle_exclusion)->Apply(sizes);
 
 }  // namespace

@@ -7,7 +7,11 @@ collapse  wall seconds per simulated second of bench/cases/collapse.toml, 100,00
 threads   the step's speed on 2 threads over that on 1, alternating runs
 shared    time of two runs at once on the same cores over the time of one alone
 bubbles   wall microseconds of all bubble stages per bubble and step, one bubble per ten particles; share with none alive
+figure9   milliseconds a step of collisions, motion and flow against the number of particles, for beta = 0, 1 and 3, on
+          64^3 points (de Wit et al. 2024, figure 9): table and picture in runs/figure9; two threads, five minutes
+figure9_128  the same on 128^3 points and up to 2,000,000 particles, an hour: run only when named
 memory    peak memory of the step's run per particle, everything counted
+parts     time and arrays of a step with and without each optional part (see bench_parts.py)
 """
 import os
 import resource
@@ -18,11 +22,13 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import bench_parts
 from spume_results import MissingResult, Results
 from spume_verification import CASES
 
 COLLAPSE = CASES.parent / "bench" / "cases" / "collapse.toml"
 BUBBLES = CASES.parent / "bench" / "cases" / "bubbles.toml"
+SWARM = CASES.parent / "bench" / "cases" / "swarm.toml"
 WAVE = CASES / "breaking_wave" / "case.toml"
 WIDE = ["--set", "domain.upper=[1, 0.25, 0.5]", "--set", "output.every=0"]
 
@@ -103,12 +109,76 @@ def memory(bench):
     return f"{peak * 1024 / particles:.0f} bytes per particle at peak, {particles} particles{note}"
 
 
+def stage_seconds(run):
+    """Seconds by what they were spent on, of the last session of the run, and its steps."""
+    seconds = {entry["stage"]: entry["seconds"] for entry in run.ledger["stages"]}
+    calls = {entry["stage"]: entry["calls"] for entry in run.ledger["stages"]}
+    total = lambda *names: sum(seconds.get(name, 0.0) for name in names)
+    return {"collisions": total("particle exclusion"),
+            "motion": total("velocity at points", "particle sort", "particle records", "particle motion"),
+            "flow": total("x stage", "planes of the product", "x stage back, update", "rest of the step")
+            }, calls["planes of the product"]
+
+
+def cost_against_number(bench, name, grid, counts):
+    """Runs that settle over four fifths of their time, and are timed over the rest after a resume."""
+    folder = Path("runs") / name
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = []
+    for beta in (0, 1, 3):
+        for count in counts:
+            run, _ = bench.run(SWARM, "--threads", "2", "--until", "1.6", f"--set=resolution.grid={grid}",
+                               f"--set=particles.beta={beta}", f"--set=particles.count={count}")
+            command = [str(bench.program), "resume", str(run.folder), "--quiet", "--threads", "2"]
+            if subprocess.run(command, stdout=subprocess.DEVNULL).returncode != 0:
+                raise MissingResult(f"resume of {run.folder} failed")
+            seconds, steps = stage_seconds(Results(run.folder))
+            rows.append([beta, count, *(1e3 * seconds[part] / steps for part in PARTS)])
+    lines = ["# milliseconds a step, two threads", "beta,particles," + ",".join(PARTS)]
+    lines += [f"{beta},{count}," + ",".join(f"{ms:.3f}" for ms in times) for beta, count, *times in rows]
+    (folder / "figure9.csv").write_text("\n".join(lines) + "\n")
+    draw_cost(rows, grid, folder / "figure9.png")
+    return "\n".join([f"milliseconds a step on {grid}^3 points, two threads; {folder}/figure9.png", *lines[1:]])
+
+
+def draw_cost(rows, grid, path):
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    figure, axis = plt.subplots(figsize=(5.6, 4.4))
+    for beta in sorted({row[0] for row in rows}):
+        of = [row for row in rows if row[0] == beta]
+        axis.loglog([row[1] for row in of], [row[2] for row in of], "o-", label=f"collisions, beta = {beta}")
+    of = [row for row in rows if row[0] == 3]
+    axis.loglog([row[1] for row in of], [row[3] for row in of], "k:", label="motion")
+    axis.loglog([row[1] for row in of], [row[4] for row in of], "k--", label="flow")
+    axis.axvline(grid**3, color="grey", linestyle="-.", linewidth=0.8)
+    axis.set(xlabel="particles", ylabel="ms a step")
+    axis.legend(fontsize=8)
+    figure.tight_layout()
+    figure.savefig(path, dpi=130)
+    plt.close(figure)
+
+
+PARTS = ("collisions", "motion", "flow")
+
+
+def figure9(bench):
+    return cost_against_number(bench, "figure9", 64, (10000, 50000, 262144, 1000000))
+
+
+def figure9_128(bench):
+    return cost_against_number(bench, "figure9_128", 128, (10000, 50000, 262144, 1000000, 2000000))
+
+
 MEASUREMENTS = {"memory": memory, "step": step, "collapse": collapse, "threads": threads, "shared": shared,
-                "bubbles": bubbles}
+                "bubbles": bubbles, "parts": bench_parts.table, "figure9": figure9, "figure9_128": figure9_128}
+LONG = ("figure9_128",)
 
 
 def main():
-    program, names = Path(sys.argv[1]), sys.argv[2:] or list(MEASUREMENTS)
+    program, names = Path(sys.argv[1]), sys.argv[2:] or [name for name in MEASUREMENTS if name not in LONG]
     unknown = [name for name in names if name not in MEASUREMENTS]
     if unknown or not program.is_file():
         print(f"error: {', '.join(unknown) or program}: not there; the measurements are {', '.join(MEASUREMENTS)}",

@@ -69,6 +69,27 @@ def plot_numerics(run, out):
     return [finish(figure, out / "numerics.png")]
 
 
+def plot_ledger(run, out):
+    """Share of each stage in the time of the run, the largest first, with its cost."""
+    if not run.has("ledger.json"):
+        return []
+    ledger = run.ledger
+    stages = sorted(ledger["stages"], key=lambda stage: stage["seconds"])
+    whole = ledger["wall_seconds"]
+    if not stages or not whole > 0:
+        return []
+    figure, axis = plt.subplots(figsize=(6.4, 1 + 0.24 * len(stages)))
+    shares = [100 * stage["seconds"] / whole for stage in stages]
+    axis.barh([stage["stage"] for stage in stages], shares, color="tab:blue")
+    for row, (stage, share) in enumerate(zip(stages, shares)):
+        work, unit = (stage["pairs"], "pair") if stage["pairs"] else (stage["particles"], "particle")
+        cost = f"{1e9 * stage['seconds'] / work:.3g} ns per {unit}" if work else f"{stage['seconds']:.3g} s"
+        axis.text(share, row, " " + cost, va="center", fontsize=7)
+    axis.set(xlabel=f"share of {whole:.3g} s, %", xlim=(0, 1.35 * max(shares)), title=f"the rest is {max(0, 100 - sum(shares)):.1f} %")
+    axis.tick_params(axis="y", labelsize=8)
+    return [finish(figure, out / "ledger.png")]
+
+
 def plot_slices(run, out):
     """Particles coloured by each field at up to six times; in 3-D those of the middle plane; or that plane of a grid."""
     if run.on_grid:
@@ -199,8 +220,8 @@ def plot_reference(run, out):
     return draw_curves(module.curves({"run": run}), out)
 
 
-PICTURES = (plot_energy, plot_numerics, plot_turbulence, plot_slices, plot_side_view, plot_spectra, plot_gradient_pdf,
-            plot_particles, plot_probes, plot_lines, *BUBBLE_PICTURES, plot_reference)
+PICTURES = (plot_energy, plot_numerics, plot_ledger, plot_turbulence, plot_slices, plot_side_view, plot_spectra,
+            plot_gradient_pdf, plot_particles, plot_probes, plot_lines, *BUBBLE_PICTURES, plot_reference)
 
 
 def main():

@@ -19,6 +19,8 @@ def plot_particles(run, out):
         files.append(draw_series(run, out / "particles.png"))
     if run.has("particle_pairs.csv"):
         files.append(draw_pairs(run, out / "particle_pairs.png"))
+    if run.has("particle_boxes.csv"):
+        files += draw_boxes(run, out / "particle_boxes.png")
     if run.has("particle_overlaps.csv"):
         files += draw_overlaps(run, out / "particle_overlaps.png")
     return files
@@ -74,6 +76,21 @@ def draw_pairs(run, path):
     axis.set(xlabel="distance", ylabel="radial distribution function")
     axis.legend(fontsize=8)
     return finish(figure, path)
+
+
+def draw_boxes(run, path):
+    """Variance of the number of particles in boxes of several sizes over that of random places, first and last time."""
+    table = read_csv(run.folder / "particle_boxes.csv")
+    if not np.any(table["variance"] > 0):
+        return []
+    figure, axis = plt.subplots(figsize=(5.2, 4.2))
+    for time in np.unique(table["t"])[[0, -1]]:
+        rows = (table["t"] == time) & (table["variance"] > 0)
+        axis.loglog(table["side"][rows], table["variance"][rows], "o-", markersize=3, label=f"t = {time:.4g}")
+    axis.axhline(1, color="black", linestyle=":", label="random")
+    axis.set(xlabel="side of the box", ylabel="variance of the count / Poisson's")
+    axis.legend(fontsize=8)
+    return [finish(figure, path)]
 
 
 def draw_overlaps(run, path):

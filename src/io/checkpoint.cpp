@@ -138,7 +138,7 @@ struct CheckpointWriter::Open {
 CheckpointWriter::CheckpointWriter(const std::filesystem::path& path, const CheckpointOrigin& origin)
     : path_(path), temporary_(path.string() + ".part") {
   try {
-    open_ = std::make_unique<Open>(File::create(temporary_, File::Format::latest, block_bytes));
+    open_.reset(new Open{File::create(temporary_, File::Format::latest, block_bytes)});
     hdf5::write_text(open_->file, "/origin/program_version", origin.program_version);
     hdf5::write_text(open_->file, "/origin/commit", origin.commit);
     hdf5::write_text(open_->file, "/origin/case", origin.case_text);
@@ -173,7 +173,7 @@ struct CheckpointReader::Open {
 
 CheckpointReader::CheckpointReader(const std::filesystem::path& path) : path_(path) {
   verify(path);
-  open_ = std::make_unique<Open>(File::open(path, false));
+  open_.reset(new Open{File::open(path, false)});
   origin_.program_version = hdf5::read_text(open_->file, "/origin/program_version");
   origin_.commit = hdf5::read_text(open_->file, "/origin/commit");
   origin_.case_text = hdf5::read_text(open_->file, "/origin/case");

@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "spume/core/error.hpp"
+#include "spume/io/journal.hpp"
 
 namespace spume::hdf5 {
 namespace {
@@ -68,7 +69,12 @@ File File::create(const std::filesystem::path& path, Format format, std::int64_t
 
 File File::open(const std::filesystem::path& path, bool writable) {
   initialise();
-  const hid_t id = H5Fopen(path.c_str(), writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, file_access());
+  const Id access = file_access();
+  if (writable) {
+    replay_journal(path);
+    use_journal(access);
+  }
+  const hid_t id = H5Fopen(path.c_str(), writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
   if (id < 0) throw_error(path, "open");
   return File(path, Id(id, H5Fclose));
 }

@@ -12,6 +12,7 @@
 #include "spume/core/error.hpp"
 #include "spume/io/file.hpp"
 #include "spume/io/hdf5.hpp"
+#include "spume/io/journal.hpp"
 
 namespace spume {
 namespace {
@@ -349,7 +350,9 @@ VtkhdfContents read_vtkhdf_contents(const std::filesystem::path& path) {
 
 VtkhdfFile::VtkhdfFile(std::filesystem::path path, Options options)
     : path_(std::move(path)), options_(std::move(options)) {
-  if (std::filesystem::exists(path_)) steps_ = read_step_count(File::open(path_, false));
+  if (!std::filesystem::exists(path_)) return;
+  hdf5::replay_journal(path_);
+  steps_ = read_step_count(File::open(path_, false));
 }
 
 void VtkhdfFile::append(double time, const ParticleSnapshot& snapshot) {

@@ -7,6 +7,7 @@
 #include "spume/core/error.hpp"
 #include "spume/io/file.hpp"
 #include "spume/io/hdf5.hpp"
+#include "spume/io/journal.hpp"
 
 namespace spume {
 namespace {
@@ -184,7 +185,9 @@ bool is_grid_file(const std::filesystem::path& path) {
 
 VtkhdfGridFile::VtkhdfGridFile(std::filesystem::path path, Notes notes)
     : path_(std::move(path)), notes_(std::move(notes)) {
-  if (std::filesystem::exists(path_)) steps_ = read_step_count(File::open(path_, false));
+  if (!std::filesystem::exists(path_)) return;
+  hdf5::replay_journal(path_);
+  steps_ = read_step_count(File::open(path_, false));
 }
 
 void VtkhdfGridFile::append(double time, const GridSnapshot& snapshot) {

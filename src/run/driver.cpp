@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/run/driver.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -23,6 +24,11 @@ double seconds_between(std::chrono::steady_clock::time_point from, std::chrono::
 Schedule::Times times_of(const Case& options) {
   return {options.time.end, options.output.every, options.output.series_every, options.output.spectrum_every};
 }
+
+// Mean of a step over the step that the method allows, over about so many steps, and the least with which a run goes
+// on.
+constexpr double pace_memory = 64;
+constexpr double slowest_pace = 1.0 / 32;
 
 std::string exact(double value) {
   char text[32];
@@ -122,6 +128,15 @@ RunState Simulation::run(Observer& observer) {
     recorder_->sync();
     write_summary(state == RunState::finished ? "finished" : "interrupted", "");
     return state;
+  } catch (const StepFailure& failure) {
+    // What a method solves before its first step has no step to halve.
+    const std::string text = "numerical failure at step " + std::to_string(method_->step_count()) +
+                             ", t = " + exact(method_->time()) + ": " + failure.details().cause + "\n  " +
+                             place_of(failure.details(), loaded_->scene.domain.dimensions) +
+                             "\n  most likely helps: change " + failure.details().option;
+    folder_.log(text);
+    write_summary("numerical failure", text);
+    throw NumericalFailure(text);
   } catch (const NumericalFailure& failure) {
     folder_.log(failure.what());
     write_summary("numerical failure", failure.what());
@@ -152,12 +167,15 @@ double Simulation::take_step(Observer& observer, StepLimit& limit) {
         throw StepFailure({"the time step is too small to advance the time", "time.courant", -1, {0, 0, 0}, limit.dt});
       const auto particles = static_cast<double>(method_->particle_count());
       method_->step(dt, ledger_);
+      pace_ += (std::min(1.0, dt / schedule_.step(t, limit.dt)) - pace_) / pace_memory;
       control_.accepted(limit.dt);
       ++steps_this_run_;
       particle_steps_ += particles;
       return dt;
     } catch (const StepFailure& failure) {
-      if (attempt > loaded_->options.time.max_retries || !(dt > 0)) give_up(failure, dt, attempt);
+      // Steps that are refused again and again would otherwise creep towards a time that they never reach.
+      if (attempt > loaded_->options.time.max_retries || !(dt > 0) || pace_ < slowest_pace)
+        give_up(failure, dt, attempt);
       ++retries_;
       control_.refused(dt);
       const std::string text = "step " + std::to_string(method_->step_count() + 1) + " at t = " + exact(t) +

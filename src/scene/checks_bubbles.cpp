@@ -110,6 +110,25 @@ void check_gas(Draft& draft, Problems& problems) {
                  "\"bicgstab\"");
 }
 
+// Explicit sub-steps follow the fastest motion of the smallest bubble, so that small bubbles take hours a step.
+void check_substeps(const Draft& draft, const Scene& scene, const std::string& name, const BubbleSizes& sizes,
+                    Problems& problems) {
+  const BubbleOptions& options = draft.options.bubbles;
+  if (options.integrator != BubbleIntegrator::substep || !(sizes.minimum > 0)) return;
+  constexpr double most_substeps = 1e5;
+  double gravity2 = 0;
+  for (const double g : scene.fluid.gravity) gravity2 += g * g;
+  const double h = draft.options.resolution.smoothing_ratio * scene.spacing;
+  const double dt = gravity2 > 0 ? draft.options.time.courant * std::sqrt(h / std::sqrt(gravity2)) : 0;
+  const double drag = 4.5 * scene.fluid.kinematic_viscosity / (sizes.minimum * sizes.minimum);
+  const double steps = std::max(scene.spacing / sizes.minimum,
+                                1.5 * dt * drag / (1 / options.density_ratio + options.virtual_mass_coefficient));
+  if (steps <= most_substeps) return;
+  problems.add(*draft.node(name), name + " has bubbles of radius " + brief(sizes.minimum) + ", which need " +
+                                      brief(steps) + " explicit sub-steps a step; at most " + brief(most_substeps) +
+                                      " are possible: set bubbles.integrator = \"stable\" or enlarge them");
+}
+
 }  // namespace
 
 void check_bubbles(Draft& draft, Problems& problems) {
@@ -182,6 +201,7 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
                                                            !wet(key[0] == 'p' ? sparger.position : sparger.end))
         problems.add(*node, name + "." + key + " lies outside the liquid; move it below the surface");
     if (!sparger.rate) continue;
+    check_substeps(draft, scene, name, sparger.sizes, problems);
     const Node* node = draft.node(name + ".rate");
     const double end = draft.options.time.end;
     constexpr int samples = 400;
@@ -208,6 +228,7 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
   for (std::size_t k = 0; k < scene.bubble_clouds.size(); ++k) {
     const BubbleCloud& cloud = scene.bubble_clouds[k];
     const std::string name = "bubble_cloud." + std::to_string(k);
+    check_substeps(draft, scene, name, cloud.sizes, problems);
     Vec3 centre = cloud.centre;
     for (int a = 0; a < 3 && !cloud.ball; ++a) centre[a] = 0.5 * (cloud.lower[a] + cloud.upper[a]);
     if (!wet(centre))

@@ -73,10 +73,11 @@ void check_particles(const Draft& draft, Problems& problems) {
     fault("gravity", "must have 3 entries, found " + std::to_string(p.gravity.size()));
   if (has("spline_order") && p.spline_order % 2 != 0)
     fault("spline_order", "must be 2, 4 or 6, found " + std::to_string(p.spline_order));
-  if (p.coupling != ParticleCoupling::one_way && has("beta") && p.beta == 0)
+  if ((p.coupling == ParticleCoupling::two_way || p.coupling == ParticleCoupling::four_way) && has("beta") &&
+      p.beta == 0)
     fault("beta",
           "= 0 is infinitely heavy, which nothing in the flow can be coupled to; give a value above 0, or "
-          "particles.coupling = \"one-way\"");
+          "particles.coupling = \"one-way\" or \"colliding\"");
   if (!has("stokes") && !has("response_time") && has("beta") && p.beta == 0)
     fault("beta", "= 0 has no response time of its own; add  stokes = <number>");
   if (p.placement == ParticlePlacement::file && !has("file"))

@@ -83,12 +83,15 @@ std::vector<Section> particle_sections() {
                       p.drag = w == "stokes" ? ParticleDrag::stokes : ParticleDrag::schiller_naumann;
                     }),
                numbers("gravity", "length/time2", "none", "acceleration of gravity, three entries", &P::gravity),
-               word("coupling", "\"one-way\"", {"one-way", "two-way", "four-way"},
-                    "flow moves particles; particles move the flow too; and exclude each other",
+               word("coupling", "\"one-way\"", {"one-way", "two-way", "four-way", "colliding"},
+                    "flow moves particles; particles move the flow too; and exclude each other; colliding: exclude "
+                    "each other, "
+                    "while the flow feels nothing",
                     [](P& p, const std::string& w) {
-                      p.coupling = w == "one-way"   ? ParticleCoupling::one_way
-                                   : w == "two-way" ? ParticleCoupling::two_way
-                                                    : ParticleCoupling::four_way;
+                      p.coupling = w == "one-way"    ? ParticleCoupling::one_way
+                                   : w == "two-way"  ? ParticleCoupling::two_way
+                                   : w == "four-way" ? ParticleCoupling::four_way
+                                                     : ParticleCoupling::colliding;
                     }),
                word("matching", "\"rounds\"", {"rounds", "sorting"},
                     "how the strongest overlaps are found; both give the same pairs",

@@ -56,6 +56,10 @@ TEST(SpectralParticles, ReportWhatTheirCouplingHas) {
   EXPECT_EQ(families[0].size, 2000U);
   const auto tables = run.method.distributions(), headings = run.method.distribution_headings();
   ASSERT_EQ(tables.size(), headings.size());
+  ASSERT_EQ(tables[2].name, "particle_boxes");
+  // Sides of 1/12, 1/6 and 1/3 in a box of 1 x 1.5 x 2; 2000 particles lie in all boxes together.
+  ASSERT_EQ(tables[2].values.size(), 9U);
+  EXPECT_NEAR(tables[2].values[1] * 12 * 18 * 24, 2000, 1e-9);
   for (std::size_t i = 0; i < tables.size(); ++i) {
     EXPECT_EQ(tables[i].name, headings[i].name);
     EXPECT_GT(tables[i].values.size(), 0U);
@@ -120,6 +124,101 @@ TEST(SpectralParticles, UniformBubblesActAsMoreViscosity) {
     // nu k^2 dt = 0.02: an error of its square, times the fraction of 0.2.
     EXPECT_LT(fine, 2e-4) << integrator;
     EXPECT_GT(std::log2(coarse / fine), 1.6) << integrator << " " << coarse << " " << fine;
+  }
+}
+
+// Heavy particles, one at every grid point: volume fraction 0.2, density ratio 14.5, mass loading 2.85.
+std::string heavy(const std::string& integrator, const std::string& more) {
+  return "method = \"spectral\"\n[domain]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\nx = \"periodic\"\ny = \"periodic\"\n"
+         "z = \"periodic\"\n[resolution]\ngrid = 12\n[time]\nend = 1\ncourant = 0.5\n" +
+         random_start + "[spectral]\nintegrator = \"" + integrator +
+         "\"\n[particles]\ncount = 1728\ndiameter = 0.0601117\nbeta = 0.1\nplacement = \"lattice\"\n"
+         "coupling = \"two-way\"\noverlap_samples = 0\n" +
+         more;
+}
+
+// Largest energy over that at the start; infinite where a step failed.
+double energy_growth(const std::string& text, double share_of_limit, int steps) {
+  SpectralRun<> run(text);
+  run.start();
+  const double start = run.method.flow().budget().energy;
+  double largest = start;
+  try {
+    for (int s = 0; s < steps; ++s) {
+      run.steps(1, share_of_limit * run.method.step_limit().dt);
+      largest = std::max(largest, run.method.flow().budget().energy);
+    }
+  } catch (const StepFailure&) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return largest / start;
+}
+
+TEST(SpectralParticles, HeavyOnesShortenTheStepToWhereTheirCouplingIsStable) {
+  for (const char* integrator : {"ab2", "rk3"}) {
+    const std::string text = heavy(integrator, "response_time = 1e-4\n");
+    SpectralRun<> run(text);
+    run.start();
+    EXPECT_EQ(run.method.step_limit().limited_by, "particle coupling") << integrator;
+    EXPECT_LT(energy_growth(text, 1, 200), 1.01) << integrator;
+    EXPECT_GT(energy_growth(text, 4, 200), 2) << integrator;
+    // Particles that respond slowly do not.
+    SpectralRun<> slow(heavy(integrator, "response_time = 10\n"));
+    slow.start();
+    EXPECT_NE(slow.method.step_limit().limited_by, "particle coupling") << integrator;
+  }
+}
+
+TEST(SpectralParticles, CouplingThatNoReasonableStepBearsIsRefusedInWords) {
+  const auto refusal = [](const std::string& text) {
+    try {
+      SpectralRun<> run(text);
+      run.start();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(
+      refusal(heavy("ab2", "response_time = 1e-9\n")),
+      testing::AllOf(testing::HasSubstr("mass loading of 2.85"), testing::HasSubstr("raise the response time")));
+  EXPECT_THAT(refusal(heavy("ab2", "response_time = 1\nmax_volume_fraction = 0.7\n")),
+              testing::HasSubstr("expected at most 0.55"));
+  EXPECT_EQ(refusal(heavy("ab2", "response_time = 1\n")), "");
+}
+
+TEST(SpectralParticles, CollideWithoutTheFlowFeelingThem) {
+  SpectralRun<> colliding(suspension("colliding")), without(spectral_text("[12, 16, 20]", random_start));
+  colliding.start().steps(5, 0.002);
+  without.start().steps(5, 0.002);
+  EXPECT_EQ(colliding.saved().reals.at("potential_x"), without.saved().reals.at("potential_x"));
+  EXPECT_GT(colliding.series().at("collisions"), 0);
+  EXPECT_EQ(colliding.series().count("clipped_force"), 0U);
+}
+
+// Close to what can go wrong: everything in one place, a dense suspension, particles that follow at once or never.
+TEST(SpectralParticles, ExtremesStayFiniteAndLoseNobody) {
+  const std::string all_in_one_point =
+      "count = 2000\ndiameter = 0.03\nresponse_time = 0.05\nplacement = "
+      "\"clustered\"\nclusters = 1\ncluster_radius = 1e-9\n";
+  const std::string dense = "volume_fraction = 0.3\ndiameter = 0.08\nresponse_time = 0.05\n";
+  const std::string swift = "volume_fraction = 0.1\ndiameter = 0.05\nresponse_time = 1e-4\n";
+  const std::string slow = "volume_fraction = 0.1\ndiameter = 0.05\nresponse_time = 100\n";
+  for (const std::string& which : {all_in_one_point, dense, swift, slow}) {
+    SpectralRun<> run(spectral_text("[12, 16, 20]", random_start + "[particles]\nbeta = 3\ncoupling = \"four-way\"\n" +
+                                                        "collision_sweeps = 4\n" + which));
+    run.start();
+    const double start = run.method.flow().budget().energy;
+    for (int s = 0; s < 40; ++s) run.steps(1, run.method.step_limit().dt);
+    const auto row = run.series();
+    for (const auto& [name, value] : row)
+      EXPECT_TRUE(std::isfinite(value) || name == "correlation_dimension") << which << name;
+    // Bubbles give energy of their own added mass back, of the order of what they took.
+    EXPECT_LT(run.method.flow().budget().energy, 1.1 * start) << which;
+    const Particles& particles = run.method.suspension()->system().particles();
+    std::vector<int> seen(particles.size(), 0);
+    for (const std::int64_t id : *particles.identifier) ++seen[static_cast<std::size_t>(id)];
+    EXPECT_THAT(seen, testing::Each(1)) << which;
   }
 }
 

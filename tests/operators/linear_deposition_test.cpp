@@ -22,12 +22,15 @@ struct Cloud {
   std::vector<double> fraction;
   DepositionReport report;
 
-  Cloud(std::array<int, 3> points, std::size_t n, double volume) {
+  double volume;
+  Array<double> diameter;  // of every particle, or empty
+
+  Cloud(std::array<int, 3> points, std::size_t n, double common_volume) : volume(common_volume) {
     grid.lower = {1, -2, 0};
     grid.length = {2, 3, 1};
     grid.points = points;
     grid.z_stride = static_cast<std::size_t>(points[2]) + 3;
-    amounts.resize(4 * n);
+    amounts.resize(3 * n + 1);
     for (auto& x : position) x.resize(n);
     for (std::size_t p = 0; p < n; ++p) {
       const auto r = random_uniform(1, RandomPurpose::test, p, 0, 0),
@@ -35,9 +38,8 @@ struct Cloud {
       place.push_back({});
       for (int c = 0; c < 3; ++c) {
         place[p][c] = position[c][p] = grid.lower[c] + grid.length[c] * r[c];
-        amounts[4 * p + c] = a[c] - 0.3;
+        amounts[3 * p + c] = a[c] - 0.3;
       }
-      amounts[4 * p + 3] = volume;
     }
     for (auto& f : force) f.resize(grid.storage(), -7);
     fraction.resize(grid.storage(), -7);
@@ -46,9 +48,12 @@ struct Cloud {
     LinearDeposition deposition(grid);
     CellOrder order;
     order.build(deposition.cells(), position[0].data(), position[1].data(), position[2].data(), place.size());
-    report =
-        deposition.deposit<double>(order, {position[0].data(), position[1].data(), position[2].data()}, amounts.data(),
-                                   most, {force[0].data(), force[1].data(), force[2].data()}, fraction.data());
+    const DepositedParticles given{{position[0].data(), position[1].data(), position[2].data()},
+                                   amounts.data(),
+                                   diameter.empty() ? nullptr : diameter.data(),
+                                   std::cbrt(6 / M_PI * volume)};
+    report = deposition.deposit<double>(order, given, most, {force[0].data(), force[1].data(), force[2].data()},
+                                        fraction.data());
   }
   template <class Use>
   void for_points(Use&& use) const {
@@ -65,7 +70,7 @@ TEST_P(Deposition, AgreesWithTheDirectSum) {
   cloud.deposit(1e9);
   for (int c = 0; c < 3; ++c) {
     std::vector<double> amount;
-    for (std::size_t p = 0; p < 700; ++p) amount.push_back(cloud.amounts[4 * p + c]);
+    for (std::size_t p = 0; p < 700; ++p) amount.push_back(cloud.amounts[3 * p + c]);
     const auto direct = linear_spread(cloud.grid, cloud.place, amount);
     const double scale = 700 / (6.0);  // all amounts, of up to 1, over the volume of the box
     cloud.for_points([&](std::size_t at) { ASSERT_NEAR(cloud.force[c][at], direct[at], 1e-13 * 50 * scale); });
@@ -74,12 +79,17 @@ TEST_P(Deposition, AgreesWithTheDirectSum) {
 
 TEST_P(Deposition, GivesTheGridWhatTheParticlesGive) {
   Cloud cloud(GetParam(), 3000, 1e-4);
+  for (std::size_t p = 0; p < 3000; ++p) {
+    cloud.diameter.resize(p + 1);
+    cloud.diameter[p] = 0.02 + 0.01 * std::sin(static_cast<double>(p));
+  }
   cloud.deposit(1e9);
   for (int c = 0; c < 4; ++c) {
     double given = 0, received = 0, size = 0;
     for (std::size_t p = 0; p < 3000; ++p) {
-      given += cloud.amounts[4 * p + c];
-      size += std::abs(cloud.amounts[4 * p + c]);
+      const double amount = c < 3 ? cloud.amounts[3 * p + c] : M_PI / 6 * std::pow(cloud.diameter[p], 3);
+      given += amount;
+      size += std::abs(amount);
     }
     const auto& field = c < 3 ? cloud.force[c] : cloud.fraction;
     cloud.for_points([&](std::size_t at) { received += field[at] * cloud.grid.cell_volume(); });
@@ -90,7 +100,8 @@ TEST_P(Deposition, GivesTheGridWhatTheParticlesGive) {
 
 INSTANTIATE_TEST_SUITE_P(Grids, Deposition,
                          testing::Values(std::array{8, 8, 8}, std::array{17, 5, 6}, std::array{3, 2, 1},
-                                         std::array{1, 4, 2}));
+                                         std::array{1, 4, 2}, std::array{33, 70, 4}, std::array{2, 1, 5},
+                                         std::array{4, 32, 3}, std::array{4, 33, 3}));
 
 TEST(DepositionOfParticles, IsTheSameForAnyNumberOfThreads) {
   const int before = omp_get_max_threads();
@@ -109,11 +120,11 @@ TEST(DepositionOfParticles, IsTheSameForAnyNumberOfThreads) {
 
 TEST(DepositionOfParticles, ClipsWhereTheVolumeFractionIsTooHigh) {
   // All volume of one particle in one grid cell corner: alpha there is volume / cell volume.
-  Cloud cloud({4, 4, 4}, 1, 0);
+  Cloud cloud({4, 4, 4}, 1, 2 * (2.0 * 3 * 1) / 64);
   for (int c = 0; c < 3; ++c) cloud.position[c][0] = cloud.grid.lower[c] + cloud.grid.spacing(c);
   const double cell = cloud.grid.cell_volume();
-  const double amounts[4] = {3, 0, 4, 2 * cell};
-  std::copy(amounts, amounts + 4, cloud.amounts.data());
+  const double amounts[3] = {3, 0, 4};
+  std::copy(amounts, amounts + 3, cloud.amounts.data());
   cloud.deposit(0.5);
   const std::size_t at = cloud.grid.row(1, 1) + 1;
   EXPECT_NEAR(cloud.fraction[at], 2, 1e-14);

@@ -67,6 +67,31 @@ TEST(BoxCounts, ScatterAsThoseOfRandomPointsOrOfALattice) {
   EXPECT_EQ(box_count_variance(boxes, lattice.data(), 2000), 0);
 }
 
+// Boxes of every size: random points scatter as Poisson's, a lattice not at all, and a cluster of everything in one box
+// of M has the variance N^2 (1/M) (1 - 1/M), N times that of random points.
+TEST(BoxCounts, TellRandomPointsFromALatticeAndAClusterAtEverySize) {
+  const std::array<double, 3> lower{0, 0, 0}, length{1, 2, 1};
+  Points random(65536, 3), lattice(65536, 3), cluster(1000, 3);
+  for (std::size_t i = 0; i < 65536; ++i) {
+    lattice.x[0][i] = (static_cast<double>(i % 32) + 0.5) / 32;
+    lattice.x[1][i] = (static_cast<double>(i / 32 % 64) + 0.5) / 32;
+    lattice.x[2][i] = (static_cast<double>(i / 2048) + 0.5) / 32;
+  }
+  for (int c = 0; c < 3; ++c) cluster.x[c].fill(0.3);
+  const auto of = [&](const Points& p) { return box_counts(lower, length, p.data(), p.size(), 1.0 / 32); };
+  const auto a = of(random), b = of(lattice), c = of(cluster);
+  ASSERT_EQ(a.size(), 5U);  // sides of 1/32 to 1/2
+  for (std::size_t s = 0; s < a.size(); ++s) {
+    const double boxes = 2 * std::pow(32 >> s, 3);
+    EXPECT_NEAR(a[s].side, std::ldexp(1.0 / 32, static_cast<int>(s)), 1e-12);
+    EXPECT_NEAR(a[s].mean, 65536 / boxes, 1e-9);
+    // The variance of the estimate is 2 / boxes, and 1 / (boxes mean) more where boxes hold few points.
+    EXPECT_NEAR(a[s].variance, 1, 4 * std::sqrt((2 + 1 / a[s].mean) / boxes)) << s;
+    EXPECT_EQ(b[s].variance, 0) << s;
+    EXPECT_NEAR(c[s].variance, 1000, 1e-6) << s;
+  }
+}
+
 TEST(KaplanYorkeDimension, InterpolatesTheSumOfExponents) {
   EXPECT_NEAR(kaplan_yorke_dimension({1, 0, -2, -5, -6, -7}), 2.5, 1e-15);
   EXPECT_NEAR(kaplan_yorke_dimension({-1, -2, -3, -5, -6, -7}), 0, 1e-15);

@@ -246,7 +246,7 @@ TEST(ParticleMotion, GivesTheFluidTheMomentumThatParticlesLose) {
   SplineField<double> field(grid_of(4), 4);
   fill_uniform(field, {1, 0, 0});
   Particles particles = particles_of(1, true);
-  Array<double> amounts(4);
+  Array<double> amounts(3);
   const double volume = sphere_volume(0.1), ratio = model.density_ratio();
   double given = 0, before = 0;
   for (int step = 0; step < 10; ++step) {
@@ -256,7 +256,6 @@ TEST(ParticleMotion, GivesTheFluidTheMomentumThatParticlesLose) {
     given += 0.1 * force;
     before = force;
   }
-  EXPECT_NEAR(amounts[3], volume, 1e-18);
   EXPECT_NEAR(given, -ratio * volume * (*particles.velocity[0])[0], 1e-15 * volume * ratio);
 }
 
@@ -268,7 +267,7 @@ TEST(ParticleMotion, FrozenBubblesFeelTheAccelerationOfTheFluid) {
   fill_uniform(field, {1, 0, 0});
   fill_uniform(field, {1.5, 0, 0});
   Particles particles = particles_of(1, true);
-  Array<double> amounts(4);
+  Array<double> amounts(3);
   move_particles(model, field, 0.1, particles, {amounts.data(), 0});
   EXPECT_EQ((*particles.position[0])[0], 0);
   EXPECT_EQ((*particles.velocity[0])[0], 0);

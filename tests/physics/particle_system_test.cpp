@@ -123,7 +123,7 @@ TEST(ParticleSystem, MotionDependsNeitherOnSortingNorOnThreads) {
 TEST(ParticleSystem, TheGridReceivesTheForceOfTheParticles) {
   ParticleOptions options = bubbles(Coupling::two_way);
   options.most_volume_fraction = 1e9;
-  options.force_lead = 0;
+  options.scheme.lead = 0;
   Suspension run(options);
   run.begin();
   run.advance(5);
@@ -188,9 +188,12 @@ TEST(ParticleSystem, HoldsNoArraysThatItsCouplingDoesNotNeed) {
   double bytes = 0;
   for (const auto& array : all.system.arrays())
     if (array.name != "velocity records") bytes += array.bytes;
+  // Planes of the deposition, and cells: those of the grid or of the collisions, and of the blocks of the sort.
   const double per_thread = 2 * 8.0 * 4 * (12 + 4) * 24 * omp_get_max_threads();
-  const double cells = 4.0 * 2 * 12 * 24 * 12;
-  EXPECT_LT((bytes - per_thread - cells) / 3000, 240);
+  const double cells = 4.0 * (2 * 12 * 24 * 12 + 3 * 24 + 100);
+  EXPECT_LT((bytes - per_thread - cells) / 3000, 200);
+  EXPECT_NEAR(ParticleSystem::estimated_bytes(all.grid, bubbles(Coupling::four_way)),
+              bytes - per_thread + 32.0 * (15 * 27 * 15), 0.1 * bytes);
 }
 
 TEST(ParticleSystem, ExtremeResponseTimesStayFinite) {

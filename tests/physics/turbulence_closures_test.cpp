@@ -198,6 +198,13 @@ TEST(DynamicViscosity, IsClippedWhereTheTotalWouldBeNegative) {
   EXPECT_EQ(dynamic_viscosity({0.0, 0.0}, 0.0, 0.1, 1e-3), 0);
 }
 
+// In nearly uniform flow numerator and denominator are rounding: their ratio must not become a viscosity.
+TEST(DynamicViscosity, TheCoefficientIsBounded) {
+  EXPECT_EQ(dynamic_coefficient({1e-3, 1e-12}), dynamic_largest);
+  EXPECT_EQ(dynamic_coefficient({0.2, 1.0}), 0.2);
+  EXPECT_DOUBLE_EQ(dynamic_coefficient({-1e-3, 1e-12}), -1e9);  // backscatter is bounded by the viscosity
+}
+
 TEST(LagrangianAverage, StartsFromTheFirstStrainAndOneStepIsAsComputedByHand) {
   const GermanoContractions<double> start = lagrangian_average({0, 0}, {3.0, 4.0}, 0.1, 0.01);
   EXPECT_DOUBLE_EQ(start.germano_germano, 4.0);

@@ -23,7 +23,7 @@ inline std::vector<std::int32_t> greedy_matching(const Spheres& s, const std::ar
       for (int c = 0; c < 3; ++c) d[c] = nearest_image(s.position[c][i] - s.position[c][j], length[c]);
       const double distance_2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
       const auto radius = [&](std::size_t p) {
-        return 0.5 * static_cast<double>(static_cast<float>(s.diameter == nullptr ? s.common_diameter : s.diameter[p]));
+        return 0.5 * (s.diameter == nullptr ? s.common_diameter : s.diameter[p]);
       };
       if (overlapping(distance_2, radius(i) + radius(j)))
         pairs.push_back({radius(i) + radius(j) - std::sqrt(distance_2), i, j});

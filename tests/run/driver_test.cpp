@@ -186,6 +186,15 @@ TEST_F(Driver, GivesUpWithWordsAndLeavesTheLastGoodState) {
   EXPECT_EQ(summary("run")["state"], "numerical failure");
 }
 
+// Steps of a sixtieth of what the method allows, each found by refusals: the end would be 6000 steps away.
+TEST_F(Driver, GivesUpWhereRefusedStepsNoLongerAdvance) {
+  write_case("end = 1.0\nlargest_dt = 0.00017\ndt = 0.01\nmax_retries = 6\n");
+  Watch watch;
+  EXPECT_THROW(start("run")->run(watch), NumericalFailure);
+  EXPECT_GT(watch.steps.size(), 100u);
+  EXPECT_LT(watch.steps.size(), 500u);
+}
+
 TEST_F(Driver, AFinishedRunContinuesOnlyToALaterTime) {
   write_case("end = 0.5\nevery = 0.25\n");
   Watch watch;

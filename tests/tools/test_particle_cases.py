@@ -6,6 +6,7 @@ import unittest
 
 import paths
 import numpy as np
+from spume_particle_figures import plot_particles
 from spume_results import Results
 from spume_verification import CASES, load_measure
 from synthetic import new_folder, series_of, write_table
@@ -53,6 +54,20 @@ class Exclusion(ParticleCase):
         self.assertAlmostEqual(measured["overlap_ratio"], 0.004)
         self.assertAlmostEqual(measured["clipped_force"], 0.002)
         self.assertAlmostEqual(measured["free_overlap_ratio"], 0.7)
+
+
+class Pictures(ParticleCase):
+    def table(self, folder, variance):
+        write_table(folder / "particle_boxes.csv", {"t": [0.0] * 3 + [1.0] * 3, "side": [0.1, 0.2, 0.4] * 2,
+                                                    "mean_count": [1.0, 8.0, 64.0] * 2, "variance": variance})
+
+    def test_box_counts_are_drawn_where_they_scatter(self):
+        folder = self.run_of("exclusion", [0, 1])
+        self.table(folder, [1.0, 1.0, 1.0, 2.0, 4.0, 3.0])
+        self.assertEqual([file.name for file in plot_particles(Results(folder), folder)], ["particle_boxes.png"])
+        self.assertGreater((folder / "particle_boxes.png").stat().st_size, 5000)
+        self.table(folder, [0.0] * 6)  # a lattice: nothing on logarithmic axes
+        self.assertEqual(plot_particles(Results(folder), folder), [])
 
 
 class UniformBubbles(ParticleCase):

@@ -58,6 +58,13 @@ class Plotting(Scratch):
                                  "line_centre.png", "kinetic_energy_exact.png"})
         self.assertEqual(complaints, "")
 
+    def test_shares_of_the_stages_are_drawn(self):
+        folder = new_folder(self.path, "run")
+        write_table(folder / "series.csv", series_of([0, 1.0], kinetic_energy=1))
+        stage = {"stage": "move", "calls": 3, "seconds": 1.5, "share": 0.75, "particles": 3e3, "pairs": 0, "bytes": 0}
+        (folder / "ledger.json").write_text(json.dumps({"wall_seconds": 2.0, "stages": [stage, stage | {"stage": "pressure", "pairs": 9e4}]}))
+        self.assertEqual(self.pictures(folder)[0], {"energy.png", "numerics.png", "ledger.png"})
+
     def test_three_dimensional_run_with_a_surface_is_shaded(self):
         folder = new_folder(self.path, "run")
         write_case(folder, "Some wave", [0, 0, -0.5], [1, 0.2, 0.5], 0.05, x="periodic", y="periodic", top="open")

@@ -96,6 +96,7 @@ class Simulation {
   Ledger ledger_;
   bool fresh_ = true;
   std::int64_t retries_ = 0;
+  double pace_ = 1;  // mean of recent steps over those that the method allows; refused steps lower it
   std::int64_t steps_this_run_ = 0;
   double particle_steps_ = 0;
   double earlier_wall_seconds_ = 0;

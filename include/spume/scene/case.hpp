@@ -25,7 +25,7 @@ enum class Dealiasing { padded, two_thirds, none };
 enum class FieldPrecision { f64, f32 };
 enum class PlanEffort { estimate, measured };
 enum class ForcingKind { none, shell, linear };
-enum class ParticleCoupling { one_way, two_way, four_way };
+enum class ParticleCoupling { one_way, two_way, four_way, colliding };
 enum class ParticlePlacement { random, lattice, clustered, file };
 enum class ParticleDrag { stokes, schiller_naumann };
 enum class InitialKind { rest, taylor_green, abc, random, expressions, checkpoint };

@@ -121,6 +121,15 @@ void update_image_rules(Liquid& liquid, double t) {
       for (int a = 0; a < d; ++a) liquid.velocity_rule.offset[a][k] = static_cast<float>(offset[a]);
     }
   });
+  // An image behind a wall moves with twice the velocity of the wall.
+  liquid.wall_speed = 0.5 * std::sqrt(parallel_max(m, 0.0, [&](std::size_t k) {
+                        double speed2 = 0;
+                        for (int a = 0; a < d; ++a) {
+                          const double u = liquid.velocity_rule.offset[a][k];
+                          speed2 += u * u;
+                        }
+                        return speed2;
+                      }));
 }
 
 void keep_inside(const Liquid& liquid, const WallPositions& walls, Vec3& position, Vec3* velocity) {

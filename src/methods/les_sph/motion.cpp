@@ -48,7 +48,10 @@ void find_diffusivity(Liquid& liquid) {
     double eddy = liquid.eddy_viscosity == nullptr ? 0.0 : (*liquid.eddy_viscosity)[i];
     if (liquid.varying) eddy += liquid.bubble_viscosity[i];
     const double alpha = liquid.alpha_at(i);
-    (*liquid.diffusivity)[i] = static_cast<float>(alpha * (nu + eddy) * liquid.dimensions / div_r);
+    // Backscatter is clipped at -nu, in float: what rounding leaves below zero would make harmonic means of two
+    // diffusivities of opposite sign, which have no bound.
+    const double total = std::max(nu + eddy, 0.0);
+    (*liquid.diffusivity)[i] = static_cast<float>(alpha * total * liquid.dimensions / div_r);
   });
 }
 
@@ -190,6 +193,7 @@ void accept(Liquid& liquid, double dt) {
     details.option = "time.courant";
     throw StepFailure(details);
   }
+  liquid.energy_supply = limited_energy_supply(liquid, dt);
 
   const double density = liquid.scene.fluid.density;
   parallel_for(n, [&](std::size_t i) {

@@ -288,6 +288,15 @@ void PressureSystem::solve(Liquid& liquid, double helmholtz, const char* stage, 
   }
 }
 
+void PressureSystem::demand_convergence(const std::string& solve) const {
+  if (report_.converged) return;
+  StepFailure::Details details;
+  details.cause = solve + " did not converge in " + std::to_string(report_.iterations) + " iterations";
+  details.option = "pressure.max_iterations";
+  details.value = report_.relative_residual;
+  throw StepFailure(details);
+}
+
 void PressureSystem::remove_constant(Liquid& liquid) const {
   const std::size_t n = liquid.size();
   const double mean = parallel_sum(n,
@@ -330,13 +339,7 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
   });
   solve(liquid, helmholtz, "pressure", ledger);
   ledger.count("pressure", 0, 0, 0, pairs * report_.applications);
-  if (!report_.converged) {
-    StepFailure::Details details;
-    details.cause = "the pressure solve did not converge in " + std::to_string(report_.iterations) + " iterations";
-    details.option = "pressure.max_iterations";
-    details.value = report_.relative_residual;
-    throw StepFailure(details);
-  }
+  demand_convergence("the pressure solve");
   if (liquid.plan.closed) remove_constant(liquid);
 }
 
@@ -357,6 +360,7 @@ void PressureSystem::solve_initial(Liquid& liquid, Ledger& ledger) {
     (*liquid.reduced_pressure)[i] = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
   });
   solve(liquid, 0, "first pressure", ledger);
+  demand_convergence("the first pressure solve");
   if (liquid.plan.closed) remove_constant(liquid);
   const double density = liquid.scene.fluid.density;
   parallel_for(n, [&](std::size_t i) {

@@ -49,7 +49,10 @@ void Spectral<T>::start() {
         "the forced shell holds no energy at the start, so that no force could inject any; choose "
         "[initial] or [forcing] so that the wavenumbers meet");
   flow_.evaluate_tendency();
-  if (suspension_) suspension_->start();
+  if (suspension_) {
+    suspension_->require_possible(flow_.step_limit());
+    suspension_->start();
+  }
   started_ = true;
 }
 
@@ -66,7 +69,7 @@ std::size_t Spectral<T>::particle_count() const {
 
 template <class T>
 StepLimit Spectral<T>::step_limit() const {
-  return flow_.step_limit();
+  return suspension_ ? suspension_->limited(flow_.step_limit()) : flow_.step_limit();
 }
 
 template <class T>

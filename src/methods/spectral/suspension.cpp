@@ -62,6 +62,21 @@ void require_memory(const LoadedCase& loaded, const ParticleOptions& options) {
   throw InputError(text);
 }
 
+// Heavy particles may be too crowded for any step: their force is then clipped below close packing.
+void limit_clipping(const ParticleCaseOptions& in, ParticleOptions& out) {
+  const double bearable = stable_volume_fraction(out.motion, out.scheme, out.most_volume_fraction);
+  if (bearable >= out.most_volume_fraction) return;
+  if (in.max_volume_fraction != ParticleCaseOptions().max_volume_fraction) {
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "particles.max_volume_fraction = %.4g lets the coupling of particles with beta = %.4g and the flow "
+                  "grow with any step; expected at most %.3g; lower it, or leave it out",
+                  out.most_volume_fraction, in.beta, bearable);
+    throw InputError(text);
+  }
+  out.most_volume_fraction = bearable;
+}
+
 // Shortest and longest distance of the pair statistics, in grid spacings, and the range of the dimension.
 constexpr double pair_range[2] = {0.05, 4};
 constexpr double dimension_range[2] = {0.1, 1};
@@ -141,9 +156,10 @@ ParticleOptions particle_options(const LoadedCase& loaded) {
         "the response time diameter^2 / (12 beta nu) of the particles is not a finite number above 0; give "
         "particles.response_time");
 
-  out.coupling = in.coupling == ParticleCoupling::one_way   ? Coupling::one_way
-                 : in.coupling == ParticleCoupling::two_way ? Coupling::two_way
-                                                            : Coupling::four_way;
+  out.coupling = in.coupling == ParticleCoupling::one_way    ? Coupling::one_way
+                 : in.coupling == ParticleCoupling::two_way  ? Coupling::two_way
+                 : in.coupling == ParticleCoupling::four_way ? Coupling::four_way
+                                                             : Coupling::colliding;
   out.matching = in.matching_by_sorting ? MatchingMethod::sorting : MatchingMethod::rounds;
   out.collision_sweeps = static_cast<int>(in.collision_sweeps);
   out.spline_order = static_cast<int>(in.spline_order);
@@ -151,7 +167,8 @@ ParticleOptions particle_options(const LoadedCase& loaded) {
   out.most_volume_fraction = in.max_volume_fraction;
   out.sort_every = static_cast<int>(std::min<std::int64_t>(in.sort_every, 1 << 30));
   // Adams-Bashforth extrapolates from the forces at the ends of steps; the others hold the force over the coming step.
-  out.force_lead = loaded.options.spectral.integrator == Integrator::ab2 ? 0.5 : 1;
+  if (loaded.options.spectral.integrator != Integrator::ab2) out.scheme = {1, 0};
+  if (acts_on_flow(out.coupling) && motion.beta > 0) limit_clipping(in, out);
   require_memory(loaded, out);
   return out;
 }
@@ -206,16 +223,43 @@ void Suspension<T>::after_step(double dt, Ledger& ledger) {
 }
 
 template <class T>
+StepLimit Suspension<T>::limited(const StepLimit& flow) const {
+  const double longest = system_.longest_step();
+  return longest < flow.dt ? StepLimit{longest, "particle coupling"} : flow;
+}
+
+template <class T>
+void Suspension<T>::require_possible(const StepLimit& flow) const {
+  const double longest = system_.longest_step();
+  if (longest * 1000 > flow.dt) return;
+  const MotionModel& motion = system_.options().motion;
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "particles.response_time = %.3g with a mass loading of %.3g (volume fraction %.3g, density ratio %.3g): "
+      "the coupling with the flow is stable with steps of %.3g alone, the flow takes %.3g; expected steps of "
+      "at least a thousandth of that; raise the response time, lower the volume fraction, or take "
+      "particles.coupling = \"one-way\"",
+      motion.response_time, system_.volume_fraction() * motion.density_ratio(), system_.volume_fraction(),
+      motion.density_ratio(), longest, flow.dt);
+  throw InputError(text);
+}
+
+template <class T>
 void Suspension<T>::add_stages(std::vector<Stage>& list) const {
   const bool couples = system_.couples(), collides = system_.collides();
-  const char* const one_way = "particles.coupling = \"one-way\"";
-  list.push_back({"particle feedback", couples, couples ? "force spread to eight points, projected" : one_way});
+  const char* const no_feedback = collides ? "particles.coupling = \"colliding\"" : "particles.coupling = \"one-way\"";
+  char spread[100];
+  std::snprintf(spread, sizeof spread, "force spread to eight points, clipped above %.3g, projected",
+                system_.options().most_volume_fraction);
+  list.push_back({"particle feedback", couples, couples ? spread : no_feedback});
   list.push_back({"velocity at points", true, "divided by the prefilter of the splines"});
   list.push_back({"particle sort", true, "every " + std::to_string(system_.options().sort_every) + " steps"});
   list.push_back({"particle motion", !system_.options().motion.frozen,
                   system_.options().motion.frozen ? "particles.frozen" : "Maxey-Riley, exponential in the drag"});
   list.push_back({"particle exclusion", collides,
-                  collides ? "strongest overlaps, one per particle" : "particles.coupling is not \"four-way\""});
+                  collides ? "strongest overlaps, one per particle"
+                           : "particles.coupling is neither \"four-way\" nor \"colliding\""});
   list.push_back({"Lyapunov exponents", follows_exponents_,
                   follows_exponents_ ? "shadow trajectories" : "particles.lyapunov = 0"});
 }
@@ -259,9 +303,7 @@ void Suspension<T>::values(std::vector<double>& row) {
   const double spacing = std::min({grid_.spacing(0), grid_.spacing(1), grid_.spacing(2)});
   const PairStatistics pairs = pair_statistics(grid_.lower, grid_.length, x, system_.size(), pair_range[0] * spacing,
                                                dimension_range[1] * spacing, 16, pair_centres / 4);
-  // Boxes of four grid spacings.
-  PeriodicCells boxes{grid_.lower, grid_.length, {}};
-  for (int axis = 0; axis < 3; ++axis) boxes.count[axis] = std::max(1, grid_.points[axis] / 4);
+  const PeriodicCells boxes = PeriodicCells::with_side(grid_.lower, grid_.length, 4 * spacing * (1 - 1e-12), 1e18);
   row.insert(row.end(), {std::sqrt(motion.mean_square_velocity), std::sqrt(motion.mean_square_acceleration),
                          std::sqrt(motion.mean_square_slip),
                          correlation_dimension(pairs, dimension_range[0] * spacing, dimension_range[1] * spacing),
@@ -307,6 +349,11 @@ void Suspension<T>::add_headings(std::vector<Distribution>& tables) const {
                      {"radial_distribution", "pairs over those of random places"},
                      {"correlation", "particles within the distance of a particle"}},
                     {}});
+  tables.push_back({"particle_boxes",
+                    {{"side", "length"},
+                     {"mean_count", "particles in a box"},
+                     {"variance", "of the count, over that of random places"}},
+                    {}});
   tables.push_back(
       {"particle_overlaps", {{"overlap", "of the touching distance"}, {"pairs", "probability density"}}, {}});
 }
@@ -323,9 +370,12 @@ void Suspension<T>::add_distributions(std::vector<Distribution>& tables) {
   for (std::size_t b = 0; b + 1 < pairs.radius.size(); ++b)
     tables[first].values.insert(tables[first].values.end(), {std::sqrt(pairs.radius[b] * pairs.radius[b + 1]),
                                                              pairs.radial_distribution[b], pairs.correlation[b + 1]});
+  for (const BoxCount& box :
+       box_counts(grid_.lower, grid_.length, system_.particles().positions(), system_.size(), spacing))
+    tables[first + 1].values.insert(tables[first + 1].values.end(), {box.side, box.mean, box.variance});
   const std::vector<double> overlaps = system_.overlap_histogram(overlap_bins);
   for (int b = 0; b < overlap_bins; ++b)
-    tables[first + 1].values.insert(tables[first + 1].values.end(),
+    tables[first + 2].values.insert(tables[first + 2].values.end(),
                                     {(b + 0.5) / overlap_bins, overlaps[static_cast<std::size_t>(b)]});
 }
 

@@ -98,7 +98,7 @@ double correlation_dimension(const PairStatistics& pairs, double from, double to
 }
 
 double box_count_variance(const PeriodicCells& boxes, const std::array<const double*, 3>& position, std::size_t size) {
-  if (size == 0) return 0;
+  if (size == 0 || boxes.size() < 2) return 0;
   CellOrder order;
   order.build(boxes, position[0], position[1], position[2], size);
   const double mean = static_cast<double>(size) / static_cast<double>(boxes.size());
@@ -106,7 +106,21 @@ double box_count_variance(const PeriodicCells& boxes, const std::array<const dou
     const double off = order.first()[c + 1] - order.first()[c] - mean;
     return off * off;
   });
-  return squares / static_cast<double>(boxes.size()) / mean;
+  return squares / static_cast<double>(boxes.size() - 1) / mean;
+}
+
+std::vector<BoxCount> box_counts(const std::array<double, 3>& lower, const std::array<double, 3>& length,
+                                 const std::array<const double*, 3>& position, std::size_t size, double smallest) {
+  std::vector<BoxCount> out;
+  const double shortest = std::min({length[0], length[1], length[2]});
+  // Sides that divide the box but for rounding must not lose a box.
+  for (double side = smallest * (1 - 1e-12); 2 * side <= shortest; side *= 2) {
+    const PeriodicCells boxes = PeriodicCells::with_side(lower, length, side, 1e18);
+    out.push_back({std::cbrt(boxes.side(0) * boxes.side(1) * boxes.side(2)),
+                   static_cast<double>(size) / static_cast<double>(boxes.size()),
+                   box_count_variance(boxes, position, size)});
+  }
+  return out;
 }
 
 }  // namespace spume

@@ -46,6 +46,7 @@ Exclusion::Exclusion(const std::array<double, 3>& lower, const std::array<double
   if (!(largest_diameter > 0) || !(2 * largest_diameter < shortest))
     throw std::invalid_argument("the largest diameter, " + std::to_string(largest_diameter) +
                                 ", must lie between 0 and half of the shortest side of the box");
+  for (int axis = 0; axis < 3; ++axis) inverse_length_[axis] = 1 / length[axis];
 }
 
 void Exclusion::prepare(const Spheres& spheres) {
@@ -55,14 +56,15 @@ void Exclusion::prepare(const Spheres& spheres) {
   for (int axis = 0; axis < 3; ++axis) inverse_side_[axis] = cells_.count[axis] / length_[axis];
   own_images_ = std::min({cells_.count[0], cells_.count[1], cells_.count[2]}) < 3;
   order_.build(cells_, spheres.position[0], spheres.position[1], spheres.position[2], n);
-  records_.resize(n);
-  const std::int32_t* order = order_.order().data();
-  parallel_for(n, [&](std::size_t k) {
-    const auto i = static_cast<std::size_t>(order[k]);
-    records_[k] = {spheres.position[0][i], spheres.position[1][i], spheres.position[2][i],
-                   static_cast<float>(spheres.diameter == nullptr ? spheres.common_diameter : spheres.diameter[i]),
-                   order[k]};
-  });
+  spheres_ = spheres;
+  for (int axis = 0; axis < 3; ++axis) {
+    place_[axis].resize(n + simd::lanes);  // a search may read past the last
+    float* place = place_[axis].data();
+    const double* x = spheres.position[axis];
+    const double lower = lower_[axis];
+    const std::int32_t* order = order_.order().data();
+    parallel_for(n, [=](std::size_t k) { place[k] = static_cast<float>(x[order[k]] - lower); });
+  }
 }
 
 ExclusionReport Exclusion::match(const Spheres& spheres, MatchingMethod method) {
@@ -73,37 +75,65 @@ ExclusionReport Exclusion::match(const Spheres& spheres, MatchingMethod method) 
     partner_[i] = -1;
     taken_[i] = 0;
   });
-  return method == MatchingMethod::rounds ? match_by_rounds(spheres) : match_by_sorting(spheres);
+  return method == MatchingMethod::rounds ? match_by_rounds() : match_by_sorting();
 }
 
-Exclusion::Best Exclusion::strongest_free(const Spheres& spheres, std::size_t k) const {
-  Best best{0, -1};
+Exclusion::Strongest Exclusion::strongest_free(std::size_t k) const {
+  Strongest best;
   const auto identifier = [&](std::int32_t rank) {
-    return spheres.identifier[records_[static_cast<std::size_t>(rank)].index];
+    return spheres_.identifier[index_of(static_cast<std::size_t>(rank))];
   };
-  for_each_overlap(k, [&](std::int32_t m, double overlap) {
-    if (overlap < best.overlap || taken_[static_cast<std::size_t>(m)] != 0) return;
-    if (best.rank < 0 || overlap > best.overlap) {
-      best = {overlap, m};
-      return;
+  search_around(centre_of(k), [&](const std::int32_t* rank, const double* overlap, int count) {
+    for (int f = 0; f < count; ++f) {
+      const std::int32_t m = rank[f];
+      const double q = taken_[static_cast<std::size_t>(m)] == 0 ? overlap[f] : 0.0;
+      best.found += q > 0 ? 1 : 0;
+      // Which of the remembered ones it comes before.
+      bool before[remembered];
+      for (int b = 0; b < remembered; ++b) before[b] = q > best.overlap[b];
+      if (q > 0 && (q == best.overlap[0] || q == best.overlap[1] || q == best.overlap[2])) [[unlikely]] {
+        const std::int64_t own = identifier(static_cast<std::int32_t>(k));
+        for (int b = 0; b < remembered; ++b)
+          if (q == best.overlap[b])
+            before[b] = stronger_overlap(q, own, identifier(m), best.overlap[b], own, identifier(best.rank[b]));
+      }
+      for (int b = remembered - 1; b > 0; --b) {
+        best.overlap[b] = before[b - 1] ? best.overlap[b - 1] : (before[b] ? q : best.overlap[b]);
+        best.rank[b] = before[b - 1] ? best.rank[b - 1] : (before[b] ? m : best.rank[b]);
+      }
+      best.overlap[0] = before[0] ? q : best.overlap[0];
+      best.rank[0] = before[0] ? m : best.rank[0];
     }
-    const std::int64_t own = identifier(static_cast<std::int32_t>(k));
-    if (stronger_overlap(overlap, own, identifier(m), best.overlap, own, identifier(best.rank))) best = {overlap, m};
   });
   return best;
 }
 
-// Here taken_, best_ and strength_ are by rank.
-ExclusionReport Exclusion::match_by_rounds(const Spheres& spheres) {
-  const std::size_t n = spheres.size;
+void Exclusion::remember(std::size_t k, const Strongest& strongest) {
+  std::copy_n(strongest.rank, remembered, best_[k].data());
+  has_more_[k] = strongest.found > remembered ? 1 : 0;
+}
+
+// Leaves the strongest overlap with a particle that is still free in front.
+void Exclusion::drop_taken(std::size_t k) {
+  auto& best = best_[k];
+  while (best[0] >= 0 && taken_[static_cast<std::size_t>(best[0])] != 0) {
+    std::copy(best.begin() + 1, best.end(), best.begin());
+    best.back() = -1;
+  }
+  if (best[0] < 0 && has_more_[k] != 0) remember(k, strongest_free(k));
+}
+
+ExclusionReport Exclusion::match_by_rounds() {
+  const std::size_t n = spheres_.size;
   best_.resize(n);
-  strength_.resize(n);
+  has_more_.resize(n);
   active_.resize(n);
   next_active_.resize(n);
-  parallel_for(n, [&](std::size_t k) {
-    const Best best = strongest_free(spheres, k);
-    best_[k] = best.rank;
-    strength_[k] = best.overlap;
+  ExclusionReport report;
+  report.strongest = parallel_max(n, 0.0, [&](std::size_t k) {
+    const Strongest strongest = strongest_free(k);
+    remember(k, strongest);
+    return strongest.overlap[0] / diameter_of(k);
   });
 
   // Keeps the ranks with a free partner, in ascending order, by fixed blocks.
@@ -112,7 +142,7 @@ ExclusionReport Exclusion::match_by_rounds(const Spheres& spheres) {
     const std::size_t block = std::max(default_block, block_count(count, max_reduction_blocks));
     const auto wanted = [&](std::size_t a) {
       const std::size_t k = from == nullptr ? a : static_cast<std::size_t>(from[a]);
-      return best_[k] >= 0 && taken_[k] == 0;
+      return best_[k][0] >= 0 && taken_[k] == 0;
     };
     parallel_blocks(count, block, [&](std::size_t b, std::size_t first, std::size_t last) {
       std::size_t kept = 0;
@@ -130,52 +160,52 @@ ExclusionReport Exclusion::match_by_rounds(const Spheres& spheres) {
     return count == 0 ? std::size_t{0} : start[blocks];
   };
   std::size_t left = keep(nullptr, n, active_);
-  const std::size_t overlapping = left;
-  int rounds = 0;
+  report.overlapping = left;
   while (left > 0) {
     // The globally strongest free pair is always the strongest for both, so that every round takes at least one.
-    ++rounds;
+    ++report.rounds;
     parallel_for(left, [&](std::size_t a) {
       const auto k = static_cast<std::size_t>(active_[a]);
-      const std::int32_t m = best_[k];
-      if (best_[static_cast<std::size_t>(m)] != active_[a]) return;
+      const std::int32_t m = best_[k][0];
+      if (best_[static_cast<std::size_t>(m)][0] != active_[a]) return;
       taken_[k] = 1;
-      partner_[static_cast<std::size_t>(records_[k].index)] = records_[static_cast<std::size_t>(m)].index;
+      partner_[index_of(k)] = static_cast<std::int32_t>(index_of(static_cast<std::size_t>(m)));
     });
     parallel_for(left, [&](std::size_t a) {
       const auto k = static_cast<std::size_t>(active_[a]);
-      if (taken_[k] != 0 || taken_[static_cast<std::size_t>(best_[k])] == 0) return;
-      const Best best = strongest_free(spheres, k);
-      best_[k] = best.rank;
+      if (taken_[k] == 0) drop_taken(k);
     });
     left = keep(active_.data(), left, next_active_);
     active_.swap(next_active_);
   }
-  return summarise(overlapping, rounds);
+  report.pairs = matched_pairs();
+  return report;
 }
 
-ExclusionReport Exclusion::match_by_sorting(const Spheres& spheres) {
+ExclusionReport Exclusion::match_by_sorting() {
   struct Overlap {
     double overlap;
     std::int64_t own, other;
     std::int32_t rank, other_rank;
   };
-  const std::size_t n = spheres.size;
-  strength_.resize(n);
+  const std::size_t n = spheres_.size;
   const std::size_t block = std::max(default_block, block_count(n, max_reduction_blocks));
   std::vector<std::vector<Overlap>> lists(block_count(n, block));
+  std::vector<ExclusionReport> parts(lists.size());
   const auto before = [](const Overlap& a, const Overlap& b) {
     return stronger_overlap(a.overlap, a.own, a.other, b.overlap, b.own, b.other);
   };
   parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
-      const std::int64_t own = spheres.identifier[records_[k].index];
-      strength_[k] = 0;
+      const std::int64_t own = spheres_.identifier[index_of(k)];
+      double strongest = 0;
       for_each_overlap(k, [&](std::int32_t m, double overlap) {
-        strength_[k] = std::max(strength_[k], overlap);
-        const std::int64_t other = spheres.identifier[records_[static_cast<std::size_t>(m)].index];
+        strongest = std::max(strongest, overlap / diameter_of(k));
+        const std::int64_t other = spheres_.identifier[index_of(static_cast<std::size_t>(m))];
         if (own > other) lists[b].push_back({overlap, own, other, static_cast<std::int32_t>(k), m});
       });
+      parts[b].overlapping += strongest > 0 ? 1 : 0;
+      parts[b].strongest = std::max(parts[b].strongest, strongest);
     }
     std::sort(lists[b].begin(), lists[b].end(), before);
   });
@@ -194,23 +224,24 @@ ExclusionReport Exclusion::match_by_sorting(const Spheres& spheres) {
       auto& other = taken_[static_cast<std::size_t>(o.other_rank)];
       if (own != 0 || other != 0) continue;
       own = other = 1;
-      const std::int32_t i = records_[static_cast<std::size_t>(o.rank)].index;
-      const std::int32_t j = records_[static_cast<std::size_t>(o.other_rank)].index;
-      partner_[static_cast<std::size_t>(i)] = j;
-      partner_[static_cast<std::size_t>(j)] = i;
+      const std::size_t i = index_of(static_cast<std::size_t>(o.rank));
+      const std::size_t j = index_of(static_cast<std::size_t>(o.other_rank));
+      partner_[i] = static_cast<std::int32_t>(j);
+      partner_[j] = static_cast<std::int32_t>(i);
     }
-  const auto overlapping = static_cast<std::size_t>(parallel_sum(n, [&](std::size_t k) { return strength_[k] > 0; }));
-  return summarise(overlapping, 1);
+  ExclusionReport report;
+  for (const ExclusionReport& part : parts) {
+    report.overlapping += part.overlapping;
+    report.strongest = std::max(report.strongest, part.strongest);
+  }
+  report.rounds = 1;
+  report.pairs = matched_pairs();
+  return report;
 }
 
-ExclusionReport Exclusion::summarise(std::size_t overlapping, int rounds) const {
-  const std::size_t n = partner_.size();
-  ExclusionReport report;
-  report.overlapping = overlapping;
-  report.rounds = rounds;
-  report.pairs = static_cast<std::size_t>(parallel_sum(n, [&](std::size_t i) { return partner_[i] >= 0 ? 0.5 : 0.0; }));
-  report.strongest = parallel_max(n, 0.0, [&](std::size_t k) { return strength_[k] / records_[k].diameter; });
-  return report;
+std::size_t Exclusion::matched_pairs() const {
+  return static_cast<std::size_t>(
+      parallel_sum(partner_.size(), [&](std::size_t i) { return partner_[i] >= 0 ? 0.5 : 0.0; }));
 }
 
 void Exclusion::separate(const Spheres& spheres) const {
@@ -249,10 +280,10 @@ void Exclusion::separate(const Spheres& spheres) const {
 }
 
 double Exclusion::bytes() const {
-  return order_.bytes() + static_cast<double>(sizeof(Record) * records_.capacity() + 8 * strength_.capacity() +
-                                              4 * (partner_.capacity() + best_.capacity() + active_.capacity() +
-                                                   next_active_.capacity()) +
-                                              taken_.capacity());
+  return order_.bytes() +
+         static_cast<double>(4 * (3 * place_[0].capacity() + partner_.capacity() + remembered * best_.capacity() +
+                                  active_.capacity() + next_active_.capacity()) +
+                             taken_.capacity() + has_more_.capacity());
 }
 
 }  // namespace spume

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "spume/core/periodic_grid.hpp"
+#include "spume/core/simd.hpp"
 #include "spume/physics/particles/exclusion.hpp"
 
 namespace spume {
@@ -16,15 +17,28 @@ namespace spume {
 inline constexpr std::int32_t crowd = 256;
 inline constexpr std::int32_t crowd_window = 64;
 
-template <bool own_images, class Visit>
-void Exclusion::visit_cells(const Record& here, std::int32_t rank, Visit&& visit) const {
-  const double own_radius = 0.5 * static_cast<double>(here.diameter);
-  const double reach = own_radius + 0.5 * largest_diameter_;
-  const double place[3] = {here.x, here.y, here.z};
+// With the sphere of that rank; 0: none.
+[[gnu::always_inline]] inline double Exclusion::overlap_with(const Centre& here, std::int32_t rank) const {
+  const auto i = index_of(static_cast<std::size_t>(rank));
+  double distance_2 = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    double d = here.place[axis] - spheres_.position[axis][i];
+    d -= length_[axis] * std::nearbyint(d * inverse_length_[axis]);
+    distance_2 += d * d;
+  }
+  const double touching = here.radius + 0.5 * diameter_of(static_cast<std::size_t>(rank));
+  const double overlap = touching - std::sqrt(distance_2);
+  return overlapping(distance_2, touching) & (rank != here.rank) ? overlap : 0.0;
+}
+
+template <bool own_images, class Use>
+void Exclusion::search_cells(const Centre& here, Use&& use) const {
+  const double reach = here.radius + 0.5 * largest_diameter_;
+  const std::int32_t rank = here.rank;
   int from[3], to[3], own[3];
   for (int axis = 0; axis < 3; ++axis) {
     const double scale = inverse_side_[axis];
-    const double cell = (place[axis] - lower_[axis]) * scale;
+    const double cell = (here.place[axis] - lower_[axis]) * scale;
     own[axis] = std::clamp(static_cast<int>(cell), 0, cells_.count[axis] - 1);
     if (cells_.count[axis] < 3) {
       from[axis] = 0;
@@ -42,49 +56,17 @@ void Exclusion::visit_cells(const Record& here, std::int32_t rank, Visit&& visit
   const std::size_t own_cell = number(own[0], own[1], own[2]);
   const bool own_crowded = rank >= 0 && first[own_cell + 1] - first[own_cell] > crowd;
 
-  // Overlaps are rare and unforeseeable: found ones are put down without a branch and visited together.
-  constexpr int room = 64;
-  std::int32_t found[room];
-  double found_distance_2[room];
-  int count = 0;
-  const auto visit_found = [&] {
-    for (int f = 0; f < count; ++f) {
-      const Record& there = records_[static_cast<std::size_t>(found[f])];
-      visit(found[f], own_radius + 0.5 * static_cast<double>(there.diameter) - std::sqrt(found_distance_2[f]));
-    }
-    count = 0;
+  // What to look at, cell rows along z: ranks, and the image of the box that they lie in.
+  struct Row {
+    std::int32_t begin, end;
+    float shift[3];
   };
-  const Record* records = records_.data();
-  const auto scan = [&](std::int32_t begin, std::int32_t end, double shift_x, double shift_y, double shift_z) {
-    while (begin < end) {
-      const std::int32_t stop = std::min(end, begin + room - count);
-      for (std::int32_t m = begin; m < stop; ++m) {
-        const Record& there = records[m];
-        double dx = here.x - there.x, dy = here.y - there.y, dz = here.z - there.z;
-        if constexpr (own_images) {
-          dx = nearest_image(dx, length_[0]);
-          dy = nearest_image(dy, length_[1]);
-          dz = nearest_image(dz, length_[2]);
-        } else {
-          dx -= shift_x;
-          dy -= shift_y;
-          dz -= shift_z;
-        }
-        const double distance_2 = dx * dx + dy * dy + dz * dz;
-        const double touching = own_radius + 0.5 * static_cast<double>(there.diameter);
-        found[count] = m;
-        found_distance_2[count] = distance_2;
-        count += static_cast<int>(overlapping(distance_2, touching)) & static_cast<int>(m != rank);
-      }
-      begin = stop;
-      if (count == room) visit_found();
-    }
-  };
-  // One row of cells along z within the grid.
-  const auto scan_row = [&](int i, int j, int l0, int l1, double shift_x, double shift_y, double shift_z) {
+  Row rows[96];  // at most 9 rows, of 3 cells each where there is a crowd, twice at the ends of the box
+  int row_count = 0;
+  const auto add_row = [&](int i, int j, int l0, int l1, float shift_x, float shift_y, float shift_z) {
     const std::int32_t begin = first[number(i, j, l0)], end = first[number(i, j, l1) + 1];
     if (rank < 0 || (!own_crowded && end - begin <= crowd)) {
-      scan(begin, end, shift_x, shift_y, shift_z);
+      rows[row_count++] = {begin, end, {shift_x, shift_y, shift_z}};
       return;
     }
     for (int l = l0; l <= l1; ++l) {
@@ -93,44 +75,93 @@ void Exclusion::visit_cells(const Record& here, std::int32_t rank, Visit&& visit
         b = std::max(b, rank - crowd_window);
         e = std::min(e, rank + crowd_window + 1);
       }
-      scan(b, e, shift_x, shift_y, shift_z);
+      rows[row_count++] = {b, e, {shift_x, shift_y, shift_z}};
     }
   };
-  const auto wrapped = [&](int i, int axis, double& shift) {
+  const auto wrapped = [&](int i, int axis, float& shift) {
     const int n = cells_.count[axis];
-    shift = i < 0 ? -length_[axis] : (i >= n ? length_[axis] : 0.0);
+    shift = static_cast<float>(i < 0 ? -length_[axis] : (i >= n ? length_[axis] : 0.0));
     return i < 0 ? i + n : (i >= n ? i - n : i);
   };
   const int nz = cells_.count[2];
+  const auto length_z = static_cast<float>(length_[2]);
   for (int i = from[0]; i <= to[0]; ++i) {
-    double shift_x, shift_y;
+    float shift_x, shift_y;
     const int wi = wrapped(i, 0, shift_x);
     for (int j = from[1]; j <= to[1]; ++j) {
       const int wj = wrapped(j, 1, shift_y);
-      if (from[2] < 0) scan_row(wi, wj, nz + from[2], nz - 1, shift_x, shift_y, -length_[2]);
-      scan_row(wi, wj, std::max(from[2], 0), std::min(to[2], nz - 1), shift_x, shift_y, 0);
-      if (to[2] >= nz) scan_row(wi, wj, 0, to[2] - nz, shift_x, shift_y, length_[2]);
+      if (from[2] < 0) add_row(wi, wj, nz + from[2], nz - 1, shift_x, shift_y, -length_z);
+      add_row(wi, wj, std::max(from[2], 0), std::min(to[2], nz - 1), shift_x, shift_y, 0);
+      if (to[2] >= nz) add_row(wi, wj, 0, to[2] - nz, shift_x, shift_y, length_z);
     }
   }
-  visit_found();
+
+  // Places from the lower corner in single precision are off by 2^-24 of the box, distances by less than eight times
+  // that along every axis, the image included.
+  const double longest = std::max({length_[0], length_[1], length_[2]});
+  const double safe_reach = reach + 16 * 0x1p-24 * longest;
+  const simd::f32x8 limit_2 = simd::splat(static_cast<float>(safe_reach * safe_reach * (1 + 1e-6)));
+  const float centre[3] = {static_cast<float>(here.place[0] - lower_[0]), static_cast<float>(here.place[1] - lower_[1]),
+                           static_cast<float>(here.place[2] - lower_[2])};
+  const float *x = place_[0].data(), *y = place_[1].data(), *z = place_[2].data();
+
+  // Overlaps are rare and unforeseeable: what may overlap is put down without a branch and looked at together.
+  constexpr int room = 64;
+  std::int32_t found[room + simd::lanes];
+  double overlap[room + simd::lanes];
+  const auto use_found = [&](int n) {
+    for (int f = 0; f < n; ++f) overlap[f] = overlap_with(here, found[f]);
+    use(found, overlap, n);
+    return 0;
+  };
+  int count = 0;
+  for (int r = 0; r < row_count; ++r) {
+    const std::int32_t end = rows[r].end;
+    const simd::f32x8 cx = simd::splat(centre[0] - rows[r].shift[0]), cy = simd::splat(centre[1] - rows[r].shift[1]),
+                      cz = simd::splat(centre[2] - rows[r].shift[2]);
+    for (std::int32_t m = rows[r].begin; m < end; m += simd::lanes) {
+      unsigned near = 0xffU;
+      if constexpr (!own_images) {
+        const simd::f32x8 dx = simd::load(x + m) - cx, dy = simd::load(y + m) - cy, dz = simd::load(z + m) - cz;
+        near = simd::less_bits(dx * dx + dy * dy + dz * dz, limit_2);
+      }
+      near &= 0xffU >> (simd::lanes - std::min(end - m, simd::lanes));
+      count += simd::store_lanes(found + count, m, near);
+      if (count > room) count = use_found(count);
+    }
+  }
+  use_found(count);
+}
+
+inline Exclusion::Centre Exclusion::centre_of(std::size_t k) const {
+  const std::size_t i = index_of(k);
+  return {{spheres_.position[0][i], spheres_.position[1][i], spheres_.position[2][i]},
+          0.5 * diameter_of(k),
+          static_cast<std::int32_t>(k)};
 }
 
 template <class Visit>
 void Exclusion::for_each_overlap(std::size_t k, Visit&& visit) const {
-  visit_around(records_[k], static_cast<std::int32_t>(k), visit);
+  search_around(centre_of(k), [&](const std::int32_t* rank, const double* overlap, int count) {
+    for (int f = 0; f < count; ++f)
+      if (overlap[f] > 0) visit(rank[f], overlap[f]);
+  });
 }
 
 template <class Visit>
 void Exclusion::for_each_covering(const std::array<double, 3>& point, Visit&& visit) const {
-  visit_around({point[0], point[1], point[2], 0, -1}, -1, visit);
+  search_around({point, 0, -1}, [&](const std::int32_t* rank, const double* overlap, int count) {
+    for (int f = 0; f < count; ++f)
+      if (overlap[f] > 0) visit(rank[f], overlap[f]);
+  });
 }
 
-template <class Visit>
-void Exclusion::visit_around(const Record& here, std::int32_t rank, Visit&& visit) const {
+template <class Use>
+void Exclusion::search_around(const Centre& here, Use&& use) const {
   if (own_images_)
-    visit_cells<true>(here, rank, visit);
+    search_cells<true>(here, use);
   else
-    visit_cells<false>(here, rank, visit);
+    search_cells<false>(here, use);
 }
 
 }  // namespace spume

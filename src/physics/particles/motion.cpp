@@ -31,11 +31,6 @@ struct StepCoefficients {
   }
 };
 
-// Schiller and Naumann (1935): drag over Stokes drag.
-double drag_factor(double slip, double diameter, double viscosity) {
-  return 1 + 0.15 * std::pow(slip * diameter / viscosity, 0.687);
-}
-
 struct Sums {
   double velocity = 0, acceleration = 0, slip = 0, max_speed_2 = 0;
 };
@@ -87,11 +82,11 @@ Sums move_range(const MotionModel& model, const SplineField<Real>& field, double
           return std::sqrt((u[0] - velocity[0]) * (u[0] - velocity[0]) + (u[1] - velocity[1]) * (u[1] - velocity[1]) +
                            (u[2] - velocity[2]) * (u[2] - velocity[2]));
         };
-        const double h = 0.5 * dt * drag_factor(slip_of(v), diameter, model.viscosity) / tau;
+        const double h = 0.5 * dt * schiller_naumann_factor(slip_of(v), diameter, model.viscosity) / tau;
         const RelaxationCoefficients half = relaxation_coefficients(h);
         double mid[3];
         for (int c = 0; c < 3; ++c) mid[c] = u[c] + half.decay * (v[c] - u[c]) + 0.5 * dt * half.phi1 * drift[c];
-        tau /= drag_factor(slip_of(mid), diameter, model.viscosity);
+        tau /= schiller_naumann_factor(slip_of(mid), diameter, model.viscosity);
       }
       own = StepCoefficients(dt, tau);
       k = &own;
@@ -117,10 +112,9 @@ Sums move_range(const MotionModel& model, const SplineField<Real>& field, double
         const double force =
             volume * (material[c] - density_ratio * acceleration[c] - (1 - density_ratio) * model.gravity[c]);
         double& kept = (*particles.force[c])[p];
-        output.amounts[4 * p + c] = force + output.extrapolation * (force - kept);
+        output.amounts[3 * p + c] = force + output.extrapolation * (force - kept);
         kept = force;
       }
-      output.amounts[4 * p + 3] = volume;
     }
 
     double speed_2 = 0;
@@ -136,6 +130,10 @@ Sums move_range(const MotionModel& model, const SplineField<Real>& field, double
 }
 
 }  // namespace
+
+double schiller_naumann_factor(double slip, double diameter, double viscosity) {
+  return 1 + 0.15 * std::pow(slip * diameter / viscosity, 0.687);
+}
 
 RelaxationCoefficients relaxation_coefficients(double h) {
   // Below 1/4, (1 - phi1) / h loses digits; ten terms of phi2 = sum_k (-h)^k / (k+2)! leave 1e-15.

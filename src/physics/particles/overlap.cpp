@@ -15,7 +15,6 @@ SampledValue overlap_ratio(Exclusion& exclusion, const Spheres& spheres, std::si
   if (spheres.size == 0 || samples == 0) return {};
   exclusion.prepare(spheres);
   const PeriodicCells& box = exclusion.cells();
-  const auto& records = exclusion.records();
 
   // Spheres are drawn uniformly and weighted by their volume: a ratio of two means.
   struct Sums {
@@ -25,18 +24,19 @@ SampledValue overlap_ratio(Exclusion& exclusion, const Spheres& spheres, std::si
     const auto r = random_uniform(seed, RandomPurpose::overlap, s, step, 0);
     const auto q = random_uniform(seed, RandomPurpose::overlap, s, step, 1);
     // 2^-32 is too coarse to reach every one of many spheres evenly; a second number refines it.
-    const double place = (r[0] + q[0] * 0x1p-32) * static_cast<double>(records.size());
-    const auto& sphere = records[std::min(static_cast<std::size_t>(place), records.size() - 1)];
-    const double radius = 0.5 * static_cast<double>(sphere.diameter) * std::cbrt(r[1]);
+    const double place = (r[0] + q[0] * 0x1p-32) * static_cast<double>(spheres.size);
+    const std::size_t rank = std::min(static_cast<std::size_t>(place), spheres.size - 1);
+    const std::size_t i = exclusion.index_of(rank);
+    const double radius = 0.5 * exclusion.diameter_of(rank) * std::cbrt(r[1]);
     const double cosine = 2 * r[2] - 1, angle = 2 * M_PI * r[3];
     const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
     const std::array<double, 3> point{
-        wrap_periodic(sphere.x + radius * sine * std::cos(angle), box.lower[0], box.length[0]),
-        wrap_periodic(sphere.y + radius * sine * std::sin(angle), box.lower[1], box.length[1]),
-        wrap_periodic(sphere.z + radius * cosine, box.lower[2], box.length[2])};
+        wrap_periodic(spheres.position[0][i] + radius * sine * std::cos(angle), box.lower[0], box.length[0]),
+        wrap_periodic(spheres.position[1][i] + radius * sine * std::sin(angle), box.lower[1], box.length[1]),
+        wrap_periodic(spheres.position[2][i] + radius * cosine, box.lower[2], box.length[2])};
     int covering = 0;
     exclusion.for_each_covering(point, [&](std::int32_t, double) { ++covering; });
-    const double weight = std::pow(static_cast<double>(sphere.diameter), 3);
+    const double weight = std::pow(exclusion.diameter_of(rank), 3);
     // Rounding may put a point of the surface outside even its own sphere.
     return std::pair{weight, weight / std::max(covering, 1)};
   };
@@ -69,15 +69,13 @@ SampledValue overlap_ratio(Exclusion& exclusion, const Spheres& spheres, std::si
 
 std::vector<double> overlap_histogram(Exclusion& exclusion, const Spheres& spheres, int bins) {
   exclusion.prepare(spheres);
-  const auto& records = exclusion.records();
   const auto width = static_cast<std::size_t>(bins);
-  const std::size_t block = std::max(default_block, block_count(records.size(), 64));
-  std::vector<std::vector<double>> counts(block_count(records.size(), block), std::vector<double>(width, 0.0));
-  parallel_blocks(records.size(), block, [&](std::size_t b, std::size_t first, std::size_t last) {
+  const std::size_t block = std::max(default_block, block_count(spheres.size, 64));
+  std::vector<std::vector<double>> counts(block_count(spheres.size, block), std::vector<double>(width, 0.0));
+  parallel_blocks(spheres.size, block, [&](std::size_t b, std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k)
       exclusion.for_each_overlap(k, [&](std::int32_t m, double overlap) {
-        const double touching = 0.5 * (static_cast<double>(records[k].diameter) +
-                                       static_cast<double>(records[static_cast<std::size_t>(m)].diameter));
+        const double touching = 0.5 * (exclusion.diameter_of(k) + exclusion.diameter_of(static_cast<std::size_t>(m)));
         counts[b][std::min(width - 1, static_cast<std::size_t>(overlap / touching * bins))] += 1;
       });
   });

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
@@ -23,7 +24,7 @@ const ParticleOptions& checked(const PeriodicGrid& grid, const ParticleOptions& 
                        " does not lie between 0 and half of the shortest side of the box, " + std::to_string(shortest));
   if (options.count > std::size_t{1} << 30)
     throw InputError(std::to_string(options.count) + " particles; at most 2^30 can be numbered");
-  if (options.coupling != Coupling::one_way && !(options.motion.beta > 0))
+  if (acts_on_flow(options.coupling) && !(options.motion.beta > 0))
     throw InputError("two-way coupling needs particles of finite density, beta > 0");
   return options;
 }
@@ -33,13 +34,13 @@ double largest_diameter(const ParticleOptions& options) {
 }
 
 ParticleArrays arrays_for(const ParticleOptions& options) {
-  return {options.coupling != Coupling::one_way, options.placement.diameters.size() > 1};
+  return {acts_on_flow(options.coupling), options.placement.diameters.size() > 1};
 }
 
 }  // namespace
 
 ParticleSystem::ParticleSystem(const PeriodicGrid& grid, const ParticleOptions& options)
-    : grid_(grid), options_(checked(grid, options)), particles_(arrays_for(options)), clock_(2) {
+    : grid_(grid), options_(checked(grid, options)), particles_(arrays_for(options)), clock_(4) {
   particles_.common_diameter = options.placement.diameters.front();
   particles_.fields.resize(options.count);
   place_particles(options.placement, grid.lower, grid.length, particles_);
@@ -49,7 +50,11 @@ ParticleSystem::ParticleSystem(const PeriodicGrid& grid, const ParticleOptions& 
     field_ = SplineField<double>(grid, options.spline_order);
   if (couples()) {
     deposition_ = LinearDeposition(grid);
-    amounts_.resize(4 * options.count);
+    amounts_.resize(3 * options.count + 1);
+    constexpr int fractions = 32;
+    for (int k = 0; k <= fractions; ++k)
+      stable_step_.push_back(
+          stable_coupling_step(options.motion, options.scheme, options.most_volume_fraction * k / fractions));
   }
   const double volume = parallel_sum(size(), [&](std::size_t i) { return sphere_volume(particles_.diameter_of(i)); });
   volume_fraction_ = volume / (grid.length[0] * grid.length[1] * grid.length[2]);
@@ -58,9 +63,8 @@ ParticleSystem::ParticleSystem(const PeriodicGrid& grid, const ParticleOptions& 
 template <class Source>
 void ParticleSystem::begin(const std::array<const Source*, 3>& velocity) {
   resume(velocity);
-  order_by_cell();
-  particles_.fields.permute(order_.order());
-  order_is_current_ = false;
+  Ledger untimed;
+  sort(untimed);
   if (!options_.motion.frozen)
     std::visit(
         [&](const auto& field) {
@@ -76,11 +80,7 @@ void ParticleSystem::begin(const std::array<const Source*, 3>& velocity) {
                                                 return square;
                                               }) /
                                  static_cast<double>(std::max<std::size_t>(size(), 1));
-  // No step was made yet: bubbles without a force, but with their volume.
-  for (std::size_t i = 0; i < amounts_.size() / 4; ++i) {
-    for (int c = 0; c < 3; ++c) amounts_[4 * i + c] = 0;
-    amounts_[4 * i + 3] = sphere_volume(particles_.diameter_of(i));
-  }
+  amounts_.fill(0);  // no step was made yet: bubbles without a force, but with their volume
 }
 
 template <class Source>
@@ -102,12 +102,11 @@ void ParticleSystem::advance(double dt, const std::array<const Source*, 3>& velo
     if (couples()) {
       output.amounts = amounts_.data();
       // From the middles of the last two steps to the time at which the force is wanted.
-      output.extrapolation = clock_[1] > 0 ? options_.force_lead * dt / (0.5 * (dt + clock_[0])) : 0;
+      output.extrapolation = clock_[1] > 0 ? options_.scheme.lead * dt / (0.5 * (dt + clock_[0])) : 0;
     }
     motion_ = std::visit(
         [&](const auto& field) { return move_particles(options_.motion, field, dt, particles_, output); }, field_);
   }
-  order_is_current_ = false;
   if (collides()) {
     const auto scope = ledger.time("particle exclusion", n);
     exclusion_report_ = cells().match(spheres(), options_.matching);
@@ -121,29 +120,41 @@ void ParticleSystem::advance(double dt, const std::array<const Source*, 3>& velo
   }
   clock_[0] = dt;
   clock_[1] += 1;
+  clock_[3] = std::sqrt(motion_.mean_square_slip);
+}
+
+double ParticleSystem::longest_step() const {
+  if (!couples()) return std::numeric_limits<double>::infinity();
+  const double last = static_cast<double>(stable_step_.size()) - 1;
+  const double fraction = (clock_[2] > 0 ? clock_[2] : volume_fraction_) / options_.most_volume_fraction;
+  const double steps = stable_step_[static_cast<std::size_t>(std::ceil(std::min(fraction, 1.0) * last))];
+  const MotionModel& motion = options_.motion;
+  const auto& diameters = options_.placement.diameters;
+  const double smallest = *std::min_element(diameters.begin(), diameters.end());
+  double response = motion.response_time * std::pow(smallest / diameters.front(), 2);
+  // Few particles slip three times as fast as the root of the mean square.
+  if (motion.drag == DragLaw::schiller_naumann)
+    response /= schiller_naumann_factor(3 * clock_[3], smallest, motion.viscosity);
+  return steps * response;
 }
 
 template <class Real>
 void ParticleSystem::feedback(const std::array<Real*, 3>& force, Ledger& ledger) {
   const auto scope = ledger.time("particle feedback", static_cast<double>(size()));
-  order_by_cell();
-  deposition_report_ = deposition_.deposit<Real>(order_, particles_.positions(), amounts_.data(),
-                                                 options_.most_volume_fraction, force, nullptr);
-}
-
-void ParticleSystem::order_by_cell() {
-  if (order_is_current_) return;
-  const auto x = particles_.positions();
-  order_.build({grid_.lower, grid_.length, grid_.points}, x[0], x[1], x[2], size());
-  order_is_current_ = true;
+  const DepositedParticles given{particles_.positions(), amounts_.data(),
+                                 particles_.diameter == nullptr ? nullptr : particles_.diameter->data(),
+                                 particles_.common_diameter};
+  order().build(deposition_.cells(), given.position[0], given.position[1], given.position[2], size());
+  deposition_report_ = deposition_.deposit<Real>(order(), given, options_.most_volume_fraction, force, nullptr);
+  clock_[2] = deposition_report_.most_volume_fraction;
 }
 
 void ParticleSystem::sort(Ledger& ledger) {
   const auto scope = ledger.time("particle sort", static_cast<double>(size()));
-  order_by_cell();
+  const auto x = particles_.positions();
+  order().build({grid_.lower, grid_.length, grid_.points}, x[0], x[1], x[2], size());
   // The forces need not follow: the step that follows finds them anew.
-  if (!order_.already_sorted()) particles_.fields.permute(order_.order());
-  order_is_current_ = false;
+  if (!order().already_sorted()) particles_.fields.permute(order().order());
 }
 
 Spheres ParticleSystem::spheres() {
@@ -184,9 +195,8 @@ std::vector<ParticleSystem::StateArray> ParticleSystem::state() {
 }
 
 void ParticleSystem::restored() {
-  order_is_current_ = false;
   for (const StateArray& array : state()) {
-    const std::size_t wanted = array.f64 == &clock_ ? 2 : (array.f64 == &amounts_ ? 4 * size() : size());
+    const std::size_t wanted = array.f64 == &clock_ ? 4 : (array.f64 == &amounts_ ? 3 * size() + 1 : size());
     const std::size_t found = array.f64 != nullptr ? array.f64->size() : array.i64->size();
     if (found != wanted)
       throw FileError("the checkpoint holds " + std::to_string(found) + " values of " + array.name +
@@ -206,12 +216,12 @@ std::vector<ParticleSystem::ArraySize> ParticleSystem::arrays() const {
 
 double ParticleSystem::estimated_bytes(const PeriodicGrid& grid, const ParticleOptions& options) {
   const auto n = static_cast<double>(options.count);
-  const bool couples = options.coupling != Coupling::one_way, collides = options.coupling == Coupling::four_way;
+  const bool couples = acts_on_flow(options.coupling), collides = excludes(options.coupling);
   // State, one scratch array of each type, and the order.
-  double per_particle = 8 * 7 + 16 + 16;
+  double per_particle = 8 * 7 + 16 + 18;
   if (options.placement.diameters.size() > 1) per_particle += 8;
-  if (couples) per_particle += 8 * 3 + 8 * 4;
-  if (collides) per_particle += 32 + 16 + 8 + 16 + 1 + 4;
+  if (couples) per_particle += 8 * 3 + 8 * 3;
+  if (collides) per_particle += 12 + 4 + 12 + 8 + 2 + 4;
   double points = 1;
   for (int axis = 0; axis < 3; ++axis) points *= grid.points[axis] + options.spline_order - 1;
   return per_particle * n + 4.0 * static_cast<double>(grid.point_count()) +

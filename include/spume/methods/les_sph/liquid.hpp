@@ -103,9 +103,11 @@ struct Liquid {
   // Of the accepted state.
   double max_speed = 0;
   double limiting_speed = 0;  // without spray, which only falls
+  double wall_speed = 0;      // largest of the moving walls where images see them
   double max_eddy_viscosity = 0;
   double max_divergence = 0;
-  double dissipation = 0;  // integral of rho (nu + nu_t) |S|^2
+  double dissipation = 0;    // integral of rho (nu + nu_t) |S|^2
+  double energy_supply = 0;  // energy at the start and the work of uniform forces other than gravity since
 
   std::size_t size() const { return fields.size(); }
   bool dynamic_closure() const;
@@ -144,6 +146,14 @@ void keep_inside(const Liquid& liquid, const WallPositions& walls, Vec3& positio
 constexpr int spray_neighbours(int dimensions) {
   return dimensions == 3 ? 8 : 3;
 }
+
+// The energy that a flow may hold: kinetic, potential and stored in the pressure at the start (start_energy), and the
+// work of uniform forces. limited_energy_supply gives it at the end of a step and throws StepFailure if the kinetic
+// energy of the predicted velocities is more than twice the supply less the present potential energy. A consistent
+// scheme stays below once the supply; what an instability makes passes twice soon. Bubbles and moving walls add what
+// they may give at most; with forces that vary in space there is no limit.
+void start_energy(Liquid& liquid);
+double limited_energy_supply(const Liquid& liquid, double dt);
 
 // Largest speed and eddy viscosity of the present state, for the step limit.
 void update_extremes(Liquid& liquid);

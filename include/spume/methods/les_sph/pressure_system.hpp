@@ -10,6 +10,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "spume/core/ledger.hpp"
 #include "spume/methods/les_sph/liquid.hpp"
@@ -50,6 +51,7 @@ class PressureSystem {
   // One correction of reduced_pressure by a Krylov solve in float, or in double with pressure.precision = "double".
   KrylovResult correct(Liquid& liquid, double size, double target, int left, bool singular);
   KrylovResult correct_in_double(Liquid& liquid, double size, double target, int left, bool singular);
+  void demand_convergence(const std::string& solve) const;
   void remove_constant(Liquid& liquid) const;
   void set_weights(const Liquid& liquid);
 

@@ -33,6 +33,11 @@ class Suspension {
   void before_step(Ledger& ledger);  // hands the flow its force
   void after_step(double dt, Ledger& ledger);
 
+  // The shorter of the flow's limit and that of the coupling.
+  StepLimit limited(const StepLimit& flow) const;
+  // Throws InputError when the coupling would need steps far below those of the flow.
+  void require_possible(const StepLimit& flow) const;
+
   void add_stages(std::vector<Stage>& list) const;
   void add_arrays(std::vector<ArrayInfo>& list) const;
   void add_columns(std::vector<SeriesColumn>& list) const;

@@ -28,8 +28,19 @@ PairStatistics pair_statistics(const std::array<double, 3>& lower, const std::ar
 // [from, to] that found a pair; 3 for a random distribution. Not a number when fewer than two did.
 double correlation_dimension(const PairStatistics& pairs, double from, double to);
 
-// Variance of the number of particles in a box over its mean, boxes counted as given per axis: 1 for a random
-// distribution. Zero without particles.
+// Variance of the number of particles in a box over that of particles placed at random: 1 for these in the mean,
+// exactly (their variance is mean (1 - 1/boxes), as all particles lie somewhere), 0 for a lattice. Zero without
+// particles or with a single box.
 double box_count_variance(const PeriodicCells& boxes, const std::array<const double*, 3>& position, std::size_t size);
+
+// The same for cubes (nearly: a whole number fits along every axis) with sides of `smallest` and doublings of it, as
+// long as two fit along every axis.
+struct BoxCount {
+  double side;  // cube root of the volume
+  double mean;  // particles in a box
+  double variance;
+};
+std::vector<BoxCount> box_counts(const std::array<double, 3>& lower, const std::array<double, 3>& length,
+                                 const std::array<const double*, 3>& position, std::size_t size, double smallest);
 
 }  // namespace spume

@@ -53,53 +53,70 @@ class Exclusion {
 
   const Array<std::int32_t>& partner() const { return partner_; }
   const PeriodicCells& cells() const { return cells_; }
-  const CellOrder& order() const { return order_; }
+  // May be borrowed for another order; every search starts with its own.
+  CellOrder& order() { return order_; }
   double bytes() const;
 
-  // A particle in the order of the cells.
-  struct Record {
-    double x, y, z;
-    float diameter;
-    std::int32_t index;
-  };
-
-  // Calls visit(rank, overlap) for every particle that overlaps the one of rank k, in an order that depends on the
-  // positions alone. Valid after prepare().
+  // Sorts the spheres into cells, for the two searches below; they look at the spheres as they are then.
   void prepare(const Spheres& spheres);
+  // Calls visit(rank, overlap) for every particle that overlaps the one of rank k in order(), in an order that depends
+  // on the positions alone.
   template <class Visit>
   void for_each_overlap(std::size_t k, Visit&& visit) const;
   // The same for every particle that covers the point; the overlap is then its depth below the surface.
   template <class Visit>
   void for_each_covering(const std::array<double, 3>& point, Visit&& visit) const;
-  const Array<Record>& records() const { return records_; }
+  std::size_t index_of(std::size_t rank) const { return static_cast<std::size_t>(order_.order()[rank]); }
+  double diameter_of(std::size_t rank) const {
+    return spheres_.diameter == nullptr ? spheres_.common_diameter : spheres_.diameter[index_of(rank)];
+  }
 
  private:
-  struct Best {
-    double overlap;
-    std::int32_t rank;  // of the partner; -1: none
+  // The strongest overlaps of a particle with free ones, in order.
+  static constexpr int remembered = 3;
+  struct Strongest {
+    double overlap[remembered] = {};
+    std::int32_t rank[remembered] = {-1, -1, -1};  // of the partner; -1: none
+    int found = 0;                                 // overlaps, also those not remembered
   };
-  ExclusionReport match_by_rounds(const Spheres& spheres);
-  ExclusionReport match_by_sorting(const Spheres& spheres);
-  template <class Visit>
-  void visit_around(const Record& here, std::int32_t rank, Visit&& visit) const;
-  template <bool own_images, class Visit>
-  void visit_cells(const Record& here, std::int32_t rank, Visit&& visit) const;
-  Best strongest_free(const Spheres& spheres, std::size_t k) const;
-  ExclusionReport summarise(std::size_t overlapping, int rounds) const;
+  ExclusionReport match_by_rounds();
+  ExclusionReport match_by_sorting();
+  // Where a search starts and how far it goes.
+  struct Centre {
+    std::array<double, 3> place;
+    double radius;
+    std::int32_t rank;  // of the sphere there; -1: a point
+  };
+  // Calls use(ranks, overlaps, count) for groups of neighbours; an overlap of 0 is none.
+  template <class Use>
+  void search_around(const Centre& here, Use&& use) const;
+  template <bool own_images, class Use>
+  void search_cells(const Centre& here, Use&& use) const;
+  Centre centre_of(std::size_t k) const;
+  double overlap_with(const Centre& here, std::int32_t rank) const;
+  Strongest strongest_free(std::size_t k) const;
+  void remember(std::size_t k, const Strongest& strongest);
+  void drop_taken(std::size_t k);
+  std::size_t matched_pairs() const;
 
-  std::array<double, 3> lower_{}, length_{}, inverse_side_{};
+  std::array<double, 3> lower_{}, length_{}, inverse_length_{}, inverse_side_{};
   double largest_diameter_ = 0;
   bool own_images_ = false;  // some axis has fewer than three cells: nearest images by rounding
   PeriodicCells cells_;
   CellOrder order_;
-  Array<Record> records_;
-  Array<std::int32_t> partner_, best_, active_, next_active_;
-  Array<std::uint8_t> taken_;
-  Array<double> strength_;
+  Spheres spheres_;
+  // In the order of the cells, from the lower corner, to tell in vectors what cannot overlap; what may is looked at in
+  // the positions themselves.
+  std::array<Array<float>, 3> place_;
+  Array<std::int32_t> partner_, active_, next_active_;
+  // By rank: the partners of the strongest overlaps, and whether it has a partner now or more overlaps than are
+  // remembered. Without a memory of several, every second particle of a crowd had to be searched around again.
+  Array<std::array<std::int32_t, remembered>> best_;
+  Array<std::uint8_t> taken_, has_more_;
 };
 
 // Whether spheres that touch at distance `touching` overlap at the square root of distance_2. Pairs that were moved
-// apart touch to rounding (of the diameters in single precision, 6e-8): they do not count.
+// apart touch to rounding: they do not count.
 inline bool overlapping(double distance_2, double touching) {
   return distance_2 < (1 - 1e-6) * touching * touching;
 }

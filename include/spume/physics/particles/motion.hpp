@@ -47,8 +47,8 @@ struct MotionStatistics {
 
 // What two-way coupling needs of a step. The force of a particle on the fluid, per density (8):
 //   F = volume (Du/Dt - rho_p/rho_f (V' - V) / dt - (1 - rho_p/rho_f) g)
-// is the mean over the step. `amounts` (four numbers a particle) receives F + extrapolation (F - F of the step before)
-// and the volume; extrapolation = 1/2 gives the force at the end of a step of the same length to second order.
+// is the mean over the step. `amounts` (three numbers a particle) receives F + extrapolation (F - F of the step
+// before); extrapolation = 1/2 gives the force at the end of a step of the same length to second order.
 struct ForceOutput {
   double* amounts = nullptr;  // null: no force is found
   double extrapolation = 0;
@@ -59,6 +59,9 @@ struct ForceOutput {
 template <class Real>
 MotionStatistics move_particles(const MotionModel& model, const SplineField<Real>& field, double dt,
                                 Particles& particles, const ForceOutput& output = {});
+
+// Schiller and Naumann (1935): drag over Stokes drag.
+double schiller_naumann_factor(double slip, double diameter, double viscosity);
 
 // phi functions of the exponential step for h >= 0, to a few roundings.
 struct RelaxationCoefficients {

@@ -21,6 +21,7 @@
 #include "spume/core/ledger.hpp"
 #include "spume/operators/linear_deposition.hpp"
 #include "spume/operators/spline_field.hpp"
+#include "spume/physics/particles/coupling_stability.hpp"
 #include "spume/physics/particles/exclusion.hpp"
 #include "spume/physics/particles/motion.hpp"
 #include "spume/physics/particles/overlap.hpp"
@@ -29,10 +30,18 @@
 namespace spume {
 
 enum class Coupling {
-  one_way,   // the flow moves the particles
-  two_way,   // and the particles the flow
-  four_way,  // and they exclude each other
+  one_way,    // the flow moves the particles
+  two_way,    // and the particles the flow
+  four_way,   // and they exclude each other
+  colliding,  // they exclude each other, and the flow feels nothing
 };
+
+inline bool acts_on_flow(Coupling coupling) {
+  return coupling == Coupling::two_way || coupling == Coupling::four_way;
+}
+inline bool excludes(Coupling coupling) {
+  return coupling == Coupling::four_way || coupling == Coupling::colliding;
+}
 
 struct ParticleOptions {
   std::size_t count = 0;
@@ -47,9 +56,9 @@ struct ParticleOptions {
   bool single_precision_records = true;
   double most_volume_fraction = 0.74048048969306104;  // pi / (3 sqrt 2), close packing
   int sort_every = 8;                                 // steps between sorts of the particles by grid cell
-  // Where in time the force is wanted, from the middle of the last step, in steps: 1/2 for multistep schemes that take
-  // it at the present time, 1 for a scheme that holds it over the coming step.
-  double force_lead = 0.5;
+  // Where in time the force is wanted, from the middle of the last step, in steps (lead: 1/2 for multistep schemes that
+  // take it at the present time, 1 for a scheme that holds it over the coming step), and how the flow steps with it.
+  CouplingScheme scheme;
 };
 
 class ParticleSystem {
@@ -66,8 +75,11 @@ class ParticleSystem {
   template <class Source>
   void resume(const std::array<const Source*, 3>& velocity);
 
-  bool couples() const { return options_.coupling != Coupling::one_way; }
-  bool collides() const { return options_.coupling == Coupling::four_way; }
+  bool couples() const { return acts_on_flow(options_.coupling); }
+  bool collides() const { return excludes(options_.coupling); }
+  // The longest step that the coupling is stable with, at the volume fractions that the force was last spread with
+  // (before that, the mean); infinite without coupling.
+  double longest_step() const;
   // Writes every point of `force`: acceleration of the fluid by the particles. Precondition: couples().
   template <class Real>
   void feedback(const std::array<Real*, 3>& force, Ledger& ledger);
@@ -110,8 +122,9 @@ class ParticleSystem {
  private:
   Spheres spheres();
   void sort(Ledger& ledger);
-  void order_by_cell();
   Exclusion& cells();  // also without collisions, for measures
+  // Work space for an order, valid until the next use of it; that of the collisions, where there are any.
+  CellOrder& order() { return collides() ? cells().order() : order_; }
 
   PeriodicGrid grid_;
   ParticleOptions options_;
@@ -121,9 +134,9 @@ class ParticleSystem {
   Exclusion exclusion_;
   bool has_cells_ = false;
   CellOrder order_;
-  bool order_is_current_ = false;
-  Array<double> amounts_;  // per particle, force and volume to be spread
-  Array<double> clock_;    // length of the last step; steps made
+  Array<double> amounts_;  // per particle, force to be spread; and room for one number
+  Array<double> clock_;    // length of the last step; steps made; largest volume fraction; rms slip of the last step
+  std::vector<double> stable_step_;  // in response times, for volume fractions of k / (size - 1) of the largest
   double volume_fraction_ = 0;
   MotionStatistics motion_;
   ExclusionReport exclusion_report_;

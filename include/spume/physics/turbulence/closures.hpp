@@ -153,9 +153,13 @@ GermanoContractions<Real> germano_contractions(const TestFiltered<D, Real>& filt
 
 // C = averaged L : M over averaged M : M; 0 where the denominator vanishes (no strain). Averages: both contractions
 // Shepard-filtered over the particles by the caller (DSS), or the Lagrangian memory below (DSL). C is C_s squared and
-// may be negative with Shepard averages.
+// may be negative with Shepard averages. Where the liquid moves almost uniformly the denominator is nothing but
+// rounding and C would be anything: it is at most dynamic_largest, C_s = 0.5, three times what Lilly derives for
+// isotropic turbulence.
+inline constexpr double dynamic_largest = 0.25;
 inline double dynamic_coefficient(const GermanoContractions<double>& averaged) {
-  return averaged.germano_germano > 0 ? averaged.leonard_germano / averaged.germano_germano : 0.0;
+  return averaged.germano_germano > 0 ? std::min(averaged.leonard_germano / averaged.germano_germano, dynamic_largest)
+                                      : 0.0;
 }
 
 // nu_t = C Delta^2 |S|, clipped so that nu + nu_t >= 0: backscatter may cancel the molecular viscosity but not make

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// A program that is killed while it writes a snapshot loses nothing of the snapshots before.
+#include "spume/io/journal.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <random>
+
+#include "spume/core/error.hpp"
+#include "spume/io/hdf5.hpp"
+#include "spume/io/vtkhdf.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace spume {
+namespace {
+
+using hdf5::File;
+
+constexpr std::size_t particles = 3000;
+
+// Noise, so that compressed chunks differ in size and move about the file.
+std::vector<double> values_of(std::int64_t step) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(step));
+  std::vector<double> values(particles);
+  for (double& value : values) value = static_cast<float>(static_cast<double>(random() >> 40) * 1e-3);
+  return values;
+}
+
+void append(VtkhdfFile& file) {
+  const auto values = values_of(file.steps());
+  file.append(static_cast<double>(file.steps()),
+              {particles, {values.data(), values.data()}, {{"pressure", {values.data()}, {}}}});
+}
+
+std::vector<double> pressures(const std::filesystem::path& path) {
+  const File file = File::open(path, false);
+  const auto data = file.dataset("/VTKHDF/PointData/pressure");
+  const auto space = file.take(H5Dget_space(data), H5Sclose, "read");
+  std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  file.check(H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read");
+  return values;
+}
+
+TEST(Journal, SnapshotsSurviveAKillAtAnyMoment) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "fluid.vtkhdf";
+  {
+    VtkhdfFile file(path, {});
+    append(file);
+  }
+  std::mt19937 random(7);
+  std::int64_t before = 1;
+  for (int kill_number = 0; kill_number < 25; ++kill_number) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      VtkhdfFile file(path, {});
+      for (;;) append(file);
+    }
+    ::usleep(2000 + random() % 30000);
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+
+    VtkhdfFile file(path, {});
+    ASSERT_GE(file.steps(), before);
+    before = file.steps();
+    const auto found = pressures(path);
+    ASSERT_GE(found.size(), static_cast<std::size_t>(before) * particles);
+    for (std::int64_t step = 0; step < before; ++step) {
+      const auto expected = values_of(step);
+      ASSERT_TRUE(std::equal(expected.begin(), expected.end(), found.begin() + step * std::ptrdiff_t{particles}))
+          << "snapshot " << step << " after kill " << kill_number;
+    }
+    if (before > 60) {
+      file.keep_steps(2);
+      before = 2;
+    }
+  }
+}
+
+TEST(Journal, AJournalThatIsNotWholeIsDropped) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "fluid.vtkhdf";
+  VtkhdfFile file(path, {});
+  append(file);
+  std::ofstream(path.string() + ".journal") << "SPUME JOURNAL 1 and then nothing that would make sense";
+  append(file);
+  EXPECT_FALSE(std::filesystem::exists(path.string() + ".journal"));
+  EXPECT_EQ(pressures(path).size(), 2 * particles);
+}
+
+}  // namespace
+}  // namespace spume

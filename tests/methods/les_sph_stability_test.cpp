@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// What keeps a run from going wrong without a word: stable explicit diffusion, walls that the step knows, energy that
+// cannot appear, a start within the method's validity.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "methods/les_sph_simulation.hpp"
+
+namespace spume::test {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string still_pool = R"(
+method = "les-sph"
+[domain]
+lower = [0, 0]
+upper = [1, 1]
+x = "periodic"
+bottom = "free-slip"
+[resolution]
+spacing = 0.05
+[fluid]
+reynolds = 5
+froude = 1
+[[liquid]]
+upper = [1, 0.5]
+[initial]
+jitter = 0.1
+[time]
+end = 1
+)";
+
+const std::string lid = R"(
+method = "les-sph"
+[domain]
+lower = [0, 0]
+upper = [1, 1]
+left = "no-slip"
+right = "no-slip"
+bottom = "no-slip"
+top = "no-slip"
+[domain.wall_velocity]
+top = ["2", "0"]
+[resolution]
+spacing = 0.05
+[fluid]
+reynolds = 1e4
+[[liquid]]
+[time]
+end = 1
+)";
+
+void advance(Simulation& run, int steps) {
+  for (int k = 0; k < steps; ++k) run.steps(1, run.method.step_limit().dt);
+}
+
+// div(2 nu S) by explicit steps of 0.2 h^2 / nu, beyond its limit of 0.11, made a speed of order one within 40 steps.
+TEST(LesSphStability, AViscousPoolStaysAtRestWithTheStepsThatItAllows) {
+  Simulation run(still_pool);
+  ASSERT_EQ(run.method.step_limit().limited_by, "viscous");
+  advance(run, 80);
+  EXPECT_LT(run.series()["max_speed"], 0.05);  // a twentieth of sqrt(g h): what the jitter relaxes with
+}
+
+TEST(LesSphStability, TheStepLimitKnowsTheSpeedOfAMovingWall) {
+  Simulation run(lid);
+  advance(run, 1);
+  const StepLimit limit = run.method.step_limit();
+  EXPECT_EQ(limit.limited_by, "courant");
+  EXPECT_LE(limit.dt, 0.2 * 1.3 * 0.05 / 2 * (1 + 1e-6));
+  advance(run, 40);
+  EXPECT_LT(run.series()["max_speed"], 2.5);  // the lid drags; nothing is faster but for the noise of the corners
+}
+
+TEST(LesSphStability, EnergyFromNothingIsRefused) {
+  Simulation run(taylor_green);
+  run.steps(1, 0.005);
+  const double kinetic = run.series()["kinetic_energy"];
+  les_sph::Liquid& liquid = const_cast<les_sph::Liquid&>(run.method.liquid());
+  for (int axis = 0; axis < 2; ++axis)
+    for (double& u : *liquid.velocity[axis]) u *= 1.3;
+  EXPECT_NO_THROW(run.steps(1, 0.001));  // 1.69 times the energy: below twice the supply
+  for (int axis = 0; axis < 2; ++axis)
+    for (double& u : *liquid.velocity[axis]) u *= 1.3;
+  try {
+    run.steps(1, 0.001);
+    FAIL() << "energy grew from " << kinetic << " to " << run.series()["kinetic_energy"];
+  } catch (const StepFailure& failure) {
+    EXPECT_THAT(failure.details().cause, HasSubstr("kinetic energy"));
+    EXPECT_GE(failure.details().particle, 0);
+  }
+}
+
+TEST(LesSphStability, AStartNearTheSoundSpeedIsRefusedInWords) {
+  EXPECT_NO_THROW(Simulation(taylor_green, {"fluid.mach=0.3"}));
+  try {
+    Simulation run(taylor_green, {"fluid.mach=0.8"});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("of the sound speed 1.25"));
+  }
+}
+
+// Nearly uniform flow: Germano's identity divides rounding by rounding.
+TEST(LesSphStability, DynamicClosuresStartInAFlowThatHardlyShears) {
+  for (const char* model : {"dynamic-shepard", "dynamic-lagrangian"}) {
+    Simulation run(taylor_green, {std::string("turbulence.model=\"") + model + "\"", "fluid.reynolds=1e6",
+                                  "liquid.0.velocity=[\"1+1e-5*sin(2*pi*y)\", \"0\"]"});
+    EXPECT_NO_THROW(advance(run, 3)) << model;
+    EXPECT_LT(run.method.liquid().max_eddy_viscosity, 1e-4) << model;  // C_s = 0.5: 0.25 Delta^2 |S| is below 1e-6
+  }
+}
+
+// Where backscatter cancels the viscosity, rounding to float left diffusivities of either sign, whose harmonic mean is
+// unbounded: accelerations of 1e7 in the first step.
+TEST(LesSphStability, BackscatterThatCancelsTheViscosityAcceleratesNobody) {
+  Simulation run(taylor_green, {"turbulence.model=\"dynamic-shepard\"", "fluid.reynolds=43489.75",
+                                "initial.jitter=0.25", "resolution.smoothing_ratio=1.5"});
+  const double before = run.series()["max_speed"];
+  advance(run, 2);
+  EXPECT_LT(run.series()["max_speed"], 1.2 * before);
+}
+
+}  // namespace
+}  // namespace spume::test

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: MIT
+"""tools/stress: its scenes, its checks on run folders written here, its faults, and the command with a stand-in program."""
+import csv
+import random
+import stat
+import subprocess
+import sys
+import tempfile
+import textwrap
+import tomllib
+import unittest
+from pathlib import Path
+
+import paths
+import numpy as np
+from synthetic import lattice, series_of, write_snapshots, write_table
+
+sys.path.insert(0, str(paths.ROOT / "tools"))
+import bench_parts
+from spume_stress_checks import judge
+from spume_stress_faults import BASE, damage, mutated_case
+from spume_stress_scenes import PARTICLE_SCENES, SCENES, Scene, toml_text
+
+
+class Scenes(unittest.TestCase):
+    def test_seed_and_number_give_a_scene_back(self):
+        for method, make in SCENES.items():
+            one, two = (make(np.random.default_rng([1, 7])) for _ in range(2))
+            self.assertEqual(toml_text(one.case), toml_text(two.case))
+            self.assertNotEqual(toml_text(one.case), toml_text(make(np.random.default_rng([1, 8])).case))
+
+    def test_every_kind_is_a_case_within_the_limits_of_a_short_run(self):
+        for kind in PARTICLE_SCENES:
+            for seed in range(4):
+                scene = SCENES["les-sph"](np.random.default_rng(seed), [kind])
+                case = tomllib.loads(toml_text(scene.case))
+                volume = np.prod(np.array(case["domain"]["upper"]))
+                self.assertEqual(case["title"], kind)
+                if kind not in ("cluster", "drop_free", "colliding_drops"):
+                    self.assertLessEqual(volume / case["resolution"]["spacing"] ** len(case["domain"]["upper"]), 2000)
+
+    def test_fixed_values_hold(self):
+        scene = SCENES["les-sph"](np.random.default_rng(1), ["vortices"], {"courant": 0.3, "mach": 0.1}, True)
+        self.assertEqual((scene.case["time"]["courant"], scene.case["fluid"]["mach"]), (0.3, 0.1))
+        self.assertNotIn("turbulence", scene.case)
+
+    def test_cases_of_the_parts_and_faults_are_toml(self):
+        for pair in bench_parts.parts().values():
+            for case in pair:
+                tomllib.loads(toml_text(case))
+        for text in BASE.values():
+            tomllib.loads(text)
+
+
+class Checks(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = Path(scratch.name)
+        case = {"method": "les-sph", "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.0], "bottom": "no-slip", "x": "periodic"},
+                "resolution": {"spacing": 0.1}, "fluid": {"froude": 1.0}, "liquid": [{}], "time": {"end": 1.0}}
+        self.scene = Scene("pool", case, {}, free_axes=[0])
+
+    def outcome(self, code=0, said="", timed_out=False, last=None, ids=None, **columns):
+        t = np.linspace(0, 1, 11)
+        values = {"kinetic_energy": 0.1 - 0.05 * t, "potential_energy": 0.2 + 0 * t, "max_speed": 1.0 + 0 * t, "mass": 1.0 + 0 * t,
+                  "momentum_x": 0.3 + 0 * t, "momentum_y": 0 * t, "pressure_residual": 1e-7 + 0 * t} | columns
+        values["total_energy"] = values["kinetic_energy"] + values["potential_energy"]
+        (self.folder / "case.toml").write_text(toml_text(self.scene.case))
+        (self.folder / "summary.json").write_text('{"retries": 0}')
+        write_table(self.folder / "series.csv", series_of(t, **values))
+        grid = lattice([0, 0], [1, 0.5], 0.1)
+        where = lambda time: grid if time == 0 or last is None else last(grid.copy())
+        write_snapshots(self.folder / "fluid.vtkhdf", [0, 1], where,
+                        {"velocity": lambda p, time: p,
+                         "id": lambda p, time: (ids(len(p)) if ids and time else np.arange(len(p))).astype(float)})
+        return judge("les-sph", self.scene, self.folder, code, said, timed_out)[:2]
+
+    def complaint(self, **changes):
+        outcome, complaints = self.outcome(**changes)
+        self.assertEqual(outcome, "failed", complaints)
+        return complaints[0].split(":")[0]
+
+    def test_a_quiet_run_passes(self):
+        self.assertEqual(self.outcome(), ("ok", []))
+        self.assertEqual(self.outcome(code=130, timed_out=True)[0], "slow")
+
+    def test_what_is_wrong_is_named(self):
+        t = np.linspace(0, 1, 11)
+        self.assertEqual(self.complaint(kinetic_energy=0.1 + 0.05 * t), "energy")
+        self.assertEqual(self.complaint(momentum_x=0.3 + 0.1 * t), "momentum")
+        self.assertEqual(self.complaint(mass=1 + 1e-9 * t), "mass")
+        self.assertEqual(self.complaint(pressure_residual=1e-7 + 1e-3 * (t == 0)), "convergence")
+        self.assertEqual(self.complaint(max_speed=np.where(t == 1, np.nan, 1)), "finite")
+
+    def test_lost_and_escaped_particles_are_seen(self):
+        def below(grid):
+            grid[0, 1] = -0.01
+            return grid
+
+        self.assertEqual(self.complaint(last=below), "particles")
+        self.assertEqual(self.complaint(last=lambda grid: grid[1:]), "particles")
+        self.assertEqual(self.complaint(ids=lambda n: np.arange(n) + 1), "particles")
+
+    def test_exit_codes(self):
+        self.assertEqual(self.outcome(code=-11)[0], "crashed")
+        self.assertEqual(self.outcome(code=134)[0], "crashed")
+        self.assertEqual(self.outcome(code=2, said="case.toml:1:1: error: too thin")[0], "refused")
+        self.assertEqual(self.outcome(code=2, said="")[0], "failed")
+        self.assertEqual(self.outcome(code=3, said="error: numerical failure at step 3, t = 0.1: too fast")[0], "stopped")
+        self.assertEqual(self.outcome(code=3, said="oh")[0], "failed")
+        self.assertEqual(self.outcome(code=130)[0], "failed")
+
+    def test_a_run_that_says_that_it_makes_energy_has_stopped(self):
+        t = np.linspace(0, 1, 11)
+        self.assertEqual(self.outcome(code=3, said="error: at step 3, t = 0.1: energy", kinetic_energy=0.1 + t)[0], "stopped")
+
+
+class Faults(unittest.TestCase):
+    def test_damage_damages(self):
+        data = bytes(range(256)) * 20
+        draw = random.Random(1)
+        self.assertGreater(sum(damage(draw, data) != data for _ in range(200)), 190)
+        self.assertGreater(len({mutated_case(draw, BASE["les-sph"]) for _ in range(50)}), 45)
+
+
+# Says that every second run blew up in words, and crashes on one.
+PROGRAM = """\
+    #!{python}
+    import os, sys
+    number = int(os.path.basename(os.path.dirname(sys.argv[2])).split("-")[1])
+    if number == 2:
+        os.abort()
+    print("error: numerical failure at step 1, t = 0: too fast" if number % 2 else "case.toml:1:1: error: no", file=sys.stderr)
+    sys.exit(2)
+"""
+
+
+class Command(unittest.TestCase):
+    def test_keeps_the_case_of_a_crash_and_writes_table_and_picture(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            program = Path(scratch) / "program"
+            program.write_text(textwrap.dedent(PROGRAM).format(python=sys.executable))
+            program.chmod(program.stat().st_mode | stat.S_IXUSR)
+            out = Path(scratch) / "out"
+            done = subprocess.run([sys.executable, paths.ROOT / "tools" / "stress.py", program, "les-sph", "--runs", "4", "--out",
+                                   out], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            with (out / "stress.csv").open() as file:
+                self.assertEqual([row["outcome"] for row in csv.DictReader(file)], ["refused", "refused", "crashed", "refused"])
+            self.assertTrue((out / "failures" / "run-2" / "case.toml").is_file())
+            self.assertTrue((out / "stress.png").read_bytes().startswith(b"\x89PNG"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: MIT
+"""bench/work_precision and tools/roofline: the front, the verdicts on defaults, and the picture of made-up results."""
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import paths
+
+sys.path[:0] = [str(paths.ROOT / "bench" / "work_precision"), str(paths.ROOT / "tools")]
+import sweep
+from sweeps import SWEEPS, terminal_speed
+
+
+def row(error, seconds, option="default", value=""):
+    return {"sweep": "s", "resolution": "r", "option": option, "value": value, "error": error, "seconds": seconds}
+
+
+class Front(unittest.TestCase):
+    def test_holds_what_nothing_beats_in_both(self):
+        rows = [row(1, 1), row(0.5, 2), row(0.6, 3), row(0.1, 10), row(2, 1)]
+        self.assertEqual([(r["error"], r["seconds"]) for r in sweep.front(rows)], [(1, 1), (0.5, 2), (0.1, 10)])
+
+    def test_excess_is_the_time_over_that_of_the_best_as_accurate(self):
+        rows = [row(1, 4), row(0.9, 2, "a", "b"), row(2, 1)]
+        self.assertEqual(sweep.excess(rows[0], rows), 2)
+        self.assertEqual(sweep.excess(rows[1], rows), 1)
+
+    def test_verdict_names_the_better_setting(self):
+        text = "\n".join(sweep.verdicts([row(1, 4), row(0.9, 2, "time.courant", "0.3"), row(0.5, 40)]))
+        self.assertIn("2.00 times the time of r with time.courant = 0.3", text)
+        self.assertIn("on the front", text)
+
+    def test_plans_start_with_the_defaults_and_change_one_thing(self):
+        for name, one in SWEEPS.items():
+            runs = sweep.plan(one)
+            self.assertEqual(runs[0][1], "default", name)
+            self.assertEqual(len({run[:3] for run in runs}), len(runs), name)
+
+    def test_terminal_speed_balances_drag_and_buoyancy(self):
+        # By hand: w = 0.0683 is Re = 2.73, C_d = 24 / 2.73 (1 + 0.15 * 2.73^0.687) = 11.4, drag 0.375 * 11.4 w^2 / 0.02 = 1.
+        self.assertAlmostEqual(terminal_speed(), 0.0683, 3)
+
+
+class Roofline(unittest.TestCase):
+    def test_table_and_picture(self):
+        rate = {"memory_bytes_per_second": 1e10, "cache_bytes_per_second": 1e11, "flops_per_second": 5e10, "gathers_per_second": 1e9}
+        entries = [{"run_name": "machine/threads:1/iterations:1", **rate},
+                   {"run_name": "pressure_apply/10000/0/1", "bytes_per_second": 5e9, "flops_per_second": 2e10,
+                    "gathers_per_second": 8e8, "of_limit": 0.8}]
+        with tempfile.TemporaryDirectory() as scratch:
+            results = Path(scratch) / "results.json"
+            results.write_text(json.dumps({"benchmarks": entries}))
+            done = subprocess.run([sys.executable, paths.ROOT / "tools" / "roofline.py", results, "--out", Path(scratch) / "r.png"],
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stdout, r"pressure_apply/10000/0/1 .* 80 %")
+            self.assertTrue((Path(scratch) / "r.png").is_file())
+
+
+if __name__ == "__main__":
+    unittest.main()
