@@ -72,27 +72,50 @@ def read_csv(path):
     return Table(path, columns, comments)
 
 
-class Snapshot:
-    """Particles at one time: position (N, 3) and fields by name, (N,) or (N, components)."""
+class Fields:
+    """Fields by name at one time."""
 
-    def __init__(self, time, position, fields):
+    def __init__(self, time, fields):
         self.time = time
-        self.position = position
         self.fields = fields
-
-    def __len__(self):
-        return len(self.position)
 
     def field(self, name):
         if name == "speed":
-            return np.linalg.norm(self.field("velocity"), axis=1)
+            return np.linalg.norm(self.field("velocity"), axis=-1)
         if name not in self.fields:
             raise MissingResult(f"snapshot at t = {self.time:g}: no field '{name}'; it has {', '.join(self.fields)}")
         return self.fields[name]
 
 
-class Snapshots:
-    """The steps of a VTKHDF PolyData file with temporal data; index it for one Snapshot."""
+class Snapshot(Fields):
+    """Particles at one time: position (N, 3) and fields by name, (N,) or (N, components)."""
+
+    def __init__(self, time, position, fields):
+        super().__init__(time, fields)
+        self.position = position
+
+    def __len__(self):
+        return len(self.position)
+
+
+class GridSnapshot(Fields):
+    """Fields on a uniform grid at one time: fields by name, (nx, ny, nz) or (nx, ny, nz, components)."""
+
+    def __init__(self, time, origin, spacing, fields):
+        super().__init__(time, fields)
+        self.origin = origin
+        self.spacing = spacing
+
+    def field(self, name):
+        if name == "enstrophy":
+            return np.sum(self.field("vorticity") ** 2, axis=-1)
+        return super().field(name)
+
+
+class Steps:
+    """The steps of a VTKHDF file with temporal data; index it for one of them. Derived classes read the rest."""
+
+    contents = None  # what the file should hold, for the message
 
     def __init__(self, path):
         import h5py
@@ -106,11 +129,10 @@ class Snapshots:
                 root = file["VTKHDF"]
                 steps = root["Steps"]
                 self.times = np.array(steps["Values"], dtype=float)[: int(steps.attrs["NSteps"])]
-                self._first = np.array(steps["PointOffsets"], dtype=np.int64)
-                self._count = np.array(root["NumberOfPoints"], dtype=np.int64)
                 self.names = list(root["PointData"]) if "PointData" in root else []
+                self._read_layout(root)
         except (OSError, KeyError) as error:
-            raise MissingResult(f"{self.path}: not a VTKHDF file with steps ({error})") from error
+            raise MissingResult(f"{self.path}: not a VTKHDF file {self.contents} ({error})") from error
 
     def __len__(self):
         return len(self.times)
@@ -120,67 +142,39 @@ class Snapshots:
 
         if not -len(self) <= index < len(self):
             raise IndexError(index)
-        index %= len(self)
-        rows = slice(int(self._first[index]), int(self._first[index] + self._count[index]))
         with h5py.File(self.path, "r", locking=False) as file:
-            root = file["VTKHDF"]
-            fields = {name: np.array(root["PointData"][name][rows]) for name in self.names}
-            return Snapshot(float(self.times[index]), np.array(root["Points"][rows], dtype=float), fields)
+            return self._read(file["VTKHDF"], index % len(self))
 
     def nearest(self, time):
         return self[int(np.argmin(np.abs(self.times - time)))]
 
 
-class GridSnapshot:
-    """Fields on a uniform grid at one time: fields by name, (nx, ny, nz) or (nx, ny, nz, components)."""
+class Snapshots(Steps):
+    """Particles: PolyData, each step a Snapshot."""
 
-    def __init__(self, time, origin, spacing, fields):
-        self.time = time
-        self.origin = origin
-        self.spacing = spacing
-        self.fields = fields
+    contents = "with steps"
 
-    def field(self, name):
-        if name == "speed":
-            return np.linalg.norm(self.field("velocity"), axis=-1)
-        if name == "enstrophy":
-            return np.sum(self.field("vorticity") ** 2, axis=-1)
-        if name not in self.fields:
-            raise MissingResult(f"snapshot at t = {self.time:g}: no field '{name}'; it has {', '.join(self.fields)}")
-        return self.fields[name]
+    def _read_layout(self, root):
+        self._first = np.array(root["Steps"]["PointOffsets"], dtype=np.int64)
+        self._count = np.array(root["NumberOfPoints"], dtype=np.int64)
+
+    def _read(self, root, index):
+        rows = slice(int(self._first[index]), int(self._first[index] + self._count[index]))
+        fields = {name: np.array(root["PointData"][name][rows]) for name in self.names}
+        return Snapshot(float(self.times[index]), np.array(root["Points"][rows], dtype=float), fields)
 
 
-class GridSnapshots:
-    """The steps of a VTKHDF ImageData file with temporal data; index it for one GridSnapshot."""
+class GridSnapshots(Steps):
+    """Fields on a grid: ImageData, each step a GridSnapshot."""
 
-    def __init__(self, path):
-        import h5py
+    contents = "of fields on a grid"
 
-        self.path = Path(path)
-        if not self.path.exists():
-            raise MissingResult(f"{self.path}: not there; set output.every in the case to have snapshots written")
-        try:
-            with h5py.File(self.path, "r", locking=False) as file:
-                root = file["VTKHDF"]
-                self.times = np.array(root["Steps"]["Values"], dtype=float)[: int(root["Steps"].attrs["NSteps"])]
-                self.origin, self.spacing = np.array(root.attrs["Origin"]), np.array(root.attrs["Spacing"])
-                self.names = list(root["PointData"])
-        except (OSError, KeyError) as error:
-            raise MissingResult(f"{self.path}: not a VTKHDF file of fields on a grid ({error})") from error
+    def _read_layout(self, root):
+        self.origin, self.spacing = np.array(root.attrs["Origin"]), np.array(root.attrs["Spacing"])
 
-    def __len__(self):
-        return len(self.times)
-
-    def __getitem__(self, index):
-        import h5py
-
-        if not -len(self) <= index < len(self):
-            raise IndexError(index)
-        index %= len(self)
-        with h5py.File(self.path, "r", locking=False) as file:
-            data = file["VTKHDF"]["PointData"]
-            # The file holds z, y, x.
-            fields = {name: np.swapaxes(np.array(data[name][index]), 0, 2) for name in self.names}
+    def _read(self, root, index):
+        # The file holds z, y, x.
+        fields = {name: np.swapaxes(np.array(root["PointData"][name][index]), 0, 2) for name in self.names}
         return GridSnapshot(float(self.times[index]), self.origin, self.spacing, fields)
 
 

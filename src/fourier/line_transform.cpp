@@ -71,9 +71,26 @@ std::mutex& fftw::planner_mutex() {
   return mutex;
 }
 
+namespace {
+
 template <class T>
-struct LaneTransform<T>::Plans {
+struct PlanPair {
   typename fftw::Api<T>::Plan forward = nullptr, inverse = nullptr;
+  PlanPair() = default;
+  PlanPair(const PlanPair&) = delete;
+  PlanPair& operator=(const PlanPair&) = delete;
+  ~PlanPair() {
+    const std::lock_guard lock(fftw::planner_mutex());
+    fftw::Api<T>::destroy(forward);
+    fftw::Api<T>::destroy(inverse);
+  }
+};
+
+}  // namespace
+
+template <class T>
+struct LaneTransform<T>::Plans : PlanPair<T> {
+  using PlanPair<T>::forward, PlanPair<T>::inverse;
   Plans(std::size_t n, Planning planning) {
     Array<std::complex<T>> buffer(n * lanes<T>);
     auto* const line = fftw::pointer(buffer.data());
@@ -85,13 +102,6 @@ struct LaneTransform<T>::Plans {
       forward = make(FFTW_FORWARD);
       inverse = make(FFTW_BACKWARD);
     });
-  }
-  Plans(const Plans&) = delete;
-  Plans& operator=(const Plans&) = delete;
-  ~Plans() {
-    const std::lock_guard lock(fftw::planner_mutex());
-    fftw::Api<T>::destroy(forward);
-    fftw::Api<T>::destroy(inverse);
   }
 };
 
@@ -110,8 +120,8 @@ void LaneTransform<T>::forward(std::complex<T>* buffer) const {
 }
 
 template <class T>
-struct RealLineTransform<T>::Plans {
-  typename fftw::Api<T>::Plan forward = nullptr, inverse = nullptr;
+struct RealLineTransform<T>::Plans : PlanPair<T> {
+  using PlanPair<T>::forward, PlanPair<T>::inverse;
   Plans(std::size_t n, Planning planning) {
     Array<std::complex<T>> modes(n / 2 + 1);
     Array<T> values(n);
@@ -122,13 +132,6 @@ struct RealLineTransform<T>::Plans {
       forward = fftw::Api<T>::many_r2c(1, &size, 1, values.data(), nullptr, 1, size, line, nullptr, 1, apart, flags);
       inverse = fftw::Api<T>::many_c2r(1, &size, 1, line, nullptr, 1, apart, values.data(), nullptr, 1, size, flags);
     });
-  }
-  Plans(const Plans&) = delete;
-  Plans& operator=(const Plans&) = delete;
-  ~Plans() {
-    const std::lock_guard lock(fftw::planner_mutex());
-    fftw::Api<T>::destroy(forward);
-    fftw::Api<T>::destroy(inverse);
   }
 };
 

@@ -13,6 +13,7 @@
 #include "spume/io/file.hpp"
 #include "spume/io/hdf5.hpp"
 #include "spume/io/journal.hpp"
+#include "spume/io/vtkhdf_steps.hpp"
 
 namespace spume {
 namespace {
@@ -40,23 +41,13 @@ int stored_components(const ParticleField& field) {
 // columns 0: a one-dimensional dataset.
 void create_dataset(const File& file, const std::string& name, hid_t type, hsize_t columns, hsize_t chunk,
                     bool compress) {
-  const int rank = columns == 0 ? 1 : 2;
-  const hsize_t size[2] = {0, columns}, limit[2] = {H5S_UNLIMITED, columns}, chunks[2] = {chunk, columns};
-  const Id space = file.take(H5Screate_simple(rank, size, limit), H5Sclose, "write");
-  const Id creation = file.take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "write");
-  H5Pset_chunk(creation, rank, chunks);
-  if (compress) {
-    H5Pset_shuffle(creation);
-    H5Pset_deflate(creation, 1);
-  }
-  const Id links = file.take(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "write");
-  H5Pset_create_intermediate_group(links, 1);
-  const Id data =
-      file.take(H5Dcreate2(file.id(), name.c_str(), type, space, links, creation, H5P_DEFAULT), H5Dclose, "write");
+  if (columns == 0)
+    vtkhdf::create_array(file, name, type, {}, {chunk}, compress);
+  else
+    vtkhdf::create_array(file, name, type, {columns}, {chunk, columns}, compress);
 }
 
-void create_layout(const File& file, const ParticleSnapshot& snapshot,
-                   const std::vector<std::pair<std::string, std::string>>& notes) {
+void create_layout(const File& file, const ParticleSnapshot& snapshot, const vtkhdf::Notes& notes) {
   const hsize_t chunk = chunk_rows(snapshot.size);
   const auto metadata = [&](const std::string& name, hid_t type, hsize_t columns) {
     create_dataset(file, "/VTKHDF/" + name, type, columns, metadata_chunk, false);
@@ -88,29 +79,11 @@ void create_layout(const File& file, const ParticleSnapshot& snapshot,
   for (const char* name : {"CellOffsets", "ConnectivityIdOffsets"})
     metadata(std::string("Steps/") + name, H5T_STD_I64LE, 4);
 
-  const Id root = file.take(H5Gopen2(file.id(), "/VTKHDF", H5P_DEFAULT), H5Gclose, "write");
-  const std::int64_t version[2] = {2, 0};
-  write_attribute(file, root, "Version", H5T_STD_I64LE, H5T_NATIVE_INT64, 2, version);
-  hdf5::write_fixed_string(file, root, "Type", "PolyData");
-  const Id steps = file.take(H5Gopen2(file.id(), "/VTKHDF/Steps", H5P_DEFAULT), H5Gclose, "write");
-  const std::int64_t none = 0;
-  write_attribute(file, steps, "NSteps", H5T_STD_I64LE, H5T_NATIVE_INT64, std::nullopt, &none);
-  for (const auto& [name, text] : notes) hdf5::write_text(file, "/Spume/" + name, text);
+  vtkhdf::write_header(file, "PolyData", notes);
 }
 
-std::int64_t read_step_count(const File& file) {
-  if (!file.exists("/VTKHDF/Steps/Values") || !file.exists("/VTKHDF/NumberOfPoints"))
-    throw FileError("cannot read '" + file.path().string() + "': it holds no VTKHDF particles over time");
-  const Id attribute = file.take(H5Aopen_by_name(file.id(), "/VTKHDF/Steps", "NSteps", H5P_DEFAULT, H5P_DEFAULT),
-                                 H5Aclose, "read the number of steps of");
-  std::int64_t steps = 0;
-  file.check(H5Aread(attribute, H5T_NATIVE_INT64, &steps), "read");
-  return steps;
-}
-
-void write_step_count(const File& file, std::int64_t steps) {
-  const Id group = file.take(H5Gopen2(file.id(), "/VTKHDF/Steps", H5P_DEFAULT), H5Gclose, "write");
-  write_attribute(file, group, "NSteps", H5T_STD_I64LE, H5T_NATIVE_INT64, std::nullopt, &steps);
+std::int64_t step_count(const File& file) {
+  return vtkhdf::read_step_count(file, true, "particles");
 }
 
 template <class T>
@@ -294,22 +267,9 @@ std::int64_t snapshot_bytes(const ParticleSnapshot& snapshot) {
   return static_cast<std::int64_t>(snapshot.size) * row * 5 / 4 + beside;
 }
 
-std::vector<std::string> member_names(const File& file, const std::string& group_name) {
-  const Id group = file.take(H5Gopen2(file.id(), group_name.c_str(), H5P_DEFAULT), H5Gclose, "read");
-  H5G_info_t info;
-  file.check(H5Gget_info(group, &info), "read");
-  std::vector<std::string> names;
-  for (hsize_t i = 0; i < info.nlinks; ++i) {
-    char name[256];
-    const auto length = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name, sizeof name, H5P_DEFAULT);
-    if (length > 0 && length < static_cast<ssize_t>(sizeof name)) names.emplace_back(name);
-  }
-  return names;
-}
-
 void cut_steps(const File& file, std::int64_t count, std::int64_t steps) {
   const hsize_t kept = rows_before(file, count), rows = static_cast<hsize_t>(count);
-  write_step_count(file, count);
+  vtkhdf::write_step_count(file, count);
   file.flush();
   const auto cut = [&](const std::string& name, hsize_t size) {
     set_rows(file, open_rows(file, "/VTKHDF/" + name), size);
@@ -324,7 +284,7 @@ void cut_steps(const File& file, std::int64_t count, std::int64_t steps) {
     if (vertices) cut(topology + "/Connectivity", kept);
   }
   if (file.exists("/VTKHDF/PointData"))
-    for (const auto& name : member_names(file, "/VTKHDF/PointData")) cut("PointData/" + name, kept);
+    for (const auto& name : vtkhdf::member_names(file, "/VTKHDF/PointData")) cut("PointData/" + name, kept);
   for (const char* name :
        {"Values", "PartOffsets", "NumberOfParts", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets"})
     cut(std::string("Steps/") + name, rows);
@@ -338,12 +298,12 @@ void cut_steps(const File& file, std::int64_t count, std::int64_t steps) {
 
 VtkhdfContents read_vtkhdf_contents(const std::filesystem::path& path) {
   File file = File::open(path, false);
-  const std::int64_t steps = read_step_count(file);
+  const std::int64_t steps = step_count(file);
   VtkhdfContents contents;
   contents.times = read_column<double>(file, "/VTKHDF/Steps/Values", H5T_NATIVE_DOUBLE, steps);
   contents.sizes = read_column<std::int64_t>(file, "/VTKHDF/NumberOfPoints", H5T_NATIVE_INT64, steps);
   if (file.exists("/VTKHDF/PointData"))
-    for (const auto& name : member_names(file, "/VTKHDF/PointData"))
+    for (const auto& name : vtkhdf::member_names(file, "/VTKHDF/PointData"))
       contents.fields.push_back({name, static_cast<int>(open_rows(file, "/VTKHDF/PointData/" + name).columns)});
   return contents;
 }
@@ -352,7 +312,7 @@ VtkhdfFile::VtkhdfFile(std::filesystem::path path, Options options)
     : path_(std::move(path)), options_(std::move(options)) {
   if (!std::filesystem::exists(path_)) return;
   hdf5::replay_journal(path_);
-  steps_ = read_step_count(File::open(path_, false));
+  steps_ = step_count(File::open(path_, false));
 }
 
 void VtkhdfFile::append(double time, const ParticleSnapshot& snapshot) {
@@ -370,7 +330,7 @@ void VtkhdfFile::append(double time, const ParticleSnapshot& snapshot) {
   if (options_.h5part_view) write_h5part_step(file, time, snapshot, steps_, first);
   // Readers trust the number of steps: it is raised when everything else is in the file.
   file.flush();
-  write_step_count(file, steps_ + 1);
+  vtkhdf::write_step_count(file, steps_ + 1);
   file.close();
   ++steps_;
   if (options_.h5part_view && steps_ == 1) {
@@ -380,9 +340,7 @@ void VtkhdfFile::append(double time, const ParticleSnapshot& snapshot) {
 }
 
 void VtkhdfFile::keep_steps(std::int64_t count) {
-  if (count > steps_)
-    throw FileError("cannot continue '" + path_.string() + "': it holds " + std::to_string(steps_) +
-                    " snapshots, the checkpoint was made after " + std::to_string(count));
+  vtkhdf::require_steps(path_, steps_, count);
   if (count == 0) {
     std::error_code failure;
     std::filesystem::remove(h5part_link(path_), failure);

@@ -8,6 +8,7 @@
 #include "spume/io/file.hpp"
 #include "spume/io/hdf5.hpp"
 #include "spume/io/journal.hpp"
+#include "spume/io/vtkhdf_steps.hpp"
 
 namespace spume {
 namespace {
@@ -17,40 +18,27 @@ using hdf5::Id;
 
 constexpr hsize_t chunk_bytes = 1 << 20;
 
+std::int64_t step_count(const File& file) {
+  return vtkhdf::read_step_count(file, false, "grid");
+}
+
 hsize_t slab(const GridSnapshot& snapshot, std::size_t components) {
   const hsize_t layer = snapshot.points[0] * snapshot.points[1] * components * sizeof(float);
   return std::clamp<hsize_t>(chunk_bytes / layer, 1, snapshot.points[2]);
 }
 
-void create_array(const File& file, const std::string& name, hid_t type, const std::vector<hsize_t>& rest,
-                  const std::vector<hsize_t>& chunk) {
-  std::vector<hsize_t> size{0}, limit{H5S_UNLIMITED};
-  size.insert(size.end(), rest.begin(), rest.end());
-  limit.insert(limit.end(), rest.begin(), rest.end());
-  const int rank = static_cast<int>(size.size());
-  const Id space = file.take(H5Screate_simple(rank, size.data(), limit.data()), H5Sclose, "write");
-  const Id creation = file.take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "write");
-  H5Pset_chunk(creation, rank, chunk.data());
-  const Id links = file.take(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "write");
-  H5Pset_create_intermediate_group(links, 1);
-  const Id data =
-      file.take(H5Dcreate2(file.id(), name.c_str(), type, space, links, creation, H5P_DEFAULT), H5Dclose, "write");
-}
-
-void create_layout(const File& file, const GridSnapshot& snapshot, const VtkhdfGridFile::Notes& notes) {
+void create_layout(const File& file, const GridSnapshot& snapshot, const vtkhdf::Notes& notes) {
   for (const auto& field : snapshot.fields) {
     const hsize_t components = field.components.size();
     std::vector<hsize_t> rest{snapshot.points[2], snapshot.points[1], snapshot.points[0]};
     std::vector<hsize_t> chunk{1, slab(snapshot, components), snapshot.points[1], snapshot.points[0]};
     if (components > 1) rest.push_back(components), chunk.push_back(components);
-    create_array(file, "/VTKHDF/PointData/" + field.name, H5T_IEEE_F32LE, rest, chunk);
-    create_array(file, "/VTKHDF/Steps/PointDataOffsets/" + field.name, H5T_STD_I64LE, {}, {256});
+    vtkhdf::create_array(file, "/VTKHDF/PointData/" + field.name, H5T_IEEE_F32LE, rest, chunk);
+    vtkhdf::create_array(file, "/VTKHDF/Steps/PointDataOffsets/" + field.name, H5T_STD_I64LE, {}, {256});
   }
-  create_array(file, "/VTKHDF/Steps/Values", H5T_IEEE_F64LE, {}, {256});
+  vtkhdf::create_array(file, "/VTKHDF/Steps/Values", H5T_IEEE_F64LE, {}, {256});
+  vtkhdf::write_header(file, "ImageData", notes);
   const Id root = file.take(H5Gopen2(file.id(), "/VTKHDF", H5P_DEFAULT), H5Gclose, "write");
-  const std::int64_t version[2] = {2, 0};
-  hdf5::write_attribute(file, root, "Version", H5T_STD_I64LE, H5T_NATIVE_INT64, 2, version);
-  hdf5::write_fixed_string(file, root, "Type", "ImageData");
   std::int64_t extent[6];
   for (std::size_t axis = 0; axis < 3; ++axis) {
     extent[2 * axis] = 0;
@@ -61,25 +49,6 @@ void create_layout(const File& file, const GridSnapshot& snapshot, const VtkhdfG
   hdf5::write_attribute(file, root, "Spacing", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 3, snapshot.spacing.data());
   const double direction[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   hdf5::write_attribute(file, root, "Direction", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 9, direction);
-  const Id steps = file.take(H5Gopen2(file.id(), "/VTKHDF/Steps", H5P_DEFAULT), H5Gclose, "write");
-  const std::int64_t none = 0;
-  hdf5::write_attribute(file, steps, "NSteps", H5T_STD_I64LE, H5T_NATIVE_INT64, std::nullopt, &none);
-  for (const auto& [name, text] : notes) hdf5::write_text(file, "/Spume/" + name, text);
-}
-
-std::int64_t read_step_count(const File& file) {
-  if (!file.exists("/VTKHDF/Steps/Values") || file.exists("/VTKHDF/NumberOfPoints"))
-    throw FileError("cannot read '" + file.path().string() + "': it holds no VTKHDF grid over time");
-  const Id attribute = file.take(H5Aopen_by_name(file.id(), "/VTKHDF/Steps", "NSteps", H5P_DEFAULT, H5P_DEFAULT),
-                                 H5Aclose, "read the number of steps of");
-  std::int64_t steps = 0;
-  file.check(H5Aread(attribute, H5T_NATIVE_INT64, &steps), "read");
-  return steps;
-}
-
-void write_step_count(const File& file, std::int64_t steps) {
-  const Id group = file.take(H5Gopen2(file.id(), "/VTKHDF/Steps", H5P_DEFAULT), H5Gclose, "write");
-  hdf5::write_attribute(file, group, "NSteps", H5T_STD_I64LE, H5T_NATIVE_INT64, std::nullopt, &steps);
 }
 
 std::vector<hsize_t> extent_of(const File& file, hid_t data) {
@@ -139,26 +108,13 @@ void write_value(const File& file, const std::string& name, hsize_t step, hid_t 
   write_part(file, file.dataset(name), {step}, {1}, type, value);
 }
 
-std::vector<std::string> field_names(const File& file) {
-  const Id group = file.take(H5Gopen2(file.id(), "/VTKHDF/PointData", H5P_DEFAULT), H5Gclose, "read");
-  H5G_info_t info;
-  file.check(H5Gget_info(group, &info), "read");
-  std::vector<std::string> names;
-  for (hsize_t i = 0; i < info.nlinks; ++i) {
-    char name[256];
-    const auto length = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name, sizeof name, H5P_DEFAULT);
-    if (length > 0 && length < static_cast<ssize_t>(sizeof name)) names.emplace_back(name);
-  }
-  return names;
-}
-
 }  // namespace
 
 GridContents read_grid_contents(const std::filesystem::path& path) {
   const File file = File::open(path, false);
-  const std::int64_t steps = read_step_count(file);
+  const std::int64_t steps = step_count(file);
   GridContents contents;
-  contents.fields = field_names(file);
+  contents.fields = vtkhdf::member_names(file, "/VTKHDF/PointData");
   contents.times.resize(static_cast<std::size_t>(steps));
   const Id data = file.dataset("/VTKHDF/Steps/Values");
   std::vector<double> all(extent_of(file, data)[0]);
@@ -176,7 +132,7 @@ GridContents read_grid_contents(const std::filesystem::path& path) {
 
 bool is_grid_file(const std::filesystem::path& path) {
   try {
-    read_step_count(File::open(path, false));
+    step_count(File::open(path, false));
     return true;
   } catch (const FileError&) {
     return false;
@@ -187,7 +143,7 @@ VtkhdfGridFile::VtkhdfGridFile(std::filesystem::path path, Notes notes)
     : path_(std::move(path)), notes_(std::move(notes)) {
   if (!std::filesystem::exists(path_)) return;
   hdf5::replay_journal(path_);
-  steps_ = read_step_count(File::open(path_, false));
+  steps_ = step_count(File::open(path_, false));
 }
 
 void VtkhdfGridFile::append(double time, const GridSnapshot& snapshot) {
@@ -210,24 +166,22 @@ void VtkhdfGridFile::append(double time, const GridSnapshot& snapshot) {
   write_value(file, "/VTKHDF/Steps/Values", step, H5T_NATIVE_DOUBLE, &time);
   // Readers trust the number of steps: it is raised when everything else is in the file.
   file.flush();
-  write_step_count(file, steps_ + 1);
+  vtkhdf::write_step_count(file, steps_ + 1);
   file.close();
   ++steps_;
 }
 
 void VtkhdfGridFile::keep_steps(std::int64_t count) {
-  if (count > steps_)
-    throw FileError("cannot continue '" + path_.string() + "': it holds " + std::to_string(steps_) +
-                    " snapshots, the checkpoint was made after " + std::to_string(count));
+  vtkhdf::require_steps(path_, steps_, count);
   if (count == 0) {
     std::error_code failure;
     std::filesystem::remove(path_, failure);
     if (failure) throw_file_error(path_, "remove", failure.value());
   } else if (count < steps_) {
     File file = File::open(path_, true);
-    write_step_count(file, count);
+    vtkhdf::write_step_count(file, count);
     file.flush();
-    for (const std::string& name : field_names(file)) {
+    for (const std::string& name : vtkhdf::member_names(file, "/VTKHDF/PointData")) {
       set_steps(file, "/VTKHDF/PointData/" + name, count);
       set_steps(file, "/VTKHDF/Steps/PointDataOffsets/" + name, count);
     }

@@ -8,25 +8,6 @@
 namespace spume::test {
 namespace {
 
-const std::string cavity = R"toml(method = "les-sph"
-[domain]
-lower = [0, 0]
-upper = [1, 1]
-left = "no-slip"
-right = "no-slip"
-bottom = "no-slip"
-top = "no-slip"
-[domain.wall_velocity]
-top = ["1", "0"]
-[resolution]
-spacing = 0.05
-[fluid]
-reynolds = 100
-[[liquid]]
-[time]
-end = 20
-)toml";
-
 const std::string stirred_tank = R"toml(method = "les-sph"
 [domain]
 lower = [0, 0]

@@ -154,6 +154,25 @@ max_step = 0.005
 )toml";
 
 // A stream along x between two walls.
+inline const std::string cavity = R"toml(method = "les-sph"
+[domain]
+lower = [0, 0]
+upper = [1, 1]
+left = "no-slip"
+right = "no-slip"
+bottom = "no-slip"
+top = "no-slip"
+[domain.wall_velocity]
+top = ["1", "0"]
+[resolution]
+spacing = 0.05
+[fluid]
+reynolds = 100
+[[liquid]]
+[time]
+end = 20
+)toml";
+
 inline const std::string channel = R"toml(method = "les-sph"
 [domain]
 lower = [0, 0]

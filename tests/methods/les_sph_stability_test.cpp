@@ -31,26 +31,6 @@ jitter = 0.1
 end = 1
 )";
 
-const std::string lid = R"(
-method = "les-sph"
-[domain]
-lower = [0, 0]
-upper = [1, 1]
-left = "no-slip"
-right = "no-slip"
-bottom = "no-slip"
-top = "no-slip"
-[domain.wall_velocity]
-top = ["2", "0"]
-[resolution]
-spacing = 0.05
-[fluid]
-reynolds = 1e4
-[[liquid]]
-[time]
-end = 1
-)";
-
 void advance(Simulation& run, int steps) {
   for (int k = 0; k < steps; ++k) run.steps(1, run.method.step_limit().dt);
 }
@@ -64,7 +44,7 @@ TEST(LesSphStability, AViscousPoolStaysAtRestWithTheStepsThatItAllows) {
 }
 
 TEST(LesSphStability, TheStepLimitKnowsTheSpeedOfAMovingWall) {
-  Simulation run(lid);
+  Simulation run(cavity, {"domain.wall_velocity.top=[\"2\", \"0\"]", "fluid.reynolds=1e4"});
   advance(run, 1);
   const StepLimit limit = run.method.step_limit();
   EXPECT_EQ(limit.limited_by, "courant");

@@ -277,15 +277,26 @@ class StandingWave(CaseTest):
 
 
 class DamBreaks(CaseTest):
-    def test_front_of_the_experiment_itself(self):
+    def dam_break_2d(self, t, front):
         folder, module = self.run_of("dam_break_2d")
-        z, t = np.linspace(1, 4, 100), None
+        write_table(folder / "probes.csv", {"t": t / np.sqrt(2), "front": front})
+        write_table(folder / "series.csv", series_of(t / np.sqrt(2), mass=1))
+        return module.measure({"run": Results(folder)})
+
+    def test_front_of_the_experiment_itself(self):
+        _, module = self.run_of("dam_break_2d")
         time, reached = module.points(2.25, 9.0)
-        t = np.interp(z, np.concatenate([[1.0], reached]), np.concatenate([[0.0], time])) / np.sqrt(2)
-        write_table(folder / "probes.csv", {"t": t, "front": 1.04 * z})
-        write_table(folder / "series.csv", series_of(t, mass=1))
-        measured = module.measure({"run": Results(folder)})
+        z = np.linspace(1, 4, 100)
+        t = np.interp(z, np.concatenate([[1.0], reached]), np.concatenate([[0.0], time - module.release_delay(2.25)]))
+        measured = self.dam_break_2d(t, 1.04 * z)
         self.assertAlmostEqual(measured["front_error_2.25_inch"], 0.04, delta=0.01)
+
+    def test_front_of_potential_flow(self):
+        _, module = self.run_of("dam_break_2d")
+        measured = self.dam_break_2d(module.IDEAL["T"], 1.02 * module.IDEAL["Z"])
+        self.assertAlmostEqual(measured["front_error_potential_flow"], 0.02, places=6)
+        # It leads the clock of the experiment by 0.3 of about 1.4 in speed.
+        self.assertGreater(measured["front_error_2.25_inch_published_clock"], 0.15)
 
     def test_gauges_of_the_experiment_itself(self):
         folder, module = self.run_of("dam_break_3d")
