@@ -110,7 +110,7 @@ def memory(bench):
 
 
 def stage_seconds(run):
-    """Seconds by what they were spent on, of the last session of the run, and its steps."""
+    """Seconds by what they were spent on, since the run was last resumed, and its steps."""
     seconds = {entry["stage"]: entry["seconds"] for entry in run.ledger["stages"]}
     calls = {entry["stage"]: entry["calls"] for entry in run.ledger["stages"]}
     total = lambda *names: sum(seconds.get(name, 0.0) for name in names)
