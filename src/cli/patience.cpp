@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
+#include <omp.h>
+#include <sched.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "spume/cli/programme.hpp"
 
@@ -33,6 +36,20 @@ bool names_threads(int argc, char** argv) {
   return false;
 }
 
+// Where OMP_PROC_BIND is set already, the runtime has bound this thread to its first place, and the restarted program
+// would find that place alone: all its threads on one core.
+void release_to_all_places() {
+  if (omp_get_num_places() == 0) return;
+  cpu_set_t processors;
+  CPU_ZERO(&processors);
+  for (int place = 0; place < omp_get_num_places(); ++place) {
+    std::vector<int> members(static_cast<std::size_t>(omp_get_place_num_procs(place)));
+    omp_get_place_proc_ids(place, members.data());
+    for (const int processor : members) CPU_SET(processor, &processors);
+  }
+  sched_setaffinity(0, sizeof processors, &processors);
+}
+
 }  // namespace
 
 void restart_with_patient_threads(int argc, char** argv) {
@@ -47,6 +64,7 @@ void restart_with_patient_threads(int argc, char** argv) {
   if (!names_threads(argc, argv)) set_when_absent("OMP_PROC_BIND", "true", names);
   if (names.empty()) return;
   setenv(mark, names.c_str(), 1);
+  release_to_all_places();
   // Where the system refuses, the program simply goes on with the settings it has.
   execv("/proc/self/exe", argv);
   forget(names.c_str());

@@ -225,6 +225,21 @@ TEST_F(Verbs, ThreadsWaitPassivelyUnlessTheUserSaysOtherwise) {
   unsetenv("OMP_DISPLAY_ENV");
 }
 
+// A bound runtime pins the first thread before the program restarts: the restarted one must find all cores again.
+TEST_F(Verbs, BoundThreadsKeepEveryCoreThroughTheRestart) {
+  setenv("OMP_PROC_BIND", "true", 1);
+  setenv("OMP_DISPLAY_ENV", "true", 1);
+  const std::string err = spume({"options"}).err;
+  unsetenv("OMP_DISPLAY_ENV");
+  unsetenv("OMP_PROC_BIND");
+  std::vector<std::string> places;
+  std::istringstream lines(err);
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("OMP_PLACES") != std::string::npos) places.push_back(line);
+  ASSERT_GE(places.size(), 2U) << err;
+  EXPECT_EQ(places.front(), places.back());
+}
+
 TEST_F(Verbs, ScriptsGetTheirArgumentsAndTheirExitCodeIsPassedOn) {
   std::filesystem::create_directory(folder_ / "tools");
   test::write_contents(
