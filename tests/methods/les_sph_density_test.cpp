@@ -59,7 +59,7 @@ TEST(NumberDensity, IsEvenedOutAtTheStatedRateWithoutAChangeOfTheMean) {
   std::vector<double> excess(liquid.size());
   double mean = 0, sum = 0, largest = 0;
   for (std::size_t i = 0; i < liquid.size(); ++i) {
-    const double ratio = (*liquid.divergence_of_position)[i] / liquid.lattice.divergence_of_position;
+    const double ratio = (*liquid.kernel_sum)[i] / liquid.lattice.kernel_sum;
     excess[i] = std::min(std::max(ratio - 1, -0.1), 0.1);
     mean += excess[i] / static_cast<double>(liquid.size());
   }

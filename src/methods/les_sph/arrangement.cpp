@@ -48,6 +48,7 @@ void measure_geometry(Liquid& liquid) {
   options.spacing = liquid.scene.spacing;
   GeometryOut out;
   out.divergence_of_position = liquid.divergence_of_position->data();
+  if (liquid.kernel_sum != nullptr) out.kernel_sum = liquid.kernel_sum->data();
   out.coupling = liquid.coupling->data();
   for (std::size_t k = 0; k < out.correction.size(); ++k)
     out.correction[k] = liquid.correction[k] == nullptr ? nullptr : liquid.correction[k]->data();

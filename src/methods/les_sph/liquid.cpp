@@ -80,6 +80,7 @@ Liquid::Liquid(const LoadedCase& loaded_case)
   reduced_pressure = &fields.add<double>("reduced_pressure", Lifetime::scratch);
   if (plan.gravity || plan.body_force) potential = &fields.add<double>("potential", Lifetime::scratch);
   divergence_of_position = &fields.add<float>("divergence_of_position", Lifetime::scratch);
+  if (plan.density_relaxation) kernel_sum = &fields.add<float>("kernel_sum", Lifetime::scratch);
   coupling = &fields.add<float>("coupling", Lifetime::scratch);
   for (int k = 0; k < d * (d + 1) / 2; ++k)
     correction[k] = &fields.add<float>("gradient_correction_" + std::to_string(k), Lifetime::scratch);

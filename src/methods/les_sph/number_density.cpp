@@ -51,7 +51,7 @@ void mark_surroundings_of_surface(const Liquid& liquid, Array<std::uint8_t>& nea
 }
 
 double excess(const Liquid& liquid, std::size_t i) {
-  const double ratio = (*liquid.divergence_of_position)[i] / liquid.lattice.divergence_of_position;
+  const double ratio = (*liquid.kernel_sum)[i] / liquid.lattice.kernel_sum;
   return std::clamp(ratio - 1, -largest_excess, largest_excess);
 }
 

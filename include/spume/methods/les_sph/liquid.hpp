@@ -66,6 +66,7 @@ struct Liquid {
   Array<double>* reduced_pressure = nullptr;  // q = p + potential
   Array<double>* potential = nullptr;         // -rho a . r*, null without uniform acceleration
   Array<float>* divergence_of_position = nullptr;
+  Array<float>* kernel_sum = nullptr;
   Array<float>* coupling = nullptr;
   std::array<Array<float>*, 6> correction{};
   Array<std::uint8_t> uncorrected;  // gradient correction fell back to the identity
