@@ -56,6 +56,13 @@ class Exclusion(ParticleCase):
         self.assertAlmostEqual(measured["clipped_force"], 0.002)
         self.assertAlmostEqual(measured["free_overlap_ratio"], 0.7)
 
+    def test_leaves_the_flow_before_the_bubbles_out_of_the_picture(self):
+        t = np.linspace(0, 1, 5)
+        runs = {"flow": Results(self.run_of("exclusion", t)),
+                "excluded": Results(self.run_of("exclusion", t, overlap_ratio=0.01 * t))}
+        figure = load_measure(CASES / "exclusion").curves(runs)[0]
+        self.assertEqual([curve[0] for curve in figure["curves"]], ["excluded", "paper, free", "paper, excluded"])
+
 
 class Starting(ParticleCase):
     def test_a_run_starts_from_the_last_state_of_one_before_it(self):
