@@ -110,44 +110,6 @@ TEST(LesSphSurface, LatticeUnderAFlatSurfaceHasOneEdgeLayerHalfASpacingDeep) {
   }
 }
 
-// The depth from sums over all particles in double: the volume in the column above what a flat lattice holds there.
-TEST(LesSphSurface, DepthAgreesWithSumsOverAllParticlesOnADisorderedSurface) {
-  const LoadedCase loaded = load_text(drop);
-  Liquid liquid(loaded);
-  const double dr = loaded.scene.spacing;
-  for (std::size_t i = 0; i < liquid.size(); ++i) {
-    const auto r = random_uniform(4, RandomPurpose::test, i, 0, 0);
-    for (int axis = 0; axis < 2; ++axis) (*liquid.position[axis])[i] += 0.3 * dr * (2 * r[axis] - 1);
-  }
-  les_sph::move_to_intermediate(liquid, 0);
-  les_sph::sort_particles(liquid);
-  les_sph::find_neighbours(liquid);
-  les_sph::measure_geometry(liquid);
-  les_sph::find_surface(liquid);
-  const auto column = [](double x, double z) {
-    x = std::abs(x);
-    const double spline = x >= 2 ? 0 : x >= 1 ? std::pow(2 - x, 3) / 6 : 2.0 / 3 - x * x + x * x * x / 2;
-    const double ramp = z <= 0.2 ? 1 : z >= 2.2 ? 0 : z < 1.2 ? 1 - std::pow(z - 0.2, 2) / 2 : std::pow(2.2 - z, 2) / 2;
-    return spline * ramp;
-  };
-  double lattice = 0;
-  for (int row = 0; row < 4; ++row)
-    for (int k = -3; k <= 3; ++k) lattice += column(k, row);
-  for (std::size_t k = 0; k < liquid.edge_particles.size(); ++k) {
-    const auto i = static_cast<std::size_t>(liquid.edge_particles[k]);
-    const double nx = (*liquid.normal[0])[i], ny = (*liquid.normal[1])[i], size = std::hypot(nx, ny);
-    double held = 0;
-    for (std::size_t j = 0; j < liquid.size(); ++j) {
-      const double x = ((*liquid.intermediate[0])[j] - (*liquid.intermediate[0])[i]) / dr;
-      const double y = ((*liquid.intermediate[1])[j] - (*liquid.intermediate[1])[i]) / dr;
-      if (std::hypot(x, y) < liquid.grid.reach() / dr)
-        held += column((x * ny - y * nx) / size, -(x * nx + y * ny) / size);
-    }
-    // Coordinates in float have an error of 1e-7 of the domain, 2e-6 spacings.
-    EXPECT_NEAR(liquid.edge_depth[k] / dr, std::clamp(0.5 + held - lattice, 0.25, 2.0), 1e-4);
-  }
-}
-
 // Two layers of the lattice below a flat surface are moved towards each other: no force acts, and the shift must not
 // transport their liquid through the layers, or the surface would follow. A tenth of it comes back through the filter,
 // from the layers below that give way.
