@@ -9,6 +9,7 @@ cases/<name>/case.toml holds the case and, in [verify], what is run and which bo
     name = "coarse"
     set = ["resolution.spacing=0.02"] # as --set on the command line
     until = 1.0                       # as --until
+    start = "flow"                    # [initial] is the last state of that earlier run, of any grid
     [verify.bounds]
     velocity_error = 0.01             # upper bound, or [lower, upper]
 
@@ -87,6 +88,17 @@ def run_case(program, folder, out, settings=(), until=None, threads=None):
         words = "\n".join(f"    {message}" for message in messages)
         raise RunFailed(f"exit code {done.returncode} from: {' '.join(command)}\n{words}")
     return Results(out, wall_seconds=seconds)
+
+
+def settings_of(run, runs):
+    """What a [[verify.run]] sets on the command line; runs: those made before it."""
+    settings = list(run.get("set", ()))
+    if "start" in run:
+        if run["start"] not in runs:
+            raise RunFailed(f"run '{run['name']}' starts from '{run['start']}', which is no run before it")
+        checkpoint = runs[run["start"]].folder.resolve() / "checkpoint.h5"
+        settings.append(f'initial={{kind="checkpoint", file="{checkpoint}"}}')
+    return settings
 
 
 def within(value, bound):

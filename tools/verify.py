@@ -16,7 +16,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from spume_results import MissingResult, read_case
-from spume_verification import RunFailed, case_folder, cases_with_verification, load_measure, run_case, within
+from spume_verification import (RunFailed, case_folder, cases_with_verification, load_measure, run_case, settings_of,
+                                within)
 
 NAMES = ("quantity", "measured", "bound", "verdict", "seconds")
 COLUMNS = "{:<22} {:<34} {:>12} {:>18}  {:<6} {:>8}"
@@ -42,7 +43,7 @@ def verify_case(program, folder, table, out, threads, draw):
     runs, seconds = {}, 0.0
     for run in table.get("run") or [{"name": "run"}]:
         print(f"running {folder.name}: {run['name']}", file=sys.stderr, flush=True)
-        result = run_case(program, folder, out / run["name"], run.get("set", ()), run.get("until"), threads)
+        result = run_case(program, folder, out / run["name"], settings_of(run, runs), run.get("until"), threads)
         runs[run["name"]] = result
         seconds += result.wall_seconds
     module = load_measure(folder)

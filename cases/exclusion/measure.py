@@ -24,6 +24,7 @@ def measure(runs):
 
 
 def curves(runs):
+    runs = {name: run for name, run in runs.items() if "overlap_ratio" in run.series}  # not the flow that both start from
     figures = [{"file": "overlap_ratio", "x": "t", "y": "overlap ratio", "log": "y",
                 "curves": [(name, run.series["t"][1:], np.maximum(run.series["overlap_ratio"][1:], 1e-5), "-")
                            for name, run in runs.items()]

@@ -33,5 +33,7 @@ def curves(runs):
     x, over = ratio(runs)
     lines = [(name, *mean_spectrum(runs[name]), style) for name, style in (("single", "k--"), ("coupled", "-"))]
     return [{"file": "spectra", "x": "k eta", "y": "E(k)", "log": "xy", "curves": lines},
-            {"file": "spectrum_ratio", "x": "k eta", "y": "E(k) with bubbles / without", "log": "x",
-             "curves": [("four-way", x, over, "-"), ("1", x, np.ones_like(x), "k:")]}]
+            {"file": "spectrum_ratio", "x": "k eta", "y": "E(k) with bubbles / without", "log": "xy",
+             "curves": [("four-way", x, over, "-"), ("1", x, np.ones_like(x), "k:")]},
+            {"file": "attenuation", "x": "k eta", "y": "E(k) with bubbles / without",
+             "curves": [("four-way", x[x < 1.5], over[x < 1.5], "-"), ("1", x[x < 1.5], np.ones(sum(x < 1.5)), "k:")]}]

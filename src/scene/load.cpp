@@ -227,6 +227,18 @@ void add_bubble_sources(const Draft& draft, Compiler& compiler, Scene& scene) {
   }
 }
 
+// Where the case gives what, below `name`.
+void note_places(const Node& node, const std::string& name, const std::string& file,
+                 std::map<std::string, Problem>& places) {
+  if (!name.empty())
+    places[name] = node.override_text.empty() ? Problem{file, node.place.line, node.place.column, {}}
+                                              : Problem{node.override_text, 0, 0, {}};
+  for (std::size_t i = 0; i < node.children.size(); ++i) {
+    const std::string key = node.kind == Node::Kind::table ? node.keys[i] : std::to_string(i);
+    note_places(node.children[i], name.empty() ? key : name + "." + key, file, places);
+  }
+}
+
 }  // namespace
 
 LoadedCase load_case(const std::string& path, const std::vector<std::string>& overrides) {
@@ -289,6 +301,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
     draft.options.groups = describe_groups(draft, scene, compiler.scope());
     describe_lattice(scene, lattice, draft.options.groups);
   }
+  note_places(document, "", file, draft.options.places);
   draft.options.resolved = resolved_text(document, draft);
   loaded.options = std::move(draft.options);
   return loaded;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <omp.h>
 
+#include <algorithm>
+
 #include "methods/spectral_flow.hpp"
 #include "spume/core/parallel.hpp"
 
@@ -184,6 +186,10 @@ TEST(SpectralParticles, CouplingThatNoReasonableStepBearsIsRefusedInWords) {
       testing::AllOf(testing::HasSubstr("mass loading of 2.85"), testing::HasSubstr("raise the response time")));
   EXPECT_THAT(refusal(heavy("ab2", "response_time = 1\nmax_volume_fraction = 0.7\n")),
               testing::HasSubstr("expected at most 0.55"));
+  // With the place in the case, as every refusal.
+  const std::string text = heavy("ab2", "response_time = 1e-9\n");
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(text.find("response_time")), '\n');
+  EXPECT_THAT(refusal(text), testing::HasSubstr(".toml:" + std::to_string(line) + ":17: error: "));
   EXPECT_EQ(refusal(heavy("ab2", "response_time = 1\n")), "");
 }
 

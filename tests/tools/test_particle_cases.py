@@ -2,13 +2,14 @@
 """Measures of the cases with particles, on run folders written from known answers."""
 import shutil
 import tempfile
+import tomllib
 import unittest
 
 import paths
 import numpy as np
 from spume_particle_figures import plot_particles
 from spume_results import Results
-from spume_verification import CASES, load_measure
+from spume_verification import CASES, RunFailed, load_measure, settings_of
 from synthetic import new_folder, series_of, write_table
 
 
@@ -54,6 +55,30 @@ class Exclusion(ParticleCase):
         self.assertAlmostEqual(measured["overlap_ratio"], 0.004)
         self.assertAlmostEqual(measured["clipped_force"], 0.002)
         self.assertAlmostEqual(measured["free_overlap_ratio"], 0.7)
+
+    def test_leaves_the_flow_before_the_bubbles_out_of_the_picture(self):
+        t = np.linspace(0, 1, 5)
+        runs = {"flow": Results(self.run_of("exclusion", t)),
+                "excluded": Results(self.run_of("exclusion", t, overlap_ratio=0.01 * t))}
+        figure = load_measure(CASES / "exclusion").curves(runs)[0]
+        self.assertEqual([curve[0] for curve in figure["curves"]], ["excluded", "paper, free", "paper, excluded"])
+
+
+class Starting(ParticleCase):
+    def test_a_run_starts_from_the_last_state_of_one_before_it(self):
+        flow = Results(self.run_of("exclusion", np.linspace(0, 1, 3)))
+        run = {"name": "free", "start": "flow", "set": ["resolution.grid=32"]}
+        settings = settings_of(run, {"flow": flow})
+        self.assertEqual(settings[0], "resolution.grid=32")
+        name, value = settings[1].split("=", 1)
+        self.assertEqual(name, "initial")
+        initial = tomllib.loads(f"initial = {value}")["initial"]
+        self.assertEqual(initial, {"kind": "checkpoint", "file": str(flow.folder.resolve() / "checkpoint.h5")})
+        self.assertEqual(run["set"], ["resolution.grid=32"])
+
+    def test_one_that_was_not_made_is_refused(self):
+        with self.assertRaises(RunFailed):
+            settings_of({"name": "free", "start": "flow"}, {})
 
 
 class Pictures(ParticleCase):

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "spume/core/error.hpp"
 #include "spume/scene/bubbles.hpp"
 #include "spume/scene/scene.hpp"
 
@@ -174,6 +175,7 @@ struct Case {
   OutputOptions output;
   std::vector<ProbeOptions> probes;
   std::map<std::string, std::string> groups;  // derived and given groups and constants, as text, for the start-up table
+  std::map<std::string, Problem> places;      // of what the case gives, by "section.key" and "section"; without a text
   std::string resolved;  // the case as TOML with defaults filled in and the origin of each value in comments
 };
 

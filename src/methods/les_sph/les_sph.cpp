@@ -16,6 +16,7 @@
 #include "spume/methods/les_sph/point_sampler.hpp"
 #include "spume/methods/les_sph/pressure_system.hpp"
 #include "spume/operators/energy_spectrum.hpp"
+#include "spume/scene/refusal.hpp"
 
 namespace spume::les_sph {
 namespace {
@@ -26,7 +27,7 @@ bool saved(const FieldSet::Field& field) {
 }
 
 // Half the sound speed already means density changes of an eighth, which a weakly compressible liquid leaves out.
-void refuse_high_mach(const Liquid& liquid) {
+void refuse_high_mach(const Case& options, const Liquid& liquid) {
   const double c = liquid.scene.fluid.sound_speed;
   if (!(c > 0) || liquid.max_speed <= 0.5 * c) return;
   char text[300];
@@ -35,7 +36,7 @@ void refuse_high_mach(const Liquid& liquid) {
                 "liquid needs at most 0.5: raise the sound speed %.3g times (fluid.sound_speed, or fluid.mach lower), "
                 "or leave it out for an incompressible liquid",
                 liquid.max_speed, liquid.max_speed / c, c, liquid.max_speed / (0.1 * c));
-  throw InputError(text);
+  throw refusal(options, options.places.count("fluid.mach") > 0 ? "fluid.mach" : "fluid.sound_speed", text);
 }
 
 // div(2 nu S) spreads the divergence of the velocity three times as fast as div(nu grad u) does.
@@ -100,7 +101,7 @@ void LesSph::step(double dt, Ledger& ledger) {
 }
 
 LesSph::LesSph(const LoadedCase& loaded) : liquid_(loaded), pressure_(std::make_unique<PressureSystem>(liquid_)) {
-  refuse_high_mach(liquid_);
+  refuse_high_mach(loaded.options, liquid_);
   std::vector<const char*> known{"velocity",    "pressure",       "id",
                                  "dissipation", "eddy_viscosity", "divergence_of_position"};
   if (liquid_.plan.bubbles) {
@@ -111,7 +112,8 @@ LesSph::LesSph(const LoadedCase& loaded) : liquid_(loaded), pressure_(std::make_
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       std::string list;
       for (const char* field : known) list += std::string(list.empty() ? "" : ", ") + field;
-      throw InputError("output.fields names '" + name + "', which les-sph does not have; it has " + list);
+      throw refusal(loaded.options, "output.fields",
+                    "output.fields names '" + name + "', which les-sph does not have; it has " + list);
     }
 }
 

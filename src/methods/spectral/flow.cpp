@@ -10,6 +10,7 @@
 #include "flow_evaluate.hpp"
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/scene/refusal.hpp"
 
 namespace spume::spectral {
 namespace {
@@ -28,8 +29,9 @@ const LoadedCase& require_memory(const LoadedCase& loaded) {
   const double needed = flow_bytes(loaded.scene.grid, loaded.options.spectral);
   const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
   if (needed > machine)
-    throw InputError("the flow needs " + gigabytes(needed) + " and this machine has " + gigabytes(machine) +
-                     "; lower resolution.grid or set spectral.precision = \"single\"");
+    throw refusal(loaded.options, "resolution.grid",
+                  "the flow needs " + gigabytes(needed) + " and this machine has " + gigabytes(machine) +
+                      "; lower resolution.grid or set spectral.precision = \"single\"");
   return loaded;
 }
 

@@ -11,6 +11,7 @@
 #include "spume/core/random.hpp"
 #include "spume/io/checkpoint.hpp"
 #include "spume/methods/spectral/flow_fields.hpp"
+#include "spume/scene/refusal.hpp"
 
 namespace spume::spectral {
 namespace {
@@ -41,13 +42,15 @@ double coordinate(const ModeLayout& layout, std::size_t axis, std::size_t i) {
 }
 
 template <class T>
-Modes<T> waves(const InitialOptions& initial, Flow<T>& flow) {
+Modes<T> waves(const Case& options, Flow<T>& flow) {
+  const InitialOptions& initial = options.initial;
   const ModeLayout& layout = flow.layout();
   std::array<double, 3> k{};
   for (std::size_t axis = 0; axis < 3; ++axis) k[axis] = initial.wavenumber * layout.unit(axis);
   const bool abc = initial.kind == InitialKind::abc;
   if (abc && (std::abs(k[0] / k[1] - 1) > 1e-12 || std::abs(k[0] / k[2] - 1) > 1e-12))
-    throw InputError("initial.kind = \"abc\" is a Beltrami flow only in a box of equal sides; change the domain");
+    throw refusal(options, "initial.kind",
+                  "initial.kind = \"abc\" is a Beltrami flow only in a box of equal sides; change the domain");
   std::vector<double> amplitude = initial.amplitude;
   amplitude.resize(3, 1.0);
   const double a = amplitude[0], b = amplitude[1], c = amplitude[2];
@@ -70,7 +73,8 @@ Modes<T> waves(const InitialOptions& initial, Flow<T>& flow) {
 }
 
 template <class T>
-Modes<T> evaluated(const Scene& scene, Flow<T>& flow) {
+Modes<T> evaluated(const LoadedCase& loaded, Flow<T>& flow) {
+  const Scene& scene = loaded.scene;
   const ModeLayout& layout = flow.layout();
   const VectorExpression& given = *scene.initial_velocity;
   std::vector<VectorExpression> own;  // one per thread: an expression is not thread-safe
@@ -87,7 +91,7 @@ Modes<T> evaluated(const Scene& scene, Flow<T>& flow) {
   for (const auto& field : potential)
     if (const double sum = parallel_sum(field.size(), [&](std::size_t i) { return double{std::norm(field[i])}; });
         !std::isfinite(sum))
-      throw InputError("initial.velocity is not finite somewhere in the box");
+      throw refusal(loaded.options, "initial.velocity", "initial.velocity is not finite somewhere in the box");
   return potential;
 }
 
@@ -163,13 +167,15 @@ Modes<T> random_field(const LoadedCase& loaded, const Flow<T>& flow) {
   for (std::size_t shell = 1; shell < shells; ++shell) {
     const double wanted = (*loaded.scene.initial_spectrum)(static_cast<double>(shell) * unit, 0, 0, 0);
     if (!(wanted >= 0) || !std::isfinite(wanted))
-      throw InputError("initial.spectrum is negative or not finite at k = " +
-                       std::to_string(static_cast<double>(shell) * unit));
+      throw refusal(
+          loaded.options, "initial.spectrum",
+          "initial.spectrum is negative or not finite at k = " + std::to_string(static_cast<double>(shell) * unit));
     if (!(energy[shell] > 0)) continue;
     factor[shell] = std::sqrt(wanted / energy[shell]);
     total += wanted;
   }
-  if (!(total > 0)) throw InputError("initial.spectrum is zero at every wavenumber of the grid");
+  if (!(total > 0))
+    throw refusal(loaded.options, "initial.spectrum", "initial.spectrum is zero at every wavenumber of the grid");
   const double scale = std::sqrt(loaded.options.initial.energy / total);
   for (std::size_t ix = 0; ix < nx; ++ix)
     for (std::size_t iy = 0; iy < ny; ++iy)
@@ -180,9 +186,12 @@ Modes<T> random_field(const LoadedCase& loaded, const Flow<T>& flow) {
 }
 
 template <class T>
-Modes<T> from_checkpoint(const std::string& path, const Flow<T>& flow) {
+Modes<T> from_checkpoint(const Case& options, const Flow<T>& flow) {
+  const std::string& path = options.initial.file;
   const ModeLayout& layout = flow.layout();
-  const auto refuse = [&](const std::string& why) { throw InputError("initial.file '" + path + "': " + why); };
+  const auto refuse = [&](const std::string& why) {
+    throw refusal(options, "initial.file", "initial.file '" + path + "': " + why);
+  };
   Modes<T> potential;
   for (auto& field : potential) field.resize(layout.size());
   try {
@@ -219,7 +228,7 @@ Modes<T> from_checkpoint(const std::string& path, const Flow<T>& flow) {
         }
     }
   } catch (const FileError& error) {
-    throw InputError(std::string("initial.file: ") + error.what());
+    throw refusal(options, "initial.file", std::string("initial.file: ") + error.what());
   }
   return potential;
 }
@@ -231,13 +240,13 @@ Modes<T> initial_potential(const LoadedCase& loaded, Flow<T>& flow) {
   switch (loaded.options.initial.kind) {
     case InitialKind::taylor_green:
     case InitialKind::abc:
-      return waves(loaded.options.initial, flow);
+      return waves(loaded.options, flow);
     case InitialKind::random:
       return random_field(loaded, flow);
     case InitialKind::expressions:
-      return evaluated(loaded.scene, flow);
+      return evaluated(loaded, flow);
     case InitialKind::checkpoint:
-      return from_checkpoint(loaded.options.initial.file, flow);
+      return from_checkpoint(loaded.options, flow);
     case InitialKind::rest:
       break;
   }

@@ -9,6 +9,7 @@
 #include "spume/methods/spectral/flow_fields.hpp"
 #include "spume/methods/spectral/flow_statistics.hpp"
 #include "spume/methods/spectral/initial_state.hpp"
+#include "spume/scene/refusal.hpp"
 
 namespace spume::spectral {
 
@@ -36,8 +37,9 @@ template <class T>
 Spectral<T>::Spectral(const LoadedCase& loaded) : loaded_(loaded), flow_(loaded) {
   for (const std::string& name : loaded.options.output.fields)
     if (name != "velocity" && name != "vorticity" && name != "pressure")
-      throw InputError("output.fields names '" + name +
-                       "', which method \"spectral\" does not have; it has velocity, vorticity, pressure");
+      throw refusal(loaded.options, "output.fields",
+                    "output.fields names '" + name +
+                        "', which method \"spectral\" does not have; it has velocity, vorticity, pressure");
   if (loaded.options.particles.any()) suspension_ = std::make_unique<Suspension<T>>(loaded, flow_);
 }
 
@@ -45,9 +47,9 @@ template <class T>
 void Spectral<T>::start() {
   flow_.set_potential(initial_potential(loaded_, flow_));
   if (loaded_.options.forcing.kind == ForcingKind::shell && !(flow_.measure_budget().injection > 0))
-    throw InputError(
-        "the forced shell holds no energy at the start, so that no force could inject any; choose "
-        "[initial] or [forcing] so that the wavenumbers meet");
+    throw refusal(loaded_.options, "forcing",
+                  "the forced shell holds no energy at the start, so that no force could inject any; choose "
+                  "[initial] or [forcing] so that the wavenumbers meet");
   flow_.evaluate_tendency();
   if (suspension_) {
     suspension_->require_possible(flow_.step_limit());

@@ -12,6 +12,7 @@
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/physics/particles/clustering.hpp"
+#include "spume/scene/refusal.hpp"
 
 namespace spume::spectral {
 namespace {
@@ -32,7 +33,7 @@ std::vector<std::array<double, 3>> read_positions(const LoadedCase& loaded) {
   const std::filesystem::path path =
       std::filesystem::path(loaded.options.path).parent_path() / loaded.options.particles.file;
   std::ifstream file(path);
-  if (!file) throw InputError("particles.file " + path.string() + " cannot be read");
+  if (!file) throw refusal(loaded.options, "particles.file", "particles.file " + path.string() + " cannot be read");
   std::vector<std::array<double, 3>> positions;
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
@@ -43,8 +44,7 @@ std::vector<std::array<double, 3>> read_positions(const LoadedCase& loaded) {
     if (text >> x[0] >> x[1] >> x[2])
       positions.push_back(x);
     else if (!positions.empty())  // before the first position it is the line of column names
-      throw InputError(path.string() + ":" + std::to_string(number) + ":1: error: found '" + line +
-                       "'; expected three numbers x, y, z");
+      throw InputError({Problem{path.string(), number, 1, "found '" + line + "'; expected three numbers x, y, z"}});
   }
   return positions;
 }
@@ -59,11 +59,13 @@ void require_memory(const LoadedCase& loaded, const ParticleOptions& options) {
                 "flow and particles need %.3g GB, the particles %.3g of it, and this machine has %.3g GB; lower "
                 "particles.count or resolution.grid",
                 needed / 1e9, particles / 1e9, machine / 1e9);
-  throw InputError(text);
+  throw refusal(loaded.options, loaded.options.particles.count > 0 ? "particles.count" : "particles.volume_fraction",
+                text);
 }
 
 // Heavy particles may be too crowded for any step: their force is then clipped below close packing.
-void limit_clipping(const ParticleCaseOptions& in, ParticleOptions& out) {
+void limit_clipping(const Case& options, ParticleOptions& out) {
+  const ParticleCaseOptions& in = options.particles;
   const double bearable = stable_volume_fraction(out.motion, out.scheme, out.most_volume_fraction);
   if (bearable >= out.most_volume_fraction) return;
   if (in.max_volume_fraction != ParticleCaseOptions().max_volume_fraction) {
@@ -72,9 +74,18 @@ void limit_clipping(const ParticleCaseOptions& in, ParticleOptions& out) {
                   "particles.max_volume_fraction = %.4g lets the coupling of particles with beta = %.4g and the flow "
                   "grow with any step; expected at most %.3g; lower it, or leave it out",
                   out.most_volume_fraction, in.beta, bearable);
-    throw InputError(text);
+    throw refusal(options, "particles.max_volume_fraction", text);
   }
   out.most_volume_fraction = bearable;
+}
+
+ParticleSystem system_for(const LoadedCase& loaded) {
+  const ParticleOptions options = particle_options(loaded);
+  try {
+    return {grid_of(loaded), options};
+  } catch (const InputError& error) {
+    throw refusal(loaded.options, "particles", error);
+  }
 }
 
 // Shortest and longest distance of the pair statistics, in grid spacings, and the range of the dimension.
@@ -136,8 +147,9 @@ ParticleOptions particle_options(const LoadedCase& loaded) {
     }
   }
   if (placement.kind == Placement::given && out.count > placement.given.size())
-    throw InputError("particles.file holds " + std::to_string(placement.given.size()) + " positions for " +
-                     std::to_string(out.count) + " particles");
+    throw refusal(loaded.options, "particles.file",
+                  "particles.file holds " + std::to_string(placement.given.size()) + " positions for " +
+                      std::to_string(out.count) + " particles");
 
   MotionModel& motion = out.motion;
   motion.beta = in.beta;
@@ -152,9 +164,9 @@ ParticleOptions particle_options(const LoadedCase& loaded) {
   else
     motion.response_time = placement.diameters[0] * placement.diameters[0] / (12 * in.beta * nu);
   if (!(motion.response_time > 0) || !std::isfinite(motion.response_time))
-    throw InputError(
-        "the response time diameter^2 / (12 beta nu) of the particles is not a finite number above 0; give "
-        "particles.response_time");
+    throw refusal(loaded.options, "particles",
+                  "the response time diameter^2 / (12 beta nu) of the particles is not a finite number above 0; give "
+                  "particles.response_time");
 
   out.coupling = in.coupling == ParticleCoupling::one_way    ? Coupling::one_way
                  : in.coupling == ParticleCoupling::two_way  ? Coupling::two_way
@@ -168,14 +180,14 @@ ParticleOptions particle_options(const LoadedCase& loaded) {
   out.sort_every = static_cast<int>(std::min<std::int64_t>(in.sort_every, 1 << 30));
   // Adams-Bashforth extrapolates from the forces at the ends of steps; the others hold the force over the coming step.
   if (loaded.options.spectral.integrator != Integrator::ab2) out.scheme = {1, 0};
-  if (acts_on_flow(out.coupling) && motion.beta > 0) limit_clipping(in, out);
+  if (acts_on_flow(out.coupling) && motion.beta > 0) limit_clipping(loaded.options, out);
   require_memory(loaded, out);
   return out;
 }
 
 template <class T>
 Suspension<T>::Suspension(const LoadedCase& loaded, Flow<T>& flow)
-    : loaded_(loaded), flow_(flow), grid_(grid_of(loaded)), system_(grid_, particle_options(loaded)) {
+    : loaded_(loaded), flow_(flow), grid_(grid_of(loaded)), system_(system_for(loaded)) {
   const auto& layout = flow.layout();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t modes = axis == 2 ? layout.modes_z : layout.points[axis];
@@ -242,7 +254,8 @@ void Suspension<T>::require_possible(const StepLimit& flow) const {
       "particles.coupling = \"one-way\"",
       motion.response_time, system_.volume_fraction() * motion.density_ratio(), system_.volume_fraction(),
       motion.density_ratio(), longest, flow.dt);
-  throw InputError(text);
+  throw refusal(loaded_.options, loaded_.options.particles.stokes > 0 ? "particles.stokes" : "particles.response_time",
+                text);
 }
 
 template <class T>
