@@ -180,23 +180,33 @@ class SphSums {
     return sum;
   }
 
-  // Mirrored liquid at a free surface: half the distance of the layers within `reach`, across m = sum g d.
-  double surface_depth(std::size_t i, double spacing, double reach) const {
+  // Distance of the surface by volume: what a column along the normal holds beyond that of a flat lattice surface.
+  double surface_depth(std::size_t i, double spacing) const {
+    const auto weight = [&](double across, double down) {
+      const double x = across / spacing, z = down / spacing;
+      double spline = x >= 2 ? 0 : x >= 1 ? std::pow(2 - x, 3) / 6 : 2.0 / 3 - x * x + x * x * x / 2;
+      if (dimensions() == 3) spline *= 15 / (7 * 3.14159265358979323846);
+      const double ramp = z <= 0.2   ? 1
+                          : z >= 2.2 ? 0
+                          : z < 1.2  ? 1 - std::pow(z - 0.2, 2) / 2
+                                     : std::pow(2.2 - z, 2) / 2;
+      return spline * ramp;
+    };
+    double lattice = 0;
+    for (int row = 0; row < 3; ++row)
+      for (int k = -2; k <= 2; ++k)
+        for (int l = dimensions() == 3 ? -2 : 0; l <= (dimensions() == 3 ? 2 : 0); ++l)
+          lattice += weight(spacing * std::hypot(k, l), spacing * row);
     const auto m = normal(i);
-    double size = 0, first = 0, second = 0, third = 0;
+    double size = 0, held = weight(0, 0);
     for (int a = 0; a < dimensions(); ++a) size += m[a].value * m[a].value;
     if (size == 0) return spacing;
     each(i, [&](const Pair& p) {
-      double along = 0;
-      for (int a = 0; a < dimensions(); ++a) along -= p.d[a] * m[a].value / std::sqrt(size);
-      const double weight = p.r < reach ? std::pow(1 - p.r * p.r / (reach * reach), 2) : 0;
-      first += weight * along;
-      second += weight * along * along;
-      third += weight * along * along * along;
+      double down = 0;
+      for (int a = 0; a < dimensions(); ++a) down -= p.d[a] * m[a].value / std::sqrt(size);
+      held += weight(std::sqrt(std::max(0.0, p.r * p.r - down * down)), down);
     });
-    const double low = second < 2 * spacing * first ? std::max(second / first / 2, spacing / 4) : spacing;
-    const double high = second > 0 ? std::clamp(third / second / 2, spacing / 4, spacing) : spacing;
-    return (2 * low + high) / 3;
+    return spacing * std::clamp(0.5 + held - lattice, 0.25, 2.0);
   }
 
   // --- fields; a velocity has one array per dimension

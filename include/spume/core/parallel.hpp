@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <exception>
+#include <type_traits>
 
 namespace spume {
 
@@ -115,6 +116,23 @@ double parallel_max(std::size_t n, double start, Term&& term) {
         return best;
       },
       larger);
+}
+
+// The indices i of [0, n) with chosen(i), in order: counted by blocks, then written. `chosen` is called twice.
+template <class List, class Chosen>
+void parallel_select(std::size_t n, List& list, Chosen&& chosen) {
+  const std::size_t block = std::max<std::size_t>(4096, (n + max_reduction_blocks - 1) / max_reduction_blocks);
+  std::array<std::size_t, max_reduction_blocks + 1> start{};
+  parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) start[b + 1] += chosen(i) ? 1 : 0;
+  });
+  for (std::size_t b = 0; b < block_count(n, block); ++b) start[b + 1] += start[b];
+  list.resize(start[block_count(n, block)]);
+  parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t last) {
+    std::size_t slot = start[b];
+    for (std::size_t i = first; i < last; ++i)
+      if (chosen(i)) list[slot++] = static_cast<std::remove_reference_t<decltype(list[0])>>(i);
+  });
 }
 
 // Number of threads a parallel loop will use.

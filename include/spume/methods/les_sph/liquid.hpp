@@ -76,8 +76,11 @@ struct Liquid {
   Array<std::int32_t> edge_particles;  // b < 1 and not held
   Array<float> edge_depth;             // of those: distance from the surface
   FloatVectorField normal{}, smoothed_normal{};
-  FloatVectorField shift{};           // displacement; first the concentration gradient
-  FloatVectorField shift_velocity{};  // second-order part of what the shift adds to the velocity
+  Array<std::uint8_t> beside_edge;
+  Array<std::int32_t> upper_particles;      // edge particles and those of the layer below them
+  Array<std::array<float, 3>> layer_shift;  // of those: the normal shift that they share
+  FloatVectorField shift{};                 // displacement; first the concentration gradient
+  FloatVectorField shift_velocity{};        // second-order part of what the shift adds to the velocity
   std::array<Array<float>*, 9> velocity_gradient{};
   FloatVectorField filtered_velocity{};
   Array<float>* strain = nullptr;                 // |S| = sqrt(2 S:S)
