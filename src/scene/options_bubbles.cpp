@@ -45,6 +45,11 @@ Section bubbles() {
           word_option("closure", "\"mixture-pressure\"",
                       "pressure force on the liquid: -grad(alpha p) or -alpha grad p", group, &B::closure,
                       {{"mixture-pressure", BubbleClosure::mixture_pressure}, {"two-fluid", BubbleClosure::two_fluid}}),
+          word_option("surface_reaction", "\"surface\"",
+                      "who holds the bubbles that brake below a surface: surface, which the liquid does not feel, or "
+                      "the liquid around them, King (3.33)",
+                      group, &B::surface_reaction,
+                      {{"surface", SurfaceReaction::surface}, {"liquid", SurfaceReaction::liquid}}),
           option("lift_coefficient", "1", "0.5", between(-10, 10), "C_l", group, &B::lift_coefficient),
           option("virtual_mass_coefficient", "1", "0.5", between(0, 10), "C_vm", group, &B::virtual_mass_coefficient),
           option("viscosity_constant", "1", "0.6", between(0, 10), "of the bubble-induced viscosity (Sato & Sekoguchi)",

@@ -37,6 +37,32 @@ end = 10
 max_step = 0.01
 )toml";
 
+// One bubble below a still surface, which does not burst.
+const std::string still_tank = R"toml(method = "les-sph"
+[domain]
+lower = [0, 0, 0]
+upper = [0.2, 0.2, 0.24]
+x = "periodic"
+y = "periodic"
+bottom = "no-slip"
+[resolution]
+spacing = 0.02
+[fluid]
+reynolds = 1e5
+froude = 0.31927542840705043
+mach = 0.05
+[[liquid]]
+upper = [0.2, 0.2, 0.16]
+[bubbles]
+weber = 1.4e4
+schmidt = 1e9
+[[bubble_cloud]]
+centre = [0.1, 0.1, 0.1]
+bubble_radius = 0.003
+[time]
+end = 10
+)toml";
+
 // Gas and liquid in a tank with a surface: sources, breakup and entrainment at work from the first steps.
 // A droplet above holds bubbles that burst at once.
 const std::string stirred_tank = R"toml(method = "les-sph"
@@ -223,6 +249,24 @@ TEST(Bubbles, RiseAtTheirTerminalVelocityRelativeToTheLiquid) {
   gas.gravity = {0, 0, -1};
   const auto& population = bubbles_of(run).population();
   EXPECT_NEAR((*population.slip)[0], bubbles::terminal_speed(gas, 0.02), 0.02 * bubbles::terminal_speed(gas, 0.02));
+}
+
+// A bubble that has come to rest below a still surface. Held by the surface it gives the liquid nothing but its creep
+// through the last per cent of (3.32), and the liquid calms down; by (3.33) it gives its whole buoyancy for ever.
+TEST(Bubbles, AtRestBelowASurfaceLeaveTheLiquidAtRest) {
+  const auto lift_and_energy = [](const std::string& bearer) {
+    Simulation run(still_tank, {"bubbles.surface_reaction=\"" + bearer + "\""});
+    run.steps(100, 0.01);
+    const double buoyancy = bubbles_of(run).population().total_volume() * 9.81;
+    const double lift = bubbles_of(run).total_reaction()[2] / buoyancy, energy = run.series().at("kinetic_energy");
+    run.steps(100, 0.01);
+    return std::array{lift, run.series().at("kinetic_energy") / energy};
+  };
+  const auto held = lift_and_energy("surface"), printed = lift_and_energy("liquid");
+  EXPECT_NEAR(held[0], 0, 0.05);
+  EXPECT_NEAR(printed[0], 1, 0.01);
+  EXPECT_LT(held[1], 1);
+  EXPECT_GT(printed[1], 1.5);
 }
 
 TEST(Bubbles, DoNotDependOnTheThreadCount) {

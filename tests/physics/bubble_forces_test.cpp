@@ -145,6 +145,33 @@ TEST(Reaction, HoldsMomentumOfBubbleAndLiquid) {
   }
 }
 
+// At rest below a surface that holds it a bubble gives nothing to the liquid; on its way there it gives what (3.31)
+// leaves for drag, lift and virtual mass.
+TEST(Reaction, LeavesOutWhatTheSurfaceBears) {
+  const Gas gas = plume_gas();
+  const double volume = 4e-9, dt = 0.01, per_mass = 1 / gas.density_ratio + gas.virtual_mass;
+  const Vec3 up{0, 0, 1}, rest{};
+  for (const double radius : {1e-4, 3e-3}) {
+    const Braking held{1, up, dt};
+    const Vec3 next = advance_stable(gas, radius, {}, rest, dt, held);
+    EXPECT_EQ(next, rest);
+    const Vec3 borne = braking_force(gas, radius, {}, next, 0, dt, held),
+               given = reaction(gas, volume, {}, {}, dt, false);
+    EXPECT_NEAR(given[2] + volume * borne[2], 0, 1e-15 * volume * length(gas.gravity));
+  }
+  const double radius = 3e-3, small = 1e-6;
+  const Surroundings liquid{{0.1, 0, 0.2}, {1, 2, 0}, {0, 0.3, 0.5}};
+  const Vec3 u{0.05, 0, 0.3}, slip{0.05, 0, -0.1};
+  const Braking braking{0.7, up, 0.02};
+  const Vec3 next = advance_stable(gas, radius, liquid, u, small, braking);
+  const Vec3 borne = braking_force(gas, radius, liquid, next, slip[2], small, braking);
+  // Lift w x curl u_l along the normal.
+  const double lift = gas.lift * (slip[0] * liquid.vorticity[1] - slip[1] * liquid.vorticity[0]);
+  const double force = drag_rate(length(slip), radius, gas.viscosity) * slip[2] + lift +
+                       gas.virtual_mass * liquid.acceleration[2] - (1 - 1 / gas.density_ratio) * gas.gravity[2];
+  EXPECT_NEAR(per_mass * (next[2] - u[2]) / small, force + borne[2], 1e-4 * length(gas.gravity));
+}
+
 // Relaxation over the time left stops the bubble after half the way that its slip would have taken it.
 TEST(Braking, BringsTheNormalSlipToZeroAtTheMergeTime) {
   const Gas gas = plume_gas();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -184,6 +185,40 @@ TEST(Entrainment, KeepsItsBudgetsUpToTheBubbleThatEndsThem) {
   // On the average no more than what there is: overdrawing has the probability left / cost.
   EXPECT_GT(volume, 0);
   EXPECT_LT(spent, 1.05 * given);
+}
+
+// The radii of the first bubbles of particles: tried uniformly, so flat up to the radius whose surface the energy pays,
+// as its inverse square beyond, and another inverse cube where the volume ends.
+TEST(Entrainment, IsFlatUpToTheRadiusThatTheEnergyPays) {
+  const EntrainmentModel model = wave_model();
+  const double dissipation = 0.4, dt = 0.002;
+  const EntrainmentBudget budget = entrainment_budget(model, wave_particle(dissipation, 0), dt);
+  const double paid = std::sqrt(budget.energy / (4 * M_PI * model.tension)), room = radius_of(budget.volume);
+  EXPECT_NEAR(paid, 3.24e-3, 1e-5);
+  constexpr int bins = 20;
+  std::array<double, bins> count{}, expected{};
+  const double span = model.largest_radius - model.smallest_radius;
+  double total = 0, weight = 0;
+  std::vector<NewBubble> made;
+  for (std::int64_t k = 0; k < 20000; ++k) {
+    made.clear();
+    entrain(model, wave_particle(dissipation, k), dt, 5, made);
+    if (made.empty()) continue;
+    ++count[static_cast<std::size_t>((radius_of(made[0].volume) - model.smallest_radius) / span * bins)];
+    ++total;
+  }
+  for (int k = 0; k < 100 * bins; ++k) {
+    const double radius = model.smallest_radius + (k + 0.5) / (100 * bins) * span;
+    const double accepted = std::min(1.0, std::pow(paid / radius, 2)) * std::min(1.0, std::pow(room / radius, 3));
+    expected[static_cast<std::size_t>(k / 100)] += accepted;
+    weight += accepted;
+  }
+  double chi2 = 0;
+  for (int k = 0; k < bins; ++k) {
+    const double mean = total * expected[k] / weight;
+    chi2 += (count[k] - mean) * (count[k] - mean) / mean;
+  }
+  EXPECT_LT(chi2, bins - 1 + 5 * std::sqrt(2.0 * (bins - 1)));
 }
 
 TEST(Entrainment, NeedsDissipationAndRoom) {

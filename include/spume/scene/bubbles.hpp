@@ -18,6 +18,7 @@ class Expression;
 enum class BubbleIntegrator { stable, substep };
 // How liquid and bubbles share momentum: -grad(alpha p), or -alpha grad p (les-sph).
 enum class BubbleClosure { mixture_pressure, two_fluid };
+enum class SurfaceReaction { surface, liquid };
 enum class SizeLaw { monodisperse, truncated_gaussian, log_normal };
 
 // Radii: all `mean`; Gaussian cut to [minimum, maximum]; or log-normal with median `mean` and `deviation` that of log
@@ -41,6 +42,7 @@ struct BubbleOptions {
   bool fluid_inertia = false;
   BubbleIntegrator integrator = BubbleIntegrator::stable;
   BubbleClosure closure = BubbleClosure::mixture_pressure;
+  SurfaceReaction surface_reaction = SurfaceReaction::surface;  // who feels the reaction to the braking force
   double lift_coefficient = 0.5;
   double virtual_mass_coefficient = 0.5;
   double viscosity_constant = 0.6;       // C_nuB of the bubble-induced viscosity

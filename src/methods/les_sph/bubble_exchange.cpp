@@ -186,6 +186,7 @@ void BubbleCoupling::move_bubbles(Liquid& liquid, double dt) {
   const std::size_t nb = population_.size();
   const double t = liquid.time + dt;
   const bool two_fluid = !liquid.plan.mixture_pressure;
+  const bool surface_bears = options_.surface_reaction == SurfaceReaction::surface;
   const bool surface = population_.merge_time != nullptr, turbulent = population_.fluctuation[0] != nullptr;
   const double width = liquid.smoothing_length;
   const auto step = static_cast<std::uint32_t>(liquid.steps);
@@ -242,6 +243,12 @@ void BubbleCoupling::move_bubbles(Liquid& liquid, double dt) {
                    : bubbles::advance_substepped(gas_, radius, around, u, dt, liquid.scene.spacing, braking);
         for (std::size_t a = 0; a < 3; ++a) change[a] = next[a] - u[a];
         reaction = bubbles::reaction(gas_, volume, around, change, dt, two_fluid);
+        if (surface_bears && braking.share > 0) {
+          double slip_normal = 0;
+          for (std::size_t a = 0; a < 3; ++a) slip_normal += (around.velocity[a] - u[a]) * braking.normal[a];
+          const Vec3 borne = bubbles::braking_force(gas_, radius, around, next, slip_normal, dt, braking);
+          for (std::size_t a = 0; a < 3; ++a) reaction[a] += volume * borne[a];
+        }
       }
       double slip2 = 0, resolved_slip2 = 0;
       for (std::size_t a = 0; a < 3; ++a) {

@@ -139,8 +139,15 @@ void keep_layers(Liquid& liquid) {
 void choose_shift(Liquid& liquid) {
   const int d = liquid.dimensions;
   // King (3.12) at the step that the courant limit allows, in proportion to the distance moved below it: a liquid at
-  // rest is not shifted, and small steps do not shift more (and dissipate more) than large ones. Particles that make
-  // room for a bubble have to move whatever the speed.
+  // rest is not shifted, and small steps do not shift more (and dissipate more) than large ones. Particles that have to
+  // make room for a bubble move whatever the speed, until they are no denser than the lattice: by 1/alpha - 1 just
+  // after a bubble has come. Shifted for ever, those beside a bubble at rest below a surface lift the liquid.
+  const auto strength = [&liquid](std::size_t i) {
+    const double taken = 1 / liquid.alpha_at(i) - 1;
+    if (!(taken > 0)) return liquid.displacement;
+    const double excess = (*liquid.divergence_of_position)[i] / liquid.lattice.divergence_of_position - 1;
+    return std::clamp(excess / taken, liquid.displacement, 1.0);
+  };
   const auto limit = [&liquid](std::array<double, 3>& shift, std::size_t i) {
     const double longest = liquid.options.shifting.limit * liquid.width_at(i);
     const double length = std::hypot(shift[0], shift[1], shift[2]);
@@ -150,8 +157,7 @@ void choose_shift(Liquid& liquid) {
   parallel_for(liquid.size(), [&](std::size_t i) {
     std::array<double, 3> shift{};
     const double h = liquid.width_at(i);
-    const double coefficient =
-        liquid.options.shifting.coefficient * h * h * (liquid.alpha_at(i) < 1 ? 1 : liquid.displacement);
+    const double coefficient = liquid.options.shifting.coefficient * h * h * strength(i);
     for (int axis = 0; axis < d; ++axis) shift[axis] = -coefficient * (*liquid.shift[axis])[i];
     if (liquid.plan.free_surface && liquid.at_surface[i] != 0) {
       // King (3.12), sign and tangential projection corrected: only the part along the surface is kept.

@@ -91,11 +91,16 @@ double implicit_drag(const Slip& slip, const Vec3& w, double speed, Drag drag, d
   return drag.rate;
 }
 
-// The step `change` of a bubble's velocity, with braking: `slip_normal` is (u_l - u_b) . n before it.
+// Change of the normal velocity by the relaxation alone; `slip_normal` is (u_l - u_b) . n before the step.
+double relaxation_of(const Braking& braking, double dt, double slip_normal) {
+  return slip_normal * std::min(1.0, dt / std::max(braking.time_left, dt));
+}
+
+// The step `change` of a bubble's velocity, with braking.
 void brake(const Braking& braking, double dt, double slip_normal, Vec3& change) {
   if (braking.share == 0) return;
   const double along = dot(change, braking.normal);
-  const double relaxation = slip_normal * std::min(1.0, dt / std::max(braking.time_left, dt));
+  const double relaxation = relaxation_of(braking, dt, slip_normal);
   for (std::size_t a = 0; a < 3; ++a) change[a] += braking.share * (relaxation - along) * braking.normal[a];
 }
 
@@ -180,6 +185,19 @@ Vec3 advance_substepped(const Gas& gas, double radius, const Surroundings& liqui
     for (std::size_t a = 0; a < 3; ++a) u[a] += change[a];
   }
   return u;
+}
+
+Vec3 braking_force(const Gas& gas, double radius, const Surroundings& liquid, const Vec3& velocity, double slip_normal,
+                   double dt, const Braking& braking) {
+  const Slip slip(gas, liquid);
+  Vec3 w, force;
+  for (std::size_t a = 0; a < 3; ++a) w[a] = liquid.velocity[a] - velocity[a];
+  const double drag = drag_rate(length(w), radius, gas.viscosity);
+  const Vec3 turned = cross(w, slip.spin);
+  for (std::size_t a = 0; a < 3; ++a) force[a] = slip.push[a] - drag * w[a] - turned[a];
+  const double size =
+      braking.share * (dot(force, braking.normal) + relaxation_of(braking, dt, slip_normal) / (dt * slip.rate));
+  return {size * braking.normal[0], size * braking.normal[1], size * braking.normal[2]};
 }
 
 Vec3 reaction(const Gas& gas, double volume, const Surroundings& liquid, const Vec3& change, double dt,

@@ -16,6 +16,10 @@
 // in (2.3), which is not Galilean invariant; (3.17) follows from this form. With q the pressure less its hydrostatic
 // part both closures receive the full reaction of the bubbles: the buoyancy taken out of M and (1 - alpha) g of the
 // mixture cancel. They differ in the coefficient of grad q alone, 1/alpha (mixture-pressure) or 1 (two-fluid).
+//
+// F_fs holds a bubble below the surface. King (3.33) returns it to the liquid around the bubble, which is then as light
+// as if the bubble rose, and turns over for as long as the bubble rests; a film that bears the bubble by its own
+// deformation, which is not resolved, leaves the liquid at rest. The latter is the default (surface_reaction).
 #pragma once
 
 #include <string>

@@ -53,9 +53,15 @@ Vec3 advance_stable(const Gas& gas, double radius, const Surroundings& liquid, c
 Vec3 advance_substepped(const Gas& gas, double radius, const Surroundings& liquid, const Vec3& velocity, double dt,
                         double spacing, const Braking& braking);
 
+// F_fs of King (3.32) per volume of the bubble, over the density of the liquid, at the end of a step dt that led to
+// `velocity` from the relative normal velocity `slip_normal` = (u_l - u_b) . n.
+Vec3 braking_force(const Gas& gas, double radius, const Surroundings& liquid, const Vec3& velocity, double slip_normal,
+                   double dt, const Braking& braking);
+
 // Mean force of the bubble on the liquid over the step, over the density of the liquid, for a velocity that changed by
 // `change` in dt: V (-change / (dt beta) + (1 - beta)/beta g), whatever the integrator. `pressure_holds_inertia`: the
-// liquid feels the reaction to the fluid inertia through its pressure term (closure two-fluid).
+// liquid feels the reaction to the fluid inertia through its pressure term (closure two-fluid). It holds the reaction
+// to F_fs, as King (3.33); add V braking_force where the surface bears that.
 Vec3 reaction(const Gas& gas, double volume, const Surroundings& liquid, const Vec3& change, double dt,
               bool pressure_holds_inertia);
 
