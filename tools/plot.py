@@ -181,7 +181,7 @@ def plot_probes(run, out):
                 groups.setdefault(suffix[1:].replace("_", " "), []).append((name[: -len(suffix)], name))
                 break
         else:
-            groups.setdefault("elevation, front", []).append((name, name))
+            groups.setdefault("elevation, wetted length, front", []).append((name, name))
     if not groups:
         return []
     figure, axes = plt.subplots(len(groups), 1, figsize=(6.4, 2.8 * len(groups)), squeeze=False)

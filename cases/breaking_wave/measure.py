@@ -3,26 +3,43 @@
 
 Breaking: the largest horizontal velocity of liquid over the linear phase speed c = 1/sqrt(2 pi). A crest in which u/c
 passes 0.85 goes on to break, one that stays below does not (Barthelemy et al. 2018, J. Fluid Mech. 841:463). The velocity
-taken is that exceeded by five particles in every layer across the wave, so that no stray particle decides.
+taken is that exceeded by five particles in every layer across the wave, so that no stray particle decides. It is compared
+with that of potential flow on the surface (reference/potential_flow.py), as far as that goes.
 
 Overturning: the surface is no function of x any more. In columns one and a half spacings wide and three deep across the
 wave, liquid hangs over a gap of more than three spacings; at least three adjacent columns must show it.
 """
+from pathlib import Path
+
 import numpy as np
 
-from spume_results import standard
+from spume_results import read_csv, standard
 
 PHASE_SPEED = 1 / np.sqrt(2 * np.pi)
+POTENTIAL_FLOW = read_csv(Path(__file__).parent / "reference" / "potential_flow.csv")
+
+
+def crest_speeds(run):
+    """Times of the snapshots and the crest's velocity over c."""
+    lower, upper = run.bounds()
+    count = max(1, int(round(5 * (upper[1] - lower[1]) / run.spacing)))
+    t, speeds = [], []
+    for snapshot in run.snapshots():
+        u = snapshot.field("velocity")[:, 0]
+        t.append(snapshot.time)
+        speeds.append(float(np.partition(u, -count)[-count]) / PHASE_SPEED)
+    return np.array(t), np.array(speeds)
 
 
 def breaking_index(run):
-    lower, upper = run.bounds()
-    count = max(1, int(round(5 * (upper[1] - lower[1]) / run.spacing)))
-    largest = 0.0
-    for snapshot in run.snapshots():
-        u = snapshot.field("velocity")[:, 0]
-        largest = max(largest, float(np.partition(u, -count)[-count]))
-    return largest / PHASE_SPEED
+    return float(crest_speeds(run)[1].max())
+
+
+def potential_flow(run):
+    """Times and crest speeds of potential flow for the steepness of a run, up to its end."""
+    chi = float(run.case["constants"]["chi"])
+    rows = np.isclose(POTENTIAL_FLOW["chi"], chi) & (POTENTIAL_FLOW["t"] <= run.series["t"][-1] + 1e-9)
+    return POTENTIAL_FLOW["t"][rows], POTENTIAL_FLOW["crest_speed"][rows]
 
 
 def overhanging_columns(position, spacing, middle):
@@ -88,6 +105,7 @@ def measure(runs):
     for name in ("chi_030", "chi_033"):
         if name in runs:
             measured[f"breaking_index_{name}"] = breaking_index(runs[name])
+            measured[f"breaking_index_{name}_potential_flow"] = float(potential_flow(runs[name])[1].max())
             measured[f"overturning_time_{name}"] = overturning_time(runs[name])
     if {"coarse", "standard", "fine"} <= runs.keys():
         coarse = kinetic_energy_difference(runs["coarse"], runs["standard"])
@@ -106,4 +124,11 @@ def curves(runs):
         figures.append({"file": "kinetic_energy_resolution", "x": "t", "y": "kinetic energy per area", "curves": lines})
     lines = [(name, run.series["t"], wave_energy(run) / wave_energy(run)[0], "-") for name, run in runs.items()]
     figures.append({"file": "wave_energy", "x": "t", "y": "energy of the wave / its first value", "curves": lines})
+    lines = []
+    for name, colour in zip((n for n in ("standard", "chi_030", "chi_033") if n in runs), ("C0", "C1", "C2")):
+        chi = float(runs[name].case["constants"]["chi"])
+        lines.append((f"chi = {chi:g}", *crest_speeds(runs[name]), f"{colour}-"))
+        lines.append((f"chi = {chi:g}, potential flow", *potential_flow(runs[name]), f"{colour}--"))
+    if lines:
+        figures.append({"file": "crest_speed", "x": "t", "y": "u / c of the crest", "curves": lines})
     return figures

@@ -65,6 +65,9 @@ void probe_values(Method& method, const LoadedCase& loaded, std::vector<double>&
       case ProbeKind::elevation:
         row.push_back(method.elevation(probe.position));
         break;
+      case ProbeKind::wetted:
+        row.push_back(method.wetted_length(probe.position));
+        break;
       case ProbeKind::front:
         row.push_back(method.front(probe.axis, probe.height));
         break;

@@ -283,7 +283,8 @@ void check_probes(Draft& draft, Problems& problems) {
     }
     if (!draft.usable(name + ".kind")) continue;
 
-    // An elevation probe needs the foot of its column only.
+    // A column needs its foot only.
+    const bool column = options.kind == ProbeKind::elevation || options.kind == ProbeKind::wetted;
     const auto place = [&](const char* key, std::vector<double> values, Vec3& target) {
       const Node* given = draft.node(name + "." + key);
       if (!draft.usable(name + "." + key)) return;
@@ -292,7 +293,7 @@ void check_probes(Draft& draft, Problems& problems) {
                                (dimensions == 2 ? "<x>, <y>" : "<x>, <y>, <z>") + "]  # length");
         return;
       }
-      if (options.kind == ProbeKind::elevation && values.size() + 1 == dimensions) values.push_back(draft.lower.back());
+      if (column && values.size() + 1 == dimensions) values.push_back(draft.lower.back());
       if (!has_size(draft, name + "." + key, values.size(), dimensions, problems)) return;
       for (std::size_t a = 0; a < dimensions; ++a) {
         target[a] = values[a];

@@ -149,7 +149,7 @@ void check_spectral(const Draft& draft, Problems& problems) {
   for (std::size_t k = 0; k < draft.probes.size(); ++k) {
     const ProbeKind kind = draft.probes[k].options.kind;
     const std::string name = "probe." + std::to_string(k) + ".kind";
-    if (kind != ProbeKind::elevation && kind != ProbeKind::front) continue;
+    if (kind == ProbeKind::point || kind == ProbeKind::line) continue;
     problems.add(*draft.node(name), name +
                                         " needs a free surface, which method \"spectral\" does not have; use "
                                         "\"point\" or \"line\"");

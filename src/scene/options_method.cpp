@@ -142,58 +142,61 @@ Section output() {
 }
 
 Section probe() {
-  return {.name = "probe",
-          .repeated = true,
-          .begin_entry = [](Draft& d) { d.probes.emplace_back(); },
-          .options = {
-              {.key = "name",
-               .type = OptionType::string,
-               .required = true,
-               .description = "name of its columns in probes.csv",
-               .set = [](Draft& d, const Value& v) { d.probes.back().options.name = v.text; }},
-              {.key = "kind",
-               .type = OptionType::word,
-               .default_text = "\"point\"",
-               .words = {"point", "elevation", "front", "line"},
-               .description = "what is recorded",
-               .set =
-                   [](Draft& d, const Value& v) {
-                     d.probes.back().options.kind = v.text == "point"       ? ProbeKind::point
-                                                    : v.text == "elevation" ? ProbeKind::elevation
-                                                    : v.text == "front"     ? ProbeKind::front
-                                                                            : ProbeKind::line;
-                   }},
-              {.key = "position",
-               .type = OptionType::numbers,
-               .unit = "length",
-               .absent = "required but for front",
-               .description = "point; foot of the column (elevation); start of a line",
-               .set = [](Draft& d, const Value& v) { d.probes.back().position = v.numbers; }},
-              {.key = "end",
-               .type = OptionType::numbers,
-               .unit = "length",
-               .absent = "required for line",
-               .description = "end of a line",
-               .set = [](Draft& d, const Value& v) { d.probes.back().end = v.numbers; }},
-              {.key = "samples",
-               .type = OptionType::integer,
-               .default_text = "2",
-               .range = between(2, 1e6),
-               .description = "points of a line, ends included",
-               .set = [](Draft& d, const Value& v) { d.probes.back().options.samples = static_cast<int>(v.integer); }},
-              {.key = "axis",
-               .type = OptionType::word,
-               .default_text = "\"x\"",
-               .words = {"x", "y", "z"},
-               .description = "front: axis along which the liquid's largest coordinate is sought",
-               .set = [](Draft& d, const Value& v) { d.probes.back().options.axis = v.text[0] - 'x'; }},
-              {.key = "height",
-               .type = OptionType::number,
-               .unit = "length",
-               .absent = "top of the domain",
-               .description = "front: looks below this height",
-               .set = [](Draft& d, const Value& v) { d.probes.back().height = v.number; }},
-          }};
+  return {
+      .name = "probe",
+      .repeated = true,
+      .begin_entry = [](Draft& d) { d.probes.emplace_back(); },
+      .options = {
+          {.key = "name",
+           .type = OptionType::string,
+           .required = true,
+           .description = "name of its columns in probes.csv",
+           .set = [](Draft& d, const Value& v) { d.probes.back().options.name = v.text; }},
+          {.key = "kind",
+           .type = OptionType::word,
+           .default_text = "\"point\"",
+           .words = {"point", "elevation", "wetted", "front", "line"},
+           .description = "what is recorded; elevation: height of the uppermost liquid above a foot, wetted: length of "
+                          "the vertical through it that lies in liquid, as a wire gauge measures it",
+           .set =
+               [](Draft& d, const Value& v) {
+                 d.probes.back().options.kind = v.text == "point"       ? ProbeKind::point
+                                                : v.text == "elevation" ? ProbeKind::elevation
+                                                : v.text == "wetted"    ? ProbeKind::wetted
+                                                : v.text == "front"     ? ProbeKind::front
+                                                                        : ProbeKind::line;
+               }},
+          {.key = "position",
+           .type = OptionType::numbers,
+           .unit = "length",
+           .absent = "required but for front",
+           .description = "point; foot of the column (elevation, wetted); start of a line",
+           .set = [](Draft& d, const Value& v) { d.probes.back().position = v.numbers; }},
+          {.key = "end",
+           .type = OptionType::numbers,
+           .unit = "length",
+           .absent = "required for line",
+           .description = "end of a line",
+           .set = [](Draft& d, const Value& v) { d.probes.back().end = v.numbers; }},
+          {.key = "samples",
+           .type = OptionType::integer,
+           .default_text = "2",
+           .range = between(2, 1e6),
+           .description = "points of a line, ends included",
+           .set = [](Draft& d, const Value& v) { d.probes.back().options.samples = static_cast<int>(v.integer); }},
+          {.key = "axis",
+           .type = OptionType::word,
+           .default_text = "\"x\"",
+           .words = {"x", "y", "z"},
+           .description = "front: axis along which the liquid's largest coordinate is sought",
+           .set = [](Draft& d, const Value& v) { d.probes.back().options.axis = v.text[0] - 'x'; }},
+          {.key = "height",
+           .type = OptionType::number,
+           .unit = "length",
+           .absent = "top of the domain",
+           .description = "front: looks below this height",
+           .set = [](Draft& d, const Value& v) { d.probes.back().height = v.number; }},
+      }};
 }
 
 Section verify() {

@@ -89,6 +89,7 @@ class FakeMethod final : public Method {
   }
   PointSample sample(const Vec3& at) override { return {at[0] + time_, {position_[0][0], at[1], at[2]}, 1}; }
   double elevation(const Vec3& at) override { return at[0] + position_[1][0]; }
+  double wetted_length(const Vec3& at) override { return at[0] - position_[1][0]; }
   double front(int axis, double height) override {
     return *std::max_element(position_[axis].begin(), position_[axis].end()) + height;
   }

@@ -132,6 +132,8 @@ class Method {
   // Height of the free surface above the bottom wall along the last axis through `position`: the highest
   // point where the kernel sum reaches 1/2; the bottom when the column is empty.
   virtual double elevation(const Vec3& position) = 0;
+  // Length of that column that lies in liquid, in all its pieces.
+  virtual double wetted_length(const Vec3& position) = 0;
   // Largest coordinate along `axis` where liquid of kernel sum 1/2 is found below `height` (the last axis).
   virtual double front(int axis, double height) = 0;
 

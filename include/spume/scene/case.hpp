@@ -143,12 +143,12 @@ struct OutputOptions {
   bool h5part_view = true;
 };
 
-enum class ProbeKind { point, elevation, front, line };
+enum class ProbeKind { point, elevation, wetted, front, line };
 
 struct ProbeOptions {
   std::string name;
   ProbeKind kind = ProbeKind::point;
-  Vec3 position{};    // point; foot of the column for elevation; start of a line
+  Vec3 position{};    // point; foot of the column for elevation and wetted; start of a line
   Vec3 end{};         // end of a line
   int samples = 2;    // points of a line
   int axis = 0;       // front

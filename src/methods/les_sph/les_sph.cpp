@@ -326,6 +326,9 @@ PointSample LesSph::sample(const Vec3& position) {
 double LesSph::elevation(const Vec3& position) {
   return sampler().elevation(liquid_, position);
 }
+double LesSph::wetted_length(const Vec3& position) {
+  return sampler().wetted_length(liquid_, position);
+}
 double LesSph::front(int axis, double height) {
   return sampler().front(liquid_, axis, height);
 }

@@ -142,28 +142,51 @@ PointSample PointSampler::sample(const Liquid& liquid, const Vec3& point) const 
   return sample;
 }
 
-double PointSampler::elevation(const Liquid& liquid, const Vec3& point) const {
+double PointSampler::crossing(const Liquid& liquid, Vec3 wet, double dry) const {
+  const int up = liquid.dimensions - 1;
+  double inside = wet[up];
+  for (int k = 0; k < 20; ++k) {
+    wet[up] = 0.5 * (inside + dry);
+    (coverage(liquid, wet) >= 0.5 ? inside : dry) = wet[up];
+  }
+  return inside;
+}
+
+double PointSampler::highest_sample(const Liquid& liquid, const Vec3& point, Vec3& sample) const {
   const int up = liquid.dimensions - 1;
   const double bottom = liquid.scene.domain.lower[up];
   const double step = liquid.scene.spacing / 4;
-  const double highest = parallel_max(liquid.size(), bottom, [&](std::size_t i) { return (*liquid.position[up])[i]; });
-  Vec3 r = point;
-  const auto wet = [&](double z) {
-    r[up] = z;
-    return coverage(liquid, r) >= 0.5;
-  };
-  double above = highest + 2 * step;
-  double z = above;
-  while (z > bottom && !wet(z)) {
-    above = z;
-    z -= step;
+  sample = point;
+  sample[up] = 2 * step + parallel_max(liquid.size(), bottom, [&](std::size_t i) { return (*liquid.position[up])[i]; });
+  return step;
+}
+
+double PointSampler::elevation(const Liquid& liquid, const Vec3& point) const {
+  const int up = liquid.dimensions - 1;
+  const double bottom = liquid.scene.domain.lower[up];
+  Vec3 r;
+  for (const double step = highest_sample(liquid, point, r); r[up] > bottom; r[up] -= step)
+    if (coverage(liquid, r) >= 0.5) return crossing(liquid, r, r[up] + step);
+  return bottom;
+}
+
+double PointSampler::wetted_length(const Liquid& liquid, const Vec3& point) const {
+  const int up = liquid.dimensions - 1;
+  const double bottom = liquid.scene.domain.lower[up];
+  double length = 0, top = bottom;
+  bool above = false;  // whether the last sample was wet
+  Vec3 r;
+  for (const double step = highest_sample(liquid, point, r); r[up] > bottom; r[up] -= step) {
+    const bool wet = coverage(liquid, r) >= 0.5;
+    if (wet && !above) top = crossing(liquid, r, r[up] + step);
+    if (!wet && above) {
+      Vec3 inside = r;
+      inside[up] += step;
+      length += top - crossing(liquid, inside, r[up]);
+    }
+    above = wet;
   }
-  if (z <= bottom) return bottom;
-  for (int k = 0; k < 20; ++k) {
-    const double middle = 0.5 * (z + above);
-    (wet(middle) ? z : above) = middle;
-  }
-  return z;
+  return above ? length + top - bottom : length;
 }
 
 double PointSampler::front(const Liquid& liquid, int axis, double height) const {

@@ -264,6 +264,11 @@ double Spectral<T>::elevation(const Vec3&) {
 }
 
 template <class T>
+double Spectral<T>::wetted_length(const Vec3&) {
+  return std::nan("");
+}
+
+template <class T>
 double Spectral<T>::front(int, double) {
   return std::nan("");
 }

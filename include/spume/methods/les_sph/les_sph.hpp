@@ -37,6 +37,7 @@ class LesSph final : public Method {
   std::vector<Family> snapshot() override;
   PointSample sample(const Vec3& position) override;
   double elevation(const Vec3& position) override;
+  double wetted_length(const Vec3& position) override;
   double front(int axis, double height) override;
   bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override;
   std::vector<RecordTable> tables() const override;

@@ -20,9 +20,15 @@ class PointSampler {
   // Highest point of the column where the coverage reaches one half, found on steps of a quarter spacing and refined
   // by bisection; the bottom of the domain when there is none.
   double elevation(const Liquid& liquid, const Vec3& point) const;
+  // Sum of the intervals of the column whose coverage is above one half, their ends found in the same way.
+  double wetted_length(const Liquid& liquid, const Vec3& point) const;
   double front(const Liquid& liquid, int axis, double height) const;
 
  private:
+  // Where the coverage falls to one half between a wet point and a dry height.
+  double crossing(const Liquid& liquid, Vec3 wet, double dry) const;
+  // A dry point above all liquid in the column of `point`; returns the step of the search.
+  double highest_sample(const Liquid& liquid, const Vec3& point, Vec3& sample) const;
   template <class Visit>
   void visit(const Liquid& liquid, const Vec3& point, Visit&& visit) const;
 
