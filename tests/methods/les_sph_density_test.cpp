@@ -82,7 +82,8 @@ double level_after_stirring(const Overrides& overrides) {
   return 2 * height / static_cast<double>(after.position.size());
 }
 
-// Disorder of one per cent is let be, and the waves on the surface take half a per cent.
+// Disorder of 0.2 % is let be, the waves on the surface take half a per cent, and the layers near the surface are not
+// evened out.
 TEST(NumberDensity, KeepsTheVolumeOfALiquidWithASurface) {
   EXPECT_NEAR(level_after_stirring({"pressure.density_relaxation=50"}), 1, 0.015);
   EXPECT_LT(level_after_stirring({"pressure.density_relaxation=1e6"}), 0.975);

@@ -102,5 +102,22 @@ TEST(LesSphStability, BackscatterThatCancelsTheViscosityAcceleratesNobody) {
   EXPECT_LT(run.series()["max_speed"], 1.2 * before);
 }
 
+// A force that varies in space and rises from nothing at rest: nothing but the force limits the step, which grew from
+// 5e-5 to 0.05 at once. Twice the step before, and never further than the force drives over a smoothing length.
+TEST(LesSphStability, AForceThatSetsInLimitsTheStep) {
+  Simulation run(taylor_green, {"liquid.0.velocity=[\"0\", \"0\"]",
+                                "forces.body=[\"10*t*sin(2*pi*x)*cos(2*pi*y)\", \"-10*t*cos(2*pi*x)*sin(2*pi*y)\"]"});
+  const double h = run.method.liquid().smoothing_length, courant = run.loaded.options.time.courant;
+  double last = run.method.step_limit().dt;
+  for (int k = 0; k < 30; ++k) {
+    run.steps(1, last);
+    const double next = run.method.step_limit().dt;
+    EXPECT_LE(next, 2 * last * (1 + 1e-12));
+    // Particles are within half a spacing of the most forced point: cos(2 pi dr / 2)^2 = 0.976 of 10 t.
+    EXPECT_LE(next, courant * std::sqrt(h / (9.76 * run.method.time())));
+    last = next;
+  }
+}
+
 }  // namespace
 }  // namespace spume::test

@@ -182,6 +182,8 @@ StepLimit LesSph::step_limit() const {
   }
   double acceleration2 = 0;
   for (const double a : force) acceleration2 += a * a;
+  const bool varying_force = liquid_.scene.body_force && !liquid_.uniform_body_force;
+  acceleration2 = std::max(acceleration2, liquid_.largest_body_force * liquid_.largest_body_force);
   // From rest the speed that the force gives over one smoothing length stands in for the largest speed, and beside a
   // moving wall that of the wall.
   const double speed = std::max({liquid_.limiting_speed, liquid_.wall_speed, std::sqrt(std::sqrt(acceleration2) * h)});
@@ -197,6 +199,10 @@ StepLimit LesSph::step_limit() const {
   // A bubble crosses at most half a smoothing length.
   if (bubbles_ && bubbles_->max_speed() > 0) bound(0.5 * h / bubbles_->max_speed(), "bubbles");
   if (options.max_step > 0) bound(options.max_step, "max_step");
+  // A force that varies in space is known at the end of the last step only, and may have risen since. Of two steps one
+  // may have been cut short to meet an output time.
+  if (varying_force && liquid_.steps > 0)
+    bound(2 * std::max(liquid_.last_steps[0], liquid_.last_steps[1]), "growth of the step");
   // A force on a liquid at rest: the first steps follow the time scale of the run.
   if (speed == 0 && options.max_step == 0) bound(options.end / 1000, "end of run");
   return limit;
@@ -353,9 +359,17 @@ bool LesSph::spectrum(std::vector<double>& wavenumber, std::vector<double>& ener
 }
 
 void LesSph::save(StateWriter& writer) const {
-  const double scalars[] = {
-      liquid_.time,           liquid_.max_speed,   liquid_.limiting_speed, liquid_.max_eddy_viscosity,
-      liquid_.max_divergence, liquid_.dissipation, liquid_.energy_supply,  liquid_.wall_speed};
+  const double scalars[] = {liquid_.time,
+                            liquid_.max_speed,
+                            liquid_.limiting_speed,
+                            liquid_.max_eddy_viscosity,
+                            liquid_.max_divergence,
+                            liquid_.dissipation,
+                            liquid_.energy_supply,
+                            liquid_.wall_speed,
+                            liquid_.largest_body_force,
+                            liquid_.last_steps[0],
+                            liquid_.last_steps[1]};
   const std::int64_t counters[] = {liquid_.steps, liquid_.started ? 1 : 0, static_cast<std::int64_t>(liquid_.size())};
   writer.f64("scalars", scalars);
   writer.i64("counters", counters);
@@ -377,7 +391,7 @@ void LesSph::load(StateReader& reader) {
   reader.f64("scalars", scalars);
   reader.i64("counters", counters);
   reader.f64("walls", walls);
-  if (scalars.size() != 8 || counters.size() != 3 || walls.size() != 6)
+  if (scalars.size() != 11 || counters.size() != 3 || walls.size() != 6)
     throw FileError("the checkpoint was written by another version of the method");
   const auto n = static_cast<std::size_t>(counters[2]);
   liquid_.fields.resize(n);
@@ -396,6 +410,8 @@ void LesSph::load(StateReader& reader) {
   liquid_.dissipation = scalars[5];
   liquid_.energy_supply = scalars[6];
   liquid_.wall_speed = scalars[7];
+  liquid_.largest_body_force = scalars[8];
+  liquid_.last_steps = {scalars[9], scalars[10]};
   liquid_.steps = counters[0];
   liquid_.started = counters[1] != 0;
   for (int axis = 0; axis < 3; ++axis) liquid_.walls[axis] = {walls[2 * axis], walls[2 * axis + 1]};

@@ -27,15 +27,21 @@ void find_uniform_acceleration(Liquid& liquid, double t) {
 
 void add_body_force(Liquid& liquid, double t, double dt) {
   const int d = liquid.dimensions;
-  parallel_blocks(liquid.size(), 4096, [&](std::size_t, std::size_t first, std::size_t last) {
-    const VectorExpression force = liquid.scene.body_force->clone();
-    for (std::size_t i = first; i < last; ++i) {
-      Vec3 r{};
-      for (int axis = 0; axis < d; ++axis) r[axis] = (*liquid.intermediate[axis])[i];
-      const Vec3 acceleration = force(r, t);
-      for (int axis = 0; axis < d; ++axis) (*liquid.predicted[axis])[i] += dt * acceleration[axis];
-    }
-  });
+  liquid.largest_body_force = parallel_reduce(
+      liquid.size(), 0.0,
+      [&](std::size_t first, std::size_t last) {
+        const VectorExpression force = liquid.scene.body_force->clone();
+        double largest = 0;
+        for (std::size_t i = first; i < last; ++i) {
+          Vec3 r{};
+          for (int axis = 0; axis < d; ++axis) r[axis] = (*liquid.intermediate[axis])[i];
+          const Vec3 acceleration = force(r, t);
+          largest = std::max(largest, std::hypot(acceleration[0], acceleration[1], acceleration[2]));
+          for (int axis = 0; axis < d; ++axis) (*liquid.predicted[axis])[i] += dt * acceleration[axis];
+        }
+        return largest;
+      },
+      [](double a, double b) { return std::max(a, b); });
 }
 
 void find_diffusivity(Liquid& liquid) {
@@ -219,6 +225,7 @@ void accept(Liquid& liquid, double dt) {
   });
   liquid.walls = liquid.next_walls;
   liquid.time += dt;
+  liquid.last_steps = {dt, liquid.last_steps[0]};
   ++liquid.steps;
   update_extremes(liquid);
   if (liquid.plan.velocity_gradient) {

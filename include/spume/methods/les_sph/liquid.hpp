@@ -93,6 +93,8 @@ struct Liquid {
   Vec3 uniform_acceleration{};   // along axes that are not periodic: part of the potential
   Vec3 periodic_acceleration{};  // along periodic axes: added to the velocity
   bool uniform_body_force = false;
+  double largest_body_force = 0;  // per mass, of one that varies in space, at the end of the last step
+  std::array<double, 2> last_steps{};
   double displacement = 0;  // displacement_fraction of the step
 
   CellGrid grid;

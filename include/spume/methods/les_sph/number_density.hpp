@@ -20,8 +20,8 @@ double displacement_fraction(const Liquid& liquid, double dt);
 // would lift the crest of a wave). Velocities free of divergence keep the density only as far as their discrete
 // divergence tells the volume of a moving arrangement: without this a lid-driven cavity thins out by an eighth below
 // the lid and thickens at the bottom, and the circulation is 4 % too weak. The mean <e> tells the disorder of the
-// arrangement as long as it is within 0.01 (half a per cent in the cases), which must not raise the level of a liquid
-// with a surface; beyond, the liquid has lost or gained volume, and <e> stays at 0.01. Particles that may lack
+// arrangement as long as it is within 0.002 (0.0017 in a cavity), which must not raise the level of a liquid
+// with a surface; beyond, the liquid has lost or gained volume, and <e> stays at 0.002. Particles that may lack
 // neighbours, within reach of the surface, or see too many, within reach of a solid box, whose images overlap at edges,
 // are left alone: the second layer of a liquid at rest would pass for 5 % too thin. `near_surface` is scratch, used
 // only where there is a surface.
