@@ -81,7 +81,8 @@ struct PreparedStep {
       along += normal[a].value * liquid.uniform_acceleration[a];
     }
     const double spacing = loaded.scene.spacing;
-    const double depth = twin.surface_depth(i, spacing);
+    const double depth = twin.shared_surface_depth(
+        i, spacing, [&](std::size_t j) { return outside(j) > 0 && liquid.uncorrected[j] == 0; });
     const double missing = liquid.lattice.coupling / (spacing * spacing) - twin.coupling(i).value;
     const double mirrored = 2 * std::sqrt(size2) / liquid.smoothing_length / depth;
     return {outside(i) * std::max({mirrored, missing, 0.0}), size2 > 0 ? -depth * along / std::sqrt(size2) : 0.0};

@@ -117,7 +117,7 @@ TEST(LesSphSurface, ShiftMovesNoWholeLayerAlongTheNormal) {
   double moved[2] = {0, 0};
   for (const bool kept : {false, true}) {
     const LoadedCase loaded =
-        load_text(wave, {"liquid.0.where=\"-y\"", std::string("shifting.remove_drift=") + (kept ? "true" : "false")});
+        load_text(wave, {"liquid.0.where=\"-y\"", kept ? "shifting.remove_drift=true" : "shifting.remove_drift=false"});
     Liquid liquid(loaded);
     const double dr = loaded.scene.spacing;
     for (double& y : *liquid.position[1])

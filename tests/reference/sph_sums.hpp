@@ -209,6 +209,25 @@ class SphSums {
     return spacing * std::clamp(0.5 + held - lattice, 0.25, 2.0);
   }
 
+  // The mean of the depths of the particles with edge(j) that lie within half a spacing of the layer of i, by weights W
+  // that fall off linearly across the layer.
+  template <class Edge>
+  double shared_surface_depth(std::size_t i, double spacing, Edge&& edge) const {
+    const auto m = normal(i);
+    double size = 0;
+    for (int a = 0; a < dimensions(); ++a) size += m[a].value * m[a].value;
+    double total = weight(0), sum = total * surface_depth(i, spacing);
+    each(i, [&](const Pair& p) {
+      if (!edge(p.point->source) || size == 0) return;
+      double out = 0;
+      for (int a = 0; a < dimensions(); ++a) out += p.d[a] * m[a].value / std::sqrt(size);
+      const double share = p.w * std::max(0.0, 1 - 2 * std::abs(out) / spacing);
+      total += share;
+      sum += share * surface_depth(p.point->source, spacing);
+    });
+    return sum / total;
+  }
+
   // --- fields; a velocity has one array per dimension
 
   template <class Velocity>

@@ -135,11 +135,9 @@ void PressureSystem::set_matrix(const Liquid& liquid, double helmholtz) {
   });
 }
 
-// Right-hand side for q, times the volume, and its norm in terms of p.
-void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz, double source_scale,
-                                         const double* source) {
+// Right-hand side for q, times the volume, in place of the source that stands there, and its norm in terms of p.
+void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz, double source_scale) {
   const std::size_t n = liquid.size();
-  right_hand_side_.resize(n);
   const double density = liquid.scene.fluid.density;
   const bool surface = liquid.plan.free_surface;
   const double squares = parallel_reduce(
@@ -157,7 +155,7 @@ void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz,
           else if (liquid.varying)
             pressure_factor *= (*liquid.volume_fraction)[i] / liquid.alpha_at(i);
           const double known =
-              (source_factor * source[i] + pressure_factor * (*liquid.pressure)[i] / density) * row_scale_[i];
+              (source_factor * right_hand_side_[i] + pressure_factor * (*liquid.pressure)[i] / density) * row_scale_[i];
           const double potential = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
           right_hand_side_[i] = liquid.volume * (known + extra_[i] * potential);
           const double in_pressure =
@@ -314,22 +312,22 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
   const double density = liquid.scene.fluid.density;
   const double c = liquid.scene.fluid.sound_speed;
   const double helmholtz = c > 0 ? 1 / (c * c * dt * dt) : 0;
-  divergence_.resize(n);
+  right_hand_side_.resize(n);
   if (liquid.potential != nullptr) potential_laplacian_.resize(n);
   {
     const auto scope = ledger.time("divergence", static_cast<double>(n), pairs);
     divergence_sweep(liquid.context, liquid.records, liquid.read(liquid.predicted), liquid.velocity_rule,
                      liquid.read_correction(), liquid.potential == nullptr ? nullptr : liquid.potential->data(),
-                     divergence_.data(), potential_laplacian_.data());
-    liquid.max_divergence = parallel_max(n, 0.0, [&](std::size_t i) { return std::abs(divergence_[i]); });
+                     right_hand_side_.data(), potential_laplacian_.data());
+    liquid.max_divergence = parallel_max(n, 0.0, [&](std::size_t i) { return std::abs(right_hand_side_[i]); });
     // The new velocity moves the particles from here to the next positions: it is made free of divergence half way,
     // where div u = (div u here) - dt/2 tr(grad u . grad u). The step is then of second order, and a projection
     // does not cost the energy dt |grad p|^2 / 2 per time.
     if (liquid.options.time.centred)
-      parallel_for(n, [&](std::size_t i) { divergence_[i] -= 0.5 * dt * gradient_trace(liquid, i); });
-    if (liquid.plan.density_relaxation) even_out_density(liquid, dt, divergence_, near_surface_);
+      parallel_for(n, [&](std::size_t i) { right_hand_side_[i] -= 0.5 * dt * gradient_trace(liquid, i); });
+    if (liquid.plan.density_relaxation) even_out_density(liquid, dt, right_hand_side_, near_surface_);
     set_matrix(liquid, helmholtz + regularisation(liquid, helmholtz));
-    set_right_hand_side(liquid, helmholtz, -1 / dt, divergence_.data());
+    set_right_hand_side(liquid, helmholtz, -1 / dt);
   }
   // Start from the pressure that the particle carries; held ones p = 0.
   parallel_for(n, [&](std::size_t i) {
@@ -345,17 +343,17 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
 
 void PressureSystem::solve_initial(Liquid& liquid, Ledger& ledger) {
   const std::size_t n = liquid.size();
-  divergence_.resize(n);
+  right_hand_side_.resize(n);
   if (liquid.potential != nullptr) {
     potential_laplacian_.resize(n);
     divergence_sweep(liquid.context, liquid.records, liquid.read(liquid.velocity), liquid.velocity_rule,
-                     liquid.read_correction(), liquid.potential->data(), divergence_.data(),
+                     liquid.read_correction(), liquid.potential->data(), right_hand_side_.data(),
                      potential_laplacian_.data());
   }
   // -lap p = tr(grad u . grad u), from the divergence of the momentum equation.
-  parallel_for(n, [&](std::size_t i) { divergence_[i] = gradient_trace(liquid, i); });
+  parallel_for(n, [&](std::size_t i) { right_hand_side_[i] = gradient_trace(liquid, i); });
   set_matrix(liquid, regularisation(liquid, 0));
-  set_right_hand_side(liquid, 0, 1, divergence_.data());
+  set_right_hand_side(liquid, 0, 1);
   parallel_for(n, [&](std::size_t i) {
     (*liquid.reduced_pressure)[i] = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
   });
@@ -371,7 +369,7 @@ void PressureSystem::solve_initial(Liquid& liquid, Ledger& ledger) {
 
 double PressureSystem::bytes() const {
   auto total = static_cast<double>(near_surface_.capacity());
-  for (const auto* array : {&divergence_, &right_hand_side_, &residual_, &surface_source_})
+  for (const auto* array : {&right_hand_side_, &residual_, &surface_source_})
     total += 8.0 * static_cast<double>(array->capacity());
   for (const auto* array : {&potential_laplacian_, &extra_, &diagonal_, &row_scale_, &correction_right_, &correction_})
     total += 4.0 * static_cast<double>(array->capacity());

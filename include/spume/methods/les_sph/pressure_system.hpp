@@ -45,7 +45,7 @@ class PressureSystem {
   struct DoubleOperator;
 
   void set_matrix(const Liquid& liquid, double helmholtz);
-  void set_right_hand_side(const Liquid& liquid, double helmholtz, double source_scale, const double* divergence);
+  void set_right_hand_side(const Liquid& liquid, double helmholtz, double source_scale);
   // Preconditioner setup and solve, timed apart: the solve under the name `stage`.
   void solve(Liquid& liquid, double helmholtz, const char* stage, Ledger& ledger);
   // One correction of reduced_pressure by a Krylov solve in float, or in double with pressure.precision = "double".
@@ -56,8 +56,8 @@ class PressureSystem {
   void set_weights(const Liquid& liquid);
 
   Array<std::uint8_t> near_surface_;
-  Array<double> divergence_, right_hand_side_, residual_;
-  Array<double> surface_source_;  // per edge particle
+  Array<double> right_hand_side_, residual_;  // the first holds the divergence while that is found
+  Array<double> surface_source_;              // per edge particle
   Array<float> potential_laplacian_, extra_, diagonal_, row_scale_;
   Array<float> weight_, row_;  // with bubbles: PressureMatrix
   Array<float> correction_right_, correction_;
