@@ -11,8 +11,8 @@
 namespace spume::les_sph {
 namespace {
 
-// Steps when the case leaves the choice. With a surface every change of the arrangement moves the level: a plunging wave
-// of 100 spacings loses 1.4 % of its energy before the impact with 50, 0.3 % with 300.
+// Steps when the case leaves the choice. With a surface every change of the arrangement moves the level: a plunging
+// wave of 100 spacings loses 1.4 % of its energy before the impact with 50, 0.3 % with 300.
 constexpr double closed_steps = 50, open_steps = 300;
 constexpr double largest_excess = 0.1;
 constexpr double largest_disorder = 0.002;

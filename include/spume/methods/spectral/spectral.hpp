@@ -33,7 +33,7 @@ class Spectral final : public Method {
   PointSample sample(const Vec3& position) override;
   double elevation(const Vec3& position) override;  // no surface: not a number
   double wetted_length(const Vec3& position) override;
-  double front(int axis, double height) override;   // likewise
+  double front(int axis, double height) override;  // likewise
   bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override;
   std::vector<Distribution> distributions() override;
   std::vector<Distribution> distribution_headings() const override;
