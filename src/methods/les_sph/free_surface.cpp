@@ -55,7 +55,6 @@ double depth_of(const Liquid& liquid, std::size_t i, double of_lattice) {
   const double size = std::sqrt(dot(m, m));
   if (!(size > 0)) return spacing;
   const auto volume_of = [&](std::size_t j) { return liquid.varying ? double{liquid.volume_ratio[j]} : 1.0; };
-  const auto n = static_cast<std::int32_t>(liquid.size());
   double held = volume_of(i) * across(0, d) * along(0);
   for (const std::int32_t j : liquid.list.of(i)) {
     double r2 = 0, down = 0;
@@ -65,14 +64,9 @@ double depth_of(const Liquid& liquid, std::size_t i, double of_lattice) {
       r2 += distance * distance;
       down += distance * m[axis] / size;
     }
-    held += volume_of(static_cast<std::size_t>(j < n ? j : liquid.images.source()[j - n])) *
-            across(std::sqrt(std::max(0.0, r2 - down * down)), d) * along(down);
+    held += volume_of(liquid.particle_of(j)) * across(std::sqrt(std::max(0.0, r2 - down * down)), d) * along(down);
   }
   return spacing * std::clamp(0.5 + held - of_lattice, shallowest, deepest);
-}
-
-bool is_edge(const Liquid& liquid, std::size_t i) {
-  return liquid.interior_weight[i] < 1 && liquid.uncorrected[i] == 0;
 }
 
 // What edge particles of one layer (within half a spacing of it) share of their depths. By its own depth alone a
@@ -87,7 +81,6 @@ void find_depths(Liquid& liquid) {
     const auto i = static_cast<std::size_t>(liquid.edge_particles[k]);
     of_particle[i] = static_cast<float>(depth_of(liquid, i, of_lattice));
   });
-  const auto n = static_cast<std::int32_t>(liquid.size());
   with_kernel(liquid.context, [&]<int dimensions, class Kernel>() {
     parallel_for(edges, [&](std::size_t k) {
       const auto i = static_cast<std::size_t>(liquid.edge_particles[k]);
@@ -96,8 +89,8 @@ void find_depths(Liquid& liquid) {
       const double size = std::sqrt(dot(m, m));
       double total = Kernel::w(0.0), sum = total * of_particle[i];
       for (const std::int32_t j : liquid.list.of(i)) {
-        const auto source = static_cast<std::size_t>(j < n ? j : liquid.images.source()[j - n]);
-        if (!is_edge(liquid, source)) continue;
+        const auto source = liquid.particle_of(j);
+        if (!liquid.is_edge(source)) continue;
         double r2 = 0, along = 0;
         for (int axis = 0; axis < dimensions; ++axis) {
           const float* x = liquid.list.coordinate(axis);
@@ -134,8 +127,7 @@ void find_surface(Liquid& liquid) {
                                     : 1.0F;
   });
   parallel_select(n, liquid.surface_particles, [&](std::size_t i) { return liquid.at_surface[i] != 0; });
-  parallel_select(n, liquid.edge_particles,
-                  [&](std::size_t i) { return liquid.interior_weight[i] < 1 && liquid.uncorrected[i] == 0; });
+  parallel_select(n, liquid.edge_particles, [&](std::size_t i) { return liquid.is_edge(i); });
   find_depths(liquid);
   if (liquid.plan.shifting)
     filter_vector_subset(liquid.context, liquid.records, liquid.read(liquid.normal), liquid.reflection,

@@ -128,10 +128,7 @@ void project_velocity(Liquid& liquid, double dt) {
             r2 += dr[axis] * dr[axis];
           }
           // Images mirror the potential of their source.
-          const std::size_t source =
-              static_cast<std::size_t>(j) < n
-                  ? static_cast<std::size_t>(j)
-                  : static_cast<std::size_t>(liquid.images.source()[j - static_cast<std::int32_t>(n)]);
+          const std::size_t source = liquid.particle_of(j);
           if (liquid.potential != nullptr) slope = (*liquid.potential)[source] - (*liquid.potential)[i];
           const double g =
               -scale.gradient * own_volume<Kernel>(liquid.context, source) * Kernel::f(std::sqrt(r2) * scale.inverse_h);

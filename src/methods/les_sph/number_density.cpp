@@ -37,13 +37,11 @@ void mark_surroundings_of_surface(const Liquid& liquid, Array<std::uint8_t>& nea
   const auto mark = [&](std::size_t i) {
     std::atomic_ref<std::uint8_t>(near_surface[i]).store(1, std::memory_order_relaxed);
   };
-  const auto n = static_cast<std::int32_t>(liquid.size());
   const auto mark_around = [&](std::span<const std::int32_t> particles) {
     parallel_for(particles.size(), [&](std::size_t k) {
       const auto i = static_cast<std::size_t>(particles[k]);
       mark(i);
-      for (const std::int32_t j : liquid.list.of(i))
-        mark(static_cast<std::size_t>(j < n ? j : liquid.images.source()[j - n]));
+      for (const std::int32_t j : liquid.list.of(i)) mark(liquid.particle_of(j));
     });
   };
   mark_around(liquid.surface_particles);

@@ -22,10 +22,6 @@ double layer_weight(double distance2) {
   return x > 0 ? x * x : 0;
 }
 
-bool is_edge(const Liquid& liquid, std::size_t i) {
-  return liquid.interior_weight[i] < 1 && liquid.uncorrected[i] == 0;
-}
-
 // Vector from particle i to the listed point j, in spacings, and its square.
 double separation(const Liquid& liquid, std::size_t i, std::int32_t j, Vec3& dr) {
   double r2 = 0;
@@ -52,7 +48,6 @@ Vec3 vector_at(const Liquid& liquid, const FloatVectorField& field, std::int32_t
 }
 
 void find_upper_layers(Liquid& liquid) {
-  const auto n = static_cast<std::int32_t>(liquid.size());
   liquid.beside_edge.resize(liquid.size());
   parallel_for(liquid.size(), [&](std::size_t i) { liquid.beside_edge[i] = 0; });
   parallel_for(liquid.edge_particles.size(), [&](std::size_t k) {
@@ -63,8 +58,7 @@ void find_upper_layers(Liquid& liquid) {
     mark(i);
     Vec3 dr{};
     for (const std::int32_t j : liquid.list.of(i))
-      if (separation(liquid, i, j, dr) < layer_reach * layer_reach)
-        mark(static_cast<std::size_t>(j < n ? j : liquid.images.source()[j - n]));
+      if (separation(liquid, i, j, dr) < layer_reach * layer_reach) mark(liquid.particle_of(j));
   });
   parallel_select(liquid.size(), liquid.upper_particles, [&](std::size_t i) { return liquid.beside_edge[i] != 0; });
 }
@@ -79,14 +73,12 @@ Vec3 upper_normal(const Liquid& liquid, std::size_t i) {
     for (int axis = 0; axis < 3; ++axis) sum[axis] += weight * normal[axis] / size;
     total += weight;
   };
-  const auto n = static_cast<std::int32_t>(liquid.size());
-  const bool edge = is_edge(liquid, i);
+  const bool edge = liquid.is_edge(i);
   if (edge) add(vector_at(liquid, liquid.normal, static_cast<std::int32_t>(i)), 1);
   Vec3 dr{};
   for (const std::int32_t j : liquid.list.of(i)) {
     const double weight = layer_weight(separation(liquid, i, j, dr));
-    if (weight > 0 && is_edge(liquid, static_cast<std::size_t>(j < n ? j : liquid.images.source()[j - n])))
-      add(vector_at(liquid, liquid.normal, j), weight);
+    if (weight > 0 && liquid.is_edge(liquid.particle_of(j))) add(vector_at(liquid, liquid.normal, j), weight);
   }
   const double size = std::hypot(sum[0], sum[1], sum[2]);
   if (!(size > 0)) return {};

@@ -116,6 +116,12 @@ struct Liquid {
   double energy_supply = 0;  // energy at the start and the work of uniform forces other than gravity since
 
   std::size_t size() const { return fields.size(); }
+  // The particle at a listed point: itself, or the source of an image.
+  std::size_t particle_of(std::int32_t point) const {
+    const auto n = static_cast<std::int32_t>(size());
+    return static_cast<std::size_t>(point < n ? point : images.source()[point - n]);
+  }
+  bool is_edge(std::size_t i) const { return interior_weight[i] < 1 && uncorrected[i] == 0; }
   bool dynamic_closure() const;
   std::array<const double*, 3> read(const VectorField& v) const;
   std::array<const float*, 3> read(const FloatVectorField& v) const;
