@@ -153,7 +153,7 @@ end = 1
 max_step = 0.005
 )toml";
 
-// A stream along x between two walls.
+// A square box of liquid under a moving lid.
 inline const std::string cavity = R"toml(method = "les-sph"
 [domain]
 lower = [0, 0]
@@ -173,6 +173,7 @@ reynolds = 100
 end = 20
 )toml";
 
+// A stream along x between two walls.
 inline const std::string channel = R"toml(method = "les-sph"
 [domain]
 lower = [0, 0]

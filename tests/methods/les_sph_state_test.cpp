@@ -119,8 +119,6 @@ TEST(LesSphAllocations, ASteadyRunAllocatesNothing) {
   }
 }
 
-// A linear shear between walls at rest and in motion is linear in the mirrored liquid too: the fit is exact up to and
-// on the walls.
 // Liquid from the bottom to 0.4 and, over air, a slab from 0.6 to 0.8: the coverage passes one half at the edges of
 // lattice cells, within the error of the kernel's sums over a lattice, 1 % of the sum or 0.03 spacings.
 TEST(LesSphSamples, MeasureColumnsByTheirTopAndByTheirWetLength) {
@@ -149,6 +147,8 @@ end = 1
   EXPECT_EQ(dry.method.wetted_length({dry.loaded.scene.domain.upper[0], 0, 0}), 0);
 }
 
+// A linear shear between walls at rest and in motion is linear in the mirrored liquid too: the fit is exact up to and
+// on the walls.
 TEST(LesSphSamples, SeeTheVelocityOfNoSlipWalls) {
   Simulation run(R"(method = "les-sph"
 [domain]

@@ -28,20 +28,7 @@ Vec3 vector_at(const float* from, int slot) {
 // Normals filtered once where bubbles look at them.
 void BubbleCoupling::smooth_normals(Liquid& liquid) {
   if (population_.merge_time == nullptr) return;
-  // In particle order, by blocks: counted, then written.
-  const std::size_t n = liquid.size();
-  std::array<std::size_t, max_reduction_blocks + 1> start{};
-  const std::size_t size = std::max<std::size_t>(4096, (n + max_reduction_blocks - 1) / max_reduction_blocks);
-  parallel_blocks(n, size, [&](std::size_t block, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) start[block + 1] += near_[i];
-  });
-  for (std::size_t block = 0; block < block_count(n, size); ++block) start[block + 1] += start[block];
-  near_particles_.resize(start[block_count(n, size)]);
-  parallel_blocks(n, size, [&](std::size_t block, std::size_t first, std::size_t last) {
-    std::size_t slot = start[block];
-    for (std::size_t i = first; i < last; ++i)
-      if (near_[i] != 0) near_particles_[slot++] = static_cast<std::int32_t>(i);
-  });
+  parallel_select(liquid.size(), near_particles_, [&](std::size_t i) { return near_[i] != 0; });
   filter_vector_subset(liquid.context, liquid.records, liquid.read(liquid.normal), liquid.reflection, near_particles_,
                        liquid.write(liquid.smoothed_normal));
 }

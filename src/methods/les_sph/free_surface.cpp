@@ -71,7 +71,7 @@ double depth_of(const Liquid& liquid, std::size_t i, double of_lattice) {
 
 // What edge particles of one layer (within half a spacing of it) share of their depths. By its own depth alone a
 // particle that rises from its layer would lie less deep by as much, and nothing would press it back: still water on a
-// cubic lattice heaved, its kinetic energy forty times as large after every unit of sqrt(height / gravity).
+// cubic lattice heaved: see DisturbedWaterCalmsDownInThreeDimensions in the tests.
 void find_depths(Liquid& liquid) {
   const double of_lattice = lattice_column(liquid.dimensions);
   const std::size_t edges = liquid.edge_particles.size();
