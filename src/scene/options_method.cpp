@@ -52,9 +52,8 @@ Section pressure() {
                      &P::cell_ratio),
               option("warm_start", "", "true", {}, "start from the last pressure, carried by the particles", group,
                      &P::warm_start),
-              option("density_relaxation", "steps", "0", between(0, 1e6),
-                     "steps at the courant limit over which number density is evened out; 0: 50 in a closed domain, "
-                     "300 with a free surface; 1e6: never",
+              option("density_relaxation", "steps", "30", between(1, 1e6),
+                     "steps at the courant limit over which number density is evened out; 1e6: never",
                      group, &P::density_relaxation),
           },
       .methods = {"les-sph"}};

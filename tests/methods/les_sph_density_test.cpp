@@ -48,7 +48,7 @@ TEST(NumberDensity, DriftsApartWithoutRelaxation) {
   EXPECT_LT(ratio_of_halves({"pressure.density_relaxation=1e6"}), 0.9);
 }
 
-TEST(NumberDensity, IsEvenedOutAtTheStatedRateWithoutAChangeOfTheMean) {
+TEST(NumberDensity, IsEvenedOutAtTheStatedRateBeyondDisorder) {
   Simulation run(cavity, {"pressure.density_relaxation=20"});
   const double dt = 0.01;
   run.steps(50, dt);
@@ -57,19 +57,22 @@ TEST(NumberDensity, IsEvenedOutAtTheStatedRateWithoutAChangeOfTheMean) {
   Array<std::uint8_t> scratch;
   les_sph::even_out_density(liquid, dt, change, scratch);
   std::vector<double> excess(liquid.size());
-  double mean = 0, sum = 0, largest = 0;
+  double mean = 0;
+  int let_be = 0, evened_out = 0;
   for (std::size_t i = 0; i < liquid.size(); ++i) {
     const double ratio = (*liquid.kernel_sum)[i] / liquid.lattice.kernel_sum;
     excess[i] = std::min(std::max(ratio - 1, -0.1), 0.1);
     mean += excess[i] / static_cast<double>(liquid.size());
   }
+  EXPECT_LT(std::abs(mean), 0.002);
   for (std::size_t i = 0; i < liquid.size(); ++i) {
-    EXPECT_NEAR(change[i], -liquid.displacement / (20 * dt) * (excess[i] - mean), 1e-12);
-    sum += change[i];
-    largest = std::max(largest, std::abs(change[i]));
+    const double difference = excess[i] - mean;
+    const double beyond = std::copysign(std::max(std::abs(difference) - 0.02, 0.0), difference);
+    EXPECT_NEAR(change[i], -liquid.displacement / (20 * dt) * beyond, 1e-12);
+    ++(beyond == 0 ? let_be : evened_out);
   }
-  EXPECT_GT(largest, 0);
-  EXPECT_NEAR(sum, 0, 1e-12 * largest * static_cast<double>(liquid.size()));
+  EXPECT_GT(let_be, 0);
+  EXPECT_GT(evened_out, 0);
 }
 
 // A tank with a surface, stirred by its bottom: the level of the liquid, here twice the height of its centre.
@@ -85,7 +88,7 @@ double level_after_stirring(const Overrides& overrides) {
 // Disorder of 0.2 % is let be, the waves on the surface take half a per cent, and the layers near the surface are not
 // evened out.
 TEST(NumberDensity, KeepsTheVolumeOfALiquidWithASurface) {
-  EXPECT_NEAR(level_after_stirring({"pressure.density_relaxation=50"}), 1, 0.015);
+  EXPECT_NEAR(level_after_stirring({}), 1, 0.015);
   EXPECT_LT(level_after_stirring({"pressure.density_relaxation=1e6"}), 0.975);
 }
 
@@ -95,6 +98,8 @@ TEST(NumberDensity, IsLeftAloneWhereSupportIsMissing) {
     Simulation run(text);
     run.steps(5, 0.004);
     const les_sph::Liquid& liquid = run.method.liquid();
+    for (std::size_t i = 0; i < liquid.size(); ++i)
+      (*liquid.kernel_sum)[i] = static_cast<float>(1.05 * liquid.lattice.kernel_sum);
     std::vector<double> change(liquid.size(), 0.0);
     Array<std::uint8_t> scratch;
     les_sph::even_out_density(liquid, 0.004, change, scratch);

@@ -54,7 +54,7 @@ struct PressureOptions {
   int max_iterations = 500;
   double cell_ratio = 1.5;  // multigrid cell side / spacing
   bool warm_start = true;
-  double density_relaxation = 0;  // 0: chosen by the scene
+  double density_relaxation = 30;
 };
 
 struct ShiftingOptions {

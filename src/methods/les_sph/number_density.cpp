@@ -11,11 +11,11 @@
 namespace spume::les_sph {
 namespace {
 
-// Steps when the case leaves the choice. With a surface every change of the arrangement moves the level: a plunging
-// wave of 100 spacings loses 1.4 % of its energy before the impact with 50, 0.3 % with 300.
-constexpr double closed_steps = 50, open_steps = 300;
 constexpr double largest_excess = 0.1;
-constexpr double largest_disorder = 0.002;
+// What disorder changes the kernel sums by without any liquid being denser: their mean, and those of single particles,
+// whose standard deviation is 0.009 in taylor_green_2d. Evening out the latter stirs the liquid: at 1/200 the error of
+// that case's velocity is 0.037 %, 0.024 % when twice the deviation is let be, 0.023 % without any relaxation.
+constexpr double mean_disorder = 0.002, local_disorder = 0.02;
 
 bool near_box(const Liquid& liquid, std::size_t i) {
   for (const SolidBox& box : liquid.scene.domain.boxes) {
@@ -51,6 +51,10 @@ void mark_surroundings_of_surface(const Liquid& liquid, Array<std::uint8_t>& nea
 double excess(const Liquid& liquid, std::size_t i) {
   const double ratio = (*liquid.kernel_sum)[i] / liquid.lattice.kernel_sum;
   return std::clamp(ratio - 1, -largest_excess, largest_excess);
+}
+
+double beyond(double value, double let_be) {
+  return value - std::clamp(value, -let_be, let_be);
 }
 
 }  // namespace
@@ -98,12 +102,11 @@ void even_out_density(const Liquid& liquid, double dt, std::span<double> diverge
       [](const Sum& a, const Sum& b) {
         return Sum{a.excess + b.excess, a.particles + b.particles};
       });
-  const double mean = std::clamp(total.excess / std::max(total.particles, 1.0), -largest_disorder, largest_disorder);
-  const double chosen = liquid.options.pressure.density_relaxation;
-  const double steps = chosen > 0 ? chosen : liquid.plan.free_surface ? open_steps : closed_steps;
-  const double rate = liquid.displacement / (steps * dt);
+  const double mean = total.excess / std::max(total.particles, 1.0);
+  const double of_all = beyond(mean, mean_disorder);
+  const double rate = liquid.displacement / (liquid.options.pressure.density_relaxation * dt);
   parallel_for(liquid.size(), [&](std::size_t i) {
-    if (has_full_support(i)) divergence[i] -= rate * (excess(liquid, i) - mean);
+    if (has_full_support(i)) divergence[i] -= rate * (of_all + beyond(excess(liquid, i) - mean, local_disorder));
   });
 }
 
