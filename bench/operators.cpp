@@ -52,6 +52,13 @@ void pressure_residual(benchmark::State& state) {
   pressure.report(state, 2);
 }
 
+void pressure_subtract_product(benchmark::State& state) {
+  Pressure pressure(state);
+  Array<double> r(pressure.particles.n);
+  for (auto _ : state) pressure.matrix.subtract_product(0.5, pressure.x, r);
+  pressure.report(state, 1);
+}
+
 void sizes(benchmark::internal::Benchmark* bench) {
   for (const int n : {10000, 100000, 1000000})
     for (const int threads : {1, 2}) bench->Args({n, 0, threads});
@@ -60,6 +67,7 @@ void sizes(benchmark::internal::Benchmark* bench) {
 
 BENCHMARK(pressure_apply)->Apply(sizes);
 BENCHMARK(pressure_residual)->Apply(sizes);
+BENCHMARK(pressure_subtract_product)->Apply(sizes);
 
 }  // namespace
 }  // namespace spume

@@ -52,37 +52,38 @@ void apply_rows(const SweepContext& context, const float* records, const Pressur
   });
 }
 
-template <int dimensions, class Kernel>
-void residual_rows(const SweepContext& context, const float* records, const PressureMatrix& matrix, const double* q,
-                   const double* b, double* r) {
-  constexpr int payload = 2 + volume_slots<Kernel>;
+// Calls row(i, V sum_j 2 g_ij (q_i - q_j)) for the rows without mask, with float coefficients and all else in double.
+// The payload is q, as one float or as the two floats of a double.
+template <int dimensions, class Kernel, bool two_floats, class Row>
+void double_rows(const SweepContext& context, const float* records, const PressureMatrix& matrix, Row&& row) {
+  constexpr int payload = (two_floats ? 2 : 1) + volume_slots<Kernel>;
   constexpr int width = record_width(dimensions, payload);
   const NeighbourList& list = *context.list;
   const KernelScale<dimensions, Kernel> common(context);
   const auto volume = static_cast<float>(context.volume);
   sweep(list.particles(), [&](std::size_t i) {
+    if (matrix.masked != nullptr && matrix.masked[i] != 0) return;
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
     float factor = -2 * scale.gradient * volume;
     if constexpr (is_varying<Kernel>) factor *= matrix.row[i];
-    if (matrix.masked != nullptr && matrix.masked[i] != 0) {
-      r[i] = 0;
-      return;
-    }
-    const f32x8 high = simd::splat(records[i * width + dimensions]);
-    const f32x8 low = simd::splat(records[i * width + dimensions + 1]);
+    const float* own = records + i * width + dimensions;
+    const f64x4 high = simd::to_f64_low(simd::splat(own[0]));
     f64x4 sum_low{}, sum_high{};
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& batch) {
       const f32x8 f = times_volume<Kernel>(Kernel::f(batch.q), batch);
       // The leading parts are subtracted in double: near a zero of q they differ by more than a factor of two, and
       // a float difference would round.
-      const f32x8 fine = low - batch.payload[1];
-      const f32x8 other = batch.payload[0];
-      sum_low =
-          sum_low + simd::to_f64_low(f) * ((simd::to_f64_low(high) - simd::to_f64_low(other)) + simd::to_f64_low(fine));
-      sum_high = sum_high + simd::to_f64_high(f) *
-                                ((simd::to_f64_high(high) - simd::to_f64_high(other)) + simd::to_f64_high(fine));
+      f64x4 low_difference = high - simd::to_f64_low(batch.payload[0]);
+      f64x4 high_difference = high - simd::to_f64_high(batch.payload[0]);
+      if constexpr (two_floats) {
+        const f32x8 fine = own[1] - batch.payload[1];
+        low_difference = low_difference + simd::to_f64_low(fine);
+        high_difference = high_difference + simd::to_f64_high(fine);
+      }
+      sum_low = sum_low + simd::to_f64_low(f) * low_difference;
+      sum_high = sum_high + simd::to_f64_high(f) * high_difference;
     });
-    r[i] = b[i] - (double{factor} * simd::sum(sum_low + sum_high) + double{volume * matrix.extra[i]} * q[i]);
+    row(i, double{factor} * simd::sum(sum_low + sum_high));
   });
 }
 
@@ -155,8 +156,26 @@ void PressureOperator::residual(std::span<const double> q, std::span<const doubl
   parallel_for(n, [&, out, width](std::size_t i) { split(out + i * width, q[i]); });
   parallel_for(context_.images->size(),
                [&, out, width, n](std::size_t k) { split(out + (n + k) * width, q[source[k]]); });
+  const auto volume = static_cast<float>(context_.volume);
+  parallel_for(n, [&](std::size_t i) { r[i] = 0; });
   with_kernel(context_, [&]<int dimensions, class Kernel>() {
-    residual_rows<dimensions, Kernel>(context_, records, matrix_, q.data(), b.data(), r.data());
+    double_rows<dimensions, Kernel, true>(context_, records, matrix_, [&](std::size_t i, double pairs) {
+      r[i] = b[i] - (pairs + double{volume * matrix_.extra[i]} * q[i]);
+    });
+  });
+}
+
+void PressureOperator::subtract_product(double scale, std::span<const float> x, std::span<double> r) {
+  const bool varying = matrix_.weight != nullptr;
+  float* records = records_->prepare(context_, varying ? 2 : 1);
+  const int width = record_width(context_.dimensions, varying ? 2 : 1);
+  pack_scalar(context_, records, width, 0, x.data());
+  if (varying) pack_scalar(context_, records, width, 1, matrix_.weight);
+  const auto volume = static_cast<float>(context_.volume);
+  with_kernel(context_, [&]<int dimensions, class Kernel>() {
+    double_rows<dimensions, Kernel, false>(context_, records, matrix_, [&](std::size_t i, double pairs) {
+      r[i] -= scale * (pairs + double{volume * matrix_.extra[i]} * x[i]);
+    });
   });
 }
 

@@ -40,6 +40,9 @@ class PressureOperator {
   // give zero, but their q enters their neighbours' rows.
   void residual(std::span<const double> q, std::span<const double> b, std::span<double> r);
 
+  // r -= scale A x with x in float and all else as in residual(): what a correction x leaves of r. Masked rows keep r.
+  void subtract_product(double scale, std::span<const float> x, std::span<double> r);
+
   std::size_t size() const { return context_.list->particles(); }
 
  private:

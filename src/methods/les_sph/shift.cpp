@@ -17,37 +17,60 @@ constexpr double layer_reach = 1.8;
 // layer below has on a square lattice (0.77; 1.08 on a cubic one).
 constexpr double full_weight = 0.4;
 
-double layer_weight(double distance2) {
-  const double x = 1 - distance2 / (layer_reach * layer_reach);
+float layer_weight(float distance2) {
+  const float x = 1 - distance2 / static_cast<float>(layer_reach * layer_reach);
   return x > 0 ? x * x : 0;
 }
 
-// Vector from particle i to the listed point j, in spacings, and its square.
-double separation(const Liquid& liquid, std::size_t i, std::int32_t j, Vec3& dr) {
-  double r2 = 0;
-  for (int axis = 0; axis < liquid.dimensions; ++axis) {
-    const float* x = liquid.list.coordinate(axis);
-    dr[axis] = (double{x[j]} - double{x[i]}) / liquid.scene.spacing;
-    r2 += dr[axis] * dr[axis];
-  }
-  return r2;
-}
+// What the loops over the neighbours of the upper layers read, in float as the lists hold it.
+template <int dimensions>
+struct Surroundings {
+  using Vector = std::array<float, dimensions>;
 
-// A geometric vector at the listed point j, mirrored where j is an image.
-Vec3 vector_at(const Liquid& liquid, const FloatVectorField& field, std::int32_t j) {
-  const auto n = static_cast<std::int32_t>(liquid.size());
-  Vec3 value{};
-  if (j < n) {
-    for (int axis = 0; axis < liquid.dimensions; ++axis) value[axis] = (*field[axis])[j];
+  explicit Surroundings(const Liquid& l)
+      : liquid(l),
+        particles(static_cast<std::int32_t>(l.size())),
+        inverse_spacing(static_cast<float>(1 / l.scene.spacing)) {
+    for (int axis = 0; axis < dimensions; ++axis) coordinate[axis] = l.list.coordinate(axis);
+  }
+
+  // Vector from particle i to the listed point j, in spacings.
+  Vector separation(std::size_t i, std::int32_t j) const {
+    Vector dr;
+    for (int axis = 0; axis < dimensions; ++axis)
+      dr[axis] = (coordinate[axis][j] - coordinate[axis][i]) * inverse_spacing;
+    return dr;
+  }
+
+  // A geometric vector at the listed point j, mirrored where j is an image.
+  Vector vector_at(const FloatVectorField& field, std::int32_t j) const {
+    Vector value;
+    if (j < particles) {
+      for (int axis = 0; axis < dimensions; ++axis) value[axis] = (*field[axis])[j];
+      return value;
+    }
+    const std::int32_t source = liquid.images.source()[j - particles];
+    const auto& sign = liquid.reflection[liquid.images.path()[j - particles]];
+    for (int axis = 0; axis < dimensions; ++axis) value[axis] = sign[axis] * (*field[axis])[source];
     return value;
   }
-  const std::int32_t source = liquid.images.source()[j - n];
-  const auto& sign = liquid.reflection[liquid.images.path()[j - n]];
-  for (int axis = 0; axis < liquid.dimensions; ++axis) value[axis] = double{sign[axis]} * (*field[axis])[source];
-  return value;
+
+  const Liquid& liquid;
+  std::int32_t particles;
+  float inverse_spacing;
+  std::array<const float*, dimensions> coordinate;
+};
+
+template <std::size_t dimensions>
+float dot(const std::array<float, dimensions>& a, const std::array<float, dimensions>& b) {
+  float sum = 0;
+  for (std::size_t axis = 0; axis < dimensions; ++axis) sum += a[axis] * b[axis];
+  return sum;
 }
 
+template <int dimensions>
 void find_upper_layers(Liquid& liquid) {
+  const Surroundings<dimensions> around(liquid);
   liquid.beside_edge.resize(liquid.size());
   parallel_for(liquid.size(), [&](std::size_t i) { liquid.beside_edge[i] = 0; });
   parallel_for(liquid.edge_particles.size(), [&](std::size_t k) {
@@ -56,35 +79,49 @@ void find_upper_layers(Liquid& liquid) {
       std::atomic_ref<std::uint8_t>(liquid.beside_edge[j]).store(1, std::memory_order_relaxed);
     };
     mark(i);
-    Vec3 dr{};
-    for (const std::int32_t j : liquid.list.of(i))
-      if (separation(liquid, i, j, dr) < layer_reach * layer_reach) mark(liquid.particle_of(j));
+    for (const std::int32_t j : liquid.list.of(i)) {
+      const auto dr = around.separation(i, j);
+      if (layer_weight(dot(dr, dr)) > 0) mark(liquid.particle_of(j));
+    }
   });
   parallel_select(liquid.size(), liquid.upper_particles, [&](std::size_t i) { return liquid.beside_edge[i] != 0; });
 }
 
-// The unit normal of the edge particles around particle i, weighted, times how far i belongs to the two upper layers.
-Vec3 upper_normal(const Liquid& liquid, std::size_t i) {
-  Vec3 sum{};
-  double total = 0;
-  const auto add = [&](const Vec3& normal, double weight) {
-    const double size = std::hypot(normal[0], normal[1], normal[2]);
-    if (!(size > 0)) return;
-    for (int axis = 0; axis < 3; ++axis) sum[axis] += weight * normal[axis] / size;
+// The normals of the edge particles, made one long.
+template <int dimensions>
+void find_unit_normals(const Liquid& liquid, const FloatVectorField& unit_normal) {
+  parallel_for(liquid.edge_particles.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(liquid.edge_particles[k]);
+    std::array<float, dimensions> normal;
+    for (int axis = 0; axis < dimensions; ++axis) normal[axis] = (*liquid.normal[axis])[i];
+    const float size = std::sqrt(dot(normal, normal));
+    for (int axis = 0; axis < dimensions; ++axis) (*unit_normal[axis])[i] = size > 0 ? normal[axis] / size : 0;
+  });
+}
+
+// The unit normal of the edge particles around particle i, weighted, and how far i belongs to the two upper layers.
+template <int dimensions>
+float upper_normal(const Surroundings<dimensions>& around, const FloatVectorField& unit_normal, std::size_t i,
+                   typename Surroundings<dimensions>::Vector& normal) {
+  const Liquid& liquid = around.liquid;
+  normal = {};
+  float total = 0;
+  const auto add = [&](std::int32_t j, float weight) {
+    const auto neighbour = around.vector_at(unit_normal, j);
+    for (int axis = 0; axis < dimensions; ++axis) normal[axis] += weight * neighbour[axis];
     total += weight;
   };
   const bool edge = liquid.is_edge(i);
-  if (edge) add(vector_at(liquid, liquid.normal, static_cast<std::int32_t>(i)), 1);
-  Vec3 dr{};
+  if (edge) add(static_cast<std::int32_t>(i), 1);
   for (const std::int32_t j : liquid.list.of(i)) {
-    const double weight = layer_weight(separation(liquid, i, j, dr));
-    if (weight > 0 && liquid.is_edge(liquid.particle_of(j))) add(vector_at(liquid, liquid.normal, j), weight);
+    const auto dr = around.separation(i, j);
+    const float weight = layer_weight(dot(dr, dr));
+    if (weight > 0 && liquid.is_edge(liquid.particle_of(j))) add(j, weight);
   }
-  const double size = std::hypot(sum[0], sum[1], sum[2]);
-  if (!(size > 0)) return {};
-  const double share = edge ? 1 : std::min(1.0, total / full_weight);
-  for (double& component : sum) component *= share / size;
-  return sum;
+  const float size = std::sqrt(dot(normal, normal));
+  if (!(size > 0)) return 0;
+  for (float& component : normal) component /= size;
+  return edge ? 1 : std::min(1.0F, total / static_cast<float>(full_weight));
 }
 
 // Beneath the surface the kernel is cut, and the concentration gradient pushes whole layers along the normal; so does
@@ -92,32 +129,29 @@ Vec3 upper_normal(const Liquid& liquid, std::size_t i) {
 // of 64 particles then loses 4 % of its amplitude in three periods. What the neighbours of one layer share of the
 // normal shift is therefore taken out before it spreads; particles that stand out of their layer are moved as before.
 void keep_layers(Liquid& liquid) {
-  find_upper_layers(liquid);
-  liquid.layer_shift.resize(liquid.upper_particles.size());
+  const FloatVectorField& unit_normal = liquid.acceleration;  // free until the viscous sweep
   with_kernel(liquid.context, [&]<int dimensions, class Kernel>() {
+    find_upper_layers<dimensions>(liquid);
+    find_unit_normals<dimensions>(liquid, unit_normal);
+    liquid.layer_shift.resize(liquid.upper_particles.size());
+    const Surroundings<dimensions> around(liquid);
     parallel_for(liquid.upper_particles.size(), [&](std::size_t k) {
       const auto i = static_cast<std::size_t>(liquid.upper_particles[k]);
-      const Vec3 normal = upper_normal(liquid, i);
-      const double share = std::hypot(normal[0], normal[1], normal[2]);
-      double sum = 0, total = 0;
-      const auto add = [&](const Vec3& shift, double weight) {
-        total += weight;
-        for (int axis = 0; axis < dimensions; ++axis) sum += weight * shift[axis] * normal[axis];
-      };
-      add(vector_at(liquid, liquid.shift, static_cast<std::int32_t>(i)), Kernel::w(0.0));
-      Vec3 dr{};
-      const double inverse_h = liquid.scene.spacing / liquid.width_at(i);
+      std::array<float, dimensions> normal;
+      const float share = upper_normal(around, unit_normal, i, normal);
+      float total = static_cast<float>(Kernel::w(0.0));
+      float sum = total * dot(around.vector_at(liquid.shift, static_cast<std::int32_t>(i)), normal);
+      const auto inverse_h = static_cast<float>(liquid.scene.spacing / liquid.width_at(i));
       for (const std::int32_t j : liquid.list.of(i)) {
-        const double r2 = separation(liquid, i, j, dr);
-        double out_of_layer = 0;
-        for (int axis = 0; axis < dimensions; ++axis) out_of_layer += dr[axis] * normal[axis];
-        out_of_layer = share > 0 ? std::abs(out_of_layer) / share : 1;
-        if (out_of_layer < 1)
-          add(vector_at(liquid, liquid.shift, j), Kernel::w(std::sqrt(r2) * inverse_h) * (1 - out_of_layer));
+        const auto dr = around.separation(i, j);
+        const float out_of_layer = std::abs(dot(dr, normal));
+        if (!(share > 0) || out_of_layer >= 1) continue;
+        const auto kernel = static_cast<float>(Kernel::w(double{std::sqrt(dot(dr, dr)) * inverse_h}));
+        const float weight = kernel * (1 - out_of_layer);
+        total += weight;
+        sum += weight * dot(around.vector_at(liquid.shift, j), normal);
       }
-      // The normal carries the share once in the sum and once here.
-      for (int axis = 0; axis < 3; ++axis)
-        liquid.layer_shift[k][axis] = share > 0 ? static_cast<float>(sum / total * normal[axis] / share) : 0.0F;
+      for (int axis = 0; axis < dimensions; ++axis) liquid.layer_shift[k][axis] = share * sum / total * normal[axis];
     });
   });
   parallel_for(liquid.upper_particles.size(), [&](std::size_t k) {
