@@ -36,8 +36,8 @@ bool names_threads(int argc, char** argv) {
   return false;
 }
 
-// Where OMP_PROC_BIND is set already, the runtime has bound this thread to its first place, and the restarted program
-// would find that place alone: all its threads on one core.
+}  // namespace
+
 void release_to_all_places() {
   if (omp_get_num_places() == 0) return;
   cpu_set_t processors;
@@ -49,8 +49,6 @@ void release_to_all_places() {
   }
   sched_setaffinity(0, sizeof processors, &processors);
 }
-
-}  // namespace
 
 void restart_with_patient_threads(int argc, char** argv) {
   if (const char* names = std::getenv(mark); names != nullptr) return forget(std::string(names).c_str());

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdio>
 
+#include "spume/cli/programme.hpp"
 #include "spume/core/error.hpp"
 #include "spume/io/file.hpp"
 #include "verbs.hpp"
@@ -25,6 +26,7 @@ int script_verb(const std::string& script, const std::vector<std::string>& argum
   for (auto& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   std::fflush(nullptr);
+  release_to_all_places();
   execv(python, pointers.data());
   throw_file_error(python, "start", errno);
 }

@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -253,6 +254,13 @@ TEST_F(Verbs, ScriptsGetTheirArgumentsAndTheirExitCodeIsPassedOn) {
   EXPECT_THAT(verify.out, HasSubstr("test_cli', 'couette', '--quick']"));
   EXPECT_THAT(verify.out, HasSubstr("\n[]\n")) << "settings for this process are not handed on";
   EXPECT_THAT(spume({"plot", "results"}).out, HasSubstr("plot ['results']"));
+  test::write_contents(folder_ / "tools" / "plot.py", "import os\nprint(len(os.sched_getaffinity(0)), 'cores')\n");
+  cpu_set_t processors;
+  sched_getaffinity(0, sizeof processors, &processors);
+  setenv("OMP_PROC_BIND", "true", 1);
+  EXPECT_EQ(spume({"plot", "results"}).out, std::to_string(CPU_COUNT(&processors)) + " cores\n")
+      << "runs started by a script use every core though the threads of this program are bound";
+  unsetenv("OMP_PROC_BIND");
   setenv("SPUME_HOME", "/nowhere", 1);
   EXPECT_EQ(spume({"verify"}).code, 2);
   unsetenv("SPUME_HOME");

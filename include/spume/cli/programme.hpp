@@ -35,6 +35,10 @@ int run_programme(int argc, char** argv, const Programme& programme);
 // so the program sets what the user left open and starts itself once more. Returns when nothing was to be set.
 void restart_with_patient_threads(int argc, char** argv);
 
+// With OMP_PROC_BIND the runtime has bound this thread to its first place, and a program started from here would find
+// that place alone: all its threads on one core. To be called before any start.
+void release_to_all_places();
+
 // The folder that holds tools/ and cases/: $SPUME_HOME, or where the program was configured.
 std::filesystem::path home_folder();
 
