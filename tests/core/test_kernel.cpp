@@ -25,20 +25,22 @@ class Kernels : public testing::Test {};
 using Cases = testing::Types<WendlandCase, QuinticCase>;
 TYPED_TEST_SUITE(Kernels, Cases);
 
-TYPED_TEST(Kernels, IntegratesToOne) {
+TYPED_TEST(Kernels, IntegratesToOneAndHasTheStatedVariance) {
   using Kernel = typename TypeParam::Kernel;
-  // Gauss rule of 5 points on each unit interval: exact for the pieces, polynomials of degree at most 7.
+  // Gauss rule of 5 points on each unit interval: exact for the pieces, polynomials of degree at most 9.
   const double node[] = {0, std::sqrt(5 - 2 * std::sqrt(10.0 / 7)) / 3, std::sqrt(5 + 2 * std::sqrt(10.0 / 7)) / 3};
   const double weight[] = {128.0 / 225, (322 + 13 * std::sqrt(70.0)) / 900, (322 - 13 * std::sqrt(70.0)) / 900};
   for (const int dimensions : {2, 3}) {
-    double integral = 0;
+    double integral = 0, second_moment = 0;
     for (int piece = 0; piece < Kernel::support; ++piece)
       for (int k = -2; k <= 2; ++k) {
         const double q = piece + 0.5 + 0.5 * (k < 0 ? -node[-k] : node[k]);
         const double sphere = dimensions == 2 ? 2 * std::numbers::pi * q : 4 * std::numbers::pi * q * q;
         integral += 0.5 * weight[std::abs(k)] * sphere * Kernel::w(q);
+        second_moment += 0.5 * weight[std::abs(k)] * sphere * Kernel::w(q) * q * q;
       }
     EXPECT_NEAR(integral * Kernel::normalisation(dimensions), 1, 1e-13);
+    EXPECT_NEAR(second_moment / (dimensions * integral), Kernel::variance(dimensions), 1e-13);
   }
 }
 

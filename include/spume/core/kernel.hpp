@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Smoothing kernels as compile-time policies. With q = r / h, W = sigma_d / h^d w(q), and
 // F(q) = w'(q) / q, so that grad W = sigma_d / h^(d+2) F(q) r_vec: F is finite at q = 0 and no pair loop
-// divides by the distance. Both functions are zero beyond the support radius without a branch.
+// divides by the distance. Both functions are zero beyond the support radius without a branch. The variance is that of
+// W along one direction, over h^2.
 #pragma once
 
 #include <algorithm>
@@ -19,6 +20,7 @@ struct WendlandC2 {
   static constexpr double normalisation(int dimensions) {
     return dimensions == 2 ? 7 / (4 * std::numbers::pi) : 21 / (16 * std::numbers::pi);
   }
+  static constexpr double variance(int dimensions) { return dimensions == 2 ? 5.0 / 18 : 4.0 / 15; }
   static double w(double q) {
     const double s = std::max(0.0, 1 - q / 2);
     return s * s * s * s * (2 * q + 1);
@@ -45,6 +47,7 @@ struct QuinticSpline {
   static constexpr double normalisation(int dimensions) {
     return dimensions == 2 ? 7 / (478 * std::numbers::pi) : 1 / (120 * std::numbers::pi);
   }
+  static constexpr double variance(int dimensions) { return dimensions == 2 ? 2771.0 / 5736 : 7.0 / 15; }
   static double w(double q) {
     const double a = std::max(0.0, 3 - q), b = std::max(0.0, 2 - q), c = std::max(0.0, 1 - q);
     return std::pow(a, 5) - 6 * std::pow(b, 5) + 15 * std::pow(c, 5);

@@ -102,8 +102,10 @@ void find_dynamic_viscosity(Liquid& liquid, double dt) {
   test_filter.run(liquid);
   const std::size_t n = liquid.size();
   const double width = liquid.smoothing_length;
-  const double ratio =
-      turbulence::test_filter_width_ratio(width, turbulence::wendland_variance<d>(liquid.smoothing_length));
+  double ratio = 0;
+  with_kernel(liquid.context, [&]<int dimensions, class Kernel>() {
+    ratio = turbulence::test_filter_width_ratio(width, Kernel::variance(dimensions) * width * width);
+  });
   const double nu = liquid.scene.fluid.kinematic_viscosity;
   const bool lagrangian = liquid.options.turbulence.model == TurbulenceModel::dynamic_lagrangian;
 

@@ -84,14 +84,6 @@ Real mixed_scale_viscosity(Real strain_magnitude, Real test_filter_energy, Real 
   return coefficient * filter_width * sqrt(filter_width * strain_magnitude * sqrt(test_filter_energy));
 }
 
-// Variance per direction of the Wendland C2 kernel (1 - r/2h)^4 (1 + 2 r/h) of smoothing length h: 5 h^2 / 18 in two
-// dimensions, 4 h^2 / 15 in three.
-template <int D>
-constexpr double wendland_variance(double smoothing_length) {
-  static_assert(D == 2 || D == 3);
-  return (D == 2 ? 5.0 / 18.0 : 4.0 / 15.0) * smoothing_length * smoothing_length;
-}
-
 // alpha = Delta_hat / Delta. Variances of filters applied in sequence add, and a box of width Delta has the variance
 // Delta^2 / 12, so a test filter of variance s^2 on top of the implicit filter makes Delta_hat^2 = Delta^2 + 12 s^2.
 // With Delta = h and the Wendland kernel: alpha = 2.08 in two dimensions, 2.05 in three, next to Germano's 2.
