@@ -2,9 +2,7 @@
 #include "spume/methods/les_sph/number_density.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <cstdint>
 
 #include "spume/core/parallel.hpp"
 
@@ -16,6 +14,7 @@ constexpr double largest_excess = 0.1;
 // whose standard deviation is 0.009 in taylor_green_2d. Evening out the latter stirs the liquid: at 1/200 the error of
 // that case's velocity is 0.037 %, 0.024 % when twice the deviation is let be, 0.023 % without any relaxation.
 constexpr double mean_disorder = 0.002, local_disorder = 0.02;
+constexpr double largest_isotropic_normal = 1.0 / 3;
 
 bool near_box(const Liquid& liquid, std::size_t i) {
   for (const SolidBox& box : liquid.scene.domain.boxes) {
@@ -30,22 +29,21 @@ bool near_box(const Liquid& liquid, std::size_t i) {
   return false;
 }
 
-// 1 for the particles that lack neighbours or stand beside those that do.
-void mark_surroundings_of_surface(const Liquid& liquid, Array<std::uint8_t>& near_surface) {
-  near_surface.resize(liquid.size());
-  parallel_for(liquid.size(), [&](std::size_t i) { near_surface[i] = 0; });
-  const auto mark = [&](std::size_t i) {
-    std::atomic_ref<std::uint8_t>(near_surface[i]).store(1, std::memory_order_relaxed);
-  };
-  const auto mark_around = [&](std::span<const std::int32_t> particles) {
-    parallel_for(particles.size(), [&](std::size_t k) {
-      const auto i = static_cast<std::size_t>(particles[k]);
-      mark(i);
-      for (const std::int32_t j : liquid.list.of(i)) mark(liquid.particle_of(j));
-    });
-  };
-  mark_around(liquid.surface_particles);
-  mark_around(liquid.edge_particles);
+// Whether the neighbourhood of a particle is full, or as thin on all sides. Where liquid ends the normal is large: h
+// |m| is 0.66 (3-D) and 0.84 (2-D) times what div r lacks in the upper layer of a lattice, 0.6 times in the second one.
+// In foam that falls back into the liquid it is a tenth; left at the density of nine tenths that it arrives with, such
+// liquid raised the second wave of dam_break_3d.
+bool tells_density(const Liquid& liquid, std::size_t i) {
+  if (near_box(liquid, i)) return false;
+  if (!liquid.plan.free_surface || liquid.interior_weight[i] == 1) return true;
+  if (liquid.at_surface[i] != 0) return false;
+  double normal2 = 0;
+  for (int axis = 0; axis < liquid.dimensions; ++axis) {
+    const double component = (*liquid.normal[axis])[i];
+    normal2 += component * component;
+  }
+  const double missing = liquid.lattice.divergence_of_position - (*liquid.divergence_of_position)[i];
+  return std::sqrt(normal2) < largest_isotropic_normal * missing;
 }
 
 double excess(const Liquid& liquid, std::size_t i) {
@@ -53,8 +51,8 @@ double excess(const Liquid& liquid, std::size_t i) {
   return std::clamp(ratio - 1, -largest_excess, largest_excess);
 }
 
-double beyond(double value, double let_be) {
-  return value - std::clamp(value, -let_be, let_be);
+double within(double value, double bound) {
+  return std::clamp(value, -bound, bound);
 }
 
 }  // namespace
@@ -79,34 +77,31 @@ double displacement_fraction(const Liquid& liquid, double dt) {
   return fraction < 1e-12 ? 0.0 : std::min(1.0, fraction);  // less than positions can tell
 }
 
-void even_out_density(const Liquid& liquid, double dt, std::span<double> divergence,
-                      Array<std::uint8_t>& near_surface) {
-  if (liquid.plan.free_surface) mark_surroundings_of_surface(liquid, near_surface);
-  const auto has_full_support = [&](std::size_t i) {
-    return (!liquid.plan.free_surface || near_surface[i] == 0) && !near_box(liquid, i);
-  };
+void even_out_density(const Liquid& liquid, double dt, std::span<double> divergence) {
   struct Sum {
-    double excess = 0, particles = 0;
+    double disorder = 0, particles = 0;
   };
   const Sum total = parallel_reduce(
       liquid.size(), Sum{},
       [&](std::size_t first, std::size_t last) {
         Sum sum;
         for (std::size_t i = first; i < last; ++i)
-          if (has_full_support(i)) {
-            sum.excess += excess(liquid, i);
+          if (tells_density(liquid, i)) {
+            sum.disorder += within(excess(liquid, i), local_disorder);
             sum.particles += 1;
           }
         return sum;
       },
       [](const Sum& a, const Sum& b) {
-        return Sum{a.excess + b.excess, a.particles + b.particles};
+        return Sum{a.disorder + b.disorder, a.particles + b.particles};
       });
-  const double mean = total.excess / std::max(total.particles, 1.0);
-  const double of_all = beyond(mean, mean_disorder);
+  const double mean = total.disorder / std::max(total.particles, 1.0);
+  const double of_all = mean - within(mean, mean_disorder);
   const double rate = liquid.displacement / (liquid.options.pressure.density_relaxation * dt);
   parallel_for(liquid.size(), [&](std::size_t i) {
-    if (has_full_support(i)) divergence[i] -= rate * (of_all + beyond(excess(liquid, i) - mean, local_disorder));
+    if (!tells_density(liquid, i)) return;
+    const double own = excess(liquid, i);
+    divergence[i] -= rate * (of_all + own - within(own, local_disorder));
   });
 }
 

@@ -331,7 +331,7 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
     // does not cost the energy dt |grad p|^2 / 2 per time.
     if (liquid.options.time.centred)
       parallel_for(n, [&](std::size_t i) { right_hand_side_[i] -= 0.5 * dt * gradient_trace(liquid, i); });
-    if (liquid.plan.density_relaxation) even_out_density(liquid, dt, right_hand_side_, near_surface_);
+    if (liquid.plan.density_relaxation) even_out_density(liquid, dt, right_hand_side_);
     set_matrix(liquid, helmholtz + regularisation(liquid, helmholtz));
     set_right_hand_side(liquid, helmholtz, -1 / dt);
   }
@@ -374,7 +374,7 @@ void PressureSystem::solve_initial(Liquid& liquid, Ledger& ledger) {
 }
 
 double PressureSystem::bytes() const {
-  auto total = static_cast<double>(near_surface_.capacity());
+  double total = 0;
   for (const auto* array : {&right_hand_side_, &residual_, &surface_source_})
     total += 8.0 * static_cast<double>(array->capacity());
   for (const auto* array : {&potential_laplacian_, &extra_, &diagonal_, &row_scale_, &correction_right_, &correction_})

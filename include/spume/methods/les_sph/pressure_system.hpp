@@ -55,7 +55,6 @@ class PressureSystem {
   void remove_constant(Liquid& liquid) const;
   void set_weights(const Liquid& liquid);
 
-  Array<std::uint8_t> near_surface_;
   Array<double> right_hand_side_, residual_;  // the first holds the divergence while that is found
   Array<double> surface_source_;              // per edge particle
   Array<float> potential_laplacian_, extra_, diagonal_, row_scale_;
