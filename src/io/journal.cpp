@@ -66,7 +66,8 @@ std::uint32_t sum_of(const std::vector<unsigned char>& text) {
   return static_cast<std::uint32_t>(::crc32_z(::crc32(0, nullptr, 0), text.data(), text.size()));
 }
 
-// mark, crc32 of what follows, size of what follows, final size, then address, size and bytes of each change.
+// False with errno set. mark, crc32 of what follows, size of what follows, final size, then address, size and bytes of
+// each change.
 bool write_journal(const Journal& journal, const std::string& path) {
   std::vector<unsigned char> body, text;
   add(body, &journal.final_bytes, sizeof journal.final_bytes);
@@ -85,10 +86,16 @@ bool write_journal(const Journal& journal, const std::string& path) {
   const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (descriptor < 0) return false;
   bool good = write_at(descriptor, 0, text.size(), text.data());
-  good = ::close(descriptor) == 0 && good;
-  good = good && ::rename(temporary.c_str(), journal_of(path).c_str()) == 0;
-  if (!good) ::unlink(temporary.c_str());
-  return good;
+  int reason = errno;
+  if (::close(descriptor) != 0 && good) {
+    good = false;
+    reason = errno;
+  }
+  if (good && ::rename(temporary.c_str(), journal_of(path).c_str()) == 0) return true;
+  if (good) reason = errno;
+  ::unlink(temporary.c_str());
+  errno = reason;
+  return false;
 }
 
 // False: the journal is not whole, so that nothing of it has been copied.
@@ -132,7 +139,7 @@ struct OpenFile {
   haddr_t settled = 0;  // bytes of the file when it was opened
   haddr_t end = 0;      // largest address written
   bool writable = false;
-  bool failed = false;  // a write failed: the file stays as it was
+  int failed = 0;  // the reason of a write that failed: the file stays as it was
   std::map<haddr_t, std::vector<unsigned char>> pages;
 };
 
@@ -159,9 +166,15 @@ H5FD_t* open_file(const char* name, unsigned flags, hid_t, haddr_t) {
   return &file.release()->library;
 }
 
+// Tells the library why, in the words in which its own drivers do.
+void report(int reason) {
+  H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_VFL, H5E_WRITEERROR,
+           "errno = %d, error message = '%s'", reason, std::strerror(reason));
+}
+
 bool settle(OpenFile& file) {
   if (!file.writable) return true;
-  if (file.failed) {
+  if (file.failed != 0) {
     [[maybe_unused]] const int result = ::ftruncate(file.descriptor, static_cast<off_t>(file.settled));
     return false;
   }
@@ -173,18 +186,25 @@ bool settle(OpenFile& file) {
   }
   if (journal.changes.empty()) return ::ftruncate(file.descriptor, static_cast<off_t>(journal.final_bytes)) == 0;
   if (!write_journal(journal, file.path)) {
+    file.failed = errno;
     [[maybe_unused]] const int result = ::ftruncate(file.descriptor, static_cast<off_t>(file.settled));
     return false;
   }
-  const bool good = copy_changes(file.descriptor, journal);
-  if (good) ::unlink(journal_of(file.path).c_str());
-  return good;
+  if (!copy_changes(file.descriptor, journal)) return false;
+  ::unlink(journal_of(file.path).c_str());
+  return true;
 }
 
 herr_t close_file(H5FD_t* library) {
   std::unique_ptr<OpenFile> file(&of(library));
-  const bool good = settle(*file);
-  return ::close(file->descriptor) == 0 && good ? 0 : -1;
+  bool good = settle(*file);
+  int reason = file->failed != 0 ? file->failed : errno;
+  if (::close(file->descriptor) != 0 && good) {
+    good = false;
+    reason = errno;
+  }
+  if (!good) report(reason);
+  return good ? 0 : -1;
 }
 
 int compare(const H5FD_t* a, const H5FD_t* b) {
@@ -227,6 +247,12 @@ herr_t read_file(H5FD_t* library, H5FD_mem_t, hid_t, haddr_t address, std::size_
   return 0;
 }
 
+herr_t fail(OpenFile& file) {
+  file.failed = errno;
+  report(file.failed);
+  return -1;
+}
+
 herr_t write_file(H5FD_t* library, H5FD_mem_t, hid_t, haddr_t address, std::size_t size, const void* buffer) {
   OpenFile& file = of(library);
   const auto* data = static_cast<const unsigned char*>(buffer);
@@ -234,18 +260,12 @@ herr_t write_file(H5FD_t* library, H5FD_mem_t, hid_t, haddr_t address, std::size
   for (haddr_t from = address; from < old;) {
     const haddr_t page = from / page_bytes * page_bytes, to = std::min(page + page_bytes, old);
     auto [changed, fresh] = file.pages.try_emplace(page, page_bytes);
-    if (fresh && !read_at(file.descriptor, page, page_bytes, changed->second.data())) {
-      file.failed = true;
-      return -1;
-    }
+    if (fresh && !read_at(file.descriptor, page, page_bytes, changed->second.data())) return fail(file);
     std::memcpy(changed->second.data() + (from - page), data + (from - address), to - from);
     from = to;
   }
   const haddr_t from = std::max(address, file.settled);
-  if (from < end && !write_at(file.descriptor, from, end - from, data + (from - address))) {
-    file.failed = true;
-    return -1;
-  }
+  if (from < end && !write_at(file.descriptor, from, end - from, data + (from - address))) return fail(file);
   file.end = std::max(file.end, end);
   return 0;
 }

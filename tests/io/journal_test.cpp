@@ -82,6 +82,27 @@ TEST(Journal, SnapshotsSurviveAKillAtAnyMoment) {
   }
 }
 
+// A folder in the place of the journal: it can neither be written nor renamed to.
+TEST(Journal, AChangeThatCannotBeSettledNamesTheReasonAndLeavesTheFile) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "fluid.vtkhdf";
+  VtkhdfFile file(path, {});
+  append(file);
+  for (const char* ending : {".journal.part", ".journal"}) {
+    std::filesystem::create_directory(path.string() + ending);
+    try {
+      append(file);
+      ADD_FAILURE() << ending;
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find("fluid.vtkhdf': Is a directory"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(read_vtkhdf_contents(path).times.size(), 1u);
+    std::filesystem::remove(path.string() + ending);
+  }
+  append(file);
+  EXPECT_EQ(pressures(path).size(), 2 * particles);
+}
+
 TEST(Journal, AJournalThatIsNotWholeIsDropped) {
   const test::TemporaryFolder folder;
   const auto path = folder / "fluid.vtkhdf";
