@@ -323,4 +323,9 @@ void replay_journal(const std::filesystem::path& path) {
   ::unlink(name.c_str());
 }
 
+void remove_with_journal(const std::filesystem::path& path) {
+  ::unlink(path.c_str());
+  ::unlink(journal_of(path.string()).c_str());
+}
+
 }  // namespace spume::hdf5

@@ -317,6 +317,15 @@ VtkhdfFile::VtkhdfFile(std::filesystem::path path, Options options)
 
 void VtkhdfFile::append(double time, const ParticleSnapshot& snapshot) {
   if (snapshot.size == 0) return;
+  try {
+    write(time, snapshot);
+  } catch (const FileError&) {
+    if (steps_ == 0) hdf5::remove_with_journal(path_);
+    throw;
+  }
+}
+
+void VtkhdfFile::write(double time, const ParticleSnapshot& snapshot) {
   if (!std::filesystem::exists(path_)) {
     File file = File::create(path_, File::Format::compatible);
     create_layout(file, snapshot, options_.notes);

@@ -147,6 +147,15 @@ VtkhdfGridFile::VtkhdfGridFile(std::filesystem::path path, Notes notes)
 }
 
 void VtkhdfGridFile::append(double time, const GridSnapshot& snapshot) {
+  try {
+    write(time, snapshot);
+  } catch (const FileError&) {
+    if (steps_ == 0) hdf5::remove_with_journal(path_);
+    throw;
+  }
+}
+
+void VtkhdfGridFile::write(double time, const GridSnapshot& snapshot) {
   if (!std::filesystem::exists(path_)) {
     File file = File::create(path_, File::Format::compatible);
     create_layout(file, snapshot, notes_);

@@ -184,6 +184,8 @@ TEST_F(Verbs, NoRoomBeforeTheFirstStepExitsWith2) {
   const Outcome outcome = finish(launch({"run", "case.toml", "-o", "results"}, 100'000));
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("File too large"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "results" / "fluid.vtkhdf"))
+      << "a file without a snapshot cannot be read";
 }
 
 TEST_F(Verbs, CheckPrintsPlanMemoryAndTime) {

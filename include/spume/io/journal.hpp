@@ -21,4 +21,7 @@ void use_journal(hid_t access);
 // Completes a change that was broken off, if there is one. Throws FileError.
 void replay_journal(const std::filesystem::path& path);
 
+// Removes a file that was begun and could not be finished, and its journal, as far as they are there.
+void remove_with_journal(const std::filesystem::path& path);
+
 }  // namespace spume::hdf5

@@ -52,8 +52,9 @@ class VtkhdfFile {
   };
   VtkhdfFile(std::filesystem::path path, Options options);
 
-  // Adds a step. A snapshot without particles adds none: readers misplace the step after an empty one.
-  // Precondition: the same fields with the same number of components as in the steps before.
+  // Adds a step; when the first one fails, there is no file. A snapshot without particles adds none: readers misplace
+  // the step after an empty one. Precondition: the same fields with the same number of components as in the steps
+  // before.
   void append(double time, const ParticleSnapshot& snapshot);
 
   // Drops all steps but the first `count`; with 0 the file itself. Throws FileError when fewer are there.
@@ -62,6 +63,7 @@ class VtkhdfFile {
   std::int64_t steps() const { return steps_; }
 
  private:
+  void write(double time, const ParticleSnapshot& snapshot);
   std::filesystem::path path_;
   Options options_;
   std::int64_t steps_ = 0;

@@ -43,13 +43,15 @@ class VtkhdfGridFile {
   using Notes = std::vector<std::pair<std::string, std::string>>;  // texts kept in the group /Spume
   VtkhdfGridFile(std::filesystem::path path, Notes notes);
 
-  // Adds a step. Precondition: the same grid and fields as in the steps before.
+  // Adds a step; when the first one fails, there is no file. Precondition: the same grid and fields as in the steps
+  // before.
   void append(double time, const GridSnapshot& snapshot);
   // Drops all steps but the first `count`; with 0 the file itself. Throws FileError when fewer are there.
   void keep_steps(std::int64_t count);
   std::int64_t steps() const { return steps_; }
 
  private:
+  void write(double time, const GridSnapshot& snapshot);
   std::filesystem::path path_;
   Notes notes_;
   std::int64_t steps_ = 0;
