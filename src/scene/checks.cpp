@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <set>
 
 namespace spume {
@@ -84,6 +85,25 @@ std::string span_in_words(std::size_t axis, double low, double high) {
   return axis_names[axis] + " from " + brief(low) + " to " + brief(high);
 }
 
+// The headings of a probe in probes.csv must be its own.
+void claim_columns(const Draft& draft, const std::string& probe, const ProbeOptions& options,
+                   std::map<std::string, std::string>& columns, Problems& problems) {
+  std::vector<std::string> headings{options.name};
+  if (options.kind == ProbeKind::line) return;
+  if (options.kind == ProbeKind::point) {
+    headings = {options.name + "_pressure"};
+    for (std::size_t a = 0; a < draft.lower.size(); ++a)
+      headings.push_back(options.name + "_velocity_" + axis_names[a]);
+  }
+  for (const std::string& heading : headings) {
+    const auto [owner, free] = columns.emplace(heading, "probe '" + options.name + "'");
+    if (free) continue;
+    problems.add(*draft.node(probe + ".name"), "its column '" + heading + "' of probes.csv is that of " +
+                                                   owner->second + " already; choose another name");
+    return;
+  }
+}
+
 }  // namespace
 
 std::string brief(double value) {
@@ -103,6 +123,18 @@ double support_ratio(const ResolutionOptions& resolution) {
 
 bool uses_si(const FluidDraft& fluid) {
   return fluid.density || fluid.viscosity || fluid.gravity || fluid.sound_speed;
+}
+
+// The title stands in the first line of every table, which its readers count by lines.
+void check_title(const Draft& draft, Problems& problems) {
+  const std::string& title = draft.options.title;
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  if (std::none_of(title.begin(), title.end(), control)) return;
+  const std::string rule = " has a line break or another control character; a title is one line of text";
+  if (const Node* node = draft.node("title"))
+    problems.add(*node, "title" + rule);
+  else
+    problems.add(Place{1, 1}, "the name of the case" + rule + "; add  title = \"<text>\"");
 }
 
 void check_domain(Draft& draft, Problems& problems) {
@@ -267,6 +299,7 @@ void check_probes(Draft& draft, Problems& problems) {
   if (!domain_known(draft) || !draft.usable("probe")) return;
   const std::size_t dimensions = draft.lower.size();
   std::set<std::string> names;
+  std::map<std::string, std::string> columns{{"t", "the time"}};  // of probes.csv, and whose they are
   for (std::size_t k = 0; k < draft.probes.size(); ++k) {
     ProbeDraft& probe = draft.probes[k];
     ProbeOptions& options = probe.options;
@@ -279,6 +312,8 @@ void check_probes(Draft& draft, Problems& problems) {
                      name + ".name heads a column: no commas, quotes or line breaks, not empty");
       if (plain && !names.insert(options.name).second) {
         problems.add(*draft.node(name + ".name"), "another probe has the name '" + options.name + "' already");
+      } else if (plain && draft.usable(name + ".kind")) {
+        claim_columns(draft, name, options, columns, problems);
       }
     }
     if (!draft.usable(name + ".kind")) continue;

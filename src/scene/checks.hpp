@@ -7,6 +7,7 @@
 
 namespace spume {
 
+void check_title(const Draft& draft, Problems& problems);
 void check_domain(Draft& draft, Problems& problems);  // sets draft.dimensions
 void check_resolution(const Draft& draft, Problems& problems);
 void check_solids(const Draft& draft, Problems& problems);

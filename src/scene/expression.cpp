@@ -269,10 +269,23 @@ std::unique_ptr<Expression> ExpressionScope::build(const std::string& text, cons
   }
 }
 
-std::unique_ptr<Expression> ExpressionScope::compile(const std::string& text) const {
+void ExpressionScope::refuse_time(const std::string& text) const {
+  for (const Name& name : scan_names(text)) {
+    const auto constant = constants_.find(name.text);
+    const std::string hint = "; this describes the start and is a function of " +
+                             std::string(dimensions_ == 3 ? "x, y and z" : "x and y") + " only";
+    if (name.text == "t") throw ExpressionError(name.position, "unknown name 't'" + hint);
+    if (constant != constants_.end() && (constant->second.coordinates & 8u) != 0)
+      throw ExpressionError(name.position, "the constant '" + name.text + "' depends on t" + hint);
+  }
+}
+
+std::unique_ptr<Expression> ExpressionScope::compile(const std::string& text, Arguments arguments) const {
   refuse_odd_characters(text);
   check_parentheses(text);
-  return build(text, names_in(text));
+  const Names names = names_in(text);
+  if (arguments == Arguments::place) refuse_time(text);
+  return build(text, names);
 }
 
 std::vector<ExpressionScope::Fault> ExpressionScope::define(

@@ -25,7 +25,9 @@ std::string find_case_file(const std::string& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
     const fs::path inside = fs::path(path) / "case.toml";
-    if (fs::exists(inside, ignored)) return inside.string();
+    std::error_code refused;
+    if (fs::exists(inside, refused)) return inside.string();
+    if (refused) throw InputError("cannot read '" + inside.string() + "': " + refused.message());
     throw InputError("the folder '" + path + "' holds no case.toml");
   }
   if (fs::exists(path, ignored)) return path;
@@ -87,9 +89,10 @@ class Compiler {
     }
   }
 
-  std::shared_ptr<const Expression> compile(const ExpressionText& text, const std::string& name) {
+  std::shared_ptr<const Expression> compile(const ExpressionText& text, const std::string& name,
+                                            Arguments arguments = Arguments::place_and_time) {
     try {
-      return scope_.compile(text.text);
+      return scope_.compile(text.text, arguments);
     } catch (const ExpressionError& error) {
       problems_.add_in_string(*text.node, error.position(), name + ": " + error.what(), source_);
       return nullptr;
@@ -97,10 +100,11 @@ class Compiler {
   }
 
   // Components that are zero everywhere are left out.
-  VectorExpression compile(const std::vector<ExpressionText>& texts, const std::string& name) {
+  VectorExpression compile(const std::vector<ExpressionText>& texts, const std::string& name,
+                           Arguments arguments = Arguments::place_and_time) {
     VectorExpression vector;
     for (std::size_t a = 0; a < texts.size() && a < 3; ++a) {
-      const auto component = compile(texts[a], name + "[" + std::to_string(a) + "]");
+      const auto component = compile(texts[a], name + "[" + std::to_string(a) + "]", arguments);
       if (component && constant_value(*component) != 0.0) vector.component[a] = component;
     }
     return vector;
@@ -110,7 +114,7 @@ class Compiler {
   std::shared_ptr<const Expression> compile_spectrum(const ExpressionText& text) {
     const ExpressionScope plain = scope_;
     scope_.define({{"k", "x"}});
-    auto spectrum = compile(text, "initial.spectrum");
+    auto spectrum = compile(text, "initial.spectrum", Arguments::place);
     scope_ = plain;
     return spectrum;
   }
@@ -192,7 +196,7 @@ std::vector<LiquidRegion> make_regions(const Draft& draft, Compiler& compiler) {
     LiquidRegion region;
     region.name = "liquid." + std::to_string(k);
     region.node = draft.node(region.name);
-    if (liquid.where) region.where = compiler.compile(*liquid.where, region.name + ".where");
+    if (liquid.where) region.where = compiler.compile(*liquid.where, region.name + ".where", Arguments::place);
     region.lower = to_vec3(liquid.lower.empty() ? draft.lower : liquid.lower);
     region.upper = to_vec3(liquid.upper.empty() ? draft.upper : liquid.upper);
     region.ball = !liquid.centre.empty() && liquid.radius;
@@ -200,7 +204,7 @@ std::vector<LiquidRegion> make_regions(const Draft& draft, Compiler& compiler) {
       region.centre = to_vec3(liquid.centre);
       region.radius = *liquid.radius;
     }
-    region.velocity = compiler.compile(liquid.velocity, region.name + ".velocity");
+    region.velocity = compiler.compile(liquid.velocity, region.name + ".velocity", Arguments::place);
     region.conform = liquid.conform;
     regions.push_back(std::move(region));
   }
@@ -257,6 +261,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   draft.options.path = file;
   draft.options.title = name_of_case(file);
   read_document(document, draft, problems);
+  check_title(draft, problems);
   check_domain(draft, problems);
   const bool on_grid = draft.options.method == "spectral";
   if (!on_grid) check_resolution(draft, problems);
@@ -277,7 +282,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   scene.domain = make_domain(draft, compiler);
   const std::vector<LiquidRegion> regions = make_regions(draft, compiler);
   VectorExpression body_force = compiler.compile(draft.body_force, "forces.body");
-  VectorExpression initial_velocity = compiler.compile(draft.initial_velocity, "initial.velocity");
+  VectorExpression initial_velocity = compiler.compile(draft.initial_velocity, "initial.velocity", Arguments::place);
   if (draft.initial_spectrum) scene.initial_spectrum = compiler.compile_spectrum(*draft.initial_spectrum);
   add_bubble_sources(draft, compiler, scene);
   problems.throw_if_any();

@@ -184,6 +184,49 @@ TEST(Load, SolidsRegionsAndProbesMustLieInTheDomain) {
                           "21:1 missing key 'end' in [[probe]]; add  end = [<x>, <y>]  # length"));
 }
 
+TEST(Load, EveryProbeHasItsOwnColumns) {
+  const std::string at = "position = [0.5, 0.5]\n";
+  EXPECT_THAT(problems_of(small_case("[[probe]]\nname = \"t\"\nkind = \"elevation\"\n" + at)),
+              ElementsAre("15:8 its column 't' of probes.csv is that of the time already; choose another name"));
+  const std::string point = "[[probe]]\nname = \"pt\"\n" + at;
+  for (const std::string name : {"pt_pressure", "pt_velocity_x", "pt_velocity_y"}) {
+    const std::string other = "[[probe]]\nname = \"" + name + "\"\nkind = \"front\"\n";
+    EXPECT_THAT(
+        problems_of(small_case(point + other)),
+        ElementsAre("18:8 its column '" + name + "' of probes.csv is that of probe 'pt' already; choose another name"));
+    EXPECT_THAT(problems_of(small_case(other + point)), testing::SizeIs(1));
+  }
+  // A point called t has no column t, and no z in two dimensions.
+  EXPECT_THAT(problems_of(small_case("[[probe]]\nname = \"t\"\n" + at +
+                                     "[[probe]]\nname = \"t_velocity_z\"\nkind = \"front\"\n")),
+              IsEmpty());
+}
+
+TEST(Load, ATitleIsOneLine) {
+  for (const std::string title : {"two\\nlines", "a\\u0007bell", "a\\u007f"})
+    EXPECT_THAT(problems_of("title = \"" + title + "\"\n" + small_case()),
+                ElementsAre("1:9 title has a line break or another control character; a title is one line of text"));
+  EXPECT_THAT(problems_of("title = \"h\u00f6her\"\n" + small_case()), IsEmpty());
+  const CaseFile file(small_case(), "two\nlines.toml");
+  try {
+    load_case(file.path());
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the name of the case has a line break"));
+  }
+}
+
+TEST(Load, TheStartDoesNotDependOnTime) {
+  const std::string only = "; this describes the start and is a function of x and y only";
+  EXPECT_THAT(problems_of(small_case("where = \"1 + t\"\n")),
+              ElementsAre("14:14 liquid.0.where: unknown name 't'" + only));
+  EXPECT_THAT(problems_of(small_case("velocity = [\"0\", \"x*t\"]\n")),
+              ElementsAre("14:21 liquid.0.velocity[1]: unknown name 't'" + only));
+  EXPECT_THAT(problems_of(small_case("where = \"1 + b\"\n[constants]\na = \"2*t\"\nb = \"1 + a\"\n")),
+              ElementsAre("14:14 liquid.0.where: the constant 'b' depends on t" + only));
+  EXPECT_THAT(problems_of(small_case("[forces]\nbody = [\"t\", \"sin(t)\"]\n")), IsEmpty());
+}
+
 TEST(Load, FluidTakesGroupsOrSiValuesButNotBoth) {
   EXPECT_THAT(
       problems_of(small_case("", "reynolds = 3\nviscosity = 1e-3\n")),
@@ -238,6 +281,15 @@ TEST(Load, CasesAreFoundByFileFolderAndName) {
   EXPECT_THROW(load_case("no_such_case"), InputError);
   EXPECT_THROW(load_case(std::filesystem::temp_directory_path().string()), InputError);
   EXPECT_THROW(load_case("/dev/null"), InputError);
+  // A case that is there and cannot be reached, whoever asks: the name is a link to itself.
+  const CaseFile looped(small_case());
+  std::filesystem::create_symlink("case.toml", std::filesystem::path(looped.folder()) / "case.toml");
+  try {
+    load_case(looped.folder());
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("case.toml': Too many levels of symbolic links"));
+  }
 
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::current_path(file.folder());

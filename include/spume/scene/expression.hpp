@@ -28,6 +28,9 @@ class ExpressionError : public std::runtime_error {
   std::size_t position_;
 };
 
+// What an expression may depend on. The start of a run is described by the place alone.
+enum class Arguments { place_and_time, place };
+
 // The names that expressions may use, and the compiler.
 class ExpressionScope {
  public:
@@ -46,7 +49,7 @@ class ExpressionScope {
   std::vector<Fault> define(const std::vector<std::pair<std::string, std::string>>& constants);
 
   // Throws ExpressionError. The result is not thread-safe; its clone() is independent of it.
-  std::unique_ptr<Expression> compile(const std::string& text) const;
+  std::unique_ptr<Expression> compile(const std::string& text, Arguments arguments = Arguments::place_and_time) const;
 
   // The constant's value when it does not depend on x, y, z or t.
   std::optional<double> value(const std::string& constant) const;
@@ -65,6 +68,7 @@ class ExpressionScope {
   };
   Names names_in(const std::string& text) const;
   std::unique_ptr<Expression> build(const std::string& text, const Names& names) const;
+  void refuse_time(const std::string& text) const;
   void order_varying(const std::string& name, std::vector<std::string>& ordered) const;
 
   int dimensions_;
