@@ -96,7 +96,7 @@ class Filler {
     if (!in_box_and_ball(regions_[r], p)) return false;
     if (!own.where[r]) return true;
     const double value = (*own.where[r])(p[0], p[1], p[2], 0);
-    if (std::isnan(value)) chunk.not_finite.add(p);
+    if (!std::isfinite(value)) chunk.not_finite.add(p);
     return value > 0;
   }
 
@@ -193,7 +193,7 @@ void Filler::conform_column(ThreadRegions& own, std::size_t r, Vec3 p, Chunk& ch
   const auto inside = [&](double height) {
     p[up] = height;
     const double value = (*own.where[r])(p[0], p[1], p[2], 0);
-    if (std::isnan(value)) chunk.not_finite.add(p);
+    if (!std::isfinite(value)) chunk.not_finite.add(p);
     return value > 0;
   };
   // The last height inside, between one that is and one that is not.
@@ -257,8 +257,8 @@ void Filler::report(const std::vector<std::vector<Chunk>>& chunks) {
     }
     const Node& node = *region.node;
     if (not_finite.count > 0) {
-      problems_.add(node, region.name + ".where is not a number at " + point_in_words(not_finite.first, dimensions) +
-                              "; it must have a value everywhere in the region's box");
+      problems_.add(node, region.name + ".where is not finite at " + point_in_words(not_finite.first, dimensions) +
+                              "; it must have a finite value everywhere in the region's box");
     } else if (beyond_top.count > 0) {
       problems_.add(node, region.name + ".where is still positive at the top, at " +
                               point_in_words(beyond_top.first, dimensions) +

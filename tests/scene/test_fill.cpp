@@ -229,7 +229,11 @@ TEST(Fill, EmptyAndOverlappingRegionsAreErrorsInWords) {
                                "upper = [0.8, 0.3]\n")),
               ElementsAre(HasSubstr("liquid.0 is empty: all of its particles lie inside solids")));
   EXPECT_THAT(problems_of(tank("[[liquid]]\nwhere = \"sqrt(x - 1)\"\n")),
-              ElementsAre(HasSubstr("liquid.0.where is not a number at (0.025, 0.025)")));
+              ElementsAre(HasSubstr("liquid.0.where is not finite at (0.025, 0.025)")));
+  for (const std::string where : {"1/0 - y", "-1/0", "y + 1/(x - 0.025)"})
+    EXPECT_THAT(problems_of(tank("[[liquid]]\nwhere = \"" + where + "\"\n")),
+                ElementsAre(HasSubstr("liquid.0.where is not finite at (0.025, 0.025)")))
+        << where;
   EXPECT_THAT(problems_of(tank("[[liquid]]\nupper = [1, 0.5]\nlower = [0, 0]\nvelocity = [\"1/(x - 0.125)\", 0]\n")),
               ElementsAre(HasSubstr("liquid.0.velocity is not finite at (0.125, 0.025)")));
   EXPECT_THAT(problems_of(tank("[[liquid]]\nwhere = \"1.2 - y\"\nconform = true\n")),
