@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "spume/core/error.hpp"
+#include "spume/core/machine.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/run/report.hpp"
 #include "verbs.hpp"

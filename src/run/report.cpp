@@ -2,7 +2,6 @@
 #include "spume/run/report.hpp"
 
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +9,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "spume/core/machine.hpp"
 #include "spume/run/version.hpp"
+#include "spume/scene/memory.hpp"
 
 namespace spume {
 namespace {
@@ -43,10 +44,12 @@ std::string boundary_text(const Domain& domain) {
   return text;
 }
 
-double array_bytes(const Method& method) {
+// Before the first step a method has not made all of its arrays.
+double needed_bytes(const LoadedCase& loaded, const Method& method) {
   double bytes = 0;
   for (const auto& array : method.arrays()) bytes += array.bytes;
-  return bytes;
+  const auto count = static_cast<double>(method.particle_count());
+  return std::max(bytes, count * bytes_per_particle(loaded.options, loaded.scene.domain.dimensions));
 }
 
 double finite(double value) {
@@ -76,10 +79,6 @@ std::string human_duration(double seconds) {
   const auto whole = static_cast<long long>(std::llround(std::max(seconds, 0.0)));
   if (whole >= 3600) return format("%lld:%02lld:%02lld", whole / 3600, whole / 60 % 60, whole % 60);
   return format("%02lld:%02lld", whole / 60, whole % 60);
-}
-
-double machine_memory_bytes() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
 std::int64_t peak_resident_bytes() {
@@ -119,7 +118,8 @@ std::string start_table(const LoadedCase& loaded, const Method& method, int thre
   text += line("on", on.empty() ? "nothing" : on);
   if (!off.empty()) text += line("off", off);
   text += line("threads", std::to_string(threads) + ", " + vector_instructions());
-  text += line("memory", human_bytes(array_bytes(method)) + " of " + human_bytes(machine_memory_bytes()));
+  text += line("memory",
+               "about " + human_bytes(needed_bytes(loaded, method)) + " of " + human_bytes(machine_memory_bytes()));
   text += line("seed", std::to_string(options.seed));
   if (!folder.empty()) text += line("results", folder);
   return text;

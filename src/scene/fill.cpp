@@ -2,6 +2,7 @@
 #include "fill.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 
@@ -53,18 +54,23 @@ struct Chunk {
 
 class Filler {
  public:
-  Filler(Scene& scene, const Lattice& lattice, const std::vector<LiquidRegion>& regions, Problems& problems)
+  Filler(Scene& scene, const Lattice& lattice, const std::vector<LiquidRegion>& regions, double most,
+         Problems& problems)
       : scene_(scene),
         lattice_(lattice),
         regions_(regions),
+        most_(most),
         problems_(problems),
         threads_(static_cast<std::size_t>(thread_count())) {}
 
-  void place_particles() {
+  // False when there are more than allowed: what was found until then is dropped.
+  bool place_particles() {
     std::vector<std::vector<Chunk>> chunks;
     for (std::size_t r = 0; r < regions_.size(); ++r) chunks.push_back(fill_region(r));
+    if (too_many()) return false;
     report(chunks);
     gather(chunks);
+    return true;
   }
 
   void jitter(double fraction);
@@ -72,6 +78,8 @@ class Filler {
   bool fills_domain() const;
 
  private:
+  bool too_many() const { return static_cast<double>(found_.load()) > most_; }
+
   ThreadRegions& own() {
     auto& regions = threads_[static_cast<std::size_t>(omp_get_thread_num())];
     if (!regions) regions = std::make_unique<ThreadRegions>(regions_);
@@ -144,6 +152,8 @@ class Filler {
   Scene& scene_;
   const Lattice& lattice_;
   const std::vector<LiquidRegion>& regions_;
+  double most_;
+  std::atomic<std::size_t> found_ = 0;
   Problems& problems_;
   std::vector<std::unique_ptr<ThreadRegions>> threads_;
 };
@@ -159,6 +169,7 @@ std::vector<Chunk> Filler::fill_region(std::size_t r) {
 
   std::vector<Chunk> chunks(block_count(columns, column_block));
   parallel_blocks_dynamic(columns, column_block, [&](std::size_t block, std::size_t first, std::size_t last) {
+    if (too_many()) return;
     ThreadRegions& own = this->own();
     Chunk& chunk = chunks[block];
     for (std::size_t column = first; column < last; ++column) {
@@ -174,6 +185,7 @@ std::vector<Chunk> Filler::fill_region(std::size_t r) {
         if (contains(own, r, p, chunk)) accept(own, r, p, chunk);
       }
     }
+    found_ += chunk.position[0].size();
   });
   return chunks;
 }
@@ -419,8 +431,8 @@ Lattice make_lattice(const Domain& domain, double spacing) {
 }
 
 void fill_scene(Scene& scene, const Lattice& lattice, const std::vector<LiquidRegion>& regions, double jitter,
-                Problems& problems) {
-  double sites = 0;
+                double most, Problems& problems) {
+  double sites = 0, certain = 0;
   for (const LiquidRegion& region : regions) {
     double cells = 1;
     for (std::size_t a = 0; a < static_cast<std::size_t>(lattice.dimensions); ++a) {
@@ -429,6 +441,7 @@ void fill_scene(Scene& scene, const Lattice& lattice, const std::vector<LiquidRe
       cells *= std::max(1.0, length / lattice.spacing[a]);
     }
     sites += cells;
+    if (!region.where && !region.ball && scene.domain.boxes.empty()) certain += cells;
   }
   if (!(sites <= most_particles) || !(lattice.sites() <= 1e15)) {
     problems.add(*regions.front().node, "the liquid regions hold up to " + brief(sites) + " particles at spacing " +
@@ -436,8 +449,14 @@ void fill_scene(Scene& scene, const Lattice& lattice, const std::vector<LiquidRe
                                             "; at most 2^31 are possible: enlarge the spacing or shrink the regions");
     return;
   }
-  Filler filler(scene, lattice, regions, problems);
-  filler.place_particles();
+  Filler filler(scene, lattice, regions, most, problems);
+  if (certain > most || !filler.place_particles()) {
+    problems.add(*regions.front().node, "the liquid regions hold more particles at spacing " + brief(scene.spacing) +
+                                            " than the " + brief(most) +
+                                            " for which this machine has memory: enlarge the spacing or shrink the "
+                                            "regions");
+    return;
+  }
   if (!problems.empty()) return;
   if (jitter > 0) filler.jitter(jitter);
   filler.set_velocities();

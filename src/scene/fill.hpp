@@ -40,8 +40,8 @@ struct Lattice {
 Lattice make_lattice(const Domain& domain, double spacing);
 
 // Fills scene.particles and sets scene.free_surface. Reports empty and overlapping regions, values that are not
-// finite, and counts beyond 2^31.
+// finite, counts beyond 2^31, and more than `most` particles, which the machine's memory does not hold.
 void fill_scene(Scene& scene, const Lattice& lattice, const std::vector<LiquidRegion>& regions, double jitter,
-                Problems& problems);
+                double most, Problems& problems);
 
 }  // namespace spume

@@ -12,7 +12,9 @@
 #include "fill.hpp"
 #include "reader.hpp"
 #include "resolved.hpp"
+#include "spume/core/machine.hpp"
 #include "spume/scene/expression.hpp"
+#include "spume/scene/memory.hpp"
 
 namespace spume {
 namespace {
@@ -293,13 +295,21 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   scene.fluid = make_fluid(draft);
   scene.spacing = draft.options.spacing;
   scene.seed = draft.options.seed;
+  const double most = machine_memory_bytes() / bytes_per_particle(draft.options, draft.dimensions);
   if (on_grid) {
     if (draft.options.initial.kind == InitialKind::expressions) scene.initial_velocity = std::move(initial_velocity);
     set_grid(scene, draft.grid);
+    const double points =
+        static_cast<double>(scene.grid[0]) * static_cast<double>(scene.grid[1]) * static_cast<double>(scene.grid[2]);
+    if (points > most)
+      problems.add(*draft.node("resolution.grid"), "the grid has " + brief(points) +
+                                                       " points; this machine has memory for " + brief(most) +
+                                                       ": lower resolution.grid");
+    problems.throw_if_any();
     draft.options.groups = describe_groups(draft, scene, compiler.scope());
   } else {
     const Lattice lattice = make_lattice(scene.domain, scene.spacing);
-    fill_scene(scene, lattice, regions, draft.jitter, problems);
+    fill_scene(scene, lattice, regions, draft.jitter, most, problems);
     problems.throw_if_any();
     check_bubble_sources(draft, scene, problems);
     problems.throw_if_any();

@@ -2,6 +2,7 @@
 // Where the particles of the start are.
 #include <gmock/gmock.h>
 #include <omp.h>
+#include <sys/resource.h>
 
 #include <cmath>
 #include <cstring>
@@ -245,6 +246,32 @@ TEST(Fill, AbsurdCountsAreRefusedBeforeAllocation) {
               ElementsAre(HasSubstr("liquid regions hold up to 2e+12 particles at spacing 1e-06; at most 2^31")));
   EXPECT_THAT(problems_of(tank("[[liquid]]\n"), {"resolution.spacing=1e-300"}),
               ElementsAre(HasSubstr("at most 2^31 are possible")));
+}
+
+// A limit of the process stands for a small machine.
+TEST(Fill, MoreThanTheMemoryHoldsIsRefusedBeforeAllocation) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+  const rlimit small{3'000'000'000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &small), 0);
+  const double most = 3e9 / 382;                                        // bytes per particle of a 2-D case
+  const std::vector<std::string> spacing{"resolution.spacing=0.0003"};  // 2.2e7 particles in all
+  const auto plain = problems_of(tank("[[liquid]]\n"), spacing);
+  const auto shaped = problems_of(tank("[[liquid]]\nwhere = \"1 + x\"\n"), spacing);
+  const auto fitting = problems_of(tank("[[liquid]]\nwhere = \"0.1 - y\"\n"), {"resolution.spacing=0.0009"});
+  const auto grid = problems_of(
+      "method = \"spectral\"\n[domain]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\n"
+      "x = \"periodic\"\ny = \"periodic\"\nz = \"periodic\"\n[resolution]\ngrid = 512\n"
+      "[time]\nend = 1\n[fluid]\nreynolds = 100\n[initial]\nkind = \"taylor-green\"\n");
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
+  for (const auto& problems : {plain, shaped}) {
+    ASSERT_EQ(problems.size(), 1u);
+    const std::size_t at = problems[0].find("than the ");
+    ASSERT_NE(at, std::string::npos) << problems[0];
+    EXPECT_NEAR(std::stod(problems[0].substr(at + 9)), most, 0.01 * most);
+  }
+  EXPECT_TRUE(fitting.empty());
+  EXPECT_THAT(grid, ElementsAre(HasSubstr("the grid has 1.34218e+08 points; this machine has memory for")));
 }
 
 }  // namespace

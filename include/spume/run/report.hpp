@@ -17,10 +17,9 @@ std::string human_bytes(double bytes);       // "11.2 GB"
 std::string human_duration(double seconds);  // "02:31", "2:10:05"
 std::string short_number(double value);      // "%.4g"
 
-double machine_memory_bytes();
 std::int64_t peak_resident_bytes();  // of this process
 
-// Case, box, particles, spacing, groups, step limit and what binds, stages, threads, memory, seed, commit,
+// Case, box, particles, spacing, groups, step limit and what binds, stages, threads, estimated memory, seed, commit,
 // and the folder of the results when there is one.
 std::string start_table(const LoadedCase& loaded, const Method& method, int threads, const std::string& folder = {});
 std::string plan_table(const std::vector<Stage>& plan);
