@@ -52,8 +52,8 @@ int carry_out(Simulation& simulation, bool quiet) {
     return exit_numerical;
   } catch (const std::bad_alloc&) {
     observer.finish();
-    std::fprintf(stderr, "error: not enough memory to go on at t = %g; the last checkpoint in %s can be continued\n",
-                 simulation.method().time(), simulation.folder().c_str());
+    std::fprintf(stderr, "error: not enough memory to go on at t = %g\n  %s\n", simulation.method().time(),
+                 simulation.continuation().c_str());
     return exit_numerical;
   }
 }
@@ -62,8 +62,9 @@ int carry_out(Simulation& simulation, bool quiet) {
 
 int run_verb(const RunArguments& arguments, const Programme& programme) {
   require_positive(arguments.until);
-  LoadedCase loaded = programme.load_case(arguments.input, arguments.overrides);
-  if (arguments.until) loaded.options.time.end = *arguments.until;
+  std::vector<std::string> overrides = arguments.overrides;
+  if (arguments.until) overrides.push_back(until_override(*arguments.until));
+  LoadedCase loaded = programme.load_case(arguments.input, overrides);
   std::optional<std::filesystem::path> folder;
   if (arguments.folder) folder = *arguments.folder;
   const auto simulation = Simulation::start(std::move(loaded), programme.make_method, folder);

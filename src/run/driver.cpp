@@ -2,6 +2,7 @@
 #include "spume/run/driver.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -13,6 +14,8 @@
 #include "spume/run/signals.hpp"
 #include "spume/run/state_file.hpp"
 #include "spume/run/version.hpp"
+#include "spume/scene/refusal.hpp"
+#include "spume/scene/resolved_case.hpp"
 
 namespace spume {
 namespace {
@@ -46,7 +49,36 @@ std::string place_of(const StepFailure::Details& details, int dimensions) {
   return text + "value " + short_number(details.value);
 }
 
+// The state of a checkpoint lives in its own box, at its own spacing. Walls may change their velocity.
+bool fixed_by_the_state(const std::string& name) {
+  if (name.starts_with("domain.wall_velocity.")) return false;
+  return name == "method" || name.starts_with("domain.") || name == "resolution.spacing" ||
+         name.starts_with("resolution.grid");
+}
+
+// Quantities per step are divided by its length: far below the steps that the method takes they are lost.
+void require_some_time(const Case& options, const Method& method) {
+  const double least = 1e-9, end = options.time.end;
+  const StepLimit limit = method.step_limit();
+  // A liquid at rest may have no limit, or steps that follow the end: no unit makes sense of less than the last bound.
+  const bool limited = limit.dt < 1e100;
+  if ((!limited || end >= least * limit.dt) && end >= 1e-30) return;
+  throw refusal(options, "time.end",
+                "the end of the run, " + short_number(end) + ", is shorter than a billionth of the first step, " +
+                    short_number(limit.dt) + " (" + limit.limited_by + "); give a later end");
+}
+
+std::string given_or_not(const std::string& value) {
+  return value.empty() ? "not set" : value;
+}
+
 }  // namespace
+
+std::string until_override(double end) {
+  char digits[32];
+  const auto written = std::to_chars(digits, digits + sizeof digits, end);
+  return "--until time.end=" + std::string(digits, written.ptr);
+}
 
 Simulation::Simulation(std::unique_ptr<LoadedCase> loaded, std::unique_ptr<Method> method, RunFolder folder)
     : loaded_(std::move(loaded)),
@@ -63,6 +95,7 @@ std::unique_ptr<Simulation> Simulation::start(LoadedCase loaded, const MethodFac
   auto owned = std::make_unique<LoadedCase>(std::move(loaded));
   auto method = make_method(*owned);
   method->start();
+  require_some_time(owned->options, *method);
   RunFolder made = RunFolder::create(owned->options.path, folder);
   write_text_atomically(made / "case.toml", owned->options.resolved);
   return std::unique_ptr<Simulation>(new Simulation(std::move(owned), std::move(method), std::move(made)));
@@ -71,12 +104,14 @@ std::unique_ptr<Simulation> Simulation::start(LoadedCase loaded, const MethodFac
 std::unique_ptr<Simulation> Simulation::resume(const std::filesystem::path& folder, const CaseLoader& load_case,
                                                const MethodFactory& make_method, std::optional<double> until) {
   RunFolder opened = RunFolder::open(folder);
-  auto loaded = std::make_unique<LoadedCase>(load_case((opened / "case.toml").string(), {}));
-  if (until) loaded->options.time.end = *until;
+  std::vector<std::string> overrides;
+  if (until) overrides.push_back(until_override(*until));
+  auto loaded = std::make_unique<LoadedCase>(load_case((opened / "case.toml").string(), overrides));
   auto method = make_method(*loaded);
   const auto checkpoint = opened / "checkpoint.h5";
   std::unique_ptr<Simulation> simulation(new Simulation(std::move(loaded), std::move(method), std::move(opened)));
   simulation->load_checkpoint(checkpoint);
+  if (until) write_text_atomically(simulation->folder_ / "case.toml", simulation->loaded_->options.resolved);
   return simulation;
 }
 
@@ -98,12 +133,15 @@ RunState Simulation::run(Observer& observer) {
       recorder_->series(*method_, 0, 0);
       recorder_->snapshot(*method_);
       if (loaded_->options.output.spectrum_every > 0) recorder_->spectrum(*method_);
+      // A record that fails, on a full disk, is redone from a checkpoint: the figures of a step are not part of the
+      // state after it. So there is one from the start.
+      save_checkpoint();
     }
     const auto pass_on_remarks = [&] {
       for (const std::string& remark : method_->take_remarks()) watch(remark);
     };
+    for (const std::string& change : changes_) watch(change);
     pass_on_remarks();
-    if (unrecorded_dt_) record(*unrecorded_dt_);
     RunState state = RunState::finished;
     while (!schedule_.finished(method_->time())) {
       if (signals.requested()) {
@@ -133,7 +171,7 @@ RunState Simulation::run(Observer& observer) {
     const std::string text = "numerical failure at step " + std::to_string(method_->step_count()) +
                              ", t = " + exact(method_->time()) + ": " + failure.details().cause + "\n  " +
                              place_of(failure.details(), loaded_->scene.domain.dimensions) +
-                             "\n  most likely helps: change " + failure.details().option;
+                             "\n  most likely helps: change " + failure.details().option + "\n  " + continuation();
     folder_.log(text);
     write_summary("numerical failure", text);
     throw NumericalFailure(text);
@@ -142,14 +180,14 @@ RunState Simulation::run(Observer& observer) {
     write_summary("numerical failure", failure.what());
     throw;
   } catch (const FileError& failure) {
-    folder_.log(failure.what());
-    save_what_is_left();
+    const std::string text = failure.what() + ("\n  " + continuation());
+    folder_.log(text);
     try {
-      write_summary("file error", failure.what());
+      write_summary("file error", text);
     } catch (const FileError&) {
       // The disk that refused the result refuses the summary too; the first error is the one to report.
     }
-    throw;
+    throw FileError(text);
   }
 }
 
@@ -203,20 +241,19 @@ void Simulation::give_up(const StepFailure& failure, double dt, int attempts) {
     text += "\n  the last good state, step " + std::to_string(method_->step_count()) + ", is in " +
             (folder_ / "checkpoint.h5").string() + " and is the last snapshot";
   } catch (const FileError& error) {
-    text += "\n  the last good state could not be saved: " + std::string(error.what());
+    text += "\n  the last good state could not be saved: " + std::string(error.what()) + "\n  " + continuation();
   }
   throw NumericalFailure(text);
 }
 
-void Simulation::record(double dt) {
-  recorder_->mark();
-  next_before_record_ = schedule_.next();
-  unrecorded_dt_ = dt;
-  record_due(schedule_.arrive(method_->time()), dt);
-  unrecorded_dt_.reset();
+std::string Simulation::continuation() const {
+  if (!checkpoint_step_) return "there is no checkpoint to continue";
+  return "spume resume " + folder_.path().string() + " continues from the checkpoint of step " +
+         std::to_string(*checkpoint_step_);
 }
 
-void Simulation::record_due(const Schedule::Due& due, double dt) {
+void Simulation::record(double dt) {
+  const Schedule::Due due = schedule_.arrive(method_->time());
   if (due.series) {
     const auto scope = ledger_.time("series and probes");
     recorder_->series(*method_, dt, retries_);
@@ -250,15 +287,12 @@ void Simulation::save_checkpoint() {
   const auto scope = ledger_.time("checkpoints", static_cast<double>(method_->particle_count()));
   recorder_->sync();
   CheckpointWriter file(folder_ / "checkpoint.h5", {program_version(), program_commit(), loaded_->options.resolved});
-  // The record of a step counts only when it is complete.
-  const auto next = unrecorded_dt_ ? next_before_record_ : schedule_.next();
-  const double clock[] = {method_->time(), control_.cap(), earlier_wall_seconds_ + wall_seconds(),
-                          unrecorded_dt_.value_or(0)};
+  const auto next = schedule_.next();
+  const double clock[] = {method_->time(), control_.cap(), earlier_wall_seconds_ + wall_seconds()};
   const std::int64_t counters[] = {method_->step_count(), retries_, next[0], next[1], next[2]};
   file.f64("driver/clock", clock);
   file.i64("driver/counters", counters);
-  for (const auto& [name, count] : unrecorded_dt_ ? recorder_->marked() : recorder_->extent())
-    file.i64("driver/extent/" + name, std::span(&count, 1));
+  for (const auto& [name, count] : recorder_->extent()) file.i64("driver/extent/" + name, std::span(&count, 1));
   CheckpointStateWriter writer(file, "method/");
   method_->save(writer);
   file.commit();
@@ -266,14 +300,16 @@ void Simulation::save_checkpoint() {
   checkpointed_ = Clock::now();
 }
 
-void Simulation::save_what_is_left() {
-  if (steps_this_run_ == 0 || checkpoint_step_ == method_->step_count()) return;
-  try {
-    save_checkpoint();
-    folder_.log("the state is saved: with space on the disk, spume resume goes on where the record broke off");
-  } catch (const FileError& failure) {
-    folder_.log(failure.what());
+void Simulation::compare_with_checkpoint(const std::string& case_text) {
+  for (const auto& [name, before, now] : changed_values(case_text, loaded_->options.resolved)) {
+    const std::string difference = name + " = " + given_or_not(now) + ", at the checkpoint " + given_or_not(before);
+    if (fixed_by_the_state(name))
+      throw refusal(loaded_->options, name,
+                    "the checkpoint in '" + folder_.path().string() + "' does not fit the changed case: " + difference +
+                        "; restore the value, or start a new run");
+    changes_.push_back("the case has changed since the checkpoint: " + difference);
   }
+  loaded_->options.resolved = with_origins_of(case_text, loaded_->options.resolved);
 }
 
 void Simulation::load_checkpoint(const std::filesystem::path& path) {
@@ -282,17 +318,16 @@ void Simulation::load_checkpoint(const std::filesystem::path& path) {
   Array<std::int64_t> counters;
   file.f64("driver/clock", clock);
   file.i64("driver/counters", counters);
-  if (clock.size() != 4 || counters.size() != 5)
+  if (clock.size() < 3 || counters.size() != 5)
     throw FileError("cannot read checkpoint '" + path.string() + "': the driver's state has another size");
-  const bool complete = clock[3] == 0;
-  if (schedule_.finished(clock[0]) && complete)
+  if (schedule_.finished(clock[0]))
     throw InputError("the run in '" + folder_.path().string() + "' is already at t = " + exact(clock[0]) +
                      "; give a later time with --until");
+  compare_with_checkpoint(file.origin().case_text);
   CheckpointStateReader reader(file, "method/");
   method_->load(reader);
   control_.set_cap(clock[1]);
   earlier_wall_seconds_ = clock[2];
-  if (!complete) unrecorded_dt_ = clock[3];
   retries_ = counters[1];
   schedule_.set_next({counters[2], counters[3], counters[4]});
   if (method_->time() != clock[0] || method_->step_count() != counters[0])
@@ -306,8 +341,6 @@ void Simulation::load_checkpoint(const std::filesystem::path& path) {
     file.i64(entry.name, count);
     extent[entry.name.substr(prefix.size())] = count.empty() ? 0 : count[0];
   }
-  if (file.origin().case_text != loaded_->options.resolved)
-    folder_.log("case.toml has changed since the checkpoint; continuing with the changed case");
   folder_.log("continuing from step " + std::to_string(counters[0]) + ", t = " + exact(clock[0]));
   recorder_ = std::make_unique<Recorder>(folder_.path(), *loaded_, *method_, extent);
   checkpoint_step_ = counters[0];

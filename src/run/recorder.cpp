@@ -262,18 +262,6 @@ Recorder::Extent Recorder::extent() const {
   return extent;
 }
 
-void Recorder::mark() {
-  for (const auto& [name, file] : tables_) marked_[name] = file.rows();
-  for (const auto& [name, file] : families_) marked_[name] = file.steps();
-  for (const auto& [name, file] : grids_) marked_[name] = file.steps();
-}
-
-Recorder::Extent Recorder::marked() const {
-  Extent extent = marked_;
-  if (resume_) extent.insert(resume_->begin(), resume_->end());
-  return extent;
-}
-
 std::vector<std::pair<std::string, double>> Recorder::last_row() const {
   std::vector<std::pair<std::string, double>> row;
   for (std::size_t i = 0; i < series_row_.size(); ++i) row.emplace_back(series_columns_[i].name, series_row_[i]);

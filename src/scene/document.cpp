@@ -172,9 +172,22 @@ Node parse_value(const std::string& text) {
   return std::move(document.children[0]);
 }
 
-void apply_override(Node& document, const std::string& assignment, const std::vector<std::string>& repeated,
+namespace {
+
+// The assignment of an override, and how the user gave it: "time.end=20" came as "--set time.end=20", and
+// "--until time.end=20" as "--until 20".
+std::pair<std::string, std::string> split_override(const std::string& text) {
+  const std::size_t blank = text.find(' ');
+  if (!text.starts_with("--") || blank == std::string::npos) return {text, "--set " + text};
+  const std::string assignment = text.substr(blank + 1);
+  return {assignment, text.substr(0, blank + 1) + assignment.substr(assignment.find('=') + 1)};
+}
+
+}  // namespace
+
+void apply_override(Node& document, const std::string& text, const std::vector<std::string>& repeated,
                     Problems& problems) {
-  const std::string label = "--set " + assignment;
+  const auto [assignment, label] = split_override(text);
   Node place;
   place.override_text = label;
   const std::size_t equals = assignment.find('=');

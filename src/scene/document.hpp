@@ -29,7 +29,7 @@ struct Node {
 
   Place place;                // of the value; of the header for a table
   Place key_place;            // of the key
-  std::string override_text;  // "--set key=value" for a value from the command line, else empty
+  std::string override_text;  // "--set key=value" or "--until value" for a value from the command line, else empty
   std::string raw;            // that value as typed
 
   const Node* find(const std::string& key) const;
@@ -61,8 +61,9 @@ Node parse_document(const std::string& text, const std::string& file);
 // Parses one TOML value; throws InputError.
 Node parse_value(const std::string& text);
 
-// Applies "a.b=c" or "a.0.b=c" to the document; `repeated` names the sections that are arrays of tables.
-void apply_override(Node& document, const std::string& assignment, const std::vector<std::string>& repeated,
+// Applies "a.b=c" or "a.0.b=c" to the document; `repeated` names the sections that are arrays of tables. An option of
+// the command line in front, "--until time.end=20", takes the place of --set in messages and origins.
+void apply_override(Node& document, const std::string& text, const std::vector<std::string>& repeated,
                     Problems& problems);
 
 // The place of byte `offset` of the string literal that starts at `start` in `source`, escapes counted.

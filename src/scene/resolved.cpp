@@ -47,7 +47,9 @@ class Writer {
     return unit == "length/time2" ? "m/s2" : unit;
   }
 
-  static std::string origin(const Node& node) { return node.override_text.empty() ? "case" : "--set"; }
+  static std::string origin(const Node& node) {
+    return node.override_text.empty() ? "case" : node.override_text.substr(0, node.override_text.find(' '));
+  }
 
   void line(const std::string& assignment, const std::string& comment) {
     text_ += assignment;

@@ -186,6 +186,20 @@ TEST_F(Driver, GivesUpWithWordsAndLeavesTheLastGoodState) {
   EXPECT_EQ(summary("run")["state"], "numerical failure");
 }
 
+TEST_F(Driver, AFailureBeforeTheFirstStepSaysThatNothingCanBeContinued) {
+  write_case("end = 1.0\nsolvable = false\n");
+  Watch watch;
+  std::string message;
+  try {
+    start("run")->run(watch);
+  } catch (const NumericalFailure& failure) {
+    message = failure.what();
+  }
+  EXPECT_THAT(message, HasSubstr("the pressure solve did not converge"));
+  EXPECT_THAT(message, HasSubstr("there is no checkpoint to continue"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "run" / "checkpoint.h5"));
+}
+
 // Steps of a sixtieth of what the method allows, each found by refusals: the end would be 6000 steps away.
 TEST_F(Driver, GivesUpWhereRefusedStepsNoLongerAdvance) {
   write_case("end = 1.0\nlargest_dt = 0.00017\ndt = 0.01\nmax_retries = 6\n");
@@ -203,6 +217,56 @@ TEST_F(Driver, AFinishedRunContinuesOnlyToALaterTime) {
   EXPECT_THROW(resume("run", 0.4), InputError);
   EXPECT_EQ(resume("run", 0.75)->run(watch), RunState::finished);
   EXPECT_THAT(read_vtkhdf_contents(folder_ / "run" / "fluid.vtkhdf").times, testing::ElementsAre(0, 0.25, 0.5, 0.75));
+}
+
+TEST_F(Driver, AnEndFromTheCommandLineOutlivesAnInterruption) {
+  write_case("end = 0.2\n");
+  LoadedCase loaded = load_fake_case((folder_ / "case.toml").string(), {until_override(1.0)});
+  Watch stopping(40), again(60), watch;
+  EXPECT_EQ(Simulation::start(std::move(loaded), make_fake_method, folder_ / "run")->run(stopping),
+            RunState::interrupted);
+  ASSERT_GT(summary("run")["time"], 0.2);
+  EXPECT_EQ(resume("run", 1.25)->run(again), RunState::interrupted);
+  EXPECT_EQ(resume("run")->run(watch), RunState::finished);
+  EXPECT_EQ(summary("run")["time"], 1.25);
+}
+
+TEST_F(Driver, OnlyValuesCountAsAChangedCase) {
+  write_case("end = 0.5\nevery = 0.25\n");
+  Watch stopping(3), again(4), last;
+  start("run")->run(stopping);
+  const auto file = folder_ / "run" / "case.toml";
+  test::write_contents(file, "every = 2.5e-1 # case\n\nend   =  0.50 # case\n");
+  resume("run")->run(again);
+  EXPECT_THAT(again.notes, Each(testing::Not(HasSubstr("changed"))));
+  test::write_contents(file, "end = 0.5\nevery = 0.125\n");
+  resume("run")->run(last);
+  EXPECT_THAT(last.notes, testing::Contains(HasSubstr("every = 0.125, at the checkpoint 0.25")));
+  EXPECT_THAT(contents(folder_ / "run" / "log.txt"), HasSubstr("every = 0.125, at the checkpoint 0.25"));
+}
+
+TEST_F(Driver, ACheckpointOfAnotherBoxSpacingOrMethodIsRefused) {
+  const std::string text = "end = 0.5\nmethod = \"a\"\ndomain.upper = [1, 1]\nresolution.spacing = 0.1\n";
+  write_case(text);
+  Watch stopping(3), watch;
+  start("run")->run(stopping);
+  const auto refusal_of = [&](const std::string& from, const std::string& to) {
+    std::string changed = text;
+    changed.replace(changed.find(from), from.size(), to);
+    test::write_contents(folder_ / "run" / "case.toml", changed);
+    try {
+      resume("run");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refusal_of("\"a\"", "\"b\""), HasSubstr("method = \"b\", at the checkpoint \"a\""));
+  EXPECT_THAT(refusal_of("1, 1]", "1, 2]"), HasSubstr("domain.upper = [1, 2], at the checkpoint [1, 1]"));
+  EXPECT_THAT(refusal_of("1, 1]", "1, 1, 1]"), HasSubstr("does not fit the changed case"));
+  EXPECT_THAT(refusal_of("0.1", "0.2"), HasSubstr("resolution.spacing = 0.2, at the checkpoint 0.1"));
+  EXPECT_EQ(refusal_of("0.1", "1e-1"), "");
+  EXPECT_EQ(resume("run")->run(watch), RunState::finished);
 }
 
 TEST_F(Driver, AFullFolderIsNeverOverwritten) {

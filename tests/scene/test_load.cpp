@@ -9,6 +9,7 @@
 #include "helpers.hpp"
 #include "spume/scene/load.hpp"
 #include "spume/scene/options.hpp"
+#include "spume/scene/resolved_case.hpp"
 
 namespace spume {
 namespace {
@@ -361,6 +362,22 @@ TEST(Load, ResolvedCaseReadsBackToTheSameCase) {
   expect_same(tank, load_text(tank.options.resolved));
   EXPECT_THAT(tank.options.resolved, HasSubstr("spacing = 0.05                            # case, m\n"));
   EXPECT_THAT(tank.options.groups.at("Reynolds"), HasSubstr("e+06"));
+}
+
+TEST(Load, AResolvedCaseThatIsReadAgainDiffersInNoValueAndKeepsItsOrigins) {
+  const std::string first = load_text(plunging_breaker, {"time.courant=1e-1", "--until time.end=20"}).options.resolved;
+  EXPECT_THAT(first, HasSubstr("end = 20                                  # --until, time"));
+  EXPECT_THAT(first, HasSubstr("# --set"));
+  EXPECT_THAT(first, HasSubstr("# default"));
+  const std::string second = load_text(first).options.resolved;
+  EXPECT_NE(second, first);
+  EXPECT_TRUE(changed_values(first, second).empty());
+  EXPECT_EQ(with_origins_of(first, second), first);
+  const std::string edited = load_text(first, {"time.courant=0.3"}).options.resolved;
+  const auto changes = changed_values(first, edited);
+  ASSERT_EQ(changes.size(), 1u);
+  EXPECT_EQ(changes[0].name + ": " + changes[0].before + " to " + changes[0].now, "time.courant: 0.1 to 0.3");
+  EXPECT_THAT(with_origins_of(first, load_text(edited).options.resolved), HasSubstr("# --until"));
 }
 
 TEST(Load, DefaultsOfTheTableAreTheDefaultsOfTheCase) {

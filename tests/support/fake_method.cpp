@@ -20,9 +20,11 @@ namespace {
 struct FakeBehaviour {
   std::int64_t particles = 50;
   double dt = 0.013;
-  double largest_dt = 1e30;  // steps beyond it are refused
-  double fails_from = 1e30;  // every step at or after this time is refused
-  double sleep = 0;          // wall seconds per step
+  double largest_dt = 1e30;    // steps beyond it are refused
+  double fails_from = 1e30;    // every step at or after this time is refused
+  double sleep = 0;            // wall seconds per step
+  double memory_until = 1e30;  // the memory ends with the first step at or after this time
+  bool solvable = true;        // false: what it solves before the first step fails
 };
 
 class FakeMethod final : public Method {
@@ -41,6 +43,7 @@ class FakeMethod final : public Method {
       position_[2][i] = dimensions == 3 ? 0.1 * static_cast<double>(i) : 0;
       id_[i] = static_cast<std::int64_t>(i);
     }
+    turn_.resize(n);
   }
 
   std::vector<Stage> plan() const override {
@@ -59,6 +62,7 @@ class FakeMethod final : public Method {
   void step(double dt, Ledger& ledger) override {
     const auto scope = ledger.time("turn", static_cast<double>(id_.size()), 0, 48.0 * static_cast<double>(id_.size()));
     if (behaviour_.sleep > 0) std::this_thread::sleep_for(std::chrono::duration<double>(behaviour_.sleep));
+    if (time_ >= behaviour_.memory_until) throw std::bad_alloc();
     if (time_ >= behaviour_.fails_from || dt > behaviour_.largest_dt)
       throw StepFailure({"a particle moved further than its spacing", "time.courant", 7, {0.25, 0.5, 0}, 3.5});
     const double centre = 0.1 * std::sin(time_);
@@ -66,25 +70,33 @@ class FakeMethod final : public Method {
       velocity_[0][i] = -position_[1][i];
       velocity_[1][i] = position_[0][i] - centre;
       for (std::size_t axis = 0; axis < 2; ++axis) position_[axis][i] += dt * velocity_[axis][i];
+      turn_[i] = dt * velocity_[0][i];
     }
     time_ += dt;
     ++step_;
   }
 
-  std::vector<SeriesColumn> series_columns() const override { return {{"radius", "m"}, {"moment", "m2"}}; }
+  std::vector<SeriesColumn> series_columns() const override {
+    return {{"radius", "m"}, {"moment", "m2"}, {"turn", "m"}};
+  }
   void series_values(std::span<double> values) override {
+    if (!behaviour_.solvable)
+      throw StepFailure({"the pressure solve did not converge", "pressure.tolerance", -1, {0, 0, 0}, 2});
     values[0] = std::hypot(position_[0][0], position_[1][0]);
     values[1] = 0;
     for (std::size_t i = 0; i < id_.size(); ++i) values[1] += position_[0][i] * position_[0][i];
+    values[2] = turn_[0];
   }
   std::vector<Family> snapshot() override {
-    Family fluid{"fluid", id_.size(), {}, {{"velocity", {}, {}}, {"pressure", {}, {}}, {"id", {}, {}}}};
+    Family fluid{
+        "fluid", id_.size(), {}, {{"velocity", {}, {}}, {"pressure", {}, {}}, {"id", {}, {}}, {"turn", {}, {}}}};
     for (int axis = 0; axis < dimensions_; ++axis) {
       fluid.position.push_back(position_[axis].data());
       fluid.fields[0].f64.push_back(velocity_[axis].data());
     }
     fluid.fields[1].f64.push_back(position_[0].data());
     fluid.fields[2].i64.push_back(id_.data());
+    fluid.fields[3].f64.push_back(turn_.data());
     return {fluid};
   }
   PointSample sample(const Vec3& at) override { return {at[0] + time_, {position_[0][0], at[1], at[2]}, 1}; }
@@ -130,6 +142,7 @@ class FakeMethod final : public Method {
   std::int64_t step_ = 0;
   Array<double> position_[3], velocity_[3];
   Array<std::int64_t> id_;
+  Array<double> turn_;  // a figure of the last step, which no checkpoint holds
 };
 
 }  // namespace
@@ -138,8 +151,11 @@ LoadedCase load_fake_case(const std::string& path, const std::vector<std::string
   toml::table table;
   try {
     table = toml::parse_file(path);
-    for (const auto& line : overrides)
-      for (const auto& [key, value] : toml::parse(line)) table.insert_or_assign(key, value);
+    for (const auto& line : overrides) {
+      const std::string until = "--until time.";
+      const std::string assignment = line.starts_with(until) ? line.substr(until.size()) : line;
+      for (const auto& [key, value] : toml::parse(assignment)) table.insert_or_assign(key, value);
+    }
   } catch (const toml::parse_error& error) {
     throw InputError({Problem{path, static_cast<int>(error.source().begin.line),
                               static_cast<int>(error.source().begin.column), std::string(error.description())}});
@@ -178,6 +194,8 @@ std::unique_ptr<Method> make_fake_method(const LoadedCase& loaded) {
   behaviour.dt = table["dt"].value<double>().value_or(behaviour.dt);
   behaviour.largest_dt = table["largest_dt"].value<double>().value_or(behaviour.largest_dt);
   behaviour.fails_from = table["fails_from"].value<double>().value_or(behaviour.fails_from);
+  behaviour.memory_until = table["memory_until"].value<double>().value_or(behaviour.memory_until);
+  behaviour.solvable = table["solvable"].value<bool>().value_or(behaviour.solvable);
   behaviour.sleep = table["sleep"].value<double>().value_or(behaviour.sleep);
   if (behaviour.particles < 0) throw InputError("the method needs particles");
   if (behaviour.particles > 1'000'000'000'000) throw std::bad_alloc();

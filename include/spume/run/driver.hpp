@@ -27,6 +27,9 @@ namespace spume {
 using MethodFactory = std::function<std::unique_ptr<Method>(const LoadedCase&)>;
 using CaseLoader = std::function<LoadedCase(const std::string& path, const std::vector<std::string>& overrides)>;
 
+// What a CaseLoader gets for --until: the end as a value of the case, so that a resumed run has the same end.
+std::string until_override(double end);
+
 // How a run stands, for the progress line.
 struct Progress {
   std::int64_t step = 0;
@@ -48,12 +51,12 @@ enum class RunState { finished, interrupted };
 
 class Simulation {
  public:
-  // Makes the method first and the folder only when that succeeded. `until` replaces time.end.
-  // Throws InputError, FileError.
+  // Makes the method first and the folder only when that succeeded. Throws InputError, FileError.
   static std::unique_ptr<Simulation> start(LoadedCase loaded, const MethodFactory& make_method,
                                            const std::optional<std::filesystem::path>& folder);
-  // Continues the run in `folder` from its checkpoint, bit for bit as if it had never stopped. Throws InputError
-  // (no run there, `until` not after the checkpoint), FileError (unreadable checkpoint or results).
+  // Continues the run in `folder` from its checkpoint, bit for bit as if it had never stopped. `until` replaces
+  // time.end, also in the folder's case.toml. Throws InputError (no run there, `until` not after the checkpoint, a case
+  // that no longer fits the checkpoint), FileError (unreadable checkpoint or results).
   static std::unique_ptr<Simulation> resume(const std::filesystem::path& folder, const CaseLoader& load_case,
                                             const MethodFactory& make_method, std::optional<double> until);
   Simulation(const Simulation&) = delete;
@@ -61,7 +64,8 @@ class Simulation {
   ~Simulation();
 
   // Runs to the end, or until SIGINT or SIGTERM. Throws NumericalFailure after leaving a snapshot and a checkpoint
-  // of the last good state, FileError when a result cannot be written.
+  // of the last good state, FileError when a result cannot be written: the last checkpoint then stays, and a resumed
+  // run does the steps since again.
   RunState run(Observer& observer);
 
   const LoadedCase& loaded() const { return *loaded_; }
@@ -70,7 +74,8 @@ class Simulation {
   const Ledger& ledger() const { return ledger_; }
   void log(const std::string& text) { folder_.log(text); }
   std::int64_t steps_this_run() const { return steps_this_run_; }
-  double wall_seconds() const;  // since run() began
+  double wall_seconds() const;       // since run() began
+  std::string continuation() const;  // from where the run can be continued, in words
   double particle_steps() const { return particle_steps_; }
 
  private:
@@ -80,10 +85,9 @@ class Simulation {
   double take_step(Observer& observer, StepLimit& limit);  // the length of the accepted step
   [[noreturn]] void give_up(const StepFailure& failure, double dt, int attempts);
   void record(double dt);
-  void record_due(const Schedule::Due& due, double dt);
   void save_checkpoint();
-  void save_what_is_left();
   void load_checkpoint(const std::filesystem::path& path);
+  void compare_with_checkpoint(const std::string& case_text);
   void write_summary(const std::string& state, const std::string& message);
   void report(Observer& observer, double dt, const StepLimit& limit);
 
@@ -95,15 +99,13 @@ class Simulation {
   std::unique_ptr<Recorder> recorder_;
   Ledger ledger_;
   bool fresh_ = true;
+  std::vector<std::string> changes_;  // of the case since the checkpoint, in words
   std::int64_t retries_ = 0;
   double pace_ = 1;  // mean of recent steps over those that the method allows; refused steps lower it
   std::int64_t steps_this_run_ = 0;
   double particle_steps_ = 0;
   double earlier_wall_seconds_ = 0;
   std::optional<std::int64_t> checkpoint_step_;
-  // The length of a step whose record could not be finished; a resumed run records it first.
-  std::optional<double> unrecorded_dt_;
-  std::array<std::int64_t, 3> next_before_record_{};
   Clock::time_point started_ = Clock::now();
   Clock::time_point checkpointed_ = Clock::now();
   struct Mark {  // start of the window over which the rate is measured

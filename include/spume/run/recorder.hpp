@@ -40,8 +40,6 @@ class Recorder {
   void flush();
   void sync();
   Extent extent() const;
-  void mark();            // notes the present extent: what is recorded from now on may fail half-way
-  Extent marked() const;  // the extent at the last mark()
   std::vector<std::pair<std::string, double>> last_row() const;  // of series.csv, by column
 
  private:
@@ -53,7 +51,6 @@ class Recorder {
   std::filesystem::path folder_;
   const LoadedCase& loaded_;
   std::optional<Extent> resume_;
-  Extent marked_;
   std::map<std::string, SeriesFile> tables_;
   std::map<std::string, VtkhdfFile> families_;
   std::map<std::string, VtkhdfGridFile> grids_;
