@@ -15,11 +15,15 @@
 namespace spume {
 namespace {
 
+// Far beyond it the runtime dies while it makes its threads.
+constexpr int most_threads = 1024;
+
 void use_threads(const std::optional<int>& threads) {
-  if (!threads) return;
-  if (*threads < 1)
-    throw InputError("--threads is " + std::to_string(*threads) + "; give a number of threads from 1 up");
-  omp_set_num_threads(*threads);
+  const int wanted = threads.value_or(omp_get_max_threads());
+  if (wanted < 1 || wanted > most_threads)
+    throw InputError((threads ? "--threads is " : "OMP_NUM_THREADS is ") + std::to_string(wanted) +
+                     "; give a number of threads from 1 to " + std::to_string(most_threads));
+  omp_set_num_threads(wanted);
 }
 
 // Every message of an InputError is complete; several get a last line that counts them.
