@@ -47,7 +47,7 @@ void TerminalObserver::draw() {
     std::printf("\r\033[K%s", progress_line(last_).c_str());
   else
     std::printf("%s\n", progress_line(last_).c_str());
-  std::fflush(stdout);
+  flush();
   drawn_ = true;
 }
 
@@ -64,7 +64,12 @@ void TerminalObserver::progress(const Progress& progress) {
 void TerminalObserver::note(const std::string& text) {
   if (quiet_) return;
   std::printf("%s%s\n", live_ && drawn_ ? "\r\033[K" : "", text.c_str());
-  std::fflush(stdout);
+  flush();
+}
+
+// A terminal that is gone is not written to again.
+void TerminalObserver::flush() {
+  if (std::fflush(stdout) != 0) quiet_ = true;
 }
 
 void TerminalObserver::finish() {

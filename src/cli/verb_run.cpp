@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <signal.h>
+
 #include <cmath>
 #include <cstdio>
 #include <new>
@@ -28,6 +30,8 @@ std::string closing_text(const Simulation& simulation, RunState state) {
 }
 
 int carry_out(Simulation& simulation, bool quiet) {
+  // Results matter more than whoever reads the terminal: a pipe that closes stops no run.
+  signal(SIGPIPE, SIG_IGN);
   const std::string start =
       start_table(simulation.loaded(), simulation.method(), thread_count(), simulation.folder().string());
   simulation.log(start);

@@ -188,6 +188,29 @@ TEST_F(Verbs, AFileThatCannotGrowEndsTheRunWithItsNameAndTheReason) {
   EXPECT_EQ(contents(folder_ / "results" / "series.csv"), contents(folder_ / "whole" / "series.csv"));
   EXPECT_EQ(read_vtkhdf_contents(folder_ / "results" / "fluid.vtkhdf").times,
             read_vtkhdf_contents(folder_ / "whole" / "fluid.vtkhdf").times);
+  for (const char* field : {"velocity", "turn"}) EXPECT_EQ(stored("results", field), stored("whole", field)) << field;
+}
+
+TEST_F(Verbs, WithoutMemoryARunNamesACheckpointOnlyWhereThereIsOne) {
+  write_case("end = 1.0\nmemory_until = 0.3\n");
+  const Outcome outcome = spume({"run", "case.toml", "-o", "results"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("not enough memory to go on at t = 0.3"));
+  EXPECT_THAT(outcome.err, HasSubstr("spume resume results continues from the checkpoint of step 0"));
+  write_case("end = 1.0\nmemory_until = -1.0\n");
+  const Outcome early = spume({"run", "case.toml", "-o", "early", "--set", "solvable=false"});
+  EXPECT_EQ(early.code, 3);
+  EXPECT_THAT(early.err, HasSubstr("there is no checkpoint to continue"));
+}
+
+TEST_F(Verbs, ARunWhoseReaderLeavesGoesOnToItsEnd) {
+  write_case("end = 0.5\nfails_from = 1e30\n");
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+  const std::string command = "cd '" + folder_.path().string() + "' && { '" + program +
+                              "' --as-spume run case.toml -o results; echo $? > code; } | true";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(contents(folder_ / "code"), "0\n");
+  EXPECT_THAT(contents(folder_ / "results" / "summary.json"), HasSubstr("\"state\": \"finished\""));
 }
 
 TEST_F(Verbs, NoRoomBeforeTheFirstStepExitsWith2) {

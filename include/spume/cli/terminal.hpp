@@ -18,6 +18,7 @@ class TerminalObserver final : public Observer {
 
  private:
   void draw();
+  void flush();
   bool quiet_, live_;
   bool drawn_ = false;
   Progress last_;
