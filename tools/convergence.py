@@ -31,6 +31,10 @@ def main():
         module = load_measure(folder)
         if module is None or not hasattr(module, "errors"):
             raise MissingResult(f"{folder / 'measure.py'}: defines no errors(run)")
+    except MissingResult as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    try:
         with tempfile.TemporaryDirectory(prefix="spume-convergence-") as scratch:
             keep = arguments.keep or Path(scratch)
             keep.mkdir(parents=True, exist_ok=True)
