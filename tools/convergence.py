@@ -7,11 +7,14 @@
 Prints a table and, with --keep, writes convergence.csv and convergence.png beside the runs.
 """
 import argparse
+import signal
 import sys
 import tempfile
 from pathlib import Path
 
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # no traceback from a stop during what follows
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+from spume_program import interruptible_main
 from spume_results import MissingResult, observed_order
 from spume_verification import RunFailed, case_folder, load_measure, run_case
 
@@ -74,4 +77,4 @@ def write(keep, rows, names):
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(interruptible_main(main))

@@ -19,11 +19,11 @@ cases/<name>/measure.py defines
     errors(run)   -> {quantity: value}         optional; errors of one run, for convergence tables
 """
 import importlib.util
-import subprocess
 import time
 import traceback
 from pathlib import Path
 
+from spume_program import run_program
 from spume_results import DamagedResult, MissingResult, Results, read_case
 
 CASES = Path(__file__).resolve().parent.parent / "cases"
@@ -96,12 +96,12 @@ def run_case(program, folder, out, settings=(), until=None, threads=None):
     if threads is not None:
         command += ["--threads", str(threads)]
     start = time.monotonic()
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    printed, errors, code = run_program(command)
     seconds = time.monotonic() - start
-    if done.returncode != 0:
-        messages = (done.stdout + done.stderr).strip().splitlines()[-25:]
+    if code != 0:
+        messages = (printed + errors).strip().splitlines()[-25:]
         words = "\n".join(f"    {message}" for message in messages)
-        raise RunFailed(f"exit code {done.returncode} from: {' '.join(command)}\n{words}")
+        raise RunFailed(f"exit code {code} from: {' '.join(command)}\n{words}")
     return Results(out, wall_seconds=seconds)
 
 

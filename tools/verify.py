@@ -6,16 +6,20 @@
 
 Exit code 0 when every bound holds, 1 when one does not or a run failed, 2 when the request makes no sense
 or a case cannot be checked: an unknown word in [verify], no bound, a damaged reference. That is found before any run.
+130 when it was interrupted, as the run that it had started then is.
 """
 import argparse
 import json
 import math
+import signal
 import sys
 import tempfile
 import traceback
 from pathlib import Path
 
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # no traceback from a stop during what follows
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+from spume_program import interruptible_main
 from spume_results import MissingResult, read_case
 from spume_verification import (RunFailed, case_folder, cases_with_verification, load_measure, run_case, settings_of,
                                 within)
@@ -165,4 +169,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(interruptible_main(main))

@@ -128,6 +128,73 @@ class Requests(Scratch):
                 (folder / "reference" / name).write_bytes(good)
 
 
+class Interruption(Scratch):
+    """The stand-in tells who it is, waits, and tells which signal ended it, as the program writes its checkpoint."""
+
+    PROGRAM = """
+import os, pathlib, signal, sys, time
+here = pathlib.Path({here!r})
+def stop(number, frame):
+    if {stubborn}: return
+    (here / "stopped").write_text(str(number))
+    sys.exit(130)
+for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP): signal.signal(number, stop)
+(here / "pid.part").write_text(str(os.getpid()))
+(here / "pid.part").rename(here / "pid")
+deadline = time.monotonic() + 60
+while time.monotonic() < deadline: time.sleep(0.05)
+"""
+
+    def started(self, *arguments, stubborn=False):
+        """verify.py with its run under way, and the run's process number."""
+        program = self.script(self.PROGRAM.format(here=str(self.path), stubborn=stubborn))
+        (self.path / "tmp").mkdir()
+        process = subprocess.Popen([sys.executable, VERIFY, program, "taylor_green_2d", *arguments], text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   env=os.environ | {"TMPDIR": str(self.path / "tmp")})
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + 30
+        while not (self.path / "pid").exists():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+        run = int((self.path / "pid").read_text())
+        self.addCleanup(self.kill, run)
+        return process, run
+
+    def kill(self, run):
+        try:
+            os.kill(run, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+
+    def check_gone(self, process, run):
+        _, said = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130, said)
+        self.assertNotIn("Traceback", said)
+        self.assertRaises(ProcessLookupError, os.kill, run, 0)
+        self.assertEqual(list((self.path / "tmp").iterdir()), [])
+        return said
+
+    def test_signals_reach_the_run_and_nothing_is_left(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(signal=number.name):
+                process, run = self.started()
+                process.send_signal(number)
+                self.assertIn(f"interrupted by {number.name}", self.check_gone(process, run))
+                self.assertEqual((self.path / "stopped").read_text(), str(int(number)))
+                shutil.rmtree(self.path / "tmp")
+                for name in ("pid", "stopped"):
+                    (self.path / name).unlink()
+
+    def test_a_second_signal_ends_a_run_that_does_not_stop(self):
+        process, run = self.started(stubborn=True)
+        process.send_signal(signal.SIGTERM)
+        time.sleep(0.5)
+        self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGTERM)
+        self.check_gone(process, run)
+
+
 class References(Scratch):
     def test_numbers_words_and_other_columns(self):
         path = self.path / "r.csv"
