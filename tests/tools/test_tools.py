@@ -159,6 +159,10 @@ class Verifying(Scratch):
         self.assertEqual(call("verify.py", self.program(), "no_such_case").returncode, 2)
         self.assertEqual(call("verify.py", self.path / "missing", "beltrami").returncode, 2)
 
+    def test_convergence_of_a_case_without_errors_is_a_bad_request(self):
+        done = call("convergence.py", self.program(), "clustering", 0.04)
+        self.assertEqual((done.returncode, "defines no errors(run)" in done.stderr), (2, True), done.stderr)
+
     def test_convergence_table_shows_the_order(self):
         done = call("convergence.py", self.program(), "taylor_green_2d", 0.04, 0.02, 0.01, "--keep", self.path / "kept")
         self.assertEqual(done.returncode, 0, done.stderr)
