@@ -41,6 +41,20 @@ TEST(PairStatisticsOfParticles, AreThoseOfTheDirectCount) {
   }
 }
 
+// Of 39 particles those with even numbers stand apart, the others in pairs: every second is looked at when 20 may be.
+TEST(PairStatisticsOfParticles, LookAtNoMoreCentresThanAllowed) {
+  Points points(39, 0);
+  for (std::size_t i = 0; i < 39; ++i) {
+    points.x[0][i] = i % 2 == 0 ? 0.025 * static_cast<double>(i) : 0.1 * static_cast<double>(i / 4) + 0.005 * (i % 4);
+    points.x[1][i] = i % 2 == 0 ? 1 : 0.3;
+  }
+  const auto neighbours = [&](std::size_t centres) {
+    return pair_statistics(points.lower, points.length, points.data(), 39, 0.001, 0.02, 4, centres).correlation.back();
+  };
+  EXPECT_EQ(neighbours(20), 0);
+  EXPECT_NEAR(neighbours(39), 18.0 / 39, 1e-15);
+}
+
 // Of n points a bin finds about n^2 shell / box pairs, and scatters by the root of half of that.
 TEST(PairStatisticsOfParticles, KnowTheDimensionOfTheSet) {
   for (const int dimensions : {1, 2, 3}) {
