@@ -213,7 +213,8 @@ void Suspension<T>::start() {
   system_.begin(velocity(untimed));
   if (follows_exponents_)
     tracker_ = LyapunovTracker(*system_.double_field(), static_cast<std::size_t>(loaded_.options.particles.lyapunov),
-                               system_.options().motion.response_time, loaded_.scene.seed + 1);
+                               system_.options().motion.response_time, system_.particles().common_diameter,
+                               loaded_.scene.seed + 1);
 }
 
 template <class T>
