@@ -262,7 +262,8 @@ void Suspension<T>::require_possible(const StepLimit& flow) const {
 template <class T>
 void Suspension<T>::add_stages(std::vector<Stage>& list) const {
   const bool couples = system_.couples(), collides = system_.collides();
-  const char* const no_feedback = collides ? "particles.coupling = \"colliding\"" : "particles.coupling = \"one-way\"";
+  const char* const no_feedback =
+      excludes(system_.options().coupling) ? "particles.coupling = \"colliding\"" : "particles.coupling = \"one-way\"";
   char spread[100];
   std::snprintf(spread, sizeof spread, "force spread to eight points, clipped above %.3g, projected",
                 system_.options().most_volume_fraction);
@@ -272,8 +273,9 @@ void Suspension<T>::add_stages(std::vector<Stage>& list) const {
   list.push_back({"particle motion", !system_.options().motion.frozen,
                   system_.options().motion.frozen ? "particles.frozen" : "Maxey-Riley, exponential in the drag"});
   list.push_back({"particle exclusion", collides,
-                  collides ? "strongest overlaps, one per particle"
-                           : "particles.coupling is neither \"four-way\" nor \"colliding\""});
+                  collides                          ? "strongest overlaps, one per particle"
+                  : system_.options().motion.frozen ? "particles.frozen"
+                                                    : "particles.coupling is neither \"four-way\" nor \"colliding\""});
   list.push_back({"Lyapunov exponents", follows_exponents_,
                   follows_exponents_ ? "shadow trajectories" : "particles.lyapunov = 0"});
 }
