@@ -39,6 +39,20 @@ Planning planning_of(const SpectralOptions& options) {
   return options.plans == PlanEffort::measured ? Planning::measure : Planning::estimate;
 }
 
+template <class T>
+double mode_bytes(const std::array<std::size_t, 3>& grid) {
+  return sizeof(std::complex<T>) * static_cast<double>(make_mode_layout<T>(grid, {1, 1, 1}).size());
+}
+
+// Of CrossProduct: five fields of half the planes, in rows a block longer, and of every thread half a plane of six
+// fields and a plane of three.
+template <class T>
+double product_bytes(const std::array<std::size_t, 3>& grid) {
+  const std::size_t plane = grid[1] * (make_mode_layout<T>(grid, {1, 1, 1}).row + lanes<T>);
+  return sizeof(std::complex<T>) * static_cast<double>(plane) *
+         (2.5 * static_cast<double>(grid[0]) + 6.0 * thread_count());
+}
+
 // Logarithm of the factor by which AB2 amplifies an oscillation in a step, phase = omega dt: that of the larger root of
 // rho^2 - (1 + 3/2 i phase) rho + i phase/2 = 0; phase^4 / 4 for small phases.
 double ab2_growth(double phase) {
@@ -67,12 +81,17 @@ double stable_ab2_phase(double damping) {
 
 }  // namespace
 
+double mode_bytes(const std::array<std::size_t, 3>& grid, FieldPrecision precision) {
+  return precision == FieldPrecision::f64 ? mode_bytes<double>(grid) : mode_bytes<float>(grid);
+}
+
 double flow_bytes(const std::array<std::size_t, 3>& grid, const SpectralOptions& options) {
-  const double number = options.precision == FieldPrecision::f64 ? 8 : 4;
-  // Sets of three fields, and five fields of half the planes.
-  const double fields = options.integrator == Integrator::ab2 ? 11.5 : 14.5;
-  return number * fields * static_cast<double>(grid[0]) * static_cast<double>(grid[1]) *
-         (static_cast<double>(grid[2]) + 2);
+  const double fields = options.integrator == Integrator::ab2 ? 9 : 12;
+  const double product =
+      options.precision == FieldPrecision::f64 ? product_bytes<double>(grid) : product_bytes<float>(grid);
+  // One component in double precision passes on its way to and from a checkpoint.
+  const double passing = 8 * static_cast<double>(grid[0]) * static_cast<double>(grid[1]) * static_cast<double>(grid[2]);
+  return fields * mode_bytes(grid, options.precision) + product + passing;
 }
 
 template <class T>
@@ -110,6 +129,17 @@ Flow<T>::Flow(const LoadedCase& loaded)
     for (auto& field : *set) field.resize(layout_.size());
   if (options_.integrator != Integrator::ab2)
     for (auto& field : start_) field.resize(layout_.size());
+}
+
+template <class T>
+Modes<T> Flow<T>::take_potential() {
+  Modes<T> potential;
+  potential.swap(potential_);
+  for (auto& field : potential) {
+    field.resize(layout_.size());
+    parallel_for(field.size(), [&](std::size_t i) { field[i] = 0; });
+  }
+  return potential;
 }
 
 template <class T>

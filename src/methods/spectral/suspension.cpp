@@ -50,7 +50,7 @@ std::vector<std::array<double, 3>> read_positions(const LoadedCase& loaded) {
 }
 
 void require_memory(const LoadedCase& loaded, const ParticleOptions& options) {
-  const double particles = ParticleSystem::estimated_bytes(grid_of(loaded), options);
+  const double particles = suspension_bytes(loaded, options);
   const double needed = particles + flow_bytes(loaded.scene.grid, loaded.options.spectral);
   const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
   if (needed <= machine) return;
@@ -95,6 +95,15 @@ constexpr std::size_t pair_centres = 20000;
 constexpr int overlap_bins = 20;
 
 }  // namespace
+
+double suspension_bytes(const LoadedCase& loaded, const ParticleOptions& options) {
+  const PeriodicGrid grid = grid_of(loaded);
+  const double number = loaded.options.spectral.precision == FieldPrecision::f64 ? 8 : 4;
+  // Velocity or force on the points and, when the flow feels it, the force as modes.
+  double fields = 3 * number * static_cast<double>(grid.storage());
+  if (acts_on_flow(options.coupling)) fields += 3 * mode_bytes(loaded.scene.grid, loaded.options.spectral.precision);
+  return ParticleSystem::estimated_bytes(grid, options) + fields;
+}
 
 ParticleOptions particle_options(const LoadedCase& loaded) {
   const ParticleCaseOptions& in = loaded.options.particles;
