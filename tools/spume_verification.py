@@ -17,6 +17,8 @@ cases/<name>/measure.py defines
     measure(runs) -> {quantity: value}         runs: {name: Results}; quantities without a bound are reported only
     curves(runs)  -> [figure]                  optional; see spume_figures.draw_curves
     errors(run)   -> {quantity: value}         optional; errors of one run, for convergence tables
+and reads its references at its top level with spume_results.read_reference: it is loaded before the first run, so that a
+damaged one is found then.
 """
 import importlib.util
 import time
