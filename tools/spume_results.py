@@ -83,8 +83,9 @@ def wrong_width(path, number, row, header):
                          f"{len(header)} columns ({', '.join(header)}); restore the file")
 
 
-def read_csv(path):
-    """A CSV file with `#` lines first and then the column names. Numbers become float arrays, else text arrays."""
+def read_csv(path, words=None):
+    """A CSV file with `#` lines first and then the column names. Numbers become float arrays, else text arrays; with
+    words given, only the columns of these names may hold text."""
     path = Path(path)
     comments, (_, header), rows = read_rows(path)
     # The last line of a run that was killed may be cut short; any other of a wrong length is damage.
@@ -99,6 +100,9 @@ def read_csv(path):
         try:
             columns[name] = np.array([float(value) if value.strip() else np.nan for value in text])
         except ValueError:
+            if words is not None and name not in words:
+                line, value = next((line, row[index]) for line, row in rows if row[index].strip() and not is_float(row[index]))
+                raise DamagedResult(f"{path}:{line}: column '{name}' holds '{value}'; a number was expected") from None
             columns[name] = np.array(text, dtype=str)
     return Table(path, columns, comments)
 
@@ -132,11 +136,16 @@ def read_reference(path, numbers, words=None):
     return Table(path, {name: np.array(values) for name, values in columns.items()}, comments)
 
 
-def finite_number(path, line, name, text):
+def is_float(text):
     try:
-        value = float(text)
+        float(text)
     except ValueError:
-        value = float("nan")
+        return False
+    return True
+
+
+def finite_number(path, line, name, text):
+    value = float(text) if is_float(text) else float("nan")
     if not np.isfinite(value):
         raise DamagedResult(f"{path}:{line}: column '{name}' holds '{text.strip()}'; a finite number was expected; "
                             "restore the file")
@@ -268,19 +277,19 @@ class Results:
 
     @cached_property
     def series(self):
-        return read_csv(self.folder / "series.csv")
+        return read_csv(self.folder / "series.csv", words=())
 
     @cached_property
     def probes(self):
-        return read_csv(self.folder / "probes.csv")
+        return read_csv(self.folder / "probes.csv", words=())
 
     @cached_property
     def lines(self):
-        return read_csv(self.folder / "lines.csv")
+        return read_csv(self.folder / "lines.csv", words=("name",))
 
     @cached_property
     def spectrum(self):
-        return read_csv(self.folder / "spectrum.csv")
+        return read_csv(self.folder / "spectrum.csv", words=())
 
     @cached_property
     def case(self):

@@ -17,6 +17,8 @@ cases/<name>/measure.py defines
     measure(runs) -> {quantity: value}         runs: {name: Results}; quantities without a bound are reported only
     curves(runs)  -> [figure]                  optional; see spume_figures.draw_curves
     errors(run)   -> {quantity: value}         optional; errors of one run, for convergence tables
+and reads its references at its top level with spume_results.read_reference: it is loaded before the first run, so that a
+damaged one is found then.
 """
 import importlib.util
 import time
@@ -47,7 +49,18 @@ def cases_with_verification():
 
 
 def find_case(run):
-    """The folder of the case that a run came from: the one in cases/ with the same title; None when there is none."""
+    """The folder of the case that a run came from: the one that summary.json names, where it holds a measure.py; else the
+    one in cases/ with the same title; None when there is none."""
+    try:
+        file = run.summary.get("case")
+    except MissingResult:  # a run under way, or one that was killed
+        file = None
+    if isinstance(file, str):
+        # A path as it was given where the run was started: most often a folder above the run's own.
+        for start in (*run.folder.resolve().parents, Path.cwd()):
+            folder = (start / file).parent
+            if (folder / "measure.py").is_file():
+                return folder.resolve()
     try:
         title = run.case.get("title")
     except MissingResult:

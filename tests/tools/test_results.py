@@ -37,6 +37,9 @@ class ReadingResults(unittest.TestCase):
         (self.folder / "series.csv").write_bytes(b"t,dt\n0,1\n1,\xff\n")
         with self.assertRaisesRegex(DamagedResult, r"series.csv:3: byte 0xff is not UTF-8 text"):
             Results(self.folder).series
+        (self.folder / "series.csv").write_text("t,dt\n0,nan\n1,abc\n2,1\n")
+        with self.assertRaisesRegex(DamagedResult, r"series.csv:3: column 'dt' holds 'abc'; a number was expected"):
+            Results(self.folder).series
         (self.folder / "case.toml").write_bytes(b"title = \"\xff\"\n")
         with self.assertRaisesRegex(DamagedResult, "case.toml: cannot be read"):
             Results(self.folder).case
