@@ -7,11 +7,14 @@
 Prints a table and, with --keep, writes convergence.csv and convergence.png beside the runs.
 """
 import argparse
+import signal
 import sys
 import tempfile
 from pathlib import Path
 
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # no traceback from a stop during what follows
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+from spume_program import interruptible_main
 from spume_results import MissingResult, observed_order
 from spume_verification import RunFailed, case_folder, load_measure, run_case
 
@@ -31,6 +34,10 @@ def main():
         module = load_measure(folder)
         if module is None or not hasattr(module, "errors"):
             raise MissingResult(f"{folder / 'measure.py'}: defines no errors(run)")
+    except MissingResult as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    try:
         with tempfile.TemporaryDirectory(prefix="spume-convergence-") as scratch:
             keep = arguments.keep or Path(scratch)
             keep.mkdir(parents=True, exist_ok=True)
@@ -70,4 +77,4 @@ def write(keep, rows, names):
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(interruptible_main(main))

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Standard pictures of a run: plot.py DIR [--times T...] writes DIR/plots/*.png and prints their names.
 
-Every picture is drawn from what the folder holds; what it does not hold is left out with one line saying so.
-Exit code 0 when at least one picture was written, 2 when there was nothing to draw.
+Every picture is drawn from what the folder holds. What the case asks for and the folder does not hold is left out with
+one line saying so. Exit code 0 when at least one picture was written and no file was damaged, else 2.
 """
 import argparse
 import sys
@@ -20,8 +20,17 @@ from spume_bubbles import PICTURES as BUBBLE_PICTURES
 from spume_figures import (FIELDS, draw_curves, draw_grid_slices, draw_side_view, draw_slices, finish,
                            has_free_surface)
 from spume_particle_figures import plot_particles
-from spume_results import MissingResult, Results, read_csv
-from spume_verification import find_case, load_measure
+from spume_results import DamagedResult, MissingResult, Results, read_csv
+from spume_verification import fault_place, find_case, load_measure
+
+
+def asks_for_spectra(case):
+    return case.get("output", {}).get("spectrum_every", 0) > 0
+
+
+def asks_for_probes(case, lines):
+    """Whether the case has a probe that is a line, or one that is not."""
+    return any((probe.get("kind") == "line") == lines for probe in case.get("probe", []))
 
 
 def plot_energy(run, out):
@@ -110,6 +119,8 @@ def plot_side_view(run, out):
 
 
 def plot_spectra(run, out):
+    if not run.has("spectrum.csv") and not asks_for_spectra(run.case):
+        return []
     spectrum = run.spectrum
     times = np.unique(spectrum["t"])
     chosen = times[np.unique(np.linspace(0, len(times) - 1, min(6, len(times))).astype(int))]
@@ -171,6 +182,8 @@ def plot_gradient_pdf(run, out):
 
 def plot_probes(run, out):
     """Every probe against time, one panel per quantity."""
+    if not run.has("probes.csv") and not asks_for_probes(run.case, lines=False):
+        return []
     probes = run.probes
     groups = {}
     for name in probes:
@@ -195,6 +208,8 @@ def plot_probes(run, out):
 
 def plot_lines(run, out):
     """Profiles along every line probe at up to six times."""
+    if not run.has("lines.csv") and not asks_for_probes(run.case, lines=True):
+        return []
     files = []
     for name in run.line_names():
         times = run.line_times(name)
@@ -217,11 +232,27 @@ def plot_reference(run, out):
     module = load_measure(case) if case else None
     if module is None or not hasattr(module, "curves"):
         return []
-    return draw_curves(module.curves({"run": run}), out)
+    try:
+        return draw_curves(module.curves({"run": run}), out)
+    except (MissingResult, OSError):
+        raise
+    except Exception as error:  # a fault in one measure.py must not hide the other pictures
+        place = fault_place(case / "measure.py", error)
+        raise DamagedResult(f"{place}: curves failed ({type(error).__name__}: {error})") from error
 
 
 PICTURES = (plot_energy, plot_numerics, plot_ledger, plot_turbulence, plot_slices, plot_side_view, plot_spectra,
             plot_gradient_pdf, plot_particles, plot_probes, plot_lines, *BUBBLE_PICTURES, plot_reference)
+
+
+def run_in(folder):
+    """The run in a folder; MissingResult when there is none."""
+    run = Results(folder)
+    if any(run.has(name) for name in ("series.csv", "summary.json", "log.txt", "fluid.vtkhdf")):
+        return run
+    if run.has("case.toml"):
+        raise MissingResult(f"{folder}: a case and not a run of it")
+    raise MissingResult(f"{folder}: not the folder of a run, with series.csv, summary.json or log.txt")
 
 
 def main():
@@ -231,29 +262,34 @@ def main():
     arguments = parser.parse_args()
     folder = arguments.directory
     try:
-        run = Results(folder)
+        run = run_in(folder)
         run.picture_times = arguments.times
     except MissingResult as error:
         print(f"error: {error}; give the folder that 'spume run' made", file=sys.stderr)
         return 2
     out = run.folder / "plots"
-    files = []
+    files, left_out, damaged = [], {}, set()
     for picture in PICTURES:
         try:
             out.mkdir(exist_ok=True)
             files += picture(run, out)
         except (MissingResult, ValueError, IndexError, np.linalg.LinAlgError) as error:
-            print(f"{picture.__name__[5:].replace('_', ' ')} left out: {error}", file=sys.stderr)
+            left_out.setdefault(str(error), []).append(picture.__name__[5:].replace("_", " "))
+            if isinstance(error, DamagedResult):
+                damaged.add(str(error))
         except OSError as error:
             print(f"error: {error.filename}: {error.strerror}", file=sys.stderr)
             return 2
         finally:
             plt.close("all")
+    for reason, names in left_out.items():
+        print(f"{'error: ' if reason in damaged else ''}{', '.join(names)} left out: {reason}", file=sys.stderr)
     for file in files:
         print(file)
     if not files:
+        out.rmdir()
         print(f"error: {folder}: nothing to draw", file=sys.stderr)
-    return 0 if files else 2
+    return 0 if files and not damaged else 2
 
 
 if __name__ == "__main__":

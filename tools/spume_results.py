@@ -8,7 +8,8 @@
     run.snapshots("fluid")[-1].position               (N, 3), with .time and .fields["velocity"] (N, 3)
     run.case["resolution"]["spacing"]                 the resolved case file
 
-Every reader raises MissingResult, with the path and what would have written it, when there is nothing to read.
+Every reader raises MissingResult, with the path and what would have written it, when there is nothing to read, and
+DamagedResult, one of its kind, when what is there is not what it should be.
 """
 import csv
 import json
@@ -22,6 +23,10 @@ import numpy as np
 
 class MissingResult(Exception):
     """A file or a column that a run did not write."""
+
+
+class DamagedResult(MissingResult):
+    """A file that is there but does not hold what it should."""
 
 
 class Table(dict):
@@ -48,28 +53,103 @@ class Table(dict):
         return name.replace("_", " ") + (f" [{unit}]" if unit and unit not in ("1", "-") else "")
 
 
-def read_csv(path):
-    """A CSV file with `#` lines first and then the column names. Numbers become float arrays, else text arrays."""
-    path = Path(path)
+def read_rows(path):
+    """Comments, header and the rows of a CSV file, each row with the number of its line; the header has one too."""
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        raw = path.read_bytes()
+        text = raw.decode("utf-8")
     except OSError as error:
         raise MissingResult(f"{path}: cannot be read ({error.strerror})") from error
-    comments = [line.lstrip("# ") for line in lines if line.startswith("#")]
-    rows = [row for row in csv.reader(line for line in lines if line.strip() and not line.startswith("#"))]
+    except UnicodeDecodeError as error:
+        line = raw[: error.start].count(b"\n") + 1
+        raise DamagedResult(f"{path}:{line}: byte 0x{raw[error.start]:02x} is not UTF-8 text; a table of numbers was "
+                            "expected; restore the file") from error
+    lines = list(enumerate(text.replace("\r\n", "\n").split("\n"), 1))
+    comments = [line.lstrip("# ") for _, line in lines if line.startswith("#")]
+    kept = [(number, line) for number, line in lines if line.strip() and not line.startswith("#")]
+    reader = csv.reader(line for _, line in kept)
+    try:
+        rows = [(kept[reader.line_num - 1][0], row) for row in reader]
+    except csv.Error as error:
+        raise DamagedResult(f"{path}:{kept[reader.line_num - 1][0]}: not comma-separated text ({error}); restore the "
+                            "file") from error
     if not rows:
-        raise MissingResult(f"{path}: holds no header line")
-    header = [name.strip() for name in rows[0]]
-    # The last line of a run that was killed may be cut short.
-    data = [row for row in rows[1:] if len(row) == len(header)]
+        raise DamagedResult(f"{path}: holds no header line; expected the names of the columns; restore the file")
+    return comments, (rows[0][0], [name.strip() for name in rows[0][1]]), rows[1:]
+
+
+def wrong_width(path, number, row, header):
+    return DamagedResult(f"{path}:{number}: the row holds {len(row)} value{'s' * (len(row) != 1)}, the header names "
+                         f"{len(header)} columns ({', '.join(header)}); restore the file")
+
+
+def read_csv(path, words=None):
+    """A CSV file with `#` lines first and then the column names. Numbers become float arrays, else text arrays; with
+    words given, only the columns of these names may hold text."""
+    path = Path(path)
+    comments, (_, header), rows = read_rows(path)
+    # The last line of a run that was killed may be cut short; any other of a wrong length is damage.
+    if rows and len(rows[-1][1]) < len(header):
+        rows.pop()
+    for number, row in rows:
+        if len(row) != len(header):
+            raise wrong_width(path, number, row, header)
     columns = {}
     for index, name in enumerate(header):
-        text = [row[index] for row in data]
+        text = [row[index] for _, row in rows]
         try:
             columns[name] = np.array([float(value) if value.strip() else np.nan for value in text])
         except ValueError:
+            if words is not None and name not in words:
+                line, value = next((line, row[index]) for line, row in rows if row[index].strip() and not is_float(row[index]))
+                raise DamagedResult(f"{path}:{line}: column '{name}' holds '{value}'; a number was expected") from None
             columns[name] = np.array(text, dtype=str)
     return Table(path, columns, comments)
+
+
+def read_reference(path, numbers, words=None):
+    """A reference table that a measure compares with: nothing in it may be missing or damaged.
+
+    numbers: names of the columns that must hold a finite number in every row; words: {name: the words its column may
+    hold}. Other columns may hold anything. Raises DamagedResult with file, line and column.
+    """
+    path, words = Path(path), words or {}
+    restore = "restore the file, or correct the names in measure.py"
+    comments, (header_line, header), rows = read_rows(path)
+    for name in (*numbers, *words):
+        if name not in header:
+            raise DamagedResult(f"{path}:{header_line}: the header names no column '{name}', which measure.py needs; it "
+                                f"names {', '.join(header)}; {restore}")
+    if len(set(header)) != len(header):
+        raise DamagedResult(f"{path}:{header_line}: the header names a column twice: {', '.join(header)}; {restore}")
+    if not rows:
+        raise DamagedResult(f"{path}:{header_line}: no row follows the header; expected at least one; restore the file")
+    columns = {name: [] for name in header}
+    for number, row in rows:
+        if len(row) != len(header):
+            raise wrong_width(path, number, row, header)
+        for name, value in zip(header, row):
+            if name in words and value.strip() not in words[name]:
+                raise DamagedResult(f"{path}:{number}: column '{name}' holds '{value.strip()}'; expected "
+                                    f"{' or '.join(words[name])}; restore the file")
+            columns[name].append(finite_number(path, number, name, value) if name in numbers else value.strip())
+    return Table(path, {name: np.array(values) for name, values in columns.items()}, comments)
+
+
+def is_float(text):
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def finite_number(path, line, name, text):
+    value = float(text) if is_float(text) else float("nan")
+    if not np.isfinite(value):
+        raise DamagedResult(f"{path}:{line}: column '{name}' holds '{text.strip()}'; a finite number was expected; "
+                            "restore the file")
+    return value
 
 
 class Fields:
@@ -131,8 +211,8 @@ class Steps:
                 self.times = np.array(steps["Values"], dtype=float)[: int(steps.attrs["NSteps"])]
                 self.names = list(root["PointData"]) if "PointData" in root else []
                 self._read_layout(root)
-        except (OSError, KeyError) as error:
-            raise MissingResult(f"{self.path}: not a VTKHDF file {self.contents} ({error})") from error
+        except (OSError, KeyError, RuntimeError) as error:
+            raise DamagedResult(f"{self.path}: not a VTKHDF file {self.contents} ({error})") from error
 
     def __len__(self):
         return len(self.times)
@@ -142,8 +222,11 @@ class Steps:
 
         if not -len(self) <= index < len(self):
             raise IndexError(index)
-        with h5py.File(self.path, "r", locking=False) as file:
-            return self._read(file["VTKHDF"], index % len(self))
+        try:
+            with h5py.File(self.path, "r", locking=False) as file:
+                return self._read(file["VTKHDF"], index % len(self))
+        except (OSError, KeyError, RuntimeError) as error:
+            raise DamagedResult(f"{self.path}: step {index % len(self)} cannot be read ({error})") from error
 
     def nearest(self, time):
         return self[int(np.argmin(np.abs(self.times - time)))]
@@ -194,19 +277,19 @@ class Results:
 
     @cached_property
     def series(self):
-        return read_csv(self.folder / "series.csv")
+        return read_csv(self.folder / "series.csv", words=())
 
     @cached_property
     def probes(self):
-        return read_csv(self.folder / "probes.csv")
+        return read_csv(self.folder / "probes.csv", words=())
 
     @cached_property
     def lines(self):
-        return read_csv(self.folder / "lines.csv")
+        return read_csv(self.folder / "lines.csv", words=("name",))
 
     @cached_property
     def spectrum(self):
-        return read_csv(self.folder / "spectrum.csv")
+        return read_csv(self.folder / "spectrum.csv", words=())
 
     @cached_property
     def case(self):
@@ -268,15 +351,19 @@ class Results:
     def _json(self, name):
         try:
             return json.loads((self.folder / name).read_text(encoding="utf-8"))
-        except (OSError, ValueError) as error:
-            raise MissingResult(f"{self.folder / name}: cannot be read ({error})") from error
+        except OSError as error:
+            raise MissingResult(f"{self.folder / name}: cannot be read ({error.strerror})") from error
+        except ValueError as error:
+            raise DamagedResult(f"{self.folder / name}: cannot be read ({error})") from error
 
 
 def read_case(path):
     try:
         return tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except (OSError, tomllib.TOMLDecodeError) as error:
-        raise MissingResult(f"{path}: cannot be read ({error})") from error
+    except OSError as error:
+        raise MissingResult(f"{path}: cannot be read ({error.strerror})") from error
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise DamagedResult(f"{path}: cannot be read ({error})") from error
 
 
 def standard(runs):

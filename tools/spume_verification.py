@@ -17,13 +17,16 @@ cases/<name>/measure.py defines
     measure(runs) -> {quantity: value}         runs: {name: Results}; quantities without a bound are reported only
     curves(runs)  -> [figure]                  optional; see spume_figures.draw_curves
     errors(run)   -> {quantity: value}         optional; errors of one run, for convergence tables
+and reads its references at its top level with spume_results.read_reference: it is loaded before the first run, so that a
+damaged one is found then.
 """
 import importlib.util
-import subprocess
 import time
+import traceback
 from pathlib import Path
 
-from spume_results import MissingResult, Results, read_case
+from spume_program import run_program
+from spume_results import DamagedResult, MissingResult, Results, read_case
 
 CASES = Path(__file__).resolve().parent.parent / "cases"
 
@@ -46,7 +49,18 @@ def cases_with_verification():
 
 
 def find_case(run):
-    """The folder of the case that a run came from: the one in cases/ with the same title; None when there is none."""
+    """The folder of the case that a run came from: the one that summary.json names, where it holds a measure.py; else the
+    one in cases/ with the same title; None when there is none."""
+    try:
+        file = run.summary.get("case")
+    except MissingResult:  # a run under way, or one that was killed
+        file = None
+    if isinstance(file, str):
+        # A path as it was given where the run was started: most often a folder above the run's own.
+        for start in (*run.folder.resolve().parents, Path.cwd()):
+            folder = (start / file).parent
+            if (folder / "measure.py").is_file():
+                return folder.resolve()
     try:
         title = run.case.get("title")
     except MissingResult:
@@ -61,14 +75,28 @@ def find_case(run):
 
 
 def load_measure(folder):
-    """The module measure.py of a case; None when it has none."""
+    """The module measure.py of a case; None when it has none. DamagedResult when it, or a reference it reads, is faulty."""
     path = Path(folder) / "measure.py"
     if not path.is_file():
         return None
     specification = importlib.util.spec_from_file_location(f"measure_{Path(folder).name}", path)
     module = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(module)
+    try:
+        specification.loader.exec_module(module)
+    except MissingResult:
+        raise
+    except Exception as error:
+        raise DamagedResult(f"{fault_place(path, error)}: cannot be loaded ({type(error).__name__}: {error}); correct "
+                            "measure.py") from error
     return module
+
+
+def fault_place(path, error):
+    """`file:line` of the last line of the file that an error came through; the file alone where there is none."""
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)]
+    if isinstance(error, SyntaxError) and error.filename == str(path):
+        lines.append(error.lineno)
+    return f"{path}:{lines[-1]}" if lines else str(path)
 
 
 def run_case(program, folder, out, settings=(), until=None, threads=None):
@@ -81,12 +109,12 @@ def run_case(program, folder, out, settings=(), until=None, threads=None):
     if threads is not None:
         command += ["--threads", str(threads)]
     start = time.monotonic()
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    printed, errors, code = run_program(command)
     seconds = time.monotonic() - start
-    if done.returncode != 0:
-        messages = (done.stdout + done.stderr).strip().splitlines()[-25:]
+    if code != 0:
+        messages = (printed + errors).strip().splitlines()[-25:]
         words = "\n".join(f"    {message}" for message in messages)
-        raise RunFailed(f"exit code {done.returncode} from: {' '.join(command)}\n{words}")
+        raise RunFailed(f"exit code {code} from: {' '.join(command)}\n{words}")
     return Results(out, wall_seconds=seconds)
 
 

@@ -4,20 +4,26 @@
 
     verify.py PROGRAM [CASE...] [--quick] [--threads N] [--keep DIR]
 
-Exit code 0 when every bound holds, 1 when one does not or a run failed, 2 when the request makes no sense.
+Exit code 0 when every bound holds, 1 when one does not or a run failed, 2 when the request makes no sense
+or a case cannot be checked: an unknown word in [verify], no bound, a damaged reference. That is found before any run.
+130 when it was interrupted, as the run that it had started then is.
 """
 import argparse
 import json
 import math
+import signal
 import sys
 import tempfile
 import traceback
 from pathlib import Path
 
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # no traceback from a stop during what follows
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+from spume_program import interruptible_main
 from spume_results import MissingResult, read_case
 from spume_verification import (RunFailed, case_folder, cases_with_verification, load_measure, run_case, settings_of,
                                 within)
+from spume_verify_table import VerifyTable
 
 NAMES = ("quantity", "measured", "bound", "verdict", "seconds")
 COLUMNS = "{:<22} {:<34} {:>12} {:>18}  {:<6} {:>8}"
@@ -30,15 +36,54 @@ def text_of(bound):
 
 
 def verification_of(folder, quick):
-    """The [verify] table of a case, or with quick its short form; None when it has none."""
-    table = read_case(folder / "case.toml").get("verify")
-    if table is None or not quick:
-        return table
+    """The [verify] table of a case, or with quick its short form; None when it has none. And what is wrong with it."""
+    file = folder / "case.toml"
+    table = read_case(file).get("verify")
+    if table is None:
+        return None, []
+    problems = VerifyTable(file, file.read_text(encoding="utf-8")).check(table, quick)
+    if problems or not quick:
+        return table, problems
     short = table.get("quick", False)
-    return short if isinstance(short, dict) else table if short else None
+    return (short if isinstance(short, dict) else table if short else None), []
 
 
-def verify_case(program, folder, table, out, threads, draw):
+def measure_of(folder):
+    """The module measure.py of a case, with the references it reads; MissingResult when there is none that measures."""
+    module = load_measure(folder)
+    if module is None:
+        raise MissingResult(f"{folder / 'measure.py'}: not there; add it, with measure(runs) -> {{quantity: value}}")
+    if not callable(getattr(module, "measure", None)):
+        raise MissingResult(f"{folder / 'measure.py'}: defines no measure(runs); add it, returning {{quantity: value}}")
+    return module
+
+
+def prepare(names, quick):
+    """What is to be verified, [(folder, table, measure module)], and everything that is wrong with the request. All of
+    it is known before the first run, so that a damaged reference does not cost a simulation."""
+    chosen, problems = [], []
+    folders = list(dict.fromkeys(case_folder(name) for name in names)) or cases_with_verification()
+    for index, folder in enumerate(folders):
+        if folder.name in (other.name for other in folders[:index]):
+            problems.append(f"{folder}: another case of this name is to be verified too, and the runs of both would share "
+                            "a folder; verify one at a time")
+        try:
+            table, faults = verification_of(folder, quick)
+            problems += faults
+            if table is not None:
+                chosen.append((folder, table, measure_of(folder)))
+            elif names:
+                missing = "[verify.quick]" if quick else "[verify]"
+                problems.append(f"{folder / 'case.toml'}: no {missing} table; add one with bounds"
+                                + (", or leave out --quick" if quick else ""))
+        except MissingResult as error:
+            problems.append(str(error))
+    if not chosen and not problems:
+        problems.append("no case to verify")
+    return chosen, problems
+
+
+def verify_case(program, folder, table, module, out, threads, draw):
     """Yields rows (quantity, value, bound, verdict, seconds) of one case; draw also writes its comparison figures."""
     runs, seconds = {}, 0.0
     for run in table.get("run") or [{"name": "run"}]:
@@ -46,9 +91,8 @@ def verify_case(program, folder, table, out, threads, draw):
         result = run_case(program, folder, out / run["name"], settings_of(run, runs), run.get("until"), threads)
         runs[run["name"]] = result
         seconds += result.wall_seconds
-    module = load_measure(folder)
     measured = module.measure(runs)
-    bounds = table.get("bounds", {})
+    bounds = table["bounds"]
     for quantity, value in measured.items():
         bound = bounds.get(quantity)
         verdict = "" if bound is None else "pass" if math.isfinite(value) and within(value, bound) else "FAIL"
@@ -73,19 +117,12 @@ def main():
     arguments = parser.parse_args()
 
     try:
-        folders = [case_folder(name) for name in arguments.cases] or cases_with_verification()
-        chosen = [(folder, verification_of(folder, arguments.quick)) for folder in folders]
+        chosen, problems = prepare(arguments.cases, arguments.quick)
     except MissingResult as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    if arguments.cases and not arguments.quick:
-        for folder, table in chosen:
-            if table is None:
-                print(f"error: {folder / 'case.toml'}: no [verify] table; add one with bounds", file=sys.stderr)
-                return 2
-    chosen = [(folder, table) for folder, table in chosen if table is not None]
-    if not chosen:
-        print("error: no case to verify", file=sys.stderr)
+        chosen, problems = [], [str(error)]
+    if problems:
+        for problem in dict.fromkeys(problems):
+            print(f"error: {problem}", file=sys.stderr)
         return 2
     program = Path(arguments.program)
     if not program.is_file():
@@ -94,16 +131,17 @@ def main():
 
     with tempfile.TemporaryDirectory(prefix="spume-verify-") as scratch:
         keep = arguments.keep or Path(scratch)
-        if arguments.keep and any((keep / folder.name).exists() for folder, _ in chosen):
+        if arguments.keep and any((keep / folder.name).exists() for folder, *_ in chosen):
             print(f"error: {keep}: holds earlier runs, and nothing is overwritten; give another folder",
                   file=sys.stderr)
             return 2
         failed, report = [], {}
-        for folder, table in chosen:
+        for folder, table, module in chosen:
             out = keep / folder.name
             try:
                 out.mkdir(parents=True)
-                rows = list(verify_case(program.resolve(), folder, table, out, arguments.threads, bool(arguments.keep)))
+                rows = list(verify_case(program.resolve(), folder, table, module, out, arguments.threads,
+                                        bool(arguments.keep)))
             except (RunFailed, MissingResult) as error:
                 print(f"{folder.name}: {error}", file=sys.stderr, flush=True)
                 rows = [("(not measured)", math.nan, None, "FAIL", math.nan)]
@@ -131,4 +169,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(interruptible_main(main))

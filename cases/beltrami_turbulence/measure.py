@@ -8,9 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from spume_results import read_csv, standard
+from spume_results import read_reference, standard
 
-REFERENCE = read_csv(Path(__file__).parent / "reference" / "beltrami_ramp_forcing.csv")
+FOLDER = Path(__file__).parent / "reference"
+REFERENCE = read_reference(FOLDER / "beltrami_ramp_forcing.csv", ("t", "K"))
 CLOSURES = ("mixed-scale", "smagorinsky", "dynamic-shepard", "dynamic-lagrangian")
 
 

@@ -13,10 +13,11 @@ from pathlib import Path
 
 import numpy as np
 
-from spume_results import read_csv, standard
+from spume_results import read_reference, standard
 
 PHASE_SPEED = 1 / np.sqrt(2 * np.pi)
-POTENTIAL_FLOW = read_csv(Path(__file__).parent / "reference" / "potential_flow.csv")
+FOLDER = Path(__file__).parent / "reference"
+POTENTIAL_FLOW = read_reference(FOLDER / "potential_flow.csv", ("chi", "t", "crest_speed"))
 
 
 def crest_speeds(run):

@@ -10,10 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from spume_results import read_csv, standard
+from spume_results import read_reference, standard
 
-REFERENCE = read_csv(Path(__file__).parent / "reference" / "dambreak2d_martin_moyce_1952.csv")
-IDEAL = read_csv(Path(__file__).parent / "reference" / "ideal_release.csv")
+FOLDER = Path(__file__).parent / "reference"
+REFERENCE = read_reference(FOLDER / "dambreak2d_martin_moyce_1952.csv", ("a_inch", "T", "Z"))
+IDEAL = read_reference(FOLDER / "ideal_release.csv", ("T", "Z"))
 COLUMNS = (1.125, 2.25)
 LATEST = 3.0
 

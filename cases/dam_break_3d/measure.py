@@ -4,9 +4,10 @@ from pathlib import Path
 
 import numpy as np
 
-from spume_results import read_csv, standard
+from spume_results import read_reference, standard
 
-REFERENCE = read_csv(Path(__file__).parent / "reference" / "spheric2_kleefsman.csv")
+FOLDER = Path(__file__).parent / "reference"
+REFERENCE = read_reference(FOLDER / "spheric2_kleefsman.csv", ("t", "H1", "H2", "H3", "H4", "P1", "P3"))
 DEPTH = 0.55
 LATEST = 2.0
 # A quarter of the measured peak of P1, far above the noise before impact. The experiment passes it at 0.396 s, within

@@ -4,10 +4,12 @@ from pathlib import Path
 
 import numpy as np
 
-from spume_results import read_csv
+from spume_results import read_reference
 
-REFERENCE = read_csv(Path(__file__).parent / "reference" / "ghia1982.csv")
-CHECK = read_csv(Path(__file__).parent / "reference" / "streamfunction.csv")
+PROFILES = {"profile": ("u", "v")}
+FOLDER = Path(__file__).parent / "reference"
+REFERENCE = read_reference(FOLDER / "ghia1982.csv", ("coordinate", "re100", "re400"), PROFILES)
+CHECK = read_reference(FOLDER / "streamfunction.csv", ("coordinate", "re100", "re400"), PROFILES)
 # profile -> line probe, its coordinate, its velocity component
 LINES = {"u": ("vertical", "y", "velocity_x"), "v": ("horizontal", "x", "velocity_y")}
 

@@ -13,11 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
-from spume_results import MissingResult, read_csv, standard
+from spume_results import MissingResult, read_reference, standard
 
 K = 2 * np.pi
 PERIOD = 2 * np.pi / np.sqrt(K)
-REFERENCE = read_csv(Path(__file__).parent / "reference" / "standing_wave_viscous_deep.csv")
+FOLDER = Path(__file__).parent / "reference"
+REFERENCE = read_reference(FOLDER / "standing_wave_viscous_deep.csv", ("nu", "t", "a_over_a0"))
 
 
 def viscosity(run):

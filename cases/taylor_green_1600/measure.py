@@ -4,10 +4,11 @@ from pathlib import Path
 
 import numpy as np
 
-from spume_results import read_csv, standard
+from spume_results import read_reference, standard
 
-REFERENCE = read_csv(Path(__file__).parent / "reference" / "tgv_re1600_spectral512.csv")
-SPECTRUM = read_csv(Path(__file__).parent / "reference" / "tgv_re1600_spectrum_t9.csv")
+FOLDER = Path(__file__).parent / "reference"
+REFERENCE = read_reference(FOLDER / "tgv_re1600_spectral512.csv", ("t", "E", "eps"))
+SPECTRUM = read_reference(FOLDER / "tgv_re1600_spectrum_t9.csv", ("k", "E"))
 EARLY_ENERGY = 0.124953117517  # E(0.1), the reference's source with all its digits
 
 

@@ -28,6 +28,8 @@ def measure(runs):
 
 
 def curves(runs):
+    if not {"plain", "coupled", "enhanced"} <= runs.keys():
+        return []
     plain = last_spectrum(runs["plain"])
     lines = [(name.replace("_", " "), *ratio) for name, ratio in
              ((name, (last_spectrum(run)[0], last_spectrum(run)[1] / plain[1], style))

@@ -198,13 +198,13 @@ DepositionReport LinearDeposition::deposit(const CellOrder& order, const Deposit
   std::array<DepositionReport, max_reduction_blocks> partial{};
   const std::size_t stride = block_count(x_tiles * y_tiles, max_reduction_blocks);  // tiles per partial result
   parallel_blocks(x_tiles * y_tiles, stride, [&](std::size_t group, std::size_t tile_first, std::size_t tile_last) {
-    double* below = sums_[static_cast<std::size_t>(omp_get_thread_num())].data();
-    double* above = below + plane;
+    double* const sums = sums_[static_cast<std::size_t>(omp_get_thread_num())].data();
     DepositionReport report;
     for (std::size_t t = tile_first; t < tile_last; ++t) {
       const int x_from = static_cast<int>(t / y_tiles) * tile_planes, x_to = std::min(nx, x_from + tile_planes);
       const int y_from = static_cast<int>(t % y_tiles) * tile_rows, y_to = std::min(ny, y_from + tile_rows);
-      std::fill_n(below, 2 * plane, 0.0);
+      double *below = sums, *above = sums + plane;
+      std::fill_n(sums, 2 * plane, 0.0);
       spread(x_from > 0 ? x_from - 1 : nx - 1, y_from, y_to, nullptr, below);
       for (int ix = x_from; ix < x_to; ++ix) {
         spread(ix, y_from, y_to, below, ix + 1 < x_to ? above : nullptr);

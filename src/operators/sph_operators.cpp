@@ -263,14 +263,22 @@ void filter_listed(const SweepContext& context, Records& records_, const std::ar
   });
 }
 
+// The scalars from `first_scalar` on, of which image_value counts all.
 template <int dimensions, class Kernel, int count>
-void filter_some(const SweepContext& context, Records& records_, std::span<const float* const> values,
-                 std::span<float* const> out) {
+void filter_some(const SweepContext& context, Records& records_, std::span<const float* const> all_values,
+                 std::span<float* const> all_out, std::size_t first_scalar, const ImageValue& image_value) {
+  const auto values = all_values.subspan(first_scalar, count);
+  const auto out = all_out.subspan(first_scalar, count);
   const NeighbourList& list = *context.list;
   constexpr int payload = count + volume_slots<Kernel>;
   float* records = records_.prepare(context, payload);
   constexpr int width = record_width(dimensions, payload);
   for (int k = 0; k < count; ++k) pack_scalar(context, records, width, k, values[k]);
+  if (image_value)
+    parallel_for(context.images->size(), [&](std::size_t m) {
+      for (int k = 0; k < count; ++k)
+        records[(list.particles() + m) * width + dimensions + k] = image_value(first_scalar + k, m);
+    });
   pack_volumes<Kernel>(context, records, width, count);
   const KernelScale<dimensions, Kernel> common(context);
   const auto centre_value = static_cast<float>(Kernel::w(0.0));
@@ -358,13 +366,12 @@ void filter_vector(const SweepContext& context, Records& records, const std::arr
 }
 
 void filter_scalars(const SweepContext& context, Records& records, std::span<const float* const> values,
-                    std::span<float* const> out) {
+                    std::span<float* const> out, const ImageValue& image_value) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     std::size_t k = 0;
     for (; k + 1 < values.size(); k += 2)
-      filter_some<dimensions, Kernel, 2>(context, records, values.subspan(k, 2), out.subspan(k, 2));
-    if (k < values.size())
-      filter_some<dimensions, Kernel, 1>(context, records, values.subspan(k, 1), out.subspan(k, 1));
+      filter_some<dimensions, Kernel, 2>(context, records, values, out, k, image_value);
+    if (k < values.size()) filter_some<dimensions, Kernel, 1>(context, records, values, out, k, image_value);
   });
 }
 

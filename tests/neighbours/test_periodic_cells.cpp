@@ -62,6 +62,19 @@ TEST(CellOrderOfPoints, IsTheSameForAnyNumberOfThreads) {
   for (std::size_t k = 0; k < p.x.size(); ++k) ASSERT_EQ(one.order()[k], three.order()[k]);
 }
 
+TEST(PeriodicCellsOfASide, AreNoMoreThanWantedInBoxesOfAnyShape) {
+  const auto counts = [](std::array<double, 3> length, double least_side, double most_cells) {
+    return PeriodicCells::with_side({0, 0, 0}, length, least_side, most_cells).count;
+  };
+  using Counts = std::array<int, 3>;
+  EXPECT_EQ(counts({100, 100, 100}, 1, 64), (Counts{4, 4, 4}));
+  EXPECT_EQ(counts({100, 100, 1}, 0.1, 64), (Counts{8, 8, 1}));
+  EXPECT_EQ(counts({1, 100, 0.01}, 0.001, 64), (Counts{1, 64, 1}));
+  EXPECT_EQ(counts({100, 10, 1}, 20, 64), (Counts{5, 1, 1}));
+  EXPECT_EQ(counts({100, 100, 1}, 3, 1e18), (Counts{33, 33, 1}));
+  EXPECT_EQ(counts({1, 1, 1}, 2, 64), (Counts{1, 1, 1}));
+}
+
 TEST(CellOrderOfPoints, TellsWhenNothingMoves) {
   Points p(3000);
   CellOrder order;

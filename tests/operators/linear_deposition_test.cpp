@@ -136,6 +136,16 @@ TEST(DepositionOfParticles, ClipsWhereTheVolumeFractionIsTooHigh) {
   EXPECT_NEAR(cloud.report.most_volume_fraction, 2, 1e-14);
 }
 
+// More tiles than partial results, all of odd depth: one thread's planes change places from tile to tile.
+TEST(DepositionOfParticles, KeepsToItsPlanesOverManyThinTiles) {
+  Cloud cloud({1, 257 * 32, 40}, 2000, 1e-3);
+  cloud.deposit(1e9);
+  double total = 0, given = 0;
+  cloud.for_points([&](std::size_t at) { total += cloud.force[1][at]; });
+  for (std::size_t p = 0; p < 2000; ++p) given += cloud.amounts[3 * p + 1];
+  EXPECT_NEAR(total * cloud.grid.cell_volume(), given, 1e-12 * 2000);
+}
+
 TEST(DepositionOfParticles, WithoutParticlesIsZero) {
   Cloud cloud({5, 4, 3}, 0, 0);
   cloud.deposit(0.7);

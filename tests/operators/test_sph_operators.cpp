@@ -163,11 +163,22 @@ TEST(SphOperators, ShepardFiltersAgreeWithTheSlowTwin) {
     for (std::size_t i = 0; i < a.size(); ++i)
       for (int k = 0; k < 3; ++k) scalars.add(out[k][i], a.twin.filtered_scalar(i, in[k]), a.twin.neighbours(i), i);
 
+    const auto expect_filtered_vector = [&] {
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        const auto slow = a.twin.filtered_vector(i, in);
+        for (int axis = 0; axis < d; ++axis) vectors.add(out[axis][i], slow[axis], a.twin.neighbours(i), i);
+      }
+    };
     filter_vector(a.context, a.records, read, a.reflection, write);
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const auto slow = a.twin.filtered_vector(i, in);
-      for (int axis = 0; axis < d; ++axis) vectors.add(out[axis][i], slow[axis], a.twin.neighbours(i), i);
-    }
+    expect_filtered_vector();
+    // Scalars whose images are told: the components of the same vector.
+    filter_scalars(a.context, a.records, std::span(read).first(static_cast<std::size_t>(d)),
+                   std::span(write).first(static_cast<std::size_t>(d)), [&](std::size_t k, std::size_t m) {
+                     const Images& images = *a.context.images;
+                     return a.reflection[static_cast<std::size_t>(images.path()[m])][k] *
+                            in[k][static_cast<std::size_t>(images.source()[m])];
+                   });
+    expect_filtered_vector();
 
     std::vector<std::int32_t> subset;
     for (std::size_t i = 0; i < a.size(); i += 3) subset.push_back(static_cast<std::int32_t>(i));

@@ -41,6 +41,20 @@ TEST(PairStatisticsOfParticles, AreThoseOfTheDirectCount) {
   }
 }
 
+// Of 39 particles those with even numbers stand apart, the others in pairs: every second is looked at when 20 may be.
+TEST(PairStatisticsOfParticles, LookAtNoMoreCentresThanAllowed) {
+  Points points(39, 0);
+  for (std::size_t i = 0; i < 39; ++i) {
+    points.x[0][i] = i % 2 == 0 ? 0.025 * static_cast<double>(i) : 0.1 * static_cast<double>(i / 4) + 0.005 * (i % 4);
+    points.x[1][i] = i % 2 == 0 ? 1 : 0.3;
+  }
+  const auto neighbours = [&](std::size_t centres) {
+    return pair_statistics(points.lower, points.length, points.data(), 39, 0.001, 0.02, 4, centres).correlation.back();
+  };
+  EXPECT_EQ(neighbours(20), 0);
+  EXPECT_NEAR(neighbours(39), 18.0 / 39, 1e-15);
+}
+
 // Of n points a bin finds about n^2 shell / box pairs, and scatters by the root of half of that.
 TEST(PairStatisticsOfParticles, KnowTheDimensionOfTheSet) {
   for (const int dimensions : {1, 2, 3}) {
@@ -109,7 +123,7 @@ TEST(LyapunovExponents, OfStillFluidAreZeroAndTheDrag) {
   field.fill(std::array<const double*, 3>{zero.data(), zero.data(), zero.data()});
   MotionModel model;
   model.response_time = 0.5;
-  LyapunovTracker tracker(field, 10, model.response_time, 1);
+  LyapunovTracker tracker(field, 10, model.response_time, 0.01, 1);
   for (int step = 0; step < 400; ++step) tracker.advance(model, field, 0.05);
   const auto growth = tracker.stretching();
   const double t = 20;
@@ -120,6 +134,31 @@ TEST(LyapunovExponents, OfStillFluidAreZeroAndTheDrag) {
   double sum = 0;
   for (const double g : growth) sum += g;
   EXPECT_NEAR(sum / t, -6, 1e-6);
+}
+
+// Particles at the slip v lose it as dv/dt = -(1 + 0.15 Re^0.687) v / tau, Re = v D / nu: a difference of slips shrinks
+// at the rate (1 + 1.687 * 0.15 Re^0.687) / tau along the slip and (1 + 0.15 Re^0.687) / tau across it.
+TEST(LyapunovExponents, TakeTheReynoldsNumberOfTheirDiameter) {
+  PeriodicGrid grid;
+  grid.length = {1, 1, 1};
+  grid.points = {8, 8, 8};
+  grid.z_stride = 8;
+  SplineField<double> field(grid, 4);
+  const std::vector<double> zero(512, 0.0);
+  field.fill(std::array<const double*, 3>{zero.data(), zero.data(), zero.data()});
+  MotionModel model;
+  model.response_time = 0.5;
+  model.viscosity = 0.01;
+  model.drag = DragLaw::schiller_naumann;
+  const double slip = 0.5, diameter = 0.01, dt = 1e-3;
+  LyapunovTracker tracker(field, 5, model.response_time, diameter, 1);
+  for (double& v : *tracker.particles().velocity[0]) v += slip;
+  tracker.advance(model, field, dt);
+  double sum = 0;
+  for (const double g : tracker.stretching()) sum += g;
+  const double excess = 0.15 * std::pow(slip * diameter / model.viscosity, 0.687);
+  // The sum over all directions is minus the divergence of the motion in phase space; the slip falls by 2e-3 in a step.
+  EXPECT_NEAR(sum / dt, -((1 + 1.687 * excess) + 2 * (1 + excess)) / model.response_time, 2e-3 / model.response_time);
 }
 
 // A tracer-like particle at the stagnation points of the flow (sin x cos y, -cos x sin y, 0): it stays at the origin,
@@ -142,7 +181,7 @@ TEST(LyapunovExponents, AtAStagnationPointAreItsStrainRates) {
   field.fill(std::array<const double*, 3>{u.data(), v.data(), w.data()});
   MotionModel model;
   model.response_time = 0.01;
-  LyapunovTracker tracker(field, 1, model.response_time, 1);
+  LyapunovTracker tracker(field, 1, model.response_time, 0.01, 1);
   // Held at the origin, shadows and all.
   for (std::size_t p = 0; p < 7; ++p)
     for (int c = 0; c < 3; ++c) {

@@ -167,6 +167,24 @@ TEST(ParticleSystem, ContinuesBitForBitFromItsState) {
   }
 }
 
+TEST(ParticleSystem, FrozenParticlesStayWhereTheyAreWhateverTheirCoupling) {
+  for (const Coupling coupling : {Coupling::two_way, Coupling::four_way, Coupling::colliding}) {
+    ParticleOptions options = bubbles(coupling);
+    options.motion.frozen = true;
+    options.sort_every = 1000;
+    Suspension run(options);
+    run.begin();
+    const auto before = run.system.particles().positions();
+    std::array<std::vector<double>, 3> at;
+    for (int c = 0; c < 3; ++c) at[c].assign(before[c], before[c] + run.system.size());
+    run.advance(3);
+    // 3000 spheres fill 5 %: many overlap, and collisions would part them.
+    const auto after = run.system.particles().positions();
+    for (int c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < run.system.size(); ++i) ASSERT_EQ(after[c][i], at[c][i]);
+  }
+}
+
 TEST(ParticleSystem, AllocatesNothingInASteadyStep) {
   Suspension run(bubbles(Coupling::four_way));
   run.begin();

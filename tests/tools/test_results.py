@@ -5,7 +5,7 @@ from pathlib import Path
 
 import paths  # noqa: F401  (import path)
 import numpy as np
-from spume_results import MissingResult, Results, observed_order, read_csv, relative_rms
+from spume_results import DamagedResult, MissingResult, Results, observed_order, read_csv, relative_rms
 from synthetic import lattice, new_folder, series_of, write_case, write_snapshots, write_table
 
 
@@ -26,6 +26,23 @@ class ReadingResults(unittest.TestCase):
         self.assertEqual(len(Results(self.folder).series["t"]), 3)
         (self.folder / "series.csv").write_text("t,dt\n0,1\n1,1\n2")
         self.assertEqual(len(Results(self.folder).series["t"]), 2)
+
+    def test_damage_within_a_table_is_said_with_its_line(self):
+        (self.folder / "series.csv").write_text("# units\nt,dt\n0,1\n1\n2,1\n")
+        with self.assertRaisesRegex(DamagedResult, r"series.csv:4: the row holds 1 value, the header names 2 columns"):
+            Results(self.folder).series
+        (self.folder / "series.csv").write_text("t,dt\n0,1\n1,2,3\n")
+        with self.assertRaisesRegex(DamagedResult, r"series.csv:3: the row holds 3 values"):
+            Results(self.folder).series
+        (self.folder / "series.csv").write_bytes(b"t,dt\n0,1\n1,\xff\n")
+        with self.assertRaisesRegex(DamagedResult, r"series.csv:3: byte 0xff is not UTF-8 text"):
+            Results(self.folder).series
+        (self.folder / "series.csv").write_text("t,dt\n0,nan\n1,abc\n2,1\n")
+        with self.assertRaisesRegex(DamagedResult, r"series.csv:3: column 'dt' holds 'abc'; a number was expected"):
+            Results(self.folder).series
+        (self.folder / "case.toml").write_bytes(b"title = \"\xff\"\n")
+        with self.assertRaisesRegex(DamagedResult, "case.toml: cannot be read"):
+            Results(self.folder).case
 
     def test_absent_column_names_what_there_is(self):
         write_table(self.folder / "series.csv", series_of([0, 1]))

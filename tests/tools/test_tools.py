@@ -80,13 +80,66 @@ class Plotting(Scratch):
         write_table(folder / "series.csv", series_of([0, 1.0], kinetic_energy=1))
         names, complaints = self.pictures(folder)
         self.assertEqual(names, {"energy.png", "numerics.png"})
-        self.assertIn("slices left out", complaints)
+        self.assertRegex(complaints, r"\Aslices, .* left out: .*case.toml: cannot be read .*\n\Z")
 
-    def test_nothing_to_draw_and_no_folder_are_errors(self):
-        for folder in (new_folder(self.path, "empty"), self.path / "nowhere"):
+    def test_what_the_case_did_not_ask_for_is_not_missed(self):
+        folder = self.wave_run()
+        self.assertEqual(self.pictures(folder)[1], "")
+        with (folder / "case.toml").open("a") as file:
+            file.write('[output]\nspectrum_every = 0.5\n[[probe]]\nname = "a"\nkind = "line"\n[[probe]]\nname = "b"\n')
+        complaints = self.pictures(folder)[1]
+        for name in ("spectra", "lines", "probes"):
+            self.assertRegex(complaints, f"(?m)^{name} left out: ")
+
+    def wave_run(self, title="Some wave"):
+        folder = new_folder(self.path, "run")
+        write_case(folder, title, [0, 0], [1, 1], 0.1, top="open")
+        write_table(folder / "series.csv", series_of([0, 1.0], kinetic_energy=1))
+        write_snapshots(folder / "fluid.vtkhdf", [0, 1], lambda t: lattice([0, 0], [1, 1], 0.1), {"velocity": lambda p, t: p})
+        return folder
+
+    def test_a_damaged_file_is_an_error_and_the_rest_is_drawn(self):
+        folder = self.wave_run()
+        whole = (folder / "fluid.vtkhdf").read_bytes()
+        (folder / "fluid.vtkhdf").write_bytes(whole[: len(whole) // 2])
+        done = call("plot.py", folder)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertRegex(done.stderr, r"\Aerror: slices left out: .*fluid.vtkhdf: not a VTKHDF file.*\n\Z")
+        self.assertEqual({Path(line).name for line in done.stdout.splitlines()}, {"energy.png", "numerics.png"})
+
+    def test_a_folder_that_is_no_run_is_one_error_and_stays_as_it_is(self):
+        empty, case = new_folder(self.path, "empty"), new_folder(self.path, "case")
+        write_case(case, "Some wave", [0, 0], [1, 1], 0.1)
+        for folder in (empty, case, self.path / "nowhere"):
             done = call("plot.py", folder)
             self.assertEqual(done.returncode, 2)
-            self.assertIn("error:", done.stderr)
+            self.assertRegex(done.stderr, r"\Aerror: .*; give the folder that 'spume run' made\n\Z")
+            self.assertFalse((folder / "plots").exists())
+
+    def test_nothing_to_draw_is_an_error(self):
+        folder = new_folder(self.path, "run")
+        (folder / "log.txt").touch()
+        done = call("plot.py", folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("nothing to draw", done.stderr)
+        self.assertFalse((folder / "plots").exists())
+
+    def test_reference_is_that_of_the_case_that_was_run(self):
+        case = new_folder(self.path, "mine")
+        (case / "measure.py").write_text(
+            "def curves(runs):\n"
+            '    return [{"file": "mine", "x": "x", "y": "y", "curves": [("reference", [0, 1], [0, 1], "o")]}]\n')
+        # The title is that of another case, which would draw its own.
+        folder = self.wave_run("Taylor-Green vortices in two dimensions")
+        for path in (case / "case.toml", "mine/case.toml"):
+            (folder / "summary.json").write_text(json.dumps({"case": str(path)}))
+            names, complaints = self.pictures(folder)
+            self.assertEqual((names, complaints), ({"energy.png", "numerics.png", "speed.png", "mine.png"}, ""))
+        (case / "measure.py").write_text("def curves(runs):\n    return runs['other']\n")
+        done = call("plot.py", folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("error: reference left out: ", done.stderr)
+        self.assertIn("mine/measure.py:2: curves failed (KeyError: 'other')", done.stderr)
 
 
 # Answers `run CASE -o DIR ...` with a series that holds the exact Taylor-Green decay times a factor, or fails.
@@ -158,6 +211,10 @@ class Verifying(Scratch):
     def test_bad_requests_are_exit_code_2(self):
         self.assertEqual(call("verify.py", self.program(), "no_such_case").returncode, 2)
         self.assertEqual(call("verify.py", self.path / "missing", "beltrami").returncode, 2)
+
+    def test_convergence_of_a_case_without_errors_is_a_bad_request(self):
+        done = call("convergence.py", self.program(), "clustering", 0.04)
+        self.assertEqual((done.returncode, "defines no errors(run)" in done.stderr), (2, True), done.stderr)
 
     def test_convergence_table_shows_the_order(self):
         done = call("convergence.py", self.program(), "taylor_green_2d", 0.04, 0.02, 0.01, "--keep", self.path / "kept")

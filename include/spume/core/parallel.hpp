@@ -104,18 +104,22 @@ double parallel_sum(std::size_t n, Term&& term) {
       [](double a, double b) { return a + b; });
 }
 
+// The larger of two; NaN when one of them is.
+inline double larger_or_nan(double a, double b) {
+  return (a > b || a != a) ? a : b;
+}
+
 // Largest term(i) over [0, n), or `start` when n is zero. A NaN term is kept: it makes the result NaN.
 template <class Term>
 double parallel_max(std::size_t n, double start, Term&& term) {
-  const auto larger = [](double a, double b) { return (a > b || a != a) ? a : b; };
   return parallel_reduce(
       n, start,
       [&](std::size_t first, std::size_t last) {
         double best = term(first);
-        for (std::size_t i = first + 1; i < last; ++i) best = larger(best, term(i));
+        for (std::size_t i = first + 1; i < last; ++i) best = larger_or_nan(best, term(i));
         return best;
       },
-      larger);
+      larger_or_nan);
 }
 
 // The indices i of [0, n) with chosen(i), in order: counted by blocks, then written. `chosen` is called twice.

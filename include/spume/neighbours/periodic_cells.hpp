@@ -18,7 +18,7 @@ struct PeriodicCells {
   std::size_t size() const { return std::size_t(count[0]) * std::size_t(count[1]) * std::size_t(count[2]); }
   std::size_t plane() const { return std::size_t(count[1]) * std::size_t(count[2]); }
 
-  // As many cells as fit with sides of at least `least_side` and no more than `most_cells` in all.
+  // Sides of at least `least_side`, at most `most_cells` cells in all (one per axis where a side does not fit).
   static PeriodicCells with_side(const std::array<double, 3>& lower, const std::array<double, 3>& length,
                                  double least_side, double most_cells);
 };

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 
 #include "spume/operators/image_values.hpp"
@@ -79,9 +80,11 @@ void filter_vector_subset(const SweepContext& context, Records& records, const s
                           const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> subset,
                           const std::array<float*, 3>& out);
 
-// Shepard filter of scalars, two at a time at the cost of one pass.
+// Shepard filter of scalars, two at a time at the cost of one pass. Images take the values of their sources, or
+// image_value(k, m): of the k-th scalar at image m.
+using ImageValue = std::function<float(std::size_t k, std::size_t m)>;
 void filter_scalars(const SweepContext& context, Records& records, std::span<const float* const> values,
-                    std::span<float* const> out);
+                    std::span<float* const> out, const ImageValue& image_value = {});
 
 // Values of the geometry sums on an infinite lattice at this kernel and h / dr.
 struct LatticeConstants {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/methods/les_sph/liquid.hpp"
 
@@ -130,6 +131,12 @@ void update_image_rules(Liquid& liquid, double t) {
                         }
                         return speed2;
                       }));
+  if (std::isfinite(liquid.wall_speed)) return;
+  StepFailure::Details details;
+  details.cause = "the velocity of a wall is not a finite number";
+  details.option = "domain.wall_velocity";
+  details.value = liquid.wall_speed;
+  throw StepFailure(details);
 }
 
 void keep_inside(const Liquid& liquid, const WallPositions& walls, Vec3& position, Vec3* velocity) {

@@ -40,6 +40,9 @@ void BubbleCoupling::pack_liquid(Liquid& liquid) {
   const auto& gradient = liquid.velocity_gradient;
   const bool filtered = liquid.plan.test_filter, eddies = liquid.eddy_viscosity != nullptr;
   const bool normals = population_.merge_time != nullptr;
+  // An image inside a box belongs to the face nearest to it: that of a particle may reach a bubble whose own does not
+  // reach the particle.
+  const bool around_boxes = liquid.images.inside_domain();
   // One value at a time: more arrays than the processor can read ahead of would be read at once otherwise.
   parallel_blocks(n, pack_block, [&](std::size_t, std::size_t first, std::size_t last) {
     const std::size_t size = last - first;
@@ -48,7 +51,7 @@ void BubbleCoupling::pack_liquid(Liquid& liquid) {
       inverse_reach_[i] = 1 / liquid.reach[i];
       near = near || near_[i] != 0;
     }
-    if (!near) return;
+    if (!near && !around_boxes) return;
     float* const records = liquid_records_.data() + first * record;
     float factor[pack_block];
     for (std::size_t k = 0; k < size; ++k) {
@@ -91,22 +94,24 @@ void BubbleCoupling::pack_liquid(Liquid& liquid) {
     put(factor_at, [](std::size_t) { return 1.0F; });
     put(factor_at + 1, nothing);
   });
-  // Mirrored velocities, and pseudo-vectors the other way.
+  // Mirrored velocities and what follows from them: at a no-slip wall the vorticity keeps its sign.
   parallel_for(m, [&](std::size_t k) {
     const auto source = static_cast<std::size_t>(liquid.images.source()[k]);
     inverse_reach_[n + k] = inverse_reach_[source];
-    if (near_[source] == 0) return;
+    if (!around_boxes && near_[source] == 0) return;
     const auto path = static_cast<std::size_t>(liquid.images.path()[k]);
     float* value = liquid_records_.data() + (n + k) * record;
     std::copy_n(liquid_records_.data() + source * record, record, value);
     const auto& sign = liquid.velocity_rule.sign[path];
     const auto& mirror = liquid.reflection[path];
-    const float handedness = mirror[0] * mirror[1] * mirror[2];
     for (std::size_t a = 0; a < 3; ++a) {
       value[velocity_at + a] *= sign[a];
       if (!liquid.velocity_rule.offset[a].empty())
         value[velocity_at + a] += value[factor_at] * liquid.velocity_rule.offset[a][k];
-      value[vorticity_at + a] *= handedness * mirror[a];
+      const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+      value[vorticity_at + a] =
+          value[factor_at] * (sign[c] * mirror[b] * (*liquid.velocity_gradient[c * 3 + b])[source] -
+                              sign[b] * mirror[c] * (*liquid.velocity_gradient[b * 3 + c])[source]);
       value[acceleration_at + a] *= sign[a];
       value[normal_at + a] *= mirror[a];
     }
@@ -167,6 +172,10 @@ void BubbleCoupling::interpolate(const Liquid& liquid) {
       });
     }
   });
+}
+
+Vec3 BubbleCoupling::vorticity_at_bubble(std::size_t b) const {
+  return vector_at(interpolated_.data() + b * record, vorticity_at);
 }
 
 void BubbleCoupling::move_bubbles(Liquid& liquid, double dt) {

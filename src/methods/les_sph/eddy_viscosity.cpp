@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "spume/core/parallel.hpp"
@@ -49,12 +50,15 @@ void find_static_viscosity(Liquid& liquid) {
   });
 }
 
-// Test-filtered products of the dynamic closure: components of u u, S and |S| S, filtered two at a time.
+// Test-filtered products of the dynamic closure: components of u u, S and |S| S, filtered two at a time. Velocities are
+// taken from their mean, which the closure does not depend on and floats would lose L in. Those of images are the
+// mirrored ones: at a no-slip wall products and strain change sign by component.
 template <int d>
 struct TestFilter {
   static constexpr int symmetric = d * (d + 1) / 2;
   static constexpr int count = 3 * symmetric;
   std::span<Array<float>> value, filtered;
+  std::array<double, d> mean{};
 
   explicit TestFilter(Liquid& liquid) {
     liquid.test_filter_scratch.resize(2 * count);
@@ -63,14 +67,45 @@ struct TestFilter {
     filtered = std::span(liquid.test_filter_scratch).last(count);
   }
 
+  // Component k at image m of the products as they stand in `value`.
+  float at_image(const Liquid& liquid, std::size_t k, std::size_t m) const {
+    const auto source = static_cast<std::size_t>(liquid.images.source()[m]);
+    const auto path = static_cast<std::size_t>(liquid.images.path()[m]);
+    const auto& sign = liquid.velocity_rule.sign[path];
+    if (k < symmetric) {
+      const auto [a, b] = components(k);
+      const auto velocity = [&](int axis) {
+        const bool moving = !liquid.velocity_rule.offset[axis].empty();
+        return sign[axis] * (*liquid.velocity[axis])[source] + (moving ? liquid.velocity_rule.offset[axis][m] : 0.0F) -
+               mean[axis];
+      };
+      return static_cast<float>(velocity(a) * velocity(b));
+    }
+    turbulence::Gradient<d> gradient = gradient_at<d>(liquid, source);
+    for (int a = 0; a < d; ++a)
+      for (int b = 0; b < d; ++b) gradient[a * d + b] *= sign[a] * liquid.reflection[path][b];
+    const auto strain = turbulence::strain_rate<d, double>(gradient);
+    if (k < 2 * symmetric) return static_cast<float>(strain[k - symmetric]);
+    return static_cast<float>(strain[k - 2 * symmetric] * turbulence::strain_magnitude<d, double>(strain));
+  }
+
+  static std::pair<int, int> components(std::size_t k) {
+    for (int a = 0; a < d; ++a)
+      for (int b = a; b < d; ++b)
+        if (turbulence::symmetric_index<d>(a, b) == k) return {a, b};
+    return {};
+  }
+
   void run(Liquid& liquid) {
     const std::size_t n = liquid.size();
+    for (int a = 0; a < d; ++a)
+      mean[a] = parallel_sum(n, [&](std::size_t i) { return (*liquid.velocity[a])[i]; }) / static_cast<double>(n);
     parallel_for(n, [&](std::size_t i) {
       const auto strain = turbulence::strain_rate<d, double>(gradient_at<d>(liquid, i));
       for (int a = 0; a < d; ++a)
         for (int b = a; b < d; ++b) {
           const std::size_t k = turbulence::symmetric_index<d>(a, b);
-          value[k][i] = static_cast<float>((*liquid.velocity[a])[i] * (*liquid.velocity[b])[i]);
+          value[k][i] = static_cast<float>(((*liquid.velocity[a])[i] - mean[a]) * ((*liquid.velocity[b])[i] - mean[b]));
           value[symmetric + k][i] = static_cast<float>(strain[k]);
           value[2 * symmetric + k][i] = static_cast<float>(strain[k]) * (*liquid.strain)[i];
         }
@@ -81,12 +116,13 @@ struct TestFilter {
       in[k] = value[k].data();
       out[k] = filtered[k].data();
     }
-    filter_scalars(liquid.context, liquid.records, in, out);
+    filter_scalars(liquid.context, liquid.records, in, out,
+                   [&](std::size_t k, std::size_t m) { return at_image(liquid, k, m); });
   }
 
   turbulence::TestFiltered<d> at(const Liquid& liquid, std::size_t i) const {
     turbulence::TestFiltered<d> result;
-    for (int a = 0; a < d; ++a) result.velocity[a] = (*liquid.filtered_velocity[a])[i];
+    for (int a = 0; a < d; ++a) result.velocity[a] = (*liquid.filtered_velocity[a])[i] - mean[a];
     for (int k = 0; k < symmetric; ++k) {
       result.velocity_product[k] = filtered[k][i];
       result.strain[k] = filtered[symmetric + k][i];
@@ -101,16 +137,16 @@ void find_dynamic_viscosity(Liquid& liquid, double dt) {
   TestFilter<d> test_filter(liquid);
   test_filter.run(liquid);
   const std::size_t n = liquid.size();
-  const double width = liquid.smoothing_length;
   double ratio = 0;
   with_kernel(liquid.context, [&]<int dimensions, class Kernel>() {
-    ratio = turbulence::test_filter_width_ratio(width, Kernel::variance(dimensions) * width * width);
+    ratio = turbulence::test_filter_width_ratio(1, Kernel::variance(dimensions));
   });
   const double nu = liquid.scene.fluid.kinematic_viscosity;
   const bool lagrangian = liquid.options.turbulence.model == TurbulenceModel::dynamic_lagrangian;
 
   Array<float>&leonard = test_filter.value[0], &germano = test_filter.value[1];
   parallel_for(n, [&](std::size_t i) {
+    const double width = liquid.width_at(i);
     const auto c = turbulence::germano_contractions<d, double>(test_filter.at(liquid, i), width, ratio);
     if (lagrangian) {
       const turbulence::GermanoContractions<double> memory{(*liquid.lagrangian_average[0])[i],
@@ -133,7 +169,7 @@ void find_dynamic_viscosity(Liquid& liquid, double dt) {
   parallel_for(n, [&](std::size_t i) {
     const turbulence::GermanoContractions<double> average{out[0][i], out[1][i]};
     (*liquid.eddy_viscosity)[i] =
-        static_cast<float>(turbulence::dynamic_viscosity(average, (*liquid.strain)[i], width, nu));
+        static_cast<float>(turbulence::dynamic_viscosity(average, (*liquid.strain)[i], liquid.width_at(i), nu));
   });
 }
 

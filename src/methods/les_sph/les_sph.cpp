@@ -192,6 +192,8 @@ StepLimit LesSph::step_limit() const {
     if (dt < limit.dt) limit = {dt, name};
   };
   if (speed > 0) bound(options.courant * h / speed, "courant");
+  // Spray does not count to that speed, but a step that takes any particle across half its support is refused.
+  if (liquid_.max_speed > 0) bound(0.45 * liquid_.grid.reach() / liquid_.max_speed, "spray");
   const double viscosity = liquid_.scene.fluid.kinematic_viscosity + liquid_.max_eddy_viscosity;
   // The explicit sum of div(2 nu S) is stable up to 0.108 h^2 / nu on a lattice in 3-D and 0.112 in 2-D, that of
   // div(nu grad u) up to 0.29 and 0.31.

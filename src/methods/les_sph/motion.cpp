@@ -11,6 +11,28 @@
 namespace spume::les_sph {
 namespace {
 
+// NaN when a component is, which the library's function of three numbers is not.
+double length_of(const Vec3& v) {
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+[[noreturn]] void refuse_body_force(const Liquid& liquid, double t) {
+  StepFailure::Details details;
+  details.cause = "the body force is not a finite number";
+  details.option = "forces.body";
+  for (std::size_t i = 0; i < liquid.size() && details.particle < 0; ++i) {
+    Vec3 r{};
+    for (int axis = 0; axis < liquid.dimensions; ++axis) r[axis] = (*liquid.intermediate[axis])[i];
+    const Vec3 force = (*liquid.scene.body_force)(r, t);
+    const double size = length_of(force);
+    if (std::isfinite(size)) continue;
+    details.particle = (*liquid.identifier)[i];
+    std::copy(r.begin(), r.end(), details.position);
+    details.value = size;
+  }
+  throw StepFailure(details);
+}
+
 // Body force at time t: a uniform one joins gravity along axes without periodicity.
 void find_uniform_acceleration(Liquid& liquid, double t) {
   liquid.uniform_acceleration = {};
@@ -20,6 +42,7 @@ void find_uniform_acceleration(Liquid& liquid, double t) {
     const Vec3 force = (*liquid.scene.body_force)(liquid.origin, t);
     for (int axis = 0; axis < liquid.dimensions; ++axis) total[axis] += force[axis];
   }
+  if (!std::isfinite(total[0] + total[1] + total[2])) refuse_body_force(liquid, t);
   for (int axis = 0; axis < liquid.dimensions; ++axis)
     (liquid.scene.domain.periodic(axis) ? liquid.periodic_acceleration : liquid.uniform_acceleration)[axis] =
         total[axis];
@@ -36,12 +59,13 @@ void add_body_force(Liquid& liquid, double t, double dt) {
           Vec3 r{};
           for (int axis = 0; axis < d; ++axis) r[axis] = (*liquid.intermediate[axis])[i];
           const Vec3 acceleration = force(r, t);
-          largest = std::max(largest, std::hypot(acceleration[0], acceleration[1], acceleration[2]));
+          largest = larger_or_nan(largest, length_of(acceleration));
           for (int axis = 0; axis < d; ++axis) (*liquid.predicted[axis])[i] += dt * acceleration[axis];
         }
         return largest;
       },
-      [](double a, double b) { return std::max(a, b); });
+      larger_or_nan);
+  if (!std::isfinite(liquid.largest_body_force)) refuse_body_force(liquid, t);
 }
 
 void find_diffusivity(Liquid& liquid) {
@@ -160,6 +184,7 @@ void update_extremes(Liquid& liquid) {
       listed ? std::sqrt(parallel_max(liquid.size(), 0.0,
                                       [&](std::size_t i) { return liquid.list.count(i) < spray ? 0.0 : speed2_at(i); }))
              : liquid.max_speed;
+  liquid.max_eddy_viscosity = 0;
   if (liquid.eddy_viscosity != nullptr && liquid.started)
     liquid.max_eddy_viscosity =
         parallel_max(liquid.size(), 0.0, [&](std::size_t i) { return double{(*liquid.eddy_viscosity)[i]}; });

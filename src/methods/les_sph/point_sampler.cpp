@@ -114,11 +114,17 @@ double PointSampler::coverage(const Liquid& liquid, const Vec3& point) const {
 PointSample PointSampler::sample(const Liquid& liquid, const Vec3& point) const {
   const int d = liquid.dimensions;
   Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
-  Eigen::Matrix4d values = Eigen::Matrix4d::Zero();  // columns: pressure, velocity
+  Eigen::Matrix4d values = Eigen::Matrix4d::Zero();  // columns: pressure without its hydrostatic part, velocity
   PointSample sample;
+  const double density = liquid.scene.fluid.density;
+  double pressure = 0;
   int count = 0;
   visit(liquid, point, [&](std::size_t j, double weight, const Vec3& offset, const Copy& copy) {
-    Eigen::Vector4d basis(1, 0, 0, 0), value((*liquid.pressure)[j], 0, 0, 0);
+    // A wall mirrors the pressure but for its hydrostatic part, which belongs to the place of the source.
+    Vec3 place = point;
+    for (int axis = 0; axis < d; ++axis)
+      place[axis] = copy.sign[axis] > 0 ? point[axis] + offset[axis] : copy.point[axis] - offset[axis];
+    Eigen::Vector4d basis(1, 0, 0, 0), value((*liquid.pressure)[j] + density * liquid.potential_at(place), 0, 0, 0);
     for (int axis = 0; axis < d; ++axis) {
       basis[axis + 1] = offset[axis] / liquid.smoothing_length;
       value[axis + 1] = copy.velocity_sign[axis] * (*liquid.velocity[axis])[j] + copy.velocity_offset[axis];
@@ -126,16 +132,19 @@ PointSample PointSampler::sample(const Liquid& liquid, const Vec3& point) const 
     moments += weight * basis * basis.transpose();
     values += weight * basis * value.transpose();
     sample.coverage += weight;
+    pressure += weight * (*liquid.pressure)[j];
     ++count;
   });
   if (count == 0) return sample;
   const auto block = moments.topLeftCorner(d + 1, d + 1);
   const Eigen::LDLT<Eigen::MatrixXd> factor(block);
   Eigen::RowVector4d result = values.row(0) / sample.coverage;
+  result[0] = pressure / sample.coverage;
   // A linear fit needs neighbours on all sides; in spray and thin sheets the average is the safer value.
   if (count > 2 * (d + 1) && factor.info() == Eigen::Success && factor.rcond() > 1e-3) {
     const Eigen::MatrixXd fitted = factor.solve(values.topRows(d + 1));
     result = fitted.row(0);
+    result[0] -= density * liquid.potential_at(point);
   }
   sample.pressure = result[0];
   for (int axis = 0; axis < d; ++axis) sample.velocity[axis] = result[axis + 1];

@@ -39,14 +39,59 @@ Planning planning_of(const SpectralOptions& options) {
   return options.plans == PlanEffort::measured ? Planning::measure : Planning::estimate;
 }
 
+template <class T>
+double mode_bytes(const std::array<std::size_t, 3>& grid) {
+  return sizeof(std::complex<T>) * static_cast<double>(make_mode_layout<T>(grid, {1, 1, 1}).size());
+}
+
+// Of CrossProduct: five fields of half the planes, in rows a block longer, and of every thread half a plane of six
+// fields and a plane of three.
+template <class T>
+double product_bytes(const std::array<std::size_t, 3>& grid) {
+  const std::size_t plane = grid[1] * (make_mode_layout<T>(grid, {1, 1, 1}).row + lanes<T>);
+  return sizeof(std::complex<T>) * static_cast<double>(plane) *
+         (2.5 * static_cast<double>(grid[0]) + 6.0 * thread_count());
+}
+
+// Logarithm of the factor by which AB2 amplifies an oscillation in a step, phase = omega dt: that of the larger root of
+// rho^2 - (1 + 3/2 i phase) rho + i phase/2 = 0; phase^4 / 4 for small phases.
+double ab2_growth(double phase) {
+  const std::complex<double> sum(1, 1.5 * phase);
+  const std::complex<double> root = std::sqrt(sum * sum - std::complex<double>(0, 2 * phase));
+  return std::log(std::max(std::abs(sum + root), std::abs(sum - root)) / 2);
+}
+
+// Advection by |u| <= U gives a mode of frequency omega, normalised, |omega| = |u . grad mode| <= U |grad mode|:
+// viscosity damps it by nu (omega / U)^2 dt at least. That must outweigh ab2_growth for every frequency up to the
+// largest of the modes kept, Omega; growth / phase^2 rises up to a phase of 1.08 and falls from there. Returns the
+// largest Omega dt for damping = nu Omega / U^2.
+double stable_ab2_phase(double damping) {
+  constexpr double turning = 1.08;
+  const double worst = ab2_growth(turning);
+  if (damping * turning >= worst) return damping * turning * turning / worst;
+  // Below phases of 0.01 rounding begins to show in the root, and phase^4 / 4 is 2e-4 short at most.
+  double low = 0, high = std::min(turning, std::cbrt(4 * damping));  // growth >= phase^4 / 4 up to there
+  if (high < 0.01) return high * (1 - 1e-4);
+  for (int halving = 0; halving < 50; ++halving) {
+    const double middle = (low + high) / 2;
+    (ab2_growth(middle) <= damping * middle ? low : high) = middle;
+  }
+  return low;
+}
+
 }  // namespace
 
+double mode_bytes(const std::array<std::size_t, 3>& grid, FieldPrecision precision) {
+  return precision == FieldPrecision::f64 ? mode_bytes<double>(grid) : mode_bytes<float>(grid);
+}
+
 double flow_bytes(const std::array<std::size_t, 3>& grid, const SpectralOptions& options) {
-  const double number = options.precision == FieldPrecision::f64 ? 8 : 4;
-  // Sets of three fields, and five fields of half the planes.
-  const double fields = options.integrator == Integrator::ab2 ? 11.5 : 14.5;
-  return number * fields * static_cast<double>(grid[0]) * static_cast<double>(grid[1]) *
-         (static_cast<double>(grid[2]) + 2);
+  const double fields = options.integrator == Integrator::ab2 ? 9 : 12;
+  const double product =
+      options.precision == FieldPrecision::f64 ? product_bytes<double>(grid) : product_bytes<float>(grid);
+  // One component in double precision passes on its way to and from a checkpoint.
+  const double passing = 8 * static_cast<double>(grid[0]) * static_cast<double>(grid[1]) * static_cast<double>(grid[2]);
+  return fields * mode_bytes(grid, options.precision) + product + passing;
 }
 
 template <class T>
@@ -66,6 +111,10 @@ Flow<T>::Flow(const LoadedCase& loaded)
     cut_[axis] = all ? std::numeric_limits<double>::max()
                      : layout_.unit(axis) * (std::ceil(static_cast<double>(layout_.points[axis]) / 3) - 0.5);
   }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double last = std::min(layout_.largest_wavenumber(axis), cut_[axis] - layout_.unit(axis) / 2);
+    kept_reach_ = std::max(kept_reach_, last * layout_.lengths[axis] / static_cast<double>(layout_.points[axis]));
+  }
   lane_wavenumber_.resize(layout_.row);
   lane_weight_.resize(layout_.row);
   for (std::size_t iz = 0; iz < layout_.row; ++iz) {
@@ -80,6 +129,17 @@ Flow<T>::Flow(const LoadedCase& loaded)
     for (auto& field : *set) field.resize(layout_.size());
   if (options_.integrator != Integrator::ab2)
     for (auto& field : start_) field.resize(layout_.size());
+}
+
+template <class T>
+Modes<T> Flow<T>::take_potential() {
+  Modes<T> potential;
+  potential.swap(potential_);
+  for (auto& field : potential) {
+    field.resize(layout_.size());
+    parallel_for(field.size(), [&](std::size_t i) { field[i] = 0; });
+  }
+  return potential;
 }
 
 template <class T>
@@ -232,13 +292,12 @@ StepLimit Flow<T>::limit_for(const VelocityPeak& peak) const {
     bound(limits_.courant / peak.rate, "courant");
     // Largest frequency of advection: sum |u_i| k_max,i = pi rate.
     const double frequency = std::numbers::pi * peak.rate;
-    double k2 = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) k2 += std::pow(layout_.largest_wavenumber(axis), 2);
     switch (options_.integrator) {
-      case Integrator::ab2:
-        // AB2 amplifies an oscillation by (omega dt)^4 / 4 a step, which viscosity must take out: nu k^2 dt.
-        bound(std::cbrt(4 * viscosity_ * k2 / std::pow(frequency, 4)), "ab2 stability");
+      case Integrator::ab2: {
+        const double kept = kept_reach_ * peak.rate;
+        bound(stable_ab2_phase(viscosity_ * kept / (peak.speed * peak.speed)) / kept, "ab2 stability");
         break;
+      }
       case Integrator::rk3:
         bound(1.73 / frequency, "rk3 stability");  // its reach along the imaginary axis
         break;

@@ -25,8 +25,7 @@ Modes<T> sampled(Flow<T>& flow,
                  const std::function<void(std::size_t ix, std::size_t iy, int component, T* values)>& line) {
   const ModeLayout& layout = flow.layout();
   const auto [nx, ny, nz] = layout.points;
-  Modes<T> potential;
-  for (auto& field : potential) field.resize(layout.size());
+  Modes<T> potential = flow.take_potential();
   Array<T> values(nx * ny * nz);
   for (int c = 0; c < 3; ++c) {
     parallel_blocks(nx, 1, [&, ny = ny, nz = nz](std::size_t, std::size_t ix, std::size_t) {
@@ -120,7 +119,7 @@ std::array<std::complex<double>, 3> random_mode(std::uint64_t seed, const std::a
 }
 
 template <class T>
-Modes<T> random_field(const LoadedCase& loaded, const Flow<T>& flow) {
+Modes<T> random_field(const LoadedCase& loaded, Flow<T>& flow) {
   const ModeLayout& layout = flow.layout();
   const auto [nx, ny, nz] = layout.points;
   const double unit = 2 * std::numbers::pi / *std::max_element(layout.lengths.begin(), layout.lengths.end());
@@ -131,8 +130,7 @@ Modes<T> random_field(const LoadedCase& loaded, const Flow<T>& flow) {
     return i < n / 2 ? static_cast<std::int64_t>(i) : static_cast<std::int64_t>(i) - static_cast<std::int64_t>(n);
   };
   const auto place = [&](std::size_t ix, std::size_t iy) { return ix * layout.plane + iy * layout.row; };
-  Modes<T> potential;
-  for (auto& field : potential) field.resize(layout.size());
+  Modes<T> potential = flow.take_potential();
   std::vector<double> energy(shells, 0.0);
   const auto shell_of = [&](std::size_t ix, std::size_t iy, std::size_t iz) {
     const double k = std::hypot(layout.wavenumber[0][ix], layout.wavenumber[1][iy], layout.wavenumber[2][iz]);
@@ -186,14 +184,13 @@ Modes<T> random_field(const LoadedCase& loaded, const Flow<T>& flow) {
 }
 
 template <class T>
-Modes<T> from_checkpoint(const Case& options, const Flow<T>& flow) {
+Modes<T> from_checkpoint(const Case& options, Flow<T>& flow) {
   const std::string& path = options.initial.file;
   const ModeLayout& layout = flow.layout();
   const auto refuse = [&](const std::string& why) {
     throw refusal(options, "initial.file", "initial.file '" + path + "': " + why);
   };
-  Modes<T> potential;
-  for (auto& field : potential) field.resize(layout.size());
+  Modes<T> potential = flow.take_potential();
   try {
     const CheckpointReader file(path);
     Array<std::int64_t> counters;
@@ -250,9 +247,7 @@ Modes<T> initial_potential(const LoadedCase& loaded, Flow<T>& flow) {
     case InitialKind::rest:
       break;
   }
-  Modes<T> potential;
-  for (auto& field : potential) field.resize(flow.layout().size());
-  return potential;
+  return flow.take_potential();
 }
 
 template Modes<double> initial_potential(const LoadedCase&, Flow<double>&);

@@ -140,8 +140,8 @@ void Flow<T>::adams_bashforth(double dt) {
   accept(dt, with_forces(fresh));
 }
 
-// Midpoint rule: b_h = E_h (b + dt/2 K_n), b^{n+1} = E b + dt E_h K(b_h) with E_h = exp(-nu k^2 dt/2). K_n stays as
-// history.
+// Midpoint rule: b_h = E_h (b + dt/2 K_n), b^{n+1} = E b + dt E_h K(b_h) with E_h = exp(-nu k^2 dt/2). b_h is written
+// over K_n and b^{n+1} over b_h, so that three sets suffice here too; K(b_h) stays as the history, half a step old.
 template <class T>
 void Flow<T>::self_start(double dt) {
   using V = fourier::Vector<T>;
@@ -150,6 +150,7 @@ void Flow<T>::self_start(double dt) {
   require_acceptable(dt, budget_);
   set_decay(decay_, dt / 2);
   const T half = static_cast<T>(dt / 2), whole = static_cast<T>(dt);
+  tendency_ready_ = false;
   parallel_blocks(layout_.points[0] * layout_.points[1], 16, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t line = begin; line < end; ++line) {
       const std::size_t ix = line / layout_.points[1], iy = line % layout_.points[1];
@@ -157,31 +158,27 @@ void Flow<T>::self_start(double dt) {
         const std::size_t at = ix * layout_.plane + iy * layout_.row + iz;
         const V decay = decay_.x[ix] * decay_.y[iy] * load(decay_.z.data() + iz);
         for (std::size_t c = 0; c < 3; ++c)
-          fourier::store<T>(&earlier_[c][at], decay * (load(&potential_[c][at]) + half * load(&tendency_[c][at])));
+          fourier::store<T>(&tendency_[c][at], decay * (load(&potential_[c][at]) + half * load(&tendency_[c][at])));
       }
     }
   });
-  Modes<T> next;
-  for (auto& field : next) field.resize(layout_.size());
   std::fill(tallies_.begin(), tallies_.end(), Tally{});
-  evaluate(earlier_, next,
+  evaluate(tendency_, earlier_,
            [&](std::size_t ix, std::size_t iy, std::size_t at, std::size_t iz, const V k2, const V k[3]) {
              const V decay = decay_.x[ix] * decay_.y[iy] * load(decay_.z.data() + iz);
              V b[3];
              for (std::size_t c = 0; c < 3; ++c) {
                b[c] = decay * (decay * load(&potential_[c][at]) + whole * k[c]);
-               fourier::store<T>(&next[c][at], b[c]);
+               fourier::store<T>(&tendency_[c][at], b[c]);
+               fourier::store<T>(&earlier_[c][at], k[c]);
              }
              add_to(tallies_[iy], b, k2, load(lane_weight_.data() + iz));
            });
-  const EnergyBudget fresh = tallied(next);
+  const EnergyBudget fresh = tallied(tendency_);
   require_acceptable(dt, fresh);
-  earlier_.swap(tendency_);
-  tendency_.swap(potential_);
-  potential_.swap(next);
-  tendency_ready_ = false;
+  potential_.swap(tendency_);
   has_history_ = has_previous_ = true;
-  earlier_dt_ = dt;
+  earlier_dt_ = dt / 2;
   accept(dt, with_forces(fresh));
 }
 
@@ -229,7 +226,7 @@ void Flow<T>::runge_kutta(double dt) {
   accept(dt, with_forces(fresh));
 }
 
-// Forcing and work at the end of the step. A force of particles is that of the step's start: the best known.
+// Forcing and work at the end of the step, with the force of particles that the step had: see Flow::budget.
 template <class T>
 EnergyBudget Flow<T>::with_forces(EnergyBudget fresh) const {
   if (force_[0] != nullptr) return measure_budget();

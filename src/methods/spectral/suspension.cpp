@@ -50,7 +50,7 @@ std::vector<std::array<double, 3>> read_positions(const LoadedCase& loaded) {
 }
 
 void require_memory(const LoadedCase& loaded, const ParticleOptions& options) {
-  const double particles = ParticleSystem::estimated_bytes(grid_of(loaded), options);
+  const double particles = suspension_bytes(loaded, options);
   const double needed = particles + flow_bytes(loaded.scene.grid, loaded.options.spectral);
   const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
   if (needed <= machine) return;
@@ -95,6 +95,15 @@ constexpr std::size_t pair_centres = 20000;
 constexpr int overlap_bins = 20;
 
 }  // namespace
+
+double suspension_bytes(const LoadedCase& loaded, const ParticleOptions& options) {
+  const PeriodicGrid grid = grid_of(loaded);
+  const double number = loaded.options.spectral.precision == FieldPrecision::f64 ? 8 : 4;
+  // Velocity or force on the points and, when the flow feels it, the force as modes.
+  double fields = 3 * number * static_cast<double>(grid.storage());
+  if (acts_on_flow(options.coupling)) fields += 3 * mode_bytes(loaded.scene.grid, loaded.options.spectral.precision);
+  return ParticleSystem::estimated_bytes(grid, options) + fields;
+}
 
 ParticleOptions particle_options(const LoadedCase& loaded) {
   const ParticleCaseOptions& in = loaded.options.particles;
@@ -213,7 +222,8 @@ void Suspension<T>::start() {
   system_.begin(velocity(untimed));
   if (follows_exponents_)
     tracker_ = LyapunovTracker(*system_.double_field(), static_cast<std::size_t>(loaded_.options.particles.lyapunov),
-                               system_.options().motion.response_time, loaded_.scene.seed + 1);
+                               system_.options().motion.response_time, system_.particles().common_diameter,
+                               loaded_.scene.seed + 1);
 }
 
 template <class T>
@@ -261,7 +271,8 @@ void Suspension<T>::require_possible(const StepLimit& flow) const {
 template <class T>
 void Suspension<T>::add_stages(std::vector<Stage>& list) const {
   const bool couples = system_.couples(), collides = system_.collides();
-  const char* const no_feedback = collides ? "particles.coupling = \"colliding\"" : "particles.coupling = \"one-way\"";
+  const char* const no_feedback =
+      excludes(system_.options().coupling) ? "particles.coupling = \"colliding\"" : "particles.coupling = \"one-way\"";
   char spread[100];
   std::snprintf(spread, sizeof spread, "force spread to eight points, clipped above %.3g, projected",
                 system_.options().most_volume_fraction);
@@ -271,8 +282,9 @@ void Suspension<T>::add_stages(std::vector<Stage>& list) const {
   list.push_back({"particle motion", !system_.options().motion.frozen,
                   system_.options().motion.frozen ? "particles.frozen" : "Maxey-Riley, exponential in the drag"});
   list.push_back({"particle exclusion", collides,
-                  collides ? "strongest overlaps, one per particle"
-                           : "particles.coupling is neither \"four-way\" nor \"colliding\""});
+                  collides                          ? "strongest overlaps, one per particle"
+                  : system_.options().motion.frozen ? "particles.frozen"
+                                                    : "particles.coupling is neither \"four-way\" nor \"colliding\""});
   list.push_back({"Lyapunov exponents", follows_exponents_,
                   follows_exponents_ ? "shadow trajectories" : "particles.lyapunov = 0"});
 }

@@ -27,7 +27,7 @@ PairStatistics pair_statistics(const std::array<double, 3>& lower, const std::ar
       PeriodicCells::with_side(lower, length, largest, std::max<double>(64, static_cast<double>(size)));
   CellOrder order;
   order.build(cells, position[0], position[1], position[2], size);
-  const std::size_t stride = std::max<std::size_t>(1, size / std::max<std::size_t>(centres, 1));
+  const std::size_t stride = block_count(size, std::max<std::size_t>(centres, 1));
   const std::size_t looked_at = block_count(size, stride);
 
   // Counts per block of centres, added in order. count[0]: closer than the smallest radius.

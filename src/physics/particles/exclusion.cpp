@@ -130,11 +130,7 @@ ExclusionReport Exclusion::match_by_rounds() {
   active_.resize(n);
   next_active_.resize(n);
   ExclusionReport report;
-  report.strongest = parallel_max(n, 0.0, [&](std::size_t k) {
-    const Strongest strongest = strongest_free(k);
-    remember(k, strongest);
-    return strongest.overlap[0] / diameter_of(k);
-  });
+  parallel_for(n, [&](std::size_t k) { remember(k, strongest_free(k)); });
 
   // Keeps the ranks with a free partner, in ascending order, by fixed blocks.
   std::array<std::size_t, max_reduction_blocks + 1> start{};
@@ -191,21 +187,20 @@ ExclusionReport Exclusion::match_by_sorting() {
   const std::size_t n = spheres_.size;
   const std::size_t block = std::max(default_block, block_count(n, max_reduction_blocks));
   std::vector<std::vector<Overlap>> lists(block_count(n, block));
-  std::vector<ExclusionReport> parts(lists.size());
+  std::vector<std::size_t> overlapping(lists.size(), 0);
   const auto before = [](const Overlap& a, const Overlap& b) {
     return stronger_overlap(a.overlap, a.own, a.other, b.overlap, b.own, b.other);
   };
   parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
       const std::int64_t own = spheres_.identifier[index_of(k)];
-      double strongest = 0;
+      bool overlaps = false;
       for_each_overlap(k, [&](std::int32_t m, double overlap) {
-        strongest = std::max(strongest, overlap / diameter_of(k));
+        overlaps = true;
         const std::int64_t other = spheres_.identifier[index_of(static_cast<std::size_t>(m))];
         if (own > other) lists[b].push_back({overlap, own, other, static_cast<std::int32_t>(k), m});
       });
-      parts[b].overlapping += strongest > 0 ? 1 : 0;
-      parts[b].strongest = std::max(parts[b].strongest, strongest);
+      overlapping[b] += overlaps ? 1 : 0;
     }
     std::sort(lists[b].begin(), lists[b].end(), before);
   });
@@ -230,10 +225,7 @@ ExclusionReport Exclusion::match_by_sorting() {
       partner_[j] = static_cast<std::int32_t>(i);
     }
   ExclusionReport report;
-  for (const ExclusionReport& part : parts) {
-    report.overlapping += part.overlapping;
-    report.strongest = std::max(report.strongest, part.strongest);
-  }
+  for (const std::size_t count : overlapping) report.overlapping += count;
   report.rounds = 1;
   report.pairs = matched_pairs();
   return report;

@@ -21,17 +21,17 @@ double kaplan_yorke_dimension(const std::array<double, 6>& exponents) {
 }
 
 LyapunovTracker::LyapunovTracker(const SplineField<double>& field, std::size_t count, double response_time,
-                                 std::uint64_t seed)
+                                 double diameter, std::uint64_t seed)
     : grid_(field.grid()),
       offset_(1e-5 * std::min({grid_.spacing(0), grid_.spacing(1), grid_.spacing(2)})),
       time_scale_(response_time),
       particles_(ParticleArrays{}),
       growth_(6 * count) {
   particles_.fields.resize(7 * count);
-  particles_.common_diameter = 1;
+  particles_.common_diameter = diameter;
   PlacementOptions options;
   options.seed = seed;
-  options.diameters = {1};
+  options.diameters = {diameter};
   place_particles(options, grid_.lower, grid_.length, particles_);
   gather(field, 7 * count, particles_.positions(),
          {particles_.velocity[0]->data(), particles_.velocity[1]->data(), particles_.velocity[2]->data()}, nullptr);

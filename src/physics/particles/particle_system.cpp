@@ -216,7 +216,7 @@ std::vector<ParticleSystem::ArraySize> ParticleSystem::arrays() const {
 
 double ParticleSystem::estimated_bytes(const PeriodicGrid& grid, const ParticleOptions& options) {
   const auto n = static_cast<double>(options.count);
-  const bool couples = acts_on_flow(options.coupling), collides = excludes(options.coupling);
+  const bool couples = acts_on_flow(options.coupling), collides = excludes(options.coupling) && !options.motion.frozen;
   // State, one scratch array of each type, and the order.
   double per_particle = 8 * 7 + 16 + 18;
   if (options.placement.diameters.size() > 1) per_particle += 8;

@@ -59,6 +59,8 @@ class BubbleCoupling {
 
   // What all bubbles gave to the liquid in the last exchange: sum of M_b, over the density of the liquid.
   Vec3 total_reaction() const;
+  // Vorticity of the liquid at bubble b in the last exchange.
+  Vec3 vorticity_at_bubble(std::size_t b) const;
 
   void add_columns(std::vector<SeriesColumn>& columns) const;
   void put_values(const Liquid& liquid, std::vector<double>& values) const;

@@ -44,6 +44,10 @@ class Flow {
   // Arrays are made here; throws InputError when they cannot fit into the memory of the machine.
   explicit Flow(const LoadedCase& loaded);
 
+  // The arrays of the state, set to zero, for the state that set_potential is to put in: no second set is in memory.
+  // Until then the flow has no state.
+  Modes<T> take_potential();
+
   // Replaces the state by a field with div b = 0 and forgets the history of the integrator.
   void set_potential(Modes<T>&& potential);
 
@@ -70,6 +74,8 @@ class Flow {
   // Transforms to and from the points of the grid, for use between steps.
   BoxTransform<T>& box() { return box_; }
 
+  // Of the present state, but for `work`: the force of particles on it is known with the next step alone, so that the
+  // work after a step is that of the force which the step had on the velocity at its end.
   const EnergyBudget& budget() const { return budget_; }
   // Integral of injection + work - dissipation, and of dissipation, over time since the start.
   double integrated_gain() const { return integrated_gain_; }
@@ -78,14 +84,17 @@ class Flow {
   // Sum over all modes of Re(conj(i k x b) . f) for the present state: the work of a force.
   EnergyBudget measure_budget() const;
 
-  // Bernoulli's p + u^2/2 (up to a constant), whose Laplacian is div(u x omega + f), as modes. Costs one tendency.
+  // Bernoulli's p + u^2/2 (up to a constant), whose Laplacian is div(u x omega + f), as modes. Costs one tendency. f is
+  // the force last set: with particles that at the start of the last step.
   void total_pressure(Array<Complex>& modes);
 
   std::vector<ArrayInfo> arrays() const;
   void save(StateWriter& writer) const;
   void load(StateReader& reader);
   const std::array<double, 3>& stage_seconds() const { return product_.stage_seconds(); }
-  double largest_wavenumber() const;                                 // kept, the least along the axes
+  // Where the modes end, the least along the axes: pi / spacing, or two thirds of it; the last modes kept lie one
+  // below.
+  double largest_wavenumber() const;
   bool keeps(std::size_t ix, std::size_t iy, std::size_t iz) const;  // not cut by the two-thirds rule
 
  private:
@@ -120,6 +129,7 @@ class Flow {
   std::array<std::vector<T>, 3> wavenumber_;
   Array<Complex> lane_wavenumber_, lane_weight_;  // of a row of modes, in both parts
   std::array<double, 3> cut_{};                   // two-thirds rule: |k| below it stays
+  double kept_reach_ = 0;                         // largest wavenumber kept times spacing, of all axes
   double shell_low_ = 0, shell_high_ = 0;         // squares of the forced wavenumbers
 
   // Adams-Bashforth: b, K of the present and K of the previous step. The update writes b of the next step over the
@@ -140,7 +150,10 @@ class Flow {
   Decay decay_, earlier_decay_;
 };
 
-// Memory of a flow on a grid, in bytes, before anything is allocated.
+// Memory of the modes of one component on a grid, in bytes.
+double mode_bytes(const std::array<std::size_t, 3>& grid, FieldPrecision precision);
+
+// Memory that a flow on a grid takes at most, in bytes, before anything is allocated.
 double flow_bytes(const std::array<std::size_t, 3>& grid, const SpectralOptions& options);
 
 }  // namespace spume::spectral

@@ -11,7 +11,7 @@ namespace spume::spectral {
 // sides; random: phases from the seed (the same for a mode on every grid), energy in shells of width 2 pi / longest
 // length as the spectrum says, scaled to the mean energy; expressions: the solenoidal part of the values on the points;
 // checkpoint: the modes that both grids hold.
-// Throws InputError for what the case cannot start from.
+// Built in the arrays of the flow (Flow::take_potential). Throws InputError for what the case cannot start from.
 template <class T>
 Modes<T> initial_potential(const LoadedCase& loaded, Flow<T>& flow);
 

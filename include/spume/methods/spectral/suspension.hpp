@@ -23,6 +23,10 @@ namespace spume::spectral {
 // InputError for what no option alone shows: an unreadable file of positions, too little memory.
 ParticleOptions particle_options(const LoadedCase& loaded);
 
+// Memory of the particles and of the fields between them and the flow, in bytes, before anything is allocated; that of
+// the flow (flow_bytes) not included.
+double suspension_bytes(const LoadedCase& loaded, const ParticleOptions& options);
+
 template <class T>
 class Suspension {
  public:

@@ -21,7 +21,6 @@ struct ExclusionReport {
   std::size_t overlapping = 0;  // particles with an overlap
   std::size_t pairs = 0;        // pairs moved apart
   int rounds = 0;
-  double strongest = 0;  // largest Q / ((D_i + D_j) / 2)
 };
 
 // The particles to be separated. `diameter` may be null: then all have `common_diameter`.

@@ -22,8 +22,10 @@ double kaplan_yorke_dimension(const std::array<double, 6>& exponents);
 class LyapunovTracker {
  public:
   LyapunovTracker() = default;
-  // Reference particles at random places with the velocity of the present field.
-  LyapunovTracker(const SplineField<double>& field, std::size_t count, double response_time, std::uint64_t seed);
+  // Reference particles at random places with the velocity of the present field. The diameter is the one that the
+  // response time belongs to: the law of Schiller and Naumann takes its Reynolds number from it.
+  LyapunovTracker(const SplineField<double>& field, std::size_t count, double response_time, double diameter,
+                  std::uint64_t seed);
 
   // The step that the particles make.
   void advance(const MotionModel& model, const SplineField<double>& field, double dt);

@@ -76,7 +76,8 @@ class ParticleSystem {
   void resume(const std::array<const Source*, 3>& velocity);
 
   bool couples() const { return acts_on_flow(options_.coupling); }
-  bool collides() const { return excludes(options_.coupling); }
+  // Frozen particles do not: exclusion would move them.
+  bool collides() const { return excludes(options_.coupling) && !options_.motion.frozen; }
   // The longest step that the coupling is stable with, at the volume fractions that the force was last spread with
   // (before that, the mean); infinite without coupling.
   double longest_step() const;
