@@ -33,30 +33,29 @@ Section turbulence() {
 Section pressure() {
   const auto group = &Case::pressure;
   using P = PressureOptions;
-  return {
-      .name = "pressure",
-      .options =
-          {
-              word_option("solver", "\"bicgstab\"", "Krylov method of the pressure equation", group, &P::solver,
-                          {{"bicgstab", PressureSolver::bicgstab}, {"cg", PressureSolver::cg}}),
-              word_option("preconditioner", "\"multigrid\"", "multigrid: Jacobi plus one V-cycle on cells", group,
-                          &P::preconditioner,
-                          {{"jacobi", PreconditionerKind::jacobi}, {"multigrid", PreconditionerKind::multigrid}}),
-              word_option("precision", "\"mixed\"", "mixed: residuals in double, corrections in float", group,
-                          &P::precision, {{"mixed", Precision::mixed}, {"double", Precision::f64}}),
-              option("tolerance", "1", "1e-6", above_up_to(0, 0.1), "residual relative to the right-hand side", group,
-                     &P::tolerance),
-              option("max_iterations", "", "500", between(1, 1e6), "iterations after which a solve has failed", group,
-                     &P::max_iterations),
-              option("cell_ratio", "spacing", "1.5", between(1, 8), "side of the multigrid cells", group,
-                     &P::cell_ratio),
-              option("warm_start", "", "true", {}, "start from the last pressure, carried by the particles", group,
-                     &P::warm_start),
-              option("density_relaxation", "steps", "30", between(1, 1e6),
-                     "steps at the courant limit over which number density is evened out; 1e6: never",
-                     group, &P::density_relaxation),
-          },
-      .methods = {"les-sph"}};
+  return {.name = "pressure",
+          .options =
+              {
+                  word_option("solver", "\"bicgstab\"", "Krylov method of the pressure equation", group, &P::solver,
+                              {{"bicgstab", PressureSolver::bicgstab}, {"cg", PressureSolver::cg}}),
+                  word_option("preconditioner", "\"multigrid\"", "multigrid: Jacobi plus one V-cycle on cells", group,
+                              &P::preconditioner,
+                              {{"jacobi", PreconditionerKind::jacobi}, {"multigrid", PreconditionerKind::multigrid}}),
+                  word_option("precision", "\"mixed\"", "mixed: residuals in double, corrections in float", group,
+                              &P::precision, {{"mixed", Precision::mixed}, {"double", Precision::f64}}),
+                  option("tolerance", "1", "1e-6", above_up_to(0, 0.1), "residual relative to the right-hand side",
+                         group, &P::tolerance),
+                  option("max_iterations", "", "500", between(1, 1e6), "iterations after which a solve has failed",
+                         group, &P::max_iterations),
+                  option("cell_ratio", "spacing", "1.5", between(1, 8), "side of the multigrid cells", group,
+                         &P::cell_ratio),
+                  option("warm_start", "", "true", {}, "start from the last pressure, carried by the particles", group,
+                         &P::warm_start),
+                  option("density_relaxation", "steps", "30", between(1, 1e6),
+                         "steps at the courant limit over which number density is evened out; 1e6: never", group,
+                         &P::density_relaxation),
+              },
+          .methods = {"les-sph"}};
 }
 
 Section shifting() {
