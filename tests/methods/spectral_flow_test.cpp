@@ -418,7 +418,10 @@ TEST(SpectralFlow, StaysWithinTheMemoryThatItIsRefusedBy) {
 }
 
 TEST(SpectralFlow, TooLargeGridsAreRefusedBeforeAnythingIsAllocated) {
-  const LoadedCase loaded = test::load_text(spectral_text("16384", random_start));
+  EXPECT_THROW(test::load_text(spectral_text("16384", random_start)), InputError);
+  // Those whose points alone would fit are the method's to refuse.
+  LoadedCase loaded = test::load_text(spectral_text("16", random_start));
+  loaded.scene.grid = {16384, 16384, 16384};
   EXPECT_THROW(spectral::Spectral<double> method(loaded), InputError);
 }
 
