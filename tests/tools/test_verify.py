@@ -151,7 +151,9 @@ while time.monotonic() < deadline: time.sleep(0.05)
         (self.path / "tmp").mkdir()
         process = subprocess.Popen([sys.executable, VERIFY, program, "taylor_green_2d", *arguments], text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                   env=os.environ | {"TMPDIR": str(self.path / "tmp")})
+                                   env=os.environ | {"TMPDIR": str(self.path / "tmp")},
+                                   # The tests may themselves run under nohup.
+                                   preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL))
         self.addCleanup(process.kill)
         deadline = time.monotonic() + 30
         while not (self.path / "pid").exists():
