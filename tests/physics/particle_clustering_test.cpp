@@ -112,17 +112,22 @@ TEST(KaplanYorkeDimension, InterpolatesTheSumOfExponents) {
   EXPECT_NEAR(kaplan_yorke_dimension({2, 1, -3, -5, -6, -7}), 3, 1e-15);
 }
 
+// Fluid at rest in a unit cube, and particles that follow it within tau = 0.5.
+struct StillFluid {
+  SplineField<double> field{PeriodicGrid{.length = {1, 1, 1}, .points = {8, 8, 8}, .z_stride = 8}, 4};
+  MotionModel model;
+
+  StillFluid() {
+    const std::vector<double> zero(512, 0.0);
+    field.fill(std::array<const double*, 3>{zero.data(), zero.data(), zero.data()});
+    model.response_time = 0.5;
+  }
+};
+
 // dV/dt = -V / tau: exponents 0 three times and -1 / tau three times.
 TEST(LyapunovExponents, OfStillFluidAreZeroAndTheDrag) {
-  PeriodicGrid grid;
-  grid.length = {1, 1, 1};
-  grid.points = {8, 8, 8};
-  grid.z_stride = 8;
-  SplineField<double> field(grid, 4);
-  const std::vector<double> zero(512, 0.0);
-  field.fill(std::array<const double*, 3>{zero.data(), zero.data(), zero.data()});
-  MotionModel model;
-  model.response_time = 0.5;
+  StillFluid still;
+  auto& [field, model] = still;
   LyapunovTracker tracker(field, 10, model.response_time, 0.01, 1);
   for (int step = 0; step < 400; ++step) tracker.advance(model, field, 0.05);
   const auto growth = tracker.stretching();
@@ -139,15 +144,8 @@ TEST(LyapunovExponents, OfStillFluidAreZeroAndTheDrag) {
 // Particles at the slip v lose it as dv/dt = -(1 + 0.15 Re^0.687) v / tau, Re = v D / nu: a difference of slips shrinks
 // at the rate (1 + 1.687 * 0.15 Re^0.687) / tau along the slip and (1 + 0.15 Re^0.687) / tau across it.
 TEST(LyapunovExponents, TakeTheReynoldsNumberOfTheirDiameter) {
-  PeriodicGrid grid;
-  grid.length = {1, 1, 1};
-  grid.points = {8, 8, 8};
-  grid.z_stride = 8;
-  SplineField<double> field(grid, 4);
-  const std::vector<double> zero(512, 0.0);
-  field.fill(std::array<const double*, 3>{zero.data(), zero.data(), zero.data()});
-  MotionModel model;
-  model.response_time = 0.5;
+  StillFluid still;
+  auto& [field, model] = still;
   model.viscosity = 0.01;
   model.drag = DragLaw::schiller_naumann;
   const double slip = 0.5, diameter = 0.01, dt = 1e-3;

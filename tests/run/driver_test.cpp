@@ -51,6 +51,15 @@ class Driver : public testing::Test {
   std::unique_ptr<Simulation> resume(const std::string& name, std::optional<double> until = {}) {
     return Simulation::resume(folder_ / name, load_fake_case, make_fake_method, until);
   }
+  std::string failure_of_run() {
+    Watch watch;
+    try {
+      start("run")->run(watch);
+    } catch (const NumericalFailure& failure) {
+      return failure.what();
+    }
+    return {};
+  }
   nlohmann::json summary(const std::string& name) {
     return nlohmann::json::parse(contents(folder_ / name / "summary.json"));
   }
@@ -166,13 +175,7 @@ TEST_F(Driver, RefusedStepsResumeBitForBit) {
 
 TEST_F(Driver, GivesUpWithWordsAndLeavesTheLastGoodState) {
   write_case("end = 1.0\nfails_from = 0.5\nmax_retries = 3\nevery = 0.4\n");
-  Watch watch;
-  std::string message;
-  try {
-    start("run")->run(watch);
-  } catch (const NumericalFailure& failure) {
-    message = failure.what();
-  }
+  const std::string message = failure_of_run();
   for (const char* part : {"numerical failure at step", "a particle moved further than its spacing",
                            "particle 7 at (0.25, 0.5), value 3.5", "refused 4 times", "time.courant", "checkpoint.h5"})
     EXPECT_THAT(message, HasSubstr(part));
@@ -188,13 +191,7 @@ TEST_F(Driver, GivesUpWithWordsAndLeavesTheLastGoodState) {
 
 TEST_F(Driver, AFailureBeforeTheFirstStepSaysThatNothingCanBeContinued) {
   write_case("end = 1.0\nsolvable = false\n");
-  Watch watch;
-  std::string message;
-  try {
-    start("run")->run(watch);
-  } catch (const NumericalFailure& failure) {
-    message = failure.what();
-  }
+  const std::string message = failure_of_run();
   EXPECT_THAT(message, HasSubstr("the pressure solve did not converge"));
   EXPECT_THAT(message, HasSubstr("there is no checkpoint to continue"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "run" / "checkpoint.h5"));

@@ -135,7 +135,7 @@ class Interruption(Scratch):
 import os, pathlib, signal, sys, time
 here = pathlib.Path({here!r})
 def stop(number, frame):
-    if {stubborn}: return
+    if {deaf}: return
     (here / "stopped").write_text(str(number))
     sys.exit(130)
 for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP): signal.signal(number, stop)
@@ -145,9 +145,9 @@ deadline = time.monotonic() + 60
 while time.monotonic() < deadline: time.sleep(0.05)
 """
 
-    def started(self, *arguments, stubborn=False):
+    def started(self, *arguments, deaf=False):
         """verify.py with its run under way, and the run's process number."""
-        program = self.script(self.PROGRAM.format(here=str(self.path), stubborn=stubborn))
+        program = self.script(self.PROGRAM.format(here=str(self.path), deaf=deaf))
         (self.path / "tmp").mkdir()
         process = subprocess.Popen([sys.executable, VERIFY, program, "taylor_green_2d", *arguments], text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -189,7 +189,7 @@ while time.monotonic() < deadline: time.sleep(0.05)
                     (self.path / name).unlink()
 
     def test_a_second_signal_ends_a_run_that_does_not_stop(self):
-        process, run = self.started(stubborn=True)
+        process, run = self.started(deaf=True)
         process.send_signal(signal.SIGTERM)
         time.sleep(0.5)
         self.assertIsNone(process.poll())
