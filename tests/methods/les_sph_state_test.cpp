@@ -92,6 +92,16 @@ TEST(LesSphSamples, FollowALoadedState) {
   for (int axis = 0; axis < 2; ++axis) EXPECT_NEAR(a.velocity[axis], b.velocity[axis], 1e-12);
 }
 
+TEST(LesSphSamples, KnowTheHydrostaticPressureOfALoadedState) {
+  Simulation saved_from(closed_box), loaded_into(closed_box);
+  saved_from.steps(2, 0.005);
+  MemoryState saved;
+  saved_from.method.save(saved);
+  loaded_into.method.load(saved);
+  const Vec3 floor{0.31, 0, 0};
+  EXPECT_EQ(loaded_into.method.sample(floor).pressure, saved_from.method.sample(floor).pressure);
+}
+
 TEST(LesSphSamples, AreTheSameAfterARefusedStep) {
   Simulation run(taylor_green);
   run.steps(2, 0.004);

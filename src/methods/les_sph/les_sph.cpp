@@ -417,6 +417,7 @@ void LesSph::load(StateReader& reader) {
   liquid_.steps = counters[0];
   liquid_.started = counters[1] != 0;
   for (int axis = 0; axis < 3; ++axis) liquid_.walls[axis] = {walls[2 * axis], walls[2 * axis + 1]};
+  find_uniform_acceleration(liquid_, liquid_.time);  // samples before the next step need it
   if (bubbles_) bubbles_->load(reader);
 }
 

@@ -33,21 +33,6 @@ double length_of(const Vec3& v) {
   throw StepFailure(details);
 }
 
-// Body force at time t: a uniform one joins gravity along axes without periodicity.
-void find_uniform_acceleration(Liquid& liquid, double t) {
-  liquid.uniform_acceleration = {};
-  liquid.periodic_acceleration = {};
-  Vec3 total = liquid.scene.fluid.gravity;
-  if (liquid.scene.body_force && liquid.uniform_body_force) {
-    const Vec3 force = (*liquid.scene.body_force)(liquid.origin, t);
-    for (int axis = 0; axis < liquid.dimensions; ++axis) total[axis] += force[axis];
-  }
-  if (!std::isfinite(total[0] + total[1] + total[2])) refuse_body_force(liquid, t);
-  for (int axis = 0; axis < liquid.dimensions; ++axis)
-    (liquid.scene.domain.periodic(axis) ? liquid.periodic_acceleration : liquid.uniform_acceleration)[axis] =
-        total[axis];
-}
-
 void add_body_force(Liquid& liquid, double t, double dt) {
   const int d = liquid.dimensions;
   liquid.largest_body_force = parallel_reduce(
@@ -99,6 +84,20 @@ void add_shift_velocity(const Liquid& liquid, std::size_t i, Vec3& u) {
 }
 
 }  // namespace
+
+void find_uniform_acceleration(Liquid& liquid, double t) {
+  liquid.uniform_acceleration = {};
+  liquid.periodic_acceleration = {};
+  Vec3 total = liquid.scene.fluid.gravity;
+  if (liquid.scene.body_force && liquid.uniform_body_force) {
+    const Vec3 force = (*liquid.scene.body_force)(liquid.origin, t);
+    for (int axis = 0; axis < liquid.dimensions; ++axis) total[axis] += force[axis];
+  }
+  if (!std::isfinite(total[0] + total[1] + total[2])) refuse_body_force(liquid, t);
+  for (int axis = 0; axis < liquid.dimensions; ++axis)
+    (liquid.scene.domain.periodic(axis) ? liquid.periodic_acceleration : liquid.uniform_acceleration)[axis] =
+        total[axis];
+}
 
 void predict_velocity(Liquid& liquid, double dt) {
   const int d = liquid.dimensions;

@@ -141,6 +141,8 @@ void choose_shift(Liquid& liquid);            // (iii)
 void differentiate_velocity(Liquid& liquid);  // (v)
 void find_shift_curvature(Liquid& liquid);
 void find_eddy_viscosity(Liquid& liquid, double dt);
+// Gravity and a uniform body force at time t, along axes without periodicity and along the others. Throws StepFailure.
+void find_uniform_acceleration(Liquid& liquid, double t);
 void predict_velocity(Liquid& liquid, double dt);  // (viii)
 void project_velocity(Liquid& liquid, double dt);  // (x)
 void accept(Liquid& liquid, double dt);            // (xi)
