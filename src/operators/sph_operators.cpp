@@ -29,10 +29,11 @@ std::array<float, dimensions> correct(const std::array<const float*, 6>& correct
   return result;
 }
 
-template <int dimensions, class Kernel, bool filter>
+// store(i, d u_a / d x_c as [a][c]) for every particle.
+template <int dimensions, class Kernel, bool filter, class Store>
 void velocity_gradient(const SweepContext& context, Records& records_, const std::array<const double*, 3>& velocity,
                        const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
-                       const VelocityGradientOut& out) {
+                       const std::array<float*, 3>& out, Store&& store) {
   const NeighbourList& list = *context.list;
   constexpr int payload = dimensions + volume_slots<Kernel>;
   float* records = records_.prepare(context, payload);
@@ -64,13 +65,13 @@ void velocity_gradient(const SweepContext& context, Records& records_, const std
       }
     });
     const float weight = filter ? 1 / (centre + simd::sum(kernel_sum)) : 0;
+    std::array<std::array<float, dimensions>, dimensions> gradient{};
     for (int a = 0; a < dimensions; ++a) {
-      std::array<float, dimensions> row{};
-      for (int c = 0; c < dimensions; ++c) row[c] = simd::sum(m[a][c]);
-      row = correct<dimensions>(correction, i, row);
-      for (int c = 0; c < dimensions; ++c) out.gradient[a * dimensions + c][i] = row[c];
-      if constexpr (filter) out.filtered[a][i] = (centre * own[a][0] + simd::sum(filtered[a])) * weight;
+      for (int c = 0; c < dimensions; ++c) gradient[a][c] = simd::sum(m[a][c]);
+      gradient[a] = correct<dimensions>(correction, i, gradient[a]);
+      if constexpr (filter) out[a][i] = (centre * own[a][0] + simd::sum(filtered[a])) * weight;
     }
+    store(i, gradient);
   });
 }
 
@@ -305,10 +306,27 @@ void velocity_gradient_sweep(const SweepContext& context, Records& records,
                              const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
                              const std::array<const float*, 6>& correction, const VelocityGradientOut& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
+    const auto store = [&](std::size_t i, const auto& gradient) {
+      for (int a = 0; a < dimensions; ++a)
+        for (int c = 0; c < dimensions; ++c) out.gradient[a * dimensions + c][i] = gradient[a][c];
+    };
     if (out.filtered[0] != nullptr)
-      velocity_gradient<dimensions, Kernel, true>(context, records, velocity, rule, correction, out);
+      velocity_gradient<dimensions, Kernel, true>(context, records, velocity, rule, correction, out.filtered, store);
     else
-      velocity_gradient<dimensions, Kernel, false>(context, records, velocity, rule, correction, out);
+      velocity_gradient<dimensions, Kernel, false>(context, records, velocity, rule, correction, out.filtered, store);
+  });
+}
+
+void gradient_trace_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
+                          const VelocityImageRule& rule, const std::array<const float*, 6>& correction, float* trace) {
+  with_kernel(context, [&]<int dimensions, class Kernel>() {
+    const auto store = [&](std::size_t i, const auto& gradient) {
+      float sum = 0;
+      for (int a = 0; a < dimensions; ++a)
+        for (int c = 0; c < dimensions; ++c) sum += gradient[a][c] * gradient[c][a];
+      trace[i] = sum;
+    };
+    velocity_gradient<dimensions, Kernel, false>(context, records, velocity, rule, correction, {}, store);
   });
 }
 

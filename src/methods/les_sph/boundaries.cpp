@@ -20,6 +20,40 @@ bool face_bounds_liquid(const Domain& domain, const SolidBox& box, int axis, int
                    : box.upper[axis] < domain.upper[axis] - tolerance;
 }
 
+// What moving walls add to the velocities of images at time t; with friction no-slip walls along their planes too.
+void find_image_offsets(const Liquid& liquid, double t, bool friction, VelocityImageRule& rule) {
+  const Domain& domain = liquid.scene.domain;
+  const int d = liquid.dimensions;
+  const std::size_t m = liquid.images.size();
+  for (int axis = 0; axis < d; ++axis) rule.offset[axis].resize(m);
+  parallel_blocks(m, 4096, [&](std::size_t, std::size_t first, std::size_t last) {
+    // Expressions keep their variables inside: each block evaluates its own copies.
+    std::array<std::array<VectorExpression, 2>, 3> velocity;
+    for (int axis = 0; axis < d; ++axis)
+      for (int side = 0; side < 2; ++side)
+        if (domain.sides[axis][side].velocity) velocity[axis][side] = domain.sides[axis][side].velocity->clone();
+    for (std::size_t k = first; k < last; ++k) {
+      std::array<double, 3> offset{};
+      const ImagePath& path = liquid.images.paths()[static_cast<std::size_t>(liquid.images.path()[k])];
+      for (int axis = 0; axis < d; ++axis) {
+        const int side = path.side[axis];
+        if (side < 0 || !is_wall(domain.sides[axis][side].kind)) continue;
+        const bool holds = friction && domain.sides[axis][side].kind == BoundaryKind::no_slip;
+        Vec3 wall{};
+        if (domain.sides[axis][side].velocity) {
+          Vec3 foot{};
+          for (int a = 0; a < d; ++a) foot[a] = liquid.images.position(a)[k];
+          foot[axis] = liquid.next_walls[axis][side];
+          wall = velocity[axis][side](foot, t);
+        }
+        for (int a = 0; a < d; ++a)
+          if (holds || a == axis) offset[a] = 2 * wall[a] - offset[a];
+      }
+      for (int a = 0; a < d; ++a) rule.offset[a][k] = static_cast<float>(offset[a]);
+    }
+  });
+}
+
 }  // namespace
 
 ImageRules image_rules(const Liquid& liquid, const WallPositions& walls) {
@@ -92,38 +126,12 @@ void update_image_rules(Liquid& liquid, double t) {
     for (int axis = 0; axis < 3; ++axis)
       liquid.reflection[p][axis] = axis < d ? static_cast<float>(Images::sign(paths[p], rules, axis)) : 1.0F;
   }
+  if (liquid.plan.no_slip) liquid.mirror_rule.sign = liquid.reflection;
   if (!liquid.plan.moving_walls) return;
-
-  const std::size_t m = liquid.images.size();
-  for (int axis = 0; axis < d; ++axis) liquid.velocity_rule.offset[axis].resize(m);
-  parallel_blocks(m, 4096, [&](std::size_t, std::size_t first, std::size_t last) {
-    // Expressions keep their variables inside: each block evaluates its own copies.
-    std::array<std::array<VectorExpression, 2>, 3> velocity;
-    for (int axis = 0; axis < d; ++axis)
-      for (int side = 0; side < 2; ++side)
-        if (domain.sides[axis][side].velocity) velocity[axis][side] = domain.sides[axis][side].velocity->clone();
-    for (std::size_t k = first; k < last; ++k) {
-      std::array<double, 3> offset{};
-      const ImagePath& path = paths[static_cast<std::size_t>(liquid.images.path()[k])];
-      for (int axis = 0; axis < d; ++axis) {
-        const int side = path.side[axis];
-        if (side < 0 || !is_wall(domain.sides[axis][side].kind)) continue;
-        const bool slips = domain.sides[axis][side].kind == BoundaryKind::free_slip;
-        Vec3 wall{};
-        if (domain.sides[axis][side].velocity) {
-          Vec3 foot{};
-          for (int a = 0; a < d; ++a) foot[a] = liquid.images.position(a)[k];
-          foot[axis] = liquid.next_walls[axis][side];
-          wall = velocity[axis][side](foot, t);
-        }
-        for (int a = 0; a < d; ++a)
-          if (!slips || a == axis) offset[a] = 2 * wall[a] - offset[a];
-      }
-      for (int a = 0; a < d; ++a) liquid.velocity_rule.offset[a][k] = static_cast<float>(offset[a]);
-    }
-  });
+  find_image_offsets(liquid, t, true, liquid.velocity_rule);
+  if (liquid.plan.no_slip && liquid.plan.displaced_walls) find_image_offsets(liquid, t, false, liquid.mirror_rule);
   // An image behind a wall moves with twice the velocity of the wall.
-  liquid.wall_speed = 0.5 * std::sqrt(parallel_max(m, 0.0, [&](std::size_t k) {
+  liquid.wall_speed = 0.5 * std::sqrt(parallel_max(liquid.images.size(), 0.0, [&](std::size_t k) {
                         double speed2 = 0;
                         for (int a = 0; a < d; ++a) {
                           const double u = liquid.velocity_rule.offset[a][k];

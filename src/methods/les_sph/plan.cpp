@@ -13,11 +13,14 @@ Plan make_plan(const LoadedCase& loaded) {
   for (int axis = 0; axis < scene.domain.dimensions; ++axis)
     for (const Side& side : scene.domain.sides[axis]) {
       plan.images = plan.images || side.kind != BoundaryKind::open;
+      plan.no_slip = plan.no_slip || side.kind == BoundaryKind::no_slip;
       if (!side.velocity) continue;
       plan.moving_walls = true;
       plan.displaced_walls = plan.displaced_walls || side.velocity->component[axis] != nullptr;
     }
   plan.images = plan.images || !scene.domain.boxes.empty();
+  for (const SolidBox& box : scene.domain.boxes)
+    plan.no_slip = plan.no_slip || box.kind == BoundaryKind::no_slip;
   plan.free_surface = scene.free_surface;
   plan.shifting = options.shifting.on;
   const TurbulenceModel model = options.turbulence.model;

@@ -30,16 +30,6 @@ CellGeometry cell_geometry(const Liquid& liquid) {
   return geometry;
 }
 
-// tr(grad u . grad u), minus the rate of change of div u along frozen velocities.
-double gradient_trace(const Liquid& liquid, std::size_t i) {
-  const int d = liquid.dimensions;
-  double trace = 0;
-  for (int a = 0; a < d; ++a)
-    for (int b = 0; b < d; ++b)
-      trace += double{(*liquid.velocity_gradient[a * d + b])[i]} * (*liquid.velocity_gradient[b * d + a])[i];
-  return trace;
-}
-
 // Images in solids are those of the nearest face, which is not mutual at a box edge: the matrix of a closed
 // incompressible box around a solid is then not symmetric, its right-hand side is not compatible, and removing the mean
 // does not help. A compressibility of 1e-3 over the square of the domain, far below that of the smallest wave number
@@ -132,6 +122,25 @@ void PressureSystem::set_matrix(const Liquid& liquid, double helmholtz) {
     diagonal_[i] += static_cast<float>(volume * row.coupling);
     surface_source_[k] = row.coupling * row.hydrostatic_pressure;
     if (liquid.potential != nullptr) potential_laplacian_[i] -= static_cast<float>(surface_source_[k]);
+  });
+}
+
+// Adds tr(grad u . grad u), minus the rate of change of div u along frozen velocities, to the right-hand side.
+void PressureSystem::add_gradient_trace(Liquid& liquid, double factor) {
+  if (liquid.plan.no_slip) {
+    correction_.resize(liquid.size());  // borrowed until the solve
+    gradient_trace_sweep(liquid.context, liquid.records, liquid.read(liquid.velocity), liquid.volume_rule(),
+                         liquid.read_correction(), correction_.data());
+    parallel_for(liquid.size(), [&](std::size_t i) { right_hand_side_[i] += factor * correction_[i]; });
+    return;
+  }
+  const int d = liquid.dimensions;
+  parallel_for(liquid.size(), [&](std::size_t i) {
+    double trace = 0;
+    for (int a = 0; a < d; ++a)
+      for (int b = 0; b < d; ++b)
+        trace += double{(*liquid.velocity_gradient[a * d + b])[i]} * (*liquid.velocity_gradient[b * d + a])[i];
+    right_hand_side_[i] += factor * trace;
   });
 }
 
@@ -322,15 +331,14 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
   if (liquid.potential != nullptr) potential_laplacian_.resize(n);
   {
     const auto scope = ledger.time("divergence", static_cast<double>(n), pairs);
-    divergence_sweep(liquid.context, liquid.records, liquid.read(liquid.predicted), liquid.velocity_rule,
+    divergence_sweep(liquid.context, liquid.records, liquid.read(liquid.predicted), liquid.volume_rule(),
                      liquid.read_correction(), liquid.potential == nullptr ? nullptr : liquid.potential->data(),
                      right_hand_side_.data(), potential_laplacian_.data());
     liquid.max_divergence = parallel_max(n, 0.0, [&](std::size_t i) { return std::abs(right_hand_side_[i]); });
     // The new velocity moves the particles from here to the next positions: it is made free of divergence half way,
     // where div u = (div u here) - dt/2 tr(grad u . grad u). The step is then of second order, and a projection
     // does not cost the energy dt |grad p|^2 / 2 per time.
-    if (liquid.options.time.centred)
-      parallel_for(n, [&](std::size_t i) { right_hand_side_[i] -= 0.5 * dt * gradient_trace(liquid, i); });
+    if (liquid.options.time.centred) add_gradient_trace(liquid, -0.5 * dt);
     if (liquid.plan.density_relaxation) even_out_density(liquid, dt, right_hand_side_);
     set_matrix(liquid, helmholtz + regularisation(liquid, helmholtz));
     set_right_hand_side(liquid, helmholtz, -1 / dt);
@@ -352,12 +360,13 @@ void PressureSystem::solve_initial(Liquid& liquid, Ledger& ledger) {
   right_hand_side_.resize(n);
   if (liquid.potential != nullptr) {
     potential_laplacian_.resize(n);
-    divergence_sweep(liquid.context, liquid.records, liquid.read(liquid.velocity), liquid.velocity_rule,
+    divergence_sweep(liquid.context, liquid.records, liquid.read(liquid.velocity), liquid.volume_rule(),
                      liquid.read_correction(), liquid.potential->data(), right_hand_side_.data(),
                      potential_laplacian_.data());
   }
   // -lap p = tr(grad u . grad u), from the divergence of the momentum equation.
-  parallel_for(n, [&](std::size_t i) { right_hand_side_[i] = gradient_trace(liquid, i); });
+  parallel_for(n, [&](std::size_t i) { right_hand_side_[i] = 0; });
+  add_gradient_trace(liquid, 1);
   set_matrix(liquid, regularisation(liquid, 0));
   set_right_hand_side(liquid, 0, 1);
   parallel_for(n, [&](std::size_t i) {

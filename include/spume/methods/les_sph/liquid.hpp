@@ -104,6 +104,7 @@ struct Liquid {
   Records records;
   SweepContext context;
   VelocityImageRule velocity_rule;
+  VelocityImageRule mirror_rule;  // the same without friction; in a scene with no-slip walls alone
   std::vector<std::array<float, 3>> reflection;
 
   // Of the accepted state.
@@ -121,6 +122,11 @@ struct Liquid {
     const auto n = static_cast<std::int32_t>(size());
     return static_cast<std::size_t>(point < n ? point : images.source()[point - n]);
   }
+  // How images move, walls holding the liquid back along their normals alone: what mass and volume depend on. Rates of
+  // volume under the rule of friction are not adjoint to the pressure gradient, which sees mirror images: liquid in the
+  // edge of two no-slip walls below a surface gained speed without bound, and that in a cavity left its lid (by an
+  // eighth of its density, which took 4 % off the circulation at 40 x 40, against 0.4 %).
+  const VelocityImageRule& volume_rule() const { return plan.no_slip ? mirror_rule : velocity_rule; }
   bool is_edge(std::size_t i) const { return interior_weight[i] < 1 && uncorrected[i] == 0; }
   bool dynamic_closure() const;
   std::array<const double*, 3> read(const VectorField& v) const;

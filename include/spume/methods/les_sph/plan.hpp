@@ -16,6 +16,7 @@ struct Plan {
   bool images = false;           // some side is periodic or a wall, or there are solid boxes
   bool moving_walls = false;     // some wall has a velocity
   bool displaced_walls = false;  // some wall velocity has a normal component
+  bool no_slip = false;          // some wall or solid holds the liquid
   bool free_surface = false;
   bool shifting = false;
   bool velocity_gradient = false;  // closure or shift correction

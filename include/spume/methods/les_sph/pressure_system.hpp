@@ -45,6 +45,7 @@ class PressureSystem {
   struct DoubleOperator;
 
   void set_matrix(const Liquid& liquid, double helmholtz);
+  void add_gradient_trace(Liquid& liquid, double factor);
   void set_right_hand_side(const Liquid& liquid, double helmholtz, double source_scale);
   // Preconditioner setup and solve, timed apart: the solve under the name `stage`.
   void solve(Liquid& liquid, double helmholtz, const char* stage, Ledger& ledger);
