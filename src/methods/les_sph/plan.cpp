@@ -19,8 +19,7 @@ Plan make_plan(const LoadedCase& loaded) {
       plan.displaced_walls = plan.displaced_walls || side.velocity->component[axis] != nullptr;
     }
   plan.images = plan.images || !scene.domain.boxes.empty();
-  for (const SolidBox& box : scene.domain.boxes)
-    plan.no_slip = plan.no_slip || box.kind == BoundaryKind::no_slip;
+  for (const SolidBox& box : scene.domain.boxes) plan.no_slip = plan.no_slip || box.kind == BoundaryKind::no_slip;
   plan.free_surface = scene.free_surface;
   plan.shifting = options.shifting.on;
   const TurbulenceModel model = options.turbulence.model;
