@@ -60,13 +60,14 @@ TEST(NumberDensity, IsEvenedOutAtTheStatedRateBeyondDisorder) {
   int let_be = 0, evened_out = 0;
   for (std::size_t i = 0; i < liquid.size(); ++i) {
     const double ratio = (*liquid.kernel_sum)[i] / liquid.lattice.kernel_sum;
-    excess[i] = std::min(std::max(ratio - 1, -0.1), 0.1);
+    excess[i] = std::clamp(ratio - 1, -0.5, 0.1);
     disorder += std::clamp(excess[i], -0.02, 0.02) / static_cast<double>(liquid.size());
   }
   EXPECT_LT(std::abs(disorder), 0.002);
   for (std::size_t i = 0; i < liquid.size(); ++i) {
     const double beyond = std::copysign(std::max(std::abs(excess[i]) - 0.02, 0.0), excess[i]);
-    EXPECT_NEAR(change[i], -liquid.displacement / (20 * dt) * beyond, 1e-12);
+    const double urgency = std::max(1.0, -excess[i] / 0.05);
+    EXPECT_NEAR(change[i], -liquid.displacement / (20 * dt) * urgency * beyond, 1e-12);
     ++(beyond == 0 ? let_be : evened_out);
   }
   EXPECT_GT(let_be, 0);
@@ -87,7 +88,7 @@ double level_after_stirring(const Overrides& overrides) {
 // half a per cent, and the uppermost layer is not evened out.
 TEST(NumberDensity, KeepsTheVolumeOfALiquidWithASurface) {
   EXPECT_NEAR(level_after_stirring({"pressure.density_relaxation=5"}), 1, 0.015);
-  EXPECT_LT(level_after_stirring({"pressure.density_relaxation=1e6"}), 0.975);
+  EXPECT_GT(level_after_stirring({"pressure.density_relaxation=1e6"}), 1.02);
 }
 
 // All particles of a liquid made 5 % denser.

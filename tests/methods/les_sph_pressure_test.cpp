@@ -96,6 +96,13 @@ struct PreparedStep {
       for (int axis = 0; axis < d; ++axis) points[i][axis] = (*liquid.intermediate[axis])[i];
     const SphSums twin({loaded.options.resolution.kernel, d}, liquid.smoothing_length, liquid.volume, points,
                        les_sph::image_rules(liquid, liquid.next_walls), boundaries_of(loaded.scene.domain));
+    // Rates of volume: walls without friction, which mirror velocities as they mirror the pressure.
+    Domain slippery = loaded.scene.domain;
+    for (auto& sides : slippery.sides)
+      for (Side& side : sides)
+        if (side.kind == BoundaryKind::no_slip) side.kind = BoundaryKind::free_slip;
+    const SphSums mirror({loaded.options.resolution.kernel, d}, liquid.smoothing_length, liquid.volume, points,
+                         les_sph::image_rules(liquid, liquid.next_walls), boundaries_of(slippery));
     const auto potential = [&](std::size_t i) { return liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]; };
     std::array<std::vector<double>, 3> start, u;
     for (int axis = 0; axis < d; ++axis) {
@@ -125,9 +132,9 @@ struct PreparedStep {
       int slot = 0;
       for (int r = 0; r < d; ++r)
         for (int c = r; c < d; ++c, ++slot) correction[r][c] = correction[c][r] = (*liquid.correction[slot])[i];
-      double divergence = twin.divergence(i, u, correction).value;
+      double divergence = mirror.divergence(i, u, correction).value;
       if (loaded.options.time.centred) {  // half a step ahead, along the velocities of the step's start
-        const auto gradient = twin.velocity_gradient(i, start, correction);
+        const auto gradient = mirror.velocity_gradient(i, start, correction);
         for (int r = 0; r < d; ++r)
           for (int c = 0; c < d; ++c) divergence -= 0.5 * dt * gradient[r][c].value * gradient[c][r].value;
       }

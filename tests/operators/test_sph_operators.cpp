@@ -3,6 +3,8 @@
 // correction matrices of the geometry sweep: a sweep is held to its own arithmetic.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "operators/sph_arrangement.hpp"
 
 namespace spume::test {
@@ -56,6 +58,17 @@ TEST(SphOperators, VelocityGradientAndFilterAgreeWithTheSlowTwin) {
     velocity_gradient_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), only);
     for (int k = 0; k < d * d; ++k)
       EXPECT_TRUE(std::equal(alone[k].begin(), alone[k].end(), gradient[k].begin())) << "component " << k;
+    // And so is what its trace is made of.
+    Array<float> trace(a.size());
+    gradient_trace_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), trace.data());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      float expected = 0;
+      for (int r = 0; r < d; ++r)
+        for (int c = 0; c < d; ++c) expected += gradient[r * d + c][i] * gradient[c * d + r][i];
+      float size = 0;
+      for (int k = 0; k < d * d; ++k) size += gradient[k][i] * gradient[k][i];
+      EXPECT_NEAR(trace[i], expected, 4 * std::numeric_limits<float>::epsilon() * size) << "particle " << i;
+    }
   }
 }
 
