@@ -15,6 +15,7 @@
 #include "spume/methods/les_sph/number_density.hpp"
 #include "spume/methods/les_sph/point_sampler.hpp"
 #include "spume/methods/les_sph/pressure_system.hpp"
+#include "spume/methods/les_sph/traffic.hpp"
 #include "spume/operators/energy_spectrum.hpp"
 #include "spume/scene/refusal.hpp"
 
@@ -71,32 +72,41 @@ void LesSph::step(double dt, Ledger& ledger) {
     const auto scope = ledger.time(name, n);
     work();
   };
-  const auto pair_stage = [&](const char* name, auto&& work) {
-    const auto scope = ledger.time(name, n, static_cast<double>(liquid.list.pair_count()));
+  // With the traffic that is counted for the stage.
+  const auto counted_stage = [&](const char* name, double pairs, auto&& bytes, auto&& work) {
+    auto scope = ledger.time(name, n, pairs);
     work();
+    scope.add_bytes(bytes(liquid));
   };
-  stage("move", [&] { move_to_intermediate(liquid, dt); });
-  stage("sort", [&] { sort_particles(liquid); });
+  const auto pair_stage = [&](const char* name, auto&& bytes, auto&& work) {
+    counted_stage(name, static_cast<double>(liquid.list.pair_count()), bytes, work);
+  };
+  counted_stage("move", 0, traffic::move, [&] { move_to_intermediate(liquid, dt); });
+  counted_stage("sort", 0, traffic::sort, [&] { sort_particles(liquid); });
   if (plan.bubbles) stage("bubble volume", [&] { bubbles_->move(liquid, dt); });
   if (plan.images) stage("images", [&] { make_images(liquid, dt); });
   if (plan.bubbles) stage("bubble volume", [&] { bubbles_->share_volume(liquid); });
-  stage("neighbours", [&] { find_neighbours(liquid); });
+  counted_stage("neighbours", 0, traffic::neighbours, [&] { find_neighbours(liquid); });
   if (plan.shifting || plan.density_relaxation) liquid.displacement = displacement_fraction(liquid, dt);
-  pair_stage("geometry", [&] { measure_geometry(liquid); });
+  liquid.records.take_traffic();
+  pair_stage("geometry", traffic::geometry, [&] { measure_geometry(liquid); });
   if (plan.free_surface) stage("surface", [&] { find_surface(liquid); });
-  if (plan.shifting) stage("shift", [&] { choose_shift(liquid); });
-  if (plan.velocity_gradient) pair_stage("gradients", [&] { differentiate_velocity(liquid); });
-  if (plan.shift_curvature) pair_stage("shift curvature", [&] { find_shift_curvature(liquid); });
+  liquid.records.take_traffic();
+  if (plan.shifting) counted_stage("shift", 0, traffic::shift, [&] { choose_shift(liquid); });
+  if (plan.velocity_gradient) pair_stage("gradients", traffic::gradients, [&] { differentiate_velocity(liquid); });
+  if (plan.shift_curvature)
+    pair_stage("shift curvature", traffic::shift_curvature, [&] { find_shift_curvature(liquid); });
   if (plan.eddy_viscosity)
-    stage("eddy viscosity", [&] {
+    counted_stage("eddy viscosity", 0, traffic::eddy_viscosity, [&] {
       find_eddy_viscosity(liquid, dt);
       refuse_unstable_diffusion(liquid, dt);
     });
   if (plan.bubbles) stage("bubble forces", [&] { bubbles_->exchange_momentum(liquid, dt); });
-  pair_stage("prediction", [&] { predict_velocity(liquid, dt); });
+  liquid.records.take_traffic();
+  pair_stage("prediction", traffic::prediction, [&] { predict_velocity(liquid, dt); });
   pressure_->solve_step(liquid, dt, ledger);
-  pair_stage("projection", [&] { project_velocity(liquid, dt); });
-  stage("accept", [&] { accept(liquid, dt); });
+  pair_stage("projection", traffic::projection, [&] { project_velocity(liquid, dt); });
+  counted_stage("accept", 0, traffic::accept, [&] { accept(liquid, dt); });
   if (plan.bubbles) stage("bubble events", [&] { bubbles_->accept(liquid, dt); });
 }
 
