@@ -90,8 +90,9 @@ void claim_columns(const Draft& draft, const std::string& probe, const ProbeOpti
                    std::map<std::string, std::string>& columns, Problems& problems) {
   std::vector<std::string> headings{options.name};
   if (options.kind == ProbeKind::line) return;
-  if (options.kind == ProbeKind::point) {
+  if (options.kind == ProbeKind::point || options.kind == ProbeKind::plane) {
     headings = {options.name + "_pressure"};
+    if (options.kind == ProbeKind::plane) headings.push_back(options.name + "_area");
     for (std::size_t a = 0; a < draft.lower.size(); ++a)
       headings.push_back(options.name + "_velocity_" + axis_names[a]);
   }
@@ -328,7 +329,12 @@ void check_probes(Draft& draft, Problems& problems) {
     }
     if (!draft.usable(name + ".kind")) continue;
 
-    // A column needs its foot only.
+    // A column needs its foot only, a plane its place along the normal.
+    const bool plane = options.kind == ProbeKind::plane;
+    if (plane && options.axis >= static_cast<int>(dimensions)) {
+      problems.add(*draft.node(name + ".axis"), name + ".axis is z and the domain has two dimensions: choose x or y");
+      continue;
+    }
     const bool column = options.kind == ProbeKind::elevation || options.kind == ProbeKind::wetted;
     const auto place = [&](const char* key, std::vector<double> values, Vec3& target) {
       const Node* given = draft.node(name + "." + key);
@@ -339,6 +345,11 @@ void check_probes(Draft& draft, Problems& problems) {
         return;
       }
       if (column && values.size() + 1 == dimensions) values.push_back(draft.lower.back());
+      if (plane && values.size() == 1) {
+        std::vector<double> foot = draft.lower;
+        foot[static_cast<std::size_t>(options.axis)] = values[0];
+        values = foot;
+      }
       if (!has_size(draft, name + "." + key, values.size(), dimensions, problems)) return;
       for (std::size_t a = 0; a < dimensions; ++a) {
         target[a] = values[a];

@@ -154,22 +154,25 @@ Section probe() {
           {.key = "kind",
            .type = OptionType::word,
            .default_text = "\"point\"",
-           .words = {"point", "elevation", "wetted", "front", "line"},
+           .words = {"point", "elevation", "wetted", "front", "line", "plane"},
            .description = "what is recorded; elevation: height of the uppermost liquid above a foot, wetted: length of "
-                          "the vertical through it that lies in liquid, as a wire gauge measures it",
+                          "the vertical through it that lies in liquid, as a wire gauge measures it, plane: area of "
+                          "the liquid on a plane across the domain and averages of velocity and pressure over it",
            .set =
                [](Draft& d, const Value& v) {
                  d.probes.back().options.kind = v.text == "point"       ? ProbeKind::point
                                                 : v.text == "elevation" ? ProbeKind::elevation
                                                 : v.text == "wetted"    ? ProbeKind::wetted
                                                 : v.text == "front"     ? ProbeKind::front
-                                                                        : ProbeKind::line;
+                                                : v.text == "line"      ? ProbeKind::line
+                                                                        : ProbeKind::plane;
                }},
           {.key = "position",
            .type = OptionType::numbers,
            .unit = "length",
            .absent = "required but for front",
-           .description = "point; foot of the column (elevation, wetted); start of a line",
+           .description = "point; foot of the column (elevation, wetted); start of a line; a point of a plane, or its "
+                          "coordinate along the normal alone",
            .set = [](Draft& d, const Value& v) { d.probes.back().position = v.numbers; }},
           {.key = "end",
            .type = OptionType::numbers,

@@ -107,8 +107,10 @@ TEST_F(Driver, ProbesHaveTheirColumns) {
   write_case("end = 0.05\nprobes = true\n");
   Watch watch;
   start("run")->run(watch);
-  EXPECT_THAT(contents(folder_ / "run" / "probes.csv"),
-              HasSubstr("\nt,tip_pressure,tip_velocity_x,tip_velocity_y,gauge,toe\n0,0.5,1,0.25,0.5,1.2\n"));
+  EXPECT_THAT(
+      contents(folder_ / "run" / "probes.csv"),
+      HasSubstr("\nt,tip_pressure,tip_velocity_x,tip_velocity_y,gauge,toe,gate_area,gate_pressure,gate_velocity_x,"
+                "gate_velocity_y\n0,0.5,1,0.25,0.5,1.2,0.75,0,1,0.75\n"));
   EXPECT_THAT(contents(folder_ / "run" / "lines.csv"),
               HasSubstr("\nt,name,s,x,y,z,velocity_x,velocity_y,velocity_z,pressure\n0,cut,0,0,0,0,1,0,0,0\n"
                         "0,cut,2.5,1.5,2,0,1,2,0,1.5\n0,cut,5,3,4,0,1,4,0,3\n"));

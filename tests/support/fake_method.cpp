@@ -105,6 +105,9 @@ class FakeMethod final : public Method {
   double front(int axis, double height) override {
     return *std::max_element(position_[axis].begin(), position_[axis].end()) + height;
   }
+  PlaneSample plane_average(int axis, double position) override {
+    return {position, time_, {static_cast<double>(axis), position, 3}};
+  }
   bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override {
     wavenumber = {1, 2};
     energy = {time_, position_[0][1]};
@@ -180,6 +183,7 @@ LoadedCase load_fake_case(const std::string& path, const std::vector<std::string
     options.probes = {{"tip", ProbeKind::point, {0.5, 0.25, 0}, {}, 2, 0, 0},
                       {"gauge", ProbeKind::elevation, {0.5, 0, 0}, {}, 2, 0, 0},
                       {"toe", ProbeKind::front, {}, {}, 2, 0, 0.2},
+                      {"gate", ProbeKind::plane, {0.5, 0.75, 0}, {}, 2, 1, 0},
                       {"cut", ProbeKind::line, {0, 0, 0}, {3, 4, 0}, 3, 0, 0}};
   std::ostringstream text;
   text << table << '\n';

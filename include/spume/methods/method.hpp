@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -104,6 +105,14 @@ struct PointSample {
   double coverage = 0;  // kernel sum at the point: near 1 inside the liquid, 0 in air
 };
 
+// Averages over the liquid part of a plane across the domain (in two dimensions a line), for probes. Without liquid
+// there is nothing to average: not a number.
+struct PlaneSample {
+  double area = 0;  // of the liquid part; a length in two dimensions
+  double pressure = std::numeric_limits<double>::quiet_NaN();
+  Vec3 velocity{pressure, pressure, pressure};
+};
+
 class Method {
  public:
   virtual ~Method() = default;
@@ -136,6 +145,8 @@ class Method {
   virtual double wetted_length(const Vec3& position) = 0;
   // Largest coordinate along `axis` where liquid of kernel sum 1/2 is found below `height` (the last axis).
   virtual double front(int axis, double height) = 0;
+  // Over the plane where the coordinate along `axis` is `position`.
+  virtual PlaneSample plane_average(int axis, double position) = 0;
 
   // Energy spectrum of the present state: E(k) at `wavenumber`, both resized; false when the method has none.
   virtual bool spectrum(std::vector<double>& /*wavenumber*/, std::vector<double>& /*energy*/) { return false; }

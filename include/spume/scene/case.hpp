@@ -143,15 +143,15 @@ struct OutputOptions {
   bool h5part_view = true;
 };
 
-enum class ProbeKind { point, elevation, wetted, front, line };
+enum class ProbeKind { point, elevation, wetted, front, line, plane };
 
 struct ProbeOptions {
   std::string name;
   ProbeKind kind = ProbeKind::point;
-  Vec3 position{};    // point; foot of the column for elevation and wetted; start of a line
+  Vec3 position{};    // point; foot of the column for elevation and wetted; start of a line; a point of a plane
   Vec3 end{};         // end of a line
   int samples = 2;    // points of a line
-  int axis = 0;       // front
+  int axis = 0;       // front; normal of a plane
   double height = 0;  // front: looks below this height
 };
 

@@ -351,6 +351,10 @@ double LesSph::front(int axis, double height) {
   return sampler().front(liquid_, axis, height);
 }
 
+PlaneSample LesSph::plane_average(int axis, double position) {
+  return sampler().plane_average(liquid_, axis, position);
+}
+
 bool LesSph::spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) {
   const Domain& domain = liquid_.scene.domain;
   for (int axis = 0; axis < liquid_.dimensions; ++axis)

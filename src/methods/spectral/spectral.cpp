@@ -245,15 +245,21 @@ std::vector<GridFamily> Spectral<T>::grid_snapshot() {
 }
 
 template <class T>
-PointSample Spectral<T>::sample(const Vec3& position) {
+const Array<std::complex<T>>& Spectral<T>::total_pressure() {
   ensure_started();
   if (total_pressure_step_ != flow_.steps()) {
     flow_.total_pressure(total_pressure_);
     total_pressure_step_ = flow_.steps();
   }
+  return total_pressure_;
+}
+
+template <class T>
+PointSample Spectral<T>::sample(const Vec3& position) {
+  const auto& pressure = total_pressure();
   Vec3 from_lower{};
   for (std::size_t axis = 0; axis < 3; ++axis) from_lower[axis] = position[axis] - loaded_.scene.domain.lower[axis];
-  PointSample sample = sample_flow(flow_, total_pressure_, from_lower);
+  PointSample sample = sample_flow(flow_, pressure, from_lower);
   sample.pressure = loaded_.scene.fluid.density * (sample.pressure + flow_.budget().energy);  // mean pressure 0
   return sample;
 }
@@ -271,6 +277,15 @@ double Spectral<T>::wetted_length(const Vec3&) {
 template <class T>
 double Spectral<T>::front(int, double) {
   return std::nan("");
+}
+
+template <class T>
+PlaneSample Spectral<T>::plane_average(int axis, double position) {
+  const auto& pressure = total_pressure();
+  const auto a = static_cast<std::size_t>(axis);
+  PlaneSample sample = sample_plane(flow_, pressure, a, position - loaded_.scene.domain.lower[a]);
+  sample.pressure = loaded_.scene.fluid.density * (sample.pressure + flow_.budget().energy);
+  return sample;
 }
 
 template <class T>
