@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <map>
 #include <set>
+#include <tuple>
 
 namespace spume {
 namespace {
@@ -303,6 +304,25 @@ void check_liquids(const Draft& draft, Problems& problems) {
                              span_in_words(a, draft.lower[a], draft.upper[a]));
       break;
     }
+  }
+}
+
+// A step ends at each of these times: an interval far below the steps is a slip of the pen, which would fill the disk
+// or take for ever.
+void check_output(const Draft& draft, Problems& problems) {
+  constexpr double most = 1e6;
+  if (!draft.usable("time.end")) return;
+  const double end = draft.options.time.end;
+  const OutputOptions& output = draft.options.output;
+  const std::tuple<const char*, double, const char*> intervals[] = {
+      {"output.every", output.every, "snapshots"},
+      {"output.series_every", output.series_every, "rows of series.csv"},
+      {"output.spectrum_every", output.spectrum_every, "spectra"}};
+  for (const auto& [name, interval, what] : intervals) {
+    if (!(interval > 0) || !draft.usable(name) || end / interval <= most * (1 + 1e-9)) continue;
+    problems.add(*draft.node(name), name + (" = " + brief(interval)) + " would make " + brief(end / interval) + " " +
+                                        what + " until time.end = " + brief(end) + "; expected at most " + brief(most) +
+                                        "; set it to " + brief(end / most) + " or more, or to 0");
   }
 }
 

@@ -274,6 +274,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   else
     check_liquids(draft, problems);
   check_bubbles(draft, problems);
+  check_output(draft, problems);
   check_probes(draft, problems);
 
   // Without a valid domain the expressions are still held against three dimensions.

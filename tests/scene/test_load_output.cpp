@@ -14,6 +14,19 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+TEST(LoadOutput, IntervalsAreNoShorterThanAMillionthOfTheRun) {
+  EXPECT_THAT(problems_of(small_case("[output]\nevery = 1e-12\n")),
+              ElementsAre("15:9 output.every = 1e-12 would make 1e+12 snapshots until time.end = 1; expected at most "
+                          "1e+06; set it to 1e-06 or more, or to 0"));
+  EXPECT_THAT(problems_of(small_case("[output]\nseries_every = 9e-7\nspectrum_every = 1e-300\n")),
+              ElementsAre(HasSubstr("15:16 output.series_every = 9e-07 would make 1.11111e+06 rows of series.csv"),
+                          HasSubstr("16:18 output.spectrum_every = 1e-300 would make 1e+300 spectra")));
+  EXPECT_THAT(problems_of(small_case("[output]\nevery = 1e-6\nseries_every = 1e-5\ncheckpoint_every = 1e-9\n")),
+              IsEmpty());
+  EXPECT_THAT(problems_of(small_case(), {"time.end=1e7", "output.every=0.5"}),
+              ElementsAre(HasSubstr("output.every = 0.5 would make 2e+07 snapshots until time.end = 1e+07")));
+}
+
 TEST(LoadOutput, APlaneHasANormalAndAPlace) {
   const std::string plane = "[[probe]]\nname = \"p\"\nkind = \"plane\"\n";
   const LoadedCase loaded =
