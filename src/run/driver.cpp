@@ -130,7 +130,7 @@ RunState Simulation::run(Observer& observer) {
   try {
     if (fresh_) {
       recorder_ = std::make_unique<Recorder>(folder_.path(), *loaded_, *method_, std::nullopt);
-      recorder_->series(*method_, 0, 0);
+      record_series(0);
       recorder_->snapshot(*method_);
       if (loaded_->options.output.spectrum_every > 0) recorder_->spectrum(*method_);
       // A record that fails, on a full disk, is redone from a checkpoint: the figures of a step are not part of the
@@ -252,11 +252,18 @@ std::string Simulation::continuation() const {
          std::to_string(*checkpoint_step_);
 }
 
+void Simulation::record_series(double dt) {
+  recorder_->series(*method_, dt, retries_);
+  // A method knows what must hold once it has given the row of its start.
+  if (!watch_) watch_.emplace(method_->invariants(), recorder_->series_columns());
+  watch_->observe(recorder_->series_row());
+}
+
 void Simulation::record(double dt) {
   const Schedule::Due due = schedule_.arrive(method_->time());
   if (due.series) {
     const auto scope = ledger_.time("series and probes");
-    recorder_->series(*method_, dt, retries_);
+    record_series(dt);
   }
   if (due.output) {
     const auto scope = ledger_.time("snapshots", static_cast<double>(method_->particle_count()));
@@ -292,6 +299,7 @@ void Simulation::save_checkpoint() {
   const std::int64_t counters[] = {method_->step_count(), retries_, next[0], next[1], next[2]};
   file.f64("driver/clock", clock);
   file.i64("driver/counters", counters);
+  if (watch_) file.f64("driver/invariants", watch_->seen());
   for (const auto& [name, count] : recorder_->extent()) file.i64("driver/extent/" + name, std::span(&count, 1));
   CheckpointStateWriter writer(file, "method/");
   method_->save(writer);
@@ -343,6 +351,12 @@ void Simulation::load_checkpoint(const std::filesystem::path& path) {
   }
   folder_.log("continuing from step " + std::to_string(counters[0]) + ", t = " + exact(clock[0]));
   recorder_ = std::make_unique<Recorder>(folder_.path(), *loaded_, *method_, extent);
+  watch_.emplace(method_->invariants(), recorder_->series_columns());
+  if (file.has("driver/invariants")) {
+    Array<double> seen;
+    file.f64("driver/invariants", seen);
+    watch_->restore(seen);
+  }
   checkpoint_step_ = counters[0];
   fresh_ = false;
 }
@@ -362,6 +376,8 @@ void Simulation::write_summary(const std::string& state, const std::string& mess
   figures.total_wall_seconds = earlier_wall_seconds_ + figures.wall_seconds;
   figures.particle_steps = particle_steps_;
   if (recorder_) figures.final_values = recorder_->last_row();
+  if (watch_) figures.verdicts = watch_->verdicts();
+  figures.verdicts.push_back(refused_steps(retries_, figures.steps));
   write_text_atomically(folder_ / "summary.json", summary_json(*loaded_, figures));
   write_text_atomically(folder_ / "ledger.json", ledger_json(ledger_, figures.wall_seconds));
   folder_.log(ledger_table(ledger_, figures.wall_seconds));

@@ -98,5 +98,34 @@ TEST(LesSphConservation, OneAndTwoThreadsGiveTheSameBits) {
   }
 }
 
+std::string invariants_of(const std::string& text, const Overrides& overrides = {}) {
+  std::string names;
+  for (const Invariant& one : Simulation(text, overrides).method.invariants()) names += one.quantity + " ";
+  return names;
+}
+
+// Energy has a bound where nothing but gravity does work, and its work has a height.
+TEST(LesSphInvariants, AreStatedWhereTheyHold) {
+  const std::string all = "mass_drift energy_growth pressure_residual ", no_energy = "mass_drift pressure_residual ";
+  EXPECT_EQ(invariants_of(taylor_green), all);
+  EXPECT_EQ(invariants_of(dam_break), all);
+  EXPECT_EQ(invariants_of(cavity), no_energy);
+  EXPECT_EQ(invariants_of(taylor_green, {"forces.body=[\"1\", \"0\"]"}), no_energy);
+  EXPECT_EQ(invariants_of(taylor_green, {"fluid.froude=1"}), no_energy);  // falls for ever
+}
+
+// The supply of a compressible liquid holds what its pressure stores at the start.
+TEST(LesSphInvariants, BoundTheEnergyByThatOfTheStart) {
+  Simulation run(dam_break);
+  const double start = run.series()["total_energy"];
+  const auto energy = [&] { return run.method.invariants().at(1); };
+  ASSERT_EQ(energy().quantity, "energy_growth");
+  EXPECT_GE(*energy().start, start);
+  EXPECT_NEAR(*energy().start, start, 0.01 * start);
+  const double before = *energy().start;
+  run.steps(3, 0.002);
+  EXPECT_EQ(*energy().start, before);
+}
+
 }  // namespace
 }  // namespace spume::test

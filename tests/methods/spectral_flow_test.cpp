@@ -425,6 +425,14 @@ TEST(SpectralFlow, AveragesOverPlanesAreThoseOfTheBeltramiFlow) {
     EXPECT_NEAR(across.velocity[c], stream, 1e-14);
 }
 
+TEST(SpectralFlow, TheEnergyOfAFlowThatNothingDrivesMustNotGrow) {
+  SpectralRun<> decaying(spectral_text("8", random_start)),
+      driven(spectral_text("8", random_start + "[forcing]\nkind = \"linear\"\nrate = 1\n"));
+  ASSERT_EQ(decaying.method.invariants().size(), 1u);
+  EXPECT_EQ(decaying.method.invariants()[0].quantity, "energy_growth");
+  EXPECT_TRUE(driven.method.invariants().empty());
+}
+
 TEST(SpectralFlow, SteadyStepAllocatesNothing) {
   for (const char* integrator : {"ab2", "rk3"}) {
     SpectralRun<> run(

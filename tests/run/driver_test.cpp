@@ -116,6 +116,22 @@ TEST_F(Driver, ProbesHaveTheirColumns) {
                         "0,cut,2.5,1.5,2,0,1,2,0,1.5\n0,cut,5,3,4,0,1,4,0,3\n"));
 }
 
+TEST_F(Driver, TheSummaryGivesVerdictsOnWhatMustHold) {
+  write_case("end = 1.0\n");
+  Watch watch;
+  start("run")->run(watch);
+  const auto verdicts = summary("run")["verdicts"];
+  ASSERT_EQ(verdicts.size(), 2u);
+  EXPECT_EQ(verdicts[0]["quantity"], "radius_drift");
+  EXPECT_EQ(verdicts[0]["bound"], 1e-3);
+  // The radius of the first point falls from 1 from step to step: the largest drift is the last.
+  EXPECT_DOUBLE_EQ(verdicts[0]["value"].get<double>(), 1 - summary("run")["final"]["radius"].get<double>());
+  EXPECT_EQ(verdicts[0]["verdict"], "FAIL");
+  EXPECT_EQ(verdicts[1]["quantity"], "refused_steps");
+  EXPECT_EQ(verdicts[1]["value"], 0);
+  EXPECT_EQ(verdicts[1]["verdict"], "pass");
+}
+
 TEST_F(Driver, InterruptedAndResumedRunEqualsAnUninterruptedOne) {
   write_case(full_case);
   Watch watch;
@@ -129,6 +145,7 @@ TEST_F(Driver, InterruptedAndResumedRunEqualsAnUninterruptedOne) {
     EXPECT_EQ(resume(name)->run(continuing), RunState::finished);
     EXPECT_EQ(stopping.steps.size() + continuing.steps.size(), watch.steps.size());
     expect_equal_results("whole", name);
+    EXPECT_EQ(summary(name)["verdicts"], summary("whole")["verdicts"]);
   }
 }
 

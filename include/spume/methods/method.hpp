@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -113,6 +114,23 @@ struct PlaneSample {
   Vec3 velocity{pressure, pressure, pressure};
 };
 
+// A statement about a column of series.csv that holds for a whole run whatever its solution, so that no reference is
+// needed to judge it: what summary.json gives as a verdict. With x(t) the column and s = max |scale column| + floor
+// over the rows, the value held against the bound is
+//   drift:   max |x(t) - x(0)| / |x(0)|
+//   growth:  max (x(t) - start, 0) / s, start being x(0) unless given
+//   largest: max |x(t)|
+struct Invariant {
+  enum class Kind { drift, growth, largest };
+  std::string quantity;  // its name in summary.json
+  Kind kind = Kind::largest;
+  std::string column;
+  double bound = 0;
+  std::string scale_column = {};  // of growth
+  double scale_floor = 0;
+  std::optional<double> start = {};
+};
+
 class Method {
  public:
   virtual ~Method() = default;
@@ -154,6 +172,9 @@ class Method {
   // Distributions written at the times of spectra, and their names and columns without values.
   virtual std::vector<Distribution> distributions() { return {}; }
   virtual std::vector<Distribution> distribution_headings() const { return {}; }
+
+  // What must hold in this scene; columns are those of series_columns(). Of the state after the first row.
+  virtual std::vector<Invariant> invariants() const { return {}; }
 
   // What the user should know about the run as it stands, in words; each remark is given once.
   virtual std::vector<std::string> take_remarks() { return {}; }

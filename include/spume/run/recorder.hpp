@@ -16,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,8 @@ class Recorder {
   void sync();
   Extent extent() const;
   std::vector<std::pair<std::string, double>> last_row() const;  // of series.csv, by column
+  const std::vector<SeriesHeading>& series_columns() const { return series_columns_; }
+  std::span<const double> series_row() const { return series_row_; }  // the last one
 
  private:
   SeriesFile& table(const std::string& name, const std::string& title, const std::vector<SeriesHeading>& columns);

@@ -133,6 +133,19 @@ std::vector<SeriesColumn> Spectral<T>::series_columns() const {
 }
 
 template <class T>
+std::vector<Invariant> Spectral<T>::invariants() const {
+  const Case& options = loaded_.options;
+  if (options.forcing.kind != ForcingKind::none || loaded_.scene.body_force) return {};
+  const ParticleCoupling coupling = options.particles.coupling;
+  if (suspension_ && (coupling == ParticleCoupling::two_way || coupling == ParticleCoupling::four_way)) return {};
+  return {{.quantity = "energy_growth",
+           .kind = Invariant::Kind::growth,
+           .column = "mean_energy",
+           .bound = 0.01,
+           .scale_column = "mean_energy"}};
+}
+
+template <class T>
 void Spectral<T>::series_values(std::span<double> values) {
   ensure_started();
   const EnergyBudget& budget = flow_.budget();

@@ -35,6 +35,7 @@ class Spectral final : public Method {
   double wetted_length(const Vec3& position) override;
   double front(int axis, double height) override;  // likewise
   PlaneSample plane_average(int axis, double position) override;
+  std::vector<Invariant> invariants() const override;  // the energy, where nothing drives the flow
   bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override;
   std::vector<Distribution> distributions() override;
   std::vector<Distribution> distribution_headings() const override;
