@@ -84,7 +84,8 @@ Simulation::Simulation(std::unique_ptr<LoadedCase> loaded, std::unique_ptr<Metho
     : loaded_(std::move(loaded)),
       method_(std::move(method)),
       folder_(std::move(folder)),
-      schedule_(times_of(loaded_->options)) {
+      schedule_(times_of(loaded_->options)),
+      case_file_(std::filesystem::absolute(loaded_->options.path).lexically_normal().string()) {
   loaded_->scene.particles = {};
 }
 
@@ -293,7 +294,8 @@ void Simulation::report(Observer& observer, double dt, const StepLimit& limit) {
 void Simulation::save_checkpoint() {
   const auto scope = ledger_.time("checkpoints", static_cast<double>(method_->particle_count()));
   recorder_->sync();
-  CheckpointWriter file(folder_ / "checkpoint.h5", {program_version(), program_commit(), loaded_->options.resolved});
+  CheckpointWriter file(folder_ / "checkpoint.h5",
+                        {program_version(), program_commit(), loaded_->options.resolved, case_file_});
   const auto next = schedule_.next();
   const double clock[] = {method_->time(), control_.cap(), earlier_wall_seconds_ + wall_seconds()};
   const std::int64_t counters[] = {method_->step_count(), retries_, next[0], next[1], next[2]};
@@ -357,6 +359,7 @@ void Simulation::load_checkpoint(const std::filesystem::path& path) {
     file.f64("driver/invariants", seen);
     watch_->restore(seen);
   }
+  if (!file.origin().case_file.empty()) case_file_ = file.origin().case_file;
   checkpoint_step_ = counters[0];
   fresh_ = false;
 }
@@ -378,6 +381,7 @@ void Simulation::write_summary(const std::string& state, const std::string& mess
   if (recorder_) figures.final_values = recorder_->last_row();
   if (watch_) figures.verdicts = watch_->verdicts();
   figures.verdicts.push_back(refused_steps(retries_, figures.steps));
+  figures.case_file = case_file_;
   write_text_atomically(folder_ / "summary.json", summary_json(*loaded_, figures));
   write_text_atomically(folder_ / "ledger.json", ledger_json(ledger_, figures.wall_seconds));
   folder_.log(ledger_table(ledger_, figures.wall_seconds));

@@ -198,7 +198,7 @@ std::string summary_json(const LoadedCase& loaded, const RunFigures& figures) {
                         {"verdict", one.pass() ? "pass" : "FAIL"}});
   const nlohmann::ordered_json summary = {
       {"title", loaded.options.title},
-      {"case", loaded.options.path},
+      {"case", figures.case_file},
       {"method", loaded.options.method},
       {"state", figures.state},
       {"message", figures.message},

@@ -132,6 +132,20 @@ TEST_F(Driver, TheSummaryGivesVerdictsOnWhatMustHold) {
   EXPECT_EQ(verdicts[1]["verdict"], "pass");
 }
 
+// The copy in the run folder is what a resumed run reads, and the case, with its references, is where it was.
+TEST_F(Driver, TheSummaryNamesTheCaseAlsoAfterResuming) {
+  const std::string given = (folder_ / "case.toml").string();
+  const std::string relative = std::filesystem::relative(given).string();
+  write_case("end = 1.0\n");
+  Watch stopping(2), again(3), watch;
+  Simulation::start(load_fake_case(relative, {}), make_fake_method, folder_ / "run")->run(stopping);
+  EXPECT_EQ(summary("run")["case"], given);
+  for (Watch* next : {&again, &watch}) {
+    resume("run")->run(*next);
+    EXPECT_EQ(summary("run")["case"], given);
+  }
+}
+
 TEST_F(Driver, InterruptedAndResumedRunEqualsAnUninterruptedOne) {
   write_case(full_case);
   Watch watch;

@@ -100,6 +100,7 @@ class Simulation {
   StepControl control_;
   std::unique_ptr<Recorder> recorder_;
   std::optional<InvariantWatch> watch_;
+  std::string case_file_;  // that the run was started with, absolute; a resumed run reads the copy in its folder
   Ledger ledger_;
   bool fresh_ = true;
   std::vector<std::string> changes_;  // of the case since the checkpoint, in words

@@ -43,6 +43,7 @@ struct RunFigures {
   double particle_steps = 0;                                 // of this process
   std::vector<std::pair<std::string, double>> final_values;  // last row of series.csv
   std::vector<Verdict> verdicts;
+  std::string case_file;  // that the run was started with, absolute
 };
 std::string summary_json(const LoadedCase& loaded, const RunFigures& figures);
 
