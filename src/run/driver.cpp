@@ -255,7 +255,6 @@ std::string Simulation::continuation() const {
 
 void Simulation::record_series(double dt) {
   recorder_->series(*method_, dt, retries_);
-  // A method knows what must hold once it has given the row of its start.
   if (!watch_) watch_.emplace(method_->invariants(), recorder_->series_columns());
   watch_->observe(recorder_->series_row());
 }

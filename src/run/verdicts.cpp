@@ -36,7 +36,8 @@ InvariantWatch::InvariantWatch(std::vector<Invariant> invariants, const std::vec
 
 void InvariantWatch::observe(std::span<const double> row) {
   for (Watched& w : watched_) {
-    const double value = row[w.column], scale = std::abs(row[w.scale]);
+    const double value = row[w.column] + (w.invariant.beside ? w.invariant.beside() : 0.0);
+    const double scale = std::abs(row[w.scale]);
     if (!started_) w.first = w.least = w.most = value, w.largest_scale = scale;
     w.most = larger_or_nan(w.most, value);
     w.least = -larger_or_nan(-w.least, -value);
@@ -54,8 +55,7 @@ std::vector<Verdict> InvariantWatch::verdicts() const {
         value = relative(larger_or_nan(w.most - w.first, w.first - w.least), std::abs(w.first));
         break;
       case Invariant::Kind::growth:
-        value = relative(larger_or_nan(w.most - w.invariant.start.value_or(w.first), 0),
-                         w.largest_scale + w.invariant.scale_floor);
+        value = relative(larger_or_nan(w.most - w.first, 0), w.largest_scale + w.invariant.scale_floor);
         break;
       case Invariant::Kind::largest:
         value = larger_or_nan(w.most, -w.least);

@@ -37,7 +37,9 @@ TEST(Verdicts, GrowthCountsAboveTheStartAndByItsScale) {
   EXPECT_EQ(watched(energy, rows).verdicts().at(0).value, 0.5 / 4);
   energy.scale_floor = 6;
   EXPECT_EQ(watched(energy, rows).verdicts().at(0).value, 0.5 / 10);
-  energy.start = 5.25;
+  // With what the column leaves out, which may take up what it loses.
+  double left_out = 0.5;
+  energy.beside = [&] { return left_out -= 0.125; };
   EXPECT_EQ(watched(energy, rows).verdicts().at(0).value, 0.25 / 10);
   // Decay is no growth.
   EXPECT_EQ(watched(energy, {{0, 0, 5, 2}, {1, 0, 3, 1}}).verdicts().at(0).value, 0);

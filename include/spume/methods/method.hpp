@@ -4,9 +4,9 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -115,10 +115,10 @@ struct PlaneSample {
 };
 
 // A statement about a column of series.csv that holds for a whole run whatever its solution, so that no reference is
-// needed to judge it: what summary.json gives as a verdict. With x(t) the column and s = max |scale column| + floor
-// over the rows, the value held against the bound is
+// needed to judge it: what summary.json gives as a verdict. With x(t) the column, and what lies beside it, and
+// s = max |scale column| + floor over the rows, the value held against the bound is
 //   drift:   max |x(t) - x(0)| / |x(0)|
-//   growth:  max (x(t) - start, 0) / s, start being x(0) unless given
+//   growth:  max (x(t) - x(0), 0) / s
 //   largest: max |x(t)|
 struct Invariant {
   enum class Kind { drift, growth, largest };
@@ -128,7 +128,7 @@ struct Invariant {
   double bound = 0;
   std::string scale_column = {};  // of growth
   double scale_floor = 0;
-  std::optional<double> start = {};
+  std::function<double()> beside = {};  // of the present state, added to the column; lives as long as the method
 };
 
 class Method {
@@ -173,7 +173,7 @@ class Method {
   virtual std::vector<Distribution> distributions() { return {}; }
   virtual std::vector<Distribution> distribution_headings() const { return {}; }
 
-  // What must hold in this scene; columns are those of series_columns(). Of the state after the first row.
+  // What must hold in this scene; columns are those of series_columns().
   virtual std::vector<Invariant> invariants() const { return {}; }
 
   // What the user should know about the run as it stands, in words; each remark is given once.
