@@ -189,7 +189,7 @@ def plot_probes(run, out):
     for name in probes:
         if name == "t" or not np.isfinite(probes[name]).any():
             continue
-        for suffix in ("_pressure", "_velocity_x", "_velocity_y", "_velocity_z"):
+        for suffix in ("_pressure", "_velocity_x", "_velocity_y", "_velocity_z", "_area"):
             if name.endswith(suffix):
                 groups.setdefault(suffix[1:].replace("_", " "), []).append((name[: -len(suffix)], name))
                 break

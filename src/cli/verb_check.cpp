@@ -40,6 +40,8 @@ int check_verb(const RunArguments& arguments, const Programme& programme) {
   loaded.scene.particles = {};
   std::printf("%s\nplan\n%s\n", start_table(loaded, *method, thread_count()).c_str(),
               plan_table(method->plan()).c_str());
+  for (const Problem& idle : loaded.options.idle) std::printf("%s\n", idle.message("warning").c_str());
+  if (!loaded.options.idle.empty()) std::printf("\n");
   std::fflush(stdout);
   const std::string time = time_estimate(loaded, *method);
   // Neighbour lists and scratch arrays have their size only after a step.

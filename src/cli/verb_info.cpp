@@ -70,6 +70,11 @@ void describe_folder(const fs::path& folder) {
         if (summary.contains(key) && summary[key] != "")
           std::printf("  %-26s %s\n", key,
                       summary[key].is_string() ? summary[key].get<std::string>().c_str() : summary[key].dump().c_str());
+      for (const auto& one : summary.value("verdicts", nlohmann::json::array())) {
+        const std::string value = one.at("value").is_null() ? "not a number" : short_number(one.at("value"));
+        std::printf("  %-26s %s, bound %s: %s\n", one.at("quantity").get<std::string>().c_str(), value.c_str(),
+                    short_number(one.at("bound")).c_str(), one.at("verdict").get<std::string>().c_str());
+      }
     } catch (const nlohmann::json::exception& error) {
       throw FileError("cannot read '" + (folder / "summary.json").string() + "': " + error.what());
     }

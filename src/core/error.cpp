@@ -17,10 +17,10 @@ std::string join(const std::vector<Problem>& problems) {
 
 }  // namespace
 
-std::string Problem::message() const {
+std::string Problem::message(const std::string& severity) const {
   std::string place = file;
   if (line > 0) place += ':' + std::to_string(line) + ':' + std::to_string(column);
-  return place.empty() ? "error: " + text : place + ": error: " + text;
+  return (place.empty() ? "" : place + ": ") + severity + ": " + text;
 }
 
 InputError::InputError(std::vector<Problem> problems)

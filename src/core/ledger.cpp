@@ -21,12 +21,14 @@ Ledger::Scope Ledger::time(std::string_view stage, double particles, double pair
   return Scope(*this, find(stage), particles, pairs, bytes);
 }
 
-void Ledger::count(std::string_view stage, std::int64_t calls, double seconds, double particles, double pairs) {
+void Ledger::count(std::string_view stage, std::int64_t calls, double seconds, double particles, double pairs,
+                   double bytes) {
   Entry& entry = entries_[find(stage)];
   entry.calls += calls;
   entry.seconds += seconds;
   entry.particles += particles;
   entry.pairs += pairs;
+  entry.bytes += bytes;
 }
 
 double Ledger::total_seconds() const {

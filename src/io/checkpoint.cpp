@@ -142,6 +142,7 @@ CheckpointWriter::CheckpointWriter(const std::filesystem::path& path, const Chec
     hdf5::write_text(open_->file, "/origin/program_version", origin.program_version);
     hdf5::write_text(open_->file, "/origin/commit", origin.commit);
     hdf5::write_text(open_->file, "/origin/case", origin.case_text);
+    hdf5::write_text(open_->file, "/origin/case_file", origin.case_file);
   } catch (...) {
     ::unlink(temporary_.c_str());
     throw;
@@ -177,6 +178,7 @@ CheckpointReader::CheckpointReader(const std::filesystem::path& path) : path_(pa
   origin_.program_version = hdf5::read_text(open_->file, "/origin/program_version");
   origin_.commit = hdf5::read_text(open_->file, "/origin/commit");
   origin_.case_text = hdf5::read_text(open_->file, "/origin/case");
+  if (open_->file.exists("/origin/case_file")) origin_.case_file = hdf5::read_text(open_->file, "/origin/case_file");
 }
 
 CheckpointReader::~CheckpointReader() = default;

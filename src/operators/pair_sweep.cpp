@@ -10,6 +10,9 @@ float* Records::prepare(const SweepContext& context, int payload) {
   const std::size_t points = list.points() + 1;
   storage_.resize(points * static_cast<std::size_t>(width));
   float* records = storage_.data();
+  const int rewritten = coordinates_width_ == width ? 0 : dimensions;
+  count(4 * static_cast<double>(points) * (2 * rewritten + payload + width) + 4 * static_cast<double>(list.entries()) +
+        12 * static_cast<double>(list.particles()));
   if (coordinates_width_ != width) {
     const float* x[3] = {list.coordinate(0), list.coordinate(1), list.coordinate(2)};
     parallel_for(points, [&, records, width, dimensions](std::size_t k) {

@@ -118,6 +118,8 @@ void PressureOperator::bind(const SweepContext& context, Records& records, const
 PressureDots PressureOperator::apply(std::span<const float> x, std::span<float> y, std::span<const float> w) {
   float* records = records_->prepare(context_, 1);
   const std::size_t n = size();
+  // x twice, extra, w and y; the mask; weights, rows and their sums.
+  records_->count(static_cast<double>(n) * (20 + mask_and_sizes(12)));
   const auto width = static_cast<std::size_t>(record_width(context_.dimensions, 1));
   const std::int32_t* source = context_.images->source();
   float* out = records + context_.dimensions;
@@ -141,10 +143,16 @@ PressureDots PressureOperator::apply(std::span<const float> x, std::span<float> 
   return total;
 }
 
+double PressureOperator::mask_and_sizes(double sizes) const {
+  return (matrix_.masked != nullptr ? 1 : 0) + (matrix_.weight != nullptr ? sizes + 4 : 0);  // and h_i
+}
+
 void PressureOperator::residual(std::span<const double> q, std::span<const double> b, std::span<double> r) {
   const int payload = matrix_.weight != nullptr ? 3 : 2;
   float* records = records_->prepare(context_, payload);
   const std::size_t n = size();
+  // q twice, r zeroed and written, b, extra; the mask; weights and rows.
+  records_->count(static_cast<double>(n) * (44 + mask_and_sizes(8)));
   const auto width = static_cast<std::size_t>(record_width(context_.dimensions, payload));
   if (matrix_.weight != nullptr) pack_scalar(context_, records, static_cast<int>(width), 2, matrix_.weight);
   const std::int32_t* source = context_.images->source();
@@ -170,6 +178,8 @@ void PressureOperator::subtract_product(double scale, std::span<const float> x, 
   float* records = records_->prepare(context_, varying ? 2 : 1);
   const int width = record_width(context_.dimensions, varying ? 2 : 1);
   pack_scalar(context_, records, width, 0, x.data());
+  // x twice, r read and written, extra; the mask; weights and rows.
+  records_->count(static_cast<double>(size()) * (28 + mask_and_sizes(8)));
   if (varying) pack_scalar(context_, records, width, 1, matrix_.weight);
   const auto volume = static_cast<float>(context_.volume);
   with_kernel(context_, [&]<int dimensions, class Kernel>() {

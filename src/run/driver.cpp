@@ -84,7 +84,8 @@ Simulation::Simulation(std::unique_ptr<LoadedCase> loaded, std::unique_ptr<Metho
     : loaded_(std::move(loaded)),
       method_(std::move(method)),
       folder_(std::move(folder)),
-      schedule_(times_of(loaded_->options)) {
+      schedule_(times_of(loaded_->options)),
+      case_file_(std::filesystem::absolute(loaded_->options.path).lexically_normal().string()) {
   loaded_->scene.particles = {};
 }
 
@@ -130,7 +131,7 @@ RunState Simulation::run(Observer& observer) {
   try {
     if (fresh_) {
       recorder_ = std::make_unique<Recorder>(folder_.path(), *loaded_, *method_, std::nullopt);
-      recorder_->series(*method_, 0, 0);
+      record_series(0);
       recorder_->snapshot(*method_);
       if (loaded_->options.output.spectrum_every > 0) recorder_->spectrum(*method_);
       // A record that fails, on a full disk, is redone from a checkpoint: the figures of a step are not part of the
@@ -252,11 +253,17 @@ std::string Simulation::continuation() const {
          std::to_string(*checkpoint_step_);
 }
 
+void Simulation::record_series(double dt) {
+  recorder_->series(*method_, dt, retries_);
+  if (!watch_) watch_.emplace(method_->invariants(), recorder_->series_columns());
+  watch_->observe(recorder_->series_row());
+}
+
 void Simulation::record(double dt) {
   const Schedule::Due due = schedule_.arrive(method_->time());
   if (due.series) {
     const auto scope = ledger_.time("series and probes");
-    recorder_->series(*method_, dt, retries_);
+    record_series(dt);
   }
   if (due.output) {
     const auto scope = ledger_.time("snapshots", static_cast<double>(method_->particle_count()));
@@ -286,12 +293,14 @@ void Simulation::report(Observer& observer, double dt, const StepLimit& limit) {
 void Simulation::save_checkpoint() {
   const auto scope = ledger_.time("checkpoints", static_cast<double>(method_->particle_count()));
   recorder_->sync();
-  CheckpointWriter file(folder_ / "checkpoint.h5", {program_version(), program_commit(), loaded_->options.resolved});
+  CheckpointWriter file(folder_ / "checkpoint.h5",
+                        {program_version(), program_commit(), loaded_->options.resolved, case_file_});
   const auto next = schedule_.next();
   const double clock[] = {method_->time(), control_.cap(), earlier_wall_seconds_ + wall_seconds()};
   const std::int64_t counters[] = {method_->step_count(), retries_, next[0], next[1], next[2]};
   file.f64("driver/clock", clock);
   file.i64("driver/counters", counters);
+  if (watch_) file.f64("driver/invariants", watch_->seen());
   for (const auto& [name, count] : recorder_->extent()) file.i64("driver/extent/" + name, std::span(&count, 1));
   CheckpointStateWriter writer(file, "method/");
   method_->save(writer);
@@ -343,6 +352,13 @@ void Simulation::load_checkpoint(const std::filesystem::path& path) {
   }
   folder_.log("continuing from step " + std::to_string(counters[0]) + ", t = " + exact(clock[0]));
   recorder_ = std::make_unique<Recorder>(folder_.path(), *loaded_, *method_, extent);
+  watch_.emplace(method_->invariants(), recorder_->series_columns());
+  if (file.has("driver/invariants")) {
+    Array<double> seen;
+    file.f64("driver/invariants", seen);
+    watch_->restore(seen);
+  }
+  if (!file.origin().case_file.empty()) case_file_ = file.origin().case_file;
   checkpoint_step_ = counters[0];
   fresh_ = false;
 }
@@ -362,6 +378,9 @@ void Simulation::write_summary(const std::string& state, const std::string& mess
   figures.total_wall_seconds = earlier_wall_seconds_ + figures.wall_seconds;
   figures.particle_steps = particle_steps_;
   if (recorder_) figures.final_values = recorder_->last_row();
+  if (watch_) figures.verdicts = watch_->verdicts();
+  figures.verdicts.push_back(refused_steps(retries_, figures.steps));
+  figures.case_file = case_file_;
   write_text_atomically(folder_ / "summary.json", summary_json(*loaded_, figures));
   write_text_atomically(folder_ / "ledger.json", ledger_json(ledger_, figures.wall_seconds));
   folder_.log(ledger_table(ledger_, figures.wall_seconds));

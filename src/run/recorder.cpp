@@ -27,10 +27,13 @@ std::vector<SeriesHeading> headings_of(const RecordTable& table) {
 
 std::vector<SeriesHeading> probe_headings(const LoadedCase& loaded) {
   std::vector<SeriesHeading> columns = {{"t", "time"}};
+  const int dimensions = loaded.scene.domain.dimensions;
   for (const auto& probe : loaded.options.probes) {
-    if (probe.kind == ProbeKind::point) {
+    if (probe.kind == ProbeKind::point || probe.kind == ProbeKind::plane) {
+      if (probe.kind == ProbeKind::plane)
+        columns.push_back({probe.name + "_area", dimensions == 2 ? "length" : "area"});
       columns.push_back({probe.name + "_pressure", "pressure"});
-      for (int axis = 0; axis < loaded.scene.domain.dimensions; ++axis)
+      for (int axis = 0; axis < dimensions; ++axis)
         columns.push_back({probe.name + "_velocity_" + axes[axis], "velocity"});
     } else if (probe.kind != ProbeKind::line) {
       columns.push_back({probe.name, "length"});
@@ -59,6 +62,13 @@ void probe_values(Method& method, const LoadedCase& loaded, std::vector<double>&
       case ProbeKind::point: {
         const PointSample sample = method.sample(probe.position);
         row.push_back(sample.pressure);
+        row.insert(row.end(), sample.velocity.begin(), sample.velocity.begin() + loaded.scene.domain.dimensions);
+        break;
+      }
+      case ProbeKind::plane: {
+        const PlaneSample sample =
+            method.plane_average(probe.axis, probe.position[static_cast<std::size_t>(probe.axis)]);
+        row.insert(row.end(), {sample.area, sample.pressure});
         row.insert(row.end(), sample.velocity.begin(), sample.velocity.begin() + loaded.scene.domain.dimensions);
         break;
       }

@@ -190,9 +190,15 @@ std::string summary_json(const LoadedCase& loaded, const RunFigures& figures) {
   const double resident = static_cast<double>(peak_resident_bytes());
   nlohmann::ordered_json values = nlohmann::ordered_json::object();
   for (const auto& [name, value] : figures.final_values) values[name] = number(value);
+  nlohmann::ordered_json verdicts = nlohmann::ordered_json::array();
+  for (const Verdict& one : figures.verdicts)
+    verdicts.push_back({{"quantity", one.quantity},
+                        {"value", number(one.value)},
+                        {"bound", one.bound},
+                        {"verdict", one.pass() ? "pass" : "FAIL"}});
   const nlohmann::ordered_json summary = {
       {"title", loaded.options.title},
-      {"case", loaded.options.path},
+      {"case", figures.case_file},
       {"method", loaded.options.method},
       {"state", figures.state},
       {"message", figures.message},
@@ -203,6 +209,7 @@ std::string summary_json(const LoadedCase& loaded, const RunFigures& figures) {
       {"particles", figures.particles},
       {"spacing", loaded.scene.spacing},
       {"final", values},
+      {"verdicts", verdicts},
       {"program_version", program_version()},
       {"commit", program_commit()},
       {"threads", figures.threads},

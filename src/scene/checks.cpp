@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <map>
 #include <set>
+#include <tuple>
 
 namespace spume {
 namespace {
@@ -90,8 +91,9 @@ void claim_columns(const Draft& draft, const std::string& probe, const ProbeOpti
                    std::map<std::string, std::string>& columns, Problems& problems) {
   std::vector<std::string> headings{options.name};
   if (options.kind == ProbeKind::line) return;
-  if (options.kind == ProbeKind::point) {
+  if (options.kind == ProbeKind::point || options.kind == ProbeKind::plane) {
     headings = {options.name + "_pressure"};
+    if (options.kind == ProbeKind::plane) headings.push_back(options.name + "_area");
     for (std::size_t a = 0; a < draft.lower.size(); ++a)
       headings.push_back(options.name + "_velocity_" + axis_names[a]);
   }
@@ -305,6 +307,25 @@ void check_liquids(const Draft& draft, Problems& problems) {
   }
 }
 
+// A step ends at each of these times: an interval far below the steps is a slip of the pen, which would fill the disk
+// or take for ever.
+void check_output(const Draft& draft, Problems& problems) {
+  constexpr double most = 1e6;
+  if (!draft.usable("time.end")) return;
+  const double end = draft.options.time.end;
+  const OutputOptions& output = draft.options.output;
+  const std::tuple<const char*, double, const char*> intervals[] = {
+      {"output.every", output.every, "snapshots"},
+      {"output.series_every", output.series_every, "rows of series.csv"},
+      {"output.spectrum_every", output.spectrum_every, "spectra"}};
+  for (const auto& [name, interval, what] : intervals) {
+    if (!(interval > 0) || !draft.usable(name) || end / interval <= most * (1 + 1e-9)) continue;
+    problems.add(*draft.node(name), name + (" = " + brief(interval)) + " would make " + brief(end / interval) + " " +
+                                        what + " until time.end = " + brief(end) + "; expected at most " + brief(most) +
+                                        "; set it to " + brief(end / most) + " or more, or to 0");
+  }
+}
+
 void check_probes(Draft& draft, Problems& problems) {
   if (!domain_known(draft) || !draft.usable("probe")) return;
   const std::size_t dimensions = draft.lower.size();
@@ -328,7 +349,12 @@ void check_probes(Draft& draft, Problems& problems) {
     }
     if (!draft.usable(name + ".kind")) continue;
 
-    // A column needs its foot only.
+    // A column needs its foot only, a plane its place along the normal.
+    const bool plane = options.kind == ProbeKind::plane;
+    if (plane && options.axis >= static_cast<int>(dimensions)) {
+      problems.add(*draft.node(name + ".axis"), name + ".axis is z and the domain has two dimensions: choose x or y");
+      continue;
+    }
     const bool column = options.kind == ProbeKind::elevation || options.kind == ProbeKind::wetted;
     const auto place = [&](const char* key, std::vector<double> values, Vec3& target) {
       const Node* given = draft.node(name + "." + key);
@@ -339,6 +365,11 @@ void check_probes(Draft& draft, Problems& problems) {
         return;
       }
       if (column && values.size() + 1 == dimensions) values.push_back(draft.lower.back());
+      if (plane && values.size() == 1) {
+        std::vector<double> foot = draft.lower;
+        foot[static_cast<std::size_t>(options.axis)] = values[0];
+        values = foot;
+      }
       if (!has_size(draft, name + "." + key, values.size(), dimensions, problems)) return;
       for (std::size_t a = 0; a < dimensions; ++a) {
         target[a] = values[a];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a case must satisfy beyond types and ranges: geometry, sides, fluid, regions, probes. Each check runs on
-// the values that were read without error and reports in words, with the fix.
+// What a case must satisfy beyond types and ranges: geometry, sides, fluid, regions, intervals, probes. Each check runs
+// on the values that were read without error and reports in words, with the fix.
 #pragma once
 
 #include "draft.hpp"
@@ -18,6 +18,7 @@ void check_particles(const Draft& draft, Problems& problems);  // of the spectra
 void check_bubbles(Draft& draft, Problems& problems);          // completes draft.options.bubbles
 // What can be told of spargers and clouds only beside the compiled rates and the initial liquid.
 void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& problems);
+void check_output(const Draft& draft, Problems& problems);
 void check_probes(Draft& draft, Problems& problems);  // completes the probes of draft.options
 
 // Names of the two sides of an axis: left/right, front/back (3-D), bottom/top.

@@ -149,10 +149,10 @@ void check_spectral(const Draft& draft, Problems& problems) {
   for (std::size_t k = 0; k < draft.probes.size(); ++k) {
     const ProbeKind kind = draft.probes[k].options.kind;
     const std::string name = "probe." + std::to_string(k) + ".kind";
-    if (kind == ProbeKind::point || kind == ProbeKind::line) continue;
+    if (kind == ProbeKind::point || kind == ProbeKind::line || kind == ProbeKind::plane) continue;
     problems.add(*draft.node(name), name +
                                         " needs a free surface, which method \"spectral\" does not have; use "
-                                        "\"point\" or \"line\"");
+                                        "\"point\", \"line\" or \"plane\"");
   }
 }
 

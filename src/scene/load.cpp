@@ -10,6 +10,7 @@
 
 #include "checks.hpp"
 #include "fill.hpp"
+#include "idle.hpp"
 #include "reader.hpp"
 #include "resolved.hpp"
 #include "spume/core/machine.hpp"
@@ -274,6 +275,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   else
     check_liquids(draft, problems);
   check_bubbles(draft, problems);
+  check_output(draft, problems);
   check_probes(draft, problems);
 
   // Without a valid domain the expressions are still held against three dimensions.
@@ -318,6 +320,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   }
   note_places(document, "", file, draft.options.places);
   draft.options.resolved = resolved_text(document, draft);
+  draft.options.idle = idle_keys(draft, file);
   loaded.options = std::move(draft.options);
   return loaded;
 }

@@ -67,6 +67,12 @@ inline bool belongs(const Methods& methods, const std::string& method) {
   return methods.empty() || method.empty() || std::find(methods.begin(), methods.end(), method) != methods.end();
 }
 
+// What an option takes effect with: another option of its section with one of these words ("true" of a switch).
+struct Needs {
+  std::string key = {};
+  std::vector<std::string> words = {};
+};
+
 struct Option {
   std::string section = {};
   std::string key = {};
@@ -80,7 +86,14 @@ struct Option {
   std::string description = {};
   std::function<void(Draft&, const Value&)> set = {};
   Methods methods = {};
+  Needs needs = {};  // no words: always
 };
+
+// The option, of use only where another one of its section has one of these words.
+inline Option with(Needs needs, Option option) {
+  option.needs = std::move(needs);
+  return option;
+}
 
 struct Section {
   std::string name;

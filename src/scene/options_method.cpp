@@ -8,26 +8,27 @@ namespace {
 Section turbulence() {
   const auto group = &Case::turbulence;
   using T = TurbulenceOptions;
-  return {.name = "turbulence",
-          .options =
-              {
-                  word_option("model", "\"none\"", "closure of the unresolved stresses", group, &T::model,
-                              {{"none", TurbulenceModel::none},
-                               {"mixed-scale", TurbulenceModel::mixed_scale},
-                               {"smagorinsky", TurbulenceModel::smagorinsky},
-                               {"dynamic-shepard", TurbulenceModel::dynamic_shepard},
-                               {"dynamic-lagrangian", TurbulenceModel::dynamic_lagrangian}}),
-                  word_option("diffusion", "\"automatic\"",
-                              "div(nu grad u) or div(2 nu S); automatic: stress with a surface", group, &T::diffusion,
-                              {{"automatic", DiffusionForm::automatic},
-                               {"laplacian", DiffusionForm::laplacian},
-                               {"stress", DiffusionForm::stress}}),
-                  option("mixed_scale_constant", "1", "0.06", between(0, 1), "C_M of the mixed-scale model", group,
-                         &T::mixed_scale_constant),
-                  option("smagorinsky_constant", "1", "0.18", between(0, 1), "C_s of the Smagorinsky model", group,
-                         &T::smagorinsky_constant),
-              },
-          .methods = {"les-sph"}};
+  return {
+      .name = "turbulence",
+      .options =
+          {
+              word_option("model", "\"none\"", "closure of the unresolved stresses", group, &T::model,
+                          {{"none", TurbulenceModel::none},
+                           {"mixed-scale", TurbulenceModel::mixed_scale},
+                           {"smagorinsky", TurbulenceModel::smagorinsky},
+                           {"dynamic-shepard", TurbulenceModel::dynamic_shepard},
+                           {"dynamic-lagrangian", TurbulenceModel::dynamic_lagrangian}}),
+              word_option("diffusion", "\"automatic\"",
+                          "div(nu grad u) or div(2 nu S); automatic: stress with a surface", group, &T::diffusion,
+                          {{"automatic", DiffusionForm::automatic},
+                           {"laplacian", DiffusionForm::laplacian},
+                           {"stress", DiffusionForm::stress}}),
+              with({"model", {"mixed-scale"}}, option("mixed_scale_constant", "1", "0.06", between(0, 1),
+                                                      "C_M of the mixed-scale model", group, &T::mixed_scale_constant)),
+              with({"model", {"smagorinsky"}}, option("smagorinsky_constant", "1", "0.18", between(0, 1),
+                                                      "C_s of the Smagorinsky model", group, &T::smagorinsky_constant)),
+          },
+      .methods = {"les-sph"}};
 }
 
 Section pressure() {
@@ -47,8 +48,8 @@ Section pressure() {
                          group, &P::tolerance),
                   option("max_iterations", "", "500", between(1, 1e6), "iterations after which a solve has failed",
                          group, &P::max_iterations),
-                  option("cell_ratio", "spacing", "1.5", between(1, 8), "side of the multigrid cells", group,
-                         &P::cell_ratio),
+                  with({"preconditioner", {"multigrid"}}, option("cell_ratio", "spacing", "1.5", between(1, 8),
+                                                                 "side of the multigrid cells", group, &P::cell_ratio)),
                   option("warm_start", "", "true", {}, "start from the last pressure, carried by the particles", group,
                          &P::warm_start),
                   option("density_relaxation", "steps", "30", between(1, 1e6),
@@ -66,16 +67,19 @@ Section shifting() {
           .options =
               {
                   option("on", "", "true", {}, "move particles towards an even distribution", group, &S::on),
-                  option("coefficient", "1", "0.25", between(0, 1), "displacement = -coefficient h^2 grad C", group,
-                         &S::coefficient),
-                  option("limit", "h", "0.1", above_up_to(0, 0.5), "largest displacement per step", group, &S::limit),
-                  option("remove_drift", "", "true", {},
-                         "subtract what neighbours share of the shift: no net transport", group, &S::remove_drift),
-                  word_option("velocity_correction", "\"first-order\"",
-                              "Taylor terms that give the velocity at the new place", group, &S::velocity_correction,
-                              {{"none", ShiftCorrection::none},
-                               {"first-order", ShiftCorrection::first_order},
-                               {"second-order", ShiftCorrection::second_order}}),
+                  with({"on", {"true"}}, option("coefficient", "1", "0.25", between(0, 1),
+                                                "displacement = -coefficient h^2 grad C", group, &S::coefficient)),
+                  with({"on", {"true"}}, option("limit", "h", "0.1", above_up_to(0, 0.5),
+                                                "largest displacement per step", group, &S::limit)),
+                  with({"on", {"true"}}, option("remove_drift", "", "true", {},
+                                                "subtract what neighbours share of the shift: no net transport", group,
+                                                &S::remove_drift)),
+                  with({"on", {"true"}}, word_option("velocity_correction", "\"first-order\"",
+                                                     "Taylor terms that give the velocity at the new place", group,
+                                                     &S::velocity_correction,
+                                                     {{"none", ShiftCorrection::none},
+                                                      {"first-order", ShiftCorrection::first_order},
+                                                      {"second-order", ShiftCorrection::second_order}})),
               },
           .methods = {"les-sph"}};
 }
@@ -154,47 +158,54 @@ Section probe() {
           {.key = "kind",
            .type = OptionType::word,
            .default_text = "\"point\"",
-           .words = {"point", "elevation", "wetted", "front", "line"},
+           .words = {"point", "elevation", "wetted", "front", "line", "plane"},
            .description = "what is recorded; elevation: height of the uppermost liquid above a foot, wetted: length of "
-                          "the vertical through it that lies in liquid, as a wire gauge measures it",
+                          "the vertical through it that lies in liquid, as a wire gauge measures it, plane: area of "
+                          "the liquid on a plane across the domain and averages of velocity and pressure over it",
            .set =
                [](Draft& d, const Value& v) {
                  d.probes.back().options.kind = v.text == "point"       ? ProbeKind::point
                                                 : v.text == "elevation" ? ProbeKind::elevation
                                                 : v.text == "wetted"    ? ProbeKind::wetted
                                                 : v.text == "front"     ? ProbeKind::front
-                                                                        : ProbeKind::line;
+                                                : v.text == "line"      ? ProbeKind::line
+                                                                        : ProbeKind::plane;
                }},
           {.key = "position",
            .type = OptionType::numbers,
            .unit = "length",
            .absent = "required but for front",
-           .description = "point; foot of the column (elevation, wetted); start of a line",
+           .description = "point; foot of the column (elevation, wetted); start of a line; a point of a plane, or its "
+                          "coordinate along the normal alone",
            .set = [](Draft& d, const Value& v) { d.probes.back().position = v.numbers; }},
           {.key = "end",
            .type = OptionType::numbers,
            .unit = "length",
            .absent = "required for line",
            .description = "end of a line",
-           .set = [](Draft& d, const Value& v) { d.probes.back().end = v.numbers; }},
+           .set = [](Draft& d, const Value& v) { d.probes.back().end = v.numbers; },
+           .needs = {"kind", {"line"}}},
           {.key = "samples",
            .type = OptionType::integer,
            .default_text = "2",
            .range = between(2, 1e6),
            .description = "points of a line, ends included",
-           .set = [](Draft& d, const Value& v) { d.probes.back().options.samples = static_cast<int>(v.integer); }},
+           .set = [](Draft& d, const Value& v) { d.probes.back().options.samples = static_cast<int>(v.integer); },
+           .needs = {"kind", {"line"}}},
           {.key = "axis",
            .type = OptionType::word,
            .default_text = "\"x\"",
            .words = {"x", "y", "z"},
-           .description = "front: axis along which the liquid's largest coordinate is sought",
-           .set = [](Draft& d, const Value& v) { d.probes.back().options.axis = v.text[0] - 'x'; }},
+           .description = "front: axis along which the liquid's largest coordinate is sought; plane: its normal",
+           .set = [](Draft& d, const Value& v) { d.probes.back().options.axis = v.text[0] - 'x'; },
+           .needs = {"kind", {"front", "plane"}}},
           {.key = "height",
            .type = OptionType::number,
            .unit = "length",
            .absent = "top of the domain",
            .description = "front: looks below this height",
-           .set = [](Draft& d, const Value& v) { d.probes.back().height = v.number; }},
+           .set = [](Draft& d, const Value& v) { d.probes.back().height = v.number; },
+           .needs = {"kind", {"front"}}},
       }};
 }
 

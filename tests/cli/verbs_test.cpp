@@ -236,6 +236,7 @@ TEST_F(Verbs, InfoDescribesEveryKindOfFile) {
   write_case("end = 0.1\nevery = 0.05\n");
   ASSERT_EQ(spume({"run", "case.toml", "-o", "results"}).code, 0);
   EXPECT_THAT(spume({"info", "results"}).out, HasSubstr("finished"));
+  EXPECT_THAT(spume({"info", "results"}).out, HasSubstr("  refused_steps              0, bound 1: pass\n"));
   EXPECT_THAT(spume({"info", "results/fluid.vtkhdf"}).out, HasSubstr("3 snapshots"));
   EXPECT_THAT(spume({"info", "results/checkpoint.h5"}).out, HasSubstr("method/position_0"));
   EXPECT_THAT(spume({"info", "case.toml"}).out, HasSubstr("method fake"));

@@ -98,5 +98,33 @@ TEST(LesSphConservation, OneAndTwoThreadsGiveTheSameBits) {
   }
 }
 
+std::string invariants_of(const std::string& text, const Overrides& overrides = {}) {
+  std::string names;
+  for (const Invariant& one : Simulation(text, overrides).method.invariants()) names += one.quantity + " ";
+  return names;
+}
+
+// Energy has a bound where nothing but gravity does work, and its work has a height.
+TEST(LesSphInvariants, AreStatedWhereTheyHold) {
+  const std::string all = "mass_drift energy_growth pressure_residual ", no_energy = "mass_drift pressure_residual ";
+  EXPECT_EQ(invariants_of(taylor_green), all);
+  EXPECT_EQ(invariants_of(dam_break), all);
+  EXPECT_EQ(invariants_of(cavity), no_energy);
+  EXPECT_EQ(invariants_of(taylor_green, {"forces.body=[\"1\", \"0\"]"}), no_energy);
+  EXPECT_EQ(invariants_of(taylor_green, {"fluid.froude=1"}), no_energy);  // falls for ever
+}
+
+// A compressible liquid stores energy in its pressure, p^2 / (2 rho c^2), which the columns leave out.
+TEST(LesSphInvariants, CountTheEnergyThatThePressureStores) {
+  Simulation run(dam_break), incompressible(dam_break, {"fluid.mach=0"});
+  run.steps(2, 0.002);
+  double squares = 0;
+  for (const double p : run.state().pressure) squares += p * p;
+  const Invariant energy = run.method.invariants().at(1);
+  ASSERT_EQ(energy.quantity, "energy_growth");
+  EXPECT_NEAR(energy.beside(), squares * 0.05 * 0.05 / (2 * 20 * 20), 1e-12);
+  EXPECT_FALSE(incompressible.method.invariants().at(1).beside);
+}
+
 }  // namespace
 }  // namespace spume::test

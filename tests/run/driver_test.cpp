@@ -107,11 +107,43 @@ TEST_F(Driver, ProbesHaveTheirColumns) {
   write_case("end = 0.05\nprobes = true\n");
   Watch watch;
   start("run")->run(watch);
-  EXPECT_THAT(contents(folder_ / "run" / "probes.csv"),
-              HasSubstr("\nt,tip_pressure,tip_velocity_x,tip_velocity_y,gauge,toe\n0,0.5,1,0.25,0.5,1.2\n"));
+  EXPECT_THAT(
+      contents(folder_ / "run" / "probes.csv"),
+      HasSubstr("\nt,tip_pressure,tip_velocity_x,tip_velocity_y,gauge,toe,gate_area,gate_pressure,gate_velocity_x,"
+                "gate_velocity_y\n0,0.5,1,0.25,0.5,1.2,0.75,0,1,0.75\n"));
   EXPECT_THAT(contents(folder_ / "run" / "lines.csv"),
               HasSubstr("\nt,name,s,x,y,z,velocity_x,velocity_y,velocity_z,pressure\n0,cut,0,0,0,0,1,0,0,0\n"
                         "0,cut,2.5,1.5,2,0,1,2,0,1.5\n0,cut,5,3,4,0,1,4,0,3\n"));
+}
+
+TEST_F(Driver, TheSummaryGivesVerdictsOnWhatMustHold) {
+  write_case("end = 1.0\n");
+  Watch watch;
+  start("run")->run(watch);
+  const auto verdicts = summary("run")["verdicts"];
+  ASSERT_EQ(verdicts.size(), 2u);
+  EXPECT_EQ(verdicts[0]["quantity"], "radius_drift");
+  EXPECT_EQ(verdicts[0]["bound"], 1e-3);
+  // The radius of the first point falls from 1 from step to step: the largest drift is the last.
+  EXPECT_DOUBLE_EQ(verdicts[0]["value"].get<double>(), 1 - summary("run")["final"]["radius"].get<double>());
+  EXPECT_EQ(verdicts[0]["verdict"], "FAIL");
+  EXPECT_EQ(verdicts[1]["quantity"], "refused_steps");
+  EXPECT_EQ(verdicts[1]["value"], 0);
+  EXPECT_EQ(verdicts[1]["verdict"], "pass");
+}
+
+// The copy in the run folder is what a resumed run reads, and the case, with its references, is where it was.
+TEST_F(Driver, TheSummaryNamesTheCaseAlsoAfterResuming) {
+  const std::string given = (folder_ / "case.toml").string();
+  const std::string relative = std::filesystem::relative(given).string();
+  write_case("end = 1.0\n");
+  Watch stopping(2), again(3), watch;
+  Simulation::start(load_fake_case(relative, {}), make_fake_method, folder_ / "run")->run(stopping);
+  EXPECT_EQ(summary("run")["case"], given);
+  for (Watch* next : {&again, &watch}) {
+    resume("run")->run(*next);
+    EXPECT_EQ(summary("run")["case"], given);
+  }
 }
 
 TEST_F(Driver, InterruptedAndResumedRunEqualsAnUninterruptedOne) {
@@ -127,6 +159,7 @@ TEST_F(Driver, InterruptedAndResumedRunEqualsAnUninterruptedOne) {
     EXPECT_EQ(resume(name)->run(continuing), RunState::finished);
     EXPECT_EQ(stopping.steps.size() + continuing.steps.size(), watch.steps.size());
     expect_equal_results("whole", name);
+    EXPECT_EQ(summary(name)["verdicts"], summary("whole")["verdicts"]);
   }
 }
 

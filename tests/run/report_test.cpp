@@ -55,5 +55,14 @@ TEST(Report, MemoryIsEstimatedBeforeTheFirstStep) {
   }
 }
 
+TEST(Report, TheLedgerGivesRatesOfWhatIsCounted) {
+  Ledger ledger;
+  ledger.count("counted", 2, 0.5, 100, 0, 1e9);
+  ledger.count("uncounted", 1, 0.5, 100, 0);
+  const std::string table = ledger_table(ledger, 1);
+  EXPECT_THAT(table, testing::ContainsRegex("counted +2 +0.500 +50.0% +5e.06 ns/part +2\n"));
+  EXPECT_THAT(table, testing::ContainsRegex("uncounted +1 +0.500 +50.0% +5e.06 ns/part +-\n"));
+}
+
 }  // namespace
 }  // namespace spume

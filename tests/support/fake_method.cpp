@@ -87,6 +87,10 @@ class FakeMethod final : public Method {
     for (std::size_t i = 0; i < id_.size(); ++i) values[1] += position_[0][i] * position_[0][i];
     values[2] = turn_[0];
   }
+  // Of a turn about the origin; the centre oscillates, so that it does not hold.
+  std::vector<Invariant> invariants() const override {
+    return {{.quantity = "radius_drift", .kind = Invariant::Kind::drift, .column = "radius", .bound = 1e-3}};
+  }
   std::vector<Family> snapshot() override {
     Family fluid{
         "fluid", id_.size(), {}, {{"velocity", {}, {}}, {"pressure", {}, {}}, {"id", {}, {}}, {"turn", {}, {}}}};
@@ -104,6 +108,9 @@ class FakeMethod final : public Method {
   double wetted_length(const Vec3& at) override { return at[0] - position_[1][0]; }
   double front(int axis, double height) override {
     return *std::max_element(position_[axis].begin(), position_[axis].end()) + height;
+  }
+  PlaneSample plane_average(int axis, double position) override {
+    return {position, time_, {static_cast<double>(axis), position, 3}};
   }
   bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override {
     wavenumber = {1, 2};
@@ -180,6 +187,7 @@ LoadedCase load_fake_case(const std::string& path, const std::vector<std::string
     options.probes = {{"tip", ProbeKind::point, {0.5, 0.25, 0}, {}, 2, 0, 0},
                       {"gauge", ProbeKind::elevation, {0.5, 0, 0}, {}, 2, 0, 0},
                       {"toe", ProbeKind::front, {}, {}, 2, 0, 0.2},
+                      {"gate", ProbeKind::plane, {0.5, 0.75, 0}, {}, 2, 1, 0},
                       {"cut", ProbeKind::line, {0, 0, 0}, {3, 4, 0}, 3, 0, 0}};
   std::ostringstream text;
   text << table << '\n';

@@ -8,9 +8,12 @@ import tempfile
 import textwrap
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import paths
 import numpy as np
+import plot
+from spume_results import Results
 from synthetic import lattice, new_folder, series_of, write_case, write_snapshots, write_table
 
 TOOLS = paths.ROOT / "tools"
@@ -57,6 +60,16 @@ class Plotting(Scratch):
         self.assertEqual(names, {"energy.png", "numerics.png", "speed.png", "pressure.png", "spectrum.png", "probes.png",
                                  "line_centre.png", "kinetic_energy_exact.png"})
         self.assertEqual(complaints, "")
+
+    def test_areas_of_planes_are_no_elevations(self):
+        folder = new_folder(self.path, "run")
+        t = np.linspace(0, 1, 5)
+        write_table(folder / "probes.csv", {"t": t, "gate_area": t, "gate_pressure": t, "gate_velocity_x": t, "front": t})
+        with mock.patch.object(plot, "finish", side_effect=lambda figure, path: figure):
+            figure, = plot.plot_probes(Results(folder), folder)
+        drawn = {axis.get_ylabel(): [line.get_label() for line in axis.get_lines()] for axis in figure.axes}
+        self.assertEqual(drawn, {"area": ["gate"], "pressure": ["gate"], "velocity x": ["gate"],
+                                 "elevation, wetted length, front": ["front"]})
 
     def test_shares_of_the_stages_are_drawn(self):
         folder = new_folder(self.path, "run")

@@ -16,7 +16,7 @@ struct Problem {
   int column = 0;  // 1-based
   std::string text;
 
-  std::string message() const;
+  std::string message(const std::string& severity = "error") const;
 };
 
 // Bad input: every problem found, in file order. Exit code 2.

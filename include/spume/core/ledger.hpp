@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The ledger: how often every stage ran, for how long, and on how many particles, pairs and bytes. Always on
 // (two clock reads a stage). The driver prints it as a table and writes it as ledger.json.
+//
+// Bytes are the compulsory traffic of a stage: every array that it passes over, once per pass, read or written, as if
+// the caches held what a pass comes back to and nothing from one pass to the next. Neighbour lists and the records that
+// a sweep gathers from count so too. A rate near what memory gives tells a stage that waits for memory; one far below
+// tells of arithmetic, of gathers, or of arrays that stay in cache.
 #pragma once
 
 #include <chrono>
@@ -19,7 +24,7 @@ class Ledger {
     double seconds = 0;
     double particles = 0;  // particles handled, summed over calls
     double pairs = 0;      // particle pairs handled, summed over calls
-    double bytes = 0;      // bytes moved to and from memory by count, summed over calls; 0 when not counted
+    double bytes = 0;      // compulsory traffic, summed over calls; 0 when not counted
   };
 
   // Times a stage from construction to destruction.
@@ -29,6 +34,9 @@ class Ledger {
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
     ~Scope();
+
+    // Traffic that is known only when the work is done.
+    void add_bytes(double bytes) { bytes_ += bytes; }
 
    private:
     Ledger& ledger_;
@@ -41,7 +49,8 @@ class Ledger {
   [[nodiscard]] Scope time(std::string_view stage, double particles = 0, double pairs = 0, double bytes = 0);
 
   // Adds work to a stage that a caller timed or counted itself (solver iterations).
-  void count(std::string_view stage, std::int64_t calls, double seconds, double particles, double pairs);
+  void count(std::string_view stage, std::int64_t calls, double seconds, double particles, double pairs,
+             double bytes = 0);
 
   const std::vector<Entry>& entries() const { return entries_; }
   double total_seconds() const;

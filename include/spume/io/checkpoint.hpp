@@ -22,7 +22,8 @@ inline constexpr int checkpoint_format = 1;
 struct CheckpointOrigin {
   std::string program_version;
   std::string commit;
-  std::string case_text;  // the resolved case
+  std::string case_text;       // the resolved case
+  std::string case_file = {};  // that the run was started with; may be empty
 };
 
 // Writes beside `path` and takes its place on commit(); without commit nothing is left behind and an earlier

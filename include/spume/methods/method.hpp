@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -104,6 +106,31 @@ struct PointSample {
   double coverage = 0;  // kernel sum at the point: near 1 inside the liquid, 0 in air
 };
 
+// Averages over the liquid part of a plane across the domain (in two dimensions a line), for probes. Without liquid
+// there is nothing to average: not a number.
+struct PlaneSample {
+  double area = 0;  // of the liquid part; a length in two dimensions
+  double pressure = std::numeric_limits<double>::quiet_NaN();
+  Vec3 velocity{pressure, pressure, pressure};
+};
+
+// A statement about a column of series.csv that holds for a whole run whatever its solution, so that no reference is
+// needed to judge it: what summary.json gives as a verdict. With x(t) the column, and what lies beside it, and
+// s = max |scale column| + floor over the rows, the value held against the bound is
+//   drift:   max |x(t) - x(0)| / |x(0)|
+//   growth:  max (x(t) - x(0), 0) / s
+//   largest: max |x(t)|
+struct Invariant {
+  enum class Kind { drift, growth, largest };
+  std::string quantity;  // its name in summary.json
+  Kind kind = Kind::largest;
+  std::string column;
+  double bound = 0;
+  std::string scale_column = {};  // of growth
+  double scale_floor = 0;
+  std::function<double()> beside = {};  // of the present state, added to the column; lives as long as the method
+};
+
 class Method {
  public:
   virtual ~Method() = default;
@@ -136,6 +163,8 @@ class Method {
   virtual double wetted_length(const Vec3& position) = 0;
   // Largest coordinate along `axis` where liquid of kernel sum 1/2 is found below `height` (the last axis).
   virtual double front(int axis, double height) = 0;
+  // Over the plane where the coordinate along `axis` is `position`.
+  virtual PlaneSample plane_average(int axis, double position) = 0;
 
   // Energy spectrum of the present state: E(k) at `wavenumber`, both resized; false when the method has none.
   virtual bool spectrum(std::vector<double>& /*wavenumber*/, std::vector<double>& /*energy*/) { return false; }
@@ -143,6 +172,9 @@ class Method {
   // Distributions written at the times of spectra, and their names and columns without values.
   virtual std::vector<Distribution> distributions() { return {}; }
   virtual std::vector<Distribution> distribution_headings() const { return {}; }
+
+  // What must hold in this scene; columns are those of series_columns().
+  virtual std::vector<Invariant> invariants() const { return {}; }
 
   // What the user should know about the run as it stands, in words; each remark is given once.
   virtual std::vector<std::string> take_remarks() { return {}; }

@@ -67,9 +67,11 @@ class CellTable {
   const std::int32_t* first() const { return first_.data(); }  // first[c] .. first[c+1]: sorted points of cell c
   bool already_sorted() const { return already_sorted_; }
   double bytes() const;
+  double build_traffic() const;  // compulsory traffic of the last build (core/ledger.hpp), in bytes
 
  private:
   Array<std::int32_t> cell_, order_, first_, cursor_;
+  int dimensions_ = 0;
   bool already_sorted_ = false;
 };
 

@@ -32,7 +32,8 @@ class NeighbourList {
   std::size_t particles() const { return count_.size(); }
   std::size_t points() const { return points_; }  // particles and images
   std::int32_t sentinel() const { return static_cast<std::int32_t>(points_); }
-  std::int64_t pair_count() const { return pairs_; }  // directed, without padding
+  std::int64_t pair_count() const { return pairs_; }     // directed, without padding
+  std::size_t entries() const { return index_.size(); }  // of all lists, with their padding
   std::int32_t count(std::size_t i) const { return count_[i]; }
   const std::int32_t* begin(std::size_t i) const { return index_.data() + first_[i]; }
   const std::int32_t* padded_end(std::size_t i) const { return begin(i) + (count_[i] + 7) / 8 * 8; }

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "spume/core/array.hpp"
 #include "spume/core/kernel.hpp"
@@ -171,7 +172,14 @@ class Records {
   void invalidate() { coordinates_width_ = 0; }
   double bytes() const { return 4.0 * static_cast<double>(storage_.capacity()); }
 
+  // Compulsory traffic (core/ledger.hpp) since the last call, in bytes. Every prepare() counts the sweep that follows:
+  // the lists, the records as they are packed and as they are gathered from. What a sweep reads and writes per particle
+  // its caller adds: here by count(), or where the stage is timed.
+  double take_traffic() { return std::exchange(traffic_, 0.0); }
+  void count(double bytes) { traffic_ += bytes; }
+
  private:
+  double traffic_ = 0;
   Array<float> storage_;
   int coordinates_width_ = 0;
 };

@@ -46,6 +46,9 @@ class PressureOperator {
   std::size_t size() const { return context_.list->particles(); }
 
  private:
+  // Bytes per particle of the mask, and of `sizes` where particles differ in size.
+  double mask_and_sizes(double sizes) const;
+
   SweepContext context_;
   Records* records_ = nullptr;
   PressureMatrix matrix_;

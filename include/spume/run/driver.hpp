@@ -20,6 +20,7 @@
 #include "spume/run/folder.hpp"
 #include "spume/run/recorder.hpp"
 #include "spume/run/schedule.hpp"
+#include "spume/run/verdicts.hpp"
 #include "spume/scene/case.hpp"
 
 namespace spume {
@@ -81,6 +82,7 @@ class Simulation {
  private:
   using Clock = std::chrono::steady_clock;
   Simulation(std::unique_ptr<LoadedCase> loaded, std::unique_ptr<Method> method, RunFolder folder);
+  void record_series(double dt);
 
   double take_step(Observer& observer, StepLimit& limit);  // the length of the accepted step
   [[noreturn]] void give_up(const StepFailure& failure, double dt, int attempts);
@@ -97,6 +99,8 @@ class Simulation {
   Schedule schedule_;
   StepControl control_;
   std::unique_ptr<Recorder> recorder_;
+  std::optional<InvariantWatch> watch_;
+  std::string case_file_;  // that the run was started with, absolute; a resumed run reads the copy in its folder
   Ledger ledger_;
   bool fresh_ = true;
   std::vector<std::string> changes_;  // of the case since the checkpoint, in words

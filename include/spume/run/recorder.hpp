@@ -4,9 +4,11 @@
 // of fields on a grid.
 //
 // probes.csv has a row whenever series.csv has one: t, then <name>_pressure and <name>_velocity_x, _y (, _z) of a
-// point, <name> of an elevation or a front. lines.csv and spectrum.csv are long tables: t,name,s,x,y,z,velocity_x,
-// velocity_y,velocity_z,pressure at every output time, with s the distance from the start of the line, and
-// t,wavenumber,energy at every spectrum time. Tables of the method (bubble_sizes.csv, bubble_traces.csv) are long too.
+// point, <name> of an elevation or a front, <name>_area, _pressure and _velocity_x, ... of a plane: the averages over
+// its liquid part, not a number where there is none. lines.csv and spectrum.csv are long tables:
+// t,name,s,x,y,z,velocity_x, velocity_y,velocity_z,pressure at every output time, with s the distance from the start of
+// the line, and t,wavenumber,energy at every spectrum time. Tables of the method (bubble_sizes.csv, bubble_traces.csv)
+// are long too.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +44,8 @@ class Recorder {
   void sync();
   Extent extent() const;
   std::vector<std::pair<std::string, double>> last_row() const;  // of series.csv, by column
+  const std::vector<SeriesHeading>& series_columns() const { return series_columns_; }
+  std::span<const double> series_row() const { return series_row_; }  // the last one
 
  private:
   SeriesFile& table(const std::string& name, const std::string& title, const std::vector<SeriesHeading>& columns);

@@ -9,6 +9,7 @@
 
 #include "spume/core/ledger.hpp"
 #include "spume/methods/method.hpp"
+#include "spume/run/verdicts.hpp"
 #include "spume/scene/case.hpp"
 
 namespace spume {
@@ -41,6 +42,8 @@ struct RunFigures {
   double total_wall_seconds = 0;                             // of all processes that worked on the run
   double particle_steps = 0;                                 // of this process
   std::vector<std::pair<std::string, double>> final_values;  // last row of series.csv
+  std::vector<Verdict> verdicts;
+  std::string case_file;  // that the run was started with, absolute
 };
 std::string summary_json(const LoadedCase& loaded, const RunFigures& figures);
 

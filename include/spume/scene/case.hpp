@@ -143,15 +143,15 @@ struct OutputOptions {
   bool h5part_view = true;
 };
 
-enum class ProbeKind { point, elevation, wetted, front, line };
+enum class ProbeKind { point, elevation, wetted, front, line, plane };
 
 struct ProbeOptions {
   std::string name;
   ProbeKind kind = ProbeKind::point;
-  Vec3 position{};    // point; foot of the column for elevation and wetted; start of a line
+  Vec3 position{};    // point; foot of the column for elevation and wetted; start of a line; a point of a plane
   Vec3 end{};         // end of a line
   int samples = 2;    // points of a line
-  int axis = 0;       // front
+  int axis = 0;       // front; normal of a plane
   double height = 0;  // front: looks below this height
 };
 
@@ -176,7 +176,8 @@ struct Case {
   std::vector<ProbeOptions> probes;
   std::map<std::string, std::string> groups;  // derived and given groups and constants, as text, for the start-up table
   std::map<std::string, Problem> places;      // of what the case gives, by "section.key" and "section"; without a text
-  std::string resolved;  // the case as TOML with defaults filled in and the origin of each value in comments
+  std::vector<Problem> idle;  // what the case sets and another of its values makes useless, with the place
+  std::string resolved;       // the case as TOML with defaults filled in and the origin of each value in comments
 };
 
 // A case and the scene that it describes.

@@ -47,15 +47,14 @@ double potential_energy(const Liquid& liquid, const VectorField& position) {
          });
 }
 
-// p^2 / (2 rho c^2) is what the pressure stores in a compressible liquid.
+}  // namespace
+
 double stored_energy(const Liquid& liquid) {
   const double c = liquid.scene.fluid.sound_speed, density = liquid.scene.fluid.density;
   if (!(c > 0)) return 0;
   return liquid.volume / (2 * density * c * c) *
          parallel_sum(liquid.size(), [&](std::size_t i) { return (*liquid.pressure)[i] * (*liquid.pressure)[i]; });
 }
-
-}  // namespace
 
 void start_energy(Liquid& liquid) {
   liquid.energy_supply =

@@ -62,6 +62,15 @@ std::vector<Copy> copies_of(const Liquid& liquid, const Vec3& point) {
   return copies;
 }
 
+// Within a solid the liquid is mirrored too.
+bool inside_solid(const Domain& domain, const Vec3& point) {
+  return std::any_of(domain.boxes.begin(), domain.boxes.end(), [&](const SolidBox& box) {
+    for (int axis = 0; axis < domain.dimensions; ++axis)
+      if (point[axis] <= box.lower[axis] || point[axis] >= box.upper[axis]) return false;
+    return true;
+  });
+}
+
 }  // namespace
 
 void PointSampler::update(const Liquid& liquid) {
@@ -208,6 +217,55 @@ double PointSampler::front(const Liquid& liquid, int axis, double height) const 
     return coverage(liquid, r) >= 0.5 ? r[axis] : lowest;
   });
   return farthest > lowest ? farthest + 0.5 * liquid.scene.spacing : lowest;
+}
+
+PlaneSample PointSampler::plane_average(const Liquid& liquid, int axis, double position) const {
+  const auto& walls = liquid.walls;
+  if (position < walls[axis][0] || position > walls[axis][1]) return {};  // a wall has moved past it
+  std::array<std::size_t, 3> cells{1, 1, 1};
+  Vec3 side{}, lower{};
+  double cell_area = 1;
+  for (int a = 0; a < liquid.dimensions; ++a) {
+    if (a == axis) continue;
+    const double length = walls[a][1] - walls[a][0];
+    cells[a] = static_cast<std::size_t>(std::max(1.0, std::round(length / liquid.scene.spacing)));
+    side[a] = length / static_cast<double>(cells[a]);
+    lower[a] = walls[a][0];
+    cell_area *= side[a];
+  }
+  struct Sum {
+    double wet = 0, pressure = 0;
+    Vec3 velocity{};
+  };
+  const Sum total = parallel_reduce(
+      cells[0] * cells[1] * cells[2], Sum{},
+      [&](std::size_t first, std::size_t last) {
+        Sum sum;
+        for (std::size_t k = first; k < last; ++k) {
+          const std::array<std::size_t, 3> cell{k % cells[0], k / cells[0] % cells[1], k / cells[0] / cells[1]};
+          Vec3 point{};
+          for (int a = 0; a < liquid.dimensions; ++a)
+            point[a] = a == axis ? position : lower[a] + (static_cast<double>(cell[a]) + 0.5) * side[a];
+          if (inside_solid(liquid.scene.domain, point)) continue;
+          const PointSample one = sample(liquid, point);
+          if (!(one.coverage >= 0.5)) continue;
+          sum.wet += 1;
+          sum.pressure += one.pressure;
+          for (int a = 0; a < liquid.dimensions; ++a) sum.velocity[a] += one.velocity[a];
+        }
+        return sum;
+      },
+      [](const Sum& a, const Sum& b) {
+        Sum sum{a.wet + b.wet, a.pressure + b.pressure, {}};
+        for (std::size_t c = 0; c < 3; ++c) sum.velocity[c] = a.velocity[c] + b.velocity[c];
+        return sum;
+      });
+  PlaneSample result;
+  if (!(total.wet > 0)) return result;
+  result.area = total.wet * cell_area;
+  result.pressure = total.pressure / total.wet;
+  for (std::size_t c = 0; c < 3; ++c) result.velocity[c] = total.velocity[c] / total.wet;
+  return result;
 }
 
 }  // namespace spume::les_sph

@@ -8,6 +8,7 @@
 #include "spume/core/parallel.hpp"
 #include "spume/methods/les_sph/free_surface.hpp"
 #include "spume/methods/les_sph/number_density.hpp"
+#include "spume/methods/les_sph/traffic.hpp"
 
 namespace spume::les_sph {
 namespace {
@@ -330,7 +331,7 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
   right_hand_side_.resize(n);
   if (liquid.potential != nullptr) potential_laplacian_.resize(n);
   {
-    const auto scope = ledger.time("divergence", static_cast<double>(n), pairs);
+    auto scope = ledger.time("divergence", static_cast<double>(n), pairs);
     divergence_sweep(liquid.context, liquid.records, liquid.read(liquid.predicted), liquid.volume_rule(),
                      liquid.read_correction(), liquid.potential == nullptr ? nullptr : liquid.potential->data(),
                      right_hand_side_.data(), potential_laplacian_.data());
@@ -342,6 +343,7 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
     if (liquid.plan.density_relaxation) even_out_density(liquid, dt, right_hand_side_);
     set_matrix(liquid, helmholtz + regularisation(liquid, helmholtz));
     set_right_hand_side(liquid, helmholtz, -1 / dt);
+    scope.add_bytes(traffic::divergence(liquid));
   }
   // Start from the pressure that the particle carries; held ones p = 0.
   parallel_for(n, [&](std::size_t i) {
@@ -350,7 +352,7 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
     (*liquid.reduced_pressure)[i] = carried + (liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]);
   });
   solve(liquid, helmholtz, "pressure", ledger);
-  ledger.count("pressure", 0, 0, 0, pairs * report_.applications);
+  ledger.count("pressure", 0, 0, 0, pairs * report_.applications, traffic::pressure(liquid));
   demand_convergence("the pressure solve");
   if (liquid.plan.closed) remove_constant(liquid);
 }

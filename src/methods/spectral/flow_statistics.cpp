@@ -208,12 +208,81 @@ PointSample sample_flow(const Flow<T>& flow, const Array<std::complex<T>>& total
   return sample;
 }
 
-#define SPUME_INSTANTIATE(T)                                         \
-  template ShellSpectrum shell_spectrum(const Flow<T>&);             \
-  template Scales flow_scales(const Flow<T>&, const ShellSpectrum&); \
-  template GradientMoments gradient_moments(Flow<T>&);               \
-  template GradientDistribution gradient_distribution(Flow<T>&);     \
-  template PointSample sample_flow(const Flow<T>&, const Array<std::complex<T>>&, const Vec3&)
+template <class T>
+PlaneSample sample_plane(const Flow<T>& flow, const Array<std::complex<T>>& total_pressure, std::size_t axis,
+                         double from_lower) {
+  using Complex = std::complex<double>;
+  const ModeLayout& layout = flow.layout();
+  const Modes<T>& b = flow.potential();
+  const std::array<std::size_t, 3> stored{layout.points[0], layout.points[1], layout.modes_z};
+  const auto& along = layout.wavenumber[axis];
+  std::vector<Complex> wave;
+  for (const double k : along) wave.push_back(std::polar(1.0, k * from_lower));
+  // The modes of velocity and total pressure at index (ix, iy, iz).
+  const auto modes_at = [&](const std::array<std::size_t, 3>& index) {
+    const std::size_t at = index[0] * layout.plane + index[1] * layout.row + index[2];
+    std::array<double, 3> k;
+    std::array<Complex, 3> field;
+    for (std::size_t c = 0; c < 3; ++c) {
+      k[c] = layout.wavenumber[c][index[c]];
+      field[c] = Complex(b[c][at]);
+    }
+    std::array<Complex, 4> modes{field[0], field[1], field[2], Complex(total_pressure[at])};
+    for (std::size_t c = 0; c < 3 && at != 0; ++c) {
+      const std::size_t p = (c + 1) % 3, q = (c + 2) % 3;
+      modes[c] = Complex(0, 1) * (k[p] * field[q] - k[q] * field[p]);
+    }
+    return modes;
+  };
+
+  PlaneSample sample;
+  sample.area = layout.lengths[(axis + 1) % 3] * layout.lengths[(axis + 2) % 3];
+  sample.pressure = 0;
+  sample.velocity = {};
+  std::array<std::size_t, 3> line{};
+  for (std::size_t i = 0; i < stored[axis]; ++i) {
+    line[axis] = i;
+    const auto modes = modes_at(line);
+    const double weight = axis == 2 ? ModeLayout::weight(i) : 1.0;
+    for (std::size_t c = 0; c < 3; ++c) sample.velocity[c] += weight * (wave[i] * modes[c]).real();
+    sample.pressure += weight * (wave[i] * modes[3]).real();
+  }
+
+  // Rows of wavenumbers within the plane; along z half of the modes are stored, the others conjugates of (-kx, -ky).
+  const std::size_t outer = axis == 0 ? 1 : 0, inner = axis == 2 ? 1 : 2;
+  const auto mirrored = [&](std::size_t i, std::size_t a) { return i == 0 ? 0 : layout.points[a] - i; };
+  std::vector<double> squares(stored[outer]);
+  parallel_blocks(stored[outer], 1, [&](std::size_t, std::size_t row, std::size_t) {
+    double sum = 0;
+    for (std::size_t column = 0; column < stored[inner]; ++column) {
+      std::array<Complex, 3> amplitude{};
+      std::array<std::size_t, 3> index{};
+      index[outer] = row;
+      index[inner] = column;
+      for (std::size_t i = 0; i < stored[axis]; ++i) {
+        index[axis] = i;
+        const auto modes = modes_at(index);
+        for (std::size_t c = 0; c < 3; ++c) amplitude[c] += wave[i] * modes[c];
+        if (axis != 2 || i == 0) continue;
+        const auto opposite = modes_at({mirrored(row, 0), mirrored(column, 1), i});
+        for (std::size_t c = 0; c < 3; ++c) amplitude[c] += std::conj(wave[i] * opposite[c]);
+      }
+      const double weight = inner == 2 ? ModeLayout::weight(column) : 1.0;
+      for (const Complex& one : amplitude) sum += weight * std::norm(one);
+    }
+    squares[row] = sum;
+  });
+  for (const double square : squares) sample.pressure -= square / 2;
+  return sample;
+}
+
+#define SPUME_INSTANTIATE(T)                                                                    \
+  template ShellSpectrum shell_spectrum(const Flow<T>&);                                        \
+  template Scales flow_scales(const Flow<T>&, const ShellSpectrum&);                            \
+  template GradientMoments gradient_moments(Flow<T>&);                                          \
+  template GradientDistribution gradient_distribution(Flow<T>&);                                \
+  template PointSample sample_flow(const Flow<T>&, const Array<std::complex<T>>&, const Vec3&); \
+  template PlaneSample sample_plane(const Flow<T>&, const Array<std::complex<T>>&, std::size_t, double)
 SPUME_INSTANTIATE(double);
 SPUME_INSTANTIATE(float);
 #undef SPUME_INSTANTIATE

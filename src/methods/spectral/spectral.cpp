@@ -133,6 +133,19 @@ std::vector<SeriesColumn> Spectral<T>::series_columns() const {
 }
 
 template <class T>
+std::vector<Invariant> Spectral<T>::invariants() const {
+  const Case& options = loaded_.options;
+  if (options.forcing.kind != ForcingKind::none || loaded_.scene.body_force) return {};
+  const ParticleCoupling coupling = options.particles.coupling;
+  if (suspension_ && (coupling == ParticleCoupling::two_way || coupling == ParticleCoupling::four_way)) return {};
+  return {{.quantity = "energy_growth",
+           .kind = Invariant::Kind::growth,
+           .column = "mean_energy",
+           .bound = 0.01,
+           .scale_column = "mean_energy"}};
+}
+
+template <class T>
 void Spectral<T>::series_values(std::span<double> values) {
   ensure_started();
   const EnergyBudget& budget = flow_.budget();
@@ -245,15 +258,21 @@ std::vector<GridFamily> Spectral<T>::grid_snapshot() {
 }
 
 template <class T>
-PointSample Spectral<T>::sample(const Vec3& position) {
+const Array<std::complex<T>>& Spectral<T>::total_pressure() {
   ensure_started();
   if (total_pressure_step_ != flow_.steps()) {
     flow_.total_pressure(total_pressure_);
     total_pressure_step_ = flow_.steps();
   }
+  return total_pressure_;
+}
+
+template <class T>
+PointSample Spectral<T>::sample(const Vec3& position) {
+  const auto& pressure = total_pressure();
   Vec3 from_lower{};
   for (std::size_t axis = 0; axis < 3; ++axis) from_lower[axis] = position[axis] - loaded_.scene.domain.lower[axis];
-  PointSample sample = sample_flow(flow_, total_pressure_, from_lower);
+  PointSample sample = sample_flow(flow_, pressure, from_lower);
   sample.pressure = loaded_.scene.fluid.density * (sample.pressure + flow_.budget().energy);  // mean pressure 0
   return sample;
 }
@@ -271,6 +290,15 @@ double Spectral<T>::wetted_length(const Vec3&) {
 template <class T>
 double Spectral<T>::front(int, double) {
   return std::nan("");
+}
+
+template <class T>
+PlaneSample Spectral<T>::plane_average(int axis, double position) {
+  const auto& pressure = total_pressure();
+  const auto a = static_cast<std::size_t>(axis);
+  PlaneSample sample = sample_plane(flow_, pressure, a, position - loaded_.scene.domain.lower[a]);
+  sample.pressure = loaded_.scene.fluid.density * (sample.pressure + flow_.budget().energy);
+  return sample;
 }
 
 template <class T>

@@ -39,6 +39,9 @@ class LesSph final : public Method {
   double elevation(const Vec3& position) override;
   double wetted_length(const Vec3& position) override;
   double front(int axis, double height) override;
+  PlaneSample plane_average(int axis, double position) override;
+  // The mass; where nothing but gravity does work, the energy; the residual of the pressure.
+  std::vector<Invariant> invariants() const override;
   bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override;
   std::vector<RecordTable> tables() const override;
   void table_rows(const std::string& name, std::vector<double>& rows) override;

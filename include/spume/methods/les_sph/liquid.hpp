@@ -174,6 +174,8 @@ constexpr int spray_neighbours(int dimensions) {
 // they may give at most; with forces that vary in space there is no limit.
 void start_energy(Liquid& liquid);
 double limited_energy_supply(const Liquid& liquid, double dt);
+// What the pressure stores in a compressible liquid: the integral of p^2 / (2 rho c^2).
+double stored_energy(const Liquid& liquid);
 
 // Largest speed and eddy viscosity of the present state, for the step limit.
 void update_extremes(Liquid& liquid);

@@ -23,6 +23,10 @@ class PointSampler {
   // Sum of the intervals of the column whose coverage is above one half, their ends found in the same way.
   double wetted_length(const Liquid& liquid, const Vec3& point) const;
   double front(const Liquid& liquid, int axis, double height) const;
+  // Averages over samples one spacing apart on a plane across the domain, at the middles of equal cells; those whose
+  // coverage is one half or more and that lie in no solid are the liquid part. Linear fields come out exact; the area
+  // is a whole number of cells.
+  PlaneSample plane_average(const Liquid& liquid, int axis, double position) const;
 
  private:
   // Where the coverage falls to one half between a wet point and a dry height.

@@ -50,4 +50,11 @@ GradientDistribution gradient_distribution(Flow<T>& flow);
 template <class T>
 PointSample sample_flow(const Flow<T>& flow, const Array<std::complex<T>>& total_pressure, const Vec3& from_lower);
 
+// Their averages over the plane where the coordinate along `axis` is `from_lower`, exact at any place: those of a field
+// are its modes along the axis alone, and that of u^2, which the pressure needs, is by Parseval the sum of
+// |sum_k u_k exp(i k x)|^2 over the wavenumbers within the plane, k running along the axis.
+template <class T>
+PlaneSample sample_plane(const Flow<T>& flow, const Array<std::complex<T>>& total_pressure, std::size_t axis,
+                         double from_lower);
+
 }  // namespace spume::spectral

@@ -34,6 +34,8 @@ class Spectral final : public Method {
   double elevation(const Vec3& position) override;  // no surface: not a number
   double wetted_length(const Vec3& position) override;
   double front(int axis, double height) override;  // likewise
+  PlaneSample plane_average(int axis, double position) override;
+  std::vector<Invariant> invariants() const override;  // the energy, where nothing drives the flow
   bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override;
   std::vector<Distribution> distributions() override;
   std::vector<Distribution> distribution_headings() const override;
@@ -45,6 +47,7 @@ class Spectral final : public Method {
   const Suspension<T>* suspension() const { return suspension_.get(); }
 
  private:
+  const Array<std::complex<T>>& total_pressure();  // of the present state
   bool wants(const std::string& field) const;
   void ensure_started();
 

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// Averages over planes: exact for linear fields, over the liquid alone.
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cmath>
+
+#include "methods/les_sph_simulation.hpp"
+#include "spume/core/parallel.hpp"
+
+namespace spume::test {
+namespace {
+
+// A linear shear between walls at rest and in motion is linear in the mirrored liquid too.
+TEST(LesSphPlanes, AverageALinearVelocityExactly) {
+  Simulation run(channel, {"domain.wall_velocity.top=[\"2\", \"0\"]", "liquid.0.velocity=[\"2*y\", \"0\"]"});
+  for (const double y : {0.0, 0.2, 0.5, 1.0}) {
+    const PlaneSample level = run.method.plane_average(1, y);
+    EXPECT_NEAR(level.area, 0.5, 1e-12);
+    EXPECT_NEAR(level.velocity[0], 2 * y, 1e-12);
+    EXPECT_NEAR(level.velocity[1], 0, 1e-12);
+  }
+  const PlaneSample across = run.method.plane_average(0, 0.21);
+  EXPECT_NEAR(across.area, 1, 1e-12);
+  EXPECT_NEAR(across.velocity[0], 1, 1e-12);
+}
+
+TEST(LesSphPlanes, AverageTheHydrostaticPressure) {
+  Simulation run(closed_box, {"domain.left=\"free-slip\"", "domain.right=\"free-slip\""});
+  run.steps(2, 0.005);
+  const double middle = run.method.sample({0.5, 0.5, 0}).pressure;
+  // The solve's tolerance of 1e-6, over a box of 1.
+  for (const double x : {0.0, 0.3, 1.0}) EXPECT_NEAR(run.method.plane_average(0, x).pressure, middle, 2e-5) << x;
+  for (const double y : {0.0, 0.4, 1.0})
+    EXPECT_NEAR(run.method.plane_average(1, y).pressure - middle, 0.5 - y, 2e-5) << y;
+}
+
+// Water of depth 1 in a tank 1 wide and 1.5 high: the coverage passes one half at the surface, and samples stand half a
+// spacing on either side of it.
+TEST(LesSphPlanes, MeasureTheLiquidAlone) {
+  Simulation run(tank);
+  EXPECT_NEAR(run.method.plane_average(0, 0.31).area, 1, 1e-12);
+  EXPECT_NEAR(run.method.plane_average(1, 0.5).area, 1, 1e-12);
+  const PlaneSample air = run.method.plane_average(1, 1.3);
+  EXPECT_EQ(air.area, 0);
+  EXPECT_TRUE(std::isnan(air.pressure));
+  EXPECT_TRUE(std::isnan(air.velocity[0]));
+  // A mean over the liquid half way down, not over liquid and air.
+  run.steps(1, 0.005);
+  EXPECT_NEAR(run.method.plane_average(0, 0.31).pressure, 0.5, 0.01);
+
+  Simulation column(dam_break_3d);
+  EXPECT_NEAR(column.method.plane_average(0, 0.25).area, 0.7 * 0.8, 1e-12);
+  EXPECT_NEAR(column.method.plane_average(1, 0.35).area, 0.5 * 0.8, 1e-12);
+  EXPECT_NEAR(column.method.plane_average(2, 0.4).area, 0.5 * 0.7, 1e-12);
+  EXPECT_EQ(column.method.plane_average(0, 0.9).area, 0);
+}
+
+// The liquid is mirrored within a box: its images are not the liquid.
+TEST(LesSphPlanes, LeaveOutSolids) {
+  Simulation run(closed_box + "[[solid]]\nlower = [0.3, 0]\nupper = [0.7, 0.4]\n");
+  EXPECT_NEAR(run.method.plane_average(0, 0.5).area, 0.6, 1e-12);
+  EXPECT_NEAR(run.method.plane_average(1, 0.21).area, 0.6, 1e-12);
+  EXPECT_NEAR(run.method.plane_average(1, 0.6).area, 1, 1e-12);
+}
+
+TEST(LesSphPlanes, AreTheSameForAnyNumberOfThreads) {
+  Simulation run(dam_break_3d);
+  run.steps(1, 0.002);
+  const int threads = thread_count();
+  omp_set_num_threads(1);
+  const PlaneSample one = run.method.plane_average(0, 0.25);
+  omp_set_num_threads(3);
+  const PlaneSample three = run.method.plane_average(0, 0.25);
+  omp_set_num_threads(threads);
+  EXPECT_EQ(one.pressure, three.pressure);
+  EXPECT_EQ(one.velocity, three.velocity);
+}
+
+}  // namespace
+}  // namespace spume::test
