@@ -53,7 +53,7 @@ Section pressure() {
                   option("warm_start", "", "true", {}, "start from the last pressure, carried by the particles", group,
                          &P::warm_start),
                   option("density_relaxation", "steps", "30", between(1, 1e6),
-                         "steps at the courant limit over which number density is evened out, in a scene with a free "
+                         "steps of courant 0.2 over which number density is evened out, in a scene with a free "
                          "surface ten times as many where liquid is too dense; 1e6: never",
                          group, &P::density_relaxation),
               },

@@ -366,6 +366,13 @@ class BeltramiTurbulence(CaseTest):
         self.assertAlmostEqual(measured["transition_time_mixed-scale"], 2.0, delta=0.05)
         self.assertAlmostEqual(measured["transition_mixed_scale_after_smagorinsky"], -1.0, delta=0.05)
 
+    def test_what_a_viscous_closure_takes_from_the_laminar_flow_is_no_transition(self):
+        folder, module = self.run_of("beltrami_turbulence")
+        t = np.linspace(0, 5, 501)
+        energy = 0.14 * np.exp(-0.6 * (t - 1)) - 0.01 * np.tanh(4 * (t - 3))  # loses 0.08 at once, 0.066 at t = 3
+        write_table(folder / "series.csv", series_of(t, kinetic_energy=energy))
+        self.assertAlmostEqual(module.transition_time(Results(folder)), 3.0, delta=0.05)
+
     def test_force_of_the_case_gives_the_reference_energy(self):
         module = load_measure(CASES / "beltrami_turbulence")
         strength = 3 * (4 * np.pi) ** 2 * 1.25e-3

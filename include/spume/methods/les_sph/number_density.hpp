@@ -7,13 +7,13 @@
 
 namespace spume::les_sph {
 
-// How far the liquid moves over dt, relative to its mean velocity and without spray, over the distance that the courant
-// limit allows; at most 1, and the same in every frame. A liquid at rest needs no care for its arrangement, and small
-// steps no more of it than large ones.
+// How far the liquid moves over dt, relative to its mean velocity and without spray, over 0.2 h, what the default
+// courant limit allows; at most 1, and the same in every frame. A liquid at rest needs no care for its arrangement, and
+// small steps no more of it than large ones.
 double displacement_fraction(const Liquid& liquid, double dt);
 
-// Subtracts from `divergence` that which evens out the number density over N = `pressure.density_relaxation` steps at
-// the courant limit:
+// Subtracts from `divergence` that which evens out the number density over N = `pressure.density_relaxation` steps of
+// courant 0.2:
 //   div u^{n+1} = displacement / (dt M) (<c> - b(<c>, 0.002)) + displacement / (dt N_i) (e_i - c_i),  c = b(e, 0.02),
 //   e = S / (S of the lattice) - 1 within -0.5 and 0.1,  S = sum_j V_j W_ij,  b(x, a) = min(max(x, -a), a).
 // N_i = N, less in a void: N 0.05 / |e_i| where e_i < -0.05. M = N. In a scene with a surface expansion lifts what lies
