@@ -28,8 +28,9 @@ void* allocate_aligned(std::size_t bytes) {
   if (bytes == 0) return nullptr;
   const std::size_t rounded = (bytes + 63) / 64 * 64;
   const bool large = rounded >= 2 * huge_page;
-  void* pointer = std::aligned_alloc(large ? huge_page : 64, rounded);
-  if (pointer == nullptr) throw std::bad_alloc();
+  // Not aligned_alloc: its sizes are multiples of the alignment.
+  void* pointer = nullptr;
+  if (posix_memalign(&pointer, large ? huge_page : 64, rounded) != 0) throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
   // Strided passes over large fields miss the address cache at every line otherwise. The last, incomplete page stays
   // small, so that no memory is wasted; a kernel without huge pages ignores the wish.

