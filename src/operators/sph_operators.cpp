@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "spume/operators/sph_operators.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace spume {
 namespace {
 
@@ -29,8 +32,14 @@ std::array<float, dimensions> correct(const std::array<const float*, 6>& correct
   return result;
 }
 
-// store(i, d u_a / d x_c as [a][c]) for every particle.
-template <int dimensions, class Kernel, bool filter, class Store>
+// The differences u_j - u_i of a particle from all its neighbours lie between `low` and `high`, which include 0.
+template <int dimensions>
+struct DifferenceBounds {
+  std::array<float, dimensions> low{}, high{};
+};
+
+// store(i, d u_a / d x_c as [a][c], bounds) for every particle; without `bounded` the bounds are zero.
+template <int dimensions, class Kernel, bool filter, bool bounded, class Store>
 void velocity_gradient(const SweepContext& context, Records& records_, const std::array<const double*, 3>& velocity,
                        const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
                        const std::array<float*, 3>& out, Store&& store) {
@@ -49,6 +58,7 @@ void velocity_gradient(const SweepContext& context, Records& records_, const std
     std::array<f32x8, dimensions> own{}, filtered{};
     for (int a = 0; a < dimensions; ++a) own[a] = simd::splat(records[i * width + dimensions + a]);
     std::array<std::array<f32x8, dimensions>, dimensions> m{};
+    std::array<f32x8, dimensions> low{}, high{};
     f32x8 kernel_sum{};
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
       const f32x8 g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
@@ -57,6 +67,12 @@ void velocity_gradient(const SweepContext& context, Records& records_, const std
       for (int a = 0; a < dimensions; ++a) {
         const f32x8 difference = b.payload[a] - own[a];
         for (int c = 0; c < dimensions; ++c) m[a][c] = m[a][c] + difference * gd[c];
+        if constexpr (bounded) {
+          const f32x8 within =
+              b.q < simd::splat(static_cast<float>(Kernel::support)) ? difference : f32x8{};  // not the sentinel's
+          low[a] = simd::min(low[a], within);
+          high[a] = simd::max(high[a], within);
+        }
       }
       if constexpr (filter) {
         const f32x8 w = times_volume<Kernel>(Kernel::w(b.q), b);
@@ -71,8 +87,38 @@ void velocity_gradient(const SweepContext& context, Records& records_, const std
       gradient[a] = correct<dimensions>(correction, i, gradient[a]);
       if constexpr (filter) out[a][i] = (centre * own[a][0] + simd::sum(filtered[a])) * weight;
     }
-    store(i, gradient);
+    DifferenceBounds<dimensions> bounds;
+    if constexpr (bounded)
+      for (int a = 0; a < dimensions; ++a)
+        for (int l = 0; l < simd::lanes; ++l) {
+          bounds.low[a] = std::min(bounds.low[a], low[a][l]);
+          bounds.high[a] = std::max(bounds.high[a], high[a][l]);
+        }
+    store(i, gradient, bounds);
   });
+}
+
+// What out asks for of the gradient of one particle.
+template <int dimensions>
+void store_gradient(const VelocityGradientOut& out, std::size_t i,
+                    const std::array<std::array<float, dimensions>, dimensions>& gradient,
+                    const DifferenceBounds<dimensions>& bounds) {
+  double trace = 0, squares = 0;
+  for (int a = 0; a < dimensions; ++a)
+    for (int c = 0; c < dimensions; ++c) {
+      if (out.gradient[0] != nullptr) out.gradient[a * dimensions + c][i] = gradient[a][c];
+      trace += double{gradient[a][c]} * gradient[c][a];
+      squares += double{gradient[a][c]} * gradient[a][c];
+    }
+  if (out.trace != nullptr) out.trace[i] = static_cast<float>(trace);
+  // S:S = (grad u : grad u + tr(grad u . grad u)) / 2
+  if (out.strain != nullptr) out.strain[i] = static_cast<float>(std::sqrt(std::max(squares + trace, 0.0)));
+  if (out.change[0] == nullptr) return;
+  for (int a = 0; a < dimensions; ++a) {
+    float change = 0;
+    for (int c = 0; c < dimensions; ++c) change += gradient[a][c] * out.displacement[c][i];
+    out.change[a][i] = std::clamp(change, 0.5F * bounds.low[a], 0.5F * bounds.high[a]);
+  }
 }
 
 template <int dimensions, class Kernel>
@@ -120,7 +166,7 @@ void shift_curvature(const SweepContext& context, Records& records_, const std::
         sum[a] = sum[a] + weight * difference;
       }
     });
-    for (int a = 0; a < dimensions; ++a) out[a][i] = 0.5F * simd::sum(sum[a]);
+    for (int a = 0; a < dimensions; ++a) out[a][i] += 0.5F * simd::sum(sum[a]);
   });
 }
 
@@ -306,27 +352,33 @@ void velocity_gradient_sweep(const SweepContext& context, Records& records,
                              const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
                              const std::array<const float*, 6>& correction, const VelocityGradientOut& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    const auto store = [&](std::size_t i, const auto& gradient) {
-      for (int a = 0; a < dimensions; ++a)
-        for (int c = 0; c < dimensions; ++c) out.gradient[a * dimensions + c][i] = gradient[a][c];
+    const auto store = [&](std::size_t i, const auto& gradient, const auto& bounds) {
+      store_gradient<dimensions>(out, i, gradient, bounds);
     };
-    if (out.filtered[0] != nullptr)
-      velocity_gradient<dimensions, Kernel, true>(context, records, velocity, rule, correction, out.filtered, store);
+    const auto run = [&]<bool filter, bool bounded>() {
+      velocity_gradient<dimensions, Kernel, filter, bounded>(context, records, velocity, rule, correction, out.filtered,
+                                                             store);
+    };
+    const bool filter = out.filtered[0] != nullptr, bounded = out.change[0] != nullptr;
+    if (filter && bounded)
+      run.template operator()<true, true>();
+    else if (filter)
+      run.template operator()<true, false>();
+    else if (bounded)
+      run.template operator()<false, true>();
     else
-      velocity_gradient<dimensions, Kernel, false>(context, records, velocity, rule, correction, out.filtered, store);
+      run.template operator()<false, false>();
   });
 }
 
 void gradient_trace_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
                           const VelocityImageRule& rule, const std::array<const float*, 6>& correction, float* trace) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    const auto store = [&](std::size_t i, const auto& gradient) {
-      float sum = 0;
-      for (int a = 0; a < dimensions; ++a)
-        for (int c = 0; c < dimensions; ++c) sum += gradient[a][c] * gradient[c][a];
-      trace[i] = sum;
+    const VelocityGradientOut out{.trace = trace};
+    const auto store = [&](std::size_t i, const auto& gradient, const auto& bounds) {
+      store_gradient<dimensions>(out, i, gradient, bounds);
     };
-    velocity_gradient<dimensions, Kernel, false>(context, records, velocity, rule, correction, {}, store);
+    velocity_gradient<dimensions, Kernel, false, false>(context, records, velocity, rule, correction, {}, store);
   });
 }
 

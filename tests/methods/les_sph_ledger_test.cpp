@@ -35,7 +35,7 @@ TEST(LesSphLedger, CountsWhatTheStagesOfAPeriodicFlowStream) {
   // shift (2) in float, a byte.
   EXPECT_EQ(bytes_of(run.ledger, "geometry"), c.lists + c.points * (8 + 8 + 16) + c.n * (4 * (3 + 1 + 1 + 1 + 2) + 1));
   // Records with a velocity. In: velocity in double, correction. Out: four gradients; they come back for the strain.
-  EXPECT_EQ(bytes_of(run.ledger, "gradients"), c.lists + c.points * (8 + 16) + c.n * (16 + 12 + 16 + 16 + 4));
+  EXPECT_EQ(bytes_of(run.ledger, "gradients"), c.lists + c.points * (8 + 16) + c.n * (16 + 12 + 4 + 4 + 8 + 8));
   // Records with one value. The mean; values, correction, gradient; gradient, a byte, velocity in and out.
   EXPECT_EQ(bytes_of(run.ledger, "projection"),
             c.lists + c.points * (4 + 16) + c.n * (8 + (8 + 12 + 8) + (8 + 1 + 32)));

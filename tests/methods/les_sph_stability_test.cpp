@@ -119,6 +119,18 @@ TEST(LesSphStability, LiquidInAnEdgeOfNoSlipWallsIsNoFasterThanItFalls) {
   EXPECT_GT(fastest, 0.5);
 }
 
+// Particles that approach a wall closely are carried away from it by the shift; their speed must not grow by that.
+TEST(LesSphStability, ShiftsAwayFromAWallGiveNoSpeed) {
+  Simulation run(cavity, {"fluid.reynolds=1000", "resolution.spacing=0.025"});
+  double fastest = 0;
+  while (run.method.time() < 1.5) {
+    advance(run, 1);
+    fastest = std::max(fastest, run.series()["max_speed"]);
+  }
+  EXPECT_LT(fastest, 1);  // nobody is faster than the lid
+  EXPECT_GT(fastest, 0.5);
+}
+
 // Between two pistons that hold it, of one speed, liquid moves with them. The projection is approximate, and leaves a
 // twentieth of what remains every ten steps: 1e-4 of the speed after fifty, as between pistons that slip.
 TEST(LesSphStability, PistonsOfNoSlipPushTheLiquid) {

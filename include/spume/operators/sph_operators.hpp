@@ -38,10 +38,19 @@ struct GeometryOptions {
 void geometry_sweep(const SweepContext& context, Records& records, const GeometryOptions& options,
                     const GeometryOut& out);
 
-// grad u (component-major: [a * dimensions + b] = d u_a / d x_b) and, when `filtered` is set, the Shepard filter of u.
+// grad u (component-major: [a * dimensions + b] = d u_a / d x_b) and what follows from it; null where nobody asks.
 struct VelocityGradientOut {
   std::array<float*, 9> gradient{};
-  std::array<float*, 3> filtered{};
+  std::array<float*, 3> filtered{};  // the Shepard filter of u
+  float* strain = nullptr;           // |S| = sqrt(2 S:S)
+  float* trace = nullptr;            // tr(grad u . grad u)
+  // change_a = displacement_b d u_a / d x_b, cut where it passes half the largest difference u_j - u_i from a neighbour
+  // or image on that side. Displacements are far shorter than a support, so that the cut leaves smooth fields alone. A
+  // particle that approaches a wall, or another particle, within a fraction of a spacing is not held back by the
+  // pressure, as kernel slopes vanish there; carried away by the displacement again and again it would gain speed
+  // without bound. Half way to the velocity of its image is the velocity of the wall.
+  std::array<const float*, 3> displacement{};
+  std::array<float*, 3> change{};
 };
 void velocity_gradient_sweep(const SweepContext& context, Records& records,
                              const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
@@ -51,7 +60,7 @@ void velocity_gradient_sweep(const SweepContext& context, Records& records,
 void gradient_trace_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
                           const VelocityImageRule& rule, const std::array<const float*, 6>& correction, float* trace);
 
-// The second-order Taylor term of a displacement s: out_a = 1/2 s_b s_c d2 u_a / (d x_b d x_c), from the corrected
+// Adds the second-order Taylor term of a displacement s: out_a += 1/2 s_b s_c d2 u_a / (d x_b d x_c), from the corrected
 // derivative along s of the velocity gradient. `rule` is that of the velocity, `reflection` that of geometric vectors.
 void shift_curvature_sweep(const SweepContext& context, Records& records, const std::array<const float*, 9>& gradient,
                            const VelocityImageRule& rule, const std::vector<std::array<float, 3>>& reflection,

@@ -21,14 +21,6 @@ turbulence::Gradient<d> gradient_at(const Liquid& liquid, std::size_t i) {
 }
 
 template <int d>
-void find_strain(Liquid& liquid) {
-  parallel_for(liquid.size(), [&](std::size_t i) {
-    const auto strain = turbulence::strain_rate<d, double>(gradient_at<d>(liquid, i));
-    (*liquid.strain)[i] = static_cast<float>(turbulence::strain_magnitude<d, double>(strain));
-  });
-}
-
-template <int d>
 void find_static_viscosity(Liquid& liquid) {
   const TurbulenceOptions& options = liquid.options.turbulence;
   const bool mixed = options.model == TurbulenceModel::mixed_scale;
@@ -177,14 +169,18 @@ void find_dynamic_viscosity(Liquid& liquid, double dt) {
 
 void differentiate_velocity(Liquid& liquid) {
   VelocityGradientOut out;
-  for (int k = 0; k < liquid.dimensions * liquid.dimensions; ++k) out.gradient[k] = liquid.velocity_gradient[k]->data();
+  if (liquid.plan.stored_gradient)
+    for (int k = 0; k < liquid.dimensions * liquid.dimensions; ++k)
+      out.gradient[k] = liquid.velocity_gradient[k]->data();
   if (liquid.plan.test_filter) out.filtered = liquid.write(liquid.filtered_velocity);
+  out.strain = liquid.strain->data();
+  if (liquid.gradient_trace != nullptr) out.trace = liquid.gradient_trace->data();
+  if (liquid.plan.shift_correction) {
+    out.displacement = liquid.read(liquid.shift);
+    out.change = liquid.write(liquid.shift_velocity);
+  }
   velocity_gradient_sweep(liquid.context, liquid.records, liquid.read(liquid.velocity), liquid.velocity_rule,
                           liquid.read_correction(), out);
-  if (liquid.dimensions == 2)
-    find_strain<2>(liquid);
-  else
-    find_strain<3>(liquid);
 }
 
 void find_shift_curvature(Liquid& liquid) {

@@ -150,8 +150,8 @@ void LesSph::start(Ledger& ledger) {
     pressure_->solve_initial(liquid_, ledger);
     start_energy(liquid_);
     if (!liquid_.plan.velocity_gradient) {
-      for (int k = 0; k < liquid_.dimensions * liquid_.dimensions; ++k) liquid_.velocity_gradient[k]->release();
       liquid_.strain->release();
+      if (liquid_.gradient_trace != nullptr) liquid_.gradient_trace->release();
     }
   }
   liquid_.started = true;

@@ -85,17 +85,17 @@ Liquid::Liquid(const LoadedCase& loaded_case)
   for (int k = 0; k < d * (d + 1) / 2; ++k)
     correction[k] = &fields.add<float>("gradient_correction_" + std::to_string(k), Lifetime::scratch);
   if (plan.shifting) add_vector(fields, shift, "shift", d, Lifetime::scratch);
-  if (plan.shift_curvature) add_vector(fields, shift_velocity, "shift_velocity", d, Lifetime::scratch);
+  if (plan.shift_correction) add_vector(fields, shift_velocity, "shift_velocity", d, Lifetime::scratch);
   if (plan.free_surface) {
     add_vector(fields, normal, "normal", d, Lifetime::scratch);
     add_vector(fields, smoothed_normal, "smoothed_normal", d, Lifetime::scratch);
   }
-  // Without a stage that differentiates the velocity these serve the first pressure only, and are released after it.
-  {
+  if (plan.stored_gradient)
     for (int k = 0; k < d * d; ++k)
       velocity_gradient[k] = &fields.add<float>("velocity_gradient_" + std::to_string(k), Lifetime::scratch);
-    strain = &fields.add<float>("strain", Lifetime::scratch);
-  }
+  // Without a stage that differentiates the velocity these serve the first pressure only, and are released after it.
+  strain = &fields.add<float>("strain", Lifetime::scratch);
+  if (!plan.no_slip) gradient_trace = &fields.add<float>("gradient_trace", Lifetime::scratch);
   if (plan.test_filter) add_vector(fields, filtered_velocity, "filtered_velocity", d, Lifetime::scratch);
   if (plan.eddy_viscosity) eddy_viscosity = &fields.add<float>("eddy_viscosity", Lifetime::scratch);
   if (plan.viscosity) diffusivity = &fields.add<float>("diffusivity", Lifetime::scratch);

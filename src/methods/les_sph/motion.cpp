@@ -70,17 +70,11 @@ void find_diffusivity(Liquid& liquid) {
   });
 }
 
-// What the velocity changes by over the shift of particle i, to first or second order. A one-sided gradient at the
-// surface extrapolates: fed back through the shift it accelerates particles without any force (0.5 sqrt(g lambda) in a
-// tenth of a period at 1/50). The change fades out with the interior weight.
+// A one-sided gradient at the surface extrapolates: fed back through the shift it accelerates particles without any
+// force (0.5 sqrt(g lambda) in a tenth of a period at 1/50). The change fades out with the interior weight.
 void add_shift_velocity(const Liquid& liquid, std::size_t i, Vec3& u) {
-  const int d = liquid.dimensions;
   const double inside = liquid.plan.free_surface ? double{liquid.interior_weight[i]} : 1.0;
-  for (int a = 0; a < d; ++a) {
-    double sum = liquid.plan.shift_curvature ? double{(*liquid.shift_velocity[a])[i]} : 0.0;
-    for (int b = 0; b < d; ++b) sum += double{(*liquid.velocity_gradient[a * d + b])[i]} * (*liquid.shift[b])[i];
-    u[a] += inside * sum;
-  }
+  for (int axis = 0; axis < liquid.dimensions; ++axis) u[axis] += inside * (*liquid.shift_velocity[axis])[i];
 }
 
 }  // namespace

@@ -135,14 +135,7 @@ void PressureSystem::add_gradient_trace(Liquid& liquid, double factor) {
     parallel_for(liquid.size(), [&](std::size_t i) { right_hand_side_[i] += factor * correction_[i]; });
     return;
   }
-  const int d = liquid.dimensions;
-  parallel_for(liquid.size(), [&](std::size_t i) {
-    double trace = 0;
-    for (int a = 0; a < d; ++a)
-      for (int b = 0; b < d; ++b)
-        trace += double{(*liquid.velocity_gradient[a * d + b])[i]} * (*liquid.velocity_gradient[b * d + a])[i];
-    right_hand_side_[i] += factor * trace;
-  });
+  parallel_for(liquid.size(), [&](std::size_t i) { right_hand_side_[i] += factor * (*liquid.gradient_trace)[i]; });
 }
 
 // Right-hand side for q, times the volume, in place of the source that stands there, and its norm in terms of p.

@@ -66,16 +66,18 @@ double shift(Liquid& liquid) {
 
 double gradients(Liquid& liquid) {
   const Sizes size(liquid);
-  double moved = size.vector + size.symmetric + size.gradient;
+  double moved = size.vector + size.symmetric + 4;  // strain
+  if (liquid.gradient_trace != nullptr) moved += 4;
+  if (liquid.plan.stored_gradient) moved += size.gradient;
   if (liquid.plan.test_filter) moved += size.float_vector;
-  moved += size.gradient + 4;  // strain
+  if (liquid.plan.shift_correction) moved += 2 * size.float_vector;
   return liquid.records.take_traffic() + times(liquid, moved + (liquid.varying ? 8 : 0));
 }
 
 double shift_curvature(Liquid& liquid) {
   const Sizes size(liquid);
   return liquid.records.take_traffic() +
-         times(liquid, size.gradient + size.float_vector + size.symmetric + size.float_vector);
+         times(liquid, size.gradient + size.float_vector + size.symmetric + 2 * size.float_vector);
 }
 
 double eddy_viscosity(Liquid& liquid) {
@@ -117,7 +119,7 @@ double divergence(Liquid& liquid) {
   const bool potential = liquid.potential != nullptr;
   double moved = size.vector + size.symmetric + 8 + (potential ? 8 + 4 : 0);
   moved += 8;  // the largest
-  if (liquid.options.time.centred) moved += size.gradient + 16;
+  if (liquid.options.time.centred) moved += 4 + 16;
   if (plan.density_relaxation) moved += 2 * 4 + 16 + (plan.free_surface ? 2 * 4 : 0);
   moved += 4 + 4 + 3 * 4 + (plan.free_surface ? 4 + 1 : 0);                         // matrix
   moved += 16 + 8 + 4 + 4 + (potential ? 8 + 4 : 0) + (plan.free_surface ? 1 : 0);  // right-hand side
@@ -148,8 +150,7 @@ double accept(const Liquid& liquid) {
   }
   moved += 2 * size.vector + (plan.bubbles ? 2 * size.vector : 0);
   if (plan.shifting) moved += size.float_vector;
-  if (plan.shift_correction) moved += size.gradient + (plan.free_surface ? 4 : 0);
-  if (plan.shift_curvature) moved += size.float_vector;
+  if (plan.shift_correction) moved += size.float_vector + (plan.free_surface ? 4 : 0);
   moved += 2 * size.vector;
   moved += 8 + 8 + (liquid.potential != nullptr ? 8 : 0);
   moved += 2 * size.vector + 4;  // extremes

@@ -81,8 +81,9 @@ struct Liquid {
   Array<std::int32_t> upper_particles;      // edge particles and those of the layer below them
   Array<std::array<float, 3>> layer_shift;  // of those: the normal shift that they share
   FloatVectorField shift{};                 // displacement; first the concentration gradient
-  FloatVectorField shift_velocity{};        // second-order part of what the shift adds to the velocity
+  FloatVectorField shift_velocity{};        // what the shift adds to the velocity
   std::array<Array<float>*, 9> velocity_gradient{};
+  Array<float>* gradient_trace = nullptr;  // tr(grad u . grad u)
   FloatVectorField filtered_velocity{};
   Array<float>* strain = nullptr;                 // |S| = sqrt(2 S:S)
   Array<float>* eddy_viscosity = nullptr;         // nu_t, in the units of nu

@@ -20,6 +20,7 @@ struct Plan {
   bool free_surface = false;
   bool shifting = false;
   bool velocity_gradient = false;  // closure or shift correction
+  bool stored_gradient = false;    // dynamic closures, second-order corrections and bubbles need its components
   bool drift_removal = false;      // of the shift
   bool shift_correction = false;   // velocity follows the shift to first or second order
   bool shift_curvature = false;    // to second order

@@ -15,9 +15,11 @@ struct Plan {
   static constexpr bool images = true;
   static constexpr bool moving_walls = false;
   static constexpr bool displaced_walls = false;
+  static constexpr bool no_slip = false;
   static constexpr bool free_surface = false;
   static constexpr bool shifting = true;
   static constexpr bool velocity_gradient = true;
+  static constexpr bool stored_gradient = false;
   static constexpr bool drift_removal = true;
   static constexpr bool shift_correction = true;
   static constexpr bool shift_curvature = false;
