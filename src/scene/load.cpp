@@ -297,6 +297,9 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   scene.fluid = make_fluid(draft);
   scene.spacing = draft.options.spacing;
   scene.seed = draft.options.seed;
+  double& courant = draft.options.time.courant;
+  const bool chosen = courant == 0;
+  if (chosen) courant = 0.2;
   const double most = machine_memory_bytes() / bytes_per_particle(draft.options, draft.dimensions);
   if (on_grid) {
     if (draft.options.initial.kind == InitialKind::expressions) scene.initial_velocity = std::move(initial_velocity);
@@ -313,6 +316,8 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
     const Lattice lattice = make_lattice(scene.domain, scene.spacing);
     fill_scene(scene, lattice, regions, draft.jitter, most, problems);
     problems.throw_if_any();
+    // Below a surface what the spacing leaves outweighs what longer steps add; in a full domain it does not.
+    if (chosen && scene.free_surface) courant = 0.3;
     check_bubble_sources(draft, scene, problems);
     problems.throw_if_any();
     draft.options.groups = describe_groups(draft, scene, compiler.scope());

@@ -34,7 +34,8 @@ TEST(LesSphLedger, CountsWhatTheStagesOfAPeriodicFlowStream) {
   // Records of two coordinates in four floats, from two arrays. Out: correction (3), div r, coupling, kernel sum and
   // shift (2) in float, a byte.
   EXPECT_EQ(bytes_of(run.ledger, "geometry"), c.lists + c.points * (8 + 8 + 16) + c.n * (4 * (3 + 1 + 1 + 1 + 2) + 1));
-  // Records with a velocity. In: velocity in double, correction. Out: four gradients; they come back for the strain.
+  // Records with a velocity. In: velocity in double, correction, shift. Out: strain, trace, what the
+  // shift adds to the velocity.
   EXPECT_EQ(bytes_of(run.ledger, "gradients"), c.lists + c.points * (8 + 16) + c.n * (16 + 12 + 4 + 4 + 8 + 8));
   // Records with one value. The mean; values, correction, gradient; gradient, a byte, velocity in and out.
   EXPECT_EQ(bytes_of(run.ledger, "projection"),

@@ -407,7 +407,6 @@ TEST(Load, DefaultsOfTheTableAreTheDefaultsOfTheCase) {
   EXPECT_EQ(loaded.shifting.velocity_correction, standard.shifting.velocity_correction);
   EXPECT_EQ(loaded.surface.threshold, standard.surface.threshold);
   EXPECT_EQ(loaded.surface.blend_width, standard.surface.blend_width);
-  EXPECT_EQ(loaded.time.courant, standard.time.courant);
   EXPECT_EQ(loaded.time.viscous, standard.time.viscous);
   EXPECT_EQ(loaded.time.max_step, standard.time.max_step);
   EXPECT_EQ(loaded.time.max_retries, standard.time.max_retries);
@@ -417,6 +416,16 @@ TEST(Load, DefaultsOfTheTableAreTheDefaultsOfTheCase) {
   EXPECT_EQ(loaded.output.spectrum_every, standard.output.spectrum_every);
   EXPECT_EQ(loaded.output.fields, standard.output.fields);
   EXPECT_EQ(loaded.output.h5part_view, standard.output.h5part_view);
+}
+
+TEST(Load, TheCourantNumberOfACaseThatGivesNoneFollowsTheSurface) {
+  const LoadedCase open = load_text(plunging_breaker);
+  ASSERT_TRUE(open.scene.free_surface);
+  EXPECT_EQ(open.options.time.courant, 0.3);
+  const LoadedCase full = load_text(small_case());
+  ASSERT_FALSE(full.scene.free_surface);
+  EXPECT_EQ(full.options.time.courant, 0.2);
+  EXPECT_EQ(load_text(plunging_breaker, {"time.courant=0.2"}).options.time.courant, 0.2);
 }
 
 TEST(Load, SidesOfAThreeDimensionalDomainAreNamedAfterTheirAxis) {

@@ -7,9 +7,9 @@
 
 namespace spume::les_sph {
 
-// How far the liquid moves over dt, relative to its mean velocity and without spray, over 0.2 h, what the default
-// courant limit allows; at most 1, and the same in every frame. A liquid at rest needs no care for its arrangement, and
-// small steps no more of it than large ones.
+// How far the liquid moves over dt, relative to its mean velocity and without spray, over 0.2 h; at most 2, and the
+// same in every frame. A liquid at rest needs no care for its arrangement, and over the same distance small steps no
+// more of it than large ones.
 double displacement_fraction(const Liquid& liquid, double dt);
 
 // Subtracts from `divergence` that which evens out the number density over N = `pressure.density_relaxation` steps of
