@@ -390,6 +390,18 @@ void CellHierarchy::cycle(int depth) {
   sweep(level, 0);
 }
 
+double CellHierarchy::bytes() const {
+  double total = 0;
+  for (const CellLevel& level : levels_) {
+    for (const auto* array :
+         {&level.face[0], &level.face[1], &level.face[2], &level.dirichlet, &level.mass, &level.inverse_diagonal,
+          &level.right_hand_side, &level.solution, &level.other, &level.residual, &level.scratch})
+      total += array->bytes();
+    total += level.range.bytes();
+  }
+  return total;
+}
+
 void CellHierarchy::v_cycle() {
   cycle(0);
 }

@@ -403,8 +403,7 @@ void CellMultigrid::setup(std::span<const double> x, std::span<const double> y, 
     throw std::invalid_argument("CellMultigrid::setup: all spans must have one entry per particle");
   if (!(helmholtz >= 0))
     throw std::invalid_argument("CellMultigrid::setup: the Helmholtz coefficient must not be negative");
-  inverse_diagonal_.resize(particles_);
-  parallel_for(particles_, [&](std::size_t i) { inverse_diagonal_[i] = diagonal[i] > 0 ? 1.0F / diagonal[i] : 0.0F; });
+  diagonal_ = diagonal;
   const std::span<const double> position[3] = {x, y, z};
   choose_box(position, interior);
   if (empty_) return;
@@ -494,8 +493,11 @@ template <class Real>
 void CellMultigrid::apply_any(std::span<const Real> r, std::span<Real> z) {
   if (r.size() != particles_ || z.size() != particles_)
     throw std::invalid_argument("CellMultigrid::apply: the vectors differ in length from the last setup");
+  const auto by_diagonal = [&](std::size_t i, Real value) {
+    return diagonal_[i] > 0 ? value / static_cast<Real>(diagonal_[i]) : Real{0};
+  };
   if (empty_) {
-    parallel_for(particles_, [&](std::size_t i) { z[i] = static_cast<Real>(inverse_diagonal_[i]) * r[i]; });
+    parallel_for(particles_, [&](std::size_t i) { z[i] = by_diagonal(i, r[i]); });
     return;
   }
   if constexpr (std::is_same_v<Real, double>) {
@@ -536,9 +538,18 @@ void CellMultigrid::apply_any(std::span<const Real> r, std::span<Real> z) {
         const float upper = y2 + s.fy * (y3 - y2);
         cell += s.fz * (upper - cell);
       }
-      z[p] = static_cast<Real>(inverse_diagonal_[p]) * r[p] + static_cast<Real>(s.weight * cell);
+      z[p] = by_diagonal(p, r[p]) + static_cast<Real>(s.weight * cell);
     }
   });
+}
+
+double CellMultigrid::bytes() const {
+  double total = stencil_.bytes() + status_.bytes() + hierarchy_.bytes();
+  for (const auto* array : {&corner_, &stencil_cell_, &rank_, &start_, &order_, &row_total_}) total += array->bytes();
+  for (const auto* array : {&open_volume_, &open_face_[0], &open_face_[1], &open_face_[2], &partial_, &corner_value_,
+                            &residual_, &correction_})
+    total += array->bytes();
+  return total;
 }
 
 void CellMultigrid::apply(std::span<const float> r, std::span<float> z) {

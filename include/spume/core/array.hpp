@@ -73,6 +73,7 @@ class Array {
     capacity_ = capacity;
   }
   void release() { Array().swap(*this); }
+  double bytes() const { return static_cast<double>(capacity_ * sizeof(T)); }
   void fill(T value) {
     for (std::size_t i = 0; i < size_; ++i) data_[i] = value;
   }

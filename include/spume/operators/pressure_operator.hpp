@@ -44,6 +44,7 @@ class PressureOperator {
   void subtract_product(double scale, std::span<const float> x, std::span<double> r);
 
   std::size_t size() const { return context_.list->particles(); }
+  double bytes() const { return partial_.bytes() + weight_sum_.bytes(); }
 
  private:
   // Bytes per particle of the mask, and of `sizes` where particles differ in size.

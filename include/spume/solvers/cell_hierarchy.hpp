@@ -45,6 +45,7 @@ class CellHierarchy {
   CellLevel& finest() { return levels_.front(); }
   const CellLevel& finest() const { return levels_.front(); }
   int level_count() const { return used_; }
+  double bytes() const;
 
   // solution = V-cycle(right_hand_side) on the finest level, from a zero guess. `right_hand_side` is kept.
   void v_cycle();

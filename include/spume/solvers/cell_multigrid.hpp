@@ -50,7 +50,7 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
   //   interior     in [0, 1]: 0 for rows that are masked or pinned to zero (they are then preconditioned by the
   //                diagonal alone), 1 inside the liquid
   //   helmholtz    Ma^2 / dt^2 in 1/length^2, zero for an incompressible liquid
-  //   diagonal     A_ii
+  //   diagonal     A_ii; stays the caller's, who keeps it until the next setup()
   // Particles with non-finite positions take part through the diagonal only. Particles outside a wall count for the
   // cell at that wall.
   void setup(std::span<const double> x, std::span<const double> y, std::span<const double> z,
@@ -62,6 +62,7 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
   std::array<int, 3> cells() const { return hierarchy_.finest().cells; }
   std::array<double, 3> cell_width() const { return width_; }
   int level_count() const { return hierarchy_.level_count(); }
+  double bytes() const;
 
  private:
   // Position of a particle between the centres of its 2^d nearest cells, and its interior weight.
@@ -96,7 +97,7 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
   Array<std::int32_t> corner_;        // per particle: lowest cell of the stencil in the corner array, -1 for none
   Array<std::int32_t> stencil_cell_;  // per particle: lowest cell of the stencil among the cells
   Array<std::int32_t> rank_;          // per particle: arrival order within its stencil cell
-  Array<float> inverse_diagonal_;     // per particle
+  std::span<const float> diagonal_;   // the caller's
   Array<std::int32_t> start_;         // per stencil cell: first entry in order_
   Array<std::int32_t> order_;         // particles sorted by stencil cell, then by index
   Array<std::int32_t> row_total_;     // particles per row of stencil cells

@@ -37,6 +37,14 @@ struct KrylovResult {
 template <class Real>
 struct KrylovWorkspace {
   Array<Real> residual, shadow, direction, preconditioned, image, second_image, second_preconditioned;
+
+  double bytes() const {
+    double total = 0;
+    for (const auto* array :
+         {&residual, &shadow, &direction, &preconditioned, &image, &second_image, &second_preconditioned})
+      total += array->bytes();
+    return total;
+  }
 };
 
 // Conjugate gradients: A and M symmetric positive (semi-)definite. One application per iteration.

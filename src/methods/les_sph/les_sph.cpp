@@ -178,6 +178,15 @@ std::vector<ArrayInfo> LesSph::arrays() const {
   list.push_back({"neighbour lists", liquid_.list.bytes()});
   list.push_back({"sweep records", liquid_.records.bytes()});
   list.push_back({"pressure system", pressure_->bytes()});
+  list.push_back({"gradient corrections left out", liquid_.uncorrected.bytes()});
+  if (liquid_.plan.free_surface) {
+    double surface = liquid_.layer_shift.bytes();
+    for (const auto* flags : {&liquid_.at_surface, &liquid_.held, &liquid_.beside_edge}) surface += flags->bytes();
+    for (const auto* values : {&liquid_.interior_weight, &liquid_.edge_depth}) surface += values->bytes();
+    for (const auto* numbers : {&liquid_.surface_particles, &liquid_.edge_particles, &liquid_.upper_particles})
+      surface += numbers->bytes();
+    list.push_back({"surface", surface});
+  }
   if (bubbles_)
     for (const ArrayInfo& array : bubbles_->arrays()) list.push_back(array);
   return list;

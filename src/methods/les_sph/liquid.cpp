@@ -96,10 +96,13 @@ Liquid::Liquid(const LoadedCase& loaded_case)
   // Without a stage that differentiates the velocity these serve the first pressure only, and are released after it.
   strain = &fields.add<float>("strain", Lifetime::scratch);
   if (!plan.no_slip) gradient_trace = &fields.add<float>("gradient_trace", Lifetime::scratch);
-  if (plan.test_filter) add_vector(fields, filtered_velocity, "filtered_velocity", d, Lifetime::scratch);
   if (plan.eddy_viscosity) eddy_viscosity = &fields.add<float>("eddy_viscosity", Lifetime::scratch);
   if (plan.viscosity) diffusivity = &fields.add<float>("diffusivity", Lifetime::scratch);
   add_vector(fields, acceleration, "acceleration", d, Lifetime::scratch);
+  if (plan.test_filter && plan.bubbles)
+    add_vector(fields, filtered_velocity, "filtered_velocity", d, Lifetime::scratch);
+  else if (plan.test_filter)
+    filtered_velocity = acceleration;  // the closure is through with it before there is an acceleration
   fields.resize(n);
 
   parallel_for(n, [&](std::size_t i) {
