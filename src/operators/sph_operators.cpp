@@ -374,7 +374,8 @@ void velocity_gradient_sweep(const SweepContext& context, Records& records,
 void gradient_trace_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
                           const VelocityImageRule& rule, const std::array<const float*, 6>& correction, float* trace) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    const VelocityGradientOut out{.trace = trace};
+    VelocityGradientOut out;
+    out.trace = trace;
     const auto store = [&](std::size_t i, const auto& gradient, const auto& bounds) {
       store_gradient<dimensions>(out, i, gradient, bounds);
     };

@@ -242,7 +242,8 @@ void note_places(const Node& node, const std::string& name, const std::string& f
                                               : Problem{node.override_text, 0, 0, {}};
   for (std::size_t i = 0; i < node.children.size(); ++i) {
     const std::string key = node.kind == Node::Kind::table ? node.keys[i] : std::to_string(i);
-    note_places(node.children[i], name.empty() ? key : name + "." + key, file, places);
+    const std::string within = name.empty() ? std::string() : name + ".";
+    note_places(node.children[i], within + key, file, places);
   }
 }
 

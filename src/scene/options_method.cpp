@@ -111,26 +111,25 @@ Section time() {
              .range = positive(),
              .description = "time at which the run ends",
              .set = set(group, &T::end)};
-  return {
-      .name = "time",
-      .options = {
-          end,
-          {.key = "courant",
-           .type = OptionType::number,
-           .unit = "1",
-           .absent = "0.2, with a free surface 0.3",
-           .range = above_up_to(0, 1),
-           .description = "step limit by speed: Courant number",
-           .set = set(group, &T::courant)},
-          option("centred", "", "true", {}, "velocities free of divergence half a step ahead: second order in time",
-                 group, &T::centred, {"les-sph"}),
-          option("viscous", "1", "0.2", above_up_to(0, 0.3),
-                 "step limit by viscosity, eddy viscosity included; a third of it with div(2 nu S)", group, &T::viscous,
-                 {"les-sph"}),
-          option("max_step", "time", "0.0", not_negative(), "largest step; 0: none", group, &T::max_step),
-          option("max_retries", "", "6", between(0, 30), "halvings of a refused step before the run gives up", group,
-                 &T::max_retries),
-      }};
+  return {.name = "time",
+          .options = {
+              end,
+              {.key = "courant",
+               .type = OptionType::number,
+               .unit = "1",
+               .absent = "0.2, with a free surface 0.3",
+               .range = above_up_to(0, 1),
+               .description = "step limit by speed: Courant number",
+               .set = set(group, &T::courant)},
+              option("centred", "", "true", {}, "velocities free of divergence half a step ahead: second order in time",
+                     group, &T::centred, {"les-sph"}),
+              option("viscous", "1", "0.2", above_up_to(0, 0.3),
+                     "step limit by viscosity, eddy viscosity included; a third of it with div(2 nu S)", group,
+                     &T::viscous, {"les-sph"}),
+              option("max_step", "time", "0.0", not_negative(), "largest step; 0: none", group, &T::max_step),
+              option("max_retries", "", "6", between(0, 30), "halvings of a refused step before the run gives up",
+                     group, &T::max_retries),
+          }};
 }
 
 Section output() {

@@ -60,8 +60,9 @@ void velocity_gradient_sweep(const SweepContext& context, Records& records,
 void gradient_trace_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
                           const VelocityImageRule& rule, const std::array<const float*, 6>& correction, float* trace);
 
-// Adds the second-order Taylor term of a displacement s: out_a += 1/2 s_b s_c d2 u_a / (d x_b d x_c), from the corrected
-// derivative along s of the velocity gradient. `rule` is that of the velocity, `reflection` that of geometric vectors.
+// Adds the second-order Taylor term of a displacement s: out_a += 1/2 s_b s_c d2 u_a / (d x_b d x_c), from the
+// corrected derivative along s of the velocity gradient. `rule` is that of the velocity, `reflection` that of geometric
+// vectors.
 void shift_curvature_sweep(const SweepContext& context, Records& records, const std::array<const float*, 9>& gradient,
                            const VelocityImageRule& rule, const std::vector<std::array<float, 3>>& reflection,
                            const std::array<const float*, 3>& shift, const std::array<const float*, 6>& correction,

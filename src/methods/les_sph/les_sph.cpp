@@ -122,7 +122,7 @@ LesSph::LesSph(const LoadedCase& loaded) : liquid_(loaded), pressure_(std::make_
   for (const std::string& name : loaded.options.output.fields)
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       std::string list;
-      for (const char* field : known) list += std::string(list.empty() ? "" : ", ") + field;
+      for (const char* field : known) list.append(list.empty() ? "" : ", ").append(field);
       throw refusal(loaded.options, "output.fields",
                     "output.fields names '" + name + "', which les-sph does not have; it has " + list);
     }

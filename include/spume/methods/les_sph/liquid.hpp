@@ -83,7 +83,7 @@ struct Liquid {
   FloatVectorField shift{};                 // displacement; first the concentration gradient
   FloatVectorField shift_velocity{};        // what the shift adds to the velocity
   std::array<Array<float>*, 9> velocity_gradient{};
-  Array<float>* gradient_trace = nullptr;  // tr(grad u . grad u)
+  Array<float>* gradient_trace = nullptr;         // tr(grad u . grad u)
   FloatVectorField filtered_velocity{};           // without bubbles in the arrays of the acceleration
   Array<float>* strain = nullptr;                 // |S| = sqrt(2 S:S)
   Array<float>* eddy_viscosity = nullptr;         // nu_t, in the units of nu
