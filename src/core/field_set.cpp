@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/core/field_set.hpp"
 
+#include <bit>
 #include <stdexcept>
 #include <utility>
 
@@ -19,7 +20,15 @@ void FieldSet::resize(std::size_t size) {
   for (auto& field : fields_) std::visit([&](auto& array) { array.resize(size); }, field->values);
 }
 
+Array<double>& FieldSet::idle_doubles() {
+  for (auto& field : fields_)
+    if (auto* values = std::get_if<Array<double>>(&field->values); values && field->lifetime == Lifetime::scratch)
+      return *values;
+  return scratch_f64_;
+}
+
 void FieldSet::permute(const Array<std::int32_t>& order) {
+  Array<double>& doubles = idle_doubles();
   const auto permute_into = [&]<class T>(Array<T>& values, Array<T>& scratch) {
     scratch.resize(size_);
     const T* source = values.data();
@@ -34,12 +43,16 @@ void FieldSet::permute(const Array<std::int32_t>& order) {
     std::visit(
         [&]<class T>(Array<T>& array) {
           if constexpr (std::is_same_v<T, double>)
-            permute_into(array, scratch_f64_);
+            permute_into(array, doubles);
           else if constexpr (std::is_same_v<T, float>)
             permute_into(array, scratch_f32_);
-          else if constexpr (std::is_same_v<T, std::int64_t>)
-            permute_into(array, scratch_i64_);
-          else
+          else if constexpr (std::is_same_v<T, std::int64_t>) {
+            doubles.resize(size_);
+            parallel_for(size_, [&](std::size_t k) {
+              doubles[k] = std::bit_cast<double>(array[static_cast<std::size_t>(order[k])]);
+            });
+            parallel_for(size_, [&](std::size_t k) { array[k] = std::bit_cast<std::int64_t>(doubles[k]); });
+          } else
             permute_into(array, scratch_i32_);
         },
         field->values);
@@ -52,7 +65,6 @@ double FieldSet::bytes() const {
   for (const auto& field : fields_) std::visit(count, field->values);
   count(scratch_f64_);
   count(scratch_f32_);
-  count(scratch_i64_);
   count(scratch_i32_);
   return total;
 }

@@ -78,8 +78,9 @@ struct Option {
   std::string key = {};
   OptionType type = OptionType::number;
   std::string unit = {};
-  std::string default_text = {};  // TOML; empty: none
-  std::string absent = {};        // what an absent value means, when there is no default
+  std::string default_text = {};                         // TOML; empty: none
+  std::string absent = {};                               // what an absent value means, when there is no default
+  std::function<std::string(const Draft&)> chosen = {};  // the value that an absent one got from the scene, as TOML
   bool required = false;
   Range range = {};
   std::vector<std::string> words = {};

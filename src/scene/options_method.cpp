@@ -76,12 +76,14 @@ Section shifting() {
                   with({"on", {"true"}}, option("remove_drift", "", "true", {},
                                                 "subtract what neighbours share of the shift: no net transport", group,
                                                 &S::remove_drift)),
-                  with({"on", {"true"}}, word_option("velocity_correction", "\"first-order\"",
-                                                     "Taylor terms that give the velocity at the new place", group,
-                                                     &S::velocity_correction,
-                                                     {{"none", ShiftCorrection::none},
-                                                      {"first-order", ShiftCorrection::first_order},
-                                                      {"second-order", ShiftCorrection::second_order}})),
+                  with({"on", {"true"}},
+                       word_option("velocity_correction", "\"first-order\"",
+                                   "Taylor terms that give the velocity at the new place; the first is bounded by the "
+                                   "neighbours' velocities",
+                                   group, &S::velocity_correction,
+                                   {{"none", ShiftCorrection::none},
+                                    {"first-order", ShiftCorrection::first_order},
+                                    {"second-order", ShiftCorrection::second_order}})),
               },
           .methods = {"les-sph"}};
 }
@@ -118,6 +120,7 @@ Section time() {
                .type = OptionType::number,
                .unit = "1",
                .absent = "0.2, with a free surface 0.3",
+               .chosen = [](const Draft& d) { return shortest(d.options.time.courant); },
                .range = above_up_to(0, 1),
                .description = "step limit by speed: Courant number",
                .set = set(group, &T::courant)},

@@ -71,6 +71,8 @@ class Writer {
         line("title = " + to_toml_string(draft_.options.title), "default");
       } else if (!option.default_text.empty()) {
         line(option.key + " = " + option.default_text, "default" + tail);
+      } else if (option.chosen) {
+        line(option.key + " = " + option.chosen(draft_), "default" + tail);
       } else {
         line("# " + option.key, "not set: " + option.absent + tail);
       }

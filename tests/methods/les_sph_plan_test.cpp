@@ -47,7 +47,6 @@ TEST(LesSphPlan, APeriodicBoxHasNoSurface) {
   EXPECT_FALSE(runs(run, "surface"));
   EXPECT_FALSE(any_contains(arrays, "normal"));
   EXPECT_FALSE(any_contains(arrays, "eddy_viscosity"));
-  EXPECT_FALSE(any_contains(arrays, "filtered_velocity"));
   EXPECT_FALSE(any_contains(arrays, "potential"));
   EXPECT_FALSE(any_contains(arrays, "average"));
   EXPECT_TRUE(runs(run, "images"));
@@ -80,6 +79,16 @@ TEST(LesSphPlan, EveryStageHasItsArraysOnlyWhenItRuns) {
   Simulation lagrangian(taylor_green, {"turbulence.model=\"dynamic-lagrangian\""});
   lagrangian.steps(2, 0.004);
   EXPECT_TRUE(any_contains(arrays_of(lagrangian), "average"));
+
+  // Components of the gradient are kept for those alone who read them.
+  for (const auto& [change, kept] : {std::pair{"turbulence.model=\"smagorinsky\"", false},
+                                     {"turbulence.model=\"mixed-scale\"", false},
+                                     {"turbulence.model=\"dynamic-shepard\"", true},
+                                     {"turbulence.model=\"dynamic-lagrangian\"", true},
+                                     {"shifting.velocity_correction=\"second-order\"", true}}) {
+    Simulation run(taylor_green, {change});
+    EXPECT_EQ(any_contains(arrays_of(run), "velocity_gradient"), kept) << change;
+  }
 }
 
 TEST(LesSphPlan, AnOpenInviscidPatchNeedsNeitherImagesNorViscosityNorPotential) {

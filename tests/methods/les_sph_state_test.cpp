@@ -2,6 +2,10 @@
 // State between steps: saved and restored to the bit, untouched by a refused step; nothing is allocated on the way.
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <type_traits>
+#include <variant>
+
 #include "methods/les_sph_simulation.hpp"
 
 namespace spume::test {
@@ -117,6 +121,61 @@ INSTANTIATE_TEST_SUITE_P(Cases, SavedState, ::testing::Values(taylor_green, tayl
                          [](const auto& info) {
                            return info.index == 0 ? "Vortices2D" : info.index == 1 ? "Vortices3D" : "DamBreak";
                          });
+
+// Arrays that lend their place to others would tell here when somebody reads them afterwards.
+TEST(LesSphScratch, NothingIsReadOfIt) {
+  const auto spoil = [](Simulation& run) {
+    auto& liquid = const_cast<les_sph::Liquid&>(run.method.liquid());
+    for (const auto& field : liquid.fields.fields())
+      if (field->lifetime == Lifetime::scratch)
+        std::visit(
+            []<class T>(Array<T>& values) {
+              if constexpr (std::is_floating_point_v<T>) values.fill(std::numeric_limits<T>::quiet_NaN());
+            },
+            field->values);
+  };
+  const std::vector<std::pair<std::string, Overrides>> scenes = {
+      {taylor_green, {}},
+      {taylor_green, {"time.centred=false", "shifting.on=false"}},
+      {taylor_green, {"shifting.velocity_correction=\"second-order\"", "turbulence.model=\"smagorinsky\""}},
+      {taylor_green, {"turbulence.model=\"dynamic-lagrangian\"", "pressure.precision=\"double\""}},
+      {cavity, {"turbulence.model=\"mixed-scale\""}},
+      {dam_break, {"turbulence.model=\"dynamic-shepard\""}},
+      {dam_break_3d, {"turbulence.model=\"mixed-scale\""}},
+      {square_patch, {}}};
+  for (const auto& [text, overrides] : scenes) {
+    Simulation plain(text, overrides), spoilt(text, overrides);
+    for (int k = 0; k < 4; ++k) {
+      plain.steps(1, 0.002);
+      spoilt.steps(1, 0.002);
+      spoil(spoilt);
+    }
+    const State expected = plain.state(), found = spoilt.state();
+    EXPECT_EQ(found.position, expected.position) << text;
+    EXPECT_EQ(found.velocity, expected.velocity) << text;
+    EXPECT_EQ(found.pressure, expected.pressure) << text;
+  }
+}
+
+// What `spume check` lists is what the method holds, to the rounding of sizes to cache lines and lists of a few bytes.
+TEST(LesSphAllocations, EveryArrayIsListed) {
+  const std::vector<std::pair<std::string, Overrides>> scenes = {
+      {taylor_green, {}},
+      {cavity, {"resolution.spacing=0.02"}},
+      {taylor_green_3d, {"turbulence.model=\"dynamic-lagrangian\""}},
+      {dam_break_3d, {"turbulence.model=\"mixed-scale\"", "resolution.spacing=0.05"}}};
+  for (const auto& [text, overrides] : scenes) {
+    const LoadedCase loaded = load_text(text, overrides);
+    const auto before = static_cast<double>(array_statistics().bytes);
+    les_sph::LesSph method(loaded);
+    Ledger ledger;
+    for (int k = 0; k < 4; ++k) method.step(0.001, ledger);
+    double listed = 0;
+    for (const ArrayInfo& array : method.arrays()) listed += array.bytes;
+    const double held = static_cast<double>(array_statistics().bytes) - before;
+    EXPECT_NEAR(listed, held, 0.01 * held) << text;
+  }
+}
 
 TEST(LesSphAllocations, ASteadyRunAllocatesNothing) {
   for (const std::string& text : {taylor_green, taylor_green_3d, dam_break}) {

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "helpers.hpp"
+#include "spume/scene/memory.hpp"
 
 namespace spume {
 namespace {
@@ -257,7 +258,9 @@ TEST(Fill, MoreThanTheMemoryHoldsIsRefusedBeforeAllocation) {
   ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
   const rlimit small{3'000'000'000, before.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_AS, &small), 0);
-  const double most = 3e9 / 382;                                        // bytes per particle of a 2-D case
+  Case options;
+  options.method = "les-sph";
+  const double most = 3e9 / bytes_per_particle(options, 2);
   const std::vector<std::string> spacing{"resolution.spacing=0.0003"};  // 2.2e7 particles in all
   const auto plain = problems_of(tank("[[liquid]]\n"), spacing);
   const auto shaped = problems_of(tank("[[liquid]]\nwhere = \"1 + x\"\n"), spacing);

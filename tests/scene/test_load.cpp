@@ -422,6 +422,7 @@ TEST(Load, TheCourantNumberOfACaseThatGivesNoneFollowsTheSurface) {
   const LoadedCase open = load_text(plunging_breaker);
   ASSERT_TRUE(open.scene.free_surface);
   EXPECT_EQ(open.options.time.courant, 0.3);
+  EXPECT_THAT(open.options.resolved, HasSubstr("\ncourant = 0.3 "));
   const LoadedCase full = load_text(small_case());
   ASSERT_FALSE(full.scene.free_surface);
   EXPECT_EQ(full.options.time.courant, 0.2);

@@ -44,13 +44,14 @@ class FieldSet {
   double bytes() const;
 
  private:
+  // Room to permute doubles and integers of their size in: a scratch field, whose contents are nobody's now.
+  Array<double>& idle_doubles();
   Field& find_or_add(std::string_view name, Lifetime lifetime, decltype(Field::values) empty);
 
   std::vector<std::unique_ptr<Field>> fields_;
   std::size_t size_ = 0;
   Array<double> scratch_f64_;
   Array<float> scratch_f32_;
-  Array<std::int64_t> scratch_i64_;
   Array<std::int32_t> scratch_i32_;
 };
 

@@ -174,7 +174,9 @@ void differentiate_velocity(Liquid& liquid) {
       out.gradient[k] = liquid.velocity_gradient[k]->data();
   if (liquid.plan.test_filter) out.filtered = liquid.write(liquid.filtered_velocity);
   out.strain = liquid.strain->data();
-  if (liquid.gradient_trace != nullptr) out.trace = liquid.gradient_trace->data();
+  const bool first = !liquid.started;  // the first pressure
+  if (liquid.gradient_trace != nullptr && (liquid.options.time.centred || first))
+    out.trace = liquid.gradient_trace->data();
   if (liquid.plan.shift_correction) {
     out.displacement = liquid.read(liquid.shift);
     out.change = liquid.write(liquid.shift_velocity);

@@ -93,7 +93,7 @@ Liquid::Liquid(const LoadedCase& loaded_case)
   if (plan.stored_gradient)
     for (int k = 0; k < d * d; ++k)
       velocity_gradient[k] = &fields.add<float>("velocity_gradient_" + std::to_string(k), Lifetime::scratch);
-  // Without a stage that differentiates the velocity these serve the first pressure only, and are released after it.
+  // Without a stage that differentiates the velocity this serves the first pressure only, and is released after it.
   strain = &fields.add<float>("strain", Lifetime::scratch);
   if (!plan.no_slip) gradient_trace = &fields.add<float>("gradient_trace", Lifetime::scratch);
   if (plan.eddy_viscosity) eddy_viscosity = &fields.add<float>("eddy_viscosity", Lifetime::scratch);

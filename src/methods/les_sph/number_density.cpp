@@ -118,7 +118,7 @@ void even_out_density(const Liquid& liquid, double dt, std::span<double> diverge
     if (!tells_density(liquid, i)) return;
     const double own = excess(liquid, i);
     const double rate = own < 0 ? closing * std::max(1.0, -own / thin_as_void) : expanding;
-    divergence[i] -= expanding * of_all + rate * (own - within(own, local_disorder));
+    divergence[i] -= expanding * of_all + std::min(rate, 1 / dt) * (own - within(own, local_disorder));
   });
 }
 

@@ -78,7 +78,8 @@ std::vector<Stage> Plan::stages(const LoadedCase& loaded) const {
   list.push_back({"gradients", velocity_gradient,
                   eddy_viscosity      ? "strain of the closure"
                   : bubbles           ? "vorticity at the bubbles"
-                  : velocity_gradient ? "velocity correction of the shift"
+                  : shift_correction  ? "velocity correction of the shift"
+                  : velocity_gradient ? "divergence half a step ahead"
                                       : "nobody needs them"});
   list.push_back({"shift curvature", shift_curvature,
                   shift_curvature ? "second-order velocity correction of the shift" : "shifting.velocity_correction"});

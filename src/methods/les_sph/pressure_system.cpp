@@ -215,9 +215,11 @@ class LentArrays {
                                &work.second_preconditioned,
                                &right_hand_side};
     std::size_t next = 0;
-    for (Array<float>* lent : {liquid.acceleration[0], liquid.acceleration[1], liquid.acceleration[2],
-                               liquid.diffusivity, liquid.gradient_trace, liquid.coupling, liquid.smoothed_normal[0],
-                               liquid.smoothed_normal[1], liquid.smoothed_normal[2]}) {
+    // Bubbles read smoothed normals beside which nobody has written any: zeros, not what a solve has left.
+    const auto normals = liquid.plan.bubbles ? FloatVectorField{} : liquid.smoothed_normal;
+    for (Array<float>* lent :
+         {liquid.acceleration[0], liquid.acceleration[1], liquid.acceleration[2], liquid.diffusivity,
+          liquid.gradient_trace, liquid.coupling, normals[0], normals[1], normals[2]}) {
       if (lent == nullptr || next == borrowers.size()) continue;
       lent->swap(*borrowers[next]);
       pairs_[next] = {lent, borrowers[next]};

@@ -67,7 +67,7 @@ double shift(Liquid& liquid) {
 double gradients(Liquid& liquid) {
   const Sizes size(liquid);
   double moved = size.vector + size.symmetric + 4;  // strain
-  if (liquid.gradient_trace != nullptr) moved += 4;
+  if (liquid.gradient_trace != nullptr && liquid.options.time.centred) moved += 4;
   if (liquid.plan.stored_gradient) moved += size.gradient;
   if (liquid.plan.test_filter) moved += size.float_vector;
   if (liquid.plan.shift_correction) moved += 2 * size.float_vector;
@@ -120,6 +120,7 @@ double divergence(Liquid& liquid) {
   double moved = size.vector + size.symmetric + 8 + (potential ? 8 + 4 : 0);
   moved += 8;  // the largest
   if (liquid.options.time.centred) moved += 4 + 16;
+  if (liquid.options.time.centred && plan.no_slip) moved += size.vector + size.symmetric + 4;
   if (plan.density_relaxation) moved += 2 * 4 + 16 + (plan.free_surface ? 2 * 4 : 0);
   moved += 4 + 4 + 3 * 4 + (plan.free_surface ? 4 + 1 : 0);                         // matrix
   moved += 16 + 8 + 4 + 4 + (potential ? 8 + 4 : 0) + (plan.free_surface ? 1 : 0);  // right-hand side

@@ -60,7 +60,8 @@ struct Liquid {
   double width_at(std::size_t i) const { return varying ? smoothing_length * length_ratio[i] : smoothing_length; }
   double alpha_at(std::size_t i) const { return varying ? double{next_volume_fraction[i]} : 1.0; }
 
-  // Found within a step.
+  // Found within a step. Acceleration, diffusivity, gradient_trace, coupling and, without bubbles, smoothed_normal lose
+  // their contents in the pressure solve.
   VectorField intermediate{};                 // r* of step (i)
   VectorField predicted{};                    // u* and then u^{n+1}
   Array<double>* reduced_pressure = nullptr;  // q = p + potential

@@ -19,7 +19,7 @@ struct Plan {
   bool no_slip = false;          // some wall or solid holds the liquid
   bool free_surface = false;
   bool shifting = false;
-  bool velocity_gradient = false;  // closure or shift correction
+  bool velocity_gradient = false;  // closure, shift correction, centred steps or bubbles
   bool stored_gradient = false;    // dynamic closures, second-order corrections and bubbles need its components
   bool drift_removal = false;      // of the shift
   bool shift_correction = false;   // velocity follows the shift to first or second order
