@@ -410,6 +410,7 @@ TEST(Bubbles, OfADropletBurstTogether) {
 }
 
 TEST(Bubbles, AllocateNothingInASteadyStep) {
+  const OneThread alone;
   Simulation run(periodic_cube);
   run.steps(25, 0.005);
   const auto before = array_statistics();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,6 +25,19 @@ struct State {
   std::vector<Vec3> position, velocity;
   std::vector<double> pressure;
   bool operator==(const State&) const = default;
+};
+
+// One thread for a test that counts allocations: threads keep room of their own for lists, a few blocks long, and which
+// of them meets its first large block when is a matter of chance.
+class OneThread {
+ public:
+  OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
+  ~OneThread() { omp_set_num_threads(before_); }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  int before_;
 };
 
 struct Simulation {
