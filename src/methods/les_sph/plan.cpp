@@ -33,9 +33,8 @@ Plan make_plan(const LoadedCase& loaded) {
   plan.shift_correction = plan.shifting && options.shifting.velocity_correction != ShiftCorrection::none;
   plan.shift_curvature = plan.shifting && options.shifting.velocity_correction == ShiftCorrection::second_order;
   plan.velocity_gradient = plan.eddy_viscosity || plan.shift_correction || options.time.centred || plan.bubbles;
-  plan.stored_gradient =
-      (plan.eddy_viscosity && model != TurbulenceModel::smagorinsky && model != TurbulenceModel::mixed_scale) ||
-      plan.shift_curvature || plan.bubbles;
+  const bool dynamic = model == TurbulenceModel::dynamic_shepard || model == TurbulenceModel::dynamic_lagrangian;
+  plan.stored_gradient = dynamic || plan.shift_curvature || plan.bubbles;
   plan.viscosity = plan.eddy_viscosity || scene.fluid.kinematic_viscosity > 0;
   const DiffusionForm form = options.turbulence.diffusion;
   plan.viscous_stress =

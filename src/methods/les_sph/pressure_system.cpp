@@ -199,8 +199,6 @@ KrylovResult run_krylov(PressureSolver solver, LinearOperator<Real>& a, spume::P
                                       : bicgstab<Real>(a, m, b, x, options, work);
 }
 
-}  // namespace
-
 // Lends the solve, for its lifetime, the arrays of the liquid that nobody reads between the right-hand side and the
 // projection: 32 bytes per particle with a surface.
 class LentArrays {
@@ -215,7 +213,7 @@ class LentArrays {
                                &work.second_preconditioned,
                                &right_hand_side};
     std::size_t next = 0;
-    // Bubbles read smoothed normals beside which nobody has written any: zeros, not what a solve has left.
+    // Bubbles may read smoothed normals that no step has written: they must stay zero, not hold what a solve left.
     const auto normals = liquid.plan.bubbles ? FloatVectorField{} : liquid.smoothed_normal;
     for (Array<float>* lent :
          {liquid.acceleration[0], liquid.acceleration[1], liquid.acceleration[2], liquid.diffusivity,
@@ -236,6 +234,8 @@ class LentArrays {
  private:
   std::array<std::pair<Array<float>*, Array<float>*>, 8> pairs_{};
 };
+
+}  // namespace
 
 // Residuals are scaled to order one: float keeps its range for any units. A correction gains at most three digits,
 // rounding in float spoils more.

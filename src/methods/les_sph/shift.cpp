@@ -165,9 +165,9 @@ void keep_layers(Liquid& liquid) {
 void choose_shift(Liquid& liquid) {
   const int d = liquid.dimensions;
   // King (3.12) at steps of courant 0.2, else in proportion to the distance moved: a liquid at rest is not shifted, and
-  // small steps do not shift more (and dissipate more) than large ones. Particles that have to
-  // make room for a bubble move whatever the speed, until they are no denser than the lattice: by 1/alpha - 1 just
-  // after a bubble has come. Shifted for ever, those beside a bubble at rest below a surface lift the liquid.
+  // small steps do not shift more (and dissipate more) than large ones. Particles that have to make room for a bubble
+  // move whatever the speed, until they are no denser than the lattice: by 1/alpha - 1 just after a bubble has come.
+  // Shifted for ever, those beside a bubble at rest below a surface lift the liquid.
   const auto strength = [&liquid](std::size_t i) {
     const double taken = 1 / liquid.alpha_at(i) - 1;
     if (!(taken > 0)) return liquid.displacement;
