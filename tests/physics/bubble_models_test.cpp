@@ -164,7 +164,7 @@ TEST(Entrainment, KeepsItsBudgetsUpToTheBubbleThatEndsThem) {
     const EntrainingParticle particle = wave_particle(20, k);
     const EntrainmentBudget budget = entrainment_budget(model, particle, 0.002);
     made.clear();
-    entrain(model, particle, 0.002, 3, made);
+    entrain(model, particle, 0.002, 0.002, 3, made);
     EXPECT_LE(made.size(), 10U);
     double energy = 0, own_volume = 0;
     for (std::size_t j = 0; j < made.size(); ++j) {
@@ -202,7 +202,7 @@ TEST(Entrainment, IsFlatUpToTheRadiusThatTheEnergyPays) {
   std::vector<NewBubble> made;
   for (std::int64_t k = 0; k < 20000; ++k) {
     made.clear();
-    entrain(model, wave_particle(dissipation, k), dt, 5, made);
+    entrain(model, wave_particle(dissipation, k), dt, dt, 5, made);
     if (made.empty()) continue;
     ++count[static_cast<std::size_t>((radius_of(made[0].volume) - model.smallest_radius) / span * bins)];
     ++total;
@@ -221,14 +221,51 @@ TEST(Entrainment, IsFlatUpToTheRadiusThatTheEnergyPays) {
   EXPECT_LT(chi2, bins - 1 + 5 * std::sqrt(2.0 * (bins - 1)));
 }
 
+// Over the same time steps of any length make as many bubbles of the same mean radius, where there is room for all.
+TEST(Entrainment, DoesNotDependOnTheLengthOfTheStep) {
+  const EntrainmentModel model = wave_model();
+  const double period = 0.002, time = 40 * period;
+  struct Count {
+    double bubbles = 0, squares = 0, radii = 0, radii2 = 0;
+  };
+  const auto entrained = [&](int steps) {
+    Count count;
+    std::vector<NewBubble> made;
+    for (std::int64_t k = 0; k < 2000; ++k) {
+      made.clear();
+      for (int step = 0; step < steps; ++step)
+        entrain(model, wave_particle(0.4, k), time / steps, period, static_cast<std::uint32_t>(step), made);
+      const auto number = static_cast<double>(made.size());
+      count.bubbles += number;
+      count.squares += number * number;
+      for (const NewBubble& bubble : made) {
+        const double radius = radius_of(bubble.volume);
+        count.radii += radius;
+        count.radii2 += radius * radius;
+      }
+    }
+    return count;
+  };
+  const Count expected = entrained(40);
+  for (const int steps : {25, 33, 100, 400}) {
+    const Count count = entrained(steps);
+    const double number_error = std::sqrt(count.squares - count.bubbles * count.bubbles / 2000 + expected.squares -
+                                          expected.bubbles * expected.bubbles / 2000);
+    EXPECT_NEAR(count.bubbles, expected.bubbles, 5 * number_error) << steps;
+    const double mean = count.radii / count.bubbles, expected_mean = expected.radii / expected.bubbles;
+    const double variance = expected.radii2 / expected.bubbles - expected_mean * expected_mean;
+    EXPECT_NEAR(mean, expected_mean, 5 * std::sqrt(variance * (1 / count.bubbles + 1 / expected.bubbles))) << steps;
+  }
+}
+
 TEST(Entrainment, NeedsDissipationAndRoom) {
   const EntrainmentModel model = wave_model();
   std::vector<NewBubble> made;
   for (std::int64_t k = 0; k < 200; ++k) {
-    entrain(model, wave_particle(0.19, k), 1, 1, made);
+    entrain(model, wave_particle(0.19, k), 1, 1, 1, made);
     EntrainingParticle full = wave_particle(100, k);
     full.volume_fraction = 2.0 / 3;
-    entrain(model, full, 1, 1, made);
+    entrain(model, full, 1, 1, 1, made);
   }
   EXPECT_TRUE(made.empty());
   // King (3.21): filling the budget takes alpha to 2/3 by (3.1).

@@ -148,6 +148,8 @@ double BubbleCoupling::smoothed_dissipation(const Liquid& liquid, std::size_t i)
 }
 
 void BubbleCoupling::entrain(const Liquid& liquid, double dt) {
+  if (!(liquid.limiting_speed > 0)) return;
+  const double period = 0.2 * liquid.smoothing_length / liquid.limiting_speed;  // the step of King (3.18)
   double peak = 0;
   with_kernel(liquid.context, [&]<int d, class Kernel>() { peak = Kernel::normalisation(3) * Kernel::w(0.0); });
   const std::size_t before = population_.size();
@@ -168,7 +170,7 @@ void BubbleCoupling::entrain(const Liquid& liquid, double dt) {
         particle.kernel_peak = peak / (h * h * h);
         particle.identifier = (*liquid.identifier)[i];
         const std::size_t first = made.size();
-        bubbles::entrain(entrainment_, particle, dt, step, made);
+        bubbles::entrain(entrainment_, particle, dt, period, step, made);
         for (std::size_t k = first; k < made.size(); ++k)
           keep_inside(liquid, liquid.walls, made[k].position, &made[k].velocity);
       });

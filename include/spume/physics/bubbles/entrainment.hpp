@@ -37,10 +37,13 @@ EntrainmentBudget entrainment_budget(const EntrainmentModel& model, const Entrai
 // King (3.20) over the density of the liquid: 4 pi a^2 tension.
 double surface_energy(const EntrainmentModel& model, double radius);
 
-// Appends the bubbles that the particle entrains in this step. A bubble that costs more than what is left is made with
-// the probability left/cost, so that the means of energy and volume are kept (the printed comparison, with the
-// probability 1 - left/cost, would favour the least affordable). Offsets are zeta - 1/2 spacings.
-void entrain(const EntrainmentModel& model, const EntrainingParticle& particle, double dt, std::uint32_t step,
-             std::vector<NewBubble>& made);
+// Appends the bubbles that the particle entrains in a step. King buys them once in a step of (3.18), and the length of
+// that step decides which radius the energy pays: here each purchase has the budget of one `period`, whatever dt is,
+// and there are dt / period of them (a part of one: as its probability), so that neither number nor sizes follow the
+// step of the run. A bubble that costs more than what is left is made with the probability left/cost, so that the means
+// of energy and volume are kept (the printed comparison, with the probability 1 - left/cost, would favour the least
+// affordable). Offsets are zeta - 1/2 spacings.
+void entrain(const EntrainmentModel& model, const EntrainingParticle& particle, double dt, double period,
+             std::uint32_t step, std::vector<NewBubble>& made);
 
 }  // namespace spume::bubbles
