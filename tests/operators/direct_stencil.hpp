@@ -2,9 +2,7 @@
 // The slow twin of the interpolation stencil: all particles tried, weights from a dense least-squares problem.
 #pragma once
 
-#include <Eigen/Dense>
 #include <array>
-#include <cmath>
 #include <vector>
 
 #include "operators/jittered_particles.hpp"
@@ -20,41 +18,6 @@ struct DirectStencil {
 // The weights that minimise sum w^2 / W among those that satisfy the cubic consistency conditions, in the periodic
 // unit box: with w = sqrt(W) v, the shortest v with (sqrt(W) P)^T v = e_0. The normal equations that the program solves
 // do not appear.
-inline DirectStencil direct_stencil(const JitteredParticles& particles, const std::array<double, 3>& x, double reach) {
-  DirectStencil stencil;
-  std::vector<double> root_kernel;
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    std::array<double, 3> offset{};
-    double squared = 0;
-    for (int d = 0; d < particles.dimensions; ++d) {
-      offset[d] = std::remainder(particles.position[d][i] - x[d], 1.0);
-      squared += offset[d] * offset[d];
-    }
-    const double s = std::sqrt(squared) / reach;
-    if (s >= 1) continue;
-    stencil.particle.push_back(i);
-    stencil.offset.push_back(offset);
-    root_kernel.push_back(std::sqrt(std::pow(1 - s, 4) * (1 + 4 * s)));
-  }
-  const int planes = particles.dimensions == 3 ? 3 : 0;
-  std::vector<std::array<int, 3>> exponents;
-  for (int a = 0; a <= 3; ++a)
-    for (int b = 0; a + b <= 3; ++b)
-      for (int c = 0; a + b + c <= 3 && c <= planes; ++c) exponents.push_back({a, b, c});
-  const auto rows = static_cast<Eigen::Index>(exponents.size());
-  const auto columns = static_cast<Eigen::Index>(root_kernel.size());
-  Eigen::MatrixXd conditions(rows, columns);
-  for (Eigen::Index j = 0; j < columns; ++j)
-    for (Eigen::Index m = 0; m < rows; ++m) {
-      double value = root_kernel[j];
-      for (int d = 0; d < 3; ++d) value *= std::pow(stencil.offset[j][d] / reach, exponents[m][d]);
-      conditions(m, j) = value;
-    }
-  Eigen::VectorXd target = Eigen::VectorXd::Zero(rows);
-  target(0) = 1;
-  const Eigen::VectorXd solution = conditions.completeOrthogonalDecomposition().solve(target);
-  for (Eigen::Index j = 0; j < columns; ++j) stencil.weight.push_back(solution(j) * root_kernel[j]);
-  return stencil;
-}
+DirectStencil direct_stencil(const JitteredParticles& particles, const std::array<double, 3>& x, double reach);
 
 }  // namespace spume::testing
