@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "spume/run/version.hpp"
 
+#include "commit.hpp"  // written by the build
+
 namespace spume {
 
 std::string program_version() {

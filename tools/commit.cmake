@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: MIT
+# Writes the header that names the commit of the sources, if it is another than before: cmake -DSOURCE=DIR -DHEADER=FILE
+# -P commit.cmake
+execute_process(COMMAND git describe --always --dirty --abbrev=12 WORKING_DIRECTORY ${SOURCE}
+  OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+if(NOT commit)
+  set(commit "unknown")
+endif()
+file(CONFIGURE OUTPUT ${HEADER} CONTENT "#define SPUME_COMMIT \"@commit@\"\n" @ONLY)
