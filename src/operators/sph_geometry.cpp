@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "spume/operators/sph_operators.hpp"
 
@@ -191,6 +193,40 @@ LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smo
         }
   });
   return result;
+}
+
+double largest_stable_shift(int dimensions, KernelKind kernel, double smoothing_ratio, bool without_mean) {
+  SweepContext context;
+  context.dimensions = dimensions;
+  context.kernel = kernel;
+  double fastest = 0;
+  with_kernel(context, [&]<int d, class Kernel>() {
+    const double h = smoothing_ratio;
+    const double scale = Kernel::normalisation(d) / std::pow(h, d);
+    const double reference = Kernel::w(1 / h);
+    const int n = static_cast<int>(Kernel::support * h) + 1;
+    constexpr double displaced = 1e-4;  // spacings; what is left out is of second order
+    constexpr int waves = 32;
+    for (int wave = 1; wave <= waves; ++wave) {
+      double gradient = 0, weights = 0, mean = 0;
+      for (int k = d == 3 ? -n : 0; k <= (d == 3 ? n : 0); ++k)
+        for (int j = -n; j <= n; ++j)
+          for (int i = -n; i <= n; ++i) {
+            const double across2 = j * j + k * k;
+            const double phase = std::cos(std::numbers::pi * wave / waves * i);
+            const double kernel_value = Kernel::w(std::sqrt(i * i + across2) / h);
+            weights += kernel_value;
+            mean += kernel_value * phase;
+            if (i == 0) continue;  // moves with the particle at the crest
+            const double x = i + displaced * (phase - 1);
+            const double q = std::sqrt(x * x + across2) / h;
+            const double tensile = 1 + std::pow(Kernel::w(q) / reference, 4) / 4;
+            gradient -= scale * tensile * Kernel::f(q) * x;
+          }
+      fastest = std::max(fastest, gradient / displaced * (without_mean ? 1 - mean / weights : 1.0));
+    }
+  });
+  return 2 / fastest;
 }
 
 }  // namespace spume

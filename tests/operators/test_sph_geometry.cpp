@@ -102,6 +102,32 @@ TEST(SphGeometry, LatticeConstantsAreTheSumsOfAPeriodicLattice) {
       }
 }
 
+// Neighbouring columns displaced by 1 % of the spacing in opposite directions: the wave that is taken back fastest.
+TEST(SphGeometry, TheLargestStableShiftTurnsTheShortestWaveOfALatticeIntoItsNegative) {
+  for (const int d : {2, 3})
+    for (const bool without_mean : {false, true}) {
+      ArrangementSetup setup = lattice_setup(d, d == 2 ? 16 : 10, BoundaryKind::periodic);
+      const double displaced = 0.01 * setup.spacing;
+      const auto side = [&](double x) { return std::lround(x / setup.spacing - 0.5) % 2 == 0 ? 1.0 : -1.0; };
+      for (Point& point : setup.points) point[0] += displaced * side(point[0]);
+      Arrangement a(setup);
+      const Geometry fast(a);
+      VectorArrays<float> mean(a.size(), d);
+      filter_vector(a.context, a.records,
+                    {fast.concentration_gradient[0].data(), fast.concentration_gradient[1].data(),
+                     fast.concentration_gradient[2].data()},
+                    a.reflection, mean.write());
+      const double h = setup.smoothing_length();
+      const double coefficient = largest_stable_shift(d, setup.kernel, setup.smoothing_ratio, without_mean);
+      EXPECT_NEAR(coefficient, d == 2 ? (without_mean ? 0.4165 : 0.3490) : (without_mean ? 0.5266 : 0.4376), 1e-3);
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        const double gradient = fast.concentration_gradient[0][i] - (without_mean ? mean[0][i] : 0.0F);
+        // Of second order in the displacement, relative: 1e-4 times the fourth derivative of the kernel.
+        ASSERT_NEAR(-coefficient * h * h * gradient, -2 * displaced * side(a.hood.x[i]), 0.02 * displaced) << i;
+      }
+    }
+}
+
 // Layers of a lattice between two open sides, deep enough that the sides do not see each other.
 TEST(SphGeometry, LayersBelowASurfaceHaveTheSumsOfALattice) {
   for (const int d : {2, 3})

@@ -119,4 +119,11 @@ std::vector<SurfaceLayer> lattice_surface(int dimensions, KernelKind kernel, dou
 
 LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smoothing_ratio);
 
+// The coefficient C at which the shift -C h^2 grad c of King (3.11), (3.12) turns one of the plane waves along an axis
+// of a lattice into its negative: repeated, it takes all of them back below C, fastest at about C / 2, and stirs the
+// lattice beyond. C = 2 / max_k lambda(k), grad c = lambda / h^2 times the displacement. 0.42 (2-D) and 0.53 (3-D)
+// for Wendland C2 at h / dr = 1.3, `without_mean` if the Shepard average of the shift is subtracted from it; 0.35 and
+// 0.44 otherwise.
+double largest_stable_shift(int dimensions, KernelKind kernel, double smoothing_ratio, bool without_mean);
+
 }  // namespace spume

@@ -164,15 +164,17 @@ void keep_layers(Liquid& liquid) {
 
 void choose_shift(Liquid& liquid) {
   const int d = liquid.dimensions;
-  // King (3.12) at steps of courant 0.2, else in proportion to the distance moved: a liquid at rest is not shifted, and
-  // small steps do not shift more (and dissipate more) than large ones. Particles that have to make room for a bubble
-  // move whatever the speed, until they are no denser than the lattice: by 1/alpha - 1 just after a bubble has come.
-  // Shifted for ever, those beside a bubble at rest below a surface lift the liquid.
-  const auto strength = [&liquid](std::size_t i) {
+  // King (3.12) at steps of courant 0.2, else in proportion to the distance moved, as far as that evens out: a liquid
+  // at rest is not shifted, and small steps do not shift more (and dissipate more) than large ones. Particles that have
+  // to make room for a bubble move whatever the speed, until they are no denser than the lattice: by 1/alpha - 1 just
+  // after a bubble has come. Shifted for ever, those beside a bubble at rest below a surface lift the liquid.
+  const double most = std::max(1.0, liquid.most_shift / liquid.options.shifting.coefficient);
+  const double of_distance = std::min(liquid.displacement, most);
+  const auto strength = [&liquid, of_distance](std::size_t i) {
     const double taken = 1 / liquid.alpha_at(i) - 1;
-    if (!(taken > 0)) return liquid.displacement;
+    if (!(taken > 0)) return of_distance;
     const double excess = (*liquid.divergence_of_position)[i] / liquid.lattice.divergence_of_position - 1;
-    return std::clamp(excess / taken, liquid.displacement, std::max(1.0, liquid.displacement));
+    return std::clamp(excess / taken, of_distance, std::max(1.0, of_distance));
   };
   const auto limit = [&liquid](std::array<double, 3>& shift, std::size_t i) {
     const double longest = liquid.options.shifting.limit * std::max(1.0, liquid.displacement) * liquid.width_at(i);
