@@ -50,7 +50,7 @@ PARTICLE_OPTIONS = {
     "time.courant": [0.1, 0.3, 0.4], "pressure.tolerance": [1e-3, 1e-4, 1e-8], "pressure.precision": ["double"],
     "pressure.preconditioner": ["jacobi"], "pressure.solver": ["cg"], "resolution.smoothing_ratio": [1.2, 1.5, 1.8],
     "resolution.kernel": ["quintic-spline"], "time.centred": [False], "fluid.mach": [0.0, 0.1],
-    "shifting.velocity_correction": ["none", "second-order"], "shifting.coefficient": [0.1, 0.5]}
+    "shifting.velocity_correction": ["none", "second-order"], "shifting.coefficient": [0.1, 0.4]}
 
 
 def wave_error(run):

@@ -41,6 +41,20 @@ void refuse_high_mach(const Case& options, const Liquid& liquid) {
   throw refusal(options, options.places.count("fluid.mach") > 0 ? "fluid.mach" : "fluid.sound_speed", text);
 }
 
+void refuse_stirring_shift(const Case& options, const Liquid& liquid) {
+  if (!liquid.plan.shifting) return;
+  const double most = largest_stable_shift(liquid.dimensions, options.resolution.kernel,
+                                           options.resolution.smoothing_ratio, liquid.plan.drift_removal);
+  if (options.shifting.coefficient <= most) return;
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "shifting.coefficient is %.3g; above %.3g the shift throws the particles of a lattice from side to side "
+      "instead of evening them out: lower it (0.25 is usual)",
+      options.shifting.coefficient, most);
+  throw refusal(options, "shifting.coefficient", text);
+}
+
 // div(2 nu S) spreads the divergence of the velocity three times as fast as div(nu grad u) does.
 double diffusion_rate(const Liquid& liquid) {
   return liquid.plan.viscous_stress ? 3 : 1;
@@ -113,6 +127,7 @@ void LesSph::step(double dt, Ledger& ledger) {
 
 LesSph::LesSph(const LoadedCase& loaded) : liquid_(loaded), pressure_(std::make_unique<PressureSystem>(liquid_)) {
   refuse_high_mach(loaded.options, liquid_);
+  refuse_stirring_shift(loaded.options, liquid_);
   std::vector<const char*> known{"velocity",    "pressure",       "id",
                                  "dissipation", "eddy_viscosity", "divergence_of_position"};
   if (liquid_.plan.bubbles) {
