@@ -26,14 +26,13 @@ double support_of(KernelKind kernel) {
   return kernel == KernelKind::wendland_c2 ? WendlandC2::support : QuinticSpline::support;
 }
 
-// Of what a lattice stands. A surface suffers from shifts that overshoot: at nine tenths of the limit a wave of
-// steepness 0.33 in 2-D loses a third more of its energy to them than at three quarters, and beyond the limit gains 15
-// %. Vortices without viscosity in a full domain need more when steps are long: at three quarters they blow up at
-// courant 0.4.
+// Of what a lattice stands. At the limit a wave of steepness 0.33 in 2-D gains energy, at 0.9 of it none; at 0.75 it
+// loses a third less, but vortices without viscosity in a full domain blow up at courant 0.4 and the splash of
+// dam_break_3d evens out more slowly.
 double most_shift_of(const LoadedCase& loaded, const Plan& plan) {
   const ResolutionOptions& resolution = loaded.options.resolution;
-  return (plan.free_surface ? 0.75 : 0.9) * largest_stable_shift(loaded.scene.domain.dimensions, resolution.kernel,
-                                                                 resolution.smoothing_ratio, plan.drift_removal);
+  return 0.9 * largest_stable_shift(loaded.scene.domain.dimensions, resolution.kernel, resolution.smoothing_ratio,
+                                    plan.drift_removal);
 }
 
 // Whether a vector expression has the same value everywhere: sampled at points that share no coordinate.
