@@ -173,6 +173,19 @@ std::vector<SurfaceLayer> lattice_surface(int dimensions, KernelKind kernel, dou
   return layers;
 }
 
+namespace {
+
+// visit(i, j, k) of every lattice point in the support of the one at the origin, itself included.
+template <int dimensions, class Visit>
+void visit_lattice(double support, Visit&& visit) {
+  const int n = static_cast<int>(support) + 1;
+  for (int k = dimensions == 3 ? -n : 0; k <= (dimensions == 3 ? n : 0); ++k)
+    for (int j = -n; j <= n; ++j)
+      for (int i = -n; i <= n; ++i) visit(i, j, k);
+}
+
+}  // namespace
+
 LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smoothing_ratio) {
   SweepContext context;
   context.dimensions = dimensions;
@@ -181,16 +194,13 @@ LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smo
   with_kernel(context, [&]<int d, class Kernel>() {
     const double h = smoothing_ratio;
     const double scale = Kernel::normalisation(d) / std::pow(h, d);
-    const int n = static_cast<int>(Kernel::support * h) + 1;
-    for (int k = d == 3 ? -n : 0; k <= (d == 3 ? n : 0); ++k)
-      for (int j = -n; j <= n; ++j)
-        for (int i = -n; i <= n; ++i) {
-          const double r2 = i * i + j * j + k * k;
-          const double q = std::sqrt(r2) / h;
-          result.kernel_sum += scale * Kernel::w(q);
-          if (r2 > 0) result.coupling -= 2 * scale / (h * h) * Kernel::f(q);
-          result.divergence_of_position -= scale / (h * h) * Kernel::f(q) * r2;
-        }
+    visit_lattice<d>(Kernel::support * h, [&](int i, int j, int k) {
+      const double r2 = i * i + j * j + k * k;
+      const double q = std::sqrt(r2) / h;
+      result.kernel_sum += scale * Kernel::w(q);
+      if (r2 > 0) result.coupling -= 2 * scale / (h * h) * Kernel::f(q);
+      result.divergence_of_position -= scale / (h * h) * Kernel::f(q) * r2;
+    });
   });
   return result;
 }
@@ -204,25 +214,22 @@ double largest_stable_shift(int dimensions, KernelKind kernel, double smoothing_
     const double h = smoothing_ratio;
     const double scale = Kernel::normalisation(d) / std::pow(h, d);
     const double reference = Kernel::w(1 / h);
-    const int n = static_cast<int>(Kernel::support * h) + 1;
     constexpr double displaced = 1e-4;  // spacings; what is left out is of second order
     constexpr int waves = 32;
     for (int wave = 1; wave <= waves; ++wave) {
       double gradient = 0, weights = 0, mean = 0;
-      for (int k = d == 3 ? -n : 0; k <= (d == 3 ? n : 0); ++k)
-        for (int j = -n; j <= n; ++j)
-          for (int i = -n; i <= n; ++i) {
-            const double across2 = j * j + k * k;
-            const double phase = std::cos(std::numbers::pi * wave / waves * i);
-            const double kernel_value = Kernel::w(std::sqrt(i * i + across2) / h);
-            weights += kernel_value;
-            mean += kernel_value * phase;
-            if (i == 0) continue;  // moves with the particle at the crest
-            const double x = i + displaced * (phase - 1);
-            const double q = std::sqrt(x * x + across2) / h;
-            const double tensile = 1 + std::pow(Kernel::w(q) / reference, 4) / 4;
-            gradient -= scale * tensile * Kernel::f(q) * x;
-          }
+      visit_lattice<d>(Kernel::support * h, [&](int i, int j, int k) {
+        const double across2 = j * j + k * k;
+        const double phase = std::cos(std::numbers::pi * wave / waves * i);
+        const double kernel_value = Kernel::w(std::sqrt(i * i + across2) / h);
+        weights += kernel_value;
+        mean += kernel_value * phase;
+        if (i == 0) return;  // moves with the particle at the crest
+        const double x = i + displaced * (phase - 1);
+        const double q = std::sqrt(x * x + across2) / h;
+        const double tensile = 1 + std::pow(Kernel::w(q) / reference, 4) / 4;
+        gradient -= scale * tensile * Kernel::f(q) * x;
+      });
       fastest = std::max(fastest, gradient / displaced * (without_mean ? 1 - mean / weights : 1.0));
     }
   });

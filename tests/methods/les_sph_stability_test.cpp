@@ -72,36 +72,50 @@ TEST(LesSphStability, EnergyFromNothingIsRefused) {
   }
 }
 
-TEST(LesSphStability, AStartNearTheSoundSpeedIsRefusedInWords) {
-  EXPECT_NO_THROW(Simulation(taylor_green, {"fluid.mach=0.3"}));
+// What the method says against the vortices with one more option; "" when it takes them.
+std::string refusal_of(const std::string& option) {
   try {
-    Simulation run(taylor_green, {"fluid.mach=0.8"});
-    FAIL();
+    Simulation run(taylor_green, {option});
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("of the sound speed 1.25"));
+    return error.what();
   }
+  return "";
+}
+
+TEST(LesSphStability, AStartNearTheSoundSpeedIsRefusedInWords) {
+  EXPECT_EQ(refusal_of("fluid.mach=0.3"), "");
+  EXPECT_THAT(refusal_of("fluid.mach=0.8"), HasSubstr("of the sound speed 1.25"));
 }
 
 TEST(LesSphStability, AShiftThatWouldStirTheParticlesIsRefused) {
-  EXPECT_NO_THROW(Simulation(taylor_green, {"shifting.coefficient=0.41"}));
-  try {
-    Simulation run(taylor_green, {"shifting.coefficient=0.42"});
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("shifting.coefficient is 0.42; above 0.416"));
-  }
+  EXPECT_EQ(refusal_of("shifting.coefficient=0.41"), "");
+  EXPECT_THAT(refusal_of("shifting.coefficient=0.42"), HasSubstr("shifting.coefficient is 0.42; above 0.416"));
 }
 
 // Shifts in proportion to the step would pass what a lattice stands at courant 0.34: this wave gained a quarter of its
 // kinetic energy from them, against 0.05 at any shift below, which its 50 particles a wavelength leave.
 TEST(LesSphStability, LongStepsDoNotStirAWave) {
-  Simulation run(
-      "method = \"les-sph\"\n[domain]\nlower = [0, -0.5]\nupper = [1, 0.5]\nx = \"periodic\"\nbottom = "
-      "\"free-slip\"\n[resolution]\nspacing = 0.02\n[fluid]\nreynolds = 4e4\nfroude = 1\nmach = 0.05\n"
-      "[[liquid]]\nwhere = \"0.0525*cos(2*pi*x) + 0.0087*cos(4*pi*x) - y\"\nvelocity = "
-      "[\"0.139*cos(2*pi*x)*exp(2*pi*y)\", "
-      "\"0.139*sin(2*pi*x)*exp(2*pi*y)\"]\nconform = true\n[time]\nend = 2\ncourant = 0.4\n",
-      {});
+  const std::string wave = R"toml(method = "les-sph"
+[domain]
+lower = [0, -0.5]
+upper = [1, 0.5]
+x = "periodic"
+bottom = "free-slip"
+[resolution]
+spacing = 0.02
+[fluid]
+reynolds = 4e4
+froude = 1
+mach = 0.05
+[[liquid]]
+where = "0.0525*cos(2*pi*x) + 0.0087*cos(4*pi*x) - y"
+velocity = ["0.139*cos(2*pi*x)*exp(2*pi*y)", "0.139*sin(2*pi*x)*exp(2*pi*y)"]
+conform = true
+[time]
+end = 2
+courant = 0.4
+)toml";
+  Simulation run(wave);
   const double start = run.series()["total_energy"], kinetic = run.series()["kinetic_energy"];
   double largest = start;
   while (run.method.time() < 1.5) {

@@ -42,16 +42,13 @@ void refuse_high_mach(const Case& options, const Liquid& liquid) {
 }
 
 void refuse_stirring_shift(const Case& options, const Liquid& liquid) {
-  if (!liquid.plan.shifting) return;
-  const double most = largest_stable_shift(liquid.dimensions, options.resolution.kernel,
-                                           options.resolution.smoothing_ratio, liquid.plan.drift_removal);
-  if (options.shifting.coefficient <= most) return;
+  if (!liquid.plan.shifting || options.shifting.coefficient <= liquid.largest_shift) return;
   char text[200];
   std::snprintf(
       text, sizeof text,
       "shifting.coefficient is %.3g; above %.3g the shift throws the particles of a lattice from side to side "
       "instead of evening them out: lower it (0.25 is usual)",
-      options.shifting.coefficient, most);
+      options.shifting.coefficient, liquid.largest_shift);
   throw refusal(options, "shifting.coefficient", text);
 }
 

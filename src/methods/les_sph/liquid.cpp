@@ -26,15 +26,6 @@ double support_of(KernelKind kernel) {
   return kernel == KernelKind::wendland_c2 ? WendlandC2::support : QuinticSpline::support;
 }
 
-// Of what a lattice stands. At the limit a wave of steepness 0.33 in 2-D gains energy, at 0.9 of it none; at 0.75 it
-// loses a third less, but vortices without viscosity in a full domain blow up at courant 0.4 and the splash of
-// dam_break_3d evens out more slowly.
-double most_shift_of(const LoadedCase& loaded, const Plan& plan) {
-  const ResolutionOptions& resolution = loaded.options.resolution;
-  return 0.9 * largest_stable_shift(loaded.scene.domain.dimensions, resolution.kernel, resolution.smoothing_ratio,
-                                    plan.drift_removal);
-}
-
 // Whether a vector expression has the same value everywhere: sampled at points that share no coordinate.
 bool uniform(const VectorExpression& expression, const Domain& domain) {
   for (const double t : {0.0, 0.37, 1.9}) {
@@ -62,7 +53,8 @@ Liquid::Liquid(const LoadedCase& loaded_case)
       smoothing_length(options.resolution.smoothing_ratio * scene.spacing),
       volume(scene.particles.volume),
       lattice(lattice_constants(dimensions, options.resolution.kernel, options.resolution.smoothing_ratio)),
-      most_shift(most_shift_of(loaded_case, plan)),
+      largest_shift(largest_stable_shift(dimensions, options.resolution.kernel, options.resolution.smoothing_ratio,
+                                         plan.drift_removal)),
       surface_threshold(threshold_of(loaded_case)),
       origin{(scene.domain.lower[0] + scene.domain.upper[0]) / 2, (scene.domain.lower[1] + scene.domain.upper[1]) / 2,
              (scene.domain.lower[2] + scene.domain.upper[2]) / 2} {

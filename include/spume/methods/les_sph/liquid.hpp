@@ -33,7 +33,7 @@ struct Liquid {
   const double smoothing_length;
   const double volume;             // of every particle
   const LatticeConstants lattice;  // sums on an undisturbed lattice
-  const double most_shift;         // coefficient of the shift beyond which it stirs instead of evening out
+  const double largest_shift;      // coefficient of the shift at which it stirs a lattice instead of evening it out
   const double surface_threshold;  // div r below which a particle lies at the surface
   const Vec3 origin;               // of the float coordinates
 
