@@ -134,8 +134,9 @@ void count_against_machine(benchmark::State& state, const Work& work, int thread
   rate("bytes_per_second", work.bytes);
   rate("flops_per_second", work.flops);
   rate("gathers_per_second", work.gathers);
-  rate("of_limit",
-       std::max({work.bytes / limits.memory_bytes, work.flops / limits.flops, work.gathers / limits.gathers}));
+  rate("cached_per_second", work.cached);
+  rate("of_limit", std::max({work.bytes / limits.memory_bytes, work.flops / limits.flops, work.gathers / limits.gathers,
+                             work.cached / limits.cache_bytes}));
 }
 
 }  // namespace spume

@@ -22,10 +22,11 @@ struct Work {
   double bytes = 0;  // moved to and from memory when the caches hold what is used again
   double flops = 0;
   double gathers = 0;  // records of 16 bytes from a random place near by
+  double cached = 0;   // bytes moved between the nearest caches and the registers, in rows longer than a record
 };
 
-// Counters: bytes_per_second, flops_per_second, gathers_per_second as far as they are given, and of_limit, the time
-// that the slowest of the three would take on a perfect machine over the time taken.
+// Counters: bytes_per_second, flops_per_second, gathers_per_second, cached_per_second as far as they are given, and
+// of_limit, the time that the slowest of them would take on a perfect machine over the time taken.
 void count_against_machine(benchmark::State& state, const Work& work, int threads);
 
 }  // namespace spume

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sort, images and neighbour lists: about 74 neighbours per particle in three dimensions.
-// Arguments: particles (about), 0 jittered lattice or 1 clustered, threads.
+// Arguments: those of particle_cube.hpp.
 #include "machine.hpp"
 #include "particle_cube.hpp"
 
@@ -12,7 +12,7 @@ void sort(benchmark::State& state) {
   for (auto _ : state) particles.sort();
   particles.count(state, 0);
   // Three coordinates read and a key, an order and a count written and read again.
-  count_against_machine(state, {static_cast<double>(particles.n) * (24 + 3 * 8), 0, 0},
+  count_against_machine(state, {static_cast<double>(particles.n) * (24 + 3 * 8), 0, 0, 0},
                         static_cast<int>(state.range(2)));
 }
 
@@ -32,20 +32,13 @@ void neighbour_list(benchmark::State& state) {
   // 27 cells of side one support hold 27 / (4 pi / 3) = 6.4 candidates per neighbour: 8 operations each. Each neighbour
   // is written as an index of 4 bytes.
   const auto pairs = static_cast<double>(particles.list.pair_count());
-  count_against_machine(state, {4 * pairs + 40 * static_cast<double>(particles.n), 8 * 6.4 * pairs, 0},
+  count_against_machine(state, {4 * pairs + 40 * static_cast<double>(particles.n), 8 * 6.4 * pairs, 0, 0},
                         static_cast<int>(state.range(2)));
 }
 
-void sizes(benchmark::internal::Benchmark* b) {
-  b->ArgNames({"particles", "clustered", "threads"})
-      ->ArgsProduct({{10000, 100000, 1000000}, {0, 1}, {1, 2}})
-      ->UseRealTime()
-      ->MeasureProcessCPUTime()
-      ->Unit(benchmark::kMillisecond);
-}
-BENCHMARK(sort)->Apply(sizes);
-BENCHMARK(images)->Apply(sizes);
-BENCHMARK(neighbour_list)->Apply(sizes);
+BENCHMARK(sort)->Apply(Particles::sizes);
+BENCHMARK(images)->Apply(Particles::sizes);
+BENCHMARK(neighbour_list)->Apply(Particles::sizes);
 
 }  // namespace
 }  // namespace spume

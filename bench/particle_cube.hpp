@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A cube of sorted particles with images and lists, about 74 neighbours each, for the benchmarks.
-// Benchmark arguments: particles (about), 0 jittered lattice or 1 clustered, threads.
+// Benchmark arguments: particles (about), arrangement (0 lattice, 1 jittered, 2 clustered and jittered), threads.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -12,6 +12,7 @@
 #include "spume/neighbours/cell_grid.hpp"
 #include "spume/neighbours/images.hpp"
 #include "spume/neighbours/neighbour_list.hpp"
+#include "spume/operators/pair_sweep.hpp"
 
 namespace spume {
 
@@ -38,14 +39,15 @@ struct Particles {
     const double reach = rules.reach;
     grid = CellGrid(3, {-reach, -reach, -reach}, {1 + reach, 1 + reach, 1 + reach}, reach, n);
     for (auto* axis : {&x, &y, &z}) axis->resize(n);
-    const bool clustered = state.range(1) == 1;
+    const double jitter = state.range(1) == 0 ? 0 : 0.4;
+    const bool clustered = state.range(1) == 2;
     for (std::size_t i = 0; i < n; ++i) {
       const auto r = random_uniform(1, RandomPurpose::test, i, 0, 0);
       const double place[3] = {static_cast<double>(i % m), static_cast<double>(i / m % m),
                                static_cast<double>(i / m / m)};
       double p[3];
       for (int axis = 0; axis < 3; ++axis) {
-        p[axis] = (place[axis] + 0.5 + 0.4 * (r[axis] - 0.5)) * spacing;
+        p[axis] = (place[axis] + 0.5 + jitter * (r[axis] - 0.5)) * spacing;
         // A third denser along each axis in the middle of the domain, a fifth thinner near its sides.
         if (clustered) p[axis] -= 0.25 / (2 * M_PI) * std::sin(2 * M_PI * (p[axis] - 0.5));
       }
@@ -66,6 +68,25 @@ struct Particles {
   void sort() { table.build(grid, x.data(), y.data(), z.data(), n); }
   void make_images() { images.build(rules, grid, x.data(), y.data(), z.data(), n); }
   void make_list() { list.build(grid, table, x.data(), y.data(), z.data(), n, images, {0.5, 0.5, 0.5}); }
+
+  static void sizes(benchmark::internal::Benchmark* bench) {
+    bench->ArgNames({"particles", "arrangement", "threads"})
+        ->ArgsProduct({{10000, 100000, 1000000}, {0, 1, 2}, {1, 2}})
+        ->UseRealTime()
+        ->MeasureProcessCPUTime()
+        ->Unit(benchmark::kMillisecond);
+  }
+
+  double spacing() const { return std::cbrt(1.0 / static_cast<double>(n)); }
+  // What sweeps need to know; stays valid as long as the particles.
+  SweepContext sweep_context() const {
+    SweepContext context;
+    context.list = &list;
+    context.images = &images;
+    context.smoothing_length = 1.3 * spacing();
+    context.volume = std::pow(spacing(), 3);
+    return context;
+  }
 
   void count(benchmark::State& state, double per_particle) const {
     state.counters["time_per_particle"] = benchmark::Counter(

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "machine.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/random.hpp"
 #include "spume/operators/linear_deposition.hpp"
@@ -87,7 +88,12 @@ struct Swarm {
     s.size = particles.size();
     return s;
   }
-  void count(benchmark::State& state) const {
+  // `work`: per particle, and per point of the grid.
+  void count(benchmark::State& state, const Work& per_particle, const Work& per_point = {}) const {
+    const auto n = static_cast<double>(particles.size()), cells = std::pow(points, 3);
+    const auto all = [&](double Work::*of) { return n * per_particle.*of + cells * per_point.*of; };
+    count_against_machine(state, {all(&Work::bytes), all(&Work::flops), all(&Work::gathers), all(&Work::cached)},
+                          static_cast<int>(state.range(2)));
     state.counters["time_per_particle"] =
         benchmark::Counter(static_cast<double>(particles.size()),
                            benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -104,7 +110,10 @@ void particle_gather(benchmark::State& state) {
   for (auto _ : state)
     gather(field, swarm.particles.size(), swarm.particles.positions(),
            {value[0].data(), value[1].data(), value[2].data()}, nullptr);
-  swarm.count(state);
+  // 64 points of two snapshots in four lanes, a product and a sum each. Operations are counted in floats: a double
+  // is two.
+  constexpr double size = sizeof(Real);
+  swarm.count(state, {48, 64 * 16 * size / 4, 0, 64 * 8 * size}, {8 * size, 0, 0, 0});
 }
 
 template <class Real>
@@ -116,7 +125,10 @@ void particle_motion(benchmark::State& state) {
   MotionModel model;
   model.beta = 3;
   for (auto _ : state) move_particles(model, field, 1e-9, swarm.particles);
-  swarm.count(state);
+  // The points of the gather; along z value and slope, along y three of what that gives, along x four. Positions and
+  // velocities are read and written.
+  constexpr double size = sizeof(Real);
+  swarm.count(state, {96, 16 * (64 * 2 + 16 * 3 + 4 * 4) * size / 4, 0, 64 * 8 * size}, {8 * size, 0, 0, 0});
 }
 
 void particle_field_records(benchmark::State& state) {
@@ -124,19 +136,20 @@ void particle_field_records(benchmark::State& state) {
   SplineField<double> field(swarm.g, 4);
   const Flow flow(0);
   for (auto _ : state) field.fill(flow.data());
-  swarm.count(state);
+  swarm.count(state, {}, {24 + 64 + 64, 0, 0, 0});
 }
 
 void particle_sort(benchmark::State& state) {
   Swarm swarm(state);
   for (auto _ : state) swarm.sort();
-  swarm.count(state);
+  swarm.count(state, {24 + 3 * 8, 0, 0, 0});
 }
 
 void particle_reorder(benchmark::State& state) {
   Swarm swarm(state);
   for (auto _ : state) swarm.particles.fields.permute(swarm.order.order());
-  swarm.count(state);
+  // Three positions and velocities read and written, an identifier twice, and the order for each of the seven.
+  swarm.count(state, {6 * 16 + 32 + 8 * 4, 0, 0, 0});
 }
 
 // With the order that it needs.
@@ -153,7 +166,8 @@ void particle_feedback(benchmark::State& state) {
                                {force.component[0].data(), force.component[1].data(), force.component[2].data()},
                                nullptr);
   }
-  swarm.count(state);
+  // Three numbers at eight points, read and written; the sort, positions and forces once, and the grid written.
+  swarm.count(state, {48 + 48, 0, 0, 8 * 3 * 16}, {24, 0, 0, 0});
 }
 
 void particle_exclusion(benchmark::State& state) {
@@ -184,7 +198,10 @@ void particle_exclusion(benchmark::State& state) {
     report = exclusion.match(swarm.spheres());
     exclusion.separate(swarm.spheres());
   }
-  swarm.count(state);
+  // The sort, places and memory of partners once, and the distances (8 operations) to what lies in 27 cells of the size
+  // of a particle; searches of later rounds come on top.
+  const double share = std::pow(swarm.particles.common_diameter, 3) / (g.length[0] * g.length[1] * g.length[2]);
+  swarm.count(state, {48 + 24 + 48, 8 * 27 * share * static_cast<double>(swarm.particles.size()), 0, 0});
   state.counters["overlapping"] = static_cast<double>(report.overlapping);
   state.counters["pairs"] = static_cast<double>(report.pairs);
   state.counters["rounds"] = report.rounds;

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Writes the header that names the commit of the sources, if it is another than before: cmake -DSOURCE=DIR -DHEADER=FILE
 # -P commit.cmake
+cmake_minimum_required(VERSION 3.25)
 execute_process(COMMAND git describe --always --dirty --abbrev=12 WORKING_DIRECTORY ${SOURCE}
   OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 if(NOT commit)

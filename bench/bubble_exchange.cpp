@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+// Bubbles among particles: sums over bubbles at particles, particles found around bubbles, entrainment, births and
+// deaths. One bubble per ten particles. Arguments: those of particle_cube.hpp.
+#include "machine.hpp"
+#include "particle_cube.hpp"
+#include "spume/operators/cross_sums.hpp"
+#include "spume/physics/bubbles/entrainment.hpp"
+#include "spume/physics/bubbles/population.hpp"
+
+namespace spume {
+namespace {
+
+constexpr double pairs_per_bubble = 4.18879 * 2.6 * 2.6 * 2.6;  // particles in its support
+
+struct Swarm {
+  Particles particles;
+  std::size_t size;
+  CellTable table;
+  std::array<Array<float>, 3> place, liquid_place;
+  Array<float> records, length_ratio, reach, inverse_reach;
+
+  explicit Swarm(const benchmark::State& state) : particles(state), size(particles.n / 10) {
+    const std::size_t n = particles.n;
+    std::array<Array<double>, 3> at, sorted;
+    for (int a = 0; a < 3; ++a) {
+      at[a].resize(size);
+      sorted[a].resize(size);
+      place[a].resize(size + simd::lanes);
+      liquid_place[a].resize(n + simd::lanes);
+    }
+    for (std::size_t b = 0; b < size; ++b) {
+      const auto r = random_uniform(2, RandomPurpose::test, b, 0, 0);
+      for (int a = 0; a < 3; ++a) at[a][b] = r[a];
+    }
+    table.build(particles.grid, at[0].data(), at[1].data(), at[2].data(), size);
+    for (std::size_t b = 0; b < size; ++b)
+      for (int a = 0; a < 3; ++a) sorted[a][b] = at[a][static_cast<std::size_t>(table.order()[b])];
+    table.build(particles.grid, sorted[0].data(), sorted[1].data(), sorted[2].data(), size);
+    records.resize(8 * size);
+    for (std::size_t b = 0; b < size; ++b)
+      for (int a = 0; a < 3; ++a) {
+        place[a][b] = records[8 * b + a] = static_cast<float>(sorted[a][b]);
+        records[8 * b + 3 + a] = static_cast<float>(a + 1);
+      }
+    length_ratio.resize(n);
+    reach.resize(n);
+    inverse_reach.resize(n + simd::lanes);
+    const std::array<const double*, 3> x = positions();
+    for (std::size_t i = 0; i < n; ++i) {
+      length_ratio[i] = 1;
+      reach[i] = static_cast<float>(particles.rules.reach);
+      inverse_reach[i] = 1 / reach[i];
+      for (int a = 0; a < 3; ++a) liquid_place[a][i] = static_cast<float>(x[a][i]);
+    }
+  }
+  std::array<const double*, 3> positions() const {
+    return {particles.x.data(), particles.y.data(), particles.z.data()};
+  }
+  CrossSearch search(const CellTable& points, std::size_t count, const std::array<Array<float>, 3>& at) const {
+    const CrossSearch::Points set[] = {{&points, count}};
+    return {particles.grid, {0, 0, 0}, {at[0].data(), at[1].data(), at[2].data()}, set};
+  }
+  void count(benchmark::State& state) const {
+    state.counters["time_per_bubble"] = benchmark::Counter(
+        static_cast<double>(size), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  }
+};
+
+// Force and viscosity of bubbles at particles: distance 10, kernel 7, four sums 8.
+void bubble_sums(benchmark::State& state) {
+  Swarm swarm(state);
+  const std::size_t n = swarm.particles.n;
+  Array<float> result(4 * n);
+  const CrossSearch search = swarm.search(swarm.table, swarm.size, swarm.place);
+  const CrossTargets targets{n,
+                             swarm.positions(),
+                             {0, 0, 0},
+                             1.3 * swarm.particles.spacing(),
+                             swarm.length_ratio.data(),
+                             swarm.reach.data()};
+  for (auto _ : state)
+    sum_over_points<4, WendlandC2>(targets, search, swarm.particles.grid.reach(), swarm.records.data(),
+                                   [&](std::size_t i, const float* sums) {
+                                     for (std::size_t c = 0; c < 4; ++c)
+                                       result[4 * i + c] = sums == nullptr ? 0.0F : sums[c];
+                                   });
+  swarm.count(state);
+  const double pairs = pairs_per_bubble * static_cast<double>(swarm.size);
+  count_against_machine(state, {static_cast<double>(n) * (24 + 8 + 16), 25 * pairs, 0, 0},
+                        static_cast<int>(state.range(2)));
+}
+
+// Distance 8 and the comparison with the reach.
+void particles_around_bubbles(benchmark::State& state) {
+  Swarm swarm(state);
+  const CrossSearch search = swarm.search(swarm.particles.table, swarm.particles.n, swarm.liquid_place);
+  Array<std::int32_t> found_at(swarm.size);
+  for (auto _ : state)
+    parallel_blocks_dynamic(swarm.size, 64, [&](std::size_t, std::size_t first, std::size_t last) {
+      thread_local CrossSearch::Found thread_found;
+      CrossSearch::Found& found = thread_found;
+      for (std::size_t b = first; b < last; ++b) {
+        search.near_place({swarm.place[0][b], swarm.place[1][b], swarm.place[2][b]},
+                          static_cast<float>(swarm.particles.grid.reach()), swarm.inverse_reach.data(), found);
+        found_at[b] = static_cast<std::int32_t>(found.size);
+      }
+    });
+  swarm.count(state);
+  const double pairs = pairs_per_bubble * static_cast<double>(swarm.size);
+  count_against_machine(state, {16 * static_cast<double>(swarm.particles.n), 9 * pairs, 0, 0},
+                        static_cast<int>(state.range(2)));
+}
+
+// At a particle that may entrain; argument: purchases per step in tenths.
+void entrainment(benchmark::State& state) {
+  bubbles::EntrainmentModel model;
+  model.density_ratio = 1000 / 1.2;
+  model.tension = 1 / 1.98e4;
+  model.smallest_radius = 6.6e-5;
+  model.largest_radius = model.spacing = 0.01;
+  bubbles::EntrainingParticle particle;
+  particle.dissipation = 0.4;
+  particle.volume = 1e-6;
+  particle.kernel_peak = 21 / (16 * M_PI * std::pow(0.013, 3));
+  std::vector<bubbles::NewBubble> made;
+  std::uint32_t step = 0;
+  std::size_t bubbles = 0;
+  for (auto _ : state) {
+    made.clear();
+    particle.identifier = ++step % 1000;
+    bubbles::entrain(model, particle, 1e-4 * static_cast<double>(state.range(0)), 1e-3, step, made);
+    bubbles += made.size();
+  }
+  state.counters["bubbles"] = benchmark::Counter(static_cast<double>(bubbles), benchmark::Counter::kAvgIterations);
+}
+
+// Argument: bubbles, all born and all removed.
+void births_and_deaths(benchmark::State& state) {
+  bubbles::Population population({true, true, true});
+  const auto items = static_cast<std::size_t>(state.range(0));
+  Array<std::uint8_t> dead(items);
+  for (auto& flag : dead) flag = 1;
+  for (auto _ : state) {
+    population.give_birth(items, 0, [](std::size_t, std::vector<bubbles::NewBubble>& list) {
+      list.push_back({{0.5, 0.5, 0.5}, {}, {}, 1e-9, false});
+    });
+    population.remove(dead);
+  }
+  state.counters["time_per_bubble"] = benchmark::Counter(
+      static_cast<double>(items), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+BENCHMARK(bubble_sums)->Apply(Particles::sizes);
+BENCHMARK(particles_around_bubbles)->Apply(Particles::sizes);
+BENCHMARK(entrainment)->Arg(5)->Arg(15);
+BENCHMARK(births_and_deaths)->Arg(10000)->Arg(100000)->UseRealTime();
+
+}  // namespace
+}  // namespace spume

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+// The sweeps of the liquid, nanoseconds per pair, against what the machine can do.
+// Arguments: those of particle_cube.hpp.
+//
+// Operations per pair, of which 10 find the distance, 7 the kernel, 5 its slope with its factor; then what the sums
+// need. Per pair an index of 4 bytes and records of 16 bytes; per particle the records, written and read, and `values`
+// bytes of input and output.
+#include "machine.hpp"
+#include "particle_cube.hpp"
+#include "spume/operators/sph_operators.hpp"
+
+namespace spume {
+namespace {
+
+struct PairWork {
+  double flops, records, values;
+};
+
+struct Sweeps {
+  Particles particles;
+  SweepContext context;
+  Records records;
+  VelocityImageRule rule;
+  std::vector<std::array<float, 3>> reflection;
+  std::array<Array<double>, 3> velocity;
+  std::array<Array<float>, 6> correction;
+  std::array<Array<float>, 9> gradient;
+  std::array<Array<float>, 3> vector, shift, out;
+  std::array<Array<float>, 5> scalar;
+  Array<std::uint8_t> flag;
+  Array<double> potential, divergence;
+
+  explicit Sweeps(const benchmark::State& state) : particles(state), context(particles.sweep_context()) {
+    for (const ImagePath& path : particles.images.paths()) {
+      std::array<float, 3> sign;
+      for (int a = 0; a < 3; ++a) sign[a] = static_cast<float>(Images::sign(path, particles.rules, a));
+      rule.sign.push_back(sign);
+    }
+    reflection = rule.sign;
+    const auto size = [&](auto& arrays) {
+      for (auto& array : arrays) array.resize(particles.n);
+    };
+    size(velocity);
+    size(correction);
+    size(gradient);
+    size(vector);
+    size(shift);
+    size(out);
+    size(scalar);
+    flag.resize(particles.n);
+    potential.resize(particles.n);
+    divergence.resize(particles.n);
+    for (std::size_t i = 0; i < particles.n; ++i) {
+      const double x = 6.28 * particles.x[i], y = 6.28 * particles.y[i], z = 6.28 * particles.z[i];
+      potential[i] = std::cos(x) * std::cos(y + z);
+      velocity[0][i] = std::sin(x) * std::cos(y);
+      velocity[1][i] = -std::cos(x) * std::sin(y);
+      velocity[2][i] = std::sin(z) * std::cos(x);
+      for (int a = 0; a < 3; ++a) {
+        vector[a][i] = static_cast<float>(velocity[a][i]);
+        shift[a][i] = static_cast<float>(0.01 * particles.spacing() * velocity[a][i]);
+      }
+      scalar[0][i] = scalar[1][i] = static_cast<float>(1 + 0.5 * std::sin(x));
+    }
+    geometry();
+    velocity_gradient(false);
+  }
+
+  std::array<const double*, 3> velocities() const {
+    return {velocity[0].data(), velocity[1].data(), velocity[2].data()};
+  }
+  static std::array<const float*, 3> read(const std::array<Array<float>, 3>& v) {
+    return {v[0].data(), v[1].data(), v[2].data()};
+  }
+  static std::array<float*, 3> write(std::array<Array<float>, 3>& v) { return {v[0].data(), v[1].data(), v[2].data()}; }
+  std::array<const float*, 6> corrections() const {
+    std::array<const float*, 6> all;
+    for (int k = 0; k < 6; ++k) all[k] = correction[k].data();
+    return all;
+  }
+
+  void geometry() {
+    GeometryOut result;
+    result.kernel_sum = scalar[2].data();
+    result.divergence_of_position = scalar[3].data();
+    result.coupling = scalar[4].data();
+    result.uncorrected = flag.data();
+    for (int k = 0; k < 6; ++k) result.correction[k] = correction[k].data();
+    result.concentration_gradient = write(out);
+    result.normal = write(vector);
+    geometry_sweep(context, records, {true, true, particles.spacing()}, result);
+  }
+  void velocity_gradient(bool with_change) {
+    VelocityGradientOut result;
+    for (int k = 0; k < 9; ++k) result.gradient[k] = gradient[k].data();
+    result.filtered = write(vector);
+    result.strain = scalar[2].data();
+    if (with_change) {
+      result.displacement = read(shift);
+      result.change = write(out);
+    }
+    velocity_gradient_sweep(context, records, velocities(), rule, corrections(), result);
+  }
+
+  template <class Body>
+  void run(benchmark::State& state, const PairWork& work, Body&& body) {
+    for (auto _ : state) {
+      body();
+      benchmark::ClobberMemory();
+    }
+    const auto pairs = static_cast<double>(particles.list.pair_count()), n = static_cast<double>(particles.n);
+    particles.count(state, pairs / n);
+    state.counters["time_per_pair"] =
+        benchmark::Counter(pairs, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    count_against_machine(
+        state, {4 * pairs + n * (32 * work.records + work.values), work.flops * pairs, work.records * pairs, 0},
+        static_cast<int>(state.range(2)));
+  }
+};
+
+// Sums of W and g, g d, its products with d (6 by 2), the tensile factor, its product with d.
+void geometry_sums(benchmark::State& state) {
+  Sweeps sweeps(state);
+  sweeps.run(state, {10 + 7 + 5 + 2 + 6 + 12 + 6 + 6, 1, 24 + 61}, [&] { sweeps.geometry(); });
+}
+
+// Differences, their products with g d (9 by 2), the filter, the bounds of the change.
+void velocity_gradient(benchmark::State& state) {
+  Sweeps sweeps(state);
+  sweeps.run(state, {10 + 7 + 5 + 3 + 3 + 18 + 7 + 9, 2, 24 + 24 + 36 + 12 + 4 + 24},
+             [&] { sweeps.velocity_gradient(true); });
+}
+
+void shift_curvature(benchmark::State& state) {
+  Sweeps sweeps(state);
+  sweeps.run(state, {10 + 5 + 6 + 1 + 27 + 6, 3, 36 + 24 + 12 + 24}, [&] {
+    shift_curvature_sweep(sweeps.context, sweeps.records,
+                          {sweeps.gradient[0].data(), sweeps.gradient[1].data(), sweeps.gradient[2].data(),
+                           sweeps.gradient[3].data(), sweeps.gradient[4].data(), sweeps.gradient[5].data(),
+                           sweeps.gradient[6].data(), sweeps.gradient[7].data(), sweeps.gradient[8].data()},
+                          sweeps.rule, sweeps.reflection, Sweeps::read(sweeps.shift), sweeps.corrections(),
+                          Sweeps::write(sweeps.out));
+  });
+}
+
+// Harmonic mean 5, direction 5 + 5 + 3, sum 6.
+void viscous_stress(benchmark::State& state) {
+  Sweeps sweeps(state);
+  sweeps.run(state, {10 + 5 + 6 + 13 + 6, 2, 24 + 4 + 12}, [&] {
+    viscous_sweep(sweeps.context, sweeps.records, sweeps.velocities(), sweeps.rule, sweeps.scalar[0].data(),
+                  Sweeps::write(sweeps.out), true);
+  });
+}
+
+void velocity_divergence(benchmark::State& state) {
+  Sweeps sweeps(state);
+  sweeps.run(state, {10 + 5 + 3 + 3 + 18 + 3, 2, 24 + 8 + 24 + 12}, [&] {
+    divergence_sweep(sweeps.context, sweeps.records, sweeps.velocities(), sweeps.rule, sweeps.corrections(),
+                     sweeps.potential.data(), sweeps.divergence.data(), sweeps.scalar[2].data());
+  });
+}
+
+void pressure_gradient(benchmark::State& state) {
+  Sweeps sweeps(state);
+  sweeps.run(state, {10 + 5 + 2 + 6, 1, 8 + 24 + 12}, [&] {
+    gradient_sweep(sweeps.context, sweeps.records, sweeps.potential.data(), 0, sweeps.corrections(),
+                   Sweeps::write(sweeps.out));
+  });
+}
+
+void filter_of_vector(benchmark::State& state) {
+  Sweeps sweeps(state);
+  sweeps.run(state, {10 + 7 + 1 + 6, 2, 24}, [&] {
+    filter_vector(sweeps.context, sweeps.records, Sweeps::read(sweeps.vector), sweeps.reflection,
+                  Sweeps::write(sweeps.out));
+  });
+}
+
+void filter_of_two_scalars(benchmark::State& state) {
+  Sweeps sweeps(state);
+  const std::array<const float*, 2> values{sweeps.scalar[0].data(), sweeps.scalar[1].data()};
+  const std::array<float*, 2> out{sweeps.scalar[2].data(), sweeps.scalar[3].data()};
+  sweeps.run(state, {10 + 7 + 1 + 4, 2, 16}, [&] { filter_scalars(sweeps.context, sweeps.records, values, out); });
+}
+
+BENCHMARK(geometry_sums)->Apply(Particles::sizes);
+BENCHMARK(velocity_gradient)->Apply(Particles::sizes);
+BENCHMARK(shift_curvature)->Apply(Particles::sizes);
+BENCHMARK(viscous_stress)->Apply(Particles::sizes);
+BENCHMARK(velocity_divergence)->Apply(Particles::sizes);
+BENCHMARK(pressure_gradient)->Apply(Particles::sizes);
+BENCHMARK(filter_of_vector)->Apply(Particles::sizes);
+BENCHMARK(filter_of_two_scalars)->Apply(Particles::sizes);
+
+}  // namespace
+}  // namespace spume
