@@ -72,12 +72,8 @@ void bubble_sums(benchmark::State& state) {
   const std::size_t n = swarm.particles.n;
   Array<float> result(4 * n);
   const CrossSearch search = swarm.search(swarm.table, swarm.size, swarm.place);
-  const CrossTargets targets{n,
-                             swarm.positions(),
-                             {0, 0, 0},
-                             1.3 * swarm.particles.spacing(),
-                             swarm.length_ratio.data(),
-                             swarm.reach.data()};
+  const CrossTargets targets{
+      n, swarm.positions(), {0, 0, 0}, 1.3 * swarm.particles.spacing(), swarm.length_ratio.data(), swarm.reach.data()};
   for (auto _ : state)
     sum_over_points<4, WendlandC2>(targets, search, swarm.particles.grid.reach(), swarm.records.data(),
                                    [&](std::size_t i, const float* sums) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Writing a checkpoint of twelve arrays to the folder for temporary files. Argument: particles.
+#include "spume/io/checkpoint.hpp"
+
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
-
-#include "spume/io/checkpoint.hpp"
 
 namespace spume {
 namespace {
@@ -16,8 +16,7 @@ void checkpoint_write(benchmark::State& state) {
   const auto n = static_cast<std::size_t>(state.range(0));
   Array<double> values(n);
   for (std::size_t i = 0; i < n; ++i) values[i] = std::sin(0.1 * static_cast<double>(i));
-  const auto path =
-      std::filesystem::temp_directory_path() / ("spume-bench-" + std::to_string(::getpid()) + ".spume");
+  const auto path = std::filesystem::temp_directory_path() / ("spume-bench-" + std::to_string(::getpid()) + ".spume");
   for (auto _ : state) {
     CheckpointWriter writer(path, {"bench", "none", "title = 'bench'"});
     for (int k = 0; k < arrays; ++k) writer.f64(std::to_string(k), values);
