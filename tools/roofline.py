@@ -13,7 +13,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROUTINES = "^(machine|sort|neighbour_list|pressure_apply|pressure_residual)/"
+# One size of each: jittered or sorted particles, and the flow on 128^3 points.
+ROUTINES = ("^(machine/|[a-z_]+/particles:100000/arrangement:1/|particle_[a-z]+(<[a-z]+>)?/particles:1000000/sorted:1/"
+            "|flow_step<[a-z]+>/128)")
 
 
 def results(source, pattern):
@@ -39,8 +41,10 @@ def split(report):
 
 
 def short(name):
-    return name.replace("/process_time", "").replace("/real_time", "").replace("particles:", "").replace("clustered:", "").replace(
-        "threads:", "")
+    """The name and the threads, of benchmarks that have them: all routines of one kind have one size."""
+    routine, *arguments = name.removesuffix("/real_time").removesuffix("/process_time").split("/")
+    threads = [a.split(":")[1] for a in arguments if a.startswith("threads:")]
+    return routine + (f", {threads[0]} thread{'s' if threads[0] != '1' else ''}" if threads else f", {arguments[0]}^3")
 
 
 def table(limits, routines):
@@ -65,7 +69,7 @@ def draw(limits, routines, path):
     import matplotlib.pyplot as plt
     import numpy as np
 
-    figure, (roof, bars) = plt.subplots(1, 2, figsize=(12, 5), layout="constrained")
+    figure, (roof, bars) = plt.subplots(1, 2, figsize=(13, max(5, 0.17 * len(routines))), layout="constrained")
     x = np.logspace(-2, 2, 200)
     for (threads, limit), style in zip(sorted(limits.items()), ("-", "--", ":")):
         peak = limit["flops_per_second"]
@@ -73,7 +77,7 @@ def draw(limits, routines, path):
             roof.plot(x, np.minimum(x * limit[key], peak) / 1e9, style, color=colour,
                       label=f"{key.split('_')[0]}, {threads} thread{'s' if threads > 1 else ''}")
     for r in routines:
-        if "flops_per_second" in r:
+        if "flops_per_second" in r and "bytes_per_second" in r and not short(r["run_name"]).endswith("threads"):
             intensity = r["flops_per_second"] / r["bytes_per_second"]
             roof.plot(intensity, r["flops_per_second"] / 1e9, "ko", markersize=4)
             roof.annotate(short(r["run_name"]), (intensity, r["flops_per_second"] / 1e9), fontsize=6, xytext=(3, 3),

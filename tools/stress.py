@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Random and worst-case scenes, each run for a few seconds and checked: stress.py PROGRAM METHOD [options].
 
-METHOD is les-sph, spectral or faults (kills, full disks, damaged checkpoints and cases; see spume_stress_faults.py).
+METHOD is les-sph, spectral, faults (kills, full disks, damaged checkpoints and cases; see spume_stress_faults.py) or long
+(1e5 steps of small scenes; see spume_stress_long.py).
 Writes DIR/stress.csv, DIR/stress.png and, for every run that failed, its case and output in DIR/failures. Exit code 1
 if a run failed or crashed. A scene depends on seed and number only: --first N --runs 1 repeats one.
 """
@@ -19,11 +20,15 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import spume_stress_faults
+import spume_stress_long
 from spume_stress_checks import judge
 from spume_stress_scenes import SCENES, toml_text
 
 OUTCOMES = {"ok": "tab:green", "slow": "tab:olive", "refused": "tab:gray", "stopped": "tab:orange", "failed": "tab:red",
             "crashed": "black"}
+
+
+OTHERS = {"faults": spume_stress_faults.stress, "long": spume_stress_long.stress}
 
 
 def run_program(program, arguments, seconds):
@@ -131,10 +136,11 @@ def stress(arguments, out):
 def main():
     parser = argparse.ArgumentParser(prog="tools/stress", description=__doc__.split("\n")[0])
     parser.add_argument("program", type=Path)
-    parser.add_argument("method", choices=[*SCENES, "faults"])
+    parser.add_argument("method", choices=[*SCENES, *OTHERS])
     parser.add_argument("--runs", type=int, default=100)
     parser.add_argument("--first", type=int, default=0, help="number of the first scene")
     parser.add_argument("--seconds", type=float, default=150, help="wall time after which no new run starts")
+    parser.add_argument("--steps", type=int, default=100000, help="of each long run")
     parser.add_argument("--each", type=float, default=6, help="wall time of one run")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kinds", nargs="*", help="kinds of scenes; all without it")
@@ -149,9 +155,9 @@ def main():
     if any(arguments.out.glob("stress.csv")):
         parser.error(f"{arguments.out} holds results already; give another --out")
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
-    rows = (spume_stress_faults.stress if arguments.method == "faults" else stress)(arguments, arguments.out)
+    rows = OTHERS.get(arguments.method, stress)(arguments, arguments.out)
     save_table(rows, arguments.out / "stress.csv")
-    if rows and arguments.method != "faults":
+    if rows and arguments.method in SCENES:
         save_picture(rows, arguments.out / "stress.png")
     counts = {outcome: sum(row["outcome"] == outcome for row in rows) for outcome in OUTCOMES}
     print(", ".join(f"{count} {outcome}" for outcome, count in counts.items() if count) + f"; see {arguments.out}")
