@@ -17,6 +17,7 @@ from synthetic import lattice, series_of, write_snapshots, write_table
 
 sys.path.insert(0, str(paths.ROOT / "tools"))
 import bench_parts
+import spume_stress_long
 from spume_stress_checks import judge
 from spume_stress_faults import BASE, damage, mutated_case
 from spume_stress_scenes import PARTICLE_SCENES, SCENES, Scene, toml_text
@@ -122,6 +123,35 @@ class Faults(unittest.TestCase):
         draw = random.Random(1)
         self.assertGreater(sum(damage(draw, data) != data for _ in range(200)), 190)
         self.assertGreater(len({mutated_case(draw, BASE["les-sph"]) for _ in range(50)}), 45)
+
+
+class LongRuns(unittest.TestCase):
+    def series(self, **columns):
+        rows = 400
+        rng = np.random.default_rng(3)
+        return {"step": np.arange(rows) * 250.0, "t": np.arange(rows) / 10, "mass": np.ones(rows), "max_speed": np.ones(rows),
+                "kinetic_energy": 1 + 0.01 * rng.standard_normal(rows)} | columns
+
+    def test_scenes_are_cases(self):
+        for make, step in spume_stress_long.SCENES.values():
+            self.assertIn("method", tomllib.loads(toml_text(make(step))))
+
+    def test_steady_series_pass_and_drifting_ones_do_not(self):
+        steady = self.series()
+        self.assertEqual(spume_stress_long.check_series("sustained_flow", steady), [])
+        growing = steady["kinetic_energy"] + np.linspace(0, 0.05, 400)
+        self.assertRegex(spume_stress_long.check_series("sustained_flow", steady | {"kinetic_energy": growing})[0], "energy")
+        losing = 1 - 1e-9 * np.arange(400)
+        self.assertRegex(spume_stress_long.check_series("sustained_flow", steady | {"mass": losing})[0], "mass")
+        self.assertRegex(spume_stress_long.check_series("pool", steady)[0], "rest")
+
+    def test_growing_memory_and_slowing_steps_are_seen(self):
+        step = np.linspace(0, 1e5, 200)
+        steady = np.column_stack([step, np.full(200, 5e7), 1e-3 * step])
+        self.assertEqual(spume_stress_long.check_usage(steady, 1e5)[0], [])
+        self.assertRegex(spume_stress_long.check_usage(steady + [0, 1, 0] * (1e5 * np.arange(200))[:, None], 1e5)[0][0], "memory")
+        slower = np.column_stack([step, steady[:, 1], 1e-8 * step**2])
+        self.assertRegex(spume_stress_long.check_usage(slower, 1e5)[0][0], "speed")
 
 
 # Says that every second run blew up in words, and crashes on one.
