@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <vector>
 
@@ -16,7 +17,16 @@
 namespace spume {
 namespace {
 
-using simd::f32x8;
+using simd::f32n;
+
+f32n load(const float* p) {
+  f32n v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
+}
+void store(float* p, f32n v) {
+  std::memcpy(p, &v, sizeof v);
+}
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -52,8 +62,7 @@ double triad(int threads, std::size_t size, int repeats) {
       float* x = a[t].data();
       const float *y = b[t].data(), *z = c[t].data();
       for (int repeat = 0; repeat < repeats; ++repeat) {
-        for (std::size_t i = 0; i < size; i += simd::lanes)
-          simd::store(x + i, simd::load(y + i) + simd::splat(1e-3F) * simd::load(z + i));
+        for (std::size_t i = 0; i < size; i += simd::pair_lanes) store(x + i, load(y + i) + 1e-3F * load(z + i));
         benchmark::ClobberMemory();
       }
     }
@@ -66,33 +75,33 @@ double multiply_add(int threads) {
   return best_rate([&] {
 #pragma omp parallel num_threads(threads)
     {
-      f32x8 sum[chains];
-      for (int k = 0; k < chains; ++k) sum[k] = simd::splat(static_cast<float>(k));
-      f32x8 x = simd::splat(0.999F), y = simd::splat(1e-3F);
+      f32n sum[chains];
+      for (int k = 0; k < chains; ++k) sum[k] = simd::splat<f32n>(static_cast<float>(k));
+      f32n x = simd::splat<f32n>(0.999F), y = simd::splat<f32n>(1e-3F);
       benchmark::DoNotOptimize(x);
       benchmark::DoNotOptimize(y);
       for (int i = 0; i < length; ++i)
         for (int k = 0; k < chains; ++k) sum[k] = sum[k] * x + y;
       for (int k = 0; k < chains; ++k) benchmark::DoNotOptimize(sum[k]);
     }
-    return 2.0 * simd::lanes * chains * length * threads;
+    return 2.0 * simd::pair_lanes * chains * length * threads;
   });
 }
 
 double gather(int threads) {
   constexpr std::size_t records = 256 * 1024 / 16, picks = 1 << 14;
   std::vector<float> table(4 * records, 1.0F);
-  std::vector<std::int32_t> index(picks);
+  std::vector<std::int32_t> entry(picks);
   for (std::size_t i = 0; i < picks; ++i)
-    index[i] = static_cast<std::int32_t>(random_uniform(1, RandomPurpose::test, i, 0, 0)[0] * records);
+    entry[i] = 4 * static_cast<std::int32_t>(random_uniform(1, RandomPurpose::test, i, 0, 0)[0] * records);
   return best_rate([&] {
 #pragma omp parallel num_threads(threads)
     {
-      f32x8 sum = simd::splat(0);
+      f32n sum = simd::splat<f32n>(0);
       for (int repeat = 0; repeat < 8; ++repeat)
-        for (std::size_t i = 0; i < picks; i += simd::lanes) {
-          f32x8 out[4];
-          simd::load_records<4>(table.data(), index.data() + i, 0, out);
+        for (std::size_t i = 0; i < picks; i += simd::pair_lanes) {
+          f32n out[4];
+          simd::load_records<4>(table.data(), entry.data() + i, 0, out);
           sum = sum + ((out[0] + out[1]) + (out[2] + out[3]));
         }
       benchmark::DoNotOptimize(sum);
@@ -120,7 +129,7 @@ const MachineLimits& machine_limits(int threads) {
   if (found != known.end()) return found->second;
   MachineLimits limits;
   limits.memory_bytes = triad(threads, 8 << 20, 1);
-  limits.cache_bytes = triad(threads, 128 * 1024 / 12 / simd::lanes * simd::lanes, 100);
+  limits.cache_bytes = triad(threads, 128 * 1024 / 12 / simd::pair_lanes * simd::pair_lanes, 100);
   limits.flops = multiply_add(threads);
   limits.gathers = gather(threads);
   return known[threads] = limits;

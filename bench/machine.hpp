@@ -10,7 +10,7 @@ namespace spume {
 struct MachineLimits {
   double memory_bytes = 0;  // per second, triad a = b + s c over arrays far larger than the caches
   double cache_bytes = 0;   // the same over 128 kB per thread
-  double flops = 0;         // per second, fused multiply-adds of eight floats, two operations a lane
+  double flops = 0;         // per second, fused multiply-adds of full registers of floats, two operations a lane
   double gathers = 0;       // per second, records of 16 bytes picked from 256 kB per thread and transposed
 };
 

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "packed_store.hpp"
@@ -109,7 +111,7 @@ struct Runs {
 // Candidates of a group, packed. The memory is one array per thread, which grows and is reused.
 struct Candidates {
   std::array<float*, 3> coordinate{};
-  std::int32_t* index = nullptr;
+  std::int32_t* entry = nullptr;
   std::size_t size = 0;
 
   Candidates(Array<float>& memory, std::size_t most) {
@@ -117,7 +119,7 @@ struct Candidates {
     const std::size_t stride = (most + 2 * simd::lanes) / simd::lanes * simd::lanes;
     if (memory.size() < 4 * stride) memory.resize(4 * stride + stride);
     for (int axis = 0; axis < 3; ++axis) coordinate[axis] = memory.data() + axis * stride;
-    index = reinterpret_cast<std::int32_t*>(memory.data() + 3 * stride);
+    entry = reinterpret_cast<std::int32_t*>(memory.data() + 3 * stride);
   }
 };
 
@@ -165,7 +167,7 @@ template <int dimensions>
     const unsigned mask = mask_of(i32x8(distance2 < reach2) & (index < block.last));
     const Packing packing = packing_of(mask);
     for (int axis = 0; axis < dimensions; ++axis) store_packed(x[axis], packing, to.coordinate[axis] + size);
-    store_packed(index, packing, to.index + size);
+    store_packed(index * entry_scale, packing, to.entry + size);
     size += static_cast<std::size_t>(std::popcount(mask));
   }
   candidates.size = size;
@@ -173,9 +175,9 @@ template <int dimensions>
 
 // Where point i stands among the candidates; those of a group mostly follow each other.
 inline std::size_t slot_of(const Candidates& candidates, std::size_t i, std::size_t guess) {
-  const auto wanted = static_cast<std::int32_t>(i);
-  if (guess < candidates.size && candidates.index[guess] == wanted) return guess;
-  const std::int32_t *begin = candidates.index, *end = begin + candidates.size;
+  const auto wanted = entry_scale * static_cast<std::int32_t>(i);
+  if (guess < candidates.size && candidates.entry[guess] == wanted) return guess;
+  const std::int32_t *begin = candidates.entry, *end = begin + candidates.size;
   return static_cast<std::size_t>(std::find(begin, end, wanted) - begin);
 }
 
@@ -192,7 +194,7 @@ template <int dimensions>
       distance2 = axis == 0 ? d * d : distance2 + d * d;
     }
     const unsigned mask = mask_of(i32x8(distance2 < reach2));
-    store_packed(load_int(from.index + j), packing_of(mask), out);
+    store_packed(load_int(from.entry + j), packing_of(mask), out);
     out += std::popcount(mask);
   }
   return out;
@@ -281,7 +283,7 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
   std::int32_t* const counts = count_.data();
   std::int64_t* const firsts = first_.data();
   std::int32_t* const indices = index_.data();
-  const std::int32_t nobody = sentinel();
+  const std::int32_t nobody = entry_scale * sentinel();
 
   parallel_blocks_dynamic(n, list_block, [=, &used, &found](std::size_t, std::size_t begin, std::size_t end) {
     // One set per thread, kept from build to build.
@@ -361,6 +363,9 @@ void NeighbourList::build(const CellGrid& grid, const CellTable& particles, cons
   const int dimensions = grid.dimensions();
   const std::size_t m = images.size();
   points_ = n + m;
+  if (points_ >= std::numeric_limits<std::int32_t>::max() / entry_scale)
+    throw std::length_error("neighbour lists number at most 5e8 particles and images, here are " +
+                            std::to_string(points_));
   origin_ = origin;
   count_.resize(n);
   first_.resize(n);

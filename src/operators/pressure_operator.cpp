@@ -6,8 +6,8 @@
 namespace spume {
 namespace {
 
-using simd::f32x8;
-using simd::f64x4;
+using simd::f32n;
+using simd::f64n;
 
 constexpr std::size_t block = 256;
 
@@ -30,15 +30,15 @@ void apply_rows(const SweepContext& context, const float* records, const Pressur
       float value = 0;
       if constexpr (is_varying<Kernel>) {
         const KernelScale<dimensions, Kernel> scale = common.at(context, i);
-        f32x8 sum{};
+        f32n sum{};
         for_each_batch<dimensions, 1>(list, records, i, scale.inverse_h,
                                       [&](const auto& batch) { sum = sum + Kernel::f(batch.q) * batch.payload[0]; });
         const float factor = -2 * scale.gradient * volume * matrix.row[i];
         value = factor * (weight_sum[i] * x[i] - simd::sum(sum)) + volume * matrix.extra[i] * x[i];
       } else {
         const float own_value = records[i * width + dimensions];
-        const f32x8 own = simd::splat(own_value);
-        f32x8 sum{};
+        const f32n own = simd::splat<f32n>(own_value);
+        f32n sum{};
         for_each_batch<dimensions, 1>(list, records, i, common.inverse_h, [&](const auto& batch) {
           sum = sum + Kernel::f(batch.q) * (own - batch.payload[0]);
         });
@@ -67,16 +67,16 @@ void double_rows(const SweepContext& context, const float* records, const Pressu
     float factor = -2 * scale.gradient * volume;
     if constexpr (is_varying<Kernel>) factor *= matrix.row[i];
     const float* own = records + i * width + dimensions;
-    const f64x4 high = simd::to_f64_low(simd::splat(own[0]));
-    f64x4 sum_low{}, sum_high{};
+    const f64n high = simd::to_f64_low(simd::splat<f32n>(own[0]));
+    f64n sum_low{}, sum_high{};
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& batch) {
-      const f32x8 f = times_volume<Kernel>(Kernel::f(batch.q), batch);
+      const f32n f = times_volume<Kernel>(Kernel::f(batch.q), batch);
       // The leading parts are subtracted in double: near a zero of q they differ by more than a factor of two, and
       // a float difference would round.
-      f64x4 low_difference = high - simd::to_f64_low(batch.payload[0]);
-      f64x4 high_difference = high - simd::to_f64_high(batch.payload[0]);
+      f64n low_difference = high - simd::to_f64_low(batch.payload[0]);
+      f64n high_difference = high - simd::to_f64_high(batch.payload[0]);
       if constexpr (two_floats) {
-        const f32x8 fine = own[1] - batch.payload[1];
+        const f32n fine = own[1] - batch.payload[1];
         low_difference = low_difference + simd::to_f64_low(fine);
         high_difference = high_difference + simd::to_f64_high(fine);
       }
@@ -92,7 +92,7 @@ template <class Kernel>
 void sum_weights(const SweepContext& context, const float* records, float* sum) {
   const KernelScale<3, Kernel> common(context);
   sweep(context.list->particles(), [&](std::size_t i) {
-    f32x8 total{};
+    f32n total{};
     for_each_batch<3, 1>(*context.list, records, i, common.at(context, i).inverse_h,
                          [&](const auto& batch) { total = total + Kernel::f(batch.q) * batch.payload[0]; });
     sum[i] = simd::sum(total);

@@ -8,7 +8,7 @@
 namespace spume {
 namespace {
 
-using simd::f32x8;
+using simd::f32n;
 
 // The inverse is used while it amplifies by less than this: a plane surface needs 1.5 to 2, an edge about 4;
 // beyond it the neighbours lie nearly in a plane or on a line and the inverse would amplify noise.
@@ -54,24 +54,24 @@ void geometry(const SweepContext& context, Records& records_, const GeometryOpti
 
   sweep(list.particles(), [&](std::size_t i) {
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
-    f32x8 kernel_sum{}, coupling{};
-    std::array<f32x8, matrix> m{};
-    std::array<f32x8, dimensions> normal{}, concentration{};
+    f32n kernel_sum{}, coupling{};
+    std::array<f32n, matrix> m{};
+    std::array<f32n, dimensions> normal{}, concentration{};
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      const f32x8 w = Kernel::w(b.q);
-      const f32x8 g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
+      const f32n w = Kernel::w(b.q);
+      const f32n g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
       kernel_sum = kernel_sum + times_volume<Kernel>(w, b);
       coupling = coupling + g;
       int slot = 0;
       for (int a = 0; a < dimensions; ++a) {
-        const f32x8 gd = g * b.d[a];
+        const f32n gd = g * b.d[a];
         normal[a] = normal[a] + gd;
         for (int c = a; c < dimensions; ++c) m[slot] = m[slot] + gd * b.d[c], ++slot;
       }
       if constexpr (shifting) {
-        const f32x8 ratio = w * inverse_reference;
-        const f32x8 ratio2 = ratio * ratio;
-        const f32x8 tensile = g + 0.25F * g * ratio2 * ratio2;
+        const f32n ratio = w * inverse_reference;
+        const f32n ratio2 = ratio * ratio;
+        const f32n tensile = g + 0.25F * g * ratio2 * ratio2;
         for (int a = 0; a < dimensions; ++a) concentration[a] = concentration[a] + tensile * b.d[a];
       }
     });

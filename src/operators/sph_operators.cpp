@@ -7,7 +7,7 @@
 namespace spume {
 namespace {
 
-using simd::f32x8;
+using simd::f32n;
 
 // Row a, column c of a symmetric matrix stored as its upper triangle.
 template <int dimensions>
@@ -55,27 +55,27 @@ void velocity_gradient(const SweepContext& context, Records& records_, const std
   sweep(list.particles(), [&](std::size_t i) {
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
     const float centre = centre_value * own_volume<Kernel>(context, i);
-    std::array<f32x8, dimensions> own{}, filtered{};
-    for (int a = 0; a < dimensions; ++a) own[a] = simd::splat(records[i * width + dimensions + a]);
-    std::array<std::array<f32x8, dimensions>, dimensions> m{};
-    std::array<f32x8, dimensions> low{}, high{};
-    f32x8 kernel_sum{};
+    std::array<f32n, dimensions> own{}, filtered{};
+    for (int a = 0; a < dimensions; ++a) own[a] = simd::splat<f32n>(records[i * width + dimensions + a]);
+    std::array<std::array<f32n, dimensions>, dimensions> m{};
+    std::array<f32n, dimensions> low{}, high{};
+    f32n kernel_sum{};
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      const f32x8 g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
-      std::array<f32x8, dimensions> gd;
+      const f32n g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
+      std::array<f32n, dimensions> gd;
       for (int c = 0; c < dimensions; ++c) gd[c] = g * b.d[c];
       for (int a = 0; a < dimensions; ++a) {
-        const f32x8 difference = b.payload[a] - own[a];
+        const f32n difference = b.payload[a] - own[a];
         for (int c = 0; c < dimensions; ++c) m[a][c] = m[a][c] + difference * gd[c];
         if constexpr (bounded) {
-          const f32x8 within =
-              b.q < simd::splat(static_cast<float>(Kernel::support)) ? difference : f32x8{};  // not the sentinel's
+          const f32n within =
+              b.q < simd::splat<f32n>(static_cast<float>(Kernel::support)) ? difference : f32n{};  // not the sentinel's
           low[a] = simd::min(low[a], within);
           high[a] = simd::max(high[a], within);
         }
       }
       if constexpr (filter) {
-        const f32x8 w = times_volume<Kernel>(Kernel::w(b.q), b);
+        const f32n w = times_volume<Kernel>(Kernel::w(b.q), b);
         kernel_sum = kernel_sum + w;
         for (int a = 0; a < dimensions; ++a) filtered[a] = filtered[a] + w * b.payload[a];
       }
@@ -90,7 +90,7 @@ void velocity_gradient(const SweepContext& context, Records& records_, const std
     DifferenceBounds<dimensions> bounds;
     if constexpr (bounded)
       for (int a = 0; a < dimensions; ++a)
-        for (int l = 0; l < simd::lanes; ++l) {
+        for (int l = 0; l < simd::pair_lanes; ++l) {
           bounds.low[a] = std::min(bounds.low[a], low[a][l]);
           bounds.high[a] = std::max(bounds.high[a], high[a][l]);
         }
@@ -152,15 +152,15 @@ void shift_curvature(const SweepContext& context, Records& records_, const std::
     for (int a = 0; a < dimensions; ++a) s[a] = shift[a][i];
     // L is symmetric: (L sum g d f) . s = sum g f (d . L s).
     const std::array<float, dimensions> direction = correct<dimensions>(correction, i, s);
-    std::array<f32x8, dimensions> sum{};
+    std::array<f32n, dimensions> sum{};
     std::array<float, entries> own;
     for (int k = 0; k < entries; ++k) own[k] = records[i * width + dimensions + k];
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      f32x8 along{};
+      f32n along{};
       for (int a = 0; a < dimensions; ++a) along = along + b.d[a] * direction[a];
-      const f32x8 weight = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b) * along;
+      const f32n weight = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b) * along;
       for (int a = 0; a < dimensions; ++a) {
-        f32x8 difference{};
+        f32n difference{};
         for (int c = 0; c < dimensions; ++c)
           difference = difference + s[c] * (b.payload[a * dimensions + c] - own[a * dimensions + c]);
         sum[a] = sum[a] + weight * difference;
@@ -185,22 +185,22 @@ void viscous(const SweepContext& context, Records& records_, const std::array<co
 
   sweep(list.particles(), [&](std::size_t i) {
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
-    std::array<f32x8, dimensions> own{}, sum{};
-    for (int a = 0; a < dimensions; ++a) own[a] = simd::splat(records[i * width + dimensions + a]);
-    const f32x8 own_kappa = simd::splat(kappa[i]);
+    std::array<f32n, dimensions> own{}, sum{};
+    for (int a = 0; a < dimensions; ++a) own[a] = simd::splat<f32n>(records[i * width + dimensions + a]);
+    const f32n own_kappa = simd::splat<f32n>(kappa[i]);
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
       // Harmonic mean 2 k_i k_j / (k_i + k_j), zero when both vanish (also at the sentinel).
-      const f32x8 kappa_j = b.payload[dimensions];
-      const f32x8 mean = own_kappa * kappa_j / simd::max(own_kappa + kappa_j, simd::splat(1e-30F));
-      f32x8 weight = times_volume<Kernel>((-4.0F * scale.gradient) * Kernel::f(b.q) * mean, b);
+      const f32n kappa_j = b.payload[dimensions];
+      const f32n mean = own_kappa * kappa_j / simd::max(own_kappa + kappa_j, simd::splat<f32n>(1e-30F));
+      f32n weight = times_volume<Kernel>((-4.0F * scale.gradient) * Kernel::f(b.q) * mean, b);
       if constexpr (stress) {
-        f32x8 along{}, r2{};
+        f32n along{}, r2{};
         for (int a = 0; a < dimensions; ++a) {
           along = along + (b.payload[a] - own[a]) * b.d[a];
           r2 = r2 + b.d[a] * b.d[a];
         }
         // Coincident particles have no direction; the bound is far below any real distance.
-        weight = weight * static_cast<float>(dimensions + 2) * along / simd::max(r2, simd::splat(tiny));
+        weight = weight * static_cast<float>(dimensions + 2) * along / simd::max(r2, simd::splat<f32n>(tiny));
         for (int a = 0; a < dimensions; ++a) sum[a] = sum[a] + weight * b.d[a];
       } else {
         for (int a = 0; a < dimensions; ++a) sum[a] = sum[a] + weight * (b.payload[a] - own[a]);
@@ -225,17 +225,17 @@ void divergence_of(const SweepContext& context, Records& records_, const std::ar
 
   sweep(list.particles(), [&](std::size_t i) {
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
-    std::array<f32x8, dimensions> own{};
-    for (int a = 0; a < dimensions; ++a) own[a] = simd::splat(records[i * width + dimensions + a]);
-    const f32x8 own_potential = simd::splat(records[i * width + 2 * dimensions]);
-    std::array<std::array<f32x8, dimensions>, dimensions> m{};
-    f32x8 laplacian{};
+    std::array<f32n, dimensions> own{};
+    for (int a = 0; a < dimensions; ++a) own[a] = simd::splat<f32n>(records[i * width + dimensions + a]);
+    const f32n own_potential = simd::splat<f32n>(records[i * width + 2 * dimensions]);
+    std::array<std::array<f32n, dimensions>, dimensions> m{};
+    f32n laplacian{};
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      const f32x8 g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
-      std::array<f32x8, dimensions> gd;
+      const f32n g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
+      std::array<f32n, dimensions> gd;
       for (int c = 0; c < dimensions; ++c) gd[c] = g * b.d[c];
       for (int a = 0; a < dimensions; ++a) {
-        const f32x8 difference = b.payload[a] - own[a];
+        const f32n difference = b.payload[a] - own[a];
         for (int c = 0; c < dimensions; ++c) m[a][c] = m[a][c] + difference * gd[c];
       }
       laplacian = laplacian + g * (own_potential - b.payload[dimensions]);
@@ -267,10 +267,10 @@ void gradient_of(const SweepContext& context, Records& records_, const double* v
 
   sweep(n, [&](std::size_t i) {
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
-    const f32x8 own = simd::splat(records[i * width + dimensions]);
-    std::array<f32x8, dimensions> sum{};
+    const f32n own = simd::splat<f32n>(records[i * width + dimensions]);
+    std::array<f32n, dimensions> sum{};
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      const f32x8 weight = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q) * (b.payload[0] - own), b);
+      const f32n weight = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q) * (b.payload[0] - own), b);
       for (int a = 0; a < dimensions; ++a) sum[a] = sum[a] + weight * b.d[a];
     });
     std::array<float, dimensions> v{};
@@ -298,10 +298,10 @@ void filter_listed(const SweepContext& context, Records& records_, const std::ar
     const std::size_t i = particle_at(s);
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
     const float centre = centre_value * own_volume<Kernel>(context, i);
-    std::array<f32x8, dimensions> filtered{};
-    f32x8 kernel_sum{};
+    std::array<f32n, dimensions> filtered{};
+    f32n kernel_sum{};
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      const f32x8 w = times_volume<Kernel>(Kernel::w(b.q), b);
+      const f32n w = times_volume<Kernel>(Kernel::w(b.q), b);
       kernel_sum = kernel_sum + w;
       for (int a = 0; a < dimensions; ++a) filtered[a] = filtered[a] + w * b.payload[a];
     });
@@ -333,10 +333,10 @@ void filter_some(const SweepContext& context, Records& records_, std::span<const
   sweep(list.particles(), [&](std::size_t i) {
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
     const float centre = centre_value * own_volume<Kernel>(context, i);
-    std::array<f32x8, count> filtered{};
-    f32x8 kernel_sum{};
+    std::array<f32n, count> filtered{};
+    f32n kernel_sum{};
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      const f32x8 w = times_volume<Kernel>(Kernel::w(b.q), b);
+      const f32n w = times_volume<Kernel>(Kernel::w(b.q), b);
       kernel_sum = kernel_sum + w;
       for (int k = 0; k < count; ++k) filtered[k] = filtered[k] + w * b.payload[k];
     });

@@ -56,19 +56,26 @@ TYPED_TEST(Kernels, SlopeFunctionIsTheDerivativeOverQ) {
   EXPECT_NEAR(Kernel::f(0), Kernel::f(1e-9), 1e-6);
 }
 
-TYPED_TEST(Kernels, VectorFormEqualsScalarForm) {
-  using Kernel = typename TypeParam::Kernel;
+template <class Parameters, class V>
+void expect_scalar_form() {
+  using Kernel = typename Parameters::Kernel;
+  constexpr int lanes = sizeof(V) / sizeof(float), count = 512;
   const double epsilon = std::numeric_limits<float>::epsilon();
-  for (int i = 0; i < 8 * 64; i += 8) {
-    simd::f32x8 q{};
-    for (int l = 0; l < 8; ++l) q[l] = static_cast<float>((i + l) * (Kernel::support + 0.5) / (8 * 64));
-    const simd::f32x8 w = Kernel::w(q), f = Kernel::f(q);
-    for (int l = 0; l < 8; ++l) {
+  for (int i = 0; i < count; i += lanes) {
+    V q{};
+    for (int l = 0; l < lanes; ++l) q[l] = static_cast<float>((i + l) * (Kernel::support + 0.5) / count);
+    const V w = Kernel::w(q), f = Kernel::f(q);
+    for (int l = 0; l < lanes; ++l) {
       // At most eight float roundings in each term.
-      EXPECT_NEAR(w[l], Kernel::w(q[l]), 8 * epsilon * TypeParam::w_terms) << q[l];
-      EXPECT_NEAR(f[l], Kernel::f(q[l]), 8 * epsilon * TypeParam::f_terms) << q[l];
+      EXPECT_NEAR(w[l], Kernel::w(q[l]), 8 * epsilon * Parameters::w_terms) << q[l];
+      EXPECT_NEAR(f[l], Kernel::f(q[l]), 8 * epsilon * Parameters::f_terms) << q[l];
     }
   }
+}
+
+TYPED_TEST(Kernels, VectorFormsEqualScalarForm) {
+  expect_scalar_form<TypeParam, simd::f32x8>();
+  expect_scalar_form<TypeParam, simd::f32n>();
 }
 
 TYPED_TEST(Kernels, VanishesAtAndBeyondTheSupport) {
@@ -88,16 +95,28 @@ TYPED_TEST(Kernels, DecreasesFromTheCentre) {
   for (double q = 0.01; q < Kernel::support; q += 0.01) EXPECT_LT(Kernel::w(q), Kernel::w(q - 0.01));
 }
 
-TEST(Simd, TransposesRecordsAndSumsLanes) {
+template <class V>
+void expect_transposed_records() {
+  constexpr int lanes = sizeof(V) / sizeof(float);
   float records[8 * 20];
   for (int i = 0; i < 8 * 20; ++i) records[i] = static_cast<float>(i);
-  const std::int32_t index[8] = {3, 0, 19, 7, 7, 1, 12, 5};
-  simd::f32x8 out[4];
-  simd::load_records<8>(records, index, 1, out);
-  for (int c = 0; c < 4; ++c)
-    for (int l = 0; l < 8; ++l) EXPECT_EQ(out[c][l], static_cast<float>(8 * index[l] + 4 + c));
-  EXPECT_EQ(simd::sum(out[0]), 8.0F * (3 + 0 + 19 + 7 + 7 + 1 + 12 + 5) + 32);
-  EXPECT_EQ(simd::sum(simd::to_f64_low(out[0])) + simd::sum(simd::to_f64_high(out[0])), simd::sum(out[0]));
+  const std::int32_t number[16] = {3, 0, 19, 7, 7, 1, 12, 5, 2, 18, 4, 4, 11, 0, 16, 9};
+  std::int32_t entry[16];
+  for (int l = 0; l < 16; ++l) entry[l] = 4 * number[l];
+  V out[4];
+  simd::load_records<8>(records, entry, 1, out);
+  float total = 0;
+  for (int l = 0; l < lanes; ++l) {
+    for (int c = 0; c < 4; ++c) EXPECT_EQ(out[c][l], static_cast<float>(8 * number[l] + 4 + c));
+    total += out[0][l];
+  }
+  EXPECT_EQ(simd::sum(out[0]), total);
+  EXPECT_EQ(simd::sum(simd::to_f64_low(out[0])) + simd::sum(simd::to_f64_high(out[0])), total);
+}
+
+TEST(Simd, TransposesRecordsAndSumsLanes) {
+  expect_transposed_records<simd::f32x8>();
+  expect_transposed_records<simd::f32n>();
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ void expect_lists_match_brute_force(const Neighbourhood& hood) {
     ASSERT_TRUE(std::includes(expected.possible.begin(), expected.possible.end(), found.begin(), found.end()))
         << "the list of " << i << " holds a point that is too far";
     for (const std::int32_t* j = hood.list.begin(i) + hood.list.count(i); j < hood.list.padded_end(i); ++j)
-      ASSERT_EQ(*j, hood.list.sentinel());
+      ASSERT_EQ(*j, entry_scale * hood.list.sentinel());
     pairs += hood.list.count(i);
   }
   EXPECT_EQ(hood.list.pair_count(), pairs);

@@ -132,11 +132,11 @@ Array<double> double_rows(const Arrangement& a, const Array<double>& q) {
   const std::size_t n = a.size();
   Array<double> rows(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const std::int32_t* index = a.hood.list.begin(i);
+    const std::int32_t* entry = a.hood.list.begin(i);
     for_each_batch<dimensions, 0>(a.hood.list, packed, i, scale.inverse_h, [&](const auto& batch) {
-      const simd::f32x8 f = Kernel::f(batch.q);
-      for (int lane = 0; lane < simd::lanes; ++lane, ++index) {
-        const auto j = static_cast<std::size_t>(*index);
+      const simd::f32n f = Kernel::f(batch.q);
+      for (int lane = 0; lane < simd::pair_lanes && entry != a.hood.list.padded_end(i); ++lane, ++entry) {
+        const auto j = static_cast<std::size_t>(*entry / entry_scale);
         if (j >= a.hood.list.points()) continue;
         const std::size_t source = j < n ? j : static_cast<std::size_t>(a.hood.images.source()[j - n]);
         rows[i] += double{factor} * f[lane] * (q[i] - q[source]);

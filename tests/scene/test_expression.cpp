@@ -151,7 +151,10 @@ TEST(Expression, GarbageIsRefusedOrEvaluatedButNeverCrashes) {
   }
   EXPECT_NE(fault(std::string(100000, '(')), "none");
   EXPECT_NE(fault(std::string(20000, '-')), "none");
-  EXPECT_EQ(fault(std::string(5000, '(') + "1" + std::string(5000, ')')), "none");
+  std::string nested(5000, '(');
+  nested += '1';
+  nested.append(5000, ')');
+  EXPECT_EQ(fault(nested), "none");
 }
 
 }  // namespace

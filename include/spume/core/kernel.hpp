@@ -29,13 +29,15 @@ struct WendlandC2 {
     const double s = std::max(0.0, 1 - q / 2);
     return -5 * s * s * s;
   }
-  [[gnu::always_inline]] static simd::f32x8 w(simd::f32x8 q) {
-    const simd::f32x8 s = simd::max(1.0F - 0.5F * q, simd::splat(0));
-    const simd::f32x8 s2 = s * s;
+  template <simd::FloatVector V>
+  [[gnu::always_inline]] static V w(V q) {
+    const V s = simd::max(1.0F - 0.5F * q, simd::splat<V>(0));
+    const V s2 = s * s;
     return s2 * s2 * (2.0F * q + 1.0F);
   }
-  [[gnu::always_inline]] static simd::f32x8 f(simd::f32x8 q) {
-    const simd::f32x8 s = simd::max(1.0F - 0.5F * q, simd::splat(0));
+  template <simd::FloatVector V>
+  [[gnu::always_inline]] static V f(V q) {
+    const V s = simd::max(1.0F - 0.5F * q, simd::splat<V>(0));
     return -5.0F * (s * s) * s;
   }
 };
@@ -57,25 +59,27 @@ struct QuinticSpline {
     const double a = std::max(0.0, 3 - q), b = std::max(0.0, 2 - q);
     return -5 * (std::pow(a, 4) - 6 * std::pow(b, 4)) / q;
   }
-  [[gnu::always_inline]] static simd::f32x8 w(simd::f32x8 q) {
-    const auto fifth = [](simd::f32x8 x) {
-      const simd::f32x8 x2 = x * x;
+  template <simd::FloatVector V>
+  [[gnu::always_inline]] static V w(V q) {
+    const auto fifth = [](V x) {
+      const V x2 = x * x;
       return x2 * x2 * x;
     };
-    const simd::f32x8 zero = simd::splat(0);
+    const V zero = simd::splat<V>(0);
     return fifth(simd::max(3.0F - q, zero)) - 6.0F * fifth(simd::max(2.0F - q, zero)) +
            15.0F * fifth(simd::max(1.0F - q, zero));
   }
-  [[gnu::always_inline]] static simd::f32x8 f(simd::f32x8 q) {
-    const auto fourth = [](simd::f32x8 x) {
-      const simd::f32x8 x2 = x * x;
+  template <simd::FloatVector V>
+  [[gnu::always_inline]] static V f(V q) {
+    const auto fourth = [](V x) {
+      const V x2 = x * x;
       return x2 * x2;
     };
     // Near the centre the three quartics cancel to -120 q + 120 q^3 - 50 q^4: the expanded form is exact there.
-    const simd::f32x8 zero = simd::splat(0);
-    const simd::f32x8 inner = -120.0F + q * q * (120.0F - 50.0F * q);
-    const simd::f32x8 outer = -5.0F * (fourth(simd::max(3.0F - q, zero)) - 6.0F * fourth(simd::max(2.0F - q, zero))) /
-                              simd::max(q, simd::splat(0.5F));
+    const V zero = simd::splat<V>(0);
+    const V inner = -120.0F + q * q * (120.0F - 50.0F * q);
+    const V outer = -5.0F * (fourth(simd::max(3.0F - q, zero)) - 6.0F * fourth(simd::max(2.0F - q, zero))) /
+                    simd::max(q, simd::splat<V>(0.5F));
     return q < 1.0F ? inner : outer;
   }
 };

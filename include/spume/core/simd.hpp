@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Eight-lane vectors for pair loops, on the compiler's vector types: the same text compiles to AVX-512VL, AVX2
-// or SSE. A particle's position and payload lie in one interleaved record of 4 (or 8, 12) floats; eight
-// records are fetched by 128-bit loads and transposed, which was measured faster than gathers from separate
-// arrays (1.26 against 2.0 ns per pair on the pressure operator).
+// Vectors for loops over neighbours, on the compiler's vector types: the same text compiles to AVX-512, AVX2 or SSE.
+// A particle's position and payload lie in one interleaved record of 4 (or 8, 12) floats; as many records as there are
+// lanes are fetched by 128-bit loads and transposed, which was measured faster than gathers from separate arrays (1.26
+// against 2.0 ns per pair on the pressure operator).
+//
+// f32x8 is for what comes in eights everywhere. f32n, of pair_lanes floats, fills the registers of the machine: pair
+// sweeps take sixteen neighbours at a time where there is AVX-512 (pressure operator on Zen 5: 0.39 ns a pair, 0.53
+// with eight).
 #pragma once
 
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <cstring>
 
@@ -22,8 +27,28 @@ using f64x4 = double __attribute__((vector_size(32)));
 
 inline constexpr int lanes = 8;
 
-[[gnu::always_inline]] inline f32x8 splat(float value) {
-  return f32x8{value, value, value, value, value, value, value, value};
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+inline constexpr int pair_lanes = 16;
+using f32x16 = float __attribute__((vector_size(64)));
+using f64x8 = double __attribute__((vector_size(64)));
+using f32n = f32x16;
+using f64n = f64x8;  // half as many as f32n
+#else
+inline constexpr int pair_lanes = lanes;
+using f32n = f32x8;
+using f64n = f64x4;
+#endif
+
+template <class V>
+concept FloatVector = std::same_as<V, f32x8> || std::same_as<V, f32n>;
+
+template <FloatVector V = f32x8>
+[[gnu::always_inline]] inline V splat(float value) {
+  if constexpr (sizeof(V) == 32)
+    return V{value, value, value, value, value, value, value, value};
+  else
+    return V{value, value, value, value, value, value, value, value,
+             value, value, value, value, value, value, value, value};
 }
 
 [[gnu::always_inline]] inline f32x8 load(const float* p) {
@@ -117,18 +142,82 @@ inline constexpr int lanes = 8;
   return (v[0] + v[2]) + (v[1] + v[3]);
 }
 
-// Fetches floats [4 block, 4 block + 4) of the eight records `index[0..7]` of `width` floats each, transposed:
-// out[c] holds component c of all eight.
+// The second is inserted straight from memory; shuffled, it would be loaded first.
+[[gnu::always_inline]] inline f32x8 side_by_side(f32x4 low, f32x4 high) {
+#if defined(__AVX__)
+  return f32x8(_mm256_insertf128_ps(_mm256_castps128_ps256(__m128(low)), __m128(high), 1));
+#else
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+#endif
+}
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+// With a mask of all lanes: the forms without one read a register that the compiler thinks undefined (GCC 12).
+inline constexpr __mmask16 all_lanes = 0xffff;
+[[gnu::always_inline]] inline f32x16 sqrt(f32x16 v) {
+  return f32x16(_mm512_maskz_sqrt_ps(all_lanes, __m512(v)));
+}
+[[gnu::always_inline]] inline f32x16 max(f32x16 a, f32x16 b) {
+  return f32x16(_mm512_maskz_max_ps(all_lanes, __m512(a), __m512(b)));
+}
+[[gnu::always_inline]] inline f32x16 min(f32x16 a, f32x16 b) {
+  return f32x16(_mm512_maskz_min_ps(all_lanes, __m512(a), __m512(b)));
+}
+[[gnu::always_inline]] inline f32x8 low_half(f32x16 v) {
+  return __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+[[gnu::always_inline]] inline f32x8 high_half(f32x16 v) {
+  return __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+[[gnu::always_inline]] inline float sum(f32x16 v) {
+  return sum(low_half(v) + high_half(v));
+}
+[[gnu::always_inline]] inline f64x8 to_f64_low(f32x16 v) {
+  return __builtin_convertvector(low_half(v), f64x8);
+}
+[[gnu::always_inline]] inline f64x8 to_f64_high(f32x16 v) {
+  return __builtin_convertvector(high_half(v), f64x8);
+}
+[[gnu::always_inline]] inline double sum(f64x8 v) {
+  return sum(__builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7));
+}
+
+// As below, of sixteen records.
 template <int width>
-[[gnu::always_inline]] inline void load_records(const float* records, const std::int32_t* index, int block,
+[[gnu::always_inline]] inline void load_records(const float* records, const std::int32_t* entry, int block,
+                                                f32x16 out[4]) {
+  const float* base = records + 4 * block;
+  const auto at = [&](int l) { return load4(base + static_cast<std::int64_t>(entry[l]) * (width / 4)); };
+  // Records l, l + 4, l + 8 and l + 12 side by side; what follows stays within these quarters.
+  const auto four = [&](int l) {
+    const f32x8 low = side_by_side(at(l), at(l + 4)), high = side_by_side(at(l + 8), at(l + 12));
+    return _mm512_maskz_insertf32x8(all_lanes, _mm512_castps256_ps512(__m256(low)), __m256(high), 1);
+  };
+  const auto low_pairs = [](__m512 x, __m512 y) { return _mm512_maskz_unpacklo_ps(all_lanes, x, y); };
+  const auto high_pairs = [](__m512 x, __m512 y) { return _mm512_maskz_unpackhi_ps(all_lanes, x, y); };
+  const auto first_halves = [](__m512 x, __m512 y) { return f32x16(_mm512_maskz_shuffle_ps(all_lanes, x, y, 0x44)); };
+  const auto second_halves = [](__m512 x, __m512 y) { return f32x16(_mm512_maskz_shuffle_ps(all_lanes, x, y, 0xee)); };
+  const __m512 a = four(0), b = four(1), c = four(2), d = four(3);
+  const __m512 ab_low = low_pairs(a, b), ab_high = high_pairs(a, b), cd_low = low_pairs(c, d),
+               cd_high = high_pairs(c, d);
+  out[0] = first_halves(ab_low, cd_low);
+  out[1] = second_halves(ab_low, cd_low);
+  out[2] = first_halves(ab_high, cd_high);
+  out[3] = second_halves(ab_high, cd_high);
+}
+#endif
+
+// Fetches floats [4 block, 4 block + 4) of eight records of `width` floats each, transposed: out[c] holds component c
+// of all eight. entry[l] is four times the number of record l.
+template <int width>
+[[gnu::always_inline]] inline void load_records(const float* records, const std::int32_t* entry, int block,
                                                 f32x8 out[4]) {
   const float* base = records + 4 * block;
-  const auto at = [&](int l) { return load4(base + static_cast<std::int64_t>(index[l]) * width); };
-  const f32x4 r0 = at(0), r1 = at(1), r2 = at(2), r3 = at(3), r4 = at(4), r5 = at(5), r6 = at(6), r7 = at(7);
-  const f32x8 a = __builtin_shufflevector(r0, r4, 0, 1, 2, 3, 4, 5, 6, 7);
-  const f32x8 b = __builtin_shufflevector(r1, r5, 0, 1, 2, 3, 4, 5, 6, 7);
-  const f32x8 c = __builtin_shufflevector(r2, r6, 0, 1, 2, 3, 4, 5, 6, 7);
-  const f32x8 d = __builtin_shufflevector(r3, r7, 0, 1, 2, 3, 4, 5, 6, 7);
+  const auto at = [&](int l) { return load4(base + static_cast<std::int64_t>(entry[l]) * (width / 4)); };
+  const f32x8 a = side_by_side(at(0), at(4));
+  const f32x8 b = side_by_side(at(1), at(5));
+  const f32x8 c = side_by_side(at(2), at(6));
+  const f32x8 d = side_by_side(at(3), at(7));
   const f32x8 ab_low = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
   const f32x8 ab_high = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
   const f32x8 cd_low = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);

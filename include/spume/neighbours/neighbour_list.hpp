@@ -8,8 +8,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
-#include <span>
+#include <iterator>
 
 #include "spume/core/array.hpp"
 #include "spume/neighbours/cell_grid.hpp"
@@ -17,8 +18,50 @@
 
 namespace spume {
 
+// Lists hold entries: four times the number of a point, which is where its record of four floats begins. Pair loops
+// then address records without arithmetic of their own, a sixth of the instructions of the pressure operator.
+inline constexpr std::int32_t entry_scale = 4;
+
+// The points that a run of entries stands for.
+class ListedPoints {
+ public:
+  class Iterator {
+   public:
+    using value_type = std::int32_t;
+    using difference_type = std::ptrdiff_t;
+    using reference = std::int32_t;
+    using pointer = const std::int32_t*;
+    using iterator_category = std::input_iterator_tag;
+    explicit Iterator(const std::int32_t* entry) : entry_(entry) {}
+    std::int32_t operator*() const {
+      return static_cast<std::int32_t>(static_cast<std::uint32_t>(*entry_) / entry_scale);
+    }
+    Iterator& operator++() {
+      ++entry_;
+      return *this;
+    }
+    Iterator operator++(int) { return Iterator(entry_++); }
+    bool operator==(const Iterator&) const = default;
+
+   private:
+    const std::int32_t* entry_;
+  };
+  using value_type = std::int32_t;
+  using const_iterator = Iterator;
+
+  ListedPoints(const std::int32_t* first, std::size_t size) : first_(first), size_(size) {}
+  Iterator begin() const { return Iterator(first_); }
+  Iterator end() const { return Iterator(first_ + size_); }
+  std::size_t size() const { return size_; }
+
+ private:
+  const std::int32_t* first_;
+  std::size_t size_;
+};
+
 class NeighbourList {
  public:
+  // Throws std::length_error for more points than entries can number, 5e8.
   // Positions must be sorted by `particles` (a CellTable of `grid`). Coordinates are kept as floats relative to
   // `origin`: a domain 1000 spacings across is resolved to 6e-5 spacings.
   void build(const CellGrid& grid, const CellTable& particles, const double* x, const double* y, const double* z,
@@ -35,9 +78,10 @@ class NeighbourList {
   std::int64_t pair_count() const { return pairs_; }     // directed, without padding
   std::size_t entries() const { return index_.size(); }  // of all lists, with their padding
   std::int32_t count(std::size_t i) const { return count_[i]; }
+  // Entries, padded with that of the sentinel.
   const std::int32_t* begin(std::size_t i) const { return index_.data() + first_[i]; }
   const std::int32_t* padded_end(std::size_t i) const { return begin(i) + (count_[i] + 7) / 8 * 8; }
-  std::span<const std::int32_t> of(std::size_t i) const { return {begin(i), static_cast<std::size_t>(count_[i])}; }
+  ListedPoints of(std::size_t i) const { return {begin(i), static_cast<std::size_t>(count_[i])}; }
   // Float coordinates relative to the origin, sentinel included.
   const float* coordinate(int axis) const { return coordinate_[axis].data(); }
   double bytes() const;

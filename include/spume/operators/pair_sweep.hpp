@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The loop under every particle sweep. A sweep packs what it reads per neighbour into interleaved records (one
-// streaming pass), then visits each particle's list eight neighbours at a time.
+// streaming pass), then visits each particle's list eight or sixteen neighbours at a time.
 //
 // A record is `dimensions` float coordinates followed by the payload, padded to a multiple of four floats;
 // records are numbered as the points of the neighbour list: particles, images, sentinel.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -83,7 +84,7 @@ struct KernelScale {
 
 // x times the volumes of a batch of neighbours, over the volume that the kernel factors hold.
 template <class Kernel, class Batch>
-[[gnu::always_inline]] inline simd::f32x8 times_volume(simd::f32x8 x, [[maybe_unused]] const Batch& batch) {
+[[gnu::always_inline]] inline simd::f32n times_volume(simd::f32n x, [[maybe_unused]] const Batch& batch) {
   if constexpr (is_varying<Kernel>)
     return x * batch.payload.back();
   else
@@ -99,28 +100,38 @@ template <class Kernel>
     return 1;
 }
 
-// Eight neighbours of one particle: q = r / h, d = r_j - r_i, and their payloads.
+// pair_lanes neighbours of one particle: q = r / h, d = r_j - r_i, and their payloads.
 template <int dimensions, int payload_floats>
 struct Batch {
-  simd::f32x8 q;
-  std::array<simd::f32x8, dimensions> d;
-  std::array<simd::f32x8, payload_floats> payload;
+  simd::f32n q;
+  std::array<simd::f32n, dimensions> d;
+  std::array<simd::f32n, payload_floats> payload;
 };
 
-// Calls body(batch) for the padded list of particle i.
+// Calls body(batch) for the padded list of particle i. Where a batch holds two of the eights that lists are padded to,
+// a last one alone is filled up with the sentinel.
 template <int dimensions, int payload, class Body>
 [[gnu::always_inline]] inline void for_each_batch(const NeighbourList& list, const float* records, std::size_t i,
                                                   float inverse_h, Body&& body) {
+  using simd::f32n, simd::pair_lanes;
   constexpr int width = record_width(dimensions, payload);
-  std::array<simd::f32x8, dimensions> centre;
-  for (int axis = 0; axis < dimensions; ++axis) centre[axis] = simd::splat(records[i * width + axis]);
+  std::array<f32n, dimensions> centre;
+  for (int axis = 0; axis < dimensions; ++axis) centre[axis] = simd::splat<f32n>(records[i * width + axis]);
   const std::int32_t* const end = list.padded_end(i);
-  for (const std::int32_t* index = list.begin(i); index != end; index += simd::lanes) {
-    std::array<simd::f32x8, width> value;
+  [[maybe_unused]] alignas(64) std::int32_t filled[pair_lanes];
+  for (const std::int32_t* next = list.begin(i); next < end; next += pair_lanes) {
+    const std::int32_t* entry = next;
+    if constexpr (pair_lanes > simd::lanes)
+      if (end - next < pair_lanes) {
+        std::copy_n(next, simd::lanes, filled);
+        std::fill_n(filled + simd::lanes, pair_lanes - simd::lanes, entry_scale * list.sentinel());
+        entry = filled;
+      }
+    std::array<f32n, width> value;
     for (int block = 0; block < width / 4; ++block)
-      simd::load_records<width>(records, index, block, value.data() + 4 * block);
+      simd::load_records<width>(records, entry, block, value.data() + 4 * block);
     Batch<dimensions, payload> batch;
-    simd::f32x8 r2{};
+    f32n r2{};
     for (int axis = 0; axis < dimensions; ++axis) {
       batch.d[axis] = value[axis] - centre[axis];
       r2 = r2 + batch.d[axis] * batch.d[axis];
