@@ -70,7 +70,11 @@ def draw(limits, routines, path):
     import numpy as np
 
     figure, (roof, bars) = plt.subplots(1, 2, figsize=(13, max(5, 0.17 * len(routines))), layout="constrained")
-    x = np.logspace(-2, 2, 200)
+    x = np.logspace(-1, 2, 200)
+    numbers = {}  # of the routines, on one thread and on several alike
+    for r in routines:
+        numbers.setdefault(short(r["run_name"]).split(",")[0], len(numbers) + 1)
+    numbered = lambda r: f"{numbers[short(r['run_name']).split(',')[0]]}"
     for (threads, limit), style in zip(sorted(limits.items()), ("-", "--", ":")):
         peak = limit["flops_per_second"]
         for key, colour in (("memory_bytes_per_second", "tab:blue"), ("cache_bytes_per_second", "tab:cyan")):
@@ -80,11 +84,11 @@ def draw(limits, routines, path):
         if "flops_per_second" in r and "bytes_per_second" in r and not short(r["run_name"]).endswith("threads"):
             intensity = r["flops_per_second"] / r["bytes_per_second"]
             roof.plot(intensity, r["flops_per_second"] / 1e9, "ko", markersize=4)
-            roof.annotate(short(r["run_name"]), (intensity, r["flops_per_second"] / 1e9), fontsize=6, xytext=(3, 3),
+            roof.annotate(numbered(r), (intensity, r["flops_per_second"] / 1e9), fontsize=8, xytext=(3, 3),
                           textcoords="offset points")
     roof.set(xscale="log", yscale="log", xlabel="operations per byte", ylabel="GFLOP/s")
     roof.legend(fontsize=7)
-    names = [short(r["run_name"]) for r in routines]
+    names = [f"{short(r['run_name'])}  {numbered(r)}" for r in routines]
     bars.barh(names, [100 * r["of_limit"] for r in routines], color="tab:blue")
     bars.set(xlabel="share of the limit that binds, %", xlim=(0, 100))
     bars.tick_params(axis="y", labelsize=7)
