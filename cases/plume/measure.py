@@ -6,26 +6,25 @@ from spume_results import MissingResult, standard
 
 HEIGHTS = {"z0453": 0.453, "z0555": 0.555}
 FROM = 8.0    # means are taken from this time on: the plume has reached the surface
-BIN = 0.02
 
 
 def profile(run, height):
-    """Distance and mean vertical velocity in rings of width BIN around the axis, within a spacing of the height."""
+    """Distance and mean vertical velocity in rings a spacing wide around the axis, within a spacing of the height."""
     snapshots = run.snapshots()
-    sums = np.zeros((2, int(0.5 / BIN)))
+    sums = np.zeros((2, round(0.5 / run.spacing)))
     for k, t in enumerate(snapshots.times):
         if t < FROM:
             continue
         snapshot = snapshots[k]
         near = np.abs(snapshot.position[:, 2] - height) < run.spacing
         r = np.hypot(snapshot.position[near, 0], snapshot.position[near, 1])
-        keep = r < 0.5
-        ring = (r[keep] / BIN).astype(int)
+        keep = r < sums.shape[1] * run.spacing
+        ring = (r[keep] / run.spacing).astype(int)
         sums[0] += np.bincount(ring, snapshot.field("velocity")[near, 2][keep], sums.shape[1])
         sums[1] += np.bincount(ring, minlength=sums.shape[1])
     if not sums[1].all():
         raise MissingResult(f"{run.folder}: no snapshots from t = {FROM:g} on")
-    return BIN * (np.arange(sums.shape[1]) + 0.5), sums[0] / sums[1]
+    return run.spacing * (np.arange(sums.shape[1]) + 0.5), sums[0] / sums[1]
 
 
 def centre_and_width(r, w):
@@ -44,20 +43,26 @@ def gas_balance(run):
     return float(np.max(np.abs(s["bubble_volume"] + s["burst_volume"] - came)) / came[-1])
 
 
-def measure(runs):
-    run = standard(runs)
-    measured = {"gas_balance": max(gas_balance(r) for r in runs.values())}
-    if run.series["t"][-1] <= FROM:
-        return measured
+def of_profiles(run, suffix):
+    """What is measured of the mean profiles of a run."""
+    measured = {}
     for name, height in HEIGHTS.items():
         r, w = profile(run, height)
         centre, width = centre_and_width(r, w)
         difference = w / centre - np.exp(-((r / width) ** 2))
         inner = r / width < 1.5
-        measured[f"gaussian_rms_{name}"] = float(np.sqrt(np.mean(difference[inner] ** 2)))
-        measured[f"far_excess_{name}"] = float(np.mean(difference[~inner & (r / width < 3)]))
-        measured[f"axis_velocity_{name}"] = float(centre)
-        measured[f"width_{name}"] = float(width)
+        measured[f"gaussian_rms_{name}{suffix}"] = float(np.sqrt(np.mean(difference[inner] ** 2)))
+        measured[f"far_excess_{name}{suffix}"] = float(np.mean(difference[~inner & (r / width < 3)]))
+        measured[f"axis_velocity_{name}{suffix}"] = float(centre)
+        measured[f"width_{name}{suffix}"] = float(width)
+    return measured
+
+
+def measure(runs):
+    measured = {"gas_balance": max(gas_balance(r) for r in runs.values())}
+    for name, run in runs.items():
+        if run.series["t"][-1] > FROM:
+            measured |= of_profiles(run, "" if run is standard(runs) else f"_{name}")
     for name, other in runs.items():
         late = (other.series["t"] >= 6) & (other.series["t"] <= 12)
         if late.any():

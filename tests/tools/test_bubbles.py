@@ -34,7 +34,7 @@ class Sizes(unittest.TestCase):
 class Plume(unittest.TestCase):
     def test_centre_and_width_of_a_gaussian(self):
         module = load_measure(CASES / "plume")
-        r = module.BIN * (np.arange(25) + 0.5)
+        r = 0.02 * (np.arange(25) + 0.5)
         centre, width = module.centre_and_width(r, 0.7 * np.exp(-((r / 0.11) ** 2)))
         self.assertAlmostEqual(centre, 0.7, delta=0.01)
         self.assertAlmostEqual(width, 0.11, delta=0.002)
