@@ -19,6 +19,21 @@ namespace spume::test {
 
 using Overrides = std::vector<std::string>;
 
+// One wavelength of deep water in two dimensions, 50 particles long; what follows says where the liquid is.
+inline const std::string wave_tank = R"toml(method = "les-sph"
+[domain]
+lower = [0, -0.5]
+upper = [1, 0.5]
+x = "periodic"
+bottom = "free-slip"
+[resolution]
+spacing = 0.02
+[fluid]
+reynolds = 4e4
+froude = 1
+mach = 0.05
+)toml";
+
 // One value per particle and component, by identifier.
 struct State {
   int dimensions = 0;

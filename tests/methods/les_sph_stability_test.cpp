@@ -95,19 +95,7 @@ TEST(LesSphStability, AShiftThatWouldStirTheParticlesIsRefused) {
 // Shifts in proportion to the step would pass what a lattice stands at courant 0.34: this wave gained a quarter of its
 // kinetic energy from them, against 0.05 at any shift below, which its 50 particles a wavelength leave.
 TEST(LesSphStability, LongStepsDoNotStirAWave) {
-  const std::string wave = R"toml(method = "les-sph"
-[domain]
-lower = [0, -0.5]
-upper = [1, 0.5]
-x = "periodic"
-bottom = "free-slip"
-[resolution]
-spacing = 0.02
-[fluid]
-reynolds = 4e4
-froude = 1
-mach = 0.05
-[[liquid]]
+  const std::string wave = wave_tank + R"toml([[liquid]]
 where = "0.0525*cos(2*pi*x) + 0.0087*cos(4*pi*x) - y"
 velocity = ["0.139*cos(2*pi*x)*exp(2*pi*y)", "0.139*sin(2*pi*x)*exp(2*pi*y)"]
 conform = true

@@ -247,19 +247,7 @@ TEST(LesSphSurface, DisturbedWaterCalmsDownInThreeDimensions) {
 // the level liquid must not grow by more than the half per cent that the case demands; with the surface half a layer
 // above the uppermost particles, in place of by the volume below it, it grows by 3.7 %.
 TEST(LesSphSurface, SteepWaveGainsNoEnergy) {
-  Simulation run(R"case(method = "les-sph"
-[domain]
-lower = [0, -0.5]
-upper = [1, 0.5]
-x = "periodic"
-bottom = "free-slip"
-[resolution]
-spacing = 0.02
-[fluid]
-reynolds = 4e4
-froude = 1
-mach = 0.05
-[constants]
+  Simulation run(wave_tank + R"case([constants]
 chi = 0.55
 eta = "(chi*cos(2*pi*x) + chi^2/2*cos(4*pi*x) + 3/8*chi^3*cos(6*pi*x))/(2*pi)"
 amplitude = "chi*sqrt(1+chi^2)/sqrt(2*pi)"
