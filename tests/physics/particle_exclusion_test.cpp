@@ -21,14 +21,19 @@ struct Bed {
   double largest = 0;
   bool polydisperse;
 
-  // Random places; diameters of one size, or up to 4 times apart; volume fraction alpha.
-  Bed(std::size_t n, double alpha, bool poly, std::uint64_t seed = 1)
+  // Random places; diameters of one size, or up to 4 times apart; volume fraction alpha. `gathering` above 1 draws them
+  // towards the middle of the box.
+  Bed(std::size_t n, double alpha, bool poly, std::uint64_t seed = 1, double gathering = 1)
       : diameters(n), identifier(n), polydisperse(poly) {
     for (auto& x : position) x.resize(n);
     double volume = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const auto r = random_uniform(seed, RandomPurpose::test, i, 0, 0);
-      for (int c = 0; c < 3; ++c) position[c][i] = lower[c] + length[c] * r[c];
+      for (int c = 0; c < 3; ++c) {
+        const double from_middle = 2 * r[c] - 1;
+        const double gathered = std::copysign(std::pow(std::abs(from_middle), gathering), from_middle);
+        position[c][i] = lower[c] + length[c] * 0.5 * (1 + gathered);
+      }
       diameters[i] = poly ? 0.25 + 0.75 * r[3] * r[3] : 1;
       identifier[i] = static_cast<std::int64_t>((i * 7919) % n);
       volume += sphere_volume(diameters[i]);
@@ -61,12 +66,13 @@ struct Setting {
   std::size_t n;
   double alpha;
   bool polydisperse;
+  double gathering = 1;
 };
 
 class Matching : public testing::TestWithParam<Setting> {};
 
 TEST_P(Matching, RoundsAndSortingTakeThePairsOfTheDirectSearch) {
-  Bed bed(GetParam().n, GetParam().alpha, GetParam().polydisperse);
+  Bed bed(GetParam().n, GetParam().alpha, GetParam().polydisperse, 1, GetParam().gathering);
   const auto direct = greedy_matching(bed.spheres(), bed.length);
   for (const auto method : {MatchingMethod::rounds, MatchingMethod::sorting}) {
     Exclusion exclusion = bed.exclusion();
@@ -81,11 +87,12 @@ TEST_P(Matching, RoundsAndSortingTakeThePairsOfTheDirectSearch) {
   }
 }
 
-// The last ones have fewer than three cells along some sides.
+// The gathered ones have up to 90 in a cell; the last ones fewer than three cells along some sides.
 INSTANTIATE_TEST_SUITE_P(Beds, Matching,
                          testing::Values(Setting{4000, 0.035, false}, Setting{4000, 0.3, false},
-                                         Setting{3000, 2.0, false}, Setting{4000, 0.3, true}, Setting{25, 0.1, false},
-                                         Setting{60, 0.9, false}, Setting{2, 0.02, false}));
+                                         Setting{3000, 2.0, false}, Setting{4000, 0.3, true},
+                                         Setting{4000, 0.02, false, 1.6}, Setting{4000, 0.02, true, 1.6},
+                                         Setting{25, 0.1, false}, Setting{60, 0.9, false}, Setting{2, 0.02, false}));
 
 TEST(YouOnlyCollideOnce, TiesGoByIdentifier) {
   // Four particles in a row at equal distances: three equal overlaps.

@@ -51,8 +51,9 @@ template <FloatVector V = f32x8>
              value, value, value, value, value, value, value, value};
 }
 
-[[gnu::always_inline]] inline f32x8 load(const float* p) {
-  f32x8 v;
+template <FloatVector V = f32x8>
+[[gnu::always_inline]] inline V load(const float* p) {
+  V v;
   std::memcpy(&v, p, sizeof v);
   return v;
 }
@@ -156,6 +157,9 @@ template <FloatVector V = f32x8>
 inline constexpr __mmask16 all_lanes = 0xffff;
 [[gnu::always_inline]] inline f32x16 sqrt(f32x16 v) {
   return f32x16(_mm512_maskz_sqrt_ps(all_lanes, __m512(v)));
+}
+[[gnu::always_inline]] inline unsigned less_bits(f32x16 a, f32x16 b) {
+  return _mm512_cmp_ps_mask(__m512(a), __m512(b), _CMP_LT_OQ);
 }
 [[gnu::always_inline]] inline f32x16 max(f32x16 a, f32x16 b) {
   return f32x16(_mm512_maskz_max_ps(all_lanes, __m512(a), __m512(b)));

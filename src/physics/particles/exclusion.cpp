@@ -51,14 +51,20 @@ Exclusion::Exclusion(const std::array<double, 3>& lower, const std::array<double
 
 void Exclusion::prepare(const Spheres& spheres) {
   const std::size_t n = spheres.size;
-  // One particle per cell on average, and never less than a diameter: the printed radius misses overlaps.
-  cells_ = PeriodicCells::with_side(lower_, length_, largest_diameter_, std::max<double>(64, static_cast<double>(n)));
-  for (int axis = 0; axis < 3; ++axis) inverse_side_[axis] = cells_.count[axis] / length_[axis];
+  // One particle per cell on average, and sides of at least two diameters, so that a sphere reaches two cells along
+  // every axis, places in single precision included (the printed radius misses overlaps).
+  const double reach = std::sqrt(safe_square(largest_diameter_));
+  cells_ = PeriodicCells::with_side(lower_, length_, 2 * reach, std::max<double>(64, static_cast<double>(n)));
+  for (int axis = 0; axis < 3; ++axis) {
+    inverse_side_[axis] = cells_.count[axis] / length_[axis];
+    cells_per_length_[axis] = static_cast<float>(inverse_side_[axis]);
+  }
+  common_limit_ = spheres.diameter == nullptr ? safe_square(0.5 * (spheres.common_diameter + largest_diameter_)) : 0;
   own_images_ = std::min({cells_.count[0], cells_.count[1], cells_.count[2]}) < 3;
   order_.build(cells_, spheres.position[0], spheres.position[1], spheres.position[2], n);
   spheres_ = spheres;
   for (int axis = 0; axis < 3; ++axis) {
-    place_[axis].resize(n + simd::lanes);  // a search may read past the last
+    place_[axis].resize(n + search_group);
     float* place = place_[axis].data();
     const double* x = spheres.position[axis];
     const double lower = lower_[axis];
@@ -83,7 +89,7 @@ Exclusion::Strongest Exclusion::strongest_free(std::size_t k) const {
   const auto identifier = [&](std::int32_t rank) {
     return spheres_.identifier[index_of(static_cast<std::size_t>(rank))];
   };
-  search_around(centre_of(k), [&](const std::int32_t* rank, const double* overlap, int count) {
+  search_around(k, [&](const std::int32_t* rank, const double* overlap, int count) {
     for (int f = 0; f < count; ++f) {
       const std::int32_t m = rank[f];
       const double q = taken_[static_cast<std::size_t>(m)] == 0 ? overlap[f] : 0.0;

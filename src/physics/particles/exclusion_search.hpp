@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "spume/core/periodic_grid.hpp"
@@ -17,6 +18,11 @@ namespace spume {
 inline constexpr std::int32_t crowd = 256;
 inline constexpr std::int32_t crowd_window = 64;
 
+// What may overlap is put down first, up to this many, and then looked at together: it is rare and unforeseeable.
+inline constexpr int found_room = 64;
+// Particles of a row that are compared at once; places may be read as far past the last.
+inline constexpr int search_group = 16;
+
 // With the sphere of that rank; 0: none.
 [[gnu::always_inline]] inline double Exclusion::overlap_with(const Centre& here, std::int32_t rank) const {
   const auto i = index_of(static_cast<std::size_t>(rank));
@@ -29,6 +35,72 @@ inline constexpr std::int32_t crowd_window = 64;
   const double touching = here.radius + 0.5 * diameter_of(static_cast<std::size_t>(rank));
   const double overlap = touching - std::sqrt(distance_2);
   return overlapping(distance_2, touching) & (rank != here.rank) ? overlap : 0.0;
+}
+
+inline float Exclusion::safe_square(double reach) const {
+  const double safe_reach = reach + 16 * 0x1p-24 * std::max({length_[0], length_[1], length_[2]});
+  return static_cast<float>(safe_reach * safe_reach * (1 + 1e-6));
+}
+
+template <class CentreOf, class Use>
+bool Exclusion::search_near(const std::array<float, 3>& place, std::int32_t rank, float limit, CentreOf&& centre,
+                            Use&& use) const {
+  // A sphere reaches half a cell, so that along every axis the nearer neighbour is all it can reach.
+  int low[3];
+  bool inside = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = static_cast<int>(place[axis] * cells_per_length_[axis] + 0.5F) - 1;
+    inside &= (low[axis] >= 0) & (low[axis] + 1 < cells_.count[axis]);
+  }
+  if (!inside) return false;
+
+  // Four rows of two cells along z, in groups of sixteen: one word tells which of them are near, without a branch for
+  // the length of a row or the number of cells that it took.
+  constexpr int rows = 4, group = search_group;
+  const std::int32_t* corner = order_.first() + cell_number(low[0], low[1], low[2]);
+  const std::int32_t* row[rows] = {corner, corner + cells_.count[2], corner + cells_.plane(),
+                                   corner + cells_.plane() + cells_.count[2]};
+  std::int32_t begin[rows], end[rows], longest = 0;
+  for (int r = 0; r < rows; ++r) {
+    begin[r] = row[r][0];
+    end[r] = row[r][2];
+    longest = std::max(longest, end[r] - begin[r]);
+  }
+  if (longest > crowd) return false;
+
+  using simd::f32n;
+  const f32n limit_2 = simd::splat<f32n>(limit);
+  const f32n cx = simd::splat<f32n>(place[0]), cy = simd::splat<f32n>(place[1]), cz = simd::splat<f32n>(place[2]);
+  const float *x = place_[0].data(), *y = place_[1].data(), *z = place_[2].data();
+  for (; longest > 0; longest -= group) {
+    std::uint64_t near = 0;
+    for (int r = 0; r < rows; ++r) {
+      std::uint64_t bits = 0;
+      for (int half = 0; half < group; half += simd::pair_lanes) {
+        const std::int32_t m = begin[r] + half;
+        const f32n dx = simd::load<f32n>(x + m) - cx, dy = simd::load<f32n>(y + m) - cy,
+                   dz = simd::load<f32n>(z + m) - cz;
+        bits |= std::uint64_t{simd::less_bits(dx * dx + dy * dy + dz * dz, limit_2)} << half;
+      }
+      bits &= 0xffffU >> (group - std::min(end[r] - begin[r], group));
+      near |= bits << group * r;
+    }
+    if (near != 0) {
+      std::int32_t found[found_room];
+      double overlap[found_room];
+      int count = 0;
+      const Centre here = centre();
+      for (; near != 0; near &= near - 1) {
+        const int bit = std::countr_zero(near);
+        found[count] = begin[bit / group] + bit % group;
+        overlap[count] = overlap_with(here, found[count]);
+        count += found[count] != rank ? 1 : 0;
+      }
+      use(found, overlap, count);
+    }
+    for (int r = 0; r < rows; ++r) begin[r] = std::min(begin[r] + group, end[r]);
+  }
+  return true;
 }
 
 template <bool own_images, class Use>
@@ -50,10 +122,7 @@ void Exclusion::search_cells(const Centre& here, Use&& use) const {
     }
   }
   const std::int32_t* first = order_.first();
-  const auto number = [&](int i, int j, int l) {
-    return (static_cast<std::size_t>(i) * cells_.count[1] + j) * static_cast<std::size_t>(cells_.count[2]) + l;
-  };
-  const std::size_t own_cell = number(own[0], own[1], own[2]);
+  const std::size_t own_cell = cell_number(own[0], own[1], own[2]);
   const bool own_crowded = rank >= 0 && first[own_cell + 1] - first[own_cell] > crowd;
 
   // What to look at, cell rows along z: ranks, and the image of the box that they lie in.
@@ -64,13 +133,13 @@ void Exclusion::search_cells(const Centre& here, Use&& use) const {
   Row rows[96];  // at most 9 rows, of 3 cells each where there is a crowd, twice at the ends of the box
   int row_count = 0;
   const auto add_row = [&](int i, int j, int l0, int l1, float shift_x, float shift_y, float shift_z) {
-    const std::int32_t begin = first[number(i, j, l0)], end = first[number(i, j, l1) + 1];
+    const std::int32_t begin = first[cell_number(i, j, l0)], end = first[cell_number(i, j, l1) + 1];
     if (rank < 0 || (!own_crowded && end - begin <= crowd)) {
       rows[row_count++] = {begin, end, {shift_x, shift_y, shift_z}};
       return;
     }
     for (int l = l0; l <= l1; ++l) {
-      std::int32_t b = first[number(i, j, l)], e = first[number(i, j, l) + 1];
+      std::int32_t b = first[cell_number(i, j, l)], e = first[cell_number(i, j, l) + 1];
       if (own_crowded || e - b > crowd) {
         b = std::max(b, rank - crowd_window);
         e = std::min(e, rank + crowd_window + 1);
@@ -96,19 +165,13 @@ void Exclusion::search_cells(const Centre& here, Use&& use) const {
     }
   }
 
-  // Places from the lower corner in single precision are off by 2^-24 of the box, distances by less than eight times
-  // that along every axis, the image included.
-  const double longest = std::max({length_[0], length_[1], length_[2]});
-  const double safe_reach = reach + 16 * 0x1p-24 * longest;
-  const simd::f32x8 limit_2 = simd::splat(static_cast<float>(safe_reach * safe_reach * (1 + 1e-6)));
+  const simd::f32x8 limit_2 = simd::splat(safe_square(reach));
   const float centre[3] = {static_cast<float>(here.place[0] - lower_[0]), static_cast<float>(here.place[1] - lower_[1]),
                            static_cast<float>(here.place[2] - lower_[2])};
   const float *x = place_[0].data(), *y = place_[1].data(), *z = place_[2].data();
 
-  // Overlaps are rare and unforeseeable: what may overlap is put down without a branch and looked at together.
-  constexpr int room = 64;
-  std::int32_t found[room + simd::lanes];
-  double overlap[room + simd::lanes];
+  std::int32_t found[found_room + simd::lanes];
+  double overlap[found_room + simd::lanes];
   const auto use_found = [&](int n) {
     for (int f = 0; f < n; ++f) overlap[f] = overlap_with(here, found[f]);
     use(found, overlap, n);
@@ -127,7 +190,7 @@ void Exclusion::search_cells(const Centre& here, Use&& use) const {
       }
       near &= 0xffU >> (simd::lanes - std::min(end - m, simd::lanes));
       count += simd::store_lanes(found + count, m, near);
-      if (count > room) count = use_found(count);
+      if (count > found_room) count = use_found(count);
     }
   }
   use_found(count);
@@ -140,9 +203,19 @@ inline Exclusion::Centre Exclusion::centre_of(std::size_t k) const {
           static_cast<std::int32_t>(k)};
 }
 
+template <class Use>
+void Exclusion::search_around(std::size_t k, Use&& use) const {
+  const auto centre = [&] { return centre_of(k); };
+  const float limit = common_limit_ > 0 ? common_limit_ : safe_square(0.5 * (diameter_of(k) + largest_diameter_));
+  if (own_images_)
+    search_cells<true>(centre(), use);
+  else if (!search_near({place_[0][k], place_[1][k], place_[2][k]}, static_cast<std::int32_t>(k), limit, centre, use))
+    search_cells<false>(centre(), use);
+}
+
 template <class Visit>
 void Exclusion::for_each_overlap(std::size_t k, Visit&& visit) const {
-  search_around(centre_of(k), [&](const std::int32_t* rank, const double* overlap, int count) {
+  search_around(k, [&](const std::int32_t* rank, const double* overlap, int count) {
     for (int f = 0; f < count; ++f)
       if (overlap[f] > 0) visit(rank[f], overlap[f]);
   });
@@ -150,14 +223,11 @@ void Exclusion::for_each_overlap(std::size_t k, Visit&& visit) const {
 
 template <class Visit>
 void Exclusion::for_each_covering(const std::array<double, 3>& point, Visit&& visit) const {
-  search_around({point, 0, -1}, [&](const std::int32_t* rank, const double* overlap, int count) {
+  const Centre here{point, 0, -1};
+  const auto use = [&](const std::int32_t* rank, const double* overlap, int count) {
     for (int f = 0; f < count; ++f)
       if (overlap[f] > 0) visit(rank[f], overlap[f]);
-  });
-}
-
-template <class Use>
-void Exclusion::search_around(const Centre& here, Use&& use) const {
+  };
   if (own_images_)
     search_cells<true>(here, use);
   else

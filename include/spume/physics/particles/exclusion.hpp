@@ -86,11 +86,23 @@ class Exclusion {
     double radius;
     std::int32_t rank;  // of the sphere there; -1: a point
   };
-  // Calls use(ranks, overlaps, count) for groups of neighbours; an overlap of 0 is none.
+  // Calls use(ranks, overlaps, count) for groups of neighbours of particle k; an overlap of 0 is none.
   template <class Use>
-  void search_around(const Centre& here, Use&& use) const;
+  void search_around(std::size_t k, Use&& use) const;
+  // The same for any centre, anywhere.
   template <bool own_images, class Use>
   void search_cells(const Centre& here, Use&& use) const;
+  // The same inside the box and outside crowds, elsewhere false. `place` is from the lower corner, `limit` the square
+  // of what may be near; centre() gives the centre, where something is.
+  template <class CentreOf, class Use>
+  bool search_near(const std::array<float, 3>& place, std::int32_t rank, float limit, CentreOf&& centre,
+                   Use&& use) const;
+  std::size_t cell_number(int i, int j, int l) const {
+    return (static_cast<std::size_t>(i) * cells_.count[1] + j) * static_cast<std::size_t>(cells_.count[2]) + l;
+  }
+  // The square of a reach that misses nothing although places are compared in single precision: from the lower corner
+  // they are off by 2^-24 of the box, distances by less than eight times that along every axis, the image included.
+  float safe_square(double reach) const;
   Centre centre_of(std::size_t k) const;
   double overlap_with(const Centre& here, std::int32_t rank) const;
   Strongest strongest_free(std::size_t k) const;
@@ -99,6 +111,8 @@ class Exclusion {
   std::size_t matched_pairs() const;
 
   std::array<double, 3> lower_{}, length_{}, inverse_length_{}, inverse_side_{};
+  std::array<float, 3> cells_per_length_{};
+  float common_limit_ = 0;  // of spheres of one diameter
   double largest_diameter_ = 0;
   bool own_images_ = false;  // some axis has fewer than three cells: nearest images by rounding
   PeriodicCells cells_;
