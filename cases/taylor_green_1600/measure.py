@@ -74,7 +74,8 @@ def curves(runs):
         times = np.unique(spectrum["t"])
         nearest = times[np.argmin(np.abs(times - 9))]
         if abs(nearest - 9) < 0.2:
-            at = (spectrum["t"] == nearest) & (spectrum["wavenumber"] > 0) & (spectrum["energy"] > 0)
+            # The first shell is empty by symmetry, to rounding.
+            at = (spectrum["t"] == nearest) & (spectrum["energy"] > 1e-20 * spectrum["energy"].max())
             spectra.append((f"{name}, t = {nearest:.3g}", spectrum["wavenumber"][at], spectrum["energy"][at], "-"))
     if spectra:
         spectra.append(("512^3, digitised", SPECTRUM["k"], SPECTRUM["E"], "ko"))

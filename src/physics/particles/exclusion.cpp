@@ -65,11 +65,16 @@ void Exclusion::prepare(const Spheres& spheres) {
   spheres_ = spheres;
   for (int axis = 0; axis < 3; ++axis) {
     place_[axis].resize(n + search_group);
+    position_[axis].resize(n);
     float* place = place_[axis].data();
+    double* position = position_[axis].data();
     const double* x = spheres.position[axis];
     const double lower = lower_[axis];
     const std::int32_t* order = order_.order().data();
-    parallel_for(n, [=](std::size_t k) { place[k] = static_cast<float>(x[order[k]] - lower); });
+    parallel_for(n, [=](std::size_t k) {
+      position[k] = x[order[k]];
+      place[k] = static_cast<float>(position[k] - lower);
+    });
   }
 }
 
@@ -279,7 +284,8 @@ void Exclusion::separate(const Spheres& spheres) const {
 
 double Exclusion::bytes() const {
   return order_.bytes() +
-         static_cast<double>(4 * (3 * place_[0].capacity() + partner_.capacity() + remembered * best_.capacity() +
+         static_cast<double>(24 * position_[0].capacity() +
+                             4 * (3 * place_[0].capacity() + partner_.capacity() + remembered * best_.capacity() +
                                   active_.capacity() + next_active_.capacity()) +
                              taken_.capacity() + has_more_.capacity());
 }

@@ -25,10 +25,9 @@ inline constexpr int search_group = 16;
 
 // With the sphere of that rank; 0: none.
 [[gnu::always_inline]] inline double Exclusion::overlap_with(const Centre& here, std::int32_t rank) const {
-  const auto i = index_of(static_cast<std::size_t>(rank));
   double distance_2 = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    double d = here.place[axis] - spheres_.position[axis][i];
+    double d = here.place[axis] - position_[axis][static_cast<std::size_t>(rank)];
     d -= length_[axis] * std::nearbyint(d * inverse_length_[axis]);
     distance_2 += d * d;
   }
@@ -197,10 +196,7 @@ void Exclusion::search_cells(const Centre& here, Use&& use) const {
 }
 
 inline Exclusion::Centre Exclusion::centre_of(std::size_t k) const {
-  const std::size_t i = index_of(k);
-  return {{spheres_.position[0][i], spheres_.position[1][i], spheres_.position[2][i]},
-          0.5 * diameter_of(k),
-          static_cast<std::int32_t>(k)};
+  return {{position_[0][k], position_[1][k], position_[2][k]}, 0.5 * diameter_of(k), static_cast<std::int32_t>(k)};
 }
 
 template <class Use>

@@ -118,8 +118,8 @@ class Exclusion {
   PeriodicCells cells_;
   CellOrder order_;
   Spheres spheres_;
-  // In the order of the cells, from the lower corner, to tell in vectors what cannot overlap; what may is looked at in
-  // the positions themselves.
+  // In the order of the cells: positions, and places from the lower corner, which tell in vectors what cannot overlap.
+  std::array<Array<double>, 3> position_;
   std::array<Array<float>, 3> place_;
   Array<std::int32_t> partner_, active_, next_active_;
   // By rank: the partners of the strongest overlaps, and whether it has a partner now or more overlaps than are
