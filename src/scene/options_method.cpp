@@ -119,7 +119,7 @@ Section time() {
               {.key = "courant",
                .type = OptionType::number,
                .unit = "1",
-               .absent = "0.2, with a free surface 0.3",
+               .absent = "0.2, with a free surface 0.3; rk3 without particles 0.5, rk4 0.9",
                .chosen = [](const Draft& d) { return shortest(d.options.time.courant); },
                .range = above_up_to(0, 1),
                .description = "step limit by speed: Courant number",

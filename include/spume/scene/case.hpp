@@ -127,7 +127,7 @@ struct ParticleCaseOptions {
 
 struct TimeOptions {
   double end = 0;
-  double courant = 0;  // 0: not given; load_case then makes it 0.3 with a free surface, else 0.2
+  double courant = 0;  // 0: not given; load_case then chooses it by method and integrator
   double viscous = 0.2;
   bool centred = true;  // velocities free of divergence half a step ahead: second order in time
   double max_step = 0;  // 0: none

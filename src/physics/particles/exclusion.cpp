@@ -138,8 +138,7 @@ ExclusionReport Exclusion::match_by_rounds() {
   const std::size_t n = spheres_.size;
   best_.resize(n);
   has_more_.resize(n);
-  active_.resize(n);
-  next_active_.resize(n);
+  Array<std::int32_t>&active = order_.scratch(), &next_active = order_.more_scratch();
   ExclusionReport report;
   parallel_for(n, [&](std::size_t k) { remember(k, strongest_free(k)); });
 
@@ -166,24 +165,24 @@ ExclusionReport Exclusion::match_by_rounds() {
     });
     return count == 0 ? std::size_t{0} : start[blocks];
   };
-  std::size_t left = keep(nullptr, n, active_);
+  std::size_t left = keep(nullptr, n, active);
   report.overlapping = left;
   while (left > 0) {
     // The globally strongest free pair is always the strongest for both, so that every round takes at least one.
     ++report.rounds;
     parallel_for(left, [&](std::size_t a) {
-      const auto k = static_cast<std::size_t>(active_[a]);
+      const auto k = static_cast<std::size_t>(active[a]);
       const std::int32_t m = best_[k][0];
-      if (best_[static_cast<std::size_t>(m)][0] != active_[a]) return;
+      if (best_[static_cast<std::size_t>(m)][0] != active[a]) return;
       taken_[k] = 1;
       partner_[index_of(k)] = static_cast<std::int32_t>(index_of(static_cast<std::size_t>(m)));
     });
     parallel_for(left, [&](std::size_t a) {
-      const auto k = static_cast<std::size_t>(active_[a]);
+      const auto k = static_cast<std::size_t>(active[a]);
       if (taken_[k] == 0) drop_taken(k);
     });
-    left = keep(active_.data(), left, next_active_);
-    active_.swap(next_active_);
+    left = keep(active.data(), left, next_active);
+    active.swap(next_active);
   }
   report.pairs = matched_pairs();
   return report;
@@ -285,8 +284,7 @@ void Exclusion::separate(const Spheres& spheres) const {
 double Exclusion::bytes() const {
   return order_.bytes() +
          static_cast<double>(24 * position_[0].capacity() +
-                             4 * (3 * place_[0].capacity() + partner_.capacity() + remembered * best_.capacity() +
-                                  active_.capacity() + next_active_.capacity()) +
+                             4 * (3 * place_[0].capacity() + partner_.capacity() + remembered * best_.capacity()) +
                              taken_.capacity() + has_more_.capacity());
 }
 

@@ -221,7 +221,7 @@ double ParticleSystem::estimated_bytes(const PeriodicGrid& grid, const ParticleO
   double per_particle = 8 * 7 + 16 + 18;
   if (options.placement.diameters.size() > 1) per_particle += 8;
   if (couples) per_particle += 8 * 3 + 8 * 3;
-  if (collides) per_particle += 24 + 12 + 4 + 12 + 8 + 2 + 4;
+  if (collides) per_particle += 24 + 12 + 4 + 12 + 2 + 4;
   double points = 1;
   for (int axis = 0; axis < 3; ++axis) points *= grid.points[axis] + options.spline_order - 1;
   return per_particle * n + 4.0 * static_cast<double>(grid.point_count()) +

@@ -121,7 +121,7 @@ class Exclusion {
   // In the order of the cells: positions, and places from the lower corner, which tell in vectors what cannot overlap.
   std::array<Array<double>, 3> position_;
   std::array<Array<float>, 3> place_;
-  Array<std::int32_t> partner_, active_, next_active_;
+  Array<std::int32_t> partner_;
   // By rank: the partners of the strongest overlaps, and whether it has a partner now or more overlaps than are
   // remembered. Without a memory of several, every second particle of a crowd had to be searched around again.
   Array<std::array<std::int32_t, remembered>> best_;
