@@ -139,7 +139,8 @@ Vec3 advance_stable(const Gas& gas, double radius, const Surroundings& liquid, c
   const double speed = length(w);
   const Drag at_start(speed, radius, gas.viscosity);
   const double at_end = implicit_drag(slip, w, speed, at_start, radius, gas.viscosity, dt);
-  const double weight = 1 / (2 + slip.rate * dt * at_end);
+  // Second order in short steps; in long ones the drag at the start is forgotten as fast as the slip there.
+  const double weight = 1 / (1 + std::exp(slip.rate * dt * at_end));
   const double drag = weight * at_start.rate + (1 - weight) * at_end;
 
   const Vec3 steady = balance(drag, slip.push, slip.spin);
