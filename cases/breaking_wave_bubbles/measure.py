@@ -42,6 +42,11 @@ def volume_share(run):
     return float(np.mean(run.series["bubble_volume"][rows] / run.series["mass"][rows]))
 
 
+def entrained_share(run):
+    """All gas entrained so far over liquid."""
+    return float(run.series["entrained_volume"][-1] / run.series["mass"][0])
+
+
 def gas_balance(run):
     s = run.series
     came = s["injected_volume"] + s["entrained_volume"]
@@ -64,6 +69,7 @@ def measure(runs):
         if other is run:
             continue
         label = name.removeprefix("dr_")
+        measured[f"entrained_ratio_{label}"] = entrained_share(other) / entrained_share(run)
         measured[f"volume_ratio_{label}"] = volume_share(other) / volume_share(run)
         try:
             measured |= {f"{quantity}_{name}": value for quantity, value in slopes(other).items()}
