@@ -247,7 +247,8 @@ void note_places(const Node& node, const std::string& name, const std::string& f
   }
 }
 
-// On a grid. Runge-Kutta stays accurate up to its stability: 0.55 and 1.06. Particles keep the steps of Adams-Bashforth.
+// On a grid. Runge-Kutta stays accurate up to its stability: 0.55 and 1.06. Particles keep the steps of
+// Adams-Bashforth.
 double default_courant(const Case& options) {
   if (options.particles.any() || options.spectral.integrator == Integrator::ab2) return 0.2;
   return options.spectral.integrator == Integrator::rk3 ? 0.5 : 0.9;
