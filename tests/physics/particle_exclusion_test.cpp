@@ -94,6 +94,16 @@ INSTANTIATE_TEST_SUITE_P(Beds, Matching,
                                          Setting{4000, 0.02, false, 1.6}, Setting{4000, 0.02, true, 1.6},
                                          Setting{25, 0.1, false}, Setting{60, 0.9, false}, Setting{2, 0.02, false}));
 
+TEST(YouOnlyCollideOnce, AGiantDoesNotHideWhatSmallOnesOverlap) {
+  // Cells of two of its diameters would hold five hundred.
+  Bed bed(12000, 0.02, true);
+  bed.largest = bed.diameters[0] = 0.22 * *std::min_element(bed.length.begin(), bed.length.end());
+  const auto direct = greedy_matching(bed.spheres(), bed.length);
+  Exclusion exclusion = bed.exclusion();
+  exclusion.match(bed.spheres());
+  for (std::size_t i = 0; i < bed.size(); ++i) ASSERT_EQ(exclusion.partner()[i], direct[i]) << i;
+}
+
 TEST(YouOnlyCollideOnce, TiesGoByIdentifier) {
   // Four particles in a row at equal distances: three equal overlaps.
   Bed bed(4, 0.01, false);

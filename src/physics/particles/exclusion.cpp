@@ -52,15 +52,19 @@ Exclusion::Exclusion(const std::array<double, 3>& lower, const std::array<double
 void Exclusion::prepare(const Spheres& spheres) {
   const std::size_t n = spheres.size;
   // One particle per cell on average, and sides of at least two diameters, so that a sphere reaches two cells along
-  // every axis, places in single precision included (the printed radius misses overlaps).
-  const double reach = std::sqrt(safe_square(largest_diameter_));
-  cells_ = PeriodicCells::with_side(lower_, length_, 2 * reach, std::max<double>(64, static_cast<double>(n)));
+  // every axis, places in single precision included; where that makes crowds of small spheres, or too few cells, of at
+  // least one diameter (the printed radius misses overlaps).
+  const double reach = std::sqrt(safe_square(largest_diameter_)), most_cells = std::max<double>(64, double(n));
+  const auto fewest = [&] { return std::min({cells_.count[0], cells_.count[1], cells_.count[2]}); };
+  cells_ = PeriodicCells::with_side(lower_, length_, 2 * reach, most_cells);
+  reaches_half_a_cell_ = fewest() >= 3 && n <= 8 * cells_.size();
+  if (!reaches_half_a_cell_) cells_ = PeriodicCells::with_side(lower_, length_, largest_diameter_, most_cells);
   for (int axis = 0; axis < 3; ++axis) {
     inverse_side_[axis] = cells_.count[axis] / length_[axis];
     cells_per_length_[axis] = static_cast<float>(inverse_side_[axis]);
   }
   common_limit_ = spheres.diameter == nullptr ? safe_square(0.5 * (spheres.common_diameter + largest_diameter_)) : 0;
-  own_images_ = std::min({cells_.count[0], cells_.count[1], cells_.count[2]}) < 3;
+  own_images_ = fewest() < 3;
   order_.build(cells_, spheres.position[0], spheres.position[1], spheres.position[2], n);
   spheres_ = spheres;
   for (int axis = 0; axis < 3; ++axis) {

@@ -205,7 +205,8 @@ void Exclusion::search_around(std::size_t k, Use&& use) const {
   const float limit = common_limit_ > 0 ? common_limit_ : safe_square(0.5 * (diameter_of(k) + largest_diameter_));
   if (own_images_)
     search_cells<true>(centre(), use);
-  else if (!search_near({place_[0][k], place_[1][k], place_[2][k]}, static_cast<std::int32_t>(k), limit, centre, use))
+  else if (!reaches_half_a_cell_ ||
+           !search_near({place_[0][k], place_[1][k], place_[2][k]}, static_cast<std::int32_t>(k), limit, centre, use))
     search_cells<false>(centre(), use);
 }
 

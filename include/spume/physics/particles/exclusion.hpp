@@ -92,8 +92,9 @@ class Exclusion {
   // The same for any centre, anywhere.
   template <bool own_images, class Use>
   void search_cells(const Centre& here, Use&& use) const;
-  // The same inside the box and outside crowds, elsewhere false. `place` is from the lower corner, `limit` the square
-  // of what may be near; centre() gives the centre, where something is.
+  // The same inside the box and outside crowds, elsewhere false; a sphere must reach no further than half a cell.
+  // `place` is from the lower corner, `limit` the square of what may be near; centre() gives the centre, where
+  // something is.
   template <class CentreOf, class Use>
   bool search_near(const std::array<float, 3>& place, std::int32_t rank, float limit, CentreOf&& centre,
                    Use&& use) const;
@@ -114,6 +115,7 @@ class Exclusion {
   std::array<float, 3> cells_per_length_{};
   float common_limit_ = 0;  // of spheres of one diameter
   double largest_diameter_ = 0;
+  bool reaches_half_a_cell_ = false;
   bool own_images_ = false;  // some axis has fewer than three cells: nearest images by rounding
   PeriodicCells cells_;
   CellOrder order_;
