@@ -49,6 +49,17 @@ TEST(LoadSpectral, GridFluidAndNumericsArrive) {
   EXPECT_EQ(loaded.scene.particles.size(), 0u);
 }
 
+TEST(LoadSpectral, StepsOfRungeKuttaAreLongerUnlessParticlesFollow) {
+  const auto courant = [](const std::string& integrator, const std::string& extra = "") {
+    const std::string chosen = "[spectral]\nintegrator = \"" + integrator + "\"\n" + extra;
+    return load_text(spectral_case("kind = \"taylor-green\"\n", chosen)).options.time.courant;
+  };
+  EXPECT_EQ(courant("ab2"), 0.2);
+  EXPECT_EQ(courant("rk3"), 0.5);
+  EXPECT_EQ(courant("rk4"), 0.9);
+  EXPECT_EQ(courant("rk4", "[particles]\ncount = 10\ndiameter = 0.01\nresponse_time = 1\n"), 0.2);
+}
+
 TEST(LoadSpectral, OneNumberIsTheSameAlongEachAxis) {
   const LoadedCase loaded = load_text(spectral_case("kind = \"rest\"\n", "", "grid = 24\n"));
   EXPECT_THAT(loaded.scene.grid, ElementsAre(24, 24, 24));
