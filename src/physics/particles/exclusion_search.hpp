@@ -48,7 +48,7 @@ bool Exclusion::search_near(const std::array<float, 3>& place, std::int32_t rank
   int low[3];
   bool inside = true;
   for (int axis = 0; axis < 3; ++axis) {
-    low[axis] = static_cast<int>(place[axis] * cells_per_length_[axis] + 0.5F) - 1;
+    low[axis] = static_cast<int>(std::floor(place[axis] * cells_per_length_[axis] - 0.5F));
     inside &= (low[axis] >= 0) & (low[axis] + 1 < cells_.count[axis]);
   }
   if (!inside) return false;
