@@ -116,6 +116,22 @@ TEST(Integrators, StableOneKeepsItsBoundAtAHundredRelaxationTimes) {
   }
 }
 
+// Each step leaves 1 / (1 + x) of what the implicit drag was off, x relaxation times long, and the drag passes on at
+// most 0.687 of that to the slip: its exponent.
+TEST(Integrators, StableOneForgetsTheStartInTwoLongSteps) {
+  const Gas gas = plume_gas();
+  for (const double radius : {2e-4, 5e-4, 1e-3}) {
+    const double steady = terminal_speed(gas, radius);
+    const double relaxation =
+        relaxation_time(gas, radius) * drag_rate(0, radius, gas.viscosity) / drag_rate(steady, radius, gas.viscosity);
+    for (const double x : {10.0, 20.0, 50.0}) {
+      Vec3 u{};
+      for (int k = 0; k < 2; ++k) u = advance_stable(gas, radius, {}, u, x * relaxation, {});
+      EXPECT_NEAR(u[2] / steady, 1, 0.687 / ((1 + x) * (1 + x))) << "radius " << radius << ", x = " << x;
+    }
+  }
+}
+
 // Without drag to speak of, the slip turns about the vorticity: gamma C_l |omega| per time.
 TEST(Integrators, LiftTurnsTheSlipWithoutLengtheningIt) {
   Gas gas = plume_gas();
