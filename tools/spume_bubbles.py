@@ -66,8 +66,10 @@ def plot_bubble_history(run, out):
     series = run.series
     t = series["t"]
     figure, axes = plt.subplots(1, 3, figsize=(13, 3.6))
-    for name, label in (("bubbles_above_hinze", "above the Hinze radius"), ("bubbles_below_hinze", "below it")):
-        axes[0].plot(t, series[name], label=label)
+    for name, label in (("bubbles_above_hinze", "above the Hinze radius"), ("bubbles_below_hinze", "below it"),
+                        ("bubbles", "all")):
+        if name in series:
+            axes[0].plot(t, series[name], label=label)
     axes[0].set(xlabel=series.label("t"), ylabel="bubbles")
     for name, label in (("bubble_volume", "alive"), ("injected_volume", "injected"), ("entrained_volume", "entrained"),
                         ("burst_volume", "burst")):

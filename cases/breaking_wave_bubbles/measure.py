@@ -47,6 +47,13 @@ def entrained_share(run):
     return float(run.series["entrained_volume"][-1] / run.series["mass"][0])
 
 
+def growth_exponent(run):
+    """Power of the time since the impact with which the gas alive grows, by least squares of the logarithms."""
+    rows = late(run)
+    return float(np.polyfit(np.log(run.series["t"][rows] - impact_time(run)),
+                            np.log(run.series["bubble_volume"][rows]), 1)[0])
+
+
 def gas_balance(run):
     s = run.series
     came = s["injected_volume"] + s["entrained_volume"]
@@ -59,8 +66,7 @@ def measure(runs):
     rows = late(run)
     if rows.sum() < 10 or run.series["t"][-1] < 2:
         return measured
-    t, volume = run.series["t"][rows], run.series["bubble_volume"][rows]
-    measured["linear_growth"] = float(np.corrcoef(t, volume)[0, 1])
+    measured["growth_exponent"] = growth_exponent(run)
     measured["volume_share"] = volume_share(run)
     measured |= slopes(run)
     measured["ratio"] = float(np.mean(ratio(run)))
@@ -71,6 +77,7 @@ def measure(runs):
         label = name.removeprefix("dr_")
         measured[f"entrained_ratio_{label}"] = entrained_share(other) / entrained_share(run)
         measured[f"volume_ratio_{label}"] = volume_share(other) / volume_share(run)
+        measured[f"growth_exponent_{label}"] = growth_exponent(other)
         try:
             measured |= {f"{quantity}_{name}": value for quantity, value in slopes(other).items()}
         except MissingResult:

@@ -26,6 +26,7 @@ def measure(runs):
     main = {name: run for name, run in runs.items() if name != "drift_removed"}
     run = standard(main)
     measured = {"decay_time": decay_time(run),
+                **{f"decay_time_{name}": decay_time(r) for name, r in main.items() if r is not run},
                 "speed": max(float(r.series["max_speed"].max()) for r in runs.values()),
                 "pressure": max(float(np.abs(s.field("pressure")).max()) for s in run.snapshots())}
     if len(main) > 2:

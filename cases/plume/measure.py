@@ -5,32 +5,40 @@ import numpy as np
 from spume_results import MissingResult, standard
 
 HEIGHTS = {"z0453": 0.453, "z0555": 0.555}
-FROM = 8.0    # means are taken from this time on: the plume has reached the surface
+FROM = 8.0    # means are of the last half of a run, and never from before this: the plume has reached the surface
+RINGS = 4     # rings in a spacing: particles lie anywhere between the sites of the lattice
+
+
+def averaged_from(run):
+    return max(FROM, 0.5 * run.series["t"][-1])
 
 
 def profile(run, height):
-    """Distance and mean vertical velocity in rings a spacing wide around the axis, within a spacing of the height."""
+    """Mean distance and vertical velocity of rings around the axis, within a spacing of the height."""
     snapshots = run.snapshots()
-    sums = np.zeros((2, round(0.5 / run.spacing)))
+    width = run.spacing / RINGS
+    sums = np.zeros((3, round(0.5 / width)))
     for k, t in enumerate(snapshots.times):
-        if t < FROM:
+        if t < averaged_from(run):
             continue
         snapshot = snapshots[k]
         near = np.abs(snapshot.position[:, 2] - height) < run.spacing
         r = np.hypot(snapshot.position[near, 0], snapshot.position[near, 1])
-        keep = r < sums.shape[1] * run.spacing
-        ring = (r[keep] / run.spacing).astype(int)
+        keep = r < sums.shape[1] * width
+        ring = (r[keep] / width).astype(int)
         sums[0] += np.bincount(ring, snapshot.field("velocity")[near, 2][keep], sums.shape[1])
-        sums[1] += np.bincount(ring, minlength=sums.shape[1])
-    if not sums[1].all():
-        raise MissingResult(f"{run.folder}: no snapshots from t = {FROM:g} on")
-    return run.spacing * (np.arange(sums.shape[1]) + 0.5), sums[0] / sums[1]
+        sums[1] += np.bincount(ring, r[keep], sums.shape[1])
+        sums[2] += np.bincount(ring, minlength=sums.shape[1])
+    if not sums[2].all():
+        raise MissingResult(f"{run.folder}: too few snapshots from t = {averaged_from(run):g} on")
+    return sums[1] / sums[2], sums[0] / sums[2]
 
 
 def centre_and_width(r, w):
-    """Velocity on the axis from the parabola through the first two rings in r^2, and the radius of 1/e of it."""
-    curvature = (w[1] - w[0]) / (r[1] ** 2 - r[0] ** 2)
-    centre = w[0] - curvature * r[0] ** 2
+    """Velocity on the axis from a line through w against r^2 where w is above three quarters of its largest, and the radius of
+    1/e of it."""
+    near = r < r[np.argmax(w < 0.75 * w.max())]
+    centre = np.polyfit(r[near] ** 2, w[near], 1)[1]
     level = centre / np.e
     k = int(np.argmax(w < level))
     return centre, r[k - 1] + (w[k - 1] - level) / (w[k - 1] - w[k]) * (r[k] - r[k - 1])

@@ -2,9 +2,12 @@
 // What the bubbles of a case must satisfy: gas and liquid, radii against the spacing, sources inside the liquid.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 
 #include "checks.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/core/periodic_grid.hpp"
 #include "spume/scene/expression.hpp"
 
 namespace spume {
@@ -64,6 +67,12 @@ bool inside(const Draft& draft, const std::string& name, const std::vector<doubl
   return true;
 }
 
+void add_missing_tension(const Draft& draft, const std::string& decides, Problems& problems) {
+  const std::string key = uses_si(draft.fluid) ? "surface_tension" : "weber";
+  problems.add(*draft.node("bubbles"), "missing key '" + key + "' in [bubbles]: surface tension decides " + decides +
+                                           "; add  " + key + " = <number>  # > 0");
+}
+
 void check_gas(Draft& draft, Problems& problems) {
   BubbleDraft& given = draft.bubbles;
   BubbleOptions& options = draft.options.bubbles;
@@ -84,13 +93,19 @@ void check_gas(Draft& draft, Problems& problems) {
   options.smallest_entrained_radius = given.smallest_entrained_radius.value_or(options.hinze_radius / 20);
 
   const char* key = si ? "surface_tension" : "weber";
+  const double spacing = draft.options.spacing;
+  if (options.entrainment && spacing > 0 && options.tension > 0 && !(options.smallest_entrained_radius < spacing)) {
+    const Node* own = draft.node("bubbles.smallest_entrained_radius");
+    const Node* cause =
+        own ? own : draft.node(given.hinze_radius ? "bubbles.hinze_radius" : std::string("bubbles.") + key);
+    problems.add(*cause, "bubbles.smallest_entrained_radius = " + brief(options.smallest_entrained_radius) +
+                             (own ? "" : ", which follows from this,") + " is not below the spacing, " +
+                             brief(spacing) + ", up to which bubbles are entrained: set resolution.spacing > " +
+                             brief(options.smallest_entrained_radius) + " or a smaller smallest_entrained_radius");
+  }
   const std::string needed = options.entrainment ? "entrainment" : options.breakup ? "breakup" : "";
-  if (options.tension == 0 && draft.usable(std::string("bubbles.") + key) &&
-      (!needed.empty() || options.surface_interaction))
-    problems.add(*draft.node("bubbles"),
-                 std::string("missing key '") + key + "' in [bubbles]: surface tension decides " +
-                     (needed.empty() ? "how long bubbles rest at the surface (surface_interaction)" : needed) +
-                     "; add  " + key + " = <number>  # > 0");
+  if (options.tension == 0 && draft.usable(std::string("bubbles.") + key) && !needed.empty())
+    add_missing_tension(draft, needed, problems);
   const bool inviscid = si ? draft.fluid.viscosity.value_or(0) == 0 : !draft.fluid.reynolds;
   if (inviscid && draft.usable("fluid.reynolds") && draft.usable("fluid.viscosity"))
     problems.add(*draft.node("bubbles"), std::string("bubbles need a viscous liquid, their drag depends on it; add  ") +
@@ -127,6 +142,40 @@ void check_substeps(const Draft& draft, const Scene& scene, const std::string& n
   problems.add(*draft.node(name), name + " has bubbles of radius " + brief(sizes.minimum) + ", which need " +
                                       brief(steps) + " explicit sub-steps a step; at most " + brief(most_substeps) +
                                       " are possible: set bubbles.integrator = \"stable\" or enlarge them");
+}
+
+// Places that tell how far a source reaches: around a disc, along a line, on the sides of a box and around a ball.
+std::vector<Vec3> outline(const Sparger& sparger) {
+  std::vector<Vec3> places;
+  constexpr int points = 16;
+  for (int k = 0; k < points && sparger.shape != SpargerShape::point; ++k) {
+    Vec3 r = sparger.position;
+    const double share = (k + 0.5) / points, angle = 2 * std::numbers::pi * share;
+    if (sparger.shape == SpargerShape::disc) {
+      r[0] += sparger.radius * std::cos(angle);
+      r[1] += sparger.radius * std::sin(angle);
+    } else {
+      for (std::size_t a = 0; a < 3; ++a) r[a] += share * (sparger.end[a] - sparger.position[a]);
+    }
+    places.push_back(r);
+  }
+  return places;
+}
+
+std::vector<Vec3> outline(const BubbleCloud& cloud) {
+  std::vector<Vec3> places;
+  for (int i = -1; i <= 1; ++i)
+    for (int j = -1; j <= 1; ++j)
+      for (int l = -1; l <= 1; ++l) {
+        const std::array<int, 3> side{i, j, l};
+        const double length = std::max(1.0, std::sqrt(i * i + j * j + l * l));
+        Vec3 r;
+        for (std::size_t a = 0; a < 3; ++a)
+          r[a] = cloud.ball ? cloud.centre[a] + cloud.radius * side[a] / length
+                            : 0.5 * (cloud.lower[a] + cloud.upper[a] + side[a] * (cloud.upper[a] - cloud.lower[a]));
+        places.push_back(r);
+      }
+  return places;
 }
 
 }  // namespace
@@ -178,11 +227,17 @@ void check_bubbles(Draft& draft, Problems& problems) {
 }
 
 void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& problems) {
+  const BubbleOptions& gas_options = draft.options.bubbles;
+  if (gas_options.on && gas_options.surface_interaction && scene.free_surface && gas_options.tension == 0)
+    add_missing_tension(draft, "how long bubbles rest at the surface (surface_interaction)", problems);
   const InitialParticles& liquid = scene.particles;
   const double volume = liquid.volume * static_cast<double>(liquid.size());
   // Wet: some particle within the diagonal of a lattice cell.
-  const auto wet = [&](const Vec3& r) {
+  const auto wet = [&](Vec3 r) {
     const double reach = 1.75 * scene.spacing;
+    for (int a = 0; a < 3; ++a)
+      if (scene.domain.periodic(a))
+        r[a] = wrap_periodic(r[a], scene.domain.lower[a], scene.domain.upper[a] - scene.domain.lower[a]);
     return parallel_max(liquid.size(), 0.0, [&](std::size_t i) {
              double distance2 = 0;
              for (int a = 0; a < 3; ++a) {
@@ -192,14 +247,28 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
              return distance2 < reach * reach ? 1.0 : 0.0;
            }) > 0;
   };
+  // The first of the places that lies in no liquid.
+  const auto first_dry = [&](const std::vector<Vec3>& places) {
+    const auto dry = std::find_if(places.begin(), places.end(), [&](const Vec3& r) { return !wet(r); });
+    return dry == places.end() ? std::optional<Vec3>() : std::optional<Vec3>(*dry);
+  };
+  const auto reaches_out = [](const std::string& name, const Vec3& r) {
+    return name + " reaches out of the liquid: there is none at (" + brief(r[0]) + ", " + brief(r[1]) + ", " +
+           brief(r[2]) + "); keep all of it below the surface";
+  };
   for (std::size_t k = 0; k < scene.spargers.size(); ++k) {
     const Sparger& sparger = scene.spargers[k];
     const std::string name = "sparger." + std::to_string(k);
+    bool in_liquid = true;
     for (const char* key : {"position", "end"})
       if (const Node* node = draft.node(name + "." + key); node &&
                                                            (key[0] == 'p' || sparger.shape == SpargerShape::line) &&
-                                                           !wet(key[0] == 'p' ? sparger.position : sparger.end))
+                                                           !wet(key[0] == 'p' ? sparger.position : sparger.end)) {
         problems.add(*node, name + "." + key + " lies outside the liquid; move it below the surface");
+        in_liquid = false;
+      }
+    if (in_liquid)
+      if (const auto dry = first_dry(outline(sparger))) problems.add(*draft.node(name), reaches_out(name, *dry));
     if (!sparger.rate) continue;
     check_substeps(draft, scene, name, sparger.sizes, problems);
     const Node* node = draft.node(name + ".rate");
@@ -229,10 +298,7 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
     const BubbleCloud& cloud = scene.bubble_clouds[k];
     const std::string name = "bubble_cloud." + std::to_string(k);
     check_substeps(draft, scene, name, cloud.sizes, problems);
-    Vec3 centre = cloud.centre;
-    for (int a = 0; a < 3 && !cloud.ball; ++a) centre[a] = 0.5 * (cloud.lower[a] + cloud.upper[a]);
-    if (!wet(centre))
-      problems.add(*draft.node(name), name + " has its centre outside the liquid; move it below the surface");
+    if (const auto dry = first_dry(outline(cloud))) problems.add(*draft.node(name), reaches_out(name, *dry));
     const double gas = 4.18879 * std::pow(cloud.sizes.mean, 3) * static_cast<double>(cloud.number);
     if (gas > volume)
       problems.add(*draft.node(name), name + " holds " + brief(gas) + " of gas, more than the liquid, " +

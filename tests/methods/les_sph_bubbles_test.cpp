@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Bubbles in the liquid: what they exchange, that nothing depends on threads or interruptions, and hard cases.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <omp.h>
 
 #include "methods/les_sph_simulation.hpp"
@@ -387,6 +387,15 @@ TEST(Bubbles, InAnOverfullRegionRunOn) {
   EXPECT_NEAR(series.at("bubble_volume"), exact, 1e-12 * exact);
   EXPECT_NE(run.method.note(), "");
   EXPECT_EQ(run.method.note(), "");
+  // The filter that the fluctuations know is as wide as the kernels there: h alpha^(-1/3), alpha >= 1/2.
+  double widest = 0;
+  for (std::size_t b = 0; b < 400; ++b) {
+    const double width = bubbles_of(run).filter_width_at_bubble(b);
+    EXPECT_GE(width, 1 - 1e-6);
+    EXPECT_LE(width, std::cbrt(2.0) * (1 + 1e-6));
+    widest = std::max(widest, width);
+  }
+  EXPECT_GT(widest, 1.2);
 }
 
 // Spray: all bubbles burst in one step, and the liquid goes on without any.
@@ -404,9 +413,35 @@ TEST(Bubbles, OfADropletBurstTogether) {
   run.steps(1, 0.002);
   EXPECT_EQ(run.series().at("bubbles"), 0);
   EXPECT_EQ(run.series().at("bursts"), 7);
+  EXPECT_THAT(run.method.note(), ::testing::HasSubstr("7 of 7 bubbles burst in the step to t = 0.002"));
   EXPECT_NEAR(run.series().at("burst_volume"), volume, 1e-12 * volume);
   run.steps(3, 0.002);
   EXPECT_EQ(run.series().at("smallest_volume_fraction"), 1);
+}
+
+// A million bubbles in a thousand particles: the run goes on, says so, and not one loses its volume.
+TEST(Bubbles, InGreatNumberRunOn) {
+  Simulation run(periodic_cube, {"bubble_cloud.0.number=1000000", "bubble_cloud.0.bubble_radius=1e-5"});
+  run.steps(1, 0.005);
+  EXPECT_EQ(run.series().at("bubbles"), 1e6);
+  const double exact = 1e6 * 4 * M_PI / 3 * 1e-15;
+  EXPECT_NEAR(run.series().at("bubble_volume"), exact, 1e-9 * exact);
+  EXPECT_THAT(run.method.note(), ::testing::HasSubstr("1000000 bubbles live at t = 0.005"));
+}
+
+// In a closed box bubbles do without surface tension, and without counts about a radius that there is not.
+TEST(Bubbles, WithoutTensionAreNotCountedAboutTheHinzeRadius) {
+  std::string text = periodic_cube;
+  const auto weber = text.find("weber");
+  ASSERT_NE(weber, std::string::npos);
+  text.erase(weber, text.find('\n', weber) + 1 - weber);
+  Simulation run(text);
+  run.steps(1, 0.005);
+  EXPECT_EQ(run.series().count("bubbles_above_hinze"), 0U);
+  EXPECT_GT(run.series().at("bubble_volume"), 0);
+  for (const RecordTable& table : run.method.tables()) EXPECT_NE(table.name, "bubble_sizes");
+  Simulation with(periodic_cube);
+  EXPECT_EQ(with.series().count("bubbles_above_hinze"), 1U);
 }
 
 TEST(Bubbles, AllocateNothingInASteadyStep) {

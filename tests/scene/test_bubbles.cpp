@@ -115,7 +115,30 @@ TEST(BubbleSections, RefuseSourcesOutsideTheLiquid) {
   EXPECT_THAT(texts(plain, sparger + "shape = \"disc\"\n"), ElementsAre(HasSubstr("missing key 'radius'")));
   EXPECT_THAT(texts("", sparger), ElementsAre(HasSubstr("add a section [bubbles]")));
   EXPECT_THAT(texts(plain, "[[bubble_cloud]]\ncentre = [0.5, 0.5, 0.9]\nbubble_radius = 0.01\n"),
-              ElementsAre(HasSubstr("centre outside the liquid")));
+              ElementsAre(HasSubstr("reaches out of the liquid: there is none at (0.5, 0.5, 0.9)")));
+}
+
+// Not only their centres: around the box is no liquid, above its lower half air.
+TEST(BubbleSections, RefuseSourcesThatReachOutOfTheLiquid) {
+  const auto out = ElementsAre(HasSubstr("reaches out of the liquid"));
+  EXPECT_THAT(texts(plain, sparger + "shape = \"line\"\nend = [0.9, 0.9, 0.2]\n"), ElementsAre());
+  EXPECT_THAT(texts(plain, sparger + "shape = \"disc\"\nradius = 0.3\n"), ElementsAre());
+  const std::string cloud = "[[bubble_cloud]]\nnumber = 10\nbubble_radius = 0.01\n";
+  EXPECT_THAT(texts(plain, cloud), out);
+  EXPECT_THAT(texts(plain, cloud + "upper = [1, 1, 0.9]\n"), out);
+  EXPECT_THAT(texts(plain, cloud + "upper = [1, 1, 0.45]\n"), ElementsAre());
+  EXPECT_THAT(texts(plain, cloud + "centre = [0.5, 0.5, 0.3]\nradius = 0.5\n"), out);
+  EXPECT_THAT(texts(plain, cloud + "centre = [0.05, 0.5, 0.25]\nradius = 0.2\n"),
+              ElementsAre());  // through a periodic side
+}
+
+TEST(BubbleSections, RefuseEntrainmentOfNothingSmallerThanTheSpacing) {
+  const std::string entrains = "[bubbles]\nentrainment = true\n";
+  EXPECT_THAT(texts(entrains + "weber = 1e4\nsmallest_entrained_radius = 0.3\n"),
+              ElementsAre(HasSubstr("smallest_entrained_radius = 0.3 is not below the spacing, 0.1")));
+  EXPECT_THAT(texts(entrains + "weber = 0.05\n"),
+              ElementsAre(HasSubstr("smallest_entrained_radius = 0.150854, which follows from this, is not below")));
+  EXPECT_THAT(texts("[bubbles]\nweber = 0.05\n"), ElementsAre());
 }
 
 TEST(BubbleSections, RefuseNegativeAndAbsurdRates) {
@@ -124,7 +147,7 @@ TEST(BubbleSections, RefuseNegativeAndAbsurdRates) {
   EXPECT_THAT(texts(plain, sparger, {"sparger.0.rate=\"1\""}), ElementsAre(HasSubstr("more than the liquid holds")));
   EXPECT_THAT(texts(plain, sparger, {"sparger.0.rate=\"0.1\"", "sparger.0.bubble_radius=1e-5"}),
               ElementsAre(HasSubstr("lower the rate or enlarge bubble_radius")));
-  EXPECT_THAT(texts(plain, "[[bubble_cloud]]\nnumber = 10000\nbubble_radius = 0.05\n"),
+  EXPECT_THAT(texts(plain, "[[bubble_cloud]]\nupper = [1, 1, 0.5]\nnumber = 10000\nbubble_radius = 0.05\n"),
               ElementsAre(HasSubstr("more than the liquid")));
 }
 

@@ -19,6 +19,11 @@ enum class BubbleIntegrator { stable, substep };
 // How liquid and bubbles share momentum: -grad(alpha p), or -alpha grad p (les-sph).
 enum class BubbleClosure { mixture_pressure, two_fluid };
 enum class SurfaceReaction { surface, liquid };
+// The probability with which a bubble is entrained that costs more than what is left of a budget.
+enum class EntrainmentOverdraft {
+  affordable,  // left / cost
+  printed,     // 1 - left / cost, King section 3.4.1 (iii) and (iv)
+};
 enum class SizeLaw { monodisperse, truncated_gaussian, log_normal };
 
 // Radii: all `mean`; Gaussian cut to [minimum, maximum]; or log-normal with median `mean` and `deviation` that of log
@@ -45,10 +50,11 @@ struct BubbleOptions {
   SurfaceReaction surface_reaction = SurfaceReaction::surface;  // who feels the reaction to the braking force
   double lift_coefficient = 0.5;
   double virtual_mass_coefficient = 0.5;
-  double viscosity_constant = 0.6;       // C_nuB of the bubble-induced viscosity
-  double fluctuation_constant = 1;       // C of the time scale of the fluctuations
-  double entrainment_constant = 0.01;    // C_eps
-  double entrainment_threshold = 0.2;    // dissipation above which bubbles are entrained
+  double viscosity_constant = 0.6;     // C_nuB of the bubble-induced viscosity
+  double fluctuation_constant = 1;     // C of the time scale of the fluctuations
+  double entrainment_constant = 0.01;  // C_eps
+  double entrainment_threshold = 0.2;  // dissipation above which bubbles are entrained
+  EntrainmentOverdraft entrainment_overdraft = EntrainmentOverdraft::affordable;
   double deformation_constant = 8.2;     // c_def
   double schmidt = 700;                  // of the persistence at the surface
   double hinze_radius = 0;               // tension^(3/5) / 2 unless given

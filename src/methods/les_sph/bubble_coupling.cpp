@@ -48,6 +48,7 @@ BubbleCoupling::BubbleCoupling(const Liquid& liquid)
   entrainment_.largest_radius = liquid.scene.spacing;
   entrainment_.spacing = liquid.scene.spacing;
   entrainment_.seed = liquid.scene.seed;
+  entrainment_.overdraft = options_.entrainment_overdraft;
   if (options_.breakup) child_sizes_.emplace_back();
   if (population_.merge_time != nullptr)
     normal_at_surface_ =

@@ -7,6 +7,9 @@
 #include "spume/methods/les_sph/bubble_coupling.hpp"
 
 namespace spume::les_sph {
+namespace {
+constexpr double noted_bursts = 5;  // in a step, of at least half of the bubbles: the last few of a scene are no news
+}
 
 void BubbleCoupling::accept(Liquid& liquid, double dt) {
   const double t = liquid.time;  // the end of the step
@@ -40,7 +43,7 @@ void BubbleCoupling::accept(Liquid& liquid, double dt) {
       if (population_.merge_time != nullptr) (*population_.merge_time)[b] = next_merge_time_[b];
     });
     if (population_.deformation != nullptr) break_up(liquid, dt);
-    bury();
+    bury(t);
   }
   // A liquid that was left by its last bubble.
   if (population_.empty() && nb > 0) parallel_for(n, [&](std::size_t i) { (*liquid.volume_fraction)[i] = 1; });
@@ -58,10 +61,19 @@ void BubbleCoupling::accept(Liquid& liquid, double dt) {
   }));
   if (overfull_ > 2 * most_overfull_) {
     most_overfull_ = overfull_;
-    note_ = std::to_string(overfull_) + " particles hold more gas than liquid (alpha down to " +
-            std::to_string(least_volume_fraction_) + " at t = " + std::to_string(t) +
-            "): the closures of the forces do not hold there";
+    remark(std::to_string(overfull_) + " particles hold more gas than liquid (alpha down to " +
+           std::to_string(least_volume_fraction_) + " at t = " + std::to_string(t) +
+           "): the closures of the forces do not hold there");
   }
+  if (population_.size() >= 2 * most_alive_) {
+    most_alive_ = population_.size();
+    remark(std::to_string(most_alive_) + " bubbles live at t = " + std::to_string(t) +
+           ": each costs as much as a particle of the liquid, however small");
+  }
+}
+
+void BubbleCoupling::remark(const std::string& text) {
+  note_ += (note_.empty() ? "" : "; ") + text;
 }
 
 // King section 3.4.2. A parent becomes its first child; the second is born.
@@ -109,10 +121,15 @@ void BubbleCoupling::break_up(const Liquid& liquid, double dt) {
   }
 }
 
-void BubbleCoupling::bury() {
+void BubbleCoupling::bury(double t) {
   const std::size_t nb = population_.size();
   const double gone = parallel_sum(nb, [&](std::size_t b) { return dead_[b] != 0 ? 1.0 : 0.0; });
   if (gone == 0) return;
+  if (gone >= noted_bursts && gone >= 0.5 * static_cast<double>(nb) && gone > 2 * most_bursts_) {
+    most_bursts_ = gone;
+    remark(std::to_string(static_cast<std::int64_t>(gone)) + " of " + std::to_string(nb) +
+           " bubbles burst in the step to t = " + std::to_string(t));
+  }
   history_.bursts += static_cast<std::int64_t>(gone);
   history_.burst_volume +=
       parallel_sum(nb, [&](std::size_t b) { return dead_[b] != 0 ? (*population_.volume)[b] : 0.0; });

@@ -13,9 +13,9 @@ namespace {
 using simd::f32x8;
 
 // What bubbles see of a particle, times its volume times its kernel's normalisation over h_i^3, in units of V / h^3:
-// one line of cache. The factor itself is the last, so that its sum comes with the others.
+// one line of cache. The factor itself is among them, so that its sum comes with the others; the last is h_i / h.
 constexpr int velocity_at = 0, vorticity_at = 3, acceleration_at = 6, energy_at = 9, dissipation_at = 10,
-              normal_at = 11, factor_at = 14, record = 16;
+              normal_at = 11, factor_at = 14, length_at = 15, record = 16;
 
 constexpr std::size_t pack_block = 64;
 
@@ -92,7 +92,7 @@ void BubbleCoupling::pack_liquid(Liquid& liquid) {
       put(dissipation_at, nothing);
     }
     put(factor_at, [](std::size_t) { return 1.0F; });
-    put(factor_at + 1, nothing);
+    put(length_at, [&](std::size_t k) { return liquid.length_ratio[first + k]; });
   });
   // Mirrored velocities and what follows from them: at a no-slip wall the vorticity keeps its sign.
   parallel_for(m, [&](std::size_t k) {
@@ -178,13 +178,16 @@ Vec3 BubbleCoupling::vorticity_at_bubble(std::size_t b) const {
   return vector_at(interpolated_.data() + b * record, vorticity_at);
 }
 
+double BubbleCoupling::filter_width_at_bubble(std::size_t b) const {
+  return interpolated_[b * record + length_at];
+}
+
 void BubbleCoupling::move_bubbles(Liquid& liquid, double dt) {
   const std::size_t nb = population_.size();
   const double t = liquid.time + dt;
   const bool two_fluid = !liquid.plan.mixture_pressure;
   const bool surface_bears = options_.surface_reaction == SurfaceReaction::surface;
   const bool surface = population_.merge_time != nullptr, turbulent = population_.fluctuation[0] != nullptr;
-  const double width = liquid.smoothing_length;
   const auto step = static_cast<std::uint32_t>(liquid.steps);
   dissipation_.resize(nb);
   next_slip_.resize(nb);
@@ -209,6 +212,7 @@ void BubbleCoupling::move_bubbles(Liquid& liquid, double dt) {
           fluctuation[a] = (*population_.fluctuation[a])[b];
           slip[a] = around.velocity[a] - u[a];
         }
+        const double width = liquid.smoothing_length * filter_width_at_bubble(b);
         fluctuation = bubbles::advance_fluctuation(fluctuation, slip, values_here[energy_at], width,
                                                    options_.fluctuation_constant, dt, {noise[0], noise[1], noise[2]});
         for (std::size_t a = 0; a < 3; ++a) {

@@ -19,10 +19,12 @@ bool saved(const FieldSet::Field& field) {
 }  // namespace
 
 void BubbleCoupling::add_columns(std::vector<SeriesColumn>& columns) const {
+  columns.push_back({"bubbles", "1"});
+  if (has_hinze_radius()) {
+    columns.push_back({"bubbles_above_hinze", "1"});
+    columns.push_back({"bubbles_below_hinze", "1"});
+  }
   for (const auto& [name, unit] : std::initializer_list<std::pair<const char*, const char*>>{
-           {"bubbles", "1"},
-           {"bubbles_above_hinze", "1"},
-           {"bubbles_below_hinze", "1"},
            {"bubble_volume", "length^3, alive"},
            {"injected_volume", "length^3, since the start"},
            {"entrained_volume", "length^3, since the start"},
@@ -41,7 +43,6 @@ void BubbleCoupling::add_columns(std::vector<SeriesColumn>& columns) const {
 }
 
 void BubbleCoupling::put_values(const Liquid& liquid, std::vector<double>& values) const {
-  const auto counts = bubbles::count_about(population_, options_.hinze_radius);
   const double per_time = last_step_ > 0 ? 1 / last_step_ : 0;
   const auto rate = [&](auto now, auto before) { return per_time * static_cast<double>(now - before); };
   double shift_norm = 0;
@@ -54,23 +55,18 @@ void BubbleCoupling::put_values(const Liquid& liquid, std::vector<double>& value
                                                      return shift2;
                                                    }) /
                                       static_cast<double>(liquid.size()));
-  values = {static_cast<double>(population_.size()),
-            static_cast<double>(counts.above),
-            static_cast<double>(counts.below),
-            population_.total_volume(),
-            history_.injected_volume,
-            history_.entrained_volume,
-            history_.burst_volume,
-            static_cast<double>(history_.breakups),
-            static_cast<double>(history_.entrained),
-            static_cast<double>(history_.bursts),
-            rate(history_.breakups, history_before_.breakups),
-            rate(history_.entrained_volume, history_before_.entrained_volume),
-            rate(history_.bursts, history_before_.bursts),
-            mean_slip_,
-            shift_norm,
-            least_volume_fraction_,
-            static_cast<double>(overfull_)};
+  values = {static_cast<double>(population_.size())};
+  if (has_hinze_radius()) {
+    const auto counts = bubbles::count_about(population_, options_.hinze_radius);
+    values.insert(values.end(), {static_cast<double>(counts.above), static_cast<double>(counts.below)});
+  }
+  values.insert(
+      values.end(),
+      {population_.total_volume(), history_.injected_volume, history_.entrained_volume, history_.burst_volume,
+       static_cast<double>(history_.breakups), static_cast<double>(history_.entrained),
+       static_cast<double>(history_.bursts), rate(history_.breakups, history_before_.breakups),
+       rate(history_.entrained_volume, history_before_.entrained_volume), rate(history_.bursts, history_before_.bursts),
+       mean_slip_, shift_norm, least_volume_fraction_, static_cast<double>(overfull_)});
 }
 
 Family BubbleCoupling::family(const Liquid& liquid) {
@@ -97,13 +93,14 @@ Family BubbleCoupling::family(const Liquid& liquid) {
 
 std::vector<RecordTable> BubbleCoupling::tables() const {
   std::vector<RecordTable> list;
-  list.push_back({sizes_table,
-                  "size distribution of the bubbles",
-                  {{"t", "time"},
-                   {"radius_over_hinze", "1, centre of the bin"},
-                   {"count", "1"},
-                   {"density", "1, integrates to one over radius_over_hinze"}},
-                  false});
+  if (has_hinze_radius())
+    list.push_back({sizes_table,
+                    "size distribution of the bubbles",
+                    {{"t", "time"},
+                     {"radius_over_hinze", "1, centre of the bin"},
+                     {"count", "1"},
+                     {"density", "1, integrates to one over radius_over_hinze"}},
+                    false});
   if (options_.trace_every > 0)
     list.push_back({traces_table,
                     "chosen bubbles over time",

@@ -125,8 +125,13 @@ void LesSph::step(double dt, Ledger& ledger) {
 LesSph::LesSph(const LoadedCase& loaded) : liquid_(loaded), pressure_(std::make_unique<PressureSystem>(liquid_)) {
   refuse_high_mach(loaded.options, liquid_);
   refuse_stirring_shift(loaded.options, liquid_);
-  std::vector<const char*> known{"velocity",    "pressure",       "id",
-                                 "dissipation", "eddy_viscosity", "divergence_of_position"};
+  std::vector<const char*> known{"velocity",
+                                 "pressure",
+                                 "id",
+                                 "dissipation",
+                                 "unresolved_dissipation",
+                                 "eddy_viscosity",
+                                 "divergence_of_position"};
   if (liquid_.plan.bubbles) {
     bubbles_ = std::make_unique<BubbleCoupling>(liquid_);
     known.push_back("volume_fraction");
@@ -297,9 +302,10 @@ std::vector<SeriesColumn> LesSph::series_columns() const {
   std::vector<SeriesColumn> columns{{"kinetic_energy", "rho u^2 / 2, integral"},
                                     {"potential_energy", "rho g z, integral"},
                                     {"total_energy", "kinetic + potential"},
-                                    {"dissipation", "rho (nu + nu_t) |S|^2, integral"},
-                                    {"max_speed", "speed"},
-                                    {"mass", "mass"}};
+                                    {"dissipation", "rho (nu + nu_t) |S|^2, integral"}};
+  if (liquid_.plan.eddy_viscosity) columns.push_back({"unresolved_dissipation", "rho nu_t |S|^2, integral"});
+  columns.push_back({"max_speed", "speed"});
+  columns.push_back({"mass", "mass"});
   const char* const momentum[3] = {"momentum_x", "momentum_y", "momentum_z"};
   for (int axis = 0; axis < liquid_.dimensions; ++axis) columns.push_back({momentum[axis], "mass times speed"});
   columns.push_back({"max_divergence", "of the predicted velocity, 1 / time"});
@@ -334,6 +340,11 @@ void LesSph::series_values(std::span<double> values) {
   put(potential);
   put(kinetic + potential);
   put(liquid.dissipation);
+  if (liquid.plan.eddy_viscosity)
+    put(mass * parallel_sum(n, [&](std::size_t i) {
+          const double strain = (*liquid.strain)[i];
+          return double{(*liquid.eddy_viscosity)[i]} * strain * strain;
+        }));
   put(liquid.max_speed);
   put(mass * static_cast<double>(n));
   for (int axis = 0; axis < d; ++axis)
@@ -382,7 +393,13 @@ std::vector<Family> LesSph::snapshot() {
       const double strain = (*liquid_.strain)[i];
       return (nu + eddy(i)) * strain * strain;
     });
-  if (liquid_.plan.eddy_viscosity) add_derived("eddy_viscosity", false, eddy);
+  if (liquid_.plan.eddy_viscosity) {
+    add_derived("unresolved_dissipation", false, [&](std::size_t i) {
+      const double strain = (*liquid_.strain)[i];
+      return eddy(i) * strain * strain;
+    });
+    add_derived("eddy_viscosity", false, eddy);
+  }
   add_derived("divergence_of_position", false,
               [&](std::size_t i) { return double{(*liquid_.divergence_of_position)[i]}; });
   if (!bubbles_) return {fluid};

@@ -47,10 +47,6 @@ double smallest_child(double ratio) {
   return std::max(hard_limit, std::pow(ratio, 7.5));
 }
 
-double child_density(double volume_fraction, double ratio) {
-  return density_for(volume_fraction, std::pow(ratio, 5.0 / 3));
-}
-
 ChildSizeTable::ChildSizeTable() {
   const int rows = rows_of_hard_limit + rows_of_soft_limit + 1;
   values_.resize(static_cast<std::size_t>(rows) * (columns + 1));

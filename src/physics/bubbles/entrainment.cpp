@@ -33,6 +33,10 @@ void entrain(const EntrainmentModel& model, const EntrainingParticle& particle, 
     return random_uniform(model.seed, RandomPurpose::bubble_entrainment,
                           static_cast<std::uint64_t>(particle.identifier), step, draw++);
   };
+  const auto refused = [&](double left, double cost, double u) {
+    if (left >= cost) return false;
+    return model.overdraft == EntrainmentOverdraft::printed ? left > u * cost : left < u * cost;
+  };
   const int rounds = static_cast<int>(std::floor(std::min(dt / period, most_rounds) + random()[0]));
   double volume_left = budget.volume;
   for (int round = 0; round < rounds; ++round) {
@@ -43,7 +47,7 @@ void entrain(const EntrainmentModel& model, const EntrainingParticle& particle, 
       ++tried;
       const double radius = model.smallest_radius + u[0] * (model.largest_radius - model.smallest_radius);
       const double energy = surface_energy(model, radius), volume = volume_of(radius);
-      if (energy_left < u[1] * energy || volume_left < u[2] * volume) continue;
+      if (refused(energy_left, energy, u[1]) || refused(volume_left, volume, u[2])) continue;
       const auto place = random();
       NewBubble bubble;
       for (std::size_t a = 0; a < 3; ++a) {

@@ -61,6 +61,8 @@ class BubbleCoupling {
   Vec3 total_reaction() const;
   // Vorticity of the liquid at bubble b in the last exchange.
   Vec3 vorticity_at_bubble(std::size_t b) const;
+  // h_i of the liquid around bubble b, the width of its filter, in units of h.
+  double filter_width_at_bubble(std::size_t b) const;
 
   void add_columns(std::vector<SeriesColumn>& columns) const;
   void put_values(const Liquid& liquid, std::vector<double>& values) const;
@@ -82,10 +84,13 @@ class BubbleCoupling {
   void move_bubbles(Liquid& liquid, double dt);
   void interpolate(const Liquid& liquid);
   void deposit(Liquid& liquid);
-  void bury();
+  void bury(double t);
   void break_up(const Liquid& liquid, double dt);
   void entrain(const Liquid& liquid, double dt);
   double smoothed_dissipation(const Liquid& liquid, std::size_t i) const;
+  void remark(const std::string& text);  // for the next note()
+  // Without surface tension there is none, and no sizes about it.
+  bool has_hinze_radius() const { return options_.hinze_radius > 0; }
 
   const BubbleOptions options_;
   bubbles::Gas gas_;
@@ -103,6 +108,9 @@ class BubbleCoupling {
   double mean_slip_ = 0;
   double least_volume_fraction_ = 1;
   std::int64_t overfull_ = 0, most_overfull_ = 0;
+  // What was last remarked on; the next time is when it has doubled.
+  double most_bursts_ = 0;
+  std::size_t most_alive_ = 500'000;
   std::int64_t trace_due_ = 0;
   std::string note_;
 

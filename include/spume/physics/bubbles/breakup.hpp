@@ -22,10 +22,8 @@ double stable_ratio(const BreakupModel& model, double radius, double mean_dissip
 double critical_ratio();
 // Smallest child volume over that of the parent: max(1e-3, Lambda^(15/2)).
 double smallest_child(double stable_ratio);
-// King (3.27), not normalised; V in [smallest, 1 - smallest].
-double child_density(double volume_fraction, double stable_ratio);
 
-// The inverse of the distribution function of (3.27), tabulated once over probability and Lambda^(5/3).
+// The inverse of the distribution function of King (3.27), tabulated once over probability and Lambda^(5/3).
 class ChildSizeTable {
  public:
   ChildSizeTable();
