@@ -56,6 +56,8 @@ def parts():
     """Part: (case with it, case without it). What a part rests on goes first: without bubbles, then without closure."""
     full = tank()
     dry = without(full, "bubbles", "bubble_cloud")
+    idle = copy.deepcopy(full)
+    idle["bubble_cloud"][0]["time"] = 100.0
     laminar = without(dry, "turbulence")
     filled = without(dry, domain={"top": "no-slip", "upper": [1.0, 0.3, 0.5]})
     filled["liquid"] = [{"velocity": dry["liquid"][0]["velocity"]}]
@@ -70,7 +72,7 @@ def parts():
     two_way = without(flow, particles={"coupling": "two-way"})
     alone = without(flow, "particles")
     drawn = without(dry, output={"every": 0.002})
-    return {"bubbles": (full, dry), "closure (LES)": (dry, laminar),
+    return {"bubbles": (full, dry), "bubbles, none alive": (idle, dry), "closure (LES)": (dry, laminar),
             "viscosity": (laminar, without(laminar, fluid={"reynolds": None})),
             "gravity": (dry, without(dry, fluid={"froude": None})), "free surface": (dry, filled), "walls": (dry, ring),
             "shifting": (dry, without(dry, shifting={"on": False})), "third dimension": (dry, flat),

@@ -108,6 +108,7 @@ std::unique_ptr<Simulation> Simulation::resume(const std::filesystem::path& fold
   std::vector<std::string> overrides;
   if (until) overrides.push_back(until_override(*until));
   auto loaded = std::make_unique<LoadedCase>(load_case((opened / "case.toml").string(), overrides));
+  loaded->resuming = true;
   auto method = make_method(*loaded);
   const auto checkpoint = opened / "checkpoint.h5";
   std::unique_ptr<Simulation> simulation(new Simulation(std::move(loaded), std::move(method), std::move(opened)));

@@ -2,10 +2,23 @@
 // What [particles] must satisfy beyond types and ranges.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "checks.hpp"
 
 namespace spume {
+namespace {
+
+// (nu^3 / injection)^(1/4).
+double kolmogorov_length(const Draft& draft) {
+  const FluidDraft& fluid = draft.fluid;
+  const double nu = uses_si(fluid)   ? fluid.viscosity.value_or(0) / fluid.density.value_or(1)
+                    : fluid.reynolds ? 1 / *fluid.reynolds
+                                     : 0.0;
+  return std::pow(nu * nu * nu / draft.options.forcing.injection, 0.25);
+}
+
+}  // namespace
 
 void check_particles(const Draft& draft, Problems& problems) {
   const Node* section = draft.node("particles");
@@ -40,12 +53,17 @@ void check_particles(const Draft& draft, Problems& problems) {
   std::vector<double> diameters = p.diameters;
   if (has("diameter")) diameters = {p.diameter};
   const char* key = has("diameter") ? "diameter" : "diameters";
+  if (has("diameter_over_eta") && draft.options.forcing.injection > 0) {
+    key = "diameter_over_eta";
+    diameters = {p.diameter_over_eta * kolmogorov_length(draft)};
+  }
   if (draft.dimensions == 3) {
     double shortest = draft.upper[0] - draft.lower[0];
     for (std::size_t a = 1; a < 3; ++a) shortest = std::min(shortest, draft.upper[a] - draft.lower[a]);
     for (const double d : diameters)
       if (!(d > 0) || !(2 * d < shortest)) {
-        fault(key, "must lie between 0 and half of the shortest side of the box, " + brief(shortest) + "; found " +
+        fault(key, std::string(has("diameter_over_eta") ? "makes a diameter, which " : "") +
+                       "must lie between 0 and half of the shortest side of the box, " + brief(shortest) + "; found " +
                        brief(d));
         break;
       }
@@ -69,6 +87,8 @@ void check_particles(const Draft& draft, Problems& problems) {
                         std::to_string(p.shares.size()));
   if (std::any_of(p.shares.begin(), p.shares.end(), [](double s) { return !(s >= 0); }))
     fault("shares", "must not be negative");
+  else if (has("shares") && std::accumulate(p.shares.begin(), p.shares.end(), 0.0) == 0)
+    fault("shares", "must not all be 0: no particle would have any of the diameters");
   if (has("gravity") && p.gravity.size() != 3)
     fault("gravity", "must have 3 entries, found " + std::to_string(p.gravity.size()));
   if (has("spline_order") && p.spline_order % 2 != 0)

@@ -87,7 +87,8 @@ struct Option {
   std::string description = {};
   std::function<void(Draft&, const Value&)> set = {};
   Methods methods = {};
-  Needs needs = {};  // no words: always
+  Needs needs = {};          // no words: always
+  bool beside_case = false;  // a path from the folder of the case; the resolved case, elsewhere, names it in full
 };
 
 // The option, of use only where another one of its section has one of these words.

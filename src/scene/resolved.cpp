@@ -2,6 +2,7 @@
 #include "resolved.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "checks.hpp"
 #include "option.hpp"
@@ -64,6 +65,11 @@ class Writer {
       const std::string unit = unit_in_case(option.unit);
       const std::string tail = unit.empty() || unit == "1" ? "" : ", " + unit;
       if (node) {
+        if (option.beside_case && node->kind == Node::Kind::string) {
+          const auto folder = std::filesystem::absolute(draft_.options.path).parent_path();
+          line(option.key + " = " + to_toml_string((folder / node->text).lexically_normal().string()), origin(*node));
+          continue;
+        }
         // A title of digits from the command line is text.
         const bool quoted = option.type == OptionType::string && node->kind != Node::Kind::string;
         line(option.key + " = " + (quoted ? to_toml_string(node->raw) : to_toml(*node)), origin(*node) + tail);

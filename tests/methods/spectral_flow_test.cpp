@@ -191,6 +191,47 @@ TEST(SpectralFlow, ShellForceInjectsExactlyAndTheBalanceCloses) {
   }
 }
 
+// A wave that is parallel to its vorticity has no other motion: dE/dt = injection - 2 nu k^2 E, exactly. Along z every
+// stored mode stands for its conjugate too, along x both are stored: a shell that counted either wrong would feed the
+// wave twice or half as much. The tolerance is that of 40 steps of fourth order, (2 nu k^2 dt)^4 / 120 each.
+TEST(SpectralFlow, ShellForceFeedsAWaveByItsInjection) {
+  for (const bool along_z : {true, false}) {
+    const std::string velocity =
+        along_z ? "[\"cos(pi*z)\", \"-sin(pi*z)\", 0]" : "[0, \"cos(2*pi*x)\", \"-sin(2*pi*x)\"]";
+    SpectralRun<> run(spectral_text(
+        "[8, 4, 12]", "[fluid]\nreynolds = 20\n[initial]\nkind = \"expressions\"\nvelocity = " + velocity +
+                          "\n[forcing]\nkind = \"shell\"\nwidth = 1\nwavenumber = " + (along_z ? "1" : "2") +
+                          "\ninjection = 0.7\n[spectral]\nintegrator = \"rk4\"\n"));
+    run.start();
+    const double rate = 2 * std::pow(along_z ? pi : 2 * pi, 2) / 20, rest = 0.7 / rate;
+    for (int step = 1; step <= 40; ++step) {
+      run.steps(1, 0.001);
+      EXPECT_NEAR(run.series().at("mean_energy"), rest + (0.5 - rest) * std::exp(-rate * 0.001 * step), 1e-12);
+    }
+  }
+}
+
+// The force is injection / (2 E) times the velocity of its shell. A shell of next to no energy is fed in steps that
+// raise it by a tenth at a time; one that holds only what transforms round is refused, as one that holds nothing.
+TEST(SpectralFlow, AShellOfLittleEnergyIsFedInSmallSteps) {
+  const auto flow = [](const std::string& start, const std::string& wavenumber) {
+    return spectral_text("[8, 4, 12]",
+                         "[fluid]\nreynolds = 20\n[initial]\nkind = \"expressions\"\nvelocity = [\"cos(pi*z)" + start +
+                             "\", \"-sin(pi*z)\", 0]\n[forcing]\nkind = \"shell\"\nwavenumber = " + wavenumber +
+                             "\ninjection = 0.7\n");
+  };
+  SpectralRun<> run(flow(" + 1e-5*cos(3*pi*z)", "3"));
+  run.start();
+  const double forced = 0.5 * 1e-10 / 2;
+  EXPECT_EQ(run.method.step_limit().limited_by, "forcing");
+  EXPECT_NEAR(run.method.step_limit().dt, 0.1 * 2 * forced / 0.7, 1e-6 * forced);
+  for (int step = 0; step < 100; ++step) run.steps(1, run.method.step_limit().dt);
+  // What was injected beside the decay of the first wave; viscosity takes 1 % of it by then, the scheme errs by as much.
+  const double t = run.method.time(), injected = 0.7 * t;
+  EXPECT_NEAR(run.series().at("mean_energy"), 0.5 * std::exp(-2 * pi * pi / 20 * t) + injected, 0.03 * injected);
+  for (const char* wavenumber : {"3", "2"}) EXPECT_THROW(SpectralRun<>(flow("", wavenumber)).start(), InputError);
+}
+
 TEST(SpectralFlow, LinearForceGrowsAsItsRateSays) {
   SpectralRun<> run(spectral_text("[6, 8, 10]",
                                   "[fluid]\nreynolds = 5\n[initial]\nkind = \"expressions\"\nvelocity = "

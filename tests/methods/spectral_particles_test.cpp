@@ -4,9 +4,13 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 
 #include "methods/spectral_flow.hpp"
+#include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace spume {
 namespace {
@@ -106,6 +110,31 @@ TEST(SpectralParticles, ContinueBitForBitFromACheckpoint) {
     EXPECT_EQ(a.reals, b.reals);
     EXPECT_EQ(a.integers, b.integers);
   }
+}
+
+// The file of the places is read at the start alone: a run goes on without it.
+TEST(SpectralParticles, FromAFileGoOnWithoutIt) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "places.csv";
+  std::ofstream(file) << "x, y, z\n0.1, 0.2, 0.3\n0.4, 0.5, 0.6\n0.9, 0.8, 0.7\n";
+  const std::string text = spectral_text("[12, 16, 20]", random_start +
+                                                             "[particles]\ncount = 3\ndiameter = 0.03\nbeta = 3\n"
+                                                             "response_time = 0.05\nplacement = \"file\"\nfile = \"" +
+                                                             file.string() + "\"\n");
+  SpectralRun<> whole(text), first(text);
+  whole.start().steps(4, 0.002);
+  SavedState state = first.start().steps(2, 0.002).saved();
+  std::filesystem::remove(file);
+  EXPECT_THROW(SpectralRun<>{text}, InputError);
+  LoadedCase loaded = test::load_text(text);
+  loaded.resuming = true;
+  spectral::Spectral<double> method(loaded);
+  method.load(state);
+  Ledger ledger;
+  for (int step = 0; step < 2; ++step) method.step(0.002, ledger);
+  SavedState ended;
+  method.save(ended);
+  EXPECT_EQ(ended.reals, whole.saved().reals);
 }
 
 TEST(SpectralParticles, AreTheSameForAnyNumberOfThreads) {

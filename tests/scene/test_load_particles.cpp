@@ -2,7 +2,10 @@
 // [particles]: what it says arrives, and what cannot work is refused in words.
 #include <gmock/gmock.h>
 
+#include <fstream>
+
 #include "helpers.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace spume {
 namespace {
@@ -52,6 +55,20 @@ TEST(LoadParticles, ContradictionsAreRefusedInWords) {
   refused("count = 10\ndiameter = 0.1\nplacement = \"file\"\n", "missing key 'file'");
   refused("count = 10\ndiameters = [0.1, 0.2]\nshares = [1]\n", "one entry for each of the 2 diameters");
   refused("count = 10\ndiameter = 0.1\nlyapunov = 5\n", "records = \"double\"");
+  refused("count = 10\ndiameters = [0.1, 0.2]\nshares = [0, 0]\n", "shares must not all be 0");
+  refused("count = 10\ndiameter = 0.1\nbeta = 3.5\n", "particles.beta");
+  // eta = (50^-3 / 0.1)^(1/4) = 0.0946.
+  refused("count = 100\ndiameter_over_eta = 3\n", "fill 1.19");
+  refused("count = 10\ndiameter_over_eta = 6\n", "makes a diameter, which must lie between");
+}
+
+// The resolved case lies in the folder of the run: it names files of the case's folder in full.
+TEST(LoadParticles, TheFileIsFoundFromTheResolvedCase) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "case.toml") << with_particles(
+      "count = 1\ndiameter = 0.1\nplacement = \"file\"\nfile = \"places.csv\"\n");
+  const Case options = load_case((folder / "case.toml").string(), {}).options;
+  EXPECT_THAT(options.resolved, HasSubstr("file = \"" + (folder / "places.csv").string() + '"'));
 }
 
 }  // namespace

@@ -184,6 +184,7 @@ struct Case {
 struct LoadedCase {
   Case options;
   Scene scene;
+  bool resuming = false;  // the state comes from a checkpoint: files that only the start reads may be gone
 };
 
 }  // namespace spume

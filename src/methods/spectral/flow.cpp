@@ -15,6 +15,9 @@
 namespace spume::spectral {
 namespace {
 
+// Of the velocity by the force in a step: 0.1 costs the multistep scheme an error of 0.4 % in that growth.
+constexpr double most_growth = 0.1;
+
 std::array<double, 3> box_lengths(const Domain& domain) {
   return {domain.upper[0] - domain.lower[0], domain.upper[1] - domain.lower[1], domain.upper[2] - domain.lower[2]};
 }
@@ -314,7 +317,15 @@ StepLimit Flow<T>::limit_for(const VelocityPeak& peak) const {
 
 template <class T>
 StepLimit Flow<T>::step_limit() const {
-  return limit_for(peak_);
+  const StepLimit limit = limit_for(peak_);
+  const double growth = forcing_coefficient(potential_);
+  return growth * limit.dt > most_growth ? StepLimit{most_growth / growth, "forcing"} : limit;
+}
+
+template <class T>
+double Flow<T>::forced_energy() const {
+  const double growth = forcing_coefficient(potential_);
+  return forcing_.kind == ForcingKind::shell && growth > 0 ? forcing_.injection / (2 * growth) : 0;
 }
 
 template <class T>

@@ -46,10 +46,13 @@ Spectral<T>::Spectral(const LoadedCase& loaded) : loaded_(loaded), flow_(loaded)
 template <class T>
 void Spectral<T>::start() {
   flow_.set_potential(initial_potential(loaded_, flow_));
-  if (loaded_.options.forcing.kind == ForcingKind::shell && !(flow_.measure_budget().injection > 0))
+  // The force is proportional to the velocity of its shell: from rounding alone it would raise rounding.
+  const double noise = 1e4 * std::pow(std::numeric_limits<T>::epsilon(), 2);
+  if (loaded_.options.forcing.kind == ForcingKind::shell &&
+      !(flow_.forced_energy() > noise * flow_.measure_budget().energy))
     throw refusal(loaded_.options, "forcing",
                   "the forced shell holds no energy at the start, so that no force could inject any; choose "
-                  "[initial] or [forcing] so that the wavenumbers meet");
+                  "[initial] or [forcing] so that the wavenumbers meet (they count in 2 pi / longest length)");
   flow_.evaluate_tendency();
   if (suspension_) {
     suspension_->require_possible(flow_.step_limit());

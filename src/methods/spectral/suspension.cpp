@@ -49,11 +49,24 @@ std::vector<std::array<double, 3>> read_positions(const LoadedCase& loaded) {
   return positions;
 }
 
+// Seven particles and six growths for each reference particle.
+double lyapunov_bytes(const LoadedCase& loaded) {
+  return static_cast<double>(loaded.options.particles.lyapunov) * (7.0 * (8 * 7 + 16) + 6 * 8);
+}
+
 void require_memory(const LoadedCase& loaded, const ParticleOptions& options) {
   const double particles = suspension_bytes(loaded, options);
   const double needed = particles + flow_bytes(loaded.scene.grid, loaded.options.spectral);
   const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
   if (needed <= machine) return;
+  if (const double followed = lyapunov_bytes(loaded); followed > 0.5 * needed) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "particles.lyapunov = %.4g reference particles and their shadows need %.3g GB, and this machine has "
+                  "%.3g GB; some thousands are enough",
+                  static_cast<double>(loaded.options.particles.lyapunov), followed / 1e9, machine / 1e9);
+    throw refusal(loaded.options, "particles.lyapunov", text);
+  }
   char text[200];
   std::snprintf(text, sizeof text,
                 "flow and particles need %.3g GB, the particles %.3g of it, and this machine has %.3g GB; lower "
@@ -102,7 +115,7 @@ double suspension_bytes(const LoadedCase& loaded, const ParticleOptions& options
   // Velocity or force on the points and, when the flow feels it, the force as modes.
   double fields = 3 * number * static_cast<double>(grid.storage());
   if (acts_on_flow(options.coupling)) fields += 3 * mode_bytes(loaded.scene.grid, loaded.options.spectral.precision);
-  return ParticleSystem::estimated_bytes(grid, options) + fields;
+  return ParticleSystem::estimated_bytes(grid, options) + lyapunov_bytes(loaded) + fields;
 }
 
 ParticleOptions particle_options(const LoadedCase& loaded) {
@@ -136,6 +149,7 @@ ParticleOptions particle_options(const LoadedCase& loaded) {
       placement.kind = Placement::clustered;
       break;
     case ParticlePlacement::file:
+      if (loaded.resuming) break;
       placement.kind = Placement::given;
       placement.given = read_positions(loaded);
       break;

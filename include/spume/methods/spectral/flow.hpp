@@ -70,6 +70,8 @@ class Flow {
   double viscosity() const { return viscosity_; }
   const VelocityPeak& peak() const { return peak_; }
   StepLimit step_limit() const;
+  // Kinetic energy per mass of the wavenumbers that the force of a shell acts on; 0 without one.
+  double forced_energy() const;
 
   // Transforms to and from the points of the grid, for use between steps.
   BoxTransform<T>& box() { return box_; }
