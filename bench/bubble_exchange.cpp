@@ -132,6 +132,7 @@ void entrainment(benchmark::State& state) {
 
 // Argument: bubbles, all born and all removed.
 void births_and_deaths(benchmark::State& state) {
+  use_threads(state, 1);
   bubbles::Population population({true, true, true});
   const auto items = static_cast<std::size_t>(state.range(0));
   Array<std::uint8_t> dead(items);
@@ -149,7 +150,10 @@ void births_and_deaths(benchmark::State& state) {
 BENCHMARK(bubble_sums)->Apply(Particles::sizes);
 BENCHMARK(particles_around_bubbles)->Apply(Particles::sizes);
 BENCHMARK(entrainment)->Arg(5)->Arg(15);
-BENCHMARK(births_and_deaths)->Arg(10000)->Arg(100000)->UseRealTime();
+BENCHMARK(births_and_deaths)
+    ->ArgNames({"bubbles", "threads"})
+    ->ArgsProduct({{10000, 100000}, thread_counts()})
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace spume

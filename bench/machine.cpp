@@ -119,7 +119,7 @@ void machine(benchmark::State& state) {
   state.counters["flops_per_second"] = limits.flops;
   state.counters["gathers_per_second"] = limits.gathers;
 }
-BENCHMARK(machine)->ArgName("threads")->Arg(1)->Arg(2)->Iterations(1);
+BENCHMARK(machine)->ArgName("threads")->ArgsProduct({thread_counts()})->Iterations(1);
 
 }  // namespace
 
@@ -133,6 +133,17 @@ const MachineLimits& machine_limits(int threads) {
   limits.flops = multiply_add(threads);
   limits.gathers = gather(threads);
   return known[threads] = limits;
+}
+
+std::vector<std::int64_t> thread_counts() {
+  const int all = omp_get_num_procs();
+  return all > 1 ? std::vector<std::int64_t>{1, all} : std::vector<std::int64_t>{1};
+}
+
+int use_threads(const benchmark::State& state, std::size_t argument) {
+  const int threads = static_cast<int>(state.range(argument));
+  omp_set_num_threads(threads);
+  return threads;
 }
 
 void count_against_machine(benchmark::State& state, const Work& work, int threads) {

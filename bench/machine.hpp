@@ -4,6 +4,9 @@
 
 #include <benchmark/benchmark.h>
 
+#include <cstdint>
+#include <vector>
+
 namespace spume {
 
 // All threads together.
@@ -28,5 +31,10 @@ struct Work {
 // Counters: bytes_per_second, flops_per_second, gathers_per_second, cached_per_second as far as they are given, and
 // of_limit, the time that the slowest of them would take on a perfect machine over the time taken.
 void count_against_machine(benchmark::State& state, const Work& work, int threads);
+
+// One thread, and as many as the machine has.
+std::vector<std::int64_t> thread_counts();
+// Takes the number of threads from that argument of the benchmark: what another one left set would count else.
+int use_threads(const benchmark::State& state, std::size_t argument);
 
 }  // namespace spume

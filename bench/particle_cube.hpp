@@ -71,7 +71,7 @@ struct Particles {
 
   static void sizes(benchmark::internal::Benchmark* bench) {
     bench->ArgNames({"particles", "arrangement", "threads"})
-        ->ArgsProduct({{10000, 100000, 1000000}, {0, 1, 2}, {1, 2}})
+        ->ArgsProduct({{10000, 100000, 1000000}, {0, 1, 2}, thread_counts()})
         ->UseRealTime()
         ->MeasureProcessCPUTime()
         ->Unit(benchmark::kMillisecond);

@@ -12,11 +12,14 @@
 #include "spume/operators/linear_deposition.hpp"
 #include "spume/physics/particles/exclusion.hpp"
 #include "spume/physics/particles/motion.hpp"
+#include "spume/physics/particles/overlap.hpp"
 
 namespace spume {
 namespace {
 
 constexpr int points = 128;
+enum Arrangement { unsorted, sorted, clustered };  // at random places; in the order of the cells; in clouds, in order
+constexpr std::size_t clouds = 64;
 
 PeriodicGrid grid() {
   PeriodicGrid grid;
@@ -49,7 +52,7 @@ struct Swarm {
   PeriodicCells cells{g.lower, g.length, g.points};
 
   explicit Swarm(const benchmark::State& state) {
-    omp_set_num_threads(static_cast<int>(state.range(2)));
+    use_threads(state, 2);
     const auto n = static_cast<std::size_t>(state.range(0));
     particles.fields.resize(n);
     particles.common_diameter = 0.65 * 2 * M_PI / points;
@@ -61,7 +64,8 @@ struct Swarm {
       }
       (*particles.identifier)[i] = static_cast<std::int64_t>(i);
     }
-    if (state.range(1) == 1) {
+    if (state.range(1) == clustered) gather_in_clouds();
+    if (state.range(1) != unsorted) {
       sort();
       particles.fields.permute(order.order());
       // As a few steps later: a tenth of a spacing of drift.
@@ -71,6 +75,16 @@ struct Swarm {
               (*particles.position[c])[i] + 0.1 * g.spacing(c) * (*particles.velocity[c])[i], 0, g.length[c]);
     }
     sort();
+  }
+  // Normal clouds of eight spacings: of N^3 particles four lie in a cell of the grid there, as light ones do at St = 1.
+  void gather_in_clouds() {
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      const auto centre = random_uniform(2, RandomPurpose::test, i % clouds, 0, 0);
+      const auto offset = random_normal(3, RandomPurpose::test, i, 0, 0);
+      for (int c = 0; c < 3; ++c)
+        (*particles.position[c])[i] =
+            wrap_periodic(g.length[c] * centre[c] + 8 * g.spacing(c) * offset[c], 0, g.length[c]);
+    }
   }
   void sort() {
     const auto x = particles.positions();
@@ -170,6 +184,7 @@ void particle_feedback(benchmark::State& state) {
   swarm.count(state, {48 + 48, 0, 0, 8 * 3 * 16}, {24, 0, 0, 0});
 }
 
+template <MatchingMethod method>
 void particle_exclusion(benchmark::State& state) {
   Swarm swarm(state);
   const PeriodicGrid g = grid();
@@ -198,7 +213,7 @@ void particle_exclusion(benchmark::State& state) {
     for (int c = 0; c < 3; ++c) *swarm.particles.position[c] = settled[c];
     move(0);
     state.ResumeTiming();
-    report = exclusion.match(swarm.spheres());
+    report = exclusion.match(swarm.spheres(), method);
     exclusion.separate(swarm.spheres());
   }
   // The sort, places and memory of partners once, and the distances (8 operations) to what lies in 27 cells of the size
@@ -210,9 +225,19 @@ void particle_exclusion(benchmark::State& state) {
   state.counters["rounds"] = report.rounds;
 }
 
+// The search alone, with the cells that it needs.
+void particle_search(benchmark::State& state) {
+  Swarm swarm(state);
+  const PeriodicGrid g = grid();
+  Exclusion exclusion(g.lower, g.length, swarm.particles.common_diameter);
+  for (auto _ : state) benchmark::DoNotOptimize(overlap_histogram(exclusion, swarm.spheres(), 20));
+  const double share = std::pow(swarm.particles.common_diameter, 3) / (g.length[0] * g.length[1] * g.length[2]);
+  swarm.count(state, {48 + 36, 8 * 27 * share * static_cast<double>(swarm.particles.size()), 0, 0});
+}
+
 void sizes(benchmark::internal::Benchmark* b) {
-  b->ArgNames({"particles", "sorted", "threads"})
-      ->ArgsProduct({{100000, 1000000, 2097152}, {0, 1}, {1, 2}})
+  b->ArgNames({"particles", "arrangement", "threads"})
+      ->ArgsProduct({{10000, 100000, 1000000, 2097152}, {unsorted, sorted, clustered}, thread_counts()})
       ->UseRealTime()
       ->Unit(benchmark::kMillisecond);
 }
@@ -224,7 +249,10 @@ BENCHMARK(particle_field_records)->Apply(sizes);
 BENCHMARK(particle_sort)->Apply(sizes);
 BENCHMARK(particle_reorder)->Apply(sizes);
 BENCHMARK(particle_feedback)->Apply(sizes);
-BENCHMARK(particle_exclusion)->Apply(sizes);
+// The matching by rounds, and the sort and purge of the paper; the search for overlaps alone, the cells included.
+BENCHMARK(particle_exclusion<MatchingMethod::rounds>)->Apply(sizes)->Name("particle_exclusion");
+BENCHMARK(particle_exclusion<MatchingMethod::sorting>)->Apply(sizes)->Name("particle_exclusion_by_sorting");
+BENCHMARK(particle_search)->Apply(sizes);
 
 }  // namespace
 }  // namespace spume

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "machine.hpp"
 #include "spume/solvers/cell_multigrid.hpp"
 
 namespace {
@@ -44,21 +45,33 @@ struct Cloud {
   spume::CellGeometry geometry;
 };
 
-void report(benchmark::State& state, std::size_t particles) {
+void sizes(benchmark::internal::Benchmark* bench) {
+  bench->ArgNames({"particles", "threads"})
+      ->ArgsProduct({{10000, 100000, 1000000}, spume::thread_counts()})
+      ->UseRealTime()
+      ->Unit(benchmark::kMillisecond);
+}
+
+// `numbers`: of four bytes a particle, read or written at least once.
+void report(benchmark::State& state, std::size_t particles, double numbers) {
+  spume::count_against_machine(state, {4 * numbers * static_cast<double>(particles), 0, 0, 0},
+                               static_cast<int>(state.range(1)));
   state.counters["particles"] = static_cast<double>(particles);
   state.counters["per_particle"] = benchmark::Counter(
       static_cast<double>(particles), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void cell_multigrid_setup(benchmark::State& state) {
+  spume::use_threads(state, 1);
   const Cloud cloud(static_cast<double>(state.range(0)));
   spume::CellMultigrid multigrid(cloud.geometry);
   for (auto _ : state) multigrid.setup(cloud.x, cloud.y, cloud.z, cloud.interior, 0.0, cloud.diagonal);
-  report(state, cloud.x.size());
+  report(state, cloud.x.size(), 8);  // three places in double, two weights
 }
-BENCHMARK(cell_multigrid_setup)->Arg(100000)->Arg(1000000)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(cell_multigrid_setup)->Apply(sizes);
 
 void cell_multigrid_apply(benchmark::State& state) {
+  spume::use_threads(state, 1);
   const Cloud cloud(static_cast<double>(state.range(0)));
   spume::CellMultigrid multigrid(cloud.geometry);
   multigrid.setup(cloud.x, cloud.y, cloud.z, cloud.interior, 0.0, cloud.diagonal);
@@ -68,8 +81,8 @@ void cell_multigrid_apply(benchmark::State& state) {
     multigrid.apply(std::span<const float>(r), std::span<float>(z));
     benchmark::DoNotOptimize(z.data());
   }
-  report(state, cloud.x.size());
+  report(state, cloud.x.size(), 3);  // residual, weight and result
 }
-BENCHMARK(cell_multigrid_apply)->Arg(100000)->Arg(1000000)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(cell_multigrid_apply)->Apply(sizes);
 
 }  // namespace

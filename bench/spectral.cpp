@@ -45,6 +45,7 @@ Work flow_work(std::size_t points) {
 
 template <class T>
 void flow_step(benchmark::State& state) {
+  const int threads = use_threads(state, 1);
   const auto n = static_cast<std::size_t>(state.range(0));
   LoadedCase loaded = turbulence(n, Integrator::ab2);
   if (sizeof(T) == 4) loaded.options.spectral.precision = FieldPrecision::f32;
@@ -60,7 +61,7 @@ void flow_step(benchmark::State& state) {
   state.counters["fields"] = bytes / (cubed * sizeof(T));
   state.counters["ns_per_point"] =
       benchmark::Counter(cubed, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
-  count_against_machine(state, flow_work<T>(n), thread_count());
+  count_against_machine(state, flow_work<T>(n), threads);
 }
 
 // Lines of N modes padded to M = 3N/2 in a buffer; a transform of M points each.
@@ -160,13 +161,23 @@ struct Floor {
 
 template <class T>
 void fused_floor(benchmark::State& state) {
+  use_threads(state, 1);
   Floor<T> floor(static_cast<std::size_t>(state.range(0)));
   for (auto _ : state) floor.run();
+}
+
+// Modes and values read or written once, and along every axis 5 N log2 N operations of a complex transform, half of
+// them for a real field.
+template <class T>
+Work three_transforms(std::size_t points) {
+  const auto n = static_cast<double>(points), cubed = n * n * n;
+  return {3 * 2 * cubed * sizeof(T), 3 * 2.5 * cubed * 3 * std::log2(n) * sizeof(T) / 4, 0, 0};
 }
 
 // Three unpadded transforms, as particles ask for them.
 template <class T>
 void velocity_on_points(benchmark::State& state) {
+  const int threads = use_threads(state, 1);
   const auto n = static_cast<std::size_t>(state.range(0));
   const LoadedCase loaded = turbulence(n, Integrator::ab2);
   spectral::Flow<T> flow(loaded);
@@ -175,10 +186,29 @@ void velocity_on_points(benchmark::State& state) {
   Array<T> values(3 * size);
   for (auto _ : state)
     spectral::real_velocity(flow, flow.potential(), {}, {&values[0], &values[size], &values[2 * size]}, n);
+  count_against_machine(state, three_transforms<T>(n), threads);
+}
+
+// The force of particles to modes: three transforms the other way, and its projection.
+template <class T>
+void force_to_modes(benchmark::State& state) {
+  const int threads = use_threads(state, 1);
+  const auto n = static_cast<std::size_t>(state.range(0));
+  const LoadedCase loaded = turbulence(n, Integrator::ab2);
+  spectral::Flow<T> flow(loaded);
+  const std::size_t size = n * n * n;
+  Array<T> values(3 * size);
+  for (std::size_t i = 0; i < 3 * size; ++i) values[i] = static_cast<T>(std::sin(0.1 * static_cast<double>(i)));
+  spectral::Modes<T> modes;
+  for (auto _ : state) spectral::force_modes<T>(flow, {&values[0], &values[size], &values[2 * size]}, n, modes);
+  count_against_machine(state, three_transforms<T>(n), threads);
 }
 
 void sizes(benchmark::internal::Benchmark* bench) {
-  bench->Arg(64)->Arg(128)->UseRealTime()->Unit(benchmark::kMillisecond);
+  bench->ArgNames({"points", "threads"})
+      ->ArgsProduct({{64, 128}, thread_counts()})
+      ->UseRealTime()
+      ->Unit(benchmark::kMillisecond);
 }
 BENCHMARK(flow_step<double>)->Apply(sizes);
 BENCHMARK(fused_floor<double>)->Apply(sizes);
@@ -186,6 +216,8 @@ BENCHMARK(flow_step<float>)->Apply(sizes);
 BENCHMARK(fused_floor<float>)->Apply(sizes);
 BENCHMARK(velocity_on_points<double>)->Apply(sizes);
 BENCHMARK(velocity_on_points<float>)->Apply(sizes);
+BENCHMARK(force_to_modes<double>)->Apply(sizes);
+BENCHMARK(force_to_modes<float>)->Apply(sizes);
 
 }  // namespace
 }  // namespace spume

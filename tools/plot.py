@@ -228,12 +228,17 @@ def plot_lines(run, out):
 
 def plot_reference(run, out):
     """The comparison that the case's own measure.py defines."""
-    case = find_case(run)
+    return plot_comparison({"run": run}, out)
+
+
+def plot_comparison(runs, out):
+    """The same for runs by the names that the case's [[verify.run]] gives them."""
+    case = find_case(next(iter(runs.values())))
     module = load_measure(case) if case else None
     if module is None or not hasattr(module, "curves"):
         return []
     try:
-        return draw_curves(module.curves({"run": run}), out)
+        return draw_curves(module.curves(runs), out)
     except (MissingResult, OSError):
         raise
     except Exception as error:  # a fault in one measure.py must not hide the other pictures
@@ -245,10 +250,20 @@ PICTURES = (plot_energy, plot_numerics, plot_ledger, plot_turbulence, plot_slice
             plot_gradient_pdf, plot_particles, plot_probes, plot_lines, *BUBBLE_PICTURES, plot_reference)
 
 
+def is_run(results):
+    return any(results.has(name) for name in ("series.csv", "summary.json", "log.txt", "fluid.vtkhdf"))
+
+
+def runs_of(folder):
+    """The runs in the subfolders that `spume verify --keep` leaves of a case, by their names."""
+    found = [Results(child) for child in sorted(Path(folder).iterdir()) if child.is_dir()] if Path(folder).is_dir() else []
+    return {run.folder.name: run for run in found if is_run(run)}
+
+
 def run_in(folder):
     """The run in a folder; MissingResult when there is none."""
     run = Results(folder)
-    if any(run.has(name) for name in ("series.csv", "summary.json", "log.txt", "fluid.vtkhdf")):
+    if is_run(run):
         return run
     if run.has("case.toml"):
         raise MissingResult(f"{folder}: a case and not a run of it")
@@ -257,22 +272,24 @@ def run_in(folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("directory", metavar="DIR", help="the folder of a run")
+    parser.add_argument("directory", metavar="DIR", help="the folder of a run, or of the runs of a case that verify kept")
     parser.add_argument("--times", metavar="T", nargs="+", type=float, default=(), help="times that particles are drawn at")
     arguments = parser.parse_args()
     folder = arguments.directory
     try:
-        run = run_in(folder)
-        run.picture_times = arguments.times
+        runs = runs_of(folder)
+        drawn = runs or run_in(folder)
+        if not runs:
+            drawn.picture_times = arguments.times
     except MissingResult as error:
         print(f"error: {error}; give the folder that 'spume run' made", file=sys.stderr)
         return 2
-    out = run.folder / "plots"
+    out = Path(folder) / "plots"
     files, left_out, damaged = [], {}, set()
-    for picture in PICTURES:
+    for picture in (plot_comparison,) if runs else PICTURES:
         try:
             out.mkdir(exist_ok=True)
-            files += picture(run, out)
+            files += picture(drawn, out)
         except (MissingResult, ValueError, IndexError, np.linalg.LinAlgError) as error:
             left_out.setdefault(str(error), []).append(picture.__name__[5:].replace("_", " "))
             if isinstance(error, DamagedResult):

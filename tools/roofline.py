@@ -14,8 +14,8 @@ import sys
 from pathlib import Path
 
 # One size of each: jittered or sorted particles, and the flow on 128^3 points.
-ROUTINES = ("^(machine/|[a-z_]+/particles:100000/arrangement:1/|particle_[a-z]+(<[a-z]+>)?/particles:1000000/sorted:1/"
-            "|flow_step<[a-z]+>/128)")
+ROUTINES = ("^(machine/|[a-z_]+/particles:100000/arrangement:1/|particle_[a-z_]+(<[a-z]+>)?/particles:1000000/arrangement:1/"
+            "|cell_multigrid_[a-z]+/particles:100000/|(flow_step|velocity_on_points|force_to_modes)<[a-z]+>/points:128/)")
 
 
 def results(source, pattern):
@@ -44,7 +44,7 @@ def short(name):
     """The name and the threads, of benchmarks that have them: all routines of one kind have one size."""
     routine, *arguments = name.removesuffix("/real_time").removesuffix("/process_time").split("/")
     threads = [a.split(":")[1] for a in arguments if a.startswith("threads:")]
-    return routine + (f", {threads[0]} thread{'s' if threads[0] != '1' else ''}" if threads else f", {arguments[0]}^3")
+    return routine + (f", {threads[0]} thread{'s' if threads[0] != '1' else ''}" if threads else "")
 
 
 def table(limits, routines):

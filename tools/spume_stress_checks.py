@@ -15,6 +15,7 @@ MOMENTUM = 0.02  # of mass times the largest speed: interpolation with corrected
 ENERGY_GROWTH = 0.05  # of the largest energy that has moved; a stable scheme loses energy, rounding is far below
 SPECTRAL_GROWTH = 1e-3  # of the initial energy: transport conserves it, and viscosity is exact
 BALANCE = 0.05  # of what viscosity takes between two rows, courant <= 0.5
+LOADED_BALANCE = 0.25  # the same with particles, whose force is held over a step
 
 
 def finite_table(table):
@@ -94,6 +95,20 @@ def check_les_sph(run, scene, complaints):
     check_particles(run, scene, complaints)
 
 
+def integral(series, name):
+    """Over time, by trapezia."""
+    t, values = series["t"], series[name]
+    return float(np.sum(0.5 * (values[1:] + values[:-1]) * np.diff(t)))
+
+
+def loading(run, particles):
+    """Volume fraction of the particles, and their mass with the fluid that they move over that of all fluid."""
+    lower, upper = run.bounds()
+    fraction = particles.get("volume_fraction") or (
+        particles["count"] * np.pi / 6 * particles["diameter"] ** 3 / np.prod(np.subtract(upper, lower)))
+    return fraction, fraction * (0.5 * (3 / particles["beta"] - 1) + 0.5)
+
+
 def check_spectral(run, scene, complaints):
     series, facts = run.series, scene.facts
     # Not numbers by definition: scales without viscosity, moments of no gradient, dimensions of too few particles.
@@ -108,12 +123,18 @@ def check_spectral(run, scene, complaints):
         growth = (np.max(energy) - energy[0]) / energy[0]
         if growth > SPECTRAL_GROWTH:
             complaints.append(f"energy: grows by {growth:.3g} without a force")
-    if scene.case["time"]["courant"] <= 0.5 and not facts["loaded"] and not aliased and len(energy) > 3:
+    if facts["loaded"] and not aliased and "gravity" not in scene.case["particles"]:
+        # Particles give back what they brought along; and what is put into a fluid of which a part is bubbles moves the
+        # rest the more, by 1 / (1 - fraction): (11) of de Wit et al. (2024).
+        fraction, mass = loading(run, scene.case["particles"])
+        supply = energy[0] * (1 + mass) + integral(series, "mean_injection") / (1 - fraction)
+        if np.max(energy) > (1 + ENERGY_GROWTH) * supply:
+            complaints.append(f"energy: {np.max(energy):.3g} of {supply:.3g} that start, force and particles supply")
+    if scene.case["time"]["courant"] <= 0.5 and not aliased and len(energy) > 3:
         # Relative to the energy in play where viscosity takes next to nothing.
-        lost = np.trapezoid(series["mean_dissipation"], series["t"]) if hasattr(np, "trapezoid") else np.trapz(
-            series["mean_dissipation"], series["t"])
+        lost = integral(series, "mean_dissipation")
         worst = np.max(np.abs(series["balance_residual"][3:]))
-        if worst > BALANCE and lost > 1e-3 * energy[0]:
+        if worst > (LOADED_BALANCE if facts["loaded"] else BALANCE) and lost > 1e-3 * energy[0]:
             complaints.append(f"energy: balance off by {worst:.3g} of the dissipation")
     if "particles" in scene.case:
         snapshots = run.snapshots("bubbles")

@@ -56,7 +56,7 @@ struct CommandLine {
     resume_app = app.add_subcommand("resume", "continue a run bit for bit from its last checkpoint");
     info_app = app.add_subcommand("info", "what a result, a checkpoint, a run folder or a case holds");
     verify_app = app.add_subcommand("verify", "run validation cases and print error against bound");
-    plot_app = app.add_subcommand("plot", "standard pictures (PNG) of a run");
+    plot_app = app.add_subcommand("plot", "standard pictures (PNG) of a run, or of the runs of a case that verify kept");
     options_app = app.add_subcommand("options", "every option of a case: unit, default, range");
 
     for (CLI::App* verb : {run_app, check_app}) {
@@ -78,7 +78,7 @@ struct CommandLine {
     verify_app->add_option("cases", cases, "names or folders of cases (default: all)");
     verify_app->add_flag("--quick", quick, "only what takes seconds");
     verify_app->add_option("--keep", keep, "keep the runs, their plots and verify.json in this folder");
-    plot_app->add_option("dir", folder, "folder of the run")->required();
+    plot_app->add_option("dir", folder, "folder of the run or runs")->required();
     options_app->add_option("section", section, "only this section");
   }
 

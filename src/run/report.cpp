@@ -135,21 +135,25 @@ std::string plan_table(const std::vector<Stage>& plan) {
   return text;
 }
 
-std::string array_table(const std::vector<ArrayInfo>& arrays, std::size_t particles) {
-  std::size_t width = 5;
-  double total = 0;
+std::string array_table(const std::vector<ArrayInfo>& arrays, std::size_t count, bool on_grid) {
+  const std::string of_suspended = "all of particles";
+  std::size_t width = of_suspended.size();
+  ArrayInfo total{"total"}, suspended{of_suspended};
   for (const auto& array : arrays) {
     width = std::max(width, array.name.size());
-    total += array.bytes;
+    total.bytes += array.bytes;
+    if (array.suspended > 0) suspended = {of_suspended, suspended.bytes + array.bytes, array.suspended};
   }
-  const double count = static_cast<double>(std::max<std::size_t>(particles, 1));
   std::string text;
-  const auto row = [&](const std::string& name, double bytes) {
-    text += format("  %-*s  %10s  %8.1f B per particle\n", static_cast<int>(width), name.c_str(),
-                   human_bytes(bytes).c_str(), bytes / count);
+  const auto row = [&](const ArrayInfo& array) {
+    const std::size_t shared = array.suspended > 0 ? array.suspended : std::max<std::size_t>(count, 1);
+    text += format("  %-*s  %10s  %8.1f B per %s\n", static_cast<int>(width), array.name.c_str(),
+                   human_bytes(array.bytes).c_str(), array.bytes / static_cast<double>(shared),
+                   on_grid && array.suspended == 0 ? "point" : "particle");
   };
-  for (const auto& array : arrays) row(array.name, array.bytes);
-  row("total", total);
+  for (const auto& array : arrays) row(array);
+  if (suspended.suspended > 0) row(suspended);
+  row(total);
   return text;
 }
 

@@ -104,6 +104,11 @@ std::vector<Section> particle_sections() {
                with({"coupling", {"two-way", "four-way"}},
                     number("max_volume_fraction", "1", "0.7405, close packing", above_up_to(0, 1),
                            "local volume fraction at which the force on the flow is clipped", &P::max_volume_fraction)),
+               with({"coupling", {"two-way", "four-way"}},
+                    boolean("mean_force_moves_fluid",
+                            "the mean of their force accelerates the fluid, in place of a mean pressure gradient "
+                            "that holds it",
+                            &P::mean_force_moves_fluid)),
                boolean("frozen", "particles stay at rest where they are", &P::frozen),
                integer("spline_order", "4", {2, 6}, "points per axis of the interpolation: 2, 4 or 6",
                        &P::spline_order),

@@ -94,6 +94,29 @@ class Checks(unittest.TestCase):
         self.assertEqual(self.complaint(pressure_residual=1e-7 + 1e-3 * (t == 0)), "convergence")
         self.assertEqual(self.complaint(max_speed=np.where(t == 1, np.nan, 1)), "finite")
 
+    def test_energy_that_coupled_particles_cannot_have_supplied_is_seen(self):
+        particles = {"count": 1000, "diameter": 0.1, "beta": 3.0, "coupling": "two-way"}
+        case = {"method": "spectral", "domain": {"lower": [0.0] * 3, "upper": [2 * np.pi] * 3}, "particles": particles,
+                "spectral": {"dealiasing": "padded"}, "time": {"end": 1.0, "courant": 0.4}}
+        self.scene = Scene("bubbles", case, {}, conservative=False, loaded=True)
+        (self.folder / "case.toml").write_text(toml_text(case))
+        (self.folder / "summary.json").write_text('{"retries": 0}')
+        places = np.random.default_rng(1).uniform(0, 6, (1000, 3))
+        write_snapshots(self.folder / "bubbles.vtkhdf", [0, 1], lambda time: places,
+                        {"id": lambda p, time: np.arange(len(p)).astype(float)})
+        t = np.linspace(0, 1, 11)
+
+        def judged(**columns):
+            values = {"max_speed": 1.0 + 0 * t, "mean_energy": 0.3 + 0 * t, "mean_dissipation": 0.1 + 0 * t, "mean_injection": 0.1 + 0 * t,
+                      "balance_residual": 1e-3 + 0 * t} | columns
+            write_table(self.folder / "series.csv", series_of(t, **values))
+            return judge("spectral", self.scene, self.folder, 0, "", False)[:2]
+
+        self.assertEqual(judged(), ("ok", []))
+        self.assertEqual(judged(mean_energy=0.3 + 0.1 * t), ("ok", []))
+        self.assertEqual(judged(mean_energy=0.3 * np.exp(16 * t))[0], "failed")
+        self.assertEqual(judged(balance_residual=0.3 + 0 * t)[0], "failed")
+
     def test_lost_and_escaped_particles_are_seen(self):
         def below(grid):
             grid[0, 1] = -0.01

@@ -129,6 +129,16 @@ class Plotting(Scratch):
             self.assertRegex(done.stderr, r"\Aerror: .*; give the folder that 'spume run' made\n\Z")
             self.assertFalse((folder / "plots").exists())
 
+    def test_runs_that_verify_kept_are_compared(self):
+        for name in ("standard", "a_05"):
+            folder = self.path / "kept" / name
+            folder.mkdir(parents=True)
+            (folder / "case.toml").write_text((paths.ROOT / "cases" / "bubble_insertion" / "case.toml").read_text())
+            norm = np.exp(-np.arange(21.0))
+            write_table(folder / "series.csv", series_of(np.linspace(0, 0.02, 21), shift_norm=norm, max_speed=0 * norm))
+        names, _ = self.pictures(self.path / "kept")
+        self.assertEqual(names, {"shift_norm.png"})
+
     def test_nothing_to_draw_is_an_error(self):
         folder = new_folder(self.path, "run")
         (folder / "log.txt").touch()

@@ -28,6 +28,7 @@ struct Stage {
 struct ArrayInfo {
   std::string name;
   double bytes = 0;
+  std::size_t suspended = 0;  // particles in a flow on a grid that it belongs to; 0: it belongs to the liquid or grid
 };
 
 // The step a method would take next, and what limits it ("courant", "viscous", "capillary").

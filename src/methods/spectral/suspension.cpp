@@ -246,7 +246,8 @@ void Suspension<T>::before_step(Ledger& ledger) {
   system_.template feedback<T>({field_[0].data(), field_[1].data(), field_[2].data()}, ledger);
   const auto scope = ledger.time("force to modes", static_cast<double>(grid_.point_count()));
   force_modes(flow_, read(), grid_.z_stride, force_);
-  for (auto& component : force_) component[0] = 0;
+  if (!loaded_.options.particles.mean_force_moves_fluid)
+    for (auto& component : force_) component[0] = 0;
   flow_.set_force({force_[0].data(), force_[1].data(), force_[2].data()});
 }
 
@@ -305,7 +306,8 @@ void Suspension<T>::add_stages(std::vector<Stage>& list) const {
 
 template <class T>
 void Suspension<T>::add_arrays(std::vector<ArrayInfo>& list) const {
-  for (const auto& array : system_.arrays()) list.push_back({array.name, array.bytes});
+  for (const auto& array : system_.arrays())
+    list.push_back({array.name, array.bytes, array.per_particle ? system_.size() : 0});
   double fields = 0;
   for (const auto& field : field_) fields += static_cast<double>(field.capacity() * sizeof(T));
   for (const auto& modes : force_) fields += static_cast<double>(modes.capacity() * sizeof(std::complex<T>));

@@ -207,9 +207,11 @@ void ParticleSystem::restored() {
 std::vector<ParticleSystem::ArraySize> ParticleSystem::arrays() const {
   std::vector<ArraySize> out{{"particle state", particles_.fields.bytes()},
                              {"particle order", order_.bytes()},
-                             {"velocity records", std::visit([](const auto& f) { return f.bytes(); }, field_)}};
-  if (couples())
-    out.push_back({"particle forces", 8.0 * static_cast<double>(amounts_.capacity()) + deposition_.bytes()});
+                             {"velocity records", std::visit([](const auto& f) { return f.bytes(); }, field_), false}};
+  if (couples()) {
+    out.push_back({"particle forces", 8.0 * static_cast<double>(amounts_.capacity())});
+    out.push_back({"force on the points", deposition_.bytes(), false});
+  }
   if (has_cells_) out.push_back({"particle exclusion", exclusion_.bytes()});
   return out;
 }

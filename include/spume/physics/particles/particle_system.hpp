@@ -115,6 +115,7 @@ class ParticleSystem {
   struct ArraySize {
     std::string name;
     double bytes;
+    bool per_particle = true;  // else per point of the grid
   };
   std::vector<ArraySize> arrays() const;
   // Before any allocation: bytes that a system with these options holds.
