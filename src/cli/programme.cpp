@@ -56,7 +56,8 @@ struct CommandLine {
     resume_app = app.add_subcommand("resume", "continue a run bit for bit from its last checkpoint");
     info_app = app.add_subcommand("info", "what a result, a checkpoint, a run folder or a case holds");
     verify_app = app.add_subcommand("verify", "run validation cases and print error against bound");
-    plot_app = app.add_subcommand("plot", "standard pictures (PNG) of a run, or of the runs of a case that verify kept");
+    plot_app =
+        app.add_subcommand("plot", "standard pictures (PNG) of a run, or of the runs of a case that verify kept");
     options_app = app.add_subcommand("options", "every option of a case: unit, default, range");
 
     for (CLI::App* verb : {run_app, check_app}) {

@@ -49,7 +49,8 @@ int check_verb(const RunArguments& arguments, const Programme& programme) {
   double bytes = 0;
   for (const auto& array : arrays) bytes += array.bytes;
   const double memory = machine_memory_bytes();
-  std::printf("arrays\n%s\nneeds %s and %s; machine has %s\n", array_table(arrays, method->particle_count(), loaded.scene.grid[0] > 0).c_str(),
+  std::printf("arrays\n%s\nneeds %s and %s; machine has %s\n",
+              array_table(arrays, method->particle_count(), loaded.scene.grid[0] > 0).c_str(),
               human_bytes(bytes).c_str(), time.c_str(), human_bytes(memory).c_str());
   if (bytes > memory)
     std::printf(

@@ -226,7 +226,8 @@ TEST(SpectralFlow, AShellOfLittleEnergyIsFedInSmallSteps) {
   EXPECT_EQ(run.method.step_limit().limited_by, "forcing");
   EXPECT_NEAR(run.method.step_limit().dt, 0.1 * 2 * forced / 0.7, 1e-6 * forced);
   for (int step = 0; step < 100; ++step) run.steps(1, run.method.step_limit().dt);
-  // What was injected beside the decay of the first wave; viscosity takes 1 % of it by then, the scheme errs by as much.
+  // What was injected beside the decay of the first wave; viscosity takes 1 % of it by then, the scheme errs by as
+  // much.
   const double t = run.method.time(), injected = 0.7 * t;
   EXPECT_NEAR(run.series().at("mean_energy"), 0.5 * std::exp(-2 * pi * pi / 20 * t) + injected, 0.03 * injected);
   for (const char* wavenumber : {"3", "2"}) EXPECT_THROW(SpectralRun<>(flow("", wavenumber)).start(), InputError);

@@ -24,7 +24,8 @@ std::int64_t peak_resident_bytes();  // of this process
 // and the folder of the results when there is one.
 std::string start_table(const LoadedCase& loaded, const Method& method, int threads, const std::string& folder = {});
 std::string plan_table(const std::vector<Stage>& plan);
-// Bytes per particle of the liquid or, with `on_grid`, per point; those of suspended particles per particle, with a sum.
+// Bytes per particle of the liquid or, with `on_grid`, per point; those of suspended particles per particle, with a
+// sum.
 std::string array_table(const std::vector<ArrayInfo>& arrays, std::size_t count, bool on_grid);
 
 // Calls, seconds, share of the wall time, ns per particle or per pair, GB/s. Where pairs are counted, the cost

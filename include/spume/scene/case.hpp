@@ -111,7 +111,7 @@ struct ParticleCaseOptions {
   bool matching_by_sorting = false;
   std::int64_t collision_sweeps = 1;
   double max_volume_fraction = 0.74048048969306104;  // pi / (3 sqrt 2), close packing
-  bool mean_force_moves_fluid = false;  // else a mean pressure gradient holds it
+  bool mean_force_moves_fluid = false;               // else a mean pressure gradient holds it
   bool frozen = false;
   std::int64_t spline_order = 4;
   bool double_records = false;
