@@ -98,11 +98,10 @@ void write_array(const File& file, const std::string& name, hid_t file_type, hid
                  const void* values) {
   const hsize_t count = size;
   const Id space = file.take(H5Screate_simple(1, &count, nullptr), H5Sclose, "write");
-  const Id links = file.take(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "write");
-  H5Pset_create_intermediate_group(links, 1);
-  const Id data =
-      file.take(H5Dcreate2(file.id(), stored_name(name).c_str(), file_type, space, links, H5P_DEFAULT, H5P_DEFAULT),
-                H5Dclose, "write '" + name + "' to");
+  hdf5::make_groups(file, stored_name(name));
+  const Id data = file.take(H5Dcreate2(file.id(), stored_name(name).c_str(), file_type, space, H5P_DEFAULT,
+                                       hdf5::dataset_creation(), H5P_DEFAULT),
+                            H5Dclose, "write '" + name + "' to");
   if (size > 0) file.check(H5Dwrite(data, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "write");
 }
 

@@ -56,11 +56,18 @@ void throw_error(const std::filesystem::path& path, std::string_view action) {
   throw FileError("cannot " + std::string(action) + " '" + path.string() + "': " + reason);
 }
 
+Id dataset_creation() {
+  Id creation = property_list(H5P_DATASET_CREATE);
+  H5Pset_obj_track_times(creation, false);
+  return creation;
+}
+
 File File::create(const std::filesystem::path& path, Format format, std::int64_t user_block_bytes) {
   initialise();
   const Id access = file_access();
   if (format == Format::latest) H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
   const Id creation = property_list(H5P_FILE_CREATE);
+  H5Pset_obj_track_times(creation, false);  // of the root
   if (user_block_bytes > 0) H5Pset_userblock(creation, static_cast<hsize_t>(user_block_bytes));
   const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access);
   if (id < 0) throw_error(path, "create");
@@ -115,13 +122,23 @@ void write_fixed_string(const File& file, hid_t object, const char* name, const 
   write_attribute(file, object, name, type, type, std::nullopt, text.data());
 }
 
+void make_groups(const File& file, const std::string& name) {
+  const Id creation = property_list(H5P_GROUP_CREATE);
+  H5Pset_obj_track_times(creation, false);
+  for (std::size_t end = name.find('/', 1); end != std::string::npos; end = name.find('/', end + 1)) {
+    const std::string group = name.substr(0, end);
+    if (!file.exists(group))
+      file.take(H5Gcreate2(file.id(), group.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose, "write");
+  }
+}
+
 void write_text(const File& file, const std::string& name, std::string_view text) {
   const hsize_t size = text.size();
   const Id space = file.take(H5Screate_simple(1, &size, nullptr), H5Sclose, "write");
-  const Id links = property_list(H5P_LINK_CREATE);
-  H5Pset_create_intermediate_group(links, 1);
-  const Id data = file.take(H5Dcreate2(file.id(), name.c_str(), H5T_STD_U8LE, space, links, H5P_DEFAULT, H5P_DEFAULT),
-                            H5Dclose, "write");
+  make_groups(file, name);
+  const Id data =
+      file.take(H5Dcreate2(file.id(), name.c_str(), H5T_STD_U8LE, space, H5P_DEFAULT, dataset_creation(), H5P_DEFAULT),
+                H5Dclose, "write");
   if (size > 0) file.check(H5Dwrite(data, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), "write");
 }
 

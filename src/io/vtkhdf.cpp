@@ -226,7 +226,7 @@ void link_column(const File& file, const std::string& view, const std::string& s
   const hsize_t start[2] = {first, column}, size[2] = {count, 1};
   H5Sselect_hyperslab(source_space, H5S_SELECT_SET, start, nullptr, size, nullptr);
   const Id space = file.take(H5Screate_simple(1, &count, nullptr), H5Sclose, "write");
-  const Id creation = file.take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "write");
+  const Id creation = hdf5::dataset_creation();
   file.check(H5Pset_virtual(creation, space, ".", source.c_str(), source_space), "write");
   const Id data = file.take(H5Dcreate2(file.id(), view.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
                             H5Dclose, "write");

@@ -17,7 +17,7 @@ void create_array(const File& file, const std::string& name, hid_t type, const s
   limit.insert(limit.end(), row.begin(), row.end());
   const int rank = static_cast<int>(size.size());
   const Id space = file.take(H5Screate_simple(rank, size.data(), limit.data()), H5Sclose, "write");
-  const Id creation = file.take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "write");
+  const Id creation = hdf5::dataset_creation();
   H5Pset_chunk(creation, rank, chunk.data());
   if (compress) {
     H5Pset_shuffle(creation);

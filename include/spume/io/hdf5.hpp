@@ -73,6 +73,12 @@ class File {
 // Makes or overwrites an attribute; without a count it is a scalar.
 void write_attribute(const File& file, hid_t object, const char* name, hid_t file_type, hid_t memory_type,
                      std::optional<hsize_t> count, const void* value);
+// The properties that every dataset starts from: without the time of its making, which would tell two files of one
+// state apart.
+Id dataset_creation();
+// The groups above that name that do not exist, without times as well.
+void make_groups(const File& file, const std::string& name);
+
 // A string of fixed length: readers of VTKHDF accept no other.
 void write_fixed_string(const File& file, hid_t object, const char* name, const std::string& text);
 
