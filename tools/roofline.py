@@ -35,7 +35,7 @@ def split(report):
         name = entry["run_name"]
         if name.startswith("machine/"):
             limits[int(name.split("threads:")[1].split("/")[0])] = entry
-        elif "of_limit" in entry:
+        elif "of_limit" in entry and not (name.startswith("particle_") and "/particles:100000/" in name):
             routines.append(entry)
     return limits, routines
 
