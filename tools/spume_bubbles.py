@@ -135,7 +135,10 @@ def plot_bubble_views(run, out):
     lower, upper = run.bounds()
     shots = [bubbles[int(k)] for k in steps]
     radius = np.concatenate([shot.field("radius") for shot in shots]) / hinze
-    norm = LogNorm(max(radius.min(), 0.05) * 0.999, radius.max() * 1.001)
+    # Bubbles of one size get a scale about it, not one of their last digits.
+    least, most = max(radius.min(), 0.05), radius.max()
+    margin = 1.001 if most > 1.5 * least else 2
+    norm = LogNorm(least / margin, most * margin)
     name = "dissipation" if "dissipation" in fluid.names else "speed"
     liquids = [fluid.nearest(shot.time) for shot in shots]
     liquid_norm = field_norm(name, [liquid.field(name) for liquid in liquids])
