@@ -11,6 +11,11 @@
 
 namespace spume::test {
 
+// Whether spheres that touch at distance `touching` overlap by more than rounding.
+inline bool overlapping(double distance_2, double touching) {
+  return distance_2 < (1 - 1e-6) * touching * touching;
+}
+
 inline std::vector<std::int32_t> greedy_matching(const Spheres& s, const std::array<double, 3>& length) {
   struct Pair {
     double overlap;

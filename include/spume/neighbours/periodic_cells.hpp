@@ -36,9 +36,8 @@ class CellOrder {
   const Array<std::int32_t>& order() const { return order_; }
   const std::int32_t* first() const { return first_.data(); }
   bool already_sorted() const { return already_sorted_; }
-  // Two arrays of a number per point that only build() uses: anyone's in between.
+  // An array of a number per point that only build() uses: anyone's in between.
   Array<std::int32_t>& scratch() { return plane_cell_; }
-  Array<std::int32_t>& more_scratch() { return plane_order_; }
   double bytes() const;
 
  private:

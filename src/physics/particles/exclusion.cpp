@@ -2,12 +2,16 @@
 #include "spume/physics/particles/exclusion.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
 #include "exclusion_search.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/core/periodic_grid.hpp"
 #include "spume/core/random.hpp"
 
 namespace spume {
@@ -46,40 +50,41 @@ Exclusion::Exclusion(const std::array<double, 3>& lower, const std::array<double
   if (!(largest_diameter > 0) || !(2 * largest_diameter < shortest))
     throw std::invalid_argument("the largest diameter, " + std::to_string(largest_diameter) +
                                 ", must lie between 0 and half of the shortest side of the box");
-  for (int axis = 0; axis < 3; ++axis) inverse_length_[axis] = 1 / length[axis];
+  for (int axis = 0; axis < 3; ++axis) {
+    inverse_length_[axis] = 1 / length[axis];
+    unit_[axis] = static_cast<float>(length[axis] * 0x1p-32);
+  }
+  // Pairs that were moved apart touch to rounding, of single precision and of their places: they do not count.
+  const double longest = std::max({length[0], length[1], length[2]});
+  overlap_margin_ = static_cast<float>(5e-7 + longest * 0x1p-28 / largest_diameter);
 }
 
 void Exclusion::prepare(const Spheres& spheres) {
   const std::size_t n = spheres.size;
-  // One particle per cell on average, and sides of at least two diameters, so that a sphere reaches two cells along
-  // every axis, places in single precision included; where that makes crowds of small spheres, or too few cells, of at
-  // least one diameter (the printed radius misses overlaps).
-  const double reach = std::sqrt(safe_square(largest_diameter_)), most_cells = std::max<double>(64, double(n));
-  const auto fewest = [&] { return std::min({cells_.count[0], cells_.count[1], cells_.count[2]}); };
+  // Two cells for a particle on average where that many fit (in clusters of bubbles 1.1 times faster than one, the same
+  // elsewhere; four gain nothing more), and sides of at least two diameters, so that a sphere reaches two cells along
+  // every axis, whichever way its place was rounded; where that makes crowds of small spheres, of at least one diameter
+  // (the printed radius misses overlaps).
+  const double reach = largest_diameter_ * (1 + overlap_margin_), most_cells = std::max<double>(64, 2.0 * double(n));
   cells_ = PeriodicCells::with_side(lower_, length_, 2 * reach, most_cells);
-  reaches_half_a_cell_ = fewest() >= 3 && n <= 8 * cells_.size();
-  if (!reaches_half_a_cell_) cells_ = PeriodicCells::with_side(lower_, length_, largest_diameter_, most_cells);
-  for (int axis = 0; axis < 3; ++axis) {
-    inverse_side_[axis] = cells_.count[axis] / length_[axis];
-    cells_per_length_[axis] = static_cast<float>(inverse_side_[axis]);
+  cells_reached_ = 2;
+  if (n > 8 * cells_.size()) {
+    cells_ = PeriodicCells::with_side(lower_, length_, reach, most_cells);
+    cells_reached_ = 3;
   }
-  common_limit_ = spheres.diameter == nullptr ? safe_square(0.5 * (spheres.common_diameter + largest_diameter_)) : 0;
-  own_images_ = fewest() < 3;
+  rows_of_two_ = cells_reached_ == 2 && std::min({cells_.count[0], cells_.count[1], cells_.count[2]}) >= 2;
+  common_limit_ = static_cast<float>(std::pow(spheres.common_diameter * (1 - overlap_margin_), 2));
   order_.build(cells_, spheres.position[0], spheres.position[1], spheres.position[2], n);
   spheres_ = spheres;
-  for (int axis = 0; axis < 3; ++axis) {
-    place_[axis].resize(n + search_group);
-    position_[axis].resize(n);
-    float* place = place_[axis].data();
-    double* position = position_[axis].data();
-    const double* x = spheres.position[axis];
-    const double lower = lower_[axis];
-    const std::int32_t* order = order_.order().data();
-    parallel_for(n, [=](std::size_t k) {
-      position[k] = x[order[k]];
-      place[k] = static_cast<float>(position[k] - lower);
-    });
-  }
+  constexpr std::size_t read_beyond = 4;
+  records_.resize(4 * (n + read_beyond));
+  parallel_for(n, [&](std::size_t k) {
+    const std::size_t i = index_of(k);
+    const auto place = place_of(spheres.position[0][i], spheres.position[1][i], spheres.position[2][i]);
+    std::copy_n(place.data(), 3, records_.data() + 4 * k);
+    records_[4 * k + 3] =
+        spheres.diameter == nullptr ? 0 : std::bit_cast<std::int32_t>(static_cast<float>(0.5 * spheres.diameter[i]));
+  });
 }
 
 ExclusionReport Exclusion::match(const Spheres& spheres, MatchingMethod method) {
@@ -93,39 +98,99 @@ ExclusionReport Exclusion::match(const Spheres& spheres, MatchingMethod method) 
   return method == MatchingMethod::rounds ? match_by_rounds() : match_by_sorting();
 }
 
-Exclusion::Strongest Exclusion::strongest_free(std::size_t k) const {
-  Strongest best;
-  const auto identifier = [&](std::int32_t rank) {
-    return spheres_.identifier[index_of(static_cast<std::size_t>(rank))];
-  };
-  search_around(k, [&](const std::int32_t* rank, const double* overlap, int count) {
-    for (int f = 0; f < count; ++f) {
-      const std::int32_t m = rank[f];
-      const double q = taken_[static_cast<std::size_t>(m)] == 0 ? overlap[f] : 0.0;
-      best.found += q > 0 ? 1 : 0;
-      // Which of the remembered ones it comes before.
-      bool before[remembered];
-      for (int b = 0; b < remembered; ++b) before[b] = q > best.overlap[b];
-      if (q > 0 && (q == best.overlap[0] || q == best.overlap[1] || q == best.overlap[2])) [[unlikely]] {
-        const std::int64_t own = identifier(static_cast<std::int32_t>(k));
-        for (int b = 0; b < remembered; ++b)
-          if (q == best.overlap[b])
-            before[b] = stronger_overlap(q, own, identifier(m), best.overlap[b], own, identifier(best.rank[b]));
-      }
-      for (int b = remembered - 1; b > 0; --b) {
-        best.overlap[b] = before[b - 1] ? best.overlap[b - 1] : (before[b] ? q : best.overlap[b]);
-        best.rank[b] = before[b - 1] ? best.rank[b - 1] : (before[b] ? m : best.rank[b]);
-      }
-      best.overlap[0] = before[0] ? q : best.overlap[0];
-      best.rank[0] = before[0] ? m : best.rank[0];
+// Leaves the strongest overlaps in front, in order, and no others.
+void Exclusion::keep_strongest(std::size_t k, Found& found) const {
+  const auto identifier = [&](int f) { return spheres_.identifier[index_of(static_cast<std::size_t>(found.rank[f]))]; };
+  const std::int64_t own = spheres_.identifier[index_of(k)];
+  std::array<int, remembered + 1> order;
+  int kept = 0;
+  for (int f = 0; f < found.count; ++f) {
+    int place = std::min(kept, remembered);
+    for (; place > 0; --place) {
+      const int other = order[place - 1];
+      if (!stronger_overlap(-double(found.weakness[f]), own, identifier(f), -double(found.weakness[other]), own,
+                            identifier(other)))
+        break;
+      order[place] = other;
     }
+    order[place] = f;
+    kept = std::min(kept + 1, remembered);
+  }
+  const Found all = found;
+  for (int s = 0; s < kept; ++s) {
+    found.weakness[s] = all.weakness[order[s]];
+    found.rank[s] = all.rank[order[s]];
+  }
+  found.count = kept;
+}
+
+template <bool alike>
+Exclusion::Strongest Exclusion::strongest_listed(std::size_t k) const {
+  Found found;
+  Strongest strongest;
+  const auto keep = [&] {
+    strongest.has_more |= found.count > remembered;
+    keep_strongest(k, found);
+  };
+  list_overlaps<alike>(centre_of(k), found, keep);
+  keep();
+  std::copy_n(found.rank, found.count, strongest.rank.data());
+  return strongest;
+}
+
+// The same without a list, a loop over what was found or a branch on how much it was: the strongest two of every lane,
+// and how strong the third was, then the strongest three of these. Ties are left to the list.
+template <bool alike>
+[[gnu::always_inline]] inline Exclusion::Strongest Exclusion::strongest_overlaps(std::size_t k) const {
+  using simd::f32x16, simd::i32x16;
+  const Centre here = centre_of(k);
+  FourRows rows;
+  if (!lies_in_four_rows(here, rows)) return strongest_listed<alike>(k);
+  constexpr float none = std::numeric_limits<float>::infinity();
+  f32x16 first = simd::splat16(none), second = first, third = first;
+  i32x16 first_rank = simd::splat16(-1), second_rank = first_rank;
+  compare<alike>(here, rows, [&](f32x16 weakness, i32x16 rank, simd::bits16 near) {
+    const f32x16 here_too = simd::chosen(near, weakness, simd::splat16(none));
+    const simd::bits16 before_first = simd::bits_less(here_too, first);
+    const f32x16 later = simd::larger(first, here_too);
+    const i32x16 later_rank = simd::chosen(before_first, first_rank, rank);
+    first = simd::smaller(first, here_too);
+    first_rank = simd::chosen(before_first, rank, first_rank);
+    const simd::bits16 before_second = simd::bits_less(later, second);
+    third = simd::smaller(third, simd::larger(second, later));
+    second = simd::smaller(second, later);
+    second_rank = simd::chosen(before_second, later_rank, second_rank);
   });
-  return best;
+
+  Strongest strongest;
+  if (simd::bits_less(first, simd::splat16(none)) == 0) return strongest;
+  float last = -none;
+  bool undecided = false;
+  for (std::int32_t& chosen : strongest.rank) {
+    const float weakness = simd::least(first);
+    const simd::bits16 lane = simd::bits_equal(first, simd::splat16(weakness));
+    const bool any = weakness < none;
+    chosen = any ? simd::lane_of(first_rank, lane) : -1;
+    undecided |= any & (!std::has_single_bit(lane) | (weakness == last));
+    strongest.has_more |= any & (chosen < 0);
+    last = weakness;
+    first = simd::chosen(lane, second, first);
+    first_rank = simd::chosen(lane, second_rank, first_rank);
+    second = simd::chosen(lane, third, second);
+    second_rank = simd::chosen(lane, simd::splat16(-1), second_rank);
+    third = simd::chosen(lane, simd::splat16(none), third);
+  }
+  const float next = simd::least(first);
+  strongest.has_more |= next < none;
+  undecided |= (next < none) & (next == last);
+  if (undecided) [[unlikely]]
+    return strongest_listed<alike>(k);
+  return strongest;
 }
 
 void Exclusion::remember(std::size_t k, const Strongest& strongest) {
-  std::copy_n(strongest.rank, remembered, best_[k].data());
-  has_more_[k] = strongest.found > remembered ? 1 : 0;
+  best_[k] = strongest.rank;
+  has_more_[k] = strongest.has_more ? 1 : 0;
 }
 
 // Leaves the strongest overlap with a particle that is still free in front.
@@ -135,60 +200,65 @@ void Exclusion::drop_taken(std::size_t k) {
     std::copy(best.begin() + 1, best.end(), best.begin());
     best.back() = -1;
   }
-  if (best[0] < 0 && has_more_[k] != 0) remember(k, strongest_free(k));
+  if (best[0] < 0 && has_more_[k] != 0)
+    remember(k, spheres_.diameter == nullptr ? strongest_overlaps<true>(k) : strongest_overlaps<false>(k));
 }
 
 ExclusionReport Exclusion::match_by_rounds() {
   const std::size_t n = spheres_.size;
   best_.resize(n);
   has_more_.resize(n);
-  Array<std::int32_t>&active = order_.scratch(), &next_active = order_.more_scratch();
   ExclusionReport report;
-  parallel_for(n, [&](std::size_t k) { remember(k, strongest_free(k)); });
+  const bool alike = spheres_.diameter == nullptr;
+  constexpr float infinite = std::numeric_limits<float>::infinity();
+  const auto out_of_reach = std::bit_cast<std::int32_t>(alike ? infinite : -infinite);
 
-  // Keeps the ranks with a free partner, in ascending order, by fixed blocks.
-  std::array<std::size_t, max_reduction_blocks + 1> start{};
-  const auto keep = [&](const std::int32_t* from, std::size_t count, Array<std::int32_t>& to) {
-    const std::size_t block = std::max(default_block, block_count(count, max_reduction_blocks));
-    const auto wanted = [&](std::size_t a) {
-      const std::size_t k = from == nullptr ? a : static_cast<std::size_t>(from[a]);
-      return best_[k][0] >= 0 && taken_[k] == 0;
-    };
-    parallel_blocks(count, block, [&](std::size_t b, std::size_t first, std::size_t last) {
-      std::size_t kept = 0;
-      for (std::size_t a = first; a < last; ++a) kept += wanted(a) ? 1 : 0;
-      start[b + 1] = kept;
-    });
-    const std::size_t blocks = block_count(count, block);
-    start[0] = 0;
-    for (std::size_t b = 0; b < blocks; ++b) start[b + 1] += start[b];
-    parallel_blocks(count, block, [&](std::size_t b, std::size_t first, std::size_t last) {
-      std::size_t place = start[b];
-      for (std::size_t a = first; a < last; ++a)
-        if (wanted(a)) to[place++] = from == nullptr ? static_cast<std::int32_t>(a) : from[a];
-    });
-    return count == 0 ? std::size_t{0} : start[blocks];
-  };
-  std::size_t left = keep(nullptr, n, active);
-  report.overlapping = left;
-  while (left > 0) {
+  // Blocks of ranks that never change; each keeps those of its own with a free partner at its beginning, in order.
+  const std::size_t block = std::max(default_block, block_count(n, max_reduction_blocks));
+  std::array<std::size_t, max_reduction_blocks> left{}, pairs{};
+  std::int32_t* active = order_.scratch().data();
+  parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t last) {
+    std::size_t kept = first;
+    for (std::size_t k = first; k < last; ++k) {
+      remember(k, alike ? strongest_overlaps<true>(k) : strongest_overlaps<false>(k));
+      active[kept] = static_cast<std::int32_t>(k);
+      kept += best_[k][0] >= 0 ? 1 : 0;
+    }
+    left[b] = kept - first;
+  });
+  const auto total = [](const auto& of_blocks) { return std::accumulate(of_blocks.begin(), of_blocks.end(), 0UL); };
+  report.overlapping = total(left);
+  while (total(left) > 0) {
     // The globally strongest free pair is always the strongest for both, so that every round takes at least one.
+    // Chance decides who is taken: conditional writes would be guessed wrong as often as right.
     ++report.rounds;
-    parallel_for(left, [&](std::size_t a) {
-      const auto k = static_cast<std::size_t>(active[a]);
-      const std::int32_t m = best_[k][0];
-      if (best_[static_cast<std::size_t>(m)][0] != active[a]) return;
-      taken_[k] = 1;
-      partner_[index_of(k)] = static_cast<std::int32_t>(index_of(static_cast<std::size_t>(m)));
+    parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t) {
+      std::size_t kept = first;
+      for (std::size_t a = first; a < first + left[b]; ++a) {
+        const auto k = static_cast<std::size_t>(active[a]);
+        const auto m = static_cast<std::size_t>(best_[k][0]);
+        const bool mutual = best_[m][0] == active[a];
+        taken_[k] = mutual ? 1 : 0;
+        records_[4 * k + 3] = mutual ? out_of_reach : records_[4 * k + 3];
+        partner_[index_of(k)] = mutual ? static_cast<std::int32_t>(index_of(m)) : -1;
+        active[kept] = active[a];
+        kept += mutual ? 0 : 1;
+      }
+      pairs[b] += first + left[b] - kept;
+      left[b] = kept - first;
     });
-    parallel_for(left, [&](std::size_t a) {
-      const auto k = static_cast<std::size_t>(active[a]);
-      if (taken_[k] == 0) drop_taken(k);
+    parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t) {
+      std::size_t kept = first;
+      for (std::size_t a = first; a < first + left[b]; ++a) {
+        const auto k = static_cast<std::size_t>(active[a]);
+        drop_taken(k);
+        active[kept] = active[a];
+        kept += best_[k][0] >= 0 ? 1 : 0;
+      }
+      left[b] = kept - first;
     });
-    left = keep(active.data(), left, next_active);
-    active.swap(next_active);
   }
-  report.pairs = matched_pairs();
+  report.pairs = total(pairs) / 2;
   return report;
 }
 
@@ -227,6 +297,7 @@ ExclusionReport Exclusion::match_by_sorting() {
       lists[a].swap(merged);
       lists[b] = {};
     });
+  ExclusionReport report;
   if (!lists.empty())
     for (const Overlap& o : lists[0]) {
       auto& own = taken_[static_cast<std::size_t>(o.rank)];
@@ -237,58 +308,46 @@ ExclusionReport Exclusion::match_by_sorting() {
       const std::size_t j = index_of(static_cast<std::size_t>(o.other_rank));
       partner_[i] = static_cast<std::int32_t>(j);
       partner_[j] = static_cast<std::int32_t>(i);
+      ++report.pairs;
     }
-  ExclusionReport report;
   for (const std::size_t count : overlapping) report.overlapping += count;
   report.rounds = 1;
-  report.pairs = matched_pairs();
   return report;
 }
 
-std::size_t Exclusion::matched_pairs() const {
-  return static_cast<std::size_t>(
-      parallel_sum(partner_.size(), [&](std::size_t i) { return partner_[i] >= 0 ? 0.5 : 0.0; }));
-}
-
 void Exclusion::separate(const Spheres& spheres) const {
-  // Written only after every pair was read: both partners need both old places.
-  const auto shift_of = [&](std::size_t i) {
+  parallel_for(spheres.size, [&](std::size_t i) {
+    // The partner with the smaller index moves both: no one else touches either.
+    if (partner_[i] < 0 || static_cast<std::size_t>(partner_[i]) < i) return;
     const auto j = static_cast<std::size_t>(partner_[i]);
     std::array<double, 3> d;
     double distance_2 = 0;
     for (int c = 0; c < 3; ++c) {
-      d[c] = nearest_image(spheres.position[c][i] - spheres.position[c][j], length_[c]);
+      d[c] = spheres.position[c][i] - spheres.position[c][j];
+      d[c] -= length_[c] * std::nearbyint(d[c] * inverse_length_[c]);
       distance_2 += d[c] * d[c];
     }
     const double own = spheres.diameter == nullptr ? spheres.common_diameter : spheres.diameter[i];
     const double other = spheres.diameter == nullptr ? spheres.common_diameter : spheres.diameter[j];
     const double distance = std::sqrt(distance_2);
     const double touching = 0.5 * (own + other);
-    if (distance > 1e-12 * touching)
-      for (double& component : d) component /= distance;
-    else
+    double stretch = (touching - distance) / distance;
+    if (!(distance > 1e-12 * touching)) {
       d = parting_direction(spheres.identifier[i], spheres.identifier[j]);
+      stretch = touching - distance;
+    }
     const double share = other * other * other / (own * own * own + other * other * other);
-    for (double& component : d) component *= share * (touching - distance);
-    return d;
-  };
-  parallel_for(spheres.size, [&](std::size_t i) {
-    const std::int32_t j = partner_[i];
-    // The partner with the smaller index moves both: no one else touches either.
-    if (j < 0 || static_cast<std::size_t>(j) < i) return;
-    const auto mine = shift_of(i), theirs = shift_of(static_cast<std::size_t>(j));
     for (int c = 0; c < 3; ++c) {
       double* x = spheres.position[c];
-      x[i] = wrap_periodic(x[i] + mine[c], lower_[c], length_[c]);
-      x[j] = wrap_periodic(x[j] + theirs[c], lower_[c], length_[c]);
+      x[i] = wrap_periodic(x[i] + share * stretch * d[c], lower_[c], length_[c]);
+      x[j] = wrap_periodic(x[j] - (1 - share) * stretch * d[c], lower_[c], length_[c]);
     }
   });
 }
 
 double Exclusion::bytes() const {
   return order_.bytes() +
-         static_cast<double>(24 * position_[0].capacity() +
-                             4 * (3 * place_[0].capacity() + partner_.capacity() + remembered * best_.capacity()) +
+         static_cast<double>(4 * (records_.capacity() + partner_.capacity() + remembered * best_.capacity()) +
                              taken_.capacity() + has_more_.capacity());
 }
 

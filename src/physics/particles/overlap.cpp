@@ -6,6 +6,7 @@
 
 #include "exclusion_search.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/core/periodic_grid.hpp"
 #include "spume/core/random.hpp"
 
 namespace spume {

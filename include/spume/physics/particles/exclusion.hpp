@@ -43,7 +43,9 @@ class Exclusion {
   // The box, and the largest diameter, below half of the shortest side (std::invalid_argument otherwise).
   Exclusion(const std::array<double, 3>& lower, const std::array<double, 3>& length, double largest_diameter);
 
-  // Finds the matching: partner()[i] is the index of the partner of particle i, or -1. Positions lie in the box.
+  // Finds the matching: partner()[i] is the index of the partner of particle i, or -1. Positions lie in the box. Pairs
+  // that were moved apart touch to rounding, of single precision and of places to 2^-32 of the box: what overlaps by
+  // less than 5e-7 of a diameter and 2^-28 of the box does not count.
   ExclusionReport match(const Spheres& spheres, MatchingMethod method = MatchingMethod::rounds);
 
   // Moves the pairs of the last match apart, shares of the way in inverse proportion to the volumes, so that the centre
@@ -56,7 +58,8 @@ class Exclusion {
   CellOrder& order() { return order_; }
   double bytes() const;
 
-  // Sorts the spheres into cells, for the two searches below; they look at the spheres as they are then.
+  // Sorts the spheres into cells, for the two searches below; they look at the spheres as they are then, and a match by
+  // rounds hides those that it found a partner for.
   void prepare(const Spheres& spheres);
   // Calls visit(rank, overlap) for every particle that overlaps the one of rank k in order(), in an order that depends
   // on the positions alone.
@@ -74,67 +77,74 @@ class Exclusion {
   // The strongest overlaps of a particle with free ones, in order.
   static constexpr int remembered = 3;
   struct Strongest {
-    double overlap[remembered] = {};
-    std::int32_t rank[remembered] = {-1, -1, -1};  // of the partner; -1: none
-    int found = 0;                                 // overlaps, also those not remembered
+    std::array<std::int32_t, remembered> rank{-1, -1, -1};  // of the partners; -1: none, or not known
+    bool has_more = false;                                  // than these
   };
-  ExclusionReport match_by_rounds();
-  ExclusionReport match_by_sorting();
-  // Where a search starts and how far it goes.
+  // Where a search starts and what counts: the square of a distance for spheres of one diameter, else the share of the
+  // sum of the radii by which they must overlap.
   struct Centre {
-    std::array<double, 3> place;
-    double radius;
+    std::array<std::int32_t, 3> place;
+    float radius, limit;
     std::int32_t rank;  // of the sphere there; -1: a point
   };
-  // Calls use(ranks, overlaps, count) for groups of neighbours of particle k; an overlap of 0 is none.
+  // Ranks begin[r] .. end[r] of neighbouring cells.
+  struct FourRows {
+    std::int32_t begin[4], end[4];
+  };
+  struct Found;
+  ExclusionReport match_by_rounds();
+  ExclusionReport match_by_sorting();
+  // Pieces of a search; `alike`: all spheres have one diameter.
+  template <bool alike, class Use>
+  void compare(const Centre& here, const FourRows& rows, Use&& use) const;
+  std::array<int, 3> first_reached(const Centre& here) const;
+  bool lies_in_four_rows(const Centre& here, FourRows& rows) const;
   template <class Use>
-  void search_around(std::size_t k, Use&& use) const;
-  // The same for any centre, anywhere.
-  template <bool own_images, class Use>
-  void search_cells(const Centre& here, Use&& use) const;
-  // The same inside the box and outside crowds, elsewhere false; a sphere must reach no further than half a cell.
-  // `place` is from the lower corner, `limit` the square of what may be near; centre() gives the centre, where
-  // something is.
-  template <class CentreOf, class Use>
-  bool search_near(const std::array<float, 3>& place, std::int32_t rank, float limit, CentreOf&& centre,
-                   Use&& use) const;
+  void for_each_four_cells(const Centre& here, Use&& use) const;
+  template <bool alike, class Full>
+  void list_overlaps(const Centre& here, Found& found, Full&& full) const;
+  template <class Visit>
+  void for_each_found(const Centre& here, Visit&& visit) const;
   std::size_t cell_number(int i, int j, int l) const {
     return (static_cast<std::size_t>(i) * cells_.count[1] + j) * static_cast<std::size_t>(cells_.count[2]) + l;
   }
-  // The square of a reach that misses nothing although places are compared in single precision: from the lower corner
-  // they are off by 2^-24 of the box, distances by less than eight times that along every axis, the image included.
-  float safe_square(double reach) const;
+  // In 2^-32 of the box, wrapped around.
+  std::array<std::int32_t, 3> place_of(double x, double y, double z) const {
+    const double from_lower[3] = {x - lower_[0], y - lower_[1], z - lower_[2]};
+    std::array<std::int32_t, 3> place;
+    for (int axis = 0; axis < 3; ++axis)
+      place[axis] = static_cast<std::int32_t>(
+          static_cast<std::uint32_t>(static_cast<std::int64_t>(from_lower[axis] * (0x1p32 * inverse_length_[axis]))));
+    return place;
+  }
   Centre centre_of(std::size_t k) const;
-  double overlap_with(const Centre& here, std::int32_t rank) const;
-  Strongest strongest_free(std::size_t k) const;
+  template <bool alike>
+  Strongest strongest_overlaps(std::size_t k) const;
+  template <bool alike>
+  Strongest strongest_listed(std::size_t k) const;
   void remember(std::size_t k, const Strongest& strongest);
+  void keep_strongest(std::size_t k, Found& found) const;
   void drop_taken(std::size_t k);
-  std::size_t matched_pairs() const;
 
-  std::array<double, 3> lower_{}, length_{}, inverse_length_{}, inverse_side_{};
-  std::array<float, 3> cells_per_length_{};
-  float common_limit_ = 0;  // of spheres of one diameter
+  std::array<double, 3> lower_{}, length_{}, inverse_length_{};
+  std::array<float, 3> unit_{};  // of a place
   double largest_diameter_ = 0;
-  bool reaches_half_a_cell_ = false;
-  bool own_images_ = false;  // some axis has fewer than three cells: nearest images by rounding
+  float overlap_margin_ = 0;
+  float common_limit_ = 0;  // the square of the distance of spheres of one diameter that overlap
+  int cells_reached_ = 3;   // along an axis
+  bool rows_of_two_ = false;
   PeriodicCells cells_;
   CellOrder order_;
   Spheres spheres_;
-  // In the order of the cells: positions, and places from the lower corner, which tell in vectors what cannot overlap.
-  std::array<Array<double>, 3> position_;
-  std::array<Array<float>, 3> place_;
+  // In the order of the cells: place along x, y and z, and the bits of a float: of spheres of one diameter 0, else the
+  // radius; of those that have a partner what puts them out of reach, so that searches of later rounds pass by.
+  Array<std::int32_t> records_;
   Array<std::int32_t> partner_;
   // By rank: the partners of the strongest overlaps, and whether it has a partner now or more overlaps than are
   // remembered. Without a memory of several, every second particle of a crowd had to be searched around again.
   Array<std::array<std::int32_t, remembered>> best_;
   Array<std::uint8_t> taken_, has_more_;
 };
-
-// Whether spheres that touch at distance `touching` overlap at the square root of distance_2. Pairs that were moved
-// apart touch to rounding: they do not count.
-inline bool overlapping(double distance_2, double touching) {
-  return distance_2 < (1 - 1e-6) * touching * touching;
-}
 
 // True when the overlap (q1, a1-b1) is taken before (q2, a2-b2); the arguments a, b are identifiers in either order.
 bool stronger_overlap(double q1, std::int64_t a1, std::int64_t b1, double q2, std::int64_t a2, std::int64_t b2);
