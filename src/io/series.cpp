@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <sstream>
 #include <utility>
 
 #include "spume/core/error.hpp"
@@ -26,6 +27,20 @@ std::string column_line(const std::vector<SeriesHeading>& columns) {
 void append_number(std::string& text, double value) {
   char digits[32];
   text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+}
+
+// The first column that only one of two lines of names has.
+std::string difference(const std::string& found, const std::string& expected) {
+  const auto first_missing = [](const std::string& in, const std::string& from) {
+    std::istringstream names(in);
+    for (std::string name; std::getline(names, name, ',');)
+      if (("," + from + ",").find("," + name + ",") == std::string::npos) return name;
+    return std::string();
+  };
+  if (const auto name = first_missing(expected, found); !name.empty()) return "it has no column '" + name + "'";
+  if (const auto name = first_missing(found, expected); !name.empty())
+    return "this program does not write its column '" + name + "'";
+  return "its columns stand in another order";
 }
 
 }  // namespace
@@ -79,8 +94,10 @@ SeriesFile SeriesFile::resume(const std::filesystem::path& path, const std::vect
   while (at < text.size() && text[at] == '#' && line_end() != std::string::npos) at = line_end();
   const std::string names = column_line(columns);
   if (text.compare(at, names.size(), names) != 0)
-    throw FileError("cannot continue '" + path.string() + "': its columns are not those of this case (expected " +
-                    names.substr(0, names.size() - 1) + ")");
+    throw FileError("cannot continue '" + path.string() + "': " +
+                    difference(text.substr(at, line_end() == std::string::npos ? line_end() : line_end() - 1 - at),
+                               names.substr(0, names.size() - 1)) +
+                    "; continue it with the program that began it, named in log.txt, or run its case.toml anew");
   at += names.size();
   for (std::int64_t row = 0; row < rows; ++row) {
     if (at >= text.size() || line_end() == std::string::npos)

@@ -85,7 +85,13 @@ TEST(Series, ResumeRefusesForeignColumnsAndMissingRows) {
     }
     return "";
   };
-  EXPECT_THAT(refusal({{"step", "1"}, {"speed", "m/s"}}, 3), HasSubstr("columns"));
+  auto more = columns, fewer = columns, turned = columns;
+  more.push_back({"speed", "m/s"});
+  fewer.pop_back();
+  std::swap(turned[0], turned[1]);
+  EXPECT_THAT(refusal(more, 3), HasSubstr("it has no column 'speed'; continue it with the program that began it"));
+  EXPECT_THAT(refusal(fewer, 3), HasSubstr("does not write its column '" + columns.back().name + "'"));
+  EXPECT_THAT(refusal(turned, 3), HasSubstr("in another order"));
   EXPECT_THAT(refusal(columns, 4), HasSubstr("holds 3 rows, the checkpoint was made after 4"));
 }
 
