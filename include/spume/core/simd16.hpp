@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sixteen lanes on every machine: one register with AVX-512, two of eight lanes elsewhere (the compiler takes vectors
-// apart, number by number, that are longer than its registers). For searches, which compare, choose and put down.
+// Sixteen lanes on every machine: one register with AVX-512, two or four elsewhere (the compiler takes vectors apart,
+// number by number, that are longer than its registers). For searches, which compare, choose and put down.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +8,10 @@
 #include <cstdint>
 
 #include "spume/core/simd.hpp"
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
 
 namespace spume::simd {
 
@@ -81,91 +85,161 @@ template <class V>
 
 #else
 
-struct f32x16 {
-  f32x8 low, high;
-  [[gnu::always_inline]] friend f32x16 operator+(f32x16 a, f32x16 b) { return {a.low + b.low, a.high + b.high}; }
-  [[gnu::always_inline]] friend f32x16 operator-(f32x16 a, f32x16 b) { return {a.low - b.low, a.high - b.high}; }
-  [[gnu::always_inline]] friend f32x16 operator*(f32x16 a, f32x16 b) { return {a.low * b.low, a.high * b.high}; }
+namespace detail {
+#if defined(__AVX2__)
+using f32p = f32x8;
+using i32p = i32x8;
+[[gnu::always_inline]] inline f32p square_root(f32p v) {
+  return sqrt(v);
+}
+[[gnu::always_inline]] inline f32p smaller(f32p a, f32p b) {
+  return min(a, b);
+}
+[[gnu::always_inline]] inline f32p larger(f32p a, f32p b) {
+  return max(a, b);
+}
+// Of a comparison: all bits of a lane are set, or none.
+[[gnu::always_inline]] inline unsigned bits_of(i32p lanes) {
+  return static_cast<unsigned>(_mm256_movemask_ps(__m256(lanes)));
+}
+#else
+using f32p = f32x4;
+using i32p = std::int32_t __attribute__((vector_size(16)));
+#if defined(__SSE2__)
+[[gnu::always_inline]] inline f32p square_root(f32p v) {
+  return f32p(_mm_sqrt_ps(__m128(v)));
+}
+[[gnu::always_inline]] inline f32p smaller(f32p a, f32p b) {
+  return f32p(_mm_min_ps(__m128(a), __m128(b)));
+}
+[[gnu::always_inline]] inline f32p larger(f32p a, f32p b) {
+  return f32p(_mm_max_ps(__m128(a), __m128(b)));
+}
+[[gnu::always_inline]] inline unsigned bits_of(i32p lanes) {
+  return static_cast<unsigned>(_mm_movemask_ps(__m128(lanes)));
+}
+#else
+[[gnu::always_inline]] inline f32p square_root(f32p v) {
+  return {std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
+}
+[[gnu::always_inline]] inline f32p smaller(f32p a, f32p b) {
+  return a < b ? a : b;
+}
+[[gnu::always_inline]] inline f32p larger(f32p a, f32p b) {
+  return a > b ? a : b;
+}
+[[gnu::always_inline]] inline unsigned bits_of(i32p lanes) {
+  unsigned bits = 0;
+  for (int l = 0; l < 4; ++l) bits |= static_cast<unsigned>(lanes[l]) >> 31U << l;
+  return bits;
+}
+#endif
+#endif
+
+inline constexpr int piece_lanes = sizeof(f32p) / sizeof(float), pieces = 16 / piece_lanes;
+
+template <class Piece>
+struct Sixteen {
+  Piece piece[pieces];
+  friend Sixteen operator+(Sixteen a, Sixteen b) {
+    return of_pieces([&](int p) { return a.piece[p] + b.piece[p]; });
+  }
+  friend Sixteen operator-(Sixteen a, Sixteen b) {
+    return of_pieces([&](int p) { return a.piece[p] - b.piece[p]; });
+  }
+  friend Sixteen operator*(Sixteen a, Sixteen b) {
+    return of_pieces([&](int p) { return a.piece[p] * b.piece[p]; });
+  }
+  template <class Of>
+  [[gnu::always_inline]] static Sixteen of_pieces(Of&& of) {
+    Sixteen out;
+    for (int p = 0; p < pieces; ++p) out.piece[p] = of(p);
+    return out;
+  }
 };
-struct i32x16 {
-  i32x8 low, high;
-  [[gnu::always_inline]] friend i32x16 operator+(i32x16 a, i32x16 b) { return {a.low + b.low, a.high + b.high}; }
-  [[gnu::always_inline]] friend i32x16 operator-(i32x16 a, i32x16 b) { return {a.low - b.low, a.high - b.high}; }
-};
+template <class Of>
+[[gnu::always_inline]] inline bits16 bits_of_pieces(Of&& of) {
+  unsigned bits = 0;
+  for (int p = 0; p < pieces; ++p) bits |= bits_of(of(p)) << p * piece_lanes;
+  return static_cast<bits16>(bits);
+}
+}  // namespace detail
+
+using f32x16 = detail::Sixteen<detail::f32p>;
+using i32x16 = detail::Sixteen<detail::i32p>;
 
 [[gnu::always_inline]] inline i32x16 splat16(std::int32_t v) {
-  const i32x8 half{v, v, v, v, v, v, v, v};
-  return {half, half};
+  return i32x16::of_pieces([&](int) { return detail::i32p{} + v; });
 }
 [[gnu::always_inline]] inline f32x16 splat16(float v) {
-  return {splat(v), splat(v)};
+  return f32x16::of_pieces([&](int) { return detail::f32p{} + v; });
 }
 [[gnu::always_inline]] inline f32x16 load16(const float* p) {
-  return {load(p), load(p + 8)};
+  f32x16 v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
 }
 template <class V, class Number>
 [[gnu::always_inline]] inline void store16(Number* p, V v) {
-  std::memcpy(p, &v.low, sizeof v.low);
-  std::memcpy(p + 8, &v.high, sizeof v.high);
+  std::memcpy(p, &v, sizeof v);
 }
 [[gnu::always_inline]] inline f32x16 to_float(i32x16 v) {
-  return {__builtin_convertvector(v.low, f32x8), __builtin_convertvector(v.high, f32x8)};
+  return f32x16::of_pieces([&](int p) { return __builtin_convertvector(v.piece[p], detail::f32p); });
 }
 [[gnu::always_inline]] inline f32x16 same_bits(i32x16 v) {
-  return {f32x8(v.low), f32x8(v.high)};
+  return f32x16::of_pieces([&](int p) { return detail::f32p(v.piece[p]); });
 }
 [[gnu::always_inline]] inline f32x16 smaller(f32x16 a, f32x16 b) {
-  return {min(a.low, b.low), min(a.high, b.high)};
+  return f32x16::of_pieces([&](int p) { return detail::smaller(a.piece[p], b.piece[p]); });
 }
 [[gnu::always_inline]] inline f32x16 larger(f32x16 a, f32x16 b) {
-  return {max(a.low, b.low), max(a.high, b.high)};
+  return f32x16::of_pieces([&](int p) { return detail::larger(a.piece[p], b.piece[p]); });
 }
 [[gnu::always_inline]] inline f32x16 square_root(f32x16 v) {
-  return {sqrt(v.low), sqrt(v.high)};
+  return f32x16::of_pieces([&](int p) { return detail::square_root(v.piece[p]); });
 }
-namespace detail {
-// Of a comparison: all bits of a lane are set, or none.
-[[gnu::always_inline]] inline unsigned bits_of(i32x8 lanes) {
-#if defined(__AVX__)
-  return static_cast<unsigned>(_mm256_movemask_ps(__m256(lanes)));
-#else
-  unsigned bits = 0;
-  for (int l = 0; l < simd::lanes; ++l) bits |= static_cast<unsigned>(lanes[l]) >> 31 << l;
-  return bits;
-#endif
-}
-[[gnu::always_inline]] inline i32x8 lanes_of(unsigned bits) {
-  const i32x8 bit{1, 2, 4, 8, 16, 32, 64, 128};
-  const auto v = static_cast<std::int32_t>(bits & 0xffU);
-  return (i32x8{v, v, v, v, v, v, v, v} & bit) == bit;
-}
-}  // namespace detail
 template <class V>
 [[gnu::always_inline]] inline bits16 bits_less(V a, V b) {
-  return static_cast<bits16>(detail::bits_of(a.low < b.low) | detail::bits_of(a.high < b.high) << 8);
+  return detail::bits_of_pieces([&](int p) { return a.piece[p] < b.piece[p]; });
 }
 template <class V>
 [[gnu::always_inline]] inline bits16 bits_equal(V a, V b) {
-  return static_cast<bits16>(detail::bits_of(a.low == b.low) | detail::bits_of(a.high == b.high) << 8);
+  return detail::bits_of_pieces([&](int p) { return a.piece[p] == b.piece[p]; });
 }
 template <class V>
 [[gnu::always_inline]] inline V chosen(bits16 bits, V a, V b) {
-  using Half = decltype(V::low);
-  const auto of_half = [](i32x8 lanes, Half p, Half q) { return Half((lanes & i32x8(p)) | (~lanes & i32x8(q))); };
-  return {of_half(detail::lanes_of(bits), a.low, b.low), of_half(detail::lanes_of(bits >> 8U), a.high, b.high)};
+  using detail::i32p;
+  return V::of_pieces([&](int p) {
+#if defined(__AVX2__)
+    const i32p bit{1, 2, 4, 8, 16, 32, 64, 128};
+#else
+    const i32p bit{1, 2, 4, 8};
+#endif
+    const i32p lanes = ((i32p{} + (bits >> p * detail::piece_lanes)) & bit) == bit;
+    return decltype(a.piece[p] + a.piece[p])((lanes & i32p(a.piece[p])) | (~lanes & i32p(b.piece[p])));
+  });
 }
 [[gnu::always_inline]] inline i32x16 four_times(const std::int32_t v[4]) {
-  const i32x8 half{v[0], v[1], v[2], v[3], v[0], v[1], v[2], v[3]};
-  return {half, half};
+#if defined(__AVX2__)
+  return i32x16::of_pieces([&](int) { return i32x8{v[0], v[1], v[2], v[3], v[0], v[1], v[2], v[3]}; });
+#else
+  return i32x16::of_pieces([&](int) { return detail::i32p{v[0], v[1], v[2], v[3]}; });
+#endif
 }
 [[gnu::always_inline]] inline i32x16 quarters() {
-  return {i32x8{0, 0, 0, 0, 1, 1, 1, 1}, i32x8{2, 2, 2, 2, 3, 3, 3, 3}};
+#if defined(__AVX2__)
+  return i32x16::of_pieces([&](int p) { return i32x8{0, 0, 0, 0, 1, 1, 1, 1} + 2 * p; });
+#else
+  return i32x16::of_pieces([&](int p) { return detail::i32p{} + p; });
+#endif
 }
 [[gnu::always_inline]] inline float least(f32x16 v) {
-  const f32x8 eight = min(v.low, v.high);
-  const f32x8 four = min(eight, __builtin_shufflevector(eight, eight, 4, 5, 6, 7, 0, 1, 2, 3));
-  const f32x8 two = min(four, __builtin_shufflevector(four, four, 2, 3, 0, 1, 6, 7, 4, 5));
-  return std::min(two[0], two[1]);
+  detail::f32p all = v.piece[0];
+  for (int p = 1; p < detail::pieces; ++p) all = detail::smaller(all, v.piece[p]);
+#if defined(__AVX2__)
+  all = min(all, __builtin_shufflevector(all, all, 4, 5, 6, 7, 0, 1, 2, 3));
+#endif
+  return std::min(std::min(all[0], all[1]), std::min(all[2], all[3]));
 }
 
 #endif
@@ -214,17 +288,31 @@ template <class Number, class V>
   out[1] = i32x16(__builtin_shufflevector(ab_low, cd_low, 1, 9, 3, 11, 5, 13, 7, 15));
   out[2] = i32x16(__builtin_shufflevector(ab_high, cd_high, 0, 8, 2, 10, 4, 12, 6, 14));
   out[3] = i32x16(__builtin_shufflevector(ab_high, cd_high, 1, 9, 3, 11, 5, 13, 7, 15));
-#else
-  // load_records() takes two records of a row at a time: its lanes are records.
-  const auto half = [&](int first, f32x8 v[4]) {
+#elif defined(__AVX2__)
+  // load_records() takes eight: two of every row.
+  const auto half = [&](int p) {
     std::int32_t entry[8];
-    for (int l = 0; l < 8; ++l) entry[l] = 4 * (begin[l % 4] + first + l / 4);
+    for (int l = 0; l < 8; ++l) entry[l] = 4 * (begin[l % 4] + 2 * p + l / 4);
+    f32x8 v[4];
     load_records<4>(reinterpret_cast<const float*>(records), entry, 0, v);
+    for (int c = 0; c < 4; ++c) out[c].piece[p] = i32x8(v[c]);
   };
-  f32x8 low[4], high[4];
-  half(0, low);
-  half(2, high);
-  for (int c = 0; c < 4; ++c) out[c] = {i32x8(low[c]), i32x8(high[c])};
+  half(0);
+  half(1);
+#else
+  for (int p = 0; p < 4; ++p) {
+    detail::i32p row[4];
+    for (int r = 0; r < 4; ++r)
+      std::memcpy(&row[r], records + 4 * (static_cast<std::int64_t>(begin[r]) + p), sizeof row[r]);
+    const detail::i32p ab_low = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5),
+                       ab_high = __builtin_shufflevector(row[0], row[1], 2, 6, 3, 7),
+                       cd_low = __builtin_shufflevector(row[2], row[3], 0, 4, 1, 5),
+                       cd_high = __builtin_shufflevector(row[2], row[3], 2, 6, 3, 7);
+    out[0].piece[p] = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
+    out[1].piece[p] = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
+    out[2].piece[p] = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+    out[3].piece[p] = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+  }
 #endif
 }
 
