@@ -67,6 +67,11 @@ struct Setting {
   double alpha;
   bool polydisperse;
   double gathering = 1;
+
+  friend std::ostream& operator<<(std::ostream& out, const Setting& s) {
+    return out << s.n << (s.polydisperse ? " of many sizes" : " of one size") << ", alpha " << s.alpha << ", gathered "
+               << s.gathering;
+  }
 };
 
 class Matching : public testing::TestWithParam<Setting> {};

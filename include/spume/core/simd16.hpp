@@ -37,6 +37,11 @@ template <class V, class Number>
 [[gnu::always_inline]] inline f32x16 to_float(i32x16 v) {
   return __builtin_convertvector(v, f32x16);
 }
+// a - b, wrapped around at 2^31.
+[[gnu::always_inline]] inline i32x16 wrapped_difference(i32x16 a, i32x16 b) {
+  using u32x16 = std::uint32_t __attribute__((vector_size(64)));
+  return i32x16(u32x16(a) - u32x16(b));
+}
 [[gnu::always_inline]] inline f32x16 same_bits(i32x16 v) {
   return f32x16(v);
 }
@@ -185,6 +190,10 @@ template <class V, class Number>
 }
 [[gnu::always_inline]] inline f32x16 to_float(i32x16 v) {
   return f32x16::of_pieces([&](int p) { return __builtin_convertvector(v.piece[p], detail::f32p); });
+}
+[[gnu::always_inline]] inline i32x16 wrapped_difference(i32x16 a, i32x16 b) {
+  using u32p = std::uint32_t __attribute__((vector_size(sizeof(detail::i32p))));
+  return i32x16::of_pieces([&](int p) { return detail::i32p(u32p(a.piece[p]) - u32p(b.piece[p])); });
 }
 [[gnu::always_inline]] inline f32x16 same_bits(i32x16 v) {
   return f32x16::of_pieces([&](int p) { return detail::f32p(v.piece[p]); });

@@ -43,7 +43,8 @@ template <bool alike, class Use>
     simd::load_four_rows(records_.data(), begin, record);
     f32x16 distance_2 = alike ? simd::same_bits(record[3]) : splat16(0.0F);
     for (int axis = 0; axis < 3; ++axis) {
-      const f32x16 d = simd::to_float(record[axis] - splat16(here.place[axis])) * splat16(unit_[axis]);
+      const f32x16 d =
+          simd::to_float(simd::wrapped_difference(record[axis], splat16(here.place[axis]))) * splat16(unit_[axis]);
       distance_2 = distance_2 + d * d;
     }
     f32x16 weakness = distance_2;
