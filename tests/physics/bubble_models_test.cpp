@@ -239,7 +239,10 @@ TEST_P(FirstEntrained, IsFlatUpToTheRadiusThatTheEnergyPays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Entrainment, FirstEntrained,
-                         ::testing::Values(EntrainmentOverdraft::affordable, EntrainmentOverdraft::printed));
+                         ::testing::Values(EntrainmentOverdraft::affordable, EntrainmentOverdraft::printed),
+                         [](const auto& overdraft) {
+                           return overdraft.param == EntrainmentOverdraft::printed ? "printed" : "affordable";
+                         });
 
 // Over the same time steps of any length make as many bubbles of the same mean radius, where there is room for all.
 TEST(Entrainment, DoesNotDependOnTheLengthOfTheStep) {
