@@ -40,7 +40,7 @@ std::string difference(const std::string& found, const std::string& expected) {
   if (const auto name = first_missing(expected, found); !name.empty()) return "it has no column '" + name + "'";
   if (const auto name = first_missing(found, expected); !name.empty())
     return "this program does not write its column '" + name + "'";
-  return "its columns stand in another order";
+  return found == expected ? "its line of names is cut off" : "its columns stand in another order";
 }
 
 }  // namespace

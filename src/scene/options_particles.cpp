@@ -57,7 +57,7 @@ Option word(const char* key, const char* default_text, std::vector<std::string> 
 
 std::vector<Section> particle_sections() {
   using P = ParticleCaseOptions;
-  Option count = integer("count", "", {1, 536870912}, "number of particles", &P::count);
+  Option count = integer("count", "", {1, 500000000}, "number of particles", &P::count);
   count.absent = "from volume_fraction";
   return {
       {.name = "particles",

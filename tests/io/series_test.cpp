@@ -93,6 +93,8 @@ TEST(Series, ResumeRefusesForeignColumnsAndMissingRows) {
   EXPECT_THAT(refusal(fewer, 3), HasSubstr("does not write its column '" + columns.back().name + "'"));
   EXPECT_THAT(refusal(turned, 3), HasSubstr("in another order"));
   EXPECT_THAT(refusal(columns, 4), HasSubstr("holds 3 rows, the checkpoint was made after 4"));
+  std::filesystem::resize_file(folder / "series.csv", contents(folder / "series.csv").find("energy\n0") + 6);
+  EXPECT_THAT(refusal(columns, 3), HasSubstr("its line of names is cut off"));
 }
 
 TEST(Series, WordsStandBetweenNumbers) {

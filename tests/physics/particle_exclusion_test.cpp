@@ -97,7 +97,17 @@ INSTANTIATE_TEST_SUITE_P(Beds, Matching,
                          testing::Values(Setting{4000, 0.035, false}, Setting{4000, 0.3, false},
                                          Setting{3000, 2.0, false}, Setting{4000, 0.3, true},
                                          Setting{4000, 0.02, false, 1.6}, Setting{4000, 0.02, true, 1.6},
-                                         Setting{25, 0.1, false}, Setting{60, 0.9, false}, Setting{2, 0.02, false}));
+                                         Setting{150, 0.2, false}, Setting{150, 0.2, true}, Setting{25, 0.1, false},
+                                         Setting{60, 0.9, false}, Setting{2, 0.02, false}));
+
+TEST(YouOnlyCollideOnce, SeesThroughBothSidesOfABoxOfTwoCells) {
+  Bed bed(150, 0.2, false);
+  const auto direct = greedy_matching(bed.spheres(), bed.length);
+  Exclusion exclusion = bed.exclusion();
+  exclusion.match(bed.spheres());
+  ASSERT_EQ(exclusion.cells().count[0], 2);
+  for (std::size_t i = 0; i < bed.size(); ++i) ASSERT_EQ(exclusion.partner()[i], direct[i]) << i;
+}
 
 TEST(YouOnlyCollideOnce, AGiantDoesNotHideWhatSmallOnesOverlap) {
   // Cells of two of its diameters would hold five hundred.
@@ -110,18 +120,92 @@ TEST(YouOnlyCollideOnce, AGiantDoesNotHideWhatSmallOnesOverlap) {
 }
 
 TEST(YouOnlyCollideOnce, TiesGoByIdentifier) {
-  // Four particles in a row at equal distances: three equal overlaps.
-  Bed bed(4, 0.01, false);
-  for (std::size_t i = 0; i < 4; ++i) {
-    bed.position[0][i] = -0.75;
-    bed.position[1][i] = 0.5;
-    bed.position[2][i] = 2 + 0.0625 * static_cast<double>(i);
+  // Equal distances along x and z, exact in binary: a row at the lower end of the box and one inside, and a lattice
+  // whose members overlap four others by one amount and four by another.
+  struct Lattice {
+    double z;
+    int rows, columns;
+  };
+  for (const Lattice& lattice : {Lattice{2, 1, 4}, Lattice{3, 1, 4}, Lattice{3, 7, 7}}) {
+    Bed bed(static_cast<std::size_t>(lattice.rows * lattice.columns), 0.01, false);
+    for (std::size_t i = 0; i < bed.size(); ++i) {
+      bed.position[0][i] = -0.75 + 0.0625 * static_cast<double>(static_cast<int>(i) / lattice.columns);
+      bed.position[1][i] = 0.5;
+      bed.position[2][i] = lattice.z + 0.0625 * static_cast<double>(static_cast<int>(i) % lattice.columns);
+    }
+    bed.largest = 0.1;
+    const auto direct = greedy_matching(bed.spheres(), bed.length);
+    Exclusion exclusion = bed.exclusion();
+    exclusion.match(bed.spheres());
+    for (std::size_t i = 0; i < bed.size(); ++i) EXPECT_EQ(exclusion.partner()[i], direct[i]) << bed.size();
   }
-  bed.largest = 0.1;
-  const auto direct = greedy_matching(bed.spheres(), bed.length);
+}
+
+// Pairs far from each other, as large as the box allows and a hundredth of that; the one size by itself as well.
+TEST(YouOnlyCollideOnce, PairsThatWereMovedApartAreNoPairs) {
+  for (const bool polydisperse : {false, true}) {
+    Bed bed(2000, 0.01, polydisperse);
+    bed.largest = 0.02;
+    for (std::size_t i = 0; i < bed.size(); ++i) {
+      bed.diameters[i] = polydisperse && i % 20 > 1 ? 0.0002 : 0.02;
+      const auto pair = static_cast<int>(i / 2);
+      const double place[3] = {pair % 10 + 0.5, pair / 10 % 10 + 0.5, pair / 100 + 0.5};
+      const auto r = random_uniform(3, RandomPurpose::test, i, 0, 0);
+      for (int c = 0; c < 3; ++c)
+        bed.position[c][i] = bed.lower[c] + bed.length[c] * place[c] / 10 + 0.5 * bed.diameters[i] * (r[c] - 0.5);
+    }
+    Exclusion exclusion = bed.exclusion();
+    ASSERT_EQ(exclusion.match(bed.spheres()).pairs, 1000U);
+    exclusion.separate(bed.spheres());
+    EXPECT_EQ(exclusion.match(bed.spheres()).pairs, 0U) << polydisperse;
+  }
+}
+
+TEST(YouOnlyCollideOnce, APositionThatIsNotFiniteHurtsNoOther) {
+  for (const bool polydisperse : {false, true}) {
+    Bed bed(500, 0.3, polydisperse);
+    bed.position[0][7] = std::nan("");
+    bed.position[2][8] = HUGE_VAL;
+    for (const auto method : {MatchingMethod::rounds, MatchingMethod::sorting}) {
+      Exclusion exclusion = bed.exclusion();
+      EXPECT_GT(exclusion.match(bed.spheres(), method).pairs, 10U);
+      EXPECT_EQ(exclusion.partner()[7], -1);
+      EXPECT_EQ(exclusion.partner()[8], -1);
+    }
+  }
+}
+
+TEST(YouOnlyCollideOnce, APositionOutsideTheBoxIsAnError) {
+  Bed bed(400, 0.005, false);
+  bed.position[0][1] = bed.lower[0] + 0.4;
+  bed.position[0][0] = bed.position[0][1] + bed.length[0];
+  for (int c = 1; c < 3; ++c) bed.position[c][0] = bed.position[c][1];
   Exclusion exclusion = bed.exclusion();
-  exclusion.match(bed.spheres());
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(exclusion.partner()[i], direct[i]);
+  EXPECT_THROW(exclusion.match(bed.spheres()), std::logic_error);
+}
+
+// A heap of more than fit into a cell, inside the box: each looks only at those near it in the order of the cell.
+TEST(YouOnlyCollideOnce, InACrowdLooksAtThoseNearInItsOrder) {
+  Bed bed(3000, 0.02, false);
+  for (std::size_t i = 0; i < 1000; ++i)
+    for (int c = 0; c < 3; ++c) bed.position[c][i] = bed.lower[c] + bed.length[c] * (0.45 + 1e-4 * bed.position[c][i]);
+  std::vector<std::int32_t> partners[2];
+  for (const auto method : {MatchingMethod::rounds, MatchingMethod::sorting}) {
+    Exclusion exclusion = bed.exclusion();
+    exclusion.match(bed.spheres(), method);
+    auto& partner = partners[method == MatchingMethod::rounds ? 0 : 1];
+    partner.assign(exclusion.partner().begin(), exclusion.partner().end());
+    std::vector<std::int32_t> rank(bed.size());
+    for (std::size_t k = 0; k < bed.size(); ++k) rank[exclusion.index_of(k)] = static_cast<std::int32_t>(k);
+    int matched = 0;
+    for (std::size_t i = 0; i < 1000; ++i) {
+      if (partner[i] < 0 || partner[i] >= 1000) continue;
+      ++matched;
+      EXPECT_LE(std::abs(rank[i] - rank[static_cast<std::size_t>(partner[i])]), 64);
+    }
+    EXPECT_GT(matched, 900);
+  }
+  EXPECT_EQ(partners[0], partners[1]);
 }
 
 TEST(YouOnlyCollideOnce, PairsTouchAfterwardsAndKeepTheirCentre) {
@@ -151,18 +235,21 @@ TEST(YouOnlyCollideOnce, PairsTouchAfterwardsAndKeepTheirCentre) {
 
 TEST(YouOnlyCollideOnce, IsTheSameForAnyNumberOfThreads) {
   const int before = omp_get_max_threads();
-  Bed one(20000, 0.3, true), three(20000, 0.3, true);
-  for (auto* bed : {&one, &three}) {
-    omp_set_num_threads(bed == &one ? 1 : 3);
-    Exclusion exclusion = bed->exclusion();
-    for (int step = 0; step < 5; ++step) {
-      exclusion.match(bed->spheres());
-      exclusion.separate(bed->spheres());
+  for (const bool polydisperse : {false, true})
+    for (const double gathering : {1.0, 2.5}) {
+      Bed one(20000, 0.3, polydisperse, 1, gathering), three(20000, 0.3, polydisperse, 1, gathering);
+      for (auto* bed : {&one, &three}) {
+        omp_set_num_threads(bed == &one ? 1 : 3);
+        Exclusion exclusion = bed->exclusion();
+        for (int step = 0; step < 5; ++step) {
+          exclusion.match(bed->spheres());
+          exclusion.separate(bed->spheres());
+        }
+      }
+      omp_set_num_threads(before);
+      for (int c = 0; c < 3; ++c)
+        for (std::size_t i = 0; i < one.size(); ++i) ASSERT_EQ(one.position[c][i], three.position[c][i]);
     }
-  }
-  omp_set_num_threads(before);
-  for (int c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < one.size(); ++i) ASSERT_EQ(one.position[c][i], three.position[c][i]);
 }
 
 TEST(YouOnlyCollideOnce, DissolvesAHeapOfAllParticlesAtOnePoint) {

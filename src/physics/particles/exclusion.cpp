@@ -17,6 +17,8 @@
 namespace spume {
 namespace {
 
+constexpr float infinite = std::numeric_limits<float>::infinity();
+
 // A mixing of the pair, equal for both orders of its members (finaliser of MurmurHash3).
 std::uint64_t pair_hash(std::int64_t a, std::int64_t b) {
   const auto low = static_cast<std::uint64_t>(std::min(a, b)), high = static_cast<std::uint64_t>(std::max(a, b));
@@ -54,9 +56,7 @@ Exclusion::Exclusion(const std::array<double, 3>& lower, const std::array<double
     inverse_length_[axis] = 1 / length[axis];
     unit_[axis] = static_cast<float>(length[axis] * 0x1p-32);
   }
-  // Pairs that were moved apart touch to rounding, of single precision and of their places: they do not count.
-  const double longest = std::max({length[0], length[1], length[2]});
-  overlap_margin_ = static_cast<float>(5e-7 + longest * 0x1p-28 / largest_diameter);
+  least_overlap_ = static_cast<float>(std::max({length[0], length[1], length[2]}) * 0x1p-28);
 }
 
 void Exclusion::prepare(const Spheres& spheres) {
@@ -65,7 +65,8 @@ void Exclusion::prepare(const Spheres& spheres) {
   // elsewhere; four gain nothing more), and sides of at least two diameters, so that a sphere reaches two cells along
   // every axis, whichever way its place was rounded; where that makes crowds of small spheres, of at least one diameter
   // (the printed radius misses overlaps).
-  const double reach = largest_diameter_ * (1 + overlap_margin_), most_cells = std::max<double>(64, 2.0 * double(n));
+  const double reach = largest_diameter_ * (1 + overlap_rounding) + least_overlap_,
+               most_cells = std::max<double>(64, 2.0 * double(n));
   cells_ = PeriodicCells::with_side(lower_, length_, 2 * reach, most_cells);
   cells_reached_ = 2;
   if (n > 8 * cells_.size()) {
@@ -73,17 +74,26 @@ void Exclusion::prepare(const Spheres& spheres) {
     cells_reached_ = 3;
   }
   rows_of_two_ = cells_reached_ == 2 && std::min({cells_.count[0], cells_.count[1], cells_.count[2]}) >= 2;
-  common_limit_ = static_cast<float>(std::pow(spheres.common_diameter * (1 - overlap_margin_), 2));
+  const bool alike = spheres.diameter == nullptr;
+  const double limit = spheres.common_diameter * (1 - double{overlap_rounding}) - least_overlap_;
+  common_limit_ = static_cast<float>(std::pow(std::max(limit, 0.0), 2));
+  out_of_reach_ = std::bit_cast<std::int32_t>(alike ? infinite : -infinite);
   order_.build(cells_, spheres.position[0], spheres.position[1], spheres.position[2], n);
   spheres_ = spheres;
   constexpr std::size_t read_beyond = 4;
   records_.resize(4 * (n + read_beyond));
   parallel_for(n, [&](std::size_t k) {
     const std::size_t i = index_of(k);
-    const auto place = place_of(spheres.position[0][i], spheres.position[1][i], spheres.position[2][i]);
-    std::copy_n(place.data(), 3, records_.data() + 4 * k);
-    records_[4 * k + 3] =
-        spheres.diameter == nullptr ? 0 : std::bit_cast<std::int32_t>(static_cast<float>(0.5 * spheres.diameter[i]));
+    const double x = spheres.position[0][i], y = spheres.position[1][i], z = spheres.position[2][i];
+    std::int32_t* record = records_.data() + 4 * k;
+    if (!std::isfinite(x + y + z)) {
+      std::fill_n(record, 3, 0);
+      record[3] = out_of_reach_;
+      return;
+    }
+    const auto place = place_of(x, y, z);
+    std::copy_n(place.data(), 3, record);
+    record[3] = alike ? 0 : std::bit_cast<std::int32_t>(static_cast<float>(0.5 * spheres.diameter[i]));
   });
 }
 
@@ -146,7 +156,7 @@ template <bool alike>
   const Centre here = centre_of(k);
   FourRows rows;
   if (!lies_in_four_rows(here, rows)) return strongest_listed<alike>(k);
-  constexpr float none = std::numeric_limits<float>::infinity();
+  constexpr float none = infinite;
   f32x16 first = simd::splat16(none), second = first, third = first;
   i32x16 first_rank = simd::splat16(-1), second_rank = first_rank;
   compare<alike>(here, rows, [&](f32x16 weakness, i32x16 rank, simd::bits16 near) {
@@ -210,8 +220,6 @@ ExclusionReport Exclusion::match_by_rounds() {
   has_more_.resize(n);
   ExclusionReport report;
   const bool alike = spheres_.diameter == nullptr;
-  constexpr float infinite = std::numeric_limits<float>::infinity();
-  const auto out_of_reach = std::bit_cast<std::int32_t>(alike ? infinite : -infinite);
 
   // Blocks of ranks that never change; each keeps those of its own with a free partner at its beginning, in order.
   const std::size_t block = std::max(default_block, block_count(n, max_reduction_blocks));
@@ -232,6 +240,7 @@ ExclusionReport Exclusion::match_by_rounds() {
     // The globally strongest free pair is always the strongest for both, so that every round takes at least one.
     // Chance decides who is taken: conditional writes would be guessed wrong as often as right.
     ++report.rounds;
+    const std::size_t paired = total(pairs);
     parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t) {
       std::size_t kept = first;
       for (std::size_t a = first; a < first + left[b]; ++a) {
@@ -239,7 +248,7 @@ ExclusionReport Exclusion::match_by_rounds() {
         const auto m = static_cast<std::size_t>(best_[k][0]);
         const bool mutual = best_[m][0] == active[a];
         taken_[k] = mutual ? 1 : 0;
-        records_[4 * k + 3] = mutual ? out_of_reach : records_[4 * k + 3];
+        records_[4 * k + 3] = mutual ? out_of_reach_ : records_[4 * k + 3];
         partner_[index_of(k)] = mutual ? static_cast<std::int32_t>(index_of(m)) : -1;
         active[kept] = active[a];
         kept += mutual ? 0 : 1;
@@ -247,6 +256,8 @@ ExclusionReport Exclusion::match_by_rounds() {
       pairs[b] += first + left[b] - kept;
       left[b] = kept - first;
     });
+    if (total(pairs) == paired)
+      throw std::logic_error("of two particles that overlap only one finds the other: a position lies outside the box");
     parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t) {
       std::size_t kept = first;
       for (std::size_t a = first; a < first + left[b]; ++a) {

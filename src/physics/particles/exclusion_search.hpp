@@ -20,6 +20,8 @@ namespace spume {
 // particles, and which overlaps go unseen in that step depends on the pair alone, so that both partners agree.
 inline constexpr std::int32_t crowd = 256;
 inline constexpr std::int32_t crowd_window = 64;
+// Of single precision, of the sum of two radii.
+inline constexpr float overlap_rounding = 5e-7F;
 
 // Overlaps put down one after the other.
 struct Exclusion::Found {
@@ -54,7 +56,7 @@ template <bool alike, class Use>
     } else {
       const f32x16 touching = simd::same_bits(record[3]) + splat16(here.radius);
       weakness = simd::square_root(distance_2) - touching;
-      near = simd::bits_less(weakness, splat16(-here.limit) * touching);
+      near = simd::bits_less(weakness, splat16(-here.least) - splat16(here.share) * touching);
     }
     use(weakness, rank, static_cast<simd::bits16>(near & valid & ~simd::bits_equal(rank, splat16(here.rank))));
     for (int r = 0; r < 4; ++r) begin[r] = std::min(begin[r] + 4, rows.end[r]);
@@ -143,10 +145,17 @@ void Exclusion::list_overlaps(const Centre& here, Found& found, Full&& full) con
 
 inline Exclusion::Centre Exclusion::centre_of(std::size_t k) const {
   const std::int32_t* record = records_.data() + 4 * k;
-  return {{record[0], record[1], record[2]},
-          static_cast<float>(0.5 * diameter_of(k)),
-          spheres_.diameter == nullptr ? common_limit_ : overlap_margin_,
-          static_cast<std::int32_t>(k)};
+  const auto value = std::bit_cast<float>(record[3]);
+  Centre here{{record[0], record[1], record[2]}, static_cast<std::int32_t>(k)};
+  if (spheres_.diameter == nullptr) {
+    here.radius = static_cast<float>(0.5 * spheres_.common_diameter);
+    here.limit = common_limit_ - value;  // nothing, out of reach
+  } else {
+    here.radius = value;
+    here.share = overlap_rounding;
+    here.least = least_overlap_;
+  }
+  return here;
 }
 
 template <class Visit>
@@ -173,9 +182,10 @@ void Exclusion::for_each_overlap(std::size_t k, Visit&& visit) const {
 
 template <class Visit>
 void Exclusion::for_each_covering(const std::array<double, 3>& point, Visit&& visit) const {
+  Centre here{place_of(point[0], point[1], point[2]), -1};
   const auto radius = static_cast<float>(0.5 * spheres_.common_diameter);
-  for_each_found({place_of(point[0], point[1], point[2]), 0, spheres_.diameter == nullptr ? radius * radius : 0.0F, -1},
-                 visit);
+  here.limit = radius * radius;
+  for_each_found(here, visit);
 }
 
 }  // namespace spume

@@ -22,8 +22,8 @@ const ParticleOptions& checked(const PeriodicGrid& grid, const ParticleOptions& 
     if (!(d > 0) || !(2 * d < shortest))
       throw InputError("a particle diameter of " + std::to_string(d) +
                        " does not lie between 0 and half of the shortest side of the box, " + std::to_string(shortest));
-  if (options.count > std::size_t{1} << 29)
-    throw InputError(std::to_string(options.count) + " particles; at most 2^29 can be numbered");
+  if (options.count > 500000000)
+    throw InputError(std::to_string(options.count) + " particles; at most 500,000,000 can be numbered");
   if (acts_on_flow(options.coupling) && !(options.motion.beta > 0))
     throw InputError("two-way coupling needs particles of finite density, beta > 0");
   return options;
@@ -223,7 +223,7 @@ double ParticleSystem::estimated_bytes(const PeriodicGrid& grid, const ParticleO
   double per_particle = 8 * 7 + 16 + 18;
   if (options.placement.diameters.size() > 1) per_particle += 8;
   if (couples) per_particle += 8 * 3 + 8 * 3;
-  if (collides) per_particle += 16 + 4 + 12 + 2 + 4;
+  if (collides) per_particle += 16 + 4 + 12 + 2 + 8;
   double points = 1;
   for (int axis = 0; axis < 3; ++axis) points *= grid.points[axis] + options.spline_order - 1;
   return per_particle * n + 4.0 * static_cast<double>(grid.point_count()) +

@@ -6,7 +6,7 @@
 // Taking the strongest first is a greedy matching. The same matching comes from rounds in which every pair that is the
 // strongest for both of its particles is taken at once; that needs no list of overlaps, no sort and no order of
 // threads. Overlaps of equal strength are ordered by a hash of the two identifiers (and then by these): in order of the
-// identifiers themselves, n particles at one point would need n / 2 rounds.
+// identifiers themselves, n particles of one size at one point would need n / 2 rounds.
 #pragma once
 
 #include <array>
@@ -45,7 +45,8 @@ class Exclusion {
 
   // Finds the matching: partner()[i] is the index of the partner of particle i, or -1. Positions lie in the box. Pairs
   // that were moved apart touch to rounding, of single precision and of places to 2^-32 of the box: what overlaps by
-  // less than 5e-7 of a diameter and 2^-28 of the box does not count.
+  // less than 5e-7 of a diameter and 2^-28 of the box does not count, nor does a position that is not finite. Throws
+  // std::logic_error where only one of two sees the other: a position lies outside the box.
   ExclusionReport match(const Spheres& spheres, MatchingMethod method = MatchingMethod::rounds);
 
   // Moves the pairs of the last match apart, shares of the way in inverse proportion to the volumes, so that the centre
@@ -80,12 +81,12 @@ class Exclusion {
     std::array<std::int32_t, remembered> rank{-1, -1, -1};  // of the partners; -1: none, or not known
     bool has_more = false;                                  // than these
   };
-  // Where a search starts and what counts: the square of a distance for spheres of one diameter, else the share of the
-  // sum of the radii by which they must overlap.
+  // Where a search starts and what counts: spheres of one diameter whose distance squared is below `limit`, else those
+  // that overlap by more than `share` of the sum of the radii and `least`.
   struct Centre {
     std::array<std::int32_t, 3> place;
-    float radius, limit;
     std::int32_t rank;  // of the sphere there; -1: a point
+    float radius = 0, limit = 0, share = 0, least = 0;
   };
   // Ranks begin[r] .. end[r] of neighbouring cells.
   struct FourRows {
@@ -129,15 +130,17 @@ class Exclusion {
   std::array<double, 3> lower_{}, length_{}, inverse_length_{};
   std::array<float, 3> unit_{};  // of a place
   double largest_diameter_ = 0;
-  float overlap_margin_ = 0;
+  float least_overlap_ = 0;
   float common_limit_ = 0;  // the square of the distance of spheres of one diameter that overlap
-  int cells_reached_ = 3;   // along an axis
+  std::int32_t out_of_reach_ = 0;
+  int cells_reached_ = 3;  // along an axis
   bool rows_of_two_ = false;
   PeriodicCells cells_;
   CellOrder order_;
   Spheres spheres_;
   // In the order of the cells: place along x, y and z, and the bits of a float: of spheres of one diameter 0, else the
-  // radius; of those that have a partner what puts them out of reach, so that searches of later rounds pass by.
+  // radius; of those that have a partner what puts them out of reach, so that searches of later rounds pass by, and the
+  // same where a position is not finite.
   Array<std::int32_t> records_;
   Array<std::int32_t> partner_;
   // By rank: the partners of the strongest overlaps, and whether it has a partner now or more overlaps than are
