@@ -191,6 +191,38 @@ TEST(SpectralFlow, ShellForceInjectsExactlyAndTheBalanceCloses) {
   }
 }
 
+// Two parts of the potential are in no velocity: along k, and what keeps the stored conjugates of the plane k_z = 0
+// apart. A force in proportion to the potential that took them along would feed them from rounding on.
+TEST(SpectralFlow, AForceFeedsNothingThatIsInNoVelocity) {
+  for (const char* integrator : {"ab2", "rk3", "rk4"})
+    for (const char* force : {"\"shell\"\nwidth = 3\ninjection = 5\n", "\"linear\"\nrate = 3\n"}) {
+      SpectralRun<> run(spectral_text("[8, 8, 8]", random_start + "[forcing]\nkind = " + force +
+                                                       "[spectral]\nintegrator = \"" + integrator + "\"\n"));
+      run.start();
+      Flow<double>& flow = run.method.flow();
+      const ModeLayout& layout = flow.layout();
+      const std::size_t one = layout.plane, other = 7 * layout.plane, slanted = layout.row + 1;
+      const double k[3] = {0, layout.wavenumber[1][1], layout.wavenumber[2][1]}, k2 = k[1] * k[1] + k[2] * k[2];
+      Modes<double> b;
+      for (std::size_t c = 0; c < 3; ++c) {
+        b[c].resize(layout.size());
+        std::copy_n(flow.potential()[c].data(), layout.size(), b[c].data());
+      }
+      const auto along = [&](const Modes<double>& of) {
+        return std::abs(k[1] * of[1][slanted] + k[2] * of[2][slanted]);
+      };
+      const double scale = std::abs(b[1][one]);
+      b[1][one] += std::complex<double>(0.3, 0.2) * scale;
+      for (std::size_t c = 1; c < 3; ++c) b[c][slanted] += k[c] * scale;
+      const double start = along(b);
+      flow.set_potential(std::move(b));
+      run.steps(40, 0.002);
+      EXPECT_LT(std::abs(flow.potential()[1][one] - std::conj(flow.potential()[1][other])), 1e-14 * scale)
+          << integrator;
+      EXPECT_NEAR(along(flow.potential()), start * std::exp(-k2 / 60 * 0.08), 1e-10 * start) << integrator;
+    }
+}
+
 // A wave that is parallel to its vorticity has no other motion: dE/dt = injection - 2 nu k^2 E, exactly. Along z every
 // stored mode stands for its conjugate too, along x both are stored: a shell that counted either wrong would feed the
 // wave twice or half as much. The tolerance is that of 40 steps of fourth order, (2 nu k^2 dt)^4 / 120 each.

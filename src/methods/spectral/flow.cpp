@@ -192,6 +192,31 @@ void Flow<T>::evaluate_tendency() {
   if (options_.integrator == Integrator::ab2) has_previous_ = false;
 }
 
+// Modes (kx, ky, 0) and (-kx, -ky, 0) are both stored. What keeps them from being each other's conjugates is in no
+// velocity, so that nothing but viscosity acts on it; a force in proportion to the modes makes its rounding grow at the
+// rate of the energy that it puts in, until after some hundred units of time it holds all of the energy.
+template <class T>
+void Flow<T>::join_conjugates() {
+  if (forcing_.kind == ForcingKind::none) return;
+  const auto [nx, ny, nz] = layout_.points;
+  const auto& k = layout_.wavenumber;
+  const auto forced = [&](double k2) { return forcing_.kind == ForcingKind::linear || k2 < shell_high_; };
+  parallel_blocks(nx / 2 + 1, 1, [&, nx = nx, ny = ny](std::size_t, std::size_t ix, std::size_t) {
+    const std::size_t other_x = (nx - ix) % nx;
+    for (std::size_t iy = 0; iy < ny; ++iy) {
+      const std::size_t other_y = (ny - iy) % ny;
+      if (!forced(k[0][ix] * k[0][ix] + k[1][iy] * k[1][iy]) || (ix == other_x && iy > other_y)) continue;
+      for (auto& field : potential_) {
+        Complex& one = field[ix * layout_.plane + iy * layout_.row];
+        Complex& other = field[other_x * layout_.plane + other_y * layout_.row];
+        const Complex mean = (one + std::conj(other)) / T(2);
+        one = mean;
+        other = std::conj(mean);
+      }
+    }
+  });
+}
+
 // The force that injects exactly forcing.injection: f = coefficient u on the shell (de Wit et al., below (2)); sums run
 // over all of k-space. For the linear force the coefficient is the rate.
 template <class T>

@@ -48,9 +48,17 @@ VelocityPeak Flow<T>::evaluate(const Modes<T>& potential, Modes<T>& sum, Update&
         const V keep = inside ? (kz < static_cast<T>(cut_[2]) ? none + T(1) : none) : none;
         for (auto& value : k) value *= keep;
       }
+      // Of what forces are in proportion to, the part along k drives no velocity: forced, its rounding would grow
+      // unseen.
+      const auto add_force = [&](const V factor) {
+        const V b[3] = {load(&potential[0][at]), load(&potential[1][at]), load(&potential[2][at])};
+        const V along = (kx * b[0] + ky * b[1] + kz * b[2]) * inverse;
+        k[0] += factor * (b[0] - kx * along);
+        k[1] += factor * (b[1] - ky * along);
+        k[2] += factor * (b[2] - kz * along);
+      };
       if (linear) {
-        const V factor = k2 > none ? none + coefficient : none;
-        for (std::size_t c = 0; c < 3; ++c) k[c] += factor * load(&potential[c][at]);
+        add_force(k2 > none ? none + coefficient : none);
       } else if (near_shell) {
         V factor{};
         for (std::size_t l = 0; l < fourier::vector_width<T>; ++l) {
@@ -58,7 +66,7 @@ VelocityPeak Flow<T>::evaluate(const Modes<T>& potential, Modes<T>& sum, Update&
           if (square >= shell_low_ && square < shell_high_ && square > 0)
             factor[2 * l] = factor[2 * l + 1] = coefficient;
         }
-        for (std::size_t c = 0; c < 3; ++c) k[c] += factor * load(&potential[c][at]);
+        add_force(factor);
       }
       // The mean velocity takes the mean of the force as it is.
       if (force && at == 0)

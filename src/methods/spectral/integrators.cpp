@@ -63,6 +63,7 @@ void Flow<T>::advance(double dt) {
     adams_bashforth(dt);
   else
     self_start(dt);
+  join_conjugates();
 }
 
 // Speeds are those of the step's start, the fresh energy that of its end.

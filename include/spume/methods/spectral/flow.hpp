@@ -113,6 +113,7 @@ class Flow {
   EnergyBudget tallied(const Modes<T>& potential) const;
   EnergyBudget with_forces(EnergyBudget fresh) const;
   double forcing_coefficient(const Modes<T>& potential) const;
+  void join_conjugates();
   StepLimit limit_for(const VelocityPeak& peak) const;
   // exp(-nu k_i^2 dt) per index of an axis; along z twice each, as vectors take it.
   struct Decay {
