@@ -30,7 +30,7 @@ void append_number(std::string& text, double value) {
 }
 
 // The first column that only one of two lines of names has.
-std::string difference(const std::string& found, const std::string& expected) {
+std::string column_difference(const std::string& found, const std::string& expected) {
   const auto first_missing = [](const std::string& in, const std::string& from) {
     std::istringstream names(in);
     for (std::string name; std::getline(names, name, ',');)
@@ -93,11 +93,11 @@ SeriesFile SeriesFile::resume(const std::filesystem::path& path, const std::vect
   };
   while (at < text.size() && text[at] == '#' && line_end() != std::string::npos) at = line_end();
   const std::string names = column_line(columns);
-  if (text.compare(at, names.size(), names) != 0)
-    throw FileError("cannot continue '" + path.string() + "': " +
-                    difference(text.substr(at, line_end() == std::string::npos ? line_end() : line_end() - 1 - at),
-                               names.substr(0, names.size() - 1)) +
+  if (text.compare(at, names.size(), names) != 0) {
+    const std::string found = text.substr(at, text.find('\n', at) - at), expected = names.substr(0, names.size() - 1);
+    throw FileError("cannot continue '" + path.string() + "': " + column_difference(found, expected) +
                     "; continue it with the program that began it, named in log.txt, or run its case.toml anew");
+  }
   at += names.size();
   for (std::int64_t row = 0; row < rows; ++row) {
     if (at >= text.size() || line_end() == std::string::npos)
