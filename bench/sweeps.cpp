@@ -8,6 +8,7 @@
 #include "machine.hpp"
 #include "particle_cube.hpp"
 #include "spume/operators/sph_operators.hpp"
+#include "spume/operators/surface_layers.hpp"
 
 namespace spume {
 namespace {
@@ -183,6 +184,66 @@ void filter_of_two_scalars(benchmark::State& state) {
   sweeps.run(state, {10 + 7 + 1 + 4, 2, 16}, [&] { filter_scalars(sweeps.context, sweeps.records, values, out); });
 }
 
+// Depths and shared shifts as at a surface through half of the particles, the others below it and outside of the lists.
+struct HalfAtSurface {
+  Sweeps sweeps;
+  std::vector<std::int32_t> upper;
+  std::array<Array<float>, 3> normal;
+  Array<float> scratch, depth;
+  Array<std::array<float, 3>> shared;
+  double pairs = 0;
+
+  explicit HalfAtSurface(const benchmark::State& state) : sweeps(state) {
+    const std::size_t n = sweeps.particles.n;
+    for (auto& component : normal) component.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool at_surface = sweeps.particles.z[i] > 0.5;
+      normal[0][i] = normal[1][i] = 0;
+      normal[2][i] = at_surface ? 1 : 0;
+      if (!at_surface) continue;
+      upper.push_back(static_cast<std::int32_t>(i));
+      pairs += static_cast<double>(sweeps.particles.list.count(i));
+    }
+    scratch.resize(n);
+    depth.resize(upper.size());
+    shared.resize(upper.size());
+  }
+
+  // Twice over the pairs, each with records of 16 bytes times `records`.
+  template <class Body>
+  void run(benchmark::State& state, double flops, double records, Body&& body) {
+    for (auto _ : state) {
+      body();
+      benchmark::ClobberMemory();
+    }
+    state.counters["time_per_pair"] =
+        benchmark::Counter(2 * pairs, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    count_against_machine(
+        state,
+        {8 * pairs + 64 * records * static_cast<double>(sweeps.particles.n), 2 * flops * pairs, 2 * records * pairs, 0},
+        static_cast<int>(state.range(2)));
+  }
+};
+
+// Distances 10, then along the normal 6 and 9, columns 8 + 9 and sums 2; layers' weights 7 + 4 and sums 4.
+void depths_below_surface(benchmark::State& state) {
+  HalfAtSurface half(state);
+  half.run(state, 10 + (15 + 19 + 6 + 15) / 2.0, 1, [&] {
+    edge_depths(half.sweeps.context, half.sweeps.records,
+                {half.sweeps.particles.spacing(), half.upper, Sweeps::read(half.normal)}, half.scratch, half.depth);
+  });
+}
+
+// Distances 10, then weights 5, lengths and sums 5 + 8; along the normal 6, weights 7 + 4, sums 8.
+void shift_shared_by_layers(benchmark::State& state) {
+  HalfAtSurface half(state);
+  half.run(state, 10 + (18 + 25) / 2.0, 2, [&] {
+    shared_along_normal(half.sweeps.context, half.sweeps.records, half.sweeps.particles.spacing(),
+                        Sweeps::read(half.normal), Sweeps::read(half.sweeps.shift), half.sweeps.reflection, half.upper,
+                        half.shared);
+  });
+}
+
 BENCHMARK(geometry_sums)->Apply(Particles::sizes);
 BENCHMARK(velocity_gradient)->Apply(Particles::sizes);
 BENCHMARK(shift_curvature)->Apply(Particles::sizes);
@@ -191,6 +252,8 @@ BENCHMARK(velocity_divergence)->Apply(Particles::sizes);
 BENCHMARK(pressure_gradient)->Apply(Particles::sizes);
 BENCHMARK(filter_of_vector)->Apply(Particles::sizes);
 BENCHMARK(filter_of_two_scalars)->Apply(Particles::sizes);
+BENCHMARK(depths_below_surface)->Apply(Particles::sizes);
+BENCHMARK(shift_shared_by_layers)->Apply(Particles::sizes);
 
 }  // namespace
 }  // namespace spume

@@ -114,7 +114,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="only what takes seconds")
     parser.add_argument("--threads", type=int, help="threads of each run")
     parser.add_argument("--keep", metavar="DIR", type=Path, help="keep the runs, their plots and verify.json here")
-    arguments = parser.parse_args()
+    arguments = parser.parse_intermixed_args()
 
     try:
         chosen, problems = prepare(arguments.cases, arguments.quick)

@@ -139,7 +139,7 @@ def main():
     parser.add_argument("sweeps", nargs="*", metavar="SWEEP", help=", ".join(SWEEPS))
     parser.add_argument("--out", type=Path, default=Path("work_precision"))
     parser.add_argument("--seconds", type=float, default=1e9, help="wall time after which no new run starts")
-    arguments = parser.parse_args()
+    arguments = parser.parse_intermixed_args()
     unknown = [name for name in arguments.sweeps if name not in SWEEPS]
     if unknown or not os.access(arguments.program, os.X_OK):
         parser.error(f"{', '.join(unknown) or arguments.program}: not there; the sweeps are {', '.join(SWEEPS)}")

@@ -7,6 +7,7 @@
 
 #include "methods/les_sph_simulation.hpp"
 #include "reference/sph_sums.hpp"
+#include "reference/surface_layers.hpp"
 #include "spume/core/random.hpp"
 #include "spume/methods/les_sph/free_surface.hpp"
 #include "spume/methods/les_sph/pressure_system.hpp"
@@ -67,12 +68,23 @@ struct PreparedStep {
     const double trace = std::max<double>((*liquid.divergence_of_position)[i], 0.5 * bulk);
     return (trace + outside(i) * std::max(0.0, bulk - trace)) / liquid.dimensions;
   }
+  // Normals of the edge particles, from the twin's sums.
+  std::vector<reference::Vector> edge_normals(const SphSums& twin) const {
+    std::vector<reference::Vector> normals(liquid.size());
+    for (std::size_t i = 0; i < liquid.size(); ++i) {
+      if (outside(i) == 0 || liquid.uncorrected[i] != 0) continue;
+      const auto normal = twin.normal(i);
+      const double size = std::hypot(normal[0].value, normal[1].value, normal[2].value);
+      for (int a = 0; a < liquid.dimensions && size > 0; ++a) normals[i][a] = normal[a].value / size;
+    }
+    return normals;
+  }
   double helmholtz() const {
     const double c = loaded.scene.fluid.sound_speed;
     return c > 0 ? 1 / (c * c * dt * dt) : 0;
   }
   // E and p0 of the mirrored liquid, from the twin's sums.
-  std::array<double, 2> surface_row(const SphSums& twin, std::size_t i) const {
+  std::array<double, 2> surface_row(const SphSums& twin, const reference::SurfaceLayers& layers, std::size_t i) const {
     if (outside(i) == 0 || liquid.uncorrected[i] != 0) return {};
     const auto normal = twin.normal(i);  // -h m
     double size2 = 0, along = 0;
@@ -81,8 +93,7 @@ struct PreparedStep {
       along += normal[a].value * liquid.uniform_acceleration[a];
     }
     const double spacing = loaded.scene.spacing;
-    const double depth = twin.shared_surface_depth(
-        i, spacing, [&](std::size_t j) { return outside(j) > 0 && liquid.uncorrected[j] == 0; });
+    const double depth = layers.depth(i);
     const double missing = liquid.lattice.coupling / (spacing * spacing) - twin.coupling(i).value;
     const double mirrored = 2 * std::sqrt(size2) / liquid.smoothing_length / depth;
     return {outside(i) * std::max({mirrored, missing, 0.0}), size2 > 0 ? -depth * along / std::sqrt(size2) : 0.0};
@@ -103,6 +114,8 @@ struct PreparedStep {
         if (side.kind == BoundaryKind::no_slip) side.kind = BoundaryKind::free_slip;
     const SphSums mirror({loaded.options.resolution.kernel, d}, liquid.smoothing_length, liquid.volume, points,
                          les_sph::image_rules(liquid, liquid.next_walls), boundaries_of(slippery));
+    const reference::SurfaceLayers layers(twin, {loaded.options.resolution.kernel, d}, liquid.smoothing_length,
+                                          loaded.scene.spacing, edge_normals(twin));
     const auto potential = [&](std::size_t i) { return liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]; };
     std::array<std::vector<double>, 3> start, u;
     for (int axis = 0; axis < d; ++axis) {
@@ -120,7 +133,7 @@ struct PreparedStep {
         b[row] = potential(i);
         continue;
       }
-      const auto [surface_coupling, hydrostatic] = surface_row(twin, i);
+      const auto [surface_coupling, hydrostatic] = surface_row(twin, layers, i);
       const double extra = helmholtz() * row_scale(i) + surface_coupling;
       double diagonal = liquid.volume * extra;
       twin.pressure_couplings(i, [&](std::size_t j, double a) {

@@ -6,7 +6,9 @@
 
 #include "neighbours/neighbourhood.hpp"
 #include "operators/sph_arrangement.hpp"
+#include "reference/surface_layers.hpp"
 #include "spume/operators/pressure_operator.hpp"
+#include "spume/operators/surface_layers.hpp"
 
 namespace spume::test {
 namespace {
@@ -264,6 +266,56 @@ TEST(VaryingSizes, WeightsOfTheGeometricMeanGiveTheVaryingCoefficient) {
   }
   EXPECT_LT(error[1], 0.05);
   EXPECT_GT(error[0] / error[1], 2.5);
+}
+
+// Volumes of about half, so that the columns hold neither what counts as deepest nor too little.
+TEST(VaryingSizes, DepthsBelowASurfaceAreTheDirectSums) {
+  Varying3D& v = varying();
+  const std::size_t n = v.hood.n;
+  Array<float> ratio(n), scratch(n);
+  VectorArrays<float> normal(n, 3);
+  std::vector<std::int32_t> edge;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point draw = uniform(i, 32), direction = uniform(i, 33);
+    ratio[i] = static_cast<float>(0.3 + 0.4 * draw[0]);
+    const double size = std::hypot(direction[0] - 0.5, direction[1] - 0.5, direction[2] - 0.5);
+    for (int a = 0; a < 3; ++a) normal[a][i] = static_cast<float>((direction[a] - 0.5) / size);
+    if (draw[1] < 0.3) edge.push_back(static_cast<std::int32_t>(i));
+  }
+  SweepContext context = v.context;
+  context.volume_ratio = ratio.data();
+  Array<float> depth(edge.size());
+  edge_depths(context, v.records, {spacing, edge, normal.read()}, scratch, depth);
+
+  std::vector<double> own(n, 0.0);
+  std::size_t between = 0;
+  const auto below = [&](std::size_t i, const Point& d) {
+    return -(d[0] * normal[0][i] + d[1] * normal[1][i] + d[2] * normal[2][i]) / spacing;
+  };
+  for (const std::int32_t k : edge) {
+    const auto i = static_cast<std::size_t>(k);
+    double held = ratio[i] * reference::column_weight(3, 0, 0);
+    v.each(i, [&](std::size_t j, const Point& d, double, double) {
+      const double z = below(i, d), r2 = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / (spacing * spacing);
+      held += ratio[j] * reference::column_weight(3, std::sqrt(std::max(0.0, r2 - z * z)), z);
+    });
+    own[i] = reference::depth_of_column(3, held);
+    between += own[i] > 0.26 && own[i] < 1.99 ? 1 : 0;
+  }
+  EXPECT_GT(between, edge.size() / 2);
+  for (std::size_t k = 0; k < edge.size(); ++k) {
+    const auto i = static_cast<std::size_t>(edge[k]);
+    double weights = WendlandC2::w(0.0), sum = weights * own[i];
+    v.each(i, [&](std::size_t j, const Point& d, double, double) {
+      if (own[j] == 0) return;
+      const double q = std::hypot(d[0], d[1], d[2]) / (h0 * v.length_ratio[i]);
+      const double weight = WendlandC2::w(q) * std::max(0.0, 1 - 2 * std::abs(below(i, d)));
+      weights += weight;
+      sum += weight * own[j];
+    });
+    // A column holds some 30 terms of squared distances of up to ten.
+    ASSERT_NEAR(depth[k] / spacing, sum / weights, 10 * tolerance) << i;
+  }
 }
 
 }  // namespace

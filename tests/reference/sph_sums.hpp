@@ -180,54 +180,6 @@ class SphSums {
     return sum;
   }
 
-  // Distance of the surface by volume: what a column along the normal holds beyond that of a flat lattice surface.
-  double surface_depth(std::size_t i, double spacing) const {
-    const auto weight = [&](double across, double down) {
-      const double x = across / spacing, z = down / spacing;
-      double spline = x >= 2 ? 0 : x >= 1 ? std::pow(2 - x, 3) / 6 : 2.0 / 3 - x * x + x * x * x / 2;
-      if (dimensions() == 3) spline *= 15 / (7 * 3.14159265358979323846);
-      const double ramp = z <= 0.2   ? 1
-                          : z >= 2.2 ? 0
-                          : z < 1.2  ? 1 - std::pow(z - 0.2, 2) / 2
-                                     : std::pow(2.2 - z, 2) / 2;
-      return spline * ramp;
-    };
-    double lattice = 0;
-    for (int row = 0; row < 3; ++row)
-      for (int k = -2; k <= 2; ++k)
-        for (int l = dimensions() == 3 ? -2 : 0; l <= (dimensions() == 3 ? 2 : 0); ++l)
-          lattice += weight(spacing * std::hypot(k, l), spacing * row);
-    const auto m = normal(i);
-    double size = 0, held = weight(0, 0);
-    for (int a = 0; a < dimensions(); ++a) size += m[a].value * m[a].value;
-    if (size == 0) return spacing;
-    each(i, [&](const Pair& p) {
-      double down = 0;
-      for (int a = 0; a < dimensions(); ++a) down -= p.d[a] * m[a].value / std::sqrt(size);
-      held += weight(std::sqrt(std::max(0.0, p.r * p.r - down * down)), down);
-    });
-    return spacing * std::clamp(0.5 + held - lattice, 0.25, 2.0);
-  }
-
-  // The mean of the depths of the particles with edge(j) that lie within half a spacing of the layer of i, by weights W
-  // that fall off linearly across the layer.
-  template <class Edge>
-  double shared_surface_depth(std::size_t i, double spacing, Edge&& edge) const {
-    const auto m = normal(i);
-    double size = 0;
-    for (int a = 0; a < dimensions(); ++a) size += m[a].value * m[a].value;
-    double total = weight(0), sum = total * surface_depth(i, spacing);
-    each(i, [&](const Pair& p) {
-      if (!edge(p.point->source) || size == 0) return;
-      double out = 0;
-      for (int a = 0; a < dimensions(); ++a) out += p.d[a] * m[a].value / std::sqrt(size);
-      const double share = p.w * std::max(0.0, 1 - 2 * std::abs(out) / spacing);
-      total += share;
-      sum += share * surface_depth(p.point->source, spacing);
-    });
-    return sum / total;
-  }
-
   // --- fields; a velocity has one array per dimension
 
   template <class Velocity>
