@@ -11,6 +11,7 @@ namespace spume {
 namespace {
 
 constexpr double pairs_per_bubble = 4.18879 * 2.6 * 2.6 * 2.6;  // particles in its support
+constexpr double candidates_per_bubble = 27 * 2.6 * 2.6 * 2.6;  // in the cells around it
 
 struct Swarm {
   Particles particles;
@@ -25,8 +26,8 @@ struct Swarm {
     for (int a = 0; a < 3; ++a) {
       at[a].resize(size);
       sorted[a].resize(size);
-      place[a].resize(size + simd::lanes);
-      liquid_place[a].resize(n + simd::lanes);
+      place[a].resize(size + simd::pair_lanes);
+      liquid_place[a].resize(n + simd::pair_lanes);
     }
     for (std::size_t b = 0; b < size; ++b) {
       const auto r = random_uniform(2, RandomPurpose::test, b, 0, 0);
@@ -44,7 +45,7 @@ struct Swarm {
       }
     length_ratio.resize(n);
     reach.resize(n);
-    inverse_reach.resize(n + simd::lanes);
+    inverse_reach.resize(n + simd::pair_lanes);
     const std::array<const double*, 3> x = positions();
     for (std::size_t i = 0; i < n; ++i) {
       length_ratio[i] = 1;
@@ -86,11 +87,13 @@ void bubble_sums(benchmark::State& state) {
                         static_cast<int>(state.range(2)));
 }
 
-// Distance 8 and the comparison with the reach.
-void particles_around_bubbles(benchmark::State& state) {
+// Candidates are the particles of the cells that come near: distance 8 and the comparison with the reach. With lines
+// also what is found: kernel 7, products and sums 32.
+void around_bubbles(benchmark::State& state, bool with_lines) {
   Swarm swarm(state);
   const CrossSearch search = swarm.search(swarm.particles.table, swarm.particles.n, swarm.liquid_place);
-  Array<std::int32_t> found_at(swarm.size);
+  Array<float> lines(with_lines ? line_floats * swarm.particles.n : 0), sums(line_floats * swarm.size);
+  for (std::size_t k = 0; k < lines.size(); ++k) lines[k] = static_cast<float>(k % 7);
   for (auto _ : state)
     parallel_blocks_dynamic(swarm.size, 64, [&](std::size_t, std::size_t first, std::size_t last) {
       thread_local CrossSearch::Found thread_found;
@@ -98,13 +101,24 @@ void particles_around_bubbles(benchmark::State& state) {
       for (std::size_t b = first; b < last; ++b) {
         search.near_place({swarm.place[0][b], swarm.place[1][b], swarm.place[2][b]},
                           static_cast<float>(swarm.particles.grid.reach()), swarm.inverse_reach.data(), found);
-        found_at[b] = static_cast<std::int32_t>(found.size);
+        sums[line_floats * b] = static_cast<float>(found.size);
+        if (!with_lines) continue;
+        const auto halves = sum_of_lines<WendlandC2>(found, lines.data());
+        simd::store(sums.data() + line_floats * b, halves[0]);
+        simd::store(sums.data() + line_floats * b + simd::lanes, halves[1]);
       }
     });
   swarm.count(state);
-  const double pairs = pairs_per_bubble * static_cast<double>(swarm.size);
-  count_against_machine(state, {16 * static_cast<double>(swarm.particles.n), 9 * pairs, 0, 0},
+  const auto bubbles = static_cast<double>(swarm.size);
+  const double candidates = candidates_per_bubble * bubbles, pairs = with_lines ? pairs_per_bubble * bubbles : 0;
+  count_against_machine(state, {0, 9 * candidates + 39 * pairs, 0, 16 * candidates + 64 * pairs},
                         static_cast<int>(state.range(2)));
+}
+void particles_around_bubbles(benchmark::State& state) {
+  around_bubbles(state, false);
+}
+void interpolation_to_bubbles(benchmark::State& state) {
+  around_bubbles(state, true);
 }
 
 // At a particle that may entrain; argument: purchases per step in tenths.
@@ -149,6 +163,7 @@ void births_and_deaths(benchmark::State& state) {
 
 BENCHMARK(bubble_sums)->Apply(Particles::sizes);
 BENCHMARK(particles_around_bubbles)->Apply(Particles::sizes);
+BENCHMARK(interpolation_to_bubbles)->Apply(Particles::sizes);
 BENCHMARK(entrainment)->Arg(5)->Arg(15);
 BENCHMARK(births_and_deaths)
     ->ArgNames({"bubbles", "threads"})

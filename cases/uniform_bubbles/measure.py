@@ -3,18 +3,18 @@
 import numpy as np
 
 
-def last_spectrum(run):
-    """Wavenumbers and energies of the last time, up to half of the largest wavenumber, without the mean."""
+def last_spectrum(run, most=np.inf):
+    """Wavenumbers and energies of the last time, up to `most` and half of the largest wavenumber, without the mean."""
     spectrum = run.spectrum
     rows = spectrum["t"] == spectrum["t"][-1]
     k, energy = spectrum["wavenumber"][rows], spectrum["energy"][rows]
     largest = int(np.atleast_1d(run.case["resolution"]["grid"])[0]) / 2
-    good = (k > 0) & (k <= 0.5 * largest)
+    good = (k > 0) & (k <= min(0.5 * largest, most))
     return k[good], energy[good]
 
 
-def spectrum_error(run, reference):
-    return float(np.max(np.abs(last_spectrum(run)[1] / last_spectrum(reference)[1] - 1)))
+def spectrum_error(run, reference, most=np.inf):
+    return float(np.max(np.abs(last_spectrum(run, most)[1] / last_spectrum(reference, most)[1] - 1)))
 
 
 def measure(runs):
@@ -22,8 +22,13 @@ def measure(runs):
     out = {"spectrum_error": error,
            # What is to be told apart: the effect of the bubbles on the same spectrum.
            "effect_of_bubbles": spectrum_error(runs["coupled"], runs["plain"])}
-    if "coupled_coarse_step" in runs:
-        out["spectrum_error_over_coarse_step"] = error / spectrum_error(runs["coupled_coarse_step"], runs["enhanced"])
+    if "coupled_half_step" in runs:
+        out["ratio_half_step"] = spectrum_error(runs["coupled_half_step"], runs["enhanced"]) / error
+    if "coupled_fine_grid" in runs:
+        most = last_spectrum(runs["coupled_coarse_grid"])[0][-1]
+        coarse, fine = (spectrum_error(runs[f"coupled_{grid}_grid"], runs[f"enhanced_{grid}_grid"], most)
+                        for grid in ("coarse", "fine"))
+        out |= {"error_coarse_grid": coarse, "ratio_fine_grid": fine / coarse}
     return out
 
 

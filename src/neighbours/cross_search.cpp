@@ -83,18 +83,18 @@ std::span<const CrossSearch::Block> CrossSearch::blocks_near(const Box& box, flo
       for (std::size_t s = 0; s < sets; ++s) {
         const std::int32_t first = near[s].base + near[s].first[row + from];
         const std::int32_t last = near[s].base + near[s].first[row + to];
-        const std::int32_t blocks = (last - first + simd::lanes - 1) / simd::lanes;
+        const std::int32_t blocks = (last - first + pair_lanes - 1) / pair_lanes;
         const std::size_t wanted = size + static_cast<std::size_t>(std::max(blocks, blocks_at_once));
         if (wanted > found.blocks.size()) found.blocks.resize(2 * wanted);
         Block* const out = found.blocks.data() + size;
-        for (int k = 0; k < blocks_at_once; ++k) out[k] = {first + k * simd::lanes, last};
-        for (std::int32_t k = blocks_at_once; k < blocks; ++k) out[k] = {first + k * simd::lanes, last};
+        for (int k = 0; k < blocks_at_once; ++k) out[k] = {first + k * pair_lanes, last};
+        for (std::int32_t k = blocks_at_once; k < blocks; ++k) out[k] = {first + k * pair_lanes, last};
         size += static_cast<std::size_t>(blocks);
       }
     }
   }
   // Packed stores write whole vectors.
-  const std::size_t wanted = simd::lanes * (size + 1);
+  const std::size_t wanted = pair_lanes * (size + 1);
   if (wanted > found.index.size()) {
     found.index.resize(2 * wanted);
     found.share2.resize(2 * wanted);
@@ -104,22 +104,21 @@ std::span<const CrossSearch::Block> CrossSearch::blocks_near(const Box& box, flo
 
 void CrossSearch::near_box(const Box& box, float reach, Found& found) const {
   const std::span<const Block> blocks = blocks_near(box, reach, found);
-  const i32x8 lane = {0, 1, 2, 3, 4, 5, 6, 7};
   const Box within = box;
   const std::array<const float*, 3> point = point_;
   std::int32_t* const out = found.index.data();
   const float reach2 = reach * reach;
   std::size_t size = 0;
   for (const Block block : blocks) {
-    f32x8 distance2{};
+    f32n distance2{};
     for (std::size_t a = 0; a < 3; ++a) {
-      const f32x8 x = simd::load(point[a] + block.first);
-      const f32x8 outside = x - simd::min(simd::max(x, simd::splat(within.lower[a])), simd::splat(within.upper[a]));
+      const f32n x = simd::load<f32n>(point[a] + block.first);
+      const f32n outside =
+          x - simd::min(simd::max(x, simd::splat<f32n>(within.lower[a])), simd::splat<f32n>(within.upper[a]));
       distance2 = distance2 + outside * outside;
     }
-    const i32x8 index = lane + block.first;
-    const unsigned mask = mask_of(i32x8(distance2 < reach2) & (index < block.last));
-    store_packed(index, packing_of(mask), out + size);
+    const unsigned mask = simd::less_bits(distance2, simd::splat<f32n>(reach2)) & first_lanes(block.last - block.first);
+    store_packed(numbers_from(block.first), packing_of(mask), out + size);
     size += static_cast<std::size_t>(std::popcount(mask));
   }
   found.size = size;
@@ -128,28 +127,26 @@ void CrossSearch::near_box(const Box& box, float reach, Found& found) const {
 void CrossSearch::near_place(const std::array<float, 3>& place, float largest_reach, const float* inverse_reach,
                              Found& found) const {
   const std::span<const Block> blocks = blocks_near({place, place}, largest_reach, found);
-  const i32x8 lane = {0, 1, 2, 3, 4, 5, 6, 7};
   const std::array<float, 3> centre = place;
   const std::array<const float*, 3> point = point_;
   std::int32_t* const index_out = found.index.data();
   float* const share2_out = found.share2.data();
   std::size_t size = 0;
   for (const Block block : blocks) {
-    f32x8 distance2{};
+    f32n distance2{};
     for (std::size_t a = 0; a < 3; ++a) {
-      const f32x8 d = simd::load(point[a] + block.first) - centre[a];
+      const f32n d = simd::load<f32n>(point[a] + block.first) - centre[a];
       distance2 = distance2 + d * d;
     }
-    const f32x8 inverse = simd::load(inverse_reach + block.first);
-    const f32x8 share2 = distance2 * (inverse * inverse);
-    const i32x8 index = lane + block.first;
-    const unsigned mask = mask_of(i32x8(share2 < 1.0F) & (index < block.last));
+    const f32n inverse = simd::load<f32n>(inverse_reach + block.first);
+    const f32n share2 = distance2 * (inverse * inverse);
+    const unsigned mask = simd::less_bits(share2, simd::splat<f32n>(1)) & first_lanes(block.last - block.first);
     const Packing packing = packing_of(mask);
-    store_packed(index, packing, index_out + size);
+    store_packed(numbers_from(block.first), packing, index_out + size);
     store_packed(share2, packing, share2_out + size);
     size += static_cast<std::size_t>(std::popcount(mask));
   }
-  simd::store(share2_out + size, simd::splat(1));
+  std::fill_n(share2_out + size, pair_lanes, 1.0F);
   found.size = size;
 }
 

@@ -115,8 +115,8 @@ struct Candidates {
   std::size_t size = 0;
 
   Candidates(Array<float>& memory, std::size_t most) {
-    // Vector loads and stores reach up to seven elements past the end.
-    const std::size_t stride = (most + 2 * simd::lanes) / simd::lanes * simd::lanes;
+    // Vector loads and stores reach past the end.
+    const std::size_t stride = (most + 2 * pair_lanes) / pair_lanes * pair_lanes;
     if (memory.size() < 4 * stride) memory.resize(4 * stride + stride);
     for (int axis = 0; axis < 3; ++axis) coordinate[axis] = memory.data() + axis * stride;
     entry = reinterpret_cast<std::int32_t*>(memory.data() + 3 * stride);
@@ -187,14 +187,14 @@ template <int dimensions>
                                        std::int32_t* out) {
   const Candidates from = candidates;
   const std::array<float, 3> r = centre;
-  for (std::size_t j = 0; j < from.size; j += simd::lanes) {
-    f32x8 distance2{};
+  for (std::size_t j = 0; j < from.size; j += pair_lanes) {
+    f32n distance2{};
     for (int axis = 0; axis < dimensions; ++axis) {
-      const f32x8 d = simd::load(from.coordinate[axis] + j) - r[axis];
+      const f32n d = simd::load<f32n>(from.coordinate[axis] + j) - r[axis];
       distance2 = axis == 0 ? d * d : distance2 + d * d;
     }
-    const unsigned mask = mask_of(i32x8(distance2 < reach2));
-    store_packed(load_int(from.entry + j), packing_of(mask), out);
+    const unsigned mask = simd::less_bits(distance2, simd::splat<f32n>(reach2));
+    store_packed(load_int<i32n>(from.entry + j), packing_of(mask), out);
     out += std::popcount(mask);
   }
   return out;
@@ -305,11 +305,11 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
       const std::span<const Block> blocks = cut(runs, block_memory);
       Candidates candidates(candidate_memory, simd::lanes * blocks.size());
       gather<dimensions>(point, blocks, group, reach2, candidates);
-      // Vector loads read up to seven candidates past the end: the sentinel is nobody's neighbour.
+      // Vector loads read candidates past the end: the sentinel is nobody's neighbour.
       for (int axis = 0; axis < dimensions; ++axis)
-        simd::store(candidates.coordinate[axis] + candidates.size, simd::splat(far));
+        std::fill_n(candidates.coordinate[axis] + candidates.size, pair_lanes, far);
 
-      const std::size_t wanted = filled + (group.last - i) * (candidates.size + 2 * simd::lanes);
+      const std::size_t wanted = filled + (group.last - i) * (candidates.size + 2 * pair_lanes);
       if (wanted > collected.size()) collected.resize(wanted);
       std::size_t slot = 0;
       for (; i < group.last; ++i) {
@@ -372,14 +372,14 @@ void NeighbourList::build(const CellGrid& grid, const CellTable& particles, cons
   const double* particle[3] = {x, y, z};
   for (int axis = 0; axis < dimensions; ++axis) {
     // Eight more: vector loads may read past the last point.
-    coordinate_[axis].resize(points_ + 1 + simd::lanes);
+    coordinate_[axis].resize(points_ + 1 + pair_lanes);
     float* out = coordinate_[axis].data();
     const double* in = particle[axis];
     const double* image = images.position(axis);
     const double zero = origin[axis];
     parallel_for(n, [=](std::size_t i) { out[i] = static_cast<float>(in[i] - zero); });
     parallel_for(m, [=](std::size_t i) { out[n + i] = static_cast<float>(image[i] - zero); });
-    for (int k = 0; k <= simd::lanes; ++k) out[points_ + k] = sentinel_coordinate(static_cast<float>(grid.reach()));
+    for (int k = 0; k <= pair_lanes; ++k) out[points_ + k] = sentinel_coordinate(static_cast<float>(grid.reach()));
   }
 
   // The box that no image comes near: outside it lists look at images too.

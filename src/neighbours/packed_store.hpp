@@ -10,8 +10,10 @@
 
 namespace spume {
 
+using simd::f32n;
 using simd::f32x8;
 using simd::i32x8;
+using simd::pair_lanes;
 
 // For each 8-bit mask the lanes that are set, in order, one byte each.
 constexpr std::array<std::uint64_t, 256> make_lane_table() {
@@ -28,19 +30,28 @@ constexpr std::array<std::uint64_t, 256> make_lane_table() {
 inline constexpr auto lane_table = make_lane_table();
 
 // Packs the lanes of v that are set in the mask to the front.
-#if defined(__AVX512VL__)
-using Packing = __mmask8;
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+using Packing = __mmask16;
+using i32n = std::int32_t __attribute__((vector_size(64)));
 [[gnu::always_inline]] inline Packing packing_of(unsigned mask) {
-  return static_cast<__mmask8>(mask);
+  return static_cast<__mmask16>(mask);
+}
+[[gnu::always_inline]] inline void store_packed(i32n v, Packing packing, std::int32_t* out) {
+  _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(packing, __m512i(v)));
+}
+[[gnu::always_inline]] inline void store_packed(f32n v, Packing packing, float* out) {
+  _mm512_storeu_ps(out, _mm512_maskz_compress_ps(packing, __m512(v)));
 }
 [[gnu::always_inline]] inline void store_packed(i32x8 v, Packing packing, std::int32_t* out) {
-  _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm256_maskz_compress_epi32(packing, __m256i(v)));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
+                      _mm256_maskz_compress_epi32(static_cast<__mmask8>(packing), __m256i(v)));
 }
 [[gnu::always_inline]] inline void store_packed(f32x8 v, Packing packing, float* out) {
-  _mm256_storeu_ps(out, _mm256_maskz_compress_ps(packing, __m256(v)));
+  _mm256_storeu_ps(out, _mm256_maskz_compress_ps(static_cast<__mmask8>(packing), __m256(v)));
 }
 #elif defined(__AVX2__)
 using Packing = __m256i;
+using i32n = i32x8;
 [[gnu::always_inline]] inline Packing packing_of(unsigned mask) {
   return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(lane_table[mask])));
 }
@@ -52,6 +63,7 @@ using Packing = __m256i;
 }
 #else
 using Packing = std::uint64_t;
+using i32n = i32x8;
 [[gnu::always_inline]] inline Packing packing_of(unsigned mask) {
   return lane_table[mask];
 }
@@ -71,8 +83,21 @@ template <class V, class T>
 #endif
 }
 
-[[gnu::always_inline]] inline i32x8 load_int(const std::int32_t* p) {
-  i32x8 v;
+// Numbers from `first` on.
+[[gnu::always_inline]] inline i32n numbers_from(std::int32_t first) {
+  i32n lane;
+  for (int l = 0; l < pair_lanes; ++l) lane[l] = l;
+  return lane + first;
+}
+
+// One bit for each of the first `count` lanes, of all if there are fewer.
+[[gnu::always_inline]] inline unsigned first_lanes(std::int32_t count) {
+  return count < pair_lanes ? (1U << count) - 1U : (2U << (pair_lanes - 1)) - 1U;
+}
+
+template <class V = i32x8>
+[[gnu::always_inline]] inline V load_int(const std::int32_t* p) {
+  V v;
   std::memcpy(&v, p, sizeof v);
   return v;
 }

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "neighbours/neighbourhood.hpp"
+#include "spume/core/simd.hpp"
 #include "spume/neighbours/cross_search.hpp"
 
 namespace spume::test {
@@ -58,11 +59,11 @@ class CrossSearches : public ::testing::TestWithParam<bool> {
     all = first;
     all.insert(all.end(), second.begin(), second.end());
     for (int a = 0; a < 3; ++a) {
-      x[a].resize(all.size() + 8);
+      x[a].resize(all.size() + simd::pair_lanes);
       x[a].fill(0);
       for (std::size_t k = 0; k < all.size(); ++k) x[a][k] = static_cast<float>(all[k][a] - 0.5);
     }
-    inverse_reach.resize(all.size() + 8);
+    inverse_reach.resize(all.size() + simd::pair_lanes);
     inverse_reach.fill(1);
     for (std::size_t k = 0; k < all.size(); ++k)
       inverse_reach[k] = static_cast<float>(1 / (base_reach * (1 + (widest - 1) * uniform(k, 43)[0])));

@@ -45,7 +45,7 @@ struct Scene {
     }
     const auto other = sort(others, points);
     records.resize(8 * m);
-    for (int a = 0; a < 3; ++a) x[a].resize(m + 8);
+    for (int a = 0; a < 3; ++a) x[a].resize(m + simd::pair_lanes);
     for (std::size_t k = 0; k < m; ++k)
       for (int a = 0; a < 3; ++a) {
         x[a][k] = records[8 * k + a] = static_cast<float>(other[a][k] - 0.5);
@@ -102,6 +102,48 @@ TEST(CrossSums, AreTheDirectSums) {
   }
   EXPECT_GT(without, scene.n / 4);
   EXPECT_LT(without, scene.n / 2);
+}
+
+// At each point over the particles that reach it, for an even number of them, an odd one and none.
+TEST(CrossSums, OfLinesAreTheDirectSums) {
+  const Scene scene;
+  std::array<Array<float>, 3> place;
+  Array<float> inverse_reach(scene.n + simd::pair_lanes), lines(line_floats * scene.n);
+  for (int a = 0; a < 3; ++a) {
+    place[a].resize(scene.n + simd::pair_lanes);
+    for (std::size_t i = 0; i < scene.n; ++i) place[a][i] = static_cast<float>(scene.at[a][i] - 0.5);
+  }
+  for (std::size_t i = 0; i < scene.n; ++i) {
+    inverse_reach[i] = 1 / scene.reach[i];
+    for (std::size_t c = 0; c < line_floats; ++c)
+      lines[line_floats * i + c] = static_cast<float>(uniform(line_floats * i + c, 54)[0] - 0.5);
+  }
+  const CrossSearch::Points set[] = {{&scene.particles, scene.n}};
+  const CrossSearch search(scene.grid, {0.5, 0.5, 0.5}, {place[0].data(), place[1].data(), place[2].data()}, set);
+  CrossSearch::Found found;
+  std::array<std::size_t, 2> parity{};
+  for (std::size_t b = 0; b < scene.m; ++b) {
+    const std::array<float, 3> centre{scene.x[0][b], scene.x[1][b], scene.x[2][b]};
+    search.near_place(centre, static_cast<float>(2.6 * h0), inverse_reach.data(), found);
+    ++parity[found.size % 2];
+    const auto halves = sum_of_lines<WendlandC2>(found, lines.data());
+    std::array<double, line_floats> expected{};
+    double weights = 0;
+    for (std::size_t i = 0; i < scene.n; ++i) {
+      double r2 = 0;
+      for (std::size_t a = 0; a < 3; ++a) r2 += std::pow(double{place[a][i]} - centre[a], 2);
+      const double w = WendlandC2::w(std::sqrt(r2) / (h0 * scene.length_ratio[i]));
+      weights += w;
+      for (std::size_t c = 0; c < line_floats; ++c) expected[c] += w * lines[line_floats * i + c];
+    }
+    for (std::size_t c = 0; c < line_floats; ++c)
+      EXPECT_NEAR(halves[c / simd::lanes][c % simd::lanes], expected[c], 1e-5 * (weights + 0.1)) << b;
+  }
+  EXPECT_GT(parity[0], 50U);
+  EXPECT_GT(parity[1], 50U);
+  found.size = 0;
+  const auto nothing = sum_of_lines<WendlandC2>(found, lines.data());
+  for (std::size_t c = 0; c < line_floats; ++c) EXPECT_EQ(nothing[c / simd::lanes][c % simd::lanes], 0);
 }
 
 TEST(CrossSums, HaveTheSameBitsForAnyNumberOfThreads) {

@@ -96,20 +96,28 @@ class Pictures(ParticleCase):
 
 
 class UniformBubbles(ParticleCase):
-    def spectrum_of(self, energy):
+    def spectrum_of(self, energy, points=64):
         folder = self.run_of("uniform_bubbles", [0, 1])
-        k = np.tile(np.arange(32.0), 2)
-        write_table(folder / "spectrum.csv", {"t": np.repeat([0.0, 1.0], 32), "wavenumber": k, "energy": energy(k)})
-        return Results(folder)
+        k = np.tile(np.arange(points / 2), 2)
+        write_table(folder / "spectrum.csv",
+                    {"t": np.repeat([0.0, 1.0], points // 2), "wavenumber": k, "energy": energy(k)})
+        results = Results(folder)
+        results.case["resolution"]["grid"] = points
+        return results
 
     def test_error_up_to_half_of_the_largest_wavenumber(self):
         base = lambda k: np.exp(-0.1 * k)
         runs = {"enhanced": self.spectrum_of(base), "plain": self.spectrum_of(lambda k: 0.8 * base(k)),
                 "coupled": self.spectrum_of(lambda k: base(k) * np.where(k > 16, 2, 1.01)),
-                "coupled_coarse_step": self.spectrum_of(lambda k: base(k) * 1.04)}
+                "coupled_half_step": self.spectrum_of(lambda k: base(k) * 1.0025),
+                "coupled_coarse_grid": self.spectrum_of(lambda k: base(k) * 1.02, 32),
+                "enhanced_coarse_grid": self.spectrum_of(base, 32),
+                "coupled_fine_grid": self.spectrum_of(lambda k: base(k) * np.where(k > 8, 2, 0.99)),
+                "enhanced_fine_grid": self.spectrum_of(base)}
         measured = load_measure(CASES / "uniform_bubbles").measure(runs)
         self.assertAlmostEqual(measured["spectrum_error"], 0.01, places=6)
-        self.assertAlmostEqual(measured["spectrum_error_over_coarse_step"], 0.25, places=6)
+        self.assertAlmostEqual(measured["ratio_half_step"], 0.25, places=6)
+        self.assertAlmostEqual(measured["ratio_fine_grid"], 0.5, places=6)
         self.assertAlmostEqual(measured["effect_of_bubbles"], 1.01 / 0.8 - 1, places=6)
 
 

@@ -28,20 +28,20 @@ class CrossSearch {
   struct Box {
     std::array<float, 3> lower{}, upper{};
   };
-  // Up to eight consecutive sorted points: first .. min(last, first + 8).
+  // Consecutive sorted points, as many as are compared at once: first .. min(last, first + pair_lanes).
   struct Block {
     std::int32_t first, last;
   };
   // Grows and is reused; one per thread.
   struct Found {
-    Array<std::int32_t> index;  // eight more are writable
+    Array<std::int32_t> index;  // simd::pair_lanes more are writable
     Array<float> share2;        // (distance / reach)^2, of near_place alone; filled up to whole vectors with 1
     std::size_t size = 0;
     Array<Block> blocks;
   };
   static constexpr std::size_t most_sets = 2;
 
-  // `point`: float coordinates relative to `origin`, set after set; eight readable elements follow. Throws
+  // `point`: float coordinates relative to `origin`, set after set; simd::pair_lanes readable elements follow. Throws
   // std::logic_error for more than most_sets sets.
   CrossSearch(const CellGrid& grid, const std::array<double, 3>& origin, const std::array<const float*, 3>& point,
               std::span<const Points> sets);
@@ -49,8 +49,8 @@ class CrossSearch {
   // All points nearer to the box than `reach`.
   void near_box(const Box& box, float reach, Found& found) const;
 
-  // All points j nearer to `place` than their own reach, 1 / inverse_reach[j] <= largest_reach; eight readable elements
-  // follow.
+  // All points j nearer to `place` than their own reach, 1 / inverse_reach[j] <= largest_reach; simd::pair_lanes
+  // readable elements follow.
   void near_place(const std::array<float, 3>& place, float largest_reach, const float* inverse_reach,
                   Found& found) const;
 

@@ -6,6 +6,8 @@
 // Sixteen particles that follow each other in the sorted order share one search; each point that it finds is taken to
 // eight of them at a time. Groups depend on the sorted particles alone, so that the sums have the same bits for any
 // number of threads.
+//
+// And the other way, at one point over the particles, with their widths: sum_j w(|r - r_j| / h_j) v_j.
 #pragma once
 
 #include <algorithm>
@@ -121,6 +123,33 @@ void sum_over_points(const CrossTargets& targets, const CrossSearch& search, dou
       }
     }
   });
+}
+
+// Floats of a line: v_j of sum_of_lines.
+inline constexpr std::size_t line_floats = 2 * simd::lanes;
+
+// The sum at a place over what near_place found around it; lines: line_floats values for every point. The shares in
+// `found` become the weights.
+template <class Kernel>
+[[gnu::always_inline]] inline std::array<simd::f32x8, 2> sum_of_lines(CrossSearch::Found& found, const float* lines) {
+  using simd::f32x8;
+  float* const weight = found.share2.data();
+  for (std::size_t k = 0; k < found.size; k += simd::lanes)
+    simd::store(weight + k, Kernel::w(static_cast<float>(Kernel::support) * simd::sqrt(simd::load(weight + k))));
+  // Two sums, of even and odd places, as an addition takes longer than a load; the last place of an odd number weighs
+  // nothing.
+  f32x8 low{}, high{}, odd_low{}, odd_high{};
+  weight[found.size] = 0;
+  found.index[found.size] = found.size > 0 ? found.index[0] : 0;
+  for (std::size_t k = 0; k < found.size; k += 2) {
+    const float* even = lines + static_cast<std::size_t>(found.index[k]) * line_floats;
+    const float* odd = lines + static_cast<std::size_t>(found.index[k + 1]) * line_floats;
+    low = low + weight[k] * simd::load(even);
+    high = high + weight[k] * simd::load(even + simd::lanes);
+    odd_low = odd_low + weight[k + 1] * simd::load(odd);
+    odd_high = odd_high + weight[k + 1] * simd::load(odd + simd::lanes);
+  }
+  return {low + odd_low, high + odd_high};
 }
 
 }  // namespace spume

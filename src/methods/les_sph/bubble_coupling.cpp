@@ -115,7 +115,7 @@ void BubbleCoupling::place_bubbles(Liquid& liquid) {
   const std::size_t all = nb + images_.size();
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    bubble_point_[a].resize(all + simd::lanes);
+    bubble_point_[a].resize(all + simd::pair_lanes);
     float* out = bubble_point_[a].data();
     const double* bubble = population_.next_position[a]->data();
     const double* image = images_.position(axis);

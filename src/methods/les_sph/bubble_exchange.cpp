@@ -10,12 +10,10 @@
 namespace spume::les_sph {
 namespace {
 
-using simd::f32x8;
-
 // What bubbles see of a particle, times its volume times its kernel's normalisation over h_i^3, in units of V / h^3:
 // one line of cache. The factor itself is among them, so that its sum comes with the others; the last is h_i / h.
 constexpr int velocity_at = 0, vorticity_at = 3, acceleration_at = 6, energy_at = 9, dissipation_at = 10,
-              normal_at = 11, factor_at = 14, length_at = 15, record = 16;
+              normal_at = 11, factor_at = 14, length_at = 15, record = line_floats;
 
 constexpr std::size_t pack_block = 64;
 
@@ -36,7 +34,7 @@ void BubbleCoupling::smooth_normals(Liquid& liquid) {
 void BubbleCoupling::pack_liquid(Liquid& liquid) {
   const std::size_t n = liquid.size(), m = liquid.images.size();
   liquid_records_.resize((n + m) * record);
-  inverse_reach_.resize(n + m + simd::lanes);
+  inverse_reach_.resize(n + m + simd::pair_lanes);
   const auto& gradient = liquid.velocity_gradient;
   const bool filtered = liquid.plan.test_filter, eddies = liquid.eddy_viscosity != nullptr;
   const bool normals = population_.merge_time != nullptr;
@@ -136,24 +134,7 @@ void BubbleCoupling::interpolate(const Liquid& liquid) {
         for (std::size_t b = first; b < last; ++b) {
           search.near_place({bubble_point_[0][b], bubble_point_[1][b], bubble_point_[2][b]}, largest_reach,
                             inverse_reach_.data(), found);
-          float* const weight = found.share2.data();
-          for (std::size_t k = 0; k < found.size; k += simd::lanes)
-            simd::store(weight + k,
-                        Kernel::w(static_cast<float>(Kernel::support) * simd::sqrt(simd::load(weight + k))));
-          // Two sums, of even and odd places, as an addition takes longer than a load; the last place of an odd
-          // number weighs nothing.
-          f32x8 low{}, high{}, odd_low{}, odd_high{};
-          const float* const records = liquid_records_.data();
-          weight[found.size] = 0;
-          found.index[found.size] = found.size > 0 ? found.index[0] : 0;
-          for (std::size_t k = 0; k < found.size; k += 2) {
-            const float* even = records + static_cast<std::size_t>(found.index[k]) * record;
-            const float* odd = records + static_cast<std::size_t>(found.index[k + 1]) * record;
-            low = low + weight[k] * simd::load(even);
-            high = high + weight[k] * simd::load(even + simd::lanes);
-            odd_low = odd_low + weight[k + 1] * simd::load(odd);
-            odd_high = odd_high + weight[k + 1] * simd::load(odd + simd::lanes);
-          }
+          const auto [first_half, second_half] = sum_of_lines<Kernel>(found, liquid_records_.data());
           // In spray: few particles, all at the surface.
           bool dead = found.size < 20 && liquid.plan.free_surface;
           for (std::size_t k = 0; dead && k < found.size; ++k) {
@@ -162,7 +143,6 @@ void BubbleCoupling::interpolate(const Liquid& liquid) {
             dead = liquid.at_surface[i] != 0;
           }
           dead_[b] = dead ? 1 : 0;
-          const f32x8 first_half = low + odd_low, second_half = high + odd_high;
           const float sum = second_half[factor_at - simd::lanes], share = sum > 0 ? 1 / sum : 0;
           float* out = interpolated_.data() + b * record;
           simd::store(out, first_half * share);
