@@ -23,6 +23,7 @@ from sweeps import SWEEPS
 
 COLUMNS = ["sweep", "resolution", "option", "value", "error", "seconds", "steps"]
 NEAR = 1.10  # a default within ten per cent of the front's time counts as on it
+SHORT = 1.0  # core-seconds below which a run is done twice and the lesser time counts
 
 
 def core_seconds():
@@ -56,6 +57,19 @@ def plan(sweep):
     return runs
 
 
+def timed_run(program, sweep, settings, label):
+    """Error, core-seconds and steps of one run; nan and 0 where it fails, which is said."""
+    with tempfile.TemporaryDirectory(prefix="spume-sweep-") as scratch:
+        before = core_seconds()
+        try:
+            run = run_case(program, sweep.folder(Path(scratch)), Path(scratch) / "run", settings, sweep.until, threads=1)
+            error, steps = sweep.error(run), run.summary["steps"]
+        except (RunFailed, MissingResult) as failure:
+            print(f"{label}: {str(failure).splitlines()[-1].strip()}", flush=True)
+            error, steps = float("nan"), 0
+        return error, core_seconds() - before, steps
+
+
 def run_sweep(program, name, rows, end):
     sweep = SWEEPS[name]
     done = {(r["sweep"], r["resolution"], r["option"], r["value"]) for r in rows}
@@ -64,16 +78,11 @@ def run_sweep(program, name, rows, end):
             continue
         if time.monotonic() > end:
             return False
-        with tempfile.TemporaryDirectory(prefix="spume-sweep-") as scratch:
-            before = core_seconds()
-            try:
-                run = run_case(program, sweep.folder(Path(scratch)), Path(scratch) / "run", settings, sweep.until, threads=1)
-                error, steps = sweep.error(run), run.summary["steps"]
-            except (RunFailed, MissingResult) as failure:
-                print(f"{name} {resolution} {option} {value}: {str(failure).splitlines()[-1].strip()}", flush=True)
-                error, steps = float("nan"), 0
-            rows.append({"sweep": name, "resolution": resolution, "option": option, "value": value, "error": error,
-                         "seconds": core_seconds() - before, "steps": steps})
+        error, seconds, steps = timed_run(program, sweep, settings, f"{name} {resolution} {option} {value}")
+        if seconds < SHORT:
+            seconds = min(seconds, timed_run(program, sweep, settings, f"{name} {resolution} {option} {value}")[1])
+        rows.append({"sweep": name, "resolution": resolution, "option": option, "value": value, "error": error,
+                     "seconds": seconds, "steps": steps})
         print(f"{name:<22} {resolution:<10} {option:<28} {value:<18} error {rows[-1]['error']:<10.4g} {rows[-1]['seconds']:.3g} s",
               flush=True)
     return True

@@ -238,16 +238,19 @@ class Cavity(CaseTest):
 
 
 class StandingWave(CaseTest):
-    def measured(self, omega_factor=1.0, amplitude_factor=1.0):
+    """Waves of the form that is fitted, a(0) = 1."""
+    def measured(self, omega_factor=1.0, gamma_factor=1.0):
         folder, module = self.run_of("standing_wave")
         rows = np.isclose(module.REFERENCE["nu"], 1e-3) & (module.REFERENCE["t"] < 3.01 * module.PERIOD)
-        wave = module.fit(module.REFERENCE["t"][rows], module.REFERENCE["a_over_a0"][rows], 0.08, 2.5)
-        c, s, gamma, omega = module.differentiated(*wave)
+        c, s, gamma, omega = module.fit(module.REFERENCE["t"][rows], module.REFERENCE["a_over_a0"][rows], 0.08, 2.5)
+        self.assertLess(abs(c - 1), 3e-3)  # what the form leaves out, at the start
+        self.end, self.gamma = 3 * module.PERIOD, gamma
+        gamma, omega = gamma * gamma_factor, omega * omega_factor
         grid = lattice([0, -1], [1, 0], 1 / 32)
 
         def velocity(p, t):
-            rate = 0.015 * amplitude_factor * np.exp(-gamma * t) * (
-                c * np.cos(omega * omega_factor * t) + s * np.sin(omega * omega_factor * t))
+            rate = 0.015 / c * np.exp(-gamma * t) * ((omega * s - gamma * c) * np.cos(omega * t) -
+                                                     (omega * c + gamma * s) * np.sin(omega * t))
             x, y = 2 * np.pi * p[:, 0], 2 * np.pi * p[:, 1]
             return rate * np.exp(y)[:, None] * np.column_stack([-np.sin(x), np.cos(x)])
 
@@ -259,12 +262,25 @@ class StandingWave(CaseTest):
     def test_exact_wave_has_no_error(self):
         measured = self.measured()
         self.assertLess(measured["phase_error"], 1e-5)
-        self.assertLess(measured["amplitude_error"], 1e-4)
+        self.assertLess(measured["amplitude_error"], 3e-3)
 
-    def test_slow_and_weak_wave_is_measured_right(self):
-        measured = self.measured(0.98, 0.95)
-        self.assertAlmostEqual(measured["phase_error"], 0.02, delta=1e-3)
-        self.assertAlmostEqual(measured["amplitude_error"], 0.05, delta=2e-3)
+    def test_slow_wave_is_measured_right(self):
+        self.assertAlmostEqual(self.measured(omega_factor=0.98)["phase_error"], 0.02, delta=1e-4)
+
+    def test_wave_that_decays_too_fast_is_measured_right(self):
+        measured = self.measured(gamma_factor=1.1)
+        self.assertAlmostEqual(measured["decay_rate_error"], 0.1, delta=1e-3)
+        self.assertAlmostEqual(measured["amplitude_error"], 1 - np.exp(-0.1 * self.gamma * self.end), delta=3e-3)
+
+    def test_integral_is_of_fourth_order(self):
+        module = load_measure(CASES / "standing_wave")
+        errors = []
+        for n in (20, 40):
+            t = np.linspace(0, 2, n + 1)
+            errors.append(np.max(np.abs(module.integral(t, np.cos(3 * t)) - np.sin(3 * t) / 3)))
+        # h^4 times the difference of the third derivatives at the ends, at most 54.
+        self.assertLess(errors[1], 11 / 720 * 0.05**4 * 54)
+        self.assertGreater(errors[0] / errors[1], 12)
 
     def test_fit_describes_the_exact_solution(self):
         module = load_measure(CASES / "standing_wave")
