@@ -90,6 +90,7 @@ double multiply_add(int threads) {
 
 double gather(int threads) {
   constexpr std::size_t records = 256 * 1024 / 16, picks = 1 << 14;
+  constexpr int repeats = 200;  // a millisecond: to wake a thread takes a tenth of one
   std::vector<float> table(4 * records, 1.0F);
   std::vector<std::int32_t> entry(picks);
   for (std::size_t i = 0; i < picks; ++i)
@@ -98,7 +99,7 @@ double gather(int threads) {
 #pragma omp parallel num_threads(threads)
     {
       f32n sum = simd::splat<f32n>(0);
-      for (int repeat = 0; repeat < 8; ++repeat)
+      for (int repeat = 0; repeat < repeats; ++repeat)
         for (std::size_t i = 0; i < picks; i += simd::pair_lanes) {
           f32n out[4];
           simd::load_records<4>(table.data(), entry.data() + i, 0, out);
@@ -106,7 +107,7 @@ double gather(int threads) {
         }
       benchmark::DoNotOptimize(sum);
     }
-    return 8.0 * static_cast<double>(picks) * threads;
+    return static_cast<double>(repeats) * static_cast<double>(picks) * threads;
   });
 }
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "spume/core/parallel.hpp"
+#include "spume/core/simd.hpp"
 
 namespace spume {
 
@@ -417,8 +418,13 @@ void CellMultigrid::setup(std::span<const double> x, std::span<const double> y, 
                        (static_cast<std::size_t>(n[2]) + 1));
 }
 
-// Sums r over the particles of every row of stencil cells into the four rows of cell centres that it touches.
+// Sums r over the particles of every row of stencil cells into the four rows of cell centres that it touches. The eight
+// corners are lanes, with y, z, x as their bits; along each axis a share of 1 - f or f.
 void CellMultigrid::spread(const float* r) {
+  using simd::f32x8;
+  constexpr f32x8 x_low = {1, 1, 1, 1, 0, 0, 0, 0}, x_up = {-1, -1, -1, -1, 1, 1, 1, 1};
+  constexpr f32x8 y_low = {1, 0, 1, 0, 1, 0, 1, 0}, y_up = {-1, 1, -1, 1, -1, 1, -1, 1};
+  constexpr f32x8 z_low = {1, 1, 0, 0, 1, 1, 0, 0}, z_up = {-1, -1, 1, 1, -1, -1, 1, 1};
   const CellLevel& level = hierarchy_.finest();
   const auto& n = level.cells;
   const std::size_t pitch = level.pitch();
@@ -435,20 +441,12 @@ void CellMultigrid::spread(const float* r) {
                       if (row_total_[row] == row_total_[row + 1]) continue;
                       for (int i = 0; i < n[0]; ++i) {
                         if (start[i] == start[i + 1]) continue;
-                        float sum[8] = {};
+                        f32x8 sum{};
                         for (std::int32_t o = start[i]; o < start[i + 1]; ++o) {
                           const auto p = static_cast<std::size_t>(order_[static_cast<std::size_t>(o)]);
                           const Stencil& s = stencil_[p];
-                          const float value = s.weight * r[p];
-                          const float high_z = value * s.fz, low_z = value - high_z;
-                          const float high_high = high_z * s.fy, high_low = high_z - high_high;
-                          const float low_high = low_z * s.fy, low_low = low_z - low_high;
-                          const float y_z[4] = {low_low, low_high, high_low, high_high};
-                          for (int c = 0; c < 4; ++c) {
-                            const float upper = y_z[c] * s.fx;
-                            sum[c] += y_z[c] - upper;
-                            sum[4 + c] += upper;
-                          }
+                          const f32x8 share = (x_low + s.fx * x_up) * (y_low + s.fy * y_up) * (z_low + s.fz * z_up);
+                          sum = sum + (s.weight * r[p]) * share;
                         }
                         for (int c = 0; c < sides; ++c) {
                           to[c][i] += sum[c];
