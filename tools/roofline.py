@@ -22,7 +22,7 @@ def results(source, pattern):
     if source.suffix == ".json":
         return json.loads(source.read_text(encoding="utf-8"))
     command = [str(source.resolve()), f"--benchmark_filter={pattern}", "--benchmark_format=json"]
-    done = subprocess.run(command, capture_output=True, text=True, env=os.environ | {"OMP_WAIT_POLICY": "passive"})
+    done = subprocess.run(command, capture_output=True, text=True, env={"OMP_PROC_BIND": "true", "GOMP_SPINCOUNT": "1000", "OMP_WAIT_POLICY": "passive"} | os.environ)
     if done.returncode != 0:
         raise SystemExit(f"error: {source}: exit code {done.returncode}\n{done.stderr[-1000:]}")
     return json.loads(done.stdout)
