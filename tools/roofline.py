@@ -13,6 +13,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from spume_compare import WAITING
+
 # One size of each: jittered or sorted particles, and the flow on 128^3 points.
 ROUTINES = ("^(machine/|[a-z_]+/particles:100000/arrangement:1/|particle_[a-z_]+(<[a-z]+>)?/particles:1000000/arrangement:1/"
             "|cell_multigrid_[a-z]+/particles:100000/|(flow_step|velocity_on_points|force_to_modes)<[a-z]+>/points:128/)")
@@ -22,7 +24,7 @@ def results(source, pattern):
     if source.suffix == ".json":
         return json.loads(source.read_text(encoding="utf-8"))
     command = [str(source.resolve()), f"--benchmark_filter={pattern}", "--benchmark_format=json"]
-    done = subprocess.run(command, capture_output=True, text=True, env={"OMP_PROC_BIND": "true", "GOMP_SPINCOUNT": "1000", "OMP_WAIT_POLICY": "passive"} | os.environ)
+    done = subprocess.run(command, capture_output=True, text=True, env=os.environ | WAITING | {"OMP_PROC_BIND": "true"})
     if done.returncode != 0:
         raise SystemExit(f"error: {source}: exit code {done.returncode}\n{done.stderr[-1000:]}")
     return json.loads(done.stdout)

@@ -11,6 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+# Threads of a benchmark wait as the program's do (src/cli/patience.cpp).
+WAITING = {"GOMP_SPINCOUNT": "1000", "OMP_WAIT_POLICY": "passive"}
+
 
 def sign_interval(values, confidence=0.98):
     """(low, high, coverage): the narrowest interval of order statistics that covers the median at least so often."""

@@ -79,7 +79,7 @@ def run_sweep(program, name, rows, end):
         if time.monotonic() > end:
             return False
         error, seconds, steps = timed_run(program, sweep, settings, f"{name} {resolution} {option} {value}")
-        if seconds < SHORT:
+        if steps > 0 and seconds < SHORT:
             seconds = min(seconds, timed_run(program, sweep, settings, f"{name} {resolution} {option} {value}")[1])
         rows.append({"sweep": name, "resolution": resolution, "option": option, "value": value, "error": error,
                      "seconds": seconds, "steps": steps})

@@ -371,7 +371,7 @@ void NeighbourList::build(const CellGrid& grid, const CellTable& particles, cons
   first_.resize(n);
   const double* particle[3] = {x, y, z};
   for (int axis = 0; axis < dimensions; ++axis) {
-    // Eight more: vector loads may read past the last point.
+    // A vector more: loads may read past the last point.
     coordinate_[axis].resize(points_ + 1 + pair_lanes);
     float* out = coordinate_[axis].data();
     const double* in = particle[axis];

@@ -83,6 +83,8 @@ template <class V, class T>
 #endif
 }
 
+static_assert(sizeof(i32n) == sizeof(f32n));
+
 // Numbers from `first` on.
 [[gnu::always_inline]] inline i32n numbers_from(std::int32_t first) {
   i32n lane;

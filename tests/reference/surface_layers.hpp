@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Slow twins of surface_layers.hpp, in double, from the definitions there. The depth of all pairs is in sph_sums.hpp.
+// Slow twins of surface_layers.hpp, in double, from the definitions there.
 #pragma once
 
 #include <algorithm>
@@ -71,6 +71,7 @@ class SurfaceLayers {
   struct Shared {
     Vector value{};
     double of_normals = 0;  // length of the sum of the normals: they may cancel
+    double c = 0;
   };
   Shared shared(std::size_t i, const std::vector<Vector>& vectors) const {
     Vector n{};
@@ -90,7 +91,7 @@ class SurfaceLayers {
       for (int a = 0; a < 3; ++a) sum += weight * reflection[a] * vectors[j][a] * n[a];
     });
     for (double& component : n) component *= c * sum / weights;
-    return {n, size};
+    return {n, size, c};
   }
 
  private:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import paths
 import numpy as np
-from spume_results import Results, read_csv
+from spume_results import MissingResult, Results, read_csv
 from spume_verification import CASES, case_folder, load_measure
 from synthetic import lattice, new_folder, series_of, write_snapshots, write_table
 
@@ -239,7 +239,7 @@ class Cavity(CaseTest):
 
 class StandingWave(CaseTest):
     """Waves of the form that is fitted, a(0) = 1."""
-    def measured(self, omega_factor=1.0, gamma_factor=1.0):
+    def measured(self, omega_factor=1.0, gamma_factor=1.0, extra_times=()):
         folder, module = self.run_of("standing_wave")
         rows = np.isclose(module.REFERENCE["nu"], 1e-3) & (module.REFERENCE["t"] < 3.01 * module.PERIOD)
         c, s, gamma, omega = module.fit(module.REFERENCE["t"][rows], module.REFERENCE["a_over_a0"][rows], 0.08, 2.5)
@@ -254,10 +254,17 @@ class StandingWave(CaseTest):
             x, y = 2 * np.pi * p[:, 0], 2 * np.pi * p[:, 1]
             return rate * np.exp(y)[:, None] * np.column_stack([-np.sin(x), np.cos(x)])
 
-        times = np.arange(121) * module.PERIOD / 40
+        times = np.concatenate([np.arange(121) * module.PERIOD / 40, extra_times])
         write_snapshots(folder / "fluid.vtkhdf", times, lambda t: grid, {"velocity": velocity})
         write_table(folder / "series.csv", series_of(times, mass=1))
         return module.measure({"run": Results(folder)})
+
+    def test_end_a_rounding_after_an_output_changes_nothing(self):
+        end = 3 * load_measure(CASES / "standing_wave").PERIOD
+        self.assertEqual(self.measured(extra_times=[end * (1 + 1e-10)])["largest_difference"],
+                         self.measured()["largest_difference"])
+        with self.assertRaises(MissingResult):
+            self.measured(extra_times=[1.01 * end])
 
     def test_exact_wave_has_no_error(self):
         measured = self.measured()

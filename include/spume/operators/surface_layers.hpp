@@ -47,8 +47,8 @@ void mark_upper_layers(const SweepContext& context, double spacing, std::span<co
 //   out = c n (sum_j W_ij (1 - |z_ij|)+ v_j . n) / (sum_j W_ij (1 - |z_ij|)+),
 //
 // n the mean unit normal of the edge particles around, weighted by (1 - r^2 / (1.8 dr)^2)+^2, z the distance along it
-// in spacings; the sums include the particle. c is 1 at edge particles; elsewhere min(1, sum of the weights of n /
-// 0.4): 0.4 is half of what the layer below has on a square lattice (0.77; 1.08 on a cubic one).
+// in spacings; the sums include the particle. c is 1 at edge particles that have a normal; elsewhere min(1, sum of the
+// weights of n / 0.4): 0.4 is half of what the layer below has on a square lattice (0.77; 1.08 on a cubic one).
 //
 // unit_normal: 0 at particles that are not edge particles. upper: particles as marked. out: one per upper particle;
 // beyond the dimensions nothing is written.

@@ -41,7 +41,7 @@ void keep_layers(Liquid& liquid) {
     const auto i = static_cast<std::size_t>(liquid.upper_particles[k]);
     for (int axis = 0; axis < liquid.dimensions; ++axis) (*liquid.shift[axis])[i] -= liquid.layer_shift[k][axis];
   });
-  liquid.records.take_traffic();  // of the few particles beside a surface nothing is counted
+  liquid.records.take_traffic();  // it counts the lists of all particles, not of those beside a surface alone
 }
 
 }  // namespace
