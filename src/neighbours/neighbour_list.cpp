@@ -117,7 +117,7 @@ struct Candidates {
   Candidates(Array<float>& memory, std::size_t most) {
     // Vector loads and stores reach past the end.
     const std::size_t stride = (most + 2 * pair_lanes) / pair_lanes * pair_lanes;
-    if (memory.size() < 4 * stride) memory.resize(4 * stride + stride);
+    if (memory.size() < 4 * stride) memory.resize(8 * stride);
     for (int axis = 0; axis < 3; ++axis) coordinate[axis] = memory.data() + axis * stride;
     entry = reinterpret_cast<std::int32_t*>(memory.data() + 3 * stride);
   }
@@ -310,7 +310,7 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
         std::fill_n(candidates.coordinate[axis] + candidates.size, pair_lanes, far);
 
       const std::size_t wanted = filled + (group.last - i) * (candidates.size + 2 * pair_lanes);
-      if (wanted > collected.size()) collected.resize(wanted);
+      if (wanted > collected.size()) collected.resize(2 * wanted);
       std::size_t slot = 0;
       for (; i < group.last; ++i) {
         std::int32_t* const start = collected.data() + filled;
