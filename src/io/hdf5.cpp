@@ -53,6 +53,7 @@ void throw_error(const std::filesystem::path& path, std::string_view action) {
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, find_reason, &reason);
   H5Eclear2(H5E_DEFAULT);
   if (reason.empty()) reason = "the HDF5 library gives no reason";
+  if (reason == "inflate() failed") reason = "what it holds is damaged and does not unpack";
   throw FileError("cannot " + std::string(action) + " '" + path.string() + "': " + reason);
 }
 

@@ -131,7 +131,8 @@ Recorder::Recorder(std::filesystem::path folder, const LoadedCase& loaded, const
   }
   for (const auto& [name, count] : *resume_)
     if (count > 0 && name.ends_with(".vtkhdf") && !std::filesystem::exists(folder_ / name))
-      throw FileError("cannot continue '" + (folder_ / name).string() + "': the file is gone");
+      throw FileError("cannot continue '" + (folder_ / name).string() +
+                      "': the file is gone; bring it back, or run the case anew into another folder");
   if (resume_->count("series") != 0) table("series", "", series_columns_);
   if (resume_->count("probes") != 0) table("probes", "", probe_columns_);
   if (resume_->count("lines") != 0) table("lines", "", line_headings);
