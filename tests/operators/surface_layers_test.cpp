@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Depths and layers below a surface against their slow twins, on every arrangement: with the normals that its shape
-// gives and with random ones. Errors are of float arithmetic: each of `count` neighbours adds some epsilons of squared
+// gives, random ones and the diagonal. Errors are of float arithmetic: each of `count` neighbours adds some epsilons of squared
 // distances, in spacings, to a sum; a mean normal also errs the more, the more the normals around cancel.
 #include "spume/operators/surface_layers.hpp"
 
@@ -20,14 +20,19 @@ using reference::Vector;
 
 constexpr double epsilon = std::numeric_limits<float>::epsilon();
 
+// Those that the shape gives, random ones, and all of them along the diagonal, where the sentinel of the lists lies.
+enum class Normals { of_shape, random, diagonal };
+constexpr Normals all_normals[] = {Normals::of_shape, Normals::random, Normals::diagonal};
+
 struct Surface {
   Arrangement& a;
   VectorArrays<float> normal;
   std::vector<Vector> exact;  // the same numbers
   std::vector<std::int32_t> edge;
 
-  // The fraction of the particles at the edge, with the normals of the arrangement or random ones.
-  Surface(Arrangement& arrangement, double fraction, bool random) : a(arrangement), normal(a.size(), a.dimensions()) {
+  // The fraction of the particles at the edge.
+  Surface(Arrangement& arrangement, double fraction, Normals normals)
+      : a(arrangement), normal(a.size(), a.dimensions()) {
     exact.resize(a.size());
     for (std::size_t i = 0; i < a.size(); ++i) {
       for (int axis = 0; axis < a.dimensions(); ++axis) normal[axis][i] = 0;
@@ -36,7 +41,9 @@ struct Surface {
       const Point draw = uniform(i, 42);
       double size = 0;
       for (int axis = 0; axis < a.dimensions(); ++axis) {
-        exact[i][axis] = random ? draw[axis] - 0.5 : sums[axis].value;
+        exact[i][axis] = normals == Normals::random     ? draw[axis] - 0.5
+                         : normals == Normals::diagonal ? 1
+                                                        : sums[axis].value;
         size += exact[i][axis] * exact[i][axis];
       }
       if (size == 0) continue;
@@ -60,9 +67,9 @@ struct Surface {
 TEST(SurfaceLayers, DepthsAgreeWithTheSlowTwin) {
   std::size_t between = 0;  // neither of the limits
   for (Arrangement& a : all_arrangements())
-    for (const bool random : {false, true}) {
+    for (const Normals normals : all_normals) {
       SCOPED_TRACE(a.setup.name);
-      const Surface surface(a, 0.5, random);
+      const Surface surface(a, 0.5, normals);
       const SurfaceLayers twin = surface.twin();
       Array<float> scratch(a.size()), depth(surface.edge.size());
       edge_depths(a.context, a.records, {a.setup.spacing, surface.edge, surface.normal.read()}, scratch, depth);
@@ -83,7 +90,7 @@ TEST(SurfaceLayers, UpperLayersAreThoseBesideAnEdgeParticle) {
   std::size_t upper = 0, others = 0;
   for (Arrangement& a : all_arrangements()) {
     SCOPED_TRACE(a.setup.name);
-    const Surface surface(a, 0.03, true);
+    const Surface surface(a, 0.03, Normals::random);
     const std::vector<bool> expected = surface.twin().upper();
     Array<std::uint8_t> beside(a.size());
     mark_upper_layers(a.context, a.setup.spacing, surface.edge, beside);
@@ -99,9 +106,9 @@ TEST(SurfaceLayers, UpperLayersAreThoseBesideAnEdgeParticle) {
 TEST(SurfaceLayers, WhatLayersShareAgreesWithTheSlowTwin) {
   std::size_t partly = 0;
   for (Arrangement& a : all_arrangements())
-    for (const bool random : {false, true}) {
+    for (const Normals normals : all_normals) {
       SCOPED_TRACE(a.setup.name);
-      const Surface surface(a, random ? 0.05 : 0.5, random);
+      const Surface surface(a, normals == Normals::of_shape ? 0.5 : 0.05, normals);
       const SurfaceLayers twin = surface.twin();
       const std::vector<bool> is_upper = twin.upper();
       std::vector<std::int32_t> upper;

@@ -318,5 +318,57 @@ TEST(VaryingSizes, DepthsBelowASurfaceAreTheDirectSums) {
   }
 }
 
+// Edge particles few enough that some of their neighbours belong to the layers in part.
+TEST(VaryingSizes, WhatLayersShareIsTheDirectSum) {
+  Varying3D& v = varying();
+  const std::size_t n = v.hood.n;
+  VectorArrays<float> normal(n, 3), vector(n, 3);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point draw = uniform(i, 34), direction = uniform(i, 35), value = uniform(i, 36);
+    const double size = std::hypot(direction[0], direction[1], direction[2]);
+    for (int a = 0; a < 3; ++a) {  // all into one eighth of space: sums of normals do not cancel
+      normal[a][i] = draw[0] < 0.04 ? static_cast<float>(direction[a] / size) : 0;
+      vector[a][i] = static_cast<float>(value[a] - 0.5);
+    }
+  }
+  std::vector<std::int32_t> upper;
+  std::vector<std::array<double, 3>> expected;
+  std::size_t partly = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool at_edge = normal[0][i] > 0;
+    std::array<double, 3> sum{};
+    double of_edge = 0;
+    for (int a = 0; a < 3; ++a) sum[a] = normal[a][i];
+    v.each(i, [&](std::size_t j, const Point& d, double, double) {
+      if (!(normal[0][j] > 0)) return;
+      const double x = std::max(0.0, 1 - (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / std::pow(1.8 * spacing, 2));
+      for (int a = 0; a < 3; ++a) sum[a] += x * x * normal[a][j];
+      of_edge += x * x;
+    });
+    const double size = std::hypot(sum[0], sum[1], sum[2]);
+    if (size == 0) continue;
+    for (double& component : sum) component /= size;
+    double weights = WendlandC2::w(0.0), along = 0;
+    for (int a = 0; a < 3; ++a) along += weights * vector[a][i] * sum[a];
+    v.each(i, [&](std::size_t j, const Point& d, double, double) {
+      const double q = std::hypot(d[0], d[1], d[2]) / (h0 * v.length_ratio[i]);
+      const double z = std::abs(d[0] * sum[0] + d[1] * sum[1] + d[2] * sum[2]) / spacing;
+      const double weight = WendlandC2::w(q) * std::max(0.0, 1 - z);
+      weights += weight;
+      for (int a = 0; a < 3; ++a) along += weight * vector[a][j] * sum[a];
+    });
+    const double c = at_edge ? 1 : std::min(1.0, of_edge / 0.4);
+    partly += c < 1 ? 1 : 0;
+    for (double& component : sum) component *= c * along / weights;
+    upper.push_back(static_cast<std::int32_t>(i));
+    expected.push_back(sum);
+  }
+  ASSERT_GT(partly, n / 20);
+  Array<std::array<float, 3>> shared(upper.size());
+  shared_along_normal(v.context, v.records, spacing, normal.read(), vector.read(), v.reflection, upper, shared);
+  for (std::size_t k = 0; k < upper.size(); ++k)
+    for (std::size_t a = 0; a < 3; ++a) ASSERT_NEAR(shared[k][a], expected[k][a], 10 * tolerance) << upper[k];
+}
+
 }  // namespace
 }  // namespace spume::test

@@ -136,10 +136,9 @@ template <class Kernel>
   float* const weight = found.share2.data();
   for (std::size_t k = 0; k < found.size; k += simd::lanes)
     simd::store(weight + k, Kernel::w(static_cast<float>(Kernel::support) * simd::sqrt(simd::load(weight + k))));
-  // Two sums, of even and odd places, as an addition takes longer than a load; the last place of an odd number weighs
-  // nothing.
+  // Two sums, of even and odd places, as an addition takes longer than a load. Behind an odd number stands a share of
+  // 1, which weighs nothing.
   f32x8 low{}, high{}, odd_low{}, odd_high{};
-  weight[found.size] = 0;
   found.index[found.size] = found.size > 0 ? found.index[0] : 0;
   for (std::size_t k = 0; k < found.size; k += 2) {
     const float* even = lines + static_cast<std::size_t>(found.index[k]) * line_floats;
