@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Depths and layers below a surface against their slow twins, on every arrangement: with the normals that its shape
-// gives, random ones and the diagonal. Errors are of float arithmetic: each of `count` neighbours adds some epsilons of squared
-// distances, in spacings, to a sum; a mean normal also errs the more, the more the normals around cancel.
+// gives, random ones and the diagonal. Errors are of float arithmetic: each of `count` neighbours adds some epsilons of
+// squared distances, in spacings, to a sum; a mean normal also errs the more, the more the normals around cancel.
 #include "spume/operators/surface_layers.hpp"
 
 #include <gtest/gtest.h>
