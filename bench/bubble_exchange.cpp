@@ -18,7 +18,7 @@ struct Swarm {
   std::size_t size;
   CellTable table;
   std::array<Array<float>, 3> place, liquid_place;
-  Array<float> records, length_ratio, reach, inverse_reach;
+  Array<float> records, length_ratio, support_radius, inverse_support_radius;
 
   explicit Swarm(const benchmark::State& state) : particles(state), size(particles.n / 10) {
     const std::size_t n = particles.n;
@@ -44,13 +44,13 @@ struct Swarm {
         records[8 * b + 3 + a] = static_cast<float>(a + 1);
       }
     length_ratio.resize(n);
-    reach.resize(n);
-    inverse_reach.resize(n + simd::pair_lanes);
+    support_radius.resize(n);
+    inverse_support_radius.resize(n + simd::pair_lanes);
     const std::array<const double*, 3> x = positions();
     for (std::size_t i = 0; i < n; ++i) {
       length_ratio[i] = 1;
-      reach[i] = static_cast<float>(particles.rules.reach);
-      inverse_reach[i] = 1 / reach[i];
+      support_radius[i] = static_cast<float>(particles.rules.support_radius);
+      inverse_support_radius[i] = 1 / support_radius[i];
       for (int a = 0; a < 3; ++a) liquid_place[a][i] = static_cast<float>(x[a][i]);
     }
   }
@@ -73,10 +73,14 @@ void bubble_sums(benchmark::State& state) {
   const std::size_t n = swarm.particles.n;
   Array<float> result(4 * n);
   const CrossSearch search = swarm.search(swarm.table, swarm.size, swarm.place);
-  const CrossTargets targets{
-      n, swarm.positions(), {0, 0, 0}, 1.3 * swarm.particles.spacing(), swarm.length_ratio.data(), swarm.reach.data()};
+  const CrossTargets targets{n,
+                             swarm.positions(),
+                             {0, 0, 0},
+                             1.3 * swarm.particles.spacing(),
+                             swarm.length_ratio.data(),
+                             swarm.support_radius.data()};
   for (auto _ : state)
-    sum_over_points<4, WendlandC2>(targets, search, swarm.particles.grid.reach(), swarm.records.data(),
+    sum_over_points<4, WendlandC2>(targets, search, swarm.particles.grid.support_radius(), swarm.records.data(),
                                    [&](std::size_t i, const float* sums) {
                                      for (std::size_t c = 0; c < 4; ++c)
                                        result[4 * i + c] = sums == nullptr ? 0.0F : sums[c];
@@ -100,7 +104,8 @@ void around_bubbles(benchmark::State& state, bool with_lines) {
       CrossSearch::Found& found = thread_found;
       for (std::size_t b = first; b < last; ++b) {
         search.near_place({swarm.place[0][b], swarm.place[1][b], swarm.place[2][b]},
-                          static_cast<float>(swarm.particles.grid.reach()), swarm.inverse_reach.data(), found);
+                          static_cast<float>(swarm.particles.grid.support_radius()),
+                          swarm.inverse_support_radius.data(), found);
         sums[line_floats * b] = static_cast<float>(found.size);
         if (!with_lines) continue;
         const auto halves = sum_of_lines<WendlandC2>(found, lines.data());

@@ -14,14 +14,14 @@ namespace {
 struct Pressure {
   Particles particles;
   SweepContext context;
-  Records records;
-  Array<float> extra, x, y;
+  PackedNeighbours records;
+  Array<float> diagonal_shift, x, y;
   PressureOperator matrix;
 
   explicit Pressure(const benchmark::State& state) : particles(state), context(particles.sweep_context()) {
-    for (auto* array : {&extra, &x, &y}) array->resize(particles.n);
+    for (auto* array : {&diagonal_shift, &x, &y}) array->resize(particles.n);
     for (std::size_t i = 0; i < particles.n; ++i) x[i] = static_cast<float>(std::sin(6.28 * particles.x[i]));
-    matrix.bind(context, records, {extra.data(), nullptr});
+    matrix.bind(context, records, {diagonal_shift.data(), nullptr});
   }
   // Per pair: an index of 4 bytes, a record, and differences 3, r^2 5, root 1, q 1, kernel slope 6, select 1, sum 3;
   // per particle: 16 bytes of record written and read, 12 of positions, 12 of values in and out. Twice the operations
@@ -62,7 +62,7 @@ struct InFloat final : LinearOperator<float> {
   std::size_t size() const override { return matrix.size(); }
   void apply(std::span<const float> x, std::span<float> y) override { matrix.apply(x, y, x); }
   Dots apply_with_dots(std::span<const float> x, std::span<float> y, std::span<const float> w) override {
-    const PressureDots dots = matrix.apply(x, y, w);
+    const Dots dots = matrix.apply(x, y, w);
     return {dots.wy, dots.yy};
   }
   PressureOperator& matrix;
@@ -91,26 +91,26 @@ void pressure_solve(benchmark::State& state) {
   std::array<Array<float>, 12> rest;
   for (auto& array : rest) array.resize(n);
   Array<std::uint8_t> flag(n);
-  GeometryOut sums;
+  KernelMoments sums;
   sums.kernel_sum = kernel_sum.data();
   sums.divergence_of_position = trace.data();
-  sums.coupling = diagonal.data();
+  sums.laplacian_diagonal = diagonal.data();
   sums.uncorrected = flag.data();
   for (std::size_t k = 0; k < 6; ++k) sums.correction[k] = rest[k].data();
   for (std::size_t k = 0; k < 3; ++k) {
     sums.normal[k] = rest[6 + k].data();
     sums.concentration_gradient[k] = rest[9 + k].data();
   }
-  geometry_sweep(pressure.context, pressure.records, {true, true, spacing}, sums);
+  kernel_moment_sweep(pressure.context, pressure.records, {true, true, spacing}, sums);
   Array<double> b(n), q(n);
   for (std::size_t i = 0; i < n; ++i) {
     const bool top = particles.z[i] > 1 - spacing;
-    pressure.extra[i] = top ? static_cast<float>(10 / (spacing * spacing)) : 0;
+    pressure.diagonal_shift[i] = top ? static_cast<float>(10 / (spacing * spacing)) : 0;
     interior[i] = top ? 0 : 1;
-    diagonal[i] = static_cast<float>(pressure.context.volume) * (diagonal[i] + pressure.extra[i]);
+    diagonal[i] = static_cast<float>(pressure.context.volume) * (diagonal[i] + pressure.diagonal_shift[i]);
     b[i] = pressure.context.volume * std::sin(6.28 * particles.x[i]) * particles.z[i];
   }
-  pressure.matrix.bind(pressure.context, pressure.records, {pressure.extra.data(), nullptr});
+  pressure.matrix.bind(pressure.context, pressure.records, {pressure.diagonal_shift.data(), nullptr});
   CellGeometry geometry;
   geometry.upper = {1, 1, 1};
   geometry.periodic = {true, true, false};

@@ -32,12 +32,13 @@ struct Particles {
     const double spacing = 1.0 / static_cast<double>(m);
     rules.dimensions = 3;
     rules.upper = {1, 1, 1};
-    rules.reach = 2.6 * spacing;
+    rules.support_radius = 2.6 * spacing;
     rules.sides = {{{ImageKind::periodic, ImageKind::periodic},
                     {ImageKind::periodic, ImageKind::periodic},
                     {ImageKind::mirror, ImageKind::none}}};
-    const double reach = rules.reach;
-    grid = CellGrid(3, {-reach, -reach, -reach}, {1 + reach, 1 + reach, 1 + reach}, reach, n);
+    const double support_radius = rules.support_radius;
+    grid = CellGrid(3, {-support_radius, -support_radius, -support_radius},
+                    {1 + support_radius, 1 + support_radius, 1 + support_radius}, support_radius, n);
     for (auto* axis : {&x, &y, &z}) axis->resize(n);
     const double jitter = state.range(1) == 0 ? 0 : 0.4;
     const bool clustered = state.range(1) == 2;

@@ -10,9 +10,9 @@
 #include "spume/core/parallel.hpp"
 #include "spume/core/random.hpp"
 #include "spume/operators/linear_deposition.hpp"
-#include "spume/physics/particles/exclusion.hpp"
-#include "spume/physics/particles/motion.hpp"
-#include "spume/physics/particles/overlap.hpp"
+#include "spume/physics/point_particles/exclusion.hpp"
+#include "spume/physics/point_particles/motion.hpp"
+#include "spume/physics/point_particles/overlap.hpp"
 
 namespace spume {
 namespace {

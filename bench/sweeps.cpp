@@ -20,7 +20,7 @@ struct PairWork {
 struct Sweeps {
   Particles particles;
   SweepContext context;
-  Records records;
+  PackedNeighbours records;
   VelocityImageRule rule;
   std::vector<std::array<float, 3>> reflection;
   std::array<Array<double>, 3> velocity;
@@ -81,15 +81,15 @@ struct Sweeps {
   }
 
   void geometry() {
-    GeometryOut result;
+    KernelMoments result;
     result.kernel_sum = scalar[2].data();
     result.divergence_of_position = scalar[3].data();
-    result.coupling = scalar[4].data();
+    result.laplacian_diagonal = scalar[4].data();
     result.uncorrected = flag.data();
     for (int k = 0; k < 6; ++k) result.correction[k] = correction[k].data();
     result.concentration_gradient = write(out);
     result.normal = write(vector);
-    geometry_sweep(context, records, {true, true, particles.spacing()}, result);
+    kernel_moment_sweep(context, records, {true, true, particles.spacing()}, result);
   }
   void velocity_gradient(bool with_change) {
     VelocityGradientOut result;

@@ -236,7 +236,7 @@ def bubbles(rng, d):
     further = {"bubbles": {"weber": log_uniform(rng, 10, 1e5), "density_ratio": log_uniform(rng, 2, 1e3),
                            "fluctuations": bool(rng.random() < 0.4), "breakup": bool(rng.random() < 0.4),
                            "entrainment": bool(not closed and rng.random() < 0.4),
-                           "closure": pick(rng, ["mixture-pressure", "two-fluid"]),
+                           "momentum_form": pick(rng, ["mixture-pressure", "two-fluid"]),
                            "integrator": pick(rng, ["stable", "stable", "substep"])},
                "bubble_cloud": [{"lower": [0.35] * (d - 1) + [0.1], "upper": [0.65] * (d - 1) + [0.4],
                                  "number": number, "bubble_radius": radius}]}

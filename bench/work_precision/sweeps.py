@@ -142,6 +142,6 @@ SWEEPS = {
                       "particles.sort_every": [1, 32]}),
     "terminal_velocity": Sweep(RISING, "slip over terminal speed - 1", slip_error, spacings(8, 12, 16),
                                {"time.max_step": [0.04, 0.01, 0.003], "bubbles.integrator": ["substep"],
-                                "bubbles.closure": ["two-fluid"], "time.courant": [0.1, 0.4],
+                                "bubbles.momentum_form": ["two-fluid"], "time.courant": [0.1, 0.4],
                                 "pressure.tolerance": [1e-4, 1e-8]}),
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cstdlib>
 
-#include "spume/cli/programme.hpp"
+#include "spume/cli/program.hpp"
 
 namespace spume {
 

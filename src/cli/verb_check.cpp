@@ -33,15 +33,15 @@ std::string time_estimate(const LoadedCase& loaded, Method& method) {
 
 }  // namespace
 
-int check_verb(const RunArguments& arguments, const Programme& programme) {
-  LoadedCase loaded = programme.load_case(arguments.input, arguments.overrides);
-  const auto method = programme.make_method(loaded);
+int check_verb(const RunArguments& arguments, const Program& program) {
+  LoadedCase loaded = program.load_case(arguments.input, arguments.overrides);
+  const auto method = program.make_method(loaded);
   method->start();
   loaded.scene.particles = {};
   std::printf("%s\nplan\n%s\n", start_table(loaded, *method, thread_count()).c_str(),
               plan_table(method->plan()).c_str());
-  for (const Problem& idle : loaded.options.idle) std::printf("%s\n", idle.message("warning").c_str());
-  if (!loaded.options.idle.empty()) std::printf("\n");
+  for (const Problem& unused : loaded.options.unused_options) std::printf("%s\n", unused.message("warning").c_str());
+  if (!loaded.options.unused_options.empty()) std::printf("\n");
   std::fflush(stdout);
   const std::string time = time_estimate(loaded, *method);
   // Neighbour lists and scratch arrays have their size only after a step.

@@ -91,8 +91,8 @@ void describe_folder(const fs::path& folder) {
     if (file.extension() == ".vtkhdf") describe_particles(file);
 }
 
-void describe_case(const std::string& path, const Programme& programme) {
-  const LoadedCase loaded = programme.load_case(path, {});
+void describe_case(const std::string& path, const Program& program) {
+  const LoadedCase loaded = program.load_case(path, {});
   const auto& grid = loaded.scene.grid;
   if (grid[0] > 0)
     std::printf("%s: case for method %s, grid %zu x %zu x %zu, until t = %g\n", path.c_str(),
@@ -113,18 +113,18 @@ bool starts_with(const fs::path& path, const std::string& mark) {
 
 }  // namespace
 
-int info_verb(const std::string& file, const Programme& programme) {
+int info_verb(const std::string& file, const Program& program) {
   const fs::path path = file;
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
     if (fs::exists(path / "log.txt"))
       describe_folder(path);
     else
-      describe_case(file, programme);
+      describe_case(file, program);
   } else if (!fs::exists(path, ignored)) {
     throw InputError("there is no file '" + file + "'; give a result, a checkpoint, a run folder or a case");
   } else if (path.extension() == ".toml") {
-    describe_case(file, programme);
+    describe_case(file, program);
   } else if (starts_with(path, "\x89HDF\r\n\x1a\n")) {
     describe_particles(path);
   } else if (path.extension() == ".h5" || starts_with(path, "SPUME CHECKPOINT")) {

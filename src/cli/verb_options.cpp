@@ -7,14 +7,14 @@
 
 namespace spume {
 
-int options_verb(const std::string& section, const Programme& programme) {
+int options_verb(const std::string& section, const Program& program) {
   std::string wanted = section, heading = "\n";
   while (!wanted.empty() && wanted.front() == '[') wanted.erase(0, 1);
   while (!wanted.empty() && wanted.back() == ']') wanted.pop_back();
   std::string known;
   std::set<std::string> seen;
   bool found = false;
-  for (const auto& option : programme.option_table()) {
+  for (const auto& option : program.option_table()) {
     if (!option.section.empty() && seen.insert(option.section).second)
       known += (known.empty() ? "" : ", ") + option.section;
     if (!wanted.empty() && option.section != wanted) continue;

@@ -64,21 +64,20 @@ int carry_out(Simulation& simulation, bool quiet) {
 
 }  // namespace
 
-int run_verb(const RunArguments& arguments, const Programme& programme) {
+int run_verb(const RunArguments& arguments, const Program& program) {
   require_positive(arguments.until);
   std::vector<std::string> overrides = arguments.overrides;
   if (arguments.until) overrides.push_back(until_override(*arguments.until));
-  LoadedCase loaded = programme.load_case(arguments.input, overrides);
+  LoadedCase loaded = program.load_case(arguments.input, overrides);
   std::optional<std::filesystem::path> folder;
   if (arguments.folder) folder = *arguments.folder;
-  const auto simulation = Simulation::start(std::move(loaded), programme.make_method, folder);
+  const auto simulation = Simulation::start(std::move(loaded), program.make_method, folder);
   return carry_out(*simulation, arguments.quiet);
 }
 
-int resume_verb(const RunArguments& arguments, const Programme& programme) {
+int resume_verb(const RunArguments& arguments, const Program& program) {
   require_positive(arguments.until);
-  const auto simulation =
-      Simulation::resume(arguments.input, programme.load_case, programme.make_method, arguments.until);
+  const auto simulation = Simulation::resume(arguments.input, program.load_case, program.make_method, arguments.until);
   return carry_out(*simulation, arguments.quiet);
 }
 

@@ -4,7 +4,7 @@
 #include <cerrno>
 #include <cstdio>
 
-#include "spume/cli/programme.hpp"
+#include "spume/cli/program.hpp"
 #include "spume/core/error.hpp"
 #include "spume/io/file.hpp"
 #include "verbs.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "spume/cli/programme.hpp"
+#include "spume/cli/program.hpp"
 
 namespace spume {
 
@@ -18,11 +18,11 @@ struct RunArguments {
   bool quiet = false;
 };
 
-int run_verb(const RunArguments& arguments, const Programme& programme);
-int resume_verb(const RunArguments& arguments, const Programme& programme);
-int check_verb(const RunArguments& arguments, const Programme& programme);
-int info_verb(const std::string& file, const Programme& programme);
-int options_verb(const std::string& section, const Programme& programme);
+int run_verb(const RunArguments& arguments, const Program& program);
+int resume_verb(const RunArguments& arguments, const Program& program);
+int check_verb(const RunArguments& arguments, const Program& program);
+int info_verb(const std::string& file, const Program& program);
+int options_verb(const std::string& section, const Program& program);
 
 // Replaces this process by /usr/bin/python3 with a script of tools/ and the arguments.
 int script_verb(const std::string& script, const std::vector<std::string>& arguments);

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t largest_wait_bytes = 64 * 1024;
 constexpr std::chrono::seconds largest_wait{1};
 
-std::string column_line(const std::vector<SeriesHeading>& columns) {
+std::string column_line(const std::vector<SeriesColumn>& columns) {
   std::string line;
   for (const auto& column : columns) line += (line.empty() ? "" : ",") + column.name;
   return line + '\n';
@@ -71,7 +71,7 @@ SeriesFile::~SeriesFile() {
 }
 
 SeriesFile SeriesFile::create(const std::filesystem::path& path, const std::string& title,
-                              const std::vector<SeriesHeading>& columns) {
+                              const std::vector<SeriesColumn>& columns) {
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644);
   if (descriptor < 0) throw_file_error(path, "create", errno);
   SeriesFile file(path, descriptor, columns.size(), 0);
@@ -83,7 +83,7 @@ SeriesFile SeriesFile::create(const std::filesystem::path& path, const std::stri
   return file;
 }
 
-SeriesFile SeriesFile::resume(const std::filesystem::path& path, const std::vector<SeriesHeading>& columns,
+SeriesFile SeriesFile::resume(const std::filesystem::path& path, const std::vector<SeriesColumn>& columns,
                               std::int64_t rows) {
   const std::string text = read_text(path);
   std::size_t at = 0;

@@ -41,15 +41,15 @@ void exclusive_scan(std::int32_t* counts, std::size_t n) {
 
 }  // namespace
 
-CellGrid::CellGrid(int dimensions, const std::array<double, 3>& lower, const std::array<double, 3>& upper, double reach,
-                   std::size_t expected_particles)
-    : dimensions_(dimensions), reach_(reach), lower_(lower) {
+CellGrid::CellGrid(int dimensions, const std::array<double, 3>& lower, const std::array<double, 3>& upper,
+                   double support_radius, std::size_t expected_particles)
+    : dimensions_(dimensions), support_radius_(support_radius), lower_(lower) {
   const double cell_limit = 4.0 * static_cast<double>(expected_particles) + 1048576.0;
   double coarsening = 1;
   for (;;) {
     double cells = 1;
     for (int axis = 0; axis < dimensions; ++axis) {
-      const double side = reach * coarsening * (axis == 0 ? column_fraction : row_fraction);
+      const double side = support_radius * coarsening * (axis == 0 ? column_fraction : row_fraction);
       const double wanted = std::max(1.0, std::ceil((upper[axis] - lower[axis]) / side));
       count_[axis] = static_cast<int>(std::min(wanted, 1e9));
       inverse_side_[axis] = 1 / side;

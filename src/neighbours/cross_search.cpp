@@ -42,15 +42,15 @@ CrossSearch::CrossSearch(const CellGrid& grid, const std::array<double, 3>& orig
     extent =
         std::max({extent, std::abs(lower_[a]), std::abs(lower_[a] + static_cast<float>(last_cell_[a] + 1) * side_[a])});
   }
-  margin_ = 1e-4F * static_cast<float>(grid.reach()) + 4 * std::numeric_limits<float>::epsilon() * extent;
+  margin_ = 1e-4F * static_cast<float>(grid.support_radius()) + 4 * std::numeric_limits<float>::epsilon() * extent;
 }
 
 // Blocks that together hold all points within the reach of the box.
-std::span<const CrossSearch::Block> CrossSearch::blocks_near(const Box& box, float reach, Found& found) const {
+std::span<const CrossSearch::Block> CrossSearch::blocks_near(const Box& box, float support_radius, Found& found) const {
   std::size_t size = 0;
   std::array<Set, most_sets> near;
   std::size_t sets = 0;
-  const float far = reach + margin_;
+  const float far = support_radius + margin_;
   for (std::size_t s = 0; s < sets_; ++s) {
     bool free = true;
     for (std::size_t a = 0; a < 3; ++a)
@@ -102,12 +102,12 @@ std::span<const CrossSearch::Block> CrossSearch::blocks_near(const Box& box, flo
   return {found.blocks.data(), size};
 }
 
-void CrossSearch::near_box(const Box& box, float reach, Found& found) const {
-  const std::span<const Block> blocks = blocks_near(box, reach, found);
+void CrossSearch::near_box(const Box& box, float support_radius, Found& found) const {
+  const std::span<const Block> blocks = blocks_near(box, support_radius, found);
   const Box within = box;
   const std::array<const float*, 3> point = point_;
   std::int32_t* const out = found.index.data();
-  const float reach2 = reach * reach;
+  const float reach2 = support_radius * support_radius;
   std::size_t size = 0;
   for (const Block block : blocks) {
     f32n distance2{};
@@ -124,9 +124,9 @@ void CrossSearch::near_box(const Box& box, float reach, Found& found) const {
   found.size = size;
 }
 
-void CrossSearch::near_place(const std::array<float, 3>& place, float largest_reach, const float* inverse_reach,
-                             Found& found) const {
-  const std::span<const Block> blocks = blocks_near({place, place}, largest_reach, found);
+void CrossSearch::near_place(const std::array<float, 3>& place, float largest_support_radius,
+                             const float* inverse_support_radius, Found& found) const {
+  const std::span<const Block> blocks = blocks_near({place, place}, largest_support_radius, found);
   const std::array<float, 3> centre = place;
   const std::array<const float*, 3> point = point_;
   std::int32_t* const index_out = found.index.data();
@@ -138,7 +138,7 @@ void CrossSearch::near_place(const std::array<float, 3>& place, float largest_re
       const f32n d = simd::load<f32n>(point[a] + block.first) - centre[a];
       distance2 = distance2 + d * d;
     }
-    const f32n inverse = simd::load<f32n>(inverse_reach + block.first);
+    const f32n inverse = simd::load<f32n>(inverse_support_radius + block.first);
     const f32n share2 = distance2 * (inverse * inverse);
     const unsigned mask = simd::less_bits(share2, simd::splat<f32n>(1)) & first_lanes(block.last - block.first);
     const Packing packing = packing_of(mask);

@@ -67,7 +67,7 @@ void Images::add_box_images(const ImageRules& rules, std::size_t n) {
       }
     // Of two faces equally near up to rounding the earlier one owns an image: a lattice beside a box has many such
     // points, and each must be filled once.
-    const double tie = 1e-6 * rules.reach;
+    const double tie = 1e-6 * rules.support_radius;
     // Depth of a point below a face of the box; faces that bound no liquid never are the nearest.
     const auto depth = [&](const std::array<double, 3>& r, int axis, int side) {
       if (!box.face[axis][side]) return std::numeric_limits<double>::infinity();
@@ -77,14 +77,15 @@ void Images::add_box_images(const ImageRules& rules, std::size_t n) {
       std::array<double, 3> r{};
       for (int axis = 0; axis < dimensions; ++axis) {
         r[axis] = particle_[axis][k];
-        if (r[axis] < box.lower[axis] - rules.reach || r[axis] > box.upper[axis] + rules.reach) return;
+        if (r[axis] < box.lower[axis] - rules.support_radius || r[axis] > box.upper[axis] + rules.support_radius)
+          return;
       }
       for (int axis = 0; axis < dimensions; ++axis)
         for (int side = 0; side < 2; ++side) {
           if (!box.face[axis][side]) continue;
           const double plane = side == 0 ? box.lower[axis] : box.upper[axis];
           const double distance = side == 0 ? plane - r[axis] : r[axis] - plane;
-          if (distance < 0 || distance >= rules.reach) continue;
+          if (distance < 0 || distance >= rules.support_radius) continue;
           std::array<double, 3> image = r;
           image[axis] = 2 * plane - r[axis];
           bool nearest = true;
@@ -125,14 +126,14 @@ void Images::add_axis_images(const ImageRules& rules, int axis, std::size_t n) {
       const double plane = side == 0 ? rules.lower[axis] : rules.upper[axis];
       const double depth = side == 0 ? x - plane : plane - x;
       // A particle a little outside a wall still gets its image: the pair then pushes it back.
-      if (kind[side] == ImageKind::mirror ? depth >= rules.reach : false) continue;
+      if (kind[side] == ImageKind::mirror ? depth >= rules.support_radius : false) continue;
       double image = 0;
       if (kind[side] == ImageKind::mirror) {
         image = 2 * plane - x;
       } else {
         // A copy beyond `side` comes from particles near the opposite side.
         const double to_opposite = length - depth;
-        if (to_opposite >= rules.reach) continue;
+        if (to_opposite >= rules.support_radius) continue;
         image = side == 0 ? x - length : x + length;
       }
       std::array<double, 3> r{};

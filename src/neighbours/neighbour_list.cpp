@@ -51,8 +51,8 @@ inline void stream(const std::int32_t* from, std::size_t size, std::int32_t* to)
 }
 
 // Far enough for every kernel to vanish, near enough for finite squares.
-float sentinel_coordinate(float reach) {
-  return 1e6F * reach;
+float sentinel_coordinate(float support_radius) {
+  return 1e6F * support_radius;
 }
 
 // Particles that follow each other in the sorted order and lie close together: their candidates are gathered
@@ -125,7 +125,7 @@ struct Candidates {
 
 // The next group from `first` on: at most group_size particles in a box that is not too long.
 template <int dimensions>
-Group next_group(const std::array<const float*, 3>& point, std::size_t first, std::size_t end, float reach) {
+Group next_group(const std::array<const float*, 3>& point, std::size_t first, std::size_t end, float support_radius) {
   Group group{first, first, {}, {}};
   for (int axis = 0; axis < dimensions; ++axis) group.lower[axis] = group.upper[axis] = point[axis][first];
   while (++group.last < end && group.last - first < group_size) {
@@ -135,7 +135,7 @@ Group next_group(const std::array<const float*, 3>& point, std::size_t first, st
       const float x = point[axis][group.last];
       lower[axis] = std::min(lower[axis], x);
       upper[axis] = std::max(upper[axis], x);
-      close = close && upper[axis] - lower[axis] <= (axis == 0 ? group_length : group_width) * reach;
+      close = close && upper[axis] - lower[axis] <= (axis == 0 ? group_length : group_width) * support_radius;
     }
     if (!close) break;
     group.lower = lower;
@@ -204,10 +204,10 @@ template <int dimensions>
 
 template <int dimensions>
 bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, const Images& images,
-                           const float* own_reach) {
+                           const float* own_support_radius) {
   const std::size_t n = count_.size();
-  const auto least_reach = static_cast<float>(grid.reach());
-  const float far = sentinel_coordinate(least_reach);
+  const auto least_support_radius = static_cast<float>(grid.support_radius());
+  const float far = sentinel_coordinate(least_support_radius);
   const std::array<const float*, 3> point{coordinate_[0].data(), coordinate_[1].data(), coordinate_[2].data()};
   const std::int32_t* first_particle = particles.first();
   const std::int32_t* first_image = images.table().first();
@@ -230,7 +230,7 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
   for (int axis = 0; axis < dimensions; ++axis)
     extent = std::max(
         {extent, std::abs(lower[axis]), std::abs(lower[axis] + static_cast<float>(last_cell[axis] + 1) * side[axis])});
-  const float margin = 1e-4F * least_reach + 4 * std::numeric_limits<float>::epsilon() * extent;
+  const float margin = 1e-4F * least_support_radius + 4 * std::numeric_limits<float>::epsilon() * extent;
 
   // Distances from the group to eight rows from c on along an axis; border rows also hold what was clamped into them.
   const auto distance_to = [=](int axis, int c, const Group& group) {
@@ -250,16 +250,16 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
   const std::array<float, 3> free_lower = image_free_lower_, free_upper = image_free_upper_;
 
   // Runs of the points that may lie within the reach of the group.
-  const auto find_runs = [&](const Group& group, float reach, Runs& runs) {
-    const float cull2 = (reach + margin) * (reach + margin);
+  const auto find_runs = [&](const Group& group, float support_radius, Runs& runs) {
+    const float cull2 = (support_radius + margin) * (support_radius + margin);
     runs.size = 0;
     bool with_images = false;
     for (int axis = 0; axis < dimensions && any_image; ++axis)
       with_images = with_images || group.lower[axis] < free_lower[axis] || group.upper[axis] > free_upper[axis];
-    const int z_first = dimensions == 3 ? cell_at(2, group.lower[2] - reach - margin) : 0;
-    const int z_last = dimensions == 3 ? cell_at(2, group.upper[2] + reach + margin) : 0;
-    const int y_first = cell_at(1, group.lower[1] - reach - margin);
-    const int y_last = cell_at(1, group.upper[1] + reach + margin);
+    const int z_first = dimensions == 3 ? cell_at(2, group.lower[2] - support_radius - margin) : 0;
+    const int z_last = dimensions == 3 ? cell_at(2, group.upper[2] + support_radius + margin) : 0;
+    const int y_first = cell_at(1, group.lower[1] - support_radius - margin);
+    const int y_last = cell_at(1, group.upper[1] + support_radius + margin);
     for (int iz = z_first; iz <= z_last; ++iz) {
       const float dz = dimensions == 3 ? distance_to(2, iz, group)[0] : 0;
       for (int iy = y_first; iy <= y_last; iy += simd::lanes) {
@@ -297,11 +297,12 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
     std::size_t filled = 0;
     std::int64_t pairs = 0;
     for (std::size_t i = begin; i < end;) {
-      const Group group = next_group<dimensions>(point, i, end, least_reach);
-      float reach = least_reach;
-      if (own_reach != nullptr) reach = *std::max_element(own_reach + group.first, own_reach + group.last);
-      float reach2 = reach * reach;
-      find_runs(group, reach, runs);
+      const Group group = next_group<dimensions>(point, i, end, least_support_radius);
+      float support_radius = least_support_radius;
+      if (own_support_radius != nullptr)
+        support_radius = *std::max_element(own_support_radius + group.first, own_support_radius + group.last);
+      float reach2 = support_radius * support_radius;
+      find_runs(group, support_radius, runs);
       const std::span<const Block> blocks = cut(runs, block_memory);
       Candidates candidates(candidate_memory, simd::lanes * blocks.size());
       gather<dimensions>(point, blocks, group, reach2, candidates);
@@ -320,7 +321,7 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
         slot = slot_of(candidates, i, slot + 1);
         float& own = candidates.coordinate[0][slot];
         const float kept = std::exchange(own, far);
-        if (own_reach != nullptr) reach2 = own_reach[i] * own_reach[i];
+        if (own_support_radius != nullptr) reach2 = own_support_radius[i] * own_support_radius[i];
         std::int32_t* const stop = select<dimensions>(candidates, centre, reach2, start);
         own = kept;
         store_int(stop, i32x8{} + nobody);
@@ -354,12 +355,12 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
 
 void NeighbourList::build(const CellGrid& grid, const CellTable& particles, const double* x, const double* y,
                           const double* z, std::size_t n, const Images& images, const std::array<double, 3>& origin) {
-  build(grid, particles, x, y, z, n, images, origin, nullptr, grid.reach());
+  build(grid, particles, x, y, z, n, images, origin, nullptr, grid.support_radius());
 }
 
 void NeighbourList::build(const CellGrid& grid, const CellTable& particles, const double* x, const double* y,
                           const double* z, std::size_t n, const Images& images, const std::array<double, 3>& origin,
-                          const float* own_reach, double largest_reach) {
+                          const float* own_support_radius, double largest_support_radius) {
   const int dimensions = grid.dimensions();
   const std::size_t m = images.size();
   points_ = n + m;
@@ -379,7 +380,8 @@ void NeighbourList::build(const CellGrid& grid, const CellTable& particles, cons
     const double zero = origin[axis];
     parallel_for(n, [=](std::size_t i) { out[i] = static_cast<float>(in[i] - zero); });
     parallel_for(m, [=](std::size_t i) { out[n + i] = static_cast<float>(image[i] - zero); });
-    for (int k = 0; k <= pair_lanes; ++k) out[points_ + k] = sentinel_coordinate(static_cast<float>(grid.reach()));
+    for (int k = 0; k <= pair_lanes; ++k)
+      out[points_ + k] = sentinel_coordinate(static_cast<float>(grid.support_radius()));
   }
 
   // The box that no image comes near: outside it lists look at images too.
@@ -387,16 +389,16 @@ void NeighbourList::build(const CellGrid& grid, const CellTable& particles, cons
     image_free_lower_[axis] = -INFINITY;
     image_free_upper_[axis] = INFINITY;
   }
-  const double reach = largest_reach;
+  const double support_radius = largest_support_radius;
   if (m > 0) {
     for (int axis = 0; axis < dimensions; ++axis) {
-      image_free_lower_[axis] = static_cast<float>(images.image_free_lower(axis) + reach - origin[axis]);
-      image_free_upper_[axis] = static_cast<float>(images.image_free_upper(axis) - reach - origin[axis]);
+      image_free_lower_[axis] = static_cast<float>(images.image_free_lower(axis) + support_radius - origin[axis]);
+      image_free_upper_[axis] = static_cast<float>(images.image_free_upper(axis) - support_radius - origin[axis]);
     }
     if (images.inside_domain()) image_free_upper_[0] = -INFINITY;
   }
-  while (!(dimensions == 3 ? search<3>(grid, particles, images, own_reach)
-                           : search<2>(grid, particles, images, own_reach))) {
+  while (!(dimensions == 3 ? search<3>(grid, particles, images, own_support_radius)
+                           : search<2>(grid, particles, images, own_support_radius))) {
   }
 }
 

@@ -33,10 +33,10 @@ class ConsistentStencil {
 
   // The candidates within `reach` of the point x become the neighbours, in their order; their offsets are in units
   // of the reach. Distances come first, in a loop without branches, since 5 of 6 candidates are out of reach.
-  void select(const std::array<double, 3>& x, double reach) {
+  void select(const std::array<double, 3>& x, double support_radius) {
     reserve(candidate_[0].size());
     const std::size_t candidates = candidate_[0].size();
-    const double scale = 1 / reach;
+    const double scale = 1 / support_radius;
     for (std::size_t n = 0; n < candidates; ++n) {
       double squared = 0;
       for (int axis = 0; axis < Dimensions; ++axis) {

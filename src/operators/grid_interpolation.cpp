@@ -40,21 +40,21 @@ GridInterpolationReport operator+(const GridInterpolationReport& a, const GridIn
 }
 
 template <int Dimensions>
-GridInterpolationReport interpolate(const UniformGrid& grid, const GridInterpolationInput& particles, double reach,
-                                    double largest_amplification, std::span<double* const> values,
-                                    std::span<std::uint8_t> mask) {
-  const ParticleBins bins(grid, particles.periodic, reach, particles.position);
+GridInterpolationReport interpolate(const UniformGrid& grid, const GridInterpolationInput& particles,
+                                    double support_radius, double largest_amplification,
+                                    std::span<double* const> values, std::span<std::uint8_t> mask) {
+  const ParticleBins bins(grid, particles.periodic, support_radius, particles.position);
   std::array<std::vector<std::size_t>, 3> first;
   for (int axis = 0; axis < 3; ++axis) first[axis] = points_by_cell(grid, bins, axis);
 
   const std::size_t fields = particles.fields.size();
-  const double covered_distance = std::sqrt(Dimensions) / 2 * particles.spacing / reach;
-  const double volume = std::pow(particles.spacing / reach, Dimensions);
+  const double covered_distance = std::sqrt(Dimensions) / 2 * particles.spacing / support_radius;
+  const double volume = std::pow(particles.spacing / support_radius, Dimensions);
 
   const auto point = [&](Workspace<Dimensions>& work, const std::array<double, 3>& x, std::size_t index,
                          GridInterpolationReport& report) {
     auto& stencil = work.stencil;
-    stencil.select(x, reach);
+    stencil.select(x, support_radius);
     stencil.evaluate_kernel();
     StencilOrder order = StencilOrder::none;
     if (stencil.nearest() <= covered_distance || stencil.filled(volume) >= 0.5)
@@ -109,20 +109,20 @@ GridInterpolationReport interpolate(const UniformGrid& grid, const GridInterpola
   return total;
 }
 
-void require_consistent(const UniformGrid& grid, const GridInterpolationInput& particles, double reach,
+void require_consistent(const UniformGrid& grid, const GridInterpolationInput& particles, double support_radius,
                         std::span<double* const> values, std::span<std::uint8_t> mask) {
   require_valid(grid);
-  if (!(particles.spacing > 0) || !std::isfinite(reach) || !(reach > 0))
+  if (!(particles.spacing > 0) || !std::isfinite(support_radius) || !(support_radius > 0))
     throw InputError("interpolation to a grid was given a particle spacing of " + std::to_string(particles.spacing) +
-                     " and a support of " + std::to_string(reach) + "; expected positive numbers");
+                     " and a support of " + std::to_string(support_radius) + "; expected positive numbers");
   for (int axis = 0; axis < grid.dimensions; ++axis) {
     const std::string name(1, "xyz"[axis]);
     if (particles.position[axis].size() != particles.position[0].size())
       throw InputError("interpolation to a grid was given " + std::to_string(particles.position[axis].size()) + " " +
                        name + " coordinates; expected " + std::to_string(particles.position[0].size()));
-    if (particles.periodic[axis] && grid.length(axis) < reach)
+    if (particles.periodic[axis] && grid.length(axis) < support_radius)
       throw InputError("the box is " + std::to_string(grid.length(axis)) + " long along periodic " + name +
-                       "; interpolation to a grid needs at least its support of " + std::to_string(reach) +
+                       "; interpolation to a grid needs at least its support of " + std::to_string(support_radius) +
                        ": use a longer box or a smaller particle spacing");
   }
   if (values.size() != particles.fields.size())
@@ -138,10 +138,11 @@ void require_consistent(const UniformGrid& grid, const GridInterpolationInput& p
 GridInterpolationReport interpolate_to_grid(const UniformGrid& grid, const GridInterpolationInput& particles,
                                             std::span<double* const> values, std::span<std::uint8_t> mask,
                                             const GridInterpolationOptions& options) {
-  const double reach = options.support * particles.spacing;
-  require_consistent(grid, particles, reach, values, mask);
-  return grid.dimensions == 2 ? interpolate<2>(grid, particles, reach, options.largest_amplification, values, mask)
-                              : interpolate<3>(grid, particles, reach, options.largest_amplification, values, mask);
+  const double support_radius = options.support * particles.spacing;
+  require_consistent(grid, particles, support_radius, values, mask);
+  return grid.dimensions == 2
+             ? interpolate<2>(grid, particles, support_radius, options.largest_amplification, values, mask)
+             : interpolate<3>(grid, particles, support_radius, options.largest_amplification, values, mask);
 }
 
 }  // namespace spume

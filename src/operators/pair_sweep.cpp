@@ -3,7 +3,7 @@
 
 namespace spume {
 
-float* Records::prepare(const SweepContext& context, int payload) {
+float* PackedNeighbours::prepare(const SweepContext& context, int payload) {
   const NeighbourList& list = *context.list;
   const int dimensions = context.dimensions;
   const int width = record_width(dimensions, payload);

@@ -9,14 +9,14 @@
 
 namespace spume {
 
-ParticleBins::ParticleBins(const UniformGrid& box, std::array<bool, 3> periodic, double reach,
+ParticleBins::ParticleBins(const UniformGrid& box, std::array<bool, 3> periodic, double support_radius,
                            const std::array<std::span<const double>, 3>& position)
     : dimensions_(box.dimensions), periodic_(periodic) {
   const std::size_t particles = position[0].size();
   for (int axis = 0; axis < dimensions_; ++axis) {
     lower_[axis] = box.lower[axis];
     length_[axis] = box.length(axis);
-    cells_[axis] = static_cast<std::size_t>(std::clamp(length_[axis] / reach, 1.0, 65536.0));
+    cells_[axis] = static_cast<std::size_t>(std::clamp(length_[axis] / support_radius, 1.0, 65536.0));
   }
   // A large, mostly empty box must not cost more cells than the particles and the grid justify.
   const std::size_t most_cells = 64 + 4 * particles + box.size();

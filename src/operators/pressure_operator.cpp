@@ -14,27 +14,27 @@ constexpr std::size_t block = 256;
 template <int dimensions, class Kernel>
 void apply_rows(const SweepContext& context, const float* records, const PressureMatrix& matrix,
                 [[maybe_unused]] const float* x, [[maybe_unused]] const float* weight_sum, const float* w, float* y,
-                PressureDots* partial) {
+                Dots* partial) {
   constexpr int width = record_width(dimensions, 1);
   const NeighbourList& list = *context.list;
   const KernelScale<dimensions, Kernel> common(context);
   const auto volume = static_cast<float>(context.volume);
   const float common_factor = -2 * common.gradient * volume;
   parallel_blocks_dynamic(list.particles(), block, [&](std::size_t b, std::size_t first, std::size_t last) {
-    PressureDots dots;
+    Dots dots;
     for (std::size_t i = first; i < last; ++i) {
       if (matrix.masked != nullptr && matrix.masked[i] != 0) {
         y[i] = 0;
         continue;
       }
       float value = 0;
-      if constexpr (is_varying<Kernel>) {
+      if constexpr (is_variable_h<Kernel>) {
         const KernelScale<dimensions, Kernel> scale = common.at(context, i);
         f32n sum{};
         for_each_batch<dimensions, 1>(list, records, i, scale.inverse_h,
                                       [&](const auto& batch) { sum = sum + Kernel::f(batch.q) * batch.payload[0]; });
         const float factor = -2 * scale.gradient * volume * matrix.row[i];
-        value = factor * (weight_sum[i] * x[i] - simd::sum(sum)) + volume * matrix.extra[i] * x[i];
+        value = factor * (weight_sum[i] * x[i] - simd::sum(sum)) + volume * matrix.diagonal_shift[i] * x[i];
       } else {
         const float own_value = records[i * width + dimensions];
         const f32n own = simd::splat<f32n>(own_value);
@@ -42,7 +42,7 @@ void apply_rows(const SweepContext& context, const float* records, const Pressur
         for_each_batch<dimensions, 1>(list, records, i, common.inverse_h, [&](const auto& batch) {
           sum = sum + Kernel::f(batch.q) * (own - batch.payload[0]);
         });
-        value = common_factor * simd::sum(sum) + volume * matrix.extra[i] * own_value;
+        value = common_factor * simd::sum(sum) + volume * matrix.diagonal_shift[i] * own_value;
       }
       y[i] = value;
       dots.wy += double{w[i]} * value;
@@ -65,7 +65,7 @@ void double_rows(const SweepContext& context, const float* records, const Pressu
     if (matrix.masked != nullptr && matrix.masked[i] != 0) return;
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
     float factor = -2 * scale.gradient * volume;
-    if constexpr (is_varying<Kernel>) factor *= matrix.row[i];
+    if constexpr (is_variable_h<Kernel>) factor *= matrix.row[i];
     const float* own = records + i * width + dimensions;
     const f64n high = simd::to_f64_low(simd::splat<f32n>(own[0]));
     f64n sum_low{}, sum_high{};
@@ -101,7 +101,7 @@ void sum_weights(const SweepContext& context, const float* records, float* sum) 
 
 }  // namespace
 
-void PressureOperator::bind(const SweepContext& context, Records& records, const PressureMatrix& matrix) {
+void PressureOperator::bind(const SweepContext& context, PackedNeighbours& records, const PressureMatrix& matrix) {
   context_ = context;
   records_ = &records;
   matrix_ = matrix;
@@ -111,11 +111,11 @@ void PressureOperator::bind(const SweepContext& context, Records& records, const
   float* values = records.prepare(context, 1);
   pack_scalar(context, values, record_width(context.dimensions, 1), 0, matrix.weight);
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    if constexpr (is_varying<Kernel>) sum_weights<Kernel>(context, values, weight_sum_.data());
+    if constexpr (is_variable_h<Kernel>) sum_weights<Kernel>(context, values, weight_sum_.data());
   });
 }
 
-PressureDots PressureOperator::apply(std::span<const float> x, std::span<float> y, std::span<const float> w) {
+Dots PressureOperator::apply(std::span<const float> x, std::span<float> y, std::span<const float> w) {
   float* records = records_->prepare(context_, 1);
   const std::size_t n = size();
   // x twice, extra, w and y; the mask; weights, rows and their sums.
@@ -135,7 +135,7 @@ PressureDots PressureOperator::apply(std::span<const float> x, std::span<float> 
     apply_rows<dimensions, Kernel>(context_, records, matrix_, x.data(), weight_sum_.data(), w.data(), y.data(),
                                    partial_.data());
   });
-  PressureDots total;
+  Dots total;
   for (const auto& part : partial_) {
     total.wy += part.wy;
     total.yy += part.yy;
@@ -168,7 +168,7 @@ void PressureOperator::residual(std::span<const double> q, std::span<const doubl
   parallel_for(n, [&](std::size_t i) { r[i] = 0; });
   with_kernel(context_, [&]<int dimensions, class Kernel>() {
     double_rows<dimensions, Kernel, true>(context_, records, matrix_, [&](std::size_t i, double pairs) {
-      r[i] = b[i] - (pairs + double{volume * matrix_.extra[i]} * q[i]);
+      r[i] = b[i] - (pairs + double{volume * matrix_.diagonal_shift[i]} * q[i]);
     });
   });
 }
@@ -184,7 +184,7 @@ void PressureOperator::subtract_product(double scale, std::span<const float> x, 
   const auto volume = static_cast<float>(context_.volume);
   with_kernel(context_, [&]<int dimensions, class Kernel>() {
     double_rows<dimensions, Kernel, false>(context_, records, matrix_, [&](std::size_t i, double pairs) {
-      r[i] -= scale * (pairs + double{volume * matrix_.extra[i]} * x[i]);
+      r[i] -= scale * (pairs + double{volume * matrix_.diagonal_shift[i]} * x[i]);
     });
   });
 }

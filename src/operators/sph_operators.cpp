@@ -19,7 +19,7 @@ constexpr int symmetric_index(int a, int c) {
 // Volumes of the particles as the last payload of a sweep under a varying kernel.
 template <class Kernel>
 void pack_volumes(const SweepContext& context, float* records, int width, int slot) {
-  if constexpr (is_varying<Kernel>) pack_scalar(context, records, width, slot, context.volume_ratio);
+  if constexpr (is_variable_h<Kernel>) pack_scalar(context, records, width, slot, context.volume_ratio);
 }
 
 // The corrected vector L v of particle i.
@@ -40,9 +40,9 @@ struct DifferenceBounds {
 
 // store(i, d u_a / d x_c as [a][c], bounds) for every particle; without `bounded` the bounds are zero.
 template <int dimensions, class Kernel, bool filter, bool bounded, class Store>
-void velocity_gradient(const SweepContext& context, Records& records_, const std::array<const double*, 3>& velocity,
-                       const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
-                       const std::array<float*, 3>& out, Store&& store) {
+void velocity_gradient(const SweepContext& context, PackedNeighbours& records_,
+                       const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
+                       const std::array<const float*, 6>& correction, const std::array<float*, 3>& out, Store&& store) {
   const NeighbourList& list = *context.list;
   constexpr int payload = dimensions + volume_slots<Kernel>;
   float* records = records_.prepare(context, payload);
@@ -122,10 +122,10 @@ void store_gradient(const VelocityGradientOut& out, std::size_t i,
 }
 
 template <int dimensions, class Kernel>
-void shift_curvature(const SweepContext& context, Records& records_, const std::array<const float*, 9>& gradient,
-                     const VelocityImageRule& rule, const std::vector<std::array<float, 3>>& reflection,
-                     const std::array<const float*, 3>& shift, const std::array<const float*, 6>& correction,
-                     const std::array<float*, 3>& out) {
+void shift_curvature(const SweepContext& context, PackedNeighbours& records_,
+                     const std::array<const float*, 9>& gradient, const VelocityImageRule& rule,
+                     const std::vector<std::array<float, 3>>& reflection, const std::array<const float*, 3>& shift,
+                     const std::array<const float*, 6>& correction, const std::array<float*, 3>& out) {
   constexpr int entries = dimensions * dimensions;
   constexpr int payload = entries + volume_slots<Kernel>;
   constexpr int width = record_width(dimensions, payload);
@@ -171,7 +171,7 @@ void shift_curvature(const SweepContext& context, Records& records_, const std::
 }
 
 template <int dimensions, class Kernel, bool stress>
-void viscous(const SweepContext& context, Records& records_, const std::array<const double*, 3>& velocity,
+void viscous(const SweepContext& context, PackedNeighbours& records_, const std::array<const double*, 3>& velocity,
              const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out) {
   const NeighbourList& list = *context.list;
   constexpr int payload = dimensions + 1 + volume_slots<Kernel>;
@@ -211,9 +211,10 @@ void viscous(const SweepContext& context, Records& records_, const std::array<co
 }
 
 template <int dimensions, class Kernel>
-void divergence_of(const SweepContext& context, Records& records_, const std::array<const double*, 3>& velocity,
-                   const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
-                   const double* potential, double* divergence, float* negative_laplacian) {
+void divergence_of(const SweepContext& context, PackedNeighbours& records_,
+                   const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
+                   const std::array<const float*, 6>& correction, const double* potential, double* divergence,
+                   float* negative_laplacian) {
   const NeighbourList& list = *context.list;
   constexpr int payload = dimensions + 1 + volume_slots<Kernel>;
   float* records = records_.prepare(context, payload);
@@ -250,7 +251,7 @@ void divergence_of(const SweepContext& context, Records& records_, const std::ar
 }
 
 template <int dimensions, class Kernel>
-void gradient_of(const SweepContext& context, Records& records_, const double* values, double reference,
+void gradient_of(const SweepContext& context, PackedNeighbours& records_, const double* values, double reference,
                  const std::array<const float*, 6>& correction, const std::array<float*, 3>& out) {
   const NeighbourList& list = *context.list;
   const std::size_t n = list.particles();
@@ -282,7 +283,7 @@ void gradient_of(const SweepContext& context, Records& records_, const double* v
 
 // particle_at(s): the s-th of `count` particles to filter.
 template <int dimensions, class Kernel, class ParticleAt>
-void filter_listed(const SweepContext& context, Records& records_, const std::array<const float*, 3>& values,
+void filter_listed(const SweepContext& context, PackedNeighbours& records_, const std::array<const float*, 3>& values,
                    const std::vector<std::array<float, 3>>& reflection, std::size_t count, ParticleAt&& particle_at,
                    const std::array<float*, 3>& out) {
   const NeighbourList& list = *context.list;
@@ -312,7 +313,7 @@ void filter_listed(const SweepContext& context, Records& records_, const std::ar
 
 // The scalars from `first_scalar` on, of which image_value counts all.
 template <int dimensions, class Kernel, int count>
-void filter_some(const SweepContext& context, Records& records_, std::span<const float* const> all_values,
+void filter_some(const SweepContext& context, PackedNeighbours& records_, std::span<const float* const> all_values,
                  std::span<float* const> all_out, std::size_t first_scalar, const ImageValue& image_value) {
   const auto values = all_values.subspan(first_scalar, count);
   const auto out = all_out.subspan(first_scalar, count);
@@ -348,7 +349,7 @@ void filter_some(const SweepContext& context, Records& records_, std::span<const
 
 }  // namespace
 
-void velocity_gradient_sweep(const SweepContext& context, Records& records,
+void velocity_gradient_sweep(const SweepContext& context, PackedNeighbours& records,
                              const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
                              const std::array<const float*, 6>& correction, const VelocityGradientOut& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
@@ -371,8 +372,9 @@ void velocity_gradient_sweep(const SweepContext& context, Records& records,
   });
 }
 
-void gradient_trace_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
-                          const VelocityImageRule& rule, const std::array<const float*, 6>& correction, float* trace) {
+void gradient_trace_sweep(const SweepContext& context, PackedNeighbours& records,
+                          const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
+                          const std::array<const float*, 6>& correction, float* trace) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     VelocityGradientOut out;
     out.trace = trace;
@@ -383,8 +385,9 @@ void gradient_trace_sweep(const SweepContext& context, Records& records, const s
   });
 }
 
-void shift_curvature_sweep(const SweepContext& context, Records& records, const std::array<const float*, 9>& gradient,
-                           const VelocityImageRule& rule, const std::vector<std::array<float, 3>>& reflection,
+void shift_curvature_sweep(const SweepContext& context, PackedNeighbours& records,
+                           const std::array<const float*, 9>& gradient, const VelocityImageRule& rule,
+                           const std::vector<std::array<float, 3>>& reflection,
                            const std::array<const float*, 3>& shift, const std::array<const float*, 6>& correction,
                            const std::array<float*, 3>& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
@@ -392,7 +395,7 @@ void shift_curvature_sweep(const SweepContext& context, Records& records, const 
   });
 }
 
-void viscous_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
+void viscous_sweep(const SweepContext& context, PackedNeighbours& records, const std::array<const double*, 3>& velocity,
                    const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out, bool stress) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     if (stress)
@@ -402,23 +405,25 @@ void viscous_sweep(const SweepContext& context, Records& records, const std::arr
   });
 }
 
-void divergence_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
-                      const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
-                      const double* potential, double* divergence, float* negative_laplacian) {
+void divergence_sweep(const SweepContext& context, PackedNeighbours& records,
+                      const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
+                      const std::array<const float*, 6>& correction, const double* potential, double* divergence,
+                      float* negative_laplacian) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     divergence_of<dimensions, Kernel>(context, records, velocity, rule, correction, potential, divergence,
                                       negative_laplacian);
   });
 }
 
-void gradient_sweep(const SweepContext& context, Records& records, const double* values, double reference,
+void gradient_sweep(const SweepContext& context, PackedNeighbours& records, const double* values, double reference,
                     const std::array<const float*, 6>& correction, const std::array<float*, 3>& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     gradient_of<dimensions, Kernel>(context, records, values, reference, correction, out);
   });
 }
 
-void filter_vector_subset(const SweepContext& context, Records& records, const std::array<const float*, 3>& values,
+void filter_vector_subset(const SweepContext& context, PackedNeighbours& records,
+                          const std::array<const float*, 3>& values,
                           const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> subset,
                           const std::array<float*, 3>& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
@@ -428,7 +433,7 @@ void filter_vector_subset(const SweepContext& context, Records& records, const s
   });
 }
 
-void filter_vector(const SweepContext& context, Records& records, const std::array<const float*, 3>& values,
+void filter_vector(const SweepContext& context, PackedNeighbours& records, const std::array<const float*, 3>& values,
                    const std::vector<std::array<float, 3>>& reflection, const std::array<float*, 3>& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     filter_listed<dimensions, Kernel>(
@@ -436,7 +441,7 @@ void filter_vector(const SweepContext& context, Records& records, const std::arr
   });
 }
 
-void filter_scalars(const SweepContext& context, Records& records, std::span<const float* const> values,
+void filter_scalars(const SweepContext& context, PackedNeighbours& records, std::span<const float* const> values,
                     std::span<float* const> out, const ImageValue& image_value) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     std::size_t k = 0;

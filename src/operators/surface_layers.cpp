@@ -94,11 +94,11 @@ template <class Batch, std::size_t dimensions>
 }
 
 template <int dimensions, class Kernel>
-void find_own_depths(const SweepContext& context, Records& records_, const SurfaceEdge& edge,
+void find_own_depths(const SweepContext& context, PackedNeighbours& records_, const SurfaceEdge& edge,
                      std::span<float> of_particle) {
   constexpr int payload = volume_slots<Kernel>;
   float* records = records_.prepare(context, payload);
-  if constexpr (is_varying<Kernel>)
+  if constexpr (is_variable_h<Kernel>)
     pack_scalar(context, records, record_width(dimensions, payload), 0, context.volume_ratio);
   const KernelScale<dimensions, Kernel> common(context);
   const float of_lattice = lattice_column<dimensions>(), own_column = column_at<dimensions>(0, 0);
@@ -112,22 +112,22 @@ void find_own_depths(const SweepContext& context, Records& records_, const Surfa
       return;
     }
     for (float& component : normal) component *= per_spacing;
-    f32n held{};
+    f32n pressure_fixed{};
     for_each_batch<dimensions, payload>(*context.list, records, i, common.at(context, i).inverse_h, [&](const auto& b) {
       f32n r2{};
       for (int axis = 0; axis < dimensions; ++axis) r2 = r2 + b.d[axis] * b.d[axis];
       const f32n below = -dot(b.d, normal);
       const f32n aside = simd::sqrt(simd::max(r2 * (per_spacing * per_spacing) - below * below, zero()));
       const f32n part = times_volume<Kernel>(column<dimensions>(aside, below), b);
-      held = held + (b.q < beyond_neighbours ? part : zero());
+      pressure_fixed = pressure_fixed + (b.q < beyond_neighbours ? part : zero());
     });
-    const float sum = own_volume<Kernel>(context, i) * own_column + simd::sum(held);
+    const float sum = own_volume<Kernel>(context, i) * own_column + simd::sum(pressure_fixed);
     of_particle[i] = spacing * std::clamp(0.5F + sum - of_lattice, shallowest, deepest);
   });
 }
 
 template <int dimensions, class Kernel>
-void share_depths(const SweepContext& context, Records& records_, const SurfaceEdge& edge,
+void share_depths(const SweepContext& context, PackedNeighbours& records_, const SurfaceEdge& edge,
                   std::span<const float> of_particle, std::span<float> depth) {
   float* records = records_.prepare(context, 1);
   pack_scalar(context, records, record_width(dimensions, 1), 0, of_particle.data());
@@ -157,7 +157,7 @@ void share_depths(const SweepContext& context, Records& records_, const SurfaceE
 
 // c n of shared_along_normal, 0 where no edge particle is around.
 template <int dimensions, class Kernel>
-void find_layer_normals(const SweepContext& context, Records& records_, double spacing,
+void find_layer_normals(const SweepContext& context, PackedNeighbours& records_, double spacing,
                         const std::array<const float*, 3>& unit_normal,
                         const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> upper,
                         std::span<std::array<float, 3>> out) {
@@ -194,7 +194,7 @@ void find_layer_normals(const SweepContext& context, Records& records_, double s
 
 // From c n to the shared part of the vector.
 template <int dimensions, class Kernel>
-void share_along(const SweepContext& context, Records& records_, double spacing,
+void share_along(const SweepContext& context, PackedNeighbours& records_, double spacing,
                  const std::array<const float*, 3>& vector, const std::vector<std::array<float, 3>>& reflection,
                  std::span<const std::int32_t> upper, std::span<std::array<float, 3>> out) {
   float* records = records_.prepare(context, dimensions);
@@ -225,8 +225,8 @@ void share_along(const SweepContext& context, Records& records_, double spacing,
 
 }  // namespace
 
-void edge_depths(const SweepContext& context, Records& records, const SurfaceEdge& edge, std::span<float> of_particle,
-                 std::span<float> depth) {
+void edge_depths(const SweepContext& context, PackedNeighbours& records, const SurfaceEdge& edge,
+                 std::span<float> of_particle, std::span<float> depth) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     parallel_for(of_particle.size(), [&](std::size_t i) { of_particle[i] = 0; });
     find_own_depths<dimensions, Kernel>(context, records, edge, of_particle);
@@ -257,7 +257,7 @@ void mark_upper_layers(const SweepContext& context, double spacing, std::span<co
   });
 }
 
-void shared_along_normal(const SweepContext& context, Records& records, double spacing,
+void shared_along_normal(const SweepContext& context, PackedNeighbours& records, double spacing,
                          const std::array<const float*, 3>& unit_normal, const std::array<const float*, 3>& vector,
                          const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> upper,
                          std::span<std::array<float, 3>> out) {

@@ -12,21 +12,15 @@ namespace {
 
 constexpr const char* axes[] = {"x", "y", "z"};
 
-std::vector<SeriesHeading> series_headings(const Method& method) {
-  std::vector<SeriesHeading> columns = {{"step", "1"}, {"t", "time"}, {"dt", "time"}};
-  for (const auto& column : method.series_columns()) columns.push_back({column.name, column.unit});
+std::vector<SeriesColumn> series_headings(const Method& method) {
+  std::vector<SeriesColumn> columns = {{"step", "1"}, {"t", "time"}, {"dt", "time"}};
+  for (const SeriesColumn& column : method.series_columns()) columns.push_back(column);
   columns.push_back({"retries", "steps refused so far"});
   return columns;
 }
 
-std::vector<SeriesHeading> headings_of(const RecordTable& table) {
-  std::vector<SeriesHeading> columns;
-  for (const auto& column : table.columns) columns.push_back({column.name, column.unit});
-  return columns;
-}
-
-std::vector<SeriesHeading> probe_headings(const LoadedCase& loaded) {
-  std::vector<SeriesHeading> columns = {{"t", "time"}};
+std::vector<SeriesColumn> probe_headings(const LoadedCase& loaded) {
+  std::vector<SeriesColumn> columns = {{"t", "time"}};
   const int dimensions = loaded.scene.domain.dimensions;
   for (const auto& probe : loaded.options.probes) {
     if (probe.kind == ProbeKind::point || probe.kind == ProbeKind::plane) {
@@ -42,17 +36,17 @@ std::vector<SeriesHeading> probe_headings(const LoadedCase& loaded) {
   return columns;
 }
 
-const std::vector<SeriesHeading> line_headings = {{"t", "time"},
-                                                  {"name", ""},
-                                                  {"s", "length"},
-                                                  {"x", "length"},
-                                                  {"y", "length"},
-                                                  {"z", "length"},
-                                                  {"velocity_x", "velocity"},
-                                                  {"velocity_y", "velocity"},
-                                                  {"velocity_z", "velocity"},
-                                                  {"pressure", "pressure"}};
-const std::vector<SeriesHeading> spectrum_headings = {
+const std::vector<SeriesColumn> line_headings = {{"t", "time"},
+                                                 {"name", ""},
+                                                 {"s", "length"},
+                                                 {"x", "length"},
+                                                 {"y", "length"},
+                                                 {"z", "length"},
+                                                 {"velocity_x", "velocity"},
+                                                 {"velocity_y", "velocity"},
+                                                 {"velocity_z", "velocity"},
+                                                 {"pressure", "pressure"}};
+const std::vector<SeriesColumn> spectrum_headings = {
     {"t", "time"}, {"wavenumber", "1/length"}, {"energy", "velocity^2 length"}};
 
 void probe_values(Method& method, const LoadedCase& loaded, std::vector<double>& row) {
@@ -87,22 +81,10 @@ void probe_values(Method& method, const LoadedCase& loaded, std::vector<double>&
   }
 }
 
-std::vector<SeriesHeading> distribution_columns(const Distribution& distribution) {
-  std::vector<SeriesHeading> columns = {{"t", "time"}};
-  for (const auto& column : distribution.columns) columns.push_back({column.name, column.unit});
+std::vector<SeriesColumn> distribution_columns(const Distribution& distribution) {
+  std::vector<SeriesColumn> columns = {{"t", "time"}};
+  columns.insert(columns.end(), distribution.columns.begin(), distribution.columns.end());
   return columns;
-}
-
-GridSnapshot snapshot_of(const GridFamily& family) {
-  GridSnapshot snapshot{family.points, family.origin, family.spacing, {}};
-  for (const auto& field : family.fields) snapshot.fields.push_back({field.name, field.components});
-  return snapshot;
-}
-
-ParticleSnapshot snapshot_of(const Family& family) {
-  ParticleSnapshot snapshot{family.size, family.position, {}};
-  for (const auto& field : family.fields) snapshot.fields.push_back({field.name, field.f64, field.i64});
-  return snapshot;
 }
 
 }  // namespace
@@ -144,11 +126,11 @@ Recorder::Recorder(std::filesystem::path folder, const LoadedCase& loaded, const
       std::filesystem::remove(folder_ / (distribution.name + ".csv"));
   }
   for (const RecordTable& own : method_tables_)
-    if (resume_->count(own.name) != 0) table(own.name, "", headings_of(own));
+    if (resume_->count(own.name) != 0) table(own.name, "", own.columns);
 }
 
 SeriesFile& Recorder::table(const std::string& name, const std::string& title,
-                            const std::vector<SeriesHeading>& columns) {
+                            const std::vector<SeriesColumn>& columns) {
   const auto found = tables_.find(name);
   if (found != tables_.end()) return found->second;
   const auto path = folder_ / (name + ".csv");
@@ -209,13 +191,13 @@ void Recorder::snapshot(Method& method) {
       const VtkhdfFile::Options options{loaded_.options.output.h5part_view, notes()};
       found = families_.emplace(name, VtkhdfFile(folder_ / name, options)).first;
     }
-    found->second.append(method.time(), snapshot_of(family));
+    found->second.append(method.time(), family);
   }
   for (const auto& family : method.grid_snapshot()) {
     const std::string name = family.name + ".vtkhdf";
     auto found = grids_.find(name);
     if (found == grids_.end()) found = grids_.emplace(name, VtkhdfGridFile(folder_ / name, notes())).first;
-    found->second.append(method.time(), snapshot_of(family));
+    found->second.append(method.time(), family);
   }
   lines(method);
   own_tables(method, false);
@@ -226,7 +208,7 @@ void Recorder::own_tables(Method& method, bool with_series) {
     if (own.with_series != with_series) continue;
     method.table_rows(own.name, own_rows_);
     if (own_rows_.empty()) continue;
-    SeriesFile& file = table(own.name, loaded_.options.title + ": " + own.title, headings_of(own));
+    SeriesFile& file = table(own.name, loaded_.options.title + ": " + own.title, own.columns);
     const std::size_t width = own.columns.size();
     for (std::size_t k = 0; k < own_rows_.size(); k += width) file.row(std::span(own_rows_).subspan(k, width));
   }

@@ -11,7 +11,7 @@
 namespace spume {
 namespace {
 
-std::size_t index_of(const std::string& name, const std::vector<SeriesHeading>& columns) {
+std::size_t index_of(const std::string& name, const std::vector<SeriesColumn>& columns) {
   for (std::size_t i = 0; i < columns.size(); ++i)
     if (columns[i].name == name) return i;
   throw std::logic_error("an invariant is about '" + name + "', which is no column of the series");
@@ -26,7 +26,7 @@ constexpr std::size_t numbers_seen = 4;
 
 }  // namespace
 
-InvariantWatch::InvariantWatch(std::vector<Invariant> invariants, const std::vector<SeriesHeading>& columns) {
+InvariantWatch::InvariantWatch(std::vector<Invariant> invariants, const std::vector<SeriesColumn>& columns) {
   for (Invariant& one : invariants) {
     const std::size_t column = index_of(one.column, columns);
     const std::size_t scale = one.scale_column.empty() ? column : index_of(one.scale_column, columns);

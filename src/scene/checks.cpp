@@ -206,12 +206,12 @@ void check_solids(const Draft& draft, Problems& problems) {
       const bool usable = draft.usable("resolution.spacing") && draft.usable("resolution.smoothing_ratio") &&
                           draft.usable("resolution.kernel");
       const bool both_faces = solid.lower[a] > draft.lower[a] && solid.upper[a] < draft.upper[a];
-      const double reach = support_ratio(draft.options.resolution) * draft.options.spacing;
+      const double support_radius = support_ratio(draft.options.resolution) * draft.options.spacing;
       const double gap = std::min(solid.lower[a] - draft.lower[a], draft.upper[a] - solid.upper[a]);
       const bool spans = solid.lower[a] <= draft.lower[a] && solid.upper[a] >= draft.upper[a];
-      if (usable && draft.periodic[a] && !spans && gap < reach * (1 - 1e-9)) {
+      if (usable && draft.periodic[a] && !spans && gap < support_radius * (1 - 1e-9)) {
         problems.add(*draft.node(name), name + " is " + brief(std::max(gap, 0.0)) + " away from a periodic side in " +
-                                            axis_names[a] + ", within the kernel support " + brief(reach) +
+                                            axis_names[a] + ", within the kernel support " + brief(support_radius) +
                                             ", and its mirror images would end there; move the sides of the domain, or "
                                             "let the box span it");
         continue;

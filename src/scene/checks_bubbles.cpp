@@ -234,7 +234,7 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
   const double volume = liquid.volume * static_cast<double>(liquid.size());
   // Wet: some particle within the diagonal of a lattice cell.
   const auto wet = [&](Vec3 r) {
-    const double reach = 1.75 * scene.spacing;
+    const double support_radius = 1.75 * scene.spacing;
     for (int a = 0; a < 3; ++a)
       if (scene.domain.periodic(a))
         r[a] = wrap_periodic(r[a], scene.domain.lower[a], scene.domain.upper[a] - scene.domain.lower[a]);
@@ -244,7 +244,7 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
                const double d = liquid.position[a][i] - r[a];
                distance2 += d * d;
              }
-             return distance2 < reach * reach ? 1.0 : 0.0;
+             return distance2 < support_radius * support_radius ? 1.0 : 0.0;
            }) > 0;
   };
   // The first of the places that lies in no liquid.

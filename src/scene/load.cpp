@@ -10,12 +10,12 @@
 
 #include "checks.hpp"
 #include "fill.hpp"
-#include "idle.hpp"
 #include "reader.hpp"
 #include "resolved.hpp"
 #include "spume/core/machine.hpp"
 #include "spume/scene/expression.hpp"
 #include "spume/scene/memory.hpp"
+#include "unused_options.hpp"
 
 namespace spume {
 namespace {
@@ -333,7 +333,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   }
   note_places(document, "", file, draft.options.places);
   draft.options.resolved = resolved_text(document, draft);
-  draft.options.idle = idle_keys(draft, file);
+  draft.options.unused_options = unused_options(draft, file);
   loaded.options = std::move(draft.options);
   return loaded;
 }

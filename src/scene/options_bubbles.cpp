@@ -42,9 +42,9 @@ Section bubbles() {
           word_option("integrator", "\"stable\"", "stable: any step; substep: explicit, spacing / radius sub-steps",
                       group, &B::integrator,
                       {{"stable", BubbleIntegrator::stable}, {"substep", BubbleIntegrator::substep}}),
-          word_option("closure", "\"mixture-pressure\"",
-                      "pressure force on the liquid: -grad(alpha p) or -alpha grad p", group, &B::closure,
-                      {{"mixture-pressure", BubbleClosure::mixture_pressure}, {"two-fluid", BubbleClosure::two_fluid}}),
+          word_option("momentum_form", "\"mixture-pressure\"",
+                      "pressure force on the liquid: -grad(alpha p) or -alpha grad p", group, &B::momentum_form,
+                      {{"mixture-pressure", MomentumForm::mixture_pressure}, {"two-fluid", MomentumForm::two_fluid}}),
           word_option("surface_reaction", "\"surface\"",
                       "who holds the bubbles that brake below a surface: surface, which the liquid does not feel, or "
                       "the liquid around them, King (3.33)",

@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "spume/cli/programme.hpp"
+#include "spume/cli/program.hpp"
 #include "support/fake_method.hpp"
 
 namespace {
@@ -22,10 +22,10 @@ const std::vector<spume::OptionInfo>& fake_options() {
 
 int main(int argc, char** argv) {
   if (argc > 1 && std::strcmp(argv[1], "--as-spume") == 0) {
-    spume::restart_with_patient_threads(argc, argv);
+    spume::restart_with_openmp_environment(argc, argv);
     argv[1] = argv[0];
-    return spume::run_programme(argc - 1, argv + 1,
-                                {spume::test::load_fake_case, spume::test::make_fake_method, fake_options});
+    return spume::run_program(argc - 1, argv + 1,
+                              {spume::test::load_fake_case, spume::test::make_fake_method, fake_options});
   }
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();

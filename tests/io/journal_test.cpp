@@ -33,7 +33,7 @@ std::vector<double> values_of(std::int64_t step) {
 void append(VtkhdfFile& file) {
   const auto values = values_of(file.steps());
   file.append(static_cast<double>(file.steps()),
-              {particles, {values.data(), values.data()}, {{"pressure", {values.data()}, {}}}});
+              {"fluid", particles, {values.data(), values.data()}, {{"pressure", {values.data()}, {}}}});
 }
 
 std::vector<double> pressures(const std::filesystem::path& path) {

@@ -18,7 +18,7 @@ using test::contents;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 
-const std::vector<SeriesHeading> columns = {{"step", "1"}, {"energy", "J"}};
+const std::vector<SeriesColumn> columns = {{"step", "1"}, {"energy", "J"}};
 
 void write_rows(SeriesFile& file, int first, int last) {
   for (int i = first; i < last; ++i) {
@@ -77,7 +77,7 @@ TEST(Series, ResumeRefusesForeignColumnsAndMissingRows) {
     auto file = SeriesFile::create(folder / "series.csv", "A case", columns);
     write_rows(file, 0, 3);
   }
-  const auto refusal = [&](const std::vector<SeriesHeading>& wanted, std::int64_t rows) -> std::string {
+  const auto refusal = [&](const std::vector<SeriesColumn>& wanted, std::int64_t rows) -> std::string {
     try {
       SeriesFile::resume(folder / "series.csv", wanted, rows);
     } catch (const FileError& error) {

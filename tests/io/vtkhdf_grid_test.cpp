@@ -12,7 +12,7 @@ namespace {
 
 struct Fields {
   std::vector<float> a, b, c;
-  GridSnapshot snapshot{{3, 4, 5}, {0.5, 0, -1}, {0.1, 0.2, 0.3}, {}};
+  GridSnapshot snapshot{"fields", {3, 4, 5}, {0.5, 0, -1}, {0.1, 0.2, 0.3}, {}};
   explicit Fields(float shift) {
     for (int i = 0; i < 60; ++i) {
       a.push_back(static_cast<float>(i) + shift);

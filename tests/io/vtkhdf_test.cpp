@@ -32,7 +32,8 @@ struct Sample {
     }
   }
   ParticleSnapshot snapshot() const {
-    return {x.size(),
+    return {"fluid",
+            x.size(),
             {x.data(), y.data()},
             {{"velocity", {u.data(), v.data()}, {}}, {"pressure", {p.data()}, {}}, {"id", {}, {id.data()}}}};
   }

@@ -157,7 +157,7 @@ class Closures : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Closures, WhatParticlesReceiveIsWhatBubblesGive) {
   for (const std::string& text : {periodic_cube, stirred_tank}) {
-    Simulation run(text, {"bubbles.closure=\"" + GetParam() + "\""});
+    Simulation run(text, {"bubbles.momentum_form=\"" + GetParam() + "\""});
     for (int k = 0; k < 5; ++k) {
       run.steps(1, 0.005);
       const Vec3 given = bubbles_of(run).total_reaction();
@@ -173,7 +173,7 @@ TEST_P(Closures, WhatParticlesReceiveIsWhatBubblesGive) {
 
 // N bubbles at terminal velocity lift the mixture by N V g (1 - 1/beta), relative to the pure liquid.
 TEST_P(Closures, CountBuoyancyOnce) {
-  Simulation run(periodic_cube, {"bubbles.closure=\"" + GetParam() + "\""});
+  Simulation run(periodic_cube, {"bubbles.momentum_form=\"" + GetParam() + "\""});
   run.steps(30, 0.01);  // 0.3 is 100 relaxation times of these bubbles
   const double before = run.series().at("momentum_z");
   const double volume = bubbles_of(run).population().total_volume();
@@ -276,10 +276,10 @@ TEST(Bubbles, AtRestBelowASurfaceLeaveTheLiquidAtRest) {
     run.steps(100, 0.01);
     return std::array{lift, run.series().at("kinetic_energy") / energy};
   };
-  const auto held = lift_and_energy("surface"), printed = lift_and_energy("liquid");
-  EXPECT_NEAR(held[0], 0, 0.05);
+  const auto pressure_fixed = lift_and_energy("surface"), printed = lift_and_energy("liquid");
+  EXPECT_NEAR(pressure_fixed[0], 0, 0.05);
   EXPECT_NEAR(printed[0], 1, 0.01);
-  EXPECT_LT(held[1], 1);
+  EXPECT_LT(pressure_fixed[1], 1);
   EXPECT_GT(printed[1], 1.5);
 }
 

@@ -147,7 +147,7 @@ TEST(NumberDensity, IsLeftAloneBesideABox) {
       const double outside = std::max(std::abs((*liquid.intermediate[axis])[i] - 0.5) - 0.15, 0.0);
       outside2 += outside * outside;
     }
-    const bool beside = outside2 < liquid.grid.reach() * liquid.grid.reach();
+    const bool beside = outside2 < liquid.grid.support_radius() * liquid.grid.support_radius();
     ++(beside ? beside_box : elsewhere);
     EXPECT_EQ(change[i] == 0, beside);
   }

@@ -51,13 +51,13 @@ struct PreparedStep {
     les_sph::sort_particles(liquid);
     if (liquid.plan.images) les_sph::make_images(liquid, dt);
     les_sph::find_neighbours(liquid);
-    les_sph::measure_geometry(liquid);
+    les_sph::measure_kernel_moments(liquid);
     if (liquid.plan.free_surface) les_sph::find_surface(liquid);
     if (liquid.plan.velocity_gradient) les_sph::differentiate_velocity(liquid);
     les_sph::predict_velocity(liquid, dt);
   }
 
-  bool held(std::size_t i) const { return outside(i) == 1 && liquid.uncorrected[i] != 0; }
+  bool pressure_fixed(std::size_t i) const { return outside(i) == 1 && liquid.uncorrected[i] != 0; }
 
   // 1 - b: by how much a particle lies at the surface.
   double outside(std::size_t i) const { return liquid.plan.free_surface ? 1 - double{liquid.interior_weight[i]} : 0.0; }
@@ -94,7 +94,7 @@ struct PreparedStep {
     }
     const double spacing = loaded.scene.spacing;
     const double depth = layers.depth(i);
-    const double missing = liquid.lattice.coupling / (spacing * spacing) - twin.coupling(i).value;
+    const double missing = liquid.lattice.laplacian_diagonal / (spacing * spacing) - twin.laplacian_diagonal(i).value;
     const double mirrored = 2 * std::sqrt(size2) / liquid.smoothing_length / depth;
     return {outside(i) * std::max({mirrored, missing, 0.0}), size2 > 0 ? -depth * along / std::sqrt(size2) : 0.0};
   }
@@ -128,14 +128,14 @@ struct PreparedStep {
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t i = 0; i < n; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      if (held(i)) {
+      if (pressure_fixed(i)) {
         entries.emplace_back(row, row, 1.0);
         b[row] = potential(i);
         continue;
       }
       const auto [surface_coupling, hydrostatic] = surface_row(twin, layers, i);
-      const double extra = helmholtz() * row_scale(i) + surface_coupling;
-      double diagonal = liquid.volume * extra;
+      const double diagonal_shift = helmholtz() * row_scale(i) + surface_coupling;
+      double diagonal = liquid.volume * diagonal_shift;
       twin.pressure_couplings(i, [&](std::size_t j, double a) {
         entries.emplace_back(row, static_cast<Eigen::Index>(j), a);
         diagonal -= a;
@@ -152,7 +152,7 @@ struct PreparedStep {
           for (int c = 0; c < d; ++c) divergence -= 0.5 * dt * gradient[r][c].value * gradient[c][r].value;
       }
       b[row] = liquid.volume * ((-divergence / dt + helmholtz() * (*liquid.pressure)[i]) * row_scale(i) +
-                                extra * potential(i) + surface_coupling * hydrostatic);
+                                diagonal_shift * potential(i) + surface_coupling * hydrostatic);
     }
     if (singular) b.array() -= b.mean();
     Eigen::SparseMatrix<double> matrix(b.size(), b.size());

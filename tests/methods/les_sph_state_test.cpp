@@ -175,8 +175,8 @@ TEST(LesSphAllocations, EveryArrayIsListed) {
     for (int k = 0; k < 4; ++k) method.step(0.001, ledger);
     double listed = 0;
     for (const ArrayInfo& array : method.arrays()) listed += array.bytes;
-    const double held = static_cast<double>(array_statistics().bytes) - before;
-    EXPECT_NEAR(listed, held, 0.01 * held) << text;
+    const double pressure_fixed = static_cast<double>(array_statistics().bytes) - before;
+    EXPECT_NEAR(listed, pressure_fixed, 0.01 * pressure_fixed) << text;
   }
 }
 

@@ -84,16 +84,16 @@ TEST(LesSphSurface, GradientOfALinearPressureIsExactOnADisorderedSurface) {
   les_sph::move_to_intermediate(liquid, 0);
   les_sph::sort_particles(liquid);
   les_sph::find_neighbours(liquid);
-  les_sph::measure_geometry(liquid);
+  les_sph::measure_kernel_moments(liquid);
   les_sph::find_surface(liquid);
   les_sph::predict_velocity(liquid, 0);
-  ASSERT_GT(liquid.edge_particles.size(), 20u);
+  ASSERT_GT(liquid.near_surface.size(), 20u);
 
   const double b[2] = {0.7, -1.3};
   for (std::size_t i = 0; i < liquid.size(); ++i)
     (*liquid.reduced_pressure)[i] = b[0] * (*liquid.intermediate[0])[i] + b[1] * (*liquid.intermediate[1])[i];
-  for (std::size_t k = 0; k < liquid.edge_particles.size(); ++k) {
-    const auto i = static_cast<std::size_t>(liquid.edge_particles[k]);
+  for (std::size_t k = 0; k < liquid.near_surface.size(); ++k) {
+    const auto i = static_cast<std::size_t>(liquid.near_surface[k]);
     double size = 0, along = 0;
     for (int axis = 0; axis < 2; ++axis) {
       const double n = (*liquid.normal[axis])[i];
@@ -101,13 +101,13 @@ TEST(LesSphSurface, GradientOfALinearPressureIsExactOnADisorderedSurface) {
       along += n * b[axis];
     }
     const double pressure =
-        les_sph::surface_row(liquid, k).hydrostatic_pressure - liquid.edge_depth[k] * along / std::sqrt(size);
+        les_sph::surface_row(liquid, k).hydrostatic_pressure - liquid.surface_depth[k] * along / std::sqrt(size);
     (*liquid.potential)[i] = (*liquid.reduced_pressure)[i] - pressure;
   }
   gradient_sweep(liquid.context, liquid.records, liquid.reduced_pressure->data(), 0, liquid.read_correction(),
                  liquid.write(liquid.acceleration));
   les_sph::complete_surface_gradient(liquid);
-  for (const std::int32_t i : liquid.edge_particles)
+  for (const std::int32_t i : liquid.near_surface)
     for (int axis = 0; axis < 2; ++axis) ASSERT_NEAR((*liquid.acceleration[axis])[i], b[axis], 1e-4);
 }
 
@@ -119,13 +119,13 @@ TEST(LesSphSurface, LatticeUnderAFlatSurfaceHasOneEdgeLayerHalfASpacingDeep) {
   les_sph::sort_particles(liquid);
   les_sph::make_images(liquid, 0);
   les_sph::find_neighbours(liquid);
-  les_sph::measure_geometry(liquid);
+  les_sph::measure_kernel_moments(liquid);
   les_sph::find_surface(liquid);
-  ASSERT_EQ(liquid.edge_particles.size(), 32u);
+  ASSERT_EQ(liquid.near_surface.size(), 32u);
   for (std::size_t k = 0; k < 32; ++k) {
-    EXPECT_NEAR(liquid.edge_depth[k], loaded.scene.spacing / 2, 1e-6);
-    EXPECT_NEAR((*liquid.intermediate[1])[static_cast<std::size_t>(liquid.edge_particles[k])],
-                -loaded.scene.spacing / 2, 1e-12);
+    EXPECT_NEAR(liquid.surface_depth[k], loaded.scene.spacing / 2, 1e-6);
+    EXPECT_NEAR((*liquid.intermediate[1])[static_cast<std::size_t>(liquid.near_surface[k])], -loaded.scene.spacing / 2,
+                1e-12);
   }
 }
 
@@ -145,10 +145,10 @@ TEST(LesSphSurface, ShiftMovesNoWholeLayerAlongTheNormal) {
     les_sph::sort_particles(liquid);
     les_sph::make_images(liquid, 0);
     les_sph::find_neighbours(liquid);
-    les_sph::measure_geometry(liquid);
+    les_sph::measure_kernel_moments(liquid);
     les_sph::find_surface(liquid);
     liquid.displacement = 1;
-    les_sph::choose_shift(liquid);
+    les_sph::compute_shift(liquid);
     for (std::size_t i = 0; i < liquid.size(); ++i)
       if ((*liquid.intermediate[1])[i] > -2 * dr)
         moved[kept ? 1 : 0] = std::max(moved[kept ? 1 : 0], std::abs(double{(*liquid.shift[1])[i]}) / dr);
@@ -181,13 +181,13 @@ std::vector<double> middle_depths(const std::string& text, double first_row, dou
   les_sph::move_to_intermediate(liquid, 0);
   les_sph::sort_particles(liquid);
   les_sph::find_neighbours(liquid);
-  les_sph::measure_geometry(liquid);
+  les_sph::measure_kernel_moments(liquid);
   les_sph::find_surface(liquid);
   std::vector<double> depths;
-  for (std::size_t k = 0; k < liquid.edge_particles.size(); ++k) {
-    const auto i = static_cast<std::size_t>(liquid.edge_particles[k]);
+  for (std::size_t k = 0; k < liquid.near_surface.size(); ++k) {
+    const auto i = static_cast<std::size_t>(liquid.near_surface[k]);
     const double x = (*liquid.intermediate[0])[i], y = (*liquid.intermediate[1])[i];
-    if (std::abs(x - 1) < 2 * dr && std::abs(y - 1) < 0.1 * dr) depths.push_back(liquid.edge_depth[k] / dr);
+    if (std::abs(x - 1) < 2 * dr && std::abs(y - 1) < 0.1 * dr) depths.push_back(liquid.surface_depth[k] / dr);
   }
   return depths;
 }

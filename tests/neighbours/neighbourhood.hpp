@@ -55,12 +55,12 @@ inline std::vector<Point> clustered_points(std::size_t n, int dimensions, double
   return points;
 }
 
-inline ImageRules unit_box_rules(int dimensions, double reach, ImageKind x, ImageKind y, ImageKind z) {
+inline ImageRules unit_box_rules(int dimensions, double support_radius, ImageKind x, ImageKind y, ImageKind z) {
   ImageRules rules;
   rules.dimensions = dimensions;
   rules.upper = {1, 1, 1};
   rules.sides = {{{x, x}, {y, y}, {z, z}}};
-  rules.reach = reach;
+  rules.support_radius = support_radius;
   return rules;
 }
 
@@ -78,10 +78,10 @@ struct Neighbourhood {
       : rules(image_rules), n(points.size()) {
     std::array<double, 3> lower = rules.lower, upper = rules.upper;
     for (int axis = 0; axis < 3; ++axis) {
-      lower[axis] -= rules.reach;
-      upper[axis] += rules.reach;
+      lower[axis] -= rules.support_radius;
+      upper[axis] += rules.support_radius;
     }
-    grid = CellGrid(rules.dimensions, lower, upper, rules.reach, n);
+    grid = CellGrid(rules.dimensions, lower, upper, rules.support_radius, n);
     const Array<double> px = column(points, 0), py = column(points, 1), pz = column(points, 2);
     table.build(grid, px.data(), py.data(), pz.data(), n);
     x = y = z = Array<double>(n);

@@ -132,7 +132,7 @@ TEST(CellGrid, RowRanksAreAPermutation) {
 TEST(CellGrid, LimitsTheCellsOfALargeEmptyDomain) {
   const CellGrid grid(3, {0, 0, 0}, {1000, 1000, 1000}, 0.1, 1000);
   EXPECT_LE(grid.cell_count(), 4 * 1000 + 1048576);
-  EXPECT_EQ(grid.reach(), 0.1);
+  EXPECT_EQ(grid.support_radius(), 0.1);
 }
 
 }  // namespace

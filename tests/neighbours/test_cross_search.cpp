@@ -13,7 +13,7 @@
 namespace spume::test {
 namespace {
 
-constexpr double base_reach = 0.12, widest = 1.26;
+constexpr double base_support_radius = 0.12, widest = 1.26;
 // Distances that decide differently in float and double are not looked at.
 constexpr double rounding = 1e-6;
 
@@ -41,11 +41,11 @@ std::vector<Point> sorted_by(const CellGrid& grid, const std::vector<Point>& poi
 // A set of points and, as the second set, its periodic images; without images two sets of points anywhere.
 class CrossSearches : public ::testing::TestWithParam<bool> {
  protected:
-  CrossSearches() : grid(3, {0, 0, 0}, {1, 1, 1}, base_reach, 3000) {
+  CrossSearches() : grid(3, {0, 0, 0}, {1, 1, 1}, base_support_radius, 3000) {
     first = sorted_by(grid, with_images() ? random_points(3000, 3) : scattered(3000, 41), table[0]);
     if (with_images()) {
       ImageRules rules =
-          unit_box_rules(3, widest * base_reach, ImageKind::periodic, ImageKind::none, ImageKind::mirror);
+          unit_box_rules(3, widest * base_support_radius, ImageKind::periodic, ImageKind::none, ImageKind::mirror);
       const auto x = Neighbourhood::column(first, 0), y = Neighbourhood::column(first, 1),
                  z = Neighbourhood::column(first, 2);
       images.build(rules, grid, x.data(), y.data(), z.data(), first.size());
@@ -63,10 +63,11 @@ class CrossSearches : public ::testing::TestWithParam<bool> {
       x[a].fill(0);
       for (std::size_t k = 0; k < all.size(); ++k) x[a][k] = static_cast<float>(all[k][a] - 0.5);
     }
-    inverse_reach.resize(all.size() + simd::pair_lanes);
-    inverse_reach.fill(1);
+    inverse_support_radius.resize(all.size() + simd::pair_lanes);
+    inverse_support_radius.fill(1);
     for (std::size_t k = 0; k < all.size(); ++k)
-      inverse_reach[k] = static_cast<float>(1 / (base_reach * (1 + (widest - 1) * uniform(k, 43)[0])));
+      inverse_support_radius[k] =
+          static_cast<float>(1 / (base_support_radius * (1 + (widest - 1) * uniform(k, 43)[0])));
   }
   static bool with_images() { return GetParam(); }
   CrossSearch search() const { return {grid, {0.5, 0.5, 0.5}, {x[0].data(), x[1].data(), x[2].data()}, sets}; }
@@ -93,7 +94,7 @@ class CrossSearches : public ::testing::TestWithParam<bool> {
   std::vector<Point> first, second, all;
   std::array<CrossSearch::Points, 2> sets;
   std::array<Array<float>, 3> x;
-  Array<float> inverse_reach;
+  Array<float> inverse_support_radius;
 };
 
 TEST_P(CrossSearches, FindEveryPointThatReachesAPlace) {
@@ -102,11 +103,11 @@ TEST_P(CrossSearches, FindEveryPointThatReachesAPlace) {
   for (const Point& place : scattered(150, 44)) {
     const std::array<float, 3> centre{static_cast<float>(place[0] - 0.5), static_cast<float>(place[1] - 0.5),
                                       static_cast<float>(place[2] - 0.5)};
-    search().near_place(centre, static_cast<float>(widest * base_reach), inverse_reach.data(), found);
+    search().near_place(centre, static_cast<float>(widest * base_support_radius), inverse_support_radius.data(), found);
     const auto share = [&](std::size_t j) {
       double r2 = 0;
       for (int a = 0; a < 3; ++a) r2 += std::pow(double{x[a][j]} - centre[a], 2);
-      return std::sqrt(r2) * inverse_reach[j];
+      return std::sqrt(r2) * inverse_support_radius[j];
     };
     expect_found(found, share);
     for (std::size_t k = 0; k < found.size; ++k)
@@ -119,20 +120,20 @@ TEST_P(CrossSearches, FindEveryPointThatReachesAPlace) {
 
 TEST_P(CrossSearches, FindEveryPointNearABox) {
   CrossSearch::Found found;
-  const float reach = static_cast<float>(1.1 * base_reach);
+  const float support_radius = static_cast<float>(1.1 * base_support_radius);
   for (std::size_t k = 0; k < 100; ++k) {
     const Point corner = scattered(100, 45)[k], size = uniform(k, 46);
     CrossSearch::Box box;
     for (std::size_t a = 0; a < 3; ++a) {
       box.lower[a] = static_cast<float>(corner[a] - 0.5);
-      box.upper[a] = box.lower[a] + static_cast<float>(1.5 * base_reach * size[a]);
+      box.upper[a] = box.lower[a] + static_cast<float>(1.5 * base_support_radius * size[a]);
     }
-    search().near_box(box, reach, found);
+    search().near_box(box, support_radius, found);
     expect_found(found, [&](std::size_t j) {
       double r2 = 0;
       for (std::size_t a = 0; a < 3; ++a)
         r2 += std::pow(std::max({0.0, double{x[a][j]} - box.upper[a], double{box.lower[a]} - x[a][j]}), 2);
-      return std::sqrt(r2) / reach;
+      return std::sqrt(r2) / support_radius;
     });
   }
 }
@@ -140,7 +141,7 @@ TEST_P(CrossSearches, FindEveryPointNearABox) {
 TEST_P(CrossSearches, OfNothingFindNothing) {
   const CrossSearch empty(grid, {0.5, 0.5, 0.5}, {x[0].data(), x[1].data(), x[2].data()}, {});
   CrossSearch::Found found;
-  empty.near_place({0, 0, 0}, static_cast<float>(base_reach), inverse_reach.data(), found);
+  empty.near_place({0, 0, 0}, static_cast<float>(base_support_radius), inverse_support_radius.data(), found);
   EXPECT_EQ(found.size, 0U);
   EXPECT_EQ(found.share2[0], 1);
 }

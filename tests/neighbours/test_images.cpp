@@ -79,10 +79,10 @@ TEST(Images, SignIsTheProductOfTheReflectionsAlongAnAxis) {
 TEST(Images, ContinueALatticeBeyondSidesAndCorners) {
   // Each lattice site within the reach of the domain holds exactly one image.
   const int m = 10;
-  const double spacing = 0.1, reach = 0.26;
+  const double spacing = 0.1, support_radius = 0.26;
   for (const auto x : {periodic, mirror})
     for (const auto y : {periodic, mirror}) {
-      const Neighbourhood hood(unit_box_rules(2, reach, x, y, none), lattice_points(m, 2, 0));
+      const Neighbourhood hood(unit_box_rules(2, support_radius, x, y, none), lattice_points(m, 2, 0));
       std::map<std::pair<int, int>, int> at;
       for (std::size_t k = 0; k < hood.images.size(); ++k)
         ++at[{static_cast<int>(std::floor(hood.images.position(0)[k] / spacing)),
@@ -113,9 +113,9 @@ TEST(Images, FillABoxOnceWithinReachOfTheLiquidAlsoAtItsEdges) {
   // Images of lattice points fall on lattice sites of the box. Sites nearer than the reach to a face hold one
   // image, also those that are equally near to two or three faces; deeper sites hold none.
   const int m = 20;
-  const double spacing = 1.0 / m, reach = 2.6 * spacing;
+  const double spacing = 1.0 / m, support_radius = 2.6 * spacing;
   for (const int dimensions : {2, 3}) {
-    ImageRules rules = unit_box_rules(dimensions, reach, none, none, none);
+    ImageRules rules = unit_box_rules(dimensions, support_radius, none, none, none);
     rules.boxes.push_back({{0.25, 0.3, 0.2}, {0.7, 0.8, 0.6}, all_faces});
     const ImageRules::Box& box = rules.boxes[0];
     const Neighbourhood hood(rules, lattice_around(box, m, dimensions));
@@ -135,7 +135,7 @@ TEST(Images, FillABoxOnceWithinReachOfTheLiquidAlsoAtItsEdges) {
         site[axis] = static_cast<int>(std::floor(p[axis] / spacing));
         depth = std::min({depth, p[axis] - box.lower[axis], box.upper[axis] - p[axis]});
       }
-      const int expected = depth > 0 && depth < reach ? 1 : 0;
+      const int expected = depth > 0 && depth < support_radius ? 1 : 0;
       sites += static_cast<std::size_t>(expected);
       if (at[site] != expected) ++wrong;
     }
@@ -149,8 +149,8 @@ TEST(Images, BoxDensityNearEdgesEqualsTheBulk) {
   // number density, up to the lattice points that a strip of this perimeter can gain or lose on its border
   // (the discrepancy of a jittered lattice is below half a point per spacing of border).
   const int m = 60;
-  const double spacing = 1.0 / m, reach = 3.7 * spacing;
-  ImageRules rules = unit_box_rules(2, reach, none, none, none);
+  const double spacing = 1.0 / m, support_radius = 3.7 * spacing;
+  ImageRules rules = unit_box_rules(2, support_radius, none, none, none);
   rules.boxes.push_back({{0.311, 0.307, 0}, {0.713, 0.689, 1}, all_faces});
   const auto& box = rules.boxes[0];
   const Neighbourhood hood(rules, lattice_around(box, m, 2));
@@ -167,8 +167,8 @@ TEST(Images, BoxDensityNearEdgesEqualsTheBulk) {
       }
       EXPECT_NEAR(count, 9, 0.5 * 4 * width / spacing);
     }
-  double area = 0.402 * 0.382 - (0.402 - 2 * reach) * (0.382 - 2 * reach);
-  const double perimeter = 2 * (0.402 + 0.382) + 2 * (0.402 + 0.382 - 4 * reach);
+  double area = 0.402 * 0.382 - (0.402 - 2 * support_radius) * (0.382 - 2 * support_radius);
+  const double perimeter = 2 * (0.402 + 0.382) + 2 * (0.402 + 0.382 - 4 * support_radius);
   EXPECT_NEAR(static_cast<double>(hood.images.size()), area * m * m, 0.5 * perimeter / spacing);
 }
 

@@ -23,7 +23,7 @@ double distance_tolerance(const Neighbourhood& hood) {
     for (int axis = 0; axis < hood.rules.dimensions; ++axis)
       extent = std::max(extent, std::abs(p[axis] - hood.origin[axis]));
   const double half_unit = 0.5 * std::numeric_limits<float>::epsilon();
-  return half_unit * (2 * std::sqrt(3.0) * extent + 4 * hood.rules.reach);
+  return half_unit * (2 * std::sqrt(3.0) * extent + 4 * hood.rules.support_radius);
 }
 
 void expect_lists_match_brute_force(const Neighbourhood& hood) {
@@ -33,7 +33,7 @@ void expect_lists_match_brute_force(const Neighbourhood& hood) {
   ASSERT_EQ(hood.list.points(), all.size());
   std::int64_t pairs = 0;
   for (std::size_t i = 0; i < hood.n; ++i) {
-    const auto expected = reference::neighbours(all, i, hood.rules.dimensions, hood.rules.reach, tolerance);
+    const auto expected = reference::neighbours(all, i, hood.rules.dimensions, hood.rules.support_radius, tolerance);
     const auto list = hood.list.of(i);
     const std::set<std::int32_t> found(list.begin(), list.end());
     ASSERT_EQ(found.size(), list.size()) << "a neighbour of " << i << " twice";
@@ -67,7 +67,7 @@ std::vector<std::vector<std::int32_t>> lists_of(const NeighbourList& list) {
 struct SceneCase {
   const char* name;
   int dimensions;
-  double reach;
+  double support_radius;
   std::array<ImageKind, 3> sides;
   std::vector<Point> points;
 };
@@ -90,7 +90,8 @@ class EveryScene : public testing::TestWithParam<SceneCase> {};
 TEST_P(EveryScene, ListsEqualBruteForceAndPairsAreSymmetric) {
   const SceneCase& scene = GetParam();
   const Neighbourhood hood(
-      unit_box_rules(scene.dimensions, scene.reach, scene.sides[0], scene.sides[1], scene.sides[2]), scene.points);
+      unit_box_rules(scene.dimensions, scene.support_radius, scene.sides[0], scene.sides[1], scene.sides[2]),
+      scene.points);
   expect_lists_match_brute_force(hood);
   expect_pairs_symmetric(hood);
 }
@@ -148,8 +149,8 @@ INSTANTIATE_TEST_SUITE_P(Neighbours, SmallSets, testing::Values(2, 3));
 TEST(NeighbourList, CellBordersLoseNoNeighbour) {
   // Pairs a little nearer than the reach, one end on a corner of a cell, in all directions.
   for (const int dimensions : {2, 3}) {
-    const double reach = 0.1;
-    const ImageRules rules = unit_box_rules(dimensions, reach, none, none, none);
+    const double support_radius = 0.1;
+    const ImageRules rules = unit_box_rules(dimensions, support_radius, none, none, none);
     for (int corner = 0; corner < 12; ++corner)
       for (int direction = 0; direction < 26; ++direction) {
         const int step[3] = {direction % 3 - 1, direction / 3 % 3 - 1, dimensions == 3 ? direction / 9 - 1 : 0};
@@ -157,7 +158,7 @@ TEST(NeighbourList, CellBordersLoseNoNeighbour) {
         if (length == 0) continue;
         const Point a{0.2 + 0.025 * corner, 0.2 + 0.05 * corner, dimensions == 3 ? 0.2 + 0.05 * corner : 0};
         Point b = a;
-        for (int axis = 0; axis < dimensions; ++axis) b[axis] += reach * (1 - 1e-5) * step[axis] / length;
+        for (int axis = 0; axis < dimensions; ++axis) b[axis] += support_radius * (1 - 1e-5) * step[axis] / length;
         const Neighbourhood hood(rules, {a, b});
         ASSERT_EQ(hood.list.pair_count(), 2) << corner << ' ' << direction;
       }

@@ -19,7 +19,7 @@ struct Scene {
   CellTable particles, points;
   std::array<Array<double>, 3> at;
   std::array<Array<float>, 3> x;
-  Array<float> length_ratio, reach, records;
+  Array<float> length_ratio, support_radius, records;
   std::size_t n = 2500, m = 300;
 
   Scene() {
@@ -52,10 +52,10 @@ struct Scene {
         records[8 * k + 3 + a] = static_cast<float>(uniform(k, 52)[a] - 0.5);
       }
     length_ratio.resize(n);
-    reach.resize(n);
+    support_radius.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
       length_ratio[i] = static_cast<float>(1 + 0.26 * uniform(i, 53)[0]);
-      reach[i] = static_cast<float>(2 * h0) * length_ratio[i];
+      support_radius[i] = static_cast<float>(2 * h0) * length_ratio[i];
     }
   }
 
@@ -64,9 +64,9 @@ struct Scene {
     const CrossSearch::Points set[] = {{&points, m}};
     const CrossSearch search(grid, {0.5, 0.5, 0.5}, {x[0].data(), x[1].data(), x[2].data()}, set);
     const CrossTargets targets{
-        n, {at[0].data(), at[1].data(), at[2].data()}, {0.5, 0.5, 0.5}, h0, length_ratio.data(), reach.data()};
+        n, {at[0].data(), at[1].data(), at[2].data()}, {0.5, 0.5, 0.5}, h0, length_ratio.data(), support_radius.data()};
     std::vector<float> result(3 * n, 1e30F);
-    sum_over_points<3, WendlandC2>(targets, search, grid.reach(), records.data(),
+    sum_over_points<3, WendlandC2>(targets, search, grid.support_radius(), records.data(),
                                    [&](std::size_t i, const float* values) {
                                      for (std::size_t c = 0; c < 3; ++c)
                                        result[3 * i + c] = values == nullptr ? NAN : values[c];
@@ -108,13 +108,13 @@ TEST(CrossSums, AreTheDirectSums) {
 TEST(CrossSums, OfLinesAreTheDirectSums) {
   const Scene scene;
   std::array<Array<float>, 3> place;
-  Array<float> inverse_reach(scene.n + simd::pair_lanes), lines(line_floats * scene.n);
+  Array<float> inverse_support_radius(scene.n + simd::pair_lanes), lines(line_floats * scene.n);
   for (int a = 0; a < 3; ++a) {
     place[a].resize(scene.n + simd::pair_lanes);
     for (std::size_t i = 0; i < scene.n; ++i) place[a][i] = static_cast<float>(scene.at[a][i] - 0.5);
   }
   for (std::size_t i = 0; i < scene.n; ++i) {
-    inverse_reach[i] = 1 / scene.reach[i];
+    inverse_support_radius[i] = 1 / scene.support_radius[i];
     for (std::size_t c = 0; c < line_floats; ++c)
       lines[line_floats * i + c] = static_cast<float>(uniform(line_floats * i + c, 54)[0] - 0.5);
   }
@@ -124,7 +124,7 @@ TEST(CrossSums, OfLinesAreTheDirectSums) {
   std::array<std::size_t, 2> parity{};
   for (std::size_t b = 0; b < scene.m; ++b) {
     const std::array<float, 3> centre{scene.x[0][b], scene.x[1][b], scene.x[2][b]};
-    search.near_place(centre, static_cast<float>(2.6 * h0), inverse_reach.data(), found);
+    search.near_place(centre, static_cast<float>(2.6 * h0), inverse_support_radius.data(), found);
     ++parity[found.size % 2];
     const auto halves = sum_of_lines<WendlandC2>(found, lines.data());
     std::array<double, line_floats> expected{};

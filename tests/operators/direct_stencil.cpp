@@ -6,7 +6,8 @@
 
 namespace spume::testing {
 
-DirectStencil direct_stencil(const JitteredParticles& particles, const std::array<double, 3>& x, double reach) {
+DirectStencil direct_stencil(const JitteredParticles& particles, const std::array<double, 3>& x,
+                             double support_radius) {
   DirectStencil stencil;
   std::vector<double> root_kernel;
   for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -16,7 +17,7 @@ DirectStencil direct_stencil(const JitteredParticles& particles, const std::arra
       offset[d] = std::remainder(particles.position[d][i] - x[d], 1.0);
       squared += offset[d] * offset[d];
     }
-    const double s = std::sqrt(squared) / reach;
+    const double s = std::sqrt(squared) / support_radius;
     if (s >= 1) continue;
     stencil.particle.push_back(i);
     stencil.offset.push_back(offset);
@@ -33,7 +34,7 @@ DirectStencil direct_stencil(const JitteredParticles& particles, const std::arra
   for (Eigen::Index j = 0; j < columns; ++j)
     for (Eigen::Index m = 0; m < rows; ++m) {
       double value = root_kernel[j];
-      for (int d = 0; d < 3; ++d) value *= std::pow(stencil.offset[j][d] / reach, exponents[m][d]);
+      for (int d = 0; d < 3; ++d) value *= std::pow(stencil.offset[j][d] / support_radius, exponents[m][d]);
       conditions(m, j) = value;
     }
   Eigen::VectorXd target = Eigen::VectorXd::Zero(rows);

@@ -18,6 +18,6 @@ struct DirectStencil {
 // The weights that minimise sum w^2 / W among those that satisfy the cubic consistency conditions, in the periodic
 // unit box: with w = sqrt(W) v, the shortest v with (sqrt(W) P)^T v = e_0. The normal equations that the program solves
 // do not appear.
-DirectStencil direct_stencil(const JitteredParticles& particles, const std::array<double, 3>& x, double reach);
+DirectStencil direct_stencil(const JitteredParticles& particles, const std::array<double, 3>& x, double support_radius);
 
 }  // namespace spume::testing

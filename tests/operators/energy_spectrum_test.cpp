@@ -111,12 +111,12 @@ TEST_P(ParticleEnergySpectrum, OfAKnownFieldIsRecoveredUpToHalfTheNyquistWavenum
   constexpr std::size_t samples = 120;
   std::vector<std::complex<double>> mean(waves.size(), 0.0);
   std::vector<double> square(waves.size(), 0.0);
-  const double reach = GridInterpolationOptions{}.support * particles.spacing;
+  const double support_radius = GridInterpolationOptions{}.support * particles.spacing;
   for (std::size_t s = 0; s < samples; ++s) {
     std::array<double, 3> x{};
     const auto random = random_uniform(22, RandomPurpose::test, s, 0, 0);
     for (int d = 0; d < dimensions; ++d) x[d] = (std::floor(random[d] * across) + 0.5) * particles.spacing;
-    const auto stencil = testing::direct_stencil(particles, x, reach);
+    const auto stencil = testing::direct_stencil(particles, x, support_radius);
     for (std::size_t w = 0; w < waves.size(); ++w) {
       std::complex<double> transfer = 0;
       for (std::size_t j = 0; j < stencil.weight.size(); ++j)

@@ -49,7 +49,7 @@ struct ArrangementSetup {
     ImageRules result;
     result.dimensions = dimensions;
     result.upper = {1, 1, 1};
-    result.reach = PlainKernel{kernel, dimensions}.support() * smoothing_length();
+    result.support_radius = PlainKernel{kernel, dimensions}.support() * smoothing_length();
     result.boxes = boxes;
     for (int axis = 0; axis < dimensions; ++axis)
       for (int side = 0; side < 2; ++side) {
@@ -67,7 +67,7 @@ struct Arrangement {
   Neighbourhood hood;
   reference::SphSums twin;
   SweepContext context;
-  Records records;
+  PackedNeighbours records;
   VelocityImageRule rule;
   std::vector<std::array<float, 3>> reflection;
 
@@ -135,19 +135,19 @@ struct Arrangement {
 
 // The geometry sweep's results, all of them.
 struct Geometry {
-  Array<float> kernel_sum, divergence_of_position, coupling;
+  Array<float> kernel_sum, divergence_of_position, laplacian_diagonal;
   std::array<Array<float>, 6> correction;
   Array<std::uint8_t> uncorrected;
   std::array<Array<float>, 3> concentration_gradient, normal;
 
   explicit Geometry(Arrangement& a, bool shifting = true, bool normals = true) {
     const std::size_t n = a.size();
-    GeometryOut out;
-    for (auto* array : {&kernel_sum, &divergence_of_position, &coupling}) array->resize(n);
+    KernelMoments out;
+    for (auto* array : {&kernel_sum, &divergence_of_position, &laplacian_diagonal}) array->resize(n);
     uncorrected.resize(n);
     out.kernel_sum = kernel_sum.data();
     out.divergence_of_position = divergence_of_position.data();
-    out.coupling = coupling.data();
+    out.laplacian_diagonal = laplacian_diagonal.data();
     out.uncorrected = uncorrected.data();
     for (int k = 0; k < a.dimensions() * (a.dimensions() + 1) / 2; ++k) {
       correction[k].resize(n);
@@ -159,7 +159,7 @@ struct Geometry {
       out.concentration_gradient[axis] = shifting ? concentration_gradient[axis].data() : nullptr;
       out.normal[axis] = normals ? normal[axis].data() : nullptr;
     }
-    geometry_sweep(a.context, a.records, {shifting, normals, a.setup.spacing}, out);
+    kernel_moment_sweep(a.context, a.records, {shifting, normals, a.setup.spacing}, out);
   }
   std::array<const float*, 6> read_correction() const {
     std::array<const float*, 6> pointers{};

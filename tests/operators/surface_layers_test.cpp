@@ -58,7 +58,7 @@ struct Surface {
     return {a.twin, {a.setup.kernel, a.dimensions()}, a.setup.smoothing_length(), a.setup.spacing, exact};
   }
   // Of the support, in spacings.
-  double reach() const {
+  double support_radius() const {
     return PlainKernel{a.setup.kernel, a.dimensions()}.support() * a.setup.smoothing_length() / a.setup.spacing;
   }
   double rounding(std::size_t i) const { return epsilon * static_cast<double>(a.twin.neighbours(i) + 4); }
@@ -74,11 +74,12 @@ TEST(SurfaceLayers, DepthsAgreeWithTheSlowTwin) {
       Array<float> scratch(a.size()), depth(surface.edge.size());
       edge_depths(a.context, a.records, {a.setup.spacing, surface.edge, surface.normal.read()}, scratch, depth);
       Comparison depths("depth");
-      const double reach = surface.reach();
+      const double support_radius = surface.support_radius();
       for (std::size_t k = 0; k < surface.edge.size(); ++k) {
         const auto i = static_cast<std::size_t>(surface.edge[k]);
         const double slow = twin.depth(i), spacing = a.setup.spacing;
-        depths.add_error(std::abs(depth[k] - slow), spacing * surface.rounding(i) * (8 * reach * reach + 64 * reach),
+        depths.add_error(std::abs(depth[k] - slow),
+                         spacing * surface.rounding(i) * (8 * support_radius * support_radius + 64 * support_radius),
                          depth[k], slow, i);
         between += slow > 0.26 * spacing && slow < 1.99 * spacing ? 1 : 0;
       }
@@ -128,7 +129,7 @@ TEST(SurfaceLayers, WhatLayersShareAgreesWithTheSlowTwin) {
         const auto i = static_cast<std::size_t>(upper[k]);
         const auto slow = twin.shared(i, exact);
         partly += slow.c < 1 ? 1 : 0;
-        const double bound = surface.rounding(i) * 64 * surface.reach() * (1 + 1 / slow.of_normals);
+        const double bound = surface.rounding(i) * 64 * surface.support_radius() * (1 + 1 / slow.of_normals);
         for (int axis = 0; axis < a.dimensions(); ++axis)
           comparison.add_error(std::abs(shared[k][axis] - slow.value[axis]), bound, shared[k][axis], slow.value[axis],
                                i);

@@ -11,17 +11,17 @@ namespace spume::test {
 namespace {
 
 struct System {
-  Array<float> extra;
+  Array<float> diagonal_shift;
   Array<std::uint8_t> masked;
   PressureOperator fast;
 
-  explicit System(Arrangement& a, bool masks = true) : extra(a.size()), masked(a.size()) {
+  explicit System(Arrangement& a, bool masks = true) : diagonal_shift(a.size()), masked(a.size()) {
     const auto random = a.random(81);
     for (std::size_t i = 0; i < a.size(); ++i) {
-      extra[i] = static_cast<float>((1 + random[i]) / (a.setup.spacing * a.setup.spacing));
+      diagonal_shift[i] = static_cast<float>((1 + random[i]) / (a.setup.spacing * a.setup.spacing));
       masked[i] = masks && i % 7 == 3 ? 1 : 0;
     }
-    fast.bind(a.context, a.records, {extra.data(), masks ? masked.data() : nullptr});
+    fast.bind(a.context, a.records, {diagonal_shift.data(), masks ? masked.data() : nullptr});
   }
 };
 
@@ -38,7 +38,7 @@ TEST(PressureOperator, AgreesWithTheSlowTwinOnEveryArrangement) {
     System system(a);
     const auto x = random_floats(a, 82, system.masked), w = random_floats(a, 83, system.masked);
     Array<float> y(a.size());
-    const PressureDots dots = system.fast.apply(x, y, w);
+    const Dots dots = system.fast.apply(x, y, w);
     Array<double> q(a.size()), b = a.random(84), r(a.size());
     for (std::size_t i = 0; i < a.size(); ++i) q[i] = x[i] + 1e-9 * b[i];
     system.fast.residual(q, b, r);
@@ -46,8 +46,8 @@ TEST(PressureOperator, AgreesWithTheSlowTwinOnEveryArrangement) {
     double wy = 0, yy = 0, size = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
       const std::size_t count = a.twin.neighbours(i);
-      product.add(y[i], a.twin.pressure_row(i, x, system.extra, system.masked), count, i);
-      Sum row = a.twin.pressure_row(i, q, system.extra, system.masked);
+      product.add(y[i], a.twin.pressure_row(i, x, system.diagonal_shift, system.masked), count, i);
+      Sum row = a.twin.pressure_row(i, q, system.diagonal_shift, system.masked);
       row.value = system.masked[i] != 0 ? 0 : b[i] - row.value;
       residual.add(r[i], row, count, i);
       wy += double{w[i]} * y[i];
@@ -75,8 +75,8 @@ TEST(PressureOperator, TakesTheProductOfACorrectionFromAResidual) {
     system.fast.subtract_product(scale, x, r);
     system.fast.residual(corrected, b, expected);
     for (std::size_t i = 0; i < a.size(); ++i) {
-      const Sum row = a.twin.pressure_row(i, corrected, system.extra, system.masked);
-      const Sum part = a.twin.pressure_row(i, q, system.extra, system.masked);
+      const Sum row = a.twin.pressure_row(i, corrected, system.diagonal_shift, system.masked);
+      const Sum part = a.twin.pressure_row(i, q, system.diagonal_shift, system.masked);
       EXPECT_NEAR(r[i], expected[i], 1e-13 * (std::abs(b[i]) + row.magnitude + 2 * part.magnitude)) << "particle " << i;
     }
   }
@@ -92,8 +92,8 @@ void expect_symmetric(Arrangement& a) {
   double bound = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double eps = reference::tolerance(a.twin.neighbours(i));
-    bound += eps * (std::abs(y[i]) * a.twin.pressure_row(i, x, system.extra, system.masked).magnitude +
-                    std::abs(x[i]) * a.twin.pressure_row(i, y, system.extra, system.masked).magnitude);
+    bound += eps * (std::abs(y[i]) * a.twin.pressure_row(i, x, system.diagonal_shift, system.masked).magnitude +
+                    std::abs(x[i]) * a.twin.pressure_row(i, y, system.diagonal_shift, system.masked).magnitude);
   }
   EXPECT_NEAR(yax, xay, bound);
   EXPECT_GT(std::abs(yax), bound) << "the products are large enough to tell";
@@ -125,7 +125,7 @@ TEST(PressureOperator, IsSymmetricAboveASolidWithoutEdges) {
 // The residual with the float coefficients of the lists, all else in double: what residual() promises to compute.
 template <int dimensions, class Kernel>
 Array<double> double_rows(const Arrangement& a, const Array<double>& q) {
-  Records records;
+  PackedNeighbours records;
   const float* packed = records.prepare(a.context, 0);
   const KernelScale<dimensions, Kernel> scale(a.context);
   const float factor = -2 * scale.gradient * static_cast<float>(a.context.volume);
@@ -168,13 +168,13 @@ ArrangementSetup long_wave_setup() {
 
 struct LongWave {
   Arrangement a{long_wave_setup()};
-  Array<float> extra{a.size(), 0.0F};
+  Array<float> diagonal_shift{a.size(), 0.0F};
   Array<double> q, product, exact;
 
   explicit LongWave(double mean) : product(a.size()) {
     q = a.sample([&](const Point& p) { return mean + std::sin(2 * std::numbers::pi * p[0]); });
     PressureOperator fast;
-    fast.bind(a.context, a.records, {extra.data(), nullptr});
+    fast.bind(a.context, a.records, {diagonal_shift.data(), nullptr});
     const Array<double> zero(a.size(), 0.0);
     fast.residual(q, zero, product);
     for (double& value : product) value = -value;
@@ -193,18 +193,18 @@ TEST(PressureOperator, ResidualOfASmoothFieldKeepsItsDigitsAndTheFloatProductDoe
   Array<float> single(wave.a.size()), y(wave.a.size());
   for (std::size_t i = 0; i < wave.a.size(); ++i) single[i] = static_cast<float>(wave.q[i]);
   PressureOperator fast;
-  fast.bind(wave.a.context, wave.a.records, {wave.extra.data(), nullptr});
+  fast.bind(wave.a.context, wave.a.records, {wave.diagonal_shift.data(), nullptr});
   fast.apply(single, y, single);
   EXPECT_GT(relative_difference(y, wave.product), 1e-7);
 }
 
 TEST(PressureOperator, OfAConstantIsZeroWithoutADiagonal) {
   for (Arrangement& a : all_arrangements()) {
-    Array<float> extra(a.size(), 0.0F), x(a.size(), 3.25F), y(a.size());
+    Array<float> diagonal_shift(a.size(), 0.0F), x(a.size(), 3.25F), y(a.size());
     Array<double> q(a.size(), 1.0 / 3), zero(a.size(), 0.0), r(a.size());
     PressureOperator fast;
-    fast.bind(a.context, a.records, {extra.data(), nullptr});
-    const PressureDots dots = fast.apply(x, y, x);
+    fast.bind(a.context, a.records, {diagonal_shift.data(), nullptr});
+    const Dots dots = fast.apply(x, y, x);
     fast.residual(q, zero, r);
     EXPECT_EQ(dots.yy, 0) << a.setup.name;
     for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(r[i], 0) << a.setup.name;

@@ -227,7 +227,7 @@ struct AllResults {
   VectorArrays<float> viscous, gradient;
   Array<double> divergence, residual;
   Array<float> laplacian, product;
-  PressureDots dots;
+  Dots dots;
 };
 
 AllResults run_all(Arrangement& a) {

@@ -79,7 +79,7 @@ struct HeldChanges {
 // The changes over random displacements of up to `length` spacings, with strain and trace, against the twin. `filter`
 // takes the sweep that filters beside, which must give the same.
 HeldChanges compare_changes(double length, bool filter) {
-  HeldChanges held;
+  HeldChanges pressure_fixed;
   for (Arrangement& a : all_arrangements()) {
     SCOPED_TRACE(a.setup.name);
     const int d = a.dimensions();
@@ -117,7 +117,7 @@ HeldChanges compare_changes(double length, bool filter) {
         }
         const auto [low, high] = a.twin.difference_bounds(i, u, r);
         const double bounded = std::clamp(along.value, low / 2, high / 2);
-        (bounded == along.value ? held.free : held.cut) += 1;
+        (bounded == along.value ? pressure_fixed.free : pressure_fixed.cut) += 1;
         along.value = bounded;
         along.magnitude += std::abs(low) + std::abs(high);
         changes.add(change[r][i], along, count, i);
@@ -126,7 +126,7 @@ HeldChanges compare_changes(double length, bool filter) {
       traces.add(trace[i], product, count, i);
     }
   }
-  return held;
+  return pressure_fixed;
 }
 
 // Random velocities are as rough as a field can be: half the extreme difference is passed by one displacement in four

@@ -18,11 +18,11 @@ constexpr double spacing = 1.0 / m, h0 = 1.3 * spacing, volume = spacing * spaci
 
 struct Varying3D {
   Neighbourhood hood;
-  Array<float> length_ratio, volume_ratio, reach;
+  Array<float> length_ratio, volume_ratio, support_radius;
   std::vector<Point> point;
   std::vector<std::size_t> source;
   SweepContext context;
-  Records records;
+  PackedNeighbours records;
   VelocityImageRule rule;
   std::vector<std::array<float, 3>> reflection;
 
@@ -32,21 +32,21 @@ struct Varying3D {
     const std::size_t n = hood.n;
     length_ratio.resize(n);
     volume_ratio.resize(n);
-    reach.resize(n);
+    support_radius.resize(n);
     double largest = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const Point r = uniform(i, 31);
       const bool plain = i % 3 == 0;
       length_ratio[i] = static_cast<float>(plain ? 1 : 1 + 0.26 * r[0]);
       volume_ratio[i] = static_cast<float>(plain ? 1 : 1 + r[1]);
-      reach[i] = static_cast<float>(2 * h0) * length_ratio[i];
-      largest = std::max<double>(largest, reach[i]);
+      support_radius[i] = static_cast<float>(2 * h0) * length_ratio[i];
+      largest = std::max<double>(largest, support_radius[i]);
     }
     // The grid keeps the least reach, as in a run; images and lists look farther.
-    hood.rules.reach = largest;
+    hood.rules.support_radius = largest;
     hood.images.build(hood.rules, hood.grid, hood.x.data(), hood.y.data(), hood.z.data(), n);
     hood.list.build(hood.grid, hood.table, hood.x.data(), hood.y.data(), hood.z.data(), n, hood.images, hood.origin,
-                    reach.data(), largest);
+                    support_radius.data(), largest);
     point = hood.all();
     for (std::size_t k = 0; k < point.size(); ++k)
       source.push_back(k < n ? k : static_cast<std::size_t>(hood.images.source()[k - n]));
@@ -98,9 +98,9 @@ TEST(VaryingSizes, GeometryIsTheDirectSum) {
   const std::size_t n = v.hood.n;
   std::array<Array<float>, 6> correction;
   std::array<Array<float>, 3> normal;
-  Array<float> kernel_sum(n), divergence(n), coupling(n);
+  Array<float> kernel_sum(n), divergence(n), laplacian_diagonal(n);
   Array<std::uint8_t> uncorrected(n);
-  GeometryOut out;
+  KernelMoments out;
   for (std::size_t k = 0; k < 6; ++k) {
     correction[k].resize(n);
     out.correction[k] = correction[k].data();
@@ -111,9 +111,9 @@ TEST(VaryingSizes, GeometryIsTheDirectSum) {
   }
   out.kernel_sum = kernel_sum.data();
   out.divergence_of_position = divergence.data();
-  out.coupling = coupling.data();
+  out.laplacian_diagonal = laplacian_diagonal.data();
   out.uncorrected = uncorrected.data();
-  geometry_sweep(v.context, v.records, {false, true, spacing}, out);
+  kernel_moment_sweep(v.context, v.records, {false, true, spacing}, out);
   for (std::size_t i = 0; i < n; ++i) {
     const double h = h0 * v.length_ratio[i];
     double w_sum = volume * v.volume_ratio[i] * WendlandC2::normalisation(3) / (h * h * h), g_sum = 0, trace = 0, x = 0,
@@ -126,7 +126,7 @@ TEST(VaryingSizes, GeometryIsTheDirectSum) {
       x_size += std::abs(h * g * d[0]);
     });
     ASSERT_NEAR(kernel_sum[i], w_sum, tolerance * w_sum);
-    ASSERT_NEAR(coupling[i], g_sum, tolerance * g_sum);
+    ASSERT_NEAR(laplacian_diagonal[i], g_sum, tolerance * g_sum);
     ASSERT_NEAR(divergence[i], trace, tolerance * trace);
     ASSERT_NEAR(normal[0][i], x, tolerance * x_size);
   }
@@ -190,12 +190,12 @@ TEST(VaryingSizes, GradientDivergenceViscosityAndFiltersAreTheDirectSums) {
 TEST(VaryingSizes, PressureMatrixAndResidualAreTheDirectSum) {
   Varying3D& v = varying();
   const std::size_t n = v.hood.n;
-  Array<float> extra(n), weight(n), row(n), x(n), y(n);
+  Array<float> diagonal_shift(n), weight(n), row(n), x(n), y(n);
   Array<std::uint8_t> masked(n);
   Array<double> q(n), b(n), r(n);
   for (std::size_t i = 0; i < n; ++i) {
     const Point s = uniform(i, 34);
-    extra[i] = static_cast<float>(s[0]);
+    diagonal_shift[i] = static_cast<float>(s[0]);
     row[i] = static_cast<float>(0.7 + 0.3 * s[1]);
     weight[i] = v.volume_ratio[i] / row[i];
     masked[i] = i % 11 == 0 ? 1 : 0;
@@ -203,7 +203,7 @@ TEST(VaryingSizes, PressureMatrixAndResidualAreTheDirectSum) {
     q[i] = x[i];
     b[i] = s[0] - 0.5;
   }
-  PressureMatrix matrix{extra.data(), masked.data()};
+  PressureMatrix matrix{diagonal_shift.data(), masked.data()};
   matrix.weight = weight.data();
   matrix.row = row.data();
   PressureOperator fast;
@@ -211,7 +211,7 @@ TEST(VaryingSizes, PressureMatrixAndResidualAreTheDirectSum) {
   fast.apply(x, y, x);
   fast.residual(q, b, r);
   for (std::size_t i = 0; i < n; ++i) {
-    double sum = extra[i] * q[i], size = 0;
+    double sum = diagonal_shift[i] * q[i], size = 0;
     v.each(i, [&](std::size_t j, const Point&, double, double g) {
       const double factor = 2 * g * row[i] * weight[j] / v.volume_ratio[j];
       sum += factor * (q[i] - q[j]);
@@ -294,12 +294,12 @@ TEST(VaryingSizes, DepthsBelowASurfaceAreTheDirectSums) {
   };
   for (const std::int32_t k : edge) {
     const auto i = static_cast<std::size_t>(k);
-    double held = ratio[i] * reference::column_weight(3, 0, 0);
+    double pressure_fixed = ratio[i] * reference::column_weight(3, 0, 0);
     v.each(i, [&](std::size_t j, const Point& d, double, double) {
       const double z = below(i, d), r2 = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) / (spacing * spacing);
-      held += ratio[j] * reference::column_weight(3, std::sqrt(std::max(0.0, r2 - z * z)), z);
+      pressure_fixed += ratio[j] * reference::column_weight(3, std::sqrt(std::max(0.0, r2 - z * z)), z);
     });
-    own[i] = reference::depth_of_column(3, held);
+    own[i] = reference::depth_of_column(3, pressure_fixed);
     between += own[i] > 0.26 && own[i] < 1.99 ? 1 : 0;
   }
   EXPECT_GT(between, edge.size() / 2);

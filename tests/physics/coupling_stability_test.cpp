@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "spume/physics/particles/coupling_stability.hpp"
+#include "spume/physics/point_particles/coupling_stability.hpp"
 
 #include <gtest/gtest.h>
 

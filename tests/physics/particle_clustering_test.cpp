@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "spume/core/random.hpp"
-#include "spume/physics/particles/clustering.hpp"
-#include "spume/physics/particles/lyapunov.hpp"
+#include "spume/physics/point_particles/clustering.hpp"
+#include "spume/physics/point_particles/lyapunov.hpp"
 
 namespace spume::test {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "reference/matching.hpp"
 #include "spume/core/random.hpp"
-#include "spume/physics/particles/overlap.hpp"
-#include "spume/physics/particles/particles.hpp"
+#include "spume/physics/point_particles/overlap.hpp"
+#include "spume/physics/point_particles/particles.hpp"
 
 namespace spume::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "spume/core/random.hpp"
-#include "spume/physics/particles/motion.hpp"
+#include "spume/physics/point_particles/motion.hpp"
 
 namespace spume::test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "spume/physics/particles/particle_system.hpp"
+#include "spume/physics/point_particles/particle_system.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -37,8 +37,8 @@ struct Flow {
   std::array<const double*, 3> data() const { return {u[0].data(), u[1].data(), u[2].data()}; }
 };
 
-ParticleOptions bubbles(Coupling coupling) {
-  ParticleOptions options;
+PointParticleOptions bubbles(Coupling coupling) {
+  PointParticleOptions options;
   options.count = 3000;
   options.placement.diameters = {0.04};
   options.motion.beta = 3;
@@ -55,7 +55,7 @@ struct Suspension {
   std::array<std::vector<double>, 3> force;
   int steps = 0;
 
-  explicit Suspension(const ParticleOptions& options) : system(grid, options) {
+  explicit Suspension(const PointParticleOptions& options) : system(grid, options) {
     for (auto& f : force) f.resize(grid.storage());
   }
   void begin() { system.begin(Flow(grid, 0).data()); }
@@ -102,7 +102,7 @@ TEST(ParticleSystem, MotionDependsNeitherOnSortingNorOnThreads) {
   std::array<std::vector<double>, 3> place;
   for (int r = 0; r < 3; ++r) {
     omp_set_num_threads(r == 1 ? 3 : 1);
-    ParticleOptions options = bubbles(Coupling::four_way);
+    PointParticleOptions options = bubbles(Coupling::four_way);
     options.sort_every = r == 2 ? 1 : 3;
     Suspension run(options);
     run.begin();
@@ -121,7 +121,7 @@ TEST(ParticleSystem, MotionDependsNeitherOnSortingNorOnThreads) {
 }
 
 TEST(ParticleSystem, TheGridReceivesTheForceOfTheParticles) {
-  ParticleOptions options = bubbles(Coupling::two_way);
+  PointParticleOptions options = bubbles(Coupling::two_way);
   options.most_volume_fraction = 1e9;
   options.scheme.lead = 0;
   Suspension run(options);
@@ -169,7 +169,7 @@ TEST(ParticleSystem, ContinuesBitForBitFromItsState) {
 
 TEST(ParticleSystem, FrozenParticlesStayWhereTheyAreWhateverTheirCoupling) {
   for (const Coupling coupling : {Coupling::two_way, Coupling::four_way, Coupling::colliding}) {
-    ParticleOptions options = bubbles(coupling);
+    PointParticleOptions options = bubbles(coupling);
     options.motion.frozen = true;
     options.sort_every = 1000;
     Suspension run(options);
@@ -216,7 +216,7 @@ TEST(ParticleSystem, HoldsNoArraysThatItsCouplingDoesNotNeed) {
 
 TEST(ParticleSystem, ExtremeResponseTimesStayFinite) {
   for (const double tau : {1e-8, 1e6}) {
-    ParticleOptions options = bubbles(Coupling::four_way);
+    PointParticleOptions options = bubbles(Coupling::four_way);
     options.motion.response_time = tau;
     Suspension run(options);
     run.begin();
@@ -227,7 +227,7 @@ TEST(ParticleSystem, ExtremeResponseTimesStayFinite) {
 }
 
 TEST(ParticleSystem, PlacesOnALatticeInClustersOrAsGiven) {
-  ParticleOptions options = bubbles(Coupling::one_way);
+  PointParticleOptions options = bubbles(Coupling::one_way);
   options.placement.kind = Placement::lattice;
   options.count = 2 * 5 * 5 * 5;
   ParticleSystem lattice(small_grid(), options);
@@ -246,7 +246,7 @@ TEST(ParticleSystem, PlacesOnALatticeInClustersOrAsGiven) {
 }
 
 TEST(ParticleSystem, DrawsDiametersByTheirShares) {
-  ParticleOptions options = bubbles(Coupling::one_way);
+  PointParticleOptions options = bubbles(Coupling::one_way);
   options.placement.diameters = {0.02, 0.04};
   options.placement.shares = {3, 1};
   ParticleSystem system(small_grid(), options);

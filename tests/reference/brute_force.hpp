@@ -41,7 +41,7 @@ inline std::vector<Image> box_images(const ImageRules& rules, const std::vector<
         Image image{points[k], static_cast<std::int32_t>(k), {static_cast<int>(6 * b) + face, -1, -1, -1}};
         const double plane = upper ? box.upper[axis] : box.lower[axis];
         const double height = upper ? points[k][axis] - plane : plane - points[k][axis];
-        if (height < 0 || height >= rules.reach) continue;
+        if (height < 0 || height >= rules.support_radius) continue;
         image.position[axis] = 2 * plane - points[k][axis];
         int nearest = -1;
         double least = std::numeric_limits<double>::infinity();
@@ -52,7 +52,7 @@ inline std::vector<Image> box_images(const ImageRules& rules, const std::vector<
           const double depth = other % 2 == 1 ? box.upper[other / 2] - x : x - box.lower[other / 2];
           inside = inside && depth >= 0;
           // Equal up to rounding counts as equal.
-          if (depth < least - 1e-6 * rules.reach) {
+          if (depth < least - 1e-6 * rules.support_radius) {
             least = depth;
             nearest = other;
           }
@@ -84,9 +84,9 @@ inline std::vector<Image> images(const ImageRules& rules, const std::vector<Poin
       for (int side = 0; side < 2; ++side) {
         const double plane = side == 0 ? rules.lower[axis] : rules.upper[axis];
         const double depth = side == 0 ? x - plane : plane - x;
-        if (rules.sides[axis][side] == ImageKind::mirror && depth < rules.reach)
+        if (rules.sides[axis][side] == ImageKind::mirror && depth < rules.support_radius)
           coordinate[axis][side + 1] = 2 * plane - x;
-        if (rules.sides[axis][side] == ImageKind::periodic && length - depth < rules.reach)
+        if (rules.sides[axis][side] == ImageKind::periodic && length - depth < rules.support_radius)
           coordinate[axis][side + 1] = side == 0 ? x - length : x + length;
       }
     }
@@ -103,7 +103,7 @@ inline std::vector<Image> images(const ImageRules& rules, const std::vector<Poin
 }
 
 // Neighbours of point i among all points, itself excluded.
-inline Candidates neighbours(const std::vector<Point>& all, std::size_t i, int dimensions, double reach,
+inline Candidates neighbours(const std::vector<Point>& all, std::size_t i, int dimensions, double support_radius,
                              double tolerance) {
   Candidates result;
   for (std::size_t j = 0; j < all.size(); ++j) {
@@ -111,8 +111,8 @@ inline Candidates neighbours(const std::vector<Point>& all, std::size_t i, int d
     double square = 0;
     for (int axis = 0; axis < dimensions; ++axis) square += std::pow(all[j][axis] - all[i][axis], 2);
     const double distance = std::sqrt(square);
-    if (distance < reach - tolerance) result.certain.insert(static_cast<std::int32_t>(j));
-    if (distance < reach + tolerance) result.possible.insert(static_cast<std::int32_t>(j));
+    if (distance < support_radius - tolerance) result.certain.insert(static_cast<std::int32_t>(j));
+    if (distance < support_radius + tolerance) result.possible.insert(static_cast<std::int32_t>(j));
   }
   return result;
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "spume/core/periodic_grid.hpp"
-#include "spume/physics/particles/exclusion.hpp"
+#include "spume/physics/point_particles/exclusion.hpp"
 
 namespace spume::test {
 

@@ -117,7 +117,7 @@ class SphSums {
     each(i, [&](const Pair& p) { sum.add(p.g, p.largest_g, p.r * p.r, p.r * p.r); });
     return sum;
   }
-  Sum coupling(std::size_t i) const {
+  Sum laplacian_diagonal(std::size_t i) const {
     Sum sum;
     each(i, [&](const Pair& p) { sum.add(2 * p.g, 2 * p.largest_g, 1, 1); });
     return sum;
@@ -312,10 +312,10 @@ class SphSums {
   // --- the pressure matrix: (A q)_i = V [ sum_j 2 g (q_i - q_j) + extra_i q_i ], zero in masked rows
 
   template <class Scalar, class Extra, class Masked>
-  Sum pressure_row(std::size_t i, const Scalar& q, const Extra& extra, const Masked& masked) const {
+  Sum pressure_row(std::size_t i, const Scalar& q, const Extra& diagonal_shift, const Masked& masked) const {
     Sum sum = negative_laplacian(i, q);
-    sum.value = volume_ * (sum.value + double(extra[i]) * q[i]);
-    sum.magnitude = volume_ * (sum.magnitude + std::abs(double(extra[i]) * q[i]));
+    sum.value = volume_ * (sum.value + double(diagonal_shift[i]) * q[i]);
+    sum.magnitude = volume_ * (sum.magnitude + std::abs(double(diagonal_shift[i]) * q[i]));
     return masked[i] != 0 ? Sum{} : sum;
   }
   // Calls entry(j, a_ij) for the couplings of row i, a particle's own images left out: they cancel.

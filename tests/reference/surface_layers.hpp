@@ -23,13 +23,13 @@ inline double column_weight(int dimensions, double across, double down) {
 }
 
 // Depth in spacings of what holds so much in its column.
-inline double depth_of_column(int dimensions, double held) {
+inline double depth_of_column(int dimensions, double pressure_fixed) {
   double lattice = 0;
   for (int row = 0; row < 3; ++row)
     for (int k = -2; k <= 2; ++k)
       for (int l = dimensions == 3 ? -2 : 0; l <= (dimensions == 3 ? 2 : 0); ++l)
         lattice += column_weight(dimensions, std::hypot(k, l), row);
-  return std::clamp(0.5 + held - lattice, 0.25, 2.0);
+  return std::clamp(0.5 + pressure_fixed - lattice, 0.25, 2.0);
 }
 
 // Sums over all particles and images. normals: of edge particles, of length 1; 0 at all others.
@@ -100,12 +100,13 @@ class SurfaceLayers {
 
   // Of particle i by itself.
   double own_depth(std::size_t i) const {
-    double held = 0;
+    double pressure_fixed = 0;
     each(i, [&](std::size_t, const Vector& d, const Vector&) {
       const double z = -dot(d, normals_[i]);
-      held += column_weight(kernel_.dimensions, std::sqrt(std::max(0.0, dot(d, d) - z * z)) / spacing_, z / spacing_);
+      pressure_fixed +=
+          column_weight(kernel_.dimensions, std::sqrt(std::max(0.0, dot(d, d) - z * z)) / spacing_, z / spacing_);
     });
-    return spacing_ * depth_of_column(kernel_.dimensions, held);
+    return spacing_ * depth_of_column(kernel_.dimensions, pressure_fixed);
   }
 
   // visit(source, r_j - r_i, reflection) for every point in the support around a particle, which is one of them.

@@ -11,7 +11,7 @@ namespace {
 
 using Kind = Invariant::Kind;
 
-const std::vector<SeriesHeading> columns = {{"t", "time"}, {"mass", "1"}, {"energy", "1"}, {"kinetic", "1"}};
+const std::vector<SeriesColumn> columns = {{"t", "time"}, {"mass", "1"}, {"energy", "1"}, {"kinetic", "1"}};
 
 InvariantWatch watched(const Invariant& invariant, const std::vector<std::vector<double>>& rows) {
   InvariantWatch watch({invariant}, columns);

@@ -42,7 +42,7 @@ TEST(BubbleSections, AreReadWithDefaults) {
   EXPECT_TRUE(options.on);
   EXPECT_TRUE(options.breakup);
   EXPECT_FALSE(options.entrainment);
-  EXPECT_EQ(options.closure, BubbleClosure::two_fluid);
+  EXPECT_EQ(options.momentum_form, MomentumForm::two_fluid);
   EXPECT_EQ(options.integrator, BubbleIntegrator::stable);
   EXPECT_DOUBLE_EQ(options.tension, 1e-4);
   EXPECT_NEAR(options.density_ratio, 833.333, 1e-3);

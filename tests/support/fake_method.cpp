@@ -47,7 +47,8 @@ class FakeMethod final : public Method {
   }
 
   std::vector<Stage> plan() const override {
-    return {{"turn", true, "always"}, {"bubbles", false, "the case has no [bubbles]"}};
+    return {{.name = "turn", .reason = "always"},
+            {.name = "bubbles", .reason = "the case has no [bubbles]", .on = false}};
   }
   std::vector<ArrayInfo> arrays() const override {
     return {{"position", 24.0 * static_cast<double>(id_.size())}, {"velocity", 24.0 * static_cast<double>(id_.size())}};
@@ -91,8 +92,8 @@ class FakeMethod final : public Method {
   std::vector<Invariant> invariants() const override {
     return {{.quantity = "radius_drift", .kind = Invariant::Kind::drift, .column = "radius", .bound = 1e-3}};
   }
-  std::vector<Family> snapshot() override {
-    Family fluid{
+  std::vector<ParticleSnapshot> snapshot() override {
+    ParticleSnapshot fluid{
         "fluid", id_.size(), {}, {{"velocity", {}, {}}, {"pressure", {}, {}}, {"id", {}, {}}, {"turn", {}, {}}}};
     for (int axis = 0; axis < dimensions_; ++axis) {
       fluid.position.push_back(position_[axis].data());

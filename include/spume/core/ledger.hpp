@@ -35,7 +35,8 @@ class Ledger {
     Scope& operator=(const Scope&) = delete;
     ~Scope();
 
-    // Traffic that is known only when the work is done.
+    // Work and traffic that are known only when the work is done.
+    void add_pairs(double pairs) { pairs_ += pairs; }
     void add_bytes(double bytes) { bytes_ += bytes; }
 
    private:

@@ -13,7 +13,7 @@
 
 namespace spume {
 
-struct SeriesHeading {
+struct SeriesColumn {
   std::string name;
   std::string unit;  // "1" without dimension; empty for a column of words
 };
@@ -24,10 +24,10 @@ class SeriesFile {
  public:
   // Creates the file; refuses one that exists.
   static SeriesFile create(const std::filesystem::path& path, const std::string& title,
-                           const std::vector<SeriesHeading>& columns);
+                           const std::vector<SeriesColumn>& columns);
   // Opens an existing file, keeps its first `rows` rows and cuts the rest. Throws FileError when the column
   // names differ or fewer rows are there.
-  static SeriesFile resume(const std::filesystem::path& path, const std::vector<SeriesHeading>& columns,
+  static SeriesFile resume(const std::filesystem::path& path, const std::vector<SeriesColumn>& columns,
                            std::int64_t rows);
 
   SeriesFile(SeriesFile&& other) noexcept;

@@ -14,21 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "spume/io/snapshot.hpp"
+
 namespace spume {
-
-// A quantity of every particle, one array per component; either f64 or i64 is filled, the other is empty.
-// Two components are written as three, the third 0. The name holds no '/' and no '.'.
-struct ParticleField {
-  std::string name;
-  std::vector<const double*> f64;
-  std::vector<const std::int64_t*> i64;
-};
-
-struct ParticleSnapshot {
-  std::size_t size = 0;
-  std::vector<const double*> position;  // two or three arrays; the missing z is written as 0
-  std::vector<ParticleField> fields;
-};
 
 // What a file holds.
 struct VtkhdfContents {

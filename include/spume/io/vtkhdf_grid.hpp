@@ -12,18 +12,9 @@
 #include <utility>
 #include <vector>
 
-namespace spume {
+#include "spume/io/snapshot.hpp"
 
-// Value (ix, iy, iz) of a component lies at (ix * ny + iy) * nz + iz.
-struct GridSnapshot {
-  struct Field {
-    std::string name;                      // holds no '/' and no '.'
-    std::vector<const float*> components;  // one or three
-  };
-  std::array<std::size_t, 3> points{};
-  std::array<double, 3> origin{}, spacing{};
-  std::vector<Field> fields;
-};
+namespace spume {
 
 // What a file holds; throws FileError.
 struct GridContents {

@@ -13,16 +13,12 @@
 
 #include "spume/core/array.hpp"
 #include "spume/core/ledger.hpp"
+#include "spume/io/series.hpp"
+#include "spume/io/snapshot.hpp"
+#include "spume/methods/stage.hpp"
 #include "spume/scene/scene.hpp"
 
 namespace spume {
-
-// One stage of the plan: what it does, whether this scene runs it, and why (not).
-struct Stage {
-  std::string name;
-  bool on = true;
-  std::string reason;
-};
 
 // One array of the state, for `spume check`: exists only because an active stage names it.
 struct ArrayInfo {
@@ -35,40 +31,6 @@ struct ArrayInfo {
 struct StepLimit {
   double dt = 0;
   std::string limited_by;
-};
-
-// A named particle quantity of a snapshot or a checkpoint. Components are separate arrays; exactly one of the
-// two pointers of a component is set.
-struct NamedField {
-  std::string name;
-  std::vector<const double*> f64;        // per component, or empty
-  std::vector<const std::int64_t*> i64;  // per component, or empty
-};
-
-// A family of particles to be drawn: "fluid", "bubbles".
-struct Family {
-  std::string name;
-  std::size_t size = 0;
-  std::vector<const double*> position;  // one array per dimension
-  std::vector<NamedField> fields;
-};
-
-// One column of series.csv.
-struct SeriesColumn {
-  std::string name;
-  std::string unit;  // in words, "m/s", or "1" without dimension
-};
-
-// Fields on the points of a periodic grid, to be drawn: value (ix, iy, iz) lies at (ix * ny + iy) * nz + iz.
-struct GridFamily {
-  std::string name;
-  std::array<std::size_t, 3> points{};
-  Vec3 origin{}, spacing{};
-  struct Field {
-    std::string name;
-    std::vector<const float*> components;
-  };
-  std::vector<Field> fields;
 };
 
 // A distribution of the present state: rows of values, written with the time in front to <name>.csv.
@@ -154,8 +116,8 @@ class Method {
   virtual std::vector<SeriesColumn> series_columns() const = 0;  // without step, t, dt: the driver adds those
   virtual void series_values(std::span<double> values) = 0;
 
-  virtual std::vector<Family> snapshot() = 0;                     // pointers stay valid until the next step
-  virtual std::vector<GridFamily> grid_snapshot() { return {}; }  // likewise
+  virtual std::vector<ParticleSnapshot> snapshot() = 0;             // pointers stay valid until the next step
+  virtual std::vector<GridSnapshot> grid_snapshot() { return {}; }  // likewise
   virtual PointSample sample(const Vec3& position) = 0;
   // Height of the free surface above the bottom wall along the last axis through `position`: the highest
   // point where the kernel sum reaches 1/2; the bottom when the column is empty.

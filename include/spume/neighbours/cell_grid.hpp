@@ -24,8 +24,8 @@ class CellGrid {
   CellGrid() = default;
   // `reach`: the largest distance at which neighbours are sought. `expected_particles` bounds the number of
   // cells (at most 4 per particle plus 2^20): a mostly empty large box gets coarser cells.
-  CellGrid(int dimensions, const std::array<double, 3>& lower, const std::array<double, 3>& upper, double reach,
-           std::size_t expected_particles);
+  CellGrid(int dimensions, const std::array<double, 3>& lower, const std::array<double, 3>& upper,
+           double support_radius, std::size_t expected_particles);
 
   int dimensions() const { return dimensions_; }
   std::int64_t cell_count() const { return std::int64_t{count_[0]} * count_[1] * count_[2]; }
@@ -47,11 +47,11 @@ class CellGrid {
   }
   double lower(int axis) const { return lower_[axis]; }
   double side(int axis) const { return 1 / inverse_side_[axis]; }
-  double reach() const { return reach_; }
+  double support_radius() const { return support_radius_; }
 
  private:
   int dimensions_ = 3;
-  double reach_ = 0;
+  double support_radius_ = 0;
   std::array<double, 3> lower_{}, inverse_side_{};
   std::array<int, 3> count_{1, 1, 1};
   Array<std::int32_t> row_rank_;

@@ -47,11 +47,11 @@ class CrossSearch {
               std::span<const Points> sets);
 
   // All points nearer to the box than `reach`.
-  void near_box(const Box& box, float reach, Found& found) const;
+  void near_box(const Box& box, float support_radius, Found& found) const;
 
   // All points j nearer to `place` than their own reach, 1 / inverse_reach[j] <= largest_reach; simd::pair_lanes
   // readable elements follow.
-  void near_place(const std::array<float, 3>& place, float largest_reach, const float* inverse_reach,
+  void near_place(const std::array<float, 3>& place, float largest_support_radius, const float* inverse_support_radius,
                   Found& found) const;
 
  private:
@@ -60,7 +60,7 @@ class CrossSearch {
     std::int32_t base = 0;                // number of its first point
     Box free;
   };
-  std::span<const Block> blocks_near(const Box& box, float reach, Found& found) const;
+  std::span<const Block> blocks_near(const Box& box, float support_radius, Found& found) const;
 
   const CellGrid& grid_;
   std::array<const float*, 3> point_{};

@@ -28,7 +28,7 @@ struct ImageRules {
     std::array<std::array<bool, 2>, 3> face{};  // faces that bound liquid
   };
   std::vector<Box> boxes;
-  double reach = 0;  // images farther than this from the liquid are not made
+  double support_radius = 0;  // images farther than this from the liquid are not made
 };
 
 // How an image came about: which faces it was reflected in, in order. Few distinct values exist.

@@ -69,8 +69,8 @@ class NeighbourList {
   // The same with a reach of its own for each particle, between the grid's and `largest_reach`, at most 1.3 times that.
   // The list of i then holds what is within the reach of i.
   void build(const CellGrid& grid, const CellTable& particles, const double* x, const double* y, const double* z,
-             std::size_t n, const Images& images, const std::array<double, 3>& origin, const float* own_reach,
-             double largest_reach);
+             std::size_t n, const Images& images, const std::array<double, 3>& origin, const float* own_support_radius,
+             double largest_support_radius);
 
   std::size_t particles() const { return count_.size(); }
   std::size_t points() const { return points_; }  // particles and images
@@ -88,7 +88,7 @@ class NeighbourList {
 
  private:
   template <int dimensions>
-  bool search(const CellGrid& grid, const CellTable& particles, const Images& images, const float* own_reach);
+  bool search(const CellGrid& grid, const CellTable& particles, const Images& images, const float* own_support_radius);
 
   std::array<Array<float>, 3> coordinate_;
   Array<std::int32_t> index_, count_;

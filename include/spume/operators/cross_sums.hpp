@@ -28,7 +28,7 @@ struct CrossTargets {
   std::array<double, 3> origin{};  // of the float coordinates of the points
   double smoothing_length = 0;     // h_i = smoothing_length length_ratio[i]
   const float* length_ratio = nullptr;
-  const float* reach = nullptr;  // support of h_i
+  const float* support_radius = nullptr;  // support of h_i
 };
 
 namespace detail {
@@ -77,14 +77,14 @@ struct CrossBlock {
 // store(i, sums) once for every particle, in parallel; `sums` is null where no point lies within the reach of i, and is
 // not where one does so only by rounding.
 template <int components, class Kernel, class Store>
-void sum_over_points(const CrossTargets& targets, const CrossSearch& search, double grid_reach, const float* records,
-                     Store&& store) {
+void sum_over_points(const CrossTargets& targets, const CrossSearch& search, double grid_support_radius,
+                     const float* records, Store&& store) {
   using simd::f32x8;
   constexpr std::size_t width = components == 1 ? 4 : 8, vectors = detail::cross_group / simd::lanes;
   static_assert(components <= 5);
   // The least distance that counts as out of reach, (r / h)^2.
   const f32x8 beyond = simd::splat(static_cast<float>(1.001 * Kernel::support * Kernel::support));
-  const auto longest = static_cast<float>(1.25 * grid_reach);
+  const auto longest = static_cast<float>(1.25 * grid_support_radius);
   parallel_blocks_dynamic(targets.size, detail::cross_block, [&](std::size_t, std::size_t first, std::size_t last) {
     thread_local CrossSearch::Found thread_found;
     CrossSearch::Found& found = thread_found;
@@ -93,9 +93,10 @@ void sum_over_points(const CrossTargets& targets, const CrossSearch& search, dou
     for (std::size_t k = 0, end = 0; k < size; k = end) {
       CrossSearch::Box box;
       end = block.group(k, size, longest, box);
-      float reach = 0;
-      for (std::size_t l = k; l < end; ++l) reach = std::max(reach, targets.reach[first + l]);
-      search.near_box(box, reach, found);
+      float support_radius = 0;
+      for (std::size_t l = k; l < end; ++l)
+        support_radius = std::max(support_radius, targets.support_radius[first + l]);
+      search.near_box(box, support_radius, found);
       alignas(32) float sums[components][detail::cross_group], least[detail::cross_group];
       for (std::size_t v = 0; v < vectors && found.size > 0; ++v) {
         const std::size_t lane = k + v * simd::lanes;

@@ -41,13 +41,13 @@ struct SweepContext {
 // A kernel under which particles differ in size: sweeps take h_i of the centre and the volume V_j of each neighbour,
 // which is one more float of payload, the last. With a plain kernel nothing of this is compiled.
 template <class Kernel>
-struct Varying : Kernel {};
+struct VariableH : Kernel {};
 template <class Kernel>
-inline constexpr bool is_varying = false;
+inline constexpr bool is_variable_h = false;
 template <class Kernel>
-inline constexpr bool is_varying<Varying<Kernel>> = true;
+inline constexpr bool is_variable_h<VariableH<Kernel>> = true;
 template <class Kernel>
-inline constexpr int volume_slots = is_varying<Kernel> ? 1 : 0;
+inline constexpr int volume_slots = is_variable_h<Kernel> ? 1 : 0;
 
 // Kernel factors with the particle volume folded in, in the precision of the pair loop.
 template <int dimensions, class Kernel>
@@ -67,7 +67,7 @@ struct KernelScale {
 
   // The factors at particle i.
   KernelScale at([[maybe_unused]] const SweepContext& context, [[maybe_unused]] std::size_t i) const {
-    if constexpr (is_varying<Kernel>) {
+    if constexpr (is_variable_h<Kernel>) {
       KernelScale own = *this;
       const float inverse = 1 / context.length_ratio[i];
       const float inverse2 = inverse * inverse;
@@ -85,7 +85,7 @@ struct KernelScale {
 // x times the volumes of a batch of neighbours, over the volume that the kernel factors hold.
 template <class Kernel, class Batch>
 [[gnu::always_inline]] inline simd::f32n times_volume(simd::f32n x, [[maybe_unused]] const Batch& batch) {
-  if constexpr (is_varying<Kernel>)
+  if constexpr (is_variable_h<Kernel>)
     return x * batch.payload.back();
   else
     return x;
@@ -94,7 +94,7 @@ template <class Kernel, class Batch>
 template <class Kernel>
 [[gnu::always_inline]] inline float own_volume([[maybe_unused]] const SweepContext& context,
                                                [[maybe_unused]] std::size_t i) {
-  if constexpr (is_varying<Kernel>)
+  if constexpr (is_variable_h<Kernel>)
     return context.volume_ratio[i];
   else
     return 1;
@@ -162,9 +162,9 @@ void with_kernel(const SweepContext& context, Body&& body) {
       body.template operator()<2, QuinticSpline>();
   } else if (context.length_ratio != nullptr) {
     if (wendland)
-      body.template operator()<3, Varying<WendlandC2>>();
+      body.template operator()<3, VariableH<WendlandC2>>();
     else
-      body.template operator()<3, Varying<QuinticSpline>>();
+      body.template operator()<3, VariableH<QuinticSpline>>();
   } else {
     if (wendland)
       body.template operator()<3, WendlandC2>();
@@ -175,7 +175,7 @@ void with_kernel(const SweepContext& context, Body&& body) {
 
 // Record storage, sized for the widest sweep and reused by all. `coordinates_width` tells for which width the
 // coordinates in it are valid, so that consecutive sweeps of one width rewrite only the payload.
-class Records {
+class PackedNeighbours {
  public:
   // Prepares records of the given payload: coordinates of all points written, sentinel payload zero.
   float* prepare(const SweepContext& context, int payload);

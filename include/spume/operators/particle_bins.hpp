@@ -18,7 +18,7 @@ class ParticleBins {
  public:
   // Needs length >= reach along periodic axes. Not-a-number coordinates land in a cell; distances to them are not
   // numbers either.
-  ParticleBins(const UniformGrid& box, std::array<bool, 3> periodic, double reach,
+  ParticleBins(const UniformGrid& box, std::array<bool, 3> periodic, double support_radius,
                const std::array<std::span<const double>, 3>& position);
 
   std::array<std::size_t, 3> cells() const { return cells_; }

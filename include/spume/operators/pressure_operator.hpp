@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <span>
 
+#include "spume/operators/dots.hpp"
 #include "spume/operators/pair_sweep.hpp"
 
 namespace spume {
@@ -19,21 +20,17 @@ namespace spume {
 // V_j and a coefficient that is a geometric mean need. Float products then take weight_j q_j as their one payload and
 // the sum of the weights from a sweep at bind, so that an application costs what it does with equal particles.
 struct PressureMatrix {
-  const float* extra = nullptr;
+  const float* diagonal_shift = nullptr;
   const std::uint8_t* masked = nullptr;  // null: no masked rows
   const float* weight = nullptr;         // null: equal particles
   const float* row = nullptr;            // with weight
 };
 
-struct PressureDots {
-  double wy = 0, yy = 0;
-};
-
 // y = A x in float, with sum w y and sum y y accumulated in double in fixed blocks.
 class PressureOperator {
  public:
-  void bind(const SweepContext& context, Records& records, const PressureMatrix& matrix);
-  PressureDots apply(std::span<const float> x, std::span<float> y, std::span<const float> w);
+  void bind(const SweepContext& context, PackedNeighbours& records, const PressureMatrix& matrix);
+  Dots apply(std::span<const float> x, std::span<float> y, std::span<const float> w);
 
   // r = b - A q with q in double: differences are exact and sums are double, so that the residual of a smooth
   // field does not drown in rounding (a float field of 100 spacings per wave would leave 1e-3). Masked rows
@@ -51,9 +48,9 @@ class PressureOperator {
   double mask_and_sizes(double sizes) const;
 
   SweepContext context_;
-  Records* records_ = nullptr;
+  PackedNeighbours* records_ = nullptr;
   PressureMatrix matrix_;
-  Array<PressureDots> partial_;
+  Array<Dots> partial_;
   Array<float> weight_sum_;  // sum_j F(q) weight_j
 };
 

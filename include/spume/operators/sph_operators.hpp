@@ -21,22 +21,22 @@
 namespace spume {
 
 // Shape of the particle arrangement around each particle. Null pointers are not computed.
-struct GeometryOut {
+struct KernelMoments {
   float* kernel_sum = nullptr;                     // sum_j V W, itself included
   float* divergence_of_position = nullptr;         // tr(sum g d (x) d): d in the bulk, less at a surface
-  float* coupling = nullptr;                       // sum_j 2 g: diagonal of the negative Laplacian
+  float* laplacian_diagonal = nullptr;             // sum_j 2 g: diagonal of the negative Laplacian
   std::array<float*, 6> correction{};              // L; the identity where the sum is near singular
   std::uint8_t* uncorrected = nullptr;             // 1 where L fell back to the identity
   std::array<float*, 3> concentration_gradient{};  // (3.11): sum_j (1 + 1/4 (W/W(dr))^4) V grad W
   std::array<float*, 3> normal{};                  // (3.13) times h, outward: -h sum_j V grad W
 };
-struct GeometryOptions {
+struct KernelMomentOptions {
   bool shifting = true;
   bool normals = true;
   double spacing = 0;  // dr of the tensile term's W(dr)
 };
-void geometry_sweep(const SweepContext& context, Records& records, const GeometryOptions& options,
-                    const GeometryOut& out);
+void kernel_moment_sweep(const SweepContext& context, PackedNeighbours& records, const KernelMomentOptions& options,
+                         const KernelMoments& out);
 
 // grad u (component-major: [a * dimensions + b] = d u_a / d x_b) and what follows from it; null where nobody asks.
 struct VelocityGradientOut {
@@ -52,19 +52,21 @@ struct VelocityGradientOut {
   std::array<const float*, 3> displacement{};
   std::array<float*, 3> change{};
 };
-void velocity_gradient_sweep(const SweepContext& context, Records& records,
+void velocity_gradient_sweep(const SweepContext& context, PackedNeighbours& records,
                              const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
                              const std::array<const float*, 6>& correction, const VelocityGradientOut& out);
 
 // tr(grad u . grad u) with the gradient of velocity_gradient_sweep.
-void gradient_trace_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
-                          const VelocityImageRule& rule, const std::array<const float*, 6>& correction, float* trace);
+void gradient_trace_sweep(const SweepContext& context, PackedNeighbours& records,
+                          const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
+                          const std::array<const float*, 6>& correction, float* trace);
 
 // Adds the second-order Taylor term of a displacement s: out_a += 1/2 s_b s_c d2 u_a / (d x_b d x_c), from the
 // corrected derivative along s of the velocity gradient. `rule` is that of the velocity, `reflection` that of geometric
 // vectors.
-void shift_curvature_sweep(const SweepContext& context, Records& records, const std::array<const float*, 9>& gradient,
-                           const VelocityImageRule& rule, const std::vector<std::array<float, 3>>& reflection,
+void shift_curvature_sweep(const SweepContext& context, PackedNeighbours& records,
+                           const std::array<const float*, 9>& gradient, const VelocityImageRule& rule,
+                           const std::vector<std::array<float, 3>>& reflection,
                            const std::array<const float*, 3>& shift, const std::array<const float*, 6>& correction,
                            const std::array<float*, 3>& out);
 
@@ -73,38 +75,40 @@ void shift_curvature_sweep(const SweepContext& context, Records& records, const 
 //   sum_j 2 (d + 2) g k_ij ((u_j - u_i) . d) d / |d|^2 = k (lap u + 2 grad div u)
 // for constant k: its dissipation is 2 k S:S up to a free surface, which it leaves without shear stress. The Laplacian
 // dissipates k |grad u|^2, half as much in an irrotational wave.
-void viscous_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
+void viscous_sweep(const SweepContext& context, PackedNeighbours& records, const std::array<const double*, 3>& velocity,
                    const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out,
                    bool stress = false);
 
 // Corrected divergence of u, and -lap of a scalar potential in the same pass (potential may be null).
-void divergence_sweep(const SweepContext& context, Records& records, const std::array<const double*, 3>& velocity,
-                      const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
-                      const double* potential, double* divergence, float* negative_laplacian);
+void divergence_sweep(const SweepContext& context, PackedNeighbours& records,
+                      const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
+                      const std::array<const float*, 6>& correction, const double* potential, double* divergence,
+                      float* negative_laplacian);
 
 // Corrected gradient of a scalar. Differences are formed from value - reference in float, so that a large constant
 // part costs no digits.
-void gradient_sweep(const SweepContext& context, Records& records, const double* values, double reference,
+void gradient_sweep(const SweepContext& context, PackedNeighbours& records, const double* values, double reference,
                     const std::array<const float*, 6>& correction, const std::array<float*, 3>& out);
 
 // Shepard filter of a geometric vector, for all particles or for the listed ones only.
-void filter_vector(const SweepContext& context, Records& records, const std::array<const float*, 3>& values,
+void filter_vector(const SweepContext& context, PackedNeighbours& records, const std::array<const float*, 3>& values,
                    const std::vector<std::array<float, 3>>& reflection, const std::array<float*, 3>& out);
-void filter_vector_subset(const SweepContext& context, Records& records, const std::array<const float*, 3>& values,
+void filter_vector_subset(const SweepContext& context, PackedNeighbours& records,
+                          const std::array<const float*, 3>& values,
                           const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> subset,
                           const std::array<float*, 3>& out);
 
 // Shepard filter of scalars, two at a time at the cost of one pass. Images take the values of their sources, or
 // image_value(k, m): of the k-th scalar at image m.
 using ImageValue = std::function<float(std::size_t k, std::size_t m)>;
-void filter_scalars(const SweepContext& context, Records& records, std::span<const float* const> values,
+void filter_scalars(const SweepContext& context, PackedNeighbours& records, std::span<const float* const> values,
                     std::span<float* const> out, const ImageValue& image_value = {});
 
 // Values of the geometry sums on an infinite lattice at this kernel and h / dr.
 struct LatticeConstants {
   double divergence_of_position;  // about 2.94 in 3-D at h / dr = 1.3
   double kernel_sum;
-  double coupling;  // sum_j 2 g times dr^2
+  double laplacian_diagonal;  // sum_j 2 g times dr^2
 };
 // The sums below a plane surface of a lattice, layer by layer from the surface down to where they vanish. Layers are
 // told apart by the smoothed normal, which falls with depth.

@@ -44,11 +44,11 @@ class Recorder {
   void sync();
   Extent extent() const;
   std::vector<std::pair<std::string, double>> last_row() const;  // of series.csv, by column
-  const std::vector<SeriesHeading>& series_columns() const { return series_columns_; }
+  const std::vector<SeriesColumn>& series_columns() const { return series_columns_; }
   std::span<const double> series_row() const { return series_row_; }  // the last one
 
  private:
-  SeriesFile& table(const std::string& name, const std::string& title, const std::vector<SeriesHeading>& columns);
+  SeriesFile& table(const std::string& name, const std::string& title, const std::vector<SeriesColumn>& columns);
   void lines(Method& method);
   std::vector<std::pair<std::string, std::string>> notes() const;
   void own_tables(Method& method, bool with_series);
@@ -59,7 +59,7 @@ class Recorder {
   std::map<std::string, SeriesFile> tables_;
   std::map<std::string, VtkhdfFile> families_;
   std::map<std::string, VtkhdfGridFile> grids_;
-  std::vector<SeriesHeading> series_columns_, probe_columns_;
+  std::vector<SeriesColumn> series_columns_, probe_columns_;
   std::vector<RecordTable> method_tables_;
   std::vector<double> series_row_, probe_row_, own_rows_;
 };

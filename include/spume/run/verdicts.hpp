@@ -22,7 +22,7 @@ struct Verdict {
 class InvariantWatch {
  public:
   // Throws std::logic_error when an invariant names a column that is not there.
-  InvariantWatch(std::vector<Invariant> invariants, const std::vector<SeriesHeading>& columns);
+  InvariantWatch(std::vector<Invariant> invariants, const std::vector<SeriesColumn>& columns);
 
   void observe(std::span<const double> row);  // one value per column
   std::vector<Verdict> verdicts() const;      // in the order of the invariants

@@ -17,7 +17,7 @@ class Expression;
 // stable: relaxation solved in closed form, any step; substep: explicit Euler, spacing / radius sub-steps.
 enum class BubbleIntegrator { stable, substep };
 // How liquid and bubbles share momentum: -grad(alpha p), or -alpha grad p (les-sph).
-enum class BubbleClosure { mixture_pressure, two_fluid };
+enum class MomentumForm { mixture_pressure, two_fluid };
 enum class SurfaceReaction { surface, liquid };
 // The probability with which a bubble is entrained that costs more than what is left of a budget.
 enum class EntrainmentOverdraft {
@@ -46,7 +46,7 @@ struct BubbleOptions {
   bool surface_interaction = true;
   bool fluid_inertia = false;
   BubbleIntegrator integrator = BubbleIntegrator::stable;
-  BubbleClosure closure = BubbleClosure::mixture_pressure;
+  MomentumForm momentum_form = MomentumForm::mixture_pressure;
   SurfaceReaction surface_reaction = SurfaceReaction::surface;  // who feels the reaction to the braking force
   double lift_coefficient = 0.5;
   double virtual_mass_coefficient = 0.5;

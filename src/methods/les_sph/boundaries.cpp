@@ -60,7 +60,7 @@ ImageRules image_rules(const Liquid& liquid, const WallPositions& walls) {
   const Domain& domain = liquid.scene.domain;
   ImageRules rules;
   rules.dimensions = liquid.dimensions;
-  rules.reach = liquid.grid.reach() * liquid.largest_length_ratio;
+  rules.support_radius = liquid.grid.support_radius() * liquid.largest_length_ratio;
   for (int axis = 0; axis < liquid.dimensions; ++axis) {
     rules.lower[axis] = walls[axis][0];
     rules.upper[axis] = walls[axis][1];
@@ -147,7 +147,7 @@ void update_image_rules(Liquid& liquid, double t) {
   throw StepFailure(details);
 }
 
-void keep_inside(const Liquid& liquid, const WallPositions& walls, Vec3& position, Vec3* velocity) {
+void apply_walls(const Liquid& liquid, const WallPositions& walls, Vec3& position, Vec3* velocity) {
   const Domain& domain = liquid.scene.domain;
   const double tiny = 1e-3 * liquid.scene.spacing;
   for (int axis = 0; axis < liquid.dimensions; ++axis) {

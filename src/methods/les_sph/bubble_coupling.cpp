@@ -79,7 +79,7 @@ void BubbleCoupling::move(Liquid& liquid, double dt) {
   parallel_for(population_.size(), [&](std::size_t b) {
     Vec3 r;
     for (std::size_t a = 0; a < 3; ++a) r[a] = (*population_.position[a])[b] + dt * (*population_.velocity[a])[b];
-    keep_inside(liquid, liquid.next_walls, r, nullptr);
+    apply_walls(liquid, liquid.next_walls, r, nullptr);
     for (std::size_t a = 0; a < 3; ++a) (*population_.next_position[a])[b] = r[a];
   });
   population_.sort(liquid.grid);
@@ -89,18 +89,18 @@ void BubbleCoupling::move(Liquid& liquid, double dt) {
 // h_i from the volume fraction of the last step, King (3.4).
 void BubbleCoupling::measure_sizes(Liquid& liquid) {
   const std::size_t n = liquid.size();
-  for (auto* array : {&liquid.next_volume_fraction, &liquid.length_ratio, &liquid.volume_ratio, &liquid.reach})
+  for (auto* array : {&liquid.next_volume_fraction, &liquid.length_ratio, &liquid.volume_ratio, &liquid.support_radius})
     array->resize(n);
-  const double reach = liquid.grid.reach();
+  const double support_radius = liquid.grid.support_radius();
   const double* fraction = liquid.volume_fraction->data();
-  float *length_ratio = liquid.length_ratio.data(), *reach_of = liquid.reach.data();
+  float *length_ratio = liquid.length_ratio.data(), *support_radius_of = liquid.support_radius.data();
   liquid.largest_length_ratio = parallel_reduce(
       n, 1.0F,
       [=](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
           const double ratio = inverse_cube_root(std::max(fraction[i], least_kernel_fraction));
           length_ratio[i] = static_cast<float>(ratio);
-          reach_of[i] = static_cast<float>(reach * ratio);
+          support_radius_of[i] = static_cast<float>(support_radius * ratio);
         }
         return *std::max_element(length_ratio + first, length_ratio + last);
       },
@@ -133,7 +133,7 @@ CrossSearch BubbleCoupling::bubble_search(const Liquid& liquid) const {
 
 CrossTargets BubbleCoupling::particle_targets(const Liquid& liquid) {
   return {liquid.size(),           liquid.read(liquid.intermediate), liquid.origin,
-          liquid.smoothing_length, liquid.length_ratio.data(),       liquid.reach.data()};
+          liquid.smoothing_length, liquid.length_ratio.data(),       liquid.support_radius.data()};
 }
 
 void BubbleCoupling::share_volume(Liquid& liquid) {
@@ -165,7 +165,8 @@ void BubbleCoupling::share_volume(Liquid& liquid) {
         liquid.next_volume_fraction[i] = static_cast<float>(alpha);
         liquid.volume_ratio[i] = static_cast<float>(1 / std::max(alpha, least_kernel_fraction));
       };
-      sum_over_points<1, Kernel>(particle_targets(liquid), bubble_search(liquid), liquid.grid.reach(), records, store);
+      sum_over_points<1, Kernel>(particle_targets(liquid), bubble_search(liquid), liquid.grid.support_radius(), records,
+                                 store);
     }
   });
   liquid.context.length_ratio = liquid.length_ratio.data();
@@ -180,9 +181,9 @@ std::vector<ArrayInfo> BubbleCoupling::arrays() const {
   list.push_back({"bubbles", population_.fields.bytes()});
   list.push_back({"bubble images", images_.bytes()});
   list.push_back(
-      {"bubble records", bytes(bubble_point_[0], bubble_point_[1], bubble_point_[2], inverse_reach_, liquid_records_,
-                               bubble_records_, interpolated_, dissipation_, next_merge_time_, reaction_[0],
-                               reaction_[1], reaction_[2], dead_, near_, near_particles_)});
+      {"bubble records", bytes(bubble_point_[0], bubble_point_[1], bubble_point_[2], inverse_support_radius_,
+                               liquid_records_, bubble_records_, interpolated_, dissipation_, next_merge_time_,
+                               reaction_[0], reaction_[1], reaction_[2], dead_, near_, near_particles_)});
   return list;
 }
 

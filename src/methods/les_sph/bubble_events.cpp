@@ -31,7 +31,7 @@ void BubbleCoupling::accept(Liquid& liquid, double dt) {
         r[a] = (*population_.next_position[a])[b];
         u[a] = (*population_.next_velocity[a])[b];
       }
-      keep_inside(liquid, liquid.walls, r, &u);
+      apply_walls(liquid, liquid.walls, r, &u);
       for (std::size_t a = 0; a < 3; ++a) {
         (*population_.position[a])[b] = r[a];
         (*population_.velocity[a])[b] = u[a];
@@ -43,7 +43,7 @@ void BubbleCoupling::accept(Liquid& liquid, double dt) {
       if (population_.merge_time != nullptr) (*population_.merge_time)[b] = next_merge_time_[b];
     });
     if (population_.deformation != nullptr) break_up(liquid, dt);
-    bury(t);
+    remove_dead(t);
   }
   // A liquid that was left by its last bubble.
   if (population_.empty() && nb > 0) parallel_for(n, [&](std::size_t i) { (*liquid.volume_fraction)[i] = 1; });
@@ -105,8 +105,8 @@ void BubbleCoupling::break_up(const Liquid& liquid, double dt) {
           second.velocity[a] = (*population_.velocity[a])[b];
           if (population_.fluctuation[a] != nullptr) second.fluctuation[a] = (*population_.fluctuation[a])[b];
         }
-        keep_inside(liquid, liquid.walls, place, nullptr);
-        keep_inside(liquid, liquid.walls, second.position, nullptr);
+        apply_walls(liquid, liquid.walls, place, nullptr);
+        apply_walls(liquid, liquid.walls, second.position, nullptr);
         second.volume = children.second_volume;
         made.push_back(second);
         for (std::size_t a = 0; a < 3; ++a) (*population_.position[a])[b] = place[a];
@@ -121,7 +121,7 @@ void BubbleCoupling::break_up(const Liquid& liquid, double dt) {
   }
 }
 
-void BubbleCoupling::bury(double t) {
+void BubbleCoupling::remove_dead(double t) {
   const std::size_t nb = population_.size();
   const double gone = parallel_sum(nb, [&](std::size_t b) { return dead_[b] != 0 ? 1.0 : 0.0; });
   if (gone == 0) return;
@@ -189,7 +189,7 @@ void BubbleCoupling::entrain(const Liquid& liquid, double dt) {
         const std::size_t first = made.size();
         bubbles::entrain(entrainment_, particle, dt, period, step, made);
         for (std::size_t k = first; k < made.size(); ++k)
-          keep_inside(liquid, liquid.walls, made[k].position, &made[k].velocity);
+          apply_walls(liquid, liquid.walls, made[k].position, &made[k].velocity);
       });
   history_.entrained += static_cast<std::int64_t>(born);
   history_.entrained_volume += parallel_sum(born, [&](std::size_t k) { return (*population_.volume)[before + k]; });

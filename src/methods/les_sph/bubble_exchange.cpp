@@ -34,7 +34,7 @@ void BubbleCoupling::smooth_normals(Liquid& liquid) {
 void BubbleCoupling::pack_liquid(Liquid& liquid) {
   const std::size_t n = liquid.size(), m = liquid.images.size();
   liquid_records_.resize((n + m) * record);
-  inverse_reach_.resize(n + m + simd::pair_lanes);
+  inverse_support_radius_.resize(n + m + simd::pair_lanes);
   const auto& gradient = liquid.velocity_gradient;
   const bool filtered = liquid.plan.test_filter, eddies = liquid.eddy_viscosity != nullptr;
   const bool normals = population_.merge_time != nullptr;
@@ -46,7 +46,7 @@ void BubbleCoupling::pack_liquid(Liquid& liquid) {
     const std::size_t size = last - first;
     bool near = false;
     for (std::size_t i = first; i < last; ++i) {
-      inverse_reach_[i] = 1 / liquid.reach[i];
+      inverse_support_radius_[i] = 1 / liquid.support_radius[i];
       near = near || near_[i] != 0;
     }
     if (!near && !around_boxes) return;
@@ -95,7 +95,7 @@ void BubbleCoupling::pack_liquid(Liquid& liquid) {
   // Mirrored velocities and what follows from them: at a no-slip wall the vorticity keeps its sign.
   parallel_for(m, [&](std::size_t k) {
     const auto source = static_cast<std::size_t>(liquid.images.source()[k]);
-    inverse_reach_[n + k] = inverse_reach_[source];
+    inverse_support_radius_[n + k] = inverse_support_radius_[source];
     if (!around_boxes && near_[source] == 0) return;
     const auto path = static_cast<std::size_t>(liquid.images.path()[k]);
     float* value = liquid_records_.data() + (n + k) * record;
@@ -124,7 +124,7 @@ void BubbleCoupling::interpolate(const Liquid& liquid) {
   const CrossSearch::Points sets[] = {{&liquid.table, n}, images_as_points(liquid.images)};
   const CrossSearch search(liquid.grid, liquid.origin,
                            {liquid.list.coordinate(0), liquid.list.coordinate(1), liquid.list.coordinate(2)}, sets);
-  const auto largest_reach = static_cast<float>(liquid.grid.reach() * liquid.largest_length_ratio);
+  const auto largest_support_radius = static_cast<float>(liquid.grid.support_radius() * liquid.largest_length_ratio);
   with_kernel(liquid.context, [&]<int d, class Kernel>() {
     if constexpr (d == 3) {
       const float scale = KernelScale<3, Kernel>(liquid.context).value;
@@ -132,8 +132,8 @@ void BubbleCoupling::interpolate(const Liquid& liquid) {
         thread_local CrossSearch::Found thread_found;
         CrossSearch::Found& found = thread_found;
         for (std::size_t b = first; b < last; ++b) {
-          search.near_place({bubble_point_[0][b], bubble_point_[1][b], bubble_point_[2][b]}, largest_reach,
-                            inverse_reach_.data(), found);
+          search.near_place({bubble_point_[0][b], bubble_point_[1][b], bubble_point_[2][b]}, largest_support_radius,
+                            inverse_support_radius_.data(), found);
           const auto [first_half, second_half] = sum_of_lines<Kernel>(found, liquid_records_.data());
           // In spray: few particles, all at the surface.
           bool dead = found.size < 20 && liquid.plan.free_surface;
@@ -270,7 +270,7 @@ void BubbleCoupling::deposit(Liquid& liquid) {
         for (std::size_t a = 0; a < 3; ++a) (*liquid.exchange[a])[i] = liquid.volume_ratio[i] * (scale * sums[a]);
         liquid.bubble_viscosity[i] = scale * sums[3];
       };
-      sum_over_points<4, Kernel>(particle_targets(liquid), bubble_search(liquid), liquid.grid.reach(),
+      sum_over_points<4, Kernel>(particle_targets(liquid), bubble_search(liquid), liquid.grid.support_radius(),
                                  bubble_records_.data(), store);
     }
   });

@@ -69,8 +69,8 @@ void BubbleCoupling::put_values(const Liquid& liquid, std::vector<double>& value
        mean_slip_, shift_norm, least_volume_fraction_, static_cast<double>(overfull_)});
 }
 
-Family BubbleCoupling::family(const Liquid& liquid) {
-  Family family;
+ParticleSnapshot BubbleCoupling::family(const Liquid& liquid) {
+  ParticleSnapshot family;
   family.name = "bubbles";
   family.size = population_.size();
   for (auto& array : snapshot_) array.resize(population_.size());
@@ -78,7 +78,7 @@ Family BubbleCoupling::family(const Liquid& liquid) {
     snapshot_[0][b] = population_.radius(b);
     snapshot_[1][b] = liquid.time - (*population_.birth_time)[b];
   });
-  NamedField velocity{"velocity", {}, {}};
+  ParticleField velocity{"velocity", {}, {}};
   for (std::size_t a = 0; a < 3; ++a) {
     family.position.push_back(population_.position[a]->data());
     velocity.f64.push_back(population_.velocity[a]->data());

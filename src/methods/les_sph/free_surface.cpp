@@ -27,54 +27,54 @@ double dot(const Vec3& a, const Vec3& b) {
 void find_surface(Liquid& liquid) {
   const std::size_t n = liquid.size();
   liquid.at_surface.resize(n);
-  liquid.held.resize(n);
+  liquid.pressure_fixed.resize(n);
   liquid.interior_weight.resize(n);
   const double width = liquid.options.surface.blend_width;
   parallel_for(n, [&](std::size_t i) {
     const double above = (*liquid.divergence_of_position)[i] - liquid.surface_threshold;
     liquid.at_surface[i] = above < 0 ? 1 : 0;
-    liquid.held[i] = above < 0 && liquid.uncorrected[i] != 0 ? 1 : 0;
+    liquid.pressure_fixed[i] = above < 0 && liquid.uncorrected[i] != 0 ? 1 : 0;
     liquid.interior_weight[i] = above < 0 ? 0.0F
                                 : above < width
                                     ? static_cast<float>(0.5 * (1 - std::cos(std::numbers::pi * above / width)))
                                     : 1.0F;
   });
   parallel_select(n, liquid.surface_particles, [&](std::size_t i) { return liquid.at_surface[i] != 0; });
-  parallel_select(n, liquid.edge_particles, [&](std::size_t i) { return liquid.is_edge(i); });
-  liquid.edge_depth.resize(liquid.edge_particles.size());
+  parallel_select(n, liquid.near_surface, [&](std::size_t i) { return liquid.is_edge(i); });
+  liquid.surface_depth.resize(liquid.near_surface.size());
   Array<float>& scratch = *liquid.acceleration[0];  // free until the viscous sweep
-  edge_depths(liquid.context, liquid.records, {liquid.scene.spacing, liquid.edge_particles, liquid.read(liquid.normal)},
-              scratch, liquid.edge_depth);
+  edge_depths(liquid.context, liquid.records, {liquid.scene.spacing, liquid.near_surface, liquid.read(liquid.normal)},
+              scratch, liquid.surface_depth);
   if (liquid.plan.shifting)
     filter_vector_subset(liquid.context, liquid.records, liquid.read(liquid.normal), liquid.reflection,
                          liquid.surface_particles, liquid.write(liquid.smoothed_normal));
 }
 
 SurfaceRow surface_row(const Liquid& liquid, std::size_t k) {
-  const auto i = static_cast<std::size_t>(liquid.edge_particles[k]);
+  const auto i = static_cast<std::size_t>(liquid.near_surface[k]);
   const double outside = 1 - double{liquid.interior_weight[i]};
-  const double depth = liquid.edge_depth[k];
+  const double depth = liquid.surface_depth[k];
   const Vec3 m = moment_of(liquid, i);
   const double size = std::sqrt(dot(m, m));
   // In a thin sheet |m| vanishes although the surface is near on both sides: there the pairs that are missing hold p =
   // 0.
-  const double full = liquid.lattice.coupling / (liquid.scene.spacing * liquid.scene.spacing);
-  const double missing = std::max(0.0, full - double{(*liquid.coupling)[i]});
+  const double full = liquid.lattice.laplacian_diagonal / (liquid.scene.spacing * liquid.scene.spacing);
+  const double missing = std::max(0.0, full - double{(*liquid.laplacian_diagonal)[i]});
   SurfaceRow row;
-  row.coupling = outside * std::max(2 * size / depth, missing);
+  row.laplacian_diagonal = outside * std::max(2 * size / depth, missing);
   if (size > 0) row.hydrostatic_pressure = depth * dot(liquid.uniform_acceleration, m) / size;
   return row;
 }
 
 void complete_surface_gradient(Liquid& liquid) {
   const int d = liquid.dimensions;
-  parallel_for(liquid.edge_particles.size(), [&](std::size_t k) {
-    const auto i = static_cast<std::size_t>(liquid.edge_particles[k]);
+  parallel_for(liquid.near_surface.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(liquid.near_surface[k]);
     const Vec3 m = moment_of(liquid, i);
     const double size = std::sqrt(dot(m, m));
     if (!(size > 0)) return;
     const double outside = 1 - double{liquid.interior_weight[i]};
-    const double depth = liquid.edge_depth[k];
+    const double depth = liquid.surface_depth[k];
     const double potential = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
     const double excess =
         (*liquid.reduced_pressure)[i] - potential - depth * dot(liquid.uniform_acceleration, m) / size;

@@ -101,10 +101,10 @@ void LesSph::step(double dt, Ledger& ledger) {
   counted_stage("neighbours", 0, traffic::neighbours, [&] { find_neighbours(liquid); });
   if (plan.shifting || plan.density_relaxation) liquid.displacement = displacement_fraction(liquid, dt);
   liquid.records.take_traffic();
-  pair_stage("geometry", traffic::geometry, [&] { measure_geometry(liquid); });
+  pair_stage("geometry", traffic::geometry, [&] { measure_kernel_moments(liquid); });
   if (plan.free_surface) stage("surface", [&] { find_surface(liquid); });
   liquid.records.take_traffic();
-  if (plan.shifting) counted_stage("shift", 0, traffic::shift, [&] { choose_shift(liquid); });
+  if (plan.shifting) counted_stage("shift", 0, traffic::shift, [&] { compute_shift(liquid); });
   if (plan.velocity_gradient) pair_stage("gradients", traffic::gradients, [&] { differentiate_velocity(liquid); });
   if (plan.shift_curvature)
     pair_stage("shift curvature", traffic::shift_curvature, [&] { find_shift_curvature(liquid); });
@@ -159,7 +159,7 @@ void LesSph::start(Ledger& ledger) {
     if (liquid_.plan.images) make_images(liquid_, 0);
     if (bubbles_) bubbles_->share_volume(liquid_);
     find_neighbours(liquid_);
-    measure_geometry(liquid_);
+    measure_kernel_moments(liquid_);
     if (liquid_.plan.free_surface) find_surface(liquid_);
     differentiate_velocity(liquid_);
     if (bubbles_) liquid_.bubble_viscosity.resize(liquid_.size());
@@ -207,15 +207,16 @@ std::vector<ArrayInfo> LesSph::arrays() const {
   if (bubbles_) {
     double sizes = 0;
     for (const auto* array : {&liquid_.next_volume_fraction, &liquid_.length_ratio, &liquid_.volume_ratio,
-                              &liquid_.reach, &liquid_.bubble_viscosity})
+                              &liquid_.support_radius, &liquid_.bubble_viscosity})
       sizes += array->bytes();
     list.push_back({"sizes of particles", sizes});
   }
   if (liquid_.plan.free_surface) {
     double surface = liquid_.layer_shift.bytes();
-    for (const auto* flags : {&liquid_.at_surface, &liquid_.held, &liquid_.beside_edge}) surface += flags->bytes();
-    for (const auto* values : {&liquid_.interior_weight, &liquid_.edge_depth}) surface += values->bytes();
-    for (const auto* numbers : {&liquid_.surface_particles, &liquid_.edge_particles, &liquid_.upper_particles})
+    for (const auto* flags : {&liquid_.at_surface, &liquid_.pressure_fixed, &liquid_.beside_edge})
+      surface += flags->bytes();
+    for (const auto* values : {&liquid_.interior_weight, &liquid_.surface_depth}) surface += values->bytes();
+    for (const auto* numbers : {&liquid_.surface_particles, &liquid_.near_surface, &liquid_.upper_particles})
       surface += numbers->bytes();
     list.push_back({"surface", surface});
   }
@@ -245,7 +246,7 @@ StepLimit LesSph::step_limit() const {
   };
   if (speed > 0) bound(options.courant * h / speed, "courant");
   // Spray does not count to that speed, but a step that takes any particle across half its support is refused.
-  if (liquid_.max_speed > 0) bound(0.45 * liquid_.grid.reach() / liquid_.max_speed, "spray");
+  if (liquid_.max_speed > 0) bound(0.45 * liquid_.grid.support_radius() / liquid_.max_speed, "spray");
   const double viscosity = liquid_.scene.fluid.kinematic_viscosity + liquid_.max_eddy_viscosity;
   // The explicit sum of div(2 nu S) is stable up to 0.108 h^2 / nu on a lattice in 3-D and 0.112 in 2-D, that of
   // div(nu grad u) up to 0.29 and 0.31.
@@ -359,12 +360,12 @@ void LesSph::series_values(std::span<double> values) {
   for (const double value : of_bubbles) put(value);
 }
 
-std::vector<Family> LesSph::snapshot() {
+std::vector<ParticleSnapshot> LesSph::snapshot() {
   ensure_started();
-  Family fluid;
+  ParticleSnapshot fluid;
   fluid.name = "fluid";
   fluid.size = liquid_.size();
-  NamedField velocity{"velocity", {}, {}};
+  ParticleField velocity{"velocity", {}, {}};
   for (int axis = 0; axis < liquid_.dimensions; ++axis) {
     fluid.position.push_back(liquid_.position[axis]->data());
     velocity.f64.push_back(liquid_.velocity[axis]->data());

@@ -83,7 +83,7 @@ Liquid::Liquid(const LoadedCase& loaded_case)
   if (plan.gravity || plan.body_force) potential = &fields.add<double>("potential", Lifetime::scratch);
   divergence_of_position = &fields.add<float>("divergence_of_position", Lifetime::scratch);
   if (plan.density_relaxation) kernel_sum = &fields.add<float>("kernel_sum", Lifetime::scratch);
-  coupling = &fields.add<float>("coupling", Lifetime::scratch);
+  laplacian_diagonal = &fields.add<float>("coupling", Lifetime::scratch);
   for (int k = 0; k < d * (d + 1) / 2; ++k)
     correction[k] = &fields.add<float>("gradient_correction_" + std::to_string(k), Lifetime::scratch);
   if (plan.shifting) add_vector(fields, shift, "shift", d, Lifetime::scratch);
@@ -116,15 +116,15 @@ Liquid::Liquid(const LoadedCase& loaded_case)
     if (volume_fraction != nullptr) (*volume_fraction)[i] = 1;
   });
 
-  const double reach = support_of(options.resolution.kernel) * smoothing_length;
+  const double support_radius = support_of(options.resolution.kernel) * smoothing_length;
   std::array<double, 3> lower{}, upper{};
   for (int axis = 0; axis < d; ++axis) {
     walls[axis] = {scene.domain.lower[axis], scene.domain.upper[axis]};
-    lower[axis] = scene.domain.lower[axis] - reach;
-    upper[axis] = scene.domain.upper[axis] + reach;
+    lower[axis] = scene.domain.lower[axis] - support_radius;
+    upper[axis] = scene.domain.upper[axis] + support_radius;
   }
   next_walls = walls;
-  grid = CellGrid(d, lower, upper, reach, n);
+  grid = CellGrid(d, lower, upper, support_radius, n);
   if (scene.body_force) uniform_body_force = uniform(*scene.body_force, scene.domain);
 
   context.list = &list;

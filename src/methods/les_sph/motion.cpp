@@ -198,7 +198,7 @@ void accept(Liquid& liquid, double dt) {
   };
   const double fastest = std::sqrt(parallel_max(n, 0.0, speed2_at));
   // A particle that crosses half its support in one step has left the neighbours that its pressure was solved with.
-  const double limit = 0.5 * liquid.grid.reach() / dt;
+  const double limit = 0.5 * liquid.grid.support_radius() / dt;
   if (!(fastest <= limit)) {
     StepFailure::Details details;
     for (std::size_t i = 0; i < n; ++i) {
@@ -230,7 +230,7 @@ void accept(Liquid& liquid, double dt) {
       for (int axis = 0; axis < d; ++axis) r[axis] += (*liquid.shift[axis])[i];
       if (liquid.plan.shift_correction) add_shift_velocity(liquid, i, u);
     }
-    keep_inside(liquid, liquid.next_walls, r, &u);
+    apply_walls(liquid, liquid.next_walls, r, &u);
     for (int axis = 0; axis < d; ++axis) {
       (*liquid.position[axis])[i] = r[axis];
       (*liquid.velocity[axis])[i] = u[axis];

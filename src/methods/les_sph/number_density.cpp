@@ -39,7 +39,7 @@ bool near_box(const Liquid& liquid, std::size_t i) {
       const double outside = std::max({box.lower[axis] - x, x - box.upper[axis], 0.0});
       distance2 += outside * outside;
     }
-    if (distance2 < liquid.grid.reach() * liquid.grid.reach()) return true;
+    if (distance2 < liquid.grid.support_radius() * liquid.grid.support_radius()) return true;
   }
   return false;
 }

@@ -26,7 +26,7 @@ Plan make_plan(const LoadedCase& loaded) {
   plan.eddy_viscosity = model != TurbulenceModel::none;
   plan.test_filter = plan.eddy_viscosity && model != TurbulenceModel::smagorinsky;
   plan.bubbles = options.bubbles.on;
-  plan.mixture_pressure = plan.bubbles && options.bubbles.closure == BubbleClosure::mixture_pressure;
+  plan.mixture_pressure = plan.bubbles && options.bubbles.momentum_form == MomentumForm::mixture_pressure;
   plan.test_filter = plan.test_filter || (plan.bubbles && options.bubbles.fluctuations);
   plan.drift_removal = plan.shifting && options.shifting.remove_drift;
   plan.density_relaxation = options.pressure.density_relaxation < never_relaxed;
@@ -63,41 +63,39 @@ std::vector<Stage> Plan::stages(const LoadedCase& loaded) const {
     return "no closure: turbulence.model = \"none\"";
   };
   std::vector<Stage> list;
-  list.push_back({"move", true, "particles to their intermediate positions"});
-  list.push_back({"sort", true, "particles in cell order"});
-  list.push_back({"images", images, images ? "periodic sides, walls or solids" : "every side is open"});
+  const auto add = [&list](std::string name, bool on, std::string reason) {
+    list.push_back({.name = std::move(name), .reason = std::move(reason), .on = on});
+  };
+  add("move", true, "particles to their intermediate positions");
+  add("sort", true, "particles in cell order");
+  add("images", images, images ? "periodic sides, walls or solids" : "every side is open");
   const BubbleOptions& gas = loaded.options.bubbles;
-  list.push_back(
-      {"bubble volume", bubbles, bubbles ? "volume fraction and sizes of particles" : "no section [bubbles]"});
-  list.push_back({"neighbours", true, "lists within the kernel support"});
-  list.push_back({"geometry", true, "gradient correction, div r, concentration"});
-  list.push_back(
-      {"surface", free_surface, free_surface ? "the liquid has a free surface" : "the liquid fills the domain"});
-  list.push_back({"shift", shifting, shifting ? "Fickian shifting" : "shifting.on = false"});
-  list.push_back({"gradients", velocity_gradient,
-                  eddy_viscosity      ? "strain of the closure"
-                  : bubbles           ? "vorticity at the bubbles"
-                  : shift_correction  ? "velocity correction of the shift"
-                  : velocity_gradient ? "divergence half a step ahead"
-                                      : "nobody needs them"});
-  list.push_back({"shift curvature", shift_curvature,
-                  shift_curvature ? "second-order velocity correction of the shift" : "shifting.velocity_correction"});
-  list.push_back({"eddy viscosity", eddy_viscosity, model()});
-  list.push_back({"bubble forces", bubbles,
-                  !bubbles                                     ? "no section [bubbles]"
-                  : gas.integrator == BubbleIntegrator::stable ? "stable integrator"
-                                                               : "explicit sub-steps"});
-  list.push_back({"viscosity", viscosity, viscous_stress ? "div(2 nu S)" : viscosity ? "div(nu grad u)" : "inviscid"});
-  list.push_back({"body force", body_force, body_force ? "forces.body" : "none given"});
-  list.push_back(
-      {"divergence", true,
-       compressible ? "right-hand side of the Helmholtz equation" : "right-hand side of the Poisson equation"});
-  list.push_back(
-      {"density relaxation", density_relaxation,
-       density_relaxation ? "the pressure evens out the number density" : "pressure.density_relaxation = 1e6"});
-  list.push_back(
-      {"pressure", true, closed ? "closed domain: the constant is removed" : "zero pressure at the free surface"});
-  list.push_back({"project", true, "pressure gradient and final positions"});
+  add("bubble volume", bubbles, bubbles ? "volume fraction and sizes of particles" : "no section [bubbles]");
+  add("neighbours", true, "lists within the kernel support");
+  add("geometry", true, "gradient correction, div r, concentration");
+  add("surface", free_surface, free_surface ? "the liquid has a free surface" : "the liquid fills the domain");
+  add("shift", shifting, shifting ? "Fickian shifting" : "shifting.on = false");
+  add("gradients", velocity_gradient,
+      eddy_viscosity      ? "strain of the closure"
+      : bubbles           ? "vorticity at the bubbles"
+      : shift_correction  ? "velocity correction of the shift"
+      : velocity_gradient ? "divergence half a step ahead"
+                          : "nobody needs them");
+  add("shift curvature", shift_curvature,
+      shift_curvature ? "second-order velocity correction of the shift" : "shifting.velocity_correction");
+  add("eddy viscosity", eddy_viscosity, model());
+  add("bubble forces", bubbles,
+      !bubbles                                     ? "no section [bubbles]"
+      : gas.integrator == BubbleIntegrator::stable ? "stable integrator"
+                                                   : "explicit sub-steps");
+  add("viscosity", viscosity, viscous_stress ? "div(2 nu S)" : viscosity ? "div(nu grad u)" : "inviscid");
+  add("body force", body_force, body_force ? "forces.body" : "none given");
+  add("divergence", true,
+      compressible ? "right-hand side of the Helmholtz equation" : "right-hand side of the Poisson equation");
+  add("density relaxation", density_relaxation,
+      density_relaxation ? "the pressure evens out the number density" : "pressure.density_relaxation = 1e6");
+  add("pressure", true, closed ? "closed domain: the constant is removed" : "zero pressure at the free surface");
+  add("project", true, "pressure gradient and final positions");
   std::string events;
   const auto event = [&](bool on, const char* name) {
     if (on) events += (events.empty() ? "" : ", ") + std::string(name);
@@ -107,7 +105,7 @@ std::vector<Stage> Plan::stages(const LoadedCase& loaded) const {
   event(!loaded.scene.spargers.empty(), "spargers");
   event(!loaded.scene.bubble_clouds.empty(), "clouds");
   event(gas.surface_interaction && free_surface, "bursting");
-  list.push_back({"bubble events", bubbles, bubbles ? events : "no section [bubbles]"});
+  add("bubble events", bubbles, bubbles ? events : "no section [bubbles]");
   return list;
 }
 

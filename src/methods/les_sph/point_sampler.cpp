@@ -38,14 +38,15 @@ void reflect_velocity(const Liquid& liquid, int axis, int side, Copy& copy, cons
 
 std::vector<Copy> copies_of(const Liquid& liquid, const Vec3& point) {
   const Domain& domain = liquid.scene.domain;
-  const double reach = liquid.grid.reach();
+  const double support_radius = liquid.grid.support_radius();
   std::vector<Copy> copies{{.point = point}};
   for (int axis = 0; axis < liquid.dimensions; ++axis) {
     const std::size_t made = copies.size();
     const double length = liquid.walls[axis][1] - liquid.walls[axis][0];
     for (int side = 0; side < 2; ++side) {
       const double plane = liquid.walls[axis][side];
-      if (std::abs(point[axis] - plane) >= reach || domain.sides[axis][side].kind == BoundaryKind::open) continue;
+      if (std::abs(point[axis] - plane) >= support_radius || domain.sides[axis][side].kind == BoundaryKind::open)
+        continue;
       for (std::size_t c = 0; c < made; ++c) {
         Copy copy = copies[c];
         if (domain.periodic(axis)) {
@@ -84,13 +85,14 @@ template <class Visit>
 void PointSampler::visit(const Liquid& liquid, const Vec3& point, Visit&& visit) const {
   const CellGrid& grid = liquid.grid;
   const int d = liquid.dimensions;
-  const double reach = grid.reach();
+  const double support_radius = grid.support_radius();
   with_kernel(liquid.context, [&]<int dimensions, class Kernel>() {
     const double h = liquid.smoothing_length;
     const double scale = liquid.volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions);
     for (const Copy& copy : copies_of(liquid, point)) {
       const auto range = [&](int axis) {
-        return std::pair(grid.index(axis, copy.point[axis] - reach), grid.index(axis, copy.point[axis] + reach));
+        return std::pair(grid.index(axis, copy.point[axis] - support_radius),
+                         grid.index(axis, copy.point[axis] + support_radius));
       };
       const auto [x0, x1] = range(0);
       const auto [y0, y1] = range(1);
@@ -107,7 +109,8 @@ void PointSampler::visit(const Liquid& liquid, const Vec3& point, Visit&& visit)
               r2 += offset[axis] * offset[axis];
             }
             const double swelling = liquid.volume_fraction == nullptr ? 1.0 : 1 / (*liquid.volume_fraction)[j];
-            if (r2 < reach * reach) visit(j, swelling * scale * Kernel::w(std::sqrt(r2) / h), offset, copy);
+            if (r2 < support_radius * support_radius)
+              visit(j, swelling * scale * Kernel::w(std::sqrt(r2) / h), offset, copy);
           }
         }
     }

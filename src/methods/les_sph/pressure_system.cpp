@@ -60,7 +60,7 @@ struct PressureSystem::Operator final : LinearOperator<float> {
     ++applications_;
   }
   Dots apply_with_dots(std::span<const float> x, std::span<float> y, std::span<const float> w) override {
-    const PressureDots dots = matrix_.apply(x, y, w);
+    const Dots dots = matrix_.apply(x, y, w);
     ++applications_;
     return {dots.wy, dots.yy};
   }
@@ -102,7 +102,7 @@ void PressureSystem::set_weights(const Liquid& liquid) {
 void PressureSystem::set_matrix(const Liquid& liquid, double helmholtz) {
   const std::size_t n = liquid.size();
   if (liquid.varying) set_weights(liquid);
-  for (auto* array : {&extra_, &diagonal_, &row_scale_}) array->resize(n);
+  for (auto* array : {&diagonal_shift_, &diagonal_, &row_scale_}) array->resize(n);
   const double bulk = liquid.lattice.divergence_of_position;
   const auto volume = static_cast<float>(liquid.volume);
   parallel_for(n, [&](std::size_t i) {
@@ -112,18 +112,18 @@ void PressureSystem::set_matrix(const Liquid& liquid, double helmholtz) {
     if (liquid.plan.free_surface) div_r += (1 - double{liquid.interior_weight[i]}) * std::max(0.0, bulk - div_r);
     const double scale = div_r / liquid.dimensions;  // what the row is multiplied by
     row_scale_[i] = static_cast<float>(scale);
-    extra_[i] = static_cast<float>(helmholtz * scale);
-    const bool held = liquid.plan.free_surface && liquid.held[i] != 0;
-    diagonal_[i] = held ? 0.0F : volume * ((*liquid.coupling)[i] + extra_[i]);
+    diagonal_shift_[i] = static_cast<float>(helmholtz * scale);
+    const bool pressure_fixed = liquid.plan.free_surface && liquid.pressure_fixed[i] != 0;
+    diagonal_[i] = pressure_fixed ? 0.0F : volume * ((*liquid.laplacian_diagonal)[i] + diagonal_shift_[i]);
   });
   if (!liquid.plan.free_surface) return;
-  surface_source_.resize(liquid.edge_particles.size());
-  parallel_for(liquid.edge_particles.size(), [&](std::size_t k) {
-    const auto i = static_cast<std::size_t>(liquid.edge_particles[k]);
+  surface_source_.resize(liquid.near_surface.size());
+  parallel_for(liquid.near_surface.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(liquid.near_surface[k]);
     const SurfaceRow row = surface_row(liquid, k);
-    extra_[i] += static_cast<float>(row.coupling);
-    diagonal_[i] += static_cast<float>(volume * row.coupling);
-    surface_source_[k] = row.coupling * row.hydrostatic_pressure;
+    diagonal_shift_[i] += static_cast<float>(row.laplacian_diagonal);
+    diagonal_[i] += static_cast<float>(volume * row.laplacian_diagonal);
+    surface_source_[k] = row.laplacian_diagonal * row.hydrostatic_pressure;
     if (liquid.potential != nullptr) potential_laplacian_[i] -= static_cast<float>(surface_source_[k]);
   });
 }
@@ -150,7 +150,7 @@ void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz,
       [&](std::size_t first, std::size_t last) {
         double sum = 0;
         for (std::size_t i = first; i < last; ++i) {
-          if (surface && liquid.held[i] != 0) {
+          if (surface && liquid.pressure_fixed[i] != 0) {
             right_hand_side_[i] = 0;
             continue;
           }
@@ -162,7 +162,7 @@ void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz,
           const double known =
               (source_factor * right_hand_side_[i] + pressure_factor * (*liquid.pressure)[i] / density) * row_scale_[i];
           const double potential = liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i];
-          right_hand_side_[i] = liquid.volume * (known + extra_[i] * potential);
+          right_hand_side_[i] = liquid.volume * (known + diagonal_shift_[i] * potential);
           const double in_pressure =
               liquid.volume * (known - (liquid.potential == nullptr ? 0.0F : potential_laplacian_[i]));
           sum += in_pressure * in_pressure;
@@ -172,8 +172,8 @@ void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz,
       [](double a, double b) { return a + b; });
   reference_norm_ = std::sqrt(squares);
   if (!surface) return;
-  parallel_for(liquid.edge_particles.size(), [&](std::size_t k) {
-    right_hand_side_[static_cast<std::size_t>(liquid.edge_particles[k])] += liquid.volume * surface_source_[k];
+  parallel_for(liquid.near_surface.size(), [&](std::size_t k) {
+    right_hand_side_[static_cast<std::size_t>(liquid.near_surface[k])] += liquid.volume * surface_source_[k];
   });
 }
 
@@ -217,7 +217,7 @@ class LentArrays {
     const auto normals = liquid.plan.bubbles ? FloatVectorField{} : liquid.smoothed_normal;
     for (Array<float>* lent :
          {liquid.acceleration[0], liquid.acceleration[1], liquid.acceleration[2], liquid.diffusivity,
-          liquid.gradient_trace, liquid.coupling, normals[0], normals[1], normals[2]}) {
+          liquid.gradient_trace, liquid.laplacian_diagonal, normals[0], normals[1], normals[2]}) {
       if (lent == nullptr || next == borrowers.size()) continue;
       lent->swap(*borrowers[next]);
       pairs_[next] = {lent, borrowers[next]};
@@ -276,7 +276,7 @@ void PressureSystem::solve(Liquid& liquid, double helmholtz, const char* stage, 
   const bool surface = liquid.plan.free_surface;
   residual_.resize(n);
 
-  PressureMatrix matrix{extra_.data(), surface ? liquid.held.data() : nullptr};
+  PressureMatrix matrix{diagonal_shift_.data(), surface ? liquid.pressure_fixed.data() : nullptr};
   if (liquid.varying) {
     matrix.weight = weight_.data();
     matrix.row = row_.data();
@@ -288,7 +288,7 @@ void PressureSystem::solve(Liquid& liquid, double helmholtz, const char* stage, 
     if (liquid.plan.displaced_walls) multigrid_->set_geometry(cell_geometry(liquid));
     // Borrowed from the corrections, which start after the setup.
     correction_.resize(n);
-    parallel_for(n, [&](std::size_t i) { correction_[i] = surface && liquid.held[i] != 0 ? 0.0F : 1.0F; });
+    parallel_for(n, [&](std::size_t i) { correction_[i] = surface && liquid.pressure_fixed[i] != 0 ? 0.0F : 1.0F; });
     const auto r = liquid.read(liquid.intermediate);
     const auto span = [&](int axis) {
       return axis < liquid.dimensions ? std::span(r[axis], n) : std::span<const double>();
@@ -379,8 +379,9 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
   }
   // Start from the pressure that the particle carries; held ones p = 0.
   parallel_for(n, [&](std::size_t i) {
-    const bool held = liquid.plan.free_surface && liquid.held[i] != 0;
-    const double carried = held || !liquid.options.pressure.warm_start ? 0.0 : (*liquid.pressure)[i] / density;
+    const bool pressure_fixed = liquid.plan.free_surface && liquid.pressure_fixed[i] != 0;
+    const double carried =
+        pressure_fixed || !liquid.options.pressure.warm_start ? 0.0 : (*liquid.pressure)[i] / density;
     (*liquid.reduced_pressure)[i] = carried + (liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]);
   });
   solve(liquid, helmholtz, "pressure", ledger);
@@ -421,8 +422,8 @@ double PressureSystem::bytes() const {
   for (const auto* array :
        {&right_hand_side_, &residual_, &surface_source_, &double_correction_, &zero_, &double_diagonal_})
     total += array->bytes();
-  for (const auto* array :
-       {&potential_laplacian_, &extra_, &diagonal_, &row_scale_, &correction_right_, &correction_, &weight_, &row_})
+  for (const auto* array : {&potential_laplacian_, &diagonal_shift_, &diagonal_, &row_scale_, &correction_right_,
+                            &correction_, &weight_, &row_})
     total += array->bytes();
   return multigrid_ == nullptr ? total : total + multigrid_->bytes();
 }

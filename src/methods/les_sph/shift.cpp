@@ -22,7 +22,7 @@ constexpr double share_of_largest_shift = 0.9;
 void keep_layers(Liquid& liquid) {
   const std::size_t n = liquid.size();
   liquid.beside_edge.resize(n);
-  mark_upper_layers(liquid.context, liquid.scene.spacing, liquid.edge_particles, liquid.beside_edge);
+  mark_upper_layers(liquid.context, liquid.scene.spacing, liquid.near_surface, liquid.beside_edge);
   parallel_select(n, liquid.upper_particles, [&](std::size_t i) { return liquid.beside_edge[i] != 0; });
   const FloatVectorField& unit_normal = liquid.acceleration;  // free until the viscous sweep
   parallel_for(n, [&](std::size_t i) {
@@ -46,7 +46,7 @@ void keep_layers(Liquid& liquid) {
 
 }  // namespace
 
-void choose_shift(Liquid& liquid) {
+void compute_shift(Liquid& liquid) {
   const int d = liquid.dimensions;
   // King (3.12) at steps of courant 0.2, else in proportion to the distance moved, as far as that evens out: a liquid
   // at rest is not shifted, and small steps do not shift more (and dissipate more) than large ones. Particles that have

@@ -116,7 +116,8 @@ Flow<T>::Flow(const LoadedCase& loaded)
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double last = std::min(layout_.largest_wavenumber(axis), cut_[axis] - layout_.unit(axis) / 2);
-    kept_reach_ = std::max(kept_reach_, last * layout_.lengths[axis] / static_cast<double>(layout_.points[axis]));
+    kept_support_radius_ =
+        std::max(kept_support_radius_, last * layout_.lengths[axis] / static_cast<double>(layout_.points[axis]));
   }
   lane_wavenumber_.resize(layout_.row);
   lane_weight_.resize(layout_.row);
@@ -322,7 +323,7 @@ StepLimit Flow<T>::limit_for(const VelocityPeak& peak) const {
     const double frequency = std::numbers::pi * peak.rate;
     switch (options_.integrator) {
       case Integrator::ab2: {
-        const double kept = kept_reach_ * peak.rate;
+        const double kept = kept_support_radius_ * peak.rate;
         bound(stable_ab2_phase(viscosity_ * kept / (peak.speed * peak.speed)) / kept, "ab2 stability");
         break;
       }

@@ -85,19 +85,21 @@ std::vector<Stage> Spectral<T>::plan() const {
   const char* const integrators[] = {"Adams-Bashforth 2", "Runge-Kutta 3, three tendencies a step",
                                      "Runge-Kutta 4, five tendencies a step"};
   std::vector<Stage> list;
-  list.push_back({"x stage", true, "modes to planes of x, velocity and two gradients"});
-  list.push_back({"planes of the product", true,
-                  padded ? "u x omega on 3N/2 points, plane by plane" : "u x omega on N points, plane by plane"});
-  list.push_back(
-      {"two-thirds cut", options.dealiasing == Dealiasing::two_thirds,
-       options.dealiasing == Dealiasing::two_thirds ? "modes above N/3 are held at zero" : "spectral.dealiasing"});
-  list.push_back({"forcing", forcing != ForcingKind::none,
-                  forcing == ForcingKind::shell    ? "constant injection on a shell"
-                  : forcing == ForcingKind::linear ? "rate times velocity"
-                                                   : "forcing.kind = \"none\""});
-  list.push_back({"update", true, integrators[static_cast<int>(options.integrator)]});
+  const auto add = [&list](std::string name, bool on, std::string reason) {
+    list.push_back({.name = std::move(name), .reason = std::move(reason), .on = on});
+  };
+  add("x stage", true, "modes to planes of x, velocity and two gradients");
+  add("planes of the product", true,
+      padded ? "u x omega on 3N/2 points, plane by plane" : "u x omega on N points, plane by plane");
+  add("two-thirds cut", options.dealiasing == Dealiasing::two_thirds,
+      options.dealiasing == Dealiasing::two_thirds ? "modes above N/3 are held at zero" : "spectral.dealiasing");
+  add("forcing", forcing != ForcingKind::none,
+      forcing == ForcingKind::shell    ? "constant injection on a shell"
+      : forcing == ForcingKind::linear ? "rate times velocity"
+                                       : "forcing.kind = \"none\"");
+  add("update", true, integrators[static_cast<int>(options.integrator)]);
   const bool viscous = flow_.viscosity() > 0;
-  list.push_back({"viscosity", viscous, viscous ? "exact, by an integrating factor" : "inviscid"});
+  add("viscosity", viscous, viscous ? "exact, by an integrating factor" : "inviscid");
   if (suspension_) suspension_->add_stages(list);
   return list;
 }
@@ -201,17 +203,17 @@ bool Spectral<T>::wants(const std::string& field) const {
 }
 
 template <class T>
-std::vector<Family> Spectral<T>::snapshot() {
+std::vector<ParticleSnapshot> Spectral<T>::snapshot() {
   ensure_started();
-  return suspension_ ? std::vector<Family>{suspension_->family()} : std::vector<Family>{};
+  return suspension_ ? std::vector<ParticleSnapshot>{suspension_->family()} : std::vector<ParticleSnapshot>{};
 }
 
 template <class T>
-std::vector<GridFamily> Spectral<T>::grid_snapshot() {
+std::vector<GridSnapshot> Spectral<T>::grid_snapshot() {
   ensure_started();
   const ModeLayout& layout = flow_.layout();
   const std::size_t size = particle_count(), nz = layout.points[2];
-  GridFamily family;
+  GridSnapshot family;
   family.name = "fluid";
   family.points = layout.points;
   family.origin = loaded_.scene.domain.lower;
@@ -221,7 +223,7 @@ std::vector<GridFamily> Spectral<T>::grid_snapshot() {
   const auto draw = [&](std::size_t set, const char* name, auto&& fill) {
     const std::size_t components = set < 2 ? 3 : 1;
     drawn_[set].resize(components);
-    GridFamily::Field field{name, {}};
+    GridSnapshot::Field field{name, {}};
     values.resize(components * size);
     fill();
     for (std::size_t c = 0; c < components; ++c) {

@@ -11,7 +11,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
-#include "spume/physics/particles/clustering.hpp"
+#include "spume/physics/point_particles/clustering.hpp"
 #include "spume/scene/refusal.hpp"
 
 namespace spume::spectral {
@@ -54,7 +54,7 @@ double lyapunov_bytes(const LoadedCase& loaded) {
   return static_cast<double>(loaded.options.particles.lyapunov) * (7.0 * (8 * 7 + 16) + 6 * 8);
 }
 
-void require_memory(const LoadedCase& loaded, const ParticleOptions& options) {
+void require_memory(const LoadedCase& loaded, const PointParticleOptions& options) {
   const double particles = suspension_bytes(loaded, options);
   const double needed = particles + flow_bytes(loaded.scene.grid, loaded.options.spectral);
   const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
@@ -77,7 +77,7 @@ void require_memory(const LoadedCase& loaded, const ParticleOptions& options) {
 }
 
 // Heavy particles may be too crowded for any step: their force is then clipped below close packing.
-void limit_clipping(const Case& options, ParticleOptions& out) {
+void limit_clipping(const Case& options, PointParticleOptions& out) {
   const ParticleCaseOptions& in = options.particles;
   const double bearable = stable_volume_fraction(out.motion, out.scheme, out.most_volume_fraction);
   if (bearable >= out.most_volume_fraction) return;
@@ -93,7 +93,7 @@ void limit_clipping(const Case& options, ParticleOptions& out) {
 }
 
 ParticleSystem system_for(const LoadedCase& loaded) {
-  const ParticleOptions options = particle_options(loaded);
+  const PointParticleOptions options = particle_options(loaded);
   try {
     return {grid_of(loaded), options};
   } catch (const InputError& error) {
@@ -109,7 +109,7 @@ constexpr int overlap_bins = 20;
 
 }  // namespace
 
-double suspension_bytes(const LoadedCase& loaded, const ParticleOptions& options) {
+double suspension_bytes(const LoadedCase& loaded, const PointParticleOptions& options) {
   const PeriodicGrid grid = grid_of(loaded);
   const double number = loaded.options.spectral.precision == FieldPrecision::f64 ? 8 : 4;
   // Velocity or force on the points and, when the flow feels it, the force as modes.
@@ -118,11 +118,11 @@ double suspension_bytes(const LoadedCase& loaded, const ParticleOptions& options
   return ParticleSystem::estimated_bytes(grid, options) + lyapunov_bytes(loaded) + fields;
 }
 
-ParticleOptions particle_options(const LoadedCase& loaded) {
+PointParticleOptions particle_options(const LoadedCase& loaded) {
   const ParticleCaseOptions& in = loaded.options.particles;
   const double nu = loaded.scene.fluid.kinematic_viscosity, injection = loaded.options.forcing.injection;
   const Domain& domain = loaded.scene.domain;
-  ParticleOptions out;
+  PointParticleOptions out;
   double volume = 1;
   std::array<double, 3> length{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -285,23 +285,25 @@ void Suspension<T>::require_possible(const StepLimit& flow) const {
 
 template <class T>
 void Suspension<T>::add_stages(std::vector<Stage>& list) const {
+  const auto add = [&list](std::string name, bool on, std::string reason) {
+    list.push_back({.name = std::move(name), .reason = std::move(reason), .on = on});
+  };
   const bool couples = system_.couples(), collides = system_.collides();
   const char* const no_feedback =
       excludes(system_.options().coupling) ? "particles.coupling = \"colliding\"" : "particles.coupling = \"one-way\"";
   char spread[100];
   std::snprintf(spread, sizeof spread, "force spread to eight points, clipped above %.3g, projected",
                 system_.options().most_volume_fraction);
-  list.push_back({"particle feedback", couples, couples ? spread : no_feedback});
-  list.push_back({"velocity at points", true, "divided by the prefilter of the splines"});
-  list.push_back({"particle sort", true, "every " + std::to_string(system_.options().sort_every) + " steps"});
-  list.push_back({"particle motion", !system_.options().motion.frozen,
-                  system_.options().motion.frozen ? "particles.frozen" : "Maxey-Riley, exponential in the drag"});
-  list.push_back({"particle exclusion", collides,
-                  collides                          ? "strongest overlaps, one per particle"
-                  : system_.options().motion.frozen ? "particles.frozen"
-                                                    : "particles.coupling is neither \"four-way\" nor \"colliding\""});
-  list.push_back({"Lyapunov exponents", follows_exponents_,
-                  follows_exponents_ ? "shadow trajectories" : "particles.lyapunov = 0"});
+  add("particle feedback", couples, couples ? spread : no_feedback);
+  add("velocity at points", true, "divided by the prefilter of the splines");
+  add("particle sort", true, "every " + std::to_string(system_.options().sort_every) + " steps");
+  add("particle motion", !system_.options().motion.frozen,
+      system_.options().motion.frozen ? "particles.frozen" : "Maxey-Riley, exponential in the drag");
+  add("particle exclusion", collides,
+      collides                          ? "strongest overlaps, one per particle"
+      : system_.options().motion.frozen ? "particles.frozen"
+                                        : "particles.coupling is neither \"four-way\" nor \"colliding\"");
+  add("Lyapunov exponents", follows_exponents_, follows_exponents_ ? "shadow trajectories" : "particles.lyapunov = 0");
 }
 
 template <class T>
@@ -370,10 +372,10 @@ void Suspension<T>::values(std::vector<double>& row) {
 }
 
 template <class T>
-Family Suspension<T>::family() {
+ParticleSnapshot Suspension<T>::family() {
   const Particles& particles = system_.particles();
   const auto x = particles.positions(), v = particles.velocities();
-  Family family;
+  ParticleSnapshot family;
   family.name = "bubbles";
   family.size = particles.size();
   family.position = {x[0], x[1], x[2]};

@@ -36,11 +36,11 @@ double Population::total_volume() const {
 
 std::size_t Population::settle(double t) {
   std::size_t births = 0;
-  for (const auto& list : nursery_) births += list.size();
+  for (const auto& list : pending_births_) births += list.size();
   if (births == 0) return 0;
   std::size_t slot = size();
   fields.resize(slot + births);
-  for (const auto& list : nursery_)
+  for (const auto& list : pending_births_)
     for (const NewBubble& bubble : list) {
       for (std::size_t a = 0; a < 3; ++a) {
         (*position[a])[slot] = bubble.position[a];

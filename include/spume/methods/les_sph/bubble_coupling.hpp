@@ -66,7 +66,7 @@ class BubbleCoupling {
 
   void add_columns(std::vector<SeriesColumn>& columns) const;
   void put_values(const Liquid& liquid, std::vector<double>& values) const;
-  Family family(const Liquid& liquid);
+  ParticleSnapshot family(const Liquid& liquid);
   std::vector<RecordTable> tables() const;
   void table_rows(const Liquid& liquid, const std::string& name, std::vector<double>& rows);
   std::string note();  // of what happened since the last call; "" for nothing
@@ -84,7 +84,7 @@ class BubbleCoupling {
   void move_bubbles(Liquid& liquid, double dt);
   void interpolate(const Liquid& liquid);
   void deposit(Liquid& liquid);
-  void bury(double t);
+  void remove_dead(double t);
   void break_up(const Liquid& liquid, double dt);
   void entrain(const Liquid& liquid, double dt);
   double smoothed_dissipation(const Liquid& liquid, std::size_t i) const;
@@ -116,7 +116,7 @@ class BubbleCoupling {
 
   Images images_;
   std::array<Array<float>, 3> bubble_point_;  // bubbles and images, relative to the origin of the liquid
-  Array<float> inverse_reach_;                // of particles and images
+  Array<float> inverse_support_radius_;       // of particles and images
   Array<float> liquid_records_, bubble_records_;
   Array<float> interpolated_;  // per bubble the liquid at it and the kernel sum
   Array<double> dissipation_, next_merge_time_, next_slip_;

@@ -27,7 +27,7 @@ void find_surface(Liquid& liquid);
 
 // E (1 - b) of edge particle k, per volume, and the hydrostatic pressure p0 over the density.
 struct SurfaceRow {
-  double coupling = 0;
+  double laplacian_diagonal = 0;
   double hydrostatic_pressure = 0;
 };
 SurfaceRow surface_row(const Liquid& liquid, std::size_t k);

@@ -34,7 +34,7 @@ class LesSph final : public Method {
   void step(double dt, Ledger& ledger) override;
   std::vector<SeriesColumn> series_columns() const override;
   void series_values(std::span<double> values) override;
-  std::vector<Family> snapshot() override;
+  std::vector<ParticleSnapshot> snapshot() override;
   PointSample sample(const Vec3& position) override;
   double elevation(const Vec3& position) override;
   double wetted_length(const Vec3& position) override;

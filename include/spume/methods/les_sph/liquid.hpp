@@ -55,7 +55,7 @@ struct Liquid {
   double largest_length_ratio = 1;
   Array<float> next_volume_fraction;        // alpha^{n+1}
   Array<float> length_ratio, volume_ratio;  // h_i / h and V_i / V, as far as kernels expand
-  Array<float> reach;                       // support of h_i
+  Array<float> support_radius;              // support of h_i
   Array<float> bubble_viscosity;
   FloatVectorField exchange{};  // acceleration by the bubbles
   double width_at(std::size_t i) const { return varying ? smoothing_length * length_ratio[i] : smoothing_length; }
@@ -69,15 +69,15 @@ struct Liquid {
   Array<double>* potential = nullptr;         // -rho a . r*, null without uniform acceleration
   Array<float>* divergence_of_position = nullptr;
   Array<float>* kernel_sum = nullptr;
-  Array<float>* coupling = nullptr;
+  Array<float>* laplacian_diagonal = nullptr;
   std::array<Array<float>*, 6> correction{};
   Array<std::uint8_t> uncorrected;  // gradient correction fell back to the identity
   Array<std::uint8_t> at_surface;
-  Array<std::uint8_t> held;      // p = 0: at the surface with too few neighbours for a corrected gradient
-  Array<float> interior_weight;  // b: 0 at the surface, 1 inside, smooth between
+  Array<std::uint8_t> pressure_fixed;  // p = 0: at the surface with too few neighbours for a corrected gradient
+  Array<float> interior_weight;        // b: 0 at the surface, 1 inside, smooth between
   Array<std::int32_t> surface_particles;
-  Array<std::int32_t> edge_particles;  // b < 1 and not held
-  Array<float> edge_depth;             // of those: distance from the surface
+  Array<std::int32_t> near_surface;  // b < 1 and not held
+  Array<float> surface_depth;        // of those: distance from the surface
   FloatVectorField normal{}, smoothed_normal{};
   Array<std::uint8_t> beside_edge;
   Array<std::int32_t> upper_particles;      // edge particles and those of the layer below them
@@ -104,7 +104,7 @@ struct Liquid {
   CellTable table;
   Images images;
   NeighbourList list;
-  Records records;
+  PackedNeighbours records;
   SweepContext context;
   VelocityImageRule velocity_rule;
   VelocityImageRule mirror_rule;  // the same without friction; in a scene with no-slip walls alone
@@ -145,8 +145,8 @@ void move_to_intermediate(Liquid& liquid, double dt);  // (i)
 void sort_particles(Liquid& liquid);
 void make_images(Liquid& liquid, double dt);  // (ii)
 void find_neighbours(Liquid& liquid);         // (ii)
-void measure_geometry(Liquid& liquid);
-void choose_shift(Liquid& liquid);            // (iii)
+void measure_kernel_moments(Liquid& liquid);
+void compute_shift(Liquid& liquid);           // (iii)
 void differentiate_velocity(Liquid& liquid);  // (v)
 void find_shift_curvature(Liquid& liquid);
 void find_eddy_viscosity(Liquid& liquid, double dt);
@@ -163,7 +163,7 @@ WallPositions advanced_walls(const Liquid& liquid, double dt);
 // How images change velocities, and the reflections of geometric vectors, for walls at time t.
 void update_image_rules(Liquid& liquid, double t);
 // Periodic wrap; a point beyond a wall or inside a solid is reflected back, its velocity too when given.
-void keep_inside(const Liquid& liquid, const WallPositions& walls, Vec3& position, Vec3* velocity);
+void apply_walls(const Liquid& liquid, const WallPositions& walls, Vec3& position, Vec3* velocity);
 
 // Particles with fewer neighbours than a surface gives are spray: they exchange next to nothing.
 constexpr int spray_neighbours(int dimensions) {

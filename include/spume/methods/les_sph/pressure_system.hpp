@@ -58,7 +58,7 @@ class PressureSystem {
 
   Array<double> right_hand_side_, residual_;  // the first holds the divergence while that is found
   Array<double> surface_source_;              // per edge particle
-  Array<float> potential_laplacian_, extra_, diagonal_, row_scale_;
+  Array<float> potential_laplacian_, diagonal_shift_, diagonal_, row_scale_;
   Array<float> weight_, row_;  // with bubbles: PressureMatrix
   Array<float> correction_right_, correction_;
   double reference_norm_ = 0;  // norm of the right-hand side in terms of p

@@ -28,8 +28,8 @@ class Spectral final : public Method {
   void step(double dt, Ledger& ledger) override;
   std::vector<SeriesColumn> series_columns() const override;
   void series_values(std::span<double> values) override;
-  std::vector<Family> snapshot() override;
-  std::vector<GridFamily> grid_snapshot() override;
+  std::vector<ParticleSnapshot> snapshot() override;
+  std::vector<GridSnapshot> grid_snapshot() override;
   PointSample sample(const Vec3& position) override;
   double elevation(const Vec3& position) override;  // no surface: not a number
   double wetted_length(const Vec3& position) override;

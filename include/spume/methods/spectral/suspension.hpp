@@ -14,18 +14,18 @@
 #include "spume/methods/method.hpp"
 #include "spume/methods/spectral/flow.hpp"
 #include "spume/methods/spectral/flow_fields.hpp"
-#include "spume/physics/particles/lyapunov.hpp"
-#include "spume/physics/particles/particle_system.hpp"
+#include "spume/physics/point_particles/lyapunov.hpp"
+#include "spume/physics/point_particles/particle_system.hpp"
 
 namespace spume::spectral {
 
 // What the particles of a case are: counts from volume fractions, lengths and times from Kolmogorov scales. Throws
 // InputError for what no option alone shows: an unreadable file of positions, too little memory.
-ParticleOptions particle_options(const LoadedCase& loaded);
+PointParticleOptions particle_options(const LoadedCase& loaded);
 
 // Memory of the particles and of the fields between them and the flow, in bytes, before anything is allocated; that of
 // the flow (flow_bytes) not included.
-double suspension_bytes(const LoadedCase& loaded, const ParticleOptions& options);
+double suspension_bytes(const LoadedCase& loaded, const PointParticleOptions& options);
 
 template <class T>
 class Suspension {
@@ -47,7 +47,7 @@ class Suspension {
   void add_columns(std::vector<SeriesColumn>& list) const;
   // In the order of add_columns.
   void values(std::vector<double>& row);
-  Family family();
+  ParticleSnapshot family();
   void add_headings(std::vector<Distribution>& tables) const;
   void add_distributions(std::vector<Distribution>& tables);
 

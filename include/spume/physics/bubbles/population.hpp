@@ -54,10 +54,10 @@ class Population {
     constexpr std::size_t blocks = 64;
     if (items == 0) return 0;
     const std::size_t block = (items + blocks - 1) / blocks;
-    nursery_.resize(blocks);
-    for (auto& list : nursery_) list.clear();
+    pending_births_.resize(blocks);
+    for (auto& list : pending_births_) list.clear();
     parallel_blocks(items, block, [&](std::size_t b, std::size_t first, std::size_t last) {
-      for (std::size_t item = first; item < last; ++item) make(item, nursery_[b]);
+      for (std::size_t item = first; item < last; ++item) make(item, pending_births_[b]);
     });
     return settle(t);
   }
@@ -90,7 +90,7 @@ class Population {
  private:
   std::size_t settle(double t);
 
-  std::vector<std::vector<NewBubble>> nursery_;
+  std::vector<std::vector<NewBubble>> pending_births_;
   CellTable table_;
   Array<std::int32_t> order_;
 };

@@ -41,12 +41,13 @@ bool invert(const std::array<double, 6>& m, int dimensions, std::array<double, 6
 }
 
 template <int dimensions, class Kernel, bool shifting>
-void geometry(const SweepContext& context, Records& records_, const GeometryOptions& options, const GeometryOut& out) {
+void geometry(const SweepContext& context, PackedNeighbours& records_, const KernelMomentOptions& options,
+              const KernelMoments& out) {
   constexpr int matrix = dimensions == 2 ? 3 : 6;
   const NeighbourList& list = *context.list;
   constexpr int payload = volume_slots<Kernel>;
   float* records = records_.prepare(context, payload);
-  if constexpr (is_varying<Kernel>)
+  if constexpr (is_variable_h<Kernel>)
     pack_scalar(context, records, record_width(dimensions, payload), 0, context.volume_ratio);
   const KernelScale<dimensions, Kernel> common(context);
   const auto centre_value = static_cast<float>(Kernel::w(0.0));
@@ -54,14 +55,14 @@ void geometry(const SweepContext& context, Records& records_, const GeometryOpti
 
   sweep(list.particles(), [&](std::size_t i) {
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
-    f32n kernel_sum{}, coupling{};
+    f32n kernel_sum{}, laplacian_diagonal{};
     std::array<f32n, matrix> m{};
     std::array<f32n, dimensions> normal{}, concentration{};
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
       const f32n w = Kernel::w(b.q);
       const f32n g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
       kernel_sum = kernel_sum + times_volume<Kernel>(w, b);
-      coupling = coupling + g;
+      laplacian_diagonal = laplacian_diagonal + g;
       int slot = 0;
       for (int a = 0; a < dimensions; ++a) {
         const f32n gd = g * b.d[a];
@@ -87,8 +88,8 @@ void geometry(const SweepContext& context, Records& records_, const GeometryOpti
     const float centre = scale.value * centre_value * own_volume<Kernel>(context, i);
     if (out.kernel_sum != nullptr) out.kernel_sum[i] = centre + scale.value * simd::sum(kernel_sum);
     auto h = static_cast<float>(context.smoothing_length);
-    if constexpr (is_varying<Kernel>) h *= context.length_ratio[i];
-    out.coupling[i] = 2 * simd::sum(coupling);
+    if constexpr (is_variable_h<Kernel>) h *= context.length_ratio[i];
+    out.laplacian_diagonal[i] = 2 * simd::sum(laplacian_diagonal);
     for (int a = 0; a < dimensions; ++a) {
       if (options.normals) out.normal[a][i] = -h * simd::sum(normal[a]);
       if constexpr (shifting) out.concentration_gradient[a][i] = simd::sum(concentration[a]);
@@ -98,8 +99,8 @@ void geometry(const SweepContext& context, Records& records_, const GeometryOpti
 
 }  // namespace
 
-void geometry_sweep(const SweepContext& context, Records& records, const GeometryOptions& options,
-                    const GeometryOut& out) {
+void kernel_moment_sweep(const SweepContext& context, PackedNeighbours& records, const KernelMomentOptions& options,
+                         const KernelMoments& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     if (options.shifting)
       geometry<dimensions, Kernel, true>(context, records, options, out);
@@ -198,7 +199,7 @@ LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smo
       const double r2 = i * i + j * j + k * k;
       const double q = std::sqrt(r2) / h;
       result.kernel_sum += scale * Kernel::w(q);
-      if (r2 > 0) result.coupling -= 2 * scale / (h * h) * Kernel::f(q);
+      if (r2 > 0) result.laplacian_diagonal -= 2 * scale / (h * h) * Kernel::f(q);
       result.divergence_of_position -= scale / (h * h) * Kernel::f(q) * r2;
     });
   });

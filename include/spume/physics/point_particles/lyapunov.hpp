@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "spume/operators/spline_field.hpp"
-#include "spume/physics/particles/motion.hpp"
+#include "spume/physics/point_particles/motion.hpp"
 
 namespace spume {
 

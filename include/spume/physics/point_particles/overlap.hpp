@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "spume/physics/particles/exclusion.hpp"
+#include "spume/physics/point_particles/exclusion.hpp"
 
 namespace spume {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "spume/physics/particles/lyapunov.hpp"
+#include "spume/physics/point_particles/lyapunov.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "spume/core/parallel.hpp"
-#include "spume/physics/particles/placement.hpp"
+#include "spume/physics/point_particles/placement.hpp"
 
 namespace spume {
 

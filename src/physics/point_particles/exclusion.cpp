@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "spume/physics/particles/exclusion.hpp"
+#include "spume/physics/point_particles/exclusion.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -65,12 +65,12 @@ void Exclusion::prepare(const Spheres& spheres) {
   // elsewhere; four gain nothing more), and sides of at least two diameters, so that a sphere reaches two cells along
   // every axis, whichever way its place was rounded; where that makes crowds of small spheres, of at least one diameter
   // (the printed radius misses overlaps).
-  const double reach = largest_diameter_ * (1 + overlap_rounding) + least_overlap_,
+  const double support_radius = largest_diameter_ * (1 + overlap_rounding) + least_overlap_,
                most_cells = std::max<double>(64, 2.0 * double(n));
-  cells_ = PeriodicCells::with_side(lower_, length_, 2 * reach, most_cells);
+  cells_ = PeriodicCells::with_side(lower_, length_, 2 * support_radius, most_cells);
   cells_reached_ = 2;
   if (n > 8 * cells_.size()) {
-    cells_ = PeriodicCells::with_side(lower_, length_, reach, most_cells);
+    cells_ = PeriodicCells::with_side(lower_, length_, support_radius, most_cells);
     cells_reached_ = 3;
   }
   rows_of_two_ = cells_reached_ == 2 && std::min({cells_.count[0], cells_.count[1], cells_.count[2]}) >= 2;

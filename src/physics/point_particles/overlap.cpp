@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "spume/physics/particles/overlap.hpp"
+#include "spume/physics/point_particles/overlap.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "spume/cli/programme.hpp"
+#include "spume/cli/program.hpp"
 
 namespace spume {
 namespace {
@@ -50,7 +50,7 @@ void release_to_all_places() {
   sched_setaffinity(0, sizeof processors, &processors);
 }
 
-void restart_with_patient_threads(int argc, char** argv) {
+void restart_with_openmp_environment(int argc, char** argv) {
   if (const char* names = std::getenv(mark); names != nullptr) return forget(std::string(names).c_str());
   std::string names;
   // Passive alone would sleep between any two regions; about 50 us of spinning bridges the gaps of a Krylov loop

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "spume/physics/particles/placement.hpp"
+#include "spume/physics/point_particles/placement.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "spume/physics/particles/motion.hpp"
+#include "spume/physics/point_particles/motion.hpp"
 
 #include <algorithm>
 #include <cmath>

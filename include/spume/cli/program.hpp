@@ -21,19 +21,19 @@ enum ExitCode : int {
 };
 
 // What the verbs work with.
-struct Programme {
+struct Program {
   CaseLoader load_case;
   MethodFactory make_method;
   std::function<const std::vector<OptionInfo>&()> option_table;
 };
 
 // Carries out one command line; results go to standard output, errors to standard error. Returns the exit code.
-int run_programme(int argc, char** argv, const Programme& programme);
+int run_program(int argc, char** argv, const Program& program);
 
 // Waiting threads that spin steal the cores of other programs: in short parallel regions a peer ran 12 times slower
 // beside a second busy program, against 2 with passive waiting. The OpenMP runtime reads its settings before main(),
 // so the program sets what the user left open and starts itself once more. Returns when nothing was to be set.
-void restart_with_patient_threads(int argc, char** argv);
+void restart_with_openmp_environment(int argc, char** argv);
 
 // With OMP_PROC_BIND the runtime has bound this thread to its first place, and a program started from here would find
 // that place alone: all its threads on one core. To be called before any start.

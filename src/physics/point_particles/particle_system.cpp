@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "spume/physics/particles/particle_system.hpp"
+#include "spume/physics/point_particles/particle_system.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace spume {
 namespace {
 
-const ParticleOptions& checked(const PeriodicGrid& grid, const ParticleOptions& options) {
+const PointParticleOptions& checked(const PeriodicGrid& grid, const PointParticleOptions& options) {
   const auto& diameters = options.placement.diameters;
   if (diameters.empty()) throw InputError("no particle diameter is given");
   if (!options.placement.shares.empty() && options.placement.shares.size() != diameters.size())
@@ -29,17 +29,17 @@ const ParticleOptions& checked(const PeriodicGrid& grid, const ParticleOptions& 
   return options;
 }
 
-double largest_diameter(const ParticleOptions& options) {
+double largest_diameter(const PointParticleOptions& options) {
   return *std::max_element(options.placement.diameters.begin(), options.placement.diameters.end());
 }
 
-ParticleArrays arrays_for(const ParticleOptions& options) {
+ParticleArrays arrays_for(const PointParticleOptions& options) {
   return {acts_on_flow(options.coupling), options.placement.diameters.size() > 1};
 }
 
 }  // namespace
 
-ParticleSystem::ParticleSystem(const PeriodicGrid& grid, const ParticleOptions& options)
+ParticleSystem::ParticleSystem(const PeriodicGrid& grid, const PointParticleOptions& options)
     : grid_(grid), options_(checked(grid, options)), particles_(arrays_for(options)), clock_(4) {
   particles_.common_diameter = options.placement.diameters.front();
   particles_.fields.resize(options.count);
@@ -216,7 +216,7 @@ std::vector<ParticleSystem::ArraySize> ParticleSystem::arrays() const {
   return out;
 }
 
-double ParticleSystem::estimated_bytes(const PeriodicGrid& grid, const ParticleOptions& options) {
+double ParticleSystem::estimated_bytes(const PeriodicGrid& grid, const PointParticleOptions& options) {
   const auto n = static_cast<double>(options.count);
   const bool couples = acts_on_flow(options.coupling), collides = excludes(options.coupling) && !options.motion.frozen;
   // State, one scratch array of each type, and the order.

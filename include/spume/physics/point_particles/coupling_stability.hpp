@@ -9,7 +9,7 @@
 // extrapolation in time amplifies what alternates from step to step: Adams-Bashforth 2 bears a factor of -1/4.
 #pragma once
 
-#include "spume/physics/particles/motion.hpp"
+#include "spume/physics/point_particles/motion.hpp"
 
 namespace spume {
 

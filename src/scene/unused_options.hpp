@@ -11,6 +11,6 @@ namespace spume {
 
 // One remark, with its place, for every key that is given a value other than its default and whose Option::needs is not
 // met. Not errors: a case under study switches models on and off and keeps their constants.
-std::vector<Problem> idle_keys(const Draft& draft, const std::string& file);
+std::vector<Problem> unused_options(const Draft& draft, const std::string& file);
 
 }  // namespace spume

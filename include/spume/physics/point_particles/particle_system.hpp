@@ -21,11 +21,11 @@
 #include "spume/core/ledger.hpp"
 #include "spume/operators/linear_deposition.hpp"
 #include "spume/operators/spline_field.hpp"
-#include "spume/physics/particles/coupling_stability.hpp"
-#include "spume/physics/particles/exclusion.hpp"
-#include "spume/physics/particles/motion.hpp"
-#include "spume/physics/particles/overlap.hpp"
-#include "spume/physics/particles/placement.hpp"
+#include "spume/physics/point_particles/coupling_stability.hpp"
+#include "spume/physics/point_particles/exclusion.hpp"
+#include "spume/physics/point_particles/motion.hpp"
+#include "spume/physics/point_particles/overlap.hpp"
+#include "spume/physics/point_particles/placement.hpp"
 
 namespace spume {
 
@@ -43,7 +43,7 @@ inline bool excludes(Coupling coupling) {
   return coupling == Coupling::four_way || coupling == Coupling::colliding;
 }
 
-struct ParticleOptions {
+struct PointParticleOptions {
   std::size_t count = 0;
   MotionModel motion;
   Coupling coupling = Coupling::one_way;
@@ -65,7 +65,7 @@ class ParticleSystem {
  public:
   // Throws InputError when the options contradict each other or the box: diameters that do not fit, a spline order that
   // does not exist, two-way coupling of infinitely heavy particles (beta = 0).
-  ParticleSystem(const PeriodicGrid& grid, const ParticleOptions& options);
+  ParticleSystem(const PeriodicGrid& grid, const PointParticleOptions& options);
 
   template <class Source>
   void begin(const std::array<const Source*, 3>& velocity);
@@ -88,7 +88,7 @@ class ParticleSystem {
   std::size_t size() const { return particles_.size(); }
   double volume_fraction() const { return volume_fraction_; }
   const Particles& particles() const { return particles_; }
-  const ParticleOptions& options() const { return options_; }
+  const PointParticleOptions& options() const { return options_; }
   const MotionStatistics& motion() const { return motion_; }
   const ExclusionReport& exclusion() const { return exclusion_report_; }
   const DepositionReport& deposition() const { return deposition_report_; }
@@ -119,7 +119,7 @@ class ParticleSystem {
   };
   std::vector<ArraySize> arrays() const;
   // Before any allocation: bytes that a system with these options holds.
-  static double estimated_bytes(const PeriodicGrid& grid, const ParticleOptions& options);
+  static double estimated_bytes(const PeriodicGrid& grid, const PointParticleOptions& options);
 
  private:
   Spheres spheres();
@@ -129,7 +129,7 @@ class ParticleSystem {
   CellOrder& order() { return collides() ? cells().order() : order_; }
 
   PeriodicGrid grid_;
-  ParticleOptions options_;
+  PointParticleOptions options_;
   Particles particles_;
   std::variant<SplineField<double>, SplineField<float>> field_;
   LinearDeposition deposition_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "spume/cli/programme.hpp"
+#include "spume/cli/program.hpp"
 
 #include <omp.h>
 
@@ -93,13 +93,13 @@ struct CommandLine {
     return error.what();
   }
 
-  int carry_out(const Programme& programme) {
+  int carry_out(const Program& program) {
     use_threads(threads);
-    if (run_app->parsed()) return run_verb(run, programme);
-    if (check_app->parsed()) return check_verb(run, programme);
-    if (resume_app->parsed()) return resume_verb(run, programme);
-    if (info_app->parsed()) return info_verb(file, programme);
-    if (options_app->parsed()) return options_verb(section, programme);
+    if (run_app->parsed()) return run_verb(run, program);
+    if (check_app->parsed()) return check_verb(run, program);
+    if (resume_app->parsed()) return resume_verb(run, program);
+    if (info_app->parsed()) return info_verb(file, program);
+    if (options_app->parsed()) return options_verb(section, program);
     if (plot_app->parsed()) return script_verb("plot.py", {folder});
     std::vector<std::string> arguments = {own_executable()};
     arguments.insert(arguments.end(), cases.begin(), cases.end());
@@ -112,7 +112,7 @@ struct CommandLine {
 
 }  // namespace
 
-int run_programme(int argc, char** argv, const Programme& programme) {
+int run_program(int argc, char** argv, const Program& program) {
   CommandLine line;
   try {
     line.app.parse(argc, argv);
@@ -122,7 +122,7 @@ int run_programme(int argc, char** argv, const Programme& programme) {
     return exit_input;
   }
   try {
-    return line.carry_out(programme);
+    return line.carry_out(program);
   } catch (const InputError& error) {
     print_problems(error);
     return exit_input;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "idle.hpp"
+#include "unused_options.hpp"
 
 #include <algorithm>
 
@@ -42,7 +42,7 @@ void examine(const Draft& draft, const Section& section, const std::string& pref
 
 }  // namespace
 
-std::vector<Problem> idle_keys(const Draft& draft, const std::string& file) {
+std::vector<Problem> unused_options(const Draft& draft, const std::string& file) {
   std::vector<Problem> remarks;
   for (const Section& section : sections()) {
     if (!belongs(section.methods, draft.options.method) || section.name.empty()) continue;

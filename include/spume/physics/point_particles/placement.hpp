@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "spume/physics/particles/particles.hpp"
+#include "spume/physics/point_particles/particles.hpp"
 
 namespace spume {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "spume/physics/particles/clustering.hpp"
+#include "spume/physics/point_particles/clustering.hpp"
 
 #include <algorithm>
 #include <cmath>

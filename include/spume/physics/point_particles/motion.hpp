@@ -20,7 +20,7 @@
 #include <limits>
 
 #include "spume/operators/spline_field.hpp"
-#include "spume/physics/particles/particles.hpp"
+#include "spume/physics/point_particles/particles.hpp"
 
 namespace spume {
 

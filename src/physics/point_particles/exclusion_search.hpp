@@ -11,7 +11,7 @@
 #include <cmath>
 
 #include "spume/core/simd16.hpp"
-#include "spume/physics/particles/exclusion.hpp"
+#include "spume/physics/point_particles/exclusion.hpp"
 
 namespace spume {
 

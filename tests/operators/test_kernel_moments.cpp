@@ -14,13 +14,13 @@ TEST(SphGeometry, AgreesWithTheSlowTwinOnEveryArrangement) {
   for (Arrangement& a : all_arrangements()) {
     SCOPED_TRACE(a.setup.name);
     const Geometry fast(a);
-    Comparison kernel("kernel sum"), trace("div r"), coupling("coupling"), concentration("concentration gradient"),
-        normal("normal");
+    Comparison kernel("kernel sum"), trace("div r"), laplacian_diagonal("coupling"),
+        concentration("concentration gradient"), normal("normal");
     for (std::size_t i = 0; i < a.size(); ++i) {
       const std::size_t count = a.twin.neighbours(i);
       kernel.add(fast.kernel_sum[i], a.twin.kernel_sum(i), count, i);
       trace.add(fast.divergence_of_position[i], a.twin.divergence_of_position(i), count, i);
-      coupling.add(fast.coupling[i], a.twin.coupling(i), count, i);
+      laplacian_diagonal.add(fast.laplacian_diagonal[i], a.twin.laplacian_diagonal(i), count, i);
       const auto c = a.twin.concentration_gradient(i, a.setup.spacing);
       const auto n = a.twin.normal(i);
       for (int axis = 0; axis < a.dimensions(); ++axis) {
@@ -98,7 +98,8 @@ TEST(SphGeometry, LatticeConstantsAreTheSumsOfAPeriodicLattice) {
         // The lattice itself is rounded to the grid of 2^-20: 2^-21 / spacing relative, second order in symmetric sums.
         EXPECT_NEAR(a.twin.kernel_sum(0).value, constants.kernel_sum, 1e-4);
         EXPECT_NEAR(a.twin.divergence_of_position(0).value, constants.divergence_of_position, 1e-4);
-        EXPECT_NEAR(a.twin.coupling(0).value * setup.spacing * setup.spacing, constants.coupling, 1e-3);
+        EXPECT_NEAR(a.twin.laplacian_diagonal(0).value * setup.spacing * setup.spacing, constants.laplacian_diagonal,
+                    1e-3);
       }
 }
 
@@ -181,7 +182,7 @@ TEST_P(FewParticles, OneAloneHasItsOwnKernelAndNothingElse) {
   const double centre = a.twin.kernel_sum(0).value;
   EXPECT_NEAR(fast.kernel_sum[0], centre, 1e-6 * centre);
   EXPECT_EQ(fast.divergence_of_position[0], 0);
-  EXPECT_EQ(fast.coupling[0], 0);
+  EXPECT_EQ(fast.laplacian_diagonal[0], 0);
   EXPECT_EQ(fast.uncorrected[0], 1);
   const auto identity = fast.correction_of(0, setup.dimensions);
   for (int r = 0; r < setup.dimensions; ++r)
@@ -202,7 +203,8 @@ TEST_P(FewParticles, TwoInOnePlaceStayFinite) {
     const Geometry fast(a);
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_NEAR(fast.kernel_sum[i], a.twin.kernel_sum(i).value, 1e-6 * a.twin.kernel_sum(i).value);
-      EXPECT_NEAR(fast.coupling[i], a.twin.coupling(i).value, 1e-5 * a.twin.coupling(i).value);
+      EXPECT_NEAR(fast.laplacian_diagonal[i], a.twin.laplacian_diagonal(i).value,
+                  1e-5 * a.twin.laplacian_diagonal(i).value);
       EXPECT_EQ(fast.divergence_of_position[i], 0);
       EXPECT_EQ(fast.uncorrected[i], 1);
       for (int axis = 0; axis < setup.dimensions; ++axis) EXPECT_EQ(fast.concentration_gradient[axis][i], 0);

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// The plan of a method: the ordered list of stages that a scene needs. The step and the start run that list, `spume
+// check` prints it and the ledger times it, so that they cannot disagree. Nothing of weight happens outside a stage.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "spume/core/array.hpp"
+#include "spume/core/ledger.hpp"
+
+namespace spume {
+
+// Arrays that a stage reads or writes, with their present size in bytes: what the traffic of the stage is counted from.
+// Null pointers, of arrays that this scene does not have, count nothing.
+class ArrayUse {
+ public:
+  template <class T>
+  ArrayUse(const Array<T>& array) : ArrayUse(&array) {}  // NOLINT: a list of arrays reads as one
+  template <class T>
+  ArrayUse(const Array<T>* array)  // NOLINT
+      : bytes_([array] { return array == nullptr ? 0.0 : static_cast<double>(array->size() * sizeof(T)); }) {}
+  template <class T, std::size_t count>
+  ArrayUse(const std::array<Array<T>*, count>& arrays)  // NOLINT
+      : bytes_([arrays] {
+          double sum = 0;
+          for (const Array<T>* array : arrays)
+            if (array != nullptr) sum += static_cast<double>(array->size() * sizeof(T));
+          return sum;
+        }) {}
+  double bytes() const { return bytes_(); }
+
+ private:
+  std::function<double()> bytes_;
+};
+
+// One run of a stage: the step it belongs to (0 at the start), and what the stage counted itself.
+struct StageRun {
+  double dt = 0;
+  double pairs = 0;  // particle pairs handled
+  double bytes = 0;  // traffic beside the arrays that the stage names, such as that of its sweeps
+};
+
+enum class StagePart { step, start, both };
+
+// One stage: what it is called, why it runs or not, and what it does. Off stages have no work.
+struct Stage {
+  std::string name;
+  std::string reason;
+  bool on = true;
+  std::function<void(StageRun&)> work = {};
+  std::vector<ArrayUse> reads = {}, writes = {};
+  StagePart part = StagePart::step;
+};
+
+class Plan {
+ public:
+  // Throws std::logic_error for a name that is there already, or a stage that is on and has no work.
+  void add(Stage stage);
+  const std::vector<Stage>& stages() const { return stages_; }
+
+  // Runs the stages of the step, or of the start, that are on, each timed under its name. `particles`: how many the
+  // ledger divides the time by. What a stage throws passes through.
+  void run_step(double dt, double particles, Ledger& ledger) const { run(StagePart::step, dt, particles, ledger); }
+  void run_start(double particles, Ledger& ledger) const { run(StagePart::start, 0, particles, ledger); }
+
+ private:
+  void run(StagePart part, double dt, double particles, Ledger& ledger) const;
+  std::vector<Stage> stages_;
+};
+
+}  // namespace spume
