@@ -35,7 +35,7 @@ const std::string sparger =
 
 TEST(BubbleSections, AreReadWithDefaults) {
   const LoadedCase loaded = load_text(
-      tank(plain + "breakup = true\nclosure = \"two-fluid\"\n",
+      tank(plain + "breakup = true\nmomentum_form = \"two-fluid\"\n",
            sparger + "[[bubble_cloud]]\ncentre = [0.5, 0.5, 0.3]\nradius = 0.1\nnumber = 12\nbubble_radius = 0.02\n"
                      "sizes = \"log-normal\"\ndeviation = 0.3\n"));
   const BubbleOptions& options = loaded.options.bubbles;

@@ -14,10 +14,10 @@
 
 #include "spume/core/array.hpp"
 #include "spume/core/kernel.hpp"
+#include "spume/core/kernel_kind.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/simd.hpp"
 #include "spume/neighbours/neighbour_list.hpp"
-#include "spume/scene/case.hpp"
 
 namespace spume {
 

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "spume/core/error.hpp"
+#include "spume/core/kernel_kind.hpp"
 #include "spume/scene/bubbles.hpp"
 #include "spume/scene/scene.hpp"
 
 namespace spume {
 
-enum class KernelKind { wendland_c2, quintic_spline };
 enum class TurbulenceModel { none, mixed_scale, smagorinsky, dynamic_shepard, dynamic_lagrangian };
 enum class PressureSolver { bicgstab, cg };
 enum class PreconditionerKind { jacobi, multigrid };
