@@ -20,52 +20,30 @@ void FieldSet::resize(std::size_t size) {
   for (auto& field : fields_) std::visit([&](auto& array) { array.resize(size); }, field->values);
 }
 
-Array<double>& FieldSet::idle_doubles() {
-  for (auto& field : fields_)
-    if (auto* values = std::get_if<Array<double>>(&field->values); values && field->lifetime == Lifetime::scratch)
-      return *values;
-  return scratch_f64_;
-}
-
 void FieldSet::permute(const Array<std::int32_t>& order) {
-  Array<double>& doubles = idle_doubles();
-  const auto permute_into = [&]<class T>(Array<T>& values, Array<T>& scratch) {
-    scratch.resize(size_);
-    const T* source = values.data();
-    T* target = scratch.data();
-    const std::int32_t* from = order.data();
-    parallel_for(size_, [=](std::size_t k) { target[k] = source[from[k]]; });
-    // Field and scratch keep their own capacities: swapping grows both to the same size within two steps.
-    values.swap(scratch);
+  const std::int32_t* from = order.data();
+  // Field and scratch keep their own capacities: swapping grows both to the same size within two steps.
+  const auto permute_one = [&]<class T>(Array<T>& values) {
+    if constexpr (std::is_same_v<T, std::int64_t>) {
+      ScratchArray<double> moved(scratch_, size_);
+      parallel_for(size_, [&](std::size_t k) { moved[k] = std::bit_cast<double>(values[from[k]]); });
+      parallel_for(size_, [&](std::size_t k) { values[k] = std::bit_cast<std::int64_t>(moved[k]); });
+    } else {
+      ScratchArray<T> moved(scratch_, size_);
+      const T* source = values.data();
+      T* target = moved.data();
+      parallel_for(size_, [=](std::size_t k) { target[k] = source[from[k]]; });
+      values.swap(moved);
+    }
   };
-  for (auto& field : fields_) {
-    if (field->lifetime != Lifetime::carried) continue;
-    std::visit(
-        [&]<class T>(Array<T>& array) {
-          if constexpr (std::is_same_v<T, double>)
-            permute_into(array, doubles);
-          else if constexpr (std::is_same_v<T, float>)
-            permute_into(array, scratch_f32_);
-          else if constexpr (std::is_same_v<T, std::int64_t>) {
-            doubles.resize(size_);
-            parallel_for(size_, [&](std::size_t k) {
-              doubles[k] = std::bit_cast<double>(array[static_cast<std::size_t>(order[k])]);
-            });
-            parallel_for(size_, [&](std::size_t k) { array[k] = std::bit_cast<std::int64_t>(doubles[k]); });
-          } else
-            permute_into(array, scratch_i32_);
-        },
-        field->values);
-  }
+  for (auto& field : fields_)
+    if (field->lifetime != Lifetime::result) std::visit(permute_one, field->values);
 }
 
 double FieldSet::bytes() const {
   double total = 0;
-  const auto count = [&](const auto& array) { total += static_cast<double>(array.capacity() * sizeof(array[0])); };
-  for (const auto& field : fields_) std::visit(count, field->values);
-  count(scratch_f64_);
-  count(scratch_f32_);
-  count(scratch_i32_);
+  for (const auto& field : fields_)
+    std::visit([&](const auto& array) { total += array.bytes(); }, field->values);
   return total;
 }
 

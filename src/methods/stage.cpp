@@ -17,9 +17,10 @@ void Plan::run(StagePart part, double dt, double particles, Ledger& ledger) cons
     if (!stage.on || (stage.part != StagePart::both && stage.part != part)) continue;
     auto scope = ledger.time(stage.name, particles);
     StageRun run{.dt = dt};
+    // What a stage reads last it may release, and what it writes it may lease.
+    for (const ArrayUse& use : stage.reads) run.bytes += use.bytes();
     stage.work(run);
-    for (const auto* uses : {&stage.reads, &stage.writes})
-      for (const ArrayUse& use : *uses) run.bytes += use.bytes();
+    for (const ArrayUse& use : stage.writes) run.bytes += use.bytes();
     scope.add_pairs(run.pairs);
     scope.add_bytes(run.bytes);
   }

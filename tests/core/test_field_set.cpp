@@ -11,26 +11,26 @@ namespace {
 TEST(FieldSet, AddsAFieldOnceAndFindsItAgain) {
   FieldSet fields;
   fields.resize(10);
-  auto& pressure = fields.add<double>("pressure", Lifetime::carried);
+  auto& pressure = fields.add<double>("pressure", Lifetime::state);
   EXPECT_EQ(pressure.size(), 10U);
-  for (int k = 0; k < 50; ++k) fields.add<float>("other" + std::to_string(k), Lifetime::scratch);
-  EXPECT_EQ(&fields.add<double>("pressure", Lifetime::carried), &pressure);
+  for (int k = 0; k < 50; ++k) fields.add<float>("other" + std::to_string(k), Lifetime::result);
+  EXPECT_EQ(&fields.add<double>("pressure", Lifetime::state), &pressure);
   EXPECT_TRUE(fields.has("pressure"));
   EXPECT_FALSE(fields.has("temperature"));
 }
 
 TEST(FieldSet, RefusesAnotherTypeOrLifetime) {
   FieldSet fields;
-  fields.add<double>("pressure", Lifetime::carried);
-  EXPECT_THROW(fields.add<float>("pressure", Lifetime::carried), std::logic_error);
-  EXPECT_THROW(fields.add<double>("pressure", Lifetime::scratch), std::logic_error);
+  fields.add<double>("pressure", Lifetime::state);
+  EXPECT_THROW(fields.add<float>("pressure", Lifetime::state), std::logic_error);
+  EXPECT_THROW(fields.add<double>("pressure", Lifetime::result), std::logic_error);
 }
 
 TEST(FieldSet, ResizesAllFieldsAndKeepsValues) {
   FieldSet fields;
   fields.resize(3);
-  auto& a = fields.add<double>("a", Lifetime::carried);
-  auto& b = fields.add<std::int32_t>("b", Lifetime::scratch);
+  auto& a = fields.add<double>("a", Lifetime::state);
+  auto& b = fields.add<std::int32_t>("b", Lifetime::result);
   a[2] = 4;
   fields.resize(1000);
   EXPECT_EQ(a.size(), 1000U);
@@ -41,11 +41,11 @@ TEST(FieldSet, ResizesAllFieldsAndKeepsValues) {
 TEST(FieldSet, PermutesCarriedFieldsOfEveryType) {
   FieldSet fields;
   fields.resize(4);
-  auto& a = fields.add<double>("a", Lifetime::carried);
-  auto& b = fields.add<float>("b", Lifetime::carried);
-  auto& c = fields.add<std::int64_t>("c", Lifetime::carried);
-  auto& d = fields.add<std::int32_t>("d", Lifetime::carried);
-  auto& e = fields.add<double>("e", Lifetime::carried);
+  auto& a = fields.add<double>("a", Lifetime::state);
+  auto& b = fields.add<float>("b", Lifetime::state);
+  auto& c = fields.add<std::int64_t>("c", Lifetime::state);
+  auto& d = fields.add<std::int32_t>("d", Lifetime::state);
+  auto& e = fields.add<double>("e", Lifetime::state);
   for (int i = 0; i < 4; ++i) {
     a[i] = i;
     b[i] = static_cast<float>(10 * i);
@@ -69,14 +69,14 @@ TEST(FieldSet, PermutesCarriedFieldsOfEveryType) {
 TEST(FieldSet, SteadyUseAllocatesNothing) {
   FieldSet fields;
   fields.resize(1000);
-  for (const char* name : {"a", "b", "c"}) fields.add<double>(name, Lifetime::carried);
+  for (const char* name : {"a", "b", "c"}) fields.add<double>(name, Lifetime::state);
   Array<std::int32_t> order(1000);
   for (int k = 0; k < 1000; ++k) order[k] = 999 - k;
   fields.permute(order);
   const auto before = array_statistics().allocations;
   for (int step = 0; step < 5; ++step) {
     fields.permute(order);
-    fields.add<double>("a", Lifetime::carried);
+    fields.add<double>("a", Lifetime::state);
     fields.resize(990 + step);
     fields.resize(1000);
   }
@@ -87,7 +87,7 @@ TEST(FieldSet, CountsItsBytes) {
   FieldSet fields;
   fields.resize(1000);
   EXPECT_EQ(fields.bytes(), 0);
-  fields.add<double>("a", Lifetime::carried);
+  fields.add<double>("a", Lifetime::state);
   EXPECT_EQ(fields.bytes(), 8000);
 }
 

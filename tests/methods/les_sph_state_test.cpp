@@ -127,7 +127,7 @@ TEST(LesSphScratch, NothingIsReadOfIt) {
   const auto spoil = [](Simulation& run) {
     auto& liquid = const_cast<les_sph::Liquid&>(run.method.liquid());
     for (const auto& field : liquid.fields.fields())
-      if (field->lifetime == Lifetime::scratch)
+      if (field->lifetime == Lifetime::result)
         std::visit(
             []<class T>(Array<T>& values) {
               if constexpr (std::is_floating_point_v<T>) values.fill(std::numeric_limits<T>::quiet_NaN());

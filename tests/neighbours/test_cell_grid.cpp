@@ -73,12 +73,12 @@ TEST_P(Sort, SortedPointsStayAndAllFieldsMoveTogether) {
   EXPECT_FALSE(sorted.table.already_sorted());
   FieldSet fields;
   fields.resize(points.size());
-  auto& x = fields.add<double>("x", Lifetime::carried);
-  auto& y = fields.add<double>("y", Lifetime::carried);
-  auto& z = fields.add<double>("z", Lifetime::carried);
-  auto& mass = fields.add<float>("mass", Lifetime::carried);
-  auto& identifier = fields.add<std::int64_t>("identifier", Lifetime::carried);
-  auto& kind = fields.add<std::int32_t>("kind", Lifetime::carried);
+  auto& x = fields.add<double>("x", Lifetime::state);
+  auto& y = fields.add<double>("y", Lifetime::state);
+  auto& z = fields.add<double>("z", Lifetime::state);
+  auto& mass = fields.add<float>("mass", Lifetime::state);
+  auto& identifier = fields.add<std::int64_t>("identifier", Lifetime::state);
+  auto& kind = fields.add<std::int32_t>("kind", Lifetime::state);
   for (std::size_t i = 0; i < points.size(); ++i) {
     x[i] = points[i][0];
     y[i] = points[i][1];

@@ -11,12 +11,14 @@
 #include <vector>
 
 #include "spume/core/array.hpp"
+#include "spume/core/scratch_pool.hpp"
 
 namespace spume {
 
-// carried: part of the state between steps; sorted with the particles and saved in checkpoints.
-// scratch: valid within a step only.
-enum class Lifetime { carried, scratch };
+// state: what a step starts from; sorted with the particles and saved in checkpoints.
+// sorted: found anew by every step, before the particles are sorted, and sorted with them.
+// result: found by a step once its particles are sorted, valid until the next sort.
+enum class Lifetime { state, sorted, result };
 
 class FieldSet {
  public:
@@ -37,22 +39,22 @@ class FieldSet {
   std::size_t size() const { return size_; }
   void resize(std::size_t size);
 
-  // field[k] <- field[order[k]] for every carried field; contents of scratch fields become undefined.
+  // field[k] <- field[order[k]] for every field but the results, which belong to the order before.
   void permute(const Array<std::int32_t>& order);
 
   const std::vector<std::unique_ptr<Field>>& fields() const { return fields_; }
-  double bytes() const;
+  double bytes() const;  // of the fields
+
+  // Memory that the users of these fields share within a step; permute() takes what it needs from it.
+  ScratchPool& scratch() { return scratch_; }
+  const ScratchPool& scratch() const { return scratch_; }
 
  private:
-  // Room to permute doubles and integers of their size in: a scratch field, whose contents are nobody's now.
-  Array<double>& idle_doubles();
   Field& find_or_add(std::string_view name, Lifetime lifetime, decltype(Field::values) empty);
 
   std::vector<std::unique_ptr<Field>> fields_;
   std::size_t size_ = 0;
-  Array<double> scratch_f64_;
-  Array<float> scratch_f32_;
-  Array<std::int32_t> scratch_i32_;
+  ScratchPool scratch_;
 };
 
 }  // namespace spume

@@ -12,7 +12,12 @@
 #include <vector>
 
 #include "spume/core/array.hpp"
+#include "spume/core/array_info.hpp"
 #include "spume/core/ledger.hpp"
+#include "spume/core/saved_state.hpp"
+#include "spume/core/step_limit.hpp"
+#include "spume/io/record_table.hpp"
+#include "spume/io/samples.hpp"
 #include "spume/io/series.hpp"
 #include "spume/io/snapshot.hpp"
 #include "spume/methods/stage.hpp"
@@ -20,61 +25,11 @@
 
 namespace spume {
 
-// One array of the state, for `spume check`: exists only because an active stage names it.
-struct ArrayInfo {
-  std::string name;
-  double bytes = 0;
-  std::size_t suspended = 0;  // particles in a flow on a grid that it belongs to; 0: it belongs to the liquid or grid
-};
-
-// The step a method would take next, and what limits it ("courant", "viscous", "capillary").
-struct StepLimit {
-  double dt = 0;
-  std::string limited_by;
-};
-
 // A distribution of the present state: rows of values, written with the time in front to <name>.csv.
 struct Distribution {
   std::string name;
   std::vector<SeriesColumn> columns;
   std::vector<double> values;  // row by row
-};
-
-// State as named blobs: the checkpoint writes what `save` gives and hands it back to `load` unchanged.
-class StateWriter {
- public:
-  virtual ~StateWriter() = default;
-  virtual void f64(const std::string& name, std::span<const double> values) = 0;
-  virtual void i64(const std::string& name, std::span<const std::int64_t> values) = 0;
-};
-class StateReader {
- public:
-  virtual ~StateReader() = default;
-  // Resizes `values` to what was saved; throws FileError when the name is absent or has another type.
-  virtual void f64(const std::string& name, Array<double>& values) = 0;
-  virtual void i64(const std::string& name, Array<std::int64_t>& values) = 0;
-};
-
-// A table beside series.csv that a method fills itself, written to <name>.csv.
-struct RecordTable {
-  std::string name, title;
-  std::vector<SeriesColumn> columns;
-  bool with_series = false;  // filled with every row of series.csv; else at output times
-};
-
-// Values of the fields at a point or averaged over a region, for probes.
-struct PointSample {
-  double pressure = 0;
-  Vec3 velocity{};
-  double coverage = 0;  // kernel sum at the point: near 1 inside the liquid, 0 in air
-};
-
-// Averages over the liquid part of a plane across the domain (in two dimensions a line), for probes. Without liquid
-// there is nothing to average: not a number.
-struct PlaneSample {
-  double area = 0;  // of the liquid part; a length in two dimensions
-  double pressure = std::numeric_limits<double>::quiet_NaN();
-  Vec3 velocity{pressure, pressure, pressure};
 };
 
 // A statement about a column of series.csv that holds for a whole run whatever its solution, so that no reference is

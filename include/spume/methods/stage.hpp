@@ -14,7 +14,7 @@
 namespace spume {
 
 // Arrays that a stage reads or writes, with their present size in bytes: what the traffic of the stage is counted from.
-// Null pointers, of arrays that this scene does not have, count nothing.
+// Null pointers, of arrays that this scene does not have, count nothing. The arrays outlive the use.
 class ArrayUse {
  public:
   template <class T>
@@ -28,6 +28,13 @@ class ArrayUse {
           double sum = 0;
           for (const Array<T>* array : arrays)
             if (array != nullptr) sum += static_cast<double>(array->size() * sizeof(T));
+          return sum;
+        }) {}
+  template <class T, std::size_t count>
+  ArrayUse(const std::array<Array<T>, count>& arrays)  // NOLINT
+      : bytes_([arrays = &arrays] {
+          double sum = 0;
+          for (const Array<T>& array : *arrays) sum += static_cast<double>(array.size() * sizeof(T));
           return sum;
         }) {}
   double bytes() const { return bytes_(); }

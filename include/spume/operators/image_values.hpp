@@ -19,6 +19,29 @@ struct VelocityImageRule {
   std::array<Array<float>, 3> offset;
 };
 
+// How values at images follow from those of their sources: the one place for everyone who reads images one by one.
+struct ImageMap {
+  const Images& images;
+  const VelocityImageRule& velocity_rule;
+  const std::vector<std::array<float, 3>>& reflection;  // of geometric vectors, per path
+
+  std::size_t source(std::size_t k) const { return static_cast<std::size_t>(images.source()[k]); }
+  std::size_t path(std::size_t k) const { return static_cast<std::size_t>(images.path()[k]); }
+  // Component of the velocity of image k whose source has u; of what follows a velocity without the motion of walls
+  // (an acceleration); of a geometric vector.
+  double velocity(std::size_t k, int axis, double u) const {
+    return velocity_rule.sign[path(k)][axis] * u + wall_velocity(k, axis);
+  }
+  float velocity_sign(std::size_t k, int axis) const { return velocity_rule.sign[path(k)][axis]; }
+  float vector_sign(std::size_t k, int axis) const { return reflection[path(k)][axis]; }
+  // d u_a / d x_b.
+  double gradient(std::size_t k, int a, int b, double value) const {
+    return value * (velocity_sign(k, a) * vector_sign(k, b));
+  }
+  bool walls_move() const { return !velocity_rule.offset[0].empty(); }
+  float wall_velocity(std::size_t k, int axis) const { return walls_move() ? velocity_rule.offset[axis][k] : 0.0F; }
+};
+
 // Writes `payload` component `slot` (0-based) of all records from a scalar per particle.
 void pack_scalar(const SweepContext& context, float* records, int width, int slot, const double* values);
 void pack_scalar(const SweepContext& context, float* records, int width, int slot, const float* values);

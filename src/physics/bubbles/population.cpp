@@ -10,24 +10,24 @@ Population::Population(const Models& models) {
   const auto vector = [&](std::array<Array<double>*, 3>& target, const std::string& name, Lifetime lifetime) {
     for (std::size_t a = 0; a < 3; ++a) target[a] = &fields.add<double>("bubble_" + name + axes[a], lifetime);
   };
-  vector(position, "position", Lifetime::carried);
-  vector(velocity, "velocity", Lifetime::carried);
-  volume = &fields.add<double>("bubble_volume", Lifetime::carried);
-  birth_time = &fields.add<double>("bubble_birth_time", Lifetime::carried);
-  identifier = &fields.add<std::int64_t>("bubble_identifier", Lifetime::carried);
-  at_rest_in_liquid = &fields.add<std::int64_t>("bubble_at_rest_in_liquid", Lifetime::carried);
-  slip = &fields.add<double>("bubble_slip", Lifetime::carried);
+  vector(position, "position", Lifetime::state);
+  vector(velocity, "velocity", Lifetime::state);
+  volume = &fields.add<double>("bubble_volume", Lifetime::state);
+  birth_time = &fields.add<double>("bubble_birth_time", Lifetime::state);
+  identifier = &fields.add<std::int64_t>("bubble_identifier", Lifetime::state);
+  at_rest_in_liquid = &fields.add<std::int64_t>("bubble_at_rest_in_liquid", Lifetime::state);
+  slip = &fields.add<double>("bubble_slip", Lifetime::state);
   if (models.fluctuations) {
-    vector(fluctuation, "fluctuation", Lifetime::carried);
-    vector(next_fluctuation, "next_fluctuation", Lifetime::scratch);
+    vector(fluctuation, "fluctuation", Lifetime::state);
+    vector(next_fluctuation, "next_fluctuation", Lifetime::result);
   }
   if (models.breakup) {
-    deformation = &fields.add<double>("bubble_deformation", Lifetime::carried);
-    dissipation_integral = &fields.add<double>("bubble_dissipation_integral", Lifetime::carried);
+    deformation = &fields.add<double>("bubble_deformation", Lifetime::state);
+    dissipation_integral = &fields.add<double>("bubble_dissipation_integral", Lifetime::state);
   }
-  if (models.surface) merge_time = &fields.add<double>("bubble_merge_time", Lifetime::carried);
-  vector(next_position, "next_position", Lifetime::carried);
-  vector(next_velocity, "next_velocity", Lifetime::scratch);
+  if (models.surface) merge_time = &fields.add<double>("bubble_merge_time", Lifetime::state);
+  vector(next_position, "next_position", Lifetime::sorted);
+  vector(next_velocity, "next_velocity", Lifetime::result);
 }
 
 double Population::total_volume() const {

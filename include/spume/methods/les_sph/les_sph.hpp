@@ -7,39 +7,35 @@
 // stays at rest to rounding.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
 
-#include "spume/methods/les_sph/liquid.hpp"
+#include "spume/methods/les_sph/flow.hpp"
 #include "spume/methods/method.hpp"
+#include "spume/particles/point_sampler.hpp"
+#include "spume/particles/reports.hpp"
 
 namespace spume::les_sph {
-
-class BubbleCoupling;
-class PressureSystem;
-class PointSampler;
 
 class LesSph final : public Method {
  public:
   explicit LesSph(const LoadedCase& loaded);
-  ~LesSph() override;
 
-  std::vector<Stage> plan() const override;
+  std::vector<Stage> plan() const override { return plan_.stages(); }
   std::vector<ArrayInfo> arrays() const override;
-  std::size_t particle_count() const override { return liquid_.size(); }
-  double time() const override { return liquid_.time; }
-  std::int64_t step_count() const override { return liquid_.steps; }
+  std::size_t particle_count() const override { return flow_.size(); }
+  double time() const override { return flow_.time; }
+  std::int64_t step_count() const override { return flow_.steps; }
   StepLimit step_limit() const override;
   void step(double dt, Ledger& ledger) override;
-  std::vector<SeriesColumn> series_columns() const override;
+  std::vector<SeriesColumn> series_columns() const override { return series_.columns(); }
   void series_values(std::span<double> values) override;
   std::vector<ParticleSnapshot> snapshot() override;
-  PointSample sample(const Vec3& position) override;
-  double elevation(const Vec3& position) override;
-  double wetted_length(const Vec3& position) override;
-  double front(int axis, double height) override;
-  PlaneSample plane_average(int axis, double position) override;
+  PointSample sample(const Vec3& position) override { return sampler().sample(position); }
+  double elevation(const Vec3& position) override { return sampler().elevation(position); }
+  double wetted_length(const Vec3& position) override { return sampler().wetted_length(position); }
+  double front(int axis, double height) override { return sampler().front(axis, height); }
+  PlaneSample plane_average(int axis, double position) override { return sampler().plane_average(axis, position); }
   // The mass; where nothing but gravity does work, the energy; the residual of the pressure.
   std::vector<Invariant> invariants() const override;
   bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override;
@@ -49,20 +45,26 @@ class LesSph final : public Method {
   void save(StateWriter& writer) const override;
   void load(StateReader& reader) override;
 
-  const Liquid& liquid() const { return liquid_; }
-  const PressureSystem& pressure_system() const { return *pressure_; }
-  const BubbleCoupling* bubble_coupling() const { return bubbles_.get(); }  // null without bubbles
+  const Flow& flow() const { return flow_; }
 
  private:
   void start(Ledger& ledger);  // finds the pressure of the initial velocity field
   void ensure_started();
-  PointSampler& sampler();
+  void declare_series();
+  void declare_snapshot();
+  void declare_saved();
+  const PointSampler& sampler();
 
-  Liquid liquid_;
-  std::map<std::string, Array<double>> snapshot_;  // derived fields of the last snapshot
-  std::unique_ptr<PressureSystem> pressure_;
-  std::unique_ptr<PointSampler> sampler_;
-  std::unique_ptr<BubbleCoupling> bubbles_;
+  Flow flow_;
+  Plan plan_;
+  SeriesTable series_;
+  SnapshotTable snapshot_;
+  SavedNumbers saved_{"scalars"};
+  struct {
+    double kinetic = 0, potential = 0;
+  } row_energy_;  // of the row of the series that is being read
+  PointSampler sampler_;
+  std::int64_t sampled_step_ = -1;  // that the sampler has binned
 };
 
 }  // namespace spume::les_sph

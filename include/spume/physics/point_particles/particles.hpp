@@ -23,13 +23,13 @@ struct Particles {
     constexpr const char* axis_name[3] = {"x", "y", "z"};
     const auto add = [&](const char* name, std::array<Array<double>*, 3>& vector) {
       for (int axis = 0; axis < 3; ++axis)
-        vector[axis] = &fields.add<double>(std::string(name) + "_" + axis_name[axis], Lifetime::carried);
+        vector[axis] = &fields.add<double>(std::string(name) + "_" + axis_name[axis], Lifetime::state);
     };
     add("position", position);
     add("velocity", velocity);
     if (wanted.force) add("force", force);
-    if (wanted.polydisperse) diameter = &fields.add<double>("diameter", Lifetime::carried);
-    identifier = &fields.add<std::int64_t>("identifier", Lifetime::carried);
+    if (wanted.polydisperse) diameter = &fields.add<double>("diameter", Lifetime::state);
+    identifier = &fields.add<std::int64_t>("identifier", Lifetime::state);
   }
 
   FieldSet fields;

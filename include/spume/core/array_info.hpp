@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace spume {
+
+// One array of the state, for `spume check`: exists only because an active stage names it.
+struct ArrayInfo {
+  std::string name;
+  double bytes = 0;
+  std::size_t suspended = 0;  // particles in a flow on a grid that it belongs to; 0: it belongs to the liquid or grid
+};
+
+}  // namespace spume

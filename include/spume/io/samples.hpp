@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// What probes record of the fields of a method.
+#pragma once
+
+#include <array>
+#include <limits>
+
+namespace spume {
+
+// Values of the fields at a point or averaged over a region.
+struct PointSample {
+  double pressure = 0;
+  std::array<double, 3> velocity{};
+  double coverage = 0;  // kernel sum at the point: near 1 inside the liquid, 0 in air
+};
+
+// Averages over the liquid part of a plane across the domain (in two dimensions a line). Without liquid there is
+// nothing to average: not a number.
+struct PlaneSample {
+  double area = 0;  // of the liquid part; a length in two dimensions
+  double pressure = std::numeric_limits<double>::quiet_NaN();
+  std::array<double, 3> velocity{pressure, pressure, pressure};
+};
+
+}  // namespace spume

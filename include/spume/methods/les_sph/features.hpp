@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// What a scene needs of les-sph. Stages and arrays exist by these alone.
+#pragma once
+
+#include "spume/scene/case.hpp"
+
+namespace spume::les_sph {
+
+// Steps of pressure.density_relaxation that mean never.
+constexpr double never_relaxed = 1e6;
+
+struct Features {
+  explicit Features(const LoadedCase& loaded);
+
+  bool images = false;        // some side is periodic or a wall, or there are solid boxes
+  bool moving_walls = false;  // some wall has a velocity
+  bool no_slip = false;       // some wall or solid holds the liquid
+  bool free_surface = false;
+  bool shifting = false;
+  bool velocity_gradient = false;  // closure, shift correction, centred steps or bubbles
+  bool stored_gradient = false;    // dynamic closures, second-order corrections and bubbles need its components
+  bool shift_correction = false;   // velocity follows the shift to first or second order
+  bool shift_curvature = false;    // to second order
+  bool eddy_viscosity = false;
+  bool test_filter = false;         // mixed-scale and dynamic closures, fluctuations of bubbles
+  bool density_relaxation = false;  // of the number density, by the pressure
+  bool viscosity = false;
+  bool viscous_stress = false;  // div(2 nu S) in place of div(nu grad u)
+  bool potential = false;       // gravity or a body force
+  bool body_force = false;
+  bool uniform_body_force = false;  // the same everywhere: part of the uniform acceleration
+  bool closed = false;              // pressure known up to a constant
+  bool bubbles = false;
+};
+
+}  // namespace spume::les_sph

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// The liquid of les-sph: its state between steps, what a step finds, and the stages that find it. Parts that every
+// particle method has stand on the particles floor; here is what King et al. (2022) do with them. The list of stages is
+// in step.cpp, the equations are in README.md beside it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "spume/methods/les_sph/features.hpp"
+#include "spume/particles/boundary.hpp"
+#include "spume/particles/energy_guard.hpp"
+#include "spume/particles/moments.hpp"
+#include "spume/particles/projection_solver.hpp"
+#include "spume/particles/shift.hpp"
+#include "spume/particles/step_limits.hpp"
+#include "spume/particles/surface.hpp"
+#include "spume/physics/bubbles/coupling.hpp"
+#include "spume/physics/turbulence/eddy_viscosity.hpp"
+#include "spume/scene/case.hpp"
+
+namespace spume::les_sph {
+
+struct Flow {
+  explicit Flow(const LoadedCase& loaded_case);
+  Flow(const Flow&) = delete;
+  Flow& operator=(const Flow&) = delete;
+
+  const LoadedCase& loaded;
+  const Case& options;
+  const Scene& scene;
+  const Features features;
+  const Resolution resolution;
+  const double largest_shift;  // coefficient of the shift at which it stirs a lattice instead of evening it out
+  const int dimensions;
+
+  // --- State between steps: saved.
+  double time = 0;
+  std::int64_t steps = 0;
+  bool started = false;     // the first pressure has been found
+  ParticleStore particles;  // and the fields of lifetime `state` of closures and bubbles
+  Array<double>* pressure = nullptr;
+  Boundary boundary;   // positions and speed of the walls
+  EnergyGuard energy;  // what the flow may hold
+  Speeds speeds;       // of the particles
+  double max_eddy_viscosity = 0;
+  double max_divergence = 0;      // of u*
+  double dissipation = 0;         // integral of rho (nu + nu_t) |S|^2
+  double largest_body_force = 0;  // per mass, of one that varies in space, at the end of the last step
+  std::array<double, 2> last_steps{};
+
+  // --- Results of the last step.
+  ParticleSizes sizes;
+  Arrangement arrangement;
+  MomentFields moments;
+  std::unique_ptr<FreeSurface> surface;       // null: the liquid fills the domain
+  std::unique_ptr<Shift> shift;               // null: no shifting
+  VectorField intermediate_position{};        // r*
+  Array<double>* reduced_pressure = nullptr;  // q = p / rho + potential
+  Array<double>* potential = nullptr;         // -a . r*, null without uniform acceleration
+  Array<float>* strain = nullptr;             // |S| = sqrt(2 S:S)
+  Vec3 uniform_acceleration{};                // along axes that are not periodic: part of the potential
+  Vec3 periodic_acceleration{};               // along periodic axes: added to the velocity
+  double displacement = 0;                    // displacement_fraction of the step
+  ProjectionSolver solver;
+  std::unique_ptr<turbulence::EddyViscosity> closure;  // null: none
+  std::unique_ptr<bubbles::BubbleCoupling> bubbles;    // null: none
+
+  // --- Leased within a step: by the stage that writes one until the stage that reads it last.
+  std::array<Array<float>, 9> velocity_gradient;
+  Array<float> gradient_trace;           // tr(grad u . grad u)
+  FloatVectorScratch filtered_velocity;  // Shepard filter of u
+  FloatVectorScratch shift_velocity;     // what the shift adds to the velocity
+  FloatVectorScratch viscous_acceleration;
+  VectorScratch intermediate_velocity;  // u*
+  VectorScratch next_velocity;          // u^{n+1}
+  Array<double> divergence;             // of u*; then what the pressure has to remove
+  Array<float> potential_laplacian;     // -lap of the potential by the sums of the matrix
+  PressureRows rows;
+  Array<double> surface_source;  // per particle near the surface
+  struct {
+    double helmholtz = 0;     // 1 / (c dt)^2
+    double source_scale = 0;  // of the divergence
+  } equation;
+
+  std::size_t size() const { return particles.size(); }
+  double density() const { return scene.fluid.density; }
+  double viscosity() const { return scene.fluid.kinematic_viscosity; }
+  double particle_mass() const { return density() * particles.volume; }
+  double potential_at(const Vec3& r) const;  // -a . (r - origin)
+  double potential_of(std::size_t i) const { return potential == nullptr ? 0.0 : (*potential)[i]; }
+  double eddy_viscosity_of(std::size_t i) const { return closure == nullptr ? 0.0 : closure->viscosity()[i]; }
+  // div(2 nu S) spreads the divergence of the velocity three times as fast as div(nu grad u) does.
+  double diffusion_rate() const { return features.viscous_stress ? 3 : 1; }
+  double leased_bytes() const;  // what is leased within a step, now or idle
+  // What the pressure stores in a compressible liquid: the integral of p^2 / (2 rho c^2).
+  double stored_energy() const;
+
+  // The stages, in the order of step.cpp. Numbers refer to King et al., section 3.3.
+  void move_to_intermediate_position(double dt);  // (i)
+  void find_neighbours(double dt);                // (ii)
+  void compute_shift();                           // (iii)
+  void differentiate_velocity(bool first);        // (v)
+  void find_shift_curvature();
+  void find_eddy_viscosity(double dt);
+  // Gravity and a uniform body force at time t, along axes without periodicity and along the others. Throws
+  // StepFailure.
+  void find_uniform_acceleration(double t);
+  void find_potential(double t);
+  void find_viscous_acceleration();
+  void predict_velocity(double dt);  // (viii)
+  void find_divergence(double dt);
+  void centre_divergence(double dt);
+  void relax_density(double dt);
+  void set_first_source();
+  void set_matrix();
+  void prepare_solver();
+  void solve_pressure();        // (x)
+  void solve_first_pressure();  // lap p = -tr(grad u . grad u)
+  void project_velocity(double dt);
+  void accept(double dt);  // (xi)
+
+  EnergyBalance energy_balance() const;
+  void find_extremes();  // largest speeds and eddy viscosity of the present state
+
+ private:
+  void add_body_force(double t, double dt);
+  void add_gradient_trace(double factor);
+  double regularisation() const;
+  double row_scale(std::size_t i) const;
+  void set_weights();
+  void set_right_hand_side();
+  void solve(const char* name);
+};
+
+}  // namespace spume::les_sph

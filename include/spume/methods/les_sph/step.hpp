@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "spume/methods/les_sph/flow.hpp"
+#include "spume/methods/stage.hpp"
+
+namespace spume::les_sph {
+
+// The stages of a flow. The flow outlives the plan.
+Plan make_plan(Flow& flow);
+
+// Why a stage runs in this scene, or why it does not.
+struct Reasons {
+  Reasons(const LoadedCase& loaded, const Features& has);
+  std::string bubbles, images, surface, shift, gradients, curvature, closure, integrator, forces, viscosity, divergence,
+      centring, relaxation, preconditioner, pressure, events;
+};
+
+}  // namespace spume::les_sph

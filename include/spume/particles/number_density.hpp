@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+
+#include "spume/particles/boundary.hpp"
+#include "spume/particles/moments.hpp"
+#include "spume/particles/surface.hpp"
+
+namespace spume {
+
+// How far the liquid moves over dt, relative to its mean velocity and without spray, over 0.2 h; at most 2, and the
+// same in every frame. A liquid at rest needs no care for its arrangement, and over the same distance small steps no
+// more of it than large ones.
+double displacement_fraction(const Arrangement& arrangement, const ParticleStore& particles,
+                             const Resolution& resolution, double dt);
+
+struct DensityRelaxation {
+  double steps = 0;         // pressure.density_relaxation
+  double displacement = 0;  // displacement_fraction() of the step
+  double dt = 0;
+};
+
+// Subtracts from `divergence` that which evens out the number density over N = `pressure.density_relaxation` steps of
+// courant 0.2:
+//   div u^{n+1} = displacement / (dt M) (<c> - b(<c>, 0.002)) + displacement / (dt N_i) (e_i - c_i),  c = b(e, 0.02),
+//   e = S / (S of the lattice) - 1 within -0.5 and 0.1,  S = sum_j V_j W_ij,  b(x, a) = min(max(x, -a), a).
+// N_i = N, less in a void: N 0.05 / |e_i| where e_i < -0.05. M = N. In a scene with a surface expansion lifts what lies
+// above it: M = 10 N, and N_i = 10 N where e_i > 0.
+// S tells the density and hardly the strain of a lattice (at 1.2 by 1/1.2 it rises by 0.3 %, div r by 1.5 %, which
+// would lift the crest of a wave) or a surface one layer off (0.4 %). Velocities free of divergence keep the density
+// only as far as their discrete divergence tells the volume of a moving arrangement: without this voids open in a
+// lid-driven cavity. What is let be is what the disorder of an arrangement makes of S: 0.002 in the mean (0.0017 in a
+// cavity), which must not raise the level of a liquid with a surface, and 0.02 from particle to particle. Particles of
+// the uppermost layer, which lack neighbours, and those within reach of a solid box, whose images overlap at edges, are
+// left alone.
+// `surface`: null without one. `at`: where the moments were measured.
+void even_out_density(const DensityRelaxation& relaxation, const Arrangement& arrangement, const Domain& domain,
+                      const VectorField& at, const Resolution& resolution, const MomentFields& moments,
+                      const FreeSurface* surface, std::span<double> divergence);
+
+}  // namespace spume

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Fields of particles at arbitrary points, for probes. Points near walls see the mirrored liquid.
+#pragma once
+
+#include "spume/io/samples.hpp"
+#include "spume/particles/boundary.hpp"
+
+namespace spume {
+
+// What is sampled: the state of a time.
+struct SampledState {
+  const Arrangement* arrangement = nullptr;  // of its cells and kernel only
+  const Boundary* boundary = nullptr;
+  const ParticleStore* particles = nullptr;
+  const Resolution* resolution = nullptr;
+  const Array<double>* pressure = nullptr;
+  const Array<double>* volume_fraction = nullptr;  // of the liquid; null: 1
+  double density = 1;
+  Vec3 uniform_acceleration{};  // its hydrostatic pressure is interpolated exactly
+  double time = 0;
+};
+
+class PointSampler {
+ public:
+  // Bins the particles of a state; call again when they have moved.
+  void update(const SampledState& state);
+
+  // Weighted linear fit of pressure and velocity over the particles in the support (Shepard average where they are
+  // too few); coverage is the kernel sum.
+  PointSample sample(const Vec3& point) const;
+  double coverage(const Vec3& point) const;
+  // Highest point of the column where the coverage reaches one half, found on steps of a quarter spacing and refined
+  // by bisection; the bottom of the domain when there is none.
+  double elevation(const Vec3& point) const;
+  // Sum of the intervals of the column whose coverage is above one half, their ends found in the same way.
+  double wetted_length(const Vec3& point) const;
+  double front(int axis, double height) const;
+  // Averages over samples one spacing apart on a plane across the domain, at the middles of equal cells; those whose
+  // coverage is one half or more and that lie in no solid are the liquid part. Linear fields come out exact; the area
+  // is a whole number of cells.
+  PlaneSample plane_average(int axis, double position) const;
+
+ private:
+  double potential_at(const Vec3& r) const;
+  // Where the coverage falls to one half between a wet point and a dry height.
+  double crossing(Vec3 wet, double dry) const;
+  // A dry point above all liquid in the column of `point`; returns the step of the search.
+  double highest_sample(const Vec3& point, Vec3& sample) const;
+  template <class Visit>
+  void visit(const Vec3& point, Visit&& visit) const;
+
+  SampledState state_;
+  CellTable table_;
+};
+
+}  // namespace spume

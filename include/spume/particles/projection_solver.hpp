@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// Solves the pressure equation of a projection, whatever its rows are: the method gives the matrix beyond the pair sums
+// (operators/pressure_operator.hpp) and the right-hand side.
+//
+//   V [ row_i sum_j 2 g_ij weight_j (q_i - q_j) + diagonal_shift_i q_i ] = right_hand_side_i
+//
+// Iterative refinement: residuals in double, corrections by a Krylov method in float; or all in double. Preconditioner:
+// Jacobi, with `multigrid` plus one V-cycle on Cartesian cells.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "spume/operators/pressure_operator.hpp"
+#include "spume/particles/boundary.hpp"
+#include "spume/solvers/cell_multigrid.hpp"
+#include "spume/solvers/krylov.hpp"
+
+namespace spume {
+
+struct SolveReport {
+  int iterations = 0;
+  int applications = 0;  // of the matrix, in either precision
+  double relative_residual = 0;
+  bool converged = true;
+};
+
+// One row per particle; arrays are leased for a solve.
+struct PressureRows {
+  Array<float> diagonal_shift;
+  Array<float> diagonal;                                // of the matrix, 0 where the pressure is fixed
+  const Array<std::uint8_t>* pressure_fixed = nullptr;  // null: nowhere
+  Array<float> weight, row;                             // of a variable coefficient; empty: constant
+  Array<double> right_hand_side;
+  double reference_norm = 0;  // of the right-hand side, to which residuals are relative
+  double helmholtz = 0;       // diagonal shift of a full row over V, for the preconditioner
+  bool singular = false;      // constants are in the null space: the mean is taken out of residuals
+
+  void release(ScratchPool& scratch);
+};
+
+class ProjectionSolver {
+ public:
+  struct Options {
+    bool conjugate_gradients = false;  // else BiCGStab
+    bool multigrid = true;
+    bool mixed = true;        // residuals in double, corrections in float
+    double tolerance = 1e-6;  // residual over the reference norm
+    int max_iterations = 500;
+    double cell_size = 0;  // of the multigrid
+  };
+  ProjectionSolver(const Boundary& boundary, const Options& options);
+
+  // Cells for the particles at `at`. Without multigrid nothing.
+  void prepare(const PressureRows& rows, ParticleStore& particles, const VectorField& at, const Boundary& boundary);
+  // Improves `q`, which holds the guess and where the pressure is fixed the value. What did not converge is said in the
+  // report: the caller decides.
+  void solve(const PressureRows& rows, Arrangement& arrangement, ParticleStore& particles, Array<double>& q);
+
+  bool has_multigrid() const { return multigrid_ != nullptr; }
+  const SolveReport& report() const { return report_; }
+  double bytes() const;  // beside what is leased
+
+ private:
+  struct Operator;
+  struct DoubleOperator;
+  KrylovResult correct(const PressureRows& rows, ParticleStore& particles, const Array<double>& residual, double size,
+                       double target, int left, Array<float>& correction, Array<double>& q);
+  KrylovResult correct_in_double(const PressureRows& rows, ParticleStore& particles, const Array<double>& residual,
+                                 double size, double target, int left, Array<double>& q);
+
+  Options options_;
+  PressureOperator operator_;
+  std::unique_ptr<CellMultigrid> multigrid_;
+  KrylovWorkspace<double> double_work_;
+  Array<double> double_correction_, double_diagonal_, zero_;  // empty in mixed precision
+  SolveReport report_;
+};
+
+// Throws StepFailure that names `solve` when the report says that it did not converge.
+void demand_convergence(const SolveReport& report, const std::string& solve);
+
+}  // namespace spume

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// What a particle method reports, as tables with one entry per quantity: columns of series.csv, fields of a snapshot,
+// numbers of a checkpoint. Each is declared once, with the way to read it.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "spume/core/field_set.hpp"
+#include "spume/io/series.hpp"
+#include "spume/io/snapshot.hpp"
+#include "spume/particles/store.hpp"
+
+namespace spume {
+
+// Columns of series.csv.
+class SeriesTable {
+ public:
+  void add(std::string name, std::string unit, std::function<double()> value);
+  // Runs before the values of a row are read: sums that several columns share.
+  std::function<void()> prepare;
+
+  std::vector<SeriesColumn> columns() const;
+  void values(std::span<double> row) const;  // one per column
+
+ private:
+  struct Entry {
+    SeriesColumn column;
+    std::function<double()> value;
+  };
+  std::vector<Entry> entries_;
+};
+
+// Fields of a snapshot of particles. A standard one is written unless the case lists others.
+class SnapshotTable {
+ public:
+  // A field of the state.
+  void add(std::string name, bool standard, const VectorField& vector);
+  void add(std::string name, bool standard, const Array<double>& values);
+  void add(std::string name, bool standard, const Array<std::int64_t>& values);
+  // One that is computed for every snapshot.
+  void add(std::string name, bool standard, std::function<double(std::size_t)> value);
+
+  std::vector<std::string> names() const;
+  // The snapshot with the wanted fields (none wanted: the standard ones); its arrays live until the next one.
+  ParticleSnapshot take(std::string name, std::size_t size, const VectorField& position,
+                        const std::vector<std::string>& wanted);
+
+ private:
+  struct Entry {
+    std::string name;
+    bool standard = false;
+    std::vector<const Array<double>*> f64 = {};
+    const Array<std::int64_t>* i64 = nullptr;
+    std::function<double(std::size_t)> value = {};
+  };
+  std::vector<Entry> entries_;
+  std::map<std::string, Array<double>> computed_;
+};
+
+// The numbers of a state between steps, under one name of a checkpoint: written and read in the order in which they
+// were added.
+class SavedNumbers {
+ public:
+  explicit SavedNumbers(std::string name) : name_(std::move(name)) {}
+  SavedNumbers& add(double& value);
+  const std::string& name() const { return name_; }
+  std::vector<double> get() const;
+  // Throws FileError when their number is another: the file is of another version.
+  void set(std::span<const double> values) const;
+
+ private:
+  std::string name_;
+  std::vector<double*> numbers_;
+};
+
+}  // namespace spume

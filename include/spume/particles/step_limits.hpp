@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// How fast particles move, and the steps that follow.
+#pragma once
+
+#include "spume/core/step_limit.hpp"
+#include "spume/particles/arrangement.hpp"
+
+namespace spume {
+
+// The smallest of several bounds; of equal ones the first.
+class SmallestStep {
+ public:
+  void bound(double dt, const char* name) {
+    if (dt < limit_.dt) limit_ = {dt, name};
+  }
+  const StepLimit& limit() const { return limit_; }
+
+ private:
+  StepLimit limit_{1e300, "nothing"};
+};
+
+// Largest speeds of a state.
+struct Speeds {
+  double largest = 0;
+  double limiting = 0;  // without spray, which only falls: one droplet need not hold up the whole liquid
+};
+// By the lists of the last step, where there are any.
+Speeds find_speeds(const Arrangement& arrangement, const ParticleStore& particles);
+
+// A particle that crosses half its support in one step has left the neighbours that its pressure was solved with.
+// Throws StepFailure for one, or for a velocity that is not finite. `at`: where to say that it is.
+void refuse_long_strides(const ParticleStore& particles, const VectorField& at, const VectorScratch& velocity,
+                         double support_radius, double dt);
+
+}  // namespace spume

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "spume/methods/les_sph/features.hpp"
+
+#include <algorithm>
+
+#include "spume/particles/boundary.hpp"
+
+namespace spume::les_sph {
+namespace {
+
+// Whether a vector expression has the same value everywhere: sampled at points that share no coordinate.
+bool uniform(const VectorExpression& expression, const Domain& domain) {
+  for (const double t : {0.0, 0.37, 1.9}) {
+    const Vec3 first = expression(domain.lower, t);
+    for (int k = 1; k <= 7; ++k) {
+      Vec3 r{};
+      for (int axis = 0; axis < 3; ++axis) {
+        const double fraction = 0.0917 + 0.1287 * ((k * (axis + 2)) % 7);
+        r[axis] = domain.lower[axis] + fraction * (domain.upper[axis] - domain.lower[axis]);
+      }
+      if (expression(r, t) != first) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+Features::Features(const LoadedCase& loaded) {
+  const Scene& scene = loaded.scene;
+  const Case& options = loaded.options;
+  const BoundaryFeatures boundary(scene.domain);
+  images = boundary.images;
+  moving_walls = boundary.moving_walls;
+  no_slip = boundary.no_slip;
+  free_surface = scene.free_surface;
+  closed = !scene.free_surface;
+  shifting = options.shifting.on;
+  const ShiftCorrection correction = options.shifting.velocity_correction;
+  shift_correction = shifting && correction != ShiftCorrection::none;
+  shift_curvature = shifting && correction == ShiftCorrection::second_order;
+  const TurbulenceModel model = options.turbulence.model;
+  const bool dynamic = model == TurbulenceModel::dynamic_shepard || model == TurbulenceModel::dynamic_lagrangian;
+  eddy_viscosity = model != TurbulenceModel::none;
+  bubbles = options.bubbles.on;
+  test_filter = (eddy_viscosity && model != TurbulenceModel::smagorinsky) || (bubbles && options.bubbles.fluctuations);
+  velocity_gradient = eddy_viscosity || shift_correction || options.time.centred || bubbles;
+  stored_gradient = dynamic || shift_curvature || bubbles;
+  density_relaxation = options.pressure.density_relaxation < never_relaxed;
+  viscosity = eddy_viscosity || scene.fluid.kinematic_viscosity > 0;
+  const DiffusionForm form = options.turbulence.diffusion;
+  viscous_stress =
+      viscosity && (form == DiffusionForm::stress || (form == DiffusionForm::automatic && scene.free_surface));
+  body_force = scene.body_force.has_value();
+  uniform_body_force = body_force && uniform(*scene.body_force, scene.domain);
+  const Vec3& gravity = scene.fluid.gravity;
+  potential = body_force || std::any_of(gravity.begin(), gravity.end(), [](double g) { return g != 0; });
+}
+
+}  // namespace spume::les_sph

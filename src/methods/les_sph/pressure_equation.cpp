@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+// The pressure equation of a step, King (3.17), for q = p + potential:
+//
+//   -lap q + M p = -div u* / dt + M p^n,   M = 1 / (c dt)^2  (zero when incompressible),
+//
+// rho = 1 here; p is divided by the density on the way in and multiplied on the way out. Rows are divided by
+// d / div r, which makes the Laplacian exact for quadratic fields up to the anisotropy of the arrangement, and
+// multiplied by the particle volume, which makes the matrix symmetric. p = 0 on the free surface enters by mirrored
+// liquid (particles/surface.hpp); particles with too few neighbours for that hold p = 0 themselves.
+#include <algorithm>
+#include <cmath>
+
+#include "spume/core/parallel.hpp"
+#include "spume/methods/les_sph/flow.hpp"
+#include "spume/particles/number_density.hpp"
+
+namespace spume::les_sph {
+
+void Flow::find_divergence(double dt) {
+  const std::size_t n = size();
+  const double c = scene.fluid.sound_speed;
+  equation = {c > 0 ? 1 / (c * c * dt * dt) : 0, -1 / dt};
+  ScratchPool& scratch = particles.scratch();
+  scratch.lease(divergence, n);
+  if (potential != nullptr) scratch.lease(potential_laplacian, n);
+  divergence_sweep(arrangement.context, arrangement.packed, read(intermediate_velocity), boundary.volume_rule(),
+                   moments.read_correction(), potential == nullptr ? nullptr : potential->data(), divergence.data(),
+                   potential == nullptr ? nullptr : potential_laplacian.data());
+  max_divergence = parallel_max(n, 0.0, [&](std::size_t i) { return std::abs(divergence[i]); });
+}
+
+// Adds tr(grad u . grad u), minus the rate of change of div u along frozen velocities, to the divergence.
+void Flow::add_gradient_trace(double factor) {
+  if (features.no_slip) {
+    ScratchArray<float> trace(particles.scratch(), size());
+    gradient_trace_sweep(arrangement.context, arrangement.packed, read(particles.velocity), boundary.volume_rule(),
+                         moments.read_correction(), trace.data());
+    parallel_for(size(), [&](std::size_t i) { divergence[i] += factor * trace[i]; });
+    return;
+  }
+  parallel_for(size(), [&](std::size_t i) { divergence[i] += factor * gradient_trace[i]; });
+  particles.scratch().release(gradient_trace);
+}
+
+// The new velocity moves the particles from here to the next positions: it is made free of divergence half way, where
+// div u = (div u here) - dt/2 tr(grad u . grad u). The step is then of second order, and a projection does not cost the
+// energy dt |grad p|^2 / 2 per time.
+void Flow::centre_divergence(double dt) {
+  add_gradient_trace(-0.5 * dt);
+}
+
+void Flow::relax_density(double dt) {
+  even_out_density({.steps = options.pressure.density_relaxation, .displacement = displacement, .dt = dt}, arrangement,
+                   scene.domain, intermediate_position, resolution, moments, surface.get(), divergence);
+  particles.scratch().release(moments.kernel_sum);
+}
+
+// -lap p = tr(grad u . grad u), from the divergence of the momentum equation.
+void Flow::set_first_source() {
+  const std::size_t n = size();
+  equation = {0, 1};
+  ScratchPool& scratch = particles.scratch();
+  scratch.lease(divergence, n);
+  if (potential != nullptr) {
+    scratch.lease(potential_laplacian, n);
+    divergence_sweep(arrangement.context, arrangement.packed, read(particles.velocity), boundary.volume_rule(),
+                     moments.read_correction(), potential->data(), divergence.data(), potential_laplacian.data());
+  }
+  parallel_for(n, [&](std::size_t i) { divergence[i] = 0; });
+  add_gradient_trace(1);
+}
+
+// Images in solids are those of the nearest face, which is not mutual at a box edge: the matrix of a closed
+// incompressible box around a solid is then not symmetric, its right-hand side is not compatible, and removing the mean
+// does not help. A compressibility of 1e-3 over the square of the domain, far below that of the smallest wave number
+// (2 pi)^2, makes the constant solvable; it is removed afterwards.
+double Flow::regularisation() const {
+  if (!features.closed || equation.helmholtz > 0 || scene.domain.boxes.empty()) return 0;
+  double length = 0;
+  for (int axis = 0; axis < dimensions; ++axis)
+    length = std::max(length, scene.domain.upper[axis] - scene.domain.lower[axis]);
+  return 1e-3 / (length * length);
+}
+
+// V_j of (3.9), and with mixture-pressure alpha div((1/alpha) grad q), the left-hand side of King (3.17), by the
+// geometric mean of 1/alpha: alpha_i / sqrt(alpha_i alpha_j).
+void Flow::set_weights() {
+  for (auto* array : {&rows.weight, &rows.row}) particles.scratch().lease(*array, size());
+  parallel_for(size(), [&](std::size_t i) {
+    const float root = bubbles->mixture_pressure() ? std::sqrt(sizes.volume_fraction[i]) : 1.0F;
+    rows.weight[i] = sizes.volume_ratio[i] / root;
+    rows.row[i] = root;
+  });
+}
+
+void Flow::set_matrix() {
+  const std::size_t n = size();
+  ScratchPool& scratch = particles.scratch();
+  if (sizes.variable) set_weights();
+  for (auto* array : {&rows.diagonal_shift, &rows.diagonal}) scratch.lease(*array, n);
+  rows.pressure_fixed = surface != nullptr ? &surface->pressure_fixed : nullptr;
+  rows.helmholtz = equation.helmholtz;
+  rows.singular = features.closed && equation.helmholtz == 0 && regularisation() == 0;
+  const double helmholtz = equation.helmholtz + regularisation();
+  const auto volume = static_cast<float>(particles.volume);
+  parallel_for(n, [&](std::size_t i) {
+    rows.diagonal_shift[i] = static_cast<float>(helmholtz * row_scale(i));
+    const bool fixed = surface != nullptr && surface->pressure_fixed[i] != 0;
+    rows.diagonal[i] = fixed ? 0.0F : volume * (moments.laplacian_diagonal[i] + rows.diagonal_shift[i]);
+  });
+  if (surface != nullptr) {
+    surface_source.resize(surface->near_surface.size());
+    parallel_for(surface->near_surface.size(), [&](std::size_t k) {
+      const auto i = static_cast<std::size_t>(surface->near_surface[k]);
+      const SurfaceRow row = surface->row(moments, sizes, uniform_acceleration, k);
+      rows.diagonal_shift[i] += static_cast<float>(row.laplacian_diagonal);
+      rows.diagonal[i] += static_cast<float>(volume * row.laplacian_diagonal);
+      surface_source[k] = row.laplacian_diagonal * row.hydrostatic_pressure;
+      if (potential != nullptr) potential_laplacian[i] -= static_cast<float>(surface_source[k]);
+    });
+  }
+  scratch.release(moments.laplacian_diagonal);
+  set_right_hand_side();
+  scratch.release(divergence);
+  scratch.release(potential_laplacian);
+}
+
+// What a row is multiplied by: d times as much as makes the Laplacian exact for quadratic fields.
+double Flow::row_scale(std::size_t i) const {
+  // Far below the bulk value div r tells of missing neighbours, not of the arrangement; the mirrored liquid makes up
+  // for those missing at a surface.
+  const double bulk = resolution.lattice.divergence_of_position;
+  double div_r = std::max<double>((*moments.divergence_of_position)[i], 0.5 * bulk);
+  if (surface != nullptr) div_r += (1 - double{surface->interior_weight[i]}) * std::max(0.0, bulk - div_r);
+  return div_r / dimensions;
+}
+
+// Right-hand side for q, times the volume, and its norm in terms of p.
+void Flow::set_right_hand_side() {
+  particles.scratch().lease(rows.right_hand_side, size());
+  const double squares = parallel_reduce(
+      size(), 0.0,
+      [&](std::size_t first, std::size_t last) {
+        double sum = 0;
+        for (std::size_t i = first; i < last; ++i) {
+          if (surface != nullptr && surface->pressure_fixed[i] != 0) {
+            rows.right_hand_side[i] = 0;
+            continue;
+          }
+          double source_factor = equation.source_scale, pressure_factor = equation.helmholtz;
+          if (bubbles != nullptr && bubbles->mixture_pressure())
+            source_factor *= sizes.alpha(i);
+          else if (sizes.variable)
+            pressure_factor *= (*bubbles->volume_fraction)[i] / sizes.alpha(i);
+          const double known = (source_factor * divergence[i] + pressure_factor * (*pressure)[i] / density()) *
+                               static_cast<float>(row_scale(i));
+          rows.right_hand_side[i] = particles.volume * (known + rows.diagonal_shift[i] * potential_of(i));
+          const double in_pressure =
+              particles.volume * (known - (potential == nullptr ? 0.0F : potential_laplacian[i]));
+          sum += in_pressure * in_pressure;
+        }
+        return sum;
+      },
+      [](double a, double b) { return a + b; });
+  rows.reference_norm = std::sqrt(squares);
+  if (surface == nullptr) return;
+  parallel_for(surface->near_surface.size(), [&](std::size_t k) {
+    rows.right_hand_side[static_cast<std::size_t>(surface->near_surface[k])] += particles.volume * surface_source[k];
+  });
+}
+
+void Flow::prepare_solver() {
+  solver.prepare(rows, particles, intermediate_position, boundary);
+}
+
+void Flow::solve(const char* name) {
+  solver.solve(rows, arrangement, particles, *reduced_pressure);
+  rows.release(particles.scratch());
+  demand_convergence(solver.report(), name);
+  if (!features.closed) return;
+  const double mean = parallel_sum(size(), [&](std::size_t i) { return (*reduced_pressure)[i] - potential_of(i); }) /
+                      static_cast<double>(std::max<std::size_t>(size(), 1));
+  parallel_for(size(), [&](std::size_t i) { (*reduced_pressure)[i] -= mean; });
+}
+
+void Flow::solve_pressure() {
+  // Starts from the pressure that the particle carries; fixed ones are p = 0.
+  parallel_for(size(), [&](std::size_t i) {
+    const bool fixed = surface != nullptr && surface->pressure_fixed[i] != 0;
+    const double carried = fixed || !options.pressure.warm_start ? 0.0 : (*pressure)[i] / density();
+    (*reduced_pressure)[i] = carried + potential_of(i);
+  });
+  solve("the pressure solve");
+}
+
+void Flow::solve_first_pressure() {
+  parallel_for(size(), [&](std::size_t i) { (*reduced_pressure)[i] = potential_of(i); });
+  solve("the first pressure solve");
+  parallel_for(size(), [&](std::size_t i) { (*pressure)[i] = density() * ((*reduced_pressure)[i] - potential_of(i)); });
+}
+
+}  // namespace spume::les_sph

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "spume/methods/les_sph/step.hpp"
+
+namespace spume::les_sph {
+namespace {
+
+const char* closure_name(TurbulenceModel model) {
+  switch (model) {
+    case TurbulenceModel::mixed_scale:
+      return "mixed-scale closure";
+    case TurbulenceModel::smagorinsky:
+      return "Smagorinsky closure";
+    case TurbulenceModel::dynamic_shepard:
+      return "dynamic closure, Shepard averages";
+    case TurbulenceModel::dynamic_lagrangian:
+      return "dynamic closure, Lagrangian averages";
+    case TurbulenceModel::none:
+      break;
+  }
+  return "no closure: turbulence.model = \"none\"";
+}
+
+std::string events_of(const LoadedCase& loaded) {
+  const BubbleOptions& gas = loaded.options.bubbles;
+  std::string events;
+  const auto event = [&](bool on, const char* name) {
+    if (on) events.append(events.empty() ? "" : ", ").append(name);
+  };
+  event(gas.entrainment, "entrainment");
+  event(gas.breakup, "breakup");
+  event(!loaded.scene.spargers.empty(), "spargers");
+  event(!loaded.scene.bubble_clouds.empty(), "clouds");
+  event(gas.surface_interaction && loaded.scene.free_surface, "bursting");
+  return events;
+}
+
+}  // namespace
+
+Reasons::Reasons(const LoadedCase& loaded, const Features& has) {
+  const Case& options = loaded.options;
+  const std::string no_bubbles = "no section [bubbles]";
+  bubbles = has.bubbles ? "positions, volume fraction, sizes of particles" : no_bubbles;
+  integrator = !has.bubbles                                             ? no_bubbles
+               : options.bubbles.integrator == BubbleIntegrator::stable ? "stable integrator"
+                                                                        : "explicit sub-steps";
+  events = has.bubbles ? events_of(loaded) : no_bubbles;
+  images = has.images ? "periodic sides, walls or solids" : "every side is open";
+  surface = has.free_surface ? "the liquid has a free surface" : "the liquid fills the domain";
+  shift = has.shifting ? "Fickian shifting" : "shifting.on = false";
+  gradients = has.eddy_viscosity      ? "strain of the closure"
+              : has.bubbles           ? "vorticity at the bubbles"
+              : has.shift_correction  ? "velocity correction of the shift"
+              : has.velocity_gradient ? "divergence half a step ahead"
+                                      : "no stage reads them";
+  curvature = has.shift_curvature ? "second-order velocity correction of the shift" : "shifting.velocity_correction";
+  closure = closure_name(options.turbulence.model);
+  forces = !has.potential           ? "neither gravity nor forces.body"
+           : !has.body_force        ? "gravity"
+           : has.uniform_body_force ? "gravity and forces.body, uniform"
+                                    : "gravity; forces.body varies in space";
+  viscosity = has.viscous_stress ? "div(2 nu S)" : has.viscosity ? "div(nu grad u)" : "inviscid";
+  divergence = loaded.scene.fluid.sound_speed > 0 ? "right-hand side of the Helmholtz equation"
+                                                  : "right-hand side of the Poisson equation";
+  centring = options.time.centred ? "free of divergence half a step ahead" : "time.centred = false";
+  relaxation =
+      has.density_relaxation ? "the pressure evens out the number density" : "pressure.density_relaxation = 1e6";
+  preconditioner = options.pressure.preconditioner == PreconditionerKind::multigrid
+                       ? "Jacobi and a V-cycle on cells"
+                       : "pressure.preconditioner = \"jacobi\"";
+  pressure = has.closed ? "closed domain: the constant is removed" : "zero pressure at the free surface";
+}
+
+}  // namespace spume::les_sph

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// The step, as the list of its stages in the order of King et al. (2022), section 3.3, with their step numbers. The
+// same list is the start, what `spume check` prints and what the ledger times.
+#include "spume/methods/les_sph/step.hpp"
+
+#include <utility>
+
+namespace spume::les_sph {
+
+using enum StagePart;
+
+namespace {
+FloatVectorField shift_of(const Flow& flow) {
+  return flow.shift == nullptr ? FloatVectorField{} : flow.shift->displacement;
+}
+const Array<float>* closure_of(const Flow& flow) {
+  return flow.closure == nullptr ? nullptr : &flow.closure->viscosity();
+}
+}  // namespace
+
+Plan make_plan(Flow& f) {
+  Plan plan;
+  const Features& has = f.features;
+  const Reasons why(f.loaded, has);
+  ParticleStore& p = f.particles;
+  Arrangement& arrangement = f.arrangement;
+  MomentFields& moments = f.moments;
+  const auto& r = f.intermediate_position;
+  // `sweeps`: the stage passes over the pairs; the traffic of its sweeps comes on top of the arrays that it names.
+  const auto add = [&](StagePart part, const char* name, bool on, std::string reason, auto work,
+                       std::vector<ArrayUse> reads = {}, std::vector<ArrayUse> writes = {}, bool sweeps = false) {
+    plan.add({name, std::move(reason), on,
+              [&f, work, sweeps](StageRun& run) {
+                f.arrangement.packed.take_traffic();
+                work(run);
+                if (sweeps && run.pairs == 0) run.pairs = f.arrangement.pair_count();
+                run.bytes += f.arrangement.packed.take_traffic();
+              },
+              std::move(reads), std::move(writes), part});
+  };
+
+  // (i) intermediate positions r* = r^n + dt u^n, in the order of cells
+  add(both, "move", true, "particles to their intermediate positions",
+      [&](StageRun& run) { f.move_to_intermediate_position(run.dt); }, {p.position, p.velocity}, {r});
+  add(both, "sort", true, "particles in cell order", [&](StageRun& run) {
+    arrangement.sort(p, r);
+    run.bytes += arrangement.sort_traffic(p);
+  });
+  add(start, "bubble clouds", has.bubbles, why.bubbles, [&](StageRun&) { f.bubbles->start(); });
+  add(both, "bubble motion", has.bubbles, why.bubbles, [&](StageRun& run) { f.bubbles->move(run.dt); });
+  // (ii) images at boundaries, neighbours and their moments
+  add(both, "images", has.images, why.images,
+      [&](StageRun& run) { f.boundary.make_images(arrangement, p, r, f.sizes.largest_length_ratio, f.time + run.dt); });
+  add(both, "volume fraction", has.bubbles, why.bubbles, [&](StageRun&) { f.bubbles->share_volume(); });
+  add(both, "neighbours", true, "lists within the kernel support", [&](StageRun& run) {
+    f.find_neighbours(run.dt);
+    run.bytes += arrangement.list_traffic(f.sizes);
+  });
+  add(
+      both, "kernel moments", true, "gradient correction, div r, concentration",
+      [&](StageRun&) { moments.measure(arrangement, p, f.resolution.spacing); }, {},
+      {moments.correction, moments.uncorrected, moments.divergence_of_position, moments.laplacian_diagonal,
+       moments.kernel_sum, moments.concentration_gradient, moments.normal},
+      true);
+  add(both, "surface", has.free_surface, why.surface,
+      [&](StageRun&) { f.surface->find(arrangement, p, moments, f.boundary.reflection()); });
+  // (iii) the shift to r^{n+1}, taken with the last stage
+  add(step, "shift", has.shifting, why.shift, [&](StageRun&) { f.compute_shift(); }, {moments.concentration_gradient},
+      {shift_of(f)});
+  // (v) gradients of u^n, and what follows from them
+  add(
+      start, "first gradients", true, "strain and source of the first pressure",
+      [&](StageRun&) { f.differentiate_velocity(true); }, {p.velocity, moments.correction}, {f.strain}, true);
+  add(
+      step, "gradients", has.velocity_gradient, why.gradients, [&](StageRun&) { f.differentiate_velocity(false); },
+      {p.velocity, moments.correction, shift_of(f)},
+      {f.strain, f.velocity_gradient, f.filtered_velocity, f.gradient_trace, f.shift_velocity}, true);
+  add(
+      step, "shift curvature", has.shift_curvature, why.curvature, [&](StageRun&) { f.find_shift_curvature(); },
+      {f.velocity_gradient, shift_of(f), moments.correction}, {f.shift_velocity}, true);
+  // (vi) closure of the unresolved stress; (vii) bubbles
+  add(step, "eddy viscosity", has.eddy_viscosity, why.closure, [&](StageRun& run) { f.find_eddy_viscosity(run.dt); },
+      {f.strain, f.velocity_gradient, f.filtered_velocity}, {closure_of(f)});
+  add(step, "bubble forces", has.bubbles, why.integrator, [&](StageRun& run) { f.bubbles->exchange_momentum(run.dt); });
+  // (viii) u* from forces and viscosity
+  add(both, "forces", has.potential, why.forces, [&](StageRun& run) { f.find_potential(f.time + run.dt); }, {r},
+      {f.potential});
+  add(
+      step, "viscosity", has.viscosity, why.viscosity, [&](StageRun&) { f.find_viscous_acceleration(); },
+      {p.velocity, moments.divergence_of_position, closure_of(f)}, {f.viscous_acceleration}, true);
+  add(step, "prediction", true, "velocity without pressure", [&](StageRun& run) { f.predict_velocity(run.dt); },
+      {p.velocity, f.viscous_acceleration}, {f.intermediate_velocity});
+  // (ix), (x) the pressure that makes the velocity at r^{n+1} free of divergence
+  add(
+      step, "divergence", true, why.divergence, [&](StageRun& run) { f.find_divergence(run.dt); },
+      {f.intermediate_velocity, moments.correction, f.potential}, {f.divergence, f.potential_laplacian}, true);
+  add(step, "centring", f.options.time.centred, why.centring, [&](StageRun& run) { f.centre_divergence(run.dt); },
+      {f.gradient_trace}, {f.divergence});
+  add(step, "density relaxation", has.density_relaxation, why.relaxation,
+      [&](StageRun& run) { f.relax_density(run.dt); }, {moments.kernel_sum, moments.divergence_of_position},
+      {f.divergence});
+  add(start, "first source", true, "tr(grad u . grad u)", [&](StageRun&) { f.set_first_source(); });
+  add(both, "matrix", true, "rows and right-hand side", [&](StageRun&) { f.set_matrix(); },
+      {moments.divergence_of_position, moments.laplacian_diagonal, f.divergence, f.pressure, f.potential},
+      {f.rows.diagonal_shift, f.rows.diagonal, f.rows.right_hand_side});
+  add(both, "preconditioner", f.solver.has_multigrid(), why.preconditioner, [&](StageRun&) { f.prepare_solver(); },
+      {r, f.rows.diagonal});
+  add(start, "first pressure", true, why.pressure, [&](StageRun&) { f.solve_first_pressure(); });
+  add(step, "pressure", true, why.pressure, [&](StageRun& run) {
+    f.solve_pressure();
+    run.pairs = arrangement.pair_count() * f.solver.report().applications;
+  });
+  add(
+      step, "projection", true, "pressure gradient", [&](StageRun& run) { f.project_velocity(run.dt); },
+      {f.reduced_pressure, moments.correction, f.intermediate_velocity}, {f.next_velocity}, true);
+  // (xi) r^{n+1}, u^{n+1}
+  add(step, "acceptance", true, "limits, energy, final positions", [&](StageRun& run) { f.accept(run.dt); },
+      {f.next_velocity, r, shift_of(f), f.shift_velocity, f.reduced_pressure, f.potential, f.strain},
+      {p.position, p.velocity, f.pressure});
+  add(step, "bubble events", has.bubbles, why.events, [&](StageRun& run) { f.bubbles->accept(run.dt); });
+  return plan;
+}
+
+}  // namespace spume::les_sph

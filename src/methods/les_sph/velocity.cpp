@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+// Positions, gradients, forces and velocities of a step: everything but its pressure.
+#include <algorithm>
+#include <cmath>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+#include "spume/methods/les_sph/flow.hpp"
+#include "spume/particles/number_density.hpp"
+
+namespace spume::les_sph {
+namespace {
+
+// NaN when a component is, which the library's function of three numbers is not.
+double length_of(const Vec3& v) {
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+[[noreturn]] void refuse_body_force(const Flow& flow, double t) {
+  StepFailure::Details details;
+  details.cause = "the body force is not a finite number";
+  details.option = "forces.body";
+  for (std::size_t i = 0; i < flow.size() && details.particle < 0; ++i) {
+    const Vec3 r = vector_at(flow.intermediate_position, flow.dimensions, i);
+    const double size = length_of((*flow.scene.body_force)(r, t));
+    if (std::isfinite(size)) continue;
+    details.particle = (*flow.particles.identifier)[i];
+    std::copy(r.begin(), r.end(), details.position);
+    details.value = size;
+  }
+  throw StepFailure(details);
+}
+
+// The step was chosen for the eddy viscosity of the step before; the first one knew none.
+void refuse_unstable_diffusion(const Flow& flow, double dt) {
+  const double largest = flow.closure->largest(flow.size());
+  const double h = flow.resolution.smoothing_length;
+  // 0.29 h^2 / nu on a lattice in 3-D, 0.31 in 2-D.
+  if ((flow.viscosity() + largest) * flow.diffusion_rate() * dt <= 0.3 * h * h) return;
+  StepFailure::Details details;
+  details.cause = "the eddy viscosity has grown beyond what the step is stable with";
+  details.option = "time.viscous";
+  details.value = largest;
+  throw StepFailure(details);
+}
+
+}  // namespace
+
+void Flow::move_to_intermediate_position(double dt) {
+  boundary.advance(time, dt);
+  parallel_for(size(), [&](std::size_t i) {
+    Vec3 r{};
+    for (int axis = 0; axis < dimensions; ++axis)
+      r[axis] = (*particles.position[axis])[i] + dt * (*particles.velocity[axis])[i];
+    boundary.apply_walls(boundary.next_walls, r, nullptr);
+    for (int axis = 0; axis < dimensions; ++axis) (*intermediate_position[axis])[i] = r[axis];
+  });
+}
+
+void Flow::find_neighbours(double dt) {
+  arrangement.find_neighbours(particles, intermediate_position, sizes);
+  if (dt > 0 && (features.shifting || features.density_relaxation))
+    displacement = displacement_fraction(arrangement, particles, resolution, dt);
+}
+
+void Flow::compute_shift() {
+  const ShiftingOptions& shifting = options.shifting;
+  shift->compute(arrangement, particles,
+                 {.coefficient = shifting.coefficient,
+                  .limit = shifting.limit,
+                  .remove_drift = shifting.remove_drift,
+                  .largest_stable = largest_shift,
+                  .displacement = displacement},
+                 sizes, moments, surface.get(), boundary.reflection());
+}
+
+void Flow::differentiate_velocity(bool first) {
+  ScratchPool& scratch = particles.scratch();
+  VelocityGradientOut out;
+  if (features.stored_gradient) {
+    scratch.lease(velocity_gradient, dimensions * dimensions, size());
+    out.gradient = write(velocity_gradient);
+  }
+  if (features.test_filter) {
+    scratch.lease(filtered_velocity, dimensions, size());
+    out.filtered = write(filtered_velocity);
+  }
+  out.strain = strain->data();
+  if (!features.no_slip && (options.time.centred || first)) {
+    scratch.lease(gradient_trace, size());
+    out.trace = gradient_trace.data();
+  }
+  if (features.shift_correction && !first) {
+    scratch.lease(shift_velocity, dimensions, size());
+    out.displacement = read(shift->displacement);
+    out.change = write(shift_velocity);
+  }
+  velocity_gradient_sweep(arrangement.context, arrangement.packed, read(particles.velocity), boundary.velocity_rule(),
+                          moments.read_correction(), out);
+}
+
+void Flow::find_shift_curvature() {
+  shift_curvature_sweep(arrangement.context, arrangement.packed, read(velocity_gradient), boundary.velocity_rule(),
+                        boundary.reflection(), read(shift->displacement), moments.read_correction(),
+                        write(shift_velocity));
+}
+
+void Flow::find_eddy_viscosity(double dt) {
+  closure->find({.arrangement = arrangement,
+                 .particles = particles,
+                 .boundary = boundary,
+                 .resolution = resolution,
+                 .sizes = sizes,
+                 .strain = *strain,
+                 .velocity_gradient = velocity_gradient,
+                 .filtered_velocity = filtered_velocity,
+                 .kinematic_viscosity = viscosity()},
+                dt);
+  refuse_unstable_diffusion(*this, dt);
+}
+
+void Flow::find_uniform_acceleration(double t) {
+  uniform_acceleration = {};
+  periodic_acceleration = {};
+  Vec3 total = scene.fluid.gravity;
+  if (features.uniform_body_force) {
+    const Vec3 force = (*scene.body_force)(arrangement.origin, t);
+    for (int axis = 0; axis < dimensions; ++axis) total[axis] += force[axis];
+  }
+  if (!std::isfinite(total[0] + total[1] + total[2])) refuse_body_force(*this, t);
+  for (int axis = 0; axis < dimensions; ++axis)
+    (scene.domain.periodic(axis) ? periodic_acceleration : uniform_acceleration)[axis] = total[axis];
+}
+
+void Flow::find_potential(double t) {
+  find_uniform_acceleration(t);
+  parallel_for(size(),
+               [&](std::size_t i) { (*potential)[i] = potential_at(vector_at(intermediate_position, dimensions, i)); });
+}
+
+void Flow::find_viscous_acceleration() {
+  // The Morris Laplacian of a quadratic field is d / div r too small. Folding the factor into the coefficient keeps the
+  // pair exchange symmetric; near a surface, where the kernel is cut, the factor of the bulk is used.
+  const double nu = viscosity();
+  const double bulk = resolution.lattice.divergence_of_position;
+  ScratchArray<float> diffusivity(particles.scratch(), size());
+  parallel_for(size(), [&](std::size_t i) {
+    const double div_r = std::max<double>((*moments.divergence_of_position)[i], 0.95 * bulk);
+    double eddy = eddy_viscosity_of(i);
+    if (sizes.variable) eddy += bubbles->viscosity[i];
+    const double alpha = sizes.alpha(i);
+    // Backscatter is clipped at -nu, in float: what rounding leaves below zero would make harmonic means of two
+    // diffusivities of opposite sign, which have no bound.
+    const double total = std::max(nu + eddy, 0.0);
+    diffusivity[i] = static_cast<float>(alpha * total * dimensions / div_r);
+  });
+  particles.scratch().lease(viscous_acceleration, dimensions, size());
+  viscous_sweep(arrangement.context, arrangement.packed, read(particles.velocity), boundary.velocity_rule(),
+                diffusivity.data(), write(viscous_acceleration), features.viscous_stress);
+}
+
+void Flow::add_body_force(double t, double dt) {
+  largest_body_force = parallel_reduce(
+      size(), 0.0,
+      [&](std::size_t first, std::size_t last) {
+        const VectorExpression force = scene.body_force->clone();
+        double largest = 0;
+        for (std::size_t i = first; i < last; ++i) {
+          const Vec3 acceleration = force(vector_at(intermediate_position, dimensions, i), t);
+          largest = larger_or_nan(largest, length_of(acceleration));
+          for (int axis = 0; axis < dimensions; ++axis) intermediate_velocity[axis][i] += dt * acceleration[axis];
+        }
+        return largest;
+      },
+      larger_or_nan);
+  if (!std::isfinite(largest_body_force)) refuse_body_force(*this, t);
+}
+
+void Flow::predict_velocity(double dt) {
+  ScratchPool& scratch = particles.scratch();
+  scratch.lease(intermediate_velocity, dimensions, size());
+  parallel_for(size(), [&](std::size_t i) {
+    for (int axis = 0; axis < dimensions; ++axis) {
+      double viscous = features.viscosity ? viscous_acceleration[axis][i] : 0.0;
+      if (sizes.variable) viscous = viscous / sizes.alpha(i) + (*bubbles->exchange[axis])[i];
+      intermediate_velocity[axis][i] = (*particles.velocity[axis])[i] + dt * (viscous + periodic_acceleration[axis]);
+    }
+  });
+  if (features.body_force && !features.uniform_body_force) add_body_force(time + dt, dt);
+  scratch.release(viscous_acceleration);
+  // Closures and bubbles have read these.
+  scratch.release(velocity_gradient);
+  scratch.release(filtered_velocity);
+}
+
+void Flow::project_velocity(double dt) {
+  const std::size_t n = size();
+  const double mean = parallel_sum(n, [&](std::size_t i) { return (*reduced_pressure)[i]; }) /
+                      static_cast<double>(std::max<std::size_t>(n, 1));
+  FloatVectorScratch gradient_of_q;
+  particles.scratch().lease(gradient_of_q, dimensions, n);
+  gradient_sweep(arrangement.context, arrangement.packed, reduced_pressure->data(), mean, moments.read_correction(),
+                 write(gradient_of_q));
+  if (surface != nullptr)
+    surface->complete_gradient(moments, sizes, uniform_acceleration, *reduced_pressure, potential, gradient_of_q);
+  for (std::size_t axis = 0; axis < 3; ++axis) next_velocity[axis].swap(intermediate_velocity[axis]);
+  particles.scratch().release(intermediate_velocity);
+  const NeighbourList& list = arrangement.list;
+  const float* coordinate[3] = {list.coordinate(0), list.coordinate(1), list.coordinate(2)};
+  parallel_for(n, [&](std::size_t i) {
+    Vec3 gradient = vector_at(gradient_of_q, dimensions, i);
+    if (moments.uncorrected[i] != 0) {
+      // The plain gradient does not reproduce the linear potential: what it misses of it is put back, so that an
+      // isolated particle falls with the full acceleration.
+      Vec3 seen{};
+      with_kernel(arrangement.context, [&]<int d, class Kernel>() {
+        const auto scale = KernelScale<d, Kernel>(arrangement.context).at(arrangement.context, i);
+        for (const std::int32_t j : list.of(i)) {
+          double r2 = 0, slope = 0;
+          std::array<double, d> dr;
+          for (int axis = 0; axis < d; ++axis) {
+            dr[axis] = double{coordinate[axis][j]} - double{coordinate[axis][i]};
+            r2 += dr[axis] * dr[axis];
+          }
+          // Images mirror the potential of their source.
+          const std::size_t source = arrangement.particle_of(j);
+          if (potential != nullptr) slope = (*potential)[source] - (*potential)[i];
+          const double g = -scale.gradient * own_volume<Kernel>(arrangement.context, source) *
+                           Kernel::f(std::sqrt(r2) * scale.inverse_h);
+          for (int axis = 0; axis < d; ++axis) seen[axis] += g * dr[axis] * slope;
+        }
+      });
+      for (int axis = 0; axis < dimensions; ++axis) gradient[axis] += -uniform_acceleration[axis] - seen[axis];
+    }
+    // King (3.14b) with alpha du/dt: see physics/bubbles/coupling.hpp.
+    if (bubbles != nullptr && bubbles->mixture_pressure())
+      for (double& component : gradient) component /= sizes.alpha(i);
+    for (int axis = 0; axis < dimensions; ++axis) next_velocity[axis][i] -= dt * gradient[axis];
+  });
+  particles.scratch().release(gradient_of_q);
+}
+
+void Flow::accept(double dt) {
+  const std::size_t n = size();
+  refuse_long_strides(particles, intermediate_position, next_velocity, arrangement.grid.support_radius(), dt);
+  // The work of forces that vary in space has no bound.
+  if (!features.body_force || features.uniform_body_force)
+    energy.supply =
+        energy.after_step(energy_balance(), particles, intermediate_position, next_velocity, boundary.wall_speed, dt);
+
+  parallel_for(n, [&](std::size_t i) {
+    Vec3 u = vector_at(next_velocity, dimensions, i), r = vector_at(intermediate_position, dimensions, i);
+    if (bubbles != nullptr)
+      for (int axis = 0; axis < dimensions; ++axis)
+        (*bubbles->material_acceleration[axis])[i] = (u[axis] - (*particles.velocity[axis])[i]) / dt;
+    if (features.shifting) {
+      for (int axis = 0; axis < dimensions; ++axis) r[axis] += (*shift->displacement[axis])[i];
+      if (features.shift_correction) {
+        // A one-sided gradient at the surface extrapolates: fed back through the shift it accelerates particles without
+        // any force (0.5 sqrt(g lambda) in a tenth of a period at 1/50). The change fades out with the interior weight.
+        const double inside = surface != nullptr ? double{surface->interior_weight[i]} : 1.0;
+        for (int axis = 0; axis < dimensions; ++axis) u[axis] += inside * shift_velocity[axis][i];
+      }
+    }
+    boundary.apply_walls(boundary.next_walls, r, &u);
+    for (int axis = 0; axis < dimensions; ++axis) {
+      (*particles.position[axis])[i] = r[axis];
+      (*particles.velocity[axis])[i] = u[axis];
+    }
+    (*pressure)[i] = density() * ((*reduced_pressure)[i] - potential_of(i));
+  });
+  particles.scratch().release(next_velocity);
+  particles.scratch().release(shift_velocity);
+  if (closure != nullptr) closure->accept(particles);
+  boundary.accept();
+  time += dt;
+  last_steps = {dt, last_steps[0]};
+  ++steps;
+  find_extremes();
+  if (features.velocity_gradient)
+    dissipation = density() * particles.volume * parallel_sum(n, [&](std::size_t i) {
+                    const double rate = (*strain)[i];
+                    return (viscosity() + eddy_viscosity_of(i)) * rate * rate;
+                  });
+}
+
+}  // namespace spume::les_sph

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/arrangement.hpp"
+
+#include <variant>
+
+namespace spume {
+namespace {
+
+CellGrid grid_of(const Domain& domain, double support_radius, std::size_t particles) {
+  std::array<double, 3> lower{}, upper{};
+  for (int axis = 0; axis < domain.dimensions; ++axis) {
+    lower[axis] = domain.lower[axis] - support_radius;
+    upper[axis] = domain.upper[axis] + support_radius;
+  }
+  return {domain.dimensions, lower, upper, support_radius, particles};
+}
+
+}  // namespace
+
+Arrangement::Arrangement(const Domain& domain, const Resolution& resolution, double particle_volume,
+                         std::size_t particles)
+    : origin{(domain.lower[0] + domain.upper[0]) / 2, (domain.lower[1] + domain.upper[1]) / 2,
+             (domain.lower[2] + domain.upper[2]) / 2},
+      grid(grid_of(domain, resolution.support_radius, particles)) {
+  context.list = &list;
+  context.images = &images;
+  context.dimensions = domain.dimensions;
+  context.kernel = resolution.kernel;
+  context.smoothing_length = resolution.smoothing_length;
+  context.volume = particle_volume;
+}
+
+void Arrangement::sort(ParticleStore& particles, const VectorField& at) {
+  const auto r = read(at);
+  table.build(grid, r[0], r[1], r[2], particles.size());
+  if (!table.already_sorted()) particles.fields.permute(table.order());
+}
+
+void Arrangement::find_neighbours(const ParticleStore& particles, const VectorField& at, const ParticleSizes& sizes) {
+  const auto r = read(at);
+  list.build(grid, table, r[0], r[1], r[2], particles.size(), images, origin,
+             sizes.variable ? sizes.support_radius.data() : nullptr,
+             grid.support_radius() * sizes.largest_length_ratio);
+  packed.invalidate();
+}
+
+double Arrangement::sort_traffic(const ParticleStore& particles) const {
+  double permuted = 0;
+  if (!table.already_sorted())
+    for (const auto& field : particles.fields.fields())
+      if (field->lifetime != Lifetime::result)
+        permuted += std::visit([](const auto& array) { return 2.0 * sizeof(array[0]) + 4; }, field->values);
+  return table.build_traffic() + static_cast<double>(particles.size()) * permuted;
+}
+
+// Coordinates are written in float and gathered from by way of the cells; lists are written once, with their sizes.
+double Arrangement::list_traffic(const ParticleSizes& sizes) const {
+  const double d = context.dimensions;
+  const auto points = static_cast<double>(list.points());
+  const auto cells = static_cast<double>(grid.cell_count()) * (images.size() > 0 ? 2 : 1);
+  return points * (8 * d + 2 * 4 * d) + 4 * cells + 4 * static_cast<double>(list.entries()) +
+         static_cast<double>(list.particles()) * (12 + (sizes.variable ? 4 : 0));
+}
+
+}  // namespace spume

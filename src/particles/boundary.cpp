@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/boundary.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+
+namespace spume {
+namespace {
+
+// A face of a solid bounds liquid unless it lies on or beyond a side of the domain.
+bool face_bounds_liquid(const Domain& domain, const SolidBox& box, int axis, int side, double tolerance) {
+  return side == 0 ? box.lower[axis] > domain.lower[axis] + tolerance
+                   : box.upper[axis] < domain.upper[axis] - tolerance;
+}
+
+}  // namespace
+
+BoundaryFeatures::BoundaryFeatures(const Domain& domain) {
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    for (const Side& side : domain.sides[axis]) {
+      images = images || side.kind != BoundaryKind::open;
+      no_slip = no_slip || side.kind == BoundaryKind::no_slip;
+      if (!side.velocity) continue;
+      moving_walls = true;
+      displaced_walls = displaced_walls || side.velocity->component[axis] != nullptr;
+    }
+  images = images || !domain.boxes.empty();
+  for (const SolidBox& box : domain.boxes) no_slip = no_slip || box.kind == BoundaryKind::no_slip;
+}
+
+Boundary::Boundary(const Domain& domain, double spacing) : features(domain), domain_(domain), spacing_(spacing) {
+  for (int axis = 0; axis < domain.dimensions; ++axis) walls[axis] = {domain.lower[axis], domain.upper[axis]};
+  next_walls = walls;
+}
+
+void Boundary::advance(double t, double dt) {
+  next_walls = walls;
+  if (!features.displaced_walls) return;
+  for (int axis = 0; axis < domain_.dimensions; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const auto& velocity = domain_.sides[axis][side].velocity;
+      if (!velocity || velocity->component[axis] == nullptr) continue;
+      Vec3 centre;
+      for (std::size_t a = 0; a < 3; ++a) centre[a] = (domain_.lower[a] + domain_.upper[a]) / 2;
+      centre[axis] = walls[axis][side];
+      // Simpson's rule in time: exact for walls whose velocity is cubic over a step.
+      const double mean = ((*velocity)(centre, t)[axis] + 4 * (*velocity)(centre, t + dt / 2)[axis] +
+                           (*velocity)(centre, t + dt)[axis]) /
+                          6;
+      next_walls[axis][side] += mean * dt;
+    }
+}
+
+ImageRules Boundary::image_rules(double support_radius) const {
+  ImageRules rules;
+  rules.dimensions = domain_.dimensions;
+  rules.support_radius = support_radius;
+  for (int axis = 0; axis < domain_.dimensions; ++axis) {
+    rules.lower[axis] = next_walls[axis][0];
+    rules.upper[axis] = next_walls[axis][1];
+    for (int side = 0; side < 2; ++side) {
+      const BoundaryKind kind = domain_.sides[axis][side].kind;
+      rules.sides[axis][side] = kind == BoundaryKind::periodic ? ImageKind::periodic
+                                : is_wall(kind)                ? ImageKind::mirror
+                                                               : ImageKind::none;
+    }
+  }
+  const double tolerance = 1e-6 * spacing_;
+  for (const SolidBox& solid : domain_.boxes) {
+    ImageRules::Box box;
+    box.lower = solid.lower;
+    box.upper = solid.upper;
+    for (int axis = 0; axis < domain_.dimensions; ++axis)
+      for (int side = 0; side < 2; ++side)
+        box.face[axis][side] = face_bounds_liquid(domain_, solid, axis, side, tolerance);
+    rules.boxes.push_back(box);
+  }
+  return rules;
+}
+
+void Boundary::make_images(Arrangement& arrangement, const ParticleStore& particles, const VectorField& at,
+                           double largest_length_ratio, double t) {
+  const double support_radius = arrangement.grid.support_radius() * largest_length_ratio;
+  const auto r = read(at);
+  arrangement.images.build(image_rules(support_radius), arrangement.grid, r[0], r[1], r[2], particles.size());
+  find_rules(arrangement.images, support_radius, t);
+}
+
+void Boundary::find_rules(const Images& images, double support_radius, double t) {
+  const ImageRules rules = image_rules(support_radius);
+  const auto& paths = images.paths();
+  const int d = domain_.dimensions;
+  velocity_rule_.sign.resize(paths.size());
+  reflection_.resize(paths.size());
+  const auto reflect = [&](std::array<float, 3>& sign, int axis, BoundaryKind kind) {
+    if (kind == BoundaryKind::free_slip) sign[axis] = -sign[axis];
+    if (kind == BoundaryKind::no_slip)
+      for (float& s : sign) s = -s;
+  };
+  for (std::size_t p = 0; p < paths.size(); ++p) {
+    std::array<float, 3> sign{1, 1, 1};
+    if (paths[p].box_face >= 0)
+      reflect(sign, paths[p].box_face % 6 / 2, domain_.boxes[static_cast<std::size_t>(paths[p].box_face / 6)].kind);
+    for (int axis = 0; axis < d; ++axis)
+      if (const int side = paths[p].side[axis]; side >= 0) reflect(sign, axis, domain_.sides[axis][side].kind);
+    velocity_rule_.sign[p] = sign;
+    for (int axis = 0; axis < 3; ++axis)
+      reflection_[p][axis] = axis < d ? static_cast<float>(Images::sign(paths[p], rules, axis)) : 1.0F;
+  }
+  if (features.no_slip) mirror_rule_.sign = reflection_;
+  if (!features.moving_walls) return;
+  find_offsets(images, t, true, velocity_rule_);
+  if (features.no_slip && features.displaced_walls) find_offsets(images, t, false, mirror_rule_);
+  // An image behind a wall moves with twice the velocity of the wall.
+  wall_speed = 0.5 * std::sqrt(parallel_max(images.size(), 0.0, [&](std::size_t k) {
+                 double speed2 = 0;
+                 for (int a = 0; a < d; ++a) {
+                   const double u = velocity_rule_.offset[a][k];
+                   speed2 += u * u;
+                 }
+                 return speed2;
+               }));
+  if (std::isfinite(wall_speed)) return;
+  StepFailure::Details details;
+  details.cause = "the velocity of a wall is not a finite number";
+  details.option = "domain.wall_velocity";
+  details.value = wall_speed;
+  throw StepFailure(details);
+}
+
+// What moving walls add to the velocities of images at time t; with friction no-slip walls along their planes too.
+void Boundary::find_offsets(const Images& images, double t, bool friction, VelocityImageRule& rule) const {
+  const int d = domain_.dimensions;
+  const std::size_t m = images.size();
+  for (int axis = 0; axis < d; ++axis) rule.offset[axis].resize(m);
+  parallel_blocks(m, 4096, [&](std::size_t, std::size_t first, std::size_t last) {
+    // Expressions keep their variables inside: each block evaluates its own copies.
+    std::array<std::array<VectorExpression, 2>, 3> velocity;
+    for (int axis = 0; axis < d; ++axis)
+      for (int side = 0; side < 2; ++side)
+        if (domain_.sides[axis][side].velocity) velocity[axis][side] = domain_.sides[axis][side].velocity->clone();
+    for (std::size_t k = first; k < last; ++k) {
+      std::array<double, 3> offset{};
+      const ImagePath& path = images.paths()[static_cast<std::size_t>(images.path()[k])];
+      for (int axis = 0; axis < d; ++axis) {
+        const int side = path.side[axis];
+        if (side < 0 || !is_wall(domain_.sides[axis][side].kind)) continue;
+        const bool holds = friction && domain_.sides[axis][side].kind == BoundaryKind::no_slip;
+        Vec3 wall{};
+        if (domain_.sides[axis][side].velocity) {
+          Vec3 foot{};
+          for (int a = 0; a < d; ++a) foot[a] = images.position(a)[k];
+          foot[axis] = next_walls[axis][side];
+          wall = velocity[axis][side](foot, t);
+        }
+        for (int a = 0; a < d; ++a)
+          if (holds || a == axis) offset[a] = 2 * wall[a] - offset[a];
+      }
+      for (int a = 0; a < d; ++a) rule.offset[a][k] = static_cast<float>(offset[a]);
+    }
+  });
+}
+
+void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity) const {
+  const double tiny = 1e-3 * spacing_;
+  for (int axis = 0; axis < domain_.dimensions; ++axis) {
+    double& x = position[axis];
+    const double lower = at[axis][0], upper = at[axis][1];
+    if (domain_.periodic(axis)) {
+      if (x < lower || x >= upper) {
+        const double length = upper - lower;
+        x -= length * std::floor((x - lower) / length);
+        if (x >= upper) x = lower;  // rounding of a point just below the lower side
+      }
+      continue;
+    }
+    // Reflected, and never so far back that a fast particle crosses the domain.
+    if (x < lower + tiny && is_wall(domain_.sides[axis][0].kind)) {
+      x = std::clamp(2 * lower - x, lower + tiny, lower + domain_.upper[axis] - domain_.lower[axis]);
+      if (velocity != nullptr) (*velocity)[axis] = std::max((*velocity)[axis], 0.0);
+    } else if (x > upper - tiny && is_wall(domain_.sides[axis][1].kind)) {
+      x = std::clamp(2 * upper - x, upper - domain_.upper[axis] + domain_.lower[axis], upper - tiny);
+      if (velocity != nullptr) (*velocity)[axis] = std::min((*velocity)[axis], 0.0);
+    }
+  }
+  for (const SolidBox& box : domain_.boxes) {
+    double nearest = 1e300;
+    int face_axis = -1, face_side = 0;
+    for (int axis = 0; axis < domain_.dimensions; ++axis)
+      for (int side = 0; side < 2; ++side) {
+        const double depth = side == 0 ? position[axis] - box.lower[axis] : box.upper[axis] - position[axis];
+        if (depth <= 0) nearest = -1;
+        if (nearest < 0) continue;
+        if (depth < nearest && face_bounds_liquid(domain_, box, axis, side, tiny)) {
+          nearest = depth;
+          face_axis = axis;
+          face_side = side;
+        }
+      }
+    if (nearest <= 0 || face_axis < 0) continue;
+    const double outward = face_side == 0 ? -1 : 1;
+    position[face_axis] += outward * (2 * nearest + tiny);
+    if (velocity != nullptr && (*velocity)[face_axis] * outward < 0) (*velocity)[face_axis] = 0;
+  }
+}
+
+double Boundary::bytes() const {
+  double sum = 0;
+  for (const auto* rule : {&velocity_rule_, &mirror_rule_})
+    for (const auto& array : rule->offset) sum += array.bytes();
+  return sum;
+}
+
+bool inside_solid(const Domain& domain, const Vec3& point) {
+  return std::any_of(domain.boxes.begin(), domain.boxes.end(), [&](const SolidBox& box) {
+    for (int axis = 0; axis < domain.dimensions; ++axis)
+      if (point[axis] <= box.lower[axis] || point[axis] >= box.upper[axis]) return false;
+    return true;
+  });
+}
+
+}  // namespace spume

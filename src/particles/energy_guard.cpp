@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/energy_guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+
+namespace spume {
+namespace {
+
+// The work of bubbles and of moving walls is not followed. What it may give is taken large: ten times the speed of a
+// wall, or of a fall from the top of the domain to its bottom, for all of the liquid.
+double unfollowed_supply(const EnergyBalance& balance, const Domain& domain, double strength, double wall_speed) {
+  if (!balance.unfollowed_work) return 0;
+  // Gravity drives bubbles also where a force on the liquid cancels it.
+  double size = 0, gravity2 = 0;
+  for (const double g : balance.gravity) gravity2 += g * g;
+  strength = std::max(strength, std::sqrt(gravity2));
+  for (int axis = 0; axis < domain.dimensions; ++axis) size = std::max(size, domain.upper[axis] - domain.lower[axis]);
+  return 50 * (wall_speed * wall_speed + strength * size);
+}
+
+template <class Velocity>
+double kinetic_energy(const EnergyBalance& balance, const ParticleStore& particles, const Velocity& velocity) {
+  return balance.particle_mass * parallel_sum(particles.size(), [&](std::size_t i) {
+           return squared_norm(velocity, particles.dimensions, i) / 2;
+         });
+}
+
+}  // namespace
+
+// Of gravity across axes with sides; along a periodic axis there is no height.
+double EnergyGuard::potential_energy(const EnergyBalance& balance, const VectorField& position,
+                                     std::size_t particles) const {
+  return balance.particle_mass * parallel_sum(particles, [&](std::size_t i) {
+           double sum = 0;
+           for (int axis = 0; axis < domain_.dimensions; ++axis)
+             if (!domain_.periodic(axis)) sum -= balance.gravity[axis] * (*position[axis])[i];
+           return sum;
+         });
+}
+
+void EnergyGuard::start(const EnergyBalance& balance, const ParticleStore& particles, double stored_energy) {
+  supply = kinetic_energy(balance, particles, particles.velocity) +
+           potential_energy(balance, particles.position, particles.size()) + stored_energy;
+}
+
+double EnergyGuard::after_step(const EnergyBalance& balance, const ParticleStore& particles, const VectorField& at,
+                               const VectorScratch& velocity, double wall_speed, double dt) const {
+  const int d = particles.dimensions;
+  const std::size_t n = particles.size();
+  const double mass = balance.particle_mass, all = mass * static_cast<double>(n);
+  double next_supply = supply, strength2 = 0;
+  for (int axis = 0; axis < d; ++axis) {
+    const double total = balance.acceleration[axis];
+    strength2 += total * total;
+    const double beside = total - (domain_.periodic(axis) ? 0.0 : balance.gravity[axis]);
+    if (beside != 0)
+      next_supply += dt * mass * beside * parallel_sum(n, [&](std::size_t i) { return velocity[axis][i]; });
+  }
+  const double kinetic = kinetic_energy(balance, particles, velocity);
+  const double available = next_supply - potential_energy(balance, at, n);
+  // Particles rearrange within a spacing; float sums leave 1e-6 of a smoothing length in a step.
+  const double noise = 1e-6 * resolution_.smoothing_length / dt;
+  const double strength = std::sqrt(strength2);
+  const double floor = all * (strength * resolution_.spacing + noise * noise +
+                              unfollowed_supply(balance, domain_, strength, wall_speed));
+  if (kinetic <= 2 * std::max(available, 0.0) + floor) return next_supply;
+  StepFailure::Details details;
+  double fastest2 = -1;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double speed2 = squared_norm(velocity, d, i);
+    if (!(speed2 > fastest2)) continue;
+    fastest2 = speed2;
+    details.particle = (*particles.identifier)[i];
+    for (int axis = 0; axis < d; ++axis) details.position[axis] = (*at[axis])[i];
+  }
+  details.value = std::sqrt(fastest2);
+  details.cause = "the kinetic energy is more than twice what the start and the forces supply";
+  details.option = "time.courant";
+  throw StepFailure(details);
+}
+
+}  // namespace spume

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/point_sampler.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "spume/core/parallel.hpp"
+
+namespace spume {
+namespace {
+
+// A point and its reflections: summing the particles around each copy is summing particles and images around the
+// point.
+struct Copy {
+  Vec3 point;
+  std::array<double, 3> sign{1, 1, 1};  // reflection of geometric offsets
+  // Velocity of an image: sign * u + offset, 2 u_wall - u in the components that a wall holds.
+  std::array<double, 3> velocity_sign{1, 1, 1};
+  Vec3 velocity_offset{};
+};
+
+void reflect_velocity(const SampledState& state, int axis, int side, Copy& copy, const Vec3& point) {
+  const Side& wall = state.boundary->domain().sides[axis][side];
+  Vec3 speed{};
+  if (wall.velocity) {
+    Vec3 foot = point;
+    foot[axis] = state.boundary->walls[axis][side];
+    speed = (*wall.velocity)(foot, state.time);
+  }
+  for (int a = 0; a < state.particles->dimensions; ++a) {
+    if (a != axis && wall.kind == BoundaryKind::free_slip) continue;
+    copy.velocity_sign[a] = -copy.velocity_sign[a];
+    copy.velocity_offset[a] = 2 * speed[a] - copy.velocity_offset[a];
+  }
+}
+
+std::vector<Copy> copies_of(const SampledState& state, const Vec3& point) {
+  const Domain& domain = state.boundary->domain();
+  const double support_radius = state.arrangement->grid.support_radius();
+  std::vector<Copy> copies{{.point = point}};
+  for (int axis = 0; axis < state.particles->dimensions; ++axis) {
+    const std::size_t made = copies.size();
+    const double length = state.boundary->walls[axis][1] - state.boundary->walls[axis][0];
+    for (int side = 0; side < 2; ++side) {
+      const double plane = state.boundary->walls[axis][side];
+      if (std::abs(point[axis] - plane) >= support_radius || domain.sides[axis][side].kind == BoundaryKind::open)
+        continue;
+      for (std::size_t c = 0; c < made; ++c) {
+        Copy copy = copies[c];
+        if (domain.periodic(axis)) {
+          copy.point[axis] += side == 0 ? length : -length;
+        } else {
+          copy.point[axis] = 2 * plane - copy.point[axis];
+          copy.sign[axis] = -1;
+          reflect_velocity(state, axis, side, copy, point);
+        }
+        copies.push_back(copy);
+      }
+    }
+  }
+  return copies;
+}
+
+}  // namespace
+
+void PointSampler::update(const SampledState& state) {
+  state_ = state;
+  const auto r = read(state.particles->position);
+  table_.build(state.arrangement->grid, r[0], r[1], r[2], state.particles->size());
+}
+
+double PointSampler::potential_at(const Vec3& r) const {
+  double sum = 0;
+  for (int axis = 0; axis < state_.particles->dimensions; ++axis)
+    sum -= state_.uniform_acceleration[axis] * (r[axis] - state_.arrangement->origin[axis]);
+  return sum;
+}
+
+// visit(particle, W V, offset r_j - point, copy) for every particle or image in the support of the point.
+template <class Visit>
+void PointSampler::visit(const Vec3& point, Visit&& visit) const {
+  const CellGrid& grid = state_.arrangement->grid;
+  const int d = state_.particles->dimensions;
+  const double support_radius = grid.support_radius();
+  with_kernel(state_.arrangement->context, [&]<int dimensions, class Kernel>() {
+    const double h = state_.resolution->smoothing_length;
+    const double scale = state_.particles->volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions);
+    for (const Copy& copy : copies_of(state_, point)) {
+      const auto range = [&](int axis) {
+        return std::pair(grid.index(axis, copy.point[axis] - support_radius),
+                         grid.index(axis, copy.point[axis] + support_radius));
+      };
+      const auto [x0, x1] = range(0);
+      const auto [y0, y1] = range(1);
+      const auto [z0, z1] = d == 3 ? range(2) : std::pair(0, 0);
+      for (int iz = z0; iz <= z1; ++iz)
+        for (int iy = y0; iy <= y1; ++iy) {
+          const std::int64_t row = std::int64_t{grid.row(iy, iz)} * grid.columns();
+          for (std::int32_t k = table_.first()[row + x0]; k < table_.first()[row + x1 + 1]; ++k) {
+            const auto j = static_cast<std::size_t>(table_.order()[static_cast<std::size_t>(k)]);
+            Vec3 offset{};
+            double r2 = 0;
+            for (int axis = 0; axis < d; ++axis) {
+              offset[axis] = copy.sign[axis] * ((*state_.particles->position[axis])[j] - copy.point[axis]);
+              r2 += offset[axis] * offset[axis];
+            }
+            const double swelling = state_.volume_fraction == nullptr ? 1.0 : 1 / (*state_.volume_fraction)[j];
+            if (r2 < support_radius * support_radius)
+              visit(j, swelling * scale * Kernel::w(std::sqrt(r2) / h), offset, copy);
+          }
+        }
+    }
+  });
+}
+
+double PointSampler::coverage(const Vec3& point) const {
+  double sum = 0;
+  visit(point, [&](std::size_t, double weight, const Vec3&, const Copy&) { sum += weight; });
+  return sum;
+}
+
+PointSample PointSampler::sample(const Vec3& point) const {
+  const int d = state_.particles->dimensions;
+  Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
+  Eigen::Matrix4d values = Eigen::Matrix4d::Zero();  // columns: pressure without its hydrostatic part, velocity
+  PointSample sample;
+  const double density = state_.density;
+  double pressure = 0;
+  int count = 0;
+  visit(point, [&](std::size_t j, double weight, const Vec3& offset, const Copy& copy) {
+    // A wall mirrors the pressure but for its hydrostatic part, which belongs to the place of the source.
+    Vec3 place = point;
+    for (int axis = 0; axis < d; ++axis)
+      place[axis] = copy.sign[axis] > 0 ? point[axis] + offset[axis] : copy.point[axis] - offset[axis];
+    Eigen::Vector4d basis(1, 0, 0, 0), value((*state_.pressure)[j] + density * potential_at(place), 0, 0, 0);
+    for (int axis = 0; axis < d; ++axis) {
+      basis[axis + 1] = offset[axis] / state_.resolution->smoothing_length;
+      value[axis + 1] = copy.velocity_sign[axis] * (*state_.particles->velocity[axis])[j] + copy.velocity_offset[axis];
+    }
+    moments += weight * basis * basis.transpose();
+    values += weight * basis * value.transpose();
+    sample.coverage += weight;
+    pressure += weight * (*state_.pressure)[j];
+    ++count;
+  });
+  if (count == 0) return sample;
+  const auto block = moments.topLeftCorner(d + 1, d + 1);
+  const Eigen::LDLT<Eigen::MatrixXd> factor(block);
+  Eigen::RowVector4d result = values.row(0) / sample.coverage;
+  result[0] = pressure / sample.coverage;
+  // A linear fit needs neighbours on all sides; in spray and thin sheets the average is the safer value.
+  if (count > 2 * (d + 1) && factor.info() == Eigen::Success && factor.rcond() > 1e-3) {
+    const Eigen::MatrixXd fitted = factor.solve(values.topRows(d + 1));
+    result = fitted.row(0);
+    result[0] -= density * potential_at(point);
+  }
+  sample.pressure = result[0];
+  for (int axis = 0; axis < d; ++axis) sample.velocity[axis] = result[axis + 1];
+  return sample;
+}
+
+double PointSampler::crossing(Vec3 wet, double dry) const {
+  const int up = state_.particles->dimensions - 1;
+  double inside = wet[up];
+  for (int k = 0; k < 20; ++k) {
+    wet[up] = 0.5 * (inside + dry);
+    (coverage(wet) >= 0.5 ? inside : dry) = wet[up];
+  }
+  return inside;
+}
+
+double PointSampler::highest_sample(const Vec3& point, Vec3& sample) const {
+  const int up = state_.particles->dimensions - 1;
+  const double bottom = state_.boundary->domain().lower[up];
+  const double step = state_.resolution->spacing / 4;
+  sample = point;
+  sample[up] = 2 * step + parallel_max(state_.particles->size(), bottom,
+                                       [&](std::size_t i) { return (*state_.particles->position[up])[i]; });
+  return step;
+}
+
+double PointSampler::elevation(const Vec3& point) const {
+  const int up = state_.particles->dimensions - 1;
+  const double bottom = state_.boundary->domain().lower[up];
+  Vec3 r;
+  for (const double step = highest_sample(point, r); r[up] > bottom; r[up] -= step)
+    if (coverage(r) >= 0.5) return crossing(r, r[up] + step);
+  return bottom;
+}
+
+double PointSampler::wetted_length(const Vec3& point) const {
+  const int up = state_.particles->dimensions - 1;
+  const double bottom = state_.boundary->domain().lower[up];
+  double length = 0, top = bottom;
+  bool above = false;  // whether the last sample was wet
+  Vec3 r;
+  for (const double step = highest_sample(point, r); r[up] > bottom; r[up] -= step) {
+    const bool wet = coverage(r) >= 0.5;
+    if (wet && !above) top = crossing(r, r[up] + step);
+    if (!wet && above) {
+      Vec3 inside = r;
+      inside[up] += step;
+      length += top - crossing(inside, r[up]);
+    }
+    above = wet;
+  }
+  return above ? length + top - bottom : length;
+}
+
+double PointSampler::front(int axis, double height) const {
+  const int up = state_.particles->dimensions - 1;
+  const double lowest = state_.boundary->domain().lower[axis];
+  const double farthest = parallel_max(state_.particles->size(), lowest, [&](std::size_t i) {
+    if ((*state_.particles->position[up])[i] >= height) return lowest;
+    Vec3 r{};
+    for (int a = 0; a < state_.particles->dimensions; ++a) r[a] = (*state_.particles->position[a])[i];
+    return coverage(r) >= 0.5 ? r[axis] : lowest;
+  });
+  return farthest > lowest ? farthest + 0.5 * state_.resolution->spacing : lowest;
+}
+
+PlaneSample PointSampler::plane_average(int axis, double position) const {
+  const auto& walls = state_.boundary->walls;
+  if (position < walls[axis][0] || position > walls[axis][1]) return {};  // a wall has moved past it
+  std::array<std::size_t, 3> cells{1, 1, 1};
+  Vec3 side{}, lower{};
+  double cell_area = 1;
+  for (int a = 0; a < state_.particles->dimensions; ++a) {
+    if (a == axis) continue;
+    const double length = walls[a][1] - walls[a][0];
+    cells[a] = static_cast<std::size_t>(std::max(1.0, std::round(length / state_.resolution->spacing)));
+    side[a] = length / static_cast<double>(cells[a]);
+    lower[a] = walls[a][0];
+    cell_area *= side[a];
+  }
+  struct Sum {
+    double wet = 0, pressure = 0;
+    Vec3 velocity{};
+  };
+  const Sum total = parallel_reduce(
+      cells[0] * cells[1] * cells[2], Sum{},
+      [&](std::size_t first, std::size_t last) {
+        Sum sum;
+        for (std::size_t k = first; k < last; ++k) {
+          const std::array<std::size_t, 3> cell{k % cells[0], k / cells[0] % cells[1], k / cells[0] / cells[1]};
+          Vec3 point{};
+          for (int a = 0; a < state_.particles->dimensions; ++a)
+            point[a] = a == axis ? position : lower[a] + (static_cast<double>(cell[a]) + 0.5) * side[a];
+          if (inside_solid(state_.boundary->domain(), point)) continue;
+          const PointSample one = sample(point);
+          if (!(one.coverage >= 0.5)) continue;
+          sum.wet += 1;
+          sum.pressure += one.pressure;
+          for (int a = 0; a < state_.particles->dimensions; ++a) sum.velocity[a] += one.velocity[a];
+        }
+        return sum;
+      },
+      [](const Sum& a, const Sum& b) {
+        Sum sum{a.wet + b.wet, a.pressure + b.pressure, {}};
+        for (std::size_t c = 0; c < 3; ++c) sum.velocity[c] = a.velocity[c] + b.velocity[c];
+        return sum;
+      });
+  PlaneSample result;
+  if (!(total.wet > 0)) return result;
+  result.area = total.wet * cell_area;
+  result.pressure = total.pressure / total.wet;
+  for (std::size_t c = 0; c < 3; ++c) result.velocity[c] = total.velocity[c] / total.wet;
+  return result;
+}
+
+}  // namespace spume

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/step_limits.hpp"
+
+#include <cmath>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+
+namespace spume {
+
+Speeds find_speeds(const Arrangement& arrangement, const ParticleStore& particles) {
+  const int d = particles.dimensions;
+  const auto speed2_at = [&](std::size_t i) { return squared_norm(particles.velocity, d, i); };
+  Speeds speeds;
+  speeds.largest = std::sqrt(parallel_max(particles.size(), 0.0, speed2_at));
+  const int spray = spray_neighbours(d);
+  const bool listed = arrangement.list.particles() == particles.size();
+  speeds.limiting = listed ? std::sqrt(parallel_max(
+                                 particles.size(), 0.0,
+                                 [&](std::size_t i) { return arrangement.list.count(i) < spray ? 0.0 : speed2_at(i); }))
+                           : speeds.largest;
+  return speeds;
+}
+
+void refuse_long_strides(const ParticleStore& particles, const VectorField& at, const VectorScratch& velocity,
+                         double support_radius, double dt) {
+  const int d = particles.dimensions;
+  const std::size_t n = particles.size();
+  const auto speed2_at = [&](std::size_t i) { return squared_norm(velocity, d, i); };
+  const double fastest = std::sqrt(parallel_max(n, 0.0, speed2_at));
+  const double limit = 0.5 * support_radius / dt;
+  if (fastest <= limit) return;
+  StepFailure::Details details;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double speed = std::sqrt(speed2_at(i));
+    if (speed <= limit) continue;
+    details.particle = (*particles.identifier)[i];
+    for (int axis = 0; axis < d; ++axis) details.position[axis] = (*at[axis])[i];
+    details.value = speed;
+    break;
+  }
+  details.cause = std::isfinite(fastest) ? "a particle would cross half its support in one step"
+                                         : "a velocity is not a finite number";
+  details.option = "time.courant";
+  throw StepFailure(details);
+}
+
+}  // namespace spume

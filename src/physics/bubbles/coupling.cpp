@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+// Bubbles and particles as neighbours, and the volume that bubbles take.
+#include "spume/physics/bubbles/coupling.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spume::bubbles {
+namespace {
+
+// Kernels expand as if alpha were no less.
+constexpr double least_kernel_fraction = 0.5;
+
+// x^(-1/3) for x in [1/2, 1], to rounding and exact at 1: Newton's method from the chord, which is 2.7 % off at most.
+double inverse_cube_root(double x) {
+  double y = 1 + (1 - x) * 0.5198;
+  for (int k = 0; k < 4; ++k) y *= (4 - x * y * y * y) / 3;
+  return y;
+}
+
+}  // namespace
+
+BubbleCoupling::BubbleCoupling(const Carrier& carrier, const BubbleOptions& options)
+    : carrier_(carrier),
+      options_(options),
+      population_({options.fluctuations, options.breakup, options.surface_interaction && has_surface()}),
+      sources_(carrier.scene) {
+  carrier.particles.add_vector(exchange, "bubble_exchange", Lifetime::result);
+  carrier.particles.add_vector(material_acceleration, "material_acceleration", Lifetime::state);
+  volume_fraction = &carrier.particles.fields.add<double>("volume_fraction", Lifetime::state);
+  parallel_for(carrier.particles.size(), [&](std::size_t i) { (*volume_fraction)[i] = 1; });
+
+  const Fluid& fluid = carrier.scene.fluid;
+  gas_.density_ratio = options_.density_ratio;
+  gas_.viscosity = fluid.kinematic_viscosity;
+  gas_.lift = options_.lift_coefficient;
+  gas_.virtual_mass = options_.virtual_mass_coefficient;
+  gas_.fluid_inertia = options_.fluid_inertia;
+  gas_.gravity = fluid.gravity;
+  const double gravity = std::hypot(fluid.gravity[0], fluid.gravity[1], fluid.gravity[2]);
+  surface_.spacing = carrier_.resolution.spacing;
+  surface_.persistence_unit = persistence_unit(options_.tension, fluid.kinematic_viscosity, gravity, options_.schmidt);
+  breakup_.tension = options_.tension;
+  breakup_.deformation_constant = options_.deformation_constant;
+  entrainment_.constant = options_.entrainment_constant;
+  entrainment_.threshold = options_.entrainment_threshold;
+  entrainment_.density_ratio = options_.density_ratio;
+  entrainment_.tension = options_.tension;
+  entrainment_.smallest_radius = options_.smallest_entrained_radius;
+  entrainment_.largest_radius = carrier_.resolution.spacing;
+  entrainment_.spacing = carrier_.resolution.spacing;
+  entrainment_.seed = carrier_.scene.seed;
+  entrainment_.overdraft = options_.entrainment_overdraft;
+  add_snapshot_fields();
+  if (options_.breakup) child_sizes_.emplace_back();
+  if (population_.merge_time != nullptr)
+    normal_at_surface_ =
+        lattice_surface(3, carrier_.resolution.kernel, carrier_.resolution.smoothing_ratio)[0].twice_smoothed_normal;
+}
+
+void BubbleCoupling::start() {
+  sources_.place_clouds(population_, carrier_.time);
+  history_.injected = static_cast<std::int64_t>(population_.size());
+  history_.injected_volume = population_.total_volume();
+  history_before_ = history_;
+  if (population_.empty()) return;
+  // alpha depends on h, which depends on alpha: a few rounds settle both.
+  for (int round = 0; round < 6; ++round) {
+    move(0);
+    carrier_.boundary.make_images(carrier_.arrangement, carrier_.particles, carrier_.intermediate_position,
+                                  carrier_.sizes.largest_length_ratio, carrier_.time);
+    share_volume();
+    parallel_for(carrier_.particles.size(),
+                 [&](std::size_t i) { (*volume_fraction)[i] = carrier_.sizes.volume_fraction[i]; });
+  }
+}
+
+void BubbleCoupling::move(double dt) {
+  carrier_.sizes.variable = !population_.empty();
+  carrier_.sizes.largest_length_ratio = 1;
+  carrier_.arrangement.context.length_ratio = carrier_.arrangement.context.volume_ratio = nullptr;
+  if (population_.empty()) return;
+  parallel_for(population_.size(), [&](std::size_t b) {
+    Vec3 r;
+    for (std::size_t a = 0; a < 3; ++a) r[a] = (*population_.position[a])[b] + dt * (*population_.velocity[a])[b];
+    carrier_.boundary.apply_walls(carrier_.boundary.next_walls, r, nullptr);
+    for (std::size_t a = 0; a < 3; ++a) (*population_.next_position[a])[b] = r[a];
+  });
+  population_.sort(carrier_.arrangement.grid);
+  measure_sizes();
+}
+
+// h_i from the volume fraction of the last step, King (3.4).
+void BubbleCoupling::measure_sizes() {
+  const std::size_t n = carrier_.particles.size();
+  for (auto* array : {&carrier_.sizes.volume_fraction, &carrier_.sizes.length_ratio, &carrier_.sizes.volume_ratio,
+                      &carrier_.sizes.support_radius})
+    array->resize(n);
+  const double support_radius = carrier_.arrangement.grid.support_radius();
+  const double* fraction = volume_fraction->data();
+  float *length_ratio = carrier_.sizes.length_ratio.data(), *support_radius_of = carrier_.sizes.support_radius.data();
+  carrier_.sizes.largest_length_ratio = parallel_reduce(
+      n, 1.0F,
+      [=](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+          const double ratio = inverse_cube_root(std::max(fraction[i], least_kernel_fraction));
+          length_ratio[i] = static_cast<float>(ratio);
+          support_radius_of[i] = static_cast<float>(support_radius * ratio);
+        }
+        return *std::max_element(length_ratio + first, length_ratio + last);
+      },
+      [](float a, float b) { return std::max(a, b); });
+}
+
+// The bubbles and their images as neighbours.
+void BubbleCoupling::place_bubbles() {
+  const std::size_t nb = population_.size();
+  images_.build(
+      carrier_.boundary.image_rules(carrier_.arrangement.grid.support_radius() * carrier_.sizes.largest_length_ratio),
+      carrier_.arrangement.grid, population_.next_position[0]->data(), population_.next_position[1]->data(),
+      population_.next_position[2]->data(), nb);
+  const std::size_t all = nb + images_.size();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    bubble_point_[a].resize(all + simd::pair_lanes);
+    float* out = bubble_point_[a].data();
+    const double* bubble = population_.next_position[a]->data();
+    const double* image = images_.position(axis);
+    const double zero = carrier_.arrangement.origin[a];
+    parallel_for(nb, [=](std::size_t k) { out[k] = static_cast<float>(bubble[k] - zero); });
+    parallel_for(all - nb, [=](std::size_t k) { out[nb + k] = static_cast<float>(image[k] - zero); });
+  }
+}
+
+CrossSearch BubbleCoupling::bubble_search() const {
+  const CrossSearch::Points sets[] = {{&population_.table(), population_.size()}, images_as_points(images_)};
+  return {carrier_.arrangement.grid,
+          carrier_.arrangement.origin,
+          {bubble_point_[0].data(), bubble_point_[1].data(), bubble_point_[2].data()},
+          sets};
+}
+
+CrossTargets BubbleCoupling::particle_targets() const {
+  return {carrier_.particles.size(),          read(carrier_.intermediate_position),
+          carrier_.arrangement.origin,        carrier_.resolution.smoothing_length,
+          carrier_.sizes.length_ratio.data(), carrier_.sizes.support_radius.data()};
+}
+
+void BubbleCoupling::share_volume() {
+  if (population_.empty()) return;
+  place_bubbles();
+  const std::size_t n = carrier_.particles.size(), nb = population_.size(), all = nb + images_.size();
+  constexpr std::size_t width = 4;
+  bubble_records_.resize(all * 8);
+  float* records = bubble_records_.data();
+  parallel_for(all, [&](std::size_t k) {
+    const std::size_t b = k < nb ? k : static_cast<std::size_t>(images_.source()[k - nb]);
+    for (std::size_t a = 0; a < 3; ++a) records[k * width + a] = bubble_point_[a][k];
+    records[k * width + 3] = static_cast<float>((*population_.volume)[b]);
+  });
+
+  near_.resize(n);
+  with_kernel(carrier_.arrangement.context, [&]<int d, class Kernel>() {
+    if constexpr (d == 3) {
+      const double h = carrier_.resolution.smoothing_length;
+      const auto peak = static_cast<float>(Kernel::normalisation(3) / (h * h * h));
+      const auto store = [&](std::size_t i, const float* sums) {
+        near_[i] = sums != nullptr ? 1 : 0;
+        double sum = 0;
+        if (sums != nullptr) {
+          const float inverse = 1 / carrier_.sizes.length_ratio[i];
+          sum = double{peak * inverse * inverse * inverse} * sums[0];
+        }
+        const double alpha = sum <= 0.5 ? 1 - sum : 1 / (4 * sum);
+        carrier_.sizes.volume_fraction[i] = static_cast<float>(alpha);
+        carrier_.sizes.volume_ratio[i] = static_cast<float>(1 / std::max(alpha, least_kernel_fraction));
+      };
+      sum_over_points<1, Kernel>(particle_targets(), bubble_search(), carrier_.arrangement.grid.support_radius(),
+                                 records, store);
+    }
+  });
+  carrier_.arrangement.context.length_ratio = carrier_.sizes.length_ratio.data();
+  carrier_.arrangement.context.volume_ratio = carrier_.sizes.volume_ratio.data();
+}
+
+std::vector<ArrayInfo> BubbleCoupling::arrays() const {
+  std::vector<ArrayInfo> list;
+  const auto bytes = [](const auto&... arrays) {
+    return (0.0 + ... + static_cast<double>(arrays.capacity() * sizeof(arrays[0])));
+  };
+  list.push_back({"bubbles", population_.fields.bytes()});
+  list.push_back({"bubble images", images_.bytes()});
+  list.push_back(
+      {"bubble records", bytes(bubble_point_[0], bubble_point_[1], bubble_point_[2], inverse_support_radius_,
+                               liquid_records_, bubble_records_, interpolated_, dissipation_, next_merge_time_,
+                               reaction_[0], reaction_[1], reaction_[2], dead_, near_, near_particles_)});
+  return list;
+}
+
+}  // namespace spume::bubbles
