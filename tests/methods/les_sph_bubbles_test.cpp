@@ -4,7 +4,7 @@
 #include <omp.h>
 
 #include "methods/les_sph_simulation.hpp"
-#include "spume/methods/les_sph/bubble_coupling.hpp"
+#include "spume/physics/bubbles/coupling.hpp"
 
 namespace spume::test {
 namespace {
@@ -114,14 +114,14 @@ bubble_radius = 0.01
 end = 1
 )toml";
 
-const les_sph::BubbleCoupling& bubbles_of(const Simulation& run) {
-  return *run.method.bubble_coupling();
+const bubbles::BubbleCoupling& bubbles_of(const Simulation& run) {
+  return *run.method.flow().bubbles;
 }
 
-double liquid_sum(const Simulation& run, const les_sph::FloatVectorField& field, int axis) {
+double liquid_sum(const Simulation& run, const FloatVectorField& field, int axis) {
   double sum = 0;
-  for (std::size_t i = 0; i < run.method.liquid().size(); ++i) sum += (*field[axis])[i];
-  return sum * run.method.liquid().volume;
+  for (std::size_t i = 0; i < run.method.flow().size(); ++i) sum += (*field[axis])[i];
+  return sum * run.method.flow().particles.volume;
 }
 
 // Identifier, position, velocity, volume of every bubble.
@@ -166,7 +166,7 @@ TEST_P(Closures, WhatParticlesReceiveIsWhatBubblesGive) {
       ASSERT_GT(size, 0);
       // Float weights: a few roundings each.
       for (int axis = 0; axis < 3; ++axis)
-        EXPECT_NEAR(liquid_sum(run, run.method.liquid().exchange, axis), given[axis], 2e-6 * size);
+        EXPECT_NEAR(liquid_sum(run, run.method.flow().bubbles->exchange, axis), given[axis], 2e-6 * size);
     }
   }
 }
@@ -191,12 +191,12 @@ INSTANTIATE_TEST_SUITE_P(Both, Closures, ::testing::Values("mixture-pressure", "
 TEST(Bubbles, TakeTheirVolumeFromTheLiquid) {
   Simulation run(periodic_cube);
   run.steps(1, 0.005);
-  const les_sph::Liquid& liquid = run.method.liquid();
+  const les_sph::Flow& flow = run.method.flow();
   double gas = 0;
-  for (std::size_t i = 0; i < liquid.size(); ++i) {
-    const double alpha = (*liquid.volume_fraction)[i];
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    const double alpha = (*flow.bubbles->volume_fraction)[i];
     EXPECT_LE(alpha, 1);
-    gas += liquid.volume / alpha * (1 - alpha);
+    gas += flow.particles.volume / alpha * (1 - alpha);
   }
   // Kernel sums over a slightly disordered arrangement are one to a per cent.
   const double volume = bubbles_of(run).population().total_volume();
@@ -210,7 +210,7 @@ TEST(Bubbles, AndLiquidSeeEachOtherThroughTheKernel) {
   run.steps(4, 0.01);
   const State before = run.state();
   run.steps(1, 0.01);
-  const les_sph::Liquid& liquid = run.method.liquid();
+  const les_sph::Flow& flow = run.method.flow();
   const auto& population = bubbles_of(run).population();
   const double period = 1.2;
   const auto offset = [&](double from, double to) {
@@ -220,26 +220,26 @@ TEST(Bubbles, AndLiquidSeeEachOtherThroughTheKernel) {
   const auto weight = [&](std::size_t i, std::size_t b) {
     double r2 = 0;
     for (std::size_t a = 0; a < 3; ++a)
-      r2 += std::pow(offset((*liquid.intermediate[a])[i], (*population.next_position[a])[b]), 2);
-    const double h = liquid.smoothing_length * liquid.length_ratio[i];
+      r2 += std::pow(offset((*flow.intermediate_position[a])[i], (*population.next_position[a])[b]), 2);
+    const double h = flow.resolution.smoothing_length * flow.sizes.length_ratio[i];
     return WendlandC2::normalisation(3) / (h * h * h) * WendlandC2::w(std::sqrt(r2) / h);
   };
   bool some = false;
-  for (std::size_t i = 0; i < liquid.size(); ++i) {
+  for (std::size_t i = 0; i < flow.size(); ++i) {
     double sum = 0;
     for (std::size_t b = 0; b < population.size(); ++b) sum += weight(i, b) * (*population.volume)[b];
-    EXPECT_NEAR((*liquid.volume_fraction)[i], 1 - sum, 1e-6);
+    EXPECT_NEAR((*flow.bubbles->volume_fraction)[i], 1 - sum, 1e-6);
     some = some || sum > 0.01;
   }
   EXPECT_TRUE(some);
   for (std::size_t b = 0; b < population.size(); ++b) {
     double weights = 0;
     Vec3 seen{};
-    for (std::size_t i = 0; i < liquid.size(); ++i) {
-      const double w = weight(i, b) * liquid.volume_ratio[i];
+    for (std::size_t i = 0; i < flow.size(); ++i) {
+      const double w = weight(i, b) * flow.sizes.volume_ratio[i];
       weights += w;
       for (std::size_t a = 0; a < 3; ++a)
-        seen[a] += w * before.velocity[static_cast<std::size_t>((*liquid.identifier)[i])][a];
+        seen[a] += w * before.velocity[static_cast<std::size_t>((*flow.particles.identifier)[i])][a];
     }
     double slip2 = 0;
     for (std::size_t a = 0; a < 3; ++a) slip2 += std::pow(seen[a] / weights - (*population.velocity[a])[b], 2);
@@ -351,7 +351,7 @@ TEST(Bubbles, CostNothingInASceneWithoutThem) {
   text.erase(text.find("[bubbles]"), text.find("[time]") - text.find("[bubbles]"));
   Simulation run(text);
   run.steps(2, 0.005);
-  EXPECT_EQ(run.method.bubble_coupling(), nullptr);
+  EXPECT_EQ(run.method.flow().bubbles, nullptr);
   for (const ArrayInfo& array : run.method.arrays()) {
     EXPECT_EQ(array.name.find("bubble"), std::string::npos) << array.name;
     EXPECT_EQ(array.name.find("volume_fraction"), std::string::npos);

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "methods/les_sph_simulation.hpp"
-#include "spume/methods/les_sph/number_density.hpp"
+#include "spume/particles/number_density.hpp"
 
 namespace spume::test {
 namespace {
@@ -54,26 +54,38 @@ TEST(NumberDensity, DriftsApartWithoutRelaxation) {
   EXPECT_GT(unevenness_of_halves({"pressure.density_relaxation=1e6"}), 0.05);
 }
 
+// The flow after the stages that come before the relaxation in the next step.
+les_sph::Flow& before_relaxation(Simulation& run, double dt) {
+  StagedFlow::run_stages(run.method.plan(), "density relaxation", dt);
+  return const_cast<les_sph::Flow&>(run.method.flow());
+}
+
+std::vector<double> change_by_relaxation(const les_sph::Flow& flow, double steps, double dt) {
+  std::vector<double> change(flow.size(), 0.0);
+  even_out_density({.steps = steps, .displacement = flow.displacement, .dt = dt}, flow.arrangement, flow.scene.domain,
+                   flow.intermediate_position, flow.resolution, flow.moments, flow.surface.get(), change);
+  return change;
+}
+
 TEST(NumberDensity, IsEvenedOutAtTheStatedRateBeyondDisorder) {
   Simulation run(cavity, {"pressure.density_relaxation=20"});
   const double dt = 0.01;
   run.steps(50, dt);
-  const les_sph::Liquid& liquid = run.method.liquid();
-  std::vector<double> change(liquid.size(), 0.0);
-  les_sph::even_out_density(liquid, dt, change);
-  std::vector<double> excess(liquid.size());
+  const les_sph::Flow& flow = before_relaxation(run, dt);
+  const std::vector<double> change = change_by_relaxation(flow, 20, dt);
+  std::vector<double> excess(flow.size());
   double disorder = 0;
   int let_be = 0, evened_out = 0;
-  for (std::size_t i = 0; i < liquid.size(); ++i) {
-    const double ratio = (*liquid.kernel_sum)[i] / liquid.lattice.kernel_sum;
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    const double ratio = flow.moments.kernel_sum[i] / flow.resolution.lattice.kernel_sum;
     excess[i] = std::clamp(ratio - 1, -0.5, 0.1);
-    disorder += std::clamp(excess[i], -0.02, 0.02) / static_cast<double>(liquid.size());
+    disorder += std::clamp(excess[i], -0.02, 0.02) / static_cast<double>(flow.size());
   }
   EXPECT_LT(std::abs(disorder), 0.002);
-  for (std::size_t i = 0; i < liquid.size(); ++i) {
+  for (std::size_t i = 0; i < flow.size(); ++i) {
     const double beyond = std::copysign(std::max(std::abs(excess[i]) - 0.02, 0.0), excess[i]);
     const double urgency = std::max(1.0, -excess[i] / 0.05);
-    EXPECT_NEAR(change[i], -liquid.displacement / (20 * dt) * urgency * beyond, 1e-12);
+    EXPECT_NEAR(change[i], -flow.displacement / (20 * dt) * urgency * beyond, 1e-12);
     ++(beyond == 0 ? let_be : evened_out);
   }
   EXPECT_GT(let_be, 0);
@@ -98,23 +110,20 @@ TEST(NumberDensity, KeepsTheVolumeOfALiquidWithASurface) {
 }
 
 // All particles of a liquid made 5 % denser.
-std::vector<double> change_when_denser(const les_sph::Liquid& liquid) {
-  for (std::size_t i = 0; i < liquid.size(); ++i)
-    (*liquid.kernel_sum)[i] = static_cast<float>(1.05 * liquid.lattice.kernel_sum);
-  std::vector<double> change(liquid.size(), 0.0);
-  les_sph::even_out_density(liquid, 0.004, change);
-  return change;
+std::vector<double> change_when_denser(les_sph::Flow& flow) {
+  for (float& sum : flow.moments.kernel_sum) sum = static_cast<float>(1.05 * flow.resolution.lattice.kernel_sum);
+  return change_by_relaxation(flow, flow.options.pressure.density_relaxation, 0.004);
 }
 
 TEST(NumberDensity, IsLeftAloneInTheUppermostLayer) {
   Simulation run(dam_break);
   run.steps(5, 0.004);
-  const les_sph::Liquid& liquid = run.method.liquid();
-  const std::vector<double> change = change_when_denser(liquid);
+  les_sph::Flow& flow = before_relaxation(run, 0.004);
+  const std::vector<double> change = change_when_denser(flow);
   int uppermost = 0;
-  for (std::size_t i = 0; i < liquid.size(); ++i) {
-    uppermost += liquid.interior_weight[i] < 1;
-    EXPECT_EQ(change[i] == 0, liquid.interior_weight[i] < 1);
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    uppermost += flow.surface->interior_weight[i] < 1;
+    EXPECT_EQ(change[i] == 0, flow.surface->interior_weight[i] < 1);
   }
   EXPECT_GT(uppermost, 0);
 }
@@ -123,14 +132,14 @@ TEST(NumberDensity, IsLeftAloneInTheUppermostLayer) {
 TEST(NumberDensity, IsEvenedOutInFoam) {
   Simulation run(dam_break);
   run.steps(40, 0.004);
-  const les_sph::Liquid& liquid = run.method.liquid();
+  les_sph::Flow& flow = before_relaxation(run, 0.004);
   for (int axis = 0; axis < 2; ++axis)
-    for (std::size_t i = 0; i < liquid.size(); ++i) (*liquid.normal[axis])[i] = 0;
-  const std::vector<double> change = change_when_denser(liquid);
+    for (std::size_t i = 0; i < flow.size(); ++i) (*flow.moments.normal[axis])[i] = 0;
+  const std::vector<double> change = change_when_denser(flow);
   int thin = 0;
-  for (std::size_t i = 0; i < liquid.size(); ++i) {
-    thin += liquid.interior_weight[i] < 1 && liquid.at_surface[i] == 0;
-    EXPECT_EQ(change[i] == 0, liquid.at_surface[i] != 0);
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    thin += flow.surface->interior_weight[i] < 1 && flow.surface->at_surface[i] == 0;
+    EXPECT_EQ(change[i] == 0, flow.surface->at_surface[i] != 0);
   }
   EXPECT_GT(thin, 0);
 }
@@ -138,16 +147,16 @@ TEST(NumberDensity, IsEvenedOutInFoam) {
 TEST(NumberDensity, IsLeftAloneBesideABox) {
   Simulation run(closed_box + "[[solid]]\nlower = [0.35, 0.35]\nupper = [0.65, 0.65]\n");
   run.steps(5, 0.004);
-  const les_sph::Liquid& liquid = run.method.liquid();
-  const std::vector<double> change = change_when_denser(liquid);
+  les_sph::Flow& flow = before_relaxation(run, 0.004);
+  const std::vector<double> change = change_when_denser(flow);
   int beside_box = 0, elsewhere = 0;
-  for (std::size_t i = 0; i < liquid.size(); ++i) {
+  for (std::size_t i = 0; i < flow.size(); ++i) {
     double outside2 = 0;
     for (int axis = 0; axis < 2; ++axis) {
-      const double outside = std::max(std::abs((*liquid.intermediate[axis])[i] - 0.5) - 0.15, 0.0);
+      const double outside = std::max(std::abs((*flow.intermediate_position[axis])[i] - 0.5) - 0.15, 0.0);
       outside2 += outside * outside;
     }
-    const bool beside = outside2 < liquid.grid.support_radius() * liquid.grid.support_radius();
+    const bool beside = outside2 < flow.arrangement.grid.support_radius() * flow.arrangement.grid.support_radius();
     ++(beside ? beside_box : elsewhere);
     EXPECT_EQ(change[i] == 0, beside);
   }
@@ -162,7 +171,7 @@ TEST(NumberDensity, IsEvenedOutInProportionToTheDistanceMovedWhateverTheCourantL
   for (const char* courant : {"time.courant=0.1", "time.courant=0.4"}) {
     Simulation run(cavity, {courant});
     run.steps(20, 0.004);
-    displacements.push_back(run.method.liquid().displacement);
+    displacements.push_back(run.method.flow().displacement);
   }
   EXPECT_EQ(displacements[0], displacements[1]);
   EXPECT_GT(displacements[0], 0.05);  // a tenth of the lid's speed over 0.2 h = 0.013 is 0.03
@@ -172,7 +181,7 @@ TEST(NumberDensity, IsEvenedOutInProportionToTheDistanceMovedWhateverTheCourantL
 TEST(NumberDensity, OfALiquidInUniformMotionIsNotTouched) {
   Simulation run(taylor_green, {"liquid.0.velocity=[\"0.5\", \"0.25\"]"});
   run.steps(3, 0.005);
-  EXPECT_EQ(run.method.liquid().displacement, 0);
+  EXPECT_EQ(run.method.flow().displacement, 0);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "methods/les_sph_simulation.hpp"
-#include "spume/methods/les_sph/free_surface.hpp"
 
 namespace spume::test {
 namespace {
@@ -159,19 +158,20 @@ ShiftBounds shifts_of_a_dam_break(const std::vector<std::string>& overrides = {}
   ShiftBounds bounds;
   for (int k = 0; k < 20; ++k) {
     run.steps(1, 0.004);
-    auto& liquid = const_cast<les_sph::Liquid&>(run.method.liquid());
-    les_sph::find_surface(liquid);  // the pressure solve has used the smoothed normals' place
-    const double h = liquid.smoothing_length;
-    for (std::size_t i = 0; i < liquid.size(); ++i) {
+    auto& flow = const_cast<les_sph::Flow&>(run.method.flow());
+    // The shift has released the smoothed normals.
+    flow.surface->find(flow.arrangement, flow.particles, flow.moments, flow.boundary.reflection());
+    const double h = flow.resolution.smoothing_length;
+    for (std::size_t i = 0; i < flow.size(); ++i) {
       double length2 = 0, normal2 = 1e-30, along = 0;
       for (int axis = 0; axis < 2; ++axis) {
-        const double s = (*liquid.shift[axis])[i], n = (*liquid.smoothed_normal[axis])[i];
+        const double s = (*flow.shift->displacement[axis])[i], n = flow.surface->smoothed_normal[axis][i];
         length2 += s * s;
         normal2 += n * n;
         along += s * n;
       }
       bounds.longest = std::max(bounds.longest, std::sqrt(length2) / h);
-      if (liquid.at_surface[i] == 0) continue;
+      if (flow.surface->at_surface[i] == 0) continue;
       bounds.along_normal = std::max(bounds.along_normal, std::abs(along) / std::sqrt(normal2) / h);
       bounds.at_surface = std::max(bounds.at_surface, std::sqrt(length2) / h);
     }

@@ -9,13 +9,10 @@
 #include "reference/sph_sums.hpp"
 #include "reference/surface_layers.hpp"
 #include "spume/core/random.hpp"
-#include "spume/methods/les_sph/free_surface.hpp"
-#include "spume/methods/les_sph/pressure_system.hpp"
 
 namespace spume::test {
 namespace {
 
-using les_sph::Liquid;
 using reference::SphSums;
 
 reference::Boundaries boundaries_of(const Domain& domain) {
@@ -27,103 +24,107 @@ reference::Boundaries boundaries_of(const Domain& domain) {
 }
 
 // A liquid with jittered particles and a velocity that is not divergence-free, up to the solve of its pressure.
-struct PreparedStep {
-  LoadedCase loaded;
-  Liquid liquid;
-  les_sph::PressureSystem system;
-  Ledger ledger;
+struct PreparedStep : StagedFlow {
   static constexpr double dt = 0.005;
 
-  PreparedStep(const std::string& text, const Overrides& overrides)
-      : loaded(load_text(text, overrides)), liquid(loaded), system(liquid) {
+  PreparedStep(const std::string& text, const Overrides& overrides) : StagedFlow(text, overrides) {
     const double amplitude = 0.2 * loaded.scene.spacing;
-    for (std::size_t i = 0; i < liquid.size(); ++i) {
+    for (std::size_t i = 0; i < flow.size(); ++i) {
       const auto r = random_uniform(5, RandomPurpose::test, i, 0, 0);
       Vec3 x{};
-      for (int axis = 0; axis < liquid.dimensions; ++axis) {
-        x[axis] = (*liquid.position[axis])[i] += amplitude * (2 * r[axis] - 1);
+      for (int axis = 0; axis < flow.dimensions; ++axis) {
+        x[axis] = (*flow.particles.position[axis])[i] += amplitude * (2 * r[axis] - 1);
       }
-      for (int axis = 0; axis < liquid.dimensions; ++axis)
-        (*liquid.velocity[axis])[i] = std::sin(3 * x[axis] + 2 * x[0]) + 0.1 * r[axis];
-      (*liquid.pressure)[i] = std::cos(2 * x[0]) + x[1];
+      for (int axis = 0; axis < flow.dimensions; ++axis)
+        (*flow.particles.velocity[axis])[i] = std::sin(3 * x[axis] + 2 * x[0]) + 0.1 * r[axis];
+      (*flow.pressure)[i] = std::cos(2 * x[0]) + x[1];
     }
-    les_sph::move_to_intermediate(liquid, dt);
-    les_sph::sort_particles(liquid);
-    if (liquid.plan.images) les_sph::make_images(liquid, dt);
-    les_sph::find_neighbours(liquid);
-    les_sph::measure_kernel_moments(liquid);
-    if (liquid.plan.free_surface) les_sph::find_surface(liquid);
-    if (liquid.plan.velocity_gradient) les_sph::differentiate_velocity(liquid);
-    les_sph::predict_velocity(liquid, dt);
+    run_before("divergence", dt);
+    flow.displacement = 0;  // the twin has no density relaxation
   }
 
-  bool pressure_fixed(std::size_t i) const { return outside(i) == 1 && liquid.uncorrected[i] != 0; }
+  bool pressure_fixed(std::size_t i) const { return outside(i) == 1 && flow.moments.uncorrected[i] != 0; }
 
   // 1 - b: by how much a particle lies at the surface.
-  double outside(std::size_t i) const { return liquid.plan.free_surface ? 1 - double{liquid.interior_weight[i]} : 0.0; }
+  double outside(std::size_t i) const {
+    return flow.features.free_surface ? 1 - double{flow.surface->interior_weight[i]} : 0.0;
+  }
 
   // What multiplies a row: the trace of the second moment, filled up at a surface.
   double row_scale(std::size_t i) const {
-    const double bulk = liquid.lattice.divergence_of_position;
-    const double trace = std::max<double>((*liquid.divergence_of_position)[i], 0.5 * bulk);
-    return (trace + outside(i) * std::max(0.0, bulk - trace)) / liquid.dimensions;
+    const double bulk = flow.resolution.lattice.divergence_of_position;
+    const double trace = std::max<double>((*flow.moments.divergence_of_position)[i], 0.5 * bulk);
+    return (trace + outside(i) * std::max(0.0, bulk - trace)) / flow.dimensions;
   }
   // Normals of the edge particles, from the twin's sums.
   std::vector<reference::Vector> edge_normals(const SphSums& twin) const {
-    std::vector<reference::Vector> normals(liquid.size());
-    for (std::size_t i = 0; i < liquid.size(); ++i) {
-      if (outside(i) == 0 || liquid.uncorrected[i] != 0) continue;
+    std::vector<reference::Vector> normals(flow.size());
+    for (std::size_t i = 0; i < flow.size(); ++i) {
+      if (outside(i) == 0 || flow.moments.uncorrected[i] != 0) continue;
       const auto normal = twin.normal(i);
       const double size = std::hypot(normal[0].value, normal[1].value, normal[2].value);
-      for (int a = 0; a < liquid.dimensions && size > 0; ++a) normals[i][a] = normal[a].value / size;
+      for (int a = 0; a < flow.dimensions && size > 0; ++a) normals[i][a] = normal[a].value / size;
     }
     return normals;
   }
+  ImageRules image_rules() const { return flow.boundary.image_rules(flow.arrangement.grid.support_radius()); }
   double helmholtz() const {
     const double c = loaded.scene.fluid.sound_speed;
     return c > 0 ? 1 / (c * c * dt * dt) : 0;
   }
   // E and p0 of the mirrored liquid, from the twin's sums.
   std::array<double, 2> surface_row(const SphSums& twin, const reference::SurfaceLayers& layers, std::size_t i) const {
-    if (outside(i) == 0 || liquid.uncorrected[i] != 0) return {};
+    if (outside(i) == 0 || flow.moments.uncorrected[i] != 0) return {};
     const auto normal = twin.normal(i);  // -h m
     double size2 = 0, along = 0;
-    for (int a = 0; a < liquid.dimensions; ++a) {
+    for (int a = 0; a < flow.dimensions; ++a) {
       size2 += normal[a].value * normal[a].value;
-      along += normal[a].value * liquid.uniform_acceleration[a];
+      along += normal[a].value * flow.uniform_acceleration[a];
     }
     const double spacing = loaded.scene.spacing;
     const double depth = layers.depth(i);
-    const double missing = liquid.lattice.laplacian_diagonal / (spacing * spacing) - twin.laplacian_diagonal(i).value;
-    const double mirrored = 2 * std::sqrt(size2) / liquid.smoothing_length / depth;
+    const double missing =
+        flow.resolution.lattice.laplacian_diagonal / (spacing * spacing) - twin.laplacian_diagonal(i).value;
+    const double mirrored = 2 * std::sqrt(size2) / flow.resolution.smoothing_length / depth;
     return {outside(i) * std::max({mirrored, missing, 0.0}), size2 > 0 ? -depth * along / std::sqrt(size2) : 0.0};
   }
 
+  // The stages from the divergence to the solve.
+  void solve() {
+    bool reached = false;
+    for (const Stage& stage : plan.stages()) {
+      if (stage.name == "projection") return;
+      reached = reached || stage.name == "divergence";
+      StageRun run{.dt = dt};
+      if (reached && stage.on && stage.part != StagePart::start) stage.work(run);
+    }
+  }
+
   std::vector<double> direct_pressure() const {
-    const std::size_t n = liquid.size();
-    const int d = liquid.dimensions;
+    const std::size_t n = flow.size();
+    const int d = flow.dimensions;
     std::vector<reference::Point> points(n);
     for (std::size_t i = 0; i < n; ++i)
-      for (int axis = 0; axis < d; ++axis) points[i][axis] = (*liquid.intermediate[axis])[i];
-    const SphSums twin({loaded.options.resolution.kernel, d}, liquid.smoothing_length, liquid.volume, points,
-                       les_sph::image_rules(liquid, liquid.next_walls), boundaries_of(loaded.scene.domain));
+      for (int axis = 0; axis < d; ++axis) points[i][axis] = (*flow.intermediate_position[axis])[i];
+    const SphSums twin({loaded.options.resolution.kernel, d}, flow.resolution.smoothing_length, flow.particles.volume,
+                       points, image_rules(), boundaries_of(loaded.scene.domain));
     // Rates of volume: walls without friction, which mirror velocities as they mirror the pressure.
     Domain slippery = loaded.scene.domain;
     for (auto& sides : slippery.sides)
       for (Side& side : sides)
         if (side.kind == BoundaryKind::no_slip) side.kind = BoundaryKind::free_slip;
-    const SphSums mirror({loaded.options.resolution.kernel, d}, liquid.smoothing_length, liquid.volume, points,
-                         les_sph::image_rules(liquid, liquid.next_walls), boundaries_of(slippery));
-    const reference::SurfaceLayers layers(twin, {loaded.options.resolution.kernel, d}, liquid.smoothing_length,
+    const SphSums mirror({loaded.options.resolution.kernel, d}, flow.resolution.smoothing_length, flow.particles.volume,
+                         points, image_rules(), boundaries_of(slippery));
+    const reference::SurfaceLayers layers(twin, {loaded.options.resolution.kernel, d}, flow.resolution.smoothing_length,
                                           loaded.scene.spacing, edge_normals(twin));
-    const auto potential = [&](std::size_t i) { return liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]; };
+    const auto potential = [&](std::size_t i) { return flow.potential == nullptr ? 0.0 : (*flow.potential)[i]; };
     std::array<std::vector<double>, 3> start, u;
     for (int axis = 0; axis < d; ++axis) {
-      start[axis].assign(liquid.velocity[axis]->begin(), liquid.velocity[axis]->end());
-      u[axis].assign(liquid.predicted[axis]->begin(), liquid.predicted[axis]->end());
+      start[axis].assign(flow.particles.velocity[axis]->begin(), flow.particles.velocity[axis]->end());
+      u[axis].assign(flow.intermediate_velocity[axis].begin(), flow.intermediate_velocity[axis].end());
     }
 
-    const bool singular = liquid.plan.closed && helmholtz() == 0;
+    const bool singular = flow.features.closed && helmholtz() == 0;
     Eigen::VectorXd b(static_cast<Eigen::Index>(n));
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t i = 0; i < n; ++i) {
@@ -135,7 +136,7 @@ struct PreparedStep {
       }
       const auto [surface_coupling, hydrostatic] = surface_row(twin, layers, i);
       const double diagonal_shift = helmholtz() * row_scale(i) + surface_coupling;
-      double diagonal = liquid.volume * diagonal_shift;
+      double diagonal = flow.particles.volume * diagonal_shift;
       twin.pressure_couplings(i, [&](std::size_t j, double a) {
         entries.emplace_back(row, static_cast<Eigen::Index>(j), a);
         diagonal -= a;
@@ -144,15 +145,15 @@ struct PreparedStep {
       reference::Matrix correction{};
       int slot = 0;
       for (int r = 0; r < d; ++r)
-        for (int c = r; c < d; ++c, ++slot) correction[r][c] = correction[c][r] = (*liquid.correction[slot])[i];
+        for (int c = r; c < d; ++c, ++slot) correction[r][c] = correction[c][r] = (*flow.moments.correction[slot])[i];
       double divergence = mirror.divergence(i, u, correction).value;
       if (loaded.options.time.centred) {  // half a step ahead, along the velocities of the step's start
         const auto gradient = mirror.velocity_gradient(i, start, correction);
         for (int r = 0; r < d; ++r)
           for (int c = 0; c < d; ++c) divergence -= 0.5 * dt * gradient[r][c].value * gradient[c][r].value;
       }
-      b[row] = liquid.volume * ((-divergence / dt + helmholtz() * (*liquid.pressure)[i]) * row_scale(i) +
-                                diagonal_shift * potential(i) + surface_coupling * hydrostatic);
+      b[row] = flow.particles.volume * ((-divergence / dt + helmholtz() * (*flow.pressure)[i]) * row_scale(i) +
+                                        diagonal_shift * potential(i) + surface_coupling * hydrostatic);
     }
     if (singular) b.array() -= b.mean();
     Eigen::SparseMatrix<double> matrix(b.size(), b.size());
@@ -190,14 +191,13 @@ TEST_P(DirectPressure, AgreesWithTheIterativeOne) {
   overrides.push_back("pressure.tolerance=1e-7");
   PreparedStep step(GetParam().text, overrides);
   auto direct = step.direct_pressure();
-  step.system.solve_step(step.liquid, PreparedStep::dt, step.ledger);
-  EXPECT_TRUE(step.system.report().converged);
-  const std::size_t n = step.liquid.size();
+  step.solve();
+  EXPECT_TRUE(step.flow.solver.report().converged);
+  const std::size_t n = step.flow.size();
   std::vector<double> solved(n);
   for (std::size_t i = 0; i < n; ++i)
-    solved[i] =
-        (*step.liquid.reduced_pressure)[i] - (step.liquid.potential == nullptr ? 0.0 : (*step.liquid.potential)[i]);
-  if (step.liquid.plan.closed)
+    solved[i] = (*step.flow.reduced_pressure)[i] - (step.flow.potential == nullptr ? 0.0 : (*step.flow.potential)[i]);
+  if (step.flow.features.closed)
     for (auto* p : {&direct, &solved}) {
       double mean = 0;
       for (const double value : *p) mean += value / static_cast<double>(n);

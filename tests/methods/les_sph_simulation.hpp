@@ -14,6 +14,7 @@
 #include "scene/helpers.hpp"
 #include "spume/core/error.hpp"
 #include "spume/methods/les_sph/les_sph.hpp"
+#include "spume/methods/les_sph/step.hpp"
 
 namespace spume::test {
 
@@ -69,19 +70,17 @@ struct Simulation {
     for (int k = 0; k < count; ++k) method.step(dt, ledger);
   }
   State state() const {
-    const les_sph::Liquid& liquid = method.liquid();
+    const les_sph::Flow& flow = method.flow();
     State s;
-    s.dimensions = liquid.dimensions;
-    s.position.resize(liquid.size());
-    s.velocity.resize(liquid.size());
-    s.pressure.resize(liquid.size());
-    for (std::size_t i = 0; i < liquid.size(); ++i) {
-      const auto k = static_cast<std::size_t>((*liquid.identifier)[i]);
-      for (int axis = 0; axis < liquid.dimensions; ++axis) {
-        s.position[k][axis] = (*liquid.position[axis])[i];
-        s.velocity[k][axis] = (*liquid.velocity[axis])[i];
-      }
-      s.pressure[k] = (*liquid.pressure)[i];
+    s.dimensions = flow.dimensions;
+    s.position.resize(flow.size());
+    s.velocity.resize(flow.size());
+    s.pressure.resize(flow.size());
+    for (std::size_t i = 0; i < flow.size(); ++i) {
+      const auto k = static_cast<std::size_t>((*flow.particles.identifier)[i]);
+      s.position[k] = vector_at(flow.particles.position, flow.dimensions, i);
+      s.velocity[k] = vector_at(flow.particles.velocity, flow.dimensions, i);
+      s.pressure[k] = (*flow.pressure)[i];
     }
     return s;
   }
@@ -92,6 +91,29 @@ struct Simulation {
     std::map<std::string, double> result;
     for (std::size_t k = 0; k < columns.size(); ++k) result[columns[k].name] = values[k];
     return result;
+  }
+};
+
+// A flow whose stages a test runs one after the other.
+struct StagedFlow {
+  LoadedCase loaded;
+  les_sph::Flow flow;
+  Plan plan;
+
+  explicit StagedFlow(const std::string& text, const Overrides& overrides = {})
+      : loaded(load_text(text, overrides)), flow(loaded), plan(les_sph::make_plan(flow)) {}
+  StagedFlow(const StagedFlow&) = delete;
+  StagedFlow& operator=(const StagedFlow&) = delete;
+
+  // Runs the stages of a step that come before `last`.
+  void run_before(const std::string& last, double dt) { run_stages(plan.stages(), last, dt); }
+  static void run_stages(const std::vector<Stage>& stages, const std::string& last, double dt) {
+    for (const Stage& stage : stages) {
+      if (stage.name == last) return;
+      StageRun run{.dt = dt};
+      if (stage.on && stage.part != StagePart::start) stage.work(run);
+    }
+    throw std::logic_error("no stage '" + last + "'");
   }
 };
 

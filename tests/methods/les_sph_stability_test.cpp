@@ -57,12 +57,12 @@ TEST(LesSphStability, EnergyFromNothingIsRefused) {
   Simulation run(taylor_green);
   run.steps(1, 0.005);
   const double kinetic = run.series()["kinetic_energy"];
-  les_sph::Liquid& liquid = const_cast<les_sph::Liquid&>(run.method.liquid());
+  les_sph::Flow& flow = const_cast<les_sph::Flow&>(run.method.flow());
   for (int axis = 0; axis < 2; ++axis)
-    for (double& u : *liquid.velocity[axis]) u *= 1.3;
+    for (double& u : *flow.particles.velocity[axis]) u *= 1.3;
   EXPECT_NO_THROW(run.steps(1, 0.001));  // 1.69 times the energy: below twice the supply
   for (int axis = 0; axis < 2; ++axis)
-    for (double& u : *liquid.velocity[axis]) u *= 1.3;
+    for (double& u : *flow.particles.velocity[axis]) u *= 1.3;
   try {
     run.steps(1, 0.001);
     FAIL() << "energy grew from " << kinetic << " to " << run.series()["kinetic_energy"];
@@ -119,7 +119,7 @@ TEST(LesSphStability, DynamicClosuresStartInAFlowThatHardlyShears) {
     Simulation run(taylor_green, {std::string("turbulence.model=\"") + model + "\"", "fluid.reynolds=1e6",
                                   "liquid.0.velocity=[\"1+1e-5*sin(2*pi*y)\", \"0\"]"});
     EXPECT_NO_THROW(advance(run, 3)) << model;
-    EXPECT_LT(run.method.liquid().max_eddy_viscosity, 1e-4) << model;  // C_s = 0.5: 0.25 Delta^2 |S| is below 1e-6
+    EXPECT_LT(run.method.flow().max_eddy_viscosity, 1e-4) << model;  // C_s = 0.5: 0.25 Delta^2 |S| is below 1e-6
   }
 }
 
@@ -196,7 +196,7 @@ end = 1
 TEST(LesSphStability, AForceThatSetsInLimitsTheStep) {
   Simulation run(taylor_green, {"liquid.0.velocity=[\"0\", \"0\"]",
                                 "forces.body=[\"10*t*sin(2*pi*x)*cos(2*pi*y)\", \"-10*t*cos(2*pi*x)*sin(2*pi*y)\"]"});
-  const double h = run.method.liquid().smoothing_length, courant = run.loaded.options.time.courant;
+  const double h = run.method.flow().resolution.smoothing_length, courant = run.loaded.options.time.courant;
   double last = run.method.step_limit().dt;
   for (int k = 0; k < 30; ++k) {
     run.steps(1, last);
@@ -271,10 +271,10 @@ model = ")toml" + model +
 end = 1
 )toml");
         run.steps(1, 1e-5);
-        std::vector<double> by_identifier(run.method.liquid().size());
+        std::vector<double> by_identifier(run.method.flow().size());
         for (std::size_t i = 0; i < by_identifier.size(); ++i)
-          by_identifier[static_cast<std::size_t>((*run.method.liquid().identifier)[i])] =
-              (*run.method.liquid().eddy_viscosity)[i];
+          by_identifier[static_cast<std::size_t>((*run.method.flow().particles.identifier)[i])] =
+              run.method.flow().eddy_viscosity_of(i);
         return by_identifier;
       };
   for (const std::string model : {"dynamic-shepard", "dynamic-lagrangian"}) {

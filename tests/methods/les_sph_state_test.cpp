@@ -125,8 +125,8 @@ INSTANTIATE_TEST_SUITE_P(Cases, SavedState, ::testing::Values(taylor_green, tayl
 // Arrays that lend their place to others would tell here when somebody reads them afterwards.
 TEST(LesSphScratch, NothingIsReadOfIt) {
   const auto spoil = [](Simulation& run) {
-    auto& liquid = const_cast<les_sph::Liquid&>(run.method.liquid());
-    for (const auto& field : liquid.fields.fields())
+    auto& flow = const_cast<les_sph::Flow&>(run.method.flow());
+    for (const auto& field : flow.particles.fields.fields())
       if (field->lifetime == Lifetime::result)
         std::visit(
             []<class T>(Array<T>& values) {

@@ -9,12 +9,9 @@
 
 #include "methods/les_sph_simulation.hpp"
 #include "spume/core/random.hpp"
-#include "spume/methods/les_sph/free_surface.hpp"
 
 namespace spume::test {
 namespace {
-
-using les_sph::Liquid;
 
 const std::string drop = R"(method = "les-sph"
 [domain]
@@ -75,56 +72,54 @@ end = 3
 // are exact for that whatever the arrangement; what is left is the rounding of floats, amplified by corrections of up
 // to 6 and by neighbours' differences over a spacing.
 TEST(LesSphSurface, GradientOfALinearPressureIsExactOnADisorderedSurface) {
-  const LoadedCase loaded = load_text(drop);
-  Liquid liquid(loaded);
-  for (std::size_t i = 0; i < liquid.size(); ++i) {
+  StagedFlow staged(drop);
+  les_sph::Flow& flow = staged.flow;
+  for (std::size_t i = 0; i < flow.size(); ++i) {
     const auto r = random_uniform(3, RandomPurpose::test, i, 0, 0);
-    for (int axis = 0; axis < 2; ++axis) (*liquid.position[axis])[i] += 0.3 * loaded.scene.spacing * (2 * r[axis] - 1);
+    for (int axis = 0; axis < 2; ++axis)
+      (*flow.particles.position[axis])[i] += 0.3 * flow.resolution.spacing * (2 * r[axis] - 1);
   }
-  les_sph::move_to_intermediate(liquid, 0);
-  les_sph::sort_particles(liquid);
-  les_sph::find_neighbours(liquid);
-  les_sph::measure_kernel_moments(liquid);
-  les_sph::find_surface(liquid);
-  les_sph::predict_velocity(liquid, 0);
-  ASSERT_GT(liquid.near_surface.size(), 20u);
+  staged.run_before("shift", 0);
+  flow.find_potential(0);
+  ASSERT_GT(flow.surface->near_surface.size(), 20u);
 
   const double b[2] = {0.7, -1.3};
-  for (std::size_t i = 0; i < liquid.size(); ++i)
-    (*liquid.reduced_pressure)[i] = b[0] * (*liquid.intermediate[0])[i] + b[1] * (*liquid.intermediate[1])[i];
-  for (std::size_t k = 0; k < liquid.near_surface.size(); ++k) {
-    const auto i = static_cast<std::size_t>(liquid.near_surface[k]);
+  for (std::size_t i = 0; i < flow.size(); ++i)
+    (*flow.reduced_pressure)[i] =
+        b[0] * (*flow.intermediate_position[0])[i] + b[1] * (*flow.intermediate_position[1])[i];
+  for (std::size_t k = 0; k < flow.surface->near_surface.size(); ++k) {
+    const auto i = static_cast<std::size_t>(flow.surface->near_surface[k]);
     double size = 0, along = 0;
     for (int axis = 0; axis < 2; ++axis) {
-      const double n = (*liquid.normal[axis])[i];
+      const double n = (*flow.moments.normal[axis])[i];
       size += n * n;
       along += n * b[axis];
     }
     const double pressure =
-        les_sph::surface_row(liquid, k).hydrostatic_pressure - liquid.surface_depth[k] * along / std::sqrt(size);
-    (*liquid.potential)[i] = (*liquid.reduced_pressure)[i] - pressure;
+        flow.surface->row(flow.moments, flow.sizes, flow.uniform_acceleration, k).hydrostatic_pressure -
+        flow.surface->depth[k] * along / std::sqrt(size);
+    (*flow.potential)[i] = (*flow.reduced_pressure)[i] - pressure;
   }
-  gradient_sweep(liquid.context, liquid.records, liquid.reduced_pressure->data(), 0, liquid.read_correction(),
-                 liquid.write(liquid.acceleration));
-  les_sph::complete_surface_gradient(liquid);
-  for (const std::int32_t i : liquid.near_surface)
-    for (int axis = 0; axis < 2; ++axis) ASSERT_NEAR((*liquid.acceleration[axis])[i], b[axis], 1e-4);
+  FloatVectorScratch gradient;
+  for (int axis = 0; axis < 2; ++axis) gradient[axis].resize(flow.size());
+  gradient_sweep(flow.arrangement.context, flow.arrangement.packed, flow.reduced_pressure->data(), 0,
+                 flow.moments.read_correction(), write(gradient));
+  flow.surface->complete_gradient(flow.moments, flow.sizes, flow.uniform_acceleration, *flow.reduced_pressure,
+                                  flow.potential, gradient);
+  for (const std::int32_t i : flow.surface->near_surface)
+    for (int axis = 0; axis < 2; ++axis) ASSERT_NEAR(gradient[axis][static_cast<std::size_t>(i)], b[axis], 1e-4);
 }
 
 // On the undisturbed lattice the uppermost layer lies half a spacing below the surface and nothing else does.
 TEST(LesSphSurface, LatticeUnderAFlatSurfaceHasOneEdgeLayerHalfASpacingDeep) {
-  const LoadedCase loaded = load_text(wave, {"liquid.0.where=\"-y\""});
-  Liquid liquid(loaded);
-  les_sph::move_to_intermediate(liquid, 0);
-  les_sph::sort_particles(liquid);
-  les_sph::make_images(liquid, 0);
-  les_sph::find_neighbours(liquid);
-  les_sph::measure_kernel_moments(liquid);
-  les_sph::find_surface(liquid);
-  ASSERT_EQ(liquid.near_surface.size(), 32u);
+  StagedFlow staged(wave, {"liquid.0.where=\"-y\""});
+  const les_sph::Flow& flow = staged.flow;
+  const double dr = flow.resolution.spacing;
+  staged.run_before("shift", 0);
+  ASSERT_EQ(flow.surface->near_surface.size(), 32u);
   for (std::size_t k = 0; k < 32; ++k) {
-    EXPECT_NEAR(liquid.surface_depth[k], loaded.scene.spacing / 2, 1e-6);
-    EXPECT_NEAR((*liquid.intermediate[1])[static_cast<std::size_t>(liquid.near_surface[k])], -loaded.scene.spacing / 2,
+    EXPECT_NEAR(flow.surface->depth[k], dr / 2, 1e-6);
+    EXPECT_NEAR((*flow.intermediate_position[1])[static_cast<std::size_t>(flow.surface->near_surface[k])], -dr / 2,
                 1e-12);
   }
 }
@@ -135,23 +130,18 @@ TEST(LesSphSurface, LatticeUnderAFlatSurfaceHasOneEdgeLayerHalfASpacingDeep) {
 TEST(LesSphSurface, ShiftMovesNoWholeLayerAlongTheNormal) {
   double moved[2] = {0, 0};
   for (const bool kept : {false, true}) {
-    const LoadedCase loaded =
-        load_text(wave, {"liquid.0.where=\"-y\"", kept ? "shifting.remove_drift=true" : "shifting.remove_drift=false"});
-    Liquid liquid(loaded);
-    const double dr = loaded.scene.spacing;
-    for (double& y : *liquid.position[1])
+    StagedFlow staged(wave,
+                      {"liquid.0.where=\"-y\"", kept ? "shifting.remove_drift=true" : "shifting.remove_drift=false"});
+    les_sph::Flow& flow = staged.flow;
+    const double dr = flow.resolution.spacing;
+    for (double& y : *flow.particles.position[1])
       if (std::abs(y + 1.5 * dr) < 0.1 * dr) y += 0.1 * dr;
-    les_sph::move_to_intermediate(liquid, 0);
-    les_sph::sort_particles(liquid);
-    les_sph::make_images(liquid, 0);
-    les_sph::find_neighbours(liquid);
-    les_sph::measure_kernel_moments(liquid);
-    les_sph::find_surface(liquid);
-    liquid.displacement = 1;
-    les_sph::compute_shift(liquid);
-    for (std::size_t i = 0; i < liquid.size(); ++i)
-      if ((*liquid.intermediate[1])[i] > -2 * dr)
-        moved[kept ? 1 : 0] = std::max(moved[kept ? 1 : 0], std::abs(double{(*liquid.shift[1])[i]}) / dr);
+    staged.run_before("shift", 0);
+    flow.displacement = 1;
+    flow.compute_shift();
+    for (std::size_t i = 0; i < flow.size(); ++i)
+      if ((*flow.intermediate_position[1])[i] > -2 * dr)
+        moved[kept ? 1 : 0] = std::max(moved[kept ? 1 : 0], std::abs(double{(*flow.shift->displacement[1])[i]}) / dr);
   }
   EXPECT_LT(moved[1], 0.2 * moved[0]);
 }
@@ -159,35 +149,31 @@ TEST(LesSphSurface, ShiftMovesNoWholeLayerAlongTheNormal) {
 // Depths, in spacings, of the uppermost row in the middle of a slab of eight rows, far wider than any support; spacings
 // along the first and the other rows and between rows in units of dr.
 std::vector<double> middle_depths(const std::string& text, double first_row, double rows_across, double rows_down) {
-  const LoadedCase loaded = load_text(text);
-  Liquid liquid(loaded);
-  const double dr = loaded.scene.spacing;
+  StagedFlow staged(text);
+  les_sph::Flow& flow = staged.flow;
+  const double dr = flow.resolution.spacing;
   std::size_t used = 0;
   std::vector<std::size_t> middle;
   for (int row = 0; row < 8; ++row) {
     const double step = dr * (row == 0 ? first_row : rows_across);
     const int half = static_cast<int>(8 * dr / step);
     for (int k = -half; k <= half; ++k, ++used) {
-      if (used >= liquid.size()) throw std::logic_error("the case holds too few particles");
-      (*liquid.position[0])[used] = 1 + (k + 0.3 * row) * step;
-      (*liquid.position[1])[used] = 1 - rows_down * dr * row;
+      if (used >= flow.size()) throw std::logic_error("the case holds too few particles");
+      (*flow.particles.position[0])[used] = 1 + (k + 0.3 * row) * step;
+      (*flow.particles.position[1])[used] = 1 - rows_down * dr * row;
     }
   }
   // The others stay apart from the slab.
-  for (std::size_t i = used; i < liquid.size(); ++i) {
-    (*liquid.position[0])[i] = 0.1;
-    (*liquid.position[1])[i] = 0.1 + 1e-3 * static_cast<double>(i - used) * dr;
+  for (std::size_t i = used; i < flow.size(); ++i) {
+    (*flow.particles.position[0])[i] = 0.1;
+    (*flow.particles.position[1])[i] = 0.1 + 1e-3 * static_cast<double>(i - used) * dr;
   }
-  les_sph::move_to_intermediate(liquid, 0);
-  les_sph::sort_particles(liquid);
-  les_sph::find_neighbours(liquid);
-  les_sph::measure_kernel_moments(liquid);
-  les_sph::find_surface(liquid);
+  staged.run_before("shift", 0);
   std::vector<double> depths;
-  for (std::size_t k = 0; k < liquid.near_surface.size(); ++k) {
-    const auto i = static_cast<std::size_t>(liquid.near_surface[k]);
-    const double x = (*liquid.intermediate[0])[i], y = (*liquid.intermediate[1])[i];
-    if (std::abs(x - 1) < 2 * dr && std::abs(y - 1) < 0.1 * dr) depths.push_back(liquid.surface_depth[k] / dr);
+  for (std::size_t k = 0; k < flow.surface->near_surface.size(); ++k) {
+    const auto i = static_cast<std::size_t>(flow.surface->near_surface[k]);
+    const double x = (*flow.intermediate_position[0])[i], y = (*flow.intermediate_position[1])[i];
+    if (std::abs(x - 1) < 2 * dr && std::abs(y - 1) < 0.1 * dr) depths.push_back(flow.surface->depth[k] / dr);
   }
   return depths;
 }

@@ -2,10 +2,10 @@
 // The ledger: how often every stage ran, for how long, and on how many particles, pairs and bytes. Always on
 // (two clock reads a stage). The driver prints it as a table and writes it as ledger.json.
 //
-// Bytes are the compulsory traffic of a stage: every array that it passes over, once per pass, read or written, as if
-// the caches held what a pass comes back to and nothing from one pass to the next. Neighbour lists and the records that
-// a sweep gathers from count so too. A rate near what memory gives tells a stage that waits for memory; one far below
-// tells of arithmetic, of gathers, or of arrays that stay in cache.
+// Bytes are the compulsory traffic of a stage: every array that it says it reads or writes, once, and what its sweeps
+// pack and gather, as if the caches held what a stage comes back to and nothing from one stage to the next. A rate near
+// what memory gives tells a stage that waits for memory; one far below tells of arithmetic, of gathers, or of arrays
+// that stay in cache.
 #pragma once
 
 #include <chrono>
