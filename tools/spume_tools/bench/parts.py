@@ -80,9 +80,9 @@ def parts():
 
 
 def figures(run):
-    """Nanoseconds of a step per particle or grid point, and bytes of arrays. A stage of the ledger that was called once
-    belongs to the start or to the end of the run and not to its steps."""
-    seconds = sum(stage["seconds"] for stage in run.ledger["stages"] if stage["calls"] > 1)
+    """Nanoseconds of a step per particle or grid point, and bytes of arrays. A stage of the ledger that was called no more
+    than twice belongs to the start and the end of the run, as checkpoints do, and not to its steps."""
+    seconds = sum(stage["seconds"] for stage in run.ledger["stages"] if stage["calls"] > 2)
     size = run.summary["particles"]
     return 1e9 * seconds / run.summary["steps"] / size, run.summary["peak_array_bytes"] / size
 

@@ -56,7 +56,8 @@ def panels_over_time(table, panels, decorate=None):
         axis.remove()
     for axis, (name, values) in zip(axes.flat, panels):
         axis.plot(table["t"], values, linewidth=0.9)
-        axis.set(xlabel=table.label("t"), ylabel=table.label(name))
+        label = table.label(name)  # units in words are long
+        axis.set(xlabel=table.label("t"), ylabel=label if len(label) < 34 else name.replace("_", " "))
         positive = values[np.isfinite(values) & (values > 0)]
         if len(positive) and np.nanmin(values) >= 0 and positive.max() > 300 * np.median(positive):
             axis.set_yscale("log")
