@@ -2,7 +2,7 @@
 """The tri-periodic Beltrami flow of Antuono (2020): u(x, t) = u(x, 0) exp(-3 nu k^2 t), K = exp(-6 nu k^2 t)/2."""
 import numpy as np
 
-from spume_results import relative_rms, standard
+from spume_tools.results import relative_rms, standard
 
 WAVENUMBER = 2 * np.pi
 AMPLITUDE = 4 * np.sqrt(2) / (3 * np.sqrt(3))

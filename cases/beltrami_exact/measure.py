@@ -2,7 +2,7 @@
 """u = U + exp(-nu k^2 t) ABC(x - U t): exact decay, and the order of every integrator from the stream that carries it."""
 import numpy as np
 
-from spume_results import standard
+from spume_tools.results import standard
 
 WAVENUMBER = 2 * np.pi
 

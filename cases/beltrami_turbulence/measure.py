@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from spume_results import read_reference, standard
+from spume_tools.results import read_reference, standard
 
 FOLDER = Path(__file__).parent / "reference"
 REFERENCE = read_reference(FOLDER / "beltrami_ramp_forcing.csv", ("t", "K"))

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from spume_results import read_reference, standard
+from spume_tools.results import read_reference, standard
 
 PHASE_SPEED = 1 / np.sqrt(2 * np.pi)
 FOLDER = Path(__file__).parent / "reference"

@@ -8,8 +8,7 @@ which makes the density flat at any spacing.
 """
 import numpy as np
 
-from spume_bubbles import density, hinze_radius, radii, slope
-from spume_results import MissingResult, standard
+from spume_tools.results import MissingResult, bubble_radii, density, hinze_radius, slope, standard
 
 SETTLED = 0.2  # after the impact
 
@@ -30,7 +29,7 @@ def ratio(run):
 
 
 def slopes(run):
-    values = radii(run, impact_time(run) + SETTLED)
+    values = bubble_radii(run, impact_time(run) + SETTLED)
     return {"super_hinze_slope": slope(values, 2, 0.75 * run.spacing / hinze_radius(run)),
             "sub_hinze_slope": slope(values, 0.1, 1), "upper_sub_hinze_slope": slope(values, 0.3, 1)}
 
@@ -99,7 +98,7 @@ def curves(runs):
     ratios = [(label(r), r.series["t"][late(r)] - impact_time(r), ratio(r), "-") for r in runs.values()]
     sizes = []
     for r in runs.values():
-        values = radii(r, impact_time(r) + SETTLED)
+        values = bubble_radii(r, impact_time(r) + SETTLED)
         if len(values) > 100:
             centre, value, _ = density(values)
             sizes.append((label(r), centre, value, "o-"))

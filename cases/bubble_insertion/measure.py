@@ -2,7 +2,7 @@
 """Norm of the shift after a bubble has appeared: its peak against the bubble's radius, and how fast it decays."""
 import numpy as np
 
-from spume_results import standard
+from spume_tools.results import standard
 
 
 def peak(run):

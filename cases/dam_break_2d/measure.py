@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from spume_results import read_reference, standard
+from spume_tools.results import read_reference, standard
 
 FOLDER = Path(__file__).parent / "reference"
 REFERENCE = read_reference(FOLDER / "dambreak2d_martin_moyce_1952.csv", ("a_inch", "T", "Z"))

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from spume_results import read_reference, standard
+from spume_tools.results import read_reference, standard
 
 FOLDER = Path(__file__).parent / "reference"
 REFERENCE = read_reference(FOLDER / "spheric2_kleefsman.csv", ("t", "H1", "H2", "H3", "H4", "P1", "P3"))

@@ -2,7 +2,7 @@
 """Overlap of light bubbles in turbulence with and without excluded volume."""
 import numpy as np
 
-from spume_results import read_csv
+from spume_tools.results import read_csv
 
 
 def last(run, name):

@@ -2,7 +2,7 @@
 """Statistics of stirred turbulence: the energy balance and moments in the statistically steady state."""
 import numpy as np
 
-from spume_results import standard
+from spume_tools.results import standard
 
 
 def steady(run):

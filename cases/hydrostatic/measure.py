@@ -2,7 +2,7 @@
 """p = rho g (H - y), u = 0, with rho = g = H = 1."""
 import numpy as np
 
-from spume_results import standard
+from spume_tools.results import standard
 
 
 def errors(run):

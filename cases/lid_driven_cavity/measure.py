@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from spume_results import read_reference
+from spume_tools.results import read_reference
 
 PROFILES = {"profile": ("u", "v")}
 FOLDER = Path(__file__).parent / "reference"

@@ -2,7 +2,7 @@
 """Mean vertical velocity of the liquid against distance from the axis, beside the Gaussian of a free plume."""
 import numpy as np
 
-from spume_results import MissingResult, standard
+from spume_tools.results import MissingResult, standard
 
 HEIGHTS = {"z0453": 0.453, "z0555": 0.555}
 FROM = 8.0    # means are of the last half of a run, and never from before this: the plume has reached the surface

@@ -2,8 +2,7 @@
 """How slip and place depend on the size of a bubble, with and without the fluctuations that are not resolved."""
 import numpy as np
 
-from spume_bubbles import hinze_radius
-from spume_results import standard
+from spume_tools.results import hinze_radius, standard
 
 FROM = 8.0
 BAND = 0.02  # half height of the slices

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from spume_results import MissingResult, read_reference, standard
+from spume_tools.results import MissingResult, read_reference, standard
 
 K = 2 * np.pi
 PERIOD = 2 * np.pi / np.sqrt(K)

@@ -6,8 +6,7 @@ the liquid of this program ends half a spacing above them.
 """
 import numpy as np
 
-from spume_bubbles import surface_tension, traces
-from spume_results import standard
+from spume_tools.results import bubble_traces, standard, surface_tension
 
 SURFACE = 0.4
 HALF = 0.5    # of the run: from then on all have arrived
@@ -50,7 +49,7 @@ def braking_time(trace):
 
 def measure(runs):
     run = standard(runs)
-    bubbles = sorted(traces(run).values(), key=lambda trace: trace["radius"][0])
+    bubbles = sorted(bubble_traces(run).values(), key=lambda trace: trace["radius"][0])
     end = run.series["t"][-1]
     late = [trace["t"] >= HALF * end for trace in bubbles]
     rest = [place_of_rest(trace, run.spacing, end) for trace in bubbles]
@@ -71,7 +70,7 @@ def measure(runs):
 def curves(runs):
     run = standard(runs)
     places, speeds = [], []
-    for trace in traces(run).values():
+    for trace in bubble_traces(run).values():
         # Time counts from when the bubble is two spacings below the surface.
         start = trace["t"][np.argmax(SURFACE - trace["z"] < 2 * run.spacing)]
         label = f"We_b = {weber(run, trace):.2g}"

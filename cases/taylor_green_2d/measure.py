@@ -3,7 +3,7 @@
 K = exp(-16 pi^2 t/Re)/4."""
 import numpy as np
 
-from spume_results import observed_order, relative_rms, standard
+from spume_tools.results import observed_order, relative_rms, standard
 
 
 def reynolds(run):

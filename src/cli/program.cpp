@@ -61,7 +61,7 @@ struct CommandLine {
     options_app = app.add_subcommand("options", "every option of a case: unit, default, range");
 
     for (CLI::App* verb : {run_app, check_app}) {
-      verb->add_option("case", run.input, "case file, or the folder that holds its case.toml")->required();
+      verb->add_option("case", run.input, "case file, folder that holds its case.toml, or name of a case")->required();
       verb->add_option("--set", run.overrides, "section.key=value: replaces a value of the case; may be repeated")
           ->take_all()
           ->expected(1)
@@ -100,13 +100,13 @@ struct CommandLine {
     if (resume_app->parsed()) return resume_verb(run, program);
     if (info_app->parsed()) return info_verb(file, program);
     if (options_app->parsed()) return options_verb(section, program);
-    if (plot_app->parsed()) return script_verb("plot.py", {folder});
+    if (plot_app->parsed()) return module_verb("plots", {folder});
     std::vector<std::string> arguments = {own_executable()};
     arguments.insert(arguments.end(), cases.begin(), cases.end());
     if (quick) arguments.push_back("--quick");
     if (threads) arguments.insert(arguments.end(), {"--threads", std::to_string(*threads)});
     if (!keep.empty()) arguments.insert(arguments.end(), {"--keep", keep});
-    return script_verb("verify.py", arguments);
+    return module_verb("verify", arguments);
   }
 };
 

@@ -34,7 +34,7 @@ std::string time_estimate(const LoadedCase& loaded, Method& method) {
 }  // namespace
 
 int check_verb(const RunArguments& arguments, const Program& program) {
-  LoadedCase loaded = program.load_case(arguments.input, arguments.overrides);
+  LoadedCase loaded = program.load_case(case_argument(arguments.input), arguments.overrides);
   const auto method = program.make_method(loaded);
   method->start();
   loaded.scene.particles = {};

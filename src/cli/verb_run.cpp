@@ -68,7 +68,7 @@ int run_verb(const RunArguments& arguments, const Program& program) {
   require_positive(arguments.until);
   std::vector<std::string> overrides = arguments.overrides;
   if (arguments.until) overrides.push_back(until_override(*arguments.until));
-  LoadedCase loaded = program.load_case(arguments.input, overrides);
+  LoadedCase loaded = program.load_case(case_argument(arguments.input), overrides);
   std::optional<std::filesystem::path> folder;
   if (arguments.folder) folder = *arguments.folder;
   const auto simulation = Simulation::start(std::move(loaded), program.make_method, folder);

@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 
 #include "spume/cli/program.hpp"
 #include "spume/core/error.hpp"
@@ -10,17 +11,31 @@
 #include "verbs.hpp"
 
 namespace spume {
+namespace {
+
+// The folder that holds the package goes before what the user has on the path.
+void put_on_python_path(const std::string& folder) {
+  const char* before = std::getenv("PYTHONPATH");
+  const bool any = before != nullptr && *before != '\0';
+  setenv("PYTHONPATH", (any ? folder + ':' + before : folder).c_str(), 1);
+}
+
+}  // namespace
 
 std::string own_executable() {
   return std::filesystem::read_symlink("/proc/self/exe").string();
 }
 
-int script_verb(const std::string& script, const std::vector<std::string>& arguments) {
-  const auto path = home_folder() / "tools" / script;
-  if (!std::filesystem::exists(path))
-    throw InputError("'" + path.string() + "' is not there; set SPUME_HOME to the folder of Spume's sources");
+int module_verb(const std::string& module, const std::vector<std::string>& arguments) {
+  const auto tools = home_folder() / "tools";
+  if (!std::filesystem::exists(tools / "spume_tools" / module))
+    throw InputError(
+        "'" + (tools / "spume_tools" / module).string() +
+        "' is not there; set SPUME_HOME to the folder of Spume's sources or to share/spume of an installation");
+  put_on_python_path(std::filesystem::absolute(tools).string());
   const char* python = "/usr/bin/python3";
-  std::vector<std::string> words = {python, path.string()};
+  // -P: a file of the working folder must not stand in for a module of the same name.
+  std::vector<std::string> words = {python, "-P", "-m", "spume_tools." + module};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (auto& word : words) pointers.push_back(word.data());

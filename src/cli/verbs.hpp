@@ -24,8 +24,12 @@ int check_verb(const RunArguments& arguments, const Program& program);
 int info_verb(const std::string& file, const Program& program);
 int options_verb(const std::string& section, const Program& program);
 
-// Replaces this process by /usr/bin/python3 with a script of tools/ and the arguments.
-int script_verb(const std::string& script, const std::vector<std::string>& arguments);
+// Replaces this process by /usr/bin/python3 with a module of tools/spume_tools and the arguments.
+int module_verb(const std::string& module, const std::vector<std::string>& arguments);
 std::string own_executable();
+
+// The case file that an argument means; a name is looked for in ./cases and then in the cases that came with the
+// program.
+std::string case_argument(const std::string& argument);
 
 }  // namespace spume

@@ -200,6 +200,11 @@ std::string summary_json(const LoadedCase& loaded, const RunFigures& figures) {
                         {"value", number(one.value)},
                         {"bound", one.bound},
                         {"verdict", one.pass() ? "pass" : "FAIL"}});
+  // Scales that follow from the case, for those who read the results.
+  nlohmann::ordered_json derived = nlohmann::ordered_json::object();
+  const BubbleOptions& gas = loaded.options.bubbles;
+  if (gas.on && gas.tension > 0) derived["surface_tension_over_density"] = gas.tension;
+  if (gas.on && gas.hinze_radius > 0) derived["hinze_radius"] = gas.hinze_radius;
   const nlohmann::ordered_json summary = {
       {"title", loaded.options.title},
       {"case", figures.case_file},
@@ -212,6 +217,7 @@ std::string summary_json(const LoadedCase& loaded, const RunFigures& figures) {
       {"retries", figures.retries},
       {"particles", figures.particles},
       {"spacing", loaded.scene.spacing},
+      {"derived", derived},
       {"final", values},
       {"verdicts", verdicts},
       {"program_version", program_version()},

@@ -14,6 +14,7 @@
 #include "resolved.hpp"
 #include "spume/core/machine.hpp"
 #include "spume/scene/expression.hpp"
+#include "spume/scene/find_case.hpp"
 #include "spume/scene/memory.hpp"
 #include "unused_options.hpp"
 
@@ -23,26 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t largest_file = 16u << 20;
-
-std::string find_case_file(const std::string& path) {
-  std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
-    const fs::path inside = fs::path(path) / "case.toml";
-    std::error_code refused;
-    if (fs::exists(inside, refused)) return inside.string();
-    if (refused) throw InputError("cannot read '" + inside.string() + "': " + refused.message());
-    throw InputError("the folder '" + path + "' holds no case.toml");
-  }
-  if (fs::exists(path, ignored)) return path;
-  const fs::path named = fs::path("cases") / path / "case.toml";
-  if (!path.empty() && fs::exists(named, ignored)) return named.string();
-  std::vector<std::string> names;
-  for (fs::directory_iterator entry("cases", ignored), end; !ignored && entry != end; entry.increment(ignored)) {
-    names.push_back(entry->path().filename().string());
-  }
-  throw InputError("there is no case '" + path + "': neither a file, nor a folder, nor cases/" + path + "/case.toml" +
-                   did_you_mean(path, names));
-}
 
 std::string read_text(const std::string& file) {
   std::error_code error;

@@ -279,19 +279,21 @@ TEST_F(Verbs, BoundThreadsKeepEveryCoreThroughTheRestart) {
 }
 
 TEST_F(Verbs, ScriptsGetTheirArgumentsAndTheirExitCodeIsPassedOn) {
-  std::filesystem::create_directory(folder_ / "tools");
+  const auto package = folder_ / "tools" / "spume_tools";
+  for (const char* name : {"verify", "plots"}) std::filesystem::create_directories(package / name);
   test::write_contents(
-      folder_ / "tools" / "verify.py",
+      package / "verify" / "__main__.py",
       "import sys\nprint(sys.argv[1:])\n"
       "import os\nprint(sorted(k for k in os.environ if 'SPUME_S' in k or 'GOMP' in k))\nsys.exit(1)\n");
-  test::write_contents(folder_ / "tools" / "plot.py", "import sys\nprint('plot', sys.argv[1:])\n");
+  test::write_contents(package / "plots" / "__main__.py", "import sys\nprint('plot', sys.argv[1:])\n");
+  test::write_contents(folder_ / "runpy.py", "raise SystemExit('a file of the working folder was imported')\n");
   setenv("SPUME_HOME", folder_.path().c_str(), 1);
   const Outcome verify = spume({"verify", "couette", "--quick"});
   EXPECT_EQ(verify.code, 1) << verify.err;
   EXPECT_THAT(verify.out, HasSubstr("test_cli', 'couette', '--quick']"));
   EXPECT_THAT(verify.out, HasSubstr("\n[]\n")) << "settings for this process are not handed on";
   EXPECT_THAT(spume({"plot", "results"}).out, HasSubstr("plot ['results']"));
-  test::write_contents(folder_ / "tools" / "plot.py", "import os\nprint(len(os.sched_getaffinity(0)), 'cores')\n");
+  test::write_contents(package / "plots" / "__main__.py", "import os\nprint(len(os.sched_getaffinity(0)), 'cores')\n");
   cpu_set_t processors;
   sched_getaffinity(0, sizeof processors, &processors);
   setenv("OMP_PROC_BIND", "true", 1);
@@ -300,6 +302,23 @@ TEST_F(Verbs, ScriptsGetTheirArgumentsAndTheirExitCodeIsPassedOn) {
   unsetenv("OMP_PROC_BIND");
   setenv("SPUME_HOME", "/nowhere", 1);
   EXPECT_EQ(spume({"verify"}).code, 2);
+  unsetenv("SPUME_HOME");
+}
+
+TEST_F(Verbs, CasesThatCameWithTheProgramAreFoundByName) {
+  const auto home = folder_ / "home";
+  for (const char* name : {"wave", "tank"}) {
+    std::filesystem::create_directories(home / "cases" / name);
+    test::write_contents(home / "cases" / name / "case.toml", "end = 0.1\n");
+  }
+  setenv("SPUME_HOME", home.c_str(), 1);
+  EXPECT_EQ(spume({"run", "wave", "-o", "results"}).code, 0);
+  std::filesystem::create_directories(folder_ / "cases" / "tank");
+  test::write_contents(folder_ / "cases" / "tank" / "case.toml", "title = \"Own tank\"\nend = 0.1\n");
+  EXPECT_THAT(spume({"check", "tank"}).out, HasSubstr("Own tank")) << "those of the working folder go first";
+  const Outcome misspelt = spume({"check", "wale"});
+  EXPECT_EQ(misspelt.code, 2);
+  EXPECT_THAT(misspelt.err, HasSubstr("did you mean 'wave'?"));
   unsetenv("SPUME_HOME");
 }
 

@@ -4,8 +4,9 @@ import unittest
 
 import paths
 import numpy as np
-from spume_bubbles import density, slope
-from spume_verification import CASES, load_measure
+from spume_tools.results import density, slope
+from spume_tools.places import CASES
+from spume_tools.verify.cases import load_measure
 
 
 def power_law(exponent, low, high, n, seed=1):

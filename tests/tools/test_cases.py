@@ -8,8 +8,9 @@ from pathlib import Path
 
 import paths
 import numpy as np
-from spume_results import MissingResult, Results, read_csv
-from spume_verification import CASES, case_folder, load_measure
+from spume_tools.results import MissingResult, Results, read_csv
+from spume_tools.places import CASES
+from spume_tools.verify.cases import case_folder, load_measure
 from synthetic import lattice, new_folder, series_of, write_snapshots, write_table
 
 

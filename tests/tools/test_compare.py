@@ -11,8 +11,7 @@ from pathlib import Path
 import paths
 import numpy as np
 
-sys.path.insert(0, str(paths.ROOT / "tools"))
-from spume_compare import judge, sign_interval, undecided
+from spume_tools.bench.ratios import judge, sign_interval, undecided
 
 
 def noisy_pairs(rng, slow, rounds=12):
@@ -88,7 +87,7 @@ class Command(unittest.TestCase):
                 path.write_text(textwrap.dedent(PROGRAM).format(python=sys.executable, time=time))
                 path.chmod(path.stat().st_mode | stat.S_IXUSR)
                 programs.append(path)
-            return subprocess.run([sys.executable, paths.ROOT / "tools" / "bench-compare", "--programs", *programs, "--rounds",
+            return subprocess.run([paths.ROOT / "tools" / "bench-compare", "--programs", *programs, "--rounds",
                                    "6", "--filter", "."], capture_output=True, text=True)
 
     def test_a_slower_program_is_exit_code_1_and_named(self):
@@ -104,7 +103,7 @@ class Command(unittest.TestCase):
     def test_bad_requests_are_exit_code_2(self):
         tool = paths.ROOT / "tools" / "bench-compare"
         for arguments in (["no-such-commit"], [], ["HEAD", "--rounds", "7"]):
-            self.assertEqual(subprocess.run([sys.executable, tool, *arguments], capture_output=True).returncode, 2)
+            self.assertEqual(subprocess.run([tool, *arguments], capture_output=True).returncode, 2)
 
 
 if __name__ == "__main__":

@@ -7,9 +7,10 @@ import unittest
 
 import paths
 import numpy as np
-from spume_particle_figures import plot_particles
-from spume_results import Results
-from spume_verification import CASES, RunFailed, load_measure, settings_of
+from spume_tools.plots.point_particles import plot_particles
+from spume_tools.results import Results
+from spume_tools.places import CASES
+from spume_tools.verify.cases import RunFailed, load_measure, settings_of
 from synthetic import new_folder, series_of, write_table
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import paths  # noqa: F401  (import path)
 import numpy as np
-from spume_results import DamagedResult, MissingResult, Results, observed_order, read_csv, relative_rms
+from spume_tools.results import DamagedResult, MissingResult, Results, observed_order, read_csv, relative_rms
 from synthetic import lattice, new_folder, series_of, write_case, write_snapshots, write_table
 
 

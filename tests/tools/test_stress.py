@@ -15,12 +15,12 @@ import paths
 import numpy as np
 from synthetic import lattice, series_of, write_snapshots, write_table
 
-sys.path.insert(0, str(paths.ROOT / "tools"))
-import bench_parts
-import spume_stress_long
-from spume_stress_checks import judge
-from spume_stress_faults import BASE, damage, mutated_case
-from spume_stress_scenes import PARTICLE_SCENES, SCENES, Scene, toml_text
+from spume_tools.bench import parts
+from spume_tools.case_file import toml_text
+from spume_tools.stress import long
+from spume_tools.stress.checks import judge
+from spume_tools.stress.faults import BASE, damage, mutated_case
+from spume_tools.stress.scenes import PARTICLE_SCENES, SCENES, Scene
 
 
 class Scenes(unittest.TestCase):
@@ -46,7 +46,7 @@ class Scenes(unittest.TestCase):
         self.assertNotIn("turbulence", scene.case)
 
     def test_cases_of_the_parts_and_faults_are_toml(self):
-        for pair in bench_parts.parts().values():
+        for pair in parts.parts().values():
             for case in pair:
                 tomllib.loads(toml_text(case))
         for text in BASE.values():
@@ -156,25 +156,25 @@ class LongRuns(unittest.TestCase):
                 "kinetic_energy": 1 + 0.01 * rng.standard_normal(rows)} | columns
 
     def test_scenes_are_cases(self):
-        for make, step in spume_stress_long.SCENES.values():
+        for make, step in long.SCENES.values():
             self.assertIn("method", tomllib.loads(toml_text(make(step))))
 
     def test_steady_series_pass_and_drifting_ones_do_not(self):
         steady = self.series()
-        self.assertEqual(spume_stress_long.check_series("sustained_flow", steady), [])
+        self.assertEqual(long.check_series("sustained_flow", steady), [])
         growing = steady["kinetic_energy"] + np.linspace(0, 0.05, 400)
-        self.assertRegex(spume_stress_long.check_series("sustained_flow", steady | {"kinetic_energy": growing})[0], "energy")
+        self.assertRegex(long.check_series("sustained_flow", steady | {"kinetic_energy": growing})[0], "energy")
         losing = 1 - 1e-9 * np.arange(400)
-        self.assertRegex(spume_stress_long.check_series("sustained_flow", steady | {"mass": losing})[0], "mass")
-        self.assertRegex(spume_stress_long.check_series("pool", steady)[0], "rest")
+        self.assertRegex(long.check_series("sustained_flow", steady | {"mass": losing})[0], "mass")
+        self.assertRegex(long.check_series("pool", steady)[0], "rest")
 
     def test_growing_memory_and_slowing_steps_are_seen(self):
         step = np.linspace(0, 1e5, 200)
         steady = np.column_stack([step, np.full(200, 5e7), 1e-3 * step])
-        self.assertEqual(spume_stress_long.check_usage(steady, 1e5)[0], [])
-        self.assertRegex(spume_stress_long.check_usage(steady + [0, 1, 0] * (1e5 * np.arange(200))[:, None], 1e5)[0][0], "memory")
+        self.assertEqual(long.check_usage(steady, 1e5)[0], [])
+        self.assertRegex(long.check_usage(steady + [0, 1, 0] * (1e5 * np.arange(200))[:, None], 1e5)[0][0], "memory")
         slower = np.column_stack([step, steady[:, 1], 1e-8 * step**2])
-        self.assertRegex(spume_stress_long.check_usage(slower, 1e5)[0][0], "speed")
+        self.assertRegex(long.check_usage(slower, 1e5)[0][0], "speed")
 
 
 # Says that every second run blew up in words, and crashes on one.
@@ -196,8 +196,7 @@ class Command(unittest.TestCase):
             program.write_text(textwrap.dedent(PROGRAM).format(python=sys.executable))
             program.chmod(program.stat().st_mode | stat.S_IXUSR)
             out = Path(scratch) / "out"
-            done = subprocess.run([sys.executable, paths.ROOT / "tools" / "stress.py", program, "les-sph", "--runs", "4", "--out",
-                                   out], capture_output=True, text=True)
+            done = subprocess.run(paths.module("stress", program, "les-sph", "--runs", 4, "--out", out), capture_output=True, text=True)
             self.assertEqual(done.returncode, 1, done.stderr)
             with (out / "stress.csv").open() as file:
                 self.assertEqual([row["outcome"] for row in csv.DictReader(file)], ["refused", "refused", "crashed", "refused"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""plot.py, verify.py, convergence.py and floors.py as commands, with a stand-in for the program."""
+"""Pictures, verification and convergence as commands, with a stand-in for the program."""
 import json
 import stat
 import subprocess
@@ -12,16 +12,15 @@ from unittest import mock
 
 import paths
 import numpy as np
-import plot
-from spume_results import Results
+from spume_tools.plots import probes
+from spume_tools.results import Results
 from synthetic import lattice, new_folder, series_of, write_case, write_snapshots, write_table
 
-TOOLS = paths.ROOT / "tools"
 PNG = b"\x89PNG\r\n\x1a\n"
 
 
-def call(tool, *arguments):
-    return subprocess.run([sys.executable, str(TOOLS / tool), *map(str, arguments)], capture_output=True, text=True)
+def call(module, *arguments):
+    return subprocess.run(paths.module(module, *arguments), capture_output=True, text=True)
 
 
 class Scratch(unittest.TestCase):
@@ -33,7 +32,7 @@ class Scratch(unittest.TestCase):
 
 class Plotting(Scratch):
     def pictures(self, folder):
-        done = call("plot.py", folder)
+        done = call("plots", folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         files = [Path(line) for line in done.stdout.splitlines()]
         for file in files:
@@ -65,8 +64,8 @@ class Plotting(Scratch):
         folder = new_folder(self.path, "run")
         t = np.linspace(0, 1, 5)
         write_table(folder / "probes.csv", {"t": t, "gate_area": t, "gate_pressure": t, "gate_velocity_x": t, "front": t})
-        with mock.patch.object(plot, "finish", side_effect=lambda figure, path: figure):
-            figure, = plot.plot_probes(Results(folder), folder)
+        with mock.patch.object(probes, "finish", side_effect=lambda figure, path: figure):
+            figure, = probes.plot_probes(Results(folder), folder)
         drawn = {axis.get_ylabel(): [line.get_label() for line in axis.get_lines()] for axis in figure.axes}
         self.assertEqual(drawn, {"area": ["gate"], "pressure": ["gate"], "velocity x": ["gate"],
                                  "elevation, wetted length, front": ["front"]})
@@ -115,7 +114,7 @@ class Plotting(Scratch):
         folder = self.wave_run()
         whole = (folder / "fluid.vtkhdf").read_bytes()
         (folder / "fluid.vtkhdf").write_bytes(whole[: len(whole) // 2])
-        done = call("plot.py", folder)
+        done = call("plots", folder)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertRegex(done.stderr, r"\Aerror: slices left out: .*fluid.vtkhdf: not a VTKHDF file.*\n\Z")
         self.assertEqual({Path(line).name for line in done.stdout.splitlines()}, {"energy.png", "numerics.png"})
@@ -124,7 +123,7 @@ class Plotting(Scratch):
         empty, case = new_folder(self.path, "empty"), new_folder(self.path, "case")
         write_case(case, "Some wave", [0, 0], [1, 1], 0.1)
         for folder in (empty, case, self.path / "nowhere"):
-            done = call("plot.py", folder)
+            done = call("plots", folder)
             self.assertEqual(done.returncode, 2)
             self.assertRegex(done.stderr, r"\Aerror: .*; give the folder that 'spume run' made\n\Z")
             self.assertFalse((folder / "plots").exists())
@@ -142,7 +141,7 @@ class Plotting(Scratch):
     def test_nothing_to_draw_is_an_error(self):
         folder = new_folder(self.path, "run")
         (folder / "log.txt").touch()
-        done = call("plot.py", folder)
+        done = call("plots", folder)
         self.assertEqual(done.returncode, 2)
         self.assertIn("nothing to draw", done.stderr)
         self.assertFalse((folder / "plots").exists())
@@ -159,7 +158,7 @@ class Plotting(Scratch):
             names, complaints = self.pictures(folder)
             self.assertEqual((names, complaints), ({"energy.png", "numerics.png", "speed.png", "mine.png"}, ""))
         (case / "measure.py").write_text("def curves(runs):\n    return runs['other']\n")
-        done = call("plot.py", folder)
+        done = call("plots", folder)
         self.assertEqual(done.returncode, 2)
         self.assertIn("error: reference left out: ", done.stderr)
         self.assertIn("mine/measure.py:2: curves failed (KeyError: 'other')", done.stderr)
@@ -202,7 +201,7 @@ class Verifying(Scratch):
         return path
 
     def test_passes_and_keeps_runs_plots_and_figures(self):
-        done = call("verify.py", self.program(), "taylor_green_2d", "--keep", self.path / "kept", "--threads", 2)
+        done = call("verify", self.program(), "taylor_green_2d", "--keep", self.path / "kept", "--threads", 2)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertIn("every bound holds", done.stdout)
         report = json.loads((self.path / "kept" / "verify.json").read_text())["taylor_green_2d"]
@@ -210,66 +209,40 @@ class Verifying(Scratch):
         self.assertAlmostEqual(values["decay_rate_error"], 0.001, places=9)
         self.assertAlmostEqual(values["observed_order"], 2, places=2)
         self.assertTrue((self.path / "kept" / "taylor_green_2d" / "plots" / "kinetic_energy_exact.png").is_file())
-        again = call("verify.py", self.program(), "taylor_green_2d", "--keep", self.path / "kept")
+        again = call("verify", self.program(), "taylor_green_2d", "--keep", self.path / "kept")
         self.assertEqual(again.returncode, 2)
         self.assertIn("nothing is overwritten", again.stderr)
 
     def test_bound_exceeded_is_exit_code_1(self):
-        done = call("verify.py", self.program(error=0.02), "taylor_green_2d")
+        done = call("verify", self.program(error=0.02), "taylor_green_2d")
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stdout, r"decay_rate_error +0\.02 +<= 0\.01 +FAIL")
 
     def test_quick_runs_the_short_form(self):
-        done = call("verify.py", self.program(), "taylor_green_2d", "--quick", "--keep", self.path / "kept")
+        done = call("verify", self.program(), "taylor_green_2d", "--quick", "--keep", self.path / "kept")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         runs = {p.name for p in (self.path / "kept" / "taylor_green_2d").iterdir()} - {"plots"}
         self.assertEqual(runs, {"coarse"})
 
     def test_failing_program_is_exit_code_1_with_its_words(self):
-        done = call("verify.py", self.program(fail=True), "taylor_green_2d")
+        done = call("verify", self.program(fail=True), "taylor_green_2d")
         self.assertEqual(done.returncode, 1)
         self.assertIn("exit code 3", done.stderr)
         self.assertIn("step 7: speed is not finite", done.stderr)
 
     def test_bad_requests_are_exit_code_2(self):
-        self.assertEqual(call("verify.py", self.program(), "no_such_case").returncode, 2)
-        self.assertEqual(call("verify.py", self.path / "missing", "beltrami").returncode, 2)
+        self.assertEqual(call("verify", self.program(), "no_such_case").returncode, 2)
+        self.assertEqual(call("verify", self.path / "missing", "beltrami").returncode, 2)
 
     def test_convergence_of_a_case_without_errors_is_a_bad_request(self):
-        done = call("convergence.py", self.program(), "clustering", 0.04)
+        done = call("verify.convergence", self.program(), "clustering", 0.04)
         self.assertEqual((done.returncode, "defines no errors(run)" in done.stderr), (2, True), done.stderr)
 
     def test_convergence_table_shows_the_order(self):
-        done = call("convergence.py", self.program(), "taylor_green_2d", 0.04, 0.02, 0.01, "--keep", self.path / "kept")
+        done = call("verify.convergence", self.program(), "taylor_green_2d", 0.04, 0.02, 0.01, "--keep", self.path / "kept")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout, r"observed order +2\.00 +2\.00")
         self.assertTrue((self.path / "kept" / "error_against_time.png").is_file())
-
-
-class Floors(Scratch):
-    def check(self, includes):
-        for path, text in includes.items():
-            file = self.path / path
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(text)
-        return call("floors.py", self.path)
-
-    def test_downward_include_is_allowed(self):
-        done = self.check({"src/run/a.cpp": '#include "spume/core/array.hpp"\n',
-                           "src/io/b.cpp": '#include "spume/scene/case.hpp"\n'})
-        self.assertEqual((done.returncode, done.stdout), (0, ""))
-
-    def test_upward_and_sideways_includes_are_named(self):
-        done = self.check({"include/spume/core/a.hpp": '#pragma once\n#include "spume/io/x.hpp"\n',
-                           "src/scene/b.cpp": '#include "spume/io/x.hpp"\n', "src/tricks/c.cpp": "\n"})
-        self.assertEqual(done.returncode, 1)
-        self.assertIn("include/spume/core/a.hpp:2: error: core (floor 1) includes io (floor 2)", done.stdout)
-        self.assertIn("src/scene/b.cpp:1: error: scene includes io of the same floor", done.stdout)
-        self.assertIn("'tricks' is on no floor", done.stdout)
-
-    def test_this_repository_keeps_to_its_floors(self):
-        done = call("floors.py", paths.ROOT)
-        self.assertEqual(done.returncode, 0, done.stdout)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""verify.py finds out before the first run what it could not check, and leaves nothing behind when it is stopped."""
+"""spume verify finds out before the first run what it could not check, and leaves nothing behind when it is stopped."""
 import os
 import shutil
 import signal
@@ -12,11 +12,11 @@ import unittest
 from pathlib import Path
 
 import paths
-from spume_results import DamagedResult, read_reference
-from spume_verification import CASES, load_measure
-from spume_verify_table import VerifyTable, fault_of_bound
+from spume_tools.results import DamagedResult, read_reference
+from spume_tools.places import CASES
+from spume_tools.verify.cases import load_measure
+from spume_tools.verify.table import VerifyTable, fault_of_bound
 
-VERIFY = paths.ROOT / "tools" / "verify.py"
 
 
 class Scratch(unittest.TestCase):
@@ -43,9 +43,9 @@ class Scratch(unittest.TestCase):
 
 class Requests(Scratch):
     def refused(self, *arguments):
-        """The complaint of verify.py, which must end with exit code 2 and without a run."""
+        """The complaint of verify, which must end with exit code 2 and without a run."""
         program = self.script(f"import pathlib, sys\npathlib.Path({str(self.path / 'ran')!r}).touch()\nsys.exit(3)\n")
-        done = subprocess.run([sys.executable, VERIFY, program, *arguments], capture_output=True, text=True)
+        done = subprocess.run(paths.module("verify", program, *arguments), capture_output=True, text=True)
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
         self.assertFalse((self.path / "ran").exists(), "a run was made")
         self.assertNotIn("Traceback", done.stderr)
@@ -146,10 +146,10 @@ while time.monotonic() < deadline: time.sleep(0.05)
 """
 
     def started(self, *arguments, deaf=False):
-        """verify.py with its run under way, and the run's process number."""
+        """The command with its run under way, and the run's process number."""
         program = self.script(self.PROGRAM.format(here=str(self.path), deaf=deaf))
         (self.path / "tmp").mkdir()
-        process = subprocess.Popen([sys.executable, VERIFY, program, "taylor_green_2d", *arguments], text=True,
+        process = subprocess.Popen(paths.module("verify", program, "taylor_green_2d", *arguments), text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    env=os.environ | {"TMPDIR": str(self.path / "tmp")},
                                    # The tests may themselves run under nohup.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""bench/work_precision and tools/roofline: the front, the verdicts on defaults, and the picture of made-up results."""
+"""tools/work-precision and tools/roofline: the front, the verdicts on defaults, and the picture of made-up results."""
 import json
 import subprocess
 import sys
@@ -9,9 +9,8 @@ from pathlib import Path
 
 import paths
 
-sys.path[:0] = [str(paths.ROOT / "bench" / "work_precision"), str(paths.ROOT / "tools")]
-import sweep
-from sweeps import SWEEPS, terminal_speed
+from spume_tools.work_precision import command
+from spume_tools.work_precision.sweeps import SWEEPS, terminal_speed
 
 
 def row(error, seconds, option="default", value=""):
@@ -21,21 +20,21 @@ def row(error, seconds, option="default", value=""):
 class Front(unittest.TestCase):
     def test_holds_what_nothing_beats_in_both(self):
         rows = [row(1, 1), row(0.5, 2), row(0.6, 3), row(0.1, 10), row(2, 1)]
-        self.assertEqual([(r["error"], r["seconds"]) for r in sweep.front(rows)], [(1, 1), (0.5, 2), (0.1, 10)])
+        self.assertEqual([(r["error"], r["seconds"]) for r in command.front(rows)], [(1, 1), (0.5, 2), (0.1, 10)])
 
     def test_excess_is_the_time_over_that_of_the_best_as_accurate(self):
         rows = [row(1, 4), row(0.9, 2, "a", "b"), row(2, 1)]
-        self.assertEqual(sweep.excess(rows[0], rows), 2)
-        self.assertEqual(sweep.excess(rows[1], rows), 1)
+        self.assertEqual(command.excess(rows[0], rows), 2)
+        self.assertEqual(command.excess(rows[1], rows), 1)
 
     def test_verdict_names_the_better_setting(self):
-        text = "\n".join(sweep.verdicts([row(1, 4), row(0.9, 2, "time.courant", "0.3"), row(0.5, 40)]))
+        text = "\n".join(command.verdicts([row(1, 4), row(0.9, 2, "time.courant", "0.3"), row(0.5, 40)]))
         self.assertIn("2.00 times the time of r with time.courant = 0.3", text)
         self.assertIn("on the front", text)
 
     def test_plans_start_with_the_defaults_and_change_one_thing(self):
         for name, one in SWEEPS.items():
-            runs = sweep.plan(one)
+            runs = command.plan(one)
             self.assertEqual(runs[0][1], "default", name)
             self.assertEqual(len({run[:3] for run in runs}), len(runs), name)
 
@@ -55,7 +54,7 @@ class Roofline(unittest.TestCase):
         with tempfile.TemporaryDirectory() as scratch:
             results = Path(scratch) / "results.json"
             results.write_text(json.dumps({"benchmarks": entries}))
-            done = subprocess.run([sys.executable, paths.ROOT / "tools" / "roofline.py", results, "--out", Path(scratch) / "r.png"],
+            done = subprocess.run(paths.module("bench.roofline", results, "--out", Path(scratch) / "r.png"),
                                   capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertRegex(done.stdout, r"pressure_apply, 1 thread .* 80 %")

@@ -39,7 +39,8 @@ void restart_with_openmp_environment(int argc, char** argv);
 // that place alone: all its threads on one core. To be called before any start.
 void release_to_all_places();
 
-// The folder that holds tools/ and cases/: $SPUME_HOME, or where the program was configured.
+// The folder that holds tools/ and cases/: $SPUME_HOME; else that of the installation which the executable belongs to;
+// else the sources that it was built from.
 std::filesystem::path home_folder();
 
 }  // namespace spume

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Standard pictures of a run: `spume plot DIR`."""

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: MIT
+"""What tools/stress asks of a run: `judge` gives an outcome and the list of complaints.
+
+Outcomes: ok; slow (ended by the driver's clock, in good order); refused (exit 2, said why); stopped (exit 3, said where
+and why); failed (a check complains); crashed (a signal, or an exit code that is none of the program's).
+"""
+import re
+
+import numpy as np
+
+from ..results import MissingResult, Results
+
+# Bounds, each relative to what is named with it.
+MOMENTUM = 0.02  # of mass times the largest speed: interpolation with corrected gradients is not pairwise antisymmetric
+ENERGY_GROWTH = 0.05  # of the largest energy that has moved; a stable scheme loses energy, rounding is far below
+SPECTRAL_GROWTH = 1e-3  # of the initial energy: transport conserves it, and viscosity is exact
+BALANCE = 0.05  # of what viscosity takes between two rows, courant <= 0.5
+LOADED_BALANCE = 0.25  # the same with particles, whose force is held over a step
+
+
+def finite_table(table):
+    return [f"{name} is not finite in row {int(np.argmin(np.isfinite(values)))}" for name, values in table.items()
+            if values.dtype.kind == "f" and not np.all(np.isfinite(values))]
+
+
+def check_particles(run, scene, complaints):
+    snapshots = run.snapshots()
+    first, last = snapshots[0], snapshots[-1]
+    for name, values in [("position", last.position), *last.fields.items()]:
+        if not np.all(np.isfinite(values)):
+            complaints.append(f"finite: {name} of the last snapshot is not")
+    if "id" in first.fields:
+        before, after = np.sort(first.fields["id"]), np.sort(last.fields["id"])
+        if len(after) != len(before) or np.any(before != after):
+            complaints.append(f"particles: {len(before)} at the start, {len(after)} at the end, or other ids")
+    lower, upper = run.bounds()
+    domain = scene.case["domain"]
+    names = ["left", "right", "bottom", "top"] if len(lower) == 2 else ["left", "right", "front", "back", "bottom", "top"]
+    walls = scene.case.get("domain.wall_velocity", {})
+    for axis in range(len(lower)):
+        held = "xyz"[axis] in domain
+        for side, sign in ((2 * axis, -1), (2 * axis + 1, 1)):
+            if not held and domain.get(names[side], "open") == "open" or names[side] in walls:
+                continue
+            beyond = sign * (last.position[:, axis] - (lower, upper)[side % 2][axis])
+            if np.any(beyond > 1e-9):
+                complaints.append(f"particles: {int(np.sum(beyond > 1e-9))} beyond the {names[side]} side")
+    for solid in scene.case.get("solid", []):
+        inside = np.all((last.position[:, :len(lower)] > np.array(solid["lower"]) + 1e-6)
+                        & (last.position[:, :len(lower)] < np.array(solid["upper"]) - 1e-6), axis=1)
+        if np.any(inside):
+            complaints.append(f"particles: {int(np.sum(inside))} inside a solid")
+
+
+def work_of_force(series, force, axes, gravity):
+    """Impulse per mass of the uniform force and of gravity at each row, by the midpoint of each step."""
+    t = series["t"]
+    impulse = np.zeros((len(t), len(axes)))
+    for row in range(1, len(t)):
+        acceleration = np.array(force((t[row] + t[row - 1]) / 2) if force else np.zeros(3))[: len(gravity)] + gravity
+        impulse[row] = impulse[row - 1] + (t[row] - t[row - 1]) * acceleration[axes]
+    return impulse
+
+
+def check_les_sph(run, scene, complaints):
+    series, facts = run.series, scene.facts
+    complaints += [f"finite: {text}" for text in finite_table(series)]
+    if complaints:
+        return
+    mass = series["mass"]
+    if "bubbles" not in scene.case and np.ptp(mass) > 4e-15 * mass[0]:
+        complaints.append(f"mass: changes by {np.ptp(mass) / mass[0]:.3g}")
+    tolerance = scene.case.get("pressure", {}).get("tolerance", 1e-6)
+    worst = int(np.argmax(series["pressure_residual"]))
+    if series["pressure_residual"][worst] > tolerance * (1 + 1e-6):
+        complaints.append(f"convergence: residual {series['pressure_residual'][worst]:.3g} in row {worst}, nothing was said")
+    gravity = np.zeros(run.dimensions)
+    gravity[-1] = -1.0 / scene.case["fluid"].get("froude", np.inf) ** 2
+    speed = max(facts["speed"], float(np.max(series["max_speed"])))
+    axes = facts["free_axes"]
+    if axes:
+        momentum = np.stack([series["momentum_" + "xyz"[axis]] for axis in axes], axis=1)
+        expected = momentum[0] + mass[:1] * work_of_force(series, facts["force"], axes, gravity)
+        drift = np.max(np.abs(momentum - expected)) / (mass[0] * speed)
+        if drift > MOMENTUM:
+            complaints.append(f"momentum: drifts by {drift:.3g} of mass times largest speed")
+    kinetic, potential, total = series["kinetic_energy"], series["potential_energy"], series["total_energy"]
+    if facts["conservative"]:
+        # A quarter of a spacing in height is what the arrangement of particles alone may move.
+        moved = max(np.max(kinetic), np.max(np.abs(potential - potential[0])))
+        moved += mass[0] * abs(gravity[-1]) * run.spacing / 4
+        growth = (np.max(total) - total[0]) / max(moved, 1e-300)
+        if growth > ENERGY_GROWTH:
+            complaints.append(f"energy: grows by {growth:.3g} of the energy moved")
+    check_particles(run, scene, complaints)
+
+
+def integral(series, name):
+    """Over time, by trapezia."""
+    t, values = series["t"], series[name]
+    return float(np.sum(0.5 * (values[1:] + values[:-1]) * np.diff(t)))
+
+
+def loading(run, particles):
+    """Volume fraction of the particles, and their mass with the fluid that they move over that of all fluid."""
+    lower, upper = run.bounds()
+    fraction = particles.get("volume_fraction") or (
+        particles["count"] * np.pi / 6 * particles["diameter"] ** 3 / np.prod(np.subtract(upper, lower)))
+    return fraction, fraction * (0.5 * (3 / particles["beta"] - 1) + 0.5)
+
+
+def check_spectral(run, scene, complaints):
+    series, facts = run.series, scene.facts
+    # Not numbers by definition: scales without viscosity, moments of no gradient, dimensions of too few particles.
+    undefined = {"gradient_skewness", "gradient_flatness", "taylor_scale", "kolmogorov_scale", "reynolds_lambda", "kmax_eta",
+                 "correlation_dimension"}
+    complaints += [f"finite: {text}" for text in finite_table({k: v for k, v in series.items() if k not in undefined})]
+    if complaints:
+        return
+    energy = series["mean_energy"]
+    aliased = scene.case["spectral"]["dealiasing"] == "none"
+    if facts["conservative"] and not aliased:
+        growth = (np.max(energy) - energy[0]) / energy[0]
+        if growth > SPECTRAL_GROWTH:
+            complaints.append(f"energy: grows by {growth:.3g} without a force")
+    if facts["loaded"] and not aliased and "gravity" not in scene.case["particles"]:
+        # Particles give back what they brought along; and what is put into a fluid of which a part is bubbles moves the
+        # rest the more, by 1 / (1 - fraction): (11) of de Wit et al. (2024).
+        fraction, mass = loading(run, scene.case["particles"])
+        supply = energy[0] * (1 + mass) + integral(series, "mean_injection") / (1 - fraction)
+        if np.max(energy) > (1 + ENERGY_GROWTH) * supply:
+            complaints.append(f"energy: {np.max(energy):.3g} of {supply:.3g} that start, force and particles supply")
+    if scene.case["time"]["courant"] <= 0.5 and not aliased and len(energy) > 3:
+        # Relative to the energy in play where viscosity takes next to nothing.
+        lost = integral(series, "mean_dissipation")
+        worst = np.max(np.abs(series["balance_residual"][3:]))
+        if worst > (LOADED_BALANCE if facts["loaded"] else BALANCE) and lost > 1e-3 * energy[0]:
+            complaints.append(f"energy: balance off by {worst:.3g} of the dissipation")
+    if "particles" in scene.case:
+        snapshots = run.snapshots("bubbles")
+        first, last = snapshots[0], snapshots[-1]
+        if len(first) != len(last) or np.any(np.sort(first.fields["id"]) != np.sort(last.fields["id"])):
+            complaints.append(f"particles: {len(first)} at the start, {len(last)} at the end, or other ids")
+        for name, values in [("position", last.position), *last.fields.items()]:
+            if not np.all(np.isfinite(values)):
+                complaints.append(f"finite: {name} of the particles is not")
+        lower, upper = run.bounds()
+        if np.any(last.position < lower - 1e-5) or np.any(last.position > upper + 1e-5):
+            complaints.append("particles: outside the box")
+
+
+CHECKS = {"les-sph": check_les_sph, "spectral": check_spectral}
+
+# What an error must say: its place in the case file or its step, and what was found.
+WORDS = {2: re.compile(r"error: \S+"), 3: re.compile(r"step \d+.*t = ", re.S)}
+
+
+def judge(method, scene, folder, code, stderr, timed_out):
+    """Outcome, complaints and figures of a finished run."""
+    if code < 0 or code not in (0, 2, 3, 130):
+        return "crashed", [f"exit code {code}: {stderr.strip()[-300:]}"], {}
+    if code in WORDS and not WORDS[code].search(stderr):
+        return "failed", [f"message: exit code {code} does not say where and why: {stderr.strip()[-300:]}"], {}
+    if code == 2:
+        return "refused", [line for line in stderr.splitlines() if "error" in line][:1], {}
+    if code == 130 and not timed_out:
+        return "failed", ["exit code 130 although nobody interrupted the run"], {}
+    complaints, figures = [], {}
+    try:
+        run = Results(folder)
+        figures = {"steps": int(run.series["step"][-1]), "reached": float(run.series["t"][-1]),
+                   "retries": run.summary["retries"], "max_speed": float(np.max(run.series["max_speed"]))}
+        CHECKS[method](run, scene, complaints)
+        if code == 3:  # it said itself that it makes energy
+            complaints = [text for text in complaints if not text.startswith(("energy", "momentum"))]
+    except (MissingResult, KeyError, IndexError, OSError, ValueError) as error:
+        complaints.append(f"results: {type(error).__name__}: {error}")
+    if complaints:
+        return "failed", complaints, figures
+    if code == 3:
+        return "stopped", [stderr.strip().splitlines()[0][:300]], figures
+    return ("slow" if timed_out else "ok"), [], figures
