@@ -5,6 +5,7 @@
 #include "spume/core/error.hpp"
 #include "spume/core/machine.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/run/probes.hpp"
 #include "spume/run/report.hpp"
 #include "verbs.hpp"
 
@@ -36,6 +37,7 @@ std::string time_estimate(const LoadedCase& loaded, Method& method) {
 int check_verb(const RunArguments& arguments, const Program& program) {
   LoadedCase loaded = program.load_case(arguments.input, arguments.overrides);
   const auto method = program.make_method(loaded);
+  require_probes(loaded.options, *method);
   method->start();
   loaded.scene.particles = {};
   std::printf("%s\nplan\n%s\n", start_table(loaded, *method, thread_count()).c_str(),

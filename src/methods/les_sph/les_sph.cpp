@@ -143,6 +143,7 @@ LesSph::LesSph(const LoadedCase& loaded) : liquid_(loaded), pressure_(std::make_
       throw refusal(loaded.options, "output.fields",
                     "output.fields names '" + name + "', which les-sph does not have; it has " + list);
     }
+  stages_ = liquid_.plan.stages(liquid_.loaded);
 }
 
 LesSph::~LesSph() = default;
@@ -174,10 +175,6 @@ void LesSph::start(Ledger& ledger) {
 void LesSph::ensure_started() {
   Ledger unrecorded;
   if (!liquid_.started) start(unrecorded);
-}
-
-std::vector<Stage> LesSph::plan() const {
-  return liquid_.plan.stages(liquid_.loaded);
 }
 
 std::vector<ArrayInfo> LesSph::arrays() const {
@@ -410,16 +407,24 @@ std::vector<ParticleSnapshot> LesSph::snapshot() {
 }
 
 std::vector<RecordTable> LesSph::tables() const {
-  return bubbles_ ? bubbles_->tables() : std::vector<RecordTable>{};
+  std::vector<RecordTable> list;
+  if (periodic()) list.push_back(spectrum_table());
+  if (bubbles_)
+    for (RecordTable& table : bubbles_->tables()) list.push_back(std::move(table));
+  return list;
 }
 
 void LesSph::table_rows(const std::string& name, std::vector<double>& rows) {
   ensure_started();
-  if (bubbles_) bubbles_->table_rows(liquid_, name, rows);
+  if (name == "spectrum")
+    add_spectrum_rows(rows);
+  else if (bubbles_)
+    bubbles_->table_rows(liquid_, name, rows);
 }
 
-std::string LesSph::note() {
-  return bubbles_ ? bubbles_->note() : std::string();
+std::vector<Remark> LesSph::take_remarks() {
+  const std::string text = bubbles_ ? bubbles_->note() : std::string();
+  return text.empty() ? std::vector<Remark>{} : std::vector<Remark>{{text, true}};
 }
 
 PointSampler& LesSph::sampler() {
@@ -446,10 +451,14 @@ PlaneSample LesSph::plane_average(int axis, double position) {
   return sampler().plane_average(liquid_, axis, position);
 }
 
-bool LesSph::spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) {
-  const Domain& domain = liquid_.scene.domain;
+bool LesSph::periodic() const {
   for (int axis = 0; axis < liquid_.dimensions; ++axis)
-    if (!domain.periodic(axis)) return false;
+    if (!liquid_.scene.domain.periodic(axis)) return false;
+  return true;
+}
+
+void LesSph::add_spectrum_rows(std::vector<double>& rows) const {
+  const Domain& domain = liquid_.scene.domain;
   ParticleSpectrumInput input;
   input.dimensions = liquid_.dimensions;
   input.lower = domain.lower;
@@ -460,9 +469,7 @@ bool LesSph::spectrum(std::vector<double>& wavenumber, std::vector<double>& ener
     input.velocity[axis] = *liquid_.velocity[axis];
   }
   const ParticleSpectrum result = energy_spectrum(input);
-  wavenumber = result.spectrum.wavenumber;
-  energy = result.spectrum.energy;
-  return true;
+  add_spectrum(liquid_.time, result.spectrum.wavenumber, result.spectrum.energy, rows);
 }
 
 void LesSph::save(StateWriter& writer) const {

@@ -20,12 +20,12 @@ class BubbleCoupling;
 class PressureSystem;
 class PointSampler;
 
-class LesSph final : public Method {
+class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
  public:
   explicit LesSph(const LoadedCase& loaded);
   ~LesSph() override;
 
-  std::vector<Stage> plan() const override;
+  const std::vector<Stage>& plan() const override { return stages_; }
   std::vector<ArrayInfo> arrays() const override;
   std::size_t particle_count() const override { return liquid_.size(); }
   double time() const override { return liquid_.time; }
@@ -35,6 +35,8 @@ class LesSph final : public Method {
   std::vector<SeriesColumn> series_columns() const override;
   void series_values(std::span<double> values) override;
   std::vector<ParticleSnapshot> snapshot() override;
+  FieldProbes* field_probes() override { return this; }
+  SurfaceProbes* surface_probes() override { return this; }
   PointSample sample(const Vec3& position) override;
   double elevation(const Vec3& position) override;
   double wetted_length(const Vec3& position) override;
@@ -42,10 +44,9 @@ class LesSph final : public Method {
   PlaneSample plane_average(int axis, double position) override;
   // The mass; where nothing but gravity does work, the energy; the residual of the pressure.
   std::vector<Invariant> invariants() const override;
-  bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override;
   std::vector<RecordTable> tables() const override;
   void table_rows(const std::string& name, std::vector<double>& rows) override;
-  std::string note() override;
+  std::vector<Remark> take_remarks() override;
   void save(StateWriter& writer) const override;
   void load(StateReader& reader) override;
 
@@ -57,8 +58,11 @@ class LesSph final : public Method {
   void start(Ledger& ledger);  // finds the pressure of the initial velocity field
   void ensure_started();
   PointSampler& sampler();
+  bool periodic() const;  // in all directions: the flow has an energy spectrum
+  void add_spectrum_rows(std::vector<double>& rows) const;
 
   Liquid liquid_;
+  std::vector<Stage> stages_;
   std::map<std::string, Array<double>> snapshot_;  // derived fields of the last snapshot
   std::unique_ptr<PressureSystem> pressure_;
   std::unique_ptr<PointSampler> sampler_;
