@@ -6,8 +6,8 @@
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <zlib.h>
 
-#include <fstream>
 #include <random>
 
 #include "spume/core/error.hpp"
@@ -103,14 +103,63 @@ TEST(Journal, AChangeThatCannotBeSettledNamesTheReasonAndLeavesTheFile) {
   EXPECT_EQ(pressures(path).size(), 2 * particles);
 }
 
+// Written over the first bytes: mark, crc32 and size of what follows, size of the file, address, size and bytes.
+std::string journal_of(const std::string& file) {
+  std::string body, text("SPUME JOURNAL 1", 16);
+  const auto put = [](std::string& to, auto number) {
+    to.append(reinterpret_cast<const char*>(&number), sizeof number);
+  };
+  for (const std::uint64_t number : {file.size(), std::size_t{0}, file.size()}) put(body, number);
+  body += file;
+  put(text, static_cast<std::uint32_t>(::crc32(0, reinterpret_cast<const Bytef*>(body.data()), body.size())));
+  put(text, std::uint64_t{body.size()});
+  return text + body;
+}
+
+// What a program leaves that is killed between the rename of its journal and the end of the copying.
+TEST(Journal, AChangeThatWasBrokenOffIsCompletedWhenTheFileIsOpened) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "fluid.vtkhdf";
+  {
+    VtkhdfFile file(path, {});
+    append(file);
+  }
+  const std::string before = test::contents(path);
+  {
+    VtkhdfFile file(path, {});
+    append(file);
+  }
+  const std::string after = test::contents(path);
+  const std::string torn = after.substr(0, 1000) + before.substr(1000);
+  test::write_contents(path, torn);
+  test::write_contents(path.string() + ".journal", journal_of(after));
+  EXPECT_EQ(VtkhdfFile(path, {}).steps(), 2);
+  EXPECT_EQ(test::contents(path), after);
+  EXPECT_FALSE(std::filesystem::exists(path.string() + ".journal"));
+  // A file that became shorter is cut.
+  test::write_contents(path, after);
+  test::write_contents(path.string() + ".journal", journal_of(before));
+  EXPECT_EQ(VtkhdfFile(path, {}).steps(), 1);
+  EXPECT_EQ(test::contents(path), before);
+}
+
 TEST(Journal, AJournalThatIsNotWholeIsDropped) {
   const test::TemporaryFolder folder;
   const auto path = folder / "fluid.vtkhdf";
   VtkhdfFile file(path, {});
   append(file);
-  std::ofstream(path.string() + ".journal") << "SPUME JOURNAL 1 and then nothing that would make sense";
+  const std::string before = test::contents(path);
+  const std::string whole = journal_of(std::string(before.size(), 'x'));
+  std::string changed = whole;
+  changed.back() = 'y';
+  for (const std::string& text : {std::string("SPUME JOURNAL 1 and then nothing that would make sense"), std::string(),
+                                  whole.substr(0, whole.size() - 1), changed, 'x' + whole.substr(1)}) {
+    test::write_contents(path.string() + ".journal", text);
+    EXPECT_EQ(VtkhdfFile(path, {}).steps(), 1);
+    EXPECT_FALSE(std::filesystem::exists(path.string() + ".journal"));
+    EXPECT_EQ(test::contents(path), before);
+  }
   append(file);
-  EXPECT_FALSE(std::filesystem::exists(path.string() + ".journal"));
   EXPECT_EQ(pressures(path).size(), 2 * particles);
 }
 
