@@ -19,7 +19,7 @@ double seconds_of_step(Method& method, double dt) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// The second of two trial steps stands for the rest: the first one also builds what later steps reuse.
+// From the second of two trial steps: the first also allocates and builds what later steps reuse.
 std::string time_estimate(const LoadedCase& loaded, Method& method) {
   try {
     seconds_of_step(method, method.step_limit().dt);
@@ -56,7 +56,7 @@ int check_verb(const RunArguments& arguments, const Program& program) {
               human_bytes(bytes).c_str(), time.c_str(), human_bytes(memory).c_str());
   if (bytes > memory)
     std::printf(
-        "this machine's memory is too small for the case: increase resolution.spacing or lower resolution.grid\n");
+        "the memory of this machine is too small for the case; increase resolution.spacing or lower resolution.grid\n");
   return exit_done;
 }
 

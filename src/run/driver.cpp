@@ -221,7 +221,7 @@ void Simulation::give_up(const StepFailure& failure, double dt, int attempts) {
 }
 
 std::string Simulation::continuation() const {
-  if (!checkpoint_step_) return "there is no checkpoint to continue";
+  if (!checkpoint_step_) return "there is no checkpoint to resume from";
   return "spume resume " + folder_.path().string() + " continues from the checkpoint of step " +
          std::to_string(*checkpoint_step_);
 }

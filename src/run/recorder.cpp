@@ -51,7 +51,7 @@ void Recorder::cut_families() {
   for (const auto& [name, count] : *resume_)
     if (count > 0 && name.ends_with(".vtkhdf") && !std::filesystem::exists(folder_ / name))
       throw FileError("cannot continue '" + (folder_ / name).string() +
-                      "': the file is gone; bring it back, or run the case anew into another folder");
+                      "': the file is missing; restore it, or run the case again into another folder");
 }
 
 void Recorder::continue_tables() {

@@ -201,7 +201,7 @@ TEST_F(Verbs, WithoutMemoryARunNamesACheckpointOnlyWhereThereIsOne) {
   write_case("end = 1.0\nmemory_until = -1.0\n");
   const Outcome early = spume({"run", "case.toml", "-o", "early", "--set", "solvable=false"});
   EXPECT_EQ(early.code, 3);
-  EXPECT_THAT(early.err, HasSubstr("there is no checkpoint to continue"));
+  EXPECT_THAT(early.err, HasSubstr("there is no checkpoint to resume from"));
 }
 
 TEST_F(Verbs, ARunWhoseReaderLeavesGoesOnToItsEnd) {
