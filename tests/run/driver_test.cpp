@@ -32,11 +32,14 @@ class Watch final : public Observer {
   explicit Watch(std::int64_t stop_after = -1) : stop_after_(stop_after) {}
   void progress(const Progress& progress) override {
     steps.push_back(progress.dt);
+    limits.push_back(progress.limited_by);
+    last = progress;
     if (progress.step == stop_after_) raise(SIGINT);
   }
   void note(const std::string& text) override { notes.push_back(text); }
   std::vector<double> steps;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes, limits;
+  Progress last;
 
  private:
   std::int64_t stop_after_;
@@ -211,6 +214,62 @@ TEST_F(Driver, TheSummaryNamesTheCaseAlsoAfterResuming) {
   }
 }
 
+TEST_F(Driver, TheSummaryCountsTheTimeOfAllProcesses) {
+  write_case("end = 0.2\nsleep = 0.02\n");
+  Watch stopping(5), watch;
+  start("run")->run(stopping);
+  const double before = summary("run")["total_wall_seconds"];
+  EXPECT_GE(before, 0.1);
+  resume("run")->run(watch);
+  const double wall = summary("run")["wall_seconds"], total = summary("run")["total_wall_seconds"];
+  EXPECT_GE(wall, 0.02 * static_cast<double>(watch.steps.size()));
+  // The checkpoint was written a moment before the summary.
+  EXPECT_GE(total, wall + 0.1);
+  EXPECT_LE(total, wall + before);
+  EXPECT_EQ(summary("run")["steps_this_process"], static_cast<std::int64_t>(watch.steps.size()));
+  EXPECT_NEAR(summary("run")["particle_steps_per_second"].get<double>(),
+              50 * static_cast<double>(watch.steps.size()) / wall, 1e-6);
+}
+
+// 50 particles and at least 0.02 s a step; the rate is that of the whole of so short a run.
+TEST_F(Driver, TheProgressGivesRateAndRemainingTime) {
+  write_case("end = 1.0\nsleep = 0.02\n");
+  Watch stopping(20);
+  start("run")->run(stopping);
+  const Progress& last = stopping.last;
+  EXPECT_EQ(last.step, 20);
+  EXPECT_EQ(last.end, 1);
+  EXPECT_GT(last.particle_steps_per_second, 0);
+  EXPECT_LE(last.particle_steps_per_second, 50 / 0.02);
+  const double wall = 20 * 50 / last.particle_steps_per_second;
+  EXPECT_NEAR(last.remaining_seconds, (1 - last.time) / last.time * wall, 1e-9 * wall);
+}
+
+// A run that is killed continues from the last checkpoint, so there must be some on the way.
+TEST_F(Driver, CheckpointsAreWrittenOnTheWay) {
+  class Reader final : public Observer {
+   public:
+    explicit Reader(std::filesystem::path path) : path_(std::move(path)) {}
+    void progress(const Progress& progress) override {
+      if (progress.step != 5) return;
+      Array<std::int64_t> counters;
+      CheckpointReader(path_).i64("driver/counters", counters);
+      step = counters[0];
+    }
+    void note(const std::string&) override {}
+    std::int64_t step = -1;
+
+   private:
+    std::filesystem::path path_;
+  };
+  for (const auto& [every, expected] : {std::pair{"0.001", 4}, std::pair{"300", 0}}) {
+    write_case(std::string("end = 0.1\nsleep = 0.002\ncheckpoint_every = ") + every + '\n');
+    Reader reader(folder_ / every / "checkpoint.h5");
+    start(every)->run(reader);
+    EXPECT_EQ(reader.step, expected) << every;
+  }
+}
+
 TEST_F(Driver, InterruptedAndResumedRunEqualsAnUninterruptedOne) {
   write_case(full_case);
   Watch watch;
@@ -250,6 +309,7 @@ TEST_F(Driver, RefusedStepsAreHalvedAndGrowBack) {
   ASSERT_GT(watch.notes.size(), 1u);
   EXPECT_THAT(watch.notes[1], HasSubstr("particle 7 at (0.25, 0.5), value 3.5"));
   EXPECT_EQ(summary("run")["retries"], static_cast<std::int64_t>(watch.notes.size()) - 1);
+  EXPECT_EQ(watch.limits[0], "a refused step");
   // Two refusals lead from 0.01 below 0.004. From then on every step is tried at twice the length of the one before it,
   // which is refused, so that there are about as many refusals as steps.
   EXPECT_GT(watch.notes.size(), watch.steps.size() / 2);
@@ -402,6 +462,37 @@ TEST_F(Driver, ResumeNamesWhatIsWrong) {
   test::write_contents(checkpoint, good);
   std::filesystem::remove(folder_ / "run" / "series.csv");
   EXPECT_THROW(resume("run"), FileError);
+}
+
+TEST_F(Driver, ACheckpointWhoseDriverAndMethodDisagreeIsRefused) {
+  write_case("end = 0.3\n");
+  Watch stopping(5);
+  start("run")->run(stopping);
+  const auto checkpoint = folder_ / "run" / "checkpoint.h5", changed = folder_ / "changed.h5";
+  {
+    const CheckpointReader reader(checkpoint);
+    CheckpointWriter writer(changed, reader.origin());
+    for (const auto& entry : reader.entries()) {
+      Array<double> reals;
+      Array<std::int64_t> integers;
+      if (entry.type == "f64") {
+        reader.f64(entry.name, reals);
+        writer.f64(entry.name, reals);
+      } else {
+        reader.i64(entry.name, integers);
+        if (entry.name == "driver/counters") ++integers[0];
+        writer.i64(entry.name, integers);
+      }
+    }
+    writer.commit();
+  }
+  std::filesystem::rename(changed, checkpoint);
+  try {
+    resume("run");
+    FAIL() << "no error";
+  } catch (const FileError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("method and driver disagree about the step"));
+  }
 }
 
 }  // namespace
