@@ -22,8 +22,8 @@ void set_when_absent(const std::string& name, const char* value, std::string& na
   names += name + ' ';
 }
 
-// The runtime has read the settings; programs started from here make their own choice.
-void forget(const char* names) {
+// Programs started from here set their own.
+void unset(const char* names) {
   std::istringstream words(names);
   for (std::string name; words >> name;) unsetenv(name.c_str());
   unsetenv(mark);
@@ -51,21 +51,21 @@ void release_to_all_places() {
 }
 
 void restart_with_openmp_environment(int argc, char** argv) {
-  if (const char* names = std::getenv(mark); names != nullptr) return forget(std::string(names).c_str());
+  if (const char* names = std::getenv(mark); names != nullptr) return unset(std::string(names).c_str());
   std::string names;
-  // Passive alone would sleep between any two regions; about 50 us of spinning bridges the gaps of a Krylov loop
-  // and is too short to hurt anyone.
+  // Passive waiting alone sleeps between any two parallel regions. About 50 us of spinning covers the gaps within a
+  // Krylov loop, and costs other programs little.
   set_when_absent("GOMP_SPINCOUNT", "1000", names);
   set_when_absent("OMP_WAIT_POLICY", "passive", names);
-  // Bound threads stay with the memory that they touched first. With fewer threads than cores, binding would put
-  // every such program on the same first cores, so it is left to the system then.
+  // Bound threads stay near the memory that they touched first. With fewer threads than cores, binding would put every
+  // program on the same first cores; the system places the threads then.
   if (!names_threads(argc, argv)) set_when_absent("OMP_PROC_BIND", "true", names);
   if (names.empty()) return;
   setenv(mark, names.c_str(), 1);
   release_to_all_places();
-  // Where the system refuses, the program simply goes on with the settings it has.
+  // When the system refuses, the program continues with the settings that it has.
   execv("/proc/self/exe", argv);
-  forget(names.c_str());
+  unset(names.c_str());
 }
 
 }  // namespace spume

@@ -15,7 +15,7 @@
 namespace spume {
 namespace {
 
-// Far beyond it the runtime dies while it makes its threads.
+// The OpenMP runtime aborts when it cannot create its threads, which happens far above this number.
 constexpr int most_threads = 1024;
 
 void use_threads(const std::optional<int>& threads) {
@@ -83,7 +83,7 @@ struct CommandLine {
     options_app->add_option("section", section, "only this section");
   }
 
-  std::string complaint(int argc, char** argv, const CLI::ParseError& error) const {
+  std::string parse_failure(int argc, char** argv, const CLI::ParseError& error) const {
     const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
     std::string names;
     for (const CLI::App* verb : verbs) names += (names.empty() ? "" : ", ") + verb->get_name();
@@ -93,7 +93,7 @@ struct CommandLine {
     return error.what();
   }
 
-  int carry_out(const Program& program) {
+  int execute(const Program& program) {
     use_threads(threads);
     if (run_app->parsed()) return run_verb(run, program);
     if (check_app->parsed()) return check_verb(run, program);
@@ -118,11 +118,11 @@ int run_program(int argc, char** argv, const Program& program) {
     line.app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return line.app.exit(error);
-    std::fprintf(stderr, "error: %s; see spume --help\n", line.complaint(argc, argv, error).c_str());
+    std::fprintf(stderr, "error: %s; see spume --help\n", line.parse_failure(argc, argv, error).c_str());
     return exit_input;
   }
   try {
-    return line.carry_out(program);
+    return line.execute(program);
   } catch (const InputError& error) {
     print_problems(error);
     return exit_input;

@@ -67,7 +67,7 @@ void TerminalObserver::note(const std::string& text) {
   flush();
 }
 
-// A terminal that is gone is not written to again.
+// After a failed write, as to a closed terminal, nothing more is written.
 void TerminalObserver::flush() {
   if (std::fflush(stdout) != 0) quiet_ = true;
 }

@@ -5,6 +5,7 @@
 #include "spume/core/error.hpp"
 #include "spume/core/machine.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/run/probes.hpp"
 #include "spume/run/report.hpp"
 #include "verbs.hpp"
 
@@ -18,7 +19,7 @@ double seconds_of_step(Method& method, double dt) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// The second of two trial steps stands for the rest: the first one also builds what later steps reuse.
+// From the second of two trial steps: the first also allocates and builds what later steps reuse.
 std::string time_estimate(const LoadedCase& loaded, Method& method) {
   try {
     seconds_of_step(method, method.step_limit().dt);
@@ -36,6 +37,7 @@ std::string time_estimate(const LoadedCase& loaded, Method& method) {
 int check_verb(const RunArguments& arguments, const Program& program) {
   LoadedCase loaded = program.load_case(case_argument(arguments.input), arguments.overrides);
   const auto method = program.make_method(loaded);
+  require_probes(loaded.options, *method);
   method->start();
   loaded.scene.particles = {};
   std::printf("%s\nplan\n%s\n", start_table(loaded, *method, thread_count()).c_str(),
@@ -54,7 +56,7 @@ int check_verb(const RunArguments& arguments, const Program& program) {
               human_bytes(bytes).c_str(), time.c_str(), human_bytes(memory).c_str());
   if (bytes > memory)
     std::printf(
-        "this machine's memory is too small for the case: increase resolution.spacing or lower resolution.grid\n");
+        "the memory of this machine is too small for the case; increase resolution.spacing or lower resolution.grid\n");
   return exit_done;
 }
 

@@ -79,7 +79,7 @@ void describe_folder(const fs::path& folder) {
       throw FileError("cannot read '" + (folder / "summary.json").string() + "': " + error.what());
     }
   } else {
-    std::printf("  no summary.json: the run goes on, or was stopped without being able to write one\n");
+    std::printf("  no summary.json: the run is in progress, or was killed\n");
   }
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder))

@@ -29,8 +29,8 @@ std::string closing_text(const Simulation& simulation, RunState state) {
   return text;
 }
 
-int carry_out(Simulation& simulation, bool quiet) {
-  // Results matter more than whoever reads the terminal: a pipe that closes stops no run.
+int execute(Simulation& simulation, bool quiet) {
+  // A closed pipe must not stop the run.
   signal(SIGPIPE, SIG_IGN);
   const std::string start =
       start_table(simulation.loaded(), simulation.method(), thread_count(), simulation.folder().string());
@@ -72,13 +72,13 @@ int run_verb(const RunArguments& arguments, const Program& program) {
   std::optional<std::filesystem::path> folder;
   if (arguments.folder) folder = *arguments.folder;
   const auto simulation = Simulation::start(std::move(loaded), program.make_method, folder);
-  return carry_out(*simulation, arguments.quiet);
+  return execute(*simulation, arguments.quiet);
 }
 
 int resume_verb(const RunArguments& arguments, const Program& program) {
   require_positive(arguments.until);
   const auto simulation = Simulation::resume(arguments.input, program.load_case, program.make_method, arguments.until);
-  return carry_out(*simulation, arguments.quiet);
+  return execute(*simulation, arguments.quiet);
 }
 
 }  // namespace spume

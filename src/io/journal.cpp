@@ -12,122 +12,125 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
-#include <vector>
+#include <string_view>
 
-#include "spume/core/error.hpp"
 #include "spume/io/file.hpp"
 
 namespace spume::hdf5 {
 namespace {
 
 constexpr haddr_t page_bytes = 4096;
-constexpr char mark[16] = "SPUME JOURNAL 1";
+constexpr std::string_view mark("SPUME JOURNAL 1", 16);  // with the zero at its end
 
-bool read_at(int descriptor, haddr_t address, std::size_t size, unsigned char* out) {
+// Functions that return int give 0, or the error number of the system.
+
+int read_at(int descriptor, haddr_t address, std::size_t size, char* out) {
   for (std::size_t done = 0; done < size;) {
     const ssize_t got = ::pread(descriptor, out + done, size - done, static_cast<off_t>(address + done));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return false;
+    if (got < 0) return errno;
     if (got == 0) {  // beyond the end a file holds zeros
       std::memset(out + done, 0, size - done);
-      return true;
+      return 0;
     }
     done += static_cast<std::size_t>(got);
   }
-  return true;
+  return 0;
 }
 
-bool write_at(int descriptor, haddr_t address, std::size_t size, const unsigned char* data) {
-  for (std::size_t done = 0; done < size;) {
-    const ssize_t put = ::pwrite(descriptor, data + done, size - done, static_cast<off_t>(address + done));
+int write_at(int descriptor, haddr_t address, std::string_view data) {
+  while (!data.empty()) {
+    const ssize_t put = ::pwrite(descriptor, data.data(), data.size(), static_cast<off_t>(address));
     if (put < 0 && errno == EINTR) continue;
-    if (put < 0) return false;
-    done += static_cast<std::size_t>(put);
+    if (put < 0) return errno;
+    data.remove_prefix(static_cast<std::size_t>(put));
+    address += static_cast<haddr_t>(put);
   }
-  return true;
+  return 0;
 }
 
-struct Journal {
-  std::uint64_t final_bytes = 0;                          // size of the file after the change
-  std::map<haddr_t, std::vector<unsigned char>> changes;  // by address
+int set_size(int descriptor, haddr_t size) {
+  return ::ftruncate(descriptor, static_cast<off_t>(size)) == 0 ? 0 : errno;
+}
+
+// Parts of a file as they will be, by address, and its size then.
+struct Change {
+  haddr_t bytes = 0;
+  std::map<haddr_t, std::string> parts;
+
+  int apply(int descriptor) const {
+    for (const auto& [address, part] : parts)
+      if (const int reason = write_at(descriptor, address, part); reason != 0) return reason;
+    return set_size(descriptor, bytes);
+  }
 };
+
+// A change as the text of a journal: the mark, crc32 and size of what follows, the size of the file, then address, size
+// and bytes of each part.
+template <class Number>
+void put(std::string& text, Number number) {
+  text.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
+
+template <class Number>
+Number take(std::string_view& text) {
+  Number number = 0;
+  std::memcpy(&number, text.data(), sizeof number);
+  text.remove_prefix(sizeof number);
+  return number;
+}
+
+std::uint32_t sum_of(std::string_view text) {
+  const auto* bytes = reinterpret_cast<const unsigned char*>(text.data());
+  return static_cast<std::uint32_t>(::crc32_z(::crc32(0, nullptr, 0), bytes, text.size()));
+}
+
+std::string text_of(const Change& change) {
+  std::string body, text(mark);
+  put<std::uint64_t>(body, change.bytes);
+  for (const auto& [address, part] : change.parts) {
+    put<std::uint64_t>(body, address);
+    put<std::uint64_t>(body, part.size());
+    body += part;
+  }
+  put(text, sum_of(body));
+  put<std::uint64_t>(text, body.size());
+  return text + body;
+}
+
+// Nothing for a journal that is not whole: of such a one nothing has been copied.
+std::optional<Change> change_of(std::string_view text) {
+  constexpr std::size_t number = sizeof(std::uint64_t);
+  if (!text.starts_with(mark) || text.size() < mark.size() + sizeof(std::uint32_t) + 2 * number) return {};
+  text.remove_prefix(mark.size());
+  const auto sum = take<std::uint32_t>(text);
+  const auto bytes = take<std::uint64_t>(text);
+  if (bytes != text.size() || sum != sum_of(text)) return {};
+  Change change{take<std::uint64_t>(text), {}};
+  while (text.size() >= 2 * number) {
+    const auto address = take<std::uint64_t>(text);
+    const auto size = take<std::uint64_t>(text);
+    change.parts[address] = text.substr(0, size);
+    text.remove_prefix(std::min<std::size_t>(size, text.size()));
+  }
+  return change;
+}
 
 std::string journal_of(const std::string& path) {
   return path + ".journal";
 }
 
-void add(std::vector<unsigned char>& out, const void* data, std::size_t size) {
-  const auto* bytes = static_cast<const unsigned char*>(data);
-  out.insert(out.end(), bytes, bytes + size);
-}
-
-std::uint32_t sum_of(const std::vector<unsigned char>& text) {
-  return static_cast<std::uint32_t>(::crc32_z(::crc32(0, nullptr, 0), text.data(), text.size()));
-}
-
-// False with errno set. mark, crc32 of what follows, size of what follows, final size, then address, size and bytes of
-// each change.
-bool write_journal(const Journal& journal, const std::string& path) {
-  std::vector<unsigned char> body, text;
-  add(body, &journal.final_bytes, sizeof journal.final_bytes);
-  for (const auto& [address, bytes] : journal.changes) {
-    const std::uint64_t head[2] = {address, bytes.size()};
-    add(body, head, sizeof head);
-    add(body, bytes.data(), bytes.size());
-  }
-  const std::uint64_t size = body.size();
-  const std::uint32_t sum = sum_of(body);
-  add(text, mark, sizeof mark);
-  add(text, &sum, sizeof sum);
-  add(text, &size, sizeof size);
-  add(text, body.data(), body.size());
+int write_journal(const std::string& path, const Change& change) {
   const std::string temporary = journal_of(path) + ".part";
   const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor < 0) return false;
-  bool good = write_at(descriptor, 0, text.size(), text.data());
-  int reason = errno;
-  if (::close(descriptor) != 0 && good) {
-    good = false;
-    reason = errno;
-  }
-  if (good && ::rename(temporary.c_str(), journal_of(path).c_str()) == 0) return true;
-  if (good) reason = errno;
-  ::unlink(temporary.c_str());
-  errno = reason;
-  return false;
-}
-
-// False: the journal is not whole, so that nothing of it has been copied.
-bool read_journal(int descriptor, Journal& journal) {
-  struct stat status {};
-  constexpr std::size_t head = sizeof mark + sizeof(std::uint32_t) + sizeof(std::uint64_t);
-  if (::fstat(descriptor, &status) != 0 || static_cast<std::size_t>(status.st_size) < head + 8) return false;
-  std::vector<unsigned char> text(static_cast<std::size_t>(status.st_size));
-  if (!read_at(descriptor, 0, text.size(), text.data())) return false;
-  std::uint32_t sum = 0;
-  std::uint64_t size = 0;
-  std::memcpy(&sum, &text[sizeof mark], sizeof sum);
-  std::memcpy(&size, &text[sizeof mark + sizeof sum], sizeof size);
-  if (std::memcmp(text.data(), mark, sizeof mark) != 0 || size != text.size() - head) return false;
-  text.erase(text.begin(), text.begin() + head);
-  if (sum_of(text) != sum) return false;
-  std::memcpy(&journal.final_bytes, text.data(), sizeof journal.final_bytes);
-  for (std::size_t at = sizeof journal.final_bytes; at + 16 <= text.size();) {
-    std::uint64_t entry[2];
-    std::memcpy(entry, &text[at], sizeof entry);
-    at += sizeof entry;
-    if (entry[1] > text.size() - at) return false;
-    journal.changes[entry[0]].assign(&text[at], &text[at] + entry[1]);
-    at += entry[1];
-  }
-  return true;
-}
-
-bool copy_changes(int descriptor, const Journal& journal) {
-  for (const auto& [address, bytes] : journal.changes)
-    if (!write_at(descriptor, address, bytes.size(), bytes.data())) return false;
-  return ::ftruncate(descriptor, static_cast<off_t>(journal.final_bytes)) == 0;
+  if (descriptor < 0) return errno;
+  int reason = write_at(descriptor, 0, text_of(change));
+  if (::close(descriptor) != 0 && reason == 0) reason = errno;
+  if (reason == 0 && ::rename(temporary.c_str(), journal_of(path).c_str()) != 0) reason = errno;
+  if (reason != 0) ::unlink(temporary.c_str());
+  return reason;
 }
 
 // What HDF5 holds of an open file. The library's part comes first.
@@ -135,12 +138,10 @@ struct OpenFile {
   H5FD_t library{};
   std::string path;
   int descriptor = -1;
-  haddr_t end_of_allocation = 0;
   haddr_t settled = 0;  // bytes of the file when it was opened
   haddr_t end = 0;      // largest address written
-  bool writable = false;
-  int failed = 0;  // the reason of a write that failed: the file stays as it was
-  std::map<haddr_t, std::vector<unsigned char>> pages;
+  int failed = 0;       // the reason of a write that failed: the file stays as it was
+  Change change;        // pages below `settled`; the size is what HDF5 has allocated
 };
 
 OpenFile& of(H5FD_t* file) {
@@ -150,69 +151,46 @@ const OpenFile& of(const H5FD_t* file) {
   return *reinterpret_cast<const OpenFile*>(file);
 }
 
-H5FD_t* open_file(const char* name, unsigned flags, hid_t, haddr_t) {
+// Tells the library why, in the words in which its own drivers do.
+herr_t result(int reason) {
+  if (reason == 0) return 0;
+  H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_VFL, H5E_WRITEERROR,
+           "errno = %d, error message = '%s'", reason, std::strerror(reason));
+  return -1;
+}
+
+H5FD_t* open_file(const char* name, unsigned, hid_t, haddr_t) {
   auto file = std::make_unique<OpenFile>();
-  file->writable = (flags & H5F_ACC_RDWR) != 0;
-  if ((flags & (H5F_ACC_TRUNC | H5F_ACC_CREAT)) != 0) return nullptr;
   file->path = name;
-  file->descriptor = ::open(name, (file->writable ? O_RDWR : O_RDONLY) | O_CLOEXEC);
-  struct stat status {};
-  if (file->descriptor < 0) return nullptr;
-  if (::fstat(file->descriptor, &status) != 0) {
+  file->descriptor = ::open(name, O_RDWR | O_CLOEXEC);
+  if (file->descriptor < 0) return result(errno), nullptr;
+  const off_t size = ::lseek(file->descriptor, 0, SEEK_END);
+  if (size < 0) {
+    result(errno);
     ::close(file->descriptor);
     return nullptr;
   }
-  file->settled = file->end = static_cast<haddr_t>(status.st_size);
+  file->settled = file->end = static_cast<haddr_t>(size);
   return &file.release()->library;
 }
 
-// Tells the library why, in the words in which its own drivers do.
-void report(int reason) {
-  H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_VFL, H5E_WRITEERROR,
-           "errno = %d, error message = '%s'", reason, std::strerror(reason));
-}
-
-bool settle(OpenFile& file) {
-  if (!file.writable) return true;
-  if (file.failed != 0) {
-    [[maybe_unused]] const int result = ::ftruncate(file.descriptor, static_cast<off_t>(file.settled));
-    return false;
+int settle(const OpenFile& file) {
+  int reason = file.failed;
+  if (reason == 0) reason = write_journal(file.path, file.change);
+  if (reason != 0) {
+    set_size(file.descriptor, file.settled);
+    return reason;
   }
-  Journal journal;
-  journal.final_bytes = file.end_of_allocation;
-  for (const auto& [address, bytes] : file.pages) {
-    const haddr_t here = std::min(page_bytes, file.settled - address);
-    journal.changes[address].assign(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(here));
-  }
-  if (journal.changes.empty()) return ::ftruncate(file.descriptor, static_cast<off_t>(journal.final_bytes)) == 0;
-  if (!write_journal(journal, file.path)) {
-    file.failed = errno;
-    [[maybe_unused]] const int result = ::ftruncate(file.descriptor, static_cast<off_t>(file.settled));
-    return false;
-  }
-  if (!copy_changes(file.descriptor, journal)) return false;
-  ::unlink(journal_of(file.path).c_str());
-  return true;
+  reason = file.change.apply(file.descriptor);
+  if (reason == 0) ::unlink(journal_of(file.path).c_str());
+  return reason;
 }
 
 herr_t close_file(H5FD_t* library) {
-  std::unique_ptr<OpenFile> file(&of(library));
-  bool good = settle(*file);
-  int reason = file->failed != 0 ? file->failed : errno;
-  if (::close(file->descriptor) != 0 && good) {
-    good = false;
-    reason = errno;
-  }
-  if (!good) report(reason);
-  return good ? 0 : -1;
-}
-
-int compare(const H5FD_t* a, const H5FD_t* b) {
-  struct stat one {
-  }, two{};
-  if (::fstat(of(a).descriptor, &one) != 0 || ::fstat(of(b).descriptor, &two) != 0) return -1;
-  if (one.st_dev != two.st_dev) return one.st_dev < two.st_dev ? -1 : 1;
-  return one.st_ino < two.st_ino ? -1 : one.st_ino > two.st_ino ? 1 : 0;
+  const std::unique_ptr<OpenFile> file(&of(library));
+  int reason = settle(*file);
+  if (::close(file->descriptor) != 0 && reason == 0) reason = errno;
+  return result(reason);
 }
 
 herr_t query(const H5FD_t*, unsigned long* flags) {
@@ -223,10 +201,10 @@ herr_t query(const H5FD_t*, unsigned long* flags) {
 }
 
 haddr_t end_of_allocation(const H5FD_t* file, H5FD_mem_t) {
-  return of(file).end_of_allocation;
+  return of(file).change.bytes;
 }
 herr_t set_end_of_allocation(H5FD_t* file, H5FD_mem_t, haddr_t address) {
-  of(file).end_of_allocation = address;
+  of(file).change.bytes = address;
   return 0;
 }
 haddr_t end_of_file(const H5FD_t* file, H5FD_mem_t) {
@@ -234,40 +212,41 @@ haddr_t end_of_file(const H5FD_t* file, H5FD_mem_t) {
 }
 
 herr_t read_file(H5FD_t* library, H5FD_mem_t, hid_t, haddr_t address, std::size_t size, void* buffer) {
-  OpenFile& file = of(library);
-  auto* out = static_cast<unsigned char*>(buffer);
-  if (!read_at(file.descriptor, address, size, out)) return -1;
-  const haddr_t last = std::min(address + size, file.settled);
-  for (haddr_t page = address / page_bytes * page_bytes; page < last; page += page_bytes) {
-    const auto changed = file.pages.find(page);
-    if (changed == file.pages.end()) continue;
-    const haddr_t from = std::max(page, address), to = std::min(page + page_bytes, last);
+  const OpenFile& file = of(library);
+  auto* out = static_cast<char*>(buffer);
+  if (const int reason = read_at(file.descriptor, address, size, out); reason != 0) return result(reason);
+  const haddr_t end = std::min(address + size, file.settled);
+  for (haddr_t page = address / page_bytes * page_bytes; page < end; page += page_bytes) {
+    const auto changed = file.change.parts.find(page);
+    if (changed == file.change.parts.end()) continue;
+    const haddr_t from = std::max(page, address), to = std::min(page + page_bytes, end);
     std::memcpy(out + (from - address), changed->second.data() + (from - page), to - from);
   }
   return 0;
 }
 
-herr_t fail(OpenFile& file) {
-  file.failed = errno;
-  report(file.failed);
-  return -1;
+// What lies below the settled end goes to pages, read from the file where they are new; the rest goes to the file.
+int write_parts(OpenFile& file, haddr_t address, std::string_view data) {
+  while (!data.empty() && address < file.settled) {
+    const haddr_t page = address / page_bytes * page_bytes, end = std::min(page + page_bytes, file.settled);
+    auto [changed, fresh] = file.change.parts.try_emplace(page, end - page, '\0');
+    if (fresh)
+      if (const int reason = read_at(file.descriptor, page, end - page, changed->second.data()); reason != 0)
+        return reason;
+    const std::string_view here = data.substr(0, end - address);
+    here.copy(changed->second.data() + (address - page), here.size());
+    data.remove_prefix(here.size());
+    address += here.size();
+  }
+  file.end = std::max(file.end, address + data.size());
+  return write_at(file.descriptor, address, data);
 }
 
 herr_t write_file(H5FD_t* library, H5FD_mem_t, hid_t, haddr_t address, std::size_t size, const void* buffer) {
   OpenFile& file = of(library);
-  const auto* data = static_cast<const unsigned char*>(buffer);
-  const haddr_t end = address + size, old = std::min(end, file.settled);
-  for (haddr_t from = address; from < old;) {
-    const haddr_t page = from / page_bytes * page_bytes, to = std::min(page + page_bytes, old);
-    auto [changed, fresh] = file.pages.try_emplace(page, page_bytes);
-    if (fresh && !read_at(file.descriptor, page, page_bytes, changed->second.data())) return fail(file);
-    std::memcpy(changed->second.data() + (from - page), data + (from - address), to - from);
-    from = to;
-  }
-  const haddr_t from = std::max(address, file.settled);
-  if (from < end && !write_at(file.descriptor, from, end - from, data + (from - address))) return fail(file);
-  file.end = std::max(file.end, end);
-  return 0;
+  const int reason = write_parts(file, address, {static_cast<const char*>(buffer), size});
+  if (reason != 0) file.failed = reason;
+  return result(reason);
 }
 
 // Sizes are set when the file is settled.
@@ -283,7 +262,6 @@ hid_t driver() {
     table.fc_degree = H5F_CLOSE_WEAK;
     table.open = open_file;
     table.close = close_file;
-    table.cmp = compare;
     table.query = query;
     table.get_eoa = end_of_allocation;
     table.set_eoa = set_end_of_allocation;
@@ -307,18 +285,13 @@ void use_journal(hid_t access) {
 
 void replay_journal(const std::filesystem::path& path) {
   const std::string name = journal_of(path.string());
-  const int descriptor = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  Journal journal;
-  const bool whole = read_journal(descriptor, journal);
-  ::close(descriptor);
-  if (whole) {
-    const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
-    if (file < 0) throw_file_error(path, "write", errno);
-    const bool good = copy_changes(file, journal);
-    const int reason = errno;
-    ::close(file);
-    if (!good) throw_file_error(path, "complete", reason);
+  if (!std::filesystem::is_regular_file(name)) return;
+  if (const auto change = change_of(read_text(name))) {
+    const int descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+    if (descriptor < 0) throw_file_error(path, "write", errno);
+    const int reason = change->apply(descriptor);
+    ::close(descriptor);
+    if (reason != 0) throw_file_error(path, "complete", reason);
   }
   ::unlink(name.c_str());
 }

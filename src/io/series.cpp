@@ -40,7 +40,7 @@ std::string column_difference(const std::string& found, const std::string& expec
   if (const auto name = first_missing(expected, found); !name.empty()) return "it has no column '" + name + "'";
   if (const auto name = first_missing(found, expected); !name.empty())
     return "this program does not write its column '" + name + "'";
-  return found == expected ? "its line of names is cut off" : "its columns stand in another order";
+  return found == expected ? "its line of column names is incomplete" : "its columns are in another order";
 }
 
 }  // namespace
@@ -96,7 +96,7 @@ SeriesFile SeriesFile::resume(const std::filesystem::path& path, const std::vect
   if (text.compare(at, names.size(), names) != 0) {
     const std::string found = text.substr(at, text.find('\n', at) - at), expected = names.substr(0, names.size() - 1);
     throw FileError("cannot continue '" + path.string() + "': " + column_difference(found, expected) +
-                    "; continue it with the program that began it, named in log.txt, or run its case.toml anew");
+                    "; resume with the program version named in log.txt, or run its case.toml again");
   }
   at += names.size();
   for (std::int64_t row = 0; row < rows; ++row) {

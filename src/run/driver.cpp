@@ -4,18 +4,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <limits>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/io/file.hpp"
+#include "spume/run/probes.hpp"
 #include "spume/run/report.hpp"
 #include "spume/run/signals.hpp"
-#include "spume/run/state_file.hpp"
-#include "spume/run/version.hpp"
 #include "spume/scene/refusal.hpp"
-#include "spume/scene/resolved_case.hpp"
 
 namespace spume {
 namespace {
@@ -33,27 +29,25 @@ Schedule::Times times_of(const Case& options) {
 constexpr double pace_memory = 64;
 constexpr double slowest_pace = 1.0 / 32;
 
-std::string exact(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
-}
-
 std::string place_of(const StepFailure::Details& details, int dimensions) {
   std::string text;
   if (details.particle >= 0) {
     text = "particle " + std::to_string(details.particle) + " at (";
-    for (int axis = 0; axis < dimensions; ++axis) text += (axis == 0 ? "" : ", ") + exact(details.position[axis]);
+    for (int axis = 0; axis < dimensions; ++axis)
+      text += (axis == 0 ? "" : ", ") + exact_number(details.position[axis]);
     text += "), ";
   }
   return text + "value " + short_number(details.value);
 }
 
-// The state of a checkpoint lives in its own box, at its own spacing. Walls may change their velocity.
-bool fixed_by_the_state(const std::string& name) {
-  if (name.starts_with("domain.wall_velocity.")) return false;
-  return name == "method" || name.starts_with("domain.") || name == "resolution.spacing" ||
-         name.starts_with("resolution.grid");
+std::string failure_text(const StepFailure& failure, std::int64_t step, double t, int dimensions) {
+  return "numerical failure at step " + std::to_string(step) + ", t = " + exact_number(t) + ": " +
+         failure.details().cause + "\n  " + place_of(failure.details(), dimensions);
+}
+
+std::string help_text(const StepFailure& failure) {
+  const std::string& option = failure.details().option;
+  return option.empty() ? "" : "\n  most likely helps: change " + option;
 }
 
 // Quantities per step are divided by its length: far below the steps that the method takes they are lost.
@@ -66,10 +60,6 @@ void require_some_time(const Case& options, const Method& method) {
   throw refusal(options, "time.end",
                 "the end of the run, " + short_number(end) + ", is shorter than a billionth of the first step, " +
                     short_number(limit.dt) + " (" + limit.limited_by + "); give a later end");
-}
-
-std::string given_or_not(const std::string& value) {
-  return value.empty() ? "not set" : value;
 }
 
 }  // namespace
@@ -95,6 +85,7 @@ std::unique_ptr<Simulation> Simulation::start(LoadedCase loaded, const MethodFac
                                               const std::optional<std::filesystem::path>& folder) {
   auto owned = std::make_unique<LoadedCase>(std::move(loaded));
   auto method = make_method(*owned);
+  require_probes(owned->options, *method);
   method->start();
   require_some_time(owned->options, *method);
   RunFolder made = RunFolder::create(owned->options.path, folder);
@@ -110,6 +101,7 @@ std::unique_ptr<Simulation> Simulation::resume(const std::filesystem::path& fold
   auto loaded = std::make_unique<LoadedCase>(load_case((opened / "case.toml").string(), overrides));
   loaded->resuming = true;
   auto method = make_method(*loaded);
+  require_probes(loaded->options, *method);
   const auto checkpoint = opened / "checkpoint.h5";
   std::unique_ptr<Simulation> simulation(new Simulation(std::move(loaded), std::move(method), std::move(opened)));
   simulation->load_checkpoint(checkpoint);
@@ -125,72 +117,55 @@ RunState Simulation::run(Observer& observer) {
   const StopSignals signals;
   started_ = checkpointed_ = Clock::now();
   marks_.fill({started_, method_->time(), 0});
-  const auto watch = [&](const std::string& text) {
-    folder_.log(text);
-    observer.note(text);
-  };
   try {
-    if (fresh_) {
-      recorder_ = std::make_unique<Recorder>(folder_.path(), *loaded_, *method_, std::nullopt);
-      record_series(0);
-      recorder_->snapshot(*method_);
-      if (loaded_->options.output.spectrum_every > 0) recorder_->spectrum(*method_);
-      // A record that fails, on a full disk, is redone from a checkpoint: the figures of a step are not part of the
-      // state after it. So there is one from the start.
-      save_checkpoint();
-    }
-    const auto pass_on_remarks = [&] {
-      for (const std::string& remark : method_->take_remarks()) watch(remark);
-    };
-    for (const std::string& change : changes_) watch(change);
-    pass_on_remarks();
-    RunState state = RunState::finished;
-    while (!schedule_.finished(method_->time())) {
-      if (signals.requested()) {
-        state = RunState::interrupted;
-        break;
-      }
-      StepLimit limit;
-      const double dt = take_step(observer, limit);
-      record(dt);
-      pass_on_remarks();
-      if (const std::string note = method_->note(); !note.empty()) folder_.log(note);
-      report(observer, dt, limit);
-      if (seconds_between(checkpointed_, Clock::now()) > loaded_->options.output.checkpoint_every) save_checkpoint();
-    }
+    if (fresh_) record_start();
+    for (const std::string& change : changes_) tell(observer, change);
+    pass_on_remarks(observer);
+    while (!schedule_.finished(method_->time()) && !signals.requested()) advance(observer);
     if (checkpoint_step_ != method_->step_count()) save_checkpoint();
-    if (state == RunState::interrupted) {
+    const bool finished = schedule_.finished(method_->time());
+    if (!finished) {
       // After the checkpoint: a resumed run drops this snapshot again and stays equal to one that never stopped.
       recorder_->snapshot(*method_);
-      watch("interrupted at step " + std::to_string(method_->step_count()) + ", t = " + exact(method_->time()) +
-            "; continue with: spume resume " + folder_.path().string());
+      tell(observer, "interrupted at step " + std::to_string(method_->step_count()) + ", t = " +
+                         exact_number(method_->time()) + "; continue with: spume resume " + folder_.path().string());
     }
     recorder_->sync();
-    write_summary(state == RunState::finished ? "finished" : "interrupted", "");
-    return state;
+    write_summary(finished ? "finished" : "interrupted", "");
+    return finished ? RunState::finished : RunState::interrupted;
   } catch (const StepFailure& failure) {
-    // What a method solves before its first step has no step to halve.
-    const std::string text = "numerical failure at step " + std::to_string(method_->step_count()) +
-                             ", t = " + exact(method_->time()) + ": " + failure.details().cause + "\n  " +
-                             place_of(failure.details(), loaded_->scene.domain.dimensions) +
-                             "\n  most likely helps: change " + failure.details().option + "\n  " + continuation();
-    folder_.log(text);
-    write_summary("numerical failure", text);
+    const std::string text =
+        failure_text(failure, method_->step_count(), method_->time(), loaded_->scene.domain.dimensions) +
+        help_text(failure) + "\n  " + continuation();
+    close_failed("numerical failure", text);
     throw NumericalFailure(text);
   } catch (const NumericalFailure& failure) {
-    folder_.log(failure.what());
-    write_summary("numerical failure", failure.what());
+    close_failed("numerical failure", failure.what());
     throw;
   } catch (const FileError& failure) {
     const std::string text = failure.what() + ("\n  " + continuation());
-    folder_.log(text);
-    try {
-      write_summary("file error", text);
-    } catch (const FileError&) {
-      // The disk that refused the result refuses the summary too; the first error is the one to report.
-    }
+    close_failed("file error", text);
     throw FileError(text);
   }
+}
+
+void Simulation::record_start() {
+  recorder_ = std::make_unique<Recorder>(folder_.path(), *loaded_, *method_, std::nullopt);
+  record_series(0);
+  recorder_->snapshot(*method_);
+  if (loaded_->options.output.spectrum_every > 0) recorder_->spectrum(*method_);
+  // A record that fails, on a full disk, is redone from a checkpoint: the figures of a step are not part of the state
+  // after it. So there is one from the start.
+  save_checkpoint();
+}
+
+void Simulation::advance(Observer& observer) {
+  StepLimit limit;
+  const double dt = take_step(observer, limit);
+  record_due(dt);
+  pass_on_remarks(observer);
+  report_progress(observer, dt, limit);
+  if (seconds_between(checkpointed_, Clock::now()) > loaded_->options.output.checkpoint_every) save_checkpoint();
 }
 
 double Simulation::take_step(Observer& observer, StepLimit& limit) {
@@ -218,23 +193,20 @@ double Simulation::take_step(Observer& observer, StepLimit& limit) {
         give_up(failure, dt, attempt);
       ++retries_;
       control_.refused(dt);
-      const std::string text = "step " + std::to_string(method_->step_count() + 1) + " at t = " + exact(t) +
+      const std::string text = "step " + std::to_string(method_->step_count() + 1) + " at t = " + exact_number(t) +
                                " refused with dt = " + short_number(dt) + ": " + failure.details().cause + " (" +
                                place_of(failure.details(), loaded_->scene.domain.dimensions) +
                                "); trying dt = " + short_number(dt / 2);
-      folder_.log(text);
-      observer.note(text);
+      tell(observer, text);
     }
   }
 }
 
 void Simulation::give_up(const StepFailure& failure, double dt, int attempts) {
-  const auto& details = failure.details();
-  std::string text = "numerical failure at step " + std::to_string(method_->step_count() + 1) +
-                     ", t = " + exact(method_->time()) + ": " + details.cause + "\n  " +
-                     place_of(details, loaded_->scene.domain.dimensions) + "\n  refused " + std::to_string(attempts) +
-                     (attempts == 1 ? " time" : " times") + ", the last time with dt = " + short_number(dt);
-  if (!details.option.empty()) text += "\n  most likely helps: change " + details.option;
+  std::string text =
+      failure_text(failure, method_->step_count() + 1, method_->time(), loaded_->scene.domain.dimensions) +
+      "\n  refused " + std::to_string(attempts) + (attempts == 1 ? " time" : " times") +
+      ", the last time with dt = " + short_number(dt) + help_text(failure);
   try {
     // The order matters: a resumed run drops what was recorded after its checkpoint.
     if (checkpoint_step_ != method_->step_count()) save_checkpoint();
@@ -249,7 +221,7 @@ void Simulation::give_up(const StepFailure& failure, double dt, int attempts) {
 }
 
 std::string Simulation::continuation() const {
-  if (!checkpoint_step_) return "there is no checkpoint to continue";
+  if (!checkpoint_step_) return "there is no checkpoint to resume from";
   return "spume resume " + folder_.path().string() + " continues from the checkpoint of step " +
          std::to_string(*checkpoint_step_);
 }
@@ -260,7 +232,7 @@ void Simulation::record_series(double dt) {
   watch_->observe(recorder_->series_row());
 }
 
-void Simulation::record(double dt) {
+void Simulation::record_due(double dt) {
   const Schedule::Due due = schedule_.arrive(method_->time());
   if (due.series) {
     const auto scope = ledger_.time("series and probes");
@@ -277,7 +249,19 @@ void Simulation::record(double dt) {
   }
 }
 
-void Simulation::report(Observer& observer, double dt, const StepLimit& limit) {
+void Simulation::tell(Observer& observer, const std::string& text) {
+  folder_.log(text);
+  observer.note(text);
+}
+
+void Simulation::pass_on_remarks(Observer& observer) {
+  for (const Remark& remark : method_->take_remarks()) {
+    folder_.log(remark.text);
+    if (!remark.log_only) observer.note(remark.text);
+  }
+}
+
+void Simulation::report_progress(Observer& observer, double dt, const StepLimit& limit) {
   // The rate is that of the last 5 to 10 seconds: two marks take turns as the start of the window.
   const auto now = Clock::now();
   if (seconds_between(marks_[1].wall, now) > 5) {
@@ -291,77 +275,13 @@ void Simulation::report(Observer& observer, double dt, const StepLimit& limit) {
   observer.progress(progress);
 }
 
-void Simulation::save_checkpoint() {
-  const auto scope = ledger_.time("checkpoints", static_cast<double>(method_->particle_count()));
-  recorder_->sync();
-  CheckpointWriter file(folder_ / "checkpoint.h5",
-                        {program_version(), program_commit(), loaded_->options.resolved, case_file_});
-  const auto next = schedule_.next();
-  const double clock[] = {method_->time(), control_.cap(), earlier_wall_seconds_ + wall_seconds()};
-  const std::int64_t counters[] = {method_->step_count(), retries_, next[0], next[1], next[2]};
-  file.f64("driver/clock", clock);
-  file.i64("driver/counters", counters);
-  if (watch_) file.f64("driver/invariants", watch_->seen());
-  for (const auto& [name, count] : recorder_->extent()) file.i64("driver/extent/" + name, std::span(&count, 1));
-  CheckpointStateWriter writer(file, "method/");
-  method_->save(writer);
-  file.commit();
-  checkpoint_step_ = method_->step_count();
-  checkpointed_ = Clock::now();
-}
-
-void Simulation::compare_with_checkpoint(const std::string& case_text) {
-  for (const auto& [name, before, now] : changed_values(case_text, loaded_->options.resolved)) {
-    const std::string difference = name + " = " + given_or_not(now) + ", at the checkpoint " + given_or_not(before);
-    if (fixed_by_the_state(name))
-      throw refusal(loaded_->options, name,
-                    "the checkpoint in '" + folder_.path().string() + "' does not fit the changed case: " + difference +
-                        "; restore the value, or start a new run");
-    changes_.push_back("the case has changed since the checkpoint: " + difference);
+void Simulation::close_failed(const std::string& state, const std::string& text) {
+  folder_.log(text);
+  try {
+    write_summary(state, text);
+  } catch (const FileError&) {
+    // The disk that refused a result refuses the summary too; the first error is the one to report.
   }
-  loaded_->options.resolved = with_origins_of(case_text, loaded_->options.resolved);
-}
-
-void Simulation::load_checkpoint(const std::filesystem::path& path) {
-  const CheckpointReader file(path);
-  Array<double> clock;
-  Array<std::int64_t> counters;
-  file.f64("driver/clock", clock);
-  file.i64("driver/counters", counters);
-  if (clock.size() < 3 || counters.size() != 5)
-    throw FileError("cannot read checkpoint '" + path.string() + "': the driver's state has another size");
-  if (schedule_.finished(clock[0]))
-    throw InputError("the run in '" + folder_.path().string() + "' is already at t = " + exact(clock[0]) +
-                     "; give a later time with --until");
-  compare_with_checkpoint(file.origin().case_text);
-  CheckpointStateReader reader(file, "method/");
-  method_->load(reader);
-  control_.set_cap(clock[1]);
-  earlier_wall_seconds_ = clock[2];
-  retries_ = counters[1];
-  schedule_.set_next({counters[2], counters[3], counters[4]});
-  if (method_->time() != clock[0] || method_->step_count() != counters[0])
-    throw FileError("cannot read checkpoint '" + path.string() + "': method and driver disagree about the step");
-
-  Recorder::Extent extent;
-  const std::string prefix = "driver/extent/";
-  for (const auto& entry : file.entries()) {
-    if (!entry.name.starts_with(prefix)) continue;
-    Array<std::int64_t> count;
-    file.i64(entry.name, count);
-    extent[entry.name.substr(prefix.size())] = count.empty() ? 0 : count[0];
-  }
-  folder_.log("continuing from step " + std::to_string(counters[0]) + ", t = " + exact(clock[0]));
-  recorder_ = std::make_unique<Recorder>(folder_.path(), *loaded_, *method_, extent);
-  watch_.emplace(method_->invariants(), recorder_->series_columns());
-  if (file.has("driver/invariants")) {
-    Array<double> seen;
-    file.f64("driver/invariants", seen);
-    watch_->restore(seen);
-  }
-  if (!file.origin().case_file.empty()) case_file_ = file.origin().case_file;
-  checkpoint_step_ = counters[0];
-  fresh_ = false;
 }
 
 void Simulation::write_summary(const std::string& state, const std::string& message) {

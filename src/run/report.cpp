@@ -67,6 +67,10 @@ std::string short_number(double value) {
   return format("%.4g", value);
 }
 
+std::string exact_number(double value) {
+  return format("%.10g", value);
+}
+
 std::string human_bytes(double bytes) {
   static constexpr const char* units[] = {"B", "kB", "MB", "GB", "TB"};
   std::size_t unit = 0;
@@ -131,7 +135,7 @@ std::string plan_table(const std::vector<Stage>& plan) {
   std::string text;
   for (const auto& stage : plan)
     text += format("  %-*s  %-3s  ", static_cast<int>(width), stage.name.c_str(), stage.on ? "on" : "off") +
-            stage.reason + '\n';
+            stage.reason + (stage.part == StagePart::start ? " (at the start only)\n" : "\n");
   return text;
 }
 

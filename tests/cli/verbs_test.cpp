@@ -111,6 +111,7 @@ TEST_F(Verbs, BadCommandLinesAndCasesExitWith2AndCreateNothing) {
       {{"info", "none"}, "there is no file 'none'"},
       {{"options", "nonsense"}, "there is no section 'nonsense'; there are time, output"},
       {{"run", "case.toml", "--set", "particles=-1"}, "the method needs particles"},
+      {{"check", "case.toml", "--set", "probes=true", "--set", "surface=false"}, "probe.1.kind needs a free surface"},
       {{"run", "case.toml", "--set", "particles=9000000000000"}, "not enough memory"},
       {{"run", "case.toml", "-o", "/proc/run"}, "/proc/run"}};
   for (const auto& [arguments, message] : cases) {
@@ -200,7 +201,7 @@ TEST_F(Verbs, WithoutMemoryARunNamesACheckpointOnlyWhereThereIsOne) {
   write_case("end = 1.0\nmemory_until = -1.0\n");
   const Outcome early = spume({"run", "case.toml", "-o", "early", "--set", "solvable=false"});
   EXPECT_EQ(early.code, 3);
-  EXPECT_THAT(early.err, HasSubstr("there is no checkpoint to continue"));
+  EXPECT_THAT(early.err, HasSubstr("there is no checkpoint to resume from"));
 }
 
 TEST_F(Verbs, ARunWhoseReaderLeavesGoesOnToItsEnd) {
@@ -226,8 +227,9 @@ TEST_F(Verbs, CheckPrintsPlanMemoryAndTime) {
   write_case("end = 1.0\n");
   const Outcome outcome = spume({"check", "case.toml"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  for (const char* part :
-       {"bubbles  off  the case has no [bubbles]", "48.0 B per particle", "limited by", "machine has"})
+  for (const char* part : {"  aim      on   always (at the start only)\n  turn     on   always\n  bubbles  off  the "
+                           "case has no [bubbles]\n",
+                           "48.0 B per particle", "limited by", "machine has"})
     EXPECT_THAT(outcome.out, HasSubstr(part));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "runs"));
 }

@@ -89,12 +89,13 @@ TEST(Series, ResumeRefusesForeignColumnsAndMissingRows) {
   more.push_back({"speed", "m/s"});
   fewer.pop_back();
   std::swap(turned[0], turned[1]);
-  EXPECT_THAT(refusal(more, 3), HasSubstr("it has no column 'speed'; continue it with the program that began it"));
+  EXPECT_THAT(refusal(more, 3),
+              HasSubstr("it has no column 'speed'; resume with the program version named in log.txt"));
   EXPECT_THAT(refusal(fewer, 3), HasSubstr("does not write its column '" + columns.back().name + "'"));
   EXPECT_THAT(refusal(turned, 3), HasSubstr("in another order"));
   EXPECT_THAT(refusal(columns, 4), HasSubstr("holds 3 rows, the checkpoint was made after 4"));
   std::filesystem::resize_file(folder / "series.csv", contents(folder / "series.csv").find("energy\n0") + 6);
-  EXPECT_THAT(refusal(columns, 3), HasSubstr("its line of names is cut off"));
+  EXPECT_THAT(refusal(columns, 3), HasSubstr("its line of column names is incomplete"));
 }
 
 TEST(Series, WordsStandBetweenNumbers) {

@@ -47,6 +47,21 @@ TEST(VtkhdfGrid, StepsAreStoredWithXFastest) {
   EXPECT_EQ(pressure[stored], 100 + static_cast<float>(given));
   EXPECT_EQ(velocity[3 * stored + 1], -static_cast<float>(given));
   EXPECT_EQ(velocity[3 * stored + 2], 2 * static_cast<float>(given));
+  for (const char* field : {"velocity", "pressure"})
+    EXPECT_EQ(read(path, std::string("/VTKHDF/Steps/PointDataOffsets/") + field), (std::vector<float>{0, 1})) << field;
+  const auto attribute = [&](const char* name, std::size_t count) {
+    const auto stored = hdf5::File::open(path, false);
+    const auto id =
+        stored.take(H5Aopen_by_name(stored.id(), "/VTKHDF", name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "read");
+    std::vector<double> values(count);
+    stored.check(H5Aread(id, H5T_NATIVE_DOUBLE, values.data()), "read");
+    return values;
+  };
+  EXPECT_EQ(attribute("Origin", 3), (std::vector<double>{0.5, 0, -1}));
+  EXPECT_EQ(attribute("Spacing", 3), (std::vector<double>{0.1, 0.2, 0.3}));
+  EXPECT_EQ(attribute("WholeExtent", 6), (std::vector<double>{0, 2, 0, 3, 0, 4}));
+  EXPECT_EQ(attribute("Direction", 9), (std::vector<double>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
+  EXPECT_EQ(hdf5::read_text(hdf5::File::open(path, false), "/Spume/case"), "text");
   const GridContents contents = read_grid_contents(path);
   EXPECT_EQ(contents.times, (std::vector<double>{0, 0.5}));
   EXPECT_EQ(contents.points, (std::array<std::int64_t, 3>{3, 4, 5}));

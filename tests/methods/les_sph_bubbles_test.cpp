@@ -118,6 +118,16 @@ const bubbles::BubbleCoupling& bubbles_of(const Simulation& run) {
   return *run.method.flow().bubbles;
 }
 
+// What the run remarks on, for the log; "" for nothing.
+std::string remark_of(Simulation& run) {
+  std::string text;
+  for (const Remark& remark : run.method.take_remarks()) {
+    EXPECT_TRUE(remark.log_only);
+    text += remark.text;
+  }
+  return text;
+}
+
 double liquid_sum(const Simulation& run, const FloatVectorField& field, int axis) {
   double sum = 0;
   for (std::size_t i = 0; i < run.method.flow().size(); ++i) sum += (*field[axis])[i];
@@ -385,8 +395,8 @@ TEST(Bubbles, InAnOverfullRegionRunOn) {
   EXPECT_LT(series.at("smallest_volume_fraction"), 0.5);
   const double exact = 400 * 4 * M_PI / 3 * 2.7e-5;
   EXPECT_NEAR(series.at("bubble_volume"), exact, 1e-12 * exact);
-  EXPECT_NE(run.method.note(), "");
-  EXPECT_EQ(run.method.note(), "");
+  EXPECT_FALSE(run.method.take_remarks().empty());
+  EXPECT_TRUE(run.method.take_remarks().empty());
   // The filter that the fluctuations know is as wide as the kernels there: h alpha^(-1/3), alpha >= 1/2.
   double widest = 0;
   for (std::size_t b = 0; b < 400; ++b) {
@@ -413,7 +423,7 @@ TEST(Bubbles, OfADropletBurstTogether) {
   run.steps(1, 0.002);
   EXPECT_EQ(run.series().at("bubbles"), 0);
   EXPECT_EQ(run.series().at("bursts"), 7);
-  EXPECT_THAT(run.method.note(), ::testing::HasSubstr("7 of 7 bubbles burst in the step to t = 0.002"));
+  EXPECT_THAT(remark_of(run), ::testing::HasSubstr("7 of 7 bubbles burst in the step to t = 0.002"));
   EXPECT_NEAR(run.series().at("burst_volume"), volume, 1e-12 * volume);
   run.steps(3, 0.002);
   EXPECT_EQ(run.series().at("smallest_volume_fraction"), 1);
@@ -426,7 +436,7 @@ TEST(Bubbles, InGreatNumberRunOn) {
   EXPECT_EQ(run.series().at("bubbles"), 1e6);
   const double exact = 1e6 * 4 * M_PI / 3 * 1e-15;
   EXPECT_NEAR(run.series().at("bubble_volume"), exact, 1e-9 * exact);
-  EXPECT_THAT(run.method.note(), ::testing::HasSubstr("1000000 bubbles live at t = 0.005"));
+  EXPECT_THAT(remark_of(run), ::testing::HasSubstr("1000000 bubbles live at t = 0.005"));
 }
 
 // In a closed box bubbles do without surface tension, and without counts about a radius that there is not.

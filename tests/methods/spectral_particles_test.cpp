@@ -60,17 +60,22 @@ TEST(SpectralParticles, ReportWhatTheirCouplingHas) {
   ASSERT_EQ(families.size(), 1U);
   EXPECT_EQ(families[0].name, "bubbles");
   EXPECT_EQ(families[0].size, 2000U);
-  const auto tables = run.method.distributions(), headings = run.method.distribution_headings();
-  ASSERT_EQ(tables.size(), headings.size());
-  ASSERT_EQ(tables[2].name, "particle_boxes");
+  std::vector<double> boxes;
+  run.method.table_rows("particle_boxes", boxes);
   // Sides of 1/12, 1/6 and 1/3 in a box of 1 x 1.5 x 2; 2000 particles lie in all boxes together.
-  ASSERT_EQ(tables[2].values.size(), 9U);
-  EXPECT_NEAR(tables[2].values[1] * 12 * 18 * 24, 2000, 1e-9);
-  for (std::size_t i = 0; i < tables.size(); ++i) {
-    EXPECT_EQ(tables[i].name, headings[i].name);
-    EXPECT_GT(tables[i].values.size(), 0U);
-    EXPECT_EQ(tables[i].values.size() % headings[i].columns.size(), 0U);
+  ASSERT_EQ(boxes.size(), 12U);
+  EXPECT_NEAR(boxes[2] * 12 * 18 * 24, 2000, 1e-9);
+  std::vector<std::string> tables;
+  for (const RecordTable& table : run.method.tables()) {
+    tables.push_back(table.name);
+    std::vector<double> rows;
+    run.method.table_rows(table.name, rows);
+    EXPECT_GT(rows.size(), 0U) << table.name;
+    EXPECT_EQ(rows.size() % table.columns.size(), 0U) << table.name;
+    EXPECT_EQ(rows[0], run.method.time()) << table.name;
   }
+  EXPECT_THAT(tables, testing::ElementsAre("spectrum", "gradient_pdf", "particle_pairs", "particle_boxes",
+                                           "particle_overlaps"));
 }
 
 TEST(SpectralParticles, StayWithinTheMemoryThatTheyAreRefusedBy) {

@@ -32,11 +32,14 @@ class Watch final : public Observer {
   explicit Watch(std::int64_t stop_after = -1) : stop_after_(stop_after) {}
   void progress(const Progress& progress) override {
     steps.push_back(progress.dt);
+    limits.push_back(progress.limited_by);
+    last = progress;
     if (progress.step == stop_after_) raise(SIGINT);
   }
   void note(const std::string& text) override { notes.push_back(text); }
   std::vector<double> steps;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes, limits;
+  Progress last;
 
  private:
   std::int64_t stop_after_;
@@ -72,7 +75,7 @@ class Driver : public testing::Test {
     return values;
   }
   void expect_equal_results(const std::string& a, const std::string& b) {
-    for (const char* file : {"series.csv", "probes.csv", "lines.csv", "spectrum.csv"}) {
+    for (const char* file : {"series.csv", "probes.csv", "lines.csv", "spectrum.csv", "turns.csv", "places.csv"}) {
       EXPECT_FALSE(contents(folder_ / a / file).empty()) << file;
       EXPECT_EQ(contents(folder_ / a / file), contents(folder_ / b / file)) << file;
     }
@@ -116,6 +119,71 @@ TEST_F(Driver, ProbesHaveTheirColumns) {
                         "0,cut,2.5,1.5,2,0,1,2,0,1.5\n0,cut,5,3,4,0,1,4,0,3\n"));
 }
 
+// The copy in a run folder is read again, so a method that has lost its surface is refused there too.
+TEST_F(Driver, AProbeThatTheMethodDoesNotHaveIsRefusedAtItsPlace) {
+  write_case("end = 0.05\nprobes = true\nsurface = false\n");
+  try {
+    start("run");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    const std::string place = (folder_ / "case.toml").string() + ":1:1: error: ";
+    EXPECT_EQ(error.what(), place +
+                                "probe.1.kind needs a free surface, which method \"fake\" does not have; use "
+                                "\"point\", \"line\" or \"plane\"");
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "run"));
+  write_case("end = 0.05\nprobes = true\n");
+  Watch stopping(2);
+  start("run")->run(stopping);
+  test::write_contents(folder_ / "run" / "case.toml", "end = 0.05\nprobes = true\nsurface = false\n");
+  EXPECT_THROW(resume("run"), InputError);
+  test::write_contents(folder_ / "run" / "case.toml", "end = 0.05\nprobes = true\n");
+  EXPECT_NO_THROW(resume("run"));
+}
+
+TEST_F(Driver, TablesOfTheMethodHaveRowsAtTheirTimes) {
+  write_case("title = \"Points\"\nend = 0.03\nspectrum_every = 0.02\nseries_every = 0.01\nevery = 0.015\ndt = 0.01\n");
+  Watch watch;
+  start("run")->run(watch);
+  const auto times = [&](const std::string& table) {
+    std::istringstream lines(contents(folder_ / "run" / (table + ".csv")));
+    std::string found;
+    for (std::string line; std::getline(lines, line);)
+      if (std::isdigit(line[0]) != 0) found += line.substr(0, line.find(',')) + ' ';
+    return found;
+  };
+  EXPECT_EQ(times("turns"), times("series").empty() ? "?" : "0 0.01 0.02 0.03 ");
+  EXPECT_EQ(times("places"), "0 0 0.015 0.015 0.03 0.03 ");
+  EXPECT_EQ(times("spectrum"), "0 0 0.02 0.02 0.03 0.03 ");
+  EXPECT_THAT(contents(folder_ / "run" / "spectrum.csv"),
+              HasSubstr("# Points: energy spectra\n# t: time\n# wavenumber: 1/length\n# energy: velocity^2 length\n"
+                        "t,wavenumber,energy\n0,1,0\n"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "run" / "nothing.csv"));
+}
+
+// A table that began after the checkpoint belongs to what the resumed run does again.
+TEST_F(Driver, TablesThatBeganAfterTheCheckpointBeginAnew) {
+  write_case("end = 1.0\n");
+  Watch stopping(5), watch;
+  start("run")->run(stopping);
+  ASSERT_FALSE(std::filesystem::exists(folder_ / "run" / "spectrum.csv"));
+  test::write_contents(folder_ / "run" / "spectrum.csv", "rows of steps that are done again\n");
+  resume("run")->run(watch);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "run" / "spectrum.csv"));
+}
+
+TEST_F(Driver, RemarksGoToTheLogAndThoseForAllToTheWatcher) {
+  write_case("end = 0.1\n");
+  Watch watch;
+  start("run")->run(watch);
+  EXPECT_THAT(watch.notes, testing::ElementsAre("the points are ready"));
+  const std::string log = contents(folder_ / "run" / "log.txt");
+  for (const char* text : {"the points are ready", "two steps are done"}) {
+    EXPECT_THAT(log, HasSubstr(text));
+    EXPECT_EQ(log.find(text), log.rfind(text)) << "given once";
+  }
+}
+
 TEST_F(Driver, TheSummaryGivesVerdictsOnWhatMustHold) {
   write_case("end = 1.0\n");
   Watch watch;
@@ -143,6 +211,62 @@ TEST_F(Driver, TheSummaryNamesTheCaseAlsoAfterResuming) {
   for (Watch* next : {&again, &watch}) {
     resume("run")->run(*next);
     EXPECT_EQ(summary("run")["case"], given);
+  }
+}
+
+TEST_F(Driver, TheSummaryCountsTheTimeOfAllProcesses) {
+  write_case("end = 0.2\nsleep = 0.02\n");
+  Watch stopping(5), watch;
+  start("run")->run(stopping);
+  const double before = summary("run")["total_wall_seconds"];
+  EXPECT_GE(before, 0.1);
+  resume("run")->run(watch);
+  const double wall = summary("run")["wall_seconds"], total = summary("run")["total_wall_seconds"];
+  EXPECT_GE(wall, 0.02 * static_cast<double>(watch.steps.size()));
+  // The checkpoint was written a moment before the summary.
+  EXPECT_GE(total, wall + 0.1);
+  EXPECT_LE(total, wall + before);
+  EXPECT_EQ(summary("run")["steps_this_process"], static_cast<std::int64_t>(watch.steps.size()));
+  EXPECT_NEAR(summary("run")["particle_steps_per_second"].get<double>(),
+              50 * static_cast<double>(watch.steps.size()) / wall, 1e-6);
+}
+
+// 50 particles and at least 0.02 s a step; the rate is that of the whole of so short a run.
+TEST_F(Driver, TheProgressGivesRateAndRemainingTime) {
+  write_case("end = 1.0\nsleep = 0.02\n");
+  Watch stopping(20);
+  start("run")->run(stopping);
+  const Progress& last = stopping.last;
+  EXPECT_EQ(last.step, 20);
+  EXPECT_EQ(last.end, 1);
+  EXPECT_GT(last.particle_steps_per_second, 0);
+  EXPECT_LE(last.particle_steps_per_second, 50 / 0.02);
+  const double wall = 20 * 50 / last.particle_steps_per_second;
+  EXPECT_NEAR(last.remaining_seconds, (1 - last.time) / last.time * wall, 1e-9 * wall);
+}
+
+// A run that is killed continues from the last checkpoint, so there must be some on the way.
+TEST_F(Driver, CheckpointsAreWrittenOnTheWay) {
+  class Reader final : public Observer {
+   public:
+    explicit Reader(std::filesystem::path path) : path_(std::move(path)) {}
+    void progress(const Progress& progress) override {
+      if (progress.step != 5) return;
+      Array<std::int64_t> counters;
+      CheckpointReader(path_).i64("driver/counters", counters);
+      step = counters[0];
+    }
+    void note(const std::string&) override {}
+    std::int64_t step = -1;
+
+   private:
+    std::filesystem::path path_;
+  };
+  for (const auto& [every, expected] : {std::pair{"0.001", 4}, std::pair{"300", 0}}) {
+    write_case(std::string("end = 0.1\nsleep = 0.002\ncheckpoint_every = ") + every + '\n');
+    Reader reader(folder_ / every / "checkpoint.h5");
+    start(every)->run(reader);
+    EXPECT_EQ(reader.step, expected) << every;
   }
 }
 
@@ -182,9 +306,13 @@ TEST_F(Driver, RefusedStepsAreHalvedAndGrowBack) {
   Watch watch;
   EXPECT_EQ(start("run")->run(watch), RunState::finished);
   EXPECT_THAT(watch.steps, Each(Le(0.004)));
-  ASSERT_FALSE(watch.notes.empty());
-  EXPECT_THAT(watch.notes[0], HasSubstr("particle 7 at (0.25, 0.5), value 3.5"));
-  EXPECT_EQ(summary("run")["retries"], static_cast<std::int64_t>(watch.notes.size()));
+  ASSERT_GT(watch.notes.size(), 1u);
+  EXPECT_THAT(watch.notes[1], HasSubstr("particle 7 at (0.25, 0.5), value 3.5"));
+  EXPECT_EQ(summary("run")["retries"], static_cast<std::int64_t>(watch.notes.size()) - 1);
+  EXPECT_EQ(watch.limits[0], "a refused step");
+  // Two refusals lead from 0.01 below 0.004. From then on every step is tried at twice the length of the one before it,
+  // which is refused, so that there are about as many refusals as steps.
+  EXPECT_GT(watch.notes.size(), watch.steps.size() / 2);
   for (std::size_t i = 1; i < watch.steps.size(); ++i) EXPECT_LE(watch.steps[i], 2.0000001 * watch.steps[i - 1]);
 }
 
@@ -226,7 +354,7 @@ TEST_F(Driver, AFailureBeforeTheFirstStepSaysThatNothingCanBeContinued) {
   write_case("end = 1.0\nsolvable = false\n");
   const std::string message = failure_of_run();
   EXPECT_THAT(message, HasSubstr("the pressure solve did not converge"));
-  EXPECT_THAT(message, HasSubstr("there is no checkpoint to continue"));
+  EXPECT_THAT(message, HasSubstr("there is no checkpoint to resume from"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "run" / "checkpoint.h5"));
 }
 
@@ -334,6 +462,37 @@ TEST_F(Driver, ResumeNamesWhatIsWrong) {
   test::write_contents(checkpoint, good);
   std::filesystem::remove(folder_ / "run" / "series.csv");
   EXPECT_THROW(resume("run"), FileError);
+}
+
+TEST_F(Driver, ACheckpointWhoseDriverAndMethodDisagreeIsRefused) {
+  write_case("end = 0.3\n");
+  Watch stopping(5);
+  start("run")->run(stopping);
+  const auto checkpoint = folder_ / "run" / "checkpoint.h5", changed = folder_ / "changed.h5";
+  {
+    const CheckpointReader reader(checkpoint);
+    CheckpointWriter writer(changed, reader.origin());
+    for (const auto& entry : reader.entries()) {
+      Array<double> reals;
+      Array<std::int64_t> integers;
+      if (entry.type == "f64") {
+        reader.f64(entry.name, reals);
+        writer.f64(entry.name, reals);
+      } else {
+        reader.i64(entry.name, integers);
+        if (entry.name == "driver/counters") ++integers[0];
+        writer.i64(entry.name, integers);
+      }
+    }
+    writer.commit();
+  }
+  std::filesystem::rename(changed, checkpoint);
+  try {
+    resume("run");
+    FAIL() << "no error";
+  } catch (const FileError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("method and driver disagree about the step"));
+  }
 }
 
 }  // namespace

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <nlohmann/json.hpp>
+
 #include "spume/methods/factory.hpp"
 #include "spume/scene/load.hpp"
 #include "spume/scene/memory.hpp"
@@ -53,6 +56,63 @@ TEST(Report, MemoryIsEstimatedBeforeTheFirstStep) {
     EXPECT_GT(ratio, least) << text;
     EXPECT_LT(ratio, 1) << text;
   }
+}
+
+TEST(Report, SizesAndTimesAreShort) {
+  EXPECT_EQ(human_bytes(0), "0 B");
+  EXPECT_EQ(human_bytes(999), "999 B");
+  EXPECT_EQ(human_bytes(1000), "1 kB");
+  EXPECT_EQ(human_bytes(11.24e9), "11.2 GB");
+  EXPECT_EQ(human_bytes(3e15), "3e+03 TB");
+  EXPECT_EQ(human_duration(0.4), "00:00");
+  EXPECT_EQ(human_duration(151), "02:31");
+  EXPECT_EQ(human_duration(7805), "2:10:05");
+  EXPECT_EQ(human_duration(-1), "00:00");
+  EXPECT_EQ(human_duration(INFINITY), "--:--");
+  EXPECT_EQ(short_number(1.0 / 3), "0.3333");
+  EXPECT_EQ(exact_number(0.1 + 0.2), "0.3");
+}
+
+TEST(Report, ThePlanMarksWhatOnlyTheStartRuns) {
+  const std::vector<Stage> plan = {{.name = "project", .reason = "always", .part = StagePart::both},
+                                   {.name = "fill", .reason = "initial pressure", .part = StagePart::start},
+                                   {.name = "shift", .reason = "shifting.on = false", .on = false}};
+  EXPECT_EQ(plan_table(plan),
+            "  project  on   always\n"
+            "  fill     on   initial pressure (at the start only)\n"
+            "  shift    off  shifting.on = false\n");
+}
+
+// Arrays of the particles in a flow count per such particle, and once more together.
+TEST(Report, ArraysCountPerParticleOrPoint) {
+  const std::string table = array_table({{"velocity", 4000, 0}, {"place", 240, 10}, {"slip", 80, 10}}, 100, true);
+  EXPECT_EQ(table,
+            "  velocity                4 kB      40.0 B per point\n"
+            "  place                  240 B      24.0 B per particle\n"
+            "  slip                    80 B       8.0 B per particle\n"
+            "  all of particles       320 B      32.0 B per particle\n"
+            "  total                4.32 kB      43.2 B per point\n");
+}
+
+TEST(Report, TheSummaryHasNoNumberThatJsonDoesNotKnow) {
+  LoadedCase loaded;
+  loaded.options.title = "Case \xff";  // no UTF-8
+  RunFigures figures;
+  figures.state = "finished";
+  figures.particles = 100;
+  figures.particle_steps = 500;
+  figures.wall_seconds = 2;
+  figures.total_wall_seconds = 3;
+  figures.final_values = {{"t", 1.5}, {"speed", NAN}};
+  figures.verdicts = {{"drift", INFINITY, 1}, {"residual", 0.5, 1}};
+  const auto summary = nlohmann::json::parse(summary_json(loaded, figures));
+  EXPECT_EQ(summary["final"]["t"], 1.5);
+  EXPECT_TRUE(summary["final"]["speed"].is_null());
+  EXPECT_TRUE(summary["verdicts"][0]["value"].is_null());
+  EXPECT_EQ(summary["verdicts"][0]["verdict"], "FAIL");
+  EXPECT_EQ(summary["verdicts"][1]["verdict"], "pass");
+  EXPECT_EQ(summary["particle_steps_per_second"], 250);
+  EXPECT_EQ(summary["total_wall_seconds"], 3);
 }
 
 TEST(Report, TheLedgerGivesRatesOfWhatIsCounted) {

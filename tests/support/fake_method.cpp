@@ -25,9 +25,10 @@ struct FakeBehaviour {
   double sleep = 0;            // wall seconds per step
   double memory_until = 1e30;  // the memory ends with the first step at or after this time
   bool solvable = true;        // false: what it solves before the first step fails
+  bool surface = true;         // false: it has no probes of a surface
 };
 
-class FakeMethod final : public Method {
+class FakeMethod final : public Method, public FieldProbes, public SurfaceProbes {
  public:
   FakeMethod(const FakeBehaviour& behaviour, int dimensions) : behaviour_(behaviour), dimensions_(dimensions) {
     const auto n = static_cast<std::size_t>(behaviour.particles);
@@ -46,10 +47,7 @@ class FakeMethod final : public Method {
     turn_.resize(n);
   }
 
-  std::vector<Stage> plan() const override {
-    return {{.name = "turn", .reason = "always"},
-            {.name = "bubbles", .reason = "the case has no [bubbles]", .on = false}};
-  }
+  const std::vector<Stage>& plan() const override { return stages_; }
   std::vector<ArrayInfo> arrays() const override {
     return {{"position", 24.0 * static_cast<double>(id_.size())}, {"velocity", 24.0 * static_cast<double>(id_.size())}};
   }
@@ -74,7 +72,7 @@ class FakeMethod final : public Method {
       turn_[i] = dt * velocity_[0][i];
     }
     time_ += dt;
-    ++step_;
+    if (++step_ == 2) remarks_.push_back({"two steps are done", true});
   }
 
   std::vector<SeriesColumn> series_columns() const override {
@@ -104,6 +102,8 @@ class FakeMethod final : public Method {
     fluid.fields[3].f64.push_back(turn_.data());
     return {fluid};
   }
+  FieldProbes* field_probes() override { return this; }
+  SurfaceProbes* surface_probes() override { return behaviour_.surface ? this : nullptr; }
   PointSample sample(const Vec3& at) override { return {at[0] + time_, {position_[0][0], at[1], at[2]}, 1}; }
   double elevation(const Vec3& at) override { return at[0] + position_[1][0]; }
   double wetted_length(const Vec3& at) override { return at[0] - position_[1][0]; }
@@ -113,10 +113,26 @@ class FakeMethod final : public Method {
   PlaneSample plane_average(int axis, double position) override {
     return {position, time_, {static_cast<double>(axis), position, 3}};
   }
-  bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override {
-    wavenumber = {1, 2};
-    energy = {time_, position_[0][1]};
-    return true;
+  // One table of each kind, and one that never gets a row.
+  std::vector<RecordTable> tables() const override {
+    return {spectrum_table(),
+            {"turns", "turns of the points", {{"t", "time"}, {"turn", "m"}}, RecordTable::When::series},
+            {"places", "places of the points", {{"t", "time"}, {"id", ""}, {"x", "m"}}, RecordTable::When::output},
+            {"nothing", "no rows", {{"t", "time"}}, RecordTable::When::output}};
+  }
+  void table_rows(const std::string& name, std::vector<double>& rows) override {
+    if (name == "spectrum")
+      add_spectrum(time_, std::vector<double>{1, 2}, std::vector<double>{time_, position_[0][1]}, rows);
+    else if (name == "turns")
+      rows.insert(rows.end(), {time_, turn_[0]});
+    else if (name == "places")
+      for (std::size_t i = 0; i < 2; ++i) rows.insert(rows.end(), {time_, static_cast<double>(i), position_[0][i]});
+  }
+  // At the start, for all to see, and after the second step, for the log.
+  std::vector<Remark> take_remarks() override {
+    std::vector<Remark> given;
+    std::swap(given, remarks_);
+    return given;
   }
   void save(StateWriter& writer) const override {
     const std::int64_t step[] = {step_};
@@ -145,6 +161,10 @@ class FakeMethod final : public Method {
 
  private:
   FakeBehaviour behaviour_;
+  std::vector<Stage> stages_ = {{.name = "aim", .reason = "always", .part = StagePart::start},
+                                {.name = "turn", .reason = "always", .part = StagePart::both},
+                                {.name = "bubbles", .reason = "the case has no [bubbles]", .on = false}};
+  std::vector<Remark> remarks_ = {{"the points are ready"}};
   int dimensions_;
   double time_ = 0;
   std::int64_t step_ = 0;
@@ -205,6 +225,7 @@ std::unique_ptr<Method> make_fake_method(const LoadedCase& loaded) {
   behaviour.fails_from = table["fails_from"].value<double>().value_or(behaviour.fails_from);
   behaviour.memory_until = table["memory_until"].value<double>().value_or(behaviour.memory_until);
   behaviour.solvable = table["solvable"].value<bool>().value_or(behaviour.solvable);
+  behaviour.surface = table["surface"].value<bool>().value_or(behaviour.surface);
   behaviour.sleep = table["sleep"].value<double>().value_or(behaviour.sleep);
   if (behaviour.particles < 0) throw InputError("the method needs particles");
   if (behaviour.particles > 1'000'000'000'000) throw std::bad_alloc();

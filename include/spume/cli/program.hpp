@@ -20,23 +20,23 @@ enum ExitCode : int {
   exit_interrupted = 130
 };
 
-// What the verbs work with.
+// The functions that the verbs use: those of the program, or those of a test.
 struct Program {
   CaseLoader load_case;
   MethodFactory make_method;
   std::function<const std::vector<OptionInfo>&()> option_table;
 };
 
-// Carries out one command line; results go to standard output, errors to standard error. Returns the exit code.
+// Executes one command line; results go to standard output, errors to standard error. Returns the exit code.
 int run_program(int argc, char** argv, const Program& program);
 
-// Waiting threads that spin steal the cores of other programs: in short parallel regions a peer ran 12 times slower
-// beside a second busy program, against 2 with passive waiting. The OpenMP runtime reads its settings before main(),
-// so the program sets what the user left open and starts itself once more. Returns when nothing was to be set.
+// Sets the OpenMP variables that the user has not set and starts the program once more, because the OpenMP runtime
+// reads them before main(). Waiting threads then sleep: with spinning threads a program of short parallel regions ran
+// 12 times slower beside a second busy program, with sleeping threads 2 times. Returns when there is nothing to set.
 void restart_with_openmp_environment(int argc, char** argv);
 
-// With OMP_PROC_BIND the runtime has bound this thread to its first place, and a program started from here would find
-// that place alone: all its threads on one core. To be called before any start.
+// Removes the affinity that OMP_PROC_BIND has given this thread. A program started from here inherits it and would run
+// all its threads on one core. To be called before a program is started.
 void release_to_all_places();
 
 // The folder that holds tools/ and cases/: $SPUME_HOME; else that of the installation which the executable belongs to;

@@ -8,11 +8,13 @@
 
 namespace spume {
 
-// A table beside series.csv that a method fills itself, written to <name>.csv.
+// A table beside series.csv, written to <name>.csv under "# <title of the case>: <title>". Its first column is the
+// time. The file begins with the first row.
 struct RecordTable {
+  enum class When { series, output, spectrum };  // with every row of series.csv, at output times, at times of spectra
   std::string name, title;
   std::vector<SeriesColumn> columns;
-  bool with_series = false;  // filled with every row of series.csv; else at output times
+  When when = When::output;
 };
 
 }  // namespace spume

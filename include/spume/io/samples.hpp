@@ -2,15 +2,16 @@
 // What probes record of the fields of a method.
 #pragma once
 
-#include <array>
 #include <limits>
+
+#include "spume/core/vec3.hpp"
 
 namespace spume {
 
 // Values of the fields at a point or averaged over a region.
 struct PointSample {
   double pressure = 0;
-  std::array<double, 3> velocity{};
+  Vec3 velocity{};
   double coverage = 0;  // kernel sum at the point: near 1 inside the liquid, 0 in air
 };
 
@@ -19,7 +20,7 @@ struct PointSample {
 struct PlaneSample {
   double area = 0;  // of the liquid part; a length in two dimensions
   double pressure = std::numeric_limits<double>::quiet_NaN();
-  std::array<double, 3> velocity{pressure, pressure, pressure};
+  Vec3 velocity{pressure, pressure, pressure};
 };
 
 }  // namespace spume

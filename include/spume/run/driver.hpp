@@ -52,7 +52,8 @@ enum class RunState { finished, interrupted };
 
 class Simulation {
  public:
-  // Makes the method first and the folder only when that succeeded. Throws InputError, FileError.
+  // Makes the method first and the folder only when that succeeded. Throws InputError (also for a probe of a kind that
+  // the method does not have), FileError.
   static std::unique_ptr<Simulation> start(LoadedCase loaded, const MethodFactory& make_method,
                                            const std::optional<std::filesystem::path>& folder);
   // Continues the run in `folder` from its checkpoint, bit for bit as if it had never stopped. `until` replaces
@@ -82,16 +83,22 @@ class Simulation {
  private:
   using Clock = std::chrono::steady_clock;
   Simulation(std::unique_ptr<LoadedCase> loaded, std::unique_ptr<Method> method, RunFolder folder);
-  void record_series(double dt);
 
+  void record_start();
+  void advance(Observer& observer);                        // one step, and what is due after it
   double take_step(Observer& observer, StepLimit& limit);  // the length of the accepted step
+  void record_due(double dt);
+  void record_series(double dt);
+  void tell(Observer& observer, const std::string& text);  // the log too
+  void pass_on_remarks(Observer& observer);
+  void report_progress(Observer& observer, double dt, const StepLimit& limit);
   [[noreturn]] void give_up(const StepFailure& failure, double dt, int attempts);
-  void record(double dt);
+  void close_failed(const std::string& state, const std::string& text);
+  void write_summary(const std::string& state, const std::string& message);
+
   void save_checkpoint();
   void load_checkpoint(const std::filesystem::path& path);
   void compare_with_checkpoint(const std::string& case_text);
-  void write_summary(const std::string& state, const std::string& message);
-  void report(Observer& observer, double dt, const StepLimit& limit);
 
   std::unique_ptr<LoadedCase> loaded_;
   std::unique_ptr<Method> method_;
@@ -110,8 +117,7 @@ class Simulation {
   double particle_steps_ = 0;
   double earlier_wall_seconds_ = 0;
   std::optional<std::int64_t> checkpoint_step_;
-  Clock::time_point started_ = Clock::now();
-  Clock::time_point checkpointed_ = Clock::now();
+  Clock::time_point started_ = Clock::now(), checkpointed_ = started_;
   struct Mark {  // start of the window over which the rate is measured
     Clock::time_point wall;
     double time = 0;

@@ -17,12 +17,14 @@ namespace spume {
 std::string human_bytes(double bytes);       // "11.2 GB"
 std::string human_duration(double seconds);  // "02:31", "2:10:05"
 std::string short_number(double value);      // "%.4g"
+std::string exact_number(double value);      // "%.10g"
 
 std::int64_t peak_resident_bytes();  // of this process
 
 // Case, box, particles, spacing, groups, step limit and what binds, stages, threads, estimated memory, seed, commit,
 // and the folder of the results when there is one.
 std::string start_table(const LoadedCase& loaded, const Method& method, int threads, const std::string& folder = {});
+// The stages in their order: on or off, and why; stages that only the start runs are marked.
 std::string plan_table(const std::vector<Stage>& plan);
 // Bytes per particle of the liquid or, with `on_grid`, per point; those of suspended particles per particle, with a
 // sum.

@@ -11,11 +11,10 @@
 #include <vector>
 
 #include "spume/core/array.hpp"
+#include "spume/core/vec3.hpp"
 #include "spume/scene/bubbles.hpp"
 
 namespace spume {
-
-using Vec3 = std::array<double, 3>;
 
 // A compiled expression of x, y, z and t. Copies share nothing, so each thread may own one.
 class Expression {

@@ -144,22 +144,34 @@ std::vector<ArrayInfo> LesSph::arrays() const {
 }
 
 std::vector<RecordTable> LesSph::tables() const {
-  return flow_.bubbles != nullptr ? flow_.bubbles->tables() : std::vector<RecordTable>{};
+  std::vector<RecordTable> list;
+  if (periodic()) list.push_back(spectrum_table());
+  if (flow_.bubbles != nullptr)
+    for (RecordTable& table : flow_.bubbles->tables()) list.push_back(std::move(table));
+  return list;
 }
 
 void LesSph::table_rows(const std::string& name, std::vector<double>& rows) {
   ensure_started();
-  if (flow_.bubbles != nullptr) flow_.bubbles->table_rows(name, rows);
+  if (name == "spectrum")
+    add_spectrum_rows(rows);
+  else if (flow_.bubbles != nullptr)
+    flow_.bubbles->table_rows(name, rows);
 }
 
-std::string LesSph::note() {
-  return flow_.bubbles != nullptr ? flow_.bubbles->note() : std::string();
+std::vector<Remark> LesSph::take_remarks() {
+  const std::string text = flow_.bubbles != nullptr ? flow_.bubbles->note() : std::string();
+  return text.empty() ? std::vector<Remark>{} : std::vector<Remark>{{text, true}};
 }
 
-bool LesSph::spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) {
-  const Domain& domain = flow_.scene.domain;
+bool LesSph::periodic() const {
   for (int axis = 0; axis < flow_.dimensions; ++axis)
-    if (!domain.periodic(axis)) return false;
+    if (!flow_.scene.domain.periodic(axis)) return false;
+  return true;
+}
+
+void LesSph::add_spectrum_rows(std::vector<double>& rows) const {
+  const Domain& domain = flow_.scene.domain;
   ParticleSpectrumInput input;
   input.dimensions = flow_.dimensions;
   input.lower = domain.lower;
@@ -170,9 +182,7 @@ bool LesSph::spectrum(std::vector<double>& wavenumber, std::vector<double>& ener
     input.velocity[axis] = *flow_.particles.velocity[axis];
   }
   const ParticleSpectrum result = energy_spectrum(input);
-  wavenumber = result.spectrum.wavenumber;
-  energy = result.spectrum.energy;
-  return true;
+  add_spectrum(flow_.time, result.spectrum.wavenumber, result.spectrum.energy, rows);
 }
 
 }  // namespace spume::les_sph

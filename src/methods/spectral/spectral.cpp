@@ -41,6 +41,7 @@ Spectral<T>::Spectral(const LoadedCase& loaded) : loaded_(loaded), flow_(loaded)
                     "output.fields names '" + name +
                         "', which method \"spectral\" does not have; it has velocity, vorticity, pressure");
   if (loaded.options.particles.any()) suspension_ = std::make_unique<Suspension<T>>(loaded, flow_);
+  stages_ = make_stages();
 }
 
 template <class T>
@@ -78,7 +79,7 @@ StepLimit Spectral<T>::step_limit() const {
 }
 
 template <class T>
-std::vector<Stage> Spectral<T>::plan() const {
+std::vector<Stage> Spectral<T>::make_stages() const {
   const SpectralOptions& options = loaded_.options.spectral;
   const ForcingKind forcing = loaded_.options.forcing.kind;
   const bool padded = options.dealiasing == Dealiasing::padded;
@@ -187,12 +188,12 @@ void Spectral<T>::series_values(std::span<double> values) {
                   "the smallest scales are not resolved: k_max eta = %.2f at t = %.4g, which should be 1.5 or more; "
                   "raise resolution.grid or the viscosity",
                   scales.kmax_eta, flow_.time());
-    remarks_.push_back(text);
+    remarks_.push_back({text});
   }
 }
 
 template <class T>
-std::vector<std::string> Spectral<T>::take_remarks() {
+std::vector<Remark> Spectral<T>::take_remarks() {
   return std::exchange(remarks_, {});
 }
 
@@ -283,21 +284,6 @@ PointSample Spectral<T>::sample(const Vec3& position) {
 }
 
 template <class T>
-double Spectral<T>::elevation(const Vec3&) {
-  return std::nan("");
-}
-
-template <class T>
-double Spectral<T>::wetted_length(const Vec3&) {
-  return std::nan("");
-}
-
-template <class T>
-double Spectral<T>::front(int, double) {
-  return std::nan("");
-}
-
-template <class T>
 PlaneSample Spectral<T>::plane_average(int axis, double position) {
   const auto& pressure = total_pressure();
   const auto a = static_cast<std::size_t>(axis);
@@ -307,35 +293,32 @@ PlaneSample Spectral<T>::plane_average(int axis, double position) {
 }
 
 template <class T>
-bool Spectral<T>::spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) {
-  ensure_started();
-  ShellSpectrum spectrum = shell_spectrum(flow_);
-  wavenumber = std::move(spectrum.wavenumber);
-  energy = std::move(spectrum.energy);
-  return true;
+std::vector<RecordTable> Spectral<T>::tables() const {
+  std::vector<RecordTable> list{spectrum_table(),
+                                {"gradient_pdf",
+                                 "gradient_pdf",
+                                 {{"t", "time"},
+                                  {"gradient", "standard deviations"},
+                                  {"longitudinal", "probability density"},
+                                  {"transverse", "probability density"}},
+                                 RecordTable::When::spectrum}};
+  if (suspension_) suspension_->add_tables(list);
+  return list;
 }
 
 template <class T>
-std::vector<Distribution> Spectral<T>::distribution_headings() const {
-  std::vector<Distribution> tables{{"gradient_pdf",
-                                    {{"gradient", "standard deviations"},
-                                     {"longitudinal", "probability density"},
-                                     {"transverse", "probability density"}},
-                                    {}}};
-  if (suspension_) suspension_->add_headings(tables);
-  return tables;
-}
-
-template <class T>
-std::vector<Distribution> Spectral<T>::distributions() {
+void Spectral<T>::table_rows(const std::string& name, std::vector<double>& rows) {
   ensure_started();
-  const GradientDistribution pdf = gradient_distribution(flow_);
-  std::vector<Distribution> tables = distribution_headings();
-  tables.resize(1);
-  if (suspension_) suspension_->add_distributions(tables);
-  for (std::size_t i = 0; i < pdf.value.size(); ++i)
-    tables[0].values.insert(tables[0].values.end(), {pdf.value[i], pdf.longitudinal[i], pdf.transverse[i]});
-  return tables;
+  if (name == "spectrum") {
+    const ShellSpectrum spectrum = shell_spectrum(flow_);
+    add_spectrum(flow_.time(), spectrum.wavenumber, spectrum.energy, rows);
+  } else if (name == "gradient_pdf") {
+    const GradientDistribution pdf = gradient_distribution(flow_);
+    for (std::size_t i = 0; i < pdf.value.size(); ++i)
+      rows.insert(rows.end(), {flow_.time(), pdf.value[i], pdf.longitudinal[i], pdf.transverse[i]});
+  } else if (suspension_) {
+    suspension_->table_rows(name, rows);
+  }
 }
 
 template <class T>

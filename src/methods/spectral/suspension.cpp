@@ -386,40 +386,41 @@ ParticleSnapshot Suspension<T>::family() {
 }
 
 template <class T>
-void Suspension<T>::add_headings(std::vector<Distribution>& tables) const {
-  tables.push_back({"particle_pairs",
-                    {{"distance", "length"},
-                     {"radial_distribution", "pairs over those of random places"},
-                     {"correlation", "particles within the distance of a particle"}},
-                    {}});
-  tables.push_back({"particle_boxes",
-                    {{"side", "length"},
-                     {"mean_count", "particles in a box"},
-                     {"variance", "of the count, over that of random places"}},
-                    {}});
-  tables.push_back(
-      {"particle_overlaps", {{"overlap", "of the touching distance"}, {"pairs", "probability density"}}, {}});
+void Suspension<T>::add_tables(std::vector<RecordTable>& list) const {
+  const auto add = [&list](const std::string& name, std::vector<SeriesColumn> columns) {
+    columns.insert(columns.begin(), {"t", "time"});
+    list.push_back({name, name, std::move(columns), RecordTable::When::spectrum});
+  };
+  add("particle_pairs", {{"distance", "length"},
+                         {"radial_distribution", "pairs over those of random places"},
+                         {"correlation", "particles within the distance of a particle"}});
+  add("particle_boxes", {{"side", "length"},
+                         {"mean_count", "particles in a box"},
+                         {"variance", "of the count, over that of random places"}});
+  add("particle_overlaps", {{"overlap", "of the touching distance"}, {"pairs", "probability density"}});
 }
 
 template <class T>
-void Suspension<T>::add_distributions(std::vector<Distribution>& tables) {
-  const std::size_t first = tables.size();
-  add_headings(tables);
+void Suspension<T>::table_rows(const std::string& name, std::vector<double>& rows) {
+  const double t = flow_.time();
   const double spacing = std::min({grid_.spacing(0), grid_.spacing(1), grid_.spacing(2)});
-  const double shortest = std::min({grid_.length[0], grid_.length[1], grid_.length[2]});
-  const PairStatistics pairs =
-      pair_statistics(grid_.lower, grid_.length, system_.particles().positions(), system_.size(),
-                      pair_range[0] * spacing, std::min(pair_range[1] * spacing, 0.45 * shortest), 32, pair_centres);
-  for (std::size_t b = 0; b + 1 < pairs.radius.size(); ++b)
-    tables[first].values.insert(tables[first].values.end(), {std::sqrt(pairs.radius[b] * pairs.radius[b + 1]),
-                                                             pairs.radial_distribution[b], pairs.correlation[b + 1]});
-  for (const BoxCount& box :
-       box_counts(grid_.lower, grid_.length, system_.particles().positions(), system_.size(), spacing))
-    tables[first + 1].values.insert(tables[first + 1].values.end(), {box.side, box.mean, box.variance});
-  const std::vector<double> overlaps = system_.overlap_histogram(overlap_bins);
-  for (int b = 0; b < overlap_bins; ++b)
-    tables[first + 2].values.insert(tables[first + 2].values.end(),
-                                    {(b + 0.5) / overlap_bins, overlaps[static_cast<std::size_t>(b)]});
+  const auto positions = system_.particles().positions();
+  if (name == "particle_pairs") {
+    const double shortest = std::min({grid_.length[0], grid_.length[1], grid_.length[2]});
+    const PairStatistics pairs =
+        pair_statistics(grid_.lower, grid_.length, positions, system_.size(), pair_range[0] * spacing,
+                        std::min(pair_range[1] * spacing, 0.45 * shortest), 32, pair_centres);
+    for (std::size_t b = 0; b + 1 < pairs.radius.size(); ++b)
+      rows.insert(rows.end(), {t, std::sqrt(pairs.radius[b] * pairs.radius[b + 1]), pairs.radial_distribution[b],
+                               pairs.correlation[b + 1]});
+  } else if (name == "particle_boxes") {
+    for (const BoxCount& box : box_counts(grid_.lower, grid_.length, positions, system_.size(), spacing))
+      rows.insert(rows.end(), {t, box.side, box.mean, box.variance});
+  } else if (name == "particle_overlaps") {
+    const std::vector<double> overlaps = system_.overlap_histogram(overlap_bins);
+    for (int b = 0; b < overlap_bins; ++b)
+      rows.insert(rows.end(), {t, (b + 0.5) / overlap_bins, overlaps[static_cast<std::size_t>(b)]});
+  }
 }
 
 template <class T>

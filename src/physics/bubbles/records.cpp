@@ -81,7 +81,7 @@ std::vector<RecordTable> BubbleCoupling::tables() const {
                      {"radius_over_hinze", "1, centre of the bin"},
                      {"count", "1"},
                      {"density", "1, integrates to one over radius_over_hinze"}},
-                    false});
+                    RecordTable::When::output});
   if (options_.trace_every > 0)
     list.push_back({traces_table,
                     "chosen bubbles over time",
@@ -95,12 +95,11 @@ std::vector<RecordTable> BubbleCoupling::tables() const {
                      {"velocity_z", "speed"},
                      {"radius", "length"},
                      {"slip", "speed relative to the resolved liquid"}},
-                    true});
+                    RecordTable::When::series});
   return list;
 }
 
 void BubbleCoupling::table_rows(const std::string& name, std::vector<double>& rows) {
-  rows.clear();
   if (name == sizes_table) {
     const auto sizes = size_distribution(population_, options_.hinze_radius);
     for (int k = 0; k < SizeDistribution::bins; ++k)

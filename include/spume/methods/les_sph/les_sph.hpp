@@ -17,11 +17,11 @@
 
 namespace spume::les_sph {
 
-class LesSph final : public Method {
+class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
  public:
   explicit LesSph(const LoadedCase& loaded);
 
-  std::vector<Stage> plan() const override { return plan_.stages(); }
+  const std::vector<Stage>& plan() const override { return plan_.stages(); }
   std::vector<ArrayInfo> arrays() const override;
   std::size_t particle_count() const override { return flow_.size(); }
   double time() const override { return flow_.time; }
@@ -31,6 +31,8 @@ class LesSph final : public Method {
   std::vector<SeriesColumn> series_columns() const override { return series_.columns(); }
   void series_values(std::span<double> values) override;
   std::vector<ParticleSnapshot> snapshot() override;
+  FieldProbes* field_probes() override { return this; }
+  SurfaceProbes* surface_probes() override { return this; }
   PointSample sample(const Vec3& position) override { return sampler().sample(position); }
   double elevation(const Vec3& position) override { return sampler().elevation(position); }
   double wetted_length(const Vec3& position) override { return sampler().wetted_length(position); }
@@ -38,10 +40,9 @@ class LesSph final : public Method {
   PlaneSample plane_average(int axis, double position) override { return sampler().plane_average(axis, position); }
   // The mass; where nothing but gravity does work, the energy; the residual of the pressure.
   std::vector<Invariant> invariants() const override;
-  bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override;
   std::vector<RecordTable> tables() const override;
   void table_rows(const std::string& name, std::vector<double>& rows) override;
-  std::string note() override;
+  std::vector<Remark> take_remarks() override;
   void save(StateWriter& writer) const override;
   void load(StateReader& reader) override;
 
@@ -53,6 +54,8 @@ class LesSph final : public Method {
   void declare_series();
   void declare_snapshot();
   void declare_saved();
+  bool periodic() const;  // in all directions: the flow has an energy spectrum
+  void add_spectrum_rows(std::vector<double>& rows) const;
   const PointSampler& sampler();
 
   Flow flow_;

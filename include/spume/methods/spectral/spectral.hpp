@@ -14,11 +14,11 @@
 namespace spume::spectral {
 
 template <class T>
-class Spectral final : public Method {
+class Spectral final : public Method, public FieldProbes {
  public:
   explicit Spectral(const LoadedCase& loaded);
 
-  std::vector<Stage> plan() const override;
+  const std::vector<Stage>& plan() const override { return stages_; }
   std::vector<ArrayInfo> arrays() const override;
   std::size_t particle_count() const override;  // points of the grid
   void start() override;
@@ -30,16 +30,13 @@ class Spectral final : public Method {
   void series_values(std::span<double> values) override;
   std::vector<ParticleSnapshot> snapshot() override;
   std::vector<GridSnapshot> grid_snapshot() override;
+  FieldProbes* field_probes() override { return this; }
   PointSample sample(const Vec3& position) override;
-  double elevation(const Vec3& position) override;  // no surface: not a number
-  double wetted_length(const Vec3& position) override;
-  double front(int axis, double height) override;  // likewise
   PlaneSample plane_average(int axis, double position) override;
   std::vector<Invariant> invariants() const override;  // the energy, where nothing drives the flow
-  bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override;
-  std::vector<Distribution> distributions() override;
-  std::vector<Distribution> distribution_headings() const override;
-  std::vector<std::string> take_remarks() override;
+  std::vector<RecordTable> tables() const override;
+  void table_rows(const std::string& name, std::vector<double>& rows) override;
+  std::vector<Remark> take_remarks() override;
   void save(StateWriter& writer) const override;
   void load(StateReader& reader) override;
 
@@ -47,6 +44,7 @@ class Spectral final : public Method {
   const Suspension<T>* suspension() const { return suspension_.get(); }
 
  private:
+  std::vector<Stage> make_stages() const;
   const Array<std::complex<T>>& total_pressure();  // of the present state
   bool wants(const std::string& field) const;
   void ensure_started();
@@ -54,6 +52,7 @@ class Spectral final : public Method {
   const LoadedCase& loaded_;
   Flow<T> flow_;
   std::unique_ptr<Suspension<T>> suspension_;  // null without particles
+  std::vector<Stage> stages_;
   bool started_ = false;
   std::array<std::vector<Array<float>>, 3> drawn_;  // velocity, vorticity, pressure of the last snapshot
   Array<std::complex<T>> total_pressure_;           // for probes
@@ -61,7 +60,7 @@ class Spectral final : public Method {
   // Energy and integrals at the last row of the series: what the balance is taken over.
   std::array<double, 4> row_{};  // energy, gain, dissipation, whether there was one
   bool warned_ = false;
-  std::vector<std::string> remarks_;
+  std::vector<Remark> remarks_;
 };
 
 }  // namespace spume::spectral

@@ -48,8 +48,8 @@ class Suspension {
   // In the order of add_columns.
   void values(std::vector<double>& row);
   ParticleSnapshot family();
-  void add_headings(std::vector<Distribution>& tables) const;
-  void add_distributions(std::vector<Distribution>& tables);
+  void add_tables(std::vector<RecordTable>& list) const;
+  void table_rows(const std::string& name, std::vector<double>& rows);
 
   void save(StateWriter& writer) const;
   void load(StateReader& reader);  // after that of the flow
