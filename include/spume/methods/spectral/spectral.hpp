@@ -3,8 +3,10 @@
 // double precision, T.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "spume/methods/method.hpp"
@@ -17,8 +19,9 @@ template <class T>
 class Spectral final : public Method {
  public:
   explicit Spectral(const LoadedCase& loaded);
+  Spectral(const Spectral&) = delete;  // the plan holds its address
 
-  std::vector<Stage> plan() const override;
+  std::vector<Stage> plan() const override { return plan_.stages(); }
   std::vector<ArrayInfo> arrays() const override;
   std::size_t particle_count() const override;  // points of the grid
   void start() override;
@@ -31,15 +34,15 @@ class Spectral final : public Method {
   std::vector<ParticleSnapshot> snapshot() override;
   std::vector<GridSnapshot> grid_snapshot() override;
   PointSample sample(const Vec3& position) override;
-  double elevation(const Vec3& position) override;  // no surface: not a number
-  double wetted_length(const Vec3& position) override;
-  double front(int axis, double height) override;  // likewise
+  double elevation(const Vec3&) override { return std::nan(""); }  // no surface
+  double wetted_length(const Vec3&) override { return std::nan(""); }
+  double front(int, double) override { return std::nan(""); }
   PlaneSample plane_average(int axis, double position) override;
   std::vector<Invariant> invariants() const override;  // the energy, where nothing drives the flow
   bool spectrum(std::vector<double>& wavenumber, std::vector<double>& energy) override;
   std::vector<Distribution> distributions() override;
   std::vector<Distribution> distribution_headings() const override;
-  std::vector<std::string> take_remarks() override;
+  std::vector<std::string> take_remarks() override { return std::exchange(remarks_, {}); }
   void save(StateWriter& writer) const override;
   void load(StateReader& reader) override;
 
@@ -47,6 +50,8 @@ class Spectral final : public Method {
   const Suspension<T>* suspension() const { return suspension_.get(); }
 
  private:
+  Plan make_plan();
+  void set_initial_state();
   const Array<std::complex<T>>& total_pressure();  // of the present state
   bool wants(const std::string& field) const;
   void ensure_started();
@@ -54,6 +59,7 @@ class Spectral final : public Method {
   const LoadedCase& loaded_;
   Flow<T> flow_;
   std::unique_ptr<Suspension<T>> suspension_;  // null without particles
+  Plan plan_;
   bool started_ = false;
   std::array<std::vector<Array<float>>, 3> drawn_;  // velocity, vorticity, pressure of the last snapshot
   Array<std::complex<T>> total_pressure_;           // for probes
