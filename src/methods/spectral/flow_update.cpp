@@ -363,8 +363,10 @@ void Flow<T>::accept_tendency() {
     potential_.swap(earlier_);
     earlier_.swap(tendency_);
   }
-  has_history_ = step_.scheme != Scheme::runge_kutta;
-  earlier_dt_ = step_.scheme == Scheme::midpoint ? step_.dt / 2 : step_.dt;
+  if (step_.scheme != Scheme::runge_kutta) {
+    has_history_ = true;
+    earlier_dt_ = step_.scheme == Scheme::midpoint ? step_.dt / 2 : step_.dt;
+  }
   time_ += step_.dt;
   ++steps_;
 }

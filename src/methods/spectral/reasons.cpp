@@ -62,4 +62,8 @@ std::string exclusion(const ParticleSystem& system) {
                                         : "particles.coupling is neither \"four-way\" nor \"colliding\"";
 }
 
+std::string exponents(const Case& options) {
+  return options.particles.lyapunov > 0 ? "shadow trajectories" : "particles.lyapunov = 0";
+}
+
 }  // namespace spume::spectral::reason

@@ -15,5 +15,6 @@ std::string update(const Case& options);
 std::string feedback(const ParticleSystem& system);
 std::string motion(const ParticleSystem& system);
 std::string exclusion(const ParticleSystem& system);
+std::string exponents(const Case& options);
 
 }  // namespace spume::spectral::reason

@@ -35,6 +35,15 @@ void Spectral<T>::set_initial_state() {
 }
 
 template <class T>
+void Spectral<T>::start() {
+  Ledger untimed;
+  flow_.begin_start();
+  plan_.run_start(static_cast<double>(particle_count()), untimed);
+  if (suspension_) suspension_->require_possible(flow_.step_limit());
+  started_ = true;
+}
+
+template <class T>
 void Spectral<T>::ensure_started() {
   if (!started_) start();
 }
