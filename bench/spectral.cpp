@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The spectral flow: a step beside its floor, the nine pruned transforms of the nonlinear term done by FFTW alone,
 // plane by plane, without curl, product and update. Argument: points per axis.
+#include "spume/methods/spectral/spectral.hpp"
+
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -13,7 +15,6 @@
 #include "spume/fourier/lane_vector.hpp"
 #include "spume/methods/spectral/flow_fields.hpp"
 #include "spume/methods/spectral/initial_state.hpp"
-#include "spume/methods/spectral/spectral.hpp"
 
 namespace spume {
 namespace {
