@@ -118,8 +118,10 @@ def stage_seconds(run):
     total = lambda *names: sum(seconds.get(name, 0.0) for name in names)
     return {"collisions": total("particle exclusion"),
             "motion": total("velocity at points", "particle sort", "particle records", "particle motion"),
-            "flow": total("x stage", "planes of the product", "x stage back, update", "rest of the step")
-            }, calls["planes of the product"]
+            "flow": total("copy of the state", "forcing", "viscosity", "inverse transforms in x", "product in planes",
+                          "forward transforms in x", "forward transforms in x, update", "acceptance", "energy balance",
+                          "conjugate modes")
+            }, calls["energy balance"]
 
 
 def cost_against_number(bench, name, grid, counts):

@@ -130,7 +130,7 @@ TEST(ParticleSystem, MotionDependsNeitherOnSortingNorOnThreads) {
 
 TEST(ParticleSystem, TheGridReceivesTheForceOfTheParticles) {
   PointParticleOptions options = bubbles(Coupling::two_way);
-  options.most_volume_fraction = 1e9;
+  options.max_volume_fraction = 1e9;
   options.scheme.lead = 0;
   Suspension run(options);
   run.begin();
@@ -242,7 +242,7 @@ TEST(ParticleSystem, PlacesOnALatticeInClustersOrAsGiven) {
   EXPECT_EQ((*lattice.particles().position[2])[7], 0.4);
   options.count = 251;
   EXPECT_THROW(ParticleSystem(small_grid(), options), InputError);
-  options.placement.kind = Placement::given;
+  options.placement.kind = Placement::file;
   options.count = 2;
   options.placement.given = {{0.5, 1.5, 0.25}, {-0.25, 0, 0}};
   ParticleSystem given(small_grid(), options);

@@ -86,8 +86,8 @@ Flow<T>::Flow(const LoadedCase& loaded)
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double last = std::min(layout_.largest_wavenumber(axis), cut_[axis] - layout_.unit(axis) / 2);
-    kept_support_radius_ =
-        std::max(kept_support_radius_, last * layout_.lengths[axis] / static_cast<double>(layout_.points[axis]));
+    kept_grid_wavenumber_ =
+        std::max(kept_grid_wavenumber_, last * layout_.lengths[axis] / static_cast<double>(layout_.points[axis]));
   }
   lane_wavenumber_.resize(layout_.row);
   lane_weight_.resize(layout_.row);

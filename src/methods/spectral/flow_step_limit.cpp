@@ -55,7 +55,7 @@ StepLimit Flow<T>::limit_for(const VelocityPeak& peak) const {
     const double frequency = std::numbers::pi * peak.rate;
     switch (options_.integrator) {
       case Integrator::ab2: {
-        const double kept = kept_support_radius_ * peak.rate;
+        const double kept = kept_grid_wavenumber_ * peak.rate;
         bound(stable_ab2_phase(viscosity_ * kept / (peak.speed * peak.speed)) / kept, "ab2 stability");
         break;
       }

@@ -67,17 +67,17 @@ void require_memory(const LoadedCase& loaded, const PointParticleOptions& option
 // With heavy particles no step may be stable: their force is then clipped below close packing.
 void limit_clipping(const Case& options, PointParticleOptions& out) {
   const ParticleCaseOptions& in = options.particles;
-  const double bearable = stable_volume_fraction(out.motion, out.scheme, out.most_volume_fraction);
-  if (bearable >= out.most_volume_fraction) return;
+  const double bearable = stable_volume_fraction(out.motion, out.scheme, out.max_volume_fraction);
+  if (bearable >= out.max_volume_fraction) return;
   if (in.max_volume_fraction != ParticleCaseOptions().max_volume_fraction) {
     char text[300];
     std::snprintf(text, sizeof text,
                   "particles.max_volume_fraction = %.4g lets the coupling of particles with beta = %.4g and the flow "
                   "grow with any step; expected at most %.3g; lower it, or leave it out",
-                  out.most_volume_fraction, in.beta, bearable);
+                  out.max_volume_fraction, in.beta, bearable);
     throw refusal(options, "particles.max_volume_fraction", text);
   }
-  out.most_volume_fraction = bearable;
+  out.max_volume_fraction = bearable;
 }
 
 // The words of the case file stand in the order of the physics' own choices.
@@ -87,7 +87,7 @@ static_assert(static_cast<Coupling>(ParticleCoupling::two_way) == Coupling::two_
               static_cast<DragLaw>(ParticleDrag::schiller_naumann) == DragLaw::schiller_naumann &&
               static_cast<Placement>(ParticlePlacement::lattice) == Placement::lattice &&
               static_cast<Placement>(ParticlePlacement::clustered) == Placement::clustered &&
-              static_cast<Placement>(ParticlePlacement::file) == Placement::given);
+              static_cast<Placement>(ParticlePlacement::file) == Placement::file);
 
 int bounded(std::int64_t value) {
   return static_cast<int>(std::min<std::int64_t>(value, 1 << 30));
@@ -134,8 +134,8 @@ PointParticleOptions particle_options(const LoadedCase& loaded) {
 
   PlacementOptions& placement = out.placement;
   placement.kind = static_cast<Placement>(in.placement);
-  if (placement.kind == Placement::given && loaded.resuming) placement.kind = Placement::random;  // places come later
-  if (placement.kind == Placement::given) placement.given = read_positions(loaded);
+  if (placement.kind == Placement::file && loaded.resuming) placement.kind = Placement::random;  // places come later
+  if (placement.kind == Placement::file) placement.given = read_positions(loaded);
   placement.diameters = in.diameters;
   if (in.diameter > 0) placement.diameters = {in.diameter};
   if (in.diameter_over_eta > 0) placement.diameters = {in.diameter_over_eta * std::pow(nu * nu * nu / injection, 0.25)};
@@ -153,7 +153,7 @@ PointParticleOptions particle_options(const LoadedCase& loaded) {
       out.count = counts[0] * counts[1] * counts[2];
     }
   }
-  if (placement.kind == Placement::given && out.count > placement.given.size())
+  if (placement.kind == Placement::file && out.count > placement.given.size())
     throw refusal(loaded.options, "particles.file",
                   "particles.file holds " + std::to_string(placement.given.size()) + " positions for " +
                       std::to_string(out.count) + " particles");
@@ -177,7 +177,7 @@ PointParticleOptions particle_options(const LoadedCase& loaded) {
   out.collision_sweeps = static_cast<int>(in.collision_sweeps);
   out.spline_order = static_cast<int>(in.spline_order);
   out.single_precision_records = !in.double_records;
-  out.most_volume_fraction = in.max_volume_fraction;
+  out.max_volume_fraction = in.max_volume_fraction;
   out.sort_every = bounded(in.sort_every);
   // Adams-Bashforth extrapolates from the forces at the ends of steps; the others hold the force over the coming step.
   if (loaded.options.spectral.integrator != Integrator::ab2) out.scheme = {1, 0};

@@ -47,7 +47,7 @@ std::string feedback(const ParticleSystem& system) {
                                                : "particles.coupling = \"one-way\"";
   char text[100];
   std::snprintf(text, sizeof text, "(8), (13): spread to eight points, clipped above %.3g",
-                system.options().most_volume_fraction);
+                system.options().max_volume_fraction);
   return text;
 }
 

@@ -54,7 +54,7 @@ ParticleSystem::ParticleSystem(const PeriodicGrid& grid, const PointParticleOpti
     constexpr int fractions = 32;
     for (int k = 0; k <= fractions; ++k)
       stable_step_.push_back(
-          stable_coupling_step(options.motion, options.scheme, options.most_volume_fraction * k / fractions));
+          stable_coupling_step(options.motion, options.scheme, options.max_volume_fraction * k / fractions));
   }
   const double volume = parallel_sum(size(), [&](std::size_t i) { return sphere_volume(particles_.diameter_of(i)); });
   volume_fraction_ = volume / (grid.length[0] * grid.length[1] * grid.length[2]);
@@ -123,7 +123,7 @@ void ParticleSystem::collide() {
 double ParticleSystem::longest_step() const {
   if (!couples()) return std::numeric_limits<double>::infinity();
   const double last = static_cast<double>(stable_step_.size()) - 1;
-  const double fraction = (clock_[2] > 0 ? clock_[2] : volume_fraction_) / options_.most_volume_fraction;
+  const double fraction = (clock_[2] > 0 ? clock_[2] : volume_fraction_) / options_.max_volume_fraction;
   const double steps = stable_step_[static_cast<std::size_t>(std::ceil(std::min(fraction, 1.0) * last))];
   const MotionModel& motion = options_.motion;
   const auto& diameters = options_.placement.diameters;
@@ -141,7 +141,7 @@ void ParticleSystem::spread_force(const std::array<Real*, 3>& force) {
                                  particles_.diameter == nullptr ? nullptr : particles_.diameter->data(),
                                  particles_.common_diameter};
   order().build(deposition_.cells(), given.position[0], given.position[1], given.position[2], size());
-  deposition_report_ = deposition_.deposit<Real>(order(), given, options_.most_volume_fraction, force, nullptr);
+  deposition_report_ = deposition_.deposit<Real>(order(), given, options_.max_volume_fraction, force, nullptr);
   clock_[2] = deposition_report_.most_volume_fraction;
 }
 

@@ -159,7 +159,7 @@ class Flow {
   std::array<std::vector<T>, 3> wavenumber_;
   Array<Complex> lane_wavenumber_, lane_weight_;  // of a row of modes, in both parts
   std::array<double, 3> cut_{};                   // two-thirds rule: |k| below it stays
-  double kept_support_radius_ = 0;                // largest wavenumber kept times spacing, of all axes
+  double kept_grid_wavenumber_ = 0;               // largest wavenumber kept times spacing, of all axes
   double shell_low_ = 0, shell_high_ = 0;         // squares of the forced wavenumbers
 
   // Adams-Bashforth: b, K of the present and K of the previous step. The update writes b of the next step over the

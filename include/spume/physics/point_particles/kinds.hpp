@@ -24,7 +24,7 @@ enum class Placement {
   random,     // evenly at random
   lattice,    // on a lattice with one particle at the lower corner of the box
   clustered,  // in Gaussian clouds
-  given,      // at given positions
+  file,       // at given positions, those of a file
 };
 
 enum class MatchingMethod {

@@ -20,8 +20,8 @@ struct PointParticleOptions {
   PlacementOptions placement;  // diameters too
   int spline_order = 4;
   bool single_precision_records = true;
-  double most_volume_fraction = 0.74048048969306104;  // pi / (3 sqrt 2), close packing
-  int sort_every = 8;                                 // steps between sorts of the particles by grid cell
+  double max_volume_fraction = 0.74048048969306104;  // pi / (3 sqrt 2), close packing
+  int sort_every = 8;                                // steps between sorts of the particles by grid cell
   // Where in time the force is wanted, from the middle of the last step, in steps (lead: 1/2 for multistep schemes that
   // take it at the present time, 1 for a scheme that holds it over the coming step), and how the flow steps with it.
   CouplingScheme scheme;
