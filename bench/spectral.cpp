@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The spectral flow: a step beside its floor, the nine pruned transforms of the nonlinear term done by FFTW alone,
 // plane by plane, without curl, product and update. Argument: points per axis.
+#include "spume/methods/spectral/spectral.hpp"
+
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -49,15 +51,15 @@ void flow_step(benchmark::State& state) {
   const auto n = static_cast<std::size_t>(state.range(0));
   LoadedCase loaded = turbulence(n, Integrator::ab2);
   if (sizeof(T) == 4) loaded.options.spectral.precision = FieldPrecision::f32;
-  spectral::Flow<T> flow(loaded);
-  flow.set_potential(spectral::initial_potential(loaded, flow));
-  flow.evaluate_tendency();
-  const double dt = 0.2 * flow.step_limit().dt;
-  flow.advance(dt);
-  for (auto _ : state) flow.advance(dt);
+  spectral::Spectral<T> method(loaded);
+  method.start();
+  const double dt = 0.2 * method.step_limit().dt;
+  Ledger ledger;
+  method.step(dt, ledger);
+  for (auto _ : state) method.step(dt, ledger);
   const double cubed = std::pow(static_cast<double>(n), 3);
   double bytes = 0;
-  for (const auto& array : flow.arrays()) bytes += array.bytes;
+  for (const auto& array : method.flow().arrays()) bytes += array.bytes;
   state.counters["fields"] = bytes / (cubed * sizeof(T));
   state.counters["ns_per_point"] =
       benchmark::Counter(cubed, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);

@@ -27,7 +27,7 @@ constexpr std::size_t group_rows = 2 * lanes<T>;
 
 template <class T>
 struct CrossProduct<T>::Scratch {
-  std::array<Array<Complex>, 5> line;     // lines of the x stage
+  std::array<Array<Complex>, 5> line;     // lines along x
   std::array<Array<Complex>, 6> rows;     // of one remainder along y: half_[1] rows (rounded up) of modes along z
   std::array<Array<Complex>, 3> sum;      // of the remainders along y: ny rows
   std::array<Array<Complex>, 6> column;   // lines of the y stage
@@ -103,29 +103,28 @@ double CrossProduct<T>::bytes() const {
 template <class T>
 VelocityPeak CrossProduct<T>::evaluate(const std::array<const Complex*, 3>& potential,
                                        const std::array<Complex*, 3>& sum, const Finish& finish) {
-  const int threads = std::min(static_cast<int>(scratch_.size()), thread_count());
   VelocityPeak peak;
   for (std::size_t remainder = 0; remainder < phases_; ++remainder) {
-    const double begin = omp_get_wtime();
     inverse_x(remainder, potential);
-    const double inverted = omp_get_wtime();
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (std::size_t j = 0; j < half_[0]; ++j) {
-      peaks_[j] = {};
-      plane(j, *scratch_[static_cast<std::size_t>(omp_get_thread_num())], peaks_[j]);
-    }
-    for (const VelocityPeak& p : peaks_) {
-      // A value that is not a number has to reach the caller.
-      peak.speed = p.speed > peak.speed || p.speed != p.speed ? p.speed : peak.speed;
-      peak.rate = p.rate > peak.rate || p.rate != p.rate ? p.rate : peak.rate;
-    }
-    const double formed = omp_get_wtime();
+    form_planes(peak);
     forward_x(remainder, sum, finish);
-    seconds_[0] += inverted - begin;
-    seconds_[1] += formed - inverted;
-    seconds_[2] += omp_get_wtime() - formed;
   }
   return peak;
+}
+
+template <class T>
+void CrossProduct<T>::form_planes(VelocityPeak& peak) {
+  const int threads = std::min(static_cast<int>(scratch_.size()), thread_count());
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (std::size_t j = 0; j < half_[0]; ++j) {
+    peaks_[j] = {};
+    plane(j, *scratch_[static_cast<std::size_t>(omp_get_thread_num())], peaks_[j]);
+  }
+  for (const VelocityPeak& p : peaks_) {
+    // A value that is not a number has to reach the caller.
+    peak.speed = p.speed > peak.speed || p.speed != p.speed ? p.speed : peak.speed;
+    peak.rate = p.rate > peak.rate || p.rate != p.rate ? p.rate : peak.rate;
+  }
 }
 
 template <class T>

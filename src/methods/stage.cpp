@@ -12,18 +12,40 @@ void Plan::add(Stage stage) {
   stages_.push_back(std::move(stage));
 }
 
-void Plan::run(StagePart part, double dt, double particles, Ledger& ledger) const {
-  for (const Stage& stage : stages_) {
-    if (!stage.on || (stage.part != StagePart::both && stage.part != part)) continue;
-    auto scope = ledger.time(stage.name, particles);
-    StageRun run{.dt = dt};
-    // What a stage reads last it may release, and what it writes it may lease.
-    for (const ArrayUse& use : stage.reads) run.bytes += use.bytes();
-    stage.work(run);
-    for (const ArrayUse& use : stage.writes) run.bytes += use.bytes();
-    scope.add_pairs(run.pairs);
-    scope.add_bytes(run.bytes);
+void Plan::repeat(std::function<bool()> more, const std::function<void()>& body) {
+  const std::size_t loop = loops_.size();
+  loops_.push_back({stages_.size(), stages_.size(), std::move(more)});
+  body();
+  loops_[loop].last = stages_.size();
+  if (loops_[loop].first == loops_[loop].last) throw std::logic_error("the plan repeats nothing");
+}
+
+// Stages first to last (exclusive), where `loop` is the first loop that begins at `first` or later.
+void Plan::run_range(const Run& run, std::size_t first, std::size_t last, std::size_t loop) const {
+  for (std::size_t at = first; at < last;) {
+    if (loop == loops_.size() || loops_[loop].first != at) {
+      run_stage(run, stages_[at++]);
+      continue;
+    }
+    const Loop& body = loops_[loop];
+    while (body.more()) run_range(run, body.first, body.last, loop + 1);
+    at = body.last;
+    while (loop < loops_.size() && loops_[loop].first < at) ++loop;
   }
+}
+
+void Plan::run_stage(const Run& run, const Stage& stage) const {
+  if (!stage.on || (stage.part != StagePart::both && stage.part != run.part)) return;
+  if (stage.due && !stage.due()) return;
+  auto scope = run.ledger.time(stage.name);
+  StageRun counted{.dt = run.dt, .particles = run.particles};
+  // What a stage reads last it may release, and what it writes it may lease.
+  for (const ArrayUse& use : stage.reads) counted.bytes += use.bytes();
+  stage.work(counted);
+  for (const ArrayUse& use : stage.writes) counted.bytes += use.bytes();
+  scope.add_particles(counted.particles);
+  scope.add_pairs(counted.pairs);
+  scope.add_bytes(counted.bytes);
 }
 
 }  // namespace spume

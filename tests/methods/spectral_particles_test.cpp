@@ -10,6 +10,7 @@
 #include "methods/spectral_flow.hpp"
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/methods/spectral/particle_options.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace spume {

@@ -51,19 +51,27 @@ PointParticleOptions bubbles(Coupling coupling) {
 struct Suspension {
   PeriodicGrid grid = small_grid();
   ParticleSystem system;
-  Ledger ledger;
   std::array<std::vector<double>, 3> force;
   int steps = 0;
 
   explicit Suspension(const PointParticleOptions& options) : system(grid, options) {
     for (auto& f : force) f.resize(grid.storage());
   }
-  void begin() { system.begin(Flow(grid, 0).data()); }
+  void take_velocity() { system.take_velocity(Flow(grid, 0.1 * steps).data()); }
+  void spread_force() { system.spread_force<double>({force[0].data(), force[1].data(), force[2].data()}); }
+  void begin() {
+    take_velocity();
+    system.sort();
+    system.start();
+  }
   void advance(int count) {
     for (int s = 0; s < count; ++s) {
-      if (system.couples()) system.feedback<double>({force[0].data(), force[1].data(), force[2].data()}, ledger);
+      if (system.couples()) spread_force();
       ++steps;
-      system.advance(0.01, Flow(grid, 0.1 * steps).data(), ledger);
+      if (system.sort_due()) system.sort();
+      take_velocity();
+      system.move(0.01);
+      if (system.collides()) system.collide();
     }
   }
   double total_force(int c) const {
@@ -122,12 +130,12 @@ TEST(ParticleSystem, MotionDependsNeitherOnSortingNorOnThreads) {
 
 TEST(ParticleSystem, TheGridReceivesTheForceOfTheParticles) {
   PointParticleOptions options = bubbles(Coupling::two_way);
-  options.most_volume_fraction = 1e9;
+  options.max_volume_fraction = 1e9;
   options.scheme.lead = 0;
   Suspension run(options);
   run.begin();
   run.advance(5);
-  run.system.feedback<double>({run.force[0].data(), run.force[1].data(), run.force[2].data()}, run.ledger);
+  run.spread_force();
   for (int c = 0; c < 3; ++c) {
     double given = 0, size = 0;
     for (const double f : *run.system.particles().force[c]) {
@@ -154,9 +162,8 @@ TEST(ParticleSystem, ContinuesBitForBitFromItsState) {
     if (from[a].f64 != nullptr) *to[a].f64 = *from[a].f64;
     if (from[a].i64 != nullptr) *to[a].i64 = *from[a].i64;
   }
-  second.system.restored();
-  second.system.resume(Flow(second.grid, 0.1 * first.steps).data());
   second.steps = first.steps;
+  second.take_velocity();
   second.advance(5);
   for (int c = 0; c < 3; ++c) {
     for (std::size_t i = 0; i < 3000; ++i) {
@@ -235,7 +242,7 @@ TEST(ParticleSystem, PlacesOnALatticeInClustersOrAsGiven) {
   EXPECT_EQ((*lattice.particles().position[2])[7], 0.4);
   options.count = 251;
   EXPECT_THROW(ParticleSystem(small_grid(), options), InputError);
-  options.placement.kind = Placement::given;
+  options.placement.kind = Placement::file;
   options.count = 2;
   options.placement.given = {{0.5, 1.5, 0.25}, {-0.25, 0, 0}};
   ParticleSystem given(small_grid(), options);

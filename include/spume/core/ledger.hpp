@@ -36,6 +36,7 @@ class Ledger {
     ~Scope();
 
     // Work and traffic that are known only when the work is done.
+    void add_particles(double particles) { particles_ += particles; }
     void add_pairs(double pairs) { pairs_ += pairs; }
     void add_bytes(double bytes) { bytes_ += bytes; }
 

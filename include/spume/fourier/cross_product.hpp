@@ -5,10 +5,10 @@
 // all products of modes below N/2 free of aliasing in the modes kept (de Wit et al. 2024, figure 3b); P = 2 is the
 // unpadded grid. The points P j + r of one remainder r are a transform of length n of the N modes, twisted by
 // exp(2 pi i k r / M) and folded modulo n, so that no zero is ever transformed. For each remainder along x:
-//   1. x stage: blocks of lines gathered into a small buffer; five fields u, v, w, dv/dx, dw/dx on n planes of x;
-//   2. plane stage, one plane of x at a time, in cache: curl, and for each remainder along y the inverse transforms
+//   1. inverse_x: blocks of lines gathered into a small buffer; five fields u, v, w, dv/dx, dw/dx on n planes of x;
+//   2. form_planes, one plane of x at a time, in cache: curl, and for each remainder along y the inverse transforms
 //      along y and z of six fields, the cross product, and the forward transforms along z and y of three;
-//   3. x stage forward, summed over the remainders.
+//   3. forward_x, summed over the remainders.
 // The largest array is 5 fields of n planes: 2.5 real fields of N^3 numbers.
 //
 // The result does not depend on the number of threads, bit for bit.
@@ -50,26 +50,31 @@ class CrossProduct {
   VelocityPeak evaluate(const std::array<const Complex*, 3>& potential, const std::array<Complex*, 3>& sum,
                         const Finish& finish);
 
+  // The parts of evaluate(), for a caller that times them: for each remainder from 0 to remainders() - 1 all three, in
+  // this order, with the same arrays. `peak` collects the largest values; `finish` is called with the last remainder.
+  std::size_t remainders() const { return phases_; }
+  void inverse_x(std::size_t remainder, const std::array<const Complex*, 3>& potential);
+  void form_planes(VelocityPeak& peak);
+  void forward_x(std::size_t remainder, const std::array<Complex*, 3>& sum, const Finish& finish);
+  // The fields on the planes of a remainder: five after inverse_x, the product in the first three after form_planes.
+  const std::array<Array<Complex>, 5>& planes() const { return work_; }
+
   ~CrossProduct();
 
   // Its memory, free between evaluations: two pieces of half the planes each.
   std::array<Complex*, 2> spare() { return {work_[0].data(), work_[1].data()}; }
 
   double bytes() const;
-  // Wall seconds so far: x stage inverse, planes, x stage forward with `finish`.
-  const std::array<double, 3>& stage_seconds() const { return seconds_; }
 
  private:
   struct Scratch;  // of a thread
   // Twists of one axis by remainder: at[r][j] for wavenumber j, at[r][n + j] for wavenumber j - n.
   using Twists = std::vector<std::vector<Complex>>;
 
-  void inverse_x(std::size_t remainder, const std::array<const Complex*, 3>& potential);
   void plane(std::size_t j, Scratch& scratch, VelocityPeak& peak);
   void inverse_y(std::size_t remainder, std::size_t j, Scratch& scratch) const;
   void rows(Scratch& scratch, VelocityPeak& peak) const;
   void forward_y(std::size_t remainder, std::size_t j, Scratch& scratch);
-  void forward_x(std::size_t remainder, const std::array<Complex*, 3>& sum, const Finish& finish);
 
   ModeLayout layout_;
   std::size_t phases_;
@@ -83,7 +88,6 @@ class CrossProduct {
   std::array<Array<Complex>, 5> work_;
   std::vector<std::unique_ptr<Scratch>> scratch_;
   std::vector<VelocityPeak> peaks_;
-  std::array<double, 3> seconds_{};
 };
 
 }  // namespace spume

@@ -22,19 +22,23 @@ class ArrayUse {
   template <class T>
   ArrayUse(const Array<T>* array)  // NOLINT
       : bytes_([array] { return array == nullptr ? 0.0 : static_cast<double>(array->size() * sizeof(T)); }) {}
+  explicit ArrayUse(std::function<double()> bytes) : bytes_(std::move(bytes)) {}  // of arrays that another class keeps
+  template <class T, std::size_t count>
+  ArrayUse(const std::array<Array<T>, count>& arrays) : ArrayUse(&arrays) {}  // NOLINT
+  template <class T, std::size_t count>
+  ArrayUse(const std::array<Array<T>, count>* arrays)  // NOLINT
+      : bytes_([arrays] {
+          double sum = 0;
+          if (arrays != nullptr)
+            for (const Array<T>& array : *arrays) sum += static_cast<double>(array.size() * sizeof(T));
+          return sum;
+        }) {}
   template <class T, std::size_t count>
   ArrayUse(const std::array<Array<T>*, count>& arrays)  // NOLINT
       : bytes_([arrays] {
           double sum = 0;
           for (const Array<T>* array : arrays)
             if (array != nullptr) sum += static_cast<double>(array->size() * sizeof(T));
-          return sum;
-        }) {}
-  template <class T, std::size_t count>
-  ArrayUse(const std::array<Array<T>, count>& arrays)  // NOLINT
-      : bytes_([arrays = &arrays] {
-          double sum = 0;
-          for (const Array<T>& array : *arrays) sum += static_cast<double>(array.size() * sizeof(T));
           return sum;
         }) {}
   double bytes() const { return bytes_(); }
@@ -46,13 +50,15 @@ class ArrayUse {
 // One run of a stage: the step it belongs to (0 at the start), and what the stage counted itself.
 struct StageRun {
   double dt = 0;
-  double pairs = 0;  // particle pairs handled
-  double bytes = 0;  // traffic beside the arrays that the stage names, such as that of its sweeps
+  double particles = 0;  // that the ledger divides the time by; a stage that handles others than the step says so
+  double pairs = 0;      // particle pairs handled
+  double bytes = 0;      // traffic beside the arrays that the stage names, such as that of its sweeps
 };
 
 enum class StagePart { step, start, both };
 
-// One stage: what it is called, why it runs or not, and what it does. Off stages have no work.
+// One stage: what it is called, why it runs or not, and what it does. Off stages have no work. A stage that is on and
+// not wanted in every step, such as a sort every so many steps, says when it is due.
 struct Stage {
   std::string name;
   std::string reason;
@@ -60,22 +66,38 @@ struct Stage {
   std::function<void(StageRun&)> work = {};
   std::vector<ArrayUse> reads = {}, writes = {};
   StagePart part = StagePart::step;
+  std::function<bool()> due = {};  // asked before each run; none: always
 };
 
 class Plan {
  public:
   // Throws std::logic_error for a name that is there already, or a stage that is on and has no work.
   void add(Stage stage);
+  // The stages that `body` adds run one after another, again and again while `more` answers true; it is asked before
+  // each pass. Loops may hold loops. Throws std::logic_error for a body that adds no stage.
+  void repeat(std::function<bool()> more, const std::function<void()>& body);
   const std::vector<Stage>& stages() const { return stages_; }
 
   // Runs the stages of the step, or of the start, that are on, each timed under its name. `particles`: how many the
   // ledger divides the time by. What a stage throws passes through.
-  void run_step(double dt, double particles, Ledger& ledger) const { run(StagePart::step, dt, particles, ledger); }
-  void run_start(double particles, Ledger& ledger) const { run(StagePart::start, 0, particles, ledger); }
+  void run_step(double dt, double particles, Ledger& ledger) const { run({StagePart::step, dt, particles, ledger}); }
+  void run_start(double particles, Ledger& ledger) const { run({StagePart::start, 0, particles, ledger}); }
 
  private:
-  void run(StagePart part, double dt, double particles, Ledger& ledger) const;
+  struct Run {
+    StagePart part;
+    double dt, particles;
+    Ledger& ledger;
+  };
+  struct Loop {
+    std::size_t first, last;  // of its stages; one past the last
+    std::function<bool()> more;
+  };
+  void run(const Run& run) const { run_range(run, 0, stages_.size(), 0); }
+  void run_range(const Run& run, std::size_t first, std::size_t last, std::size_t loop) const;
+  void run_stage(const Run& run, const Stage& stage) const;
   std::vector<Stage> stages_;
+  std::vector<Loop> loops_;  // in the order in which they begin
 };
 
 }  // namespace spume

@@ -54,17 +54,13 @@ ParticleSystem::ParticleSystem(const PeriodicGrid& grid, const PointParticleOpti
     constexpr int fractions = 32;
     for (int k = 0; k <= fractions; ++k)
       stable_step_.push_back(
-          stable_coupling_step(options.motion, options.scheme, options.most_volume_fraction * k / fractions));
+          stable_coupling_step(options.motion, options.scheme, options.max_volume_fraction * k / fractions));
   }
   const double volume = parallel_sum(size(), [&](std::size_t i) { return sphere_volume(particles_.diameter_of(i)); });
   volume_fraction_ = volume / (grid.length[0] * grid.length[1] * grid.length[2]);
 }
 
-template <class Source>
-void ParticleSystem::begin(const std::array<const Source*, 3>& velocity) {
-  resume(velocity);
-  Ledger untimed;
-  sort(untimed);
+void ParticleSystem::start() {
   if (!options_.motion.frozen)
     std::visit(
         [&](const auto& field) {
@@ -84,49 +80,50 @@ void ParticleSystem::begin(const std::array<const Source*, 3>& velocity) {
 }
 
 template <class Source>
-void ParticleSystem::resume(const std::array<const Source*, 3>& velocity) {
+void ParticleSystem::take_velocity(const std::array<const Source*, 3>& velocity) {
   std::visit([&](auto& field) { field.fill(velocity); }, field_);
 }
 
-template <class Source>
-void ParticleSystem::advance(double dt, const std::array<const Source*, 3>& velocity, Ledger& ledger) {
-  const auto n = static_cast<double>(size());
-  if (static_cast<std::int64_t>(clock_[1]) % options_.sort_every == 0) sort(ledger);
-  {
-    const auto scope = ledger.time("particle records", n);
-    std::visit([&](auto& field) { field.fill(velocity); }, field_);
+bool ParticleSystem::sort_due() const {
+  return static_cast<std::int64_t>(clock_[1]) % options_.sort_every == 0;
+}
+
+void ParticleSystem::sort() {
+  const auto x = particles_.positions();
+  order().build({grid_.lower, grid_.length, grid_.points}, x[0], x[1], x[2], size());
+  // The forces need not follow: the step that follows finds them anew.
+  if (!order().already_sorted()) particles_.fields.permute(order().order());
+}
+
+void ParticleSystem::move(double dt) {
+  ForceOutput output;
+  if (couples()) {
+    output.amounts = amounts_.data();
+    // From the middles of the last two steps to the time at which the force is wanted.
+    output.extrapolation = clock_[1] > 0 ? options_.scheme.lead * dt / (0.5 * (dt + clock_[0])) : 0;
   }
-  {
-    const auto scope = ledger.time("particle motion", n);
-    ForceOutput output;
-    if (couples()) {
-      output.amounts = amounts_.data();
-      // From the middles of the last two steps to the time at which the force is wanted.
-      output.extrapolation = clock_[1] > 0 ? options_.scheme.lead * dt / (0.5 * (dt + clock_[0])) : 0;
-    }
-    motion_ = std::visit(
-        [&](const auto& field) { return move_particles(options_.motion, field, dt, particles_, output); }, field_);
-  }
-  if (collides()) {
-    const auto scope = ledger.time("particle exclusion", n);
-    exclusion_report_ = cells().match(spheres(), options_.matching);
-    exclusion_.separate(spheres());
-    std::size_t pairs = exclusion_report_.pairs;
-    for (int sweep = 1; sweep < options_.collision_sweeps && pairs > 0; ++sweep) {
-      pairs = exclusion_.match(spheres(), options_.matching).pairs;
-      exclusion_.separate(spheres());
-      exclusion_report_.pairs += pairs;
-    }
-  }
+  motion_ = std::visit(
+      [&](const auto& field) { return move_particles(options_.motion, field, dt, particles_, output); }, field_);
   clock_[0] = dt;
   clock_[1] += 1;
   clock_[3] = std::sqrt(motion_.mean_square_slip);
 }
 
+void ParticleSystem::collide() {
+  exclusion_report_ = cells().match(spheres(), options_.matching);
+  exclusion_.separate(spheres());
+  std::size_t pairs = exclusion_report_.pairs;
+  for (int sweep = 1; sweep < options_.collision_sweeps && pairs > 0; ++sweep) {
+    pairs = exclusion_.match(spheres(), options_.matching).pairs;
+    exclusion_.separate(spheres());
+    exclusion_report_.pairs += pairs;
+  }
+}
+
 double ParticleSystem::longest_step() const {
   if (!couples()) return std::numeric_limits<double>::infinity();
   const double last = static_cast<double>(stable_step_.size()) - 1;
-  const double fraction = (clock_[2] > 0 ? clock_[2] : volume_fraction_) / options_.most_volume_fraction;
+  const double fraction = (clock_[2] > 0 ? clock_[2] : volume_fraction_) / options_.max_volume_fraction;
   const double steps = stable_step_[static_cast<std::size_t>(std::ceil(std::min(fraction, 1.0) * last))];
   const MotionModel& motion = options_.motion;
   const auto& diameters = options_.placement.diameters;
@@ -139,22 +136,13 @@ double ParticleSystem::longest_step() const {
 }
 
 template <class Real>
-void ParticleSystem::feedback(const std::array<Real*, 3>& force, Ledger& ledger) {
-  const auto scope = ledger.time("particle feedback", static_cast<double>(size()));
+void ParticleSystem::spread_force(const std::array<Real*, 3>& force) {
   const DepositedParticles given{particles_.positions(), amounts_.data(),
                                  particles_.diameter == nullptr ? nullptr : particles_.diameter->data(),
                                  particles_.common_diameter};
   order().build(deposition_.cells(), given.position[0], given.position[1], given.position[2], size());
-  deposition_report_ = deposition_.deposit<Real>(order(), given, options_.most_volume_fraction, force, nullptr);
+  deposition_report_ = deposition_.deposit<Real>(order(), given, options_.max_volume_fraction, force, nullptr);
   clock_[2] = deposition_report_.most_volume_fraction;
-}
-
-void ParticleSystem::sort(Ledger& ledger) {
-  const auto scope = ledger.time("particle sort", static_cast<double>(size()));
-  const auto x = particles_.positions();
-  order().build({grid_.lower, grid_.length, grid_.points}, x[0], x[1], x[2], size());
-  // The forces need not follow: the step that follows finds them anew.
-  if (!order().already_sorted()) particles_.fields.permute(order().order());
 }
 
 Spheres ParticleSystem::spheres() {
@@ -181,6 +169,10 @@ Exclusion& ParticleSystem::cells() {
   return exclusion_;
 }
 
+double ParticleSystem::record_bytes() const {
+  return std::visit([](const auto& field) { return field.bytes(); }, field_);
+}
+
 std::vector<ParticleSystem::StateArray> ParticleSystem::state() {
   std::vector<StateArray> out;
   for (const auto& field : particles_.fields.fields()) {
@@ -194,20 +186,10 @@ std::vector<ParticleSystem::StateArray> ParticleSystem::state() {
   return out;
 }
 
-void ParticleSystem::restored() {
-  for (const StateArray& array : state()) {
-    const std::size_t wanted = array.f64 == &clock_ ? 4 : (array.f64 == &amounts_ ? 3 * size() + 1 : size());
-    const std::size_t found = array.f64 != nullptr ? array.f64->size() : array.i64->size();
-    if (found != wanted)
-      throw FileError("the checkpoint holds " + std::to_string(found) + " values of " + array.name +
-                      "; the case needs " + std::to_string(wanted));
-  }
-}
-
 std::vector<ParticleSystem::ArraySize> ParticleSystem::arrays() const {
   std::vector<ArraySize> out{{"particle state", particles_.fields.bytes()},
                              {"particle order", order_.bytes()},
-                             {"velocity records", std::visit([](const auto& f) { return f.bytes(); }, field_), false}};
+                             {"velocity records", record_bytes(), false}};
   if (couples()) {
     out.push_back({"particle forces", 8.0 * static_cast<double>(amounts_.capacity())});
     out.push_back({"force on the points", deposition_.bytes(), false});
@@ -230,13 +212,9 @@ double ParticleSystem::estimated_bytes(const PeriodicGrid& grid, const PointPart
          points * (options.single_precision_records ? 32 : 64);
 }
 
-template void ParticleSystem::begin(const std::array<const double*, 3>&);
-template void ParticleSystem::begin(const std::array<const float*, 3>&);
-template void ParticleSystem::advance(double, const std::array<const double*, 3>&, Ledger&);
-template void ParticleSystem::advance(double, const std::array<const float*, 3>&, Ledger&);
-template void ParticleSystem::resume(const std::array<const double*, 3>&);
-template void ParticleSystem::resume(const std::array<const float*, 3>&);
-template void ParticleSystem::feedback(const std::array<double*, 3>&, Ledger&);
-template void ParticleSystem::feedback(const std::array<float*, 3>&, Ledger&);
+template void ParticleSystem::take_velocity(const std::array<const double*, 3>&);
+template void ParticleSystem::take_velocity(const std::array<const float*, 3>&);
+template void ParticleSystem::spread_force(const std::array<double*, 3>&);
+template void ParticleSystem::spread_force(const std::array<float*, 3>&);
 
 }  // namespace spume

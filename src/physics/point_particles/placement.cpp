@@ -61,7 +61,7 @@ void place_particles(const PlacementOptions& options, const std::array<double, 3
                        std::to_string(fits) + " do (" + std::to_string(counts[0]) + " x " + std::to_string(counts[1]) +
                        " x " + std::to_string(counts[2]) + ")");
   }
-  if (options.kind == Placement::given) {
+  if (options.kind == Placement::file) {
     if (options.given.size() < n)
       throw InputError(std::to_string(options.given.size()) + " positions are given for " + std::to_string(n) +
                        " particles");
@@ -76,7 +76,7 @@ void place_particles(const PlacementOptions& options, const std::array<double, 3
         return {lower[0] + length[0] * static_cast<double>(i / counts[2] / counts[1]) / static_cast<double>(counts[0]),
                 lower[1] + length[1] * static_cast<double>(i / counts[2] % counts[1]) / static_cast<double>(counts[1]),
                 lower[2] + length[2] * static_cast<double>(i % counts[2]) / static_cast<double>(counts[2])};
-      case Placement::given:
+      case Placement::file:
         return options.given[i];
       case Placement::clustered: {
         // Clouds are numbered beyond all particles, so that their centres share no draw with these.

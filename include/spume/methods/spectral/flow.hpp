@@ -51,11 +51,25 @@ class Flow {
   // Replaces the state by a field with div b = 0 and forgets the history of the integrator.
   void set_potential(Modes<T>&& potential);
 
-  // Advances by dt; on StepFailure the potential is what it was.
-  void advance(double dt);
-
-  // K and the largest speeds of the present state, once per state (the first step makes use of both).
-  void evaluate_tendency();
+  // The start, of which the largest speeds are found, or a step, begins: the parts below follow, in this order. In
+  // between the present state and its budget are those before the step.
+  void begin_start();
+  void begin_step(double dt);
+  void keep_step_start();  // of Runge-Kutta schemes, whose stages overwrite b
+  bool next_tendency();    // false when the scheme needs no more of them in this step
+  // For each tendency, of the potential that the scheme takes it of:
+  void set_forcing_coefficient();
+  void set_integrating_factors();  // exp(c dt), c = -nu k^2; not called for an inviscid flow
+  bool next_remainder();           // of the points of the product, see CrossProduct; false after the last
+  bool last_remainder() const;
+  void inverse_x();
+  void form_product();
+  void forward_x();        // for every remainder but the last,
+  void update();           // which hands K to the scheme, mode by mode
+  void accept_tendency();  // throws StepFailure, and the potential is what it was; after the last the step is made
+  // After the last tendency.
+  void measure_balance();  // of the energy, over the step
+  void join_conjugates();  // with a force in proportion to the velocity
 
   // A force f per mass on the modes, for the next steps, projected on its solenoidal part by K; null pointers: none.
   // The arrays stay the caller's and must live as long as they are set.
@@ -63,8 +77,12 @@ class Flow {
 
   const ModeLayout& layout() const { return layout_; }
   const Modes<T>& potential() const { return potential_; }
-  // The state before the last step, while no tendency has been evaluated since; null before the first step.
-  const Modes<T>* previous() const;
+  // What else the parts of a step read and write: K, then K of the step before or the register of a Runge-Kutta scheme,
+  // b at the start of a Runge-Kutta step, and the planes of the product.
+  const Modes<T>& tendency() const { return tendency_; }
+  const Modes<T>& earlier() const { return earlier_; }
+  const Modes<T>& step_start() const { return start_; }
+  const std::array<Array<Complex>, 5>& planes() const { return product_.planes(); }
   double time() const { return time_; }
   std::int64_t steps() const { return steps_; }
   double viscosity() const { return viscosity_; }
@@ -93,7 +111,6 @@ class Flow {
   std::vector<ArrayInfo> arrays() const;
   void save(StateWriter& writer) const;
   void load(StateReader& reader);
-  const std::array<double, 3>& stage_seconds() const { return product_.stage_seconds(); }
   // Where the modes end, the least along the axes: pi / spacing, or two thirds of it; the last modes kept lie one
   // below.
   double largest_wavenumber() const;
@@ -103,17 +120,27 @@ class Flow {
   struct alignas(64) Tally {  // of a row of modes: u^2 and k^2 u^2, summed by place in a vector
     std::array<double, 32 / sizeof(T)> square{}, enstrophy{};
   };
+  enum class Scheme { none, midpoint, adams_bashforth, runge_kutta };
+  struct Step {
+    Scheme scheme = Scheme::none;  // none: the start
+    double dt = 0;
+    int tendencies = 0, tendency = -1, remainder = -1;
+    VelocityPeak peak = {};   // of the potential that the tendency is taken of
+    EnergyBudget fresh = {};  // of the updated potential, without the work of forces
+  };
+  const Modes<T>& argument() const;
+  const Modes<T>& updated() const;
+  std::array<Complex*, 3> partial_sums();
   template <class Update>
-  VelocityPeak evaluate(const Modes<T>& potential, Modes<T>& sum, Update&& update);
-  void adams_bashforth(double dt);
-  void self_start(double dt);
-  void runge_kutta(double dt);
+  void forward_x_with(Update&& update);
+  void adams_bashforth();
+  void predict_midpoint();
+  void correct_from_midpoint();
+  void runge_kutta();
   void require_acceptable(double dt, const EnergyBudget& fresh) const;
-  void accept(double dt, const EnergyBudget& fresh);
   EnergyBudget tallied(const Modes<T>& potential) const;
   EnergyBudget with_forces(EnergyBudget fresh) const;
   double forcing_coefficient(const Modes<T>& potential) const;
-  void join_conjugates();
   StepLimit limit_for(const VelocityPeak& peak) const;
   // exp(-nu k_i^2 dt) per index of an axis; along z twice each, as vectors take it.
   struct Decay {
@@ -132,7 +159,7 @@ class Flow {
   std::array<std::vector<T>, 3> wavenumber_;
   Array<Complex> lane_wavenumber_, lane_weight_;  // of a row of modes, in both parts
   std::array<double, 3> cut_{};                   // two-thirds rule: |k| below it stays
-  double kept_support_radius_ = 0;                // largest wavenumber kept times spacing, of all axes
+  double kept_grid_wavenumber_ = 0;               // largest wavenumber kept times spacing, of all axes
   double shell_low_ = 0, shell_high_ = 0;         // squares of the forced wavenumbers
 
   // Adams-Bashforth: b, K of the present and K of the previous step. The update writes b of the next step over the
@@ -140,9 +167,9 @@ class Flow {
   // Runge-Kutta: b, K, the register q of the 2N-storage scheme, and b of the step's start.
   Modes<T> potential_, tendency_, earlier_, start_;
   std::array<const Complex*, 3> force_{};
-  bool tendency_ready_ = false;
-  bool has_history_ = false;   // earlier_ holds K of the previous step
-  bool has_previous_ = false;  // b of the previous step is still in memory
+  Step step_;
+  double forcing_coefficient_ = 0;
+  bool has_history_ = false;  // earlier_ holds K of the previous step
   double earlier_dt_ = 0;
   double time_ = 0;
   std::int64_t steps_ = 0;

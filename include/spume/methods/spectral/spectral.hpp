@@ -3,8 +3,10 @@
 // double precision, T.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "spume/methods/method.hpp"
@@ -17,8 +19,9 @@ template <class T>
 class Spectral final : public Method, public FieldProbes {
  public:
   explicit Spectral(const LoadedCase& loaded);
+  Spectral(const Spectral&) = delete;  // the plan holds its address
 
-  const std::vector<Stage>& plan() const override { return stages_; }
+  const std::vector<Stage>& plan() const override { return plan_.stages(); }
   std::vector<ArrayInfo> arrays() const override;
   std::size_t particle_count() const override;  // points of the grid
   void start() override;
@@ -36,7 +39,7 @@ class Spectral final : public Method, public FieldProbes {
   std::vector<Invariant> invariants() const override;  // the energy, where nothing drives the flow
   std::vector<RecordTable> tables() const override;
   void table_rows(const std::string& name, std::vector<double>& rows) override;
-  std::vector<Remark> take_remarks() override;
+  std::vector<Remark> take_remarks() override { return std::exchange(remarks_, {}); }
   void save(StateWriter& writer) const override;
   void load(StateReader& reader) override;
 
@@ -44,7 +47,8 @@ class Spectral final : public Method, public FieldProbes {
   const Suspension<T>* suspension() const { return suspension_.get(); }
 
  private:
-  std::vector<Stage> make_stages() const;
+  Plan make_plan();
+  void set_initial_state();
   const Array<std::complex<T>>& total_pressure();  // of the present state
   bool wants(const std::string& field) const;
   void ensure_started();
@@ -52,7 +56,7 @@ class Spectral final : public Method, public FieldProbes {
   const LoadedCase& loaded_;
   Flow<T> flow_;
   std::unique_ptr<Suspension<T>> suspension_;  // null without particles
-  std::vector<Stage> stages_;
+  Plan plan_;
   bool started_ = false;
   std::array<std::vector<Array<float>>, 3> drawn_;  // velocity, vorticity, pressure of the last snapshot
   Array<std::complex<T>> total_pressure_;           // for probes

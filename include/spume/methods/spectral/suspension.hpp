@@ -6,7 +6,7 @@
 // holds it, as the vector potential of the paper has no mean either.
 #pragma once
 
-#include <memory>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,35 +19,31 @@
 
 namespace spume::spectral {
 
-// What the particles of a case are: counts from volume fractions, lengths and times from Kolmogorov scales. Throws
-// InputError for what no option alone shows: an unreadable file of positions, too little memory.
-PointParticleOptions particle_options(const LoadedCase& loaded);
-
-// Memory of the particles and of the fields between them and the flow, in bytes, before anything is allocated; that of
-// the flow (flow_bytes) not included.
-double suspension_bytes(const LoadedCase& loaded, const PointParticleOptions& options);
-
 template <class T>
 class Suspension {
  public:
   // Allocates what the coupling needs; `flow` must outlive it.
   Suspension(const LoadedCase& loaded, Flow<T>& flow);
 
-  void start();                      // with the flow's initial state
-  void before_step(Ledger& ledger);  // hands the flow its force
-  void after_step(double dt, Ledger& ledger);
+  // The parts of a step, in this order; the sort, the motion and the collisions are those of system().
+  void spread_force();        // of the particles to the points
+  void force_to_modes();      // hands the flow its force
+  void velocity_to_points();  // of the flow, divided by the prefilter of the splines
+  void fill_records();        // of the velocity, for the particles
+  void follow_exponents(StageRun& run);
+  // After velocity_to_points and fill_records of the flow's initial state.
+  void start_particles();
 
   // The shorter of the flow's limit and that of the coupling.
   StepLimit limited(const StepLimit& flow) const;
   // Throws InputError when the coupling would need steps far below those of the flow.
   void require_possible(const StepLimit& flow) const;
 
-  void add_stages(std::vector<Stage>& list) const;
   void add_arrays(std::vector<ArrayInfo>& list) const;
   void add_columns(std::vector<SeriesColumn>& list) const;
   // In the order of add_columns.
-  void values(std::vector<double>& row);
-  ParticleSnapshot family();
+  void values(std::span<double> row);
+  ParticleSnapshot snapshot();
   void add_tables(std::vector<RecordTable>& list) const;
   void table_rows(const std::string& name, std::vector<double>& rows);
 
@@ -55,11 +51,20 @@ class Suspension {
   void load(StateReader& reader);  // after that of the flow
 
   const ParticleSystem& system() const { return system_; }
+  ParticleSystem& system() { return system_; }
+  const std::array<Array<T>, 3>& field() const { return field_; }
+  const Modes<T>& force() const { return force_; }
+  bool follows_exponents() const { return follows_exponents_; }
 
  private:
-  std::array<const T*, 3> velocity(Ledger& ledger);
-  std::array<const T*, 3> read() const { return {field_[0].data(), field_[1].data(), field_[2].data()}; }
-  std::vector<ParticleSystem::StateArray> tracker_state() const;
+  struct Column {
+    SeriesColumn heading;
+    std::function<double()> read;
+  };
+  void make_columns();
+  void measure();  // what columns read and no step leaves behind
+  std::array<T*, 3> values_on_points();
+  std::vector<ParticleSystem::StateArray> state() const;
 
   const LoadedCase& loaded_;
   Flow<T>& flow_;
@@ -70,6 +75,12 @@ class Suspension {
   Modes<T> force_;
   bool follows_exponents_ = false;
   mutable LyapunovTracker tracker_;
+  std::vector<Column> columns_;
+  struct {
+    double dimension = 0, box_variance = 0;
+    SampledValue overlap;
+    std::array<double, 6> stretching{};
+  } measured_;
 };
 
 }  // namespace spume::spectral

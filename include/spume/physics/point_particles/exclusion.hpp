@@ -14,6 +14,7 @@
 
 #include "spume/core/array.hpp"
 #include "spume/neighbours/periodic_cells.hpp"
+#include "spume/physics/point_particles/kinds.hpp"
 
 namespace spume {
 
@@ -30,11 +31,6 @@ struct Spheres {
   const std::int64_t* identifier = nullptr;
   double common_diameter = 0;
   std::size_t size = 0;
-};
-
-enum class MatchingMethod {
-  rounds,   // locally strongest pairs, in parallel
-  sorting,  // the paper's: all overlaps listed, sorted, purged
 };
 
 class Exclusion {

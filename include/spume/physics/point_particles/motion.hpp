@@ -20,11 +20,10 @@
 #include <limits>
 
 #include "spume/operators/spline_field.hpp"
+#include "spume/physics/point_particles/kinds.hpp"
 #include "spume/physics/point_particles/particles.hpp"
 
 namespace spume {
-
-enum class DragLaw { stokes, schiller_naumann };
 
 struct MotionModel {
   double beta = 1;

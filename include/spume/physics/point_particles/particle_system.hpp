@@ -2,11 +2,14 @@
 // Particles suspended in a periodic flow: motion, collisions and what they give back to the fluid, for a flow solver
 // that hands over its velocity once a step.
 //
-//   begin(u)                     velocity field at the start; particles take the velocity of the fluid
+//   take_velocity(u), sort(), start()   velocity at the start; particles take the velocity of the fluid
 //   repeat:
-//     feedback(f)                body force of the particles at the present time (two-way, four-way)
+//     spread_force(f)            body force of the particles at the present time (two-way, four-way)
 //     ... the flow solver steps by dt with f ...
-//     advance(dt, u)             moves the particles over the same step, with the velocity at its end
+//     sort()                     when sort_due(): neighbours in the box are neighbours in memory
+//     take_velocity(u)           velocity at the end of the step
+//     move(dt)                   the particles over the same step
+//     collide()                  (four-way, colliding)
 //
 // Velocities come as B-spline coefficients: divided by b_spline_prefilter along every axis in Fourier space. The field
 // of the step before is kept in the records, so the flow solver keeps no second snapshot.
@@ -18,48 +21,14 @@
 #include <variant>
 #include <vector>
 
-#include "spume/core/ledger.hpp"
 #include "spume/operators/linear_deposition.hpp"
 #include "spume/operators/spline_field.hpp"
-#include "spume/physics/point_particles/coupling_stability.hpp"
 #include "spume/physics/point_particles/exclusion.hpp"
 #include "spume/physics/point_particles/motion.hpp"
+#include "spume/physics/point_particles/options.hpp"
 #include "spume/physics/point_particles/overlap.hpp"
-#include "spume/physics/point_particles/placement.hpp"
 
 namespace spume {
-
-enum class Coupling {
-  one_way,    // the flow moves the particles
-  two_way,    // and the particles the flow
-  four_way,   // and they exclude each other
-  colliding,  // they exclude each other, and the flow feels nothing
-};
-
-inline bool acts_on_flow(Coupling coupling) {
-  return coupling == Coupling::two_way || coupling == Coupling::four_way;
-}
-inline bool excludes(Coupling coupling) {
-  return coupling == Coupling::four_way || coupling == Coupling::colliding;
-}
-
-struct PointParticleOptions {
-  std::size_t count = 0;
-  MotionModel motion;
-  Coupling coupling = Coupling::one_way;
-  MatchingMethod matching = MatchingMethod::rounds;
-  // Matchings a step, each on the places that the one before left: with 1 a particle collides once a step, and how much
-  // overlap stays depends on the step.
-  int collision_sweeps = 1;
-  PlacementOptions placement;  // diameters too
-  int spline_order = 4;
-  bool single_precision_records = true;
-  double most_volume_fraction = 0.74048048969306104;  // pi / (3 sqrt 2), close packing
-  int sort_every = 8;                                 // steps between sorts of the particles by grid cell
-  // Where in time the force is wanted, from the middle of the last step, in steps (lead: 1/2 for multistep schemes that
-  // take it at the present time, 1 for a scheme that holds it over the coming step), and how the flow steps with it.
-  CouplingScheme scheme;
-};
 
 class ParticleSystem {
  public:
@@ -67,13 +36,15 @@ class ParticleSystem {
   // does not exist, two-way coupling of infinitely heavy particles (beta = 0).
   ParticleSystem(const PeriodicGrid& grid, const PointParticleOptions& options);
 
+  // The present velocity of the fluid; that of the call before becomes the previous one (both are the same after the
+  // first call).
   template <class Source>
-  void begin(const std::array<const Source*, 3>& velocity);
-  template <class Source>
-  void advance(double dt, const std::array<const Source*, 3>& velocity, Ledger& ledger);
-  // After load(): the present velocity again.
-  template <class Source>
-  void resume(const std::array<const Source*, 3>& velocity);
+  void take_velocity(const std::array<const Source*, 3>& velocity);
+  void start();
+  bool sort_due() const;
+  void sort();
+  void move(double dt);
+  void collide();  // precondition: collides()
 
   bool couples() const { return acts_on_flow(options_.coupling); }
   // Frozen particles do not: exclusion would move them.
@@ -83,7 +54,7 @@ class ParticleSystem {
   double longest_step() const;
   // Writes every point of `force`: acceleration of the fluid by the particles. Precondition: couples().
   template <class Real>
-  void feedback(const std::array<Real*, 3>& force, Ledger& ledger);
+  void spread_force(const std::array<Real*, 3>& force);
 
   std::size_t size() const { return particles_.size(); }
   double volume_fraction() const { return volume_fraction_; }
@@ -99,18 +70,21 @@ class ParticleSystem {
   // [0, 1]; zeros without overlaps.
   std::vector<double> overlap_histogram(int bins);
 
+  // Numbers of the force that move() leaves to be spread, three a particle; empty without coupling.
+  const Array<double>& amounts() const { return amounts_; }
+  // Of the velocity as the particles see it.
+  double record_bytes() const;
   // The field that particles see; null unless its records are in double precision.
   const SplineField<double>* double_field() const { return std::get_if<SplineField<double>>(&field_); }
 
-  // The state between steps, to be saved and restored under these names. Arrays of an empty system are found by their
-  // names before a restore; call resume() after it.
+  // The state between steps, to be saved and restored under these names; arrays have their sizes from the start.
+  // take_velocity() comes before or after a restore.
   struct StateArray {
     std::string name;
     Array<double>* f64 = nullptr;
     Array<std::int64_t>* i64 = nullptr;
   };
   std::vector<StateArray> state();
-  void restored();  // checks sizes after all arrays were filled; throws FileError
 
   struct ArraySize {
     std::string name;
@@ -123,7 +97,6 @@ class ParticleSystem {
 
  private:
   Spheres spheres();
-  void sort(Ledger& ledger);
   Exclusion& cells();  // also without collisions, for measures
   // Work space for an order, valid until the next use of it; that of the collisions, where there are any.
   CellOrder& order() { return collides() ? cells().order() : order_; }

@@ -6,16 +6,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "spume/physics/point_particles/kinds.hpp"
 #include "spume/physics/point_particles/particles.hpp"
 
 namespace spume {
-
-enum class Placement {
-  random,     // evenly at random
-  lattice,    // on a lattice with one particle at the lower corner of the box
-  clustered,  // in Gaussian clouds
-  given,      // at given positions
-};
 
 struct PlacementOptions {
   Placement kind = Placement::random;

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// What particles suspended in a flow are, in lengths and times of the flow, counts and places.
+#pragma once
+
+#include "spume/physics/point_particles/coupling_stability.hpp"
+#include "spume/physics/point_particles/kinds.hpp"
+#include "spume/physics/point_particles/motion.hpp"
+#include "spume/physics/point_particles/placement.hpp"
+
+namespace spume {
+
+struct PointParticleOptions {
+  std::size_t count = 0;
+  MotionModel motion;
+  Coupling coupling = Coupling::one_way;
+  MatchingMethod matching = MatchingMethod::rounds;
+  // Matchings a step, each on the places that the one before left: with 1 a particle collides once a step, and how much
+  // overlap stays depends on the step.
+  int collision_sweeps = 1;
+  PlacementOptions placement;  // diameters too
+  int spline_order = 4;
+  bool single_precision_records = true;
+  double max_volume_fraction = 0.74048048969306104;  // pi / (3 sqrt 2), close packing
+  int sort_every = 8;                                // steps between sorts of the particles by grid cell
+  // Where in time the force is wanted, from the middle of the last step, in steps (lead: 1/2 for multistep schemes that
+  // take it at the present time, 1 for a scheme that holds it over the coming step), and how the flow steps with it.
+  CouplingScheme scheme;
+};
+
+}  // namespace spume

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+// What a run of the spectral method reports: series, snapshots, probes, spectra and distributions.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "spume/core/parallel.hpp"
+#include "spume/methods/spectral/flow_fields.hpp"
+#include "spume/methods/spectral/flow_statistics.hpp"
+#include "spume/methods/spectral/spectral.hpp"
+
+namespace spume::spectral {
+namespace {
+
+// What a row of the series is read from.
+struct Row {
+  EnergyBudget budget;
+  Scales scales;
+  GradientMoments gradient;
+  double mass = 0, balance_residual = 0, max_speed = 0;
+};
+
+struct Column {
+  const char *name, *unit;
+  double (*read)(const Row&);
+};
+
+constexpr Column columns[] = {
+    {"kinetic_energy", "rho u^2 / 2, integral", [](const Row& r) { return r.mass * r.budget.energy; }},
+    {"dissipation", "rho nu |S|^2, integral", [](const Row& r) { return r.mass * r.budget.dissipation; }},
+    {"mean_energy", "u^2 / 2, mean", [](const Row& r) { return r.budget.energy; }},
+    {"mean_dissipation", "mean", [](const Row& r) { return r.budget.dissipation; }},
+    {"mean_injection", "by the force, mean", [](const Row& r) { return r.budget.injection; }},
+    {"mean_enstrophy", "omega^2 / 2, mean", [](const Row& r) { return r.scales.enstrophy; }},
+    {"balance_residual", "of dE/dt since the last row, relative to dissipation",
+     [](const Row& r) { return r.balance_residual; }},
+    {"max_speed", "speed at the start of the step", [](const Row& r) { return r.max_speed; }},
+    {"rms_velocity", "u', speed", [](const Row& r) { return r.scales.rms_velocity; }},
+    {"integral_scale", "length", [](const Row& r) { return r.scales.integral_scale; }},
+    {"taylor_scale", "length", [](const Row& r) { return r.scales.taylor_scale; }},
+    {"kolmogorov_scale", "length", [](const Row& r) { return r.scales.kolmogorov_scale; }},
+    {"reynolds_lambda", "1", [](const Row& r) { return r.scales.reynolds_lambda; }},
+    {"kmax_eta", "1", [](const Row& r) { return r.scales.kmax_eta; }},
+    {"gradient_skewness", "of du/dx", [](const Row& r) { return r.gradient.skewness; }},
+    {"gradient_flatness", "of du/dx", [](const Row& r) { return r.gradient.flatness; }}};
+
+}  // namespace
+
+template <class T>
+std::vector<SeriesColumn> Spectral<T>::series_columns() const {
+  std::vector<SeriesColumn> list;
+  for (const Column& column : columns) list.push_back({column.name, column.unit});
+  if (suspension_) suspension_->add_columns(list);
+  return list;
+}
+
+template <class T>
+void Spectral<T>::series_values(std::span<double> values) {
+  ensure_started();
+  const auto& lengths = flow_.layout().lengths;
+  const double lost = flow_.integrated_dissipation() - row_[2];
+  Row row{.budget = flow_.budget(),
+          .scales = flow_scales(flow_, shell_spectrum(flow_)),
+          .gradient = gradient_moments(flow_),
+          .mass = loaded_.scene.fluid.density * lengths[0] * lengths[1] * lengths[2],
+          .max_speed = flow_.peak().speed};
+  if (row_[3] > 0 && lost > 0)
+    row.balance_residual = (row.budget.energy - row_[0] - (flow_.integrated_gain() - row_[1])) / lost;
+  row_ = {row.budget.energy, flow_.integrated_gain(), flow_.integrated_dissipation(), 1};
+  auto value = values.begin();
+  for (const Column& column : columns) *value++ = column.read(row);
+  if (suspension_) suspension_->values(std::span<double>(value, values.end()));
+  if (row.scales.kmax_eta < 1 && !warned_) {
+    warned_ = true;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "the smallest scales are not resolved: k_max eta = %.2f at t = %.4g, which should be 1.5 or more; "
+                  "raise resolution.grid or the viscosity",
+                  row.scales.kmax_eta, flow_.time());
+    remarks_.push_back({text});
+  }
+}
+
+template <class T>
+bool Spectral<T>::wants(const std::string& field) const {
+  const auto& fields = loaded_.options.output.fields;
+  return fields.empty() ? field == "velocity" : std::find(fields.begin(), fields.end(), field) != fields.end();
+}
+
+template <class T>
+std::vector<ParticleSnapshot> Spectral<T>::snapshot() {
+  ensure_started();
+  return suspension_ ? std::vector<ParticleSnapshot>{suspension_->snapshot()} : std::vector<ParticleSnapshot>{};
+}
+
+template <class T>
+std::vector<GridSnapshot> Spectral<T>::grid_snapshot() {
+  ensure_started();
+  const ModeLayout& layout = flow_.layout();
+  const std::size_t size = particle_count(), nz = layout.points[2];
+  GridSnapshot family;
+  family.name = "fluid";
+  family.points = layout.points;
+  family.origin = loaded_.scene.domain.lower;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    family.spacing[axis] = layout.lengths[axis] / static_cast<double>(layout.points[axis]);
+  Array<T> values;
+  const auto draw = [&](std::size_t set, const char* name, auto&& fill) {
+    const std::size_t components = set < 2 ? 3 : 1;
+    drawn_[set].resize(components);
+    GridSnapshot::Field field{name, {}};
+    values.resize(components * size);
+    fill();
+    for (std::size_t c = 0; c < components; ++c) {
+      drawn_[set][c].resize(size);
+      parallel_for(size, [&](std::size_t i) { drawn_[set][c][i] = static_cast<float>(values[c * size + i]); });
+      field.components.push_back(drawn_[set][c].data());
+    }
+    family.fields.push_back(std::move(field));
+  };
+  const auto parts = [&] { return std::array<T*, 3>{&values[0], &values[size], &values[2 * size]}; };
+  if (wants("velocity") || wants("pressure")) {
+    draw(0, "velocity", [&] { real_velocity(flow_, flow_.potential(), {}, parts(), nz); });
+    if (!wants("velocity")) family.fields.clear();
+  }
+  if (wants("vorticity")) draw(1, "vorticity", [&] { real_vorticity(flow_, flow_.potential(), {}, parts(), nz); });
+  if (wants("pressure"))
+    draw(2, "pressure", [&] {
+      flow_.total_pressure(total_pressure_);
+      total_pressure_step_ = flow_.steps();
+      flow_.box().inverse(
+          [&](std::size_t ix, std::size_t iy, std::size_t first, std::complex<T>* block) {
+            std::copy_n(&total_pressure_[ix * layout.plane + iy * layout.row + first], lanes<T>, block);
+          },
+          values.data(), nz);
+      double mean = 0;
+      const auto square = [&](std::size_t i) {
+        double sum = 0;
+        for (const auto& u : drawn_[0]) sum += double{u[i]} * double{u[i]};
+        return sum / 2;
+      };
+      mean = parallel_sum(size, square) / static_cast<double>(size);
+      const double density = loaded_.scene.fluid.density;
+      parallel_for(
+          size, [&](std::size_t i) { values[i] = static_cast<T>(density * (double{values[i]} - square(i) + mean)); });
+    });
+  return {family};
+}
+
+template <class T>
+const Array<std::complex<T>>& Spectral<T>::total_pressure() {
+  ensure_started();
+  if (total_pressure_step_ != flow_.steps()) {
+    flow_.total_pressure(total_pressure_);
+    total_pressure_step_ = flow_.steps();
+  }
+  return total_pressure_;
+}
+
+template <class T>
+PointSample Spectral<T>::sample(const Vec3& position) {
+  const auto& pressure = total_pressure();
+  Vec3 from_lower{};
+  for (std::size_t axis = 0; axis < 3; ++axis) from_lower[axis] = position[axis] - loaded_.scene.domain.lower[axis];
+  PointSample sample = sample_flow(flow_, pressure, from_lower);
+  sample.pressure = loaded_.scene.fluid.density * (sample.pressure + flow_.budget().energy);  // mean pressure 0
+  return sample;
+}
+
+template <class T>
+PlaneSample Spectral<T>::plane_average(int axis, double position) {
+  const auto& pressure = total_pressure();
+  const auto a = static_cast<std::size_t>(axis);
+  PlaneSample sample = sample_plane(flow_, pressure, a, position - loaded_.scene.domain.lower[a]);
+  sample.pressure = loaded_.scene.fluid.density * (sample.pressure + flow_.budget().energy);
+  return sample;
+}
+
+template <class T>
+std::vector<RecordTable> Spectral<T>::tables() const {
+  std::vector<RecordTable> list{spectrum_table(),
+                                {"gradient_pdf",
+                                 "gradient_pdf",
+                                 {{"t", "time"},
+                                  {"gradient", "standard deviations"},
+                                  {"longitudinal", "probability density"},
+                                  {"transverse", "probability density"}},
+                                 RecordTable::When::spectrum}};
+  if (suspension_) suspension_->add_tables(list);
+  return list;
+}
+
+template <class T>
+void Spectral<T>::table_rows(const std::string& name, std::vector<double>& rows) {
+  ensure_started();
+  if (name == "spectrum") {
+    const ShellSpectrum spectrum = shell_spectrum(flow_);
+    add_spectrum(flow_.time(), spectrum.wavenumber, spectrum.energy, rows);
+  } else if (name == "gradient_pdf") {
+    const GradientDistribution pdf = gradient_distribution(flow_);
+    for (std::size_t i = 0; i < pdf.value.size(); ++i)
+      rows.insert(rows.end(), {flow_.time(), pdf.value[i], pdf.longitudinal[i], pdf.transverse[i]});
+  } else if (suspension_) {
+    suspension_->table_rows(name, rows);
+  }
+}
+
+template std::vector<SeriesColumn> Spectral<double>::series_columns() const;
+template std::vector<SeriesColumn> Spectral<float>::series_columns() const;
+template void Spectral<double>::series_values(std::span<double>);
+template void Spectral<float>::series_values(std::span<double>);
+template std::vector<ParticleSnapshot> Spectral<double>::snapshot();
+template std::vector<ParticleSnapshot> Spectral<float>::snapshot();
+template std::vector<GridSnapshot> Spectral<double>::grid_snapshot();
+template std::vector<GridSnapshot> Spectral<float>::grid_snapshot();
+template PointSample Spectral<double>::sample(const Vec3&);
+template PointSample Spectral<float>::sample(const Vec3&);
+template PlaneSample Spectral<double>::plane_average(int, double);
+template PlaneSample Spectral<float>::plane_average(int, double);
+template std::vector<RecordTable> Spectral<double>::tables() const;
+template std::vector<RecordTable> Spectral<float>::tables() const;
+template void Spectral<double>::table_rows(const std::string&, std::vector<double>&);
+template void Spectral<float>::table_rows(const std::string&, std::vector<double>&);
+
+}  // namespace spume::spectral
