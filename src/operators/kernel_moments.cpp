@@ -110,11 +110,8 @@ void kernel_moment_sweep(const SweepContext& context, PackedNeighbours& records,
 }
 
 std::vector<SurfaceLayer> lattice_surface(int dimensions, KernelKind kernel, double smoothing_ratio) {
-  SweepContext context;
-  context.dimensions = dimensions;
-  context.kernel = kernel;
   std::vector<SurfaceLayer> layers;
-  with_kernel(context, [&]<int d, class Kernel>() {
+  with_plain_kernel(dimensions, kernel, [&]<int d, class Kernel>() {
     const double h = smoothing_ratio;
     const double scale = Kernel::normalisation(d) / std::pow(h, d);
     const double w_reference = Kernel::w(1 / h);
@@ -188,11 +185,8 @@ void visit_lattice(double support, Visit&& visit) {
 }  // namespace
 
 LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smoothing_ratio) {
-  SweepContext context;
-  context.dimensions = dimensions;
-  context.kernel = kernel;
   LatticeConstants result{};
-  with_kernel(context, [&]<int d, class Kernel>() {
+  with_plain_kernel(dimensions, kernel, [&]<int d, class Kernel>() {
     const double h = smoothing_ratio;
     const double scale = Kernel::normalisation(d) / std::pow(h, d);
     visit_lattice<d>(Kernel::support * h, [&](int i, int j, int k) {
@@ -207,11 +201,8 @@ LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smo
 }
 
 double largest_stable_shift(int dimensions, KernelKind kernel, double smoothing_ratio, bool without_mean) {
-  SweepContext context;
-  context.dimensions = dimensions;
-  context.kernel = kernel;
   double fastest = 0;
-  with_kernel(context, [&]<int d, class Kernel>() {
+  with_plain_kernel(dimensions, kernel, [&]<int d, class Kernel>() {
     const double h = smoothing_ratio;
     const double scale = Kernel::normalisation(d) / std::pow(h, d);
     const double reference = Kernel::w(1 / h);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "spume/operators/pressure_operator.hpp"
 
+#include <stdexcept>
+
 #include "spume/operators/image_values.hpp"
 
 namespace spume {
@@ -88,13 +90,13 @@ void double_rows(const SweepContext& context, const float* records, const Pressu
 }
 
 // sum_j F(q) weight_j of every row; the payload of the records is the weight.
-template <class Kernel>
+template <int dimensions, class Kernel>
 void sum_weights(const SweepContext& context, const float* records, float* sum) {
-  const KernelScale<3, Kernel> common(context);
+  const KernelScale<dimensions, Kernel> common(context);
   sweep(context.list->particles(), [&](std::size_t i) {
     f32n total{};
-    for_each_batch<3, 1>(*context.list, records, i, common.at(context, i).inverse_h,
-                         [&](const auto& batch) { total = total + Kernel::f(batch.q) * batch.payload[0]; });
+    for_each_batch<dimensions, 1>(*context.list, records, i, common.at(context, i).inverse_h,
+                                  [&](const auto& batch) { total = total + Kernel::f(batch.q) * batch.payload[0]; });
     sum[i] = simd::sum(total);
   });
 }
@@ -102,6 +104,9 @@ void sum_weights(const SweepContext& context, const float* records, float* sum) 
 }  // namespace
 
 void PressureOperator::bind(const SweepContext& context, PackedNeighbours& records, const PressureMatrix& matrix) {
+  if ((matrix.weight != nullptr) != (context.length_ratio != nullptr) ||
+      (matrix.weight != nullptr) != (matrix.row != nullptr))
+    throw std::logic_error("a pressure matrix has weights and rows exactly where particles differ in size");
   context_ = context;
   records_ = &records;
   matrix_ = matrix;
@@ -111,7 +116,7 @@ void PressureOperator::bind(const SweepContext& context, PackedNeighbours& recor
   float* values = records.prepare(context, 1);
   pack_scalar(context, values, record_width(context.dimensions, 1), 0, matrix.weight);
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    if constexpr (is_variable_h<Kernel>) sum_weights<Kernel>(context, values, weight_sum_.data());
+    if constexpr (is_variable_h<Kernel>) sum_weights<dimensions, Kernel>(context, values, weight_sum_.data());
   });
 }
 

@@ -114,8 +114,8 @@ struct PreparedStep {
         if (side.kind == BoundaryKind::no_slip) side.kind = BoundaryKind::free_slip;
     const SphSums mirror({loaded.options.resolution.kernel, d}, liquid.smoothing_length, liquid.volume, points,
                          les_sph::image_rules(liquid, liquid.next_walls), boundaries_of(slippery));
-    const reference::SurfaceLayers layers(twin, {loaded.options.resolution.kernel, d}, liquid.smoothing_length,
-                                          loaded.scene.spacing, edge_normals(twin));
+    const reference::SurfaceLayers layers(twin, {loaded.options.resolution.kernel, d}, loaded.scene.spacing,
+                                          edge_normals(twin));
     const auto potential = [&](std::size_t i) { return liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]; };
     std::array<std::vector<double>, 3> start, u;
     for (int axis = 0; axis < d; ++axis) {

@@ -54,12 +54,12 @@ struct Surface {
       edge.push_back(static_cast<std::int32_t>(i));
     }
   }
-  SurfaceLayers twin() const {
-    return {a.twin, {a.setup.kernel, a.dimensions()}, a.setup.smoothing_length(), a.setup.spacing, exact};
-  }
+  SurfaceLayers twin() const { return {a.twin, {a.setup.kernel, a.dimensions()}, a.setup.spacing, exact}; }
   // Of the support, in spacings.
   double support_radius() const {
-    return PlainKernel{a.setup.kernel, a.dimensions()}.support() * a.setup.smoothing_length() / a.setup.spacing;
+    const double largest = a.setup.sizes ? largest_length_ratio : 1;
+    return largest * PlainKernel{a.setup.kernel, a.dimensions()}.support() * a.setup.smoothing_length() /
+           a.setup.spacing;
   }
   double rounding(std::size_t i) const { return epsilon * static_cast<double>(a.twin.neighbours(i) + 4); }
 };

@@ -40,12 +40,12 @@ TEST(SphOperators, VelocityGradientAndFilterAgreeWithTheSlowTwin) {
     velocity_gradient_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), out);
     Comparison gradients("velocity gradient"), filter("filtered velocity");
     for (std::size_t i = 0; i < a.size(); ++i) {
-      const std::size_t count = a.twin.neighbours(i);
+      const double rounding = a.twin.tolerance(i);
       const auto slow = a.twin.velocity_gradient(i, u, geometry.correction_of(i, d));
       const auto mean = a.twin.filtered_velocity(i, u);
       for (int r = 0; r < d; ++r) {
-        for (int c = 0; c < d; ++c) gradients.add(gradient[r * d + c][i], slow[r][c], count, i);
-        filter.add(filtered[r][i], mean[r], count, i);
+        for (int c = 0; c < d; ++c) gradients.add(gradient[r * d + c][i], slow[r][c], rounding, i);
+        filter.add(filtered[r][i], mean[r], rounding, i);
       }
     }
     // The gradient is the same bits with and without the filter beside it.
@@ -72,14 +72,14 @@ TEST(SphOperators, VelocityGradientAndFilterAgreeWithTheSlowTwin) {
   }
 }
 
-struct HeldChanges {
+struct BoundedChanges {
   std::size_t cut = 0, free = 0;
 };
 
 // The changes over random displacements of up to `length` spacings, with strain and trace, against the twin. `filter`
 // takes the sweep that filters beside, which must give the same.
-HeldChanges compare_changes(double length, bool filter) {
-  HeldChanges pressure_fixed;
+BoundedChanges compare_changes(double length, bool filter) {
+  BoundedChanges changes_made;
   for (Arrangement& a : all_arrangements()) {
     SCOPED_TRACE(a.setup.name);
     const int d = a.dimensions();
@@ -101,7 +101,7 @@ HeldChanges compare_changes(double length, bool filter) {
     velocity_gradient_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), out);
     Comparison changes("change"), strains("squared strain"), traces("trace");
     for (std::size_t i = 0; i < a.size(); ++i) {
-      const std::size_t count = a.twin.neighbours(i);
+      const double rounding = a.twin.tolerance(i);
       const auto gradient = a.twin.velocity_gradient(i, u, geometry.correction_of(i, d));
       reference::Sum square, product;  // their errors to first order in those of the gradient
       for (int r = 0; r < d; ++r) {
@@ -117,23 +117,23 @@ HeldChanges compare_changes(double length, bool filter) {
         }
         const auto [low, high] = a.twin.difference_bounds(i, u, r);
         const double bounded = std::clamp(along.value, low / 2, high / 2);
-        (bounded == along.value ? pressure_fixed.free : pressure_fixed.cut) += 1;
+        (bounded == along.value ? changes_made.free : changes_made.cut) += 1;
         along.value = bounded;
         along.magnitude += std::abs(low) + std::abs(high);
-        changes.add(change[r][i], along, count, i);
+        changes.add(change[r][i], along, rounding, i);
       }
-      strains.add(strain[i] * strain[i], square, count, i);
-      traces.add(trace[i], product, count, i);
+      strains.add(strain[i] * strain[i], square, rounding, i);
+      traces.add(trace[i], product, rounding, i);
     }
   }
-  return pressure_fixed;
+  return changes_made;
 }
 
 // Random velocities are as rough as a field can be: half the extreme difference is passed by one displacement in four
 // of a spacing, and by none of a hundredth of it but where a particle has few neighbours.
-TEST(SphOperators, ChangesOverADisplacementAreHeldByTheNeighbours) {
+TEST(SphOperators, ChangesOverADisplacementAreBoundedByTheNeighbours) {
   for (const bool filter : {false, true}) {
-    const HeldChanges near = compare_changes(0.01, filter), far = compare_changes(1, filter);
+    const BoundedChanges near = compare_changes(0.01, filter), far = compare_changes(1, filter);
     EXPECT_LT(near.cut, near.free / 20);
     EXPECT_GT(far.cut, far.free / 20);
     EXPECT_GT(far.free, far.cut / 20);
@@ -150,12 +150,14 @@ TEST(SphOperators, ViscousForceAgreesWithTheSlowTwin) {
     for (std::size_t i = 0; i < a.size(); ++i)
       kappa[i] = random[i] > 0.9 ? 0.0F : static_cast<float>(std::pow(10.0, 3 * random[i] - 3));
     VectorArrays<float> fast(a.size(), a.dimensions());
-    viscous_sweep(a.context, a.records, u.read(), a.rule, kappa.data(), fast.write());
-    Comparison comparison("viscous acceleration");
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const auto slow = a.twin.viscous(i, u, kappa);
-      for (int axis = 0; axis < a.dimensions(); ++axis)
-        comparison.add(fast[axis][i], slow[axis], a.twin.neighbours(i), i);
+    for (const bool stress : {false, true}) {
+      viscous_sweep(a.context, a.records, u.read(), a.rule, kappa.data(), fast.write(), stress);
+      Comparison comparison(stress ? "acceleration by the viscous stress" : "viscous acceleration");
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        const auto slow = stress ? a.twin.viscous_stress(i, u, kappa) : a.twin.viscous(i, u, kappa);
+        for (int axis = 0; axis < a.dimensions(); ++axis)
+          comparison.add(fast[axis][i], slow[axis], a.twin.tolerance(i), i);
+      }
     }
   }
 }
@@ -174,9 +176,9 @@ TEST(SphOperators, DivergenceAndPotentialLaplacianAgreeWithTheSlowTwin) {
                      nullptr);
     Comparison divergence("divergence"), second("negative Laplacian");
     for (std::size_t i = 0; i < a.size(); ++i) {
-      const std::size_t count = a.twin.neighbours(i);
-      divergence.add(fast[i], a.twin.divergence(i, u, geometry.correction_of(i, a.dimensions())), count, i);
-      second.add(laplacian[i], a.twin.negative_laplacian(i, potential), count, i);
+      const double rounding = a.twin.tolerance(i);
+      divergence.add(fast[i], a.twin.divergence(i, u, geometry.correction_of(i, a.dimensions())), rounding, i);
+      second.add(laplacian[i], a.twin.negative_laplacian(i, potential), rounding, i);
       EXPECT_EQ(fast[i], alone[i]) << "particle " << i << " depends on the potential";
     }
   }
@@ -194,7 +196,7 @@ TEST(SphOperators, GradientAgreesWithTheSlowTwin) {
     for (std::size_t i = 0; i < a.size(); ++i) {
       const auto slow = a.twin.gradient(i, values, 1e6, geometry.correction_of(i, a.dimensions()));
       for (int axis = 0; axis < a.dimensions(); ++axis)
-        comparison.add(fast[axis][i], slow[axis], a.twin.neighbours(i), i);
+        comparison.add(fast[axis][i], slow[axis], a.twin.tolerance(i), i);
     }
   }
 }
@@ -223,7 +225,7 @@ TEST(SphOperators, ShiftCurvatureAgreesWithTheSlowTwin) {
       reference::Vector s{};
       for (int axis = 0; axis < d; ++axis) s[axis] = shift[axis][i];
       const auto slow = a.twin.shift_curvature(i, gradient, s, geometry.correction_of(i, d));
-      for (int axis = 0; axis < d; ++axis) comparison.add(fast[axis][i], slow[axis], a.twin.neighbours(i), i);
+      for (int axis = 0; axis < d; ++axis) comparison.add(fast[axis][i], slow[axis], a.twin.tolerance(i), i);
     }
   }
 }
@@ -242,12 +244,12 @@ TEST(SphOperators, ShepardFiltersAgreeWithTheSlowTwin) {
     filter_scalars(a.context, a.records, read, write);  // a pair, then a single
     Comparison scalars("filtered scalar"), vectors("filtered vector");
     for (std::size_t i = 0; i < a.size(); ++i)
-      for (int k = 0; k < 3; ++k) scalars.add(out[k][i], a.twin.filtered_scalar(i, in[k]), a.twin.neighbours(i), i);
+      for (int k = 0; k < 3; ++k) scalars.add(out[k][i], a.twin.filtered_scalar(i, in[k]), a.twin.tolerance(i), i);
 
     const auto expect_filtered_vector = [&] {
       for (std::size_t i = 0; i < a.size(); ++i) {
         const auto slow = a.twin.filtered_vector(i, in);
-        for (int axis = 0; axis < d; ++axis) vectors.add(out[axis][i], slow[axis], a.twin.neighbours(i), i);
+        for (int axis = 0; axis < d; ++axis) vectors.add(out[axis][i], slow[axis], a.twin.tolerance(i), i);
       }
     };
     filter_vector(a.context, a.records, read, a.reflection, write);
@@ -271,7 +273,7 @@ TEST(SphOperators, ShepardFiltersAgreeWithTheSlowTwin) {
         continue;
       }
       const auto slow = a.twin.filtered_vector(i, in);
-      for (int axis = 0; axis < d; ++axis) vectors.add(out[axis][i], slow[axis], a.twin.neighbours(i), i);
+      for (int axis = 0; axis < d; ++axis) vectors.add(out[axis][i], slow[axis], a.twin.tolerance(i), i);
     }
   }
 }

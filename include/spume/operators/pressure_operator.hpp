@@ -22,13 +22,14 @@ namespace spume {
 struct PressureMatrix {
   const float* diagonal_shift = nullptr;
   const std::uint8_t* masked = nullptr;  // null: no masked rows
-  const float* weight = nullptr;         // null: equal particles
+  const float* weight = nullptr;         // where the context has sizes, and only there
   const float* row = nullptr;            // with weight
 };
 
 // y = A x in float, with sum w y and sum y y accumulated in double in fixed blocks.
 class PressureOperator {
  public:
+  // Throws std::logic_error unless the matrix has weights and rows exactly where the context has sizes.
   void bind(const SweepContext& context, PackedNeighbours& records, const PressureMatrix& matrix);
   Dots apply(std::span<const float> x, std::span<float> y, std::span<const float> w);
 
