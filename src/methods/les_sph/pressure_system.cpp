@@ -45,41 +45,28 @@ double regularisation(const Liquid& liquid, double helmholtz) {
   return 1e-3 / (length * length);
 }
 
-double norm(std::span<const double> values) {
-  return std::sqrt(parallel_sum(values.size(), [&](std::size_t i) { return values[i] * values[i]; }));
-}
-
 }  // namespace
 
 // The particle matrix as the Krylov solvers see it.
 struct PressureSystem::Operator final : LinearOperator<float> {
-  Operator(PressureOperator& matrix, int& applications) : matrix_(matrix), applications_(applications) {}
+  explicit Operator(PressureOperator& matrix) : matrix_(matrix) {}
   std::size_t size() const override { return matrix_.size(); }
-  void apply(std::span<const float> x, std::span<float> y) override {
-    matrix_.apply(x, y, x);
-    ++applications_;
-  }
+  void apply(std::span<const float> x, std::span<float> y) override { matrix_.apply(x, y, x); }
   Dots apply_with_dots(std::span<const float> x, std::span<float> y, std::span<const float> w) override {
-    const Dots dots = matrix_.apply(x, y, w);
-    ++applications_;
-    return {dots.wy, dots.yy};
+    return matrix_.apply(x, y, w);
   }
   PressureOperator& matrix_;
-  int& applications_;
 };
 
 // The same in double, for comparison: A x = -(0 - A x).
 struct PressureSystem::DoubleOperator final : LinearOperator<double> {
-  DoubleOperator(PressureOperator& matrix, int& applications, std::span<const double> zero)
-      : matrix_(matrix), applications_(applications), zero_(zero) {}
+  DoubleOperator(PressureOperator& matrix, std::span<const double> zero) : matrix_(matrix), zero_(zero) {}
   std::size_t size() const override { return matrix_.size(); }
   void apply(std::span<const double> x, std::span<double> y) override {
     matrix_.residual(x, zero_, y);
     parallel_for(y.size(), [&](std::size_t i) { y[i] = -y[i]; });
-    ++applications_;
   }
   PressureOperator& matrix_;
-  int& applications_;
   std::span<const double> zero_;
 };
 
@@ -131,10 +118,11 @@ void PressureSystem::set_matrix(const Liquid& liquid, double helmholtz) {
 // Adds tr(grad u . grad u), minus the rate of change of div u along frozen velocities, to the right-hand side.
 void PressureSystem::add_gradient_trace(Liquid& liquid, double factor) {
   if (liquid.plan.no_slip) {
-    correction_.resize(liquid.size());  // borrowed until the solve
+    Array<float>& trace = work_.correction;  // borrowed until the solve
+    trace.resize(liquid.size());
     gradient_trace_sweep(liquid.context, liquid.records, liquid.read(liquid.velocity), liquid.volume_rule(),
-                         liquid.read_correction(), correction_.data());
-    parallel_for(liquid.size(), [&](std::size_t i) { right_hand_side_[i] += factor * correction_[i]; });
+                         liquid.read_correction(), trace.data());
+    parallel_for(liquid.size(), [&](std::size_t i) { right_hand_side_[i] += factor * trace[i]; });
     return;
   }
   parallel_for(liquid.size(), [&](std::size_t i) { right_hand_side_[i] += factor * (*liquid.gradient_trace)[i]; });
@@ -179,39 +167,20 @@ void PressureSystem::set_right_hand_side(const Liquid& liquid, double helmholtz,
 
 namespace {
 
-// Krylov options of one correction: the residual has the norm `size` and shall fall below `target`.
-template <class Real>
-KrylovOptions<Real> correction_options(double size, double target, double most_digits, int left, bool singular) {
-  KrylovOptions<Real> krylov;
-  krylov.tolerance = std::clamp(0.5 * target / size, most_digits, 0.5);
-  krylov.max_iterations = left;
-  krylov.zero_guess = true;
-  krylov.confirm = false;
-  krylov.remove_mean = singular;
-  return krylov;
-}
-
-template <class Real>
-KrylovResult run_krylov(PressureSolver solver, LinearOperator<Real>& a, spume::Preconditioner<Real>& m,
-                        std::span<const Real> b, std::span<Real> x, const KrylovOptions<Real>& options,
-                        KrylovWorkspace<Real>& work) {
-  return solver == PressureSolver::cg ? conjugate_gradients<Real>(a, m, b, x, options, work)
-                                      : bicgstab<Real>(a, m, b, x, options, work);
-}
-
 // Lends the solve, for its lifetime, the arrays of the liquid that nobody reads between the right-hand side and the
 // projection: 32 bytes per particle with a surface.
 class LentArrays {
  public:
-  LentArrays(Liquid& liquid, KrylovWorkspace<float>& work, Array<float>& right_hand_side) {
-    const std::array borrowers{&work.residual,
-                               &work.shadow,
-                               &work.direction,
-                               &work.preconditioned,
-                               &work.image,
-                               &work.second_image,
-                               &work.second_preconditioned,
-                               &right_hand_side};
+  LentArrays(Liquid& liquid, CorrectionWorkspace<float>& work) {
+    KrylovWorkspace<float>& krylov = work.krylov;
+    const std::array borrowers{&krylov.residual,
+                               &krylov.shadow,
+                               &krylov.direction,
+                               &krylov.preconditioned,
+                               &krylov.image,
+                               &krylov.second_image,
+                               &krylov.second_preconditioned,
+                               &work.right_hand_side};
     std::size_t next = 0;
     // Bubbles may read smoothed normals that no step has written: they must stay zero, not hold what a solve left.
     const auto normals = liquid.plan.bubbles ? FloatVectorField{} : liquid.smoothed_normal;
@@ -237,38 +206,54 @@ class LentArrays {
 
 }  // namespace
 
-// Residuals are scaled to order one: float keeps its range for any units. A correction gains at most three digits,
-// rounding in float spoils more.
-KrylovResult PressureSystem::correct(Liquid& liquid, double size, double target, int left, bool singular) {
-  const std::size_t n = liquid.size();
-  const LentArrays lent(liquid, work_, correction_right_);
-  for (auto* array : {&correction_, &correction_right_}) array->resize(n);
-  Operator a(operator_, report_.applications);
-  JacobiPreconditioner<float> jacobi(diagonal_);
-  spume::Preconditioner<float>* preconditioner = &jacobi;
-  if (multigrid_ != nullptr) preconditioner = multigrid_.get();
-  parallel_for(n, [&](std::size_t i) { correction_right_[i] = static_cast<float>(residual_[i] / size); });
-  const auto options = correction_options<float>(size, target, 1e-3, left, singular);
-  const KrylovResult result = run_krylov<float>(liquid.options.pressure.solver, a, *preconditioner, correction_right_,
-                                                correction_, options, work_);
-  parallel_for(n, [&](std::size_t i) { (*liquid.reduced_pressure)[i] += size * correction_[i]; });
-  return result;
-}
+// The unknowns are reduced_pressure. Corrections in float, or in double with pressure.precision = "double".
+class PressureSystem::Refined final : public RefinedSystem {
+ public:
+  Refined(PressureSystem& system, Liquid& liquid) : system_(system), liquid_(liquid) {}
 
-KrylovResult PressureSystem::correct_in_double(Liquid& liquid, double size, double target, int left, bool singular) {
-  const std::size_t n = liquid.size();
-  for (auto* array : {&double_correction_, &zero_, &double_diagonal_}) array->resize(n);
-  parallel_for(n, [&](std::size_t i) { double_diagonal_[i] = diagonal_[i]; });
-  DoubleOperator a(operator_, report_.applications, zero_);
-  JacobiPreconditioner<double> jacobi(double_diagonal_);
-  spume::Preconditioner<double>* preconditioner = &jacobi;
-  if (multigrid_ != nullptr) preconditioner = multigrid_.get();
-  const auto options = correction_options<double>(size, target, 1e-12, left, singular);
-  const KrylovResult result = run_krylov<double>(liquid.options.pressure.solver, a, *preconditioner, residual_,
-                                                 double_correction_, options, double_work_);
-  parallel_for(n, [&](std::size_t i) { (*liquid.reduced_pressure)[i] += double_correction_[i]; });
-  return result;
-}
+  void residual(std::span<double> r) override {
+    system_.operator_.residual(*liquid_.reduced_pressure, system_.right_hand_side_, r);
+  }
+  KrylovResult correct(std::span<const double> r, const CorrectionTask& task) override {
+    if (!mixed_) return correct_in_double(r, task);
+    const LentArrays lent(liquid_, system_.work_);
+    size_ = task.size;
+    Operator a(system_.operator_);
+    JacobiPreconditioner<float> jacobi(system_.diagonal_);
+    return correct_by_krylov<float>(method_, a, preconditioner(jacobi), r, task, *liquid_.reduced_pressure,
+                                    system_.work_);
+  }
+  void subtract_product(std::span<double> r) override {
+    if (mixed_)
+      system_.operator_.subtract_product(size_, system_.work_.correction, r);
+    else
+      residual(r);
+  }
+
+ private:
+  KrylovResult correct_in_double(std::span<const double> r, const CorrectionTask& task) {
+    const std::size_t n = r.size();
+    system_.zero_.resize(n);
+    system_.double_diagonal_.resize(n);
+    parallel_for(n, [&](std::size_t i) { system_.double_diagonal_[i] = system_.diagonal_[i]; });
+    DoubleOperator a(system_.operator_, system_.zero_);
+    JacobiPreconditioner<double> jacobi(system_.double_diagonal_);
+    return correct_by_krylov<double>(method_, a, preconditioner(jacobi), r, task, *liquid_.reduced_pressure,
+                                     system_.double_work_);
+  }
+  template <class Real>
+  spume::Preconditioner<Real>& preconditioner(JacobiPreconditioner<Real>& jacobi) const {
+    if (system_.multigrid_ != nullptr) return *system_.multigrid_;
+    return jacobi;
+  }
+
+  PressureSystem& system_;
+  Liquid& liquid_;
+  const bool mixed_ = liquid_.options.pressure.precision == Precision::mixed;
+  const KrylovMethod method_ = liquid_.options.pressure.solver == PressureSolver::cg ? KrylovMethod::conjugate_gradients
+                                                                                     : KrylovMethod::bicgstab;
+  double size_ = 0;  // of the residual that the last correction started from
+};
 
 void PressureSystem::solve(Liquid& liquid, double helmholtz, const char* stage, Ledger& ledger) {
   const std::size_t n = liquid.size();
@@ -287,51 +272,20 @@ void PressureSystem::solve(Liquid& liquid, double helmholtz, const char* stage, 
     const auto scope = ledger.time("preconditioner setup", static_cast<double>(n));
     if (liquid.plan.displaced_walls) multigrid_->set_geometry(cell_geometry(liquid));
     // Borrowed from the corrections, which start after the setup.
-    correction_.resize(n);
-    parallel_for(n, [&](std::size_t i) { correction_[i] = surface && liquid.pressure_fixed[i] != 0 ? 0.0F : 1.0F; });
+    Array<float>& interior = work_.correction;
+    interior.resize(n);
+    parallel_for(n, [&](std::size_t i) { interior[i] = surface && liquid.pressure_fixed[i] != 0 ? 0.0F : 1.0F; });
     const auto r = liquid.read(liquid.intermediate);
     const auto span = [&](int axis) {
       return axis < liquid.dimensions ? std::span(r[axis], n) : std::span<const double>();
     };
-    multigrid_->setup(span(0), span(1), span(2), correction_, helmholtz, diagonal_);
+    multigrid_->setup(span(0), span(1), span(2), interior, helmholtz, diagonal_);
   }
 
   const auto scope = ledger.time(stage, static_cast<double>(n));
-  // Iterative refinement: residuals in double, corrections in float.
-  const double target = options.tolerance * reference_norm_;
+  Refined refined(*this, liquid);
   const bool singular = liquid.plan.closed && helmholtz == 0 && regularisation(liquid, helmholtz) == 0;
-  const bool mixed = options.precision == Precision::mixed;
-  for (int round = 0;; ++round) {
-    if (round == 0 || !mixed) {
-      operator_.residual(*liquid.reduced_pressure, right_hand_side_, residual_);
-      ++report_.applications;
-    }
-    if (singular) {
-      const double mean = parallel_sum(n, [&](std::size_t i) { return residual_[i]; }) / static_cast<double>(n);
-      parallel_for(n, [&](std::size_t i) { residual_[i] -= mean; });
-    }
-    const double size = norm(residual_);
-    report_.relative_residual = reference_norm_ > 0 ? size / reference_norm_ : 0;
-    if (size <= target) return;
-    const int left = options.max_iterations - report_.iterations;
-    if (!std::isfinite(size) || left <= 0 || round > 20) {
-      report_.converged = false;
-      return;
-    }
-    const KrylovResult result =
-        mixed ? correct(liquid, size, target, left, singular) : correct_in_double(liquid, size, target, left, singular);
-    report_.iterations += std::max(result.iterations, 1);
-    // Rounding in float leaves about 1e-3 of the residual that a correction started from: where a hundredth was to be
-    // reached, the recurrence may be trusted and a sweep in double is saved.
-    if (result.converged && size <= 100 * target) {
-      report_.relative_residual = result.relative_residual * size / reference_norm_;
-      return;
-    }
-    if (mixed) {
-      operator_.subtract_product(size, correction_, residual_);
-      ++report_.applications;
-    }
-  }
+  report_ = solve_refined(refined, {options.tolerance, reference_norm_, options.max_iterations, singular}, residual_);
 }
 
 void PressureSystem::demand_convergence(const std::string& solve) const {
@@ -419,11 +373,9 @@ void PressureSystem::solve_initial(Liquid& liquid, Ledger& ledger) {
 
 double PressureSystem::bytes() const {
   double total = operator_.bytes() + work_.bytes() + double_work_.bytes();
-  for (const auto* array :
-       {&right_hand_side_, &residual_, &surface_source_, &double_correction_, &zero_, &double_diagonal_})
+  for (const auto* array : {&right_hand_side_, &residual_, &surface_source_, &zero_, &double_diagonal_})
     total += array->bytes();
-  for (const auto* array : {&potential_laplacian_, &diagonal_shift_, &diagonal_, &row_scale_, &correction_right_,
-                            &correction_, &weight_, &row_})
+  for (const auto* array : {&potential_laplacian_, &diagonal_shift_, &diagonal_, &row_scale_, &weight_, &row_})
     total += array->bytes();
   return multigrid_ == nullptr ? total : total + multigrid_->bytes();
 }

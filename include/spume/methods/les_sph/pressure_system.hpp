@@ -16,16 +16,9 @@
 #include "spume/methods/les_sph/liquid.hpp"
 #include "spume/operators/pressure_operator.hpp"
 #include "spume/solvers/cell_multigrid.hpp"
-#include "spume/solvers/krylov.hpp"
+#include "spume/solvers/refinement.hpp"
 
 namespace spume::les_sph {
-
-struct SolveReport {
-  int iterations = 0;
-  int applications = 0;  // of the matrix, in either precision
-  double relative_residual = 0;
-  bool converged = true;
-};
 
 class PressureSystem {
  public:
@@ -37,21 +30,19 @@ class PressureSystem {
   // The pressure that the present velocity field needs: lap p = -tr(grad u . grad u), incompressible.
   void solve_initial(Liquid& liquid, Ledger& ledger);
 
-  const SolveReport& report() const { return report_; }
+  const RefinementResult& report() const { return report_; }
   double bytes() const;
 
  private:
   struct Operator;
   struct DoubleOperator;
+  class Refined;
 
   void set_matrix(const Liquid& liquid, double helmholtz);
   void add_gradient_trace(Liquid& liquid, double factor);
   void set_right_hand_side(const Liquid& liquid, double helmholtz, double source_scale);
   // Preconditioner setup and solve, timed apart: the solve under the name `stage`.
   void solve(Liquid& liquid, double helmholtz, const char* stage, Ledger& ledger);
-  // One correction of reduced_pressure by a Krylov solve in float, or in double with pressure.precision = "double".
-  KrylovResult correct(Liquid& liquid, double size, double target, int left, bool singular);
-  KrylovResult correct_in_double(Liquid& liquid, double size, double target, int left, bool singular);
   void demand_convergence(const std::string& solve) const;
   void remove_constant(Liquid& liquid) const;
   void set_weights(const Liquid& liquid);
@@ -60,14 +51,13 @@ class PressureSystem {
   Array<double> surface_source_;              // per edge particle
   Array<float> potential_laplacian_, diagonal_shift_, diagonal_, row_scale_;
   Array<float> weight_, row_;  // with bubbles: PressureMatrix
-  Array<float> correction_right_, correction_;
   double reference_norm_ = 0;  // norm of the right-hand side in terms of p
   PressureOperator operator_;
   std::unique_ptr<CellMultigrid> multigrid_;
-  KrylovWorkspace<float> work_;
-  Array<double> double_correction_, double_diagonal_, zero_;  // empty in mixed precision
-  KrylovWorkspace<double> double_work_;
-  SolveReport report_;
+  CorrectionWorkspace<float> work_;
+  CorrectionWorkspace<double> double_work_;  // empty in mixed precision, as are the next
+  Array<double> double_diagonal_, zero_;
+  RefinementResult report_;
 };
 
 }  // namespace spume::les_sph
