@@ -14,14 +14,14 @@ namespace {
 struct Pressure {
   Particles particles;
   SweepContext context;
-  PackedNeighbours records;
+  PackedNeighbours packed;
   Array<float> diagonal_shift, x, y;
   PressureOperator matrix;
 
   explicit Pressure(const benchmark::State& state) : particles(state), context(particles.sweep_context()) {
     for (auto* array : {&diagonal_shift, &x, &y}) array->resize(particles.n);
     for (std::size_t i = 0; i < particles.n; ++i) x[i] = static_cast<float>(std::sin(6.28 * particles.x[i]));
-    matrix.bind(context, records, {diagonal_shift.data(), nullptr});
+    matrix.bind(context, packed, {diagonal_shift.data(), nullptr});
   }
   // Per pair: an index of 4 bytes, a record, and differences 3, r^2 5, root 1, q 1, kernel slope 6, select 1, sum 3;
   // per particle: 16 bytes of record written and read, 12 of positions, 12 of values in and out. Twice the operations
@@ -107,7 +107,7 @@ void pressure_solve(benchmark::State& state) {
     sums.normal[k] = rest[6 + k].data();
     sums.concentration_gradient[k] = rest[9 + k].data();
   }
-  kernel_moment_sweep(pressure.context, pressure.records, {true, true, spacing}, sums);
+  kernel_moment_sweep(pressure.context, pressure.packed, {true, true, spacing}, sums);
   Array<double> b(n), q(n);
   for (std::size_t i = 0; i < n; ++i) {
     const bool top = particles.z[i] > 1 - spacing;
@@ -116,7 +116,7 @@ void pressure_solve(benchmark::State& state) {
     diagonal[i] = static_cast<float>(pressure.context.volume) * (diagonal[i] + pressure.diagonal_shift[i]);
     b[i] = pressure.context.volume * std::sin(6.28 * particles.x[i]) * particles.z[i];
   }
-  pressure.matrix.bind(pressure.context, pressure.records, {pressure.diagonal_shift.data(), nullptr});
+  pressure.matrix.bind(pressure.context, pressure.packed, {pressure.diagonal_shift.data(), nullptr});
   CellGeometry geometry;
   geometry.upper = {1, 1, 1};
   geometry.periodic = {true, true, false};

@@ -83,7 +83,7 @@ struct Arrangement {
   Neighbourhood hood;
   reference::SphSums twin;
   SweepContext context;
-  PackedNeighbours records;
+  PackedNeighbours packed;
   VelocityImageRule rule;
   std::vector<std::array<float, 3>> reflection;
 
@@ -193,7 +193,7 @@ struct Geometry {
       out.concentration_gradient[axis] = shifting ? concentration_gradient[axis].data() : nullptr;
       out.normal[axis] = normals ? normal[axis].data() : nullptr;
     }
-    kernel_moment_sweep(a.context, a.records, {shifting, normals, a.setup.spacing}, out);
+    kernel_moment_sweep(a.context, a.packed, {shifting, normals, a.setup.spacing}, out);
   }
   std::array<const float*, 6> read_correction() const {
     std::array<const float*, 6> pointers{};

@@ -114,7 +114,7 @@ TEST(SphGeometry, TheLargestStableShiftTurnsTheShortestWaveOfALatticeIntoItsNega
       Arrangement a(setup);
       const Geometry fast(a);
       VectorArrays<float> mean(a.size(), d);
-      filter_vector(a.context, a.records,
+      filter_vector(a.context, a.packed,
                     {fast.concentration_gradient[0].data(), fast.concentration_gradient[1].data(),
                      fast.concentration_gradient[2].data()},
                     a.reflection, mean.write());
@@ -139,7 +139,7 @@ TEST(SphGeometry, LayersBelowASurfaceHaveTheSumsOfALattice) {
       Arrangement a(setup);
       const Geometry fast(a);
       VectorArrays<float> filtered(a.size(), d);
-      filter_vector(a.context, a.records, {fast.normal[0].data(), fast.normal[1].data(), fast.normal[2].data()},
+      filter_vector(a.context, a.packed, {fast.normal[0].data(), fast.normal[1].data(), fast.normal[2].data()},
                     a.reflection, filtered.write());
       const auto layers = lattice_surface(d, kernel, setup.smoothing_ratio);
       const Array<double>& height = d == 3 ? a.hood.z : a.hood.y;

@@ -33,7 +33,7 @@ struct System {
       matrix.weight = weight.data();
       matrix.row = row.data();
     }
-    fast.bind(a.context, a.records, matrix);
+    fast.bind(a.context, a.packed, matrix);
   }
   // Of the slow twin.
   template <class Scalar>
@@ -142,15 +142,15 @@ TEST(PressureOperator, IsSymmetricAboveASolidWithoutEdges) {
 // The residual with the float coefficients of the lists, all else in double: what residual() promises to compute.
 template <int dimensions, class Kernel>
 Array<double> double_rows(const Arrangement& a, const Array<double>& q) {
-  PackedNeighbours records;
-  const float* packed = records.prepare(a.context, 0);
+  PackedNeighbours packed;
+  const float* records = packed.prepare(a.context, 0);
   const KernelScale<dimensions, Kernel> scale(a.context);
   const float factor = -2 * scale.gradient * static_cast<float>(a.context.volume);
   const std::size_t n = a.size();
   Array<double> rows(n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::int32_t* entry = a.hood.list.begin(i);
-    for_each_batch<dimensions, 0>(a.hood.list, packed, i, scale.inverse_h, [&](const auto& batch) {
+    for_each_batch<dimensions, 0>(a.hood.list, records, i, scale.inverse_h, [&](const auto& batch) {
       const simd::f32n f = Kernel::f(batch.q);
       for (int lane = 0; lane < simd::pair_lanes && entry != a.hood.list.padded_end(i); ++lane, ++entry) {
         const auto j = static_cast<std::size_t>(*entry / entry_scale);
@@ -191,7 +191,7 @@ struct LongWave {
   explicit LongWave(double mean) : product(a.size()) {
     q = a.sample([&](const Point& p) { return mean + std::sin(2 * std::numbers::pi * p[0]); });
     PressureOperator fast;
-    fast.bind(a.context, a.records, {diagonal_shift.data(), nullptr});
+    fast.bind(a.context, a.packed, {diagonal_shift.data(), nullptr});
     const Array<double> zero(a.size(), 0.0);
     fast.residual(q, zero, product);
     for (double& value : product) value = -value;
@@ -210,7 +210,7 @@ TEST(PressureOperator, ResidualOfASmoothFieldKeepsItsDigitsAndTheFloatProductDoe
   Array<float> single(wave.a.size()), y(wave.a.size());
   for (std::size_t i = 0; i < wave.a.size(); ++i) single[i] = static_cast<float>(wave.q[i]);
   PressureOperator fast;
-  fast.bind(wave.a.context, wave.a.records, {wave.diagonal_shift.data(), nullptr});
+  fast.bind(wave.a.context, wave.a.packed, {wave.diagonal_shift.data(), nullptr});
   fast.apply(single, y, single);
   EXPECT_GT(relative_difference(y, wave.product), 1e-7);
 }
@@ -222,7 +222,7 @@ TEST(PressureOperator, DemandsWeightsWhereParticlesDifferInSize) {
     PressureOperator fast;
     EXPECT_EQ(a.setup.sizes, a.context.length_ratio != nullptr);
     PressureMatrix matrix{ones.data(), nullptr, a.setup.sizes ? nullptr : ones.data(), ones.data()};
-    EXPECT_THROW(fast.bind(a.context, a.records, matrix), std::logic_error);
+    EXPECT_THROW(fast.bind(a.context, a.packed, matrix), std::logic_error);
   }
 }
 
@@ -232,7 +232,7 @@ TEST(PressureOperator, OfAConstantIsZeroWithoutADiagonal) {
     Array<float> diagonal_shift(a.size(), 0.0F), x(a.size(), 3.25F), y(a.size());
     Array<double> q(a.size(), 1.0 / 3), zero(a.size(), 0.0), r(a.size());
     PressureOperator fast;
-    fast.bind(a.context, a.records, {diagonal_shift.data(), nullptr});
+    fast.bind(a.context, a.packed, {diagonal_shift.data(), nullptr});
     const Dots dots = fast.apply(x, y, x);
     fast.residual(q, zero, r);
     EXPECT_EQ(dots.yy, 0) << a.setup.name;

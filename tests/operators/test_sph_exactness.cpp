@@ -37,7 +37,7 @@ TEST(SphExactness, CorrectedGradientOfALinearFieldIsExactAlsoAtSurfaces) {
       return sum;
     });
     VectorArrays<float> fast(a.size(), d);
-    gradient_sweep(a.context, a.records, values.data(), 5, geometry.read_correction(), fast.write());
+    gradient_sweep(a.context, a.packed, values.data(), 5, geometry.read_correction(), fast.write());
     Comparison comparison("gradient of a linear field");
     for (std::size_t i = 0; i < a.size(); ++i) {
       if (geometry.uncorrected[i] != 0) continue;
@@ -61,10 +61,10 @@ TEST(SphExactness, ConstantFieldsGiveExactlyZero) {
     const Array<double> values(a.size(), 1.0 / 3);
     Array<float> kappa(a.size(), 0.1F), laplacian(a.size());
     VectorArrays<float> gradient(a.size(), d);
-    gradient_sweep(a.context, a.records, values.data(), 0.1, geometry.read_correction(), gradient.write());
+    gradient_sweep(a.context, a.packed, values.data(), 0.1, geometry.read_correction(), gradient.write());
     Array<double> divergence(a.size());
     VectorArrays<double> rest(a.size(), d);
-    divergence_sweep(a.context, a.records, rest.read(), {a.rule.sign, {}}, geometry.read_correction(), values.data(),
+    divergence_sweep(a.context, a.packed, rest.read(), {a.rule.sign, {}}, geometry.read_correction(), values.data(),
                      divergence.data(), laplacian.data());
     for (std::size_t i = 0; i < a.size(); ++i) {
       for (int axis = 0; axis < d; ++axis) ASSERT_EQ(gradient[axis][i], 0);
@@ -76,7 +76,7 @@ TEST(SphExactness, ConstantFieldsGiveExactlyZero) {
     Array<float> filtered(a.size());
     const std::array<const float*, 1> in{constant.data()};
     const std::array<float*, 1> out{filtered.data()};
-    filter_scalars(a.context, a.records, in, out);
+    filter_scalars(a.context, a.packed, in, out);
     for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(filtered[i], 0.7F, a.twin.tolerance(i));
   }
 }
@@ -100,11 +100,11 @@ TEST(SphExactness, WallsThatMoveWithTheLiquidExertNothing) {
     const Array<float> kappa(a.size(), 1.0F);
     VectorArrays<float> force(a.size(), d);
     Array<double> divergence(a.size());
-    divergence_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), nullptr, divergence.data(),
+    divergence_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), nullptr, divergence.data(),
                      nullptr);
     for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(divergence[i], 0);
     for (const bool stress : {false, true}) {
-      viscous_sweep(a.context, a.records, u.read(), a.rule, kappa.data(), force.write(), stress);
+      viscous_sweep(a.context, a.packed, u.read(), a.rule, kappa.data(), force.write(), stress);
       for (std::size_t i = 0; i < a.size(); ++i)
         for (int axis = 0; axis < d; ++axis) ASSERT_EQ(force[axis][i], 0);
     }
@@ -125,7 +125,7 @@ TEST(SphExactness, ViscousForcesSumToZeroInAPeriodicBox) {
     for (std::size_t i = 0; i < a.size(); ++i) kappa[i] = static_cast<float>(1.1 + random[i]);
     VectorArrays<float> force(a.size(), a.dimensions());
     for (const bool stress : {false, true}) {
-      viscous_sweep(a.context, a.records, u.read(), a.rule, kappa.data(), force.write(), stress);
+      viscous_sweep(a.context, a.packed, u.read(), a.rule, kappa.data(), force.write(), stress);
       for (int axis = 0; axis < a.dimensions(); ++axis) {
         double sum = 0, size = 0, bound = 0;
         for (std::size_t i = 0; i < a.size(); ++i) {
@@ -204,7 +204,7 @@ TEST(SphExactness, ViscousStressOfAQuadraticVelocityIsThatOfTheStokesOperator) {
         const double k = 0.7;
         const Array<float> kappa(a.size(), static_cast<float>(k));
         VectorArrays<float> fast(a.size(), d);
-        viscous_sweep(a.context, a.records, u.read(), a.rule, kappa.data(), fast.write(), true);
+        viscous_sweep(a.context, a.packed, u.read(), a.rule, kappa.data(), fast.write(), true);
         const auto slow = a.twin.viscous_stress(centre, u, kappa);
         for (int r = 0; r < d; ++r) {
           double of_lattice = 0, exact = 0, largest = 0;
@@ -246,12 +246,12 @@ TEST(SphExactness, AQuarterTurnTurnsTheResults) {
     v[1][partner[i]] = u[0][i];
   }
   Array<double> div_a(a.size()), div_b(b.size());
-  divergence_sweep(a.context, a.records, u.read(), a.rule, ga.read_correction(), nullptr, div_a.data(), nullptr);
-  divergence_sweep(b.context, b.records, v.read(), b.rule, gb.read_correction(), nullptr, div_b.data(), nullptr);
+  divergence_sweep(a.context, a.packed, u.read(), a.rule, ga.read_correction(), nullptr, div_a.data(), nullptr);
+  divergence_sweep(b.context, b.packed, v.read(), b.rule, gb.read_correction(), nullptr, div_b.data(), nullptr);
   const Array<float> kappa(a.size(), 1.0F);
   VectorArrays<float> force_a(a.size(), 2), force_b(b.size(), 2);
-  viscous_sweep(a.context, a.records, u.read(), a.rule, kappa.data(), force_a.write());
-  viscous_sweep(b.context, b.records, v.read(), b.rule, kappa.data(), force_b.write());
+  viscous_sweep(a.context, a.packed, u.read(), a.rule, kappa.data(), force_a.write());
+  viscous_sweep(b.context, b.packed, v.read(), b.rule, kappa.data(), force_b.write());
   Comparison divergence("divergence"), force("viscous force"), normal("normal");
   for (std::size_t i = 0; i < a.size(); ++i) {
     const std::size_t k = partner[i];
@@ -293,13 +293,11 @@ TEST(SphExactness, AUniformVelocityChangesNoDerivative) {
     }
     const Array<float> kappa(a.size(), 1.0F);
     VectorArrays<float> first(a.size(), d), second(a.size(), d);
-    viscous_sweep(a.context, a.records, u.read(), a.rule, kappa.data(), first.write());
-    viscous_sweep(a.context, a.records, v.read(), a.rule, kappa.data(), second.write());
+    viscous_sweep(a.context, a.packed, u.read(), a.rule, kappa.data(), first.write());
+    viscous_sweep(a.context, a.packed, v.read(), a.rule, kappa.data(), second.write());
     Array<double> div_u(a.size()), div_v(a.size());
-    divergence_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), nullptr, div_u.data(),
-                     nullptr);
-    divergence_sweep(a.context, a.records, v.read(), a.rule, geometry.read_correction(), nullptr, div_v.data(),
-                     nullptr);
+    divergence_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), nullptr, div_u.data(), nullptr);
+    divergence_sweep(a.context, a.packed, v.read(), a.rule, geometry.read_correction(), nullptr, div_v.data(), nullptr);
     for (std::size_t i = 0; i < a.size(); ++i) {
       ASSERT_EQ(div_u[i], div_v[i]);
       for (int axis = 0; axis < d; ++axis) ASSERT_EQ(first[axis][i], second[axis][i]);
@@ -318,19 +316,19 @@ struct AllResults {
 AllResults run_all(Arrangement& a) {
   const std::size_t n = a.size();
   const int d = a.dimensions();
-  a.records.invalidate();
+  a.packed.invalidate();
   AllResults r{Geometry(a), {n, d}, {n, d}, Array<double>(n), Array<double>(n), Array<float>(n), Array<float>(n), {}};
   VectorArrays<double> u;
   for (int axis = 0; axis < d; ++axis) u[axis] = a.random(110 + static_cast<std::uint32_t>(axis));
   const auto q = a.random(115);
   Array<float> kappa(n, 1.0F), x(n);
   for (std::size_t i = 0; i < n; ++i) x[i] = static_cast<float>(q[i]);
-  viscous_sweep(a.context, a.records, u.read(), a.rule, kappa.data(), r.viscous.write());
-  gradient_sweep(a.context, a.records, q.data(), 0, r.geometry.read_correction(), r.gradient.write());
-  divergence_sweep(a.context, a.records, u.read(), a.rule, r.geometry.read_correction(), q.data(), r.divergence.data(),
+  viscous_sweep(a.context, a.packed, u.read(), a.rule, kappa.data(), r.viscous.write());
+  gradient_sweep(a.context, a.packed, q.data(), 0, r.geometry.read_correction(), r.gradient.write());
+  divergence_sweep(a.context, a.packed, u.read(), a.rule, r.geometry.read_correction(), q.data(), r.divergence.data(),
                    r.laplacian.data());
   PressureOperator matrix;
-  matrix.bind(a.context, a.records, {kappa.data(), nullptr});
+  matrix.bind(a.context, a.packed, {kappa.data(), nullptr});
   r.dots = matrix.apply(x, r.product, x);
   matrix.residual(q, u[0], r.residual);
   return r;

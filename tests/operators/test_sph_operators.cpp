@@ -37,7 +37,7 @@ TEST(SphOperators, VelocityGradientAndFilterAgreeWithTheSlowTwin) {
       out.gradient[k] = gradient[k].data();
     }
     out.filtered = filtered.write();
-    velocity_gradient_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), out);
+    velocity_gradient_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), out);
     Comparison gradients("velocity gradient"), filter("filtered velocity");
     for (std::size_t i = 0; i < a.size(); ++i) {
       const double rounding = a.twin.tolerance(i);
@@ -55,12 +55,12 @@ TEST(SphOperators, VelocityGradientAndFilterAgreeWithTheSlowTwin) {
       alone[k].resize(a.size());
       only.gradient[k] = alone[k].data();
     }
-    velocity_gradient_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), only);
+    velocity_gradient_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), only);
     for (int k = 0; k < d * d; ++k)
       EXPECT_TRUE(std::equal(alone[k].begin(), alone[k].end(), gradient[k].begin())) << "component " << k;
     // And so is what its trace is made of.
     Array<float> trace(a.size());
-    gradient_trace_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), trace.data());
+    gradient_trace_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), trace.data());
     for (std::size_t i = 0; i < a.size(); ++i) {
       float expected = 0;
       for (int r = 0; r < d; ++r)
@@ -98,7 +98,7 @@ BoundedChanges compare_changes(double length, bool filter) {
     out.displacement = displacement.read();
     out.change = change.write();
     if (filter) out.filtered = filtered.write();
-    velocity_gradient_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), out);
+    velocity_gradient_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), out);
     Comparison changes("change"), strains("squared strain"), traces("trace");
     for (std::size_t i = 0; i < a.size(); ++i) {
       const double rounding = a.twin.tolerance(i);
@@ -151,7 +151,7 @@ TEST(SphOperators, ViscousForceAgreesWithTheSlowTwin) {
       kappa[i] = random[i] > 0.9 ? 0.0F : static_cast<float>(std::pow(10.0, 3 * random[i] - 3));
     VectorArrays<float> fast(a.size(), a.dimensions());
     for (const bool stress : {false, true}) {
-      viscous_sweep(a.context, a.records, u.read(), a.rule, kappa.data(), fast.write(), stress);
+      viscous_sweep(a.context, a.packed, u.read(), a.rule, kappa.data(), fast.write(), stress);
       Comparison comparison(stress ? "acceleration by the viscous stress" : "viscous acceleration");
       for (std::size_t i = 0; i < a.size(); ++i) {
         const auto slow = stress ? a.twin.viscous_stress(i, u, kappa) : a.twin.viscous(i, u, kappa);
@@ -170,10 +170,9 @@ TEST(SphOperators, DivergenceAndPotentialLaplacianAgreeWithTheSlowTwin) {
     const auto potential = a.random(35);
     Array<double> fast(a.size()), alone(a.size());
     Array<float> laplacian(a.size());
-    divergence_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), potential.data(), fast.data(),
+    divergence_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), potential.data(), fast.data(),
                      laplacian.data());
-    divergence_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), nullptr, alone.data(),
-                     nullptr);
+    divergence_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), nullptr, alone.data(), nullptr);
     Comparison divergence("divergence"), second("negative Laplacian");
     for (std::size_t i = 0; i < a.size(); ++i) {
       const double rounding = a.twin.tolerance(i);
@@ -191,7 +190,7 @@ TEST(SphOperators, GradientAgreesWithTheSlowTwin) {
     auto values = a.random(41);
     for (double& value : values) value += 1e6;  // a large constant part costs no digits
     VectorArrays<float> fast(a.size(), a.dimensions());
-    gradient_sweep(a.context, a.records, values.data(), 1e6, geometry.read_correction(), fast.write());
+    gradient_sweep(a.context, a.packed, values.data(), 1e6, geometry.read_correction(), fast.write());
     Comparison comparison("gradient");
     for (std::size_t i = 0; i < a.size(); ++i) {
       const auto slow = a.twin.gradient(i, values, 1e6, geometry.correction_of(i, a.dimensions()));
@@ -218,7 +217,7 @@ TEST(SphOperators, ShiftCurvatureAgreesWithTheSlowTwin) {
       for (double& value : values) value *= 0.1 * a.setup.spacing;
       shift[axis] = to_float(values);
     }
-    shift_curvature_sweep(a.context, a.records, read, a.rule, a.reflection, shift.read(), geometry.read_correction(),
+    shift_curvature_sweep(a.context, a.packed, read, a.rule, a.reflection, shift.read(), geometry.read_correction(),
                           fast.write());
     Comparison comparison("shift curvature");
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -241,7 +240,7 @@ TEST(SphOperators, ShepardFiltersAgreeWithTheSlowTwin) {
     }
     const std::array<const float*, 3> read{in[0].data(), in[1].data(), in[2].data()};
     const std::array<float*, 3> write{out[0].data(), out[1].data(), out[2].data()};
-    filter_scalars(a.context, a.records, read, write);  // a pair, then a single
+    filter_scalars(a.context, a.packed, read, write);  // a pair, then a single
     Comparison scalars("filtered scalar"), vectors("filtered vector");
     for (std::size_t i = 0; i < a.size(); ++i)
       for (int k = 0; k < 3; ++k) scalars.add(out[k][i], a.twin.filtered_scalar(i, in[k]), a.twin.tolerance(i), i);
@@ -252,10 +251,10 @@ TEST(SphOperators, ShepardFiltersAgreeWithTheSlowTwin) {
         for (int axis = 0; axis < d; ++axis) vectors.add(out[axis][i], slow[axis], a.twin.tolerance(i), i);
       }
     };
-    filter_vector(a.context, a.records, read, a.reflection, write);
+    filter_vector(a.context, a.packed, read, a.reflection, write);
     expect_filtered_vector();
     // Scalars whose images are told: the components of the same vector.
-    filter_scalars(a.context, a.records, std::span(read).first(static_cast<std::size_t>(d)),
+    filter_scalars(a.context, a.packed, std::span(read).first(static_cast<std::size_t>(d)),
                    std::span(write).first(static_cast<std::size_t>(d)), [&](std::size_t k, std::size_t m) {
                      const Images& images = *a.context.images;
                      return a.reflection[static_cast<std::size_t>(images.path()[m])][k] *
@@ -266,7 +265,7 @@ TEST(SphOperators, ShepardFiltersAgreeWithTheSlowTwin) {
     std::vector<std::int32_t> subset;
     for (std::size_t i = 0; i < a.size(); i += 3) subset.push_back(static_cast<std::int32_t>(i));
     for (auto& array : out) array.fill(-7);
-    filter_vector_subset(a.context, a.records, read, a.reflection, subset, write);
+    filter_vector_subset(a.context, a.packed, read, a.reflection, subset, write);
     for (std::size_t i = 0; i < a.size(); ++i) {
       if (i % 3 != 0) {
         EXPECT_EQ(out[0][i], -7) << "particle " << i << " is not in the subset";

@@ -10,6 +10,7 @@
 #include "spume/core/field_set.hpp"
 #include "spume/methods/les_sph/plan.hpp"
 #include "spume/neighbours/cell_grid.hpp"
+#include "spume/neighbours/cell_order.hpp"
 #include "spume/neighbours/images.hpp"
 #include "spume/neighbours/neighbour_list.hpp"
 #include "spume/operators/sph_operators.hpp"
@@ -101,7 +102,7 @@ struct Liquid {
   double displacement = 0;  // displacement_fraction of the step
 
   CellGrid grid;
-  CellTable table;
+  CellOrder table;
   Images images;
   NeighbourList list;
   PackedNeighbours records;

@@ -36,7 +36,7 @@ class PointSampler {
   template <class Visit>
   void visit(const Liquid& liquid, const Vec3& point, Visit&& visit) const;
 
-  CellTable table_;
+  CellOrder table_;
   std::int64_t step_ = -1;
 };
 
