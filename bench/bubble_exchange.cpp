@@ -16,7 +16,7 @@ constexpr double candidates_per_bubble = 27 * 2.6 * 2.6 * 2.6;  // in the cells 
 struct Swarm {
   Particles particles;
   std::size_t size;
-  CellTable table;
+  CellOrder table;
   std::array<Array<float>, 3> place, liquid_place;
   Array<float> records, length_ratio, support_radius, inverse_support_radius;
 
@@ -57,7 +57,7 @@ struct Swarm {
   std::array<const double*, 3> positions() const {
     return {particles.x.data(), particles.y.data(), particles.z.data()};
   }
-  CrossSearch search(const CellTable& points, std::size_t count, const std::array<Array<float>, 3>& at) const {
+  CrossSearch search(const CellOrder& points, std::size_t count, const std::array<Array<float>, 3>& at) const {
     const CrossSearch::Points set[] = {{&points, count}};
     return {particles.grid, {0, 0, 0}, {at[0].data(), at[1].data(), at[2].data()}, set};
   }

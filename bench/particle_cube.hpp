@@ -10,6 +10,7 @@
 
 #include "spume/core/random.hpp"
 #include "spume/neighbours/cell_grid.hpp"
+#include "spume/neighbours/cell_order.hpp"
 #include "spume/neighbours/images.hpp"
 #include "spume/neighbours/neighbour_list.hpp"
 #include "spume/operators/pair_sweep.hpp"
@@ -19,7 +20,7 @@ namespace spume {
 struct Particles {
   ImageRules rules;
   CellGrid grid;
-  CellTable table;
+  CellOrder table;
   Images images;
   NeighbourList list;
   Array<double> x, y, z;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A whole step of bench/cases/periodic.toml, 27,000 particles and 3,375: vortices in a periodic box without closure,
-// surface, walls, forces and bubbles. Compiled twice: into spume_bench, and into spume_bench_minimal against features that are
-// constants (bench/minimal), where the code for everything else does not exist. Argument: particles per axis.
+// surface, walls, forces and bubbles. Compiled twice: into spume_bench, and into spume_bench_minimal against features
+// that are constants (bench/minimal), where the code for everything else does not exist. Argument: particles per axis.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>

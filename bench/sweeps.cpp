@@ -20,7 +20,7 @@ struct PairWork {
 struct Sweeps {
   Particles particles;
   SweepContext context;
-  PackedNeighbours records;
+  PackedNeighbours packed;
   VelocityImageRule rule;
   std::vector<std::array<float, 3>> reflection;
   std::array<Array<double>, 3> velocity;
@@ -89,7 +89,7 @@ struct Sweeps {
     for (int k = 0; k < 6; ++k) result.correction[k] = correction[k].data();
     result.concentration_gradient = write(out);
     result.normal = write(vector);
-    kernel_moment_sweep(context, records, {true, true, particles.spacing()}, result);
+    kernel_moment_sweep(context, packed, {true, true, particles.spacing()}, result);
   }
   void velocity_gradient(bool with_change) {
     VelocityGradientOut result;
@@ -100,7 +100,7 @@ struct Sweeps {
       result.displacement = read(shift);
       result.change = write(out);
     }
-    velocity_gradient_sweep(context, records, velocities(), rule, corrections(), result);
+    velocity_gradient_sweep(context, packed, velocities(), rule, corrections(), result);
   }
 
   template <class Body>
@@ -135,7 +135,7 @@ void velocity_gradient(benchmark::State& state) {
 void shift_curvature(benchmark::State& state) {
   Sweeps sweeps(state);
   sweeps.run(state, {10 + 5 + 6 + 1 + 27 + 6, 3, 36 + 24 + 12 + 24}, [&] {
-    shift_curvature_sweep(sweeps.context, sweeps.records,
+    shift_curvature_sweep(sweeps.context, sweeps.packed,
                           {sweeps.gradient[0].data(), sweeps.gradient[1].data(), sweeps.gradient[2].data(),
                            sweeps.gradient[3].data(), sweeps.gradient[4].data(), sweeps.gradient[5].data(),
                            sweeps.gradient[6].data(), sweeps.gradient[7].data(), sweeps.gradient[8].data()},
@@ -148,7 +148,7 @@ void shift_curvature(benchmark::State& state) {
 void viscous_stress(benchmark::State& state) {
   Sweeps sweeps(state);
   sweeps.run(state, {10 + 5 + 6 + 13 + 6, 2, 24 + 4 + 12}, [&] {
-    viscous_sweep(sweeps.context, sweeps.records, sweeps.velocities(), sweeps.rule, sweeps.scalar[0].data(),
+    viscous_sweep(sweeps.context, sweeps.packed, sweeps.velocities(), sweeps.rule, sweeps.scalar[0].data(),
                   Sweeps::write(sweeps.out), true);
   });
 }
@@ -156,7 +156,7 @@ void viscous_stress(benchmark::State& state) {
 void velocity_divergence(benchmark::State& state) {
   Sweeps sweeps(state);
   sweeps.run(state, {10 + 5 + 3 + 3 + 18 + 3, 2, 24 + 8 + 24 + 12}, [&] {
-    divergence_sweep(sweeps.context, sweeps.records, sweeps.velocities(), sweeps.rule, sweeps.corrections(),
+    divergence_sweep(sweeps.context, sweeps.packed, sweeps.velocities(), sweeps.rule, sweeps.corrections(),
                      sweeps.potential.data(), sweeps.divergence.data(), sweeps.scalar[2].data());
   });
 }
@@ -164,7 +164,7 @@ void velocity_divergence(benchmark::State& state) {
 void pressure_gradient(benchmark::State& state) {
   Sweeps sweeps(state);
   sweeps.run(state, {10 + 5 + 2 + 6, 1, 8 + 24 + 12}, [&] {
-    gradient_sweep(sweeps.context, sweeps.records, sweeps.potential.data(), 0, sweeps.corrections(),
+    gradient_sweep(sweeps.context, sweeps.packed, sweeps.potential.data(), 0, sweeps.corrections(),
                    Sweeps::write(sweeps.out));
   });
 }
@@ -172,7 +172,7 @@ void pressure_gradient(benchmark::State& state) {
 void filter_of_vector(benchmark::State& state) {
   Sweeps sweeps(state);
   sweeps.run(state, {10 + 7 + 1 + 6, 2, 24}, [&] {
-    filter_vector(sweeps.context, sweeps.records, Sweeps::read(sweeps.vector), sweeps.reflection,
+    filter_vector(sweeps.context, sweeps.packed, Sweeps::read(sweeps.vector), sweeps.reflection,
                   Sweeps::write(sweeps.out));
   });
 }
@@ -181,7 +181,7 @@ void filter_of_two_scalars(benchmark::State& state) {
   Sweeps sweeps(state);
   const std::array<const float*, 2> values{sweeps.scalar[0].data(), sweeps.scalar[1].data()};
   const std::array<float*, 2> out{sweeps.scalar[2].data(), sweeps.scalar[3].data()};
-  sweeps.run(state, {10 + 7 + 1 + 4, 2, 16}, [&] { filter_scalars(sweeps.context, sweeps.records, values, out); });
+  sweeps.run(state, {10 + 7 + 1 + 4, 2, 16}, [&] { filter_scalars(sweeps.context, sweeps.packed, values, out); });
 }
 
 // Depths and shared shifts as at a surface through half of the particles, the others below it and outside of the lists.
@@ -229,7 +229,7 @@ struct HalfAtSurface {
 void depths_below_surface(benchmark::State& state) {
   HalfAtSurface half(state);
   half.run(state, 10 + (15 + 19 + 6 + 15) / 2.0, 1, [&] {
-    edge_depths(half.sweeps.context, half.sweeps.records,
+    edge_depths(half.sweeps.context, half.sweeps.packed,
                 {half.sweeps.particles.spacing(), half.upper, Sweeps::read(half.normal)}, half.scratch, half.depth);
   });
 }
@@ -238,7 +238,7 @@ void depths_below_surface(benchmark::State& state) {
 void shift_shared_by_layers(benchmark::State& state) {
   HalfAtSurface half(state);
   half.run(state, 10 + (18 + 25) / 2.0, 2, [&] {
-    shared_along_normal(half.sweeps.context, half.sweeps.records, half.sweeps.particles.spacing(),
+    shared_along_normal(half.sweeps.context, half.sweeps.packed, half.sweeps.particles.spacing(),
                         Sweeps::read(half.normal), Sweeps::read(half.sweeps.shift), half.sweeps.reflection, half.upper,
                         half.shared);
   });

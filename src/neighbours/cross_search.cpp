@@ -45,7 +45,7 @@ CrossSearch::CrossSearch(const CellGrid& grid, const std::array<double, 3>& orig
   margin_ = 1e-4F * static_cast<float>(grid.support_radius()) + 4 * std::numeric_limits<float>::epsilon() * extent;
 }
 
-// Blocks that together hold all points within the reach of the box.
+// Blocks that together have all points within the support radius of the box.
 std::span<const CrossSearch::Block> CrossSearch::blocks_near(const Box& box, float support_radius, Found& found) const {
   std::size_t size = 0;
   std::array<Set, most_sets> near;

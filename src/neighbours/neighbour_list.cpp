@@ -144,8 +144,8 @@ Group next_group(const std::array<const float*, 3>& point, std::size_t first, st
   return group;
 }
 
-// Adds the points of the blocks that lie within the reach of the group's box. Rounding is monotone, so none is
-// dropped that is within the reach of a particle of the group.
+// Adds the points of the blocks that lie within the support radius of the group's box. Rounding is monotone, so none is
+// dropped that is within that of a particle of the group.
 template <int dimensions>
 [[gnu::noinline]] void gather(const std::array<const float*, 3>& point, std::span<const Block> blocks,
                               const Group& group, float reach2, Candidates& candidates) {
@@ -181,7 +181,7 @@ inline std::size_t slot_of(const Candidates& candidates, std::size_t i, std::siz
   return static_cast<std::size_t>(std::find(begin, end, wanted) - begin);
 }
 
-// Writes the candidates within the reach of a point; returns the end of what was written.
+// Writes the candidates within the support radius of a point; returns the end of what was written.
 template <int dimensions>
 [[gnu::noinline]] std::int32_t* select(const Candidates& candidates, const std::array<float, 3>& centre, float reach2,
                                        std::int32_t* out) {
@@ -203,7 +203,7 @@ template <int dimensions>
 }  // namespace
 
 template <int dimensions>
-bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, const Images& images,
+bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles, const Images& images,
                            const float* own_support_radius) {
   const std::size_t n = count_.size();
   const auto least_support_radius = static_cast<float>(grid.support_radius());
@@ -249,7 +249,7 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
   const bool any_image = images.size() > 0;
   const std::array<float, 3> free_lower = image_free_lower_, free_upper = image_free_upper_;
 
-  // Runs of the points that may lie within the reach of the group.
+  // Runs of the points that may lie within the support radius of the group.
   const auto find_runs = [&](const Group& group, float support_radius, Runs& runs) {
     const float cull2 = (support_radius + margin) * (support_radius + margin);
     runs.size = 0;
@@ -353,12 +353,12 @@ bool NeighbourList::search(const CellGrid& grid, const CellTable& particles, con
   return false;
 }
 
-void NeighbourList::build(const CellGrid& grid, const CellTable& particles, const double* x, const double* y,
+void NeighbourList::build(const CellGrid& grid, const CellOrder& particles, const double* x, const double* y,
                           const double* z, std::size_t n, const Images& images, const std::array<double, 3>& origin) {
   build(grid, particles, x, y, z, n, images, origin, nullptr, grid.support_radius());
 }
 
-void NeighbourList::build(const CellGrid& grid, const CellTable& particles, const double* x, const double* y,
+void NeighbourList::build(const CellGrid& grid, const CellOrder& particles, const double* x, const double* y,
                           const double* z, std::size_t n, const Images& images, const std::array<double, 3>& origin,
                           const float* own_support_radius, double largest_support_radius) {
   const int dimensions = grid.dimensions();

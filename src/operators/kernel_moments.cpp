@@ -41,12 +41,12 @@ bool invert(const std::array<double, 6>& m, int dimensions, std::array<double, 6
 }
 
 template <int dimensions, class Kernel, bool shifting>
-void geometry(const SweepContext& context, PackedNeighbours& records_, const KernelMomentOptions& options,
-              const KernelMoments& out) {
+void moments(const SweepContext& context, PackedNeighbours& packed, const KernelMomentOptions& options,
+             const KernelMoments& out) {
   constexpr int matrix = dimensions == 2 ? 3 : 6;
   const NeighbourList& list = *context.list;
   constexpr int payload = volume_slots<Kernel>;
-  float* records = records_.prepare(context, payload);
+  float* records = packed.prepare(context, payload);
   if constexpr (is_variable_h<Kernel>)
     pack_scalar(context, records, record_width(dimensions, payload), 0, context.volume_ratio);
   const KernelScale<dimensions, Kernel> common(context);
@@ -99,22 +99,19 @@ void geometry(const SweepContext& context, PackedNeighbours& records_, const Ker
 
 }  // namespace
 
-void kernel_moment_sweep(const SweepContext& context, PackedNeighbours& records, const KernelMomentOptions& options,
+void kernel_moment_sweep(const SweepContext& context, PackedNeighbours& packed, const KernelMomentOptions& options,
                          const KernelMoments& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     if (options.shifting)
-      geometry<dimensions, Kernel, true>(context, records, options, out);
+      moments<dimensions, Kernel, true>(context, packed, options, out);
     else
-      geometry<dimensions, Kernel, false>(context, records, options, out);
+      moments<dimensions, Kernel, false>(context, packed, options, out);
   });
 }
 
 std::vector<SurfaceLayer> lattice_surface(int dimensions, KernelKind kernel, double smoothing_ratio) {
-  SweepContext context;
-  context.dimensions = dimensions;
-  context.kernel = kernel;
   std::vector<SurfaceLayer> layers;
-  with_kernel(context, [&]<int d, class Kernel>() {
+  with_plain_kernel(dimensions, kernel, [&]<int d, class Kernel>() {
     const double h = smoothing_ratio;
     const double scale = Kernel::normalisation(d) / std::pow(h, d);
     const double w_reference = Kernel::w(1 / h);
@@ -188,11 +185,8 @@ void visit_lattice(double support, Visit&& visit) {
 }  // namespace
 
 LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smoothing_ratio) {
-  SweepContext context;
-  context.dimensions = dimensions;
-  context.kernel = kernel;
   LatticeConstants result{};
-  with_kernel(context, [&]<int d, class Kernel>() {
+  with_plain_kernel(dimensions, kernel, [&]<int d, class Kernel>() {
     const double h = smoothing_ratio;
     const double scale = Kernel::normalisation(d) / std::pow(h, d);
     visit_lattice<d>(Kernel::support * h, [&](int i, int j, int k) {
@@ -207,11 +201,8 @@ LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smo
 }
 
 double largest_stable_shift(int dimensions, KernelKind kernel, double smoothing_ratio, bool without_mean) {
-  SweepContext context;
-  context.dimensions = dimensions;
-  context.kernel = kernel;
   double fastest = 0;
-  with_kernel(context, [&]<int d, class Kernel>() {
+  with_plain_kernel(dimensions, kernel, [&]<int d, class Kernel>() {
     const double h = smoothing_ratio;
     const double scale = Kernel::normalisation(d) / std::pow(h, d);
     const double reference = Kernel::w(1 / h);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "spume/operators/pressure_operator.hpp"
 
+#include <stdexcept>
+
 #include "spume/operators/image_values.hpp"
 
 namespace spume {
@@ -88,38 +90,41 @@ void double_rows(const SweepContext& context, const float* records, const Pressu
 }
 
 // sum_j F(q) weight_j of every row; the payload of the records is the weight.
-template <class Kernel>
+template <int dimensions, class Kernel>
 void sum_weights(const SweepContext& context, const float* records, float* sum) {
-  const KernelScale<3, Kernel> common(context);
+  const KernelScale<dimensions, Kernel> common(context);
   sweep(context.list->particles(), [&](std::size_t i) {
     f32n total{};
-    for_each_batch<3, 1>(*context.list, records, i, common.at(context, i).inverse_h,
-                         [&](const auto& batch) { total = total + Kernel::f(batch.q) * batch.payload[0]; });
+    for_each_batch<dimensions, 1>(*context.list, records, i, common.at(context, i).inverse_h,
+                                  [&](const auto& batch) { total = total + Kernel::f(batch.q) * batch.payload[0]; });
     sum[i] = simd::sum(total);
   });
 }
 
 }  // namespace
 
-void PressureOperator::bind(const SweepContext& context, PackedNeighbours& records, const PressureMatrix& matrix) {
+void PressureOperator::bind(const SweepContext& context, PackedNeighbours& packed, const PressureMatrix& matrix) {
+  if ((matrix.weight != nullptr) != (context.length_ratio != nullptr) ||
+      (matrix.weight != nullptr) != (matrix.row != nullptr))
+    throw std::logic_error("a pressure matrix has weights and rows exactly where particles differ in size");
   context_ = context;
-  records_ = &records;
+  packed_ = &packed;
   matrix_ = matrix;
   partial_.resize(block_count(context.list->particles(), block));
   if (matrix.weight == nullptr) return;
   weight_sum_.resize(size());
-  float* values = records.prepare(context, 1);
+  float* values = packed.prepare(context, 1);
   pack_scalar(context, values, record_width(context.dimensions, 1), 0, matrix.weight);
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    if constexpr (is_variable_h<Kernel>) sum_weights<Kernel>(context, values, weight_sum_.data());
+    if constexpr (is_variable_h<Kernel>) sum_weights<dimensions, Kernel>(context, values, weight_sum_.data());
   });
 }
 
 Dots PressureOperator::apply(std::span<const float> x, std::span<float> y, std::span<const float> w) {
-  float* records = records_->prepare(context_, 1);
+  float* records = packed_->prepare(context_, 1);
   const std::size_t n = size();
-  // x twice, extra, w and y; the mask; weights, rows and their sums.
-  records_->count(static_cast<double>(n) * (20 + mask_and_sizes(12)));
+  // x twice, the diagonal shift, w and y; the mask; weights, rows and their sums.
+  packed_->count(static_cast<double>(n) * (20 + mask_and_sizes(12)));
   const auto width = static_cast<std::size_t>(record_width(context_.dimensions, 1));
   const std::int32_t* source = context_.images->source();
   float* out = records + context_.dimensions;
@@ -149,10 +154,10 @@ double PressureOperator::mask_and_sizes(double sizes) const {
 
 void PressureOperator::residual(std::span<const double> q, std::span<const double> b, std::span<double> r) {
   const int payload = matrix_.weight != nullptr ? 3 : 2;
-  float* records = records_->prepare(context_, payload);
+  float* records = packed_->prepare(context_, payload);
   const std::size_t n = size();
-  // q twice, r zeroed and written, b, extra; the mask; weights and rows.
-  records_->count(static_cast<double>(n) * (44 + mask_and_sizes(8)));
+  // q twice, r zeroed and written, b, the diagonal shift; the mask; weights and rows.
+  packed_->count(static_cast<double>(n) * (44 + mask_and_sizes(8)));
   const auto width = static_cast<std::size_t>(record_width(context_.dimensions, payload));
   if (matrix_.weight != nullptr) pack_scalar(context_, records, static_cast<int>(width), 2, matrix_.weight);
   const std::int32_t* source = context_.images->source();
@@ -175,11 +180,11 @@ void PressureOperator::residual(std::span<const double> q, std::span<const doubl
 
 void PressureOperator::subtract_product(double scale, std::span<const float> x, std::span<double> r) {
   const bool varying = matrix_.weight != nullptr;
-  float* records = records_->prepare(context_, varying ? 2 : 1);
+  float* records = packed_->prepare(context_, varying ? 2 : 1);
   const int width = record_width(context_.dimensions, varying ? 2 : 1);
   pack_scalar(context_, records, width, 0, x.data());
-  // x twice, r read and written, extra; the mask; weights and rows.
-  records_->count(static_cast<double>(size()) * (28 + mask_and_sizes(8)));
+  // x twice, r read and written, the diagonal shift; the mask; weights and rows.
+  packed_->count(static_cast<double>(size()) * (28 + mask_and_sizes(8)));
   if (varying) pack_scalar(context_, records, width, 1, matrix_.weight);
   const auto volume = static_cast<float>(context_.volume);
   with_kernel(context_, [&]<int dimensions, class Kernel>() {

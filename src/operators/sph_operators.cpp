@@ -40,12 +40,12 @@ struct DifferenceBounds {
 
 // store(i, d u_a / d x_c as [a][c], bounds) for every particle; without `bounded` the bounds are zero.
 template <int dimensions, class Kernel, bool filter, bool bounded, class Store>
-void velocity_gradient(const SweepContext& context, PackedNeighbours& records_,
+void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
                        const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
                        const std::array<const float*, 6>& correction, const std::array<float*, 3>& out, Store&& store) {
   const NeighbourList& list = *context.list;
   constexpr int payload = dimensions + volume_slots<Kernel>;
-  float* records = records_.prepare(context, payload);
+  float* records = packed.prepare(context, payload);
   constexpr int width = record_width(dimensions, payload);
   pack_velocity(context, records, width, 0, velocity, rule);
   pack_volumes<Kernel>(context, records, width, dimensions);
@@ -122,16 +122,16 @@ void store_gradient(const VelocityGradientOut& out, std::size_t i,
 }
 
 template <int dimensions, class Kernel>
-void shift_curvature(const SweepContext& context, PackedNeighbours& records_,
-                     const std::array<const float*, 9>& gradient, const VelocityImageRule& rule,
-                     const std::vector<std::array<float, 3>>& reflection, const std::array<const float*, 3>& shift,
-                     const std::array<const float*, 6>& correction, const std::array<float*, 3>& out) {
+void shift_curvature(const SweepContext& context, PackedNeighbours& packed, const std::array<const float*, 9>& gradient,
+                     const VelocityImageRule& rule, const std::vector<std::array<float, 3>>& reflection,
+                     const std::array<const float*, 3>& shift, const std::array<const float*, 6>& correction,
+                     const std::array<float*, 3>& out) {
   constexpr int entries = dimensions * dimensions;
   constexpr int payload = entries + volume_slots<Kernel>;
   constexpr int width = record_width(dimensions, payload);
   const NeighbourList& list = *context.list;
   const std::size_t n = list.particles();
-  float* records = records_.prepare(context, payload);
+  float* records = packed.prepare(context, payload);
   pack_volumes<Kernel>(context, records, width, entries);
   parallel_for(n, [&](std::size_t i) {
     for (int k = 0; k < entries; ++k) records[i * width + dimensions + k] = gradient[k][i];
@@ -171,11 +171,11 @@ void shift_curvature(const SweepContext& context, PackedNeighbours& records_,
 }
 
 template <int dimensions, class Kernel, bool stress>
-void viscous(const SweepContext& context, PackedNeighbours& records_, const std::array<const double*, 3>& velocity,
+void viscous(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
              const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out) {
   const NeighbourList& list = *context.list;
   constexpr int payload = dimensions + 1 + volume_slots<Kernel>;
-  float* records = records_.prepare(context, payload);
+  float* records = packed.prepare(context, payload);
   constexpr int width = record_width(dimensions, payload);
   pack_velocity(context, records, width, 0, velocity, rule);
   pack_scalar(context, records, width, dimensions, kappa);
@@ -211,13 +211,12 @@ void viscous(const SweepContext& context, PackedNeighbours& records_, const std:
 }
 
 template <int dimensions, class Kernel>
-void divergence_of(const SweepContext& context, PackedNeighbours& records_,
-                   const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
-                   const std::array<const float*, 6>& correction, const double* potential, double* divergence,
-                   float* negative_laplacian) {
+void divergence_of(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
+                   const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
+                   const double* potential, double* divergence, float* negative_laplacian) {
   const NeighbourList& list = *context.list;
   constexpr int payload = dimensions + 1 + volume_slots<Kernel>;
-  float* records = records_.prepare(context, payload);
+  float* records = packed.prepare(context, payload);
   constexpr int width = record_width(dimensions, payload);
   pack_velocity(context, records, width, 0, velocity, rule);
   if (potential != nullptr) pack_scalar(context, records, width, dimensions, potential);
@@ -251,12 +250,12 @@ void divergence_of(const SweepContext& context, PackedNeighbours& records_,
 }
 
 template <int dimensions, class Kernel>
-void gradient_of(const SweepContext& context, PackedNeighbours& records_, const double* values, double reference,
+void gradient_of(const SweepContext& context, PackedNeighbours& packed, const double* values, double reference,
                  const std::array<const float*, 6>& correction, const std::array<float*, 3>& out) {
   const NeighbourList& list = *context.list;
   const std::size_t n = list.particles();
   constexpr int payload = 1 + volume_slots<Kernel>;
-  float* records = records_.prepare(context, payload);
+  float* records = packed.prepare(context, payload);
   constexpr int width = record_width(dimensions, payload);
   pack_volumes<Kernel>(context, records, width, 1);
   const std::int32_t* source = context.images->source();
@@ -283,12 +282,12 @@ void gradient_of(const SweepContext& context, PackedNeighbours& records_, const 
 
 // particle_at(s): the s-th of `count` particles to filter.
 template <int dimensions, class Kernel, class ParticleAt>
-void filter_listed(const SweepContext& context, PackedNeighbours& records_, const std::array<const float*, 3>& values,
+void filter_listed(const SweepContext& context, PackedNeighbours& packed, const std::array<const float*, 3>& values,
                    const std::vector<std::array<float, 3>>& reflection, std::size_t count, ParticleAt&& particle_at,
                    const std::array<float*, 3>& out) {
   const NeighbourList& list = *context.list;
   constexpr int payload = dimensions + volume_slots<Kernel>;
-  float* records = records_.prepare(context, payload);
+  float* records = packed.prepare(context, payload);
   constexpr int width = record_width(dimensions, payload);
   pack_vector(context, records, width, 0, values, reflection);
   pack_volumes<Kernel>(context, records, width, dimensions);
@@ -313,13 +312,13 @@ void filter_listed(const SweepContext& context, PackedNeighbours& records_, cons
 
 // The scalars from `first_scalar` on, of which image_value counts all.
 template <int dimensions, class Kernel, int count>
-void filter_some(const SweepContext& context, PackedNeighbours& records_, std::span<const float* const> all_values,
+void filter_some(const SweepContext& context, PackedNeighbours& packed, std::span<const float* const> all_values,
                  std::span<float* const> all_out, std::size_t first_scalar, const ImageValue& image_value) {
   const auto values = all_values.subspan(first_scalar, count);
   const auto out = all_out.subspan(first_scalar, count);
   const NeighbourList& list = *context.list;
   constexpr int payload = count + volume_slots<Kernel>;
-  float* records = records_.prepare(context, payload);
+  float* records = packed.prepare(context, payload);
   constexpr int width = record_width(dimensions, payload);
   for (int k = 0; k < count; ++k) pack_scalar(context, records, width, k, values[k]);
   if (image_value)
@@ -349,7 +348,7 @@ void filter_some(const SweepContext& context, PackedNeighbours& records_, std::s
 
 }  // namespace
 
-void velocity_gradient_sweep(const SweepContext& context, PackedNeighbours& records,
+void velocity_gradient_sweep(const SweepContext& context, PackedNeighbours& packed,
                              const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
                              const std::array<const float*, 6>& correction, const VelocityGradientOut& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
@@ -357,7 +356,7 @@ void velocity_gradient_sweep(const SweepContext& context, PackedNeighbours& reco
       store_gradient<dimensions>(out, i, gradient, bounds);
     };
     const auto run = [&]<bool filter, bool bounded>() {
-      velocity_gradient<dimensions, Kernel, filter, bounded>(context, records, velocity, rule, correction, out.filtered,
+      velocity_gradient<dimensions, Kernel, filter, bounded>(context, packed, velocity, rule, correction, out.filtered,
                                                              store);
     };
     const bool filter = out.filtered[0] != nullptr, bounded = out.change[0] != nullptr;
@@ -372,7 +371,7 @@ void velocity_gradient_sweep(const SweepContext& context, PackedNeighbours& reco
   });
 }
 
-void gradient_trace_sweep(const SweepContext& context, PackedNeighbours& records,
+void gradient_trace_sweep(const SweepContext& context, PackedNeighbours& packed,
                           const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
                           const std::array<const float*, 6>& correction, float* trace) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
@@ -381,73 +380,73 @@ void gradient_trace_sweep(const SweepContext& context, PackedNeighbours& records
     const auto store = [&](std::size_t i, const auto& gradient, const auto& bounds) {
       store_gradient<dimensions>(out, i, gradient, bounds);
     };
-    velocity_gradient<dimensions, Kernel, false, false>(context, records, velocity, rule, correction, {}, store);
+    velocity_gradient<dimensions, Kernel, false, false>(context, packed, velocity, rule, correction, {}, store);
   });
 }
 
-void shift_curvature_sweep(const SweepContext& context, PackedNeighbours& records,
+void shift_curvature_sweep(const SweepContext& context, PackedNeighbours& packed,
                            const std::array<const float*, 9>& gradient, const VelocityImageRule& rule,
                            const std::vector<std::array<float, 3>>& reflection,
                            const std::array<const float*, 3>& shift, const std::array<const float*, 6>& correction,
                            const std::array<float*, 3>& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    shift_curvature<dimensions, Kernel>(context, records, gradient, rule, reflection, shift, correction, out);
+    shift_curvature<dimensions, Kernel>(context, packed, gradient, rule, reflection, shift, correction, out);
   });
 }
 
-void viscous_sweep(const SweepContext& context, PackedNeighbours& records, const std::array<const double*, 3>& velocity,
+void viscous_sweep(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
                    const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out, bool stress) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     if (stress)
-      viscous<dimensions, Kernel, true>(context, records, velocity, rule, kappa, out);
+      viscous<dimensions, Kernel, true>(context, packed, velocity, rule, kappa, out);
     else
-      viscous<dimensions, Kernel, false>(context, records, velocity, rule, kappa, out);
+      viscous<dimensions, Kernel, false>(context, packed, velocity, rule, kappa, out);
   });
 }
 
-void divergence_sweep(const SweepContext& context, PackedNeighbours& records,
+void divergence_sweep(const SweepContext& context, PackedNeighbours& packed,
                       const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
                       const std::array<const float*, 6>& correction, const double* potential, double* divergence,
                       float* negative_laplacian) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    divergence_of<dimensions, Kernel>(context, records, velocity, rule, correction, potential, divergence,
+    divergence_of<dimensions, Kernel>(context, packed, velocity, rule, correction, potential, divergence,
                                       negative_laplacian);
   });
 }
 
-void gradient_sweep(const SweepContext& context, PackedNeighbours& records, const double* values, double reference,
+void gradient_sweep(const SweepContext& context, PackedNeighbours& packed, const double* values, double reference,
                     const std::array<const float*, 6>& correction, const std::array<float*, 3>& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    gradient_of<dimensions, Kernel>(context, records, values, reference, correction, out);
+    gradient_of<dimensions, Kernel>(context, packed, values, reference, correction, out);
   });
 }
 
-void filter_vector_subset(const SweepContext& context, PackedNeighbours& records,
+void filter_vector_subset(const SweepContext& context, PackedNeighbours& packed,
                           const std::array<const float*, 3>& values,
                           const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> subset,
                           const std::array<float*, 3>& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     filter_listed<dimensions, Kernel>(
-        context, records, values, reflection, subset.size(),
+        context, packed, values, reflection, subset.size(),
         [&](std::size_t s) { return static_cast<std::size_t>(subset[s]); }, out);
   });
 }
 
-void filter_vector(const SweepContext& context, PackedNeighbours& records, const std::array<const float*, 3>& values,
+void filter_vector(const SweepContext& context, PackedNeighbours& packed, const std::array<const float*, 3>& values,
                    const std::vector<std::array<float, 3>>& reflection, const std::array<float*, 3>& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     filter_listed<dimensions, Kernel>(
-        context, records, values, reflection, context.list->particles(), [](std::size_t s) { return s; }, out);
+        context, packed, values, reflection, context.list->particles(), [](std::size_t s) { return s; }, out);
   });
 }
 
-void filter_scalars(const SweepContext& context, PackedNeighbours& records, std::span<const float* const> values,
+void filter_scalars(const SweepContext& context, PackedNeighbours& packed, std::span<const float* const> values,
                     std::span<float* const> out, const ImageValue& image_value) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     std::size_t k = 0;
     for (; k + 1 < values.size(); k += 2)
-      filter_some<dimensions, Kernel, 2>(context, records, values, out, k, image_value);
-    if (k < values.size()) filter_some<dimensions, Kernel, 1>(context, records, values, out, k, image_value);
+      filter_some<dimensions, Kernel, 2>(context, packed, values, out, k, image_value);
+    if (k < values.size()) filter_some<dimensions, Kernel, 1>(context, packed, values, out, k, image_value);
   });
 }
 

@@ -94,10 +94,10 @@ template <class Batch, std::size_t dimensions>
 }
 
 template <int dimensions, class Kernel>
-void find_own_depths(const SweepContext& context, PackedNeighbours& records_, const SurfaceEdge& edge,
+void find_own_depths(const SweepContext& context, PackedNeighbours& packed, const SurfaceEdge& edge,
                      std::span<float> of_particle) {
   constexpr int payload = volume_slots<Kernel>;
-  float* records = records_.prepare(context, payload);
+  float* records = packed.prepare(context, payload);
   if constexpr (is_variable_h<Kernel>)
     pack_scalar(context, records, record_width(dimensions, payload), 0, context.volume_ratio);
   const KernelScale<dimensions, Kernel> common(context);
@@ -112,24 +112,24 @@ void find_own_depths(const SweepContext& context, PackedNeighbours& records_, co
       return;
     }
     for (float& component : normal) component *= per_spacing;
-    f32n pressure_fixed{};
+    f32n content{};
     for_each_batch<dimensions, payload>(*context.list, records, i, common.at(context, i).inverse_h, [&](const auto& b) {
       f32n r2{};
       for (int axis = 0; axis < dimensions; ++axis) r2 = r2 + b.d[axis] * b.d[axis];
       const f32n below = -dot(b.d, normal);
       const f32n aside = simd::sqrt(simd::max(r2 * (per_spacing * per_spacing) - below * below, zero()));
       const f32n part = times_volume<Kernel>(column<dimensions>(aside, below), b);
-      pressure_fixed = pressure_fixed + (b.q < beyond_neighbours ? part : zero());
+      content = content + (b.q < beyond_neighbours ? part : zero());
     });
-    const float sum = own_volume<Kernel>(context, i) * own_column + simd::sum(pressure_fixed);
+    const float sum = own_volume<Kernel>(context, i) * own_column + simd::sum(content);
     of_particle[i] = spacing * std::clamp(0.5F + sum - of_lattice, shallowest, deepest);
   });
 }
 
 template <int dimensions, class Kernel>
-void share_depths(const SweepContext& context, PackedNeighbours& records_, const SurfaceEdge& edge,
+void share_depths(const SweepContext& context, PackedNeighbours& packed, const SurfaceEdge& edge,
                   std::span<const float> of_particle, std::span<float> depth) {
-  float* records = records_.prepare(context, 1);
+  float* records = packed.prepare(context, 1);
   pack_scalar(context, records, record_width(dimensions, 1), 0, of_particle.data());
   const KernelScale<dimensions, Kernel> common(context);
   const auto centre = static_cast<float>(Kernel::w(0.0));
@@ -157,11 +157,11 @@ void share_depths(const SweepContext& context, PackedNeighbours& records_, const
 
 // c n of shared_along_normal, 0 where no edge particle is around.
 template <int dimensions, class Kernel>
-void find_layer_normals(const SweepContext& context, PackedNeighbours& records_, double spacing,
+void find_layer_normals(const SweepContext& context, PackedNeighbours& packed, double spacing,
                         const std::array<const float*, 3>& unit_normal,
                         const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> upper,
                         std::span<std::array<float, 3>> out) {
-  float* records = records_.prepare(context, dimensions);
+  float* records = packed.prepare(context, dimensions);
   pack_vector(context, records, record_width(dimensions, dimensions), 0, unit_normal, reflection);
   const KernelScale<dimensions, Kernel> common(context);
   const auto per_reach2 = static_cast<float>(1 / (layer_reach * layer_reach * spacing * spacing));
@@ -194,10 +194,10 @@ void find_layer_normals(const SweepContext& context, PackedNeighbours& records_,
 
 // From c n to the shared part of the vector.
 template <int dimensions, class Kernel>
-void share_along(const SweepContext& context, PackedNeighbours& records_, double spacing,
+void share_along(const SweepContext& context, PackedNeighbours& packed, double spacing,
                  const std::array<const float*, 3>& vector, const std::vector<std::array<float, 3>>& reflection,
                  std::span<const std::int32_t> upper, std::span<std::array<float, 3>> out) {
-  float* records = records_.prepare(context, dimensions);
+  float* records = packed.prepare(context, dimensions);
   pack_vector(context, records, record_width(dimensions, dimensions), 0, vector, reflection);
   const KernelScale<dimensions, Kernel> common(context);
   const auto centre = static_cast<float>(Kernel::w(0.0));
@@ -225,12 +225,12 @@ void share_along(const SweepContext& context, PackedNeighbours& records_, double
 
 }  // namespace
 
-void edge_depths(const SweepContext& context, PackedNeighbours& records, const SurfaceEdge& edge,
+void edge_depths(const SweepContext& context, PackedNeighbours& packed, const SurfaceEdge& edge,
                  std::span<float> of_particle, std::span<float> depth) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     parallel_for(of_particle.size(), [&](std::size_t i) { of_particle[i] = 0; });
-    find_own_depths<dimensions, Kernel>(context, records, edge, of_particle);
-    share_depths<dimensions, Kernel>(context, records, edge, of_particle, depth);
+    find_own_depths<dimensions, Kernel>(context, packed, edge, of_particle);
+    share_depths<dimensions, Kernel>(context, packed, edge, of_particle, depth);
   });
 }
 
@@ -257,13 +257,13 @@ void mark_upper_layers(const SweepContext& context, double spacing, std::span<co
   });
 }
 
-void shared_along_normal(const SweepContext& context, PackedNeighbours& records, double spacing,
+void shared_along_normal(const SweepContext& context, PackedNeighbours& packed, double spacing,
                          const std::array<const float*, 3>& unit_normal, const std::array<const float*, 3>& vector,
                          const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> upper,
                          std::span<std::array<float, 3>> out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    find_layer_normals<dimensions, Kernel>(context, records, spacing, unit_normal, reflection, upper, out);
-    share_along<dimensions, Kernel>(context, records, spacing, vector, reflection, upper, out);
+    find_layer_normals<dimensions, Kernel>(context, packed, spacing, unit_normal, reflection, upper, out);
+    share_along<dimensions, Kernel>(context, packed, spacing, vector, reflection, upper, out);
   });
 }
 

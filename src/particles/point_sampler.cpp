@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "spume/particles/point_sampler.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "spume/core/parallel.hpp"
+#include "spume/operators/moving_least_squares.hpp"
 
 namespace spume {
 namespace {
@@ -123,41 +123,28 @@ double PointSampler::coverage(const Vec3& point) const {
 
 PointSample PointSampler::sample(const Vec3& point) const {
   const int d = state_.particles->dimensions;
-  Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
-  Eigen::Matrix4d values = Eigen::Matrix4d::Zero();  // columns: pressure without its hydrostatic part, velocity
-  PointSample sample;
   const double density = state_.density;
+  LinearFit fit(d);  // of the pressure without its hydrostatic part, and of the velocity
   double pressure = 0;
-  int count = 0;
   visit(point, [&](std::size_t j, double weight, const Vec3& offset, const Copy& copy) {
     // A wall mirrors the pressure but for its hydrostatic part, which belongs to the place of the source.
     Vec3 place = point;
     for (int axis = 0; axis < d; ++axis)
       place[axis] = copy.sign[axis] > 0 ? point[axis] + offset[axis] : copy.point[axis] - offset[axis];
-    Eigen::Vector4d basis(1, 0, 0, 0), value((*state_.pressure)[j] + density * potential_at(place), 0, 0, 0);
+    std::array<double, LinearFit::fields> values{(*state_.pressure)[j] + density * potential_at(place)};
+    Vec3 scaled{};
     for (int axis = 0; axis < d; ++axis) {
-      basis[axis + 1] = offset[axis] / state_.resolution->smoothing_length;
-      value[axis + 1] = copy.velocity_sign[axis] * (*state_.particles->velocity[axis])[j] + copy.velocity_offset[axis];
+      scaled[axis] = offset[axis] / state_.resolution->smoothing_length;
+      values[axis + 1] = copy.velocity_sign[axis] * (*state_.particles->velocity[axis])[j] + copy.velocity_offset[axis];
     }
-    moments += weight * basis * basis.transpose();
-    values += weight * basis * value.transpose();
-    sample.coverage += weight;
+    fit.add(weight, scaled, values);
     pressure += weight * (*state_.pressure)[j];
-    ++count;
   });
-  if (count == 0) return sample;
-  const auto block = moments.topLeftCorner(d + 1, d + 1);
-  const Eigen::LDLT<Eigen::MatrixXd> factor(block);
-  Eigen::RowVector4d result = values.row(0) / sample.coverage;
-  result[0] = pressure / sample.coverage;
-  // A linear fit needs neighbours on all sides; in spray and thin sheets the average is the safer value.
-  if (count > 2 * (d + 1) && factor.info() == Eigen::Success && factor.rcond() > 1e-3) {
-    const Eigen::MatrixXd fitted = factor.solve(values.topRows(d + 1));
-    result = fitted.row(0);
-    result[0] -= density * potential_at(point);
-  }
-  sample.pressure = result[0];
-  for (int axis = 0; axis < d; ++axis) sample.velocity[axis] = result[axis + 1];
+  if (fit.count() == 0) return {};
+  const LinearFit::Result result = fit.at_centre();
+  PointSample sample{.coverage = fit.weight()};
+  sample.pressure = result.fitted ? result.value[0] - density * potential_at(point) : pressure / fit.weight();
+  for (int axis = 0; axis < d; ++axis) sample.velocity[axis] = result.value[axis + 1];
   return sample;
 }
 

@@ -26,30 +26,8 @@ CellGeometry cell_geometry(const Boundary& boundary, double cell_size) {
   return geometry;
 }
 
-double norm(std::span<const double> values) {
-  return std::sqrt(parallel_sum(values.size(), [&](std::size_t i) { return values[i] * values[i]; }));
-}
-
-// Krylov options of one correction: the residual has the norm `size` and shall fall below `target`.
-template <class Real>
-KrylovOptions<Real> correction_options(double size, double target, double most_digits, int left, bool singular) {
-  KrylovOptions<Real> krylov;
-  krylov.tolerance = std::clamp(0.5 * target / size, most_digits, 0.5);
-  krylov.max_iterations = left;
-  krylov.zero_guess = true;
-  krylov.confirm = false;
-  krylov.remove_mean = singular;
-  return krylov;
-}
-
-template <class Real>
-KrylovResult run_krylov(bool conjugate, LinearOperator<Real>& a, Preconditioner<Real>& m, std::span<const Real> b,
-                        std::span<Real> x, const KrylovOptions<Real>& options, KrylovWorkspace<Real>& work) {
-  return conjugate ? conjugate_gradients<Real>(a, m, b, x, options, work) : bicgstab<Real>(a, m, b, x, options, work);
-}
-
-// The vectors of a Krylov method, leased.
-class LeasedWorkspace : public KrylovWorkspace<float> {
+// The vectors of a correction in float, leased for a solve.
+class LeasedWorkspace : public CorrectionWorkspace<float> {
  public:
   LeasedWorkspace(ScratchPool& scratch, std::size_t size) : scratch_(scratch) {
     for (Array<float>* array : all()) scratch.lease(*array, size);
@@ -61,8 +39,16 @@ class LeasedWorkspace : public KrylovWorkspace<float> {
   }
 
  private:
-  std::array<Array<float>*, 7> all() {
-    return {&residual, &shadow, &direction, &preconditioned, &image, &second_image, &second_preconditioned};
+  std::array<Array<float>*, 9> all() {
+    return {&correction,
+            &krylov.residual,
+            &krylov.shadow,
+            &krylov.direction,
+            &krylov.preconditioned,
+            &krylov.image,
+            &krylov.second_image,
+            &krylov.second_preconditioned,
+            &right_hand_side};
   }
   ScratchPool& scratch_;
 };
@@ -76,34 +62,81 @@ void PressureRows::release(ScratchPool& scratch) {
 
 // The particle matrix as the Krylov solvers see it.
 struct ProjectionSolver::Operator final : LinearOperator<float> {
-  Operator(PressureOperator& matrix, int& applications) : matrix_(matrix), applications_(applications) {}
+  explicit Operator(PressureOperator& matrix) : matrix_(matrix) {}
   std::size_t size() const override { return matrix_.size(); }
-  void apply(std::span<const float> x, std::span<float> y) override {
-    matrix_.apply(x, y, x);
-    ++applications_;
-  }
+  void apply(std::span<const float> x, std::span<float> y) override { matrix_.apply(x, y, x); }
   Dots apply_with_dots(std::span<const float> x, std::span<float> y, std::span<const float> w) override {
-    ++applications_;
     return matrix_.apply(x, y, w);
   }
   PressureOperator& matrix_;
-  int& applications_;
 };
 
 // The same in double, for comparison: A x = -(0 - A x).
 struct ProjectionSolver::DoubleOperator final : LinearOperator<double> {
-  DoubleOperator(PressureOperator& matrix, int& applications, std::span<const double> zero)
-      : matrix_(matrix), applications_(applications), zero_(zero) {}
+  DoubleOperator(PressureOperator& matrix, std::span<const double> zero) : matrix_(matrix), zero_(zero) {}
   std::size_t size() const override { return matrix_.size(); }
   void apply(std::span<const double> x, std::span<double> y) override {
     matrix_.residual(x, zero_, y);
     parallel_for(y.size(), [&](std::size_t i) { y[i] = -y[i]; });
-    ++applications_;
   }
   PressureOperator& matrix_;
-  int& applications_;
   std::span<const double> zero_;
 };
+
+// Residuals in double, corrections in float.
+class ProjectionSolver::MixedSystem final : public RefinedSystem {
+ public:
+  MixedSystem(ProjectionSolver& solver, const PressureRows& rows, ScratchPool& scratch, std::span<double> q)
+      : solver_(solver), rows_(rows), work_(scratch, q.size()), q_(q) {}
+
+  void residual(std::span<double> r) override { solver_.operator_.residual(q_, rows_.right_hand_side, r); }
+  KrylovResult correct(std::span<const double> r, const CorrectionTask& task) override {
+    size_ = task.size;
+    Operator a(solver_.operator_);
+    JacobiPreconditioner<float> jacobi(rows_.diagonal);
+    return correct_by_krylov<float>(solver_.options_.method, a, solver_.preconditioner(jacobi), r, task, q_, work_);
+  }
+  void subtract_product(std::span<double> r) override {
+    solver_.operator_.subtract_product(size_, work_.correction, r);
+  }
+
+ private:
+  ProjectionSolver& solver_;
+  const PressureRows& rows_;
+  LeasedWorkspace work_;
+  std::span<double> q_;
+  double size_ = 0;  // of the residual that the last correction started from
+};
+
+// All in double.
+class ProjectionSolver::DoubleSystem final : public RefinedSystem {
+ public:
+  DoubleSystem(ProjectionSolver& solver, const PressureRows& rows, std::span<double> q)
+      : solver_(solver), rows_(rows), q_(q) {}
+
+  void residual(std::span<double> r) override { solver_.operator_.residual(q_, rows_.right_hand_side, r); }
+  KrylovResult correct(std::span<const double> r, const CorrectionTask& task) override {
+    solver_.zero_.resize(r.size());
+    solver_.double_diagonal_.resize(r.size());
+    parallel_for(r.size(), [&](std::size_t i) { solver_.double_diagonal_[i] = rows_.diagonal[i]; });
+    DoubleOperator a(solver_.operator_, solver_.zero_);
+    JacobiPreconditioner<double> jacobi(solver_.double_diagonal_);
+    return correct_by_krylov<double>(solver_.options_.method, a, solver_.preconditioner(jacobi), r, task, q_,
+                                     solver_.double_work_);
+  }
+  void subtract_product(std::span<double> r) override { residual(r); }
+
+ private:
+  ProjectionSolver& solver_;
+  const PressureRows& rows_;
+  std::span<double> q_;
+};
+
+template <class Real>
+Preconditioner<Real>& ProjectionSolver::preconditioner(JacobiPreconditioner<Real>& jacobi) {
+  if (multigrid_ != nullptr) return *multigrid_;
+  return jacobi;
+}
 
 ProjectionSolver::ProjectionSolver(const Boundary& boundary, const Options& options) : options_(options) {
   if (options.multigrid) multigrid_ = std::make_unique<CellMultigrid>(cell_geometry(boundary, options.cell_size));
@@ -125,43 +158,6 @@ void ProjectionSolver::prepare(const PressureRows& rows, ParticleStore& particle
   multigrid_->setup(span(0), span(1), span(2), inside, rows.helmholtz, rows.diagonal);
 }
 
-// Residuals are scaled to order one: float keeps its range for any units. A correction gains at most three digits,
-// rounding in float spoils more.
-KrylovResult ProjectionSolver::correct(const PressureRows& rows, ParticleStore& particles,
-                                       const Array<double>& residual, double size, double target, int left,
-                                       Array<float>& correction, Array<double>& q) {
-  const std::size_t n = residual.size();
-  LeasedWorkspace work(particles.scratch(), n);
-  ScratchArray<float> right_hand_side(particles.scratch(), n);
-  Operator a(operator_, report_.applications);
-  JacobiPreconditioner<float> jacobi(rows.diagonal);
-  Preconditioner<float>* preconditioner = &jacobi;
-  if (multigrid_ != nullptr) preconditioner = multigrid_.get();
-  parallel_for(n, [&](std::size_t i) { right_hand_side[i] = static_cast<float>(residual[i] / size); });
-  const auto options = correction_options<float>(size, target, 1e-3, left, rows.singular);
-  const KrylovResult result =
-      run_krylov<float>(options_.conjugate_gradients, a, *preconditioner, right_hand_side, correction, options, work);
-  parallel_for(n, [&](std::size_t i) { q[i] += size * correction[i]; });
-  return result;
-}
-
-KrylovResult ProjectionSolver::correct_in_double(const PressureRows& rows, ParticleStore& particles,
-                                                 const Array<double>& residual, double size, double target, int left,
-                                                 Array<double>& q) {
-  const std::size_t n = particles.size();
-  for (auto* array : {&double_correction_, &zero_, &double_diagonal_}) array->resize(n);
-  parallel_for(n, [&](std::size_t i) { double_diagonal_[i] = rows.diagonal[i]; });
-  DoubleOperator a(operator_, report_.applications, zero_);
-  JacobiPreconditioner<double> jacobi(double_diagonal_);
-  Preconditioner<double>* preconditioner = &jacobi;
-  if (multigrid_ != nullptr) preconditioner = multigrid_.get();
-  const auto options = correction_options<double>(size, target, 1e-12, left, rows.singular);
-  const KrylovResult result = run_krylov<double>(options_.conjugate_gradients, a, *preconditioner, residual,
-                                                 double_correction_, options, double_work_);
-  parallel_for(n, [&](std::size_t i) { q[i] += double_correction_[i]; });
-  return result;
-}
-
 void ProjectionSolver::solve(const PressureRows& rows, Arrangement& arrangement, ParticleStore& particles,
                              Array<double>& q) {
   const std::size_t n = particles.size();
@@ -172,52 +168,24 @@ void ProjectionSolver::solve(const PressureRows& rows, Arrangement& arrangement,
     matrix.row = rows.row.data();
   }
   operator_.bind(arrangement.context, arrangement.packed, matrix);
-  report_ = {};
-
-  // Iterative refinement: residuals in double, corrections in float.
   ScratchArray<double> residual(particles.scratch(), n);
-  ScratchArray<float> correction(particles.scratch(), options_.mixed ? n : 0);
-  const double target = options_.tolerance * rows.reference_norm;
-  for (int round = 0;; ++round) {
-    if (round == 0 || !options_.mixed) {
-      operator_.residual(q, rows.right_hand_side, residual);
-      ++report_.applications;
-    }
-    if (rows.singular) {
-      const double mean = parallel_sum(n, [&](std::size_t i) { return residual[i]; }) / static_cast<double>(n);
-      parallel_for(n, [&](std::size_t i) { residual[i] -= mean; });
-    }
-    const double size = norm(residual);
-    report_.relative_residual = rows.reference_norm > 0 ? size / rows.reference_norm : 0;
-    if (size <= target) return;
-    const int left = options_.max_iterations - report_.iterations;
-    if (!std::isfinite(size) || left <= 0 || round > 20) {
-      report_.converged = false;
-      return;
-    }
-    const KrylovResult result = options_.mixed ? correct(rows, particles, residual, size, target, left, correction, q)
-                                               : correct_in_double(rows, particles, residual, size, target, left, q);
-    report_.iterations += std::max(result.iterations, 1);
-    // Rounding in float leaves about 1e-3 of the residual that a correction started from: where a hundredth was to be
-    // reached, the recurrence may be trusted and a sweep in double is saved.
-    if (result.converged && size <= 100 * target) {
-      report_.relative_residual = result.relative_residual * size / rows.reference_norm;
-      return;
-    }
-    if (options_.mixed) {
-      operator_.subtract_product(size, correction, residual);
-      ++report_.applications;
-    }
+  const RefinementOptions refinement{options_.tolerance, rows.reference_norm, options_.max_iterations, rows.singular};
+  if (options_.mixed) {
+    MixedSystem system(*this, rows, particles.scratch(), q);
+    report_ = solve_refined(system, refinement, residual);
+  } else {
+    DoubleSystem system(*this, rows, q);
+    report_ = solve_refined(system, refinement, residual);
   }
 }
 
 double ProjectionSolver::bytes() const {
   double total = operator_.bytes() + double_work_.bytes();
-  for (const auto* array : {&double_correction_, &zero_, &double_diagonal_}) total += array->bytes();
+  for (const auto* array : {&zero_, &double_diagonal_}) total += array->bytes();
   return multigrid_ == nullptr ? total : total + multigrid_->bytes();
 }
 
-void demand_convergence(const SolveReport& report, const std::string& solve) {
+void demand_convergence(const RefinementResult& report, const std::string& solve) {
   if (report.converged) return;
   StepFailure::Details details;
   details.cause = solve + " did not converge in " + std::to_string(report.iterations) + " iterations";

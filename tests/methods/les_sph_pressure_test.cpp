@@ -115,8 +115,8 @@ struct PreparedStep : StagedFlow {
         if (side.kind == BoundaryKind::no_slip) side.kind = BoundaryKind::free_slip;
     const SphSums mirror({loaded.options.resolution.kernel, d}, flow.resolution.smoothing_length, flow.particles.volume,
                          points, image_rules(), boundaries_of(slippery));
-    const reference::SurfaceLayers layers(twin, {loaded.options.resolution.kernel, d}, flow.resolution.smoothing_length,
-                                          loaded.scene.spacing, edge_normals(twin));
+    const reference::SurfaceLayers layers(twin, {loaded.options.resolution.kernel, d}, loaded.scene.spacing,
+                                          edge_normals(twin));
     const auto potential = [&](std::size_t i) { return flow.potential == nullptr ? 0.0 : (*flow.potential)[i]; };
     std::array<std::vector<double>, 3> start, u;
     for (int axis = 0; axis < d; ++axis) {

@@ -9,6 +9,7 @@
 #include "reference/brute_force.hpp"
 #include "spume/core/random.hpp"
 #include "spume/neighbours/cell_grid.hpp"
+#include "spume/neighbours/cell_order.hpp"
 #include "spume/neighbours/images.hpp"
 #include "spume/neighbours/neighbour_list.hpp"
 
@@ -67,7 +68,7 @@ inline ImageRules unit_box_rules(int dimensions, double support_radius, ImageKin
 struct Neighbourhood {
   ImageRules rules;
   CellGrid grid;
-  CellTable table;
+  CellOrder table;
   Images images;
   NeighbourList list;
   Array<double> x, y, z;

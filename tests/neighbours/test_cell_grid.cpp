@@ -13,7 +13,7 @@ namespace {
 
 struct Sorted {
   CellGrid grid;
-  CellTable table;
+  CellOrder table;
   Array<double> x, y, z;
   Sorted(int dimensions, const std::vector<Point>& points)
       : grid(dimensions, {0, 0, 0}, {1, 1, 1}, 0.1, points.size()),

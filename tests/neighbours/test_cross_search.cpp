@@ -25,7 +25,7 @@ std::vector<Point> scattered(std::size_t n, std::uint32_t draw) {
   return points;
 }
 
-std::vector<Point> sorted_by(const CellGrid& grid, const std::vector<Point>& points, CellTable& table) {
+std::vector<Point> sorted_by(const CellGrid& grid, const std::vector<Point>& points, CellOrder& table) {
   const auto build = [&](const std::vector<Point>& list) {
     const auto x = Neighbourhood::column(list, 0), y = Neighbourhood::column(list, 1),
                z = Neighbourhood::column(list, 2);
@@ -89,7 +89,7 @@ class CrossSearches : public ::testing::TestWithParam<bool> {
   }
 
   CellGrid grid;
-  std::array<CellTable, 2> table;
+  std::array<CellOrder, 2> table;
   Images images;
   std::vector<Point> first, second, all;
   std::array<CrossSearch::Points, 2> sets;

@@ -4,6 +4,7 @@
 
 #include "spume/core/periodic_grid.hpp"
 #include "spume/core/random.hpp"
+#include "spume/neighbours/cell_order.hpp"
 #include "spume/neighbours/periodic_cells.hpp"
 
 namespace spume::test {

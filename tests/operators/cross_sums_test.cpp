@@ -16,14 +16,14 @@ constexpr double h0 = 0.06;
 
 struct Scene {
   CellGrid grid{3, {0, 0, 0}, {1, 1, 1}, 2 * h0, 4000};
-  CellTable particles, points;
+  CellOrder particles, points;
   std::array<Array<double>, 3> at;
   std::array<Array<float>, 3> x;
   Array<float> length_ratio, support_radius, records;
   std::size_t n = 2500, m = 300;
 
   Scene() {
-    const auto sort = [&](const std::vector<Point>& list, CellTable& table) {
+    const auto sort = [&](const std::vector<Point>& list, CellOrder& table) {
       std::array<Array<double>, 3> sorted;
       for (int round = 0; round < 2; ++round) {
         for (int a = 0; a < 3; ++a) {

@@ -54,12 +54,12 @@ struct Surface {
       edge.push_back(static_cast<std::int32_t>(i));
     }
   }
-  SurfaceLayers twin() const {
-    return {a.twin, {a.setup.kernel, a.dimensions()}, a.setup.smoothing_length(), a.setup.spacing, exact};
-  }
+  SurfaceLayers twin() const { return {a.twin, {a.setup.kernel, a.dimensions()}, a.setup.spacing, exact}; }
   // Of the support, in spacings.
   double support_radius() const {
-    return PlainKernel{a.setup.kernel, a.dimensions()}.support() * a.setup.smoothing_length() / a.setup.spacing;
+    const double largest = a.setup.sizes ? largest_length_ratio : 1;
+    return largest * PlainKernel{a.setup.kernel, a.dimensions()}.support() * a.setup.smoothing_length() /
+           a.setup.spacing;
   }
   double rounding(std::size_t i) const { return epsilon * static_cast<double>(a.twin.neighbours(i) + 4); }
 };
@@ -72,7 +72,7 @@ TEST(SurfaceLayers, DepthsAgreeWithTheSlowTwin) {
       const Surface surface(a, 0.5, normals);
       const SurfaceLayers twin = surface.twin();
       Array<float> scratch(a.size()), depth(surface.edge.size());
-      edge_depths(a.context, a.records, {a.setup.spacing, surface.edge, surface.normal.read()}, scratch, depth);
+      edge_depths(a.context, a.packed, {a.setup.spacing, surface.edge, surface.normal.read()}, scratch, depth);
       Comparison depths("depth");
       const double support_radius = surface.support_radius();
       for (std::size_t k = 0; k < surface.edge.size(); ++k) {
@@ -122,7 +122,7 @@ TEST(SurfaceLayers, WhatLayersShareAgreesWithTheSlowTwin) {
         for (std::size_t i = 0; i < a.size(); ++i) exact[i][axis] = vector[axis][i] = static_cast<float>(values[i]);
       }
       Array<std::array<float, 3>> shared(upper.size());
-      shared_along_normal(a.context, a.records, a.setup.spacing, surface.normal.read(), vector.read(), a.reflection,
+      shared_along_normal(a.context, a.packed, a.setup.spacing, surface.normal.read(), vector.read(), a.reflection,
                           upper, shared);
       Comparison comparison("shared part");
       for (std::size_t k = 0; k < upper.size(); ++k) {

@@ -17,15 +17,15 @@ TEST(SphGeometry, AgreesWithTheSlowTwinOnEveryArrangement) {
     Comparison kernel("kernel sum"), trace("div r"), laplacian_diagonal("coupling"),
         concentration("concentration gradient"), normal("normal");
     for (std::size_t i = 0; i < a.size(); ++i) {
-      const std::size_t count = a.twin.neighbours(i);
-      kernel.add(fast.kernel_sum[i], a.twin.kernel_sum(i), count, i);
-      trace.add(fast.divergence_of_position[i], a.twin.divergence_of_position(i), count, i);
-      laplacian_diagonal.add(fast.laplacian_diagonal[i], a.twin.laplacian_diagonal(i), count, i);
+      const double rounding = a.twin.tolerance(i);
+      kernel.add(fast.kernel_sum[i], a.twin.kernel_sum(i), rounding, i);
+      trace.add(fast.divergence_of_position[i], a.twin.divergence_of_position(i), rounding, i);
+      laplacian_diagonal.add(fast.laplacian_diagonal[i], a.twin.laplacian_diagonal(i), rounding, i);
       const auto c = a.twin.concentration_gradient(i, a.setup.spacing);
       const auto n = a.twin.normal(i);
       for (int axis = 0; axis < a.dimensions(); ++axis) {
-        concentration.add(fast.concentration_gradient[axis][i], c[axis], count, i);
-        normal.add(fast.normal[axis][i], n[axis], count, i);
+        concentration.add(fast.concentration_gradient[axis][i], c[axis], rounding, i);
+        normal.add(fast.normal[axis][i], n[axis], rounding, i);
       }
     }
   }
@@ -44,7 +44,7 @@ TEST(SphGeometry, CorrectionIsTheInverseOfTheMomentsOrTheIdentity) {
       const auto moments = a.twin.moments(i);
       double moment_error = 0;
       for (const auto& row : moments)
-        for (const Sum& m : row) moment_error += std::pow(m.magnitude * reference::tolerance(a.twin.neighbours(i)), 2);
+        for (const Sum& m : row) moment_error += std::pow(m.magnitude * a.twin.tolerance(i), 2);
       moment_error = std::sqrt(moment_error);
       const double norm2 = a.dimensions() * slow.mean_square;
       const bool near_choice =
@@ -114,7 +114,7 @@ TEST(SphGeometry, TheLargestStableShiftTurnsTheShortestWaveOfALatticeIntoItsNega
       Arrangement a(setup);
       const Geometry fast(a);
       VectorArrays<float> mean(a.size(), d);
-      filter_vector(a.context, a.records,
+      filter_vector(a.context, a.packed,
                     {fast.concentration_gradient[0].data(), fast.concentration_gradient[1].data(),
                      fast.concentration_gradient[2].data()},
                     a.reflection, mean.write());
@@ -139,7 +139,7 @@ TEST(SphGeometry, LayersBelowASurfaceHaveTheSumsOfALattice) {
       Arrangement a(setup);
       const Geometry fast(a);
       VectorArrays<float> filtered(a.size(), d);
-      filter_vector(a.context, a.records, {fast.normal[0].data(), fast.normal[1].data(), fast.normal[2].data()},
+      filter_vector(a.context, a.packed, {fast.normal[0].data(), fast.normal[1].data(), fast.normal[2].data()},
                     a.reflection, filtered.write());
       const auto layers = lattice_surface(d, kernel, setup.smoothing_ratio);
       const Array<double>& height = d == 3 ? a.hood.z : a.hood.y;

@@ -37,15 +37,15 @@ TEST(SphOperators, VelocityGradientAndFilterAgreeWithTheSlowTwin) {
       out.gradient[k] = gradient[k].data();
     }
     out.filtered = filtered.write();
-    velocity_gradient_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), out);
+    velocity_gradient_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), out);
     Comparison gradients("velocity gradient"), filter("filtered velocity");
     for (std::size_t i = 0; i < a.size(); ++i) {
-      const std::size_t count = a.twin.neighbours(i);
+      const double rounding = a.twin.tolerance(i);
       const auto slow = a.twin.velocity_gradient(i, u, geometry.correction_of(i, d));
       const auto mean = a.twin.filtered_velocity(i, u);
       for (int r = 0; r < d; ++r) {
-        for (int c = 0; c < d; ++c) gradients.add(gradient[r * d + c][i], slow[r][c], count, i);
-        filter.add(filtered[r][i], mean[r], count, i);
+        for (int c = 0; c < d; ++c) gradients.add(gradient[r * d + c][i], slow[r][c], rounding, i);
+        filter.add(filtered[r][i], mean[r], rounding, i);
       }
     }
     // The gradient is the same bits with and without the filter beside it.
@@ -55,12 +55,12 @@ TEST(SphOperators, VelocityGradientAndFilterAgreeWithTheSlowTwin) {
       alone[k].resize(a.size());
       only.gradient[k] = alone[k].data();
     }
-    velocity_gradient_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), only);
+    velocity_gradient_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), only);
     for (int k = 0; k < d * d; ++k)
       EXPECT_TRUE(std::equal(alone[k].begin(), alone[k].end(), gradient[k].begin())) << "component " << k;
     // And so is what its trace is made of.
     Array<float> trace(a.size());
-    gradient_trace_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), trace.data());
+    gradient_trace_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), trace.data());
     for (std::size_t i = 0; i < a.size(); ++i) {
       float expected = 0;
       for (int r = 0; r < d; ++r)
@@ -72,14 +72,14 @@ TEST(SphOperators, VelocityGradientAndFilterAgreeWithTheSlowTwin) {
   }
 }
 
-struct HeldChanges {
+struct BoundedChanges {
   std::size_t cut = 0, free = 0;
 };
 
 // The changes over random displacements of up to `length` spacings, with strain and trace, against the twin. `filter`
 // takes the sweep that filters beside, which must give the same.
-HeldChanges compare_changes(double length, bool filter) {
-  HeldChanges pressure_fixed;
+BoundedChanges compare_changes(double length, bool filter) {
+  BoundedChanges changes_made;
   for (Arrangement& a : all_arrangements()) {
     SCOPED_TRACE(a.setup.name);
     const int d = a.dimensions();
@@ -98,10 +98,10 @@ HeldChanges compare_changes(double length, bool filter) {
     out.displacement = displacement.read();
     out.change = change.write();
     if (filter) out.filtered = filtered.write();
-    velocity_gradient_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), out);
+    velocity_gradient_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), out);
     Comparison changes("change"), strains("squared strain"), traces("trace");
     for (std::size_t i = 0; i < a.size(); ++i) {
-      const std::size_t count = a.twin.neighbours(i);
+      const double rounding = a.twin.tolerance(i);
       const auto gradient = a.twin.velocity_gradient(i, u, geometry.correction_of(i, d));
       reference::Sum square, product;  // their errors to first order in those of the gradient
       for (int r = 0; r < d; ++r) {
@@ -117,23 +117,23 @@ HeldChanges compare_changes(double length, bool filter) {
         }
         const auto [low, high] = a.twin.difference_bounds(i, u, r);
         const double bounded = std::clamp(along.value, low / 2, high / 2);
-        (bounded == along.value ? pressure_fixed.free : pressure_fixed.cut) += 1;
+        (bounded == along.value ? changes_made.free : changes_made.cut) += 1;
         along.value = bounded;
         along.magnitude += std::abs(low) + std::abs(high);
-        changes.add(change[r][i], along, count, i);
+        changes.add(change[r][i], along, rounding, i);
       }
-      strains.add(strain[i] * strain[i], square, count, i);
-      traces.add(trace[i], product, count, i);
+      strains.add(strain[i] * strain[i], square, rounding, i);
+      traces.add(trace[i], product, rounding, i);
     }
   }
-  return pressure_fixed;
+  return changes_made;
 }
 
 // Random velocities are as rough as a field can be: half the extreme difference is passed by one displacement in four
 // of a spacing, and by none of a hundredth of it but where a particle has few neighbours.
-TEST(SphOperators, ChangesOverADisplacementAreHeldByTheNeighbours) {
+TEST(SphOperators, ChangesOverADisplacementAreBoundedByTheNeighbours) {
   for (const bool filter : {false, true}) {
-    const HeldChanges near = compare_changes(0.01, filter), far = compare_changes(1, filter);
+    const BoundedChanges near = compare_changes(0.01, filter), far = compare_changes(1, filter);
     EXPECT_LT(near.cut, near.free / 20);
     EXPECT_GT(far.cut, far.free / 20);
     EXPECT_GT(far.free, far.cut / 20);
@@ -150,12 +150,14 @@ TEST(SphOperators, ViscousForceAgreesWithTheSlowTwin) {
     for (std::size_t i = 0; i < a.size(); ++i)
       kappa[i] = random[i] > 0.9 ? 0.0F : static_cast<float>(std::pow(10.0, 3 * random[i] - 3));
     VectorArrays<float> fast(a.size(), a.dimensions());
-    viscous_sweep(a.context, a.records, u.read(), a.rule, kappa.data(), fast.write());
-    Comparison comparison("viscous acceleration");
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const auto slow = a.twin.viscous(i, u, kappa);
-      for (int axis = 0; axis < a.dimensions(); ++axis)
-        comparison.add(fast[axis][i], slow[axis], a.twin.neighbours(i), i);
+    for (const bool stress : {false, true}) {
+      viscous_sweep(a.context, a.packed, u.read(), a.rule, kappa.data(), fast.write(), stress);
+      Comparison comparison(stress ? "acceleration by the viscous stress" : "viscous acceleration");
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        const auto slow = stress ? a.twin.viscous_stress(i, u, kappa) : a.twin.viscous(i, u, kappa);
+        for (int axis = 0; axis < a.dimensions(); ++axis)
+          comparison.add(fast[axis][i], slow[axis], a.twin.tolerance(i), i);
+      }
     }
   }
 }
@@ -168,15 +170,14 @@ TEST(SphOperators, DivergenceAndPotentialLaplacianAgreeWithTheSlowTwin) {
     const auto potential = a.random(35);
     Array<double> fast(a.size()), alone(a.size());
     Array<float> laplacian(a.size());
-    divergence_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), potential.data(), fast.data(),
+    divergence_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), potential.data(), fast.data(),
                      laplacian.data());
-    divergence_sweep(a.context, a.records, u.read(), a.rule, geometry.read_correction(), nullptr, alone.data(),
-                     nullptr);
+    divergence_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), nullptr, alone.data(), nullptr);
     Comparison divergence("divergence"), second("negative Laplacian");
     for (std::size_t i = 0; i < a.size(); ++i) {
-      const std::size_t count = a.twin.neighbours(i);
-      divergence.add(fast[i], a.twin.divergence(i, u, geometry.correction_of(i, a.dimensions())), count, i);
-      second.add(laplacian[i], a.twin.negative_laplacian(i, potential), count, i);
+      const double rounding = a.twin.tolerance(i);
+      divergence.add(fast[i], a.twin.divergence(i, u, geometry.correction_of(i, a.dimensions())), rounding, i);
+      second.add(laplacian[i], a.twin.negative_laplacian(i, potential), rounding, i);
       EXPECT_EQ(fast[i], alone[i]) << "particle " << i << " depends on the potential";
     }
   }
@@ -189,12 +190,12 @@ TEST(SphOperators, GradientAgreesWithTheSlowTwin) {
     auto values = a.random(41);
     for (double& value : values) value += 1e6;  // a large constant part costs no digits
     VectorArrays<float> fast(a.size(), a.dimensions());
-    gradient_sweep(a.context, a.records, values.data(), 1e6, geometry.read_correction(), fast.write());
+    gradient_sweep(a.context, a.packed, values.data(), 1e6, geometry.read_correction(), fast.write());
     Comparison comparison("gradient");
     for (std::size_t i = 0; i < a.size(); ++i) {
       const auto slow = a.twin.gradient(i, values, 1e6, geometry.correction_of(i, a.dimensions()));
       for (int axis = 0; axis < a.dimensions(); ++axis)
-        comparison.add(fast[axis][i], slow[axis], a.twin.neighbours(i), i);
+        comparison.add(fast[axis][i], slow[axis], a.twin.tolerance(i), i);
     }
   }
 }
@@ -216,14 +217,14 @@ TEST(SphOperators, ShiftCurvatureAgreesWithTheSlowTwin) {
       for (double& value : values) value *= 0.1 * a.setup.spacing;
       shift[axis] = to_float(values);
     }
-    shift_curvature_sweep(a.context, a.records, read, a.rule, a.reflection, shift.read(), geometry.read_correction(),
+    shift_curvature_sweep(a.context, a.packed, read, a.rule, a.reflection, shift.read(), geometry.read_correction(),
                           fast.write());
     Comparison comparison("shift curvature");
     for (std::size_t i = 0; i < a.size(); ++i) {
       reference::Vector s{};
       for (int axis = 0; axis < d; ++axis) s[axis] = shift[axis][i];
       const auto slow = a.twin.shift_curvature(i, gradient, s, geometry.correction_of(i, d));
-      for (int axis = 0; axis < d; ++axis) comparison.add(fast[axis][i], slow[axis], a.twin.neighbours(i), i);
+      for (int axis = 0; axis < d; ++axis) comparison.add(fast[axis][i], slow[axis], a.twin.tolerance(i), i);
     }
   }
 }
@@ -239,21 +240,21 @@ TEST(SphOperators, ShepardFiltersAgreeWithTheSlowTwin) {
     }
     const std::array<const float*, 3> read{in[0].data(), in[1].data(), in[2].data()};
     const std::array<float*, 3> write{out[0].data(), out[1].data(), out[2].data()};
-    filter_scalars(a.context, a.records, read, write);  // a pair, then a single
+    filter_scalars(a.context, a.packed, read, write);  // a pair, then a single
     Comparison scalars("filtered scalar"), vectors("filtered vector");
     for (std::size_t i = 0; i < a.size(); ++i)
-      for (int k = 0; k < 3; ++k) scalars.add(out[k][i], a.twin.filtered_scalar(i, in[k]), a.twin.neighbours(i), i);
+      for (int k = 0; k < 3; ++k) scalars.add(out[k][i], a.twin.filtered_scalar(i, in[k]), a.twin.tolerance(i), i);
 
     const auto expect_filtered_vector = [&] {
       for (std::size_t i = 0; i < a.size(); ++i) {
         const auto slow = a.twin.filtered_vector(i, in);
-        for (int axis = 0; axis < d; ++axis) vectors.add(out[axis][i], slow[axis], a.twin.neighbours(i), i);
+        for (int axis = 0; axis < d; ++axis) vectors.add(out[axis][i], slow[axis], a.twin.tolerance(i), i);
       }
     };
-    filter_vector(a.context, a.records, read, a.reflection, write);
+    filter_vector(a.context, a.packed, read, a.reflection, write);
     expect_filtered_vector();
     // Scalars whose images are told: the components of the same vector.
-    filter_scalars(a.context, a.records, std::span(read).first(static_cast<std::size_t>(d)),
+    filter_scalars(a.context, a.packed, std::span(read).first(static_cast<std::size_t>(d)),
                    std::span(write).first(static_cast<std::size_t>(d)), [&](std::size_t k, std::size_t m) {
                      const Images& images = *a.context.images;
                      return a.reflection[static_cast<std::size_t>(images.path()[m])][k] *
@@ -264,14 +265,14 @@ TEST(SphOperators, ShepardFiltersAgreeWithTheSlowTwin) {
     std::vector<std::int32_t> subset;
     for (std::size_t i = 0; i < a.size(); i += 3) subset.push_back(static_cast<std::int32_t>(i));
     for (auto& array : out) array.fill(-7);
-    filter_vector_subset(a.context, a.records, read, a.reflection, subset, write);
+    filter_vector_subset(a.context, a.packed, read, a.reflection, subset, write);
     for (std::size_t i = 0; i < a.size(); ++i) {
       if (i % 3 != 0) {
         EXPECT_EQ(out[0][i], -7) << "particle " << i << " is not in the subset";
         continue;
       }
       const auto slow = a.twin.filtered_vector(i, in);
-      for (int axis = 0; axis < d; ++axis) vectors.add(out[axis][i], slow[axis], a.twin.neighbours(i), i);
+      for (int axis = 0; axis < d; ++axis) vectors.add(out[axis][i], slow[axis], a.twin.tolerance(i), i);
     }
   }
 }

@@ -147,11 +147,11 @@ inline SphSystem assemble(const SphSetup& setup) {
     for (int a = 0; a < d; ++a) b[a] = static_cast<int>((p[a] - base[a]) / support);
     return b;
   };
-  std::vector<std::vector<std::size_t>> pressure_fixed(static_cast<std::size_t>(bins[0]) * bins[1] * bins[2]);
+  std::vector<std::vector<std::size_t>> bin(static_cast<std::size_t>(bins[0]) * bins[1] * bins[2]);
   const auto bin_index = [&](int i, int j, int k) { return (static_cast<std::size_t>(k) * bins[1] + j) * bins[0] + i; };
   for (std::size_t q = 0; q < points.size(); ++q) {
     const auto b = bin_of(points[q].p);
-    pressure_fixed[bin_index(b[0], b[1], b[2])].push_back(q);
+    bin[bin_index(b[0], b[1], b[2])].push_back(q);
   }
   std::vector<std::vector<std::pair<std::size_t, double>>> neighbours(n);
   std::vector<double> kernel_sum(n, 0);
@@ -164,7 +164,7 @@ inline SphSystem assemble(const SphSetup& setup) {
     for (int kk = std::max(0, b[2] - 1); kk <= std::min(bins[2] - 1, b[2] + 1); ++kk)
       for (int jj = std::max(0, b[1] - 1); jj <= std::min(bins[1] - 1, b[1] + 1); ++jj)
         for (int ii = std::max(0, b[0] - 1); ii <= std::min(bins[0] - 1, b[0] + 1); ++ii)
-          for (const std::size_t q : pressure_fixed[bin_index(ii, jj, kk)]) {
+          for (const std::size_t q : bin[bin_index(ii, jj, kk)]) {
             if (q == i) continue;
             double r2 = 0;
             for (int a = 0; a < d; ++a) r2 += (pi[a] - points[q].p[a]) * (pi[a] - points[q].p[a]);

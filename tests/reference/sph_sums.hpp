@@ -2,8 +2,11 @@
 // Slow twins of the SPH operators: every sum over all pairs of particles and explicit images, in double, from the
 // definitions in sph_operators.hpp and pressure_operator.hpp.
 //
+// Where particles differ in size a sum at particle i takes h_i and the volumes V_j of its neighbours.
+//
 // A sum carries its magnitude beside its value: the sum of |V W(0)| or |V F(0)| times the moduli of the other
-// factors over the neighbours in the support. Rounding errors of a float sum are a multiple of it, see tolerance().
+// factors over the neighbours in the support. Rounding errors of a float sum are a multiple of it,
+// SphSums::tolerance().
 #pragma once
 
 #include <algorithm>
@@ -12,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "reference/brute_force.hpp"
@@ -76,9 +80,14 @@ class SphSums {
     Vector velocity_sign{1, 1, 1}, velocity_offset{}, reflection{1, 1, 1};
   };
 
+  // h_i / h and V_i / V per particle; empty: all alike.
+  struct Sizes {
+    std::vector<float> length_ratio, volume_ratio;
+  };
+
   SphSums(const PlainKernel& kernel, double smoothing_length, double volume, const std::vector<Point>& particles,
-          const ImageRules& rules, const Boundaries& boundaries)
-      : kernel_(kernel), h_(smoothing_length), volume_(volume), n_(particles.size()) {
+          const ImageRules& rules, const Boundaries& boundaries, Sizes sizes = {})
+      : kernel_(kernel), h_(smoothing_length), volume_(volume), n_(particles.size()), sizes_(std::move(sizes)) {
     for (std::size_t i = 0; i < n_; ++i) points_.push_back({particles[i], i, {1, 1, 1}, {}, {1, 1, 1}});
     for (const Image& image : images(rules, particles)) points_.push_back(transformed(image, boundaries));
   }
@@ -97,6 +106,8 @@ class SphSums {
   std::size_t size() const { return n_; }
   int dimensions() const { return kernel_.dimensions; }
   const std::vector<SphPoint>& points() const { return points_; }
+  double width(std::size_t i) const { return sizes_.length_ratio.empty() ? h_ : h_ * sizes_.length_ratio[i]; }
+  double volume_ratio(std::size_t i) const { return sizes_.volume_ratio.empty() ? 1 : sizes_.volume_ratio[i]; }
 
   std::size_t neighbours(std::size_t i) const {
     std::size_t count = 0;
@@ -104,11 +115,23 @@ class SphSums {
     return count;
   }
 
+  // Bound on the rounding error of a float sum of the neighbours of i, added in eight lanes, in units of its magnitude,
+  // eps = 2^-24. Differences of coordinates are exact when the coordinates are floats.
+  //   kernel argument q = sqrt(sum d^2) * (1/h): 4 roundings; |q F'| <= 4 |F(0)| for both kernels       16 eps
+  //   evaluation of the kernel, powers and cancelling quartics of the spline included                   16 eps
+  //   factor V sigma / h^k, payload, product, correction                                                10 eps
+  //   sum over a lane, then over lanes                                              (neighbours / 8 + 4) eps
+  // and with sizes, from h_i as a float ratio: 2 roundings of 1 / h_i in q, 6 of its fifth power, 2 of V_j   16 eps
+  double tolerance(std::size_t i) const {
+    const double sizes = sizes_.length_ratio.empty() ? 0 : 16;
+    return (42 + 4 + sizes + static_cast<double>(neighbours(i)) / 8) * std::ldexp(1.0, -24);
+  }
+
   // --- shape of the arrangement
 
   Sum kernel_sum(std::size_t i) const {
     Sum sum;
-    sum.add(weight(0), weight(0), 1, 1);
+    sum.add(own_weight(i), own_weight(i), 1, 1);
     each(i, [&](const Pair& p) { sum.add(p.w, p.largest_w, 1, 1); });
     return sum;
   }
@@ -166,7 +189,7 @@ class SphSums {
     const double reference = kernel_.w(spacing / h_);
     std::array<Sum, 3> sum{};
     each(i, [&](const Pair& p) {
-      const double ratio = kernel_.w(p.r / h_) / reference, largest = kernel_.w(0) / reference;
+      const double ratio = kernel_.w(p.r / width(i)) / reference, largest = kernel_.w(0) / reference;
       const double factor = 1 + 0.25 * std::pow(ratio, 4), most = 1 + 0.25 * std::pow(largest, 4);
       for (int a = 0; a < dimensions(); ++a) sum[a].add(p.g * factor, p.largest_g * most, p.d[a], std::abs(p.d[a]));
     });
@@ -175,7 +198,8 @@ class SphSums {
   std::array<Sum, 3> normal(std::size_t i) const {
     std::array<Sum, 3> sum{};
     each(i, [&](const Pair& p) {
-      for (int a = 0; a < dimensions(); ++a) sum[a].add(-h_ * p.g, h_ * p.largest_g, p.d[a], std::abs(p.d[a]));
+      for (int a = 0; a < dimensions(); ++a)
+        sum[a].add(-width(i) * p.g, width(i) * p.largest_g, p.d[a], std::abs(p.d[a]));
     });
     return sum;
   }
@@ -260,6 +284,27 @@ class SphSums {
     });
     return sum;
   }
+  // div(2 kappa S) in pair form: the momentum that a pair exchanges lies along the line between its particles,
+  //   sum_j 2 (d + 2) g k_ij ((u_j - u_i) . e) e,  e = d / |d|.
+  template <class Velocity, class Scalar>
+  std::array<Sum, 3> viscous_stress(std::size_t i, const Velocity& u, const Scalar& kappa) const {
+    std::array<Sum, 3> sum{};
+    each(i, [&](const Pair& p) {
+      if (p.r == 0) return;
+      const double ki = kappa[i], kj = kappa[p.point->source];
+      const double mean = ki + kj > 0 ? 2 * ki * kj / (ki + kj) : 0;
+      double along = 0, largest_along = 0;
+      for (int a = 0; a < dimensions(); ++a) {
+        const double other = velocity_at(u, *p.point, a), own = u[a][i], e = p.d[a] / p.r;
+        along += (other - own) * e;
+        largest_along += (std::abs(other) + std::abs(own)) * std::abs(e);
+      }
+      const double factor = 2 * (dimensions() + 2) * mean;
+      for (int a = 0; a < dimensions(); ++a)
+        sum[a].add(factor * p.g, factor * p.largest_g, along * p.d[a] / p.r, largest_along * std::abs(p.d[a]) / p.r);
+    });
+    return sum;
+  }
   template <class Scalar>
   Sum negative_laplacian(std::size_t i, const Scalar& f) const {
     Sum sum;
@@ -309,13 +354,28 @@ class SphSums {
     return sum;
   }
 
-  // --- the pressure matrix: (A q)_i = V [ sum_j 2 g (q_i - q_j) + extra_i q_i ], zero in masked rows
+  // --- the pressure matrix: (A q)_i = V [ sum_j 2 g (q_i - q_j) + diagonal_shift_i q_i ], zero in masked rows
 
   template <class Scalar, class Extra, class Masked>
   Sum pressure_row(std::size_t i, const Scalar& q, const Extra& diagonal_shift, const Masked& masked) const {
     Sum sum = negative_laplacian(i, q);
     sum.value = volume_ * (sum.value + double(diagonal_shift[i]) * q[i]);
     sum.magnitude = volume_ * (sum.magnitude + std::abs(double(diagonal_shift[i]) * q[i]));
+    return masked[i] != 0 ? Sum{} : sum;
+  }
+  // With sizes: (A q)_i = V [ row_i sum_j 2 (g / V_j) V weight_j (q_i - q_j) + diagonal_shift_i q_i ].
+  template <class Scalar, class Shift, class Masked, class Weight>
+  Sum weighted_pressure_row(std::size_t i, const Scalar& q, const Shift& diagonal_shift, const Masked& masked,
+                            const Weight& weight, const Weight& row) const {
+    Sum sum;
+    each(i, [&](const Pair& p) {
+      const std::size_t j = p.point->source;
+      const double other = q[j], own = q[i], factor = 2 * volume_ * row[i] * weight[j] / volume_ratio(j);
+      sum.add(factor * p.g, factor * p.largest_g, own - other, std::abs(own) + std::abs(other));
+    });
+    const double diagonal = volume_ * double(diagonal_shift[i]) * q[i];
+    sum.value += diagonal;
+    sum.magnitude += std::abs(diagonal);
     return masked[i] != 0 ? Sum{} : sum;
   }
   // Calls entry(j, a_ij) for the couplings of row i, a particle's own images left out: they cancel.
@@ -333,12 +393,14 @@ class SphSums {
     double r, w, g, largest_w, largest_g;
   };
 
-  double weight(double r) const {
-    return volume_ * kernel_.normalisation() / std::pow(h_, dimensions()) * kernel_.w(r / h_);
+  // Volume V times W and -F sigma / h^(d+2).
+  double weight(double r, double h) const {
+    return volume_ * kernel_.normalisation() / std::pow(h, dimensions()) * kernel_.w(r / h);
   }
-  double slope(double r) const {
-    return -volume_ * kernel_.normalisation() / std::pow(h_, dimensions() + 2) * kernel_.f(r / h_);
+  double slope(double r, double h) const {
+    return -volume_ * kernel_.normalisation() / std::pow(h, dimensions() + 2) * kernel_.f(r / h);
   }
+  double own_weight(std::size_t i) const { return volume_ratio(i) * weight(0, width(i)); }
 
   template <class Visit>
   void each(std::size_t i, Visit&& visit) const {
@@ -351,11 +413,12 @@ class SphSums {
         r2 += pair.d[a] * pair.d[a];
       }
       pair.r = std::sqrt(r2);
-      if (pair.r >= kernel_.support() * h_) continue;
-      pair.w = weight(pair.r);
-      pair.g = slope(pair.r);
-      pair.largest_w = weight(0);
-      pair.largest_g = slope(0);
+      const double h = width(i), v = volume_ratio(points_[j].source);
+      if (pair.r >= kernel_.support() * h) continue;
+      pair.w = v * weight(pair.r, h);
+      pair.g = v * slope(pair.r, h);
+      pair.largest_w = v * weight(0, h);
+      pair.largest_g = v * slope(0, h);
       visit(pair);
     }
   }
@@ -375,7 +438,7 @@ class SphSums {
     const Sum total = kernel_sum(i);
     for (int a = 0; a < dimensions(); ++a) {
       const double own = value(points_[i], a);
-      sum[a].add(weight(0), weight(0), own, std::abs(own));
+      sum[a].add(own_weight(i), own_weight(i), own, std::abs(own));
     }
     each(i, [&](const Pair& p) {
       for (int a = 0; a < dimensions(); ++a) {
@@ -394,17 +457,8 @@ class SphSums {
   PlainKernel kernel_;
   double h_, volume_;
   std::size_t n_;
+  Sizes sizes_;
   std::vector<SphPoint> points_;
 };
-
-// Bound on the rounding error of a float sum of `neighbours` terms added in eight lanes, in units of its magnitude,
-// eps = 2^-24. Differences of coordinates are exact when the coordinates are floats.
-//   kernel argument q = sqrt(sum d^2) * (1/h): 4 roundings; |q F'| <= 4 |F(0)| for both kernels       16 eps
-//   evaluation of the kernel, powers and cancelling quartics of the spline included                   16 eps
-//   factor V sigma / h^k, payload, product, correction                                                10 eps
-//   sum over a lane, then over lanes                                              (neighbours / 8 + 4) eps
-inline double tolerance(std::size_t neighbours) {
-  return (42 + 4 + static_cast<double>(neighbours) / 8) * std::ldexp(1.0, -24);
-}
 
 }  // namespace spume::reference

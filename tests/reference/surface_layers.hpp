@@ -23,21 +23,20 @@ inline double column_weight(int dimensions, double across, double down) {
 }
 
 // Depth in spacings of what holds so much in its column.
-inline double depth_of_column(int dimensions, double pressure_fixed) {
+inline double depth_of_column(int dimensions, double content) {
   double lattice = 0;
   for (int row = 0; row < 3; ++row)
     for (int k = -2; k <= 2; ++k)
       for (int l = dimensions == 3 ? -2 : 0; l <= (dimensions == 3 ? 2 : 0); ++l)
         lattice += column_weight(dimensions, std::hypot(k, l), row);
-  return std::clamp(0.5 + pressure_fixed - lattice, 0.25, 2.0);
+  return std::clamp(0.5 + content - lattice, 0.25, 2.0);
 }
 
 // Sums over all particles and images. normals: of edge particles, of length 1; 0 at all others.
 class SurfaceLayers {
  public:
-  SurfaceLayers(const SphSums& sums, const PlainKernel& kernel, double smoothing_length, double spacing,
-                std::vector<Vector> normals)
-      : sums_(sums), kernel_(kernel), h_(smoothing_length), spacing_(spacing), normals_(std::move(normals)) {
+  SurfaceLayers(const SphSums& sums, const PlainKernel& kernel, double spacing, std::vector<Vector> normals)
+      : sums_(sums), kernel_(kernel), spacing_(spacing), normals_(std::move(normals)) {
     own_depth_.resize(normals_.size());
     for (std::size_t i = 0; i < normals_.size(); ++i)
       if (is_edge(i)) own_depth_[i] = own_depth(i);
@@ -51,7 +50,7 @@ class SurfaceLayers {
     each(i, [&](std::size_t j, const Vector& d, const Vector&) {
       if (!is_edge(j)) return;
       const double out = std::abs(dot(d, normals_[i])) / spacing_;
-      const double weight = kernel_.w(length(d) / h_) * std::max(0.0, 1 - 2 * out);
+      const double weight = kernel_.w(length(d) / sums_.width(i)) * std::max(0.0, 1 - 2 * out);
       weights += weight;
       sum += weight * own_depth_[j];
     });
@@ -86,7 +85,7 @@ class SurfaceLayers {
     for (double& component : n) component /= size;
     const double c = is_edge(i) ? 1 : std::min(1.0, of_edge / 0.4);
     each(i, [&](std::size_t j, const Vector& d, const Vector& reflection) {
-      const double weight = kernel_.w(length(d) / h_) * std::max(0.0, 1 - std::abs(dot(d, n)) / spacing_);
+      const double weight = kernel_.w(length(d) / sums_.width(i)) * std::max(0.0, 1 - std::abs(dot(d, n)) / spacing_);
       weights += weight;
       for (int a = 0; a < 3; ++a) sum += weight * reflection[a] * vectors[j][a] * n[a];
     });
@@ -100,13 +99,14 @@ class SurfaceLayers {
 
   // Of particle i by itself.
   double own_depth(std::size_t i) const {
-    double pressure_fixed = 0;
-    each(i, [&](std::size_t, const Vector& d, const Vector&) {
+    double content = 0;
+    each(i, [&](std::size_t j, const Vector& d, const Vector&) {
       const double z = -dot(d, normals_[i]);
-      pressure_fixed +=
+      content +=
+          sums_.volume_ratio(j) *
           column_weight(kernel_.dimensions, std::sqrt(std::max(0.0, dot(d, d) - z * z)) / spacing_, z / spacing_);
     });
-    return spacing_ * depth_of_column(kernel_.dimensions, pressure_fixed);
+    return spacing_ * depth_of_column(kernel_.dimensions, content);
   }
 
   // visit(source, r_j - r_i, reflection) for every point in the support around a particle, which is one of them.
@@ -116,13 +116,13 @@ class SurfaceLayers {
     for (const auto& point : points) {
       Vector d{};
       for (int a = 0; a < kernel_.dimensions; ++a) d[a] = point.position[a] - points[i].position[a];
-      if (length(d) < kernel_.support() * h_) visit(point.source, d, point.reflection);
+      if (length(d) < kernel_.support() * sums_.width(i)) visit(point.source, d, point.reflection);
     }
   }
 
   const SphSums& sums_;
   PlainKernel kernel_;
-  double h_, spacing_;
+  double spacing_;
   std::vector<Vector> normals_;
   std::vector<double> own_depth_;
 };

@@ -69,30 +69,30 @@ TEST_P(Everywhere, FewIterationsAtTwoResolutions) {
     int iterations[2];
     for (const int level : {0, 1}) {
       Problem problem(c.make(c.dimensions, level == 0 ? c.coarse : c.fine, mach));
-      RefinementWorkspace work;
-      RefinementOptions options;
-      options.zero_guess = true;
-      options.remove_mean = problem.singular;
-      std::vector<double> x(problem.size());
-      RefinementResult result =
-          solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, x, options, work);
+      CorrectionWorkspace<float> work;
+      const RefinementOptions options{1e-6, norm_of(problem.b), 500, problem.singular};
+      std::vector<double> x(problem.size()), r(problem.size());
+      const auto solve_from_zero = [&](Preconditioner<float>& m, KrylovMethod method) {
+        std::fill(x.begin(), x.end(), 0.0);
+        AssembledSystem system(problem.exact, problem.fast, m, problem.b, x, work);
+        system.method = method;
+        return solve_refined(system, options, r);
+      };
+      RefinementResult result = solve_from_zero(problem.multigrid, KrylovMethod::bicgstab);
       EXPECT_TRUE(result.converged);
       iterations[level] = result.iterations;
-      const int bicgstab_applications = result.applications + result.double_applications;
-      options.method = KrylovMethod::conjugate_gradients;
-      result = solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, x, options, work);
+      const int bicgstab_applications = result.applications;
+      result = solve_from_zero(problem.multigrid, KrylovMethod::conjugate_gradients);
       EXPECT_TRUE(result.converged);
       EXPECT_LE(result.iterations, 15);
       JacobiPreconditioner<float> jacobi(problem.system.diagonal);
-      options.method = KrylovMethod::bicgstab;
-      RefinementResult slow = solve_refined(problem.exact, problem.fast, jacobi, problem.b, x, options, work);
+      const RefinementResult slow = solve_from_zero(jacobi, KrylovMethod::bicgstab);
       RecordProperty(std::string("iterations_") + (mach > 0 ? "compressible_" : "incompressible_") +
                          (level == 0 ? "coarse" : "fine"),
                      iterations[level]);
       std::printf("%-11s %d-D n = %6zu Ma = %.2f: BiCGStab %d (%d applications), CG %d (%d), Jacobi BiCGStab %d (%d)\n",
                   c.name, c.dimensions, problem.size(), mach, iterations[level], bicgstab_applications,
-                  result.iterations, result.applications + result.double_applications, slow.iterations,
-                  slow.applications + slow.double_applications);
+                  result.iterations, result.applications, slow.iterations, slow.applications);
       EXPECT_GT(slow.iterations, 2 * iterations[level]);
     }
     EXPECT_LE(iterations[0], 8);
@@ -121,16 +121,15 @@ TEST(CellMultigrid, SolidBoxInTheLiquidCostsFewIterations) {
   SparseOperator<float> fast(system.matrix);
   const Eigen::VectorXd rhs = system.right_hand_side();
   const std::vector<double> b(rhs.data(), rhs.data() + rhs.size());
-  RefinementWorkspace work;
-  RefinementOptions options;
-  options.zero_guess = options.remove_mean = true;
-  std::vector<double> x(system.size());
+  CorrectionWorkspace<float> work;
   int iterations[2];
   for (const int with_box : {0, 1}) {
     if (with_box == 1) geometry.solids = {box};
     CellMultigrid multigrid(geometry);
     multigrid.setup(system.x, system.y, system.z, system.interior, 0.0, system.diagonal);
-    const RefinementResult result = solve_refined(exact, fast, multigrid, b, x, options, work);
+    std::vector<double> x(system.size()), r(system.size());
+    AssembledSystem assembled(exact, fast, multigrid, b, x, work);
+    const RefinementResult result = solve_refined(assembled, {1e-6, norm_of(b, true), 500, true}, r);
     EXPECT_TRUE(result.converged);
     iterations[with_box] = result.iterations;
     const std::vector<double> u = noise(system.size(), 3), v = noise(system.size(), 4);
@@ -162,16 +161,17 @@ TEST(CellMultigrid, SteadyStateAllocatesNothing) {
   const SphSetup setup = open_wave(3, 0.03, 0.05);
   Problem problem(setup);
   SphSystem& s = problem.system;
-  RefinementWorkspace work;
-  std::vector<double> x(problem.size());
+  CorrectionWorkspace<float> work;
+  std::vector<double> x(problem.size()), r(problem.size());
+  AssembledSystem system(problem.exact, problem.fast, problem.multigrid, problem.b, x, work);
   const auto step = [&] {
     for (std::size_t i = 0; i < s.size(); ++i) s.x[i] = std::fmod(s.x[i] + 0.01 + 1.0, 1.0);
     problem.multigrid.setup(s.x, s.y, s.z, s.interior, setup.helmholtz, s.diagonal);
-    RefinementOptions options;
-    options.max_iterations = 3;
-    solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, x, options, work);
-    options.method = KrylovMethod::conjugate_gradients;
-    solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, x, options, work);
+    for (const KrylovMethod method : {KrylovMethod::bicgstab, KrylovMethod::conjugate_gradients}) {
+      system.method = method;
+      std::fill(x.begin(), x.end(), 0.0);
+      solve_refined(system, {1e-6, norm_of(problem.b), 3, false}, r);
+    }
   };
   step();
   const auto before = array_statistics();

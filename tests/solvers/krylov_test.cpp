@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every solver against SuiteSparse's direct factorisation of the assembled SPH system.
+// Every solver against SuiteSparse's direct factorisation of the assembled SPH system, and the refinement that runs
+// them.
 #include "spume/solvers/krylov.hpp"
 
 #include <gtest/gtest.h>
@@ -70,16 +71,20 @@ TEST_P(Direct, EverySolverAgreesWithTheFactorisation) {
     EXPECT_TRUE(result.converged);
     EXPECT_LT(relative_difference(x, exact), 1e-7);
   }
-  RefinementOptions refinement;
-  refinement.tolerance = 1e-11;
-  refinement.remove_mean = problem.singular;
-  RefinementWorkspace refinement_work;
+  CorrectionWorkspace<float> correction_work;
   for (const KrylovMethod method : {KrylovMethod::bicgstab, KrylovMethod::conjugate_gradients}) {
-    refinement.method = method;
-    std::vector<double> x(problem.size(), 0.5);
-    const RefinementResult result =
-        solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, x, refinement, refinement_work);
+    std::vector<double> x(problem.size(), 0.5), r(problem.size());
+    AssembledSystem system(problem.exact, problem.fast, problem.multigrid, problem.b, x, correction_work);
+    system.method = method;
+    const double size = norm_of(problem.b);
+    const RefinementResult result = solve_refined(system, {1e-11, size, 500, problem.singular}, r);
     EXPECT_TRUE(result.converged);
+    // What the recurrence was trusted with holds.
+    system.residual(r);
+    EXPECT_LE(norm_of(r, problem.singular), 1e-11 * size);
+    const double mean =
+        problem.singular ? exact.mean() - Eigen::Map<const Eigen::VectorXd>(x.data(), exact.size()).mean() : 0;
+    for (double& value : x) value += mean;
     EXPECT_LT(relative_difference(x, exact), 1e-7);
   }
 }
@@ -175,16 +180,11 @@ TEST(Krylov, ZeroRightHandSideGivesZero) {
   EXPECT_TRUE(result.converged);
   EXPECT_EQ(result.iterations, 0);
   for (const double value : x) EXPECT_EQ(value, 0.0);
-  std::fill(x.begin(), x.end(), 2.0);
-  RefinementWorkspace refinement_work;
-  EXPECT_TRUE(solve_refined(problem.exact, problem.fast, problem.multigrid, zero, x, {}, refinement_work).converged);
-  for (const double value : x) EXPECT_EQ(value, 0.0);
 }
 
 TEST(Krylov, NonFiniteInputIsReportedAtOnce) {
   Problem problem(open_wave(2, 0.05, 0.05));
   KrylovWorkspace<double> work;
-  RefinementWorkspace refinement_work;
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     std::vector<double> b = problem.b, x(problem.size(), 0.0);
     b[b.size() / 2] = bad;
@@ -194,10 +194,6 @@ TEST(Krylov, NonFiniteInputIsReportedAtOnce) {
       EXPECT_TRUE(result.breakdown);
       EXPECT_FALSE(result.converged);
     }
-    const RefinementResult refined =
-        solve_refined(problem.exact, problem.fast, problem.multigrid, b, x, {}, refinement_work);
-    EXPECT_TRUE(refined.breakdown);
-    EXPECT_FALSE(refined.converged);
     EXPECT_EQ(problem.exact.applications, 0);
     for (const double value : x) EXPECT_EQ(value, 0.0);
     // A non-finite guess is found by the first residual.
@@ -250,14 +246,14 @@ TEST(Krylov, SolutionIsTheSameToTheBitForAnyThreadCount) {
     omp_set_num_threads(threads);
     problem.multigrid.setup(problem.system.x, problem.system.y, problem.system.z, problem.system.interior, 0.0,
                             problem.system.diagonal);
-    RefinementWorkspace refinement_work;
-    std::vector<double> x(problem.size(), 0.0), y(problem.size(), 0.0);
-    RefinementOptions options;
-    EXPECT_TRUE(solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, x, options, refinement_work)
-                    .converged);
-    options.method = KrylovMethod::conjugate_gradients;
-    EXPECT_TRUE(solve_refined(problem.exact, problem.fast, problem.multigrid, problem.b, y, options, refinement_work)
-                    .converged);
+    CorrectionWorkspace<float> work;
+    std::vector<double> x(problem.size(), 0.0), y(problem.size(), 0.0), r(problem.size());
+    AssembledSystem stabilised(problem.exact, problem.fast, problem.multigrid, problem.b, x, work);
+    AssembledSystem gradients(problem.exact, problem.fast, problem.multigrid, problem.b, y, work);
+    gradients.method = KrylovMethod::conjugate_gradients;
+    const RefinementOptions options{1e-6, norm_of(problem.b), 500, false};
+    EXPECT_TRUE(solve_refined(stabilised, options, r).converged);
+    EXPECT_TRUE(solve_refined(gradients, options, r).converged);
     if (threads == 1) {
       first = x;
       first_gradients = y;
@@ -266,6 +262,99 @@ TEST(Krylov, SolutionIsTheSameToTheBitForAnyThreadCount) {
     EXPECT_EQ(y, first_gradients) << threads << " threads";
   }
   omp_set_num_threads(before);
+}
+
+TEST(Refinement, AResidualThatIsSmallEnoughTakesNoCorrection) {
+  Problem problem(open_wave(2, 0.05, 0.05));
+  const std::vector<double> zero(problem.size(), 0.0);
+  std::vector<double> x(problem.size(), 0.0), r(problem.size());
+  CorrectionWorkspace<float> work;
+  AssembledSystem rest(problem.exact, problem.fast, problem.multigrid, zero, x, work);
+  RefinementResult result = solve_refined(rest, {}, r);
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.iterations, 0);
+  EXPECT_EQ(result.applications, 1);
+  EXPECT_EQ(result.relative_residual, 0);
+  // From the solution of a stricter tolerance.
+  AssembledSystem system(problem.exact, problem.fast, problem.multigrid, problem.b, x, work);
+  const double size = norm_of(problem.b);
+  EXPECT_TRUE(solve_refined(system, {1e-9, size, 500, false}, r).converged);
+  result = solve_refined(system, {1e-6, size, 500, false}, r);
+  EXPECT_TRUE(result.converged);
+  EXPECT_EQ(result.iterations, 0);
+  EXPECT_LE(result.relative_residual, 1e-9);
+}
+
+// One measured residual for a start, then a product for each correction: two of three digits for 1e-6. No product where
+// a hundredth is asked for and the recurrence may be trusted.
+TEST(Refinement, ResidualsAreMeasuredOnceAndKept) {
+  Problem problem(open_wave(3, 0.05, 0));
+  for (const auto& [tolerance, products] : {std::pair{1e-6, 2}, std::pair{1.1e-2, 0}}) {
+    std::vector<double> x(problem.size(), 0.0), r(problem.size());
+    CorrectionWorkspace<float> work;
+    AssembledSystem system(problem.exact, problem.fast, problem.multigrid, problem.b, x, work);
+    problem.exact.applications = problem.fast.applications = 0;
+    const double size = norm_of(problem.b);
+    const RefinementResult result = solve_refined(system, {tolerance, size, 500, false}, r);
+    EXPECT_TRUE(result.converged);
+    EXPECT_EQ(system.measured, 1);
+    EXPECT_EQ(problem.exact.applications, 1 + products);
+    EXPECT_EQ(result.applications, problem.exact.applications + problem.fast.applications);
+    system.residual(r);
+    EXPECT_LE(norm_of(r), tolerance * size);
+  }
+}
+
+TEST(Refinement, EndsWhereItCannotConverge) {
+  Problem problem(open_wave(2, 0.05, 0.05));
+  CorrectionWorkspace<float> work;
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    std::vector<double> b = problem.b, x(problem.size(), 0.0), r(problem.size());
+    b[b.size() / 2] = bad;
+    AssembledSystem system(problem.exact, problem.fast, problem.multigrid, b, x, work);
+    const RefinementResult result = solve_refined(system, {1e-6, norm_of(problem.b), 500, false}, r);
+    EXPECT_FALSE(result.converged);
+    EXPECT_EQ(result.applications, 1);
+    for (const double value : x) EXPECT_EQ(value, 0.0);
+  }
+  // Too few iterations, and a right-hand side out of the range of a singular matrix.
+  Problem closed(closed_box(2, 0.05, 0));
+  for (double& value : closed.b) value += 1e-3;
+  for (Problem* p : {&problem, &closed}) {
+    const int iterations = p == &closed ? 200 : 2;
+    std::vector<double> x(p->size(), 0.0), r(p->size());
+    AssembledSystem system(p->exact, p->fast, p->multigrid, p->b, x, work);
+    const RefinementResult result = solve_refined(system, {1e-6, norm_of(p->b), iterations, false}, r);
+    EXPECT_FALSE(result.converged);
+    EXPECT_LE(result.iterations, iterations);
+    EXPECT_GT(result.relative_residual, 1e-6);
+  }
+}
+
+// In double one correction gains what is asked for at once, and the result is that of the float ones.
+TEST(Refinement, CorrectionsInDoubleGiveTheSameSolution) {
+  Problem problem(open_wave(2, 0.02, 0));
+  struct InDouble final : RefinedSystem {
+    Problem& problem;
+    std::vector<double> x;
+    CorrectionWorkspace<double> work;
+    int corrections = 0;
+    explicit InDouble(Problem& p) : problem(p), x(p.size(), 0.0) {}
+    void residual(std::span<double> r) override {
+      problem.exact.apply(x, r);
+      for (std::size_t i = 0; i < r.size(); ++i) r[i] = problem.b[i] - r[i];
+    }
+    KrylovResult correct(std::span<const double> r, const CorrectionTask& task) override {
+      ++corrections;
+      return correct_by_krylov<double>(KrylovMethod::bicgstab, problem.exact, problem.multigrid, r, task, x, work);
+    }
+    void subtract_product(std::span<double> r) override { residual(r); }
+  } system(problem);
+  std::vector<double> r(problem.size());
+  const double size = norm_of(problem.b);
+  EXPECT_TRUE(solve_refined(system, {1e-11, size, 2000, false}, r).converged);
+  EXPECT_EQ(system.corrections, 1);
+  EXPECT_LT(relative_difference(system.x, direct_solution(problem)), 1e-7);
 }
 
 }  // namespace

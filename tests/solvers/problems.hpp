@@ -6,6 +6,7 @@
 
 #include "reference/sph_operator.hpp"
 #include "spume/solvers/cell_multigrid.hpp"
+#include "spume/solvers/refinement.hpp"
 
 namespace spume::reference {
 
@@ -98,5 +99,51 @@ struct Problem {
   bool singular;
   std::vector<double> b, diagonal;
 };
+
+// An assembled system A x = b as the refinement sees it, corrected in float.
+class AssembledSystem final : public RefinedSystem {
+ public:
+  KrylovMethod method = KrylovMethod::bicgstab;
+  int measured = 0;  // residuals b - A x
+
+  AssembledSystem(SparseOperator<double>& exact, SparseOperator<float>& fast, Preconditioner<float>& preconditioner,
+                  std::span<const double> b, std::span<double> x, CorrectionWorkspace<float>& work)
+      : exact_(exact), fast_(fast), preconditioner_(preconditioner), b_(b), x_(x), work_(work) {
+    change_.resize(b.size());
+    product_.resize(b.size());
+  }
+  void residual(std::span<double> r) override {
+    ++measured;
+    exact_.apply(x_, r);
+    for (std::size_t i = 0; i < r.size(); ++i) r[i] = b_[i] - r[i];
+  }
+  KrylovResult correct(std::span<const double> r, const CorrectionTask& task) override {
+    size_ = task.size;
+    return correct_by_krylov<float>(method, fast_, preconditioner_, r, task, x_, work_);
+  }
+  void subtract_product(std::span<double> r) override {
+    for (std::size_t i = 0; i < r.size(); ++i) change_[i] = size_ * work_.correction[i];
+    exact_.apply(change_, product_);
+    for (std::size_t i = 0; i < r.size(); ++i) r[i] -= product_[i];
+  }
+
+ private:
+  SparseOperator<double>& exact_;
+  SparseOperator<float>& fast_;
+  Preconditioner<float>& preconditioner_;
+  std::span<const double> b_;
+  std::span<double> x_;
+  CorrectionWorkspace<float>& work_;
+  Array<double> change_, product_;
+  double size_ = 0;
+};
+
+// Euclidean norm, of what is left without the mean where that is removed.
+inline double norm_of(std::span<const double> values, bool without_mean = false) {
+  double mean = 0, squares = 0;
+  for (const double value : values) mean += without_mean ? value / static_cast<double>(values.size()) : 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return std::sqrt(squares);
+}
 
 }  // namespace spume::reference

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A Cartesian grid of cells over the domain and the order of particles in it.
+// A Cartesian grid of cells over the domain.
 //
 // Cells are thin along x and grouped in x-rows, so that all candidates of one row around a particle lie in
 // one contiguous range of the sorted arrays. In 3-D the rows follow the Morton order of (y, z): the rows
@@ -16,13 +16,13 @@ namespace spume {
 
 class CellGrid {
  public:
-  // Least cell sides as fractions of the reach, across rows and along them: rows half or three quarters of a reach
+  // Least cell sides as fractions of the support radius, across rows and along them: rows half or three quarters of it
   // across made the list build 1.3 times slower, as runs get short and groups long and thin.
   static constexpr double row_fraction = 1;
   static constexpr double column_fraction = 0.25;
 
   CellGrid() = default;
-  // `reach`: the largest distance at which neighbours are sought. `expected_particles` bounds the number of
+  // `support_radius`: the largest distance at which neighbours are sought. `expected_particles` bounds the number of
   // cells (at most 4 per particle plus 2^20): a mostly empty large box gets coarser cells.
   CellGrid(int dimensions, const std::array<double, 3>& lower, const std::array<double, 3>& upper,
            double support_radius, std::size_t expected_particles);
@@ -55,24 +55,6 @@ class CellGrid {
   std::array<double, 3> lower_{}, inverse_side_{};
   std::array<int, 3> count_{1, 1, 1};
   Array<std::int32_t> row_rank_;
-};
-
-// The order of points by cell and where each cell starts. Within a cell points keep their previous order.
-class CellTable {
- public:
-  // z may be null in two dimensions.
-  void build(const CellGrid& grid, const double* x, const double* y, const double* z, std::size_t size);
-
-  const Array<std::int32_t>& order() const { return order_; }  // order[k]: old index of the k-th sorted point
-  const std::int32_t* first() const { return first_.data(); }  // first[c] .. first[c+1]: sorted points of cell c
-  bool already_sorted() const { return already_sorted_; }
-  double bytes() const;
-  double build_traffic() const;  // compulsory traffic of the last build (core/ledger.hpp), in bytes
-
- private:
-  Array<std::int32_t> cell_, order_, first_, cursor_;
-  int dimensions_ = 0;
-  bool already_sorted_ = false;
 };
 
 }  // namespace spume

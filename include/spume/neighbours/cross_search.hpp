@@ -13,6 +13,7 @@
 
 #include "spume/core/array.hpp"
 #include "spume/neighbours/cell_grid.hpp"
+#include "spume/neighbours/cell_order.hpp"
 #include "spume/neighbours/images.hpp"
 
 namespace spume {
@@ -20,7 +21,7 @@ namespace spume {
 class CrossSearch {
  public:
   struct Points {
-    const CellTable* table = nullptr;  // may be null for a set without points
+    const CellOrder* table = nullptr;  // may be null for a set without points
     std::size_t size = 0;
     // A box in which none of the points lies; the set is passed over where only that is near.
     std::array<double, 3> free_lower{INFINITY, INFINITY, INFINITY}, free_upper{-INFINITY, -INFINITY, -INFINITY};
@@ -35,7 +36,7 @@ class CrossSearch {
   // Grows and is reused; one per thread.
   struct Found {
     Array<std::int32_t> index;  // simd::pair_lanes more are writable
-    Array<float> share2;        // (distance / reach)^2, of near_place alone; filled up to whole vectors with 1
+    Array<float> share2;        // (distance / support radius)^2, of near_place alone; filled up to whole vectors with 1
     std::size_t size = 0;
     Array<Block> blocks;
   };
@@ -46,11 +47,11 @@ class CrossSearch {
   CrossSearch(const CellGrid& grid, const std::array<double, 3>& origin, const std::array<const float*, 3>& point,
               std::span<const Points> sets);
 
-  // All points nearer to the box than `reach`.
+  // All points nearer to the box than `support_radius`.
   void near_box(const Box& box, float support_radius, Found& found) const;
 
-  // All points j nearer to `place` than their own reach, 1 / inverse_reach[j] <= largest_reach; simd::pair_lanes
-  // readable elements follow.
+  // All points j nearer to `place` than their own support radius 1 / inverse_support_radius[j], at most the largest;
+  // simd::pair_lanes readable elements follow.
   void near_place(const std::array<float, 3>& place, float largest_support_radius, const float* inverse_support_radius,
                   Found& found) const;
 

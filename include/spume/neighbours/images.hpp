@@ -5,7 +5,7 @@
 // the other, each on the particles and all images made before, which fills edges and corners. Solid boxes
 // come first: a particle is mirrored in a face when the image lies inside the box and that face is the
 // nearest one to the image, so that the box is filled once, also at its edges. Precondition: a periodic side is at
-// least one reach long (one copy on either side suffices).
+// least one support radius long (one copy on either side suffices).
 #pragma once
 
 #include <array>
@@ -14,6 +14,7 @@
 
 #include "spume/core/array.hpp"
 #include "spume/neighbours/cell_grid.hpp"
+#include "spume/neighbours/cell_order.hpp"
 
 namespace spume {
 
@@ -57,7 +58,7 @@ class Images {
   double image_free_lower(int axis) const { return image_free_lower_[axis]; }
   double image_free_upper(int axis) const { return image_free_upper_[axis]; }
   bool inside_domain() const { return inside_domain_; }
-  const CellTable& table() const { return table_; }
+  const CellOrder& table() const { return table_; }
   double bytes() const;
 
  private:
@@ -73,7 +74,7 @@ class Images {
   std::vector<ImagePath> paths_;
   std::array<double, 3> image_free_lower_{}, image_free_upper_{};
   bool inside_domain_ = false;
-  CellTable table_;
+  CellOrder table_;
 };
 
 }  // namespace spume

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Neighbour lists of particles: for each particle the particles and images within the reach, itself excluded.
+// Neighbour lists of particles: for each particle the particles and images within the support radius, itself excluded.
 //
 // Points are numbered particles first (0 .. n-1), then images (n .. n+m-1), then one sentinel (n+m) far from
 // everything. Lists are padded with the sentinel to a multiple of 8, so that pair loops have no remainder:
@@ -14,6 +14,7 @@
 
 #include "spume/core/array.hpp"
 #include "spume/neighbours/cell_grid.hpp"
+#include "spume/neighbours/cell_order.hpp"
 #include "spume/neighbours/images.hpp"
 
 namespace spume {
@@ -62,13 +63,13 @@ class ListedPoints {
 class NeighbourList {
  public:
   // Throws std::length_error for more points than entries can number, 5e8.
-  // Positions must be sorted by `particles` (a CellTable of `grid`). Coordinates are kept as floats relative to
+  // Positions must be sorted by `particles` (of `grid`). Coordinates are kept as floats relative to
   // `origin`: a domain 1000 spacings across is resolved to 6e-5 spacings.
-  void build(const CellGrid& grid, const CellTable& particles, const double* x, const double* y, const double* z,
+  void build(const CellGrid& grid, const CellOrder& particles, const double* x, const double* y, const double* z,
              std::size_t n, const Images& images, const std::array<double, 3>& origin);
-  // The same with a reach of its own for each particle, between the grid's and `largest_reach`, at most 1.3 times that.
-  // The list of i then holds what is within the reach of i.
-  void build(const CellGrid& grid, const CellTable& particles, const double* x, const double* y, const double* z,
+  // The same with a support radius of its own for each particle, between the grid's and the largest, at most 1.3 times
+  // the grid's. The list of i then has what is within the support of i.
+  void build(const CellGrid& grid, const CellOrder& particles, const double* x, const double* y, const double* z,
              std::size_t n, const Images& images, const std::array<double, 3>& origin, const float* own_support_radius,
              double largest_support_radius);
 
@@ -88,7 +89,7 @@ class NeighbourList {
 
  private:
   template <int dimensions>
-  bool search(const CellGrid& grid, const CellTable& particles, const Images& images, const float* own_support_radius);
+  bool search(const CellGrid& grid, const CellOrder& particles, const Images& images, const float* own_support_radius);
 
   std::array<Array<float>, 3> coordinate_;
   Array<std::int32_t> index_, count_;

@@ -52,7 +52,8 @@ struct CrossBlock {
     }
   }
 
-  // The box of the group from k on, at most 1.25 times as long as the reach of the grid and as wide; returns its end.
+  // The box of the group from k on, at most 1.25 times as long as the support radius of the grid and as wide; returns
+  // its end.
   std::size_t group(std::size_t k, std::size_t end, float longest, CrossSearch::Box& box) const {
     box = {{x[0][k], x[1][k], x[2][k]}, {x[0][k], x[1][k], x[2][k]}};
     std::size_t last = k + 1;
@@ -74,15 +75,15 @@ struct CrossBlock {
 }  // namespace detail
 
 // records: per point its float coordinates and `components` values, 4 floats for one value, 8 for up to five. Calls
-// store(i, sums) once for every particle, in parallel; `sums` is null where no point lies within the reach of i, and is
-// not where one does so only by rounding.
+// store(i, sums) once for every particle, in parallel; `sums` is null where no point lies within the support of i, and
+// is not where one does so only by rounding.
 template <int components, class Kernel, class Store>
 void sum_over_points(const CrossTargets& targets, const CrossSearch& search, double grid_support_radius,
                      const float* records, Store&& store) {
   using simd::f32x8;
   constexpr std::size_t width = components == 1 ? 4 : 8, vectors = detail::cross_group / simd::lanes;
   static_assert(components <= 5);
-  // The least distance that counts as out of reach, (r / h)^2.
+  // The least distance that counts as outside, (r / h)^2.
   const f32x8 beyond = simd::splat(static_cast<float>(1.001 * Kernel::support * Kernel::support));
   const auto longest = static_cast<float>(1.25 * grid_support_radius);
   parallel_blocks_dynamic(targets.size, detail::cross_block, [&](std::size_t, std::size_t first, std::size_t last) {

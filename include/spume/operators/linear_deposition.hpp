@@ -8,6 +8,7 @@
 
 #include "spume/core/array.hpp"
 #include "spume/core/periodic_grid.hpp"
+#include "spume/neighbours/cell_order.hpp"
 #include "spume/neighbours/periodic_cells.hpp"
 
 namespace spume {

@@ -33,7 +33,8 @@ struct SweepContext {
   KernelKind kernel = KernelKind::wendland_c2;
   double smoothing_length = 0;
   double volume = 0;  // of every particle
-  // Particles that make room for bubbles: h_i / smoothing_length and V_i / volume. Null: alike.
+  // Particles of different sizes: h_i / smoothing_length and V_i / volume, per particle, in two and three dimensions.
+  // Both or neither; null: all alike.
   const float* length_ratio = nullptr;
   const float* volume_ratio = nullptr;
 };
@@ -150,27 +151,32 @@ void sweep(std::size_t particles, Body&& body) {
   });
 }
 
-// Calls body.template operator()<dimensions, Kernel>() for the context's dimension and kernel; Varying<Kernel> where
-// particles differ in size (3-D only).
+// Calls body.template operator()<dimensions, Kernel>().
 template <class Body>
-void with_kernel(const SweepContext& context, Body&& body) {
-  const bool wendland = context.kernel == KernelKind::wendland_c2;
-  if (context.dimensions == 2) {
+void with_plain_kernel(int dimensions, KernelKind kernel, Body&& body) {
+  const bool wendland = kernel == KernelKind::wendland_c2;
+  if (dimensions == 2) {
     if (wendland)
       body.template operator()<2, WendlandC2>();
     else
       body.template operator()<2, QuinticSpline>();
-  } else if (context.length_ratio != nullptr) {
-    if (wendland)
-      body.template operator()<3, VariableH<WendlandC2>>();
-    else
-      body.template operator()<3, VariableH<QuinticSpline>>();
   } else {
     if (wendland)
       body.template operator()<3, WendlandC2>();
     else
       body.template operator()<3, QuinticSpline>();
   }
+}
+
+// The same for the context's dimension and kernel, which is VariableH<Kernel> where particles differ in size.
+template <class Body>
+void with_kernel(const SweepContext& context, Body&& body) {
+  with_plain_kernel(context.dimensions, context.kernel, [&]<int dimensions, class Kernel>() {
+    if (context.length_ratio != nullptr)
+      body.template operator()<dimensions, VariableH<Kernel>>();
+    else
+      body.template operator()<dimensions, Kernel>();
+  });
 }
 
 // Record storage, sized for the widest sweep and reused by all. `coordinates_width` tells for which width the

@@ -2,7 +2,7 @@
 // The pressure matrix of the liquid, applied without being stored. Row i, times the particle volume V so that
 // the matrix is symmetric for equal volumes:
 //
-//   (A q)_i = V [ sum_j 2 g_ij (q_i - q_j) + extra_i q_i ],
+//   (A q)_i = V [ sum_j 2 g_ij (q_i - q_j) + shift_i q_i ],
 //
 // the negative Morris Laplacian plus a diagonal (compressibility, penalty below a free surface). Masked rows
 // belong to particles with a given value: they give zero, and vectors must be zero there.
@@ -22,14 +22,15 @@ namespace spume {
 struct PressureMatrix {
   const float* diagonal_shift = nullptr;
   const std::uint8_t* masked = nullptr;  // null: no masked rows
-  const float* weight = nullptr;         // null: equal particles
+  const float* weight = nullptr;         // where the context has sizes, and only there
   const float* row = nullptr;            // with weight
 };
 
 // y = A x in float, with sum w y and sum y y accumulated in double in fixed blocks.
 class PressureOperator {
  public:
-  void bind(const SweepContext& context, PackedNeighbours& records, const PressureMatrix& matrix);
+  // Throws std::logic_error unless the matrix has weights and rows exactly where the context has sizes.
+  void bind(const SweepContext& context, PackedNeighbours& packed, const PressureMatrix& matrix);
   Dots apply(std::span<const float> x, std::span<float> y, std::span<const float> w);
 
   // r = b - A q with q in double: differences are exact and sums are double, so that the residual of a smooth
@@ -48,7 +49,7 @@ class PressureOperator {
   double mask_and_sizes(double sizes) const;
 
   SweepContext context_;
-  PackedNeighbours* records_ = nullptr;
+  PackedNeighbours* packed_ = nullptr;
   PressureMatrix matrix_;
   Array<Dots> partial_;
   Array<float> weight_sum_;  // sum_j F(q) weight_j

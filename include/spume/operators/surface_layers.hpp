@@ -30,7 +30,7 @@ struct SurfaceEdge {
 // cubic lattice heaved. Where the normal vanishes s = dr.
 //
 // of_particle: scratch, one per particle. depth: one per edge particle.
-void edge_depths(const SweepContext& context, PackedNeighbours& records, const SurfaceEdge& edge,
+void edge_depths(const SweepContext& context, PackedNeighbours& packed, const SurfaceEdge& edge,
                  std::span<float> of_particle, std::span<float> depth);
 
 // Edge particles and those of the layer below them: which, or an image of which, lie within `layer_reach` spacings of
@@ -52,7 +52,7 @@ void mark_upper_layers(const SweepContext& context, double spacing, std::span<co
 //
 // unit_normal: 0 at particles that are not edge particles. upper: particles as marked. out: one per upper particle;
 // beyond the dimensions nothing is written.
-void shared_along_normal(const SweepContext& context, PackedNeighbours& records, double spacing,
+void shared_along_normal(const SweepContext& context, PackedNeighbours& packed, double spacing,
                          const std::array<const float*, 3>& unit_normal, const std::array<const float*, 3>& vector,
                          const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> upper,
                          std::span<std::array<float, 3>> out);

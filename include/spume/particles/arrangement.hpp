@@ -3,6 +3,7 @@
 #pragma once
 
 #include "spume/neighbours/cell_grid.hpp"
+#include "spume/neighbours/cell_order.hpp"
 #include "spume/neighbours/images.hpp"
 #include "spume/neighbours/neighbour_list.hpp"
 #include "spume/operators/pair_sweep.hpp"
@@ -19,7 +20,7 @@ struct Arrangement {
 
   const Vec3 origin;  // of the float coordinates
   CellGrid grid;
-  CellTable table;
+  CellOrder table;
   Images images;
   NeighbourList list;
   PackedNeighbours packed;

@@ -50,7 +50,7 @@ class PointSampler {
   void visit(const Vec3& point, Visit&& visit) const;
 
   SampledState state_;
-  CellTable table_;
+  CellOrder table_;
 };
 
 }  // namespace spume

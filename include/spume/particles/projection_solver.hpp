@@ -15,16 +15,9 @@
 #include "spume/operators/pressure_operator.hpp"
 #include "spume/particles/boundary.hpp"
 #include "spume/solvers/cell_multigrid.hpp"
-#include "spume/solvers/krylov.hpp"
+#include "spume/solvers/refinement.hpp"
 
 namespace spume {
-
-struct SolveReport {
-  int iterations = 0;
-  int applications = 0;  // of the matrix, in either precision
-  double relative_residual = 0;
-  bool converged = true;
-};
 
 // One row per particle; arrays are leased for a solve.
 struct PressureRows {
@@ -43,7 +36,7 @@ struct PressureRows {
 class ProjectionSolver {
  public:
   struct Options {
-    bool conjugate_gradients = false;  // else BiCGStab
+    KrylovMethod method = KrylovMethod::bicgstab;
     bool multigrid = true;
     bool mixed = true;        // residuals in double, corrections in float
     double tolerance = 1e-6;  // residual over the reference norm
@@ -59,26 +52,26 @@ class ProjectionSolver {
   void solve(const PressureRows& rows, Arrangement& arrangement, ParticleStore& particles, Array<double>& q);
 
   bool has_multigrid() const { return multigrid_ != nullptr; }
-  const SolveReport& report() const { return report_; }
+  const RefinementResult& report() const { return report_; }
   double bytes() const;  // beside what is leased
 
  private:
   struct Operator;
   struct DoubleOperator;
-  KrylovResult correct(const PressureRows& rows, ParticleStore& particles, const Array<double>& residual, double size,
-                       double target, int left, Array<float>& correction, Array<double>& q);
-  KrylovResult correct_in_double(const PressureRows& rows, ParticleStore& particles, const Array<double>& residual,
-                                 double size, double target, int left, Array<double>& q);
+  class MixedSystem;
+  class DoubleSystem;
+  template <class Real>
+  Preconditioner<Real>& preconditioner(JacobiPreconditioner<Real>& jacobi);
 
   Options options_;
   PressureOperator operator_;
   std::unique_ptr<CellMultigrid> multigrid_;
-  KrylovWorkspace<double> double_work_;
-  Array<double> double_correction_, double_diagonal_, zero_;  // empty in mixed precision
-  SolveReport report_;
+  CorrectionWorkspace<double> double_work_;  // empty in mixed precision, as are the next
+  Array<double> double_diagonal_, zero_;
+  RefinementResult report_;
 };
 
 // Throws StepFailure that names `solve` when the report says that it did not converge.
-void demand_convergence(const SolveReport& report, const std::string& solve);
+void demand_convergence(const RefinementResult& report, const std::string& solve);
 
 }  // namespace spume

@@ -22,7 +22,7 @@ namespace spume {
 struct CellLevel {
   std::array<int, 3> cells{1, 1, 1};
   Array<float> face[3];           // x: entry i of a row lies between i - 1 and i, entry cells[0] closes the row
-  Array<float> dirichlet;         // coupling to zero-valued surroundings
+  Array<float> dirichlet;         // coefficient to zero-valued surroundings
   Array<float> mass;              // volume times Helmholtz coefficient
   Array<float> inverse_diagonal;  // zero where a cell takes no part
   Array<float> right_hand_side, solution, other, residual, scratch;

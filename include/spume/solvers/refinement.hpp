@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Mixed-precision solution of A x = b: the residual r = b - A x in double, corrections A e = r by a Krylov solve in
-// float, x += e, until the double residual meets the tolerance. Float vectors alone cannot: rounding x to float changes
-// A x by about diag(A) |x| 6e-8, which for n particles across the domain is of order 6e-8 n^2 of b.
+// Iterative refinement of A x = b: the residual r = b - A x in double, corrections A e = r by a Krylov solve, mostly in
+// float, x += e, until the residual meets the tolerance. Float vectors alone cannot: rounding x to float changes A x by
+// about diag(A) |x| 6e-8, which for n particles across the domain is of order 6e-8 n^2 of b.
 // The scheme: N. Higham, Accuracy and Stability of Numerical Algorithms (2002), chapter 12.
 #pragma once
 
@@ -16,36 +16,61 @@ namespace spume {
 
 enum class KrylovMethod { bicgstab, conjugate_gradients };
 
+// What is asked of a correction e.
+struct CorrectionTask {
+  double size = 0;         // norm of r
+  double target = 0;       // norm of r - A e
+  int max_iterations = 0;  // of the Krylov solver
+  bool remove_mean = false;
+};
+
+// A system that keeps its unknowns x.
+class RefinedSystem {
+ public:
+  virtual ~RefinedSystem() = default;
+  // r = b - A x.
+  virtual void residual(std::span<double> r) = 0;
+  // x += e with A e close to r.
+  virtual KrylovResult correct(std::span<const double> r, const CorrectionTask& task) = 0;
+  // r -= A e, e being what correct() has added last; or r = b - A x again.
+  virtual void subtract_product(std::span<double> r) = 0;
+};
+
 struct RefinementOptions {
-  KrylovMethod method = KrylovMethod::bicgstab;
-  double tolerance = 1e-6;   // on ||b - A x|| / ||b|| in double
-  int max_iterations = 500;  // of the inner solver, all corrections together
-  // Largest reduction asked of one float solve. Measured on the SPH operator at 1e-6: 1e-3 takes two corrections and 10
-  // to 16 float applications; 1e-2 takes three corrections; from 1e-5 on the float recurrence stalls in rounding.
-  double inner_tolerance = 1e-3;
-  bool zero_guess = false;
-  bool remove_mean = false;  // as in KrylovOptions
-  std::span<const double> weights;
+  double tolerance = 1e-6;    // on ||b - A x|| / reference_norm
+  double reference_norm = 0;  // of the right-hand side, as the caller measures it
+  int max_iterations = 500;   // of the Krylov solver, all corrections together
+  bool remove_mean = false;   // of residuals: the null space of A is the constant
 };
 
 struct RefinementResult {
-  int iterations = 0;            // of the inner solver
-  int applications = 0;          // of the float operator
-  int double_applications = 0;   // of the double operator
-  double relative_residual = 0;  // measured in double
+  int iterations = 0;            // of the Krylov solver, at least one a correction
+  int applications = 0;          // of A, in either precision
+  double relative_residual = 0;  // that of the last correction's recurrence where that may be trusted, else measured
   bool converged = false;
-  bool breakdown = false;  // non-finite numbers, or a correction that did not halve the residual
 };
 
-struct RefinementWorkspace {
-  Array<double> residual;
-  Array<float> right_hand_side, correction, weights;
-  KrylovWorkspace<float> krylov;
+// The residual that subtract_product() keeps does not see the rounding of x itself, some 1e-13 of the terms of a row:
+// smaller tolerances mean nothing where it does not measure anew.
+//
+// r: work space of the size of x; the residual on return, up to the last correction where that was trusted. Ends
+// without convergence when iterations have run out, at a non-finite residual and after 21 corrections: at three digits
+// each, six reach the rounding of a double.
+RefinementResult solve_refined(RefinedSystem& system, const RefinementOptions& options, std::span<double> r);
+
+template <class Real>
+struct CorrectionWorkspace {
+  Array<Real> right_hand_side, correction;  // e, in float as a multiple of the task's size
+  KrylovWorkspace<Real> krylov;
+
+  double bytes() const { return right_hand_side.bytes() + correction.bytes() + krylov.bytes(); }
 };
 
-// `exact` and `fast` apply the same matrix in double and in float. x is the initial guess and receives the solution.
-RefinementResult solve_refined(LinearOperator<double>& exact, LinearOperator<float>& fast, Preconditioner<float>& m,
-                               std::span<const double> b, std::span<double> x, const RefinementOptions& options,
-                               RefinementWorkspace& work);
+// RefinedSystem::correct() by a Krylov solver in float or double from e = 0: x += e. In float r is scaled to order one,
+// which keeps the range for any units.
+template <class Real>
+KrylovResult correct_by_krylov(KrylovMethod method, LinearOperator<Real>& a, Preconditioner<Real>& m,
+                               std::span<const double> r, const CorrectionTask& task, std::span<double> x,
+                               CorrectionWorkspace<Real>& work);
 
 }  // namespace spume

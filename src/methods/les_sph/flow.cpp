@@ -9,7 +9,7 @@ namespace {
 
 ProjectionSolver::Options solver_options(const Case& options) {
   const PressureOptions& pressure = options.pressure;
-  return {.conjugate_gradients = pressure.solver == PressureSolver::cg,
+  return {.method = pressure.solver == PressureSolver::cg ? KrylovMethod::conjugate_gradients : KrylovMethod::bicgstab,
           .multigrid = pressure.preconditioner == PreconditionerKind::multigrid,
           .mixed = pressure.precision == Precision::mixed,
           .tolerance = pressure.tolerance,

@@ -8,6 +8,8 @@
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/periodic_grid.hpp"
+#include "spume/neighbours/cell_order.hpp"
+#include "spume/neighbours/periodic_cells.hpp"
 
 namespace spume {
 

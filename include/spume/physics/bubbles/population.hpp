@@ -15,6 +15,7 @@
 #include "spume/core/field_set.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/neighbours/cell_grid.hpp"
+#include "spume/neighbours/cell_order.hpp"
 #include "spume/scene/scene.hpp"
 
 namespace spume::bubbles {
@@ -67,7 +68,7 @@ class Population {
 
   // Sorts by the cell of `next_position`.
   void sort(const CellGrid& grid);
-  const CellTable& table() const { return table_; }
+  const CellOrder& table() const { return table_; }
 
   FieldSet fields;
   // State between steps.
@@ -91,7 +92,7 @@ class Population {
   std::size_t settle(double t);
 
   std::vector<std::vector<NewBubble>> pending_births_;
-  CellTable table_;
+  CellOrder table_;
   Array<std::int32_t> order_;
 };
 

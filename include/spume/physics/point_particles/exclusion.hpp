@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "spume/core/array.hpp"
+#include "spume/neighbours/cell_order.hpp"
 #include "spume/neighbours/periodic_cells.hpp"
 #include "spume/physics/point_particles/kinds.hpp"
 

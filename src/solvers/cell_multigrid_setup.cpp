@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: MIT
+// Setup of the preconditioner: the box of cells, the particles in it, the coefficients of the finest level.
+#include <algorithm>
+#include <atomic>
+#include <climits>
+#include <cmath>
+#include <stdexcept>
+
+#include "spume/core/parallel.hpp"
+#include "spume/solvers/cell_multigrid.hpp"
+
+namespace spume {
+
+namespace {
+
+enum Status : std::uint8_t { no_liquid = 0, interior_cell = 1, solid_cell = 2, hole = 3 };
+
+// Box edges are multiples of this, so that the first levels pair the same cells from step to step.
+constexpr int box_alignment = 4;
+// Cells per particle beyond which a sparse cloud is covered with wider cells.
+constexpr double most_cells_per_particle = 8;
+constexpr double fewest_cells = 65536;
+// A cell without particles and with less open volume than this is taken for a part of the solid.
+constexpr float least_open_volume = 0.6F;
+
+// Cells along an axis of fixed length: a small number times a power of two, so that coarsening stays even.
+int even_count(double length, double cell_size) {
+  const double wanted = length / cell_size;
+  if (wanted <= 1.5) return 1;
+  int best = 2;
+  for (int power = 1; power < (1 << 26); power *= 2)
+    for (const int odd : {1, 3, 5, 7}) {
+      if (odd > 1 && power == 1) continue;
+      if (odd > 3 && power < 4) continue;
+      const int count = odd * power;
+      if (std::abs(std::log(count / wanted)) < std::abs(std::log(best / wanted))) best = count;
+    }
+  return best;
+}
+
+bool holds_liquid(std::uint8_t status) {
+  return status == interior_cell || status == hole;
+}
+
+int floor_to(int i, int step) {
+  return (i >= 0 ? i / step : -((-i + step - 1) / step)) * step;
+}
+
+}  // namespace
+
+CellMultigrid::CellMultigrid(const CellGeometry& geometry) {
+  set_geometry(geometry);
+}
+
+void CellMultigrid::set_geometry(const CellGeometry& geometry) {
+  if (geometry.dimensions != 2 && geometry.dimensions != 3)
+    throw std::invalid_argument("CellMultigrid: dimensions must be 2 or 3");
+  if (!(geometry.cell_size > 0)) throw std::invalid_argument("CellMultigrid: the cell size must be positive");
+  for (std::size_t a = 0; a < static_cast<std::size_t>(geometry.dimensions); ++a)
+    if (!(geometry.upper[a] > geometry.lower[a]))
+      throw std::invalid_argument("CellMultigrid: upper must exceed lower on every axis");
+  geometry_ = geometry;
+}
+
+void CellMultigrid::choose_box(std::span<const double> const (&position)[3], std::span<const float> interior) {
+  const auto dimensions = static_cast<std::size_t>(geometry_.dimensions);
+  struct Range {
+    double lower[3], upper[3];
+    bool any;
+  };
+  const Range liquid = parallel_reduce(
+      particles_, Range{{0, 0, 0}, {0, 0, 0}, false},
+      [&](std::size_t first, std::size_t last) {
+        Range range{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, false};
+        for (std::size_t i = first; i < last; ++i) {
+          if (!(interior[i] > 0)) continue;
+          bool finite = true;
+          for (std::size_t a = 0; a < dimensions; ++a) finite = finite && std::abs(position[a][i]) < HUGE_VAL;
+          if (!finite) continue;
+          range.any = true;
+          for (std::size_t a = 0; a < dimensions; ++a) {
+            range.lower[a] = std::min(range.lower[a], position[a][i]);
+            range.upper[a] = std::max(range.upper[a], position[a][i]);
+          }
+        }
+        return range;
+      },
+      [&](Range a, const Range& b) {
+        if (!b.any) return a;
+        if (!a.any) return b;
+        for (std::size_t d = 0; d < dimensions; ++d) {
+          a.lower[d] = std::min(a.lower[d], b.lower[d]);
+          a.upper[d] = std::max(a.upper[d], b.upper[d]);
+        }
+        return a;
+      });
+  empty_ = !liquid.any;
+  std::array<int, 3> cells{1, 1, 1};
+  const double most_cells = std::max(fewest_cells, most_cells_per_particle * static_cast<double>(particles_));
+  for (double size = geometry_.cell_size; !empty_; size *= 2) {
+    double total = 1;
+    bool countable = true;
+    for (std::size_t a = 0; a < dimensions; ++a) {
+      Axis& axis = axis_[a];
+      axis.periodic = geometry_.periodic[a];
+      axis.lower_wall = !axis.periodic && geometry_.wall[a][0];
+      axis.upper_wall = !axis.periodic && geometry_.wall[a][1];
+      axis.origin = geometry_.lower[a];
+      axis.width = size;
+      axis.count = 0;
+      if (axis.periodic || (axis.lower_wall && axis.upper_wall)) {
+        axis.count = even_count(geometry_.upper[a] - geometry_.lower[a], size);
+        axis.width = (geometry_.upper[a] - geometry_.lower[a]) / axis.count;
+      } else if (axis.upper_wall) {
+        axis.origin = geometry_.upper[a];
+      }
+      const double lowest = std::floor((liquid.lower[a] - axis.origin) / axis.width);
+      const double highest = std::floor((liquid.upper[a] - axis.origin) / axis.width);
+      total *= axis.count > 0 && axis.periodic ? axis.count : highest - lowest + 2 + box_alignment;
+      countable = countable && std::max(std::abs(lowest), std::abs(highest)) < INT_MAX / 4;
+    }
+    if (total > most_cells || !countable) continue;
+    for (std::size_t a = 0; a < dimensions; ++a) {
+      const Axis& axis = axis_[a];
+      width_[a] = axis.width;
+      if (axis.periodic) {
+        first_cell_[a] = 0;
+        cells[a] = axis.count;
+        continue;
+      }
+      // One empty cell beyond the liquid, unless there is a wall.
+      int first =
+          floor_to(static_cast<int>(std::floor((liquid.lower[a] - axis.origin) / axis.width)) - 1, box_alignment);
+      int last =
+          -floor_to(-(static_cast<int>(std::floor((liquid.upper[a] - axis.origin) / axis.width)) + 2), box_alignment);
+      const int end = axis.count > 0 ? axis.count : 0;
+      if (axis.lower_wall) first = std::max(first, 0);
+      if (axis.upper_wall) last = std::min(last, end);
+      if (axis.lower_wall) last = std::max(last, first + 1);
+      if (axis.upper_wall) first = std::min(first, last - 1);
+      first_cell_[a] = first;
+      cells[a] = last - first;
+    }
+    break;
+  }
+  hierarchy_.resize(cells, geometry_.periodic);
+}
+
+void CellMultigrid::bin(std::span<const double> const (&position)[3], std::span<const float> interior) {
+  const auto dimensions = static_cast<std::size_t>(geometry_.dimensions);
+  const CellLevel& level = hierarchy_.finest();
+  const auto& n = level.cells;
+  const std::size_t row_pitch = static_cast<std::size_t>(n[0]) + 1;
+  const std::size_t plane_pitch = row_pitch * (static_cast<std::size_t>(n[1]) + 1);
+  const std::size_t stencil_cells = level.rows() * static_cast<std::size_t>(n[0]);
+  stencil_.resize(particles_);
+  corner_.resize(particles_);
+  rank_.resize(particles_);
+  stencil_cell_.resize(particles_);
+  order_.resize(particles_);
+  start_.resize(stencil_cells + 1);
+  status_.resize(stencil_cells);
+  row_total_.resize(level.rows() + 1);
+  parallel_blocks(stencil_cells, 16 * default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    std::fill(start_.data() + first, start_.data() + last, 0);
+    std::fill(status_.data() + first, status_.data() + last, std::uint8_t{no_liquid});
+  });
+  const double inverse_width[3] = {1 / width_[0], 1 / width_[1], dimensions == 3 ? 1 / width_[2] : 0};
+  parallel_blocks(particles_, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) {
+      corner_[p] = -1;
+      stencil_[p] = {0, 0, 0, 0};
+      if (!(interior[p] > 0)) continue;
+      int cell[3] = {0, 0, 0}, own[3] = {0, 0, 0};
+      float fraction[3] = {0, 0, 0};
+      bool finite = true;
+      for (std::size_t a = 0; a < dimensions; ++a) {
+        // Linear between cell centres; constant beyond the last centre before a wall.
+        const double s = (position[a][p] - axis_[a].origin) * inverse_width[a] - 0.5 - first_cell_[a];
+        if (!(std::abs(s) < INT_MAX / 2)) {
+          finite = false;
+          break;
+        }
+        const int count = n[a];
+        int base = static_cast<int>(s) - (s < 0 ? 1 : 0);
+        double f = s - base;
+        if (base < 0 || base >= count - 1) {
+          if (axis_[a].periodic) {
+            base = ((base % count) + count) % count;
+          } else {
+            base = base < 0 ? 0 : count - 1;
+            f = 0;
+          }
+        }
+        cell[a] = base;
+        fraction[a] = static_cast<float>(f);
+        own[a] = base + static_cast<int>(f + f);  // the nearer of two centres, without a branch that is a coin toss
+        own[a] = own[a] == count ? 0 : own[a];
+      }
+      if (!finite) continue;
+      stencil_[p] = {fraction[0], fraction[1], fraction[2], interior[p]};
+      corner_[p] =
+          static_cast<std::int32_t>(static_cast<std::size_t>(cell[2]) * plane_pitch +
+                                    static_cast<std::size_t>(cell[1]) * row_pitch + static_cast<std::size_t>(cell[0]));
+      const auto index = [&](const int(&c)[3]) {
+        return static_cast<std::size_t>((c[2] * n[1] + c[1])) * static_cast<std::size_t>(n[0]) +
+               static_cast<std::size_t>(c[0]);
+      };
+      const std::atomic_ref<std::uint8_t> status(status_[index(own)]);
+      if (status.load(std::memory_order_relaxed) != interior_cell)
+        status.store(interior_cell, std::memory_order_relaxed);
+      stencil_cell_[p] = static_cast<std::int32_t>(index(cell));
+    }
+    // Apart from the loop above: a locked increment waits for every store before it.
+    for (std::size_t p = first; p < last; ++p)
+      if (corner_[p] >= 0)
+        rank_[p] = std::atomic_ref<std::int32_t>(start_[static_cast<std::size_t>(stencil_cell_[p])])
+                       .fetch_add(1, std::memory_order_relaxed);
+  });
+  const auto row_cells = [&](std::size_t row) { return start_.data() + row * static_cast<std::size_t>(n[0]); };
+  parallel_blocks(level.rows(), level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row) {
+      std::int32_t total = 0;
+      for (int i = 0; i < n[0]; ++i) total += row_cells(row)[i];
+      row_total_[row] = total;
+    }
+  });
+  std::int32_t running = 0;
+  for (std::size_t row = 0; row < level.rows(); ++row) {
+    const std::int32_t total = row_total_[row];
+    row_total_[row] = running;
+    running += total;
+  }
+  row_total_[level.rows()] = running;
+  start_[stencil_cells] = running;
+  parallel_blocks(level.rows(), level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row) {
+      std::int32_t at = row_total_[row];
+      for (int i = 0; i < n[0]; ++i) {
+        const std::int32_t count = row_cells(row)[i];
+        row_cells(row)[i] = at;
+        at += count;
+      }
+    }
+  });
+  parallel_blocks(particles_, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p)
+      if (corner_[p] >= 0)
+        order_[static_cast<std::size_t>(start_[static_cast<std::size_t>(stencil_cell_[p])] + rank_[p])] =
+            static_cast<std::int32_t>(p);
+  });
+  // Arrival order depends on the threads; index order does not.
+  parallel_blocks(stencil_cells, 4 * default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t c = first; c < last; ++c) {
+      std::int32_t* here = order_.data() + start_[c];
+      const std::int32_t count = start_[c + 1] - start_[c];
+      if (count > 16) {
+        std::sort(here, here + count);
+        continue;
+      }
+      for (std::int32_t i = 1; i < count; ++i) {
+        const std::int32_t p = here[i];
+        std::int32_t at = i;
+        for (; at > 0 && here[at - 1] > p; --at) here[at] = here[at - 1];
+        here[at] = p;
+      }
+    }
+  });
+}
+
+void CellMultigrid::mark_solids() {
+  const CellLevel& level = hierarchy_.finest();
+  const auto& n = level.cells;
+  const std::size_t total = level.rows() * static_cast<std::size_t>(n[0]);
+  for (Array<float>* field : {&open_volume_, &open_face_[0], &open_face_[1], &open_face_[2]}) {
+    field->resize(total);
+    field->fill(1.0F);
+  }
+  const auto dimensions = static_cast<std::size_t>(geometry_.dimensions);
+  for (const CellGeometry::Box& box : geometry_.solids) {
+    double lower[3] = {0, 0, 0}, upper[3] = {1, 1, 1};  // in cell widths of the box of cells
+    int first[3] = {0, 0, 0}, last[3] = {1, 1, 1};
+    for (std::size_t a = 0; a < dimensions; ++a) {
+      lower[a] = (box.lower[a] - axis_[a].origin) / width_[a] - first_cell_[a];
+      upper[a] = (box.upper[a] - axis_[a].origin) / width_[a] - first_cell_[a];
+      first[a] = static_cast<int>(std::floor(std::clamp<double>(lower[a], 0, n[a])));
+      last[a] = static_cast<int>(std::ceil(std::clamp<double>(upper[a] + 1e-6, 0, n[a])));
+    }
+    const auto overlap = [&](std::size_t a, int i) {
+      return std::max(0.0, std::min(upper[a], i + 1.0) - std::max(lower[a], double(i)));
+    };
+    for (int k = first[2]; k < last[2]; ++k) {
+      for (int j = first[1]; j < last[1]; ++j) {
+        for (int i = first[0]; i < last[0]; ++i) {
+          const int at[3] = {i, j, k};
+          const std::size_t c =
+              static_cast<std::size_t>(k * n[1] + j) * static_cast<std::size_t>(n[0]) + static_cast<std::size_t>(i);
+          const double part[3] = {overlap(0, i), overlap(1, j), dimensions == 3 ? overlap(2, k) : 1.0};
+          open_volume_[c] -= static_cast<float>(part[0] * part[1] * part[2]);
+          for (std::size_t a = 0; a < dimensions; ++a) {
+            if (at[a] < lower[a] - 1e-6 || at[a] > upper[a] + 1e-6) continue;
+            const double covered = part[(a + 1) % 3] * part[(a + 2) % 3];
+            open_face_[a][c] = std::max(0.0F, open_face_[a][c] - static_cast<float>(covered));
+          }
+        }
+      }
+    }
+  }
+  parallel_for(total, [&](std::size_t c) {
+    if (status_[c] == no_liquid && open_volume_[c] < least_open_volume) status_[c] = solid_cell;
+  });
+}
+
+// A cell inside the liquid may by chance hold no particle; taken for air it would pin the pressure to zero there.
+void CellMultigrid::fill_holes() {
+  const CellLevel& level = hierarchy_.finest();
+  const auto& n = level.cells;
+  const auto status = [&](std::size_t c) { return std::atomic_ref<std::uint8_t>(status_[c]); };
+  const std::size_t row_cells = static_cast<std::size_t>(n[0]);
+  parallel_blocks(level.rows(), level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row) {
+      for (int i = 0; i < n[0]; ++i) {
+        const std::size_t c = row * row_cells + static_cast<std::size_t>(i);
+        if (status(c).load(std::memory_order_relaxed) != no_liquid) continue;
+        const int here[3] = {i, static_cast<int>(row) % n[1], static_cast<int>(row) / n[1]};
+        bool enclosed = true, liquid = false;
+        for (std::size_t a = 0; a < 3 && enclosed; ++a) {
+          if (n[a] == 1) continue;
+          for (const int step : {-1, 1}) {
+            int there[3] = {here[0], here[1], here[2]};
+            there[a] += step;
+            if ((there[a] < 0 || there[a] >= n[a]) && !axis_[a].periodic) continue;
+            there[a] = (there[a] + n[a]) % n[a];
+            const std::uint8_t next = status(static_cast<std::size_t>(there[2] * n[1] + there[1]) * row_cells +
+                                             static_cast<std::size_t>(there[0]))
+                                          .load(std::memory_order_relaxed);
+            liquid = liquid || next == interior_cell;
+            enclosed = enclosed && (next == interior_cell || next == solid_cell);
+          }
+        }
+        if (enclosed && liquid) status(c).store(hole, std::memory_order_relaxed);
+      }
+    }
+  });
+}
+
+void CellMultigrid::set_coefficients(double helmholtz) {
+  CellLevel& level = hierarchy_.finest();
+  const auto& n = level.cells;
+  const int dimensions = geometry_.dimensions;
+  const double volume = width_[0] * width_[1] * (dimensions == 3 ? width_[2] : 1.0);
+  float face[3] = {0, 0, 0};
+  for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a)
+    face[a] = static_cast<float>(volume / (width_[a] * width_[a]));
+  const float mass = static_cast<float>(helmholtz * volume);
+  const bool solids = !geometry_.solids.empty();
+  const auto index = [&](int i, int j, int k) {
+    return static_cast<std::size_t>(k * n[1] + j) * static_cast<std::size_t>(n[0]) + static_cast<std::size_t>(i);
+  };
+  parallel_blocks(level.rows(), level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row) {
+      const int j = static_cast<int>(row) % n[1], k = static_cast<int>(row) / n[1];
+      const std::size_t at = level.row_start(row);
+      for (int i = 0; i < n[0]; ++i) {
+        const auto o = at + static_cast<std::size_t>(i);
+        const std::size_t c = index(i, j, k);
+        const bool inside = holds_liquid(status_[c]);
+        float dirichlet = 0;
+        for (int a = 0; a < dimensions; ++a) {
+          const auto axis = static_cast<std::size_t>(a);
+          float lower_face = 0;
+          if (n[axis] > 1) {
+            for (const int side : {0, 1}) {
+              int there[3] = {i, j, k};
+              there[a] += side == 0 ? -1 : 1;
+              const bool outside = there[a] < 0 || there[a] >= n[axis];
+              if (outside && !axis_[axis].periodic) continue;
+              there[a] = (there[a] + n[axis]) % n[axis];
+              const std::size_t t = index(there[0], there[1], there[2]);
+              const float open = face[a] * (solids ? open_face_[a][side == 0 ? c : t] : 1.0F);
+              if (!inside) continue;
+              if (status_[t] == no_liquid) dirichlet += open;
+              if (side == 0 && holds_liquid(status_[t])) lower_face = open;
+            }
+          }
+          level.face[a][o] = lower_face;
+        }
+        level.dirichlet[o] = dirichlet;
+        level.mass[o] = inside ? mass * (solids ? std::max(open_volume_[c], 0.1F) : 1.0F) : 0.0F;
+      }
+      level.face[0][at + static_cast<std::size_t>(n[0])] = level.face[0][at];
+    }
+  });
+  if (n[1] == 1) level.face[1].fill(0.0F);
+  hierarchy_.build();
+}
+
+void CellMultigrid::setup(std::span<const double> x, std::span<const double> y, std::span<const double> z,
+                          std::span<const float> interior, double helmholtz, std::span<const float> diagonal) {
+  particles_ = x.size();
+  if (y.size() != particles_ || interior.size() != particles_ || diagonal.size() != particles_ ||
+      (geometry_.dimensions == 3 && z.size() != particles_))
+    throw std::invalid_argument("CellMultigrid::setup: all spans must have one entry per particle");
+  if (!(helmholtz >= 0))
+    throw std::invalid_argument("CellMultigrid::setup: the Helmholtz coefficient must not be negative");
+  diagonal_ = diagonal;
+  const std::span<const double> position[3] = {x, y, z};
+  choose_box(position, interior);
+  if (empty_) return;
+  bin(position, interior);
+  if (!geometry_.solids.empty()) mark_solids();
+  fill_holes();
+  set_coefficients(helmholtz);
+  const auto& n = hierarchy_.finest().cells;
+  partial_.resize(4 * hierarchy_.finest().rows() * hierarchy_.finest().pitch());
+  corner_value_.resize((static_cast<std::size_t>(n[0]) + 1) * (static_cast<std::size_t>(n[1]) + 1) *
+                       (static_cast<std::size_t>(n[2]) + 1));
+}
+
+}  // namespace spume
