@@ -41,7 +41,7 @@ void FieldSet::permute(const Array<std::int32_t>& order) {
 }
 
 double FieldSet::bytes() const {
-  double total = 0;
+  double total = scratch_.idle_bytes();
   for (const auto& field : fields_) std::visit([&](const auto& array) { total += array.bytes(); }, field->values);
   return total;
 }

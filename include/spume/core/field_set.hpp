@@ -43,7 +43,7 @@ class FieldSet {
   void permute(const Array<std::int32_t>& order);
 
   const std::vector<std::unique_ptr<Field>>& fields() const { return fields_; }
-  double bytes() const;  // of the fields
+  double bytes() const;  // of the fields and of the scratch memory that is not leased now
 
   // Memory that the users of these fields share within a step; permute() takes what it needs from it.
   ScratchPool& scratch() { return scratch_; }
