@@ -40,9 +40,11 @@ void Plan::run_stage(const Run& run, const Stage& stage) const {
   auto scope = run.ledger.time(stage.name);
   StageRun counted{.dt = run.dt, .particles = run.particles};
   // What a stage reads last it may release, and what it writes it may lease.
-  for (const ArrayUse& use : stage.reads) counted.bytes += use.bytes();
+  double named = 0;
+  for (const ArrayUse& use : stage.reads) named += use.bytes();
   stage.work(counted);
-  for (const ArrayUse& use : stage.writes) counted.bytes += use.bytes();
+  for (const ArrayUse& use : stage.writes) named += use.bytes();
+  counted.bytes += named;
   scope.add_particles(counted.particles);
   scope.add_pairs(counted.pairs);
   scope.add_bytes(counted.bytes);

@@ -201,11 +201,11 @@ std::vector<ParticleSystem::ArraySize> ParticleSystem::arrays() const {
 double ParticleSystem::estimated_bytes(const PeriodicGrid& grid, const PointParticleOptions& options) {
   const auto n = static_cast<double>(options.count);
   const bool couples = acts_on_flow(options.coupling), collides = excludes(options.coupling) && !options.motion.frozen;
-  // State, one scratch array of each type, and the order.
-  double per_particle = 8 * 7 + 16 + 18;
+  // State, room to sort a field in, and the order by cells, which collisions share.
+  double per_particle = 8 * 7 + 8 + 18;
   if (options.placement.diameters.size() > 1) per_particle += 8;
   if (couples) per_particle += 8 * 3 + 8 * 3;
-  if (collides) per_particle += 16 + 4 + 12 + 2 + 8;
+  if (collides) per_particle += 16 + 4 + 12 + 2;
   double points = 1;
   for (int axis = 0; axis < 3; ++axis) points *= grid.points[axis] + options.spline_order - 1;
   return per_particle * n + 4.0 * static_cast<double>(grid.point_count()) +
