@@ -11,7 +11,6 @@
 
 #include "spume/core/machine.hpp"
 #include "spume/run/version.hpp"
-#include "spume/scene/memory.hpp"
 
 namespace spume {
 namespace {
@@ -49,7 +48,7 @@ double needed_bytes(const LoadedCase& loaded, const Method& method) {
   double bytes = 0;
   for (const auto& array : method.arrays()) bytes += array.bytes;
   const auto count = static_cast<double>(method.particle_count());
-  return std::max(bytes, count * bytes_per_particle(loaded.options, loaded.scene.domain.dimensions));
+  return std::max(bytes, count * loaded.bytes_per_particle);
 }
 
 double finite(double value) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 #include <tuple>
@@ -108,23 +107,9 @@ void claim_columns(const Draft& draft, const std::string& probe, const ProbeOpti
 
 }  // namespace
 
-std::string brief(double value) {
-  char buffer[40];
-  std::snprintf(buffer, sizeof buffer, "%.6g", value);
-  return buffer;
-}
-
 std::array<std::string, 2> side_names(int axis, int dimensions) {
   if (axis == dimensions - 1) return {"bottom", "top"};
   return axis == 0 ? std::array<std::string, 2>{"left", "right"} : std::array<std::string, 2>{"front", "back"};
-}
-
-double support_ratio(const ResolutionOptions& resolution) {
-  return (resolution.kernel == KernelKind::wendland_c2 ? 2 : 3) * resolution.smoothing_ratio;
-}
-
-bool uses_si(const FluidDraft& fluid) {
-  return fluid.density || fluid.viscosity || fluid.gravity || fluid.sound_speed;
 }
 
 // The title stands in the first line of every table, which its readers count by lines.
@@ -324,6 +309,15 @@ void check_output(const Draft& draft, Problems& problems) {
                                         what + " until time.end = " + brief(end) + "; expected at most " + brief(most) +
                                         "; set it to " + brief(end / most) + " or more, or to 0");
   }
+}
+
+void check_output_fields(const Draft& draft, const std::vector<std::string>& known, Problems& problems) {
+  std::string list;
+  for (const std::string& field : known) list += (list.empty() ? "" : ", ") + field;
+  for (const std::string& field : draft.options.output.fields)
+    if (std::find(known.begin(), known.end(), field) == known.end())
+      problems.add(*draft.node("output.fields"), "output.fields names '" + field + "', which method \"" +
+                                                     draft.options.method + "\" does not have; it has " + list);
 }
 
 void check_probes(Draft& draft, Problems& problems) {

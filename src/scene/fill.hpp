@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "document.hpp"
 #include "spume/scene/case.hpp"
+#include "spume/scene/document.hpp"
 
 namespace spume {
 

@@ -19,14 +19,14 @@ double inverse_cube_root(double x) {
 }
 
 bubbles::Population::Models models_of(const Liquid& liquid) {
-  const BubbleOptions& options = liquid.options.bubbles;
+  const BubbleOptions& options = liquid.options.get<BubbleOptions>();
   return {options.fluctuations, options.breakup, options.surface_interaction && liquid.plan.free_surface};
 }
 
 }  // namespace
 
 BubbleCoupling::BubbleCoupling(const Liquid& liquid)
-    : options_(liquid.options.bubbles), population_(models_of(liquid)), sources_(liquid.scene) {
+    : options_(liquid.options.get<BubbleOptions>()), population_(models_of(liquid)), sources_(liquid.scene) {
   const Fluid& fluid = liquid.scene.fluid;
   gas_.density_ratio = options_.density_ratio;
   gas_.viscosity = fluid.kinematic_viscosity;

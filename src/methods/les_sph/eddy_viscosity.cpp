@@ -22,7 +22,7 @@ turbulence::Gradient<d> gradient_at(const Liquid& liquid, std::size_t i) {
 
 template <int d>
 void find_static_viscosity(Liquid& liquid) {
-  const TurbulenceOptions& options = liquid.options.turbulence;
+  const TurbulenceOptions& options = liquid.options.get<TurbulenceOptions>();
   const bool mixed = options.model == TurbulenceModel::mixed_scale;
   parallel_for(liquid.size(), [&](std::size_t i) {
     const double strain = (*liquid.strain)[i], width = liquid.width_at(i);
@@ -134,7 +134,7 @@ void find_dynamic_viscosity(Liquid& liquid, double dt) {
     ratio = turbulence::test_filter_width_ratio(1, Kernel::variance(dimensions));
   });
   const double nu = liquid.scene.fluid.kinematic_viscosity;
-  const bool lagrangian = liquid.options.turbulence.model == TurbulenceModel::dynamic_lagrangian;
+  const bool lagrangian = liquid.options.get<TurbulenceOptions>().model == TurbulenceModel::dynamic_lagrangian;
 
   Array<float>&leonard = test_filter.value[0], &germano = test_filter.value[1];
   parallel_for(n, [&](std::size_t i) {
@@ -175,7 +175,7 @@ void differentiate_velocity(Liquid& liquid) {
   if (liquid.plan.test_filter) out.filtered = liquid.write(liquid.filtered_velocity);
   out.strain = liquid.strain->data();
   const bool first = !liquid.started;  // the first pressure
-  if (liquid.gradient_trace != nullptr && (liquid.options.time.centred || first))
+  if (liquid.gradient_trace != nullptr && (liquid.options.get<SchemeOptions>().centred || first))
     out.trace = liquid.gradient_trace->data();
   if (liquid.plan.shift_correction) {
     out.displacement = liquid.read(liquid.shift);

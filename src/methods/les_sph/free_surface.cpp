@@ -29,7 +29,7 @@ void find_surface(Liquid& liquid) {
   liquid.at_surface.resize(n);
   liquid.pressure_fixed.resize(n);
   liquid.interior_weight.resize(n);
-  const double width = liquid.options.surface.blend_width;
+  const double width = liquid.options.get<SurfaceOptions>().blend_width;
   parallel_for(n, [&](std::size_t i) {
     const double above = (*liquid.divergence_of_position)[i] - liquid.surface_threshold;
     liquid.at_surface[i] = above < 0 ? 1 : 0;

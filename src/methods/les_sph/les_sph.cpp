@@ -42,13 +42,13 @@ void refuse_high_mach(const Case& options, const Liquid& liquid) {
 }
 
 void refuse_stirring_shift(const Case& options, const Liquid& liquid) {
-  if (!liquid.plan.shifting || options.shifting.coefficient <= liquid.largest_shift) return;
+  if (!liquid.plan.shifting || options.get<ShiftingOptions>().coefficient <= liquid.largest_shift) return;
   char text[200];
   std::snprintf(
       text, sizeof text,
       "shifting.coefficient is %.3g; above %.3g the shift throws the particles of a lattice from side to side "
       "instead of evening them out: lower it (0.25 is usual)",
-      options.shifting.coefficient, liquid.largest_shift);
+      options.get<ShiftingOptions>().coefficient, liquid.largest_shift);
   throw refusal(options, "shifting.coefficient", text);
 }
 
@@ -125,24 +125,7 @@ void LesSph::step(double dt, Ledger& ledger) {
 LesSph::LesSph(const LoadedCase& loaded) : liquid_(loaded), pressure_(std::make_unique<PressureSystem>(liquid_)) {
   refuse_high_mach(loaded.options, liquid_);
   refuse_stirring_shift(loaded.options, liquid_);
-  std::vector<const char*> known{"velocity",
-                                 "pressure",
-                                 "id",
-                                 "dissipation",
-                                 "unresolved_dissipation",
-                                 "eddy_viscosity",
-                                 "divergence_of_position"};
-  if (liquid_.plan.bubbles) {
-    bubbles_ = std::make_unique<BubbleCoupling>(liquid_);
-    known.push_back("volume_fraction");
-  }
-  for (const std::string& name : loaded.options.output.fields)
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      std::string list;
-      for (const char* field : known) list.append(list.empty() ? "" : ", ").append(field);
-      throw refusal(loaded.options, "output.fields",
-                    "output.fields names '" + name + "', which les-sph does not have; it has " + list);
-    }
+  if (liquid_.plan.bubbles) bubbles_ = std::make_unique<BubbleCoupling>(liquid_);
 }
 
 LesSph::~LesSph() = default;
@@ -250,7 +233,8 @@ StepLimit LesSph::step_limit() const {
   const double viscosity = liquid_.scene.fluid.kinematic_viscosity + liquid_.max_eddy_viscosity;
   // The explicit sum of div(2 nu S) is stable up to 0.108 h^2 / nu on a lattice in 3-D and 0.112 in 2-D, that of
   // div(nu grad u) up to 0.29 and 0.31.
-  if (viscosity > 0) bound(options.viscous * h * h / (diffusion_rate(liquid_) * viscosity), "viscous");
+  if (viscosity > 0)
+    bound(liquid_.options.get<SchemeOptions>().viscous * h * h / (diffusion_rate(liquid_) * viscosity), "viscous");
   // A bubble crosses at most half a smoothing length.
   if (bubbles_ && bubbles_->max_speed() > 0) bound(0.5 * h / bubbles_->max_speed(), "bubbles");
   if (options.max_step > 0) bound(options.max_step, "max_step");
@@ -295,7 +279,7 @@ std::vector<Invariant> LesSph::invariants() const {
   list.push_back({.quantity = "pressure_residual",
                   .kind = Invariant::Kind::largest,
                   .column = "pressure_residual",
-                  .bound = liquid_.options.pressure.tolerance});
+                  .bound = liquid_.options.get<PressureOptions>().tolerance});
   return list;
 }
 

@@ -18,7 +18,7 @@ void add_vector(FieldSet& fields, std::array<Array<T>*, 3>& vector, const std::s
 }
 
 double threshold_of(const LoadedCase& loaded) {
-  if (loaded.options.surface.threshold > 0) return loaded.options.surface.threshold;
+  if (loaded.options.get<SurfaceOptions>().threshold > 0) return loaded.options.get<SurfaceOptions>().threshold;
   return loaded.scene.domain.dimensions == 3 ? 2.3 : 1.5;
 }
 
@@ -65,7 +65,7 @@ Liquid::Liquid(const LoadedCase& loaded_case)
   add_vector(fields, velocity, "velocity", d, Lifetime::carried);
   pressure = &fields.add<double>("pressure", Lifetime::carried);
   identifier = &fields.add<std::int64_t>("identifier", Lifetime::carried);
-  if (options.turbulence.model == TurbulenceModel::dynamic_lagrangian) {
+  if (options.get<TurbulenceOptions>().model == TurbulenceModel::dynamic_lagrangian) {
     lagrangian_average[0] = &fields.add<double>("average_leonard_germano", Lifetime::carried);
     lagrangian_average[1] = &fields.add<double>("average_germano_germano", Lifetime::carried);
   }
@@ -137,8 +137,8 @@ Liquid::Liquid(const LoadedCase& loaded_case)
 }
 
 bool Liquid::dynamic_closure() const {
-  return options.turbulence.model == TurbulenceModel::dynamic_shepard ||
-         options.turbulence.model == TurbulenceModel::dynamic_lagrangian;
+  return options.get<TurbulenceOptions>().model == TurbulenceModel::dynamic_shepard ||
+         options.get<TurbulenceOptions>().model == TurbulenceModel::dynamic_lagrangian;
 }
 
 std::array<const double*, 3> Liquid::read(const VectorField& v) const {

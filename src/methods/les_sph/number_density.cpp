@@ -112,7 +112,7 @@ void even_out_density(const Liquid& liquid, double dt, std::span<double> diverge
       });
   const double mean = total.disorder / std::max(total.particles, 1.0);
   const double of_all = mean - within(mean, mean_disorder);
-  const double closing = liquid.displacement / (liquid.options.pressure.density_relaxation * dt);
+  const double closing = liquid.displacement / (liquid.options.get<PressureOptions>().density_relaxation * dt);
   const double expanding = liquid.plan.free_surface ? closing / more_steps_below_surface : closing;
   parallel_for(liquid.size(), [&](std::size_t i) {
     if (!tells_density(liquid, i)) return;

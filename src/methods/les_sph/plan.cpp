@@ -21,22 +21,24 @@ Plan make_plan(const LoadedCase& loaded) {
   plan.images = plan.images || !scene.domain.boxes.empty();
   for (const SolidBox& box : scene.domain.boxes) plan.no_slip = plan.no_slip || box.kind == BoundaryKind::no_slip;
   plan.free_surface = scene.free_surface;
-  plan.shifting = options.shifting.on;
-  const TurbulenceModel model = options.turbulence.model;
+  plan.shifting = options.get<ShiftingOptions>().on;
+  const TurbulenceModel model = options.get<TurbulenceOptions>().model;
   plan.eddy_viscosity = model != TurbulenceModel::none;
   plan.test_filter = plan.eddy_viscosity && model != TurbulenceModel::smagorinsky;
-  plan.bubbles = options.bubbles.on;
-  plan.mixture_pressure = plan.bubbles && options.bubbles.momentum_form == MomentumForm::mixture_pressure;
-  plan.test_filter = plan.test_filter || (plan.bubbles && options.bubbles.fluctuations);
-  plan.drift_removal = plan.shifting && options.shifting.remove_drift;
-  plan.density_relaxation = options.pressure.density_relaxation < never_relaxed;
-  plan.shift_correction = plan.shifting && options.shifting.velocity_correction != ShiftCorrection::none;
-  plan.shift_curvature = plan.shifting && options.shifting.velocity_correction == ShiftCorrection::second_order;
-  plan.velocity_gradient = plan.eddy_viscosity || plan.shift_correction || options.time.centred || plan.bubbles;
+  plan.bubbles = options.get<BubbleOptions>().on;
+  plan.mixture_pressure = plan.bubbles && options.get<BubbleOptions>().momentum_form == MomentumForm::mixture_pressure;
+  plan.test_filter = plan.test_filter || (plan.bubbles && options.get<BubbleOptions>().fluctuations);
+  plan.drift_removal = plan.shifting && options.get<ShiftingOptions>().remove_drift;
+  plan.density_relaxation = options.get<PressureOptions>().density_relaxation < never_relaxed;
+  plan.shift_correction = plan.shifting && options.get<ShiftingOptions>().velocity_correction != ShiftCorrection::none;
+  plan.shift_curvature =
+      plan.shifting && options.get<ShiftingOptions>().velocity_correction == ShiftCorrection::second_order;
+  plan.velocity_gradient =
+      plan.eddy_viscosity || plan.shift_correction || options.get<SchemeOptions>().centred || plan.bubbles;
   const bool dynamic = model == TurbulenceModel::dynamic_shepard || model == TurbulenceModel::dynamic_lagrangian;
   plan.stored_gradient = dynamic || plan.shift_curvature || plan.bubbles;
   plan.viscosity = plan.eddy_viscosity || scene.fluid.kinematic_viscosity > 0;
-  const DiffusionForm form = options.turbulence.diffusion;
+  const DiffusionForm form = options.get<TurbulenceOptions>().diffusion;
   plan.viscous_stress =
       plan.viscosity && (form == DiffusionForm::stress || (form == DiffusionForm::automatic && scene.free_surface));
   plan.gravity = std::any_of(scene.fluid.gravity.begin(), scene.fluid.gravity.end(), [](double g) { return g != 0; });
@@ -48,7 +50,7 @@ Plan make_plan(const LoadedCase& loaded) {
 
 std::vector<Stage> Plan::stages(const LoadedCase& loaded) const {
   const auto model = [&] {
-    switch (loaded.options.turbulence.model) {
+    switch (loaded.options.get<TurbulenceOptions>().model) {
       case TurbulenceModel::mixed_scale:
         return "mixed-scale closure";
       case TurbulenceModel::smagorinsky:
@@ -69,7 +71,7 @@ std::vector<Stage> Plan::stages(const LoadedCase& loaded) const {
   add("move", true, "particles to their intermediate positions");
   add("sort", true, "particles in cell order");
   add("images", images, images ? "periodic sides, walls or solids" : "every side is open");
-  const BubbleOptions& gas = loaded.options.bubbles;
+  const BubbleOptions& gas = loaded.options.get<BubbleOptions>();
   add("bubble volume", bubbles, bubbles ? "volume fraction and sizes of particles" : "no section [bubbles]");
   add("neighbours", true, "lists within the kernel support");
   add("geometry", true, "gradient correction, div r, concentration");

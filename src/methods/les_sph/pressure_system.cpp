@@ -19,7 +19,7 @@ CellGeometry cell_geometry(const Liquid& liquid) {
   const Domain& domain = liquid.scene.domain;
   CellGeometry geometry;
   geometry.dimensions = liquid.dimensions;
-  geometry.cell_size = liquid.options.pressure.cell_ratio * liquid.scene.spacing;
+  geometry.cell_size = liquid.options.get<PressureOptions>().cell_ratio * liquid.scene.spacing;
   for (int axis = 0; axis < liquid.dimensions; ++axis) {
     geometry.lower[axis] = liquid.next_walls[axis][0];
     geometry.upper[axis] = liquid.next_walls[axis][1];
@@ -84,7 +84,7 @@ struct PressureSystem::DoubleOperator final : LinearOperator<double> {
 };
 
 PressureSystem::PressureSystem(const Liquid& liquid) {
-  if (liquid.options.pressure.preconditioner == PreconditionerKind::multigrid)
+  if (liquid.options.get<PressureOptions>().preconditioner == PreconditionerKind::multigrid)
     multigrid_ = std::make_unique<CellMultigrid>(cell_geometry(liquid));
 }
 
@@ -249,8 +249,8 @@ KrylovResult PressureSystem::correct(Liquid& liquid, double size, double target,
   if (multigrid_ != nullptr) preconditioner = multigrid_.get();
   parallel_for(n, [&](std::size_t i) { correction_right_[i] = static_cast<float>(residual_[i] / size); });
   const auto options = correction_options<float>(size, target, 1e-3, left, singular);
-  const KrylovResult result = run_krylov<float>(liquid.options.pressure.solver, a, *preconditioner, correction_right_,
-                                                correction_, options, work_);
+  const KrylovResult result = run_krylov<float>(liquid.options.get<PressureOptions>().solver, a, *preconditioner,
+                                                correction_right_, correction_, options, work_);
   parallel_for(n, [&](std::size_t i) { (*liquid.reduced_pressure)[i] += size * correction_[i]; });
   return result;
 }
@@ -264,15 +264,15 @@ KrylovResult PressureSystem::correct_in_double(Liquid& liquid, double size, doub
   spume::Preconditioner<double>* preconditioner = &jacobi;
   if (multigrid_ != nullptr) preconditioner = multigrid_.get();
   const auto options = correction_options<double>(size, target, 1e-12, left, singular);
-  const KrylovResult result = run_krylov<double>(liquid.options.pressure.solver, a, *preconditioner, residual_,
-                                                 double_correction_, options, double_work_);
+  const KrylovResult result = run_krylov<double>(liquid.options.get<PressureOptions>().solver, a, *preconditioner,
+                                                 residual_, double_correction_, options, double_work_);
   parallel_for(n, [&](std::size_t i) { (*liquid.reduced_pressure)[i] += double_correction_[i]; });
   return result;
 }
 
 void PressureSystem::solve(Liquid& liquid, double helmholtz, const char* stage, Ledger& ledger) {
   const std::size_t n = liquid.size();
-  const PressureOptions& options = liquid.options.pressure;
+  const PressureOptions& options = liquid.options.get<PressureOptions>();
   const bool surface = liquid.plan.free_surface;
   residual_.resize(n);
 
@@ -371,17 +371,17 @@ void PressureSystem::solve_step(Liquid& liquid, double dt, Ledger& ledger) {
     // The new velocity moves the particles from here to the next positions: it is made free of divergence half way,
     // where div u = (div u here) - dt/2 tr(grad u . grad u). The step is then of second order, and a projection
     // does not cost the energy dt |grad p|^2 / 2 per time.
-    if (liquid.options.time.centred) add_gradient_trace(liquid, -0.5 * dt);
+    if (liquid.options.get<SchemeOptions>().centred) add_gradient_trace(liquid, -0.5 * dt);
     if (liquid.plan.density_relaxation) even_out_density(liquid, dt, right_hand_side_);
     set_matrix(liquid, helmholtz + regularisation(liquid, helmholtz));
     set_right_hand_side(liquid, helmholtz, -1 / dt);
     scope.add_bytes(traffic::divergence(liquid));
   }
+  const bool warm_start = liquid.options.get<PressureOptions>().warm_start;
   // Start from the pressure that the particle carries; held ones p = 0.
   parallel_for(n, [&](std::size_t i) {
     const bool pressure_fixed = liquid.plan.free_surface && liquid.pressure_fixed[i] != 0;
-    const double carried =
-        pressure_fixed || !liquid.options.pressure.warm_start ? 0.0 : (*liquid.pressure)[i] / density;
+    const double carried = pressure_fixed || !warm_start ? 0.0 : (*liquid.pressure)[i] / density;
     (*liquid.reduced_pressure)[i] = carried + (liquid.potential == nullptr ? 0.0 : (*liquid.potential)[i]);
   });
   solve(liquid, helmholtz, "pressure", ledger);

@@ -48,12 +48,12 @@ void keep_layers(Liquid& liquid) {
 
 void compute_shift(Liquid& liquid) {
   const int d = liquid.dimensions;
+  const ShiftingOptions& options = liquid.options.get<ShiftingOptions>();
   // King (3.12) at steps of courant 0.2, else in proportion to the distance moved, as far as that evens out: a liquid
   // at rest is not shifted, and small steps do not shift more (and dissipate more) than large ones. Particles that have
   // to make room for a bubble move whatever the speed, until they are no denser than the lattice: by 1/alpha - 1 just
   // after a bubble has come. Shifted for ever, those beside a bubble at rest below a surface lift the liquid.
-  const double most =
-      std::max(1.0, share_of_largest_shift * liquid.largest_shift / liquid.options.shifting.coefficient);
+  const double most = std::max(1.0, share_of_largest_shift * liquid.largest_shift / options.coefficient);
   const double of_distance = std::min(liquid.displacement, most);
   const auto strength = [&liquid, of_distance](std::size_t i) {
     const double taken = 1 / liquid.alpha_at(i) - 1;
@@ -61,8 +61,8 @@ void compute_shift(Liquid& liquid) {
     const double excess = (*liquid.divergence_of_position)[i] / liquid.lattice.divergence_of_position - 1;
     return std::clamp(excess / taken, of_distance, std::max(1.0, of_distance));
   };
-  const auto limit = [&liquid](std::array<double, 3>& shift, std::size_t i) {
-    const double longest = liquid.options.shifting.limit * std::max(1.0, liquid.displacement) * liquid.width_at(i);
+  const auto limit = [&liquid, &options](std::array<double, 3>& shift, std::size_t i) {
+    const double longest = options.limit * std::max(1.0, liquid.displacement) * liquid.width_at(i);
     const double length = std::hypot(shift[0], shift[1], shift[2]);
     if (length > longest)
       for (double& component : shift) component *= longest / length;
@@ -70,7 +70,7 @@ void compute_shift(Liquid& liquid) {
   parallel_for(liquid.size(), [&](std::size_t i) {
     std::array<double, 3> shift{};
     const double h = liquid.width_at(i);
-    const double coefficient = liquid.options.shifting.coefficient * h * h * strength(i);
+    const double coefficient = options.coefficient * h * h * strength(i);
     for (int axis = 0; axis < d; ++axis) shift[axis] = -coefficient * (*liquid.shift[axis])[i];
     if (liquid.plan.free_surface && liquid.at_surface[i] != 0) {
       // King (3.12), sign and tangential projection corrected: only the part along the surface is kept.

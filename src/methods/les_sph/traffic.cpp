@@ -67,7 +67,7 @@ double shift(Liquid& liquid) {
 double gradients(Liquid& liquid) {
   const Sizes size(liquid);
   double moved = size.vector + size.symmetric + 4;  // strain
-  if (liquid.gradient_trace != nullptr && liquid.options.time.centred) moved += 4;
+  if (liquid.gradient_trace != nullptr && liquid.options.get<SchemeOptions>().centred) moved += 4;
   if (liquid.plan.stored_gradient) moved += size.gradient;
   if (liquid.plan.test_filter) moved += size.float_vector;
   if (liquid.plan.shift_correction) moved += 2 * size.float_vector;
@@ -82,7 +82,7 @@ double shift_curvature(Liquid& liquid) {
 
 double eddy_viscosity(Liquid& liquid) {
   const Sizes size(liquid);
-  const TurbulenceModel model = liquid.options.turbulence.model;
+  const TurbulenceModel model = liquid.options.get<TurbulenceOptions>().model;
   const double products = 3 * size.symmetric;
   double moved = 4 + 4;  // strain, viscosity
   if (model == TurbulenceModel::mixed_scale) moved += size.vector + size.float_vector;
@@ -119,8 +119,8 @@ double divergence(Liquid& liquid) {
   const bool potential = liquid.potential != nullptr;
   double moved = size.vector + size.symmetric + 8 + (potential ? 8 + 4 : 0);
   moved += 8;  // the largest
-  if (liquid.options.time.centred) moved += 4 + 16;
-  if (liquid.options.time.centred && plan.no_slip) moved += size.vector + size.symmetric + 4;
+  if (liquid.options.get<SchemeOptions>().centred) moved += 4 + 16;
+  if (liquid.options.get<SchemeOptions>().centred && plan.no_slip) moved += size.vector + size.symmetric + 4;
   if (plan.density_relaxation) moved += 2 * 4 + 16 + (plan.free_surface ? 2 * 4 : 0);
   moved += 4 + 4 + 3 * 4 + (plan.free_surface ? 4 + 1 : 0);                         // matrix
   moved += 16 + 8 + 4 + 4 + (potential ? 8 + 4 : 0) + (plan.free_surface ? 1 : 0);  // right-hand side

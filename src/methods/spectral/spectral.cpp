@@ -35,12 +35,7 @@ void Spectral<T>::step(double dt, Ledger& ledger) {
 
 template <class T>
 Spectral<T>::Spectral(const LoadedCase& loaded) : loaded_(loaded), flow_(loaded) {
-  for (const std::string& name : loaded.options.output.fields)
-    if (name != "velocity" && name != "vorticity" && name != "pressure")
-      throw refusal(loaded.options, "output.fields",
-                    "output.fields names '" + name +
-                        "', which method \"spectral\" does not have; it has velocity, vorticity, pressure");
-  if (loaded.options.particles.any()) suspension_ = std::make_unique<Suspension<T>>(loaded, flow_);
+  if (loaded.options.get<ParticleCaseOptions>().any()) suspension_ = std::make_unique<Suspension<T>>(loaded, flow_);
 }
 
 template <class T>
@@ -48,7 +43,7 @@ void Spectral<T>::start() {
   flow_.set_potential(initial_potential(loaded_, flow_));
   // The force is proportional to the velocity of its shell: from rounding alone it would raise rounding.
   const double noise = 1e4 * std::pow(std::numeric_limits<T>::epsilon(), 2);
-  if (loaded_.options.forcing.kind == ForcingKind::shell &&
+  if (loaded_.options.get<ForcingOptions>().kind == ForcingKind::shell &&
       !(flow_.forced_energy() > noise * flow_.measure_budget().energy))
     throw refusal(loaded_.options, "forcing",
                   "the forced shell holds no energy at the start, so that no force could inject any; choose "
@@ -79,8 +74,8 @@ StepLimit Spectral<T>::step_limit() const {
 
 template <class T>
 std::vector<Stage> Spectral<T>::plan() const {
-  const SpectralOptions& options = loaded_.options.spectral;
-  const ForcingKind forcing = loaded_.options.forcing.kind;
+  const SpectralOptions& options = loaded_.options.get<SpectralOptions>();
+  const ForcingKind forcing = loaded_.options.get<ForcingOptions>().kind;
   const bool padded = options.dealiasing == Dealiasing::padded;
   const char* const integrators[] = {"Adams-Bashforth 2", "Runge-Kutta 3, three tendencies a step",
                                      "Runge-Kutta 4, five tendencies a step"};
@@ -140,8 +135,8 @@ std::vector<SeriesColumn> Spectral<T>::series_columns() const {
 template <class T>
 std::vector<Invariant> Spectral<T>::invariants() const {
   const Case& options = loaded_.options;
-  if (options.forcing.kind != ForcingKind::none || loaded_.scene.body_force) return {};
-  const ParticleCoupling coupling = options.particles.coupling;
+  if (options.get<ForcingOptions>().kind != ForcingKind::none || loaded_.scene.body_force) return {};
+  const ParticleCoupling coupling = options.get<ParticleCaseOptions>().coupling;
   if (suspension_ && (coupling == ParticleCoupling::two_way || coupling == ParticleCoupling::four_way)) return {};
   return {{.quantity = "energy_growth",
            .kind = Invariant::Kind::growth,

@@ -31,7 +31,7 @@ PeriodicGrid grid_of(const LoadedCase& loaded) {
 
 std::vector<std::array<double, 3>> read_positions(const LoadedCase& loaded) {
   const std::filesystem::path path =
-      std::filesystem::path(loaded.options.path).parent_path() / loaded.options.particles.file;
+      std::filesystem::path(loaded.options.path).parent_path() / loaded.options.get<ParticleCaseOptions>().file;
   std::ifstream file(path);
   if (!file) throw refusal(loaded.options, "particles.file", "particles.file " + path.string() + " cannot be read");
   std::vector<std::array<double, 3>> positions;
@@ -51,12 +51,12 @@ std::vector<std::array<double, 3>> read_positions(const LoadedCase& loaded) {
 
 // Seven particles and six growths for each reference particle.
 double lyapunov_bytes(const LoadedCase& loaded) {
-  return static_cast<double>(loaded.options.particles.lyapunov) * (7.0 * (8 * 7 + 16) + 6 * 8);
+  return static_cast<double>(loaded.options.get<ParticleCaseOptions>().lyapunov) * (7.0 * (8 * 7 + 16) + 6 * 8);
 }
 
 void require_memory(const LoadedCase& loaded, const PointParticleOptions& options) {
   const double particles = suspension_bytes(loaded, options);
-  const double needed = particles + flow_bytes(loaded.scene.grid, loaded.options.spectral);
+  const double needed = particles + flow_bytes(loaded.scene.grid, loaded.options.get<SpectralOptions>());
   const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
   if (needed <= machine) return;
   if (const double followed = lyapunov_bytes(loaded); followed > 0.5 * needed) {
@@ -64,7 +64,8 @@ void require_memory(const LoadedCase& loaded, const PointParticleOptions& option
     std::snprintf(text, sizeof text,
                   "particles.lyapunov = %.4g reference particles and their shadows need %.3g GB, and this machine has "
                   "%.3g GB; some thousands are enough",
-                  static_cast<double>(loaded.options.particles.lyapunov), followed / 1e9, machine / 1e9);
+                  static_cast<double>(loaded.options.get<ParticleCaseOptions>().lyapunov), followed / 1e9,
+                  machine / 1e9);
     throw refusal(loaded.options, "particles.lyapunov", text);
   }
   char text[200];
@@ -72,13 +73,14 @@ void require_memory(const LoadedCase& loaded, const PointParticleOptions& option
                 "flow and particles need %.3g GB, the particles %.3g of it, and this machine has %.3g GB; lower "
                 "particles.count or resolution.grid",
                 needed / 1e9, particles / 1e9, machine / 1e9);
-  throw refusal(loaded.options, loaded.options.particles.count > 0 ? "particles.count" : "particles.volume_fraction",
+  throw refusal(loaded.options,
+                loaded.options.get<ParticleCaseOptions>().count > 0 ? "particles.count" : "particles.volume_fraction",
                 text);
 }
 
 // Heavy particles may be too crowded for any step: their force is then clipped below close packing.
 void limit_clipping(const Case& options, PointParticleOptions& out) {
-  const ParticleCaseOptions& in = options.particles;
+  const ParticleCaseOptions& in = options.get<ParticleCaseOptions>();
   const double bearable = stable_volume_fraction(out.motion, out.scheme, out.most_volume_fraction);
   if (bearable >= out.most_volume_fraction) return;
   if (in.max_volume_fraction != ParticleCaseOptions().max_volume_fraction) {
@@ -111,16 +113,17 @@ constexpr int overlap_bins = 20;
 
 double suspension_bytes(const LoadedCase& loaded, const PointParticleOptions& options) {
   const PeriodicGrid grid = grid_of(loaded);
-  const double number = loaded.options.spectral.precision == FieldPrecision::f64 ? 8 : 4;
+  const double number = loaded.options.get<SpectralOptions>().precision == FieldPrecision::f64 ? 8 : 4;
   // Velocity or force on the points and, when the flow feels it, the force as modes.
   double fields = 3 * number * static_cast<double>(grid.storage());
-  if (acts_on_flow(options.coupling)) fields += 3 * mode_bytes(loaded.scene.grid, loaded.options.spectral.precision);
+  if (acts_on_flow(options.coupling))
+    fields += 3 * mode_bytes(loaded.scene.grid, loaded.options.get<SpectralOptions>().precision);
   return ParticleSystem::estimated_bytes(grid, options) + lyapunov_bytes(loaded) + fields;
 }
 
 PointParticleOptions particle_options(const LoadedCase& loaded) {
-  const ParticleCaseOptions& in = loaded.options.particles;
-  const double nu = loaded.scene.fluid.kinematic_viscosity, injection = loaded.options.forcing.injection;
+  const ParticleCaseOptions& in = loaded.options.get<ParticleCaseOptions>();
+  const double nu = loaded.scene.fluid.kinematic_viscosity, injection = loaded.options.get<ForcingOptions>().injection;
   const Domain& domain = loaded.scene.domain;
   PointParticleOptions out;
   double volume = 1;
@@ -202,7 +205,7 @@ PointParticleOptions particle_options(const LoadedCase& loaded) {
   out.most_volume_fraction = in.max_volume_fraction;
   out.sort_every = static_cast<int>(std::min<std::int64_t>(in.sort_every, 1 << 30));
   // Adams-Bashforth extrapolates from the forces at the ends of steps; the others hold the force over the coming step.
-  if (loaded.options.spectral.integrator != Integrator::ab2) out.scheme = {1, 0};
+  if (loaded.options.get<SpectralOptions>().integrator != Integrator::ab2) out.scheme = {1, 0};
   if (acts_on_flow(out.coupling) && motion.beta > 0) limit_clipping(loaded.options, out);
   require_memory(loaded, out);
   return out;
@@ -219,7 +222,7 @@ Suspension<T>::Suspension(const LoadedCase& loaded, Flow<T>& flow)
           static_cast<T>(b_spline_prefilter(system_.options().spline_order, static_cast<int>(k), grid_.points[axis])));
   }
   for (auto& field : field_) field.resize(grid_.storage());
-  follows_exponents_ = loaded.options.particles.lyapunov > 0;
+  follows_exponents_ = loaded.options.get<ParticleCaseOptions>().lyapunov > 0;
 }
 
 template <class T>
@@ -235,9 +238,9 @@ void Suspension<T>::start() {
   Ledger untimed;
   system_.begin(velocity(untimed));
   if (follows_exponents_)
-    tracker_ = LyapunovTracker(*system_.double_field(), static_cast<std::size_t>(loaded_.options.particles.lyapunov),
-                               system_.options().motion.response_time, system_.particles().common_diameter,
-                               loaded_.scene.seed + 1);
+    tracker_ = LyapunovTracker(
+        *system_.double_field(), static_cast<std::size_t>(loaded_.options.get<ParticleCaseOptions>().lyapunov),
+        system_.options().motion.response_time, system_.particles().common_diameter, loaded_.scene.seed + 1);
 }
 
 template <class T>
@@ -246,7 +249,7 @@ void Suspension<T>::before_step(Ledger& ledger) {
   system_.template feedback<T>({field_[0].data(), field_[1].data(), field_[2].data()}, ledger);
   const auto scope = ledger.time("force to modes", static_cast<double>(grid_.point_count()));
   force_modes(flow_, read(), grid_.z_stride, force_);
-  if (!loaded_.options.particles.mean_force_moves_fluid)
+  if (!loaded_.options.get<ParticleCaseOptions>().mean_force_moves_fluid)
     for (auto& component : force_) component[0] = 0;
   flow_.set_force({force_[0].data(), force_[1].data(), force_[2].data()});
 }
@@ -279,7 +282,8 @@ void Suspension<T>::require_possible(const StepLimit& flow) const {
       "particles.coupling = \"one-way\"",
       motion.response_time, system_.volume_fraction() * motion.density_ratio(), system_.volume_fraction(),
       motion.density_ratio(), longest, flow.dt);
-  throw refusal(loaded_.options, loaded_.options.particles.stokes > 0 ? "particles.stokes" : "particles.response_time",
+  throw refusal(loaded_.options,
+                loaded_.options.get<ParticleCaseOptions>().stokes > 0 ? "particles.stokes" : "particles.response_time",
                 text);
 }
 
@@ -323,7 +327,7 @@ void Suspension<T>::add_columns(std::vector<SeriesColumn>& list) const {
                            {"particle_rms_slip", "speed against the fluid"},
                            {"correlation_dimension", "1"},
                            {"box_count_variance", "over that of random places"}});
-  if (loaded_.options.particles.overlap_samples > 0)
+  if (loaded_.options.get<ParticleCaseOptions>().overlap_samples > 0)
     list.insert(list.end(), {{"overlap_ratio", "of the volume of the particles"}, {"overlap_ratio_error", "standard"}});
   if (system_.couples())
     list.insert(list.end(), {{"particle_work", "power of the force on the flow, mean"},
@@ -351,7 +355,7 @@ void Suspension<T>::values(std::vector<double>& row) {
                          std::sqrt(motion.mean_square_slip),
                          correlation_dimension(pairs, dimension_range[0] * spacing, dimension_range[1] * spacing),
                          box_count_variance(boxes, x, system_.size())});
-  if (const auto samples = loaded_.options.particles.overlap_samples; samples > 0) {
+  if (const auto samples = loaded_.options.get<ParticleCaseOptions>().overlap_samples; samples > 0) {
     const SampledValue overlap =
         system_.measure_overlap(static_cast<std::size_t>(samples), static_cast<std::uint32_t>(flow_.steps()));
     row.insert(row.end(), {overlap.value, overlap.standard_error});

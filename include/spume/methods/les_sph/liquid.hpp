@@ -8,11 +8,14 @@
 #include <vector>
 
 #include "spume/core/field_set.hpp"
+#include "spume/methods/les_sph/options.hpp"
 #include "spume/methods/les_sph/plan.hpp"
 #include "spume/neighbours/cell_grid.hpp"
 #include "spume/neighbours/images.hpp"
 #include "spume/neighbours/neighbour_list.hpp"
 #include "spume/operators/sph_operators.hpp"
+#include "spume/physics/bubbles/options.hpp"
+#include "spume/physics/turbulence/options.hpp"
 #include "spume/scene/case.hpp"
 
 namespace spume::les_sph {

@@ -4,7 +4,10 @@
 
 #include <vector>
 
+#include "spume/methods/les_sph/options.hpp"
 #include "spume/methods/method.hpp"
+#include "spume/physics/bubbles/options.hpp"
+#include "spume/physics/turbulence/options.hpp"
 #include "spume/scene/case.hpp"
 
 namespace spume::les_sph {

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "checks.hpp"
+#include "spume/methods/spectral/options.hpp"
+#include "spume/scene/draft.hpp"
 
 namespace spume {
 namespace {
@@ -15,7 +16,7 @@ double kolmogorov_length(const Draft& draft) {
   const double nu = uses_si(fluid)   ? fluid.viscosity.value_or(0) / fluid.density.value_or(1)
                     : fluid.reynolds ? 1 / *fluid.reynolds
                                      : 0.0;
-  return std::pow(nu * nu * nu / draft.options.forcing.injection, 0.25);
+  return std::pow(nu * nu * nu / draft.options.get<ForcingOptions>().injection, 0.25);
 }
 
 }  // namespace
@@ -23,7 +24,7 @@ double kolmogorov_length(const Draft& draft) {
 void check_particles(const Draft& draft, Problems& problems) {
   const Node* section = draft.node("particles");
   if (!section) return;
-  const ParticleCaseOptions& p = draft.options.particles;
+  const ParticleCaseOptions& p = draft.options.get<ParticleCaseOptions>();
   const auto has = [&](const char* key) { return draft.node(std::string("particles.") + key) != nullptr; };
   const auto fault = [&](const char* key, const std::string& text) {
     const Node* node = draft.node(std::string("particles.") + key);
@@ -47,13 +48,13 @@ void check_particles(const Draft& draft, Problems& problems) {
   exactly_one({"diameter", "diameter_over_eta", "diameters"}, true, "diameter = <number>  # length, > 0");
   exactly_one({"stokes", "response_time"}, false, "");
   for (const char* key : {"stokes", "diameter_over_eta"})
-    if (has(key) && draft.options.forcing.kind != ForcingKind::shell)
+    if (has(key) && draft.options.get<ForcingOptions>().kind != ForcingKind::shell)
       fault(key, "is counted in Kolmogorov scales of the injected energy and needs forcing.kind = \"shell\"");
 
   std::vector<double> diameters = p.diameters;
   if (has("diameter")) diameters = {p.diameter};
   const char* key = has("diameter") ? "diameter" : "diameters";
-  if (has("diameter_over_eta") && draft.options.forcing.injection > 0) {
+  if (has("diameter_over_eta") && draft.options.get<ForcingOptions>().injection > 0) {
     key = "diameter_over_eta";
     diameters = {p.diameter_over_eta * kolmogorov_length(draft)};
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the reader gathers from a case file before geometry and expressions are built.
+// What the reader gathers from a case file before geometry and expressions are built: what checks look at.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "document.hpp"
 #include "spume/scene/case.hpp"
+#include "spume/scene/document.hpp"
 
 namespace spume {
 
@@ -41,6 +41,11 @@ struct FluidDraft {
   std::optional<double> reynolds, froude, mach;
   std::optional<double> density, viscosity, gravity, sound_speed;
 };
+
+// True when the case uses the SI set of [fluid].
+inline bool uses_si(const FluidDraft& fluid) {
+  return fluid.density || fluid.viscosity || fluid.gravity || fluid.sound_speed;
+}
 
 struct SpargerDraft {
   Sparger sparger;
