@@ -55,10 +55,10 @@ CaseSchema::CaseSchema(std::vector<MethodDeclaration> methods, std::vector<std::
   }
   const std::vector<Section> run = run_sections(courant);
   const auto owners_of = [&](MethodProperty property) {
-    Owners owners{property == nullptr, {}};
+    Owners owners{false, {}};
     for (const MethodDeclaration& method : methods_)
-      if (property != nullptr && method.*property) owners.names.push_back(method.name);
-    return owners;
+      if (property == nullptr || property(method)) owners.names.push_back(method.name);
+    return owners.names.size() == methods_.size() ? Owners{} : owners;
   };
   sections_.insert(sections_.end(), run.begin(), run.end());
   for (Section& section : sections_) {

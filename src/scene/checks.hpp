@@ -13,6 +13,7 @@ void check_resolution(const Draft& draft, Problems& problems);
 void check_solids(const Draft& draft, Problems& problems);
 void check_fluid(const Draft& draft, Problems& problems);
 void check_liquids(const Draft& draft, Problems& problems);
+void check_phases(const Draft& draft, Problems& problems);  // and the regions that they fill
 void check_output(const Draft& draft, Problems& problems);
 // Of output.fields; `known` are those of the method.
 void check_output_fields(const Draft& draft, const std::vector<std::string>& known, Problems& problems);

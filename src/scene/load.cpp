@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/scene/load.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -168,7 +169,13 @@ Fluid make_fluid(const Draft& draft) {
   const FluidDraft& given = draft.fluid;
   Fluid fluid;
   double gravity = 0;
-  if (uses_si(given)) {
+  if (!draft.phases.empty()) {
+    const Phase& first = draft.phases.front();
+    fluid.density = first.density;
+    fluid.kinematic_viscosity = first.viscosity / first.density;
+    fluid.sound_speed = first.sound_speed;
+    gravity = given.gravity.value_or(0);
+  } else if (uses_si(given)) {
     fluid.density = given.density.value_or(1);
     fluid.kinematic_viscosity = given.viscosity.value_or(0) / fluid.density;
     fluid.sound_speed = given.sound_speed.value_or(0);
@@ -191,24 +198,32 @@ void set_grid(Scene& scene, const std::vector<std::int64_t>& grid) {
   }
 }
 
+LiquidRegion make_region(const Draft& draft, const LiquidDraft& given, const std::string& name, Compiler& compiler) {
+  LiquidRegion region;
+  region.name = name;
+  region.node = draft.node(name);
+  if (given.where) region.where = compiler.compile(*given.where, name + ".where", Arguments::place);
+  region.lower = to_vec3(given.lower.empty() ? draft.lower : given.lower);
+  region.upper = to_vec3(given.upper.empty() ? draft.upper : given.upper);
+  region.ball = !given.centre.empty() && given.radius;
+  if (region.ball) {
+    region.centre = to_vec3(given.centre);
+    region.radius = *given.radius;
+  }
+  region.velocity = compiler.compile(given.velocity, name + ".velocity", Arguments::place);
+  region.conform = given.conform;
+  return region;
+}
+
 std::vector<LiquidRegion> make_regions(const Draft& draft, Compiler& compiler) {
   std::vector<LiquidRegion> regions;
-  for (std::size_t k = 0; k < draft.liquids.size(); ++k) {
-    const LiquidDraft& liquid = draft.liquids[k];
-    LiquidRegion region;
-    region.name = "liquid." + std::to_string(k);
-    region.node = draft.node(region.name);
-    if (liquid.where) region.where = compiler.compile(*liquid.where, region.name + ".where", Arguments::place);
-    region.lower = to_vec3(liquid.lower.empty() ? draft.lower : liquid.lower);
-    region.upper = to_vec3(liquid.upper.empty() ? draft.upper : liquid.upper);
-    region.ball = !liquid.centre.empty() && liquid.radius;
-    if (region.ball) {
-      region.centre = to_vec3(liquid.centre);
-      region.radius = *liquid.radius;
-    }
-    region.velocity = compiler.compile(liquid.velocity, region.name + ".velocity", Arguments::place);
-    region.conform = liquid.conform;
-    regions.push_back(std::move(region));
+  for (std::size_t k = 0; k < draft.liquids.size(); ++k)
+    regions.push_back(make_region(draft, draft.liquids[k], "liquid." + std::to_string(k), compiler));
+  for (std::size_t k = 0; k < draft.regions.size(); ++k) {
+    regions.push_back(make_region(draft, draft.regions[k], "region." + std::to_string(k), compiler));
+    const auto phase = std::find_if(draft.phases.begin(), draft.phases.end(),
+                                    [&](const Phase& one) { return one.name == draft.regions[k].phase; });
+    regions.back().phase = static_cast<std::int32_t>(phase - draft.phases.begin());
   }
   return regions;
 }
@@ -248,13 +263,15 @@ void note_places(const Node& node, const std::string& name, const std::string& f
 
 void check(const MethodDeclaration* method, Draft& draft, Problems& problems) {
   // A case of no known method is read as one of particles, which most are.
-  const bool regions = method == nullptr || method->fills_regions;
+  const bool phases = method != nullptr && method->fills_phases;
+  const bool liquids = method == nullptr || method->fills_regions;
   check_title(draft, problems);
   check_domain(draft, problems);
-  if (regions) check_resolution(draft, problems);
+  if (liquids || phases) check_resolution(draft, problems);
   check_solids(draft, problems);
-  check_fluid(draft, problems);
-  if (regions) check_liquids(draft, problems);
+  if (!phases) check_fluid(draft, problems);
+  if (liquids) check_liquids(draft, problems);
+  if (phases) check_phases(draft, problems);
   if (method != nullptr) {
     if (method->check) method->check(draft, problems);
     check_output_fields(draft, method->output_fields(draft.options), problems);
@@ -312,13 +329,15 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   scene.title = draft.options.title;
   scene.method = draft.options.method;
   scene.fluid = make_fluid(draft);
+  scene.phases = draft.phases;
+  scene.surface_tension = draft.surface_tension;
   scene.spacing = draft.options.spacing;
   scene.seed = draft.options.seed;
   loaded.bytes_per_particle = method->bytes_per_particle(draft.options, draft.dimensions);
   const double most = machine_memory_bytes() / loaded.bytes_per_particle;
   if (method->uses_grid) set_grid(draft, most, scene, problems);
   Lattice lattice;
-  if (method->fills_regions) {
+  if (uses_particles(*method)) {
     lattice = make_lattice(scene.domain, scene.spacing);
     fill_scene(scene, lattice, regions, draft.jitter, most, problems);
   }
@@ -329,7 +348,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   problems.throw_if_any();
 
   draft.options.groups = describe_groups(draft, scene, compiler.scope());
-  if (method->fills_regions) describe_lattice(scene, lattice, draft.options.groups);
+  if (uses_particles(*method)) describe_lattice(scene, lattice, draft.options.groups);
   note_places(document, "", file, draft.options.places);
   draft.options.resolved = resolved_text(document, schema, draft);
   draft.options.unused_options = unused_options(draft, schema, file);

@@ -5,9 +5,6 @@
 namespace spume {
 namespace {
 
-constexpr MethodProperty regions = &MethodDeclaration::fills_regions;
-constexpr MethodProperty grid = &MethodDeclaration::uses_grid;
-
 Draft& whole(Draft& draft) {
   return draft;
 }
@@ -51,12 +48,12 @@ Section domain() {
             {{"free-slip", BoundaryKind::free_slip}, {"no-slip", BoundaryKind::no_slip}, {"open", BoundaryKind::open}},
             description)
         .absent("open")
-        .only(regions);
+        .only(uses_particles);
   return section;
 }
 
 Section wall_velocity() {
-  auto section = spume::section<Draft>("domain.wall_velocity", whole).whole_only(regions);
+  auto section = spume::section<Draft>("domain.wall_velocity", whole).whole_only(uses_particles);
   for (const std::string name : {"left", "right", "front", "back", "bottom", "top"})
     section
         .option(
@@ -75,7 +72,7 @@ Section solid() {
       .required()
       .word("wall", &S::wall, {{"free-slip", BoundaryKind::free_slip}, {"no-slip", BoundaryKind::no_slip}},
             "condition on its faces")
-      .whole_only(regions);
+      .whole_only(uses_particles);
 }
 
 Section resolution() {
@@ -83,17 +80,17 @@ Section resolution() {
   return section<R>("resolution", [](Draft& d) -> R& { return d.options.resolution; })
       .option("spacing", &Case::spacing, "length", positive(), "distance between particles at the start")
       .required()
-      .only(regions)
+      .only(uses_particles)
       .option("grid", &Draft::grid, "", between(4, 16384),
               "points along x, y, z, even; one number: the same along each")
       .required()
-      .only(grid)
+      .only(uses_grid)
       .option("smoothing_ratio", &R::smoothing_ratio, "1", between(0.8, 3), "smoothing length h over spacing")
-      .only(regions)
+      .only(uses_particles)
       .word("kernel", &R::kernel,
             {{"wendland-c2", KernelKind::wendland_c2}, {"quintic-spline", KernelKind::quintic_spline}},
             "smoothing kernel: support 2h for wendland-c2, 3h for quintic-spline")
-      .only(regions);
+      .only(uses_particles);
 }
 
 Section fluid() {
@@ -101,22 +98,25 @@ Section fluid() {
   return section<F>("fluid", &Draft::fluid)
       .option("reynolds", &F::reynolds, "1", positive(), "Reynolds number; kinematic viscosity is 1/Re")
       .absent("inviscid")
+      .only(has_one_fluid)
       .option("froude", &F::froude, "1", positive(), "Froude number; gravity is 1/Fr^2")
       .absent("no gravity")
-      .only(regions)
+      .only(fills_regions)
       .option("mach", &F::mach, "1", between(0, 1), "Mach number; sound speed is 1/Ma; 0: incompressible")
       .absent("incompressible")
-      .only(regions)
+      .only(fills_regions)
       .option("density", &F::density, "kg/m3", positive(), "density, first of the SI set")
       .absent("1, in groups")
+      .only(has_one_fluid)
       .option("viscosity", &F::viscosity, "Pa s", not_negative(), "dynamic viscosity")
       .absent("inviscid")
+      .only(has_one_fluid)
       .option("gravity", &F::gravity, "m/s2", not_negative(), "gravity, downwards along the last axis")
       .absent("no gravity")
-      .only(regions)
+      .only(uses_particles)
       .option("sound_speed", &F::sound_speed, "m/s", not_negative(), "sound speed; 0: incompressible")
       .absent("incompressible")
-      .only(regions);
+      .only(fills_regions);
 }
 
 Section constants() {
@@ -127,10 +127,11 @@ Section constants() {
                        .description = "names for numbers and expressions, used in expressions in any order"}}};
 }
 
-Section liquid() {
+// Shape of a region: the part of the domain that satisfies all that is given, and how it moves at the start.
+template <class Region>
+void add_shape(SectionOf<Region>& section) {
   using L = LiquidDraft;
-  return repeated_section<L>("liquid", &Draft::liquids)
-      .option("where", &L::where, "expression of x y z, positive inside the region")
+  section.option("where", &L::where, "expression of x y z, positive inside the region")
       .absent("everywhere")
       .option("lower", &L::lower, "length", "lower corner of a box")
       .absent("the domain")
@@ -141,30 +142,62 @@ Section liquid() {
       .option("radius", &L::radius, "length", positive(), "radius of a ball (disc in 2-D)")
       .absent("no ball")
       .option("velocity", &L::velocity, "length/time", "velocity at the start: expressions of x y z")
-      .absent("at rest")
-      .option("conform", &L::conform, "columns of particles end exactly on the surface where = 0")
-      .whole_only(regions);
+      .absent("at rest");
+}
+
+Section liquid() {
+  auto section = repeated_section<LiquidDraft>("liquid", &Draft::liquids).whole_only(fills_regions);
+  add_shape(section);
+  return section.option("conform", &LiquidDraft::conform, "columns of particles end exactly on the surface where = 0");
+}
+
+Section phase() {
+  using P = Phase;
+  return repeated_section<P>("phase", &Draft::phases)
+      .option("name", &P::name, "name, for the regions that it fills")
+      .required()
+      .option("density", &P::density, "kg/m3", positive(), "density")
+      .required()
+      .option("viscosity", &P::viscosity, "Pa s", not_negative(), "dynamic viscosity; 0: inviscid")
+      .required()
+      .option("sound_speed", &P::sound_speed, "m/s", not_negative(), "sound speed; 0: incompressible")
+      .whole_only(fills_phases);
+}
+
+Section interface_section() {
+  return section<Draft>("interface", whole)
+      .option("surface_tension", &Draft::surface_tension, "N/m", not_negative(), "between the phases")
+      .whole_optional()
+      .whole_only(fills_phases);
+}
+
+Section region() {
+  auto section = repeated_section<RegionDraft>("region", &Draft::regions).whole_only(fills_phases);
+  section.option("phase", &RegionDraft::phase, "name of the phase that fills it, in place of an earlier region's")
+      .required();
+  add_shape(section);
+  return section;
 }
 
 Section initial() {
   return section<Draft>("initial", whole)
       .option("jitter", &Draft::jitter, "spacing", between(0, 0.5),
               "largest random displacement of a particle along each axis")
-      .only(regions);
+      .only(uses_particles);
 }
 
 Section forces() {
   return section<Draft>("forces", whole)
       .option("body", &Draft::body_force, "length/time2", "acceleration beside gravity: expressions of x y z t")
       .absent("none beside gravity")
-      .whole_only(regions);
+      .whole_only(uses_particles);
 }
 
 }  // namespace
 
 std::vector<Section> scene_sections() {
-  return {general(), domain(),    wall_velocity(), solid(),   resolution(),
-          fluid(),   constants(), liquid(),        initial(), forces()};
+  return {general(), domain(), wall_velocity(),     solid(),  resolution(), fluid(), constants(),
+          liquid(),  phase(),  interface_section(), region(), initial(),    forces()};
 }
 
 }  // namespace spume

@@ -252,7 +252,10 @@ void refuse_unknown_keys(const CaseSchema& schema, const Node& table, const std:
     } else {
       if (name.empty() && section.name.find('.') == std::string::npos) known.push_back(section.name);
       if (section.name.rfind(name + ".", 0) == 0) known.push_back(section.name.substr(name.size() + 1));
-      for (const Option& option : section.options) owner.emplace(option.key, section.name);
+      // No hint leads to a section that no method takes.
+      const bool taken = section.owners.all || !section.owners.names.empty();
+      for (const Option& option : section.options)
+        if (taken) owner.emplace(option.key, section.name);
     }
   }
   for (std::size_t i = 0; i < table.keys.size(); ++i) {

@@ -41,7 +41,7 @@ class Writer {
 
  private:
   std::string unit_in_case(const std::string& unit) const {
-    if (!uses_si(draft_.fluid)) return unit;
+    if (!uses_si(draft_)) return unit;
     if (unit == "length") return "m";
     if (unit == "time") return "s";
     if (unit == "length/time") return "m/s";

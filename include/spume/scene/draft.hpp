@@ -26,6 +26,11 @@ struct LiquidDraft {
   bool conform = false;
 };
 
+// A [[region]]: what a phase fills. `conform` stays false.
+struct RegionDraft : LiquidDraft {
+  std::string phase;
+};
+
 struct SolidDraft {
   std::vector<double> lower, upper;
   BoundaryKind wall = BoundaryKind::free_slip;
@@ -42,7 +47,7 @@ struct FluidDraft {
   std::optional<double> density, viscosity, gravity, sound_speed;
 };
 
-// True when the case uses the SI set of [fluid].
+// True when [fluid] is given by its SI set.
 inline bool uses_si(const FluidDraft& fluid) {
   return fluid.density || fluid.viscosity || fluid.gravity || fluid.sound_speed;
 }
@@ -73,6 +78,9 @@ struct Draft {
   std::map<std::string, std::vector<ExpressionText>> wall_velocity;  // by name of the side
   FluidDraft fluid;
   std::vector<LiquidDraft> liquids;
+  std::vector<Phase> phases;
+  double surface_tension = 0;
+  std::vector<RegionDraft> regions;
   std::vector<SolidDraft> solids;
   std::vector<ProbeDraft> probes;
   BubbleDraft bubbles;
@@ -92,5 +100,10 @@ struct Draft {
   }
   bool usable(const std::string& name) const { return bad.count(name) == 0; }
 };
+
+// True when the case is in SI units: by its fluid, or because it has phases, which are always.
+inline bool uses_si(const Draft& draft) {
+  return uses_si(draft.fluid) || !draft.phases.empty();
+}
 
 }  // namespace spume

@@ -17,7 +17,8 @@ struct MethodDeclaration {
 
   // Properties: which of the scene's own sections and options the method takes.
   bool uses_grid = false;      // resolution.grid; the flow fills the box, and [initial] tells its velocity
-  bool fills_regions = false;  // resolution.spacing; particles fill [[liquid]] between walls and solids
+  bool fills_regions = false;  // resolution.spacing; particles of one fluid fill [[liquid]] between walls and solids
+  bool fills_phases = false;   // the same with the fluids of [[phase]], which fill each [[region]]
 
   // Sections of its own, and options that it adds to sections of the scene. Several methods may name the same
   // declaration: its options then belong to all of them.
@@ -39,5 +40,21 @@ struct MethodDeclaration {
   // What output.fields may name.
   std::function<std::vector<std::string>(const Case&)> output_fields;
 };
+
+inline bool uses_grid(const MethodDeclaration& method) {
+  return method.uses_grid;
+}
+inline bool fills_regions(const MethodDeclaration& method) {
+  return method.fills_regions;
+}
+inline bool fills_phases(const MethodDeclaration& method) {
+  return method.fills_phases;
+}
+inline bool uses_particles(const MethodDeclaration& method) {
+  return method.fills_regions || method.fills_phases;
+}
+inline bool has_one_fluid(const MethodDeclaration& method) {
+  return !method.fills_phases;
+}
 
 }  // namespace spume

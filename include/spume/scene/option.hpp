@@ -24,7 +24,7 @@ namespace spume {
 
 struct MethodDeclaration;
 // What an option or a section is for: a property of the methods that take it. Null: every method takes it.
-using MethodProperty = bool MethodDeclaration::*;
+using MethodProperty = bool (*)(const MethodDeclaration&);
 
 enum class OptionType {
   number,
