@@ -19,16 +19,6 @@ class OptionGroups {
     groups_.try_emplace(typeid(T), T{});
   }
 
-  template <class T>
-  void set(T group) {
-    groups_.insert_or_assign(typeid(T), std::move(group));
-  }
-
-  template <class T>
-  bool has() const {
-    return groups_.count(typeid(T)) > 0;
-  }
-
   // Throws std::logic_error when the method of the case has not declared the group. A search by type: loops over
   // particles keep the reference.
   template <class T>
