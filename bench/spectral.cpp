@@ -13,6 +13,7 @@
 #include "spume/core/parallel.hpp"
 #include "spume/fourier/box_transform.hpp"
 #include "spume/fourier/lane_vector.hpp"
+#include "spume/methods/registry.hpp"
 #include "spume/methods/spectral/flow_fields.hpp"
 #include "spume/methods/spectral/initial_state.hpp"
 
@@ -26,9 +27,10 @@ LoadedCase turbulence(std::size_t n, Integrator integrator) {
   loaded.scene.domain.upper = {2 * std::numbers::pi, 2 * std::numbers::pi, 2 * std::numbers::pi};
   loaded.scene.grid = {n, n, n};
   loaded.scene.fluid.kinematic_viscosity = 0.01;
-  loaded.options.initial.kind = InitialKind::taylor_green;
+  case_schema().declare_groups(loaded.options, "spectral");
+  loaded.options.get<InitialOptions>().kind = InitialKind::taylor_green;
   loaded.options.time.courant = 1;
-  loaded.options.spectral.integrator = integrator;
+  loaded.options.get<SpectralOptions>().integrator = integrator;
   return loaded;
 }
 
@@ -50,7 +52,7 @@ void flow_step(benchmark::State& state) {
   const int threads = use_threads(state, 1);
   const auto n = static_cast<std::size_t>(state.range(0));
   LoadedCase loaded = turbulence(n, Integrator::ab2);
-  if (sizeof(T) == 4) loaded.options.spectral.precision = FieldPrecision::f32;
+  if (sizeof(T) == 4) loaded.options.get<SpectralOptions>().precision = FieldPrecision::f32;
   spectral::Spectral<T> method(loaded);
   method.start();
   const double dt = 0.2 * method.step_limit().dt;

@@ -8,7 +8,7 @@
 
 #include "spume/core/parallel.hpp"
 #include "spume/methods/les_sph/les_sph.hpp"
-#include "spume/scene/load.hpp"
+#include "spume/methods/registry.hpp"
 
 namespace spume {
 namespace {

@@ -29,6 +29,11 @@ int options_verb(const std::string& section, const Program& program) {
     if (!option.default_text.empty()) facts += "; default " + option.default_text;
     std::printf("  %-24s %s\n  %-24s   %s\n", option.key.c_str(), option.description.c_str(), "", facts.c_str());
   }
+  if (section.empty() && !program.methods.empty()) {
+    std::printf("(methods)\n");
+    for (const auto& [name, description] : program.methods)
+      std::printf("  %-24s %s\n", name.c_str(), description.c_str());
+  }
   if (!found) throw InputError("there is no section '" + wanted + "'; there are " + known);
   return exit_done;
 }

@@ -11,7 +11,6 @@
 
 #include "spume/core/machine.hpp"
 #include "spume/run/version.hpp"
-#include "spume/scene/memory.hpp"
 
 namespace spume {
 namespace {
@@ -49,7 +48,7 @@ double needed_bytes(const LoadedCase& loaded, const Method& method) {
   double bytes = 0;
   for (const auto& array : method.arrays()) bytes += array.bytes;
   const auto count = static_cast<double>(method.particle_count());
-  return std::max(bytes, count * bytes_per_particle(loaded.options, loaded.scene.domain.dimensions));
+  return std::max(bytes, count * loaded.bytes_per_particle);
 }
 
 double finite(double value) {
@@ -206,9 +205,10 @@ std::string summary_json(const LoadedCase& loaded, const RunFigures& figures) {
                         {"verdict", one.pass() ? "pass" : "FAIL"}});
   // Scales that follow from the case, for those who read the results.
   nlohmann::ordered_json derived = nlohmann::ordered_json::object();
-  const BubbleOptions& gas = loaded.options.bubbles;
-  if (gas.on && gas.tension > 0) derived["surface_tension_over_density"] = gas.tension;
-  if (gas.on && gas.hinze_radius > 0) derived["hinze_radius"] = gas.hinze_radius;
+  if (const auto* gas = loaded.options.find<BubbleOptions>(); gas != nullptr && gas->on) {
+    if (gas->tension > 0) derived["surface_tension_over_density"] = gas->tension;
+    if (gas->hinze_radius > 0) derived["hinze_radius"] = gas->hinze_radius;
+  }
   const nlohmann::ordered_json summary = {
       {"title", loaded.options.title},
       {"case", figures.case_file},

@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 #include <tuple>
+
+#include "spume/scene/option.hpp"
 
 namespace spume {
 namespace {
@@ -106,25 +107,59 @@ void claim_columns(const Draft& draft, const std::string& probe, const ProbeOpti
   }
 }
 
-}  // namespace
-
-std::string brief(double value) {
-  char buffer[40];
-  std::snprintf(buffer, sizeof buffer, "%.6g", value);
-  return buffer;
+void check_shape(const Draft& draft, const char* header, const std::string& name, const LiquidDraft& liquid,
+                 Problems& problems) {
+  const std::size_t dimensions = draft.lower.size();
+  const Node& node = *draft.node(name);
+  bool sized = true;
+  const auto check_size = [&](const char* key, std::size_t size) {
+    sized = has_size(draft, name + "." + key, size, dimensions, problems) && sized;
+  };
+  check_size("lower", liquid.lower.size());
+  check_size("upper", liquid.upper.size());
+  check_size("centre", liquid.centre.size());
+  check_size("velocity", liquid.velocity.size());
+  if (draft.node(name + ".centre") && !draft.node(name + ".radius")) {
+    problems.add(node, std::string("missing key 'radius' in ") + header +
+                           ", which has a centre; add  radius = <number>  # length, > 0");
+  }
+  if (draft.node(name + ".radius") && !draft.node(name + ".centre")) {
+    problems.add(node, std::string("missing key 'centre' in ") + header +
+                           ", which has a radius; add  centre = [<number>, <number>]  # length");
+  }
+  if (liquid.conform && !draft.node(name + ".where")) {
+    problems.add(*draft.node(name + ".conform"),
+                 name + ".conform needs the surface; add  where = \"<expression>\"  # positive below it");
+  }
+  if (liquid.conform && draft.node(name + ".centre")) {
+    problems.add(*draft.node(name + ".conform"),
+                 name + ".conform ends columns on the surface where = 0; remove centre and radius");
+  }
+  if (!sized) return;
+  if (!liquid.lower.empty() && !liquid.upper.empty() && !ordered(draft, name, liquid.lower, liquid.upper, problems)) {
+    return;
+  }
+  const bool ball = !liquid.centre.empty() && liquid.radius;
+  for (std::size_t a = 0; a < dimensions; ++a) {
+    const double slack = 1e-9 * (draft.upper[a] - draft.lower[a]);
+    double low = liquid.lower.empty() ? draft.lower[a] : liquid.lower[a];
+    double high = liquid.upper.empty() ? draft.upper[a] : liquid.upper[a];
+    if (ball && liquid.lower.empty() && liquid.upper.empty()) {
+      low = liquid.centre[a] - *liquid.radius;
+      high = liquid.centre[a] + *liquid.radius;
+    }
+    if (low >= draft.lower[a] - slack && high <= draft.upper[a] + slack) continue;
+    problems.add(node, name + " reaches outside the domain: " + span_in_words(a, low, high) + ", the domain's " +
+                           span_in_words(a, draft.lower[a], draft.upper[a]));
+    break;
+  }
 }
+
+}  // namespace
 
 std::array<std::string, 2> side_names(int axis, int dimensions) {
   if (axis == dimensions - 1) return {"bottom", "top"};
   return axis == 0 ? std::array<std::string, 2>{"left", "right"} : std::array<std::string, 2>{"front", "back"};
-}
-
-double support_ratio(const ResolutionOptions& resolution) {
-  return (resolution.kernel == KernelKind::wendland_c2 ? 2 : 3) * resolution.smoothing_ratio;
-}
-
-bool uses_si(const FluidDraft& fluid) {
-  return fluid.density || fluid.viscosity || fluid.gravity || fluid.sound_speed;
 }
 
 // The title stands in the first line of every table, which its readers count by lines.
@@ -257,53 +292,43 @@ void check_liquids(const Draft& draft, Problems& problems) {
     return;
   }
   if (!domain_known(draft) || !draft.usable("liquid")) return;
-  const std::size_t dimensions = draft.lower.size();
-  for (std::size_t k = 0; k < draft.liquids.size(); ++k) {
-    const LiquidDraft& liquid = draft.liquids[k];
-    const std::string name = "liquid." + std::to_string(k);
-    const Node& node = *draft.node(name);
-    bool sized = true;
-    const auto check_size = [&](const char* key, std::size_t size) {
-      sized = has_size(draft, name + "." + key, size, dimensions, problems) && sized;
-    };
-    check_size("lower", liquid.lower.size());
-    check_size("upper", liquid.upper.size());
-    check_size("centre", liquid.centre.size());
-    check_size("velocity", liquid.velocity.size());
-    if (draft.node(name + ".centre") && !draft.node(name + ".radius")) {
-      problems.add(node,
-                   "missing key 'radius' in [[liquid]], which has a centre; add  radius = <number>  # length, > 0");
+  for (std::size_t k = 0; k < draft.liquids.size(); ++k)
+    check_shape(draft, "[[liquid]]", "liquid." + std::to_string(k), draft.liquids[k], problems);
+}
+
+void check_phases(const Draft& draft, Problems& problems) {
+  if (draft.phases.empty() && draft.usable("phase"))
+    problems.add(Place{1, 1}, "no phase: add a fluid,  [[phase]]  with  name, density, viscosity");
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < draft.phases.size(); ++k) {
+    const std::string place = "phase." + std::to_string(k) + ".name";
+    const std::string& name = draft.phases[k].name;
+    if (!draft.usable(place)) continue;
+    if (name.empty())
+      problems.add(*draft.node(place), place + " must not be empty");
+    else if (std::find(names.begin(), names.end(), name) != names.end())
+      problems.add(*draft.node(place), "another phase has the name '" + name + "' already");
+    else
+      names.push_back(name);
+  }
+  if (const Node* tension = draft.node("interface.surface_tension"); tension && draft.phases.size() == 1)
+    problems.add(*tension, "interface.surface_tension needs two phases, found one; add a [[phase]], or remove it");
+
+  if (draft.regions.empty() && draft.usable("region"))
+    problems.add(Place{1, 1}, "no region: say what a phase fills,  [[region]]  with  phase = \"<name>\"");
+  if (!draft.usable("region")) return;
+  for (std::size_t k = 0; k < draft.regions.size(); ++k) {
+    const std::string place = "region." + std::to_string(k);
+    const std::string& phase = draft.regions[k].phase;
+    const bool known = std::find(names.begin(), names.end(), phase) != names.end();
+    // Where a phase has no name of its own, the region may mean that one.
+    if (!known && draft.usable(place + ".phase") && names.size() == draft.phases.size() && !names.empty()) {
+      const std::string best = nearest(phase, names);
+      problems.add(*draft.node(place + ".phase"), place + ".phase must be the name of a phase, " +
+                                                      words_in_words(names) + ", found " + to_toml_string(phase) +
+                                                      (best.empty() ? "" : "; did you mean \"" + best + "\"?"));
     }
-    if (draft.node(name + ".radius") && !draft.node(name + ".centre")) {
-      problems.add(
-          node, "missing key 'centre' in [[liquid]], which has a radius; add  centre = [<number>, <number>]  # length");
-    }
-    if (liquid.conform && !draft.node(name + ".where")) {
-      problems.add(*draft.node(name + ".conform"),
-                   name + ".conform needs the surface; add  where = \"<expression>\"  # positive below it");
-    }
-    if (liquid.conform && draft.node(name + ".centre")) {
-      problems.add(*draft.node(name + ".conform"),
-                   name + ".conform ends columns on the surface where = 0; remove centre and radius");
-    }
-    if (!sized) continue;
-    if (!liquid.lower.empty() && !liquid.upper.empty() && !ordered(draft, name, liquid.lower, liquid.upper, problems)) {
-      continue;
-    }
-    const bool ball = !liquid.centre.empty() && liquid.radius;
-    for (std::size_t a = 0; a < dimensions; ++a) {
-      const double slack = 1e-9 * (draft.upper[a] - draft.lower[a]);
-      double low = liquid.lower.empty() ? draft.lower[a] : liquid.lower[a];
-      double high = liquid.upper.empty() ? draft.upper[a] : liquid.upper[a];
-      if (ball && liquid.lower.empty() && liquid.upper.empty()) {
-        low = liquid.centre[a] - *liquid.radius;
-        high = liquid.centre[a] + *liquid.radius;
-      }
-      if (low >= draft.lower[a] - slack && high <= draft.upper[a] + slack) continue;
-      problems.add(node, name + " reaches outside the domain: " + span_in_words(a, low, high) + ", the domain's " +
-                             span_in_words(a, draft.lower[a], draft.upper[a]));
-      break;
-    }
+    if (domain_known(draft)) check_shape(draft, "[[region]]", place, draft.regions[k], problems);
   }
 }
 
@@ -324,6 +349,15 @@ void check_output(const Draft& draft, Problems& problems) {
                                         what + " until time.end = " + brief(end) + "; expected at most " + brief(most) +
                                         "; set it to " + brief(end / most) + " or more, or to 0");
   }
+}
+
+void check_output_fields(const Draft& draft, const std::vector<std::string>& known, Problems& problems) {
+  std::string list;
+  for (const std::string& field : known) list += (list.empty() ? "" : ", ") + field;
+  for (const std::string& field : draft.options.output.fields)
+    if (std::find(known.begin(), known.end(), field) == known.end())
+      problems.add(*draft.node("output.fields"), "output.fields names '" + field + "', which method \"" +
+                                                     draft.options.method + "\" does not have; it has " + list);
 }
 
 void check_probes(Draft& draft, Problems& problems) {

@@ -3,7 +3,7 @@
 // on the values that were read without error and reports in words, with the fix.
 #pragma once
 
-#include "draft.hpp"
+#include "spume/scene/draft.hpp"
 
 namespace spume {
 
@@ -13,24 +13,13 @@ void check_resolution(const Draft& draft, Problems& problems);
 void check_solids(const Draft& draft, Problems& problems);
 void check_fluid(const Draft& draft, Problems& problems);
 void check_liquids(const Draft& draft, Problems& problems);
-void check_spectral(const Draft& draft, Problems& problems);   // box, grid, forcing, initial state
-void check_particles(const Draft& draft, Problems& problems);  // of the spectral method
-void check_bubbles(Draft& draft, Problems& problems);          // completes draft.options.bubbles
-// What can be told of spargers and clouds only beside the compiled rates and the initial liquid.
-void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& problems);
+void check_phases(const Draft& draft, Problems& problems);  // and the regions that they fill
 void check_output(const Draft& draft, Problems& problems);
+// Of output.fields; `known` are those of the method.
+void check_output_fields(const Draft& draft, const std::vector<std::string>& known, Problems& problems);
 void check_probes(Draft& draft, Problems& problems);  // completes the probes of draft.options
 
 // Names of the two sides of an axis: left/right, front/back (3-D), bottom/top.
 std::array<std::string, 2> side_names(int axis, int dimensions);
-
-// Reach of the smoothing kernel over the spacing.
-double support_ratio(const ResolutionOptions& resolution);
-
-// True when the case uses the SI set of [fluid].
-bool uses_si(const FluidDraft& fluid);
-
-// A number in a message: six digits.
-std::string brief(double value);
 
 }  // namespace spume

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "document.hpp"
+#include "spume/scene/document.hpp"
 
 #include <toml++/toml.h>
 
@@ -326,6 +326,18 @@ std::string shortest(double value) {
   return text;
 }
 
+std::string to_toml_number(double value) {
+  const std::string text = shortest(value);
+  // Without a point or an exponent it would read back as an integer.
+  return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+}
+
+std::string brief(double value) {
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.6g", value);
+  return buffer;
+}
+
 std::string to_toml_string(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -367,9 +379,7 @@ std::string to_toml(const Node& node) {
     case Node::Kind::date:
       return node.text;
     case Node::Kind::number:
-      out = shortest(node.number);
-      // Without a point or an exponent the text would read back as an integer.
-      return out.find_first_of(".en") == std::string::npos ? out + ".0" : out;
+      return to_toml_number(node.number);
     case Node::Kind::array:
       for (const Node& child : node.children) out += (out.empty() ? "" : ", ") + to_toml(child);
       return "[" + out + "]";

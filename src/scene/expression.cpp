@@ -11,7 +11,7 @@
 #include <numbers>
 #include <set>
 
-#include "document.hpp"
+#include "spume/scene/document.hpp"
 
 namespace spume {
 namespace {

@@ -49,7 +49,7 @@ struct Finding {
 struct Chunk {
   std::vector<double> position[3];
   std::map<std::size_t, Finding> overlap;  // by the other region
-  Finding not_finite, beyond_top, in_solid;
+  Finding not_finite, beyond_top, in_solid, replaced;
 };
 
 class Filler {
@@ -78,6 +78,9 @@ class Filler {
   bool fills_domain() const;
 
  private:
+  // Regions of phases lie on each other, the later above.
+  bool layered() const { return regions_.front().phase >= 0; }
+
   bool too_many() const { return static_cast<double>(found_.load()) > most_; }
 
   ThreadRegions& own() {
@@ -108,6 +111,11 @@ class Filler {
     return value > 0;
   }
 
+  // The same of another region, which reports its own faults.
+  bool covers(ThreadRegions& own, std::size_t r, const Vec3& p) const {
+    return in_box_and_ball(regions_[r], p) && (!own.where[r] || (*own.where[r])(p[0], p[1], p[2], 0) > 0);
+  }
+
   bool in_solid(const Vec3& p) const {
     for (const SolidBox& box : scene_.domain.boxes) {
       bool inside = true;
@@ -124,7 +132,14 @@ class Filler {
       chunk.in_solid.add(p);
       return;
     }
-    for (std::size_t q = 0; q < regions_.size(); ++q) {
+    if (layered()) {
+      for (std::size_t q = r + 1; q < regions_.size(); ++q)
+        if (covers(own, q, p)) {
+          chunk.replaced.add(p);
+          return;
+        }
+    }
+    for (std::size_t q = 0; q < regions_.size() && !layered(); ++q) {
       // Lattice regions share sites, so one direction suffices; a conforming one has its own places.
       if (q == r || (q > r && regions_[q].conform == regions_[r].conform)) continue;
       if (contains(own, q, p, chunk)) chunk.overlap[q].add(p);
@@ -255,12 +270,12 @@ void Filler::report(const std::vector<std::vector<Chunk>>& chunks) {
   for (std::size_t r = 0; r < regions_.size(); ++r) {
     const LiquidRegion& region = regions_[r];
     std::size_t count = 0;
-    Finding not_finite, beyond_top, in_solid;
+    Finding not_finite, beyond_top, in_solid, replaced;
     for (const Chunk& chunk : chunks[r]) {
       count += chunk.position[0].size();
       for (const auto& [target, source] :
            {std::pair{&not_finite, &chunk.not_finite}, std::pair{&beyond_top, &chunk.beyond_top},
-            std::pair{&in_solid, &chunk.in_solid}}) {
+            std::pair{&in_solid, &chunk.in_solid}, std::pair{&replaced, &chunk.replaced}}) {
         if (source->count > 0) target->add(source->first, source->count);
       }
       for (const auto& [q, finding] : chunk.overlap) {
@@ -276,7 +291,8 @@ void Filler::report(const std::vector<std::vector<Chunk>>& chunks) {
                               point_in_words(beyond_top.first, dimensions) +
                               "; conform needs the surface below the top: raise the domain, or remove conform");
     } else if (count == 0) {
-      problems_.add(node, region.name + (in_solid.count > 0
+      problems_.add(node, region.name + (replaced.count > 0 ? " is empty: later regions replace all of it"
+                                         : in_solid.count > 0
                                              ? " is empty: all of its particles lie inside solids"
                                              : " is empty: it holds no particle; check its limits against the domain "
                                                "and the spacing " +
@@ -309,12 +325,16 @@ void Filler::gather(const std::vector<std::vector<Chunk>>& chunks) {
     particles.velocity[a].resize(start.back());
   }
   particles.region.resize(start.back());
+  if (layered()) particles.phase.resize(start.back());
   particles.volume = lattice_.volume();
   parallel_blocks(all.size(), 1, [&](std::size_t c, std::size_t, std::size_t) {
     for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a) {
       std::copy(all[c]->position[a].begin(), all[c]->position[a].end(), particles.position[a].data() + start[c]);
     }
     std::fill(particles.region.data() + start[c], particles.region.data() + start[c + 1], region[c]);
+    if (layered())
+      std::fill(particles.phase.data() + start[c], particles.phase.data() + start[c + 1],
+                regions_[static_cast<std::size_t>(region[c])].phase);
   });
 }
 
@@ -441,8 +461,12 @@ void fill_scene(Scene& scene, const Lattice& lattice, const std::vector<LiquidRe
       cells *= std::max(1.0, length / lattice.spacing[a]);
     }
     sites += cells;
-    if (!region.where && !region.ball && scene.domain.boxes.empty()) certain += cells;
+    // What phases replace counts once.
+    const bool layered = region.phase >= 0;
+    if (!region.where && !region.ball && scene.domain.boxes.empty())
+      certain = layered ? std::max(certain, cells) : certain + cells;
   }
+  if (regions.front().phase >= 0) sites = std::min(sites, lattice.sites());
   if (!(sites <= most_particles) || !(lattice.sites() <= 1e15)) {
     problems.add(*regions.front().node, "the liquid regions hold up to " + brief(sites) + " particles at spacing " +
                                             brief(scene.spacing) +

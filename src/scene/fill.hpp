@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "document.hpp"
 #include "spume/scene/case.hpp"
+#include "spume/scene/document.hpp"
 
 namespace spume {
 
-// A [[liquid]] entry, compiled. The region is the intersection of what is given.
+// A [[liquid]] or [[region]] entry, compiled. The region is the intersection of what is given.
 struct LiquidRegion {
-  std::string name;                         // "liquid.0"
+  std::string name;                         // "liquid.0", "region.0"
   const Node* node = nullptr;               // for messages
   std::shared_ptr<const Expression> where;  // null: everywhere
   Vec3 lower{}, upper{};                    // box, the domain where none is given
@@ -26,6 +26,7 @@ struct LiquidRegion {
   double radius = 0;
   VectorExpression velocity;
   bool conform = false;
+  std::int32_t phase = -1;  // index of the phase that fills it, in place of what earlier regions put there; -1: none
 };
 
 struct Lattice {
@@ -39,7 +40,8 @@ struct Lattice {
 
 Lattice make_lattice(const Domain& domain, double spacing);
 
-// Fills scene.particles and sets scene.free_surface. Reports empty and overlapping regions, values that are not
+// Fills scene.particles and sets scene.free_surface. Regions of phases replace what earlier ones put there; others must
+// not overlap. Reports empty and overlapping regions, values that are not
 // finite, counts beyond 2^31, and more than `most` particles, which the machine's memory does not hold.
 void fill_scene(Scene& scene, const Lattice& lattice, const std::vector<LiquidRegion>& regions, double jitter,
                 double most, Problems& problems);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "spume/scene/find_case.hpp"
 
-#include "document.hpp"
 #include "spume/core/error.hpp"
+#include "spume/scene/document.hpp"
 
 namespace spume {
 namespace {

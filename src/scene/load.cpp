@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/scene/load.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -15,7 +16,6 @@
 #include "spume/core/machine.hpp"
 #include "spume/scene/expression.hpp"
 #include "spume/scene/find_case.hpp"
-#include "spume/scene/memory.hpp"
 #include "unused_options.hpp"
 
 namespace spume {
@@ -150,7 +150,13 @@ Fluid make_fluid(const Draft& draft) {
   const FluidDraft& given = draft.fluid;
   Fluid fluid;
   double gravity = 0;
-  if (uses_si(given)) {
+  if (!draft.phases.empty()) {
+    const Phase& first = draft.phases.front();
+    fluid.density = first.density;
+    fluid.kinematic_viscosity = first.viscosity / first.density;
+    fluid.sound_speed = first.sound_speed;
+    gravity = given.gravity.value_or(0);
+  } else if (uses_si(given)) {
     fluid.density = given.density.value_or(1);
     fluid.kinematic_viscosity = given.viscosity.value_or(0) / fluid.density;
     fluid.sound_speed = given.sound_speed.value_or(0);
@@ -173,24 +179,32 @@ void set_grid(Scene& scene, const std::vector<std::int64_t>& grid) {
   }
 }
 
+LiquidRegion make_region(const Draft& draft, const LiquidDraft& given, const std::string& name, Compiler& compiler) {
+  LiquidRegion region;
+  region.name = name;
+  region.node = draft.node(name);
+  if (given.where) region.where = compiler.compile(*given.where, name + ".where", Arguments::place);
+  region.lower = to_vec3(given.lower.empty() ? draft.lower : given.lower);
+  region.upper = to_vec3(given.upper.empty() ? draft.upper : given.upper);
+  region.ball = !given.centre.empty() && given.radius;
+  if (region.ball) {
+    region.centre = to_vec3(given.centre);
+    region.radius = *given.radius;
+  }
+  region.velocity = compiler.compile(given.velocity, name + ".velocity", Arguments::place);
+  region.conform = given.conform;
+  return region;
+}
+
 std::vector<LiquidRegion> make_regions(const Draft& draft, Compiler& compiler) {
   std::vector<LiquidRegion> regions;
-  for (std::size_t k = 0; k < draft.liquids.size(); ++k) {
-    const LiquidDraft& liquid = draft.liquids[k];
-    LiquidRegion region;
-    region.name = "liquid." + std::to_string(k);
-    region.node = draft.node(region.name);
-    if (liquid.where) region.where = compiler.compile(*liquid.where, region.name + ".where", Arguments::place);
-    region.lower = to_vec3(liquid.lower.empty() ? draft.lower : liquid.lower);
-    region.upper = to_vec3(liquid.upper.empty() ? draft.upper : liquid.upper);
-    region.ball = !liquid.centre.empty() && liquid.radius;
-    if (region.ball) {
-      region.centre = to_vec3(liquid.centre);
-      region.radius = *liquid.radius;
-    }
-    region.velocity = compiler.compile(liquid.velocity, region.name + ".velocity", Arguments::place);
-    region.conform = liquid.conform;
-    regions.push_back(std::move(region));
+  for (std::size_t k = 0; k < draft.liquids.size(); ++k)
+    regions.push_back(make_region(draft, draft.liquids[k], "liquid." + std::to_string(k), compiler));
+  for (std::size_t k = 0; k < draft.regions.size(); ++k) {
+    regions.push_back(make_region(draft, draft.regions[k], "region." + std::to_string(k), compiler));
+    const auto phase = std::find_if(draft.phases.begin(), draft.phases.end(),
+                                    [&](const Phase& one) { return one.name == draft.regions[k].phase; });
+    regions.back().phase = static_cast<std::int32_t>(phase - draft.phases.begin());
   }
   return regions;
 }
@@ -228,23 +242,45 @@ void note_places(const Node& node, const std::string& name, const std::string& f
   }
 }
 
-// On a grid. Runge-Kutta stays accurate up to its stability: 0.55 and 1.06. Particles keep the steps of
-// Adams-Bashforth.
-double default_courant(const Case& options) {
-  if (options.particles.any() || options.spectral.integrator == Integrator::ab2) return 0.2;
-  return options.spectral.integrator == Integrator::rk3 ? 0.5 : 0.9;
+void check(const MethodDeclaration* method, Draft& draft, Problems& problems) {
+  // A case of no known method is read as one of particles, which most are.
+  const bool phases = method != nullptr && method->fills_phases;
+  const bool liquids = method == nullptr || method->fills_regions;
+  check_title(draft, problems);
+  check_domain(draft, problems);
+  if (liquids || phases) check_resolution(draft, problems);
+  check_solids(draft, problems);
+  if (!phases) check_fluid(draft, problems);
+  if (liquids) check_liquids(draft, problems);
+  if (phases) check_phases(draft, problems);
+  if (method != nullptr) {
+    if (method->check) method->check(draft, problems);
+    check_output_fields(draft, method->output_fields(draft.options), problems);
+  }
+  check_output(draft, problems);
+  check_probes(draft, problems);
+}
+
+void set_grid(const Draft& draft, double most, Scene& scene, Problems& problems) {
+  set_grid(scene, draft.grid);
+  const double points =
+      static_cast<double>(scene.grid[0]) * static_cast<double>(scene.grid[1]) * static_cast<double>(scene.grid[2]);
+  if (points > most)
+    problems.add(*draft.node("resolution.grid"), "the grid has " + brief(points) +
+                                                     " points; this machine has memory for " + brief(most) +
+                                                     ": lower resolution.grid");
 }
 
 }  // namespace
 
-LoadedCase load_case(const std::string& path, const std::vector<std::string>& overrides) {
+LoadedCase load_case(const std::string& path, const std::vector<std::string>& overrides, const CaseSchema& schema) {
   const std::string file = find_case_file(path);
   const std::string source = read_text(file);
   Node document = parse_document(source, file);
 
   Problems problems(file);
   std::vector<std::string> repeated;
-  for (const Section& section : sections()) {
+  for (const Section& section : schema.sections()) {
     if (section.repeated) repeated.push_back(section.name);
   }
   for (const std::string& assignment : overrides) apply_override(document, assignment, repeated, problems);
@@ -252,20 +288,9 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   Draft draft;
   draft.options.path = file;
   draft.options.title = name_of_case(file);
-  read_document(document, draft, problems);
-  check_title(draft, problems);
-  check_domain(draft, problems);
-  const bool on_grid = draft.options.method == "spectral";
-  if (!on_grid) check_resolution(draft, problems);
-  check_solids(draft, problems);
-  check_fluid(draft, problems);
-  if (on_grid)
-    check_spectral(draft, problems);
-  else
-    check_liquids(draft, problems);
-  check_bubbles(draft, problems);
-  check_output(draft, problems);
-  check_probes(draft, problems);
+  read_document(document, schema, draft, problems);
+  const MethodDeclaration* method = schema.find(draft.options.method);
+  check(method, draft, problems);
 
   // Without a valid domain the expressions are still held against three dimensions.
   Compiler compiler(draft.dimensions == 0 ? 3 : draft.dimensions, source, problems);
@@ -281,40 +306,33 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   problems.throw_if_any();
 
   if (any(body_force)) scene.body_force = std::move(body_force);
+  if (!draft.initial_velocity.empty()) scene.initial_velocity = std::move(initial_velocity);
   scene.title = draft.options.title;
   scene.method = draft.options.method;
   scene.fluid = make_fluid(draft);
+  scene.phases = draft.phases;
+  scene.surface_tension = draft.surface_tension;
   scene.spacing = draft.options.spacing;
   scene.seed = draft.options.seed;
-  double& courant = draft.options.time.courant;
-  const bool chosen = courant == 0;
-  if (chosen) courant = on_grid ? default_courant(draft.options) : 0.2;
-  const double most = machine_memory_bytes() / bytes_per_particle(draft.options, draft.dimensions);
-  if (on_grid) {
-    if (draft.options.initial.kind == InitialKind::expressions) scene.initial_velocity = std::move(initial_velocity);
-    set_grid(scene, draft.grid);
-    const double points =
-        static_cast<double>(scene.grid[0]) * static_cast<double>(scene.grid[1]) * static_cast<double>(scene.grid[2]);
-    if (points > most)
-      problems.add(*draft.node("resolution.grid"), "the grid has " + brief(points) +
-                                                       " points; this machine has memory for " + brief(most) +
-                                                       ": lower resolution.grid");
-    problems.throw_if_any();
-    draft.options.groups = describe_groups(draft, scene, compiler.scope());
-  } else {
-    const Lattice lattice = make_lattice(scene.domain, scene.spacing);
+  loaded.bytes_per_particle = method->bytes_per_particle(draft.options, draft.dimensions);
+  const double most = machine_memory_bytes() / loaded.bytes_per_particle;
+  if (method->uses_grid) set_grid(draft, most, scene, problems);
+  Lattice lattice;
+  if (uses_particles(*method)) {
+    lattice = make_lattice(scene.domain, scene.spacing);
     fill_scene(scene, lattice, regions, draft.jitter, most, problems);
-    problems.throw_if_any();
-    // Below a surface what the spacing leaves outweighs what longer steps add; in a full domain it does not.
-    if (chosen && scene.free_surface) courant = 0.3;
-    check_bubble_sources(draft, scene, problems);
-    problems.throw_if_any();
-    draft.options.groups = describe_groups(draft, scene, compiler.scope());
-    describe_lattice(scene, lattice, draft.options.groups);
   }
+  problems.throw_if_any();
+  double& courant = draft.options.time.courant;
+  if (courant == 0) courant = method->default_courant(draft.options, scene);
+  if (method->check_scene) method->check_scene(draft, scene, problems);
+  problems.throw_if_any();
+
+  draft.options.groups = describe_groups(draft, scene, compiler.scope());
+  if (uses_particles(*method)) describe_lattice(scene, lattice, draft.options.groups);
   note_places(document, "", file, draft.options.places);
-  draft.options.resolved = resolved_text(document, draft);
-  draft.options.unused_options = unused_options(draft, file);
+  draft.options.resolved = resolved_text(document, schema, draft);
+  draft.options.unused_options = unused_options(draft, schema, file);
   loaded.options = std::move(draft.options);
   return loaded;
 }

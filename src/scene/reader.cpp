@@ -36,11 +36,23 @@ std::string example_value(const Option& option) {
   }
 }
 
+std::string belongs_elsewhere(const Owners& owners, const std::string& method) {
+  return (owners.names.empty() ? " is taken by no method of this version"
+                               : " belongs to method " + words_in_words(owners.names)) +
+         ", and this case is of method " + to_toml_string(method);
+}
+
 // Reads one section's table into the draft.
 class SectionReader {
  public:
-  SectionReader(Draft& draft, Problems& problems, const Section& section, std::string prefix, std::string method)
-      : draft_(draft), problems_(problems), section_(section), prefix_(std::move(prefix)), method_(std::move(method)) {}
+  SectionReader(const CaseSchema& schema, Draft& draft, Problems& problems, const Section& section, std::string prefix,
+                std::string method)
+      : schema_(schema),
+        draft_(draft),
+        problems_(problems),
+        section_(section),
+        prefix_(std::move(prefix)),
+        method_(std::move(method)) {}
 
   // `table` is null for a section that the file does not name; `document` then gives the place.
   void read(const Node* table, const Node& document) {
@@ -49,10 +61,9 @@ class SectionReader {
       const std::string name = prefix_.empty() ? option.key : prefix_ + "." + option.key;
       const Node* node = table ? table->find(option.key) : nullptr;
       Value value;
-      if (!belongs(option.methods, method_)) {
+      if (!option.owners.include(method_)) {
         if (!node) continue;
-        problems_.add_key(*node, name + " belongs to method " + words_in_words(option.methods) +
-                                     ", and this case is of method " + to_toml_string(method_) + "; remove it");
+        problems_.add_key(*node, name + belongs_elsewhere(option.owners, method_) + "; remove it");
         draft_.bad[name] = true;
       } else if (node) {
         draft_.given[name] = node;
@@ -61,7 +72,7 @@ class SectionReader {
         } else {
           draft_.bad[name] = true;
         }
-      } else if (option.required && method_.empty() && !option.methods.empty()) {
+      } else if (option.required && method_.empty() && !option.owners.all) {
         draft_.bad[name] = true;  // nobody knows whether it is needed
       } else if (option.required) {
         draft_.bad[name] = true;
@@ -158,7 +169,8 @@ class SectionReader {
     if (node.kind != Node::Kind::string) return wrong_type(option, name, node);
     value.text = node.text;
     if (std::find(option.words.begin(), option.words.end(), node.text) != option.words.end()) return true;
-    if (name == "method" && (node.text == "gfd" || node.text == "wcsph")) {
+    const auto& unavailable = schema_.unavailable();
+    if (name == "method" && std::find(unavailable.begin(), unavailable.end(), node.text) != unavailable.end()) {
       return refuse(
           node, "method \"" + node.text + "\" is not available in this version; use " + words_in_words(option.words));
     }
@@ -217,6 +229,7 @@ class SectionReader {
     return good;
   }
 
+  const CaseSchema& schema_;
   Draft& draft_;
   Problems& problems_;
   const Section& section_;
@@ -229,16 +242,20 @@ bool is_free(const Section& section) {
 }
 
 // Every key of a table must be an option of its section or a section below it.
-void refuse_unknown_keys(const Node& table, const std::string& name, bool repeated, Problems& problems) {
+void refuse_unknown_keys(const CaseSchema& schema, const Node& table, const std::string& name, bool repeated,
+                         Problems& problems) {
   std::vector<std::string> known, elsewhere;
   std::map<std::string, std::string> owner;
-  for (const Section& section : sections()) {
+  for (const Section& section : schema.sections()) {
     if (section.name == name) {
       for (const Option& option : section.options) known.push_back(option.key);
     } else {
       if (name.empty() && section.name.find('.') == std::string::npos) known.push_back(section.name);
       if (section.name.rfind(name + ".", 0) == 0) known.push_back(section.name.substr(name.size() + 1));
-      for (const Option& option : section.options) owner.emplace(option.key, section.name);
+      // No hint leads to a section that no method takes.
+      const bool taken = section.owners.all || !section.owners.names.empty();
+      for (const Option& option : section.options)
+        if (taken) owner.emplace(option.key, section.name);
     }
   }
   for (std::size_t i = 0; i < table.keys.size(); ++i) {
@@ -260,8 +277,8 @@ void refuse_unknown_keys(const Node& table, const std::string& name, bool repeat
   }
 }
 
-void read_repeated(const Section& section, const Node* list, const Node& document, const std::string& method,
-                   Draft& draft, Problems& problems) {
+void read_repeated(const CaseSchema& schema, const Section& section, const Node* list, const Node& document,
+                   const std::string& method, Draft& draft, Problems& problems) {
   if (!list) return;
   if (list->kind != Node::Kind::array) {
     problems.add_key(*list, list->kind == Node::Kind::table ? "[" + section.name + "] must be written [[" +
@@ -281,8 +298,8 @@ void read_repeated(const Section& section, const Node* list, const Node& documen
     }
     section.begin_entry(draft);
     draft.given[prefix] = &entry;
-    SectionReader(draft, problems, section, prefix, method).read(&entry, document);
-    refuse_unknown_keys(entry, section.name, true, problems);
+    SectionReader(schema, draft, problems, section, prefix, method).read(&entry, document);
+    refuse_unknown_keys(schema, entry, section.name, true, problems);
   }
 }
 
@@ -298,19 +315,20 @@ const Node* find_section(const Node& document, const std::string& name) {
   return at;
 }
 
-void read_document(const Node& document, Draft& draft, Problems& problems) {
-  const std::string method = method_of(document);
-  for (const Section& section : sections()) {
+void read_document(const Node& document, const CaseSchema& schema, Draft& draft, Problems& problems) {
+  const std::string method = schema.method_of(document);
+  schema.declare_groups(draft.options, method);
+  for (const Section& section : schema.sections()) {
     const Node* table = find_section(document, section.name);
-    if (!belongs(section.methods, method)) {
+    if (!section.owners.include(method)) {
       if (table)
-        problems.add_key(*table, "[" + section.name + "] belongs to method " + words_in_words(section.methods) +
-                                     ", and this case is of method " + to_toml_string(method) + "; remove the section");
+        problems.add_key(*table,
+                         "[" + section.name + "]" + belongs_elsewhere(section.owners, method) + "; remove the section");
       continue;
     }
     if (table) draft.given[section.name] = table;
     if (section.repeated) {
-      read_repeated(section, table, document, method, draft, problems);
+      read_repeated(schema, section, table, document, method, draft, problems);
       continue;
     }
     if (table && table->kind != Node::Kind::table) {
@@ -320,8 +338,8 @@ void read_document(const Node& document, Draft& draft, Problems& problems) {
       continue;
     }
     if (is_free(section)) continue;
-    SectionReader(draft, problems, section, section.name, method).read(table, document);
-    if (table) refuse_unknown_keys(*table, section.name, false, problems);
+    SectionReader(schema, draft, problems, section, section.name, method).read(table, document);
+    if (table) refuse_unknown_keys(schema, *table, section.name, false, problems);
   }
 }
 

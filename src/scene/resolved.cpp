@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "checks.hpp"
-#include "option.hpp"
 #include "reader.hpp"
 
 namespace spume {
@@ -13,11 +12,12 @@ namespace {
 
 class Writer {
  public:
-  Writer(const Node& document, const Draft& draft) : document_(document), draft_(draft) {}
+  Writer(const Node& document, const CaseSchema& schema, const Draft& draft)
+      : document_(document), schema_(schema), draft_(draft) {}
 
   std::string write() {
-    for (const Section& section : sections()) {
-      if (!belongs(section.methods, draft_.options.method)) continue;
+    for (const Section& section : schema_.sections()) {
+      if (!section.owners.include(draft_.options.method)) continue;
       const Node* table = find_section(document_, section.name);
       if (section.repeated) {
         for (std::size_t i = 0; table && i < table->children.size(); ++i) {
@@ -29,7 +29,7 @@ class Writer {
       } else {
         // Sections in which nothing is set and nothing has a default would be all comments.
         const bool empty = !table && std::none_of(section.options.begin(), section.options.end(), [&](const Option& o) {
-          return !o.default_text.empty() && belongs(o.methods, draft_.options.method);
+          return !o.default_text.empty() && o.owners.include(draft_.options.method);
         });
         if (empty || (!table && section.optional)) continue;
         if (!section.name.empty()) text_ += "\n[" + section.name + "]\n";
@@ -41,7 +41,7 @@ class Writer {
 
  private:
   std::string unit_in_case(const std::string& unit) const {
-    if (!uses_si(draft_.fluid)) return unit;
+    if (!uses_si(draft_)) return unit;
     if (unit == "length") return "m";
     if (unit == "time") return "s";
     if (unit == "length/time") return "m/s";
@@ -60,7 +60,7 @@ class Writer {
 
   void options(const Section& section, const Node* table) {
     for (const Option& option : section.options) {
-      if (!belongs(option.methods, draft_.options.method)) continue;
+      if (!option.owners.include(draft_.options.method)) continue;
       const Node* node = table ? table->find(option.key) : nullptr;
       const std::string unit = unit_in_case(option.unit);
       const std::string tail = unit.empty() || unit == "1" ? "" : ", " + unit;
@@ -98,14 +98,15 @@ class Writer {
   }
 
   const Node& document_;
+  const CaseSchema& schema_;
   const Draft& draft_;
   std::string text_;
 };
 
 }  // namespace
 
-std::string resolved_text(const Node& document, const Draft& draft) {
-  return Writer(document, draft).write();
+std::string resolved_text(const Node& document, const CaseSchema& schema, const Draft& draft) {
+  return Writer(document, schema, draft).write();
 }
 
 }  // namespace spume

@@ -4,15 +4,15 @@
 #include <map>
 #include <string>
 
-#include "draft.hpp"
 #include "fill.hpp"
+#include "spume/scene/case_schema.hpp"
 #include "spume/scene/expression.hpp"
 
 namespace spume {
 
 // The case as TOML: every option with its value, and in a comment its origin (default, case, --set) and unit.
 // Reading the text gives the same case again.
-std::string resolved_text(const Node& document, const Draft& draft);
+std::string resolved_text(const Node& document, const CaseSchema& schema, const Draft& draft);
 
 // Groups and constants for the start-up table, as text: those given, those that follow, the equivalent in
 // water.

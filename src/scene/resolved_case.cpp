@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-#include "document.hpp"
+#include "spume/scene/document.hpp"
 
 namespace spume {
 namespace {

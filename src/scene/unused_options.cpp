@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "option.hpp"
-
 namespace spume {
 namespace {
 
@@ -42,10 +40,10 @@ void examine(const Draft& draft, const Section& section, const std::string& pref
 
 }  // namespace
 
-std::vector<Problem> unused_options(const Draft& draft, const std::string& file) {
+std::vector<Problem> unused_options(const Draft& draft, const CaseSchema& schema, const std::string& file) {
   std::vector<Problem> remarks;
-  for (const Section& section : sections()) {
-    if (!belongs(section.methods, draft.options.method) || section.name.empty()) continue;
+  for (const Section& section : schema.sections()) {
+    if (!section.owners.include(draft.options.method) || section.name.empty()) continue;
     if (!section.repeated) examine(draft, section, section.name, file, remarks);
     for (std::size_t i = 0; section.repeated && draft.node(section.name + "." + std::to_string(i)); ++i)
       examine(draft, section, section.name + "." + std::to_string(i), file, remarks);

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "spume/core/error.hpp"
-#include "spume/scene/load.hpp"
+#include "spume/methods/registry.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::string path = "/dev/shm/spume_fuzz_case_" + std::to_string(::getpid()) + ".toml";

@@ -112,7 +112,7 @@ TEST(NumberDensity, KeepsTheVolumeOfALiquidWithASurface) {
 // All particles of a liquid made 5 % denser.
 std::vector<double> change_when_denser(les_sph::Flow& flow) {
   for (float& sum : flow.moments.kernel_sum) sum = static_cast<float>(1.05 * flow.resolution.lattice.kernel_sum);
-  return change_by_relaxation(flow, flow.options.pressure.density_relaxation, 0.004);
+  return change_by_relaxation(flow, flow.options.get<PressureOptions>().density_relaxation, 0.004);
 }
 
 TEST(NumberDensity, IsLeftAloneInTheUppermostLayer) {

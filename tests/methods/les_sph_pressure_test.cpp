@@ -147,7 +147,7 @@ struct PreparedStep : StagedFlow {
       for (int r = 0; r < d; ++r)
         for (int c = r; c < d; ++c, ++slot) correction[r][c] = correction[c][r] = (*flow.moments.correction[slot])[i];
       double divergence = mirror.divergence(i, u, correction).value;
-      if (loaded.options.time.centred) {  // half a step ahead, along the velocities of the step's start
+      if (loaded.options.get<SchemeOptions>().centred) {  // half a step ahead, along the velocities of the step's start
         const auto gradient = mirror.velocity_gradient(i, start, correction);
         for (int r = 0; r < d; ++r)
           for (int c = 0; c < d; ++c) divergence -= 0.5 * dt * gradient[r][c].value * gradient[c][r].value;

@@ -86,7 +86,7 @@ TEST(SpectralStep, StaysWithinTheMemoryThatItIsRefusedBy) {
   for (const char* integrator : {"ab2", "rk3"}) {
     const std::string text = spectral_text("48", beltrami_start(integrator));
     const LoadedCase loaded = test::load_text(text);
-    const double counted = spectral::flow_bytes(loaded.scene.grid, loaded.options.spectral);
+    const double counted = spectral::flow_bytes(loaded.scene.grid, loaded.options.get<SpectralOptions>());
     const ArrayStatistics before = array_statistics();
     SpectralRun<> run(text);
     run.start();

@@ -7,9 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "spume/methods/factory.hpp"
-#include "spume/scene/load.hpp"
-#include "spume/scene/memory.hpp"
+#include "spume/methods/registry.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace spume {
@@ -22,8 +20,7 @@ double estimate_over_need(const std::string& text) {
   const LoadedCase loaded = load_case((folder / "case.toml").string());
   const auto method = make_method(loaded);
   method->start();
-  const double estimate = bytes_per_particle(loaded.options, loaded.scene.domain.dimensions) *
-                          static_cast<double>(method->particle_count());
+  const double estimate = loaded.bytes_per_particle * static_cast<double>(method->particle_count());
   double early = 0, late = 0;
   for (const auto& array : method->arrays()) early += array.bytes;
   EXPECT_THAT(start_table(loaded, *method, 1),

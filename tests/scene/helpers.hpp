@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "spume/core/error.hpp"
-#include "spume/scene/load.hpp"
+#include "spume/methods/registry.hpp"
 
 namespace spume::test {
 
@@ -43,6 +43,12 @@ class CaseFile {
 inline LoadedCase load_text(const std::string& text, const std::vector<std::string>& overrides = {}) {
   const CaseFile file(text);
   return load_case(file.path(), overrides);
+}
+
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
 }
 
 // The problems of a case as "line:col text", or of an override as "--set a=b text".

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "helpers.hpp"
+#include "spume/scene/bubbles.hpp"
 
 namespace spume::test {
 namespace {
@@ -38,7 +39,7 @@ TEST(BubbleSections, AreReadWithDefaults) {
       tank(plain + "breakup = true\nmomentum_form = \"two-fluid\"\n",
            sparger + "[[bubble_cloud]]\ncentre = [0.5, 0.5, 0.3]\nradius = 0.1\nnumber = 12\nbubble_radius = 0.02\n"
                      "sizes = \"log-normal\"\ndeviation = 0.3\n"));
-  const BubbleOptions& options = loaded.options.bubbles;
+  const BubbleOptions& options = loaded.options.get<BubbleOptions>();
   EXPECT_TRUE(options.on);
   EXPECT_TRUE(options.breakup);
   EXPECT_FALSE(options.entrainment);
@@ -61,12 +62,12 @@ TEST(BubbleSections, AreReadWithDefaults) {
 
 TEST(BubbleSections, AbsentMeanNoBubblesAlsoInTheResolvedCase) {
   const LoadedCase loaded = load_text(tank(""));
-  EXPECT_FALSE(loaded.options.bubbles.on);
+  EXPECT_FALSE(loaded.options.get<BubbleOptions>().on);
   EXPECT_EQ(loaded.options.resolved.find("[bubbles]"), std::string::npos);
-  EXPECT_FALSE(load_text(loaded.options.resolved).options.bubbles.on);
+  EXPECT_FALSE(load_text(loaded.options.resolved).options.get<BubbleOptions>().on);
   const LoadedCase with = load_text(tank(plain, sparger));
   const LoadedCase again = load_text(with.options.resolved);
-  EXPECT_TRUE(again.options.bubbles.on);
+  EXPECT_TRUE(again.options.get<BubbleOptions>().on);
   EXPECT_EQ(again.scene.spargers.size(), 1U);
   EXPECT_EQ(again.options.resolved.size() > 0, true);
 }
@@ -75,7 +76,7 @@ TEST(BubbleSections, InSiUnits) {
   std::string text = tank("[bubbles]\nsurface_tension = 0.072\ngas_density = 1.25\n");
   text.replace(text.find("reynolds = 1e4\nfroude = 1"), std::string("reynolds = 1e4\nfroude = 1").size(),
                "density = 1000\nviscosity = 1e-3\ngravity = 9.81");
-  const BubbleOptions options = load_text(text).options.bubbles;
+  const BubbleOptions options = load_text(text).options.get<BubbleOptions>();
   EXPECT_DOUBLE_EQ(options.tension, 7.2e-5);
   EXPECT_DOUBLE_EQ(options.density_ratio, 800);
   EXPECT_THAT(problems_of(text, {"bubbles.weber=100"}), ElementsAre(HasSubstr("belongs to the other set of units")));

@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "helpers.hpp"
-#include "spume/scene/memory.hpp"
+#include "spume/physics/turbulence/options.hpp"
 
 namespace spume {
 namespace {
@@ -167,7 +167,7 @@ TEST(Fill, PlungingBreakerOfTheDesignHasHalfAParticleLessInAColumn) {
   EXPECT_DOUBLE_EQ(loaded.scene.fluid.kinematic_viscosity, 1 / 4e4);
   EXPECT_DOUBLE_EQ(loaded.scene.fluid.sound_speed, 20);
   EXPECT_EQ(loaded.scene.fluid.gravity, (Vec3{0, 0, -1}));
-  EXPECT_EQ(loaded.options.turbulence.model, TurbulenceModel::mixed_scale);
+  EXPECT_EQ(loaded.options.get<TurbulenceOptions>().model, TurbulenceModel::mixed_scale);
 }
 
 TEST(Fill, ConformingLayerAboveARootStandsHalfASpacingAboveIt) {
@@ -258,9 +258,7 @@ TEST(Fill, MoreThanTheMemoryHoldsIsRefusedBeforeAllocation) {
   ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
   const rlimit small{3'000'000'000, before.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_AS, &small), 0);
-  Case options;
-  options.method = "les-sph";
-  const double most = 3e9 / bytes_per_particle(options, 2);
+  const double most = 3e9 / registered_method("les-sph").bytes_per_particle(Case(), 2);
   const std::vector<std::string> spacing{"resolution.spacing=0.0003"};  // 2.2e7 particles in all
   const auto plain = problems_of(tank("[[liquid]]\n"), spacing);
   const auto shaped = problems_of(tank("[[liquid]]\nwhere = \"1 + x\"\n"), spacing);

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "helpers.hpp"
+#include "spume/methods/spectral/options.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace spume {
@@ -28,17 +29,18 @@ TEST(LoadParticles, WhatTheCaseSaysArrives) {
       load_text(with_particles("count = 1000\ndiameters = [0.01, 0.02]\nshares = [3, 1]\nbeta = 3\nstokes = 1\n"
                                "coupling = \"four-way\"\ndrag = \"schiller-naumann\"\ngravity = [0, 0, -1]\n"
                                "placement = \"clustered\"\nspline_order = 6\nrecords = \"double\"\n"))
-          .options.particles;
+          .options.get<ParticleCaseOptions>();
   EXPECT_TRUE(p.any());
   EXPECT_EQ(p.count, 1000);
   EXPECT_THAT(p.diameters, ElementsAre(0.01, 0.02));
   EXPECT_THAT(p.shares, ElementsAre(3, 1));
-  EXPECT_EQ(p.coupling, ParticleCoupling::four_way);
-  EXPECT_EQ(p.drag, ParticleDrag::schiller_naumann);
-  EXPECT_EQ(p.placement, ParticlePlacement::clustered);
+  EXPECT_EQ(p.coupling, Coupling::four_way);
+  EXPECT_EQ(p.drag, DragLaw::schiller_naumann);
+  EXPECT_EQ(p.placement, Placement::clustered);
   EXPECT_EQ(p.spline_order, 6);
   EXPECT_TRUE(p.double_records);
-  EXPECT_FALSE(load_text(with_particles("count = 1\ndiameter = 0.1\n")).options.particles.double_records);
+  EXPECT_FALSE(
+      load_text(with_particles("count = 1\ndiameter = 0.1\n")).options.get<ParticleCaseOptions>().double_records);
 }
 
 TEST(LoadParticles, ContradictionsAreRefusedInWords) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "helpers.hpp"
+#include "spume/methods/spectral/options.hpp"
 
 namespace spume {
 namespace {
@@ -40,12 +41,12 @@ TEST(LoadSpectral, GridFluidAndNumericsArrive) {
   EXPECT_THAT(loaded.scene.grid, ElementsAre(16, 12, 20));
   EXPECT_DOUBLE_EQ(loaded.scene.spacing, 1.0 / 16);
   EXPECT_DOUBLE_EQ(loaded.scene.fluid.kinematic_viscosity, 1.0 / 50);
-  EXPECT_EQ(loaded.options.spectral.integrator, Integrator::rk3);
-  EXPECT_EQ(loaded.options.spectral.precision, FieldPrecision::f32);
-  EXPECT_EQ(loaded.options.spectral.dealiasing, Dealiasing::two_thirds);
-  EXPECT_EQ(loaded.options.forcing.kind, ForcingKind::shell);
-  EXPECT_DOUBLE_EQ(loaded.options.forcing.injection, 0.1);
-  EXPECT_THAT(loaded.options.initial.amplitude, ElementsAre(1, 2, 3));
+  EXPECT_EQ(loaded.options.get<SpectralOptions>().integrator, Integrator::rk3);
+  EXPECT_EQ(loaded.options.get<SpectralOptions>().precision, FieldPrecision::f32);
+  EXPECT_EQ(loaded.options.get<SpectralOptions>().dealiasing, Dealiasing::two_thirds);
+  EXPECT_EQ(loaded.options.get<ForcingOptions>().kind, ForcingKind::shell);
+  EXPECT_DOUBLE_EQ(loaded.options.get<ForcingOptions>().injection, 0.1);
+  EXPECT_THAT(loaded.options.get<InitialOptions>().amplitude, ElementsAre(1, 2, 3));
   EXPECT_EQ(loaded.scene.particles.size(), 0u);
 }
 
@@ -78,7 +79,7 @@ TEST(LoadSpectral, ResolvedCaseReadsBack) {
   EXPECT_THAT(loaded.options.resolved, testing::Not(HasSubstr("[pressure]")));
   const LoadedCase again = load_text(loaded.options.resolved);
   EXPECT_EQ(again.scene.grid, loaded.scene.grid);
-  EXPECT_EQ(again.options.initial.kind, InitialKind::taylor_green);
+  EXPECT_EQ(again.options.get<InitialOptions>().kind, InitialKind::taylor_green);
 }
 
 TEST(LoadSpectral, KeysOfTheOtherMethodAreRefusedInWords) {

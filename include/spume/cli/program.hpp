@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "spume/run/driver.hpp"
@@ -25,6 +26,7 @@ struct Program {
   CaseLoader load_case;
   MethodFactory make_method;
   std::function<const std::vector<OptionInfo>&()> option_table;
+  std::vector<std::pair<std::string, std::string>> methods = {};  // names and descriptions
 };
 
 // Executes one command line; results go to standard output, errors to standard error. Returns the exit code.

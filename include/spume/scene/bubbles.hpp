@@ -16,7 +16,7 @@ class Expression;
 
 // stable: relaxation solved in closed form, any step; substep: explicit Euler, spacing / radius sub-steps.
 enum class BubbleIntegrator { stable, substep };
-// How liquid and bubbles share momentum: -grad(alpha p), or -alpha grad p (les-sph).
+// How liquid and bubbles share momentum: -grad(alpha p), or -alpha grad p.
 enum class MomentumForm { mixture_pressure, two_fluid };
 enum class SurfaceReaction { surface, liquid };
 // The probability with which a bubble is entrained that costs more than what is left of a budget.
@@ -37,9 +37,9 @@ struct BubbleSizes {
 };
 
 struct BubbleOptions {
-  bool on = false;           // the case has a section [bubbles]
-  double tension = 0;        // surface tension over liquid density: 1/We, length3/time2; 0: not given
-  double density_ratio = 0;  // liquid over gas
+  bool on = false;                    // the case has a section [bubbles]
+  double tension = 0;                 // surface tension over liquid density: 1/We, length3/time2; 0: not given
+  double density_ratio = 1000 / 1.2;  // liquid over gas: water over air
   bool entrainment = false;
   bool breakup = false;
   bool fluctuations = false;

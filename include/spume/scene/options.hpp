@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Every option of a case file, in the order in which `spume options` lists them. The table is the declaration
-// itself: the reader, the error messages and the resolved case use the same entries.
+// An option of a case file in words, as `spume options` lists it. CaseSchema::option_table() makes the rows from the
+// declarations that the reader, the error messages and the resolved case use.
 #pragma once
 
 #include <string>
-#include <vector>
 
 namespace spume {
 
@@ -17,7 +16,5 @@ struct OptionInfo {
   std::string range;         // "> 0", "one of ...", or ""
   std::string description;   // one line
 };
-
-const std::vector<OptionInfo>& option_table();
 
 }  // namespace spume

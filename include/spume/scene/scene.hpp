@@ -61,11 +61,20 @@ struct Fluid {
   Vec3 gravity{};          // uniform acceleration, points along minus the last axis; zero without gravity
 };
 
+// One of the fluids of a scene with several.
+struct Phase {
+  std::string name;
+  double density = 0;
+  double viscosity = 0;    // dynamic
+  double sound_speed = 0;  // 0: incompressible
+};
+
 // Liquid particles at the start, one array per component (z arrays are empty in two dimensions).
 struct InitialParticles {
   Array<double> position[3];
   Array<double> velocity[3];
-  Array<std::int32_t> region;  // index of the [[liquid]] entry
+  Array<std::int32_t> region;  // index of the [[liquid]] or [[region]] entry
+  Array<std::int32_t> phase;   // index into Scene::phases; empty in a scene of one fluid
   double volume = 0;           // of every particle
   std::size_t size() const { return position[0].size(); }
 };
@@ -74,7 +83,9 @@ struct Scene {
   std::string title;
   std::string method;
   Domain domain;
-  Fluid fluid;
+  Fluid fluid;                                         // with phases: the first, and the gravity of all
+  std::vector<Phase> phases;                           // of methods that take several; empty: `fluid` alone
+  double surface_tension = 0;                          // between the phases
   double spacing = 0;                                  // of particles; on a grid the smallest of the three
   std::array<std::size_t, 3> grid{};                   // points along x, y, z; zero for particle methods
   bool free_surface = false;                           // false: the liquid fills a closed or periodic domain

@@ -35,20 +35,21 @@ Features::Features(const LoadedCase& loaded) {
   no_slip = boundary.no_slip;
   free_surface = scene.free_surface;
   closed = !scene.free_surface;
-  shifting = options.shifting.on;
-  const ShiftCorrection correction = options.shifting.velocity_correction;
+  shifting = options.get<ShiftingOptions>().on;
+  const ShiftCorrection correction = options.get<ShiftingOptions>().velocity_correction;
   shift_correction = shifting && correction != ShiftCorrection::none;
   shift_curvature = shifting && correction == ShiftCorrection::second_order;
-  const TurbulenceModel model = options.turbulence.model;
+  const TurbulenceModel model = options.get<TurbulenceOptions>().model;
   const bool dynamic = model == TurbulenceModel::dynamic_shepard || model == TurbulenceModel::dynamic_lagrangian;
   eddy_viscosity = model != TurbulenceModel::none;
-  bubbles = options.bubbles.on;
-  test_filter = (eddy_viscosity && model != TurbulenceModel::smagorinsky) || (bubbles && options.bubbles.fluctuations);
-  velocity_gradient = eddy_viscosity || shift_correction || options.time.centred || bubbles;
+  bubbles = options.get<BubbleOptions>().on;
+  test_filter = (eddy_viscosity && model != TurbulenceModel::smagorinsky) ||
+                (bubbles && options.get<BubbleOptions>().fluctuations);
+  velocity_gradient = eddy_viscosity || shift_correction || options.get<SchemeOptions>().centred || bubbles;
   stored_gradient = dynamic || shift_curvature || bubbles;
-  density_relaxation = options.pressure.density_relaxation < never_relaxed;
+  density_relaxation = options.get<PressureOptions>().density_relaxation < never_relaxed;
   viscosity = eddy_viscosity || scene.fluid.kinematic_viscosity > 0;
-  const DiffusionForm form = options.turbulence.diffusion;
+  const DiffusionForm form = options.get<TurbulenceOptions>().diffusion;
   viscous_stress =
       viscosity && (form == DiffusionForm::stress || (form == DiffusionForm::automatic && scene.free_surface));
   body_force = scene.body_force.has_value();

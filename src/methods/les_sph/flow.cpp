@@ -8,7 +8,7 @@ namespace spume::les_sph {
 namespace {
 
 ProjectionSolver::Options solver_options(const Case& options) {
-  const PressureOptions& pressure = options.pressure;
+  const PressureOptions& pressure = options.get<PressureOptions>();
   return {.method = pressure.solver == PressureSolver::cg ? KrylovMethod::conjugate_gradients : KrylovMethod::bicgstab,
           .multigrid = pressure.preconditioner == PreconditionerKind::multigrid,
           .mixed = pressure.precision == Precision::mixed,
@@ -27,7 +27,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       resolution(scene.domain.dimensions, scene.spacing, options.resolution.kernel, options.resolution.smoothing_ratio),
       largest_shift(largest_stable_shift(scene.domain.dimensions, options.resolution.kernel,
                                          options.resolution.smoothing_ratio,
-                                         features.shifting && options.shifting.remove_drift)),
+                                         features.shifting && options.get<ShiftingOptions>().remove_drift)),
       dimensions(scene.domain.dimensions),
       particles(dimensions, scene.particles),
       boundary(scene.domain, scene.spacing),
@@ -45,13 +45,14 @@ Flow::Flow(const LoadedCase& loaded_case)
   // Without a stage that differentiates the velocity this serves the first pressure only, and is released after it.
   strain = &fields.add<float>("strain", Lifetime::result);
   if (features.free_surface)
-    surface =
-        std::make_unique<FreeSurface>(resolution, FreeSurface::Options{.threshold = options.surface.threshold,
-                                                                       .blend_width = options.surface.blend_width,
-                                                                       .smooth_normals = features.shifting,
-                                                                       .keep_smoothed_normals = features.bubbles});
+    surface = std::make_unique<FreeSurface>(
+        resolution, FreeSurface::Options{.threshold = options.get<SurfaceOptions>().threshold,
+                                         .blend_width = options.get<SurfaceOptions>().blend_width,
+                                         .smooth_normals = features.shifting,
+                                         .keep_smoothed_normals = features.bubbles});
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
-  if (features.eddy_viscosity) closure = std::make_unique<turbulence::EddyViscosity>(particles, options.turbulence);
+  if (features.eddy_viscosity)
+    closure = std::make_unique<turbulence::EddyViscosity>(particles, options.get<TurbulenceOptions>());
   if (features.bubbles) {
     const bubbles::Carrier carrier{.scene = scene,
                                    .arrangement = arrangement,
@@ -71,7 +72,7 @@ Flow::Flow(const LoadedCase& loaded_case)
                                    .time = time,
                                    .steps = steps,
                                    .speeds = speeds};
-    bubbles = std::make_unique<bubbles::BubbleCoupling>(carrier, options.bubbles);
+    bubbles = std::make_unique<bubbles::BubbleCoupling>(carrier, options.get<BubbleOptions>());
   }
   find_extremes();
 }

@@ -27,25 +27,14 @@ void refuse_high_mach(const Case& options, const Flow& flow) {
 }
 
 void refuse_stirring_shift(const Case& options, const Flow& flow) {
-  if (!flow.features.shifting || options.shifting.coefficient <= flow.largest_shift) return;
+  if (!flow.features.shifting || options.get<ShiftingOptions>().coefficient <= flow.largest_shift) return;
   char text[200];
   std::snprintf(
       text, sizeof text,
       "shifting.coefficient is %.3g; above %.3g the shift throws the particles of a lattice from side to side "
       "instead of evening them out: lower it (0.25 is usual)",
-      options.shifting.coefficient, flow.largest_shift);
+      options.get<ShiftingOptions>().coefficient, flow.largest_shift);
   throw refusal(options, "shifting.coefficient", text);
-}
-
-void refuse_unknown_fields(const Case& options, const SnapshotTable& snapshot) {
-  const std::vector<std::string> known = snapshot.names();
-  for (const std::string& name : options.output.fields)
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      std::string list;
-      for (const std::string& field : known) list.append(list.empty() ? "" : ", ").append(field);
-      throw refusal(options, "output.fields",
-                    "output.fields names '" + name + "', which les-sph does not have in this scene; it has " + list);
-    }
 }
 
 }  // namespace
@@ -56,7 +45,6 @@ LesSph::LesSph(const LoadedCase& loaded) : flow_(loaded), plan_(make_plan(flow_)
   declare_series();
   declare_snapshot();
   declare_saved();
-  refuse_unknown_fields(loaded.options, snapshot_);
 }
 
 void LesSph::step(double dt, Ledger& ledger) {
@@ -83,6 +71,7 @@ void LesSph::ensure_started() {
 StepLimit LesSph::step_limit() const {
   const double h = flow_.resolution.smoothing_length;
   const TimeOptions& options = flow_.options.time;
+  const double most_diffusion = flow_.options.get<SchemeOptions>().viscous;
   Vec3 force = flow_.scene.fluid.gravity;
   if (flow_.features.uniform_body_force) {
     const Vec3 beside = (*flow_.scene.body_force)(flow_.arrangement.origin, flow_.time);
@@ -104,7 +93,7 @@ StepLimit LesSph::step_limit() const {
   const double viscosity = flow_.viscosity() + flow_.max_eddy_viscosity;
   // The explicit sum of div(2 nu S) is stable up to 0.108 h^2 / nu on a lattice in 3-D and 0.112 in 2-D, that of
   // div(nu grad u) up to 0.29 and 0.31.
-  if (viscosity > 0) step.bound(options.viscous * h * h / (flow_.diffusion_rate() * viscosity), "viscous");
+  if (viscosity > 0) step.bound(most_diffusion * h * h / (flow_.diffusion_rate() * viscosity), "viscous");
   // A bubble crosses at most half a smoothing length.
   if (flow_.bubbles != nullptr && flow_.bubbles->max_speed() > 0)
     step.bound(0.5 * h / flow_.bubbles->max_speed(), "bubbles");

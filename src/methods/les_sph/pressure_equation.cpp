@@ -50,8 +50,8 @@ void Flow::centre_divergence(double dt) {
 }
 
 void Flow::relax_density(double dt) {
-  even_out_density({.steps = options.pressure.density_relaxation, .displacement = displacement, .dt = dt}, arrangement,
-                   scene.domain, intermediate_position, resolution, moments, surface.get(), divergence);
+  even_out_density({.steps = options.get<PressureOptions>().density_relaxation, .displacement = displacement, .dt = dt},
+                   arrangement, scene.domain, intermediate_position, resolution, moments, surface.get(), divergence);
   particles.scratch().release(moments.kernel_sum);
 }
 
@@ -185,9 +185,10 @@ void Flow::solve(const char* name) {
 
 void Flow::solve_pressure() {
   // Starts from the pressure that the particle carries; fixed ones are p = 0.
+  const bool warm_start = options.get<PressureOptions>().warm_start;
   parallel_for(size(), [&](std::size_t i) {
     const bool fixed = surface != nullptr && surface->pressure_fixed[i] != 0;
-    const double carried = fixed || !options.pressure.warm_start ? 0.0 : (*pressure)[i] / density();
+    const double carried = fixed || !warm_start ? 0.0 : (*pressure)[i] / density();
     (*reduced_pressure)[i] = carried + potential_of(i);
   });
   solve("the pressure solve");

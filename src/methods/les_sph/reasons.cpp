@@ -21,7 +21,7 @@ const char* closure_name(TurbulenceModel model) {
 }
 
 std::string events_of(const LoadedCase& loaded) {
-  const BubbleOptions& gas = loaded.options.bubbles;
+  const BubbleOptions& gas = loaded.options.get<BubbleOptions>();
   std::string events;
   const auto event = [&](bool on, const char* name) {
     if (on) events.append(events.empty() ? "" : ", ").append(name);
@@ -40,9 +40,9 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has) {
   const Case& options = loaded.options;
   const std::string no_bubbles = "no section [bubbles]";
   bubbles = has.bubbles ? "positions, volume fraction, sizes of particles" : no_bubbles;
-  integrator = !has.bubbles                                             ? no_bubbles
-               : options.bubbles.integrator == BubbleIntegrator::stable ? "stable integrator"
-                                                                        : "explicit sub-steps";
+  integrator = !has.bubbles                                                          ? no_bubbles
+               : options.get<BubbleOptions>().integrator == BubbleIntegrator::stable ? "stable integrator"
+                                                                                     : "explicit sub-steps";
   events = has.bubbles ? events_of(loaded) : no_bubbles;
   images = has.images ? "periodic sides, walls or solids" : "every side is open";
   surface = has.free_surface ? "the liquid has a free surface" : "the liquid fills the domain";
@@ -53,7 +53,7 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has) {
               : has.velocity_gradient ? "divergence half a step ahead"
                                       : "no stage reads them";
   curvature = has.shift_curvature ? "second-order velocity correction of the shift" : "shifting.velocity_correction";
-  closure = closure_name(options.turbulence.model);
+  closure = closure_name(options.get<TurbulenceOptions>().model);
   forces = !has.potential           ? "neither gravity nor forces.body"
            : !has.body_force        ? "gravity"
            : has.uniform_body_force ? "gravity and forces.body, uniform"
@@ -61,10 +61,10 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has) {
   viscosity = has.viscous_stress ? "div(2 nu S)" : has.viscosity ? "div(nu grad u)" : "inviscid";
   divergence = loaded.scene.fluid.sound_speed > 0 ? "right-hand side of the Helmholtz equation"
                                                   : "right-hand side of the Poisson equation";
-  centring = options.time.centred ? "free of divergence half a step ahead" : "time.centred = false";
+  centring = options.get<SchemeOptions>().centred ? "free of divergence half a step ahead" : "time.centred = false";
   relaxation =
       has.density_relaxation ? "the pressure evens out the number density" : "pressure.density_relaxation = 1e6";
-  preconditioner = options.pressure.preconditioner == PreconditionerKind::multigrid
+  preconditioner = options.get<PressureOptions>().preconditioner == PreconditionerKind::multigrid
                        ? "Jacobi and a V-cycle on cells"
                        : "pressure.preconditioner = \"jacobi\"";
   pressure = has.closed ? "closed domain: the constant is removed" : "zero pressure at the free surface";

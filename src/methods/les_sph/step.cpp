@@ -94,8 +94,8 @@ Plan make_plan(Flow& f) {
   add(
       step, "divergence", true, why.divergence, [&](StageRun& run) { f.find_divergence(run.dt); },
       {f.intermediate_velocity, moments.correction, f.potential}, {f.divergence, f.potential_laplacian}, true);
-  add(step, "centring", f.options.time.centred, why.centring, [&](StageRun& run) { f.centre_divergence(run.dt); },
-      {f.gradient_trace}, {f.divergence});
+  add(step, "centring", f.options.get<SchemeOptions>().centred, why.centring,
+      [&](StageRun& run) { f.centre_divergence(run.dt); }, {f.gradient_trace}, {f.divergence});
   add(step, "density relaxation", has.density_relaxation, why.relaxation,
       [&](StageRun& run) { f.relax_density(run.dt); }, {moments.kernel_sum, moments.divergence_of_position},
       {f.divergence});

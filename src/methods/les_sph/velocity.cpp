@@ -64,7 +64,7 @@ void Flow::find_neighbours(double dt) {
 }
 
 void Flow::compute_shift() {
-  const ShiftingOptions& shifting = options.shifting;
+  const ShiftingOptions& shifting = options.get<ShiftingOptions>();
   shift->compute(arrangement, particles,
                  {.coefficient = shifting.coefficient,
                   .limit = shifting.limit,
@@ -86,7 +86,7 @@ void Flow::differentiate_velocity(bool first) {
     out.filtered = write(filtered_velocity);
   }
   out.strain = strain->data();
-  if (!features.no_slip && (options.time.centred || first)) {
+  if (!features.no_slip && (options.get<SchemeOptions>().centred || first)) {
     scratch.lease(gradient_trace, size());
     out.trace = gradient_trace.data();
   }

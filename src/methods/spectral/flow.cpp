@@ -25,7 +25,7 @@ std::string gigabytes(double bytes) {
 }
 
 const LoadedCase& require_memory(const LoadedCase& loaded) {
-  const double needed = flow_bytes(loaded.scene.grid, loaded.options.spectral);
+  const double needed = flow_bytes(loaded.scene.grid, loaded.options.get<SpectralOptions>());
   const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
   if (needed > machine)
     throw refusal(loaded.options, "resolution.grid",
@@ -70,8 +70,8 @@ double flow_bytes(const std::array<std::size_t, 3>& grid, const SpectralOptions&
 template <class T>
 Flow<T>::Flow(const LoadedCase& loaded)
     : layout_(make_mode_layout<T>(require_memory(loaded).scene.grid, box_lengths(loaded.scene.domain))),
-      options_(loaded.options.spectral),
-      forcing_(loaded.options.forcing),
+      options_(loaded.options.get<SpectralOptions>()),
+      forcing_(loaded.options.get<ForcingOptions>()),
       limits_(loaded.options.time),
       viscosity_(loaded.scene.fluid.kinematic_viscosity),
       product_(layout_, options_.dealiasing == Dealiasing::padded, planning_of(options_)),

@@ -42,7 +42,7 @@ double coordinate(const ModeLayout& layout, std::size_t axis, std::size_t i) {
 
 template <class T>
 Modes<T> waves(const Case& options, Flow<T>& flow) {
-  const InitialOptions& initial = options.initial;
+  const InitialOptions& initial = options.get<InitialOptions>();
   const ModeLayout& layout = flow.layout();
   std::array<double, 3> k{};
   for (std::size_t axis = 0; axis < 3; ++axis) k[axis] = initial.wavenumber * layout.unit(axis);
@@ -174,7 +174,7 @@ Modes<T> random_field(const LoadedCase& loaded, Flow<T>& flow) {
   }
   if (!(total > 0))
     throw refusal(loaded.options, "initial.spectrum", "initial.spectrum is zero at every wavenumber of the grid");
-  const double scale = std::sqrt(loaded.options.initial.energy / total);
+  const double scale = std::sqrt(loaded.options.get<InitialOptions>().energy / total);
   for (std::size_t ix = 0; ix < nx; ++ix)
     for (std::size_t iy = 0; iy < ny; ++iy)
       for (std::size_t iz = 0; iz < layout.modes_z; ++iz)
@@ -185,7 +185,7 @@ Modes<T> random_field(const LoadedCase& loaded, Flow<T>& flow) {
 
 template <class T>
 Modes<T> from_checkpoint(const Case& options, Flow<T>& flow) {
-  const std::string& path = options.initial.file;
+  const std::string& path = options.get<InitialOptions>().file;
   const ModeLayout& layout = flow.layout();
   const auto refuse = [&](const std::string& why) {
     throw refusal(options, "initial.file", "initial.file '" + path + "': " + why);
@@ -234,7 +234,7 @@ Modes<T> from_checkpoint(const Case& options, Flow<T>& flow) {
 
 template <class T>
 Modes<T> initial_potential(const LoadedCase& loaded, Flow<T>& flow) {
-  switch (loaded.options.initial.kind) {
+  switch (loaded.options.get<InitialOptions>().kind) {
     case InitialKind::taylor_green:
     case InitialKind::abc:
       return waves(loaded.options, flow);

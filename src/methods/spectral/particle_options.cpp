@@ -19,7 +19,7 @@ namespace {
 
 std::vector<std::array<double, 3>> read_positions(const LoadedCase& loaded) {
   const std::filesystem::path path =
-      std::filesystem::path(loaded.options.path).parent_path() / loaded.options.particles.file;
+      std::filesystem::path(loaded.options.path).parent_path() / loaded.options.get<ParticleCaseOptions>().file;
   std::ifstream file(path);
   if (!file) throw refusal(loaded.options, "particles.file", "particles.file " + path.string() + " cannot be read");
   std::vector<std::array<double, 3>> positions;
@@ -39,12 +39,12 @@ std::vector<std::array<double, 3>> read_positions(const LoadedCase& loaded) {
 
 // Seven particles and six growths for each reference particle.
 double lyapunov_bytes(const LoadedCase& loaded) {
-  return static_cast<double>(loaded.options.particles.lyapunov) * (7.0 * (8 * 7 + 16) + 6 * 8);
+  return static_cast<double>(loaded.options.get<ParticleCaseOptions>().lyapunov) * (7.0 * (8 * 7 + 16) + 6 * 8);
 }
 
 void require_memory(const LoadedCase& loaded, const PointParticleOptions& options) {
   const double particles = suspension_bytes(loaded, options);
-  const double needed = particles + flow_bytes(loaded.scene.grid, loaded.options.spectral);
+  const double needed = particles + flow_bytes(loaded.scene.grid, loaded.options.get<SpectralOptions>());
   const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
   if (needed <= machine) return;
   if (const double followed = lyapunov_bytes(loaded); followed > 0.5 * needed) {
@@ -52,7 +52,8 @@ void require_memory(const LoadedCase& loaded, const PointParticleOptions& option
     std::snprintf(text, sizeof text,
                   "particles.lyapunov = %.4g reference particles and their shadows need %.3g GB, and this machine has "
                   "%.3g GB; some thousands are enough",
-                  static_cast<double>(loaded.options.particles.lyapunov), followed / 1e9, machine / 1e9);
+                  static_cast<double>(loaded.options.get<ParticleCaseOptions>().lyapunov), followed / 1e9,
+                  machine / 1e9);
     throw refusal(loaded.options, "particles.lyapunov", text);
   }
   char text[200];
@@ -60,13 +61,14 @@ void require_memory(const LoadedCase& loaded, const PointParticleOptions& option
                 "flow and particles need %.3g GB, the particles %.3g of it, and this machine has %.3g GB; lower "
                 "particles.count or resolution.grid",
                 needed / 1e9, particles / 1e9, machine / 1e9);
-  throw refusal(loaded.options, loaded.options.particles.count > 0 ? "particles.count" : "particles.volume_fraction",
+  throw refusal(loaded.options,
+                loaded.options.get<ParticleCaseOptions>().count > 0 ? "particles.count" : "particles.volume_fraction",
                 text);
 }
 
 // With heavy particles no step may be stable: their force is then clipped below close packing.
 void limit_clipping(const Case& options, PointParticleOptions& out) {
-  const ParticleCaseOptions& in = options.particles;
+  const ParticleCaseOptions& in = options.get<ParticleCaseOptions>();
   const double bearable = stable_volume_fraction(out.motion, out.scheme, out.max_volume_fraction);
   if (bearable >= out.max_volume_fraction) return;
   if (in.max_volume_fraction != ParticleCaseOptions().max_volume_fraction) {
@@ -79,15 +81,6 @@ void limit_clipping(const Case& options, PointParticleOptions& out) {
   }
   out.max_volume_fraction = bearable;
 }
-
-// The words of the case file stand in the order of the physics' own choices.
-static_assert(static_cast<Coupling>(ParticleCoupling::two_way) == Coupling::two_way &&
-              static_cast<Coupling>(ParticleCoupling::four_way) == Coupling::four_way &&
-              static_cast<Coupling>(ParticleCoupling::colliding) == Coupling::colliding &&
-              static_cast<DragLaw>(ParticleDrag::schiller_naumann) == DragLaw::schiller_naumann &&
-              static_cast<Placement>(ParticlePlacement::lattice) == Placement::lattice &&
-              static_cast<Placement>(ParticlePlacement::clustered) == Placement::clustered &&
-              static_cast<Placement>(ParticlePlacement::file) == Placement::file);
 
 int bounded(std::int64_t value) {
   return static_cast<int>(std::min<std::int64_t>(value, 1 << 30));
@@ -119,21 +112,22 @@ PeriodicGrid flow_grid(const LoadedCase& loaded) {
 
 double suspension_bytes(const LoadedCase& loaded, const PointParticleOptions& options) {
   const PeriodicGrid grid = flow_grid(loaded);
-  const double number = loaded.options.spectral.precision == FieldPrecision::f64 ? 8 : 4;
+  const double number = loaded.options.get<SpectralOptions>().precision == FieldPrecision::f64 ? 8 : 4;
   // Velocity or force on the points and, when the flow feels it, the force as modes.
   double fields = 3 * number * static_cast<double>(grid.storage());
-  if (acts_on_flow(options.coupling)) fields += 3 * mode_bytes(loaded.scene.grid, loaded.options.spectral.precision);
+  if (acts_on_flow(options.coupling))
+    fields += 3 * mode_bytes(loaded.scene.grid, loaded.options.get<SpectralOptions>().precision);
   return ParticleSystem::estimated_bytes(grid, options) + lyapunov_bytes(loaded) + fields;
 }
 
 PointParticleOptions particle_options(const LoadedCase& loaded) {
-  const ParticleCaseOptions& in = loaded.options.particles;
-  const double nu = loaded.scene.fluid.kinematic_viscosity, injection = loaded.options.forcing.injection;
+  const ParticleCaseOptions& in = loaded.options.get<ParticleCaseOptions>();
+  const double nu = loaded.scene.fluid.kinematic_viscosity, injection = loaded.options.get<ForcingOptions>().injection;
   const PeriodicGrid box = flow_grid(loaded);
   PointParticleOptions out;
 
   PlacementOptions& placement = out.placement;
-  placement.kind = static_cast<Placement>(in.placement);
+  placement.kind = in.placement;
   if (placement.kind == Placement::file && loaded.resuming) placement.kind = Placement::random;  // places come later
   if (placement.kind == Placement::file) placement.given = read_positions(loaded);
   placement.diameters = in.diameters;
@@ -162,7 +156,7 @@ PointParticleOptions particle_options(const LoadedCase& loaded) {
   motion.beta = in.beta;
   motion.viscosity = nu;
   motion.frozen = in.frozen;
-  motion.drag = static_cast<DragLaw>(in.drag);
+  motion.drag = in.drag;
   std::copy(in.gravity.begin(), in.gravity.end(), motion.gravity.begin());
   motion.response_time = in.response_time > 0 ? in.response_time
                          : in.stokes > 0      ? in.stokes * std::sqrt(nu / injection)
@@ -172,7 +166,7 @@ PointParticleOptions particle_options(const LoadedCase& loaded) {
                   "the response time diameter^2 / (12 beta nu) of the particles is not a finite number above 0; give "
                   "particles.response_time");
 
-  out.coupling = static_cast<Coupling>(in.coupling);
+  out.coupling = in.coupling;
   out.matching = in.matching_by_sorting ? MatchingMethod::sorting : MatchingMethod::rounds;
   out.collision_sweeps = static_cast<int>(in.collision_sweeps);
   out.spline_order = static_cast<int>(in.spline_order);
@@ -180,7 +174,7 @@ PointParticleOptions particle_options(const LoadedCase& loaded) {
   out.max_volume_fraction = in.max_volume_fraction;
   out.sort_every = bounded(in.sort_every);
   // Adams-Bashforth extrapolates from the forces at the ends of steps; the others hold the force over the coming step.
-  if (loaded.options.spectral.integrator != Integrator::ab2) out.scheme = {1, 0};
+  if (loaded.options.get<SpectralOptions>().integrator != Integrator::ab2) out.scheme = {1, 0};
   if (acts_on_flow(out.coupling) && motion.beta > 0) limit_clipping(loaded.options, out);
   require_memory(loaded, out);
   return out;

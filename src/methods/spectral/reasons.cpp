@@ -3,10 +3,12 @@
 
 #include <cstdio>
 
+#include "spume/methods/spectral/options.hpp"
+
 namespace spume::spectral::reason {
 
 std::string forcing(const Case& options) {
-  switch (options.forcing.kind) {
+  switch (options.get<ForcingOptions>().kind) {
     case ForcingKind::shell:
       return "f below (2): constant injection on a shell";
     case ForcingKind::linear:
@@ -18,7 +20,7 @@ std::string forcing(const Case& options) {
 }
 
 std::string product(const Case& options) {
-  switch (options.spectral.dealiasing) {
+  switch (options.get<SpectralOptions>().dealiasing) {
     case Dealiasing::padded:
       return "(A6), fig. 3b: u x omega on (3N/2)^3 points";
     case Dealiasing::two_thirds:
@@ -30,7 +32,7 @@ std::string product(const Case& options) {
 }
 
 std::string update(const Case& options) {
-  switch (options.spectral.integrator) {
+  switch (options.get<SpectralOptions>().integrator) {
     case Integrator::ab2:
       return "(A7), (A10): Adams-Bashforth 2";
     case Integrator::rk3:
@@ -63,7 +65,7 @@ std::string exclusion(const ParticleSystem& system) {
 }
 
 std::string exponents(const Case& options) {
-  return options.particles.lyapunov > 0 ? "shadow trajectories" : "particles.lyapunov = 0";
+  return options.get<ParticleCaseOptions>().lyapunov > 0 ? "shadow trajectories" : "particles.lyapunov = 0";
 }
 
 }  // namespace spume::spectral::reason

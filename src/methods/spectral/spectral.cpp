@@ -18,7 +18,7 @@ Spectral<T>::Spectral(const LoadedCase& loaded) : loaded_(loaded), flow_(loaded)
       throw refusal(loaded.options, "output.fields",
                     "output.fields names '" + name +
                         "', which method \"spectral\" does not have; it has velocity, vorticity, pressure");
-  if (loaded.options.particles.any()) suspension_ = std::make_unique<Suspension<T>>(loaded, flow_);
+  if (loaded.options.get<ParticleCaseOptions>().any()) suspension_ = std::make_unique<Suspension<T>>(loaded, flow_);
   plan_ = make_plan();
 }
 
@@ -27,7 +27,7 @@ void Spectral<T>::set_initial_state() {
   flow_.set_potential(initial_potential(loaded_, flow_));
   // The force is proportional to the velocity of its shell: from rounding alone it would raise rounding.
   const double noise = 1e4 * std::pow(std::numeric_limits<T>::epsilon(), 2);
-  if (loaded_.options.forcing.kind == ForcingKind::shell &&
+  if (loaded_.options.get<ForcingOptions>().kind == ForcingKind::shell &&
       !(flow_.forced_energy() > noise * flow_.measure_budget().energy))
     throw refusal(loaded_.options, "forcing",
                   "the forced shell holds no energy at the start, so that no force could inject any; choose "
@@ -73,9 +73,9 @@ std::vector<ArrayInfo> Spectral<T>::arrays() const {
 template <class T>
 std::vector<Invariant> Spectral<T>::invariants() const {
   const Case& options = loaded_.options;
-  if (options.forcing.kind != ForcingKind::none || loaded_.scene.body_force) return {};
-  const ParticleCoupling coupling = options.particles.coupling;
-  if (suspension_ && (coupling == ParticleCoupling::two_way || coupling == ParticleCoupling::four_way)) return {};
+  if (options.get<ForcingOptions>().kind != ForcingKind::none || loaded_.scene.body_force) return {};
+  const Coupling coupling = options.get<ParticleCaseOptions>().coupling;
+  if (suspension_ && (coupling == Coupling::two_way || coupling == Coupling::four_way)) return {};
   return {{.quantity = "energy_growth",
            .kind = Invariant::Kind::growth,
            .column = "mean_energy",

@@ -34,7 +34,8 @@ Plan Spectral<T>::make_plan() {
   };
   const auto flow = [this, run](void (Flow<T>::*verb)()) { return run(flow_, verb); };
   const Case& options = loaded_.options;
-  const bool ab2 = options.spectral.integrator == Integrator::ab2, forced = options.forcing.kind != ForcingKind::none;
+  const bool ab2 = options.get<SpectralOptions>().integrator == Integrator::ab2,
+             forced = options.get<ForcingOptions>().kind != ForcingKind::none;
   const bool viscous = flow_.viscosity() > 0;
   const Modes<T>&b = flow_.potential(), &K = flow_.tendency(), &earlier = flow_.earlier();  // as in (A10)
   const auto& planes = flow_.planes();

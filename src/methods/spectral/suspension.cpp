@@ -32,7 +32,7 @@ Suspension<T>::Suspension(const LoadedCase& loaded, Flow<T>& flow)
           static_cast<T>(b_spline_prefilter(system_.options().spline_order, static_cast<int>(k), grid_.points[axis])));
   }
   for (auto& field : field_) field.resize(grid_.storage());
-  follows_exponents_ = loaded.options.particles.lyapunov > 0;
+  follows_exponents_ = loaded.options.get<ParticleCaseOptions>().lyapunov > 0;
   make_columns();
 }
 
@@ -49,7 +49,7 @@ void Suspension<T>::spread_force() {
 template <class T>
 void Suspension<T>::force_to_modes() {
   force_modes(flow_, {field_[0].data(), field_[1].data(), field_[2].data()}, grid_.z_stride, force_);
-  if (!loaded_.options.particles.mean_force_moves_fluid)
+  if (!loaded_.options.get<ParticleCaseOptions>().mean_force_moves_fluid)
     for (auto& component : force_) component[0] = 0;
   flow_.set_force(view<T>(force_));
 }
@@ -68,9 +68,9 @@ template <class T>
 void Suspension<T>::start_particles() {
   system_.start();
   if (follows_exponents_)
-    tracker_ = LyapunovTracker(*system_.double_field(), static_cast<std::size_t>(loaded_.options.particles.lyapunov),
-                               system_.options().motion.response_time, system_.particles().common_diameter,
-                               loaded_.scene.seed + 1);
+    tracker_ = LyapunovTracker(
+        *system_.double_field(), static_cast<std::size_t>(loaded_.options.get<ParticleCaseOptions>().lyapunov),
+        system_.options().motion.response_time, system_.particles().common_diameter, loaded_.scene.seed + 1);
 }
 
 template <class T>
@@ -99,7 +99,8 @@ void Suspension<T>::require_possible(const StepLimit& flow) const {
       "particles.coupling = \"one-way\"",
       motion.response_time, system_.volume_fraction() * motion.density_ratio(), system_.volume_fraction(),
       motion.density_ratio(), longest, flow.dt);
-  throw refusal(loaded_.options, loaded_.options.particles.stokes > 0 ? "particles.stokes" : "particles.response_time",
+  throw refusal(loaded_.options,
+                loaded_.options.get<ParticleCaseOptions>().stokes > 0 ? "particles.stokes" : "particles.response_time",
                 text);
 }
 

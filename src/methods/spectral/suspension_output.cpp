@@ -36,7 +36,7 @@ void Suspension<T>::make_columns() {
   add("particle_rms_slip", "speed against the fluid", [this] { return std::sqrt(system_.motion().mean_square_slip); });
   add("correlation_dimension", "1", [this] { return measured_.dimension; });
   add("box_count_variance", "over that of random places", [this] { return measured_.box_variance; });
-  if (loaded_.options.particles.overlap_samples > 0) {
+  if (loaded_.options.get<ParticleCaseOptions>().overlap_samples > 0) {
     add("overlap_ratio", "of the volume of the particles", [this] { return measured_.overlap.value; });
     add("overlap_ratio_error", "standard", [this] { return measured_.overlap.standard_error; });
   }
@@ -72,7 +72,7 @@ void Suspension<T>::measure() {
   measured_.dimension = correlation_dimension(pairs, dimension_range[0] * spacing, dimension_range[1] * spacing);
   const PeriodicCells boxes = PeriodicCells::with_side(grid_.lower, grid_.length, 4 * spacing * (1 - 1e-12), 1e18);
   measured_.box_variance = box_count_variance(boxes, x, system_.size());
-  if (const auto samples = loaded_.options.particles.overlap_samples; samples > 0)
+  if (const auto samples = loaded_.options.get<ParticleCaseOptions>().overlap_samples; samples > 0)
     measured_.overlap =
         system_.measure_overlap(static_cast<std::size_t>(samples), static_cast<std::uint32_t>(flow_.steps()));
   if (follows_exponents_) measured_.stretching = tracker_.stretching();

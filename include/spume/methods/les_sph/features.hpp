@@ -2,6 +2,8 @@
 // What a scene needs of les-sph. Stages and arrays exist by these alone.
 #pragma once
 
+#include "spume/methods/les_sph/options.hpp"
+#include "spume/physics/turbulence/options.hpp"
 #include "spume/scene/case.hpp"
 
 namespace spume::les_sph {

@@ -16,6 +16,7 @@
 #include "spume/fourier/box_transform.hpp"
 #include "spume/fourier/cross_product.hpp"
 #include "spume/methods/method.hpp"
+#include "spume/methods/spectral/options.hpp"
 #include "spume/scene/case.hpp"
 
 namespace spume::spectral {

@@ -8,8 +8,8 @@
 namespace spume::bubbles {
 
 struct BreakupModel {
-  double tension = 0;                 // over the density of the liquid
-  double deformation_constant = 8.2;  // c_def
+  double tension = 0;                                                  // over the density of the liquid
+  double deformation_constant = BubbleOptions{}.deformation_constant;  // c_def
 };
 
 // King (3.24) with d = 2a: sgn(X) sqrt|X|, X = c_def (2 eps a)^(2/3) - 6 tension / a. Stretching is positive.

@@ -11,14 +11,14 @@
 namespace spume::bubbles {
 
 struct EntrainmentModel {
-  double constant = 0.01;  // C_eps
-  double threshold = 0.2;  // least dissipation
+  double constant = BubbleOptions{}.entrainment_constant;    // C_eps
+  double threshold = BubbleOptions{}.entrainment_threshold;  // least dissipation
   double density_ratio = 0;
   double tension = 0;  // over the density of the liquid
   double smallest_radius = 0, largest_radius = 0;
   double spacing = 0;
   std::uint64_t seed = 1;
-  EntrainmentOverdraft overdraft = EntrainmentOverdraft::affordable;
+  EntrainmentOverdraft overdraft = BubbleOptions{}.entrainment_overdraft;
 };
 
 struct EntrainingParticle {

@@ -13,10 +13,10 @@
 namespace spume::bubbles {
 
 struct Gas {
-  double density_ratio = 1000 / 1.2;  // beta
-  double viscosity = 0;               // kinematic, of the liquid; > 0
-  double lift = 0.5;
-  double virtual_mass = 0.5;
+  double density_ratio = BubbleOptions{}.density_ratio;  // beta
+  double viscosity = 0;                                  // kinematic, of the liquid; > 0
+  double lift = BubbleOptions{}.lift_coefficient;
+  double virtual_mass = BubbleOptions{}.virtual_mass_coefficient;
   bool fluid_inertia = false;
   Vec3 gravity{};
 };

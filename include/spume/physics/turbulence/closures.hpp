@@ -57,7 +57,7 @@ Real strain_magnitude(const Symmetric<D, Real>& strain) {
   return sqrt(contraction<D, Real>(strain, strain) * Real(2));
 }
 
-// Standard Smagorinsky: nu_t = (C_s Delta)^2 |S|; C_s = 0.18 by default in the program.
+// Standard Smagorinsky: nu_t = (C_s Delta)^2 |S|.
 template <class Real>
 Real smagorinsky_viscosity(Real strain_magnitude, Real filter_width, Real coefficient = Real(0.18)) {
   return coefficient * coefficient * filter_width * filter_width * strain_magnitude;

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "spume/particles/boundary.hpp"
-#include "spume/scene/case.hpp"
+#include "spume/physics/turbulence/options.hpp"
 
 namespace spume::turbulence {
 

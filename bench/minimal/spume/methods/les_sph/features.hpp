@@ -4,6 +4,8 @@
 // surfaces, walls, body forces and bubbles: the build without that code that the full program is held against.
 #pragma once
 
+#include "spume/methods/les_sph/options.hpp"
+#include "spume/physics/turbulence/options.hpp"
 #include "spume/scene/case.hpp"
 
 namespace spume::les_sph {

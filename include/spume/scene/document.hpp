@@ -76,7 +76,11 @@ std::string kind_in_words(const Node& node);
 std::string to_toml(const Node& node);
 std::string to_toml_string(const std::string& text);
 std::string to_toml_key(const std::string& key);
-std::string shortest(double value);  // shortest decimal text that reads back to the same double
+std::string to_toml_number(double value);  // never an integer: 30.0
+std::string shortest(double value);        // shortest decimal text that reads back to the same double
+
+// A number in a message: six digits.
+std::string brief(double value);
 
 // The candidate nearest to `word` by edit distance when near enough to be meant, else "".
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates);

@@ -5,9 +5,11 @@
 #include <numbers>
 #include <optional>
 
-#include "checks.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/periodic_grid.hpp"
+#include "spume/physics/bubbles/options.hpp"
+#include "spume/physics/turbulence/options.hpp"
+#include "spume/scene/draft.hpp"
 #include "spume/scene/expression.hpp"
 
 namespace spume {
@@ -75,7 +77,7 @@ void add_missing_tension(const Draft& draft, const std::string& decides, Problem
 
 void check_gas(Draft& draft, Problems& problems) {
   BubbleDraft& given = draft.bubbles;
-  BubbleOptions& options = draft.options.bubbles;
+  BubbleOptions& options = draft.options.get<BubbleOptions>();
   const bool si = uses_si(draft.fluid);
   const auto wrong_set = [&](const char* key, const char* instead) {
     if (const Node* node = draft.node(std::string("bubbles.") + key))
@@ -88,7 +90,8 @@ void check_gas(Draft& draft, Problems& problems) {
   const double density = draft.fluid.density.value_or(1);
   if (!si && given.weber) options.tension = 1 / *given.weber;
   if (si && given.surface_tension) options.tension = *given.surface_tension / density;
-  options.density_ratio = given.density_ratio.value_or(si ? density / given.gas_density.value_or(1.2) : 1000 / 1.2);
+  options.density_ratio =
+      given.density_ratio.value_or(si ? density / given.gas_density.value_or(1.2) : options.density_ratio);
   options.hinze_radius = given.hinze_radius.value_or(std::pow(options.tension, 0.6) / 2);
   options.smallest_entrained_radius = given.smallest_entrained_radius.value_or(options.hinze_radius / 20);
 
@@ -114,21 +117,18 @@ void check_gas(Draft& draft, Problems& problems) {
     const bool on = std::string(model) == "entrainment" ? options.entrainment
                     : std::string(model) == "breakup"   ? options.breakup
                                                         : options.fluctuations;
-    if (on && draft.options.turbulence.model == TurbulenceModel::none && draft.node("bubbles." + std::string(model)))
+    if (on && draft.options.get<TurbulenceOptions>().model == TurbulenceModel::none &&
+        draft.node("bubbles." + std::string(model)))
       problems.add(*draft.node("bubbles." + std::string(model)),
                    std::string("bubbles.") + model + " uses the unresolved turbulence of the liquid; set " +
                        "turbulence.model = \"mixed-scale\", or " + model + " = false");
   }
-  if (draft.options.pressure.solver == PressureSolver::cg && draft.node("pressure.solver"))
-    problems.add(*draft.node("pressure.solver"),
-                 "pressure.solver = \"cg\" needs a symmetric matrix, which a liquid with bubbles does not have; use "
-                 "\"bicgstab\"");
 }
 
 // Explicit sub-steps follow the fastest motion of the smallest bubble, so that small bubbles take hours a step.
 void check_substeps(const Draft& draft, const Scene& scene, const std::string& name, const BubbleSizes& sizes,
                     Problems& problems) {
-  const BubbleOptions& options = draft.options.bubbles;
+  const BubbleOptions& options = draft.options.get<BubbleOptions>();
   if (options.integrator != BubbleIntegrator::substep || !(sizes.minimum > 0)) return;
   constexpr double most_substeps = 1e5;
   double gravity2 = 0;
@@ -182,7 +182,7 @@ std::vector<Vec3> outline(const BubbleCloud& cloud) {
 
 void check_bubbles(Draft& draft, Problems& problems) {
   const Node* section = draft.node("bubbles");
-  draft.options.bubbles.on = section != nullptr;
+  draft.options.get<BubbleOptions>().on = section != nullptr;
   for (const char* source : {"sparger", "bubble_cloud"})
     if (const Node* node = draft.node(source); node && !section)
       problems.add_key(*node, std::string("[[") + source + "]] makes bubbles; add a section [bubbles]");
@@ -227,7 +227,7 @@ void check_bubbles(Draft& draft, Problems& problems) {
 }
 
 void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& problems) {
-  const BubbleOptions& gas_options = draft.options.bubbles;
+  const BubbleOptions& gas_options = draft.options.get<BubbleOptions>();
   if (gas_options.on && gas_options.surface_interaction && scene.free_surface && gas_options.tension == 0)
     add_missing_tension(draft, "how long bubbles rest at the surface (surface_interaction)", problems);
   const InitialParticles& liquid = scene.particles;

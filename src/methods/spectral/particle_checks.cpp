@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "checks.hpp"
+#include "spume/methods/spectral/options.hpp"
+#include "spume/scene/draft.hpp"
 
 namespace spume {
 namespace {
@@ -15,7 +16,7 @@ double kolmogorov_length(const Draft& draft) {
   const double nu = uses_si(fluid)   ? fluid.viscosity.value_or(0) / fluid.density.value_or(1)
                     : fluid.reynolds ? 1 / *fluid.reynolds
                                      : 0.0;
-  return std::pow(nu * nu * nu / draft.options.forcing.injection, 0.25);
+  return std::pow(nu * nu * nu / draft.options.get<ForcingOptions>().injection, 0.25);
 }
 
 }  // namespace
@@ -23,7 +24,7 @@ double kolmogorov_length(const Draft& draft) {
 void check_particles(const Draft& draft, Problems& problems) {
   const Node* section = draft.node("particles");
   if (!section) return;
-  const ParticleCaseOptions& p = draft.options.particles;
+  const ParticleCaseOptions& p = draft.options.get<ParticleCaseOptions>();
   const auto has = [&](const char* key) { return draft.node(std::string("particles.") + key) != nullptr; };
   const auto fault = [&](const char* key, const std::string& text) {
     const Node* node = draft.node(std::string("particles.") + key);
@@ -47,13 +48,13 @@ void check_particles(const Draft& draft, Problems& problems) {
   exactly_one({"diameter", "diameter_over_eta", "diameters"}, true, "diameter = <number>  # length, > 0");
   exactly_one({"stokes", "response_time"}, false, "");
   for (const char* key : {"stokes", "diameter_over_eta"})
-    if (has(key) && draft.options.forcing.kind != ForcingKind::shell)
+    if (has(key) && draft.options.get<ForcingOptions>().kind != ForcingKind::shell)
       fault(key, "is counted in Kolmogorov scales of the injected energy and needs forcing.kind = \"shell\"");
 
   std::vector<double> diameters = p.diameters;
   if (has("diameter")) diameters = {p.diameter};
   const char* key = has("diameter") ? "diameter" : "diameters";
-  if (has("diameter_over_eta") && draft.options.forcing.injection > 0) {
+  if (has("diameter_over_eta") && draft.options.get<ForcingOptions>().injection > 0) {
     key = "diameter_over_eta";
     diameters = {p.diameter_over_eta * kolmogorov_length(draft)};
   }
@@ -93,16 +94,15 @@ void check_particles(const Draft& draft, Problems& problems) {
     fault("gravity", "must have 3 entries, found " + std::to_string(p.gravity.size()));
   if (has("spline_order") && p.spline_order % 2 != 0)
     fault("spline_order", "must be 2, 4 or 6, found " + std::to_string(p.spline_order));
-  if ((p.coupling == ParticleCoupling::two_way || p.coupling == ParticleCoupling::four_way) && has("beta") &&
-      p.beta == 0)
+  if ((p.coupling == Coupling::two_way || p.coupling == Coupling::four_way) && has("beta") && p.beta == 0)
     fault("beta",
           "= 0 is infinitely heavy, which nothing in the flow can be coupled to; give a value above 0, or "
           "particles.coupling = \"one-way\" or \"colliding\"");
   if (!has("stokes") && !has("response_time") && has("beta") && p.beta == 0)
     fault("beta", "= 0 has no response time of its own; add  stokes = <number>");
-  if (p.placement == ParticlePlacement::file && !has("file"))
+  if (p.placement == Placement::file && !has("file"))
     problems.add(*section, "missing key 'file' in [particles]; add  file = \"<path of a CSV file>\"");
-  if (has("file") && p.placement != ParticlePlacement::file) fault("file", "belongs to particles.placement = \"file\"");
+  if (has("file") && p.placement != Placement::file) fault("file", "belongs to particles.placement = \"file\"");
   if (p.lyapunov > 0 && !p.double_records) fault("lyapunov", "needs particles.records = \"double\"");
 }
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "checks.hpp"
+#include "spume/methods/spectral/options.hpp"
+#include "spume/scene/draft.hpp"
 
 namespace spume {
 namespace {
@@ -43,7 +44,7 @@ std::vector<std::int64_t> check_grid(const Draft& draft, Problems& problems) {
 }
 
 bool shell_holds_modes(const Draft& draft, const std::vector<std::int64_t>& grid) {
-  const ForcingOptions& forcing = draft.options.forcing;
+  const ForcingOptions& forcing = draft.options.get<ForcingOptions>();
   double longest = 0;
   for (std::size_t a = 0; a < 3; ++a) longest = std::max(longest, draft.upper[a] - draft.lower[a]);
   std::array<double, 3> unit{};
@@ -65,7 +66,7 @@ bool shell_holds_modes(const Draft& draft, const std::vector<std::int64_t>& grid
 }
 
 void check_forcing(const Draft& draft, const std::vector<std::int64_t>& grid, Problems& problems) {
-  const ForcingOptions& forcing = draft.options.forcing;
+  const ForcingOptions& forcing = draft.options.get<ForcingOptions>();
   const Node* section = draft.node("forcing");
   if (!section || !draft.usable("forcing.kind")) return;
   const auto belongs_to = [&](const char* key, ForcingKind kind, const char* word) {
@@ -90,7 +91,7 @@ void check_forcing(const Draft& draft, const std::vector<std::int64_t>& grid, Pr
 void check_initial(const Draft& draft, const std::vector<std::int64_t>& grid, Problems& problems) {
   const Node* section = draft.node("initial");
   if (!section || !draft.usable("initial.kind")) return;
-  const InitialOptions& initial = draft.options.initial;
+  const InitialOptions& initial = draft.options.get<InitialOptions>();
   const bool waves = initial.kind == InitialKind::taylor_green || initial.kind == InitialKind::abc;
   const auto companion = [&](const char* key, bool wanted, bool required, const char* kinds, const char* example) {
     const std::string name = std::string("initial.") + key;
@@ -133,11 +134,10 @@ void check_spectral(const Draft& draft, Problems& problems) {
   const std::vector<std::int64_t> grid = check_grid(draft, problems);
   check_forcing(draft, grid, problems);
   check_initial(draft, grid, problems);
-  check_particles(draft, problems);
   const FluidDraft& fluid = draft.fluid;
   const bool viscous = fluid.reynolds || (fluid.viscosity && *fluid.viscosity > 0);
-  if (draft.options.spectral.integrator == Integrator::ab2 && !viscous && draft.usable("fluid.reynolds") &&
-      draft.usable("fluid.viscosity")) {
+  if (draft.options.get<SpectralOptions>().integrator == Integrator::ab2 && !viscous &&
+      draft.usable("fluid.reynolds") && draft.usable("fluid.viscosity")) {
     const Node* place = draft.node("fluid");
     const std::string text =
         "Adams-Bashforth 2 is unstable without viscosity; give fluid.reynolds, or set spectral.integrator = \"rk4\"";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the reader gathers from a case file before geometry and expressions are built.
+// What the reader gathers from a case file before geometry and expressions are built: what checks look at.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "document.hpp"
 #include "spume/scene/case.hpp"
+#include "spume/scene/document.hpp"
 
 namespace spume {
 
@@ -24,6 +24,11 @@ struct LiquidDraft {
   std::optional<double> radius;
   std::vector<ExpressionText> velocity;
   bool conform = false;
+};
+
+// A [[region]]: what a phase fills. `conform` stays false.
+struct RegionDraft : LiquidDraft {
+  std::string phase;
 };
 
 struct SolidDraft {
@@ -41,6 +46,11 @@ struct FluidDraft {
   std::optional<double> reynolds, froude, mach;
   std::optional<double> density, viscosity, gravity, sound_speed;
 };
+
+// True when [fluid] is given by its SI set.
+inline bool uses_si(const FluidDraft& fluid) {
+  return fluid.density || fluid.viscosity || fluid.gravity || fluid.sound_speed;
+}
 
 struct SpargerDraft {
   Sparger sparger;
@@ -68,6 +78,9 @@ struct Draft {
   std::map<std::string, std::vector<ExpressionText>> wall_velocity;  // by name of the side
   FluidDraft fluid;
   std::vector<LiquidDraft> liquids;
+  std::vector<Phase> phases;
+  double surface_tension = 0;
+  std::vector<RegionDraft> regions;
   std::vector<SolidDraft> solids;
   std::vector<ProbeDraft> probes;
   BubbleDraft bubbles;
@@ -87,5 +100,10 @@ struct Draft {
   }
   bool usable(const std::string& name) const { return bad.count(name) == 0; }
 };
+
+// True when the case is in SI units: by its fluid, or because it has phases, which are always.
+inline bool uses_si(const Draft& draft) {
+  return uses_si(draft.fluid) || !draft.phases.empty();
+}
 
 }  // namespace spume

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// The sections [bubbles], [[sparger]] and [[bubble_cloud]] and what they must satisfy. A method that carries bubbles
+// names them in its registration and calls the checks in its own.
+#pragma once
+
+#include <vector>
+
+#include "spume/scene/bubbles.hpp"
+
+namespace spume {
+
+struct Draft;
+class Problems;
+struct Scene;
+struct Section;
+
+std::vector<Section> bubble_sections();
+
+// Gas and liquid, radii against the spacing, sources inside the domain; completes BubbleOptions.
+void check_bubbles(Draft& draft, Problems& problems);
+
+// What can be told of spargers and clouds only beside the compiled rates and the initial liquid.
+void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& problems);
+
+}  // namespace spume

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// What the scene knows of a method: its options, its checks, and what it takes of a scene. Methods are handed in from
+// above (spume/methods/registry.hpp); nothing here knows one of them.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "spume/scene/option.hpp"
+
+namespace spume {
+
+struct MethodDeclaration {
+  std::string name;         // as a case names it
+  std::string description;  // one line
+
+  // Properties: which of the scene's own sections and options the method takes.
+  bool uses_grid = false;      // resolution.grid; the flow fills the box, and [initial] tells its velocity
+  bool fills_regions = false;  // resolution.spacing; particles of one fluid fill [[liquid]] between walls and solids
+  bool fills_phases = false;   // the same with the fluids of [[phase]], which fill each [[region]]
+
+  // Sections of its own, and options that it adds to sections of the scene. Several methods may name the same
+  // declaration: its options then belong to all of them.
+  std::vector<Section> sections;
+
+  // What the case must satisfy beyond types and ranges, before geometry and expressions are built; completes the groups
+  // of options. Null: nothing.
+  std::function<void(Draft&, Problems&)> check = {};
+  // What can be told only beside the compiled expressions and the initial particles.
+  std::function<void(const Draft&, const Scene&, Problems&)> check_scene = {};
+
+  // Bytes per particle or point of the grid that a run holds once its first steps are done; a run needs no less.
+  std::function<double(const Case&, int dimensions)> bytes_per_particle;
+
+  // Courant number of a case that gives none, and in words what decides it.
+  std::function<double(const Case&, const Scene&)> default_courant;
+  std::string default_courant_in_words;
+
+  // What output.fields may name.
+  std::function<std::vector<std::string>(const Case&)> output_fields;
+};
+
+inline bool uses_grid(const MethodDeclaration& method) {
+  return method.uses_grid;
+}
+inline bool fills_regions(const MethodDeclaration& method) {
+  return method.fills_regions;
+}
+inline bool fills_phases(const MethodDeclaration& method) {
+  return method.fills_phases;
+}
+inline bool uses_particles(const MethodDeclaration& method) {
+  return method.fills_regions || method.fills_phases;
+}
+inline bool has_one_fluid(const MethodDeclaration& method) {
+  return !method.fills_phases;
+}
+
+}  // namespace spume

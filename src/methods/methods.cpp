@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// The list of methods, in the order in which messages name them.
+#include "spume/methods/les_sph/registration.hpp"
+#include "spume/methods/registry.hpp"
+#include "spume/methods/spectral/registration.hpp"
+
+namespace spume {
+namespace {
+
+// Methods that a later version may have, for the message of a case that asks for one.
+const std::vector<std::string> unavailable{"gfd", "wcsph"};
+
+}  // namespace
+
+const std::vector<Registration>& registered_methods() {
+  static const std::vector<Registration> methods{les_sph::registration(), spectral::registration()};
+  return methods;
+}
+
+const CaseSchema& case_schema() {
+  static const CaseSchema schema({registered_methods().begin(), registered_methods().end()}, unavailable);
+  return schema;
+}
+
+}  // namespace spume

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "spume/methods/spectral/registration.hpp"
+
+#include "spume/methods/spectral/options.hpp"
+#include "spume/methods/spectral/spectral.hpp"
+
+namespace spume::spectral {
+namespace {
+
+void check(Draft& draft, Problems& problems) {
+  check_spectral(draft, problems);
+  check_particles(draft, problems);
+}
+
+// The states of the integrator; left out are the planes of a product, whose share falls with the size of the grid.
+double bytes_per_point(const Case& options, int /*dimensions*/) {
+  const SpectralOptions& numerics = options.get<SpectralOptions>();
+  // Three components of N/2 + 1 complex modes are 3 numbers per point.
+  const double number = numerics.precision == FieldPrecision::f64 ? 8 : 4;
+  const double states = numerics.integrator == Integrator::ab2 ? 3 : 4;
+  return 3 * number * states;
+}
+
+// Runge-Kutta stays accurate up to its stability: 0.55 and 1.06. Particles keep the steps of Adams-Bashforth.
+double default_courant(const Case& options, const Scene&) {
+  const Integrator integrator = options.get<SpectralOptions>().integrator;
+  if (options.get<ParticleCaseOptions>().any() || integrator == Integrator::ab2) return 0.2;
+  return integrator == Integrator::rk3 ? 0.5 : 0.9;
+}
+
+std::unique_ptr<Method> make(const LoadedCase& loaded) {
+  if (loaded.options.get<SpectralOptions>().precision == FieldPrecision::f32)
+    return std::make_unique<Spectral<float>>(loaded);
+  return std::make_unique<Spectral<double>>(loaded);
+}
+
+}  // namespace
+
+Registration registration() {
+  Registration method;
+  method.name = "spectral";
+  method.description = "homogeneous turbulence in a periodic box by Fourier modes, with particles in the flow";
+  method.uses_grid = true;
+  method.sections = spectral_sections();
+  method.check = check;
+  method.bytes_per_particle = bytes_per_point;
+  method.default_courant = default_courant;
+  method.default_courant_in_words = "rk3 without particles 0.5, rk4 0.9";
+  method.output_fields = [](const Case&) { return std::vector<std::string>{"velocity", "vorticity", "pressure"}; };
+  method.make = make;
+  return method;
+}
+
+}  // namespace spume::spectral

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "spume/physics/bubbles/options.hpp"
+
+#include "spume/scene/option.hpp"
+
+namespace spume {
+namespace {
+
+// A value of the gas that the checks complete from others.
+auto gas(std::optional<double> BubbleDraft::*value) {
+  return [value](Draft& d) -> std::optional<double>& { return d.bubbles.*value; };
+}
+
+Section bubbles() {
+  using B = BubbleOptions;
+  using D = BubbleDraft;
+  return section<B>("bubbles")
+      .option("weber", gas(&D::weber), "1", positive(), "Weber number")
+      .absent("required for entrainment, breakup and a free surface")
+      .option("surface_tension", gas(&D::surface_tension), "N/m", positive(),
+              "surface tension, in place of weber in SI")
+      .absent("groups: weber")
+      .option("density_ratio", gas(&D::density_ratio), "1", positive(), "density of the liquid over that of the gas")
+      .absent("1000 / 1.2")
+      .option("gas_density", gas(&D::gas_density), "kg/m3", positive(),
+              "density of the gas, in place of density_ratio in SI")
+      .absent("density_ratio")
+      .option("entrainment", &B::entrainment, "bubbles are made at the surface where the liquid dissipates")
+      .option("breakup", &B::breakup, "turbulence splits bubbles")
+      .option("fluctuations", &B::fluctuations, "unresolved velocity that bubbles feel, by a Langevin equation")
+      .option("surface_interaction", &B::surface_interaction, "bubbles brake below a free surface, rest and burst")
+      .option("fluid_inertia", &B::fluid_inertia, "force of the accelerating liquid, beta V Du/Dt")
+      .word("integrator", &B::integrator,
+            {{"stable", BubbleIntegrator::stable}, {"substep", BubbleIntegrator::substep}},
+            "stable: any step; substep: explicit, spacing / radius sub-steps")
+      .word("momentum_form", &B::momentum_form,
+            {{"mixture-pressure", MomentumForm::mixture_pressure}, {"two-fluid", MomentumForm::two_fluid}},
+            "pressure force on the liquid: -grad(alpha p) or -alpha grad p")
+      .word("surface_reaction", &B::surface_reaction,
+            {{"surface", SurfaceReaction::surface}, {"liquid", SurfaceReaction::liquid}},
+            "who holds the bubbles that brake below a surface: surface, which the liquid does not feel, or the liquid "
+            "around them, King (3.33)")
+      .option("lift_coefficient", &B::lift_coefficient, "1", between(-10, 10), "C_l")
+      .option("virtual_mass_coefficient", &B::virtual_mass_coefficient, "1", between(0, 10), "C_vm")
+      .option("viscosity_constant", &B::viscosity_constant, "1", between(0, 10),
+              "of the bubble-induced viscosity (Sato & Sekoguchi)")
+      .option("fluctuation_constant", &B::fluctuation_constant, "1", above_up_to(0, 100),
+              "of the time scale of the fluctuations")
+      .when("fluctuations", {"true"})
+      .option("entrainment_constant", &B::entrainment_constant, "1", between(0, 1),
+              "C_eps: dissipation spent on surface, per beta")
+      .when("entrainment", {"true"})
+      .option("entrainment_threshold", &B::entrainment_threshold, "length2/time3", not_negative(),
+              "unresolved dissipation above which bubbles are entrained")
+      .when("entrainment", {"true"})
+      .word("entrainment_overdraft", &B::entrainment_overdraft,
+            {{"affordable", EntrainmentOverdraft::affordable}, {"printed", EntrainmentOverdraft::printed}},
+            "chance of a bubble that costs more than is left: affordable: left / cost; printed: 1 - left / cost, King "
+            "section 3.4.1")
+      .when("entrainment", {"true"})
+      .option("deformation_constant", &B::deformation_constant, "1", positive(), "c_def of breakup")
+      .when("breakup", {"true"})
+      .option("schmidt", &B::schmidt, "1", positive(), "Schmidt number of the persistence at the surface")
+      .option("hinze_radius", gas(&D::hinze_radius), "length", positive(),
+              "radius that divides the counts of series.csv; without tension none do")
+      .absent("We^(-3/5) / 2")
+      .option("smallest_entrained_radius", gas(&D::smallest_entrained_radius), "length", positive(),
+              "smallest bubble that is entrained")
+      .absent("hinze_radius / 20")
+      .when("entrainment", {"true"})
+      .option("trace_every", &B::trace_every, "", between(0, 1e9),
+              "bubble_traces.csv follows bubbles whose id is a multiple of this; 0: none")
+      .option("trace_interval", &B::trace_interval, "time", not_negative(),
+              "interval of the traces; 0: with every step")
+      .whole_optional();
+}
+
+// The sizes that a source draws from; `sizes` finds them in an entry.
+template <class Source, class Sizes>
+void add_sizes(SectionOf<Source>& section, Sizes sizes) {
+  const auto radius = [sizes](double BubbleSizes::*value) {
+    return [sizes, value](Source& source) -> double& { return sizes(source).*value; };
+  };
+  section
+      .word(
+          "sizes", [sizes](Source& source) -> SizeLaw& { return sizes(source).law; },
+          {{"monodisperse", SizeLaw::monodisperse},
+           {"truncated-gaussian", SizeLaw::truncated_gaussian},
+           {"log-normal", SizeLaw::log_normal}},
+          "law of the radii")
+      .option("bubble_radius", radius(&BubbleSizes::mean), "length", positive(),
+              "radius; mean before truncation of a Gaussian, median of a log-normal law")
+      .required()
+      .option("deviation", radius(&BubbleSizes::deviation), "length, or 1 of log a", not_negative(),
+              "standard deviation of the radius before truncation, or of log a")
+      .option("smallest", radius(&BubbleSizes::minimum), "length", positive(),
+              "smallest radius of a law with a deviation")
+      .absent("bubble_radius / 10")
+      .option("largest", radius(&BubbleSizes::maximum), "length", positive(),
+              "largest radius of a law with a deviation")
+      .absent("the spacing");
+}
+
+Section sparger() {
+  using S = SpargerDraft;
+  auto section = repeated_section<S>("sparger", [](Draft& d) -> std::vector<S>& { return d.bubbles.spargers; });
+  section
+      .word(
+          "shape", [](S& s) -> SpargerShape& { return s.sparger.shape; },
+          {{"point", SpargerShape::point}, {"disc", SpargerShape::disc}, {"line", SpargerShape::line}},
+          "where bubbles leave it; a disc is horizontal")
+      .option("position", &S::position, "length", "point, centre of the disc, start of the line")
+      .required()
+      .option(
+          "radius", [](S& s) -> double& { return s.sparger.radius; }, "length", positive(), "radius of the disc")
+      .absent("required for disc")
+      .option("end", &S::end, "length", "end of the line")
+      .absent("required for line")
+      .option("rate", &S::rate, "length3/time", "gas volume per time: an expression of t")
+      .required();
+  add_sizes(section, [](S& s) -> BubbleSizes& { return s.sparger.sizes; });
+  return section;
+}
+
+Section cloud() {
+  using C = BubbleCloudDraft;
+  auto section = repeated_section<C>("bubble_cloud", [](Draft& d) -> std::vector<C>& { return d.bubbles.clouds; });
+  section.option("lower", &C::lower, "length", "lower corner of a box")
+      .absent("the domain")
+      .option("upper", &C::upper, "length", "upper corner of a box")
+      .absent("the domain")
+      .option("centre", &C::centre, "length", "centre of a ball, in place of a box")
+      .absent("no ball")
+      .option("radius", &C::radius, "length", not_negative(), "radius of the ball")
+      .absent("0: at the centre")
+      .option(
+          "number", [](C& c) -> std::int64_t& { return c.cloud.number; }, "", between(1, 1e8), "how many bubbles")
+      .option(
+          "time", [](C& c) -> double& { return c.cloud.time; }, "time", not_negative(),
+          "when they appear, at rest relative to the liquid");
+  add_sizes(section, [](C& c) -> BubbleSizes& { return c.cloud.sizes; });
+  return section;
+}
+
+}  // namespace
+
+std::vector<Section> bubble_sections() {
+  return {bubbles(), sparger(), cloud()};
+}
+
+}  // namespace spume

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// Options of time and of what a run records.
+#include "scene_sections.hpp"
+
+namespace spume {
+namespace {
+
+Section time(const std::string& default_courant) {
+  using T = TimeOptions;
+  return section<T>("time", [](Draft& d) -> T& { return d.options.time; })
+      .option("end", &T::end, "time", positive(), "time at which the run ends")
+      .required()
+      .option("courant", &T::courant, "1", above_up_to(0, 1), "step limit by speed: Courant number")
+      .absent(default_courant)
+      .chosen([](const Draft& d) { return shortest(d.options.time.courant); })
+      .option("max_step", &T::max_step, "time", not_negative(), "largest step; 0: none")
+      .option("max_retries", &T::max_retries, "", between(0, 30), "halvings of a refused step before the run gives up");
+}
+
+Section output() {
+  using O = OutputOptions;
+  return section<O>("output", [](Draft& d) -> O& { return d.options.output; })
+      .option("every", &O::every, "time", not_negative(), "snapshot interval; 0: start and end only")
+      .option("series_every", &O::series_every, "time", not_negative(), "interval of series.csv; 0: every step")
+      .option("checkpoint_every", &O::checkpoint_every, "s of wall time", not_negative(), "checkpoint interval")
+      .option("spectrum_every", &O::spectrum_every, "time", not_negative(), "interval of energy spectra; 0: none")
+      .option("fields", &O::fields, "fields of a snapshot; empty: the method's standard set")
+      .option("h5part_view", &O::h5part_view, "let ParaView's H5Part reader open the snapshots too");
+}
+
+Section probe() {
+  using P = ProbeDraft;
+  return repeated_section<P>("probe", &Draft::probes)
+      .option(
+          "name", [](P& p) -> std::string& { return p.options.name; }, "name of its columns in probes.csv")
+      .required()
+      .word(
+          "kind", [](P& p) -> ProbeKind& { return p.options.kind; },
+          {{"point", ProbeKind::point},
+           {"elevation", ProbeKind::elevation},
+           {"wetted", ProbeKind::wetted},
+           {"front", ProbeKind::front},
+           {"line", ProbeKind::line},
+           {"plane", ProbeKind::plane}},
+          "what is recorded; elevation: height of the uppermost liquid above a foot, wetted: length of the vertical "
+          "through it that lies in liquid, as a wire gauge measures it, plane: area of the liquid on a plane across "
+          "the domain and averages of velocity and pressure over it")
+      .option("position", &P::position, "length",
+              "point; foot of the column (elevation, wetted); start of a line; a point of a plane, or its coordinate "
+              "along the normal alone")
+      .absent("required but for front")
+      .option("end", &P::end, "length", "end of a line")
+      .absent("required for line")
+      .when("kind", {"line"})
+      .option(
+          "samples", [](P& p) -> int& { return p.options.samples; }, "", between(2, 1e6),
+          "points of a line, ends included")
+      .when("kind", {"line"})
+      .word(
+          "axis", [](P& p) -> int& { return p.options.axis; }, {{"x", 0}, {"y", 1}, {"z", 2}},
+          "front: axis along which the liquid's largest coordinate is sought; plane: its normal")
+      .when("kind", {"front", "plane"})
+      .option("height", &P::height, "length", "front: looks below this height")
+      .absent("top of the domain")
+      .when("kind", {"front"});
+}
+
+Section verify() {
+  return {.name = "verify",
+          .options = {{.key = "*",
+                       .type = OptionType::free_table,
+                       .absent = "none",
+                       .description = "references and bounds for `spume verify`"}}};
+}
+
+}  // namespace
+
+std::vector<Section> run_sections(const std::string& default_courant) {
+  return {time(default_courant), output(), probe(), verify()};
+}
+
+}  // namespace spume

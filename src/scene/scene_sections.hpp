@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// The sections that the scene declares itself.
+#pragma once
+
+#include <vector>
+
+#include "spume/scene/method_declaration.hpp"
+
+namespace spume {
+
+std::vector<Section> scene_sections();  // title ... forces
+// time, output, probes, verify; `default_courant` says what a case without time.courant gets.
+std::vector<Section> run_sections(const std::string& default_courant);
+
+}  // namespace spume

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// Phases, the regions that they fill, and what is said of those that cannot be. No method of the program takes them
+// yet: the one of these tests is registered here.
+#include <gmock/gmock.h>
+
+#include "helpers.hpp"
+#include "spume/scene/load.hpp"
+
+namespace spume {
+namespace {
+
+using test::CaseFile;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const CaseSchema& schema() {
+  static const CaseSchema made = [] {
+    MethodDeclaration method;
+    method.name = "mixed";
+    method.fills_phases = true;
+    method.bytes_per_particle = [](const Case&, int) { return 100.0; };
+    method.default_courant = [](const Case&, const Scene&) { return 0.2; };
+    method.default_courant_in_words = "0.2";
+    method.output_fields = [](const Case&) { return std::vector<std::string>{"velocity"}; };
+    return CaseSchema({method});
+  }();
+  return made;
+}
+
+const std::string head =
+    "method = \"mixed\"\n[domain]\nlower = [0, 0]\nupper = [1, 1]\nx = \"periodic\"\ny = \"periodic\"\n"
+    "[resolution]\nspacing = 0.1\n[time]\nend = 1\n";                                         // 10 lines
+const std::string water = "[[phase]]\nname = \"water\"\ndensity = 1000\nviscosity = 1e-3\n";  // 11 to 14
+const std::string air =
+    "[[phase]]\nname = \"air\"\ndensity = 1.2\nviscosity = 1.8e-5\nsound_speed = 340\n";  // 15 to 19
+const std::string everywhere = "[[region]]\nphase = \"water\"\n";                         // 20, 21
+
+LoadedCase load(const std::string& text) {
+  const CaseFile file(text);
+  return load_case(file.path(), {}, schema());
+}
+
+std::vector<std::string> problems(const std::string& text) {
+  std::vector<std::string> found;
+  try {
+    load(text);
+  } catch (const InputError& error) {
+    for (const Problem& problem : error.problems())
+      found.push_back(std::to_string(problem.line) + ":" + std::to_string(problem.column) + " " + problem.text);
+  }
+  return found;
+}
+
+// Particles start at 0.05, 0.15, ...: in each quadrant about the middle (0.05, 0.05), (0.05, 0.15), (0.15, 0.05) and
+// (0.15, 0.15) are within 0.25 of it, (0.05, 0.25) is 0.255 away.
+TEST(Phases, ALaterRegionReplacesWhatAnEarlierOneFilled) {
+  const LoadedCase loaded =
+      load(head + water + air + everywhere +
+           "[[region]]\nphase = \"air\"\ncentre = [0.5, 0.5]\nradius = 0.25\nvelocity = [2, 0]\n"
+           "[[region]]\nphase = \"water\"\nwhere = \"0.1 - y\"\n[interface]\nsurface_tension = 0.072\n"
+           "[fluid]\ngravity = 9.81\n");
+  const Scene& scene = loaded.scene;
+  ASSERT_EQ(scene.phases.size(), 2u);
+  EXPECT_EQ(scene.phases[0].name, "water");
+  EXPECT_EQ(scene.phases[0].density, 1000);
+  EXPECT_EQ(scene.phases[0].sound_speed, 0);
+  EXPECT_EQ(scene.phases[1].viscosity, 1.8e-5);
+  EXPECT_EQ(scene.phases[1].sound_speed, 340);
+  EXPECT_EQ(scene.surface_tension, 0.072);
+  EXPECT_EQ(scene.fluid.gravity[1], -9.81);
+  EXPECT_EQ(scene.fluid.kinematic_viscosity, 1e-6);
+  EXPECT_FALSE(scene.free_surface);
+  const InitialParticles& particles = scene.particles;
+  ASSERT_EQ(particles.size(), 100u);
+  ASSERT_EQ(particles.phase.size(), 100u);
+  std::size_t bubble = 0, bottom = 0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const double x = particles.position[0][i], y = particles.position[1][i];
+    const bool in_ball = (x - 0.5) * (x - 0.5) + (y - 0.5) * (y - 0.5) < 0.25 * 0.25;
+    EXPECT_EQ(particles.phase[i], in_ball ? 1 : 0);
+    EXPECT_EQ(particles.region[i], in_ball ? 1 : y < 0.1 ? 2 : 0);
+    EXPECT_EQ(particles.velocity[0][i], in_ball ? 2 : 0);
+    bubble += in_ball;
+    bottom += y < 0.1;
+  }
+  EXPECT_EQ(bubble, 16u);
+  EXPECT_EQ(bottom, 10u);
+  EXPECT_THAT(loaded.options.groups.at("phase air"), HasSubstr("1.2 kg/m3"));
+  EXPECT_THAT(loaded.options.resolved, HasSubstr("spacing = 0.1                             # case, m\n"));
+  const LoadedCase again = load(loaded.options.resolved);
+  EXPECT_EQ(again.scene.phases.size(), 2u);
+  EXPECT_EQ(again.scene.surface_tension, 0.072);
+}
+
+TEST(Phases, WhatIsMissingIsNamed) {
+  EXPECT_THAT(problems(head),
+              ElementsAre("1:1 no phase: add a fluid,  [[phase]]  with  name, density, viscosity",
+                          "1:1 no region: say what a phase fills,  [[region]]  with  phase = \"<name>\""));
+  EXPECT_THAT(problems(head + "[[phase]]\nname = \"water\"\ndensity = 1000\n" + everywhere),
+              ElementsAre("11:1 missing key 'viscosity' in [[phase]]; add  viscosity = <number>  # Pa s, >= 0"));
+  EXPECT_THAT(problems(head + water + "[[region]]\nradius = 0.1\n"),
+              ElementsAre("15:1 missing key 'phase' in [[region]]; add  phase = \"<text>\"",
+                          HasSubstr("15:1 missing key 'centre' in [[region]], which has a radius")));
+}
+
+TEST(Phases, NamesAreKnownAndUnique) {
+  EXPECT_THAT(problems(head + water + air + "[[region]]\nphase = \"wter\"\n"),
+              ElementsAre("21:9 region.0.phase must be the name of a phase, \"water\" or \"air\", found \"wter\"; did "
+                          "you mean \"water\"?"));
+  EXPECT_THAT(problems(head + water + water + everywhere),
+              ElementsAre("16:8 another phase has the name 'water' already"));
+  EXPECT_THAT(problems(head + water + "[[phase]]\nname = \"\"\ndensity = 1\nviscosity = 0\n" + everywhere),
+              ElementsAre("16:8 phase.1.name must not be empty"));
+}
+
+TEST(Phases, TensionIsPositiveAndBetweenTwo) {
+  EXPECT_THAT(problems(head + water + air + everywhere + "[interface]\nsurface_tension = -1\n"),
+              ElementsAre("23:19 interface.surface_tension must be >= 0 (N/m), found -1"));
+  EXPECT_THAT(
+      problems(head + water + everywhere + "[interface]\nsurface_tension = 1\n"),
+      ElementsAre("18:19 interface.surface_tension needs two phases, found one; add a [[phase]], or remove it"));
+}
+
+TEST(Phases, RegionsLieInTheDomainAndHoldSomething) {
+  EXPECT_THAT(problems(head + water + "[[region]]\nphase = \"water\"\nlower = [0, 0]\nupper = [1, 2]\n"),
+              ElementsAre(HasSubstr("15:1 region.0 reaches outside the domain: y from 0 to 2")));
+  EXPECT_THAT(problems(head + water + air + everywhere + "[[region]]\nphase = \"air\"\n"),
+              ElementsAre("20:1 region.0 is empty: later regions replace all of it"));
+  EXPECT_THAT(problems(head + water + everywhere + "[[region]]\nphase = \"water\"\nwhere = \"sqrt(-1 - x)\"\n"),
+              ElementsAre(HasSubstr("17:1 region.1.where is not finite at")));
+}
+
+TEST(Phases, OneFluidAndSeveralDoNotMix) {
+  EXPECT_THAT(problems(head + water + everywhere + "[fluid]\ndensity = 1\n"),
+              ElementsAre("18:1 fluid.density is taken by no method of this version, and this case is of method "
+                          "\"mixed\"; remove it"));
+  EXPECT_THAT(test::problems_of(test::small_case("[[phase]]\nname = \"water\"\n")),
+              ElementsAre("14:3 [phase] is taken by no method of this version, and this case is of method \"les-sph\"; "
+                          "remove the section"));
+}
+
+}  // namespace
+}  // namespace spume
