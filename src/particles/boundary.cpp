@@ -115,19 +115,19 @@ void Boundary::find_rules(const Images& images, double support_radius, double t)
   find_offsets(images, t, true, velocity_rule_);
   if (features.no_slip && features.displaced_walls) find_offsets(images, t, false, mirror_rule_);
   // An image behind a wall moves with twice the velocity of the wall.
-  wall_speed = 0.5 * std::sqrt(parallel_max(images.size(), 0.0, [&](std::size_t k) {
-                 double speed2 = 0;
-                 for (int a = 0; a < d; ++a) {
-                   const double u = velocity_rule_.offset[a][k];
-                   speed2 += u * u;
-                 }
-                 return speed2;
-               }));
-  if (std::isfinite(wall_speed)) return;
+  next_wall_speed = 0.5 * std::sqrt(parallel_max(images.size(), 0.0, [&](std::size_t k) {
+                      double speed2 = 0;
+                      for (int a = 0; a < d; ++a) {
+                        const double u = velocity_rule_.offset[a][k];
+                        speed2 += u * u;
+                      }
+                      return speed2;
+                    }));
+  if (std::isfinite(next_wall_speed)) return;
   StepFailure::Details details;
   details.cause = "the velocity of a wall is not a finite number";
   details.option = "domain.wall_velocity";
-  details.value = wall_speed;
+  details.value = next_wall_speed;
   throw StepFailure(details);
 }
 

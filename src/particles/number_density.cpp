@@ -100,12 +100,12 @@ double displacement_fraction(const Arrangement& arrangement, const ParticleStore
   return fraction < 1e-12 ? 0.0 : std::min(most_displacement, fraction);  // less than positions can tell
 }
 
-void even_out_density(const DensityRelaxation& relaxation, const Arrangement& arrangement, const Domain& domain,
-                      const VectorField& at, const Resolution& resolution, const MomentFields& moments,
-                      const FreeSurface* surface, std::span<double> divergence) {
+double even_out_density(const DensityRelaxation& relaxation, const Arrangement& arrangement, const Domain& domain,
+                        const VectorField& at, const Resolution& resolution, const MomentFields& moments,
+                        const FreeSurface* surface, std::span<double> divergence) {
   const Reader read{arrangement, domain, at, resolution, moments, surface};
   struct Sum {
-    double disorder = 0, particles = 0;
+    double disorder = 0, particles = 0, volume = 0;
   };
   const Sum total = parallel_reduce(
       divergence.size(), Sum{},
@@ -113,13 +113,17 @@ void even_out_density(const DensityRelaxation& relaxation, const Arrangement& ar
         Sum sum;
         for (std::size_t i = first; i < last; ++i)
           if (read.tells_density(i)) {
-            sum.disorder += within(read.excess(i), local_disorder);
+            const double excess = read.excess(i);
+            sum.disorder += within(excess, local_disorder);
             sum.particles += 1;
+            sum.volume += 1 / (1 + excess);
+          } else {
+            sum.volume += 1;
           }
         return sum;
       },
       [](const Sum& a, const Sum& b) {
-        return Sum{a.disorder + b.disorder, a.particles + b.particles};
+        return Sum{a.disorder + b.disorder, a.particles + b.particles, a.volume + b.volume};
       });
   const double mean = total.disorder / std::max(total.particles, 1.0);
   const double of_all = mean - within(mean, mean_disorder);
@@ -131,6 +135,7 @@ void even_out_density(const DensityRelaxation& relaxation, const Arrangement& ar
     const double rate = own < 0 ? closing * std::max(1.0, -own / thin_as_void) : expanding;
     divergence[i] -= expanding * of_all + std::min(rate, 1 / relaxation.dt) * (own - within(own, local_disorder));
   });
+  return total.volume;
 }
 
 }  // namespace spume

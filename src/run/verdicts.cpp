@@ -46,6 +46,10 @@ void InvariantWatch::observe(std::span<const double> row) {
   started_ = true;
 }
 
+double InvariantWatch::scale_of(const Watched& w) {
+  return w.invariant.scale_factor * w.largest_scale + w.invariant.scale_floor;
+}
+
 std::vector<Verdict> InvariantWatch::verdicts() const {
   std::vector<Verdict> verdicts;
   for (const Watched& w : watched_) {
@@ -55,7 +59,10 @@ std::vector<Verdict> InvariantWatch::verdicts() const {
         value = relative(larger_or_nan(w.most - w.first, w.first - w.least), std::abs(w.first));
         break;
       case Invariant::Kind::growth:
-        value = relative(larger_or_nan(w.most - w.first, 0), w.largest_scale + w.invariant.scale_floor);
+        value = relative(larger_or_nan(w.most - w.first, 0), scale_of(w));
+        break;
+      case Invariant::Kind::change:
+        value = relative(larger_or_nan(w.most - w.first, w.first - w.least), scale_of(w));
         break;
       case Invariant::Kind::largest:
         value = larger_or_nan(w.most, -w.least);

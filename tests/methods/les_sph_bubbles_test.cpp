@@ -371,6 +371,16 @@ TEST(Bubbles, CostNothingInASceneWithoutThem) {
   EXPECT_EQ(run.series().count("bubbles"), 0U);
 }
 
+// Sources, breakup, entrainment, fluctuations, bursting, under every closure, momentum form and integrator.
+TEST(Bubbles, AreLeftAsTheyWereByARefusedStep) {
+  for (const std::string model : {"mixed-scale", "smagorinsky", "dynamic-shepard", "dynamic-lagrangian"})
+    EXPECT_EQ(changed_by_a_refused_step(stirred_tank, {"turbulence.model=\"" + model + "\""}, 0.005), "") << model;
+  for (const std::string set : {"momentum_form=\"two-fluid\"", "integrator=\"substep\"", "fluid_inertia=true",
+                                "surface_reaction=\"liquid\"", "fluctuations=false"})
+    EXPECT_EQ(changed_by_a_refused_step(stirred_tank, {"bubbles." + set}, 0.005), "") << set;
+  EXPECT_EQ(changed_by_a_refused_step(periodic_cube, {}, 0.005), "");
+}
+
 // A section [bubbles] of which no bubble lives changes nothing in the liquid.
 TEST(Bubbles, ThatDoNotYetLiveLeaveTheLiquidToTheBit) {
   std::string without = periodic_cube;

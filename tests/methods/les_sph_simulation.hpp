@@ -135,6 +135,29 @@ class MemoryState final : public StateWriter, public StateReader {
   void f64(const std::string& name, Array<double>& values) override { copy(f64_, name, values); }
   void i64(const std::string& name, Array<std::int64_t>& values) override { copy(i64_, name, values); }
 
+  // Every number of the state; arrays of particles and of bubbles in the order of their identifiers, as a step may sort
+  // them without changing the state.
+  std::map<std::string, std::vector<double>> in_order_of_identifiers() const {
+    std::map<std::string, std::vector<double>> state = f64_;
+    for (const auto& [name, values] : i64_) state[name].assign(values.begin(), values.end());
+    for (const std::string family : {"", "bubble_"}) {
+      const auto found = i64_.find(family + "identifier");
+      if (found == i64_.end()) continue;
+      const std::vector<std::int64_t>& identifier = found->second;
+      std::vector<std::size_t> order(identifier.size());
+      for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+      std::sort(order.begin(), order.end(),
+                [&](std::size_t a, std::size_t b) { return identifier[a] < identifier[b]; });
+      for (auto& [name, values] : state) {
+        if (values.size() != order.size() || name.starts_with("bubble_") != (family == "bubble_")) continue;
+        std::vector<double> sorted(values.size());
+        for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = values[order[i]];
+        values = sorted;
+      }
+    }
+    return state;
+  }
+
  private:
   template <class T>
   static void copy(const std::map<std::string, std::vector<T>>& from, const std::string& name, Array<T>& values) {
@@ -146,6 +169,27 @@ class MemoryState final : public StateWriter, public StateReader {
   std::map<std::string, std::vector<double>> f64_;
   std::map<std::string, std::vector<std::int64_t>> i64_;
 };
+
+// Runs some steps, then one whose pressure cannot converge: what is wrong with the state after it, nothing or a name.
+inline std::string changed_by_a_refused_step(const std::string& text, const Overrides& overrides, double dt) {
+  Simulation run(text, overrides);
+  run.steps(3, dt);
+  MemoryState saved;
+  run.method.save(saved);
+  Overrides impossible = overrides;
+  impossible.insert(impossible.end(), {"pressure.max_iterations=1", "pressure.tolerance=1e-14"});
+  Simulation strict(text, impossible);
+  strict.method.load(saved);
+  EXPECT_THROW(strict.steps(1, dt), StepFailure);
+  MemoryState after;
+  strict.method.save(after);
+  const auto a = saved.in_order_of_identifiers(), b = after.in_order_of_identifiers();
+  EXPECT_GT(a.size(), 5U);
+  std::string changed;
+  for (const auto& [name, values] : a)
+    if (b.at(name) != values) changed += name + " ";
+  return changed;
+}
 
 // --- cases, all about one unit across
 

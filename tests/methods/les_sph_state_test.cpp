@@ -64,6 +64,21 @@ TEST_P(SavedState, ARefusedStepLeavesIt) {
   EXPECT_EQ(strict.method.step_limit().dt, dt_before);
 }
 
+// Whatever a step takes along: averages of a closure, walls and their speed, a force that varies.
+TEST(LesSphRefusal, LeavesEveryNumberOfTheState) {
+  for (const std::string model : {"none", "mixed-scale", "smagorinsky", "dynamic-shepard", "dynamic-lagrangian"}) {
+    const std::string closure = "turbulence.model=\"" + model + "\"";
+    for (const std::string& text : {taylor_green, taylor_green_3d, dam_break})
+      EXPECT_EQ(changed_by_a_refused_step(text, {closure}, 0.004), "") << model;
+    EXPECT_EQ(changed_by_a_refused_step(cavity, {closure, "domain.wall_velocity.top=[\"sin(50*t)\", \"0\"]"}, 0.004),
+              "")
+        << model;
+  }
+  const Overrides second{"shifting.velocity_correction=\"second-order\"", "pressure.precision=\"double\""};
+  EXPECT_EQ(changed_by_a_refused_step(taylor_green, second, 0.004), "");
+  EXPECT_EQ(changed_by_a_refused_step(closed_box, {"forces.body=[\"sin(40*t)*y\", \"x\"]"}, 0.004), "");
+}
+
 // A step far too long moves a particle across its support: refused as well, and a shorter one succeeds.
 TEST_P(SavedState, ARefusedStepCanBeRepeatedShorter) {
   Simulation run(GetParam()), untroubled(GetParam());

@@ -45,6 +45,17 @@ TEST(Verdicts, GrowthCountsAboveTheStartAndByItsScale) {
   EXPECT_EQ(watched(energy, {{0, 0, 5, 2}, {1, 0, 3, 1}}).verdicts().at(0).value, 0);
 }
 
+TEST(Verdicts, ChangeCountsBothWaysByItsScale) {
+  Invariant momentum{
+      .quantity = "p", .kind = Kind::change, .column = "energy", .bound = 0.1, .scale_column = "kinetic"};
+  const std::vector<std::vector<double>> rows = {{0, 0, 0, 2}, {1, 0, -3, 4}, {2, 0, 1, 1}};
+  EXPECT_EQ(watched(momentum, rows).verdicts().at(0).value, 3.0 / 4);
+  momentum.scale_factor = 10;
+  momentum.scale_floor = 20;
+  EXPECT_EQ(watched(momentum, rows).verdicts().at(0).value, 3.0 / 60);
+  EXPECT_TRUE(watched(momentum, rows).verdicts().at(0).pass());
+}
+
 TEST(Verdicts, LargestTakesEitherSign) {
   const Invariant residual{.quantity = "r", .kind = Kind::largest, .column = "mass", .bound = 3};
   const auto verdict = watched(residual, {{0, 1, 0, 0}, {1, -3, 0, 0}, {2, 2, 0, 0}}).verdicts().at(0);
@@ -53,7 +64,7 @@ TEST(Verdicts, LargestTakesEitherSign) {
 }
 
 TEST(Verdicts, WhatIsNotANumberPassesNothing) {
-  for (const Kind kind : {Kind::drift, Kind::growth, Kind::largest}) {
+  for (const Kind kind : {Kind::drift, Kind::growth, Kind::change, Kind::largest}) {
     const Invariant any{.quantity = "x", .kind = kind, .column = "mass", .bound = 1e300};
     EXPECT_FALSE(watched(any, {{0, 1, 0, 0}, {1, NAN, 0, 0}, {2, 1, 0, 0}}).verdicts().at(0).pass());
   }

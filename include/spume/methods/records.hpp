@@ -26,18 +26,19 @@ struct Remark {
 
 // A statement about a column of series.csv that holds for a whole run whatever its solution, so that no reference is
 // needed to judge it: what summary.json gives as a verdict. With x(t) the column, and what lies beside it, and
-// s = max |scale column| + floor over the rows, the value held against the bound is
+// s = factor max |scale column| + floor over the rows, the value held against the bound is
 //   drift:   max |x(t) - x(0)| / |x(0)|
 //   growth:  max (x(t) - x(0), 0) / s
+//   change:  max |x(t) - x(0)| / s
 //   largest: max |x(t)|
 struct Invariant {
-  enum class Kind { drift, growth, largest };
+  enum class Kind { drift, growth, change, largest };
   std::string quantity;  // its name in summary.json
   Kind kind = Kind::largest;
   std::string column;
   double bound = 0;
-  std::string scale_column = {};  // of growth
-  double scale_floor = 0;
+  std::string scale_column = {};  // of growth and change
+  double scale_factor = 1, scale_floor = 0;
   std::function<double()> beside = {};  // of the present state, added to the column; lives as long as the method
 };
 

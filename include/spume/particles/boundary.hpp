@@ -40,11 +40,15 @@ class Boundary {
   const BoundaryFeatures features;
   WallPositions walls{};       // at the start of the step; state between steps
   WallPositions next_walls{};  // at its end
-  double wall_speed = 0;       // largest of the moving walls where images see them; state between steps
+  // Largest speed of the moving walls where images see them: of the accepted step (state), and of this one.
+  double wall_speed = 0, next_wall_speed = 0;
 
   // Wall planes at t + dt from the time integral of the walls' normal velocities: `next_walls`.
   void advance(double t, double dt);
-  void accept() { walls = next_walls; }
+  void accept() {
+    walls = next_walls;
+    wall_speed = next_wall_speed;
+  }
 
   // Images at `at` for walls at `next_walls`, and how they mirror values at time t. Throws StepFailure for a wall
   // velocity that is not finite.

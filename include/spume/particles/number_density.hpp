@@ -34,9 +34,10 @@ struct DensityRelaxation {
 // cavity), which must not raise the level of a liquid with a surface, and 0.02 from particle to particle. Particles of
 // the uppermost layer, which lack neighbours, and those within reach of a solid box, whose images overlap at edges, are
 // left alone.
-// `surface`: null without one. `at`: where the moments were measured.
-void even_out_density(const DensityRelaxation& relaxation, const Arrangement& arrangement, const Domain& domain,
-                      const VectorField& at, const Resolution& resolution, const MomentFields& moments,
-                      const FreeSurface* surface, std::span<double> divergence);
+// Returns the volume that the particles take by their kernel sums, over that of one on the lattice: the sum of
+// 1 / (1 + e_i), 1 for those left alone. `surface`: null without one. `at`: where the moments were measured.
+double even_out_density(const DensityRelaxation& relaxation, const Arrangement& arrangement, const Domain& domain,
+                        const VectorField& at, const Resolution& resolution, const MomentFields& moments,
+                        const FreeSurface* surface, std::span<double> divergence);
 
 }  // namespace spume

@@ -37,6 +37,7 @@ class InvariantWatch {
     std::size_t column = 0, scale = 0;
     double first = 0, least = 0, most = 0, largest_scale = 0;
   };
+  static double scale_of(const Watched& w);
   std::vector<Watched> watched_;
   bool started_ = false;
 };

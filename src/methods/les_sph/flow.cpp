@@ -91,6 +91,17 @@ double Flow::stored_energy() const {
          parallel_sum(size(), [&](std::size_t i) { return (*pressure)[i] * (*pressure)[i]; });
 }
 
+double Flow::mass_in_domain() const {
+  const double inside = parallel_sum(size(), [&](std::size_t i) {
+    for (int axis = 0; axis < dimensions; ++axis) {
+      const double x = (*particles.position[axis])[i];
+      if (!(x >= boundary.walls[axis][0] && x <= boundary.walls[axis][1])) return 0.0;
+    }
+    return 1.0;
+  });
+  return particle_mass() * inside;
+}
+
 double Flow::leased_bytes() const {
   double sum = particles.fields.scratch().idle_bytes();
   const auto add = [&sum](const auto&... arrays) { ((sum += arrays.bytes()), ...); };

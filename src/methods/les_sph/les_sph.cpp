@@ -57,6 +57,8 @@ void LesSph::step(double dt, Ledger& ledger) {
 void LesSph::start(Ledger& ledger) {
   if (flow_.size() > 0) {
     plan_.run_start(static_cast<double>(flow_.size()), ledger);
+    flow_.boundary.accept();
+    flow_.volume = flow_.particles.volume * static_cast<double>(flow_.size());
     flow_.energy.start(flow_.energy_balance(), flow_.particles, flow_.stored_energy());
     if (!flow_.features.velocity_gradient) flow_.strain->release();
   }

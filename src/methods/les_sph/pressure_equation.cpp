@@ -26,7 +26,7 @@ void Flow::find_divergence(double dt) {
   divergence_sweep(arrangement.context, arrangement.packed, read(intermediate_velocity), boundary.volume_rule(),
                    moments.read_correction(), potential == nullptr ? nullptr : potential->data(), divergence.data(),
                    potential == nullptr ? nullptr : potential_laplacian.data());
-  max_divergence = parallel_max(n, 0.0, [&](std::size_t i) { return std::abs(divergence[i]); });
+  next_max_divergence = parallel_max(n, 0.0, [&](std::size_t i) { return std::abs(divergence[i]); });
 }
 
 // Adds tr(grad u . grad u), minus the rate of change of div u along frozen velocities, to the divergence.
@@ -50,8 +50,10 @@ void Flow::centre_divergence(double dt) {
 }
 
 void Flow::relax_density(double dt) {
-  even_out_density({.steps = options.get<PressureOptions>().density_relaxation, .displacement = displacement, .dt = dt},
-                   arrangement, scene.domain, intermediate_position, resolution, moments, surface.get(), divergence);
+  const double taken = even_out_density(
+      {.steps = options.get<PressureOptions>().density_relaxation, .displacement = displacement, .dt = dt}, arrangement,
+      scene.domain, intermediate_position, resolution, moments, surface.get(), divergence);
+  volume = particles.volume * taken;
   particles.scratch().release(moments.kernel_sum);
 }
 

@@ -160,7 +160,7 @@ void Flow::find_viscous_acceleration() {
 }
 
 void Flow::add_body_force(double t, double dt) {
-  largest_body_force = parallel_reduce(
+  next_largest_body_force = parallel_reduce(
       size(), 0.0,
       [&](std::size_t first, std::size_t last) {
         const VectorExpression force = scene.body_force->clone();
@@ -173,7 +173,7 @@ void Flow::add_body_force(double t, double dt) {
         return largest;
       },
       larger_or_nan);
-  if (!std::isfinite(largest_body_force)) refuse_body_force(*this, t);
+  if (!std::isfinite(next_largest_body_force)) refuse_body_force(*this, t);
 }
 
 void Flow::predict_velocity(double dt) {
@@ -245,8 +245,8 @@ void Flow::accept(double dt) {
   refuse_long_strides(particles, intermediate_position, next_velocity, arrangement.grid.support_radius(), dt);
   // The work of forces that vary in space has no bound.
   if (!features.body_force || features.uniform_body_force)
-    energy.supply =
-        energy.after_step(energy_balance(), particles, intermediate_position, next_velocity, boundary.wall_speed, dt);
+    energy.supply = energy.after_step(energy_balance(), particles, intermediate_position, next_velocity,
+                                      boundary.next_wall_speed, dt);
 
   parallel_for(n, [&](std::size_t i) {
     Vec3 u = vector_at(next_velocity, dimensions, i), r = vector_at(intermediate_position, dimensions, i);
@@ -273,6 +273,8 @@ void Flow::accept(double dt) {
   particles.scratch().release(shift_velocity);
   if (closure != nullptr) closure->accept(particles);
   boundary.accept();
+  max_divergence = next_max_divergence;
+  largest_body_force = next_largest_body_force;
   time += dt;
   last_steps = {dt, last_steps[0]};
   ++steps;

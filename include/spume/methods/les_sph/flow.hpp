@@ -63,6 +63,8 @@ struct Flow {
   Vec3 uniform_acceleration{};                // along axes that are not periodic: part of the potential
   Vec3 periodic_acceleration{};               // along periodic axes: added to the velocity
   double displacement = 0;                    // displacement_fraction of the step
+  double next_max_divergence = 0, next_largest_body_force = 0;  // of the step, taken over when it is accepted
+  double volume = 0;                                            // that the liquid takes, by its kernel sums
   ProjectionSolver solver;
   std::unique_ptr<turbulence::EddyViscosity> closure;  // null: none
   std::unique_ptr<bubbles::BubbleCoupling> bubbles;    // null: none
@@ -93,7 +95,8 @@ struct Flow {
   double eddy_viscosity_of(std::size_t i) const { return closure == nullptr ? 0.0 : closure->viscosity()[i]; }
   // div(2 nu S) spreads the divergence of the velocity three times as fast as div(nu grad u) does.
   double diffusion_rate() const { return features.viscous_stress ? 3 : 1; }
-  double leased_bytes() const;  // what is leased within a step, now or idle
+  double mass_in_domain() const;  // of particles between the walls, at finite places
+  double leased_bytes() const;    // what is leased within a step, now or idle
   // What the pressure stores in a compressible liquid: the integral of p^2 / (2 rho c^2).
   double stored_energy() const;
 

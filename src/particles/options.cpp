@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/options.hpp"
+
+#include "spume/scene/option.hpp"
+
+namespace spume {
+
+Section pressure_section() {
+  using P = PressureOptions;
+  return section<P>("pressure")
+      .word("solver", &P::solver, {{"bicgstab", PressureSolver::bicgstab}, {"cg", PressureSolver::cg}},
+            "Krylov method of the pressure equation")
+      .word("preconditioner", &P::preconditioner,
+            {{"jacobi", PreconditionerKind::jacobi}, {"multigrid", PreconditionerKind::multigrid}},
+            "multigrid: Jacobi plus one V-cycle on cells")
+      .word("precision", &P::precision, {{"mixed", Precision::mixed}, {"double", Precision::f64}},
+            "mixed: residuals in double, corrections in float")
+      .option("tolerance", &P::tolerance, "1", above_up_to(0, 0.1), "residual relative to the right-hand side")
+      .option("max_iterations", &P::max_iterations, "", between(1, 1e6), "iterations after which a solve has failed")
+      .option("cell_ratio", &P::cell_ratio, "spacing", between(1, 8), "side of the multigrid cells")
+      .when("preconditioner", {"multigrid"})
+      .option("warm_start", &P::warm_start, "start from the last pressure, carried by the particles")
+      .option("density_relaxation", &P::density_relaxation, "steps", between(1, 1e6),
+              "steps of courant 0.2 over which number density is evened out, in a scene with a free surface ten times "
+              "as many where liquid is too dense; 1e6: never");
+}
+
+Section shifting_section() {
+  using S = ShiftingOptions;
+  return section<S>("shifting")
+      .option("on", &S::on, "move particles towards an even distribution")
+      .option("coefficient", &S::coefficient, "1", between(0, 1), "displacement = -coefficient h^2 grad C")
+      .when("on", {"true"})
+      .option("limit", &S::limit, "h", above_up_to(0, 0.5),
+              "largest displacement per step of up to courant 0.2, longer steps in proportion")
+      .when("on", {"true"})
+      .option("remove_drift", &S::remove_drift, "subtract what neighbours share of the shift: no net transport")
+      .when("on", {"true"})
+      .word("velocity_correction", &S::velocity_correction,
+            {{"none", ShiftCorrection::none},
+             {"first-order", ShiftCorrection::first_order},
+             {"second-order", ShiftCorrection::second_order}},
+            "Taylor terms that give the velocity at the new place; the first is bounded by the neighbours' velocities")
+      .when("on", {"true"});
+}
+
+Section surface_section() {
+  using S = SurfaceOptions;
+  return section<S>("surface")
+      .option("threshold", &S::threshold, "1", between(0, 3),
+              "div r below which a particle is on the surface; 0: 2.3 in 3-D, 1.5 in 2-D")
+      .option("blend_width", &S::blend_width, "1", between(0, 1), "span of div r over which pressure rows blend");
+}
+
+}  // namespace spume
