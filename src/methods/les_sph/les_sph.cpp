@@ -49,6 +49,9 @@ LesSph::LesSph(const LoadedCase& loaded) : flow_(loaded), plan_(make_plan(flow_)
 
 void LesSph::step(double dt, Ledger& ledger) {
   if (!flow_.started) start(ledger);
+  for (const Ledger::Entry& entry : start_ledger_.entries())
+    ledger.count(entry.stage, entry.calls, entry.seconds, entry.particles, entry.pairs, entry.bytes);
+  start_ledger_.clear();
   sampled_step_ = -1;  // sorting changes what the bins of the sampler refer to, also when the step is refused
   plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
 }
@@ -66,8 +69,7 @@ void LesSph::start(Ledger& ledger) {
 }
 
 void LesSph::ensure_started() {
-  Ledger unrecorded;
-  if (!flow_.started) start(unrecorded);
+  if (!flow_.started) start(start_ledger_);
 }
 
 StepLimit LesSph::step_limit() const {

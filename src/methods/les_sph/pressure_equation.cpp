@@ -62,6 +62,12 @@ void Flow::set_first_source() {
   const std::size_t n = size();
   equation = {0, 1};
   ScratchPool& scratch = particles.scratch();
+  // What the step reads and the start does not: held through the solve it would be the most that a run ever holds.
+  scratch.release(moments.kernel_sum);
+  scratch.release(moments.concentration_gradient);
+  if (surface != nullptr) surface->release_smoothed_normals(particles);
+  scratch.release(velocity_gradient);
+  scratch.release(filtered_velocity);
   scratch.lease(divergence, n);
   if (potential != nullptr) {
     scratch.lease(potential_laplacian, n);

@@ -58,6 +58,7 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   void add_spectrum_rows(std::vector<double>& rows) const;
   const PointSampler& sampler();
 
+  Ledger start_ledger_;  // of a start that came before the first step
   Flow flow_;
   Plan plan_;
   SeriesTable series_;
