@@ -63,7 +63,7 @@ struct Sweeps {
       }
       scalar[0][i] = scalar[1][i] = static_cast<float>(1 + 0.5 * std::sin(x));
     }
-    geometry();
+    moments();
     velocity_gradient(false);
   }
 
@@ -80,7 +80,7 @@ struct Sweeps {
     return all;
   }
 
-  void geometry() {
+  void moments() {
     KernelMoments result;
     result.kernel_sum = scalar[2].data();
     result.divergence_of_position = scalar[3].data();
@@ -122,7 +122,7 @@ struct Sweeps {
 // Sums of W and g, g d, its products with d (6 by 2), the tensile factor, its product with d.
 void geometry_sums(benchmark::State& state) {
   Sweeps sweeps(state);
-  sweeps.run(state, {10 + 7 + 5 + 2 + 6 + 12 + 6 + 6, 1, 24 + 61}, [&] { sweeps.geometry(); });
+  sweeps.run(state, {10 + 7 + 5 + 2 + 6 + 12 + 6 + 6, 1, 24 + 61}, [&] { sweeps.moments(); });
 }
 
 // Differences, their products with g d (9 by 2), the filter, the bounds of the change.
@@ -229,8 +229,8 @@ struct HalfAtSurface {
 void depths_below_surface(benchmark::State& state) {
   HalfAtSurface half(state);
   half.run(state, 10 + (15 + 19 + 6 + 15) / 2.0, 1, [&] {
-    edge_depths(half.sweeps.context, half.sweeps.packed,
-                {half.sweeps.particles.spacing(), half.upper, Sweeps::read(half.normal)}, half.scratch, half.depth);
+    surface_depths(half.sweeps.context, half.sweeps.packed,
+                   {half.sweeps.particles.spacing(), half.upper, Sweeps::read(half.normal)}, half.scratch, half.depth);
   });
 }
 

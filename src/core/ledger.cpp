@@ -31,12 +31,6 @@ void Ledger::count(std::string_view stage, std::int64_t calls, double seconds, d
   entry.bytes += bytes;
 }
 
-double Ledger::total_seconds() const {
-  double sum = 0;
-  for (const auto& entry : entries_) sum += entry.seconds;
-  return sum;
-}
-
 std::size_t Ledger::find(std::string_view stage) {
   for (std::size_t i = 0; i < entries_.size(); ++i)
     if (entries_[i].stage == stage) return i;

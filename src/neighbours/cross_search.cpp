@@ -107,7 +107,7 @@ void CrossSearch::near_box(const Box& box, float support_radius, Found& found) c
   const Box within = box;
   const std::array<const float*, 3> point = point_;
   std::int32_t* const out = found.index.data();
-  const float reach2 = support_radius * support_radius;
+  const float support_radius2 = support_radius * support_radius;
   std::size_t size = 0;
   for (const Block block : blocks) {
     f32n distance2{};
@@ -117,7 +117,8 @@ void CrossSearch::near_box(const Box& box, float support_radius, Found& found) c
           x - simd::min(simd::max(x, simd::splat<f32n>(within.lower[a])), simd::splat<f32n>(within.upper[a]));
       distance2 = distance2 + outside * outside;
     }
-    const unsigned mask = simd::less_bits(distance2, simd::splat<f32n>(reach2)) & first_lanes(block.last - block.first);
+    const unsigned mask =
+        simd::less_bits(distance2, simd::splat<f32n>(support_radius2)) & first_lanes(block.last - block.first);
     store_packed(numbers_from(block.first), packing_of(mask), out + size);
     size += static_cast<std::size_t>(std::popcount(mask));
   }

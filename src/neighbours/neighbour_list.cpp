@@ -148,7 +148,7 @@ Group next_group(const std::array<const float*, 3>& point, std::size_t first, st
 // dropped that is within that of a particle of the group.
 template <int dimensions>
 [[gnu::noinline]] void gather(const std::array<const float*, 3>& point, std::span<const Block> blocks,
-                              const Group& group, float reach2, Candidates& candidates) {
+                              const Group& group, float support_radius2, Candidates& candidates) {
   std::size_t size = 0;
   const Candidates to = candidates;
   const std::array<const float*, 3> from = point;
@@ -164,7 +164,7 @@ template <int dimensions>
       distance2 = distance2 + outside * outside;
     }
     const i32x8 index = lane + block.first;
-    const unsigned mask = mask_of(i32x8(distance2 < reach2) & (index < block.last));
+    const unsigned mask = mask_of(i32x8(distance2 < support_radius2) & (index < block.last));
     const Packing packing = packing_of(mask);
     for (int axis = 0; axis < dimensions; ++axis) store_packed(x[axis], packing, to.coordinate[axis] + size);
     store_packed(index * entry_scale, packing, to.entry + size);
@@ -183,8 +183,8 @@ inline std::size_t slot_of(const Candidates& candidates, std::size_t i, std::siz
 
 // Writes the candidates within the support radius of a point; returns the end of what was written.
 template <int dimensions>
-[[gnu::noinline]] std::int32_t* select(const Candidates& candidates, const std::array<float, 3>& centre, float reach2,
-                                       std::int32_t* out) {
+[[gnu::noinline]] std::int32_t* select(const Candidates& candidates, const std::array<float, 3>& centre,
+                                       float support_radius2, std::int32_t* out) {
   const Candidates from = candidates;
   const std::array<float, 3> r = centre;
   for (std::size_t j = 0; j < from.size; j += pair_lanes) {
@@ -193,7 +193,7 @@ template <int dimensions>
       const f32n d = simd::load<f32n>(from.coordinate[axis] + j) - r[axis];
       distance2 = axis == 0 ? d * d : distance2 + d * d;
     }
-    const unsigned mask = simd::less_bits(distance2, simd::splat<f32n>(reach2));
+    const unsigned mask = simd::less_bits(distance2, simd::splat<f32n>(support_radius2));
     store_packed(load_int<i32n>(from.entry + j), packing_of(mask), out);
     out += std::popcount(mask);
   }
@@ -301,11 +301,11 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles, con
       float support_radius = least_support_radius;
       if (own_support_radius != nullptr)
         support_radius = *std::max_element(own_support_radius + group.first, own_support_radius + group.last);
-      float reach2 = support_radius * support_radius;
+      float support_radius2 = support_radius * support_radius;
       find_runs(group, support_radius, runs);
       const std::span<const Block> blocks = cut(runs, block_memory);
       Candidates candidates(candidate_memory, simd::lanes * blocks.size());
-      gather<dimensions>(point, blocks, group, reach2, candidates);
+      gather<dimensions>(point, blocks, group, support_radius2, candidates);
       // Vector loads read candidates past the end: the sentinel is nobody's neighbour.
       for (int axis = 0; axis < dimensions; ++axis)
         std::fill_n(candidates.coordinate[axis] + candidates.size, pair_lanes, far);
@@ -321,8 +321,8 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles, con
         slot = slot_of(candidates, i, slot + 1);
         float& own = candidates.coordinate[0][slot];
         const float kept = std::exchange(own, far);
-        if (own_support_radius != nullptr) reach2 = own_support_radius[i] * own_support_radius[i];
-        std::int32_t* const stop = select<dimensions>(candidates, centre, reach2, start);
+        if (own_support_radius != nullptr) support_radius2 = own_support_radius[i] * own_support_radius[i];
+        std::int32_t* const stop = select<dimensions>(candidates, centre, support_radius2, start);
         own = kept;
         store_int(stop, i32x8{} + nobody);
         const auto count = static_cast<std::int32_t>(stop - start);

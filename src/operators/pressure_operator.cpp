@@ -179,13 +179,13 @@ void PressureOperator::residual(std::span<const double> q, std::span<const doubl
 }
 
 void PressureOperator::subtract_product(double scale, std::span<const float> x, std::span<double> r) {
-  const bool varying = matrix_.weight != nullptr;
-  float* records = packed_->prepare(context_, varying ? 2 : 1);
-  const int width = record_width(context_.dimensions, varying ? 2 : 1);
+  const bool weighted = matrix_.weight != nullptr;
+  float* records = packed_->prepare(context_, weighted ? 2 : 1);
+  const int width = record_width(context_.dimensions, weighted ? 2 : 1);
   pack_scalar(context_, records, width, 0, x.data());
   // x twice, r read and written, the diagonal shift; the mask; weights and rows.
   packed_->count(static_cast<double>(size()) * (28 + mask_and_sizes(8)));
-  if (varying) pack_scalar(context_, records, width, 1, matrix_.weight);
+  if (weighted) pack_scalar(context_, records, width, 1, matrix_.weight);
   const auto volume = static_cast<float>(context_.volume);
   with_kernel(context_, [&]<int dimensions, class Kernel>() {
     double_rows<dimensions, Kernel, false>(context_, records, matrix_, [&](std::size_t i, double pairs) {

@@ -16,7 +16,7 @@ constexpr int symmetric_index(int a, int c) {
   return dimensions == 2 ? low + high : (low == 0 ? high : low + high + 1);
 }
 
-// Volumes of the particles as the last payload of a sweep under a varying kernel.
+// Volumes of the particles as the last payload of a sweep with a variable h.
 template <class Kernel>
 void pack_volumes(const SweepContext& context, float* records, int width, int slot) {
   if constexpr (is_variable_h<Kernel>) pack_scalar(context, records, width, slot, context.volume_ratio);

@@ -94,7 +94,7 @@ template <class Batch, std::size_t dimensions>
 }
 
 template <int dimensions, class Kernel>
-void find_own_depths(const SweepContext& context, PackedNeighbours& packed, const SurfaceEdge& edge,
+void find_own_depths(const SweepContext& context, PackedNeighbours& packed, const NearSurface& near_surface,
                      std::span<float> of_particle) {
   constexpr int payload = volume_slots<Kernel>;
   float* records = packed.prepare(context, payload);
@@ -102,11 +102,12 @@ void find_own_depths(const SweepContext& context, PackedNeighbours& packed, cons
     pack_scalar(context, records, record_width(dimensions, payload), 0, context.volume_ratio);
   const KernelScale<dimensions, Kernel> common(context);
   const float of_lattice = lattice_column<dimensions>(), own_column = column_at<dimensions>(0, 0);
-  const auto spacing = static_cast<float>(edge.spacing), per_spacing = static_cast<float>(1 / edge.spacing);
+  const auto spacing = static_cast<float>(near_surface.spacing),
+             per_spacing = static_cast<float>(1 / near_surface.spacing);
 
-  sweep(edge.particles.size(), [&](std::size_t k) {
-    const auto i = static_cast<std::size_t>(edge.particles[k]);
-    auto normal = vector_of<dimensions>(edge.normal, i);
+  sweep(near_surface.particles.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(near_surface.particles[k]);
+    auto normal = vector_of<dimensions>(near_surface.normal, i);
     if (!make_unit<dimensions>(normal)) {
       of_particle[i] = spacing;
       return;
@@ -127,17 +128,17 @@ void find_own_depths(const SweepContext& context, PackedNeighbours& packed, cons
 }
 
 template <int dimensions, class Kernel>
-void share_depths(const SweepContext& context, PackedNeighbours& packed, const SurfaceEdge& edge,
+void share_depths(const SweepContext& context, PackedNeighbours& packed, const NearSurface& near_surface,
                   std::span<const float> of_particle, std::span<float> depth) {
   float* records = packed.prepare(context, 1);
   pack_scalar(context, records, record_width(dimensions, 1), 0, of_particle.data());
   const KernelScale<dimensions, Kernel> common(context);
   const auto centre = static_cast<float>(Kernel::w(0.0));
-  const auto per_half_spacing = static_cast<float>(2 / edge.spacing);
+  const auto per_half_spacing = static_cast<float>(2 / near_surface.spacing);
 
-  sweep(edge.particles.size(), [&](std::size_t k) {
-    const auto i = static_cast<std::size_t>(edge.particles[k]);
-    auto normal = vector_of<dimensions>(edge.normal, i);
+  sweep(near_surface.particles.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(near_surface.particles[k]);
+    auto normal = vector_of<dimensions>(near_surface.normal, i);
     if (!make_unit<dimensions>(normal)) {
       depth[k] = of_particle[i];
       return;
@@ -147,7 +148,7 @@ void share_depths(const SweepContext& context, PackedNeighbours& packed, const S
     for_each_batch<dimensions, 1>(*context.list, records, i, common.at(context, i).inverse_h, [&](const auto& b) {
       const f32n along = dot(b.d, normal);
       const f32n weight = Kernel::w(b.q) * simd::max(1.0F - simd::max(along, -along), zero());
-      // Depths are positive; who is not at the edge has none.
+      // Depths are positive; other particles have none.
       weights = weights + (b.payload[0] > 0.0F ? weight : zero());
       sum = sum + weight * b.payload[0];
     });
@@ -155,7 +156,7 @@ void share_depths(const SweepContext& context, PackedNeighbours& packed, const S
   });
 }
 
-// c n of shared_along_normal, 0 where no edge particle is around.
+// c n of shared_along_normal, 0 where no near-surface particle is around.
 template <int dimensions, class Kernel>
 void find_layer_normals(const SweepContext& context, PackedNeighbours& packed, double spacing,
                         const std::array<const float*, 3>& unit_normal,
@@ -164,7 +165,7 @@ void find_layer_normals(const SweepContext& context, PackedNeighbours& packed, d
   float* records = packed.prepare(context, dimensions);
   pack_vector(context, records, record_width(dimensions, dimensions), 0, unit_normal, reflection);
   const KernelScale<dimensions, Kernel> common(context);
-  const auto per_reach2 = static_cast<float>(1 / (layer_reach * layer_reach * spacing * spacing));
+  const auto per_distance2 = static_cast<float>(1 / (layer_distance * layer_distance * spacing * spacing));
 
   sweep(upper.size(), [&](std::size_t k) {
     const auto i = static_cast<std::size_t>(upper[k]);
@@ -172,22 +173,22 @@ void find_layer_normals(const SweepContext& context, PackedNeighbours& packed, d
     f32n weights{};
     for_each_batch<dimensions, dimensions>(*context.list, records, i, common.at(context, i).inverse_h,
                                            [&](const auto& b) {
-                                             f32n r2{}, edge{};  // 1 for edge particles
+                                             f32n r2{}, near{};  // 1 for near-surface particles
                                              for (int axis = 0; axis < dimensions; ++axis) {
                                                r2 = r2 + b.d[axis] * b.d[axis];
-                                               edge = edge + b.payload[axis] * b.payload[axis];
+                                               near = near + b.payload[axis] * b.payload[axis];
                                              }
-                                             const f32n x = simd::max(1.0F - per_reach2 * r2, zero());
+                                             const f32n x = simd::max(1.0F - per_distance2 * r2, zero());
                                              const f32n weight = x * x;
                                              for (int axis = 0; axis < dimensions; ++axis)
                                                sums[axis] = sums[axis] + weight * b.payload[axis];
-                                             weights = weights + weight * edge;
+                                             weights = weights + weight * near;
                                            });
     auto normal = vector_of<dimensions>(unit_normal, i);
-    const bool at_edge = length<dimensions>(normal) > 0;
+    const bool is_near = length<dimensions>(normal) > 0;
     for (int axis = 0; axis < dimensions; ++axis) normal[axis] += simd::sum(sums[axis]);
     const bool any = make_unit<dimensions>(normal);
-    const float share = at_edge ? 1 : std::min(1.0F, simd::sum(weights) / full_weight);
+    const float share = is_near ? 1 : std::min(1.0F, simd::sum(weights) / full_weight);
     for (int axis = 0; axis < dimensions; ++axis) out[k][axis] = any ? share * normal[axis] : 0;
   });
 }
@@ -225,23 +226,23 @@ void share_along(const SweepContext& context, PackedNeighbours& packed, double s
 
 }  // namespace
 
-void edge_depths(const SweepContext& context, PackedNeighbours& packed, const SurfaceEdge& edge,
-                 std::span<float> of_particle, std::span<float> depth) {
+void surface_depths(const SweepContext& context, PackedNeighbours& packed, const NearSurface& near_surface,
+                    std::span<float> of_particle, std::span<float> depth) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     parallel_for(of_particle.size(), [&](std::size_t i) { of_particle[i] = 0; });
-    find_own_depths<dimensions, Kernel>(context, packed, edge, of_particle);
-    share_depths<dimensions, Kernel>(context, packed, edge, of_particle, depth);
+    find_own_depths<dimensions, Kernel>(context, packed, near_surface, of_particle);
+    share_depths<dimensions, Kernel>(context, packed, near_surface, of_particle, depth);
   });
 }
 
-void mark_upper_layers(const SweepContext& context, double spacing, std::span<const std::int32_t> edge,
+void mark_upper_layers(const SweepContext& context, double spacing, std::span<const std::int32_t> near_surface,
                        std::span<std::uint8_t> beside) {
   const NeighbourList& list = *context.list;
   const auto particles = static_cast<std::int32_t>(list.particles());
-  const auto reach2 = static_cast<float>(layer_reach * layer_reach * spacing * spacing);
+  const auto distance2_limit = static_cast<float>(layer_distance * layer_distance * spacing * spacing);
   parallel_for(beside.size(), [&](std::size_t i) { beside[i] = 0; });
-  parallel_for(edge.size(), [&](std::size_t k) {
-    const auto i = static_cast<std::size_t>(edge[k]);
+  parallel_for(near_surface.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(near_surface[k]);
     std::atomic_ref<std::uint8_t>(beside[i]).store(1, std::memory_order_relaxed);
     for (const std::int32_t j : list.of(i)) {
       std::atomic_ref<std::uint8_t> mark(
@@ -252,7 +253,7 @@ void mark_upper_layers(const SweepContext& context, double spacing, std::span<co
         const float d = list.coordinate(axis)[j] - list.coordinate(axis)[i];
         r2 += d * d;
       }
-      if (r2 < reach2) mark.store(1, std::memory_order_relaxed);
+      if (r2 < distance2_limit) mark.store(1, std::memory_order_relaxed);
     }
   });
 }

@@ -14,7 +14,7 @@ namespace {
 // wall.
 constexpr double full_displacement = 0.2;
 // Steps of courant 0.4, and in proportion between: rearranged as at courant 0.2, taylor_green_2d at 1/50 blew up at
-// courant 0.3 without viscosity and lost 7 % of its decay rate at Re = 100 and courant 0.4; now 1.2 %.
+// courant 0.3 without viscosity and lost 7 % of its decay rate at Re = 100 and courant 0.4; with this it loses 1.2 %.
 constexpr double most_displacement = 2;
 constexpr double largest_excess = 0.1, largest_lack = 0.5;
 // Liquid thinner than this closes faster in proportion: a void in a closed box, where no surface tells the pressure of

@@ -16,31 +16,32 @@ Section pressure_section() {
       .word("precision", &P::precision, {{"mixed", Precision::mixed}, {"double", Precision::f64}},
             "mixed: residuals in double, corrections in float")
       .option("tolerance", &P::tolerance, "1", above_up_to(0, 0.1), "residual relative to the right-hand side")
-      .option("max_iterations", &P::max_iterations, "", between(1, 1e6), "iterations after which a solve has failed")
+      .option("max_iterations", &P::max_iterations, "", between(1, 1e6), "largest number of iterations per solve")
       .option("cell_ratio", &P::cell_ratio, "spacing", between(1, 8), "side of the multigrid cells")
       .when("preconditioner", {"multigrid"})
-      .option("warm_start", &P::warm_start, "start from the last pressure, carried by the particles")
+      .option("warm_start", &P::warm_start, "initial guess: the last pressure, carried by the particles")
       .option("density_relaxation", &P::density_relaxation, "steps", between(1, 1e6),
-              "steps of courant 0.2 over which number density is evened out, in a scene with a free surface ten times "
-              "as many where liquid is too dense; 1e6: never");
+              "relaxation time of the number density in steps of courant 0.2; with a free surface ten times as long "
+              "where the liquid is too dense; 1e6: off");
 }
 
 Section shifting_section() {
   using S = ShiftingOptions;
   return section<S>("shifting")
-      .option("on", &S::on, "move particles towards an even distribution")
+      .option("on", &S::on, "particle shifting towards a uniform distribution")
       .option("coefficient", &S::coefficient, "1", between(0, 1), "displacement = -coefficient h^2 grad C")
       .when("on", {"true"})
       .option("limit", &S::limit, "h", above_up_to(0, 0.5),
-              "largest displacement per step of up to courant 0.2, longer steps in proportion")
+              "largest displacement per step up to courant 0.2; above it in proportion to the step")
       .when("on", {"true"})
-      .option("remove_drift", &S::remove_drift, "subtract what neighbours share of the shift: no net transport")
+      .option("remove_drift", &S::remove_drift, "subtract the Shepard mean of the shift: no net transport")
       .when("on", {"true"})
-      .word("velocity_correction", &S::velocity_correction,
-            {{"none", ShiftCorrection::none},
-             {"first-order", ShiftCorrection::first_order},
-             {"second-order", ShiftCorrection::second_order}},
-            "Taylor terms that give the velocity at the new place; the first is bounded by the neighbours' velocities")
+      .word(
+          "velocity_correction", &S::velocity_correction,
+          {{"none", ShiftCorrection::none},
+           {"first-order", ShiftCorrection::first_order},
+           {"second-order", ShiftCorrection::second_order}},
+          "Taylor terms of the velocity at the shifted position; the first is bounded by the velocities of neighbours")
       .when("on", {"true"});
 }
 

@@ -42,8 +42,8 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, const
   parallel_select(n, near_surface, [&](std::size_t i) { return is_near(moments, i); });
   depth.resize(near_surface.size());
   ScratchArray<float> of_particle(particles.scratch(), n);
-  edge_depths(arrangement.context, arrangement.packed, {resolution_.spacing, near_surface, read(moments.normal)},
-              of_particle, depth);
+  surface_depths(arrangement.context, arrangement.packed, {resolution_.spacing, near_surface, read(moments.normal)},
+                 of_particle, depth);
   if (options_.keep_smoothed_normals)
     for (int axis = 0; axis < resolution_.dimensions; ++axis) smoothed_normal[axis].resize(n);
   if (options_.smooth_normals) {

@@ -100,7 +100,7 @@ void check_parentheses(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] == '(') open.push_back(i);
     if (text[i] == ')') {
-      if (open.empty()) throw ExpressionError(i, "unexpected ')' that closes nothing");
+      if (open.empty()) throw ExpressionError(i, "unmatched ')'");
       open.pop_back();
     }
   }

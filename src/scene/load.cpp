@@ -292,7 +292,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   const MethodDeclaration* method = schema.find(draft.options.method);
   check(method, draft, problems);
 
-  // Without a valid domain the expressions are still held against three dimensions.
+  // Without a valid domain the expressions are still checked in three dimensions.
   Compiler compiler(draft.dimensions == 0 ? 3 : draft.dimensions, source, problems);
   compiler.define_constants(draft.node("constants"));
   LoadedCase loaded;

@@ -14,7 +14,7 @@ Section time(const std::string& default_courant) {
       .absent(default_courant)
       .chosen([](const Draft& d) { return shortest(d.options.time.courant); })
       .option("max_step", &T::max_step, "time", not_negative(), "largest step; 0: none")
-      .option("max_retries", &T::max_retries, "", between(0, 30), "halvings of a refused step before the run gives up");
+      .option("max_retries", &T::max_retries, "", between(0, 30), "halvings of a refused step before the run ends");
 }
 
 Section output() {
@@ -25,7 +25,7 @@ Section output() {
       .option("checkpoint_every", &O::checkpoint_every, "s of wall time", not_negative(), "checkpoint interval")
       .option("spectrum_every", &O::spectrum_every, "time", not_negative(), "interval of energy spectra; 0: none")
       .option("fields", &O::fields, "fields of a snapshot; empty: the method's standard set")
-      .option("h5part_view", &O::h5part_view, "let ParaView's H5Part reader open the snapshots too");
+      .option("h5part_view", &O::h5part_view, "add views for ParaView's H5Part reader, linked as <name>.h5part");
 }
 
 Section probe() {
@@ -42,12 +42,14 @@ Section probe() {
            {"front", ProbeKind::front},
            {"line", ProbeKind::line},
            {"plane", ProbeKind::plane}},
-          "what is recorded; elevation: height of the uppermost liquid above a foot, wetted: length of the vertical "
-          "through it that lies in liquid, as a wire gauge measures it, plane: area of the liquid on a plane across "
-          "the domain and averages of velocity and pressure over it")
+          "quantity; elevation: largest height of the liquid on the vertical through position; wetted: wetted length "
+          "of "
+          "that vertical, as measured by a wire gauge; plane: area of the liquid on a plane across the domain, and "
+          "mean "
+          "velocity and pressure over that area")
       .option("position", &P::position, "length",
-              "point; foot of the column (elevation, wetted); start of a line; a point of a plane, or its coordinate "
-              "along the normal alone")
+              "point; base of the vertical (elevation, wetted); start of a line; a point of a plane, or only its "
+              "coordinate along the normal")
       .absent("required but for front")
       .option("end", &P::end, "length", "end of a line")
       .absent("required for line")
@@ -58,9 +60,9 @@ Section probe() {
       .when("kind", {"line"})
       .word(
           "axis", [](P& p) -> int& { return p.options.axis; }, {{"x", 0}, {"y", 1}, {"z", 2}},
-          "front: axis along which the liquid's largest coordinate is sought; plane: its normal")
+          "front: axis of the largest coordinate of the liquid; plane: normal")
       .when("kind", {"front", "plane"})
-      .option("height", &P::height, "length", "front: looks below this height")
+      .option("height", &P::height, "length", "front: liquid above this height is ignored")
       .absent("top of the domain")
       .when("kind", {"front"});
 }

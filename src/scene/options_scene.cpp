@@ -32,7 +32,7 @@ Section domain() {
     section
         .word(
             name.c_str(), [axis](Draft& d) -> bool& { return d.periodic[axis]; }, {{"periodic", true}},
-            ("both sides of the " + name + " axis are one").c_str())
+            ("periodic in " + name).c_str())
         .absent("not periodic");
   }
   const std::pair<const char*, const char*> sides[] = {{"left", "lower x side"},
@@ -78,11 +78,11 @@ Section solid() {
 Section resolution() {
   using R = ResolutionOptions;
   return section<R>("resolution", [](Draft& d) -> R& { return d.options.resolution; })
-      .option("spacing", &Case::spacing, "length", positive(), "distance between particles at the start")
+      .option("spacing", &Case::spacing, "length", positive(), "initial particle spacing")
       .required()
       .only(uses_particles)
       .option("grid", &Draft::grid, "", between(4, 16384),
-              "points along x, y, z, even; one number: the same along each")
+              "even numbers of grid points along x, y, z; one number applies to every axis")
       .required()
       .only(uses_grid)
       .option("smoothing_ratio", &R::smoothing_ratio, "1", between(0.8, 3), "smoothing length h over spacing")
@@ -105,7 +105,7 @@ Section fluid() {
       .option("mach", &F::mach, "1", between(0, 1), "Mach number; sound speed is 1/Ma; 0: incompressible")
       .absent("incompressible")
       .only(fills_regions)
-      .option("density", &F::density, "kg/m3", positive(), "density, first of the SI set")
+      .option("density", &F::density, "kg/m3", positive(), "density; required with SI values")
       .absent("1, in groups")
       .only(has_one_fluid)
       .option("viscosity", &F::viscosity, "Pa s", not_negative(), "dynamic viscosity")
@@ -124,7 +124,7 @@ Section constants() {
           .options = {{.key = "*",
                        .type = OptionType::free_table,
                        .absent = "none",
-                       .description = "names for numbers and expressions, used in expressions in any order"}}};
+                       .description = "named numbers and expressions, for use in expressions; in any order"}}};
 }
 
 // Shape of a region: the part of the domain that satisfies all that is given, and how it moves at the start.
@@ -148,13 +148,13 @@ void add_shape(SectionOf<Region>& section) {
 Section liquid() {
   auto section = repeated_section<LiquidDraft>("liquid", &Draft::liquids).whole_only(fills_regions);
   add_shape(section);
-  return section.option("conform", &LiquidDraft::conform, "columns of particles end exactly on the surface where = 0");
+  return section.option("conform", &LiquidDraft::conform, "fit columns of particles to the surface where = 0");
 }
 
 Section phase() {
   using P = Phase;
   return repeated_section<P>("phase", &Draft::phases)
-      .option("name", &P::name, "name, for the regions that it fills")
+      .option("name", &P::name, "name, by which regions refer to the phase")
       .required()
       .option("density", &P::density, "kg/m3", positive(), "density")
       .required()
@@ -166,14 +166,16 @@ Section phase() {
 
 Section interface_section() {
   return section<Draft>("interface", whole)
-      .option("surface_tension", &Draft::surface_tension, "N/m", not_negative(), "between the phases")
+      .option("surface_tension", &Draft::surface_tension, "N/m", not_negative(), "surface tension between the phases")
       .whole_optional()
       .whole_only(fills_phases);
 }
 
 Section region() {
   auto section = repeated_section<RegionDraft>("region", &Draft::regions).whole_only(fills_phases);
-  section.option("phase", &RegionDraft::phase, "name of the phase that fills it, in place of an earlier region's")
+  section
+      .option("phase", &RegionDraft::phase,
+              "name of the phase that fills the region; later regions replace earlier ones")
       .required();
   add_shape(section);
   return section;
@@ -188,8 +190,8 @@ Section initial() {
 
 Section forces() {
   return section<Draft>("forces", whole)
-      .option("body", &Draft::body_force, "length/time2", "acceleration beside gravity: expressions of x y z t")
-      .absent("none beside gravity")
+      .option("body", &Draft::body_force, "length/time2", "acceleration in addition to gravity: expressions of x y z t")
+      .absent("none")
       .whole_only(uses_particles);
 }
 

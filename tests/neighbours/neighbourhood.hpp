@@ -45,7 +45,7 @@ inline std::vector<Point> lattice_points(int m, int dimensions, double jitter) {
   return points;
 }
 
-// Most points in a few blobs a reach wide, the others anywhere.
+// Most points in a few blobs a support radius wide, the others anywhere.
 inline std::vector<Point> clustered_points(std::size_t n, int dimensions, double width) {
   std::vector<Point> points(n);
   for (std::size_t i = 0; i < n; ++i) {

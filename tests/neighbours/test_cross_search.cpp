@@ -73,7 +73,7 @@ class CrossSearches : public ::testing::TestWithParam<bool> {
   CrossSearch search() const { return {grid, {0.5, 0.5, 0.5}, {x[0].data(), x[1].data(), x[2].data()}, sets}; }
 
   // What was found is all that is certainly within, nothing that is certainly beyond, and nothing twice.
-  template <class Share>  // distance over reach of point j
+  template <class Share>  // distance over support radius of point j
   void expect_found(const CrossSearch::Found& found, Share&& share) {
     std::vector<int> times(all.size(), 0);
     for (std::size_t k = 0; k < found.size; ++k) ++times[static_cast<std::size_t>(found.index[k])];

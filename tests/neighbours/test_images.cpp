@@ -77,7 +77,7 @@ TEST(Images, SignIsTheProductOfTheReflectionsAlongAnAxis) {
 }
 
 TEST(Images, ContinueALatticeBeyondSidesAndCorners) {
-  // Each lattice site within the reach of the domain holds exactly one image.
+  // Each lattice site within the support radius of the domain holds exactly one image.
   const int m = 10;
   const double spacing = 0.1, support_radius = 0.26;
   for (const auto x : {periodic, mirror})
@@ -87,7 +87,7 @@ TEST(Images, ContinueALatticeBeyondSidesAndCorners) {
       for (std::size_t k = 0; k < hood.images.size(); ++k)
         ++at[{static_cast<int>(std::floor(hood.images.position(0)[k] / spacing)),
               static_cast<int>(std::floor(hood.images.position(1)[k] / spacing))}];
-      // Sites 0.05, 0.15 and 0.25 beyond each side are nearer than the reach.
+      // Sites 0.05, 0.15 and 0.25 beyond each side are nearer than the support radius.
       for (int b = -3; b < m + 3; ++b)
         for (int a = -3; a < m + 3; ++a) {
           const bool inside = a >= 0 && a < m && b >= 0 && b < m;
@@ -110,7 +110,7 @@ std::vector<Point> lattice_around(const ImageRules::Box& box, int m, int dimensi
 }
 
 TEST(Images, FillABoxOnceWithinReachOfTheLiquidAlsoAtItsEdges) {
-  // Images of lattice points fall on lattice sites of the box. Sites nearer than the reach to a face hold one
+  // Images of lattice points fall on lattice sites of the box. Sites nearer than the support radius to a face hold one
   // image, also those that are equally near to two or three faces; deeper sites hold none.
   const int m = 20;
   const double spacing = 1.0 / m, support_radius = 2.6 * spacing;

@@ -107,14 +107,14 @@ INSTANTIATE_TEST_SUITE_P(
         SceneCase{"random_mixed_3d", 3, 0.23, {periodic, mirror, none}, random_points(900, 3)},
         SceneCase{"clustered_2d", 2, 0.06, {periodic, mirror, none}, clustered_points(900, 2, 0.06)},
         SceneCase{"clustered_3d", 3, 0.1, {mirror, periodic, mirror}, clustered_points(1200, 3, 0.1)},
-        // On a lattice of ten cells with a reach of three spacings, distances equal the reach up to rounding and
-        // points lie on borders of the quarter-reach columns.
+        // On a lattice of ten cells with a support radius of three spacings, distances equal the support radius up to
+        // rounding and points lie on borders of the quarter-support columns.
         SceneCase{"lattice_at_reach_2d", 2, 0.3, {periodic, mirror, none}, lattice_points(10, 2, 0)},
         SceneCase{"lattice_at_reach_3d", 3, 0.3, {periodic, mirror, none}, lattice_points(10, 3, 0)},
         SceneCase{"jittered_lattice_3d", 3, 0.26, {periodic, periodic, mirror}, lattice_points(10, 3, 0.4)},
         SceneCase{"outside_the_grid_2d", 2, 0.11, {none, none, none}, with_outsiders(random_points(400, 2), 2)},
         SceneCase{"outside_the_grid_3d", 3, 0.23, {none, none, none}, with_outsiders(random_points(600, 3), 3)},
-        SceneCase{"reach_as_large_as_the_domain", 3, 1.0, {periodic, periodic, none}, random_points(60, 3)}),
+        SceneCase{"support_as_large_as_the_domain", 3, 1.0, {periodic, periodic, none}, random_points(60, 3)}),
     [](const auto& info) { return std::string(info.param.name); });
 
 class SmallSets : public testing::TestWithParam<int> {};
@@ -147,7 +147,7 @@ TEST_P(SmallSets, ManyCoincidentParticlesAreAllNeighbours) {
 INSTANTIATE_TEST_SUITE_P(Neighbours, SmallSets, testing::Values(2, 3));
 
 TEST(NeighbourList, CellBordersLoseNoNeighbour) {
-  // Pairs a little nearer than the reach, one end on a corner of a cell, in all directions.
+  // Pairs a little nearer than the support radius, one end on a corner of a cell, in all directions.
   for (const int dimensions : {2, 3}) {
     const double support_radius = 0.1;
     const ImageRules rules = unit_box_rules(dimensions, support_radius, none, none, none);
@@ -166,7 +166,8 @@ TEST(NeighbourList, CellBordersLoseNoNeighbour) {
 }
 
 TEST(NeighbourList, PairsFarFromTheOriginOfALongDomainStaySymmetricAndComplete) {
-  // 20,000 reaches long: float coordinates at the ends resolve 1e-3 reaches, much more than a rounding of the reach.
+  // 20,000 support radii long: float coordinates at the ends resolve 1e-3 radii, much more than a rounding of the
+  // radius.
   ImageRules rules = unit_box_rules(2, 0.01, none, none, none);
   rules.lower = {-100, -100, 0};
   rules.upper = {100, 100, 0};

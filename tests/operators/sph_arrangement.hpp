@@ -168,13 +168,13 @@ struct Arrangement {
 };
 
 // The results of the sweep of the kernel moments, all of them.
-struct Geometry {
+struct Moments {
   Array<float> kernel_sum, divergence_of_position, laplacian_diagonal;
   std::array<Array<float>, 6> correction;
   Array<std::uint8_t> uncorrected;
   std::array<Array<float>, 3> concentration_gradient, normal;
 
-  explicit Geometry(Arrangement& a, bool shifting = true, bool normals = true) {
+  explicit Moments(Arrangement& a, bool shifting = true, bool normals = true) {
     const std::size_t n = a.size();
     KernelMoments out;
     for (auto* array : {&kernel_sum, &divergence_of_position, &laplacian_diagonal}) array->resize(n);

@@ -72,7 +72,7 @@ TEST(SurfaceLayers, DepthsAgreeWithTheSlowTwin) {
       const Surface surface(a, 0.5, normals);
       const SurfaceLayers twin = surface.twin();
       Array<float> scratch(a.size()), depth(surface.edge.size());
-      edge_depths(a.context, a.packed, {a.setup.spacing, surface.edge, surface.normal.read()}, scratch, depth);
+      surface_depths(a.context, a.packed, {a.setup.spacing, surface.edge, surface.normal.read()}, scratch, depth);
       Comparison depths("depth");
       const double support_radius = surface.support_radius();
       for (std::size_t k = 0; k < surface.edge.size(); ++k) {

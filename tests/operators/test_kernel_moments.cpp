@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The geometry sweep against its slow twin, and what it gives on lattices and in degenerate arrangements.
+// The kernel moments sweep against its slow twin, and what it gives on lattices and in degenerate arrangements.
 #include <gtest/gtest.h>
 
 #include "operators/sph_arrangement.hpp"
@@ -10,10 +10,10 @@ namespace {
 // The root mean square row of L beyond which the sweep uses the identity.
 constexpr double largest_correction = 6;
 
-TEST(SphGeometry, AgreesWithTheSlowTwinOnEveryArrangement) {
+TEST(KernelMoments, AgreesWithTheSlowTwinOnEveryArrangement) {
   for (Arrangement& a : all_arrangements()) {
     SCOPED_TRACE(a.setup.name);
-    const Geometry fast(a);
+    const Moments fast(a);
     Comparison kernel("kernel sum"), trace("div r"), laplacian_diagonal("coupling"),
         concentration("concentration gradient"), normal("normal");
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -33,11 +33,11 @@ TEST(SphGeometry, AgreesWithTheSlowTwinOnEveryArrangement) {
 
 // |dL| <= |L|^2 |dM| to first order. Where |L| |dM| is not small, or the choice of the fallback hangs on rounding, only
 // the choice itself is left open.
-TEST(SphGeometry, CorrectionIsTheInverseOfTheMomentsOrTheIdentity) {
+TEST(KernelMoments, CorrectionIsTheInverseOfTheMomentsOrTheIdentity) {
   std::size_t fallbacks = 0, inverses = 0;
   for (Arrangement& a : all_arrangements()) {
     SCOPED_TRACE(a.setup.name);
-    const Geometry fast(a);
+    const Moments fast(a);
     Comparison correction("gradient correction");
     for (std::size_t i = 0; i < a.size(); ++i) {
       const auto slow = a.twin.correction(i, largest_correction);
@@ -75,10 +75,10 @@ ArrangementSetup lattice_setup(int dimensions, int across, BoundaryKind last) {
 }
 
 // The figures of the physics guide for the Wendland kernel at h / dr = 1.3.
-TEST(SphGeometry, DivergenceOfPositionOnALatticeHasItsKnownValues) {
+TEST(KernelMoments, DivergenceOfPositionOnALatticeHasItsKnownValues) {
   EXPECT_NEAR(lattice_constants(3, KernelKind::wendland_c2, 1.3).divergence_of_position, 2.94, 0.005);
   Arrangement a(lattice_setup(3, 8, BoundaryKind::open));
-  const Geometry fast(a);
+  const Moments fast(a);
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double layer = std::floor(std::min(a.hood.z[i], 1 - a.hood.z[i]) / a.setup.spacing);
     const double expected = layer == 0 ? 2.03 : layer == 1 ? 2.88 : 2.94;
@@ -86,7 +86,7 @@ TEST(SphGeometry, DivergenceOfPositionOnALatticeHasItsKnownValues) {
   }
 }
 
-TEST(SphGeometry, LatticeConstantsAreTheSumsOfAPeriodicLattice) {
+TEST(KernelMoments, LatticeConstantsAreTheSumsOfAPeriodicLattice) {
   for (const int d : {2, 3})
     for (const KernelKind kernel : {KernelKind::wendland_c2, KernelKind::quintic_spline})
       for (const double ratio : {1.2, 1.3, 1.5}) {
@@ -104,7 +104,7 @@ TEST(SphGeometry, LatticeConstantsAreTheSumsOfAPeriodicLattice) {
 }
 
 // Neighbouring columns displaced by 1 % of the spacing in opposite directions: the wave that is taken back fastest.
-TEST(SphGeometry, TheLargestStableShiftTurnsTheShortestWaveOfALatticeIntoItsNegative) {
+TEST(KernelMoments, TheLargestStableShiftTurnsTheShortestWaveOfALatticeIntoItsNegative) {
   for (const int d : {2, 3})
     for (const bool without_mean : {false, true}) {
       ArrangementSetup setup = lattice_setup(d, d == 2 ? 16 : 10, BoundaryKind::periodic);
@@ -112,7 +112,7 @@ TEST(SphGeometry, TheLargestStableShiftTurnsTheShortestWaveOfALatticeIntoItsNega
       const auto side = [&](double x) { return std::lround(x / setup.spacing - 0.5) % 2 == 0 ? 1.0 : -1.0; };
       for (Point& point : setup.points) point[0] += displaced * side(point[0]);
       Arrangement a(setup);
-      const Geometry fast(a);
+      const Moments fast(a);
       VectorArrays<float> mean(a.size(), d);
       filter_vector(a.context, a.packed,
                     {fast.concentration_gradient[0].data(), fast.concentration_gradient[1].data(),
@@ -130,14 +130,14 @@ TEST(SphGeometry, TheLargestStableShiftTurnsTheShortestWaveOfALatticeIntoItsNega
 }
 
 // Layers of a lattice between two open sides, deep enough that the sides do not see each other.
-TEST(SphGeometry, LayersBelowASurfaceHaveTheSumsOfALattice) {
+TEST(KernelMoments, LayersBelowASurfaceHaveTheSumsOfALattice) {
   for (const int d : {2, 3})
     for (const KernelKind kernel : {KernelKind::wendland_c2, KernelKind::quintic_spline}) {
       const int across = kernel == KernelKind::wendland_c2 ? 14 : 16;
       ArrangementSetup setup = lattice_setup(d, across, BoundaryKind::open);
       setup.kernel = kernel;
       Arrangement a(setup);
-      const Geometry fast(a);
+      const Moments fast(a);
       VectorArrays<float> filtered(a.size(), d);
       filter_vector(a.context, a.packed, {fast.normal[0].data(), fast.normal[1].data(), fast.normal[2].data()},
                     a.reflection, filtered.write());
@@ -155,9 +155,9 @@ TEST(SphGeometry, LayersBelowASurfaceHaveTheSumsOfALattice) {
     }
 }
 
-TEST(SphGeometry, NormalsPointOutOfTheLiquidAndVanishInside) {
+TEST(KernelMoments, NormalsPointOutOfTheLiquidAndVanishInside) {
   Arrangement a(lattice_setup(3, 8, BoundaryKind::open));
-  const Geometry fast(a);
+  const Moments fast(a);
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double layer = std::floor(std::min(a.hood.z[i], 1 - a.hood.z[i]) / a.setup.spacing);
     const double outward = a.hood.z[i] > 0.5 ? fast.normal[2][i] : -fast.normal[2][i];
@@ -178,7 +178,7 @@ TEST_P(FewParticles, OneAloneHasItsOwnKernelAndNothingElse) {
   setup.dimensions = GetParam();
   setup.points = {{0.5, 0.5, setup.dimensions == 3 ? 0.5 : 0}};
   Arrangement a(setup);
-  const Geometry fast(a);
+  const Moments fast(a);
   const double centre = a.twin.kernel_sum(0).value;
   EXPECT_NEAR(fast.kernel_sum[0], centre, 1e-6 * centre);
   EXPECT_EQ(fast.divergence_of_position[0], 0);
@@ -200,7 +200,7 @@ TEST_P(FewParticles, TwoInOnePlaceStayFinite) {
   for (const KernelKind kernel : {KernelKind::wendland_c2, KernelKind::quintic_spline}) {
     setup.kernel = kernel;
     Arrangement a(setup);
-    const Geometry fast(a);
+    const Moments fast(a);
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_NEAR(fast.kernel_sum[i], a.twin.kernel_sum(i).value, 1e-6 * a.twin.kernel_sum(i).value);
       EXPECT_NEAR(fast.laplacian_diagonal[i], a.twin.laplacian_diagonal(i).value,
@@ -216,7 +216,7 @@ TEST_P(FewParticles, NoneAtAllIsNoError) {
   ArrangementSetup setup;
   setup.dimensions = GetParam();
   Arrangement a(setup);
-  const Geometry fast(a);
+  const Moments fast(a);
   EXPECT_TRUE(fast.kernel_sum.empty());
 }
 

@@ -12,8 +12,8 @@ namespace spume::test {
 namespace {
 
 // L M = 1 in rounded arithmetic: |L| |dM| on the slope, plus the rounding of the sum itself.
-double linear_bound(const Arrangement& a, const Geometry& geometry, std::size_t i, double slope) {
-  const auto l = geometry.correction_of(i, a.dimensions());
+double linear_bound(const Arrangement& a, const Moments& moments, std::size_t i, double slope) {
+  const auto l = moments.correction_of(i, a.dimensions());
   const auto m = a.twin.moments(i);
   double norm_l = 0, norm_m = 0;
   for (int r = 0; r < a.dimensions(); ++r)
@@ -28,7 +28,7 @@ TEST(SphExactness, CorrectedGradientOfALinearFieldIsExactAlsoAtSurfaces) {
   for (Arrangement& a : all_arrangements()) {
     // Images do not continue a linear field: only particles that see none are asked.
     SCOPED_TRACE(a.setup.name);
-    const Geometry geometry(a);
+    const Moments moments(a);
     const int d = a.dimensions();
     const reference::Vector slope{2, -3, 1.5};
     auto values = a.sample([&](const Point& p) {
@@ -37,16 +37,16 @@ TEST(SphExactness, CorrectedGradientOfALinearFieldIsExactAlsoAtSurfaces) {
       return sum;
     });
     VectorArrays<float> fast(a.size(), d);
-    gradient_sweep(a.context, a.packed, values.data(), 5, geometry.read_correction(), fast.write());
+    gradient_sweep(a.context, a.packed, values.data(), 5, moments.read_correction(), fast.write());
     Comparison comparison("gradient of a linear field");
     for (std::size_t i = 0; i < a.size(); ++i) {
-      if (geometry.uncorrected[i] != 0) continue;
+      if (moments.uncorrected[i] != 0) continue;
       bool sees_image = false;
       for (const std::int32_t j : a.hood.list.of(i)) sees_image = sees_image || static_cast<std::size_t>(j) >= a.size();
       if (sees_image) continue;
-      const auto slow = a.twin.gradient(i, values, 5, geometry.correction_of(i, d));
+      const auto slow = a.twin.gradient(i, values, 5, moments.correction_of(i, d));
       for (int axis = 0; axis < d; ++axis) {
-        const double bound = linear_bound(a, geometry, i, 4) + a.twin.tolerance(i) * slow[axis].magnitude;
+        const double bound = linear_bound(a, moments, i, 4) + a.twin.tolerance(i) * slow[axis].magnitude;
         comparison.add_error(std::abs(fast[axis][i] - slope[axis]), bound, fast[axis][i], slope[axis], i);
       }
     }
@@ -56,15 +56,15 @@ TEST(SphExactness, CorrectedGradientOfALinearFieldIsExactAlsoAtSurfaces) {
 TEST(SphExactness, ConstantFieldsGiveExactlyZero) {
   for (Arrangement& a : all_arrangements()) {
     SCOPED_TRACE(a.setup.name);
-    const Geometry geometry(a);
+    const Moments moments(a);
     const int d = a.dimensions();
     const Array<double> values(a.size(), 1.0 / 3);
     Array<float> kappa(a.size(), 0.1F), laplacian(a.size());
     VectorArrays<float> gradient(a.size(), d);
-    gradient_sweep(a.context, a.packed, values.data(), 0.1, geometry.read_correction(), gradient.write());
+    gradient_sweep(a.context, a.packed, values.data(), 0.1, moments.read_correction(), gradient.write());
     Array<double> divergence(a.size());
     VectorArrays<double> rest(a.size(), d);
-    divergence_sweep(a.context, a.packed, rest.read(), {a.rule.sign, {}}, geometry.read_correction(), values.data(),
+    divergence_sweep(a.context, a.packed, rest.read(), {a.rule.sign, {}}, moments.read_correction(), values.data(),
                      divergence.data(), laplacian.data());
     for (std::size_t i = 0; i < a.size(); ++i) {
       for (int axis = 0; axis < d; ++axis) ASSERT_EQ(gradient[axis][i], 0);
@@ -94,13 +94,13 @@ TEST(SphExactness, WallsThatMoveWithTheLiquidExertNothing) {
       setup.boundaries.wall[axis] = {velocity, velocity};
     }
     Arrangement a(setup);
-    const Geometry geometry(a);
+    const Moments moments(a);
     VectorArrays<double> u(a.size(), d);
     for (int axis = 0; axis < d; ++axis) u[axis].fill(velocity[axis]);
     const Array<float> kappa(a.size(), 1.0F);
     VectorArrays<float> force(a.size(), d);
     Array<double> divergence(a.size());
-    divergence_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), nullptr, divergence.data(),
+    divergence_sweep(a.context, a.packed, u.read(), a.rule, moments.read_correction(), nullptr, divergence.data(),
                      nullptr);
     for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(divergence[i], 0);
     for (const bool stress : {false, true}) {
@@ -236,7 +236,7 @@ TEST(SphExactness, AQuarterTurnTurnsTheResults) {
   for (std::size_t i = 0; i < a.size(); ++i)
     for (std::size_t k = 0; k < b.size(); ++k)
       if (b.hood.x[k] == 1 - a.hood.y[i] && b.hood.y[k] == a.hood.x[i]) partner[i] = k;
-  const Geometry ga(a), gb(b);
+  const Moments ga(a), gb(b);
   VectorArrays<double> u(a.size(), 2), v(b.size(), 2);
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double x = a.hood.x[i], y = a.hood.y[i];
@@ -282,7 +282,7 @@ TEST(SphExactness, AUniformVelocityChangesNoDerivative) {
         walls = walls || kind == BoundaryKind::free_slip || kind == BoundaryKind::no_slip;
     if (walls) continue;
     SCOPED_TRACE(a.setup.name);
-    const Geometry geometry(a);
+    const Moments moments(a);
     const int d = a.dimensions();
     VectorArrays<double> u, v;
     for (int axis = 0; axis < d; ++axis) {
@@ -296,8 +296,8 @@ TEST(SphExactness, AUniformVelocityChangesNoDerivative) {
     viscous_sweep(a.context, a.packed, u.read(), a.rule, kappa.data(), first.write());
     viscous_sweep(a.context, a.packed, v.read(), a.rule, kappa.data(), second.write());
     Array<double> div_u(a.size()), div_v(a.size());
-    divergence_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), nullptr, div_u.data(), nullptr);
-    divergence_sweep(a.context, a.packed, v.read(), a.rule, geometry.read_correction(), nullptr, div_v.data(), nullptr);
+    divergence_sweep(a.context, a.packed, u.read(), a.rule, moments.read_correction(), nullptr, div_u.data(), nullptr);
+    divergence_sweep(a.context, a.packed, v.read(), a.rule, moments.read_correction(), nullptr, div_v.data(), nullptr);
     for (std::size_t i = 0; i < a.size(); ++i) {
       ASSERT_EQ(div_u[i], div_v[i]);
       for (int axis = 0; axis < d; ++axis) ASSERT_EQ(first[axis][i], second[axis][i]);
@@ -306,7 +306,7 @@ TEST(SphExactness, AUniformVelocityChangesNoDerivative) {
 }
 
 struct AllResults {
-  Geometry geometry;
+  Moments moments;
   VectorArrays<float> viscous, gradient;
   Array<double> divergence, residual;
   Array<float> laplacian, product;
@@ -317,15 +317,15 @@ AllResults run_all(Arrangement& a) {
   const std::size_t n = a.size();
   const int d = a.dimensions();
   a.packed.invalidate();
-  AllResults r{Geometry(a), {n, d}, {n, d}, Array<double>(n), Array<double>(n), Array<float>(n), Array<float>(n), {}};
+  AllResults r{Moments(a), {n, d}, {n, d}, Array<double>(n), Array<double>(n), Array<float>(n), Array<float>(n), {}};
   VectorArrays<double> u;
   for (int axis = 0; axis < d; ++axis) u[axis] = a.random(110 + static_cast<std::uint32_t>(axis));
   const auto q = a.random(115);
   Array<float> kappa(n, 1.0F), x(n);
   for (std::size_t i = 0; i < n; ++i) x[i] = static_cast<float>(q[i]);
   viscous_sweep(a.context, a.packed, u.read(), a.rule, kappa.data(), r.viscous.write());
-  gradient_sweep(a.context, a.packed, q.data(), 0, r.geometry.read_correction(), r.gradient.write());
-  divergence_sweep(a.context, a.packed, u.read(), a.rule, r.geometry.read_correction(), q.data(), r.divergence.data(),
+  gradient_sweep(a.context, a.packed, q.data(), 0, r.moments.read_correction(), r.gradient.write());
+  divergence_sweep(a.context, a.packed, u.read(), a.rule, r.moments.read_correction(), q.data(), r.divergence.data(),
                    r.laplacian.data());
   PressureOperator matrix;
   matrix.bind(a.context, a.packed, {kappa.data(), nullptr});
@@ -355,10 +355,10 @@ TEST(SphExactness, OneTwoAndThreeThreadsGiveTheSameBits) {
     for (const int count : {2, 3}) {
       omp_set_num_threads(count);
       const AllResults more = run_all(a);
-      EXPECT_TRUE(same_bits(one.geometry.kernel_sum, more.geometry.kernel_sum));
-      for (int k = 0; k < 6; ++k) EXPECT_TRUE(same_bits(one.geometry.correction[k], more.geometry.correction[k]));
+      EXPECT_TRUE(same_bits(one.moments.kernel_sum, more.moments.kernel_sum));
+      for (int k = 0; k < 6; ++k) EXPECT_TRUE(same_bits(one.moments.correction[k], more.moments.correction[k]));
       for (int axis = 0; axis < d; ++axis) {
-        EXPECT_TRUE(same_bits(one.geometry.normal[axis], more.geometry.normal[axis]));
+        EXPECT_TRUE(same_bits(one.moments.normal[axis], more.moments.normal[axis]));
         EXPECT_TRUE(same_bits(one.viscous[axis], more.viscous[axis]));
         EXPECT_TRUE(same_bits(one.gradient[axis], more.gradient[axis]));
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The field sweeps against their slow twins, on random fields over every arrangement. The twins are given the float
-// correction matrices of the geometry sweep: a sweep is held to its own arithmetic.
+// correction matrices of the kernel moments sweep: a sweep is held to its own arithmetic.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -27,7 +27,7 @@ TEST(SphOperators, VelocityGradientAndFilterAgreeWithTheSlowTwin) {
   for (Arrangement& a : all_arrangements()) {
     SCOPED_TRACE(a.setup.name);
     const int d = a.dimensions();
-    const Geometry geometry(a);
+    const Moments moments(a);
     const auto u = random_velocity(a, 11);
     std::array<Array<float>, 9> gradient;
     VectorArrays<float> filtered(a.size(), d);
@@ -37,11 +37,11 @@ TEST(SphOperators, VelocityGradientAndFilterAgreeWithTheSlowTwin) {
       out.gradient[k] = gradient[k].data();
     }
     out.filtered = filtered.write();
-    velocity_gradient_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), out);
+    velocity_gradient_sweep(a.context, a.packed, u.read(), a.rule, moments.read_correction(), out);
     Comparison gradients("velocity gradient"), filter("filtered velocity");
     for (std::size_t i = 0; i < a.size(); ++i) {
       const double rounding = a.twin.tolerance(i);
-      const auto slow = a.twin.velocity_gradient(i, u, geometry.correction_of(i, d));
+      const auto slow = a.twin.velocity_gradient(i, u, moments.correction_of(i, d));
       const auto mean = a.twin.filtered_velocity(i, u);
       for (int r = 0; r < d; ++r) {
         for (int c = 0; c < d; ++c) gradients.add(gradient[r * d + c][i], slow[r][c], rounding, i);
@@ -55,12 +55,12 @@ TEST(SphOperators, VelocityGradientAndFilterAgreeWithTheSlowTwin) {
       alone[k].resize(a.size());
       only.gradient[k] = alone[k].data();
     }
-    velocity_gradient_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), only);
+    velocity_gradient_sweep(a.context, a.packed, u.read(), a.rule, moments.read_correction(), only);
     for (int k = 0; k < d * d; ++k)
       EXPECT_TRUE(std::equal(alone[k].begin(), alone[k].end(), gradient[k].begin())) << "component " << k;
     // And so is what its trace is made of.
     Array<float> trace(a.size());
-    gradient_trace_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), trace.data());
+    gradient_trace_sweep(a.context, a.packed, u.read(), a.rule, moments.read_correction(), trace.data());
     for (std::size_t i = 0; i < a.size(); ++i) {
       float expected = 0;
       for (int r = 0; r < d; ++r)
@@ -83,7 +83,7 @@ BoundedChanges compare_changes(double length, bool filter) {
   for (Arrangement& a : all_arrangements()) {
     SCOPED_TRACE(a.setup.name);
     const int d = a.dimensions();
-    const Geometry geometry(a);
+    const Moments moments(a);
     const auto u = random_velocity(a, 11);
     VectorArrays<float> displacement, change(a.size(), d), filtered(a.size(), d);
     for (int axis = 0; axis < d; ++axis) {
@@ -98,11 +98,11 @@ BoundedChanges compare_changes(double length, bool filter) {
     out.displacement = displacement.read();
     out.change = change.write();
     if (filter) out.filtered = filtered.write();
-    velocity_gradient_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), out);
+    velocity_gradient_sweep(a.context, a.packed, u.read(), a.rule, moments.read_correction(), out);
     Comparison changes("change"), strains("squared strain"), traces("trace");
     for (std::size_t i = 0; i < a.size(); ++i) {
       const double rounding = a.twin.tolerance(i);
-      const auto gradient = a.twin.velocity_gradient(i, u, geometry.correction_of(i, d));
+      const auto gradient = a.twin.velocity_gradient(i, u, moments.correction_of(i, d));
       reference::Sum square, product;  // their errors to first order in those of the gradient
       for (int r = 0; r < d; ++r) {
         reference::Sum along;
@@ -165,18 +165,18 @@ TEST(SphOperators, ViscousForceAgreesWithTheSlowTwin) {
 TEST(SphOperators, DivergenceAndPotentialLaplacianAgreeWithTheSlowTwin) {
   for (Arrangement& a : all_arrangements()) {
     SCOPED_TRACE(a.setup.name);
-    const Geometry geometry(a);
+    const Moments moments(a);
     const auto u = random_velocity(a, 31);
     const auto potential = a.random(35);
     Array<double> fast(a.size()), alone(a.size());
     Array<float> laplacian(a.size());
-    divergence_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), potential.data(), fast.data(),
+    divergence_sweep(a.context, a.packed, u.read(), a.rule, moments.read_correction(), potential.data(), fast.data(),
                      laplacian.data());
-    divergence_sweep(a.context, a.packed, u.read(), a.rule, geometry.read_correction(), nullptr, alone.data(), nullptr);
+    divergence_sweep(a.context, a.packed, u.read(), a.rule, moments.read_correction(), nullptr, alone.data(), nullptr);
     Comparison divergence("divergence"), second("negative Laplacian");
     for (std::size_t i = 0; i < a.size(); ++i) {
       const double rounding = a.twin.tolerance(i);
-      divergence.add(fast[i], a.twin.divergence(i, u, geometry.correction_of(i, a.dimensions())), rounding, i);
+      divergence.add(fast[i], a.twin.divergence(i, u, moments.correction_of(i, a.dimensions())), rounding, i);
       second.add(laplacian[i], a.twin.negative_laplacian(i, potential), rounding, i);
       EXPECT_EQ(fast[i], alone[i]) << "particle " << i << " depends on the potential";
     }
@@ -186,14 +186,14 @@ TEST(SphOperators, DivergenceAndPotentialLaplacianAgreeWithTheSlowTwin) {
 TEST(SphOperators, GradientAgreesWithTheSlowTwin) {
   for (Arrangement& a : all_arrangements()) {
     SCOPED_TRACE(a.setup.name);
-    const Geometry geometry(a);
+    const Moments moments(a);
     auto values = a.random(41);
     for (double& value : values) value += 1e6;  // a large constant part costs no digits
     VectorArrays<float> fast(a.size(), a.dimensions());
-    gradient_sweep(a.context, a.packed, values.data(), 1e6, geometry.read_correction(), fast.write());
+    gradient_sweep(a.context, a.packed, values.data(), 1e6, moments.read_correction(), fast.write());
     Comparison comparison("gradient");
     for (std::size_t i = 0; i < a.size(); ++i) {
-      const auto slow = a.twin.gradient(i, values, 1e6, geometry.correction_of(i, a.dimensions()));
+      const auto slow = a.twin.gradient(i, values, 1e6, moments.correction_of(i, a.dimensions()));
       for (int axis = 0; axis < a.dimensions(); ++axis)
         comparison.add(fast[axis][i], slow[axis], a.twin.tolerance(i), i);
     }
@@ -204,7 +204,7 @@ TEST(SphOperators, ShiftCurvatureAgreesWithTheSlowTwin) {
   for (Arrangement& a : all_arrangements()) {
     SCOPED_TRACE(a.setup.name);
     const int d = a.dimensions();
-    const Geometry geometry(a);
+    const Moments moments(a);
     std::array<Array<float>, 9> gradient;
     std::array<const float*, 9> read{};
     for (int k = 0; k < d * d; ++k) {
@@ -217,13 +217,13 @@ TEST(SphOperators, ShiftCurvatureAgreesWithTheSlowTwin) {
       for (double& value : values) value *= 0.1 * a.setup.spacing;
       shift[axis] = to_float(values);
     }
-    shift_curvature_sweep(a.context, a.packed, read, a.rule, a.reflection, shift.read(), geometry.read_correction(),
+    shift_curvature_sweep(a.context, a.packed, read, a.rule, a.reflection, shift.read(), moments.read_correction(),
                           fast.write());
     Comparison comparison("shift curvature");
     for (std::size_t i = 0; i < a.size(); ++i) {
       reference::Vector s{};
       for (int axis = 0; axis < d; ++axis) s[axis] = shift[axis][i];
-      const auto slow = a.twin.shift_curvature(i, gradient, s, geometry.correction_of(i, d));
+      const auto slow = a.twin.shift_curvature(i, gradient, s, moments.correction_of(i, d));
       for (int axis = 0; axis < d; ++axis) comparison.add(fast[axis][i], slow[axis], a.twin.tolerance(i), i);
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Lists of particles of different sizes, and what the weights of their pressure matrix are for. The sweeps over them
-// are held against the slow twins beside those over equal particles.
+// are compared with the slow twins beside those over equal particles.
 #include <gtest/gtest.h>
 
 #include <cmath>

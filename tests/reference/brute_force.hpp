@@ -24,8 +24,8 @@ struct Image {
 };
 
 struct Candidates {
-  std::set<std::int32_t> certain;   // nearer than reach - tolerance
-  std::set<std::int32_t> possible;  // nearer than reach + tolerance
+  std::set<std::int32_t> certain;   // nearer than support_radius - tolerance
+  std::set<std::int32_t> possible;  // nearer than support_radius + tolerance
 };
 
 // Faces in the order lower x, upper x, lower y, ...: the earlier of two equally near faces owns an image.

@@ -32,23 +32,23 @@ inline double depth_of_column(int dimensions, double content) {
   return std::clamp(0.5 + content - lattice, 0.25, 2.0);
 }
 
-// Sums over all particles and images. normals: of edge particles, of length 1; 0 at all others.
+// Sums over all particles and images. normals: of near-surface particles, of length 1; 0 at all others.
 class SurfaceLayers {
  public:
   SurfaceLayers(const SphSums& sums, const PlainKernel& kernel, double spacing, std::vector<Vector> normals)
       : sums_(sums), kernel_(kernel), spacing_(spacing), normals_(std::move(normals)) {
     own_depth_.resize(normals_.size());
     for (std::size_t i = 0; i < normals_.size(); ++i)
-      if (is_edge(i)) own_depth_[i] = own_depth(i);
+      if (near_surface(i)) own_depth_[i] = own_depth(i);
   }
 
-  bool is_edge(std::size_t i) const { return dot(normals_[i], normals_[i]) > 0; }
+  bool near_surface(std::size_t i) const { return dot(normals_[i], normals_[i]) > 0; }
 
   double depth(std::size_t i) const {
-    if (!is_edge(i)) return spacing_;  // of an edge particle without a normal
+    if (!near_surface(i)) return spacing_;  // of a near-surface particle without a normal
     double weights = 0, sum = 0;
     each(i, [&](std::size_t j, const Vector& d, const Vector&) {
-      if (!is_edge(j)) return;
+      if (!near_surface(j)) return;
       const double out = std::abs(dot(d, normals_[i])) / spacing_;
       const double weight = kernel_.w(length(d) / sums_.width(i)) * std::max(0.0, 1 - 2 * out);
       weights += weight;
@@ -57,11 +57,11 @@ class SurfaceLayers {
     return sum / weights;
   }
 
-  // Particle by particle: whether it or an image of it is within reach of an edge particle.
+  // Particle by particle: whether it or an image of it is within reach of a near-surface particle.
   std::vector<bool> upper() const {
     std::vector<bool> near(normals_.size());
     for (std::size_t i = 0; i < near.size(); ++i)
-      if (is_edge(i))
+      if (near_surface(i))
         each(i,
              [&](std::size_t j, const Vector& d, const Vector&) { near[j] = near[j] || length(d) < 1.8 * spacing_; });
     return near;
@@ -74,16 +74,16 @@ class SurfaceLayers {
   };
   Shared shared(std::size_t i, const std::vector<Vector>& vectors) const {
     Vector n{};
-    double of_edge = 0, weights = 0, sum = 0;
+    double of_near = 0, weights = 0, sum = 0;
     each(i, [&](std::size_t j, const Vector& d, const Vector& reflection) {
-      if (!is_edge(j)) return;
+      if (!near_surface(j)) return;
       const double x = std::max(0.0, 1 - dot(d, d) / std::pow(1.8 * spacing_, 2));
       for (int a = 0; a < 3; ++a) n[a] += x * x * reflection[a] * normals_[j][a];
-      of_edge += x * x;
+      of_near += x * x;
     });
     const double size = length(n);
     for (double& component : n) component /= size;
-    const double c = is_edge(i) ? 1 : std::min(1.0, of_edge / 0.4);
+    const double c = near_surface(i) ? 1 : std::min(1.0, of_near / 0.4);
     each(i, [&](std::size_t j, const Vector& d, const Vector& reflection) {
       const double weight = kernel_.w(length(d) / sums_.width(i)) * std::max(0.0, 1 - std::abs(dot(d, n)) / spacing_);
       weights += weight;

@@ -98,7 +98,7 @@ TEST(Expression, FaultsPointAtTheCharacter) {
   EXPECT_EQ(fault("etta - z", scope), "0 unknown name 'etta'; did you mean 'eta'?");
   EXPECT_EQ(fault("2*frobnicate(x)"), "2 unknown name 'frobnicate'; define it in [constants]");
   EXPECT_EQ(fault("1 + (2*x"), "4 this '(' is never closed");
-  EXPECT_EQ(fault("1 + 2)*x"), "5 unexpected ')' that closes nothing");
+  EXPECT_EQ(fault("1 + 2)*x"), "5 unmatched ')'");
   EXPECT_EQ(fault("x + * 2"), "4 unexpected operator '*'");
   EXPECT_EQ(fault("2 x"), "2 unexpected variable 'x'");
   EXPECT_EQ(fault("x ^"), "3 unexpected end of expression");

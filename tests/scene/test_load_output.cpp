@@ -52,7 +52,7 @@ TEST(LoadOutput, APlaneHasANormalAndAPlace) {
               ElementsAre(HasSubstr("its column 'p_area' of probes.csv is that of probe 'p' already")));
 }
 
-std::vector<std::string> idle_of(const std::string& more, const std::vector<std::string>& overrides = {}) {
+std::vector<std::string> unused_of(const std::string& more, const std::vector<std::string>& overrides = {}) {
   std::vector<std::string> texts;
   for (const Problem& one : load_text(small_case(more), overrides).options.unused_options) {
     EXPECT_EQ(one.message("warning").find("error"), std::string::npos);
@@ -63,18 +63,18 @@ std::vector<std::string> idle_of(const std::string& more, const std::vector<std:
 }
 
 TEST(LoadOutput, KeysThatAnotherKeyMakesUselessAreRemarked) {
-  EXPECT_THAT(idle_of("[turbulence]\nsmagorinsky_constant = 0.1\n"),
+  EXPECT_THAT(unused_of("[turbulence]\nsmagorinsky_constant = 0.1\n"),
               ElementsAre("15:1 turbulence.smagorinsky_constant is not used with turbulence.model = \"none\"; it takes "
                           "effect with \"smagorinsky\"; remove it or set turbulence.model"));
-  EXPECT_THAT(idle_of("[turbulence]\nmodel = \"smagorinsky\"\nsmagorinsky_constant = 0.1\n"), IsEmpty());
-  EXPECT_THAT(idle_of("[shifting]\non = false\n", {"shifting.limit=0.2"}),
+  EXPECT_THAT(unused_of("[turbulence]\nmodel = \"smagorinsky\"\nsmagorinsky_constant = 0.1\n"), IsEmpty());
+  EXPECT_THAT(unused_of("[shifting]\non = false\n", {"shifting.limit=0.2"}),
               ElementsAre("--set shifting.limit=0.2 shifting.limit is not used with shifting.on = false; it takes "
                           "effect with true; remove it or set shifting.on"));
   const std::string front = "[[probe]]\nname = \"f\"\nkind = \"front\"\nsamples = 7\naxis = \"x\"\n";
   const std::string line = "[[probe]]\nname = \"l\"\nkind = \"line\"\nposition = [0, 0]\nend = [1, 1]\nheight = 0.5\n";
-  EXPECT_THAT(idle_of(front + line), ElementsAre(HasSubstr("17:1 probe.0.samples is not used with"),
-                                                 HasSubstr("24:1 probe.1.height is not used with")));
-  EXPECT_THAT(idle_of(""), IsEmpty());
+  EXPECT_THAT(unused_of(front + line), ElementsAre(HasSubstr("17:1 probe.0.samples is not used with"),
+                                                   HasSubstr("24:1 probe.1.height is not used with")));
+  EXPECT_THAT(unused_of(""), IsEmpty());
 }
 
 // The resolved case gives every default: none of them is a choice.

@@ -53,7 +53,7 @@ TEST(LoadParticles, ContradictionsAreRefusedInWords) {
   refused("count = 10\ndiameter = 0.6\n", "half of the shortest side of the box, 1; found 0.6");
   refused("count = 1000\ndiameter = 0.2\n", "take at most 176");
   refused("count = 10\ndiameter = 0.1\nspline_order = 3\n", "must be 2, 4 or 6, found 3");
-  refused("count = 10\ndiameter = 0.1\nbeta = 0\nstokes = 1\ncoupling = \"two-way\"\n", "infinitely heavy");
+  refused("count = 10\ndiameter = 0.1\nbeta = 0\nstokes = 1\ncoupling = \"two-way\"\n", "infinite density");
   refused("count = 10\ndiameter = 0.1\nplacement = \"file\"\n", "missing key 'file'");
   refused("count = 10\ndiameters = [0.1, 0.2]\nshares = [1]\n", "one entry for each of the 2 diameters");
   refused("count = 10\ndiameter = 0.1\nlyapunov = 5\n", "records = \"double\"");

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Every measure is held against run folders written from exact solutions (small error) and from wrong ones (large)."""
+"""Every measure is compared with run folders written from exact solutions (small error) and from wrong ones (large)."""
 import shutil
 import tempfile
 import tomllib

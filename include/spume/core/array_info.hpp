@@ -10,7 +10,7 @@ namespace spume {
 struct ArrayInfo {
   std::string name;
   double bytes = 0;
-  std::size_t suspended = 0;  // particles in a flow on a grid that it belongs to; 0: it belongs to the liquid or grid
+  std::size_t suspended = 0;  // number of point particles that it belongs to; 0: it belongs to the liquid or grid
 };
 
 }  // namespace spume

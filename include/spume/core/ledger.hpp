@@ -55,7 +55,6 @@ class Ledger {
              double bytes = 0);
 
   const std::vector<Entry>& entries() const { return entries_; }
-  double total_seconds() const;
   void clear() { entries_.clear(); }
 
  private:

@@ -105,26 +105,6 @@ template <FloatVector V = f32x8>
 #endif
 }
 
-// Writes first + l for every set bit l, ascending, and returns how many there are. Without a branch, which random bits
-// would make the processor guess wrong; room for eight numbers is needed in any case.
-[[gnu::always_inline]] inline int store_lanes(std::int32_t* to, std::int32_t first, unsigned bits) {
-#if defined(__AVX2__) && defined(__BMI2__)
-  // Three bits per lane number would do; a byte each makes them ready to widen.
-  const std::uint64_t mask = _pdep_u64(bits, 0x0101010101010101ULL) * 0xff;
-  const std::uint64_t numbers = _pext_u64(0x0706050403020100ULL, mask);
-  const __m256i chosen = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<std::int64_t>(numbers)));
-  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_add_epi32(chosen, _mm256_set1_epi32(first)));
-  return __builtin_popcount(bits);
-#else
-  int count = 0;
-  for (int l = 0; l < lanes; ++l) {
-    to[count] = first + l;
-    count += static_cast<int>(bits >> l & 1U);
-  }
-  return count;
-#endif
-}
-
 // Sum over the lanes in a fixed order: pairs of halves, then pairs of pairs.
 [[gnu::always_inline]] inline float sum(f32x8 v) {
   const f32x4 low = __builtin_shufflevector(v, v, 0, 1, 2, 3);

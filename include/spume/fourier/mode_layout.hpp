@@ -17,7 +17,7 @@ inline constexpr std::size_t lanes = 128 / sizeof(std::complex<T>);
 // A field u(x) = sum_k u_k exp(i k.x) on nx x ny x nz points (even), coefficients scaled so that u_0 is the mean.
 // Stored are the modes with 0 <= k_z < nz/2; those with k_z < 0 are their conjugates. Mode (ix, iy, iz) lies at
 // ix * plane + iy * row + iz; indices above n/2 along x and y stand for negative wavenumbers. Modes at the largest
-// wavenumber of an axis (index n/2), which have no partner, and the entries iz >= nz/2 are held at zero.
+// wavenumber of an axis (index n/2), which have no partner, and the entries iz >= nz/2 are zero.
 struct ModeLayout {
   std::array<std::size_t, 3> points{};
   std::array<double, 3> lengths{};

@@ -26,7 +26,7 @@ struct Remark {
 
 // A statement about a column of series.csv that holds for a whole run whatever its solution, so that no reference is
 // needed to judge it: what summary.json gives as a verdict. With x(t) the column, and what lies beside it, and
-// s = factor max |scale column| + floor over the rows, the value held against the bound is
+// s = factor max |scale column| + floor over the rows, the value compared with the bound is
 //   drift:   max |x(t) - x(0)| / |x(0)|
 //   growth:  max (x(t) - x(0), 0) / s
 //   change:  max |x(t) - x(0)| / s

@@ -12,12 +12,13 @@
 
 namespace spume {
 
-// Cells with edges of at least `reach`, so that all particles within `reach` of a point lie in the 3^dimensions cells
-// around the point's own. Particles beyond a side that is not periodic belong to the cells at that side.
+// Cells with edges of at least `support_radius`, so that all particles within that distance of a point lie in the
+// 3^dimensions cells around the point's own. Particles beyond a side that is not periodic belong to the cells at that
+// side.
 class ParticleBins {
  public:
-  // Needs length >= reach along periodic axes. Not-a-number coordinates land in a cell; distances to them are not
-  // numbers either.
+  // Needs length >= support_radius along periodic axes. Not-a-number coordinates land in a cell; distances to them are
+  // not numbers either.
   ParticleBins(const UniformGrid& box, std::array<bool, 3> periodic, double support_radius,
                const std::array<std::span<const double>, 3>& position);
 

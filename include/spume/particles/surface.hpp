@@ -32,8 +32,8 @@ struct SurfaceRow {
 class FreeSurface {
  public:
   struct Options {
-    double threshold = 0;  // div r of a surface particle; 0: 2.3 in 3-D, 1.5 in 2-D
-    double blend_width = 0.32;
+    double threshold = 0;                // div r of a surface particle; 0: 2.3 in 3-D, 1.5 in 2-D
+    double blend_width = 0;              // span of div r over which b rises from 0 to 1
     bool smooth_normals = false;         // of surface particles, for the shift
     bool keep_smoothed_normals = false;  // for bubbles, which read them after the shift
   };

@@ -60,7 +60,6 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
   void apply(std::span<const double> r, std::span<double> z) override;
 
   std::array<int, 3> cells() const { return hierarchy_.finest().cells; }
-  std::array<double, 3> cell_width() const { return width_; }
   int level_count() const { return hierarchy_.level_count(); }
   double bytes() const;
 

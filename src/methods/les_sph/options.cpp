@@ -9,7 +9,7 @@ Section scheme_section() {
   using S = SchemeOptions;
   return section<S>("time")
       .behind("courant")
-      .option("centred", &S::centred, "velocities free of divergence half a step ahead: second order in time")
+      .option("centred", &S::centred, "velocity solenoidal half a step ahead: second order in time")
       .option("viscous", &S::viscous, "1", above_up_to(0, 0.3),
               "step limit by viscosity, eddy viscosity included; a third of it with div(2 nu S)");
 }

@@ -60,7 +60,8 @@ std::vector<std::string> output_fields(const Case& options) {
 Registration registration() {
   Registration method;
   method.name = "les-sph";
-  method.description = "free-surface liquid by semi-implicit, weakly compressible particles, with closures and bubbles";
+  method.description =
+      "semi-implicit, weakly compressible SPH for a liquid with a free surface, with turbulence closures and bubbles";
   method.fills_regions = true;
   method.sections = sections();
   method.check = check;

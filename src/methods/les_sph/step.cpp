@@ -9,15 +9,6 @@ namespace spume::les_sph {
 
 using enum StagePart;
 
-namespace {
-FloatVectorField shift_of(const Flow& flow) {
-  return flow.shift == nullptr ? FloatVectorField{} : flow.shift->displacement;
-}
-const Array<float>* closure_of(const Flow& flow) {
-  return flow.closure == nullptr ? nullptr : &flow.closure->viscosity();
-}
-}  // namespace
-
 Plan make_plan(Flow& f) {
   Plan plan;
   const Features& has = f.features;
@@ -66,28 +57,28 @@ Plan make_plan(Flow& f) {
       [&](StageRun&) { f.surface->find(arrangement, p, moments, f.boundary.reflection()); });
   // (iii) the shift to r^{n+1}, taken with the last stage
   add(step, "shift", has.shifting, why.shift, [&](StageRun&) { f.compute_shift(); }, {moments.concentration_gradient},
-      {shift_of(f)});
+      {f.displacement_by_shift()});
   // (v) gradients of u^n, and what follows from them
   add(
       start, "first gradients", true, "strain and source of the first pressure",
       [&](StageRun&) { f.differentiate_velocity(true); }, {p.velocity, moments.correction}, {f.strain}, true);
   add(
       step, "gradients", has.velocity_gradient, why.gradients, [&](StageRun&) { f.differentiate_velocity(false); },
-      {p.velocity, moments.correction, shift_of(f)},
+      {p.velocity, moments.correction, f.displacement_by_shift()},
       {f.strain, f.velocity_gradient, f.filtered_velocity, f.gradient_trace, f.shift_velocity}, true);
   add(
       step, "shift curvature", has.shift_curvature, why.curvature, [&](StageRun&) { f.find_shift_curvature(); },
-      {f.velocity_gradient, shift_of(f), moments.correction}, {f.shift_velocity}, true);
+      {f.velocity_gradient, f.displacement_by_shift(), moments.correction}, {f.shift_velocity}, true);
   // (vi) closure of the unresolved stress; (vii) bubbles
   add(step, "eddy viscosity", has.eddy_viscosity, why.closure, [&](StageRun& run) { f.find_eddy_viscosity(run.dt); },
-      {f.strain, f.velocity_gradient, f.filtered_velocity}, {closure_of(f)});
+      {f.strain, f.velocity_gradient, f.filtered_velocity}, {f.eddy_viscosity()});
   add(step, "bubble forces", has.bubbles, why.integrator, [&](StageRun& run) { f.bubbles->exchange_momentum(run.dt); });
   // (viii) u* from forces and viscosity
   add(both, "forces", has.potential, why.forces, [&](StageRun& run) { f.find_potential(f.time + run.dt); }, {r},
       {f.potential});
   add(
       step, "viscosity", has.viscosity, why.viscosity, [&](StageRun&) { f.find_viscous_acceleration(); },
-      {p.velocity, moments.divergence_of_position, closure_of(f)}, {f.viscous_acceleration}, true);
+      {p.velocity, moments.divergence_of_position, f.eddy_viscosity()}, {f.viscous_acceleration}, true);
   add(step, "prediction", true, "velocity without pressure", [&](StageRun& run) { f.predict_velocity(run.dt); },
       {p.velocity, f.viscous_acceleration}, {f.intermediate_velocity});
   // (ix), (x) the pressure that makes the velocity at r^{n+1} free of divergence
@@ -115,7 +106,7 @@ Plan make_plan(Flow& f) {
       {f.reduced_pressure, moments.correction, f.intermediate_velocity}, {f.next_velocity}, true);
   // (xi) r^{n+1}, u^{n+1}
   add(step, "acceptance", true, "limits, energy, final positions", [&](StageRun& run) { f.accept(run.dt); },
-      {f.next_velocity, r, shift_of(f), f.shift_velocity, f.reduced_pressure, f.potential, f.strain},
+      {f.next_velocity, r, f.displacement_by_shift(), f.shift_velocity, f.reduced_pressure, f.potential, f.strain},
       {p.position, p.velocity, f.pressure});
   add(step, "bubble events", has.bubbles, why.events, [&](StageRun& run) { f.bubbles->accept(run.dt); });
   return plan;

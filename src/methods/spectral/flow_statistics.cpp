@@ -47,7 +47,7 @@ void visit_gradient(Flow<T>& flow, int c, int a, Visit&& visit) {
                      [&](std::size_t ix, std::size_t, const T* values) { visit(ix, values); });
 }
 
-constexpr double pdf_reach = 15;  // standard deviations
+constexpr double pdf_half_width = 15;  // standard deviations
 constexpr std::size_t pdf_bins = 301;
 
 }  // namespace
@@ -141,9 +141,9 @@ GradientMoments gradient_moments(Flow<T>& flow) {
 template <class T>
 GradientDistribution gradient_distribution(Flow<T>& flow) {
   GradientDistribution result;
-  const double width = 2 * pdf_reach / static_cast<double>(pdf_bins);
+  const double width = 2 * pdf_half_width / static_cast<double>(pdf_bins);
   for (std::size_t bin = 0; bin < pdf_bins; ++bin)
-    result.value.push_back(-pdf_reach + (static_cast<double>(bin) + 0.5) * width);
+    result.value.push_back(-pdf_half_width + (static_cast<double>(bin) + 0.5) * width);
   const std::size_t nx = flow.layout().points[0], nz = flow.layout().points[2];
   for (int turn = 0; turn < 2; ++turn) {
     std::vector<std::int64_t> counts(nx * pdf_bins, 0);

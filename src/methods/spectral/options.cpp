@@ -14,11 +14,11 @@ Section numerics() {
             "Adams-Bashforth 2, or Runge-Kutta of order 3 or 4; the viscous term is always exact")
       .word("dealiasing", &S::dealiasing,
             {{"padded", Dealiasing::padded}, {"two-thirds", Dealiasing::two_thirds}, {"none", Dealiasing::none}},
-            "products on a grid of 3N/2 points, modes above N/3 cut, or aliased products")
+            "padded: products on a grid of 3N/2 points; two-thirds: modes above N/3 truncated; none: aliased products")
       .word("precision", &S::precision, {{"double", FieldPrecision::f64}, {"single", FieldPrecision::f32}},
-            "of the fields and their transforms")
+            "precision of the fields and their transforms")
       .word("plans", &S::plans, {{"estimate", PlanEffort::estimate}, {"measured", PlanEffort::measured}},
-            "how FFTW plans; measured plans are kept in the user's cache folder")
+            "planning of FFTW; measured plans are kept in the user's cache folder")
       .behind_output();
 }
 
@@ -29,7 +29,7 @@ Section forcing() {
             {{"none", ForcingKind::none}, {"shell", ForcingKind::shell}, {"linear", ForcingKind::linear}},
             "shell: constant injection at low wavenumbers; linear: rate times velocity")
       .option("wavenumber", &F::wavenumber, "2 pi / longest length", positive(),
-              "shell: forced are wavenumber <= |k| < wavenumber + width")
+              "shell: forced band wavenumber <= |k| < wavenumber + width")
       .absent("1")
       .option("width", &F::width, "2 pi / longest length", positive(), "shell: width of the forced band")
       .absent("1")
@@ -52,12 +52,12 @@ Section initial() {
              {"rest", InitialKind::rest}},
             "velocity at the start")
       .required()
-      .option("amplitude", &I::amplitude, "length/time", "taylor-green: one speed; abc: A, B, C")
+      .option("amplitude", &I::amplitude, "length/time", "taylor-green: one velocity; abc: A, B, C")
       .absent("1, or 1, 1, 1")
       .option("wavenumber", &I::wavenumber, "", between(1, 8192), "taylor-green, abc: periods in the box")
       .absent("1")
       .option("velocity", &Draft::initial_velocity, "length/time",
-              "expressions: of x y z; what is not solenoidal is removed")
+              "expressions: of x y z, projected onto solenoidal fields")
       .absent("required for expressions")
       .option("spectrum", &Draft::initial_spectrum, "random: E(k) up to a factor, an expression of k")
       .absent("required for random")
@@ -75,7 +75,7 @@ Section particles() {
       .option("volume_fraction", &P::volume_fraction, "1", above_up_to(0, 0.74),
               "volume of all particles over that of the box; sets their number")
       .absent("from count")
-      .option("diameter", &P::diameter, "length", positive(), "of every particle")
+      .option("diameter", &P::diameter, "length", positive(), "diameter of every particle")
       .absent("see diameter_over_eta")
       .option("diameter_over_eta", &P::diameter_over_eta, "Kolmogorov length", positive(),
               "diameter over (nu^3 / forcing.injection)^(1/4)")
@@ -92,30 +92,31 @@ Section particles() {
               "tau of the Stokes drag; without it and stokes, diameter^2 / (12 beta nu)")
       .absent("from the diameter")
       .word("drag", &P::drag, {{"stokes", DragLaw::stokes}, {"schiller-naumann", DragLaw::schiller_naumann}},
-            "law of the drag")
+            "drag law")
       .option("gravity", &P::gravity, "length/time2", "acceleration of gravity, three entries")
       .absent("none")
-      .word("coupling", &P::coupling,
-            {{"one-way", Coupling::one_way},
-             {"two-way", Coupling::two_way},
-             {"four-way", Coupling::four_way},
-             {"colliding", Coupling::colliding}},
-            "flow moves particles; particles move the flow too; and exclude each other; colliding: exclude each "
-            "other, while the flow feels nothing")
+      .word(
+          "coupling", &P::coupling,
+          {{"one-way", Coupling::one_way},
+           {"two-way", Coupling::two_way},
+           {"four-way", Coupling::four_way},
+           {"colliding", Coupling::colliding}},
+          "one-way: the flow acts on the particles; two-way: particles also act on the flow; four-way: particles also "
+          "collide; colliding: particles collide and do not act on the flow")
       .word("matching", &P::matching_by_sorting, {{"rounds", false}, {"sorting", true}},
-            "how the strongest overlaps are found; both give the same pairs")
+            "search for the strongest overlaps; both give the same pairs")
       .when("coupling", {"four-way", "colliding"})
       .option("collision_sweeps", &P::collision_sweeps, "", between(1, 1000),
-              "four-way: collisions a particle may have in a step; the paper's is 1")
+              "largest number of collisions of a particle per step; de Wit et al. (2024): 1")
       .when("coupling", {"four-way", "colliding"})
       .option("max_volume_fraction", &P::max_volume_fraction, "1", above_up_to(0, 1),
               "local volume fraction at which the force on the flow is clipped")
       .absent("0.7405, close packing")
       .when("coupling", {"two-way", "four-way"})
       .option("mean_force_moves_fluid", &P::mean_force_moves_fluid,
-              "the mean of their force accelerates the fluid, in place of a mean pressure gradient that holds it")
+              "the mean force of the particles accelerates the fluid; otherwise a mean pressure gradient balances it")
       .when("coupling", {"two-way", "four-way"})
-      .option("frozen", &P::frozen, "particles stay at rest where they are")
+      .option("frozen", &P::frozen, "particles are fixed at their initial positions")
       .option("spline_order", &P::spline_order, "", between(2, 6), "points per axis of the interpolation: 2, 4 or 6")
       .word("records", &P::double_records, {{"single", false}, {"double", true}},
             "precision of the interpolated velocity")
@@ -125,7 +126,7 @@ Section particles() {
              {"lattice", Placement::lattice},
              {"clustered", Placement::clustered},
              {"file", Placement::file}},
-            "where particles start")
+            "initial positions")
       .option("clusters", &P::clusters, "", at_least(1), "clustered: number of clouds")
       .when("placement", {"clustered"})
       .option("cluster_radius", &P::cluster_radius, "shortest side", positive(),
@@ -136,7 +137,7 @@ Section particles() {
       .absent("placement is not \"file\"")
       .beside_case()
       .option("overlap_samples", &P::overlap_samples, "", not_negative(),
-              "points drawn for the overlap ratio of each row of the series; 0: not found")
+              "points drawn for the overlap ratio of each row of the series; 0: off")
       .option("lyapunov", &P::lyapunov, "", not_negative(),
               "reference particles of the Lyapunov exponents; 0: none; needs records = \"double\"")
       .whole_optional()

@@ -49,7 +49,7 @@ void check_particles(const Draft& draft, Problems& problems) {
   exactly_one({"stokes", "response_time"}, false, "");
   for (const char* key : {"stokes", "diameter_over_eta"})
     if (has(key) && draft.options.get<ForcingOptions>().kind != ForcingKind::shell)
-      fault(key, "is counted in Kolmogorov scales of the injected energy and needs forcing.kind = \"shell\"");
+      fault(key, "is in Kolmogorov scales of the injected energy and needs forcing.kind = \"shell\"");
 
   std::vector<double> diameters = p.diameters;
   if (has("diameter")) diameters = {p.diameter};
@@ -96,7 +96,7 @@ void check_particles(const Draft& draft, Problems& problems) {
     fault("spline_order", "must be 2, 4 or 6, found " + std::to_string(p.spline_order));
   if ((p.coupling == Coupling::two_way || p.coupling == Coupling::four_way) && has("beta") && p.beta == 0)
     fault("beta",
-          "= 0 is infinitely heavy, which nothing in the flow can be coupled to; give a value above 0, or "
+          "= 0 is an infinite density, which has no two-way coupling; give a value above 0, or "
           "particles.coupling = \"one-way\" or \"colliding\"");
   if (!has("stokes") && !has("response_time") && has("beta") && p.beta == 0)
     fault("beta", "= 0 has no response time of its own; add  stokes = <number>");

@@ -24,7 +24,7 @@ std::string product(const Case& options) {
     case Dealiasing::padded:
       return "(A6), fig. 3b: u x omega on (3N/2)^3 points";
     case Dealiasing::two_thirds:
-      return "(A6), fig. 3a: u x omega on N^3 points, modes above N/3 held at zero";
+      return "(A6), fig. 3a: u x omega on N^3 points, modes above N/3 set to zero";
     case Dealiasing::none:
       break;
   }

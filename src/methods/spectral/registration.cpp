@@ -39,7 +39,7 @@ std::unique_ptr<Method> make(const LoadedCase& loaded) {
 Registration registration() {
   Registration method;
   method.name = "spectral";
-  method.description = "homogeneous turbulence in a periodic box by Fourier modes, with particles in the flow";
+  method.description = "pseudo-spectral simulation of homogeneous turbulence in a periodic box, with point particles";
   method.uses_grid = true;
   method.sections = spectral_sections();
   method.check = check;

@@ -94,8 +94,9 @@ void Suspension<T>::require_possible(const StepLimit& flow) const {
   std::snprintf(
       text, sizeof text,
       "particles.response_time = %.3g with a mass loading of %.3g (volume fraction %.3g, density ratio %.3g): "
-      "the coupling with the flow is stable with steps of %.3g alone, the flow takes %.3g; expected steps of "
-      "at least a thousandth of that; raise the response time, lower the volume fraction, or take "
+      "the coupling with the flow is stable for steps up to %.3g, while the flow takes steps of %.3g; the ratio must "
+      "be "
+      "at least 1/1000; raise the response time, lower the volume fraction, or take "
       "particles.coupling = \"one-way\"",
       motion.response_time, system_.volume_fraction() * motion.density_ratio(), system_.volume_fraction(),
       motion.density_ratio(), longest, flow.dt);

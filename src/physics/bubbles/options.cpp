@@ -25,44 +25,49 @@ Section bubbles() {
       .option("gas_density", gas(&D::gas_density), "kg/m3", positive(),
               "density of the gas, in place of density_ratio in SI")
       .absent("density_ratio")
-      .option("entrainment", &B::entrainment, "bubbles are made at the surface where the liquid dissipates")
-      .option("breakup", &B::breakup, "turbulence splits bubbles")
-      .option("fluctuations", &B::fluctuations, "unresolved velocity that bubbles feel, by a Langevin equation")
-      .option("surface_interaction", &B::surface_interaction, "bubbles brake below a free surface, rest and burst")
-      .option("fluid_inertia", &B::fluid_inertia, "force of the accelerating liquid, beta V Du/Dt")
+      .option("entrainment", &B::entrainment, "air entrainment at the free surface, from the unresolved dissipation")
+      .option("breakup", &B::breakup, "breakup of bubbles by turbulence")
+      .option("fluctuations", &B::fluctuations, "unresolved velocity fluctuations at bubbles, by a Langevin equation")
+      .option("surface_interaction", &B::surface_interaction,
+              "deceleration below a free surface, persistence there, bursting")
+      .option("fluid_inertia", &B::fluid_inertia, "fluid inertia force beta V Du/Dt")
       .word("integrator", &B::integrator,
             {{"stable", BubbleIntegrator::stable}, {"substep", BubbleIntegrator::substep}},
-            "stable: any step; substep: explicit, spacing / radius sub-steps")
+            "stable: stable at any step; substep: explicit, spacing / radius sub-steps")
       .word("momentum_form", &B::momentum_form,
             {{"mixture-pressure", MomentumForm::mixture_pressure}, {"two-fluid", MomentumForm::two_fluid}},
             "pressure force on the liquid: -grad(alpha p) or -alpha grad p")
-      .word("surface_reaction", &B::surface_reaction,
-            {{"surface", SurfaceReaction::surface}, {"liquid", SurfaceReaction::liquid}},
-            "who holds the bubbles that brake below a surface: surface, which the liquid does not feel, or the liquid "
-            "around them, King (3.33)")
-      .option("lift_coefficient", &B::lift_coefficient, "1", between(-10, 10), "C_l")
-      .option("virtual_mass_coefficient", &B::virtual_mass_coefficient, "1", between(0, 10), "C_vm")
+      .word(
+          "surface_reaction", &B::surface_reaction,
+          {{"surface", SurfaceReaction::surface}, {"liquid", SurfaceReaction::liquid}},
+          "what bears the reaction to the surface force on a bubble: the surface, without effect on the liquid, or the "
+          "liquid around the bubble, King (3.33)")
+      .option("lift_coefficient", &B::lift_coefficient, "1", between(-10, 10), "lift coefficient C_l")
+      .option("virtual_mass_coefficient", &B::virtual_mass_coefficient, "1", between(0, 10),
+              "virtual mass coefficient C_vm")
       .option("viscosity_constant", &B::viscosity_constant, "1", between(0, 10),
-              "of the bubble-induced viscosity (Sato & Sekoguchi)")
+              "constant of the bubble-induced viscosity (Sato & Sekoguchi)")
       .option("fluctuation_constant", &B::fluctuation_constant, "1", above_up_to(0, 100),
-              "of the time scale of the fluctuations")
+              "constant of the time scale of the fluctuations")
       .when("fluctuations", {"true"})
       .option("entrainment_constant", &B::entrainment_constant, "1", between(0, 1),
-              "C_eps: dissipation spent on surface, per beta")
+              "C_eps: dissipation that forms bubble surface, per beta")
       .when("entrainment", {"true"})
       .option("entrainment_threshold", &B::entrainment_threshold, "length2/time3", not_negative(),
               "unresolved dissipation above which bubbles are entrained")
       .when("entrainment", {"true"})
-      .word("entrainment_overdraft", &B::entrainment_overdraft,
-            {{"affordable", EntrainmentOverdraft::affordable}, {"printed", EntrainmentOverdraft::printed}},
-            "chance of a bubble that costs more than is left: affordable: left / cost; printed: 1 - left / cost, King "
-            "section 3.4.1")
+      .word(
+          "entrainment_overdraft", &B::entrainment_overdraft,
+          {{"affordable", EntrainmentOverdraft::affordable}, {"printed", EntrainmentOverdraft::printed}},
+          "probability of a bubble that needs more than the remaining energy; affordable: remaining / needed; printed: "
+          "1 - remaining / needed, King section 3.4.1")
       .when("entrainment", {"true"})
-      .option("deformation_constant", &B::deformation_constant, "1", positive(), "c_def of breakup")
+      .option("deformation_constant", &B::deformation_constant, "1", positive(),
+              "deformation constant c_def of breakup")
       .when("breakup", {"true"})
-      .option("schmidt", &B::schmidt, "1", positive(), "Schmidt number of the persistence at the surface")
+      .option("schmidt", &B::schmidt, "1", positive(), "Schmidt number of the persistence time at the surface")
       .option("hinze_radius", gas(&D::hinze_radius), "length", positive(),
-              "radius that divides the counts of series.csv; without tension none do")
+              "radius at which series.csv divides the counts; without surface tension it has no such counts")
       .absent("We^(-3/5) / 2")
       .option("smallest_entrained_radius", gas(&D::smallest_entrained_radius), "length", positive(),
               "smallest bubble that is entrained")
@@ -108,7 +113,7 @@ Section sparger() {
       .word(
           "shape", [](S& s) -> SpargerShape& { return s.sparger.shape; },
           {{"point", SpargerShape::point}, {"disc", SpargerShape::disc}, {"line", SpargerShape::line}},
-          "where bubbles leave it; a disc is horizontal")
+          "shape of the source; a disc is horizontal")
       .option("position", &S::position, "length", "point, centre of the disc, start of the line")
       .required()
       .option(
@@ -116,7 +121,7 @@ Section sparger() {
       .absent("required for disc")
       .option("end", &S::end, "length", "end of the line")
       .absent("required for line")
-      .option("rate", &S::rate, "length3/time", "gas volume per time: an expression of t")
+      .option("rate", &S::rate, "length3/time", "volume flow rate of gas: an expression of t")
       .required();
   add_sizes(section, [](S& s) -> BubbleSizes& { return s.sparger.sizes; });
   return section;
@@ -134,10 +139,10 @@ Section cloud() {
       .option("radius", &C::radius, "length", not_negative(), "radius of the ball")
       .absent("0: at the centre")
       .option(
-          "number", [](C& c) -> std::int64_t& { return c.cloud.number; }, "", between(1, 1e8), "how many bubbles")
+          "number", [](C& c) -> std::int64_t& { return c.cloud.number; }, "", between(1, 1e8), "number of bubbles")
       .option(
           "time", [](C& c) -> double& { return c.cloud.time; }, "time", not_negative(),
-          "when they appear, at rest relative to the liquid");
+          "time of release, at rest relative to the liquid");
   add_sizes(section, [](C& c) -> BubbleSizes& { return c.cloud.sizes; });
   return section;
 }

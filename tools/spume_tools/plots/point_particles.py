@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pictures of particles in a flow on a grid: where they are, how they cluster, what they do to the flow."""
+"""Pictures of point particles: positions, clustering, effect on the flow."""
 import matplotlib.pyplot as plt
 import numpy as np
 

@@ -92,11 +92,14 @@ struct Flow {
   double particle_mass() const { return density() * particles.volume; }
   double potential_at(const Vec3& r) const;  // -a . (r - origin)
   double potential_of(std::size_t i) const { return potential == nullptr ? 0.0 : (*potential)[i]; }
+  // Null without shifting, and without a closure.
+  FloatVectorField displacement_by_shift() const { return shift == nullptr ? FloatVectorField{} : shift->displacement; }
+  const Array<float>* eddy_viscosity() const { return closure == nullptr ? nullptr : &closure->viscosity(); }
   double eddy_viscosity_of(std::size_t i) const { return closure == nullptr ? 0.0 : closure->viscosity()[i]; }
   // div(2 nu S) spreads the divergence of the velocity three times as fast as div(nu grad u) does.
   double diffusion_rate() const { return features.viscous_stress ? 3 : 1; }
   double mass_in_domain() const;  // of particles between the walls, at finite places
-  double leased_bytes() const;    // what is leased within a step, now or idle
+  double leased_bytes() const;    // scratch memory of a step, leased now or idle
   // What the pressure stores in a compressible liquid: the integral of p^2 / (2 rho c^2).
   double stored_energy() const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Options of the spectral method: numerics, forcing, initial state, and particles in the flow.
+// Options of the spectral method: numerics, forcing, initial state, and point particles.
 #pragma once
 
 #include <cstdint>

@@ -60,8 +60,8 @@ Vec3 braking_force(const Gas& gas, double radius, const Surroundings& liquid, co
 
 // Mean force of the bubble on the liquid over the step, over the density of the liquid, for a velocity that changed by
 // `change` in dt: V (-change / (dt beta) + (1 - beta)/beta g), whatever the integrator. `pressure_holds_inertia`: the
-// liquid feels the reaction to the fluid inertia through its pressure term (closure two-fluid). It holds the reaction
-// to F_fs, as King (3.33); add V braking_force where the surface bears that.
+// liquid feels the reaction to the fluid inertia through its pressure term (momentum form two-fluid). It holds the
+// reaction to F_fs, as King (3.33); add V braking_force where the surface bears that.
 Vec3 reaction(const Gas& gas, double volume, const Surroundings& liquid, const Vec3& change, double dt,
               bool pressure_holds_inertia);
 

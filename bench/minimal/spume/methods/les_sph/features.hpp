@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Stands in for the header of the same name in spume_bench_minimal: the features of bench/cases/periodic.toml as
 // constants. The sources of the method, compiled against it, lose at compile time all that belongs to closures,
-// surfaces, walls, body forces and bubbles: the build without that code that the full program is held against.
+// surfaces, walls, body forces and bubbles: the build without that code that the full program is compared with.
 #pragma once
 
 #include "spume/methods/les_sph/options.hpp"
