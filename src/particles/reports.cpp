@@ -42,12 +42,6 @@ void SnapshotTable::add(std::string name, bool standard, std::function<double(st
   entries_.push_back({.name = std::move(name), .standard = standard, .value = std::move(value)});
 }
 
-std::vector<std::string> SnapshotTable::names() const {
-  std::vector<std::string> list;
-  for (const Entry& entry : entries_) list.push_back(entry.name);
-  return list;
-}
-
 ParticleSnapshot SnapshotTable::take(std::string name, std::size_t size, const VectorField& position,
                                      const std::vector<std::string>& wanted) {
   ParticleSnapshot snapshot;
@@ -74,21 +68,41 @@ ParticleSnapshot SnapshotTable::take(std::string name, std::size_t size, const V
 }
 
 SavedNumbers& SavedNumbers::add(double& value) {
-  numbers_.push_back(&value);
+  numbers_.emplace_back(&value);
   return *this;
 }
 
-std::vector<double> SavedNumbers::get() const {
-  std::vector<double> values;
-  for (const double* number : numbers_) values.push_back(*number);
-  return values;
+SavedNumbers& SavedNumbers::add(std::int64_t& value) {
+  numbers_.emplace_back(&value);
+  return *this;
 }
 
-void SavedNumbers::set(std::span<const double> values) const {
+void SavedNumbers::save(StateWriter& writer) const {
+  std::vector<double> values;
+  for (const auto& number : numbers_)
+    values.push_back(std::visit([](const auto* value) { return static_cast<double>(*value); }, number));
+  writer.f64(name_, values);
+}
+
+void SavedNumbers::load(StateReader& reader) const {
+  Array<double> values;
+  reader.f64(name_, values);
   if (values.size() != numbers_.size())
     throw FileError("the checkpoint was written by another version of the method: '" + name_ + "' holds " +
                     std::to_string(values.size()) + " numbers, expected " + std::to_string(numbers_.size()));
-  for (std::size_t k = 0; k < numbers_.size(); ++k) *numbers_[k] = values[k];
+  for (std::size_t k = 0; k < numbers_.size(); ++k)
+    std::visit([&]<class T>(T* value) { *value = static_cast<T>(values[k]); }, numbers_[k]);
+}
+
+std::vector<ArrayInfo> particle_arrays(const ParticleStore& particles, const Arrangement& arrangement) {
+  std::vector<ArrayInfo> list;
+  for (const auto& field : particles.fields.fields())
+    list.push_back({field->name, std::visit([](const auto& array) { return array.bytes(); }, field->values)});
+  list.push_back({"cell table", arrangement.table.bytes()});
+  list.push_back({"images", arrangement.images.bytes()});
+  list.push_back({"neighbour lists", arrangement.list.bytes()});
+  list.push_back({"packed neighbours", arrangement.packed.bytes()});
+  return list;
 }
 
 }  // namespace spume

@@ -7,12 +7,15 @@
 #include <map>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "spume/core/array_info.hpp"
 #include "spume/core/field_set.hpp"
+#include "spume/core/saved_state.hpp"
 #include "spume/io/series.hpp"
 #include "spume/io/snapshot.hpp"
-#include "spume/particles/store.hpp"
+#include "spume/particles/arrangement.hpp"
 
 namespace spume {
 
@@ -44,7 +47,6 @@ class SnapshotTable {
   // One that is computed for every snapshot.
   void add(std::string name, bool standard, std::function<double(std::size_t)> value);
 
-  std::vector<std::string> names() const;
   // The snapshot with the wanted fields (none wanted: the standard ones); its arrays live until the next one.
   ParticleSnapshot take(std::string name, std::size_t size, const VectorField& position,
                         const std::vector<std::string>& wanted);
@@ -62,19 +64,22 @@ class SnapshotTable {
 };
 
 // The numbers of a state between steps, under one name of a checkpoint: written and read in the order in which they
-// were added.
+// were added. Integers are written as doubles, which hold a count of steps exactly.
 class SavedNumbers {
  public:
   explicit SavedNumbers(std::string name) : name_(std::move(name)) {}
   SavedNumbers& add(double& value);
-  const std::string& name() const { return name_; }
-  std::vector<double> get() const;
+  SavedNumbers& add(std::int64_t& value);
+  void save(StateWriter& writer) const;
   // Throws FileError when their number is another: the file is of another version.
-  void set(std::span<const double> values) const;
+  void load(StateReader& reader) const;
 
  private:
   std::string name_;
-  std::vector<double*> numbers_;
+  std::vector<std::variant<double*, std::int64_t*>> numbers_;
 };
+
+// What every particle method holds, for Method::arrays(): the fields of the particles and their arrangement.
+std::vector<ArrayInfo> particle_arrays(const ParticleStore& particles, const Arrangement& arrangement);
 
 }  // namespace spume

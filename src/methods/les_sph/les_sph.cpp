@@ -146,7 +146,7 @@ void LesSph::save(StateWriter& writer) const {
   const std::int64_t counters[] = {flow_.steps, flow_.started ? 1 : 0, static_cast<std::int64_t>(flow_.size())};
   const auto& w = flow_.boundary.walls;
   const double walls[] = {w[0][0], w[0][1], w[1][0], w[1][1], w[2][0], w[2][1]};
-  writer.f64(saved_.name(), saved_.get());
+  saved_.save(writer);
   writer.i64("counters", counters);
   writer.f64("walls", walls);
   save_fields(flow_.particles.fields, writer);
@@ -155,15 +155,14 @@ void LesSph::save(StateWriter& writer) const {
 
 void LesSph::load(StateReader& reader) {
   sampled_step_ = -1;
-  Array<double> scalars, walls;
+  Array<double> walls;
   Array<std::int64_t> counters;
-  reader.f64(saved_.name(), scalars);
+  saved_.load(reader);
   reader.i64("counters", counters);
   reader.f64("walls", walls);
   if (counters.size() != 3 || walls.size() != 6)
     throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(counters[2]), "particle", reader);
-  saved_.set(scalars);
   flow_.steps = counters[0];
   flow_.started = counters[1] != 0;
   for (int axis = 0; axis < 3; ++axis) flow_.boundary.walls[axis] = {walls[2 * axis], walls[2 * axis + 1]};

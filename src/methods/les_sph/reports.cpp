@@ -153,14 +153,7 @@ std::vector<Invariant> LesSph::invariants() const {
 }
 
 std::vector<ArrayInfo> LesSph::arrays() const {
-  std::vector<ArrayInfo> list;
-  for (const auto& field : flow_.particles.fields.fields())
-    list.push_back({field->name, std::visit([](const auto& array) { return array.bytes(); }, field->values)});
-  const Arrangement& arrangement = flow_.arrangement;
-  list.push_back({"cell table", arrangement.table.bytes()});
-  list.push_back({"images", arrangement.images.bytes()});
-  list.push_back({"neighbour lists", arrangement.list.bytes()});
-  list.push_back({"packed neighbours", arrangement.packed.bytes()});
+  std::vector<ArrayInfo> list = particle_arrays(flow_.particles, flow_.arrangement);
   list.push_back({"pressure solver", flow_.solver.bytes()});
   list.push_back({"gradient corrections left out", flow_.moments.uncorrected.bytes()});
   list.push_back({"leased within a step", flow_.leased_bytes()});
