@@ -112,7 +112,8 @@ void Suspension<T>::add_arrays(std::vector<ArrayInfo>& list) const {
   double fields = 0;
   for (const auto& field : field_) fields += static_cast<double>(field.capacity() * sizeof(T));
   for (const auto& modes : force_) fields += static_cast<double>(modes.capacity() * sizeof(std::complex<T>));
-  list.push_back({"fields between flow and particles", fields});
+  const ArrayInfo between{"fields between flow and particles", fields};
+  list.push_back(between);
 }
 
 // Every array that a run goes on from.
