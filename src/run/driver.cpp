@@ -131,6 +131,7 @@ RunState Simulation::run(Observer& observer) {
                          exact_number(method_->time()) + "; continue with: spume resume " + folder_.path().string());
     }
     recorder_->sync();
+    if (finished) tell_failed_verdicts(observer);
     write_summary(finished ? "finished" : "interrupted", "");
     return finished ? RunState::finished : RunState::interrupted;
   } catch (const StepFailure& failure) {
@@ -147,6 +148,13 @@ RunState Simulation::run(Observer& observer) {
     close_failed("file error", text);
     throw FileError(text);
   }
+}
+
+void Simulation::tell_failed_verdicts(Observer& observer) {
+  for (const Verdict& one : watch_->verdicts())
+    if (!one.pass())
+      tell(observer,
+           "verdict failed: " + one.quantity + " = " + short_number(one.value) + ", bound " + short_number(one.bound));
 }
 
 void Simulation::record_start() {
