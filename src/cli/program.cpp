@@ -37,6 +37,14 @@ void print_problems(const InputError& error) {
   std::fprintf(stderr, "%zu problems%s; nothing was run\n", problems.size(), one_file ? (" in " + file).c_str() : "");
 }
 
+// What such a verb prints is all that it leaves: on a full disk it is lost, and the exit code has to tell.
+int with_output_written(int code) {
+  const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
+  if (!failed || code != exit_done) return code;
+  std::fprintf(stderr, "error: the output could not be written; is the disk full?\n");
+  return exit_input;
+}
+
 struct CommandLine {
   CLI::App app{"Spume simulates bubbly flows with particles and spectra."};
   RunArguments run;
@@ -96,10 +104,10 @@ struct CommandLine {
   int execute(const Program& program) {
     use_threads(threads);
     if (run_app->parsed()) return run_verb(run, program);
-    if (check_app->parsed()) return check_verb(run, program);
+    if (check_app->parsed()) return with_output_written(check_verb(run, program));
     if (resume_app->parsed()) return resume_verb(run, program);
-    if (info_app->parsed()) return info_verb(file, program);
-    if (options_app->parsed()) return options_verb(section, program);
+    if (info_app->parsed()) return with_output_written(info_verb(file, program));
+    if (options_app->parsed()) return with_output_written(options_verb(section, program));
     if (plot_app->parsed()) return module_verb("plots", {folder});
     std::vector<std::string> arguments = {own_executable()};
     arguments.insert(arguments.end(), cases.begin(), cases.end());
@@ -117,7 +125,7 @@ int run_program(int argc, char** argv, const Program& program) {
   try {
     line.app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return line.app.exit(error);
+    if (error.get_exit_code() == 0) return with_output_written(line.app.exit(error));
     std::fprintf(stderr, "error: %s; see spume --help\n", line.parse_failure(argc, argv, error).c_str());
     return exit_input;
   }

@@ -42,8 +42,8 @@ int check_verb(const RunArguments& arguments, const Program& program) {
   loaded.scene.particles = {};
   std::printf("%s\nplan\n%s\n", start_table(loaded, *method, thread_count()).c_str(),
               plan_table(method->plan()).c_str());
-  for (const Problem& unused : loaded.options.unused_options) std::printf("%s\n", unused.message("warning").c_str());
-  if (!loaded.options.unused_options.empty()) std::printf("\n");
+  for (const Problem& unused : loaded.options.warnings) std::printf("%s\n", unused.message("warning").c_str());
+  if (!loaded.options.warnings.empty()) std::printf("\n");
   std::fflush(stdout);
   const std::string time = time_estimate(loaded, *method);
   // Neighbour lists and scratch arrays have their size only after a step.

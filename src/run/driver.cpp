@@ -119,6 +119,7 @@ RunState Simulation::run(Observer& observer) {
   marks_.fill({started_, method_->time(), 0});
   try {
     if (fresh_) record_start();
+    tell_warnings(observer);
     for (const std::string& change : changes_) tell(observer, change);
     pass_on_remarks(observer);
     while (!schedule_.finished(method_->time()) && !signals.requested()) advance(observer);
@@ -131,7 +132,10 @@ RunState Simulation::run(Observer& observer) {
                          exact_number(method_->time()) + "; continue with: spume resume " + folder_.path().string());
     }
     recorder_->sync();
-    if (finished) tell_failed_verdicts(observer);
+    if (finished) {
+      tell_warnings(observer);
+      tell_failed_verdicts(observer);
+    }
     write_summary(finished ? "finished" : "interrupted", "");
     return finished ? RunState::finished : RunState::interrupted;
   } catch (const StepFailure& failure) {
@@ -150,8 +154,20 @@ RunState Simulation::run(Observer& observer) {
   }
 }
 
+// Of the case. Told at the start, where the run can still be stopped, and again where the result is read.
+void Simulation::tell_warnings(Observer& observer) {
+  for (const Problem& one : loaded_->options.warnings) tell(observer, one.message("warning"));
+}
+
+std::vector<Verdict> Simulation::verdicts() const {
+  std::vector<Verdict> all;
+  if (watch_) all = watch_->verdicts();
+  all.push_back(refused_steps(retries_, method_->step_count()));
+  return all;
+}
+
 void Simulation::tell_failed_verdicts(Observer& observer) {
-  for (const Verdict& one : watch_->verdicts())
+  for (const Verdict& one : verdicts())
     if (!one.pass())
       tell(observer,
            "verdict failed: " + one.quantity + " = " + short_number(one.value) + ", bound " + short_number(one.bound));
@@ -307,8 +323,7 @@ void Simulation::write_summary(const std::string& state, const std::string& mess
   figures.total_wall_seconds = earlier_wall_seconds_ + figures.wall_seconds;
   figures.particle_steps = particle_steps_;
   if (recorder_) figures.final_values = recorder_->last_row();
-  if (watch_) figures.verdicts = watch_->verdicts();
-  figures.verdicts.push_back(refused_steps(retries_, figures.steps));
+  figures.verdicts = verdicts();
   figures.case_file = case_file_;
   write_text_atomically(folder_ / "summary.json", summary_json(*loaded_, figures));
   write_text_atomically(folder_ / "ledger.json", ledger_json(ledger_, figures.wall_seconds));

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstring>
+#include <optional>
 #include <sstream>
 
 namespace spume {
@@ -80,6 +82,40 @@ Node* element(Node& array, const std::string& index_text) {
   if (error != std::errc{} || end != last || index > array.children.size()) return nullptr;
   if (index == array.children.size()) array.children.emplace_back();
   return &array.children[index];
+}
+
+// Keys may be joined by dots to any depth, and every part is a table within a table: 20,000 parts exhaust the stack of
+// the parser. The deepest option has 3 parts; the parser itself bounds values within values at 256.
+constexpr std::size_t most_key_parts = 16;
+
+// Where a key of more parts stands in the text of a document; nothing for none. Outside strings and comments more than
+// so many dots without a separator between them are nothing else.
+std::optional<std::size_t> overlong_key(const std::string& text) {
+  std::size_t dots = 0, start = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '#') {
+      at = std::min(text.find('\n', at), text.size()) - 1;
+    } else if (c == '"' || c == '\'') {
+      const bool block = text.compare(at, 3, std::string(3, c)) == 0;
+      const std::string quote(block ? 3 : 1, c);
+      for (at += quote.size(); at < text.size() && text.compare(at, quote.size(), quote) != 0; ++at) {
+        if (c == '"' && text[at] == '\\') ++at;
+        if (!block && text[at] == '\n') break;
+      }
+      at += quote.size() - 1;
+    } else if (std::strchr("=,[]{}\n", c) != nullptr) {
+      dots = 0, start = at + 1;
+    } else if (c == '.' && ++dots >= most_key_parts) {
+      return start;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string too_many_parts() {
+  return "a key has more than " + std::to_string(most_key_parts) +
+         " parts joined by dots; expected section.key, as in fluid.reynolds";
 }
 
 std::size_t edit_distance(const std::string& a, const std::string& b) {
@@ -157,6 +193,13 @@ void Problems::throw_if_any() {
 }
 
 Node parse_document(const std::string& text, const std::string& file) {
+  if (const auto at = overlong_key(text)) {
+    const auto begin = text.begin(), key = begin + static_cast<std::ptrdiff_t>(*at);
+    const auto line = std::count(begin, key, '\n');
+    throw InputError(
+        {Problem{file, static_cast<int>(line) + 1,
+                 static_cast<int>(*at - (line > 0 ? text.rfind('\n', *at - 1) : std::size_t(-1))), too_many_parts()}});
+  }
   try {
     return convert(toml::parse(std::string_view(text), std::string_view(file)));
   } catch (const toml::parse_error& error) {
@@ -198,6 +241,11 @@ void apply_override(Node& document, const std::string& text, const std::vector<s
   std::vector<std::string> path;
   std::istringstream parts(assignment.substr(0, equals));
   for (std::string part; std::getline(parts, part, '.');) path.push_back(trimmed(part));
+  if (path.size() > most_key_parts) {
+    place.override_text = label.substr(0, 40) + "...";
+    problems.add(place, too_many_parts());
+    return;
+  }
   if (path.empty() || std::find(path.begin(), path.end(), "") != path.end()) {
     problems.add(place, "expected section.key=value, for example --set fluid.mach=0.1");
     return;

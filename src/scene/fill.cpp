@@ -108,12 +108,15 @@ class Filler {
     if (!own.where[r]) return true;
     const double value = (*own.where[r])(p[0], p[1], p[2], 0);
     if (!std::isfinite(value)) chunk.not_finite.add(p);
-    return value > 0;
+    return std::isfinite(value) && value > 0;
   }
 
   // The same of another region, which reports its own faults.
   bool covers(ThreadRegions& own, std::size_t r, const Vec3& p) const {
-    return in_box_and_ball(regions_[r], p) && (!own.where[r] || (*own.where[r])(p[0], p[1], p[2], 0) > 0);
+    if (!in_box_and_ball(regions_[r], p)) return false;
+    if (!own.where[r]) return true;
+    const double value = (*own.where[r])(p[0], p[1], p[2], 0);
+    return std::isfinite(value) && value > 0;
   }
 
   bool in_solid(const Vec3& p) const {
@@ -142,7 +145,7 @@ class Filler {
     for (std::size_t q = 0; q < regions_.size() && !layered(); ++q) {
       // Lattice regions share sites, so one direction suffices; a conforming one has its own places.
       if (q == r || (q > r && regions_[q].conform == regions_[r].conform)) continue;
-      if (contains(own, q, p, chunk)) chunk.overlap[q].add(p);
+      if (covers(own, q, p)) chunk.overlap[q].add(p);
     }
     for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a) chunk.position[a].push_back(p[a]);
   }
@@ -284,8 +287,9 @@ void Filler::report(const std::vector<std::vector<Chunk>>& chunks) {
     }
     const Node& node = *region.node;
     if (not_finite.count > 0) {
-      problems_.add(node, region.name + ".where is not finite at " + point_in_words(not_finite.first, dimensions) +
-                              "; it must have a finite value everywhere in the region's box");
+      problems_.add(*node.find("where"), region.name + ".where is not finite at " +
+                                             point_in_words(not_finite.first, dimensions) +
+                                             "; it must have a finite value everywhere in the region's box");
     } else if (beyond_top.count > 0) {
       problems_.add(node, region.name + ".where is still positive at the top, at " +
                               point_in_words(beyond_top.first, dimensions) +

@@ -332,7 +332,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   if (uses_particles(*method)) describe_lattice(scene, lattice, draft.options.groups);
   note_places(document, "", file, draft.options.places);
   draft.options.resolved = resolved_text(document, schema, draft);
-  draft.options.unused_options = unused_options(draft, schema, file);
+  draft.options.warnings = unused_options(draft, schema, file);
   loaded.options = std::move(draft.options);
   return loaded;
 }

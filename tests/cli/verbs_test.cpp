@@ -37,7 +37,7 @@ class Verbs : public testing::Test {
     if (child != 0) return child;
     if (chdir(folder_.path().c_str()) != 0) _exit(99);
     const auto redirect = [](const char* file, int to) { dup2(open(file, O_WRONLY | O_CREAT | O_TRUNC, 0644), to); };
-    redirect("out", STDOUT_FILENO);
+    redirect(full_output_ ? "/dev/full" : "out", STDOUT_FILENO);
     redirect("err", STDERR_FILENO);
     const rlimit limit{largest_file, largest_file};
     setrlimit(RLIMIT_FSIZE, &limit);
@@ -72,6 +72,7 @@ class Verbs : public testing::Test {
   }
 
   TemporaryFolder folder_;
+  bool full_output_ = false;
 };
 
 TEST_F(Verbs, RunPrintsTablesAndNumbersItsFolders) {
@@ -232,6 +233,33 @@ TEST_F(Verbs, CheckPrintsPlanMemoryAndTime) {
                            "48.0 B per particle", "limited by", "machine has"})
     EXPECT_THAT(outcome.out, HasSubstr(part));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "runs"));
+}
+
+TEST_F(Verbs, WhatHasNoEffectIsToldByCheckAndByARunAtItsStartAndItsEnd) {
+  write_case("end = 0.05\nidle = 1\n");
+  const std::string warning = "case.toml:2:1: warning: idle has no effect\n";
+  EXPECT_THAT(spume({"check", "case.toml"}).out, HasSubstr(warning));
+  const Outcome run = spume({"run", "case.toml", "-o", "results"});
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_LT(run.out.find(warning), run.out.rfind(warning)) << "twice";
+  const std::string log = contents(folder_ / "results" / "log.txt"), text = "warning: idle has no effect";
+  EXPECT_LT(log.find(text), log.find("two steps are done"));
+  EXPECT_GT(log.rfind(text), log.find("two steps are done"));
+}
+
+TEST_F(Verbs, OutputThatCannotBeWrittenExitsWith2) {
+  write_case("end = 0.1\n");
+  full_output_ = true;
+  for (const std::vector<std::string>& verb : {std::vector<std::string>{"check", "case.toml"},
+                                               {"info", "case.toml"},
+                                               {"options"},
+                                               {"--help"},
+                                               {"--version"}}) {
+    const Outcome outcome = spume(verb);
+    EXPECT_EQ(outcome.code, 2) << verb[0];
+    EXPECT_THAT(outcome.err, HasSubstr("the output could not be written; is the disk full?")) << verb[0];
+  }
+  EXPECT_EQ(spume({"run", "case.toml", "-o", "results"}).code, 0) << "its files are its results";
 }
 
 TEST_F(Verbs, InfoDescribesEveryKindOfFile) {

@@ -309,7 +309,7 @@ TEST_F(Driver, RefusedStepsAreHalvedAndGrowBack) {
   EXPECT_THAT(watch.notes.at(1), HasSubstr("particle 7 at (0.25, 0.5), value 3.5"));
   EXPECT_THAT(watch.notes,
               ::testing::Contains(HasSubstr("refused with dt")).Times(summary("run")["retries"].get<int>()));
-  EXPECT_THAT(watch.notes.back(), HasSubstr("verdict failed: "));
+  EXPECT_THAT(watch.notes.back(), HasSubstr("verdict failed: refused_steps"));
   EXPECT_EQ(watch.limits[0], "a refused step");
   // Two refusals lead from 0.01 below 0.004. From then on every step is tried at twice the length of the one before it,
   // which is refused, so that there are about as many refusals as steps.

@@ -236,6 +236,9 @@ TEST(Fill, EmptyAndOverlappingRegionsAreErrorsInWords) {
     EXPECT_THAT(problems_of(tank("[[liquid]]\nwhere = \"" + where + "\"\n")),
                 ElementsAre(HasSubstr("liquid.0.where is not finite at (0.025, 0.025)")))
         << where;
+  // A region without an expression reports nothing of another's, and what is nowhere overlaps nothing.
+  EXPECT_THAT(problems_of(tank("[[liquid]]\nwhere = \"1/0\"\n[[liquid]]\ncentre = [0.5, 0.5]\nradius = 0.2\n")),
+              ElementsAre(HasSubstr("13:9 liquid.0.where is not finite at (0.025, 0.025)")));
   EXPECT_THAT(problems_of(tank("[[liquid]]\nupper = [1, 0.5]\nlower = [0, 0]\nvelocity = [\"1/(x - 0.125)\", 0]\n")),
               ElementsAre(HasSubstr("liquid.0.velocity is not finite at (0.125, 0.025)")));
   EXPECT_THAT(problems_of(tank("[[liquid]]\nwhere = \"1.2 - y\"\nconform = true\n")),

@@ -146,6 +146,18 @@ TEST(Load, FluidTakesGroupsOrSiValuesButNotBoth) {
   EXPECT_DOUBLE_EQ(groups.sound_speed, 0);
 }
 
+TEST(Load, KeysOfTooManyPartsAreRefusedBeforeTheyExhaustTheStack) {
+  std::string key = "a";
+  for (int i = 1; i < 20'000; ++i) key += ".a";
+  const std::string finding = "a key has more than 16 parts joined by dots; expected section.key, as in fluid.reynolds";
+  for (const std::string& text : {key + " = 1\n", "[" + key + "]\n", "x = { " + key + " = 1 }\n", "[[" + key + "]]\n"})
+    EXPECT_THAT(problems_of("# 1.2.3.4.5.6.7.8.9.10.11.12.13.14.15.16.17.18\n" + text),
+                ElementsAre(testing::AllOf(testing::StartsWith("2:"), HasSubstr(finding))));
+  EXPECT_THAT(problems_of(small_case(), {key + "=1"}), ElementsAre(HasSubstr(finding)));
+  // Dots within strings and between values are none of a key's.
+  EXPECT_EQ(load_text("title = \"" + key + "\"\n" + small_case()).options.title, key);
+}
+
 TEST(Load, OverridesReachEveryKeyAndReportThemselves) {
   const LoadedCase loaded = load_text(
       small_case("lower = [0, 0]\nupper = [1, 1]\n"),

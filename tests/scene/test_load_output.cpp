@@ -54,7 +54,7 @@ TEST(LoadOutput, APlaneHasANormalAndAPlace) {
 
 std::vector<std::string> unused_of(const std::string& more, const std::vector<std::string>& overrides = {}) {
   std::vector<std::string> texts;
-  for (const Problem& one : load_text(small_case(more), overrides).options.unused_options) {
+  for (const Problem& one : load_text(small_case(more), overrides).options.warnings) {
     EXPECT_EQ(one.message("warning").find("error"), std::string::npos);
     texts.push_back((one.line > 0 ? std::to_string(one.line) + ':' + std::to_string(one.column) : one.file) + ' ' +
                     one.text);
@@ -80,7 +80,7 @@ TEST(LoadOutput, KeysThatAnotherKeyMakesUselessAreRemarked) {
 // The resolved case gives every default: none of them is a choice.
 TEST(LoadOutput, DefaultsAreNotRemarked) {
   const LoadedCase loaded = load_text(small_case("[shifting]\non = false\n"));
-  EXPECT_THAT(load_text(loaded.options.resolved).options.unused_options, IsEmpty());
+  EXPECT_THAT(load_text(loaded.options.resolved).options.warnings, IsEmpty());
 }
 
 }  // namespace

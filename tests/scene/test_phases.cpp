@@ -127,7 +127,7 @@ TEST(Phases, RegionsLieInTheDomainAndHoldSomething) {
   EXPECT_THAT(problems(head + water + air + everywhere + "[[region]]\nphase = \"air\"\n"),
               ElementsAre("20:1 region.0 is empty: later regions replace all of it"));
   EXPECT_THAT(problems(head + water + everywhere + "[[region]]\nphase = \"water\"\nwhere = \"sqrt(-1 - x)\"\n"),
-              ElementsAre(HasSubstr("17:1 region.1.where is not finite at")));
+              ElementsAre(HasSubstr("19:9 region.1.where is not finite at")));
 }
 
 TEST(Phases, OneFluidAndSeveralDoNotMix) {

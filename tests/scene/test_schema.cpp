@@ -121,8 +121,8 @@ TEST(Schema, TypeAndDefaultOfAnOptionAreThoseOfItsMember) {
   EXPECT_EQ(given.options.get<HeatOptions>().sweeps, 4);
   EXPECT_FALSE(given.options.get<HeatOptions>().isolated);
   EXPECT_EQ(given.options.get<HeatOptions>().scheme, Scheme::explicit_euler);
-  ASSERT_EQ(given.options.unused_options.size(), 1u);
-  EXPECT_THAT(given.options.unused_options[0].text, HasSubstr("heat.sweeps is not used with heat.scheme"));
+  ASSERT_EQ(given.options.warnings.size(), 1u);
+  EXPECT_THAT(given.options.warnings[0].text, HasSubstr("heat.sweeps is not used with heat.scheme"));
 }
 
 TEST(Schema, MethodsShareADeclarationAndAddToSectionsOfTheScene) {

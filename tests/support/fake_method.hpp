@@ -13,8 +13,8 @@
 namespace spume::test {
 
 // A flat TOML file: title, end, every, series_every, spectrum_every, checkpoint_every, dimensions, max_retries,
-// probes (true or false) and what the method obeys: particles, dt, largest_dt, fails_from, sleep, memory_until,
-// solvable, surface. Overrides are key=value.
+// probes (true or false), idle (has no effect, which is a warning) and what the method obeys: particles, dt,
+// largest_dt, fails_from, sleep, memory_until, solvable, surface. Overrides are key=value.
 LoadedCase load_fake_case(const std::string& path, const std::vector<std::string>& overrides);
 
 std::unique_ptr<Method> make_fake_method(const LoadedCase& loaded);

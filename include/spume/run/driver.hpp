@@ -84,6 +84,8 @@ class Simulation {
   using Clock = std::chrono::steady_clock;
   Simulation(std::unique_ptr<LoadedCase> loaded, std::unique_ptr<Method> method, RunFolder folder);
 
+  void tell_warnings(Observer& observer);
+  std::vector<Verdict> verdicts() const;
   void tell_failed_verdicts(Observer& observer);
   void record_start();
   void advance(Observer& observer);                        // one step, and what is due after it

@@ -67,8 +67,8 @@ struct Case : OptionGroups {
   std::vector<ProbeOptions> probes;
   std::map<std::string, std::string> groups;  // derived and given groups and constants, as text, for the start-up table
   std::map<std::string, Problem> places;      // of what the case gives, by "section.key" and "section"; without a text
-  std::vector<Problem> unused_options;  // what the case sets and another of its values makes useless, with the place
-  std::string resolved;  // the case as TOML with defaults filled in and the origin of each value in comments
+  std::vector<Problem> warnings;  // what the case sets and another of its values makes useless, with the place
+  std::string resolved;           // the case as TOML with defaults filled in and the origin of each value in comments
 };
 
 // A case and the scene that it describes.
