@@ -17,7 +17,7 @@ using std::experimental::element_aligned;
 // to the rounding of their sums.
 constexpr double smallest_pivot = 1e-10;
 
-// Of order 0, 1 and 2: see the header.
+// Of order 0, 1 and 2; the header has the values of lattices and surfaces that these stand below.
 constexpr std::array<double, 3> least_reciprocal_condition{0, 1e-3, 2e-4};
 
 // table[i][j]: the monomial that is the product of monomials i and j.
@@ -221,7 +221,8 @@ LinearFit::Result LinearFit::at_centre() const {
   const int monomials = dimensions_ + 1;
   const Eigen::LDLT<Eigen::MatrixXd> factor(moments.topLeftCorner(monomials, monomials));
   Eigen::RowVector4d result = sums.row(0) / weight();
-  const bool fitted = count_ > 2 * monomials && factor.info() == Eigen::Success && factor.rcond() > 1e-3;
+  const bool fitted =
+      count_ > 2 * monomials && factor.info() == Eigen::Success && factor.rcond() > least_reciprocal_condition[1];
   if (fitted) {
     const Eigen::MatrixXd solution = factor.solve(sums.topRows(monomials));
     result = solution.row(0);

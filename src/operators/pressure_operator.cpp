@@ -11,6 +11,7 @@ namespace {
 using simd::f32n;
 using simd::f64n;
 
+// Rows handled at a time by one thread, as in sweep(). Dot products add up block by block, whoever worked on it.
 constexpr std::size_t block = 256;
 
 template <int dimensions, class Kernel>

@@ -170,6 +170,12 @@ void shift_curvature(const SweepContext& context, PackedNeighbours& packed, cons
   });
 }
 
+// Squared distance over h^2 below which two particles coincide and have no direction: 1e-4 h is far below the distance
+// of any two particles.
+constexpr double coincident = 1e-8;
+// Least divisor of the harmonic mean, a float far below any diffusivity: 0 / 0 becomes 0.
+constexpr float no_diffusivity = 1e-30F;
+
 template <int dimensions, class Kernel, bool stress>
 void viscous(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
              const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out) {
@@ -181,7 +187,7 @@ void viscous(const SweepContext& context, PackedNeighbours& packed, const std::a
   pack_scalar(context, records, width, dimensions, kappa);
   pack_volumes<Kernel>(context, records, width, dimensions + 1);
   const KernelScale<dimensions, Kernel> common(context);
-  const auto tiny = static_cast<float>(1e-8 * context.smoothing_length * context.smoothing_length);
+  const auto tiny = static_cast<float>(coincident * context.smoothing_length * context.smoothing_length);
 
   sweep(list.particles(), [&](std::size_t i) {
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
@@ -191,7 +197,7 @@ void viscous(const SweepContext& context, PackedNeighbours& packed, const std::a
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
       // Harmonic mean 2 k_i k_j / (k_i + k_j), zero when both vanish (also at the sentinel).
       const f32n kappa_j = b.payload[dimensions];
-      const f32n mean = own_kappa * kappa_j / simd::max(own_kappa + kappa_j, simd::splat<f32n>(1e-30F));
+      const f32n mean = own_kappa * kappa_j / simd::max(own_kappa + kappa_j, simd::splat<f32n>(no_diffusivity));
       f32n weight = times_volume<Kernel>((-4.0F * scale.gradient) * Kernel::f(b.q) * mean, b);
       if constexpr (stress) {
         f32n along{}, r2{};
@@ -199,7 +205,6 @@ void viscous(const SweepContext& context, PackedNeighbours& packed, const std::a
           along = along + (b.payload[a] - own[a]) * b.d[a];
           r2 = r2 + b.d[a] * b.d[a];
         }
-        // Coincident particles have no direction; the bound is far below any real distance.
         weight = weight * static_cast<float>(dimensions + 2) * along / simd::max(r2, simd::splat<f32n>(tiny));
         for (int a = 0; a < dimensions; ++a) sum[a] = sum[a] + weight * b.d[a];
       } else {

@@ -3,12 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 
 namespace spume {
 namespace {
+
+// In spacings: faces of a solid and sides of the domain that lie closer to each other are one. Far above the rounding
+// of a case's numbers and far below any gap that particles fill.
+constexpr double coincident_faces = 1e-6;
+
+// In spacings: a particle is kept this far from a wall, since on it it would coincide with its own image. A lid-driven
+// cavity at 1/40 has the same bits with 1e-4 and 1e-2; by t = 0.6 the kinetic energy of dam_break_3d at 0.03 changes by
+// 0.01 % and 0.002 %.
+constexpr double wall_gap = 1e-3;
 
 // A face of a solid bounds liquid unless it lies on or beyond a side of the domain.
 bool face_bounds_liquid(const Domain& domain, const SolidBox& box, int axis, int side, double tolerance) {
@@ -68,7 +78,7 @@ ImageRules Boundary::image_rules(double support_radius) const {
                                                                : ImageKind::none;
     }
   }
-  const double tolerance = 1e-6 * spacing_;
+  const double tolerance = coincident_faces * spacing_;
   for (const SolidBox& solid : domain_.boxes) {
     ImageRules::Box box;
     box.lower = solid.lower;
@@ -165,7 +175,7 @@ void Boundary::find_offsets(const Images& images, double t, bool friction, Veloc
 }
 
 void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity) const {
-  const double tiny = 1e-3 * spacing_;
+  const double tiny = wall_gap * spacing_;
   for (int axis = 0; axis < domain_.dimensions; ++axis) {
     double& x = position[axis];
     const double lower = at[axis][0], upper = at[axis][1];
@@ -187,7 +197,7 @@ void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* veloci
     }
   }
   for (const SolidBox& box : domain_.boxes) {
-    double nearest = 1e300;
+    double nearest = std::numeric_limits<double>::infinity();
     int face_axis = -1, face_side = 0;
     for (int axis = 0; axis < domain_.dimensions; ++axis)
       for (int side = 0; side < 2; ++side) {

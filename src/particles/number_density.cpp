@@ -9,13 +9,13 @@
 namespace spume {
 namespace {
 
-// Smoothing lengths that a step moves the fastest particle by when the liquid is rearranged as the options say,
-// whatever time.courant is: rearranged in full at every step of courant 0.1 a collapsing column blew up where it met a
-// wall.
-constexpr double full_displacement = 0.2;
 // Steps of courant 0.4, and in proportion between: rearranged as at courant 0.2, taylor_green_2d at 1/50 blew up at
 // courant 0.3 without viscosity and lost 7 % of its decay rate at Re = 100 and courant 0.4; with this it loses 1.2 %.
 constexpr double most_displacement = 2;
+// Of the density, what the relaxation sees at most, lest single kernel sums that are far off dominate. In
+// taylor_green_2d at 1/50, whose lattice becomes disordered, an excess of 0.05 costs 0.2 % of the energy by t = 0.15
+// and 1 leaves 0.09 % more; a lack of 0.1 adds 0.3 % in a cavity at 1/40, and 0.9 leaves the bits of both. dam_break_3d
+// at 0.03 has the same bits with an excess of 1 and a lack of 0.9 up to t = 0.6.
 constexpr double largest_excess = 0.1, largest_lack = 0.5;
 // Liquid thinner than this closes faster in proportion: a void in a closed box, where no surface tells the pressure of
 // it, is widened by the flow within tens of steps. Without this the cavity opened one under its lid at N = 50, with it
@@ -25,11 +25,10 @@ constexpr double thin_as_void = 0.05;
 // whose standard deviation is 0.009 in taylor_green_2d. Evening out the latter stirs the liquid: at 1/200 the error of
 // that case's velocity is 0.037 %, 0.024 % when twice the deviation is let be, 0.023 % without any relaxation.
 constexpr double mean_disorder = 0.002, local_disorder = 0.02;
-// Below a surface whatever expands lifts what lies above it: at the full rate a breaking wave at 1/25 gained 9 % of its
-// kinetic energy, at a tenth of it 1.3 %, without relaxation 1.0 %. Liquid that closes a void gives energy away, and
-// may do so at once: the wave's gain is the same 1.3 %.
-constexpr double more_steps_below_surface = 10;
+// Of what div r lacks; see tells_density() for what surfaces and foam have.
 constexpr double largest_isotropic_normal = 1.0 / 3;
+// Of the full displacement: less is below what positions, of 1e-16 of the domain, can tell.
+constexpr double least_displacement = 1e-12;
 
 // What the relaxation reads.
 struct Reader {
@@ -97,7 +96,7 @@ double displacement_fraction(const Arrangement& arrangement, const ParticleStore
     return speed2;
   });
   const double fraction = std::sqrt(fastest2) * dt / (full_displacement * resolution.smoothing_length);
-  return fraction < 1e-12 ? 0.0 : std::min(most_displacement, fraction);  // less than positions can tell
+  return fraction < least_displacement ? 0.0 : std::min(most_displacement, fraction);
 }
 
 double even_out_density(const DensityRelaxation& relaxation, const Arrangement& arrangement, const Domain& domain,

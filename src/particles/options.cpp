@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "spume/particles/options.hpp"
 
+#include "spume/particles/number_density.hpp"
+#include "spume/scene/document.hpp"
 #include "spume/scene/option.hpp"
 
 namespace spume {
 
 Section pressure_section() {
   using P = PressureOptions;
+  const std::string relaxation_text =
+      "relaxation time of the number density in steps of courant " + brief(full_displacement) +
+      "; with a free surface " + brief(more_steps_below_surface) + " times as long where the liquid is too dense; " +
+      shortest(never_relaxed) + ": off";
   return section<P>("pressure")
       .word("solver", &P::solver, {{"bicgstab", PressureSolver::bicgstab}, {"cg", PressureSolver::cg}},
             "Krylov method of the pressure equation")
@@ -20,19 +26,19 @@ Section pressure_section() {
       .option("cell_ratio", &P::cell_ratio, "spacing", between(1, 8), "side of the multigrid cells")
       .when("preconditioner", {"multigrid"})
       .option("warm_start", &P::warm_start, "initial guess: the last pressure, carried by the particles")
-      .option("density_relaxation", &P::density_relaxation, "steps", between(1, 1e6),
-              "relaxation time of the number density in steps of courant 0.2; with a free surface ten times as long "
-              "where the liquid is too dense; 1e6: off");
+      .option("density_relaxation", &P::density_relaxation, "steps", between(1, never_relaxed),
+              relaxation_text.c_str());
 }
 
 Section shifting_section() {
   using S = ShiftingOptions;
+  const std::string limit_text = "largest displacement per step up to courant " + brief(full_displacement) +
+                                 "; above it in proportion to the step";
   return section<S>("shifting")
       .option("on", &S::on, "particle shifting towards a uniform distribution")
       .option("coefficient", &S::coefficient, "1", between(0, 1), "displacement = -coefficient h^2 grad C")
       .when("on", {"true"})
-      .option("limit", &S::limit, "h", above_up_to(0, 0.5),
-              "largest displacement per step up to courant 0.2; above it in proportion to the step")
+      .option("limit", &S::limit, "h", above_up_to(0, 0.5), limit_text.c_str())
       .when("on", {"true"})
       .option("remove_drift", &S::remove_drift, "subtract the Shepard mean of the shift: no net transport")
       .when("on", {"true"})
@@ -47,9 +53,11 @@ Section shifting_section() {
 
 Section surface_section() {
   using S = SurfaceOptions;
+  const std::string threshold_text =
+      "div r below which a particle is on the surface; 0: " + brief(surface_threshold_3d) + " in 3-D, " +
+      brief(surface_threshold_2d) + " in 2-D";
   return section<S>("surface")
-      .option("threshold", &S::threshold, "1", between(0, 3),
-              "div r below which a particle is on the surface; 0: 2.3 in 3-D, 1.5 in 2-D")
+      .option("threshold", &S::threshold, "1", between(0, 3), threshold_text.c_str())
       .option("blend_width", &S::blend_width, "1", between(0, 1), "span of div r over which pressure rows blend");
 }
 

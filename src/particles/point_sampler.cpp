@@ -151,7 +151,7 @@ PointSample PointSampler::sample(const Vec3& point) const {
 double PointSampler::crossing(Vec3 wet, double dry) const {
   const int up = state_.particles->dimensions - 1;
   double inside = wet[up];
-  for (int k = 0; k < 20; ++k) {
+  for (int k = 0; k < 20; ++k) {  // halves: to 1e-6 of where it started
     wet[up] = 0.5 * (inside + dry);
     (coverage(wet) >= 0.5 ? inside : dry) = wet[up];
   }

@@ -84,7 +84,7 @@ void Shift::compute(Arrangement& arrangement, ParticleStore& particles, const Sh
     for (int axis = 0; axis < d; ++axis) shift[axis] = -coefficient * moments.concentration_gradient[axis][i];
     if (surface != nullptr && surface->at_surface[i] != 0) {
       // King (3.12), sign and tangential projection corrected: only the part along the surface is kept.
-      double along = 0, norm2 = 1e-30;
+      double along = 0, norm2 = 1e-30;  // no normal: 0 / 1e-30
       for (int axis = 0; axis < d; ++axis) {
         const double normal = surface->smoothed_normal[axis][i];
         along += normal * shift[axis];

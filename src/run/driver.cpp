@@ -27,7 +27,7 @@ Schedule::Times times_of(const Case& options) {
 // Mean of a step over the step that the method allows, over about so many steps, and the least with which a run goes
 // on.
 constexpr double pace_memory = 64;
-constexpr double slowest_pace = 1.0 / 32;
+constexpr double slowest_pace = 1.0 / 32;  // five halvings, at every one of those steps
 
 std::string place_of(const StepFailure::Details& details, int dimensions) {
   std::string text;

@@ -90,6 +90,7 @@ void InvariantWatch::restore(std::span<const double> seen) {
   started_ = true;
 }
 
+// A run that has one step in a hundred refused is badly set; one refused step is not a failure.
 Verdict refused_steps(std::int64_t refused, std::int64_t steps) {
   return {"refused_steps", static_cast<double>(refused), std::max(1.0, static_cast<double>(steps) / 100)};
 }

@@ -15,7 +15,9 @@ namespace {
 
 // Columns per block: a block is some ten thousand evaluations, so that its bookkeeping is noise.
 constexpr std::size_t column_block = 32;
-constexpr double most_particles = 2147483648.0;
+// In spacings: one layer has more than four times the volume of thinner liquid.
+constexpr double least_depth = 0.25;
+constexpr double most_particles = 2147483648.0;  // 2^31: particles are numbered by int32
 
 std::string point_in_words(const Vec3& p, int dimensions) {
   std::string words = "(";
@@ -228,7 +230,7 @@ void Filler::conform_column(ThreadRegions& own, std::size_t r, Vec3 p, Chunk& ch
   };
   // The last height inside, between one that is and one that is not.
   const auto bisect = [&](double in, double out) {
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < 200; ++i) {  // ends at rounding, after some 50
       const double middle = 0.5 * (in + out);
       if (middle == in || middle == out) break;
       (inside(middle) ? in : out) = middle;
@@ -256,7 +258,7 @@ void Filler::conform_column(ThreadRegions& own, std::size_t r, Vec3 p, Chunk& ch
     }
   }
   const double depth = surface - floor;
-  if (!found || depth < 0.25 * spacing) return;
+  if (!found || depth < least_depth * spacing) return;
 
   const auto distance = [&](double n) { return depth / n; };
   double layers = std::max(1.0, std::floor(depth / spacing));

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t largest_file = 16u << 20;
+constexpr std::uintmax_t largest_file = 16u << 20;  // a case is text of some kB: what is larger is another file
 
 std::string read_text(const std::string& file) {
   std::error_code error;

@@ -16,6 +16,8 @@ constexpr float face_coarsening = 0.5F;
 // The distance to a zero-valued surface grows less than the cells do: 9 or 10 iterations on a cell problem with a wavy
 // surface instead of 11 to 15 with one half.
 constexpr float dirichlet_coarsening = 0.75F;
+// Of the coarsest level, which sweeps alone solve. From 1 to 8 cells and from 1 to 16 sweeps a collapsing column at
+// 1/200 and a cavity at 1/100 take the same number of iterations; with 64 cells the cavity takes 7 % more.
 constexpr int coarsest_cells = 8;
 constexpr int coarsest_sweeps = 4;
 

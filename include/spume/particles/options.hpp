@@ -11,6 +11,9 @@ enum class PreconditionerKind { jacobi, multigrid };
 enum class Precision { mixed, f64 };
 enum class ShiftCorrection { none, first_order, second_order };
 
+// Steps of PressureOptions::density_relaxation that mean never.
+inline constexpr double never_relaxed = 1e6;
+
 struct PressureOptions {
   PressureSolver solver = PressureSolver::bicgstab;
   PreconditionerKind preconditioner = PreconditionerKind::multigrid;
@@ -19,20 +22,23 @@ struct PressureOptions {
   int max_iterations = 500;
   double cell_ratio = 1.5;  // multigrid cell side / spacing
   bool warm_start = true;
-  double density_relaxation = 30;
+  double density_relaxation = 30;  // cases/lid_driven_cavity/README.md has the errors with 10 to 100
 };
 
 struct ShiftingOptions {
   bool on = true;
-  double coefficient = 0.25;                                           // displacement = -coefficient h^2 grad C
-  double limit = 0.1;                                                  // largest displacement / h per step
-  bool remove_drift = true;                                            // subtract what neighbours share of the shift
+  double coefficient = 0.25;  // displacement = -coefficient h^2 grad C: King (3.12)
+  double limit = 0.1;         // largest displacement / h per step
+  bool remove_drift = true;   // subtract what neighbours share of the shift
   ShiftCorrection velocity_correction = ShiftCorrection::first_order;  // Taylor terms of u at the new place
 };
 
+// Standard values of SurfaceOptions::threshold; particles/surface.cpp tells why.
+inline constexpr double surface_threshold_3d = 2.3, surface_threshold_2d = 1.5;
+
 struct SurfaceOptions {
-  double threshold = 0;  // div r below which a particle is a surface particle; 0: 2.3 in 3-D, 1.5 in 2-D
-  double blend_width = 0.32;
+  double threshold = 0;       // div r below which a particle is a surface particle; 0: the standard value
+  double blend_width = 0.32;  // half of what lies between 2.3 and the 2.94 of the bulk in 3-D
 };
 
 Section pressure_section();

@@ -13,16 +13,30 @@
 namespace spume::les_sph {
 namespace {
 
-// Half the sound speed already means density changes of an eighth, which a weakly compressible liquid leaves out.
+// Of the speed to the sound speed. The density changes by half its square: at 0.5 by an eighth, which a weakly
+// compressible liquid leaves out; 0.1 is usual and keeps it within 1 % (Monaghan 1994).
+constexpr double largest_mach = 0.5, usual_mach = 0.1;
+
+// Of the support radius, which spray crosses in a step: a step across half of it is refused, a tenth less leaves room
+// for what accelerates within the step.
+constexpr double spray_stride = 0.45;
+
+// In smoothing lengths: what a bubble crosses in a step, a quarter of the radius within which it sees the liquid. In a
+// plume the liquid limits the step: 0.25 and 1 leave its bits.
+constexpr double bubble_stride = 0.5;
+
+// A liquid at rest without forces: the first steps follow the time scale of the run.
+constexpr double steps_of_run_at_rest = 1000;
+
 void refuse_high_mach(const Case& options, const Flow& flow) {
   const double c = flow.scene.fluid.sound_speed, speed = flow.speeds.largest;
-  if (!(c > 0) || speed <= 0.5 * c) return;
+  if (!(c > 0) || speed <= largest_mach * c) return;
   char text[300];
   std::snprintf(text, sizeof text,
                 "the liquid starts with a speed of %.4g, which is %.3g of the sound speed %.4g; a weakly compressible "
-                "liquid needs at most 0.5: raise the sound speed %.3g times (fluid.sound_speed, or fluid.mach lower), "
+                "liquid needs at most %.3g: raise the sound speed %.3g times (fluid.sound_speed, or fluid.mach lower), "
                 "or leave it out for an incompressible liquid",
-                speed, speed / c, c, speed / (0.1 * c));
+                speed, speed / c, c, largest_mach, speed / (usual_mach * c));
   throw refusal(options, options.places.count("fluid.mach") > 0 ? "fluid.mach" : "fluid.sound_speed", text);
 }
 
@@ -32,8 +46,8 @@ void refuse_stirring_shift(const Case& options, const Flow& flow) {
   std::snprintf(
       text, sizeof text,
       "shifting.coefficient is %.3g; above %.3g the shift throws the particles of a lattice from side to side "
-      "instead of evening them out: lower it (0.25 is usual)",
-      options.get<ShiftingOptions>().coefficient, flow.largest_shift);
+      "instead of evening them out: lower it (%.3g is usual)",
+      options.get<ShiftingOptions>().coefficient, flow.largest_shift, ShiftingOptions{}.coefficient);
   throw refusal(options, "shifting.coefficient", text);
 }
 
@@ -93,21 +107,19 @@ StepLimit LesSph::step_limit() const {
   if (speed > 0) step.bound(options.courant * h / speed, "courant");
   // Spray does not count to that speed, but a step that takes any particle across half its support is refused.
   if (flow_.speeds.largest > 0)
-    step.bound(0.45 * flow_.arrangement.grid.support_radius() / flow_.speeds.largest, "spray");
+    step.bound(spray_stride * flow_.arrangement.grid.support_radius() / flow_.speeds.largest, "spray");
   const double viscosity = flow_.viscosity() + flow_.max_eddy_viscosity;
   // The explicit sum of div(2 nu S) is stable up to 0.108 h^2 / nu on a lattice in 3-D and 0.112 in 2-D, that of
   // div(nu grad u) up to 0.29 and 0.31.
   if (viscosity > 0) step.bound(most_diffusion * h * h / (flow_.diffusion_rate() * viscosity), "viscous");
-  // A bubble crosses at most half a smoothing length.
   if (flow_.bubbles != nullptr && flow_.bubbles->max_speed() > 0)
-    step.bound(0.5 * h / flow_.bubbles->max_speed(), "bubbles");
+    step.bound(bubble_stride * h / flow_.bubbles->max_speed(), "bubbles");
   if (options.max_step > 0) step.bound(options.max_step, "max_step");
   // A force that varies in space is known at the end of the last step only, and may have risen since. Of two steps one
   // may have been cut short to meet an output time.
   if (varying_force && flow_.steps > 0)
     step.bound(2 * std::max(flow_.last_steps[0], flow_.last_steps[1]), "growth of the step");
-  // A force on a liquid at rest: the first steps follow the time scale of the run.
-  if (speed == 0 && options.max_step == 0) step.bound(options.end / 1000, "end of run");
+  if (speed == 0 && options.max_step == 0) step.bound(options.end / steps_of_run_at_rest, "end of run");
   return step.limit();
 }
 

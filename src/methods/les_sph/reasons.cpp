@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "spume/methods/les_sph/step.hpp"
+#include "spume/scene/document.hpp"
 
 namespace spume::les_sph {
 namespace {
@@ -62,8 +63,8 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has) {
   divergence = loaded.scene.fluid.sound_speed > 0 ? "right-hand side of the Helmholtz equation"
                                                   : "right-hand side of the Poisson equation";
   centring = options.get<SchemeOptions>().centred ? "free of divergence half a step ahead" : "time.centred = false";
-  relaxation =
-      has.density_relaxation ? "the pressure evens out the number density" : "pressure.density_relaxation = 1e6";
+  relaxation = has.density_relaxation ? "the pressure evens out the number density"
+                                      : "pressure.density_relaxation = " + shortest(never_relaxed);
   preconditioner = options.get<PressureOptions>().preconditioner == PreconditionerKind::multigrid
                        ? "Jacobi and a V-cycle on cells"
                        : "pressure.preconditioner = \"jacobi\"";

@@ -11,6 +11,11 @@
 namespace spume::les_sph {
 namespace {
 
+// Of the bulk value of div r: below it neighbours are missing at a surface, and their arrangement tells nothing of the
+// error of the Laplacian. In a lid-driven cavity at 1/40, 0.99 changes the kinetic energy at t = 0.3 by 0.05 % and 0.8
+// by 0.02 %.
+constexpr double least_divergence_of_position = 0.95;
+
 // NaN when a component is, which the library's function of three numbers is not.
 double length_of(const Vec3& v) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -35,8 +40,7 @@ double length_of(const Vec3& v) {
 void refuse_unstable_diffusion(const Flow& flow, double dt) {
   const double largest = flow.closure->largest(flow.size());
   const double h = flow.resolution.smoothing_length;
-  // 0.29 h^2 / nu on a lattice in 3-D, 0.31 in 2-D.
-  if ((flow.viscosity() + largest) * flow.diffusion_rate() * dt <= 0.3 * h * h) return;
+  if ((flow.viscosity() + largest) * flow.diffusion_rate() * dt <= largest_stable_viscous * h * h) return;
   StepFailure::Details details;
   details.cause = "the eddy viscosity has grown beyond what the step is stable with";
   details.option = "time.viscous";
@@ -145,7 +149,7 @@ void Flow::find_viscous_acceleration() {
   const double bulk = resolution.lattice.divergence_of_position;
   ScratchArray<float> diffusivity(particles.scratch(), size());
   parallel_for(size(), [&](std::size_t i) {
-    const double div_r = std::max<double>((*moments.divergence_of_position)[i], 0.95 * bulk);
+    const double div_r = std::max<double>((*moments.divergence_of_position)[i], least_divergence_of_position * bulk);
     double eddy = eddy_viscosity_of(i);
     if (sizes.variable) eddy += bubbles->viscosity[i];
     const double alpha = sizes.alpha(i);

@@ -47,7 +47,8 @@ void visit_gradient(Flow<T>& flow, int c, int a, Visit&& visit) {
                      [&](std::size_t ix, std::size_t, const T* values) { visit(ix, values); });
 }
 
-constexpr double pdf_half_width = 15;  // standard deviations
+// In standard deviations; bins of a tenth of one. What lies beyond is left out.
+constexpr double pdf_half_width = 15;
 constexpr std::size_t pdf_bins = 301;
 
 }  // namespace

@@ -14,6 +14,10 @@ namespace {
 // Of the velocity by the force in a step: 0.1 costs the multistep scheme an error of 0.4 % in that growth.
 constexpr double most_growth = 0.1;
 
+// Along the imaginary axis: sqrt(3) of every third-order scheme in three stages, and that of Carpenter and Kennedy
+// (1994).
+constexpr double rk3_reach = 1.73, rk4_reach = 3.34;
+
 // Logarithm of the factor by which AB2 amplifies an oscillation in a step, phase = omega dt: that of the larger root of
 // rho^2 - (1 + 3/2 i phase) rho + i phase/2 = 0; phase^4 / 4 for small phases.
 double ab2_growth(double phase) {
@@ -60,10 +64,10 @@ StepLimit Flow<T>::limit_for(const VelocityPeak& peak) const {
         break;
       }
       case Integrator::rk3:
-        bound(1.73 / frequency, "rk3 stability");  // its reach along the imaginary axis
+        bound(rk3_reach / frequency, "rk3 stability");
         break;
       case Integrator::rk4:
-        bound(3.34 / frequency, "rk4 stability");
+        bound(rk4_reach / frequency, "rk4 stability");
         break;
     }
   } else if (limits_.max_step == 0) {

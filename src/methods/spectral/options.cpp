@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/methods/spectral/options.hpp"
 
+#include "spume/scene/document.hpp"
 #include "spume/scene/option.hpp"
 
 namespace spume {
@@ -30,9 +31,9 @@ Section forcing() {
             "shell: constant injection at low wavenumbers; linear: rate times velocity")
       .option("wavenumber", &F::wavenumber, "2 pi / longest length", positive(),
               "shell: forced band wavenumber <= |k| < wavenumber + width")
-      .absent("1")
+      .absent(brief(F{}.wavenumber))
       .option("width", &F::width, "2 pi / longest length", positive(), "shell: width of the forced band")
-      .absent("1")
+      .absent(brief(F{}.width))
       .option("injection", &F::injection, "energy/mass/time", positive(), "shell: energy put in per mass and time")
       .absent("required for shell")
       .option("rate", &F::rate, "1/time", positive(), "linear: acceleration over velocity")
@@ -55,7 +56,7 @@ Section initial() {
       .option("amplitude", &I::amplitude, "length/time", "taylor-green: one velocity; abc: A, B, C")
       .absent("1, or 1, 1, 1")
       .option("wavenumber", &I::wavenumber, "", between(1, 8192), "taylor-green, abc: periods in the box")
-      .absent("1")
+      .absent(brief(I{}.wavenumber))
       .option("velocity", &Draft::initial_velocity, "length/time",
               "expressions: of x y z, projected onto solenoidal fields")
       .absent("required for expressions")
@@ -111,7 +112,7 @@ Section particles() {
       .when("coupling", {"four-way", "colliding"})
       .option("max_volume_fraction", &P::max_volume_fraction, "1", above_up_to(0, 1),
               "local volume fraction at which the force on the flow is clipped")
-      .absent("0.7405, close packing")
+      .absent(brief(P{}.max_volume_fraction) + ", close packing")
       .when("coupling", {"two-way", "four-way"})
       .option("mean_force_moves_fluid", &P::mean_force_moves_fluid,
               "the mean force of the particles accelerates the fluid; otherwise a mean pressure gradient balances it")
@@ -131,7 +132,7 @@ Section particles() {
       .when("placement", {"clustered"})
       .option("cluster_radius", &P::cluster_radius, "shortest side", positive(),
               "clustered: standard deviation of a cloud")
-      .absent("0.05")
+      .absent(brief(P{}.cluster_radius))
       .when("placement", {"clustered"})
       .option("file", &P::file, "file: CSV of positions x, y, z; beside the case")
       .absent("placement is not \"file\"")

@@ -3,6 +3,7 @@
 
 #include "spume/methods/spectral/options.hpp"
 #include "spume/methods/spectral/spectral.hpp"
+#include "spume/scene/document.hpp"
 
 namespace spume::spectral {
 namespace {
@@ -21,11 +22,13 @@ double bytes_per_point(const Case& options, int /*dimensions*/) {
   return 3 * number * states;
 }
 
-// Runge-Kutta stays accurate up to its stability: 0.55 and 1.06. Particles keep the steps of Adams-Bashforth.
+// Runge-Kutta stays accurate up to its stability, 0.55 and 1.06 (1.73 / pi and 3.34 / pi). Particles keep the steps of
+// Adams-Bashforth.
+constexpr double courant_of_ab2 = 0.2, courant_of_rk3 = 0.5, courant_of_rk4 = 0.9;
 double default_courant(const Case& options, const Scene&) {
   const Integrator integrator = options.get<SpectralOptions>().integrator;
-  if (options.get<ParticleCaseOptions>().any() || integrator == Integrator::ab2) return 0.2;
-  return integrator == Integrator::rk3 ? 0.5 : 0.9;
+  if (options.get<ParticleCaseOptions>().any() || integrator == Integrator::ab2) return courant_of_ab2;
+  return integrator == Integrator::rk3 ? courant_of_rk3 : courant_of_rk4;
 }
 
 std::unique_ptr<Method> make(const LoadedCase& loaded) {
@@ -45,7 +48,8 @@ Registration registration() {
   method.check = check;
   method.bytes_per_particle = bytes_per_point;
   method.default_courant = default_courant;
-  method.default_courant_in_words = "rk3 without particles 0.5, rk4 0.9";
+  method.default_courant_in_words = "ab2 and particles " + brief(courant_of_ab2) + ", rk3 " + brief(courant_of_rk3) +
+                                    ", rk4 " + brief(courant_of_rk4);
   method.output_fields = [](const Case&) { return std::vector<std::string>{"velocity", "vorticity", "pressure"}; };
   method.make = make;
   return method;

@@ -88,7 +88,8 @@ StepLimit Suspension<T>::limited(const StepLimit& flow) const {
 template <class T>
 void Suspension<T>::require_possible(const StepLimit& flow) const {
   const double longest = system_.longest_step();
-  if (longest * 1000 > flow.dt) return;
+  constexpr double most_slowdown = 1000;  // no case is worth so many steps
+  if (longest * most_slowdown > flow.dt) return;
   const MotionModel& motion = system_.options().motion;
   char text[400];
   std::snprintf(
@@ -96,10 +97,10 @@ void Suspension<T>::require_possible(const StepLimit& flow) const {
       "particles.response_time = %.3g with a mass loading of %.3g (volume fraction %.3g, density ratio %.3g): "
       "the coupling with the flow is stable for steps up to %.3g, while the flow takes steps of %.3g; the ratio must "
       "be "
-      "at least 1/1000; raise the response time, lower the volume fraction, or take "
+      "at least 1/%.0f; raise the response time, lower the volume fraction, or take "
       "particles.coupling = \"one-way\"",
       motion.response_time, system_.volume_fraction() * motion.density_ratio(), system_.volume_fraction(),
-      motion.density_ratio(), longest, flow.dt);
+      motion.density_ratio(), longest, flow.dt, most_slowdown);
   throw refusal(loaded_.options,
                 loaded_.options.get<ParticleCaseOptions>().stokes > 0 ? "particles.stokes" : "particles.response_time",
                 text);

@@ -11,7 +11,7 @@
 namespace spume::bubbles {
 namespace {
 
-constexpr double hard_limit = 1e-3;
+constexpr double hard_limit = 1e-3;  // of V_min, below King (3.27)
 
 // Lambda^(5/3) at which Lambda^(15/2) is the hard limit, and where (3.27) vanishes everywhere.
 const double hard_end = std::pow(hard_limit, 2.0 / 9);

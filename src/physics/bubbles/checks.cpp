@@ -7,7 +7,9 @@
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/periodic_grid.hpp"
+#include "spume/physics/bubbles/forces.hpp"
 #include "spume/physics/bubbles/options.hpp"
+#include "spume/physics/bubbles/population.hpp"
 #include "spume/physics/turbulence/options.hpp"
 #include "spume/scene/draft.hpp"
 #include "spume/scene/expression.hpp"
@@ -15,7 +17,7 @@
 namespace spume {
 namespace {
 
-constexpr double most_bubbles = 1e8;
+constexpr double most_bubbles = most_bubbles_of_a_cloud;
 
 // The largest spacing-based radius: a bubble must be smaller than the filter that surrounds it (King section 3.4.1).
 void check_sizes(const Draft& draft, const std::string& name, BubbleSizes& sizes, Problems& problems) {
@@ -91,7 +93,7 @@ void check_gas(Draft& draft, Problems& problems) {
   if (!si && given.weber) options.tension = 1 / *given.weber;
   if (si && given.surface_tension) options.tension = *given.surface_tension / density;
   options.density_ratio =
-      given.density_ratio.value_or(si ? density / given.gas_density.value_or(1.2) : options.density_ratio);
+      given.density_ratio.value_or(si ? density / given.gas_density.value_or(air_density) : options.density_ratio);
   options.hinze_radius = given.hinze_radius.value_or(std::pow(options.tension, 0.6) / 2);
   options.smallest_entrained_radius = given.smallest_entrained_radius.value_or(options.hinze_radius / 20);
 
@@ -130,14 +132,16 @@ void check_substeps(const Draft& draft, const Scene& scene, const std::string& n
                     Problems& problems) {
   const BubbleOptions& options = draft.options.get<BubbleOptions>();
   if (options.integrator != BubbleIntegrator::substep || !(sizes.minimum > 0)) return;
+  // Some 50 ns each: 5 ms per bubble and step.
   constexpr double most_substeps = 1e5;
   double gravity2 = 0;
   for (const double g : scene.fluid.gravity) gravity2 += g * g;
   const double h = draft.options.resolution.smoothing_ratio * scene.spacing;
   const double dt = gravity2 > 0 ? draft.options.time.courant * std::sqrt(h / std::sqrt(gravity2)) : 0;
-  const double drag = 4.5 * scene.fluid.kinematic_viscosity / (sizes.minimum * sizes.minimum);
-  const double steps = std::max(scene.spacing / sizes.minimum,
-                                1.5 * dt * drag / (1 / options.density_ratio + options.virtual_mass_coefficient));
+  const double drag = bubbles::drag_rate(0, sizes.minimum, scene.fluid.kinematic_viscosity);
+  const double steps =
+      std::max(scene.spacing / sizes.minimum, bubbles::substeps_per_relaxation * dt * drag /
+                                                  (1 / options.density_ratio + options.virtual_mass_coefficient));
   if (steps <= most_substeps) return;
   problems.add(*draft.node(name), name + " has bubbles of radius " + brief(sizes.minimum) + ", which need " +
                                       brief(steps) + " explicit sub-steps a step; at most " + brief(most_substeps) +
@@ -147,7 +151,7 @@ void check_substeps(const Draft& draft, const Scene& scene, const std::string& n
 // Places that tell how far a source reaches: around a disc, along a line, on the sides of a box and around a ball.
 std::vector<Vec3> outline(const Sparger& sparger) {
   std::vector<Vec3> places;
-  constexpr int points = 16;
+  constexpr int points = 16;  // a disc of ten spacings is looked at every two
   for (int k = 0; k < points && sparger.shape != SpargerShape::point; ++k) {
     Vec3 r = sparger.position;
     const double share = (k + 0.5) / points, angle = 2 * std::numbers::pi * share;
@@ -232,9 +236,9 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
     add_missing_tension(draft, "how long bubbles rest at the surface (surface_interaction)", problems);
   const InitialParticles& liquid = scene.particles;
   const double volume = liquid.volume * static_cast<double>(liquid.size());
-  // Wet: some particle within the diagonal of a lattice cell.
+  // Wet: some particle within the diagonal of a lattice cell, sqrt(3) spacings.
   const auto wet = [&](Vec3 r) {
-    const double support_radius = 1.75 * scene.spacing;
+    const double diagonal = 1.75 * scene.spacing;
     for (int a = 0; a < 3; ++a)
       if (scene.domain.periodic(a))
         r[a] = wrap_periodic(r[a], scene.domain.lower[a], scene.domain.upper[a] - scene.domain.lower[a]);
@@ -244,7 +248,7 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
                const double d = liquid.position[a][i] - r[a];
                distance2 += d * d;
              }
-             return distance2 < support_radius * support_radius ? 1.0 : 0.0;
+             return distance2 < diagonal * diagonal ? 1.0 : 0.0;
            }) > 0;
   };
   // The first of the places that lies in no liquid.
@@ -273,7 +277,7 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
     check_substeps(draft, scene, name, sparger.sizes, problems);
     const Node* node = draft.node(name + ".rate");
     const double end = draft.options.time.end;
-    constexpr int samples = 400;
+    constexpr int samples = 400;  // what lasts shorter than 1/400 of the run may go unseen
     double gas = 0;
     bool good = true;
     for (int i = 0; i <= samples && good; ++i) {
@@ -286,7 +290,7 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
       gas += rate * end / samples;
     }
     if (!good) continue;
-    const double smallest = 4.18879 * std::pow(sparger.sizes.mean, 3);
+    const double smallest = bubbles::volume_of(sparger.sizes.mean);
     if (gas > volume)
       problems.add(*node, name + ".rate releases " + brief(gas) + " of gas by the end, more than the liquid holds, " +
                               brief(volume) + ": check its unit, length3/time");
@@ -299,7 +303,7 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
     const std::string name = "bubble_cloud." + std::to_string(k);
     check_substeps(draft, scene, name, cloud.sizes, problems);
     if (const auto dry = first_dry(outline(cloud))) problems.add(*draft.node(name), reaches_out(name, *dry));
-    const double gas = 4.18879 * std::pow(cloud.sizes.mean, 3) * static_cast<double>(cloud.number);
+    const double gas = bubbles::volume_of(cloud.sizes.mean) * static_cast<double>(cloud.number);
     if (gas > volume)
       problems.add(*draft.node(name), name + " holds " + brief(gas) + " of gas, more than the liquid, " +
                                           brief(volume) + ": fewer or smaller bubbles");

@@ -8,15 +8,21 @@
 
 namespace spume::bubbles {
 namespace {
-constexpr double most_rounds = 100;  // of a step far longer than the period: the volume is spent long before
-}
+// Rounds of a step far longer than the period. A bubble takes volume from what all rounds share: the volume is spent
+// long before.
+constexpr double most_rounds = 100;
+// King (3.23c) and (3.23d): bubbles of a round, and tries beyond those that made one.
+constexpr int most_created = 10, most_failures = 5;
+// King (3.21): particles with less liquid entrain nothing, and those with more no further than to this.
+constexpr double least_volume_fraction = 2.0 / 3;
+}  // namespace
 
 EntrainmentBudget entrainment_budget(const EntrainmentModel& model, const EntrainingParticle& particle, double dt) {
   EntrainmentBudget budget;
-  if (!(particle.dissipation > model.threshold) || !(particle.volume_fraction > 2.0 / 3)) return budget;
+  if (!(particle.dissipation > model.threshold) || !(particle.volume_fraction > least_volume_fraction)) return budget;
   budget.energy =
       model.constant * model.density_ratio * particle.volume_fraction * particle.dissipation * particle.volume * dt;
-  budget.volume = (1.5 - 1 / particle.volume_fraction) / particle.kernel_peak;
+  budget.volume = (1 / least_volume_fraction - 1 / particle.volume_fraction) / particle.kernel_peak;
   return budget;
 }
 
@@ -42,7 +48,7 @@ void entrain(const EntrainmentModel& model, const EntrainingParticle& particle, 
   for (int round = 0; round < rounds; ++round) {
     double energy_left = budget.energy;
     int tried = 0, created = 0;
-    while (energy_left > 0 && volume_left > 0 && created < 10 && tried < created + 5) {
+    while (energy_left > 0 && volume_left > 0 && created < most_created && tried < created + most_failures) {
       const auto u = random();
       ++tried;
       const double radius = model.smallest_radius + u[0] * (model.largest_radius - model.smallest_radius);

@@ -8,8 +8,15 @@
 
 namespace spume::bubbles {
 namespace {
-constexpr double noted_bursts = 5;  // in a step, of at least half of the bubbles: the last few of a scene are no news
-}
+// When bursts of a step are remarked on: this many, and this share of the bubbles. The last few of a scene are no news.
+constexpr double noted_bursts = 5, noted_share = 0.5;
+// A remark is made again when what it tells has grown this much: a run makes a handful of each.
+constexpr int growth_between_remarks = 2;
+// More gas than liquid: below this volume fraction the closures do not hold.
+constexpr double overfull_fraction = 0.5;
+// King (3.18): entrainment is calibrated per step of this Courant number.
+constexpr double courant_of_entrainment = 0.2;
+}  // namespace
 
 void BubbleCoupling::accept(double dt) {
   const double t = carrier_.time;  // the end of the step
@@ -24,7 +31,7 @@ void BubbleCoupling::accept(double dt) {
     parallel_for(n, [&](std::size_t i) { (*volume_fraction)[i] = carrier_.sizes.volume_fraction[i]; });
     least_volume_fraction_ = -parallel_max(n, -1.0, [&](std::size_t i) { return -(*volume_fraction)[i]; });
     overfull_ = static_cast<std::int64_t>(
-        parallel_sum(n, [&](std::size_t i) { return (*volume_fraction)[i] < 0.5 ? 1.0 : 0.0; }));
+        parallel_sum(n, [&](std::size_t i) { return (*volume_fraction)[i] < overfull_fraction ? 1.0 : 0.0; }));
     parallel_for(nb, [&](std::size_t b) {
       Vec3 r, u;
       for (std::size_t a = 0; a < 3; ++a) {
@@ -59,13 +66,13 @@ void BubbleCoupling::accept(double dt) {
     for (std::size_t a = 0; a < 3; ++a) speed2 += (*population_.velocity[a])[b] * (*population_.velocity[a])[b];
     return speed2;
   }));
-  if (overfull_ > 2 * most_overfull_) {
+  if (overfull_ > growth_between_remarks * most_overfull_) {
     most_overfull_ = overfull_;
     remark(std::to_string(overfull_) + " particles hold more gas than liquid (alpha down to " +
            std::to_string(least_volume_fraction_) + " at t = " + std::to_string(t) +
            "): the closures of the forces do not hold there");
   }
-  if (population_.size() >= 2 * most_alive_) {
+  if (population_.size() >= growth_between_remarks * most_alive_) {
     most_alive_ = population_.size();
     remark(std::to_string(most_alive_) + " bubbles live at t = " + std::to_string(t) +
            ": each costs as much as a particle of the liquid, however small");
@@ -124,7 +131,8 @@ void BubbleCoupling::remove_dead(double t) {
   const std::size_t nb = population_.size();
   const double gone = parallel_sum(nb, [&](std::size_t b) { return dead_[b] != 0 ? 1.0 : 0.0; });
   if (gone == 0) return;
-  if (gone >= noted_bursts && gone >= 0.5 * static_cast<double>(nb) && gone > 2 * most_bursts_) {
+  if (gone >= noted_bursts && gone >= noted_share * static_cast<double>(nb) &&
+      gone > growth_between_remarks * most_bursts_) {
     most_bursts_ = gone;
     remark(std::to_string(static_cast<std::int64_t>(gone)) + " of " + std::to_string(nb) +
            " bubbles burst in the step to t = " + std::to_string(t));
@@ -166,8 +174,7 @@ double BubbleCoupling::smoothed_dissipation(std::size_t i) const {
 
 void BubbleCoupling::entrain(double dt) {
   if (!(carrier_.speeds.limiting > 0)) return;
-  const double period =
-      0.2 * carrier_.resolution.smoothing_length / carrier_.speeds.limiting;  // the step of King (3.18)
+  const double period = courant_of_entrainment * carrier_.resolution.smoothing_length / carrier_.speeds.limiting;
   double peak = 0;
   with_kernel(carrier_.arrangement.context,
               [&]<int d, class Kernel>() { peak = Kernel::normalisation(3) * Kernel::w(0.0); });

@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace spume::bubbles {
+namespace {
+// Squared slip over variance below which the direction of the slip is rounding; decay and noise along and across it
+// then agree to rounding.
+constexpr double directionless = 1e-20;
+}  // namespace
 
 Vec3 advance_fluctuation(const Vec3& fluctuation, const Vec3& relative_velocity, double energy, double width,
                          double constant, double dt, const Vec3& noise) {
@@ -16,8 +21,7 @@ Vec3 advance_fluctuation(const Vec3& fluctuation, const Vec3& relative_velocity,
   const double across_decay = std::exp(-dt / tau * std::sqrt(1 + 4 * slip2 / variance));
   const double along_noise = sigma * std::sqrt(1 - along_decay * along_decay);
   const double across_noise = sigma * std::sqrt(1 - across_decay * across_decay);
-  // Below this share of the fluctuations the direction of the slip is noise.
-  const bool directed = slip2 > 1e-20 * variance;
+  const bool directed = slip2 > directionless * variance;
   double part = 0, noise_part = 0;
   if (directed) {
     part = (fluctuation[0] * w[0] + fluctuation[1] * w[1] + fluctuation[2] * w[2]) / slip2;

@@ -7,6 +7,18 @@
 namespace spume::bubbles {
 namespace {
 
+// Drag of King (2.9): Schiller and Naumann (1935), and that of Newton above.
+constexpr double schiller_factor = 0.15, schiller_power = 0.687, newton_reynolds = 1000, newton_drag = 0.44;
+constexpr double newton_rate = 0.375 * newton_drag;  // 3/8 C_d: drag rate over speed / radius
+
+// Relative change of the speed after which Newton's method has converged: the next would be of the order of its square,
+// 1e-10. In a plume 1e-8 changes the slip by 2e-10 %. Should the bracket close to 1e-10 first, at the jump of the
+// drag law, it stands there.
+constexpr double small_change = 1e-5, closed_bracket = 1e-10;
+// More than either method ever needs: bisection halves a bracket to rounding in 53.
+constexpr int most_iterations = 100, most_halvings = 200;
+constexpr double rounding = 1e-15;
+
 double dot(const Vec3& a, const Vec3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -47,10 +59,10 @@ struct Drag {
   double rate, slope;
 
   Drag(double speed, double radius, double viscosity) : rate(drag_rate(speed, radius, viscosity)), slope(0) {
-    if (2 * radius * speed / viscosity > 1000)
-      slope = 0.375 * 0.44 / radius;
+    if (2 * radius * speed / viscosity > newton_reynolds)
+      slope = newton_rate / radius;
     else if (speed > 0)
-      slope = 0.687 * (rate - 4.5 * viscosity / (radius * radius)) / speed;
+      slope = schiller_power * (rate - 4.5 * viscosity / (radius * radius)) / speed;
   }
 };
 
@@ -75,17 +87,17 @@ double implicit_drag(const Slip& slip, const Vec3& w, double speed, Drag drag, d
     drag = Drag(s, radius, viscosity);
   }
   // Newton's method for s / |w(K(s))| = 1, nearly a straight line; bracketed, so the jump of the drag law does no harm.
-  for (int k = 0; k < 100; ++k) {
+  for (int k = 0; k < most_iterations; ++k) {
     const double damping = 1 + h * drag.rate, turning2 = damping * damping + spin2;
     const double root2 = along2 / (damping * damping) + across2 / turning2, root = std::sqrt(root2);
     const double fall = along2 / (damping * damping * damping) + across2 * damping / (turning2 * turning2);
     (s < root ? low : high) = s;
     const double change = (root - s) / (1 + s * h * drag.slope * fall / root2);
     // What is left after this change is of the order of its square.
-    if (std::abs(change) < 1e-5 * s) return drag.rate + drag.slope * change;
+    if (std::abs(change) < small_change * s) return drag.rate + drag.slope * change;
     s += change;
     if (!(s > low && s < high)) s = 0.5 * (low + high);
-    if (high - low <= 1e-10 * high) break;
+    if (high - low <= closed_bracket * high) break;
     drag = Drag(s, radius, viscosity);
   }
   return drag.rate;
@@ -107,14 +119,14 @@ void brake(const Braking& braking, double dt, double slip_normal, Vec3& change) 
 }  // namespace
 
 double drag_coefficient(double bubble_reynolds) {
-  if (bubble_reynolds > 1000) return 0.44;
-  return 24 / bubble_reynolds * (1 + 0.15 * std::pow(bubble_reynolds, 0.687));
+  if (bubble_reynolds > newton_reynolds) return newton_drag;
+  return 24 / bubble_reynolds * (1 + schiller_factor * std::pow(bubble_reynolds, schiller_power));
 }
 
 double drag_rate(double speed, double radius, double viscosity) {
   const double bubble_reynolds = 2 * radius * speed / viscosity;
-  if (bubble_reynolds > 1000) return 0.375 * 0.44 * speed / radius;
-  return 4.5 * viscosity / (radius * radius) * (1 + 0.15 * std::pow(bubble_reynolds, 0.687));
+  if (bubble_reynolds > newton_reynolds) return newton_rate * speed / radius;
+  return 4.5 * viscosity / (radius * radius) * (1 + schiller_factor * std::pow(bubble_reynolds, schiller_power));
 }
 
 double relaxation_time(const Gas& gas, double radius) {
@@ -124,7 +136,7 @@ double relaxation_time(const Gas& gas, double radius) {
 double terminal_speed(const Gas& gas, double radius) {
   const double push = std::abs(1 - 1 / gas.density_ratio) * length(gas.gravity);
   double low = 0, high = push / drag_rate(0, radius, gas.viscosity);  // the drag of Stokes is the least
-  for (int k = 0; k < 200 && high - low > 1e-15 * high; ++k) {
+  for (int k = 0; k < most_halvings && high - low > rounding * high; ++k) {
     const double middle = 0.5 * (low + high);
     (drag_rate(middle, radius, gas.viscosity) * middle < push ? low : high) = middle;
   }
@@ -169,10 +181,10 @@ Vec3 advance_substepped(const Gas& gas, double radius, const Surroundings& liqui
   for (std::size_t a = 0; a < 3; ++a) w[a] = liquid.velocity[a] - u[a];
   // No steady slip is larger than that of either branch of the drag law alone.
   const double push = length(slip.push);
-  const double steady = std::min(push / drag_rate(0, radius, gas.viscosity), std::sqrt(push * radius / (0.375 * 0.44)));
+  const double steady = std::min(push / drag_rate(0, radius, gas.viscosity), std::sqrt(push * radius / newton_rate));
   const double fastest = std::max(length(w), steady);
   const double explicit_limit = dt * slip.rate * (drag_rate(fastest, radius, gas.viscosity) + length(slip.spin));
-  const double steps = std::ceil(std::max({1.0, spacing / radius, 1.5 * explicit_limit}));
+  const double steps = std::ceil(std::max({1.0, spacing / radius, substeps_per_relaxation * explicit_limit}));
   const double part = dt / steps;
   Braking left = braking;
   for (double k = 0; k < steps; ++k) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/physics/bubbles/options.hpp"
 
+#include "spume/scene/document.hpp"
 #include "spume/scene/option.hpp"
 
 namespace spume {
@@ -11,6 +12,9 @@ auto gas(std::optional<double> BubbleDraft::*value) {
   return [value](Draft& d) -> std::optional<double>& { return d.bubbles.*value; };
 }
 
+// Defaults: C_l = C_vm = 0.5 of Derakhti & Kirby (2014), below King (2.10); 0.6 of Sato & Sekoguchi, King (2.23);
+// C_eps = 0.01 and the threshold 0.2, King section 3.4.1; c_def = 8.2 of Batchelor (1953), King (3.24); Sc = 700, sea
+// water at 20 C, King (3.34); hinze_radius / 20, King section 3.4.1.
 Section bubbles() {
   using B = BubbleOptions;
   using D = BubbleDraft;
@@ -21,7 +25,7 @@ Section bubbles() {
               "surface tension, in place of weber in SI")
       .absent("groups: weber")
       .option("density_ratio", gas(&D::density_ratio), "1", positive(), "density of the liquid over that of the gas")
-      .absent("1000 / 1.2")
+      .absent(brief(B{}.density_ratio) + ", water over air")
       .option("gas_density", gas(&D::gas_density), "kg/m3", positive(),
               "density of the gas, in place of density_ratio in SI")
       .absent("density_ratio")
@@ -139,7 +143,8 @@ Section cloud() {
       .option("radius", &C::radius, "length", not_negative(), "radius of the ball")
       .absent("0: at the centre")
       .option(
-          "number", [](C& c) -> std::int64_t& { return c.cloud.number; }, "", between(1, 1e8), "number of bubbles")
+          "number", [](C& c) -> std::int64_t& { return c.cloud.number; }, "", between(1, most_bubbles_of_a_cloud),
+          "number of bubbles")
       .option(
           "time", [](C& c) -> double& { return c.cloud.time; }, "time", not_negative(),
           "time of release, at rest relative to the liquid");

@@ -8,7 +8,7 @@
 
 namespace spume::bubbles {
 namespace {
-constexpr double near = 0.1;  // proximity from which a bubble interacts
+constexpr double near = 0.1;  // proximity from which a bubble interacts, below King (3.30)
 }
 
 double persistence_unit(double tension, double viscosity, double gravity, double schmidt) {

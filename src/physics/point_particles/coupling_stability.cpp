@@ -30,7 +30,10 @@ bool stable(const MotionModel& model, const CouplingScheme& scheme, double alpha
   return coupling_growth(model, scheme, alpha, h) < 1 + 1e-6;
 }
 
-constexpr double shortest = 1e-4, longest = 1e4;  // steps looked at, in response times
+// Steps looked at, in response times, and the ratio of one to the next: an interval of instability is wider than that.
+constexpr double shortest = 1e-4, longest = 1e4, next_step = 1.25;
+// Of the limits that are returned: far below the margin that a limit of a model needs.
+constexpr double accuracy = 1e-3;
 
 }  // namespace
 
@@ -42,14 +45,14 @@ double coupling_growth(const MotionModel& model, const CouplingScheme& scheme, d
 
 double stable_coupling_step(const MotionModel& model, const CouplingScheme& scheme, double alpha) {
   double below = 0;
-  for (double h = shortest; h <= longest; h *= 1.25) {
+  for (double h = shortest; h <= longest; h *= next_step) {
     if (stable(model, scheme, alpha, h)) {
       below = h;
       continue;
     }
     if (below == 0) return 0;
     double above = h;
-    while (above > 1.001 * below) {
+    while (above > (1 + accuracy) * below) {
       const double middle = std::sqrt(above * below);
       (stable(model, scheme, alpha, middle) ? below : above) = middle;
     }
@@ -61,7 +64,7 @@ double stable_coupling_step(const MotionModel& model, const CouplingScheme& sche
 double stable_volume_fraction(const MotionModel& model, const CouplingScheme& scheme, double most) {
   if (stable(model, scheme, most, shortest)) return most;
   double below = 0, above = most;
-  while (above - below > 1e-3 * most) {
+  while (above - below > accuracy * most) {
     const double middle = (above + below) / 2;
     (stable(model, scheme, middle, shortest) ? below : above) = middle;
   }

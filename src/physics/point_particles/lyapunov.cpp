@@ -23,6 +23,7 @@ double kaplan_yorke_dimension(const std::array<double, 6>& exponents) {
 LyapunovTracker::LyapunovTracker(const SplineField<double>& field, std::size_t count, double response_time,
                                  double diameter, std::uint64_t seed)
     : grid_(field.grid()),
+      // Far below the grid, where the flow is linear, and far above the rounding of positions, 1e-16 of the box.
       offset_(1e-5 * std::min({grid_.spacing(0), grid_.spacing(1), grid_.spacing(2)})),
       time_scale_(response_time),
       particles_(ParticleArrays{}),

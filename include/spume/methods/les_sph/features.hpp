@@ -8,9 +8,6 @@
 
 namespace spume::les_sph {
 
-// Steps of pressure.density_relaxation that mean never.
-constexpr double never_relaxed = 1e6;
-
 struct Features {
   explicit Features(const LoadedCase& loaded);
 

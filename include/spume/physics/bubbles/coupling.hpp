@@ -152,7 +152,7 @@ class BubbleCoupling {
   std::int64_t overfull_ = 0, most_overfull_ = 0;
   // What was last remarked on; the next time is when it has doubled.
   double most_bursts_ = 0;
-  std::size_t most_alive_ = 500'000;
+  std::size_t most_alive_ = 500'000;  // the first remark comes at a million, as many as particles of a large case
   std::int64_t trace_due_ = 0;
   std::string note_;
 

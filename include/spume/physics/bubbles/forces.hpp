@@ -49,6 +49,9 @@ double terminal_speed(const Gas& gas, double radius);
 Vec3 advance_stable(const Gas& gas, double radius, const Surroundings& liquid, const Vec3& velocity, double dt,
                     const Braking& braking);
 
+// Explicit Euler overshoots with one sub-step per relaxation time of the fastest motion and is unstable with a half.
+inline constexpr double substeps_per_relaxation = 1.5;
+
 // The same by explicit Euler in ceil(spacing / radius) sub-steps, more where these would be unstable.
 Vec3 advance_substepped(const Gas& gas, double radius, const Surroundings& liquid, const Vec3& velocity, double dt,
                         double spacing, const Braking& braking);

@@ -14,6 +14,11 @@ class Problems;
 struct Scene;
 struct Section;
 
+// Density of the gas of a case in SI that gives none, kg/m3: air at 20 C.
+inline constexpr double air_density = 1.2;
+// The state of so many bubbles alone takes 14 GB, 136 bytes each.
+inline constexpr double most_bubbles_of_a_cloud = 1e8;
+
 std::vector<Section> bubble_sections();
 
 // Gas and liquid, radii against the spacing, sources inside the domain; completes BubbleOptions.
