@@ -111,7 +111,7 @@ double Flow::leased_bytes() const {
     for (const auto& array : *vector) add(array);
   for (const auto* vector : {&intermediate_velocity, &next_velocity})
     for (const auto& array : *vector) add(array);
-  add(gradient_trace, divergence, potential_laplacian, moments.laplacian_diagonal, moments.kernel_sum,
+  add(gradient_trace, divergence, first_source, potential_laplacian, moments.laplacian_diagonal, moments.kernel_sum,
       rows.diagonal_shift, rows.diagonal, rows.weight, rows.row, rows.right_hand_side);
   return sum;
 }

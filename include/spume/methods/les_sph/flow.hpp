@@ -77,13 +77,15 @@ struct Flow {
   FloatVectorScratch viscous_acceleration;
   VectorScratch intermediate_velocity;  // u*
   VectorScratch next_velocity;          // u^{n+1}
-  Array<double> divergence;             // of u*; then what the pressure has to remove
-  Array<float> potential_laplacian;     // -lap of the potential by the sums of the matrix
+  Array<double> divergence;          // that the pressure removes: of u*, centred and relaxed by the stages that are on
+  Array<double> first_source;        // of the first pressure
+  Array<float> potential_laplacian;  // -lap of the potential by the sums of the matrix
   PressureRows rows;
   Array<double> surface_source;  // per particle near the surface
   struct {
-    double helmholtz = 0;     // 1 / (c dt)^2
-    double source_scale = 0;  // of the divergence
+    double helmholtz = 0;  // 1 / (c dt)^2
+    double source_scale = 0;
+    const Array<double>* source = nullptr;  // the divergence, or the first source
   } equation;
 
   std::size_t size() const { return particles.size(); }
@@ -132,7 +134,7 @@ struct Flow {
 
  private:
   void add_body_force(double t, double dt);
-  void add_gradient_trace(double factor);
+  void add_gradient_trace(double factor, Array<double>& sum);
   double regularisation() const;
   double row_scale(std::size_t i) const;
   void set_weights();
