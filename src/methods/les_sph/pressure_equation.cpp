@@ -163,7 +163,7 @@ void Flow::set_right_hand_side() {
           if (bubbles != nullptr && bubbles->mixture_pressure())
             source_factor *= sizes.alpha(i);
           else if (sizes.variable)
-            pressure_factor *= (*bubbles->volume_fraction)[i] / sizes.alpha(i);
+            pressure_factor *= bubbles->volume_fraction()[i] / sizes.alpha(i);
           const double known = (source_factor * source[i] + pressure_factor * (*pressure)[i] / density()) *
                                static_cast<float>(row_scale(i));
           rows.right_hand_side[i] = particles.volume * (known + rows.diagonal_shift[i] * potential_of(i));
