@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "spume/core/ledger.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace spume {
 
 using Clock = std::chrono::steady_clock;
@@ -29,6 +32,13 @@ void Ledger::count(std::string_view stage, std::int64_t calls, double seconds, d
   entry.particles += particles;
   entry.pairs += pairs;
   entry.bytes += bytes;
+}
+
+std::vector<Ledger::Entry> Ledger::entries() const {
+  std::vector<Entry> called;
+  std::copy_if(entries_.begin(), entries_.end(), std::back_inserter(called),
+               [](const Entry& entry) { return entry.calls > 0; });
+  return called;
 }
 
 std::size_t Ledger::find(std::string_view stage) {

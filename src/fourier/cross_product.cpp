@@ -246,117 +246,165 @@ void CrossProduct<T>::inverse_y(std::size_t remainder, std::size_t j, Scratch& s
   }
 }
 
+// Largest values of every lane.
+template <class T>
+struct CrossProduct<T>::PeakLanes {
+  using V = fourier::Vector<T>;
+  std::array<T, 3> per_spacing{};
+  V rate{}, square{};
+
+  void add_to(VelocityPeak& peak) const {
+    T largest_rate = 0, largest_square = 0;
+    for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l) {
+      largest_rate = rate[l] > largest_rate || rate[l] != rate[l] ? rate[l] : largest_rate;
+      largest_square = square[l] > largest_square || square[l] != square[l] ? square[l] : largest_square;
+    }
+    peak.rate = std::max(peak.rate, static_cast<double>(largest_rate));
+    peak.speed = std::max(peak.speed, std::sqrt(static_cast<double>(largest_square)));
+  }
+};
+
 // The z stage: groups of rows, one row per lane. Fields of a group travel in pairs (velocity component, vorticity
 // component) as the real and imaginary part of one complex field: half the transforms, all of the same kind.
 template <class T>
 void CrossProduct<T>::rows(Scratch& scratch, VelocityPeak& peak) const {
-  using V = fourier::Vector<T>;
-  using Traits = fourier::VectorTraits<T>;
-  constexpr std::size_t width = lanes<T>;
-  const std::size_t n = half_[2], row = work_row_;
-  std::array<T, 3> per_spacing{};
+  PeakLanes largest;
   for (std::size_t axis = 0; axis < 3; ++axis)
-    per_spacing[axis] = static_cast<T>(static_cast<double>(layout_.points[axis]) / layout_.lengths[axis]);
-  V fastest{}, largest{};
-  T largest_rate = 0, largest_square = 0;
+    largest.per_spacing[axis] = static_cast<T>(static_cast<double>(layout_.points[axis]) / layout_.lengths[axis]);
   for (std::size_t top = 0; top < half_[1]; top += group_rows<T>) {
-    // Modes by rows to modes by lanes, already paired: a + i b at k_z, and conj(a) + i conj(b), which stands at -k_z.
-    for (std::size_t g = 0; g < 2; ++g)
-      for (std::size_t c = 0; c < 3; ++c)
-        for (std::size_t l = 0; l < width; ++l) {
-          const Complex* const a = scratch.rows[c].data() + (top + g * width + l) * row;
-          const Complex* const b = scratch.rows[3 + c].data() + (top + g * width + l) * row;
-          Complex* const positive = scratch.turned[6 * g + c].data() + l;
-          Complex* const negative = scratch.turned[6 * g + 3 + c].data() + l;
-          const Complex mean(a[0].real(), b[0].real());  // real parts alone: no rounding leaks from one to the other
-          for (std::size_t iz = 0; iz < n; iz += vector_width<T>) {
-            const V at_a = load(a + iz), at_b = load(b + iz);
-            const V plus = at_a + times_i<T>(at_b), minus = conjugate<T>(at_a) + times_i<T>(conjugate<T>(at_b));
-            for (std::size_t e = 0; e < vector_width<T> && iz + e < n; ++e) {
-              fourier::store_element<T>(positive + (iz + e) * width, plus, e);
-              fourier::store_element<T>(negative + (iz + e) * width, minus, e);
-            }
-          }
-          positive[0] = mean;
-        }
+    rows_to_lanes(top, scratch);
     for (auto& sum : scratch.pair_modes) std::fill(sum.begin(), sum.end(), Complex{});
     for (std::size_t remainder = 0; remainder < phases_; ++remainder) {
-      const std::vector<Complex>& twist = twists_[2][remainder];
-      for (std::size_t g = 0; g < 2; ++g)
-        for (std::size_t c = 0; c < 3; ++c) {
-          const Complex* const positive = scratch.turned[6 * g + c].data();
-          const Complex* const negative = scratch.turned[6 * g + 3 + c].data();
-          Complex* const out = scratch.pair[3 * g + c].data();
-          copy_block(positive, out);
-          for (std::size_t j = 1; j < n; ++j) {
-            const Factor<T> low(twist[j]), high(twist[n + j]);
-            for (std::size_t q = 0; q < width; q += vector_width<T>)
-              store<T>(out + j * width + q,
-                       low * load(positive + j * width + q) + high * load(negative + (n - j) * width + q));
+      inverse_z(remainder, scratch);
+      multiply(scratch, largest);
+      forward_z(remainder, scratch);
+    }
+    lanes_to_rows(top, scratch);
+  }
+  largest.add_to(peak);
+}
+
+// Modes by rows to modes by lanes, already paired: a + i b at k_z, and conj(a) + i conj(b), which stands at -k_z.
+template <class T>
+void CrossProduct<T>::rows_to_lanes(std::size_t top, Scratch& scratch) const {
+  using V = fourier::Vector<T>;
+  constexpr std::size_t width = lanes<T>;
+  const std::size_t n = half_[2], row = work_row_;
+  for (std::size_t g = 0; g < 2; ++g)
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t l = 0; l < width; ++l) {
+        const Complex* const a = scratch.rows[c].data() + (top + g * width + l) * row;
+        const Complex* const b = scratch.rows[3 + c].data() + (top + g * width + l) * row;
+        Complex* const positive = scratch.turned[6 * g + c].data() + l;
+        Complex* const negative = scratch.turned[6 * g + 3 + c].data() + l;
+        const Complex mean(a[0].real(), b[0].real());  // real parts alone: no rounding leaks from one to the other
+        for (std::size_t iz = 0; iz < n; iz += vector_width<T>) {
+          const V at_a = load(a + iz), at_b = load(b + iz);
+          const V plus = at_a + times_i<T>(at_b), minus = conjugate<T>(at_a) + times_i<T>(conjugate<T>(at_b));
+          for (std::size_t e = 0; e < vector_width<T> && iz + e < n; ++e) {
+            fourier::store_element<T>(positive + (iz + e) * width, plus, e);
+            fourier::store_element<T>(negative + (iz + e) * width, minus, e);
           }
-          transform_[2].inverse(out);
         }
-      // In place of X, Y, Z = (u, omega_x), (v, omega_y), (w, omega_z): the product's components of both groups, as
-      // (x, y) of group 0, (x, y) of group 1, and (z of group 0, z of group 1). Im(conj(Y) Z) = v omega_z - w omega_y.
-      for (std::size_t i = 0; i < n * width; i += vector_width<T>) {
-        V z[2];
-        for (std::size_t g = 0; g < 2; ++g) {
-          const V x = load(&scratch.pair[3 * g][i]), y = load(&scratch.pair[3 * g + 1][i]),
-                  w = load(&scratch.pair[3 * g + 2][i]);
-          const V xs = fourier::swap<T>(x), ys = fourier::swap<T>(y), ws = fourier::swap<T>(w);
-          // The real entries hold the component, the imaginary ones its negative.
-          store<T>(&scratch.pair[g][i],
-                   Traits::real_part * (y * ws - ys * w) - Traits::imaginary_part * (w * xs - ws * x));
-          z[g] = x * ys - xs * y;
-          const V ax = x < 0 ? -x : x, ay = y < 0 ? -y : y, aw = w < 0 ? -w : w;
-          const V rate = (ax * per_spacing[0] + ay * per_spacing[1] + aw * per_spacing[2]) * Traits::real_part;
-          const V square = (x * x + y * y + w * w) * Traits::real_part;
-          largest = largest > rate ? largest : rate;
-          fastest = fastest > square ? fastest : square;
-        }
-        store<T>(&scratch.pair_z[i], Traits::real_part * z[0] - Traits::imaginary_part * z[1]);
+        positive[0] = mean;
       }
-      for (std::size_t p = 0; p < 3; ++p) {
-        Complex* const values = p < 2 ? scratch.pair[p].data() : scratch.pair_z.data();
-        transform_[2].forward(values);
-        Complex* const sum = scratch.pair_modes[p].data();
-        for (std::size_t j = 0; j < n; ++j) {
-          const Factor<T> low(std::conj(twist[j])), high(std::conj(twist[n + j]));
-          Complex *const lower = sum + j * width, *const upper = lower + n * width;
-          for (std::size_t q = 0; q < width; q += vector_width<T>) {
-            const V modes = load(values + j * width + q);
-            store<T>(lower + q, load(lower + q) + low * modes);
-            if (j > 0) store<T>(upper + q, load(upper + q) + high * modes);
-          }
-        }
+}
+
+template <class T>
+void CrossProduct<T>::inverse_z(std::size_t remainder, Scratch& scratch) const {
+  constexpr std::size_t width = lanes<T>;
+  const std::size_t n = half_[2];
+  const std::vector<Complex>& twist = twists_[2][remainder];
+  for (std::size_t g = 0; g < 2; ++g)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Complex* const positive = scratch.turned[6 * g + c].data();
+      const Complex* const negative = scratch.turned[6 * g + 3 + c].data();
+      Complex* const out = scratch.pair[3 * g + c].data();
+      copy_block(positive, out);
+      for (std::size_t j = 1; j < n; ++j) {
+        const Factor<T> low(twist[j]), high(twist[n + j]);
+        for (std::size_t q = 0; q < width; q += vector_width<T>)
+          store<T>(out + j * width + q,
+                   low * load(positive + j * width + q) + high * load(negative + (n - j) * width + q));
+      }
+      transform_[2].inverse(out);
+    }
+}
+
+// In place of X, Y, Z = (u, omega_x), (v, omega_y), (w, omega_z): the product's components of both groups, as (x, y) of
+// group 0, (x, y) of group 1, and (z of group 0, z of group 1). Im(conj(Y) Z) = v omega_z - w omega_y.
+template <class T>
+void CrossProduct<T>::multiply(Scratch& scratch, PeakLanes& peak) const {
+  using V = fourier::Vector<T>;
+  using Traits = fourier::VectorTraits<T>;
+  PeakLanes largest = peak;
+  for (std::size_t i = 0; i < half_[2] * lanes<T>; i += vector_width<T>) {
+    V z[2];
+    for (std::size_t g = 0; g < 2; ++g) {
+      const V x = load(&scratch.pair[3 * g][i]), y = load(&scratch.pair[3 * g + 1][i]),
+              w = load(&scratch.pair[3 * g + 2][i]);
+      const V xs = fourier::swap<T>(x), ys = fourier::swap<T>(y), ws = fourier::swap<T>(w);
+      // The real entries hold the component, the imaginary ones its negative.
+      store<T>(&scratch.pair[g][i], Traits::real_part * (y * ws - ys * w) - Traits::imaginary_part * (w * xs - ws * x));
+      z[g] = x * ys - xs * y;
+      const V ax = x < 0 ? -x : x, ay = y < 0 ? -y : y, aw = w < 0 ? -w : w;
+      const V rate =
+          (ax * largest.per_spacing[0] + ay * largest.per_spacing[1] + aw * largest.per_spacing[2]) * Traits::real_part;
+      const V square = (x * x + y * y + w * w) * Traits::real_part;
+      largest.rate = largest.rate > rate ? largest.rate : rate;
+      largest.square = largest.square > square ? largest.square : square;
+    }
+    store<T>(&scratch.pair_z[i], Traits::real_part * z[0] - Traits::imaginary_part * z[1]);
+  }
+  peak = largest;
+}
+
+template <class T>
+void CrossProduct<T>::forward_z(std::size_t remainder, Scratch& scratch) const {
+  using V = fourier::Vector<T>;
+  constexpr std::size_t width = lanes<T>;
+  const std::size_t n = half_[2];
+  const std::vector<Complex>& twist = twists_[2][remainder];
+  for (std::size_t p = 0; p < 3; ++p) {
+    Complex* const values = p < 2 ? scratch.pair[p].data() : scratch.pair_z.data();
+    transform_[2].forward(values);
+    Complex* const sum = scratch.pair_modes[p].data();
+    for (std::size_t j = 0; j < n; ++j) {
+      const Factor<T> low(std::conj(twist[j])), high(std::conj(twist[n + j]));
+      Complex *const lower = sum + j * width, *const upper = lower + n * width;
+      for (std::size_t q = 0; q < width; q += vector_width<T>) {
+        const V modes = load(values + j * width + q);
+        store<T>(lower + q, load(lower + q) + low * modes);
+        if (j > 0) store<T>(upper + q, load(upper + q) + high * modes);
       }
     }
-    // Two real fields from one complex: A_k = (P_k + conj P_-k) / 2, B_k = (P_k - conj P_-k) / 2i; back to rows.
-    for (std::size_t p = 0; p < 3; ++p) {
-      const Complex* const sum = scratch.pair_modes[p].data();
-      Complex* const first =
-          p < 2 ? scratch.rows[0].data() + (top + p * width) * row : scratch.rows[2].data() + top * row;
-      Complex* const second =
-          p < 2 ? scratch.rows[1].data() + (top + p * width) * row : scratch.rows[2].data() + (top + width) * row;
-      for (std::size_t iz = 0; iz < n; ++iz) {
-        const std::size_t partner = iz == 0 ? 0 : 2 * n - iz;
-        for (std::size_t q = 0; q < width; q += vector_width<T>) {
-          const V plus = load(sum + iz * width + q), minus = conjugate<T>(load(sum + partner * width + q));
-          const V a = T(0.5) * (plus + minus), b = T(-0.5) * times_i<T>(plus - minus);
-          for (std::size_t e = 0; e < vector_width<T>; ++e) {
-            fourier::store_element<T>(first + (q + e) * row + iz, a, e);
-            fourier::store_element<T>(second + (q + e) * row + iz, b, e);
-          }
+  }
+}
+
+// Two real fields from one complex: A_k = (P_k + conj P_-k) / 2, B_k = (P_k - conj P_-k) / 2i; back to rows.
+template <class T>
+void CrossProduct<T>::lanes_to_rows(std::size_t top, Scratch& scratch) const {
+  using V = fourier::Vector<T>;
+  constexpr std::size_t width = lanes<T>;
+  const std::size_t n = half_[2], row = work_row_;
+  for (std::size_t p = 0; p < 3; ++p) {
+    const Complex* const sum = scratch.pair_modes[p].data();
+    Complex* const first =
+        p < 2 ? scratch.rows[0].data() + (top + p * width) * row : scratch.rows[2].data() + top * row;
+    Complex* const second =
+        p < 2 ? scratch.rows[1].data() + (top + p * width) * row : scratch.rows[2].data() + (top + width) * row;
+    for (std::size_t iz = 0; iz < n; ++iz) {
+      const std::size_t partner = iz == 0 ? 0 : 2 * n - iz;
+      for (std::size_t q = 0; q < width; q += vector_width<T>) {
+        const V plus = load(sum + iz * width + q), minus = conjugate<T>(load(sum + partner * width + q));
+        const V a = T(0.5) * (plus + minus), b = T(-0.5) * times_i<T>(plus - minus);
+        for (std::size_t e = 0; e < vector_width<T>; ++e) {
+          fourier::store_element<T>(first + (q + e) * row + iz, a, e);
+          fourier::store_element<T>(second + (q + e) * row + iz, b, e);
         }
       }
     }
   }
-  for (std::size_t l = 0; l < sizeof(V) / sizeof(T); ++l) {
-    largest_rate = largest[l] > largest_rate || largest[l] != largest[l] ? largest[l] : largest_rate;
-    largest_square = fastest[l] > largest_square || fastest[l] != fastest[l] ? fastest[l] : largest_square;
-  }
-  peak.rate = std::max(peak.rate, static_cast<double>(largest_rate));
-  peak.speed = std::max(peak.speed, std::sqrt(static_cast<double>(largest_square)));
 }
 
 template <class T>

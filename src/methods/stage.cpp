@@ -20,6 +20,11 @@ void Plan::repeat(std::function<bool()> more, const std::function<void()>& body)
   if (loops_[loop].first == loops_[loop].last) throw std::logic_error("the plan repeats nothing");
 }
 
+void Plan::list(Ledger& ledger) const {
+  for (const Stage& stage : stages_)
+    if (stage.on) ledger.list(stage.name);
+}
+
 // Stages first to last (exclusive), where `loop` is the first loop that begins at `first` or later.
 void Plan::run_range(const Run& run, std::size_t first, std::size_t last, std::size_t loop) const {
   for (std::size_t at = first; at < last;) {

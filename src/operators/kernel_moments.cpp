@@ -154,26 +154,21 @@ std::vector<SurfaceLayer> lattice_surface(int dimensions, KernelKind kernel, dou
       }
       layers.push_back(result);
     }
-    for (int layer = 0; layer <= depth; ++layer) {
-      double filtered = 0, weight = 0;
-      for (int k = -n; k <= n; ++k) {
-        if (layer + k < 0) continue;
-        const double w = sum[static_cast<std::size_t>(std::abs(k))].w;
-        weight += w;
-        if (layer + k <= depth) filtered += w * layers[static_cast<std::size_t>(layer + k)].normal;
+    // Shepard filter of what `from` gives per layer; below the last layer it is zero.
+    const auto filter = [&](double SurfaceLayer::*from, double SurfaceLayer::*to) {
+      for (int layer = 0; layer <= depth; ++layer) {
+        double filtered = 0, weight = 0;
+        for (int k = -n; k <= n; ++k) {
+          if (layer + k < 0) continue;
+          const double w = sum[static_cast<std::size_t>(std::abs(k))].w;
+          weight += w;
+          if (layer + k <= depth) filtered += w * layers[static_cast<std::size_t>(layer + k)].*from;
+        }
+        layers[static_cast<std::size_t>(layer)].*to = filtered / weight;
       }
-      layers[static_cast<std::size_t>(layer)].smoothed_normal = filtered / weight;
-    }
-    for (int layer = 0; layer <= depth; ++layer) {
-      double filtered = 0, weight = 0;
-      for (int k = -n; k <= n; ++k) {
-        if (layer + k < 0) continue;
-        const double w = sum[static_cast<std::size_t>(std::abs(k))].w;
-        weight += w;
-        if (layer + k <= depth) filtered += w * layers[static_cast<std::size_t>(layer + k)].smoothed_normal;
-      }
-      layers[static_cast<std::size_t>(layer)].twice_smoothed_normal = filtered / weight;
-    }
+    };
+    filter(&SurfaceLayer::normal, &SurfaceLayer::smoothed_normal);
+    filter(&SurfaceLayer::smoothed_normal, &SurfaceLayer::twice_smoothed_normal);
   });
   return layers;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "spume/core/parallel.hpp"
+#include "spume/core/periodic_grid.hpp"
 
 namespace spume {
 
@@ -51,8 +52,7 @@ ParticleBins::ParticleBins(const UniformGrid& box, std::array<bool, 3> periodic,
 }
 
 double ParticleBins::wrapped(int axis, double coordinate) const {
-  if (!periodic_[axis]) return coordinate;
-  return coordinate - length_[axis] * std::floor((coordinate - lower_[axis]) / length_[axis]);
+  return periodic_[axis] ? wrap_periodic(coordinate, lower_[axis], length_[axis]) : coordinate;
 }
 
 std::size_t ParticleBins::cell_along(int axis, double coordinate) const {

@@ -44,6 +44,11 @@ void Arrangement::find_neighbours(const ParticleStore& particles, const VectorFi
   packed.invalidate();
 }
 
+void Arrangement::set_sizes(const ParticleSizes* sizes) {
+  context.length_ratio = sizes == nullptr ? nullptr : sizes->length_ratio.data();
+  context.volume_ratio = sizes == nullptr ? nullptr : sizes->volume_ratio.data();
+}
+
 double Arrangement::sort_traffic(const ParticleStore& particles) const {
   double permuted = 0;
   if (!table.already_sorted())
@@ -51,6 +56,11 @@ double Arrangement::sort_traffic(const ParticleStore& particles) const {
       if (field->lifetime != Lifetime::result)
         permuted += std::visit([](const auto& array) { return 2.0 * sizeof(array[0]) + 4; }, field->values);
   return table.build_traffic() + static_cast<double>(particles.size()) * permuted;
+}
+
+// Every image has a place, a source and a path.
+double Arrangement::image_traffic() const {
+  return static_cast<double>(images.size()) * (8 * context.dimensions + 4 + 4);
 }
 
 // Coordinates are written in float and gathered from by way of the cells; lists are written once, with their sizes.

@@ -7,6 +7,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/core/periodic_grid.hpp"
 
 namespace spume {
 namespace {
@@ -180,11 +181,7 @@ void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* veloci
     double& x = position[axis];
     const double lower = at[axis][0], upper = at[axis][1];
     if (domain_.periodic(axis)) {
-      if (x < lower || x >= upper) {
-        const double length = upper - lower;
-        x -= length * std::floor((x - lower) / length);
-        if (x >= upper) x = lower;  // rounding of a point just below the lower side
-      }
+      x = wrap_periodic(x, lower, upper - lower);
       continue;
     }
     // Reflected, and never so far back that a fast particle crosses the domain.

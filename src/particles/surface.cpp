@@ -51,8 +51,6 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, const
   ScratchArray<float> of_particle(particles.scratch(), n);
   surface_depths(arrangement.context, arrangement.packed, {resolution_.spacing, near_surface, read(moments.normal)},
                  of_particle, depth);
-  if (options_.keep_smoothed_normals)
-    for (int axis = 0; axis < resolution_.dimensions; ++axis) smoothed_normal[axis].resize(n);
   if (options_.smooth_normals) {
     particles.scratch().lease(smoothed_normal, resolution_.dimensions, n);
     filter_vector_subset(arrangement.context, arrangement.packed, read(moments.normal), reflection, surface_particles,
@@ -62,7 +60,7 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, const
 }
 
 void FreeSurface::release_smoothed_normals(ParticleStore& particles) {
-  if (!options_.keep_smoothed_normals) particles.scratch().release(smoothed_normal);
+  particles.scratch().release(smoothed_normal);
 }
 
 // m = sum_j g d, from the outward normal -h m.
@@ -125,8 +123,14 @@ double FreeSurface::bytes() const {
   for (const auto* flags : {&at_surface, &pressure_fixed}) sum += flags->bytes();
   for (const auto* values : {&interior_weight, &depth}) sum += values->bytes();
   for (const auto* numbers : {&surface_particles, &near_surface}) sum += numbers->bytes();
-  if (options_.keep_smoothed_normals)
-    for (const auto& component : smoothed_normal) sum += component.bytes();
+  return sum;
+}
+
+double FreeSurface::traffic() const {
+  double sum = static_cast<double>(at_surface.size() + pressure_fixed.size());
+  for (const std::size_t size : {interior_weight.size(), depth.size(), surface_particles.size(), near_surface.size(),
+                                 smoothed_normal[0].size(), smoothed_normal[1].size(), smoothed_normal[2].size()})
+    sum += 4 * static_cast<double>(size);
   return sum;
 }
 

@@ -4,7 +4,9 @@
 #include <atomic>
 #include <climits>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "spume/core/parallel.hpp"
 #include "spume/solvers/cell_multigrid.hpp"
@@ -72,14 +74,12 @@ void CellMultigrid::set_geometry(const CellGeometry& geometry) {
   geometry_ = geometry;
 }
 
-void CellMultigrid::choose_box(std::span<const double> const (&position)[3], std::span<const float> interior) {
+// The box around the particles of the liquid that are at finite places.
+CellMultigrid::Range CellMultigrid::liquid_range(std::span<const double> const (&position)[3],
+                                                 std::span<const float> interior) const {
   const auto dimensions = static_cast<std::size_t>(geometry_.dimensions);
-  struct Range {
-    double lower[3], upper[3];
-    bool any;
-  };
-  const Range liquid = parallel_reduce(
-      particles_, Range{{0, 0, 0}, {0, 0, 0}, false},
+  return parallel_reduce(
+      particles_, Range{},
       [&](std::size_t first, std::size_t last) {
         Range range{{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, false};
         for (std::size_t i = first; i < last; ++i) {
@@ -104,6 +104,40 @@ void CellMultigrid::choose_box(std::span<const double> const (&position)[3], std
         }
         return a;
       });
+}
+
+// Cells of about `size` along an axis.
+void CellMultigrid::set_axis(std::size_t a, double size) {
+  Axis& axis = axis_[a];
+  axis.periodic = geometry_.periodic[a];
+  axis.lower_wall = !axis.periodic && geometry_.wall[a][0];
+  axis.upper_wall = !axis.periodic && geometry_.wall[a][1];
+  axis.origin = geometry_.lower[a];
+  axis.width = size;
+  axis.count = 0;
+  if (axis.periodic || (axis.lower_wall && axis.upper_wall)) {
+    axis.count = even_count(geometry_.upper[a] - geometry_.lower[a], size);
+    axis.width = (geometry_.upper[a] - geometry_.lower[a]) / axis.count;
+  } else if (axis.upper_wall) {
+    axis.origin = geometry_.upper[a];
+  }
+}
+
+// First cell of the box along an axis, and how many: one empty cell beyond the liquid, unless there is a wall.
+std::array<int, 2> CellMultigrid::box_along(const Axis& axis, double lower, double upper) const {
+  if (axis.periodic) return {0, axis.count};
+  int first = floor_to(static_cast<int>(std::floor((lower - axis.origin) / axis.width)) - 1, box_alignment);
+  int last = -floor_to(-(static_cast<int>(std::floor((upper - axis.origin) / axis.width)) + 2), box_alignment);
+  if (axis.lower_wall) first = std::max(first, 0);
+  if (axis.upper_wall) last = std::min(last, axis.count);
+  if (axis.lower_wall) last = std::max(last, first + 1);
+  if (axis.upper_wall) first = std::min(first, last - 1);
+  return {first, last - first};
+}
+
+void CellMultigrid::choose_box(std::span<const double> const (&position)[3], std::span<const float> interior) {
+  const auto dimensions = static_cast<std::size_t>(geometry_.dimensions);
+  const Range liquid = liquid_range(position, interior);
   empty_ = !liquid.any;
   std::array<int, 3> cells{1, 1, 1};
   const double most_cells = std::max(fewest_cells, most_cells_per_particle * static_cast<double>(particles_));
@@ -111,19 +145,8 @@ void CellMultigrid::choose_box(std::span<const double> const (&position)[3], std
     double total = 1;
     bool countable = true;
     for (std::size_t a = 0; a < dimensions; ++a) {
-      Axis& axis = axis_[a];
-      axis.periodic = geometry_.periodic[a];
-      axis.lower_wall = !axis.periodic && geometry_.wall[a][0];
-      axis.upper_wall = !axis.periodic && geometry_.wall[a][1];
-      axis.origin = geometry_.lower[a];
-      axis.width = size;
-      axis.count = 0;
-      if (axis.periodic || (axis.lower_wall && axis.upper_wall)) {
-        axis.count = even_count(geometry_.upper[a] - geometry_.lower[a], size);
-        axis.width = (geometry_.upper[a] - geometry_.lower[a]) / axis.count;
-      } else if (axis.upper_wall) {
-        axis.origin = geometry_.upper[a];
-      }
+      set_axis(a, size);
+      const Axis& axis = axis_[a];
       const double lowest = std::floor((liquid.lower[a] - axis.origin) / axis.width);
       const double highest = std::floor((liquid.upper[a] - axis.origin) / axis.width);
       total *= axis.count > 0 && axis.periodic ? axis.count : highest - lowest + 2 + box_alignment;
@@ -131,38 +154,41 @@ void CellMultigrid::choose_box(std::span<const double> const (&position)[3], std
     }
     if (total > most_cells || !countable) continue;
     for (std::size_t a = 0; a < dimensions; ++a) {
-      const Axis& axis = axis_[a];
-      width_[a] = axis.width;
-      if (axis.periodic) {
-        first_cell_[a] = 0;
-        cells[a] = axis.count;
-        continue;
-      }
-      // One empty cell beyond the liquid, unless there is a wall.
-      int first =
-          floor_to(static_cast<int>(std::floor((liquid.lower[a] - axis.origin) / axis.width)) - 1, box_alignment);
-      int last =
-          -floor_to(-(static_cast<int>(std::floor((liquid.upper[a] - axis.origin) / axis.width)) + 2), box_alignment);
-      const int end = axis.count > 0 ? axis.count : 0;
-      if (axis.lower_wall) first = std::max(first, 0);
-      if (axis.upper_wall) last = std::min(last, end);
-      if (axis.lower_wall) last = std::max(last, first + 1);
-      if (axis.upper_wall) first = std::min(first, last - 1);
+      width_[a] = axis_[a].width;
+      inverse_width_[a] = 1 / width_[a];
+      const auto [first, count] = box_along(axis_[a], liquid.lower[a], liquid.upper[a]);
       first_cell_[a] = first;
-      cells[a] = last - first;
+      cells[a] = count;
     }
     break;
   }
   hierarchy_.resize(cells, geometry_.periodic);
 }
 
+// Particles to cells: what each interpolates between, and the list of particles of every cell.
 void CellMultigrid::bin(std::span<const double> const (&position)[3], std::span<const float> interior) {
-  const auto dimensions = static_cast<std::size_t>(geometry_.dimensions);
+  clear_cells();
+  parallel_blocks(particles_, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) place(p, position, interior[p]);
+    // Apart from the loop above: a locked increment waits for every store before it.
+    for (std::size_t p = first; p < last; ++p)
+      if (corner_[p] >= 0)
+        rank_[p] = std::atomic_ref<std::int32_t>(start_[static_cast<std::size_t>(stencil_cell_[p])])
+                       .fetch_add(1, std::memory_order_relaxed);
+  });
+  counts_to_starts();
+  parallel_blocks(particles_, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p)
+      if (corner_[p] >= 0)
+        order_[static_cast<std::size_t>(start_[static_cast<std::size_t>(stencil_cell_[p])] + rank_[p])] =
+            static_cast<std::int32_t>(p);
+  });
+  sort_cells();
+}
+
+void CellMultigrid::clear_cells() {
   const CellLevel& level = hierarchy_.finest();
-  const auto& n = level.cells;
-  const std::size_t row_pitch = static_cast<std::size_t>(n[0]) + 1;
-  const std::size_t plane_pitch = row_pitch * (static_cast<std::size_t>(n[1]) + 1);
-  const std::size_t stencil_cells = level.rows() * static_cast<std::size_t>(n[0]);
+  const std::size_t stencil_cells = level.rows() * static_cast<std::size_t>(level.cells[0]);
   stencil_.resize(particles_);
   corner_.resize(particles_);
   rank_.resize(particles_);
@@ -175,92 +201,73 @@ void CellMultigrid::bin(std::span<const double> const (&position)[3], std::span<
     std::fill(start_.data() + first, start_.data() + last, 0);
     std::fill(status_.data() + first, status_.data() + last, std::uint8_t{no_liquid});
   });
-  const double inverse_width[3] = {1 / width_[0], 1 / width_[1], dimensions == 3 ? 1 / width_[2] : 0};
-  parallel_blocks(particles_, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t p = first; p < last; ++p) {
-      corner_[p] = -1;
-      stencil_[p] = {0, 0, 0, 0};
-      if (!(interior[p] > 0)) continue;
-      int cell[3] = {0, 0, 0}, own[3] = {0, 0, 0};
-      float fraction[3] = {0, 0, 0};
-      bool finite = true;
-      for (std::size_t a = 0; a < dimensions; ++a) {
-        // Linear between cell centres; constant beyond the last centre before a wall.
-        const double s = (position[a][p] - axis_[a].origin) * inverse_width[a] - 0.5 - first_cell_[a];
-        if (!(std::abs(s) < INT_MAX / 2)) {
-          finite = false;
-          break;
-        }
-        const int count = n[a];
-        int base = static_cast<int>(s) - (s < 0 ? 1 : 0);
-        double f = s - base;
-        if (base < 0 || base >= count - 1) {
-          if (axis_[a].periodic) {
-            base = ((base % count) + count) % count;
-          } else {
-            base = base < 0 ? 0 : count - 1;
-            f = 0;
-          }
-        }
-        cell[a] = base;
-        fraction[a] = static_cast<float>(f);
-        own[a] = base + static_cast<int>(f + f);  // the nearer of two centres, without a branch that is a coin toss
-        own[a] = own[a] == count ? 0 : own[a];
-      }
-      if (!finite) continue;
-      stencil_[p] = {fraction[0], fraction[1], fraction[2], interior[p]};
-      corner_[p] =
-          static_cast<std::int32_t>(static_cast<std::size_t>(cell[2]) * plane_pitch +
-                                    static_cast<std::size_t>(cell[1]) * row_pitch + static_cast<std::size_t>(cell[0]));
-      const auto index = [&](const int(&c)[3]) {
-        return static_cast<std::size_t>((c[2] * n[1] + c[1])) * static_cast<std::size_t>(n[0]) +
-               static_cast<std::size_t>(c[0]);
-      };
-      const std::atomic_ref<std::uint8_t> status(status_[index(own)]);
-      if (status.load(std::memory_order_relaxed) != interior_cell)
-        status.store(interior_cell, std::memory_order_relaxed);
-      stencil_cell_[p] = static_cast<std::int32_t>(index(cell));
+}
+
+// Linear between cell centres; constant beyond the last centre before a wall.
+bool CellMultigrid::place_along(std::size_t axis, double position, CellPlace& place) const {
+  const double s = (position - axis_[axis].origin) * inverse_width_[axis] - 0.5 - first_cell_[axis];
+  if (!(std::abs(s) < INT_MAX / 2)) return false;
+  const int count = hierarchy_.finest().cells[axis];
+  int base = static_cast<int>(s) - (s < 0 ? 1 : 0);
+  double f = s - base;
+  if (base < 0 || base >= count - 1) {
+    if (axis_[axis].periodic) {
+      base = ((base % count) + count) % count;
+    } else {
+      base = base < 0 ? 0 : count - 1;
+      f = 0;
     }
-    // Apart from the loop above: a locked increment waits for every store before it.
-    for (std::size_t p = first; p < last; ++p)
-      if (corner_[p] >= 0)
-        rank_[p] = std::atomic_ref<std::int32_t>(start_[static_cast<std::size_t>(stencil_cell_[p])])
-                       .fetch_add(1, std::memory_order_relaxed);
-  });
-  const auto row_cells = [&](std::size_t row) { return start_.data() + row * static_cast<std::size_t>(n[0]); };
+  }
+  place.lowest[axis] = base;
+  place.fraction[axis] = static_cast<float>(f);
+  // The nearer of two centres, without a branch that is a coin toss.
+  const int own = base + static_cast<int>(f + f);
+  place.own[axis] = own == count ? 0 : own;
+  return true;
+}
+
+void CellMultigrid::place(std::size_t p, std::span<const double> const (&position)[3], float interior) {
+  corner_[p] = -1;
+  stencil_[p] = {0, 0, 0, 0};
+  if (!(interior > 0)) return;
+  CellPlace at;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(geometry_.dimensions); ++a)
+    if (!place_along(a, position[a][p], at)) return;
+  stencil_[p] = {at.fraction[0], at.fraction[1], at.fraction[2], interior};
+  const auto& n = hierarchy_.finest().cells;
+  const auto index = [](const int(&cell)[3], int columns, int rows) {
+    return (static_cast<std::size_t>(cell[2]) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(cell[1])) *
+               static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(cell[0]);
+  };
+  corner_[p] = static_cast<std::int32_t>(index(at.lowest, n[0] + 1, n[1] + 1));
+  stencil_cell_[p] = static_cast<std::int32_t>(index(at.lowest, n[0], n[1]));
+  const std::atomic_ref<std::uint8_t> status(status_[index(at.own, n[0], n[1])]);
+  if (status.load(std::memory_order_relaxed) != interior_cell) status.store(interior_cell, std::memory_order_relaxed);
+}
+
+// From how many particles a cell holds to where its list begins.
+void CellMultigrid::counts_to_starts() {
+  const CellLevel& level = hierarchy_.finest();
+  const auto columns = static_cast<std::size_t>(level.cells[0]);
+  const auto row_cells = [&](std::size_t row) { return start_.data() + row * columns; };
   parallel_blocks(level.rows(), level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t row = first; row < last; ++row) {
-      std::int32_t total = 0;
-      for (int i = 0; i < n[0]; ++i) total += row_cells(row)[i];
-      row_total_[row] = total;
-    }
+    for (std::size_t row = first; row < last; ++row)
+      row_total_[row] = std::accumulate(row_cells(row), row_cells(row) + columns, std::int32_t{0});
   });
   std::int32_t running = 0;
-  for (std::size_t row = 0; row < level.rows(); ++row) {
-    const std::int32_t total = row_total_[row];
-    row_total_[row] = running;
-    running += total;
-  }
+  for (std::size_t row = 0; row < level.rows(); ++row) running += std::exchange(row_total_[row], running);
   row_total_[level.rows()] = running;
-  start_[stencil_cells] = running;
+  start_[level.rows() * columns] = running;
   parallel_blocks(level.rows(), level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t row = first; row < last; ++row) {
-      std::int32_t at = row_total_[row];
-      for (int i = 0; i < n[0]; ++i) {
-        const std::int32_t count = row_cells(row)[i];
-        row_cells(row)[i] = at;
-        at += count;
-      }
-    }
+    for (std::size_t row = first; row < last; ++row)
+      std::exclusive_scan(row_cells(row), row_cells(row) + columns, row_cells(row), row_total_[row]);
   });
-  parallel_blocks(particles_, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t p = first; p < last; ++p)
-      if (corner_[p] >= 0)
-        order_[static_cast<std::size_t>(start_[static_cast<std::size_t>(stencil_cell_[p])] + rank_[p])] =
-            static_cast<std::int32_t>(p);
-  });
-  // Arrival order depends on the threads; index order does not.
-  parallel_blocks(stencil_cells, 4 * default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+}
+
+// Arrival order depends on the threads; index order does not.
+void CellMultigrid::sort_cells() {
+  parallel_blocks(start_.size() - 1, 4 * default_block, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t c = first; c < last; ++c) {
       std::int32_t* here = order_.data() + start_[c];
       const std::int32_t count = start_[c + 1] - start_[c];

@@ -128,7 +128,7 @@ std::string remark_of(Simulation& run) {
   return text;
 }
 
-double liquid_sum(const Simulation& run, const FloatVectorField& field, int axis) {
+double liquid_sum(const Simulation& run, const ConstFloatVectorField& field, int axis) {
   double sum = 0;
   for (std::size_t i = 0; i < run.method.flow().size(); ++i) sum += (*field[axis])[i];
   return sum * run.method.flow().particles.volume;
@@ -176,7 +176,7 @@ TEST_P(Closures, WhatParticlesReceiveIsWhatBubblesGive) {
       ASSERT_GT(size, 0);
       // Float weights: a few roundings each.
       for (int axis = 0; axis < 3; ++axis)
-        EXPECT_NEAR(liquid_sum(run, run.method.flow().bubbles->exchange, axis), given[axis], 2e-6 * size);
+        EXPECT_NEAR(liquid_sum(run, run.method.flow().bubbles->exchange(), axis), given[axis], 2e-6 * size);
     }
   }
 }
@@ -204,7 +204,7 @@ TEST(Bubbles, TakeTheirVolumeFromTheLiquid) {
   const les_sph::Flow& flow = run.method.flow();
   double gas = 0;
   for (std::size_t i = 0; i < flow.size(); ++i) {
-    const double alpha = (*flow.bubbles->volume_fraction)[i];
+    const double alpha = flow.bubbles->volume_fraction()[i];
     EXPECT_LE(alpha, 1);
     gas += flow.particles.volume / alpha * (1 - alpha);
   }
@@ -238,7 +238,7 @@ TEST(Bubbles, AndLiquidSeeEachOtherThroughTheKernel) {
   for (std::size_t i = 0; i < flow.size(); ++i) {
     double sum = 0;
     for (std::size_t b = 0; b < population.size(); ++b) sum += weight(i, b) * (*population.volume)[b];
-    EXPECT_NEAR((*flow.bubbles->volume_fraction)[i], 1 - sum, 1e-6);
+    EXPECT_NEAR(flow.bubbles->volume_fraction()[i], 1 - sum, 1e-6);
     some = some || sum > 0.01;
   }
   EXPECT_TRUE(some);
@@ -369,6 +369,21 @@ TEST(Bubbles, CostNothingInASceneWithoutThem) {
   for (const Stage& stage : run.method.plan())
     EXPECT_FALSE(stage.on && stage.name.find("bubble") != std::string::npos) << stage.name;
   EXPECT_EQ(run.series().count("bubbles"), 0U);
+}
+
+TEST(Bubbles, HaveStagesWhoseTrafficIsCountedWhileTheyLive) {
+  for (const std::string& text : {periodic_cube, stirred_tank}) {
+    Simulation run(text);
+    run.steps(2, 0.004);
+    EXPECT_EQ(uncounted_stages(run), "");
+  }
+  Simulation later(periodic_cube, {"bubble_cloud.0.time=5"});
+  later.steps(2, 0.004);
+  for (const Ledger::Entry& entry : later.ledger.entries()) {
+    const bool of_bubbles = entry.stage == "bubble motion" || entry.stage == "volume fraction" ||
+                            entry.stage == "bubble forces" || entry.stage == "bubble events";
+    EXPECT_EQ(entry.bytes > 0, !of_bubbles) << entry.stage;
+  }
 }
 
 // Sources, breakup, entrainment, fluctuations, bursting, under every closure, momentum form and integrator.

@@ -114,7 +114,18 @@ TEST(LesSphPlan, AnOpenInviscidPatchNeedsNeitherImagesNorViscosityNorPotential) 
   EXPECT_FALSE(any_contains(arrays, "potential"));
 }
 
-// What is printed as the plan is what ran.
+// Its own array: the divergence is that of a step.
+TEST(LesSphPlan, TheFirstPressureHasItsOwnSource) {
+  StagedFlow before(taylor_green), after(taylor_green);
+  before.start_before("first source");
+  after.start_before("matrix");
+  EXPECT_TRUE(after.flow.divergence.empty());
+  ASSERT_EQ(after.flow.first_source.size(), after.flow.size());
+  for (std::size_t i = 0; i < after.flow.size(); ++i)
+    EXPECT_EQ(after.flow.first_source[i], double{before.flow.gradient_trace[i]});
+}
+
+// What is printed as the plan is what ran, in its order, and the ledger knows what each stage reads and writes.
 TEST(LesSphPlan, IsWhatTheLedgerTimes) {
   const std::vector<std::pair<std::string, Overrides>> scenes{
       {taylor_green, {}},
@@ -128,12 +139,11 @@ TEST(LesSphPlan, IsWhatTheLedgerTimes) {
     Simulation run(text, overrides);
     run.steps(1, 0.002);
     std::vector<std::string> planned, timed;
-    for (const StagePart part : {StagePart::start, StagePart::step})
-      for (const Stage& stage : run.method.plan())
-        if (stage.on && (stage.part == part || (part == StagePart::start && stage.part == StagePart::both)))
-          planned.push_back(stage.name);
+    for (const Stage& stage : run.method.plan())
+      if (stage.on) planned.push_back(stage.name);
     for (const auto& entry : run.ledger.entries()) timed.push_back(entry.stage);
     EXPECT_EQ(timed, planned) << text;
+    EXPECT_EQ(uncounted_stages(run), "") << text;
     for (const Stage& stage : run.method.plan()) EXPECT_FALSE(stage.reason.empty()) << stage.name;
   }
 }

@@ -94,6 +94,16 @@ struct Simulation {
   }
 };
 
+// Stages of a plan that ran and whose traffic nobody counts, or that name no array.
+inline std::string uncounted_stages(const Simulation& run) {
+  std::string names;
+  for (const Stage& stage : run.method.plan())
+    if (stage.on && stage.reads.empty() && stage.writes.empty()) names += stage.name + " names no array; ";
+  for (const Ledger::Entry& entry : run.ledger.entries())
+    if (!(entry.bytes > 0)) names += entry.stage + " has no traffic; ";
+  return names;
+}
+
 // A flow whose stages a test runs one after the other.
 struct StagedFlow {
   LoadedCase loaded;
@@ -105,13 +115,15 @@ struct StagedFlow {
   StagedFlow(const StagedFlow&) = delete;
   StagedFlow& operator=(const StagedFlow&) = delete;
 
-  // Runs the stages of a step that come before `last`.
+  // Runs the stages of a step that come before `last`, or those of the start.
   void run_before(const std::string& last, double dt) { run_stages(plan.stages(), last, dt); }
-  static void run_stages(const std::vector<Stage>& stages, const std::string& last, double dt) {
+  void start_before(const std::string& last) { run_stages(plan.stages(), last, 0, StagePart::start); }
+  static void run_stages(const std::vector<Stage>& stages, const std::string& last, double dt,
+                         StagePart part = StagePart::step) {
     for (const Stage& stage : stages) {
       if (stage.name == last) return;
       StageRun run{.dt = dt};
-      if (stage.on && stage.part != StagePart::start) stage.work(run);
+      if (stage.on && (stage.part == part || stage.part == StagePart::both)) stage.work(run);
     }
     throw std::logic_error("no stage '" + last + "'");
   }

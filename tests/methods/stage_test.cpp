@@ -61,6 +61,21 @@ TEST(Plan, RunsInAStartWhatBelongsToIt) {
   EXPECT_THAT(run.order, ElementsAre("start", "both", "both"));
 }
 
+// A start and the steps after it run different stages.
+TEST(Plan, IsTheOrderOfTheLedger) {
+  Recorded run;
+  run.add("a", StagePart::both);
+  run.add("b");
+  run.add("c", StagePart::start);
+  run.add("never", StagePart::step, [] { return false; });
+  run.add("d", StagePart::both);
+  run.plan.run_start(1, run.ledger);
+  run.plan.run_step(0.1, 1, run.ledger);
+  std::vector<std::string> listed;
+  for (const Ledger::Entry& entry : run.ledger.entries()) listed.push_back(entry.stage);
+  EXPECT_THAT(listed, ElementsAre("a", "b", "c", "d"));
+}
+
 TEST(Plan, SkipsWhatIsNotDueWithoutCountingIt) {
   Recorded run;
   int step = 0;

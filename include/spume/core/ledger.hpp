@@ -47,14 +47,18 @@ class Ledger {
     double particles_, pairs_, bytes_;
   };
 
-  // The entry is found by name, or appended: entries keep the order of their first call.
+  // The entry is found by name, or appended.
   [[nodiscard]] Scope time(std::string_view stage, double particles = 0, double pairs = 0, double bytes = 0);
 
   // Adds work to a stage that a caller timed or counted itself (solver iterations).
   void count(std::string_view stage, std::int64_t calls, double seconds, double particles, double pairs,
              double bytes = 0);
 
-  const std::vector<Entry>& entries() const { return entries_; }
+  // Gives a stage its place before it runs: a start runs some stages, the first step others between them.
+  void list(std::string_view stage) { find(stage); }
+
+  // Of stages that ran, in the order in which they were listed or first called.
+  std::vector<Entry> entries() const;
   void clear() { entries_.clear(); }
 
  private:

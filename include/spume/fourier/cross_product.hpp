@@ -68,12 +68,18 @@ class CrossProduct {
 
  private:
   struct Scratch;  // of a thread
+  struct PeakLanes;
   // Twists of one axis by remainder: at[r][j] for wavenumber j, at[r][n + j] for wavenumber j - n.
   using Twists = std::vector<std::vector<Complex>>;
 
   void plane(std::size_t j, Scratch& scratch, VelocityPeak& peak);
   void inverse_y(std::size_t remainder, std::size_t j, Scratch& scratch) const;
   void rows(Scratch& scratch, VelocityPeak& peak) const;
+  void rows_to_lanes(std::size_t top, Scratch& scratch) const;
+  void inverse_z(std::size_t remainder, Scratch& scratch) const;
+  void multiply(Scratch& scratch, PeakLanes& peak) const;
+  void forward_z(std::size_t remainder, Scratch& scratch) const;
+  void lanes_to_rows(std::size_t top, Scratch& scratch) const;
   void forward_y(std::size_t remainder, std::size_t j, Scratch& scratch);
 
   ModeLayout layout_;

@@ -6,6 +6,7 @@
 #include <array>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "spume/core/array.hpp"
@@ -35,6 +36,9 @@ class ArrayUse {
         }) {}
   template <class T, std::size_t count>
   ArrayUse(const std::array<Array<T>*, count>& arrays)  // NOLINT
+      : ArrayUse(to_const(arrays, std::make_index_sequence<count>())) {}
+  template <class T, std::size_t count>
+  ArrayUse(const std::array<const Array<T>*, count>& arrays)  // NOLINT
       : bytes_([arrays] {
           double sum = 0;
           for (const Array<T>* array : arrays)
@@ -44,6 +48,11 @@ class ArrayUse {
   double bytes() const { return bytes_(); }
 
  private:
+  template <class T, std::size_t count, std::size_t... k>
+  static std::array<const Array<T>*, count> to_const(const std::array<Array<T>*, count>& arrays,
+                                                     std::index_sequence<k...>) {
+    return {arrays[k]...};
+  }
   std::function<double()> bytes_;
 };
 
@@ -77,6 +86,8 @@ class Plan {
   // each pass. Loops may hold loops. Throws std::logic_error for a body that adds no stage.
   void repeat(std::function<bool()> more, const std::function<void()>& body);
   const std::vector<Stage>& stages() const { return stages_; }
+  // Lists the stages that are on in the ledger, in the order of the plan. Runs do so themselves.
+  void list(Ledger& ledger) const;
 
   // Runs the stages of the step, or of the start, that are on, each timed under its name. `particles`: how many the
   // ledger divides the time by. What a stage throws passes through.
@@ -93,7 +104,10 @@ class Plan {
     std::size_t first, last;  // of its stages; one past the last
     std::function<bool()> more;
   };
-  void run(const Run& run) const { run_range(run, 0, stages_.size(), 0); }
+  void run(const Run& run) const {
+    list(run.ledger);
+    run_range(run, 0, stages_.size(), 0);
+  }
   void run_range(const Run& run, std::size_t first, std::size_t last, std::size_t loop) const;
   void run_stage(const Run& run, const Stage& stage) const;
   std::vector<Stage> stages_;

@@ -31,6 +31,9 @@ struct Arrangement {
   // Lists of neighbours at `at`, within the support of each particle.
   void find_neighbours(const ParticleStore& particles, const VectorField& at, const ParticleSizes& sizes);
 
+  // Sweeps see particles of these sizes from now on; null: all alike.
+  void set_sizes(const ParticleSizes* sizes);
+
   double pair_count() const { return static_cast<double>(list.pair_count()); }
   // The particle at a listed point: itself, or the source of an image.
   std::size_t particle_of(std::int32_t point) const {
@@ -38,8 +41,9 @@ struct Arrangement {
     return static_cast<std::size_t>(point < n ? point : images.source()[point - n]);
   }
 
-  // Compulsory traffic (core/ledger.hpp) of the last sort and of the last lists, in bytes.
+  // Compulsory traffic (core/ledger.hpp) of the last sort, images and lists, in bytes.
   double sort_traffic(const ParticleStore& particles) const;
+  double image_traffic() const;
   double list_traffic(const ParticleSizes& sizes) const;
 };
 

@@ -15,6 +15,9 @@ namespace spume {
 // One array per dimension; null beyond the dimensions of the scene, or when no stage needs the vector.
 using VectorField = std::array<Array<double>*, 3>;
 using FloatVectorField = std::array<Array<float>*, 3>;
+// The same, for those who read alone.
+using ConstVectorField = std::array<const Array<double>*, 3>;
+using ConstFloatVectorField = std::array<const Array<float>*, 3>;
 // The same, leased for a part of a step.
 using VectorScratch = std::array<Array<double>, 3>;
 using FloatVectorScratch = std::array<Array<float>, 3>;
@@ -39,13 +42,22 @@ struct ParticleStore {
   }
 };
 
+template <class T>
+std::array<const Array<T>*, 3> constant(const std::array<Array<T>*, 3>& vector) {
+  return {vector[0], vector[1], vector[2]};
+}
+
 // Pointers to the components, null where there is none.
 template <class T>
-std::array<const T*, 3> read(const std::array<Array<T>*, 3>& vector) {
+std::array<const T*, 3> read(const std::array<const Array<T>*, 3>& vector) {
   std::array<const T*, 3> pointers{};
   for (std::size_t axis = 0; axis < 3; ++axis)
     pointers[axis] = vector[axis] == nullptr ? nullptr : vector[axis]->data();
   return pointers;
+}
+template <class T>
+std::array<const T*, 3> read(const std::array<Array<T>*, 3>& vector) {
+  return read(constant(vector));
 }
 template <class T, std::size_t count>
 std::array<const T*, count> read(const std::array<Array<T>, count>& arrays) {

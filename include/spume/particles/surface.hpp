@@ -32,10 +32,9 @@ struct SurfaceRow {
 class FreeSurface {
  public:
   struct Options {
-    double threshold = 0;                // div r of a surface particle; 0: 2.3 in 3-D, 1.5 in 2-D
-    double blend_width = 0;              // span of div r over which b rises from 0 to 1
-    bool smooth_normals = false;         // of surface particles, for the shift
-    bool keep_smoothed_normals = false;  // for bubbles, which read them after the shift
+    double threshold = 0;         // div r of a surface particle; 0: 2.3 in 3-D, 1.5 in 2-D
+    double blend_width = 0;       // span of div r over which b rises from 0 to 1
+    bool smooth_normals = false;  // of surface particles, for the shift
   };
   FreeSurface(const Resolution& resolution, const Options& options);
 
@@ -49,8 +48,7 @@ class FreeSurface {
   Array<std::int32_t> surface_particles;
   Array<std::int32_t> near_surface;  // b < 1 and not of fixed pressure
   Array<float> depth;                // s, of the latter
-  // Shepard-filtered normals of surface particles. Leased by find(), and released by the shift unless kept; then
-  // entries of other particles are zero or what they were.
+  // Shepard-filtered normals of surface particles. Leased by find() and released by the shift.
   FloatVectorScratch smoothed_normal;
   void release_smoothed_normals(ParticleStore& particles);
 
@@ -67,6 +65,7 @@ class FreeSurface {
                          FloatVectorScratch& gradient) const;
 
   double bytes() const;
+  double traffic() const;  // compulsory (core/ledger.hpp), of what find() writes
 
  private:
   Vec3 moment_of(const MomentFields& moments, const ParticleSizes& sizes, std::size_t i) const;

@@ -75,7 +75,25 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
     bool lower_wall = false, upper_wall = false, periodic = false;
   };
 
+  struct Range {
+    double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};
+    bool any = false;
+  };
+  // Where a particle is among the cells: the lowest of the 2^d that it lies between, how far to the next, and its own.
+  struct CellPlace {
+    int lowest[3] = {0, 0, 0}, own[3] = {0, 0, 0};
+    float fraction[3] = {0, 0, 0};
+  };
+
+  Range liquid_range(std::span<const double> const (&position)[3], std::span<const float> interior) const;
+  void set_axis(std::size_t a, double size);
+  std::array<int, 2> box_along(const Axis& axis, double lower, double upper) const;
   void choose_box(std::span<const double> const (&position)[3], std::span<const float> interior);
+  void clear_cells();
+  bool place_along(std::size_t axis, double position, CellPlace& place) const;  // false: not at a finite place
+  void place(std::size_t p, std::span<const double> const (&position)[3], float interior);
+  void counts_to_starts();
+  void sort_cells();
   void bin(std::span<const double> const (&position)[3], std::span<const float> interior);
   void mark_solids();
   void fill_holes();
@@ -87,8 +105,8 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
 
   CellGeometry geometry_;
   std::array<Axis, 3> axis_{};
-  std::array<double, 3> width_{};    // cell width in use
-  std::array<int, 3> first_cell_{};  // index along the whole axis of the first cell of the box
+  std::array<double, 3> width_{}, inverse_width_{};  // cell width in use
+  std::array<int, 3> first_cell_{};                  // index along the whole axis of the first cell of the box
   std::size_t particles_ = 0;
   bool empty_ = true;  // no interior particle: M = D^-1
 

@@ -48,31 +48,34 @@ Flow::Flow(const LoadedCase& loaded_case)
     surface = std::make_unique<FreeSurface>(
         resolution, FreeSurface::Options{.threshold = options.get<SurfaceOptions>().threshold,
                                          .blend_width = options.get<SurfaceOptions>().blend_width,
-                                         .smooth_normals = features.shifting,
-                                         .keep_smoothed_normals = features.bubbles});
+                                         .smooth_normals = features.shifting});
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
   if (features.eddy_viscosity)
     closure = std::make_unique<turbulence::EddyViscosity>(particles, options.get<TurbulenceOptions>());
   if (features.bubbles) {
+    particles.add_vector(material_acceleration, "material_acceleration", Lifetime::state);
     const bubbles::Carrier carrier{.scene = scene,
                                    .arrangement = arrangement,
                                    .boundary = boundary,
-                                   .particles = particles,
                                    .resolution = resolution,
                                    .sizes = sizes,
-                                   .moments = moments,
-                                   .surface = surface.get(),
-                                   .intermediate_position = intermediate_position,
+                                   .particle_volume = particles.volume,
+                                   .identifier = *particles.identifier,
+                                   .position = constant(particles.position),
+                                   .velocity = constant(particles.velocity),
+                                   .intermediate_position = constant(intermediate_position),
+                                   .material_acceleration = constant(material_acceleration),
                                    .velocity_gradient = velocity_gradient,
-                                   .filtered_velocity = filtered_velocity,
-                                   .filtered = features.test_filter,
-                                   .eddy_viscosity = closure == nullptr ? nullptr : &closure->viscosity(),
                                    .strain = *strain,
-                                   .shift = shift == nullptr ? nullptr : &shift->displacement,
+                                   .filtered_velocity = features.test_filter ? &filtered_velocity : nullptr,
+                                   .eddy_viscosity = eddy_viscosity(),
+                                   .normal = constant(moments.normal),
+                                   .surface = surface.get(),
+                                   .shift = constant(displacement_by_shift()),
                                    .time = time,
                                    .steps = steps,
                                    .speeds = speeds};
-    bubbles = std::make_unique<bubbles::BubbleCoupling>(carrier, options.get<BubbleOptions>());
+    bubbles = std::make_unique<bubbles::BubbleCoupling>(particles, carrier, options.get<BubbleOptions>());
   }
   find_extremes();
 }
@@ -111,7 +114,7 @@ double Flow::leased_bytes() const {
     for (const auto& array : *vector) add(array);
   for (const auto* vector : {&intermediate_velocity, &next_velocity})
     for (const auto& array : *vector) add(array);
-  add(gradient_trace, divergence, potential_laplacian, moments.laplacian_diagonal, moments.kernel_sum,
+  add(gradient_trace, divergence, first_source, potential_laplacian, moments.laplacian_diagonal, moments.kernel_sum,
       rows.diagonal_shift, rows.diagonal, rows.weight, rows.row, rows.right_hand_side);
   return sum;
 }
@@ -128,9 +131,9 @@ EnergyBalance Flow::energy_balance() const {
 void Flow::find_extremes() {
   speeds = find_speeds(arrangement, particles);
   max_eddy_viscosity = closure != nullptr && started ? closure->largest(size()) : 0;
-  if (sizes.variable && bubbles->viscosity.size() == size())
-    max_eddy_viscosity =
-        parallel_max(size(), 0.0, [&](std::size_t i) { return double{bubbles->viscosity[i]} + eddy_viscosity_of(i); });
+  if (sizes.variable && bubbles->viscosity().size() == size())
+    max_eddy_viscosity = parallel_max(
+        size(), 0.0, [&](std::size_t i) { return double{bubbles->viscosity()[i]} + eddy_viscosity_of(i); });
 }
 
 }  // namespace spume::les_sph

@@ -63,6 +63,7 @@ LesSph::LesSph(const LoadedCase& loaded) : flow_(loaded), plan_(make_plan(flow_)
 
 void LesSph::step(double dt, Ledger& ledger) {
   if (!flow_.started) start(ledger);
+  plan_.list(ledger);
   for (const Ledger::Entry& entry : start_ledger_.entries())
     ledger.count(entry.stage, entry.calls, entry.seconds, entry.particles, entry.pairs, entry.bytes);
   start_ledger_.clear();
@@ -131,7 +132,7 @@ const PointSampler& LesSph::sampler() {
                      .particles = &flow_.particles,
                      .resolution = &flow_.resolution,
                      .pressure = flow_.pressure,
-                     .volume_fraction = flow_.bubbles == nullptr ? nullptr : flow_.bubbles->volume_fraction,
+                     .volume_fraction = flow_.volume_fraction(),
                      .density = flow_.density(),
                      .uniform_acceleration = flow_.uniform_acceleration,
                      .time = flow_.time});

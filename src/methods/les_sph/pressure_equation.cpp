@@ -32,7 +32,7 @@ constexpr double least_row_scale = 0.5;
 void Flow::find_divergence(double dt) {
   const std::size_t n = size();
   const double c = scene.fluid.sound_speed;
-  equation = {c > 0 ? 1 / (c * c * dt * dt) : 0, -1 / dt};
+  equation = {c > 0 ? 1 / (c * c * dt * dt) : 0, -1 / dt, &divergence};
   ScratchPool& scratch = particles.scratch();
   scratch.lease(divergence, n);
   if (potential != nullptr) scratch.lease(potential_laplacian, n);
@@ -42,16 +42,16 @@ void Flow::find_divergence(double dt) {
   next_max_divergence = parallel_max(n, 0.0, [&](std::size_t i) { return std::abs(divergence[i]); });
 }
 
-// Adds tr(grad u . grad u), minus the rate of change of div u along frozen velocities, to the divergence.
-void Flow::add_gradient_trace(double factor) {
+// Adds `factor` times tr(grad u . grad u), minus the rate of change of div u along frozen velocities, to `sum`.
+void Flow::add_gradient_trace(double factor, Array<double>& sum) {
   if (features.no_slip) {
     ScratchArray<float> trace(particles.scratch(), size());
     gradient_trace_sweep(arrangement.context, arrangement.packed, read(particles.velocity), boundary.volume_rule(),
                          moments.read_correction(), trace.data());
-    parallel_for(size(), [&](std::size_t i) { divergence[i] += factor * trace[i]; });
+    parallel_for(size(), [&](std::size_t i) { sum[i] += factor * trace[i]; });
     return;
   }
-  parallel_for(size(), [&](std::size_t i) { divergence[i] += factor * gradient_trace[i]; });
+  parallel_for(size(), [&](std::size_t i) { sum[i] += factor * gradient_trace[i]; });
   particles.scratch().release(gradient_trace);
 }
 
@@ -59,7 +59,7 @@ void Flow::add_gradient_trace(double factor) {
 // div u = (div u here) - dt/2 tr(grad u . grad u). The step is then of second order, and a projection does not cost the
 // energy dt |grad p|^2 / 2 per time.
 void Flow::centre_divergence(double dt) {
-  add_gradient_trace(-0.5 * dt);
+  add_gradient_trace(-0.5 * dt, divergence);
 }
 
 void Flow::relax_density(double dt) {
@@ -73,7 +73,7 @@ void Flow::relax_density(double dt) {
 // -lap p = tr(grad u . grad u), from the divergence of the momentum equation.
 void Flow::set_first_source() {
   const std::size_t n = size();
-  equation = {0, 1};
+  equation = {0, 1, &first_source};
   ScratchPool& scratch = particles.scratch();
   // What the step reads and the start does not: held through the solve it would be the most that a run ever holds.
   scratch.release(moments.kernel_sum);
@@ -81,14 +81,16 @@ void Flow::set_first_source() {
   if (surface != nullptr) surface->release_smoothed_normals(particles);
   scratch.release(velocity_gradient);
   scratch.release(filtered_velocity);
-  scratch.lease(divergence, n);
   if (potential != nullptr) {
     scratch.lease(potential_laplacian, n);
+    ScratchArray<double> initial_divergence(scratch, n);  // found with it, and not needed
     divergence_sweep(arrangement.context, arrangement.packed, read(particles.velocity), boundary.volume_rule(),
-                     moments.read_correction(), potential->data(), divergence.data(), potential_laplacian.data());
+                     moments.read_correction(), potential->data(), initial_divergence.data(),
+                     potential_laplacian.data());
   }
-  parallel_for(n, [&](std::size_t i) { divergence[i] = 0; });
-  add_gradient_trace(1);
+  scratch.lease(first_source, n);
+  parallel_for(n, [&](std::size_t i) { first_source[i] = 0; });
+  add_gradient_trace(1, first_source);
 }
 
 // Images in solids are those of the nearest face, which is not mutual at a box edge: the matrix of a closed
@@ -142,6 +144,7 @@ void Flow::set_matrix() {
   scratch.release(moments.laplacian_diagonal);
   set_right_hand_side();
   scratch.release(divergence);
+  scratch.release(first_source);
   scratch.release(potential_laplacian);
 }
 
@@ -156,6 +159,7 @@ double Flow::row_scale(std::size_t i) const {
 // Right-hand side for q, times the volume, and its norm in terms of p.
 void Flow::set_right_hand_side() {
   particles.scratch().lease(rows.right_hand_side, size());
+  const Array<double>& source = *equation.source;
   const double squares = parallel_reduce(
       size(), 0.0,
       [&](std::size_t first, std::size_t last) {
@@ -169,8 +173,8 @@ void Flow::set_right_hand_side() {
           if (bubbles != nullptr && bubbles->mixture_pressure())
             source_factor *= sizes.alpha(i);
           else if (sizes.variable)
-            pressure_factor *= (*bubbles->volume_fraction)[i] / sizes.alpha(i);
-          const double known = (source_factor * divergence[i] + pressure_factor * (*pressure)[i] / density()) *
+            pressure_factor *= bubbles->volume_fraction()[i] / sizes.alpha(i);
+          const double known = (source_factor * source[i] + pressure_factor * (*pressure)[i] / density()) *
                                static_cast<float>(row_scale(i));
           rows.right_hand_side[i] = particles.volume * (known + rows.diagonal_shift[i] * potential_of(i));
           const double in_pressure =

@@ -87,7 +87,7 @@ void LesSph::declare_snapshot() {
   }
   snapshot_.add("divergence_of_position", false,
                 [&flow](std::size_t i) { return double{(*flow.moments.divergence_of_position)[i]}; });
-  if (flow.bubbles != nullptr) snapshot_.add("volume_fraction", true, *flow.bubbles->volume_fraction);
+  if (flow.bubbles != nullptr) snapshot_.add("volume_fraction", true, *flow.volume_fraction());
 }
 
 std::vector<ParticleSnapshot> LesSph::snapshot() {
@@ -161,7 +161,7 @@ std::vector<ArrayInfo> LesSph::arrays() const {
   if (flow_.surface != nullptr) list.push_back({"surface", flow_.surface->bytes() + flow_.surface_source.bytes()});
   if (flow_.shift != nullptr) list.push_back({"layers of the shift", flow_.shift->bytes()});
   if (flow_.bubbles == nullptr) return list;
-  list.push_back({"sizes of particles", flow_.sizes.bytes() + flow_.bubbles->viscosity.bytes()});
+  list.push_back({"sizes of particles", flow_.sizes.bytes() + flow_.bubbles->viscosity().bytes()});
   for (const ArrayInfo& array : flow_.bubbles->arrays()) list.push_back(array);
   return list;
 }

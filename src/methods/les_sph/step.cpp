@@ -3,12 +3,11 @@
 // same list is the start, what `spume check` prints and what the ledger times.
 #include "spume/methods/les_sph/step.hpp"
 
-#include <utility>
+#include "stage_list.hpp"
 
 namespace spume::les_sph {
 
 using enum StagePart;
-
 Plan make_plan(Flow& f) {
   Plan plan;
   const Features& has = f.features;
@@ -17,36 +16,30 @@ Plan make_plan(Flow& f) {
   Arrangement& arrangement = f.arrangement;
   MomentFields& moments = f.moments;
   const auto& r = f.intermediate_position;
-  // `sweeps`: the stage passes over the pairs; the traffic of its sweeps comes on top of the arrays that it names.
-  const auto add = [&](StagePart part, const char* name, bool on, std::string reason, auto work,
-                       std::vector<ArrayUse> reads = {}, std::vector<ArrayUse> writes = {}, bool sweeps = false) {
-    plan.add({name, std::move(reason), on,
-              [&f, work, sweeps](StageRun& run) {
-                f.arrangement.packed.take_traffic();
-                work(run);
-                if (sweeps && run.pairs == 0) run.pairs = f.arrangement.pair_count();
-                run.bytes += f.arrangement.packed.take_traffic();
-              },
-              std::move(reads), std::move(writes), part});
-  };
+  const KeptArrays kept(f);
+  const auto living = [&f](Arrays arrays) { return while_bubbles_live(f, std::move(arrays)); };
+  const AddStage add(plan, f);
 
   // (i) intermediate positions r* = r^n + dt u^n, in the order of cells
   add(both, "move", true, "particles to their intermediate positions",
       [&](StageRun& run) { f.move_to_intermediate_position(run.dt); }, {p.position, p.velocity}, {r});
-  add(both, "sort", true, "particles in cell order", [&](StageRun& run) {
-    arrangement.sort(p, r);
-    run.bytes += arrangement.sort_traffic(p);
-  });
-  add(start, "bubble clouds", has.bubbles, why.bubbles, [&](StageRun&) { f.bubbles->start(); });
-  add(both, "bubble motion", has.bubbles, why.bubbles, [&](StageRun& run) { f.bubbles->move(run.dt); });
+  add(both, "sort", true, "particles in cell order", [&](StageRun&) { arrangement.sort(p, r); }, {}, {kept.sorted});
+  add(
+      start, "bubble clouds", has.bubbles, why.bubbles, [&](StageRun&) { f.place_clouds(); }, {r},
+      living({kept.bubbles, kept.images, f.volume_fraction(), kept.sizes}));
+  add(
+      both, "bubble motion", has.bubbles, why.bubbles, [&](StageRun& run) { f.move_bubbles(run.dt); },
+      living({kept.bubbles, f.volume_fraction()}),
+      living({kept.bubbles, f.sizes.length_ratio, f.sizes.support_radius}));
   // (ii) images at boundaries, neighbours and their moments
-  add(both, "images", has.images, why.images,
-      [&](StageRun& run) { f.boundary.make_images(arrangement, p, r, f.sizes.largest_length_ratio, f.time + run.dt); });
-  add(both, "volume fraction", has.bubbles, why.bubbles, [&](StageRun&) { f.bubbles->share_volume(); });
-  add(both, "neighbours", true, "lists within the kernel support", [&](StageRun& run) {
-    f.find_neighbours(run.dt);
-    run.bytes += arrangement.list_traffic(f.sizes);
-  });
+  add(both, "images", has.images, why.images, [&](StageRun& run) { f.make_images(run.dt); }, {r},
+      {kept.images, f.boundary.velocity_rule().offset});
+  add(
+      both, "volume fraction", has.bubbles, why.bubbles, [&](StageRun&) { f.share_volume(); },
+      living({kept.bubbles, r, f.sizes.length_ratio, f.sizes.support_radius}),
+      living({kept.bubble_images, f.sizes.volume_fraction, f.sizes.volume_ratio}));
+  add(both, "neighbours", true, "lists within the kernel support", [&](StageRun& run) { f.find_neighbours(run.dt); },
+      {}, {kept.lists});
   add(
       both, "kernel moments", true, "gradient correction, div r, concentration",
       [&](StageRun&) { moments.measure(arrangement, p, f.resolution.spacing); }, {},
@@ -54,25 +47,31 @@ Plan make_plan(Flow& f) {
        moments.kernel_sum, moments.concentration_gradient, moments.normal},
       true);
   add(both, "surface", has.free_surface, why.surface,
-      [&](StageRun&) { f.surface->find(arrangement, p, moments, f.boundary.reflection()); });
+      [&](StageRun&) { f.surface->find(arrangement, p, moments, f.boundary.reflection()); },
+      {moments.divergence_of_position, moments.uncorrected, moments.normal}, {kept.surface});
   // (iii) the shift to r^{n+1}, taken with the last stage
   add(step, "shift", has.shifting, why.shift, [&](StageRun&) { f.compute_shift(); }, {moments.concentration_gradient},
       {f.displacement_by_shift()});
   // (v) gradients of u^n, and what follows from them
+  const Arrays gradients{f.strain, f.velocity_gradient, f.filtered_velocity, f.gradient_trace, f.shift_velocity};
   add(
       start, "first gradients", true, "strain and source of the first pressure",
-      [&](StageRun&) { f.differentiate_velocity(true); }, {p.velocity, moments.correction}, {f.strain}, true);
+      [&](StageRun&) { f.differentiate_velocity(true); }, {p.velocity, moments.correction}, gradients, true);
   add(
       step, "gradients", has.velocity_gradient, why.gradients, [&](StageRun&) { f.differentiate_velocity(false); },
-      {p.velocity, moments.correction, f.displacement_by_shift()},
-      {f.strain, f.velocity_gradient, f.filtered_velocity, f.gradient_trace, f.shift_velocity}, true);
+      {p.velocity, moments.correction, f.displacement_by_shift()}, gradients, true);
   add(
       step, "shift curvature", has.shift_curvature, why.curvature, [&](StageRun&) { f.find_shift_curvature(); },
       {f.velocity_gradient, f.displacement_by_shift(), moments.correction}, {f.shift_velocity}, true);
   // (vi) closure of the unresolved stress; (vii) bubbles
   add(step, "eddy viscosity", has.eddy_viscosity, why.closure, [&](StageRun& run) { f.find_eddy_viscosity(run.dt); },
       {f.strain, f.velocity_gradient, f.filtered_velocity}, {f.eddy_viscosity()});
-  add(step, "bubble forces", has.bubbles, why.integrator, [&](StageRun& run) { f.bubbles->exchange_momentum(run.dt); });
+  add(
+      step, "bubble forces", has.bubbles, why.integrator,
+      [&](StageRun& run) { f.bubbles->exchange_momentum(run.dt, arrangement.packed); },
+      living({kept.bubbles, kept.bubble_images, p.velocity, f.material_acceleration, f.velocity_gradient,
+              f.filtered_velocity, f.strain, f.eddy_viscosity(), moments.normal, kept.sizes}),
+      living({kept.bubbles, f.bubble_exchange(), f.bubble_viscosity()}));
   // (viii) u* from forces and viscosity
   add(both, "forces", has.potential, why.forces, [&](StageRun& run) { f.find_potential(f.time + run.dt); }, {r},
       {f.potential});
@@ -90,17 +89,20 @@ Plan make_plan(Flow& f) {
   add(step, "density relaxation", has.density_relaxation, why.relaxation,
       [&](StageRun& run) { f.relax_density(run.dt); }, {moments.kernel_sum, moments.divergence_of_position},
       {f.divergence});
-  add(start, "first source", true, "tr(grad u . grad u)", [&](StageRun&) { f.set_first_source(); });
+  add(
+      start, "first source", true, "tr(grad u . grad u)", [&](StageRun&) { f.set_first_source(); },
+      {p.velocity, moments.correction, f.gradient_trace, f.potential}, {f.first_source, f.potential_laplacian},
+      has.potential || has.no_slip);
   add(both, "matrix", true, "rows and right-hand side", [&](StageRun&) { f.set_matrix(); },
-      {moments.divergence_of_position, moments.laplacian_diagonal, f.divergence, f.pressure, f.potential},
-      {f.rows.diagonal_shift, f.rows.diagonal, f.rows.right_hand_side});
+      {moments.divergence_of_position, moments.laplacian_diagonal, f.divergence, f.first_source, f.pressure,
+       f.potential},
+      {f.rows.diagonal_shift, f.rows.diagonal, f.rows.weight, f.rows.row, f.rows.right_hand_side});
   add(both, "preconditioner", f.solver.has_multigrid(), why.preconditioner, [&](StageRun&) { f.prepare_solver(); },
-      {r, f.rows.diagonal});
-  add(start, "first pressure", true, why.pressure, [&](StageRun&) { f.solve_first_pressure(); });
-  add(step, "pressure", true, why.pressure, [&](StageRun& run) {
-    f.solve_pressure();
-    run.pairs = arrangement.pair_count() * f.solver.report().applications;
-  });
+      {r, f.rows.diagonal}, {});
+  add(start, "first pressure", true, why.pressure, solving(f, &Flow::solve_first_pressure),
+      {f.rows.diagonal, f.potential}, {f.reduced_pressure, f.pressure});
+  add(step, "pressure", true, why.pressure, solving(f, &Flow::solve_pressure),
+      {f.rows.diagonal, f.potential, f.pressure}, {f.reduced_pressure});
   add(
       step, "projection", true, "pressure gradient", [&](StageRun& run) { f.project_velocity(run.dt); },
       {f.reduced_pressure, moments.correction, f.intermediate_velocity}, {f.next_velocity}, true);
@@ -108,7 +110,9 @@ Plan make_plan(Flow& f) {
   add(step, "acceptance", true, "limits, energy, final positions", [&](StageRun& run) { f.accept(run.dt); },
       {f.next_velocity, r, f.displacement_by_shift(), f.shift_velocity, f.reduced_pressure, f.potential, f.strain},
       {p.position, p.velocity, f.pressure});
-  add(step, "bubble events", has.bubbles, why.events, [&](StageRun& run) { f.bubbles->accept(run.dt); });
+  add(
+      step, "bubble events", has.bubbles, why.events, [&](StageRun& run) { f.bubbles->accept(run.dt); },
+      living({kept.bubbles, f.sizes.volume_fraction}), living({kept.bubbles, f.volume_fraction()}));
   return plan;
 }
 

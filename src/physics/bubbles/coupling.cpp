@@ -16,10 +16,6 @@ constexpr double chord_slope = 0.5198;
 // A Newton step leaves twice the square of the relative error: 2.7 % of the chord become 1.5e-3, 4e-6, 4e-11 and 3e-21.
 constexpr int newton_steps = 4;
 
-// A round leaves at most (1 - alpha) / alpha of the error of alpha: after six 2e-6 at 0.9 and 2e-4 at 0.8. Particles
-// of the start that hold more gas settle within the first steps, each of which is such a round.
-constexpr int rounds_at_start = 6;
-
 // x^(-1/3) for x in [1/2, 1], to rounding and exact at 1.
 double inverse_cube_root(double x) {
   double y = 1 + (1 - x) * chord_slope;
@@ -29,37 +25,37 @@ double inverse_cube_root(double x) {
 
 }  // namespace
 
-BubbleCoupling::BubbleCoupling(const Carrier& carrier, const BubbleOptions& options)
+BubbleCoupling::BubbleCoupling(ParticleStore& particles, const Carrier& carrier, const BubbleOptions& options)
     : carrier_(carrier),
       options_(options),
       population_({options.fluctuations, options.breakup, options.surface_interaction && has_surface()}),
       sources_(carrier.scene) {
-  carrier.particles.add_vector(exchange, "bubble_exchange", Lifetime::result);
-  carrier.particles.add_vector(material_acceleration, "material_acceleration", Lifetime::state);
-  volume_fraction = &carrier.particles.fields.add<double>("volume_fraction", Lifetime::state);
-  parallel_for(carrier.particles.size(), [&](std::size_t i) { (*volume_fraction)[i] = 1; });
+  particles.add_vector(exchange_, "bubble_exchange", Lifetime::result);
+  volume_fraction_ = &particles.fields.add<double>("volume_fraction", Lifetime::state);
+  parallel_for(particles.size(), [&](std::size_t i) { (*volume_fraction_)[i] = 1; });
 
   const Fluid& fluid = carrier.scene.fluid;
-  gas_.density_ratio = options_.density_ratio;
-  gas_.viscosity = fluid.kinematic_viscosity;
-  gas_.lift = options_.lift_coefficient;
-  gas_.virtual_mass = options_.virtual_mass_coefficient;
-  gas_.fluid_inertia = options_.fluid_inertia;
-  gas_.gravity = fluid.gravity;
+  const double spacing = carrier.resolution.spacing;
+  gas_ = {.density_ratio = options.density_ratio,
+          .viscosity = fluid.kinematic_viscosity,
+          .lift = options.lift_coefficient,
+          .virtual_mass = options.virtual_mass_coefficient,
+          .fluid_inertia = options.fluid_inertia,
+          .gravity = fluid.gravity};
   const double gravity = std::hypot(fluid.gravity[0], fluid.gravity[1], fluid.gravity[2]);
-  surface_.spacing = carrier_.resolution.spacing;
-  surface_.persistence_unit = persistence_unit(options_.tension, fluid.kinematic_viscosity, gravity, options_.schmidt);
-  breakup_.tension = options_.tension;
-  breakup_.deformation_constant = options_.deformation_constant;
-  entrainment_.constant = options_.entrainment_constant;
-  entrainment_.threshold = options_.entrainment_threshold;
-  entrainment_.density_ratio = options_.density_ratio;
-  entrainment_.tension = options_.tension;
-  entrainment_.smallest_radius = options_.smallest_entrained_radius;
-  entrainment_.largest_radius = carrier_.resolution.spacing;
-  entrainment_.spacing = carrier_.resolution.spacing;
-  entrainment_.seed = carrier_.scene.seed;
-  entrainment_.overdraft = options_.entrainment_overdraft;
+  surface_ = {
+      .spacing = spacing,
+      .persistence_unit = persistence_unit(options.tension, fluid.kinematic_viscosity, gravity, options.schmidt)};
+  breakup_ = {.tension = options.tension, .deformation_constant = options.deformation_constant};
+  entrainment_ = {.constant = options.entrainment_constant,
+                  .threshold = options.entrainment_threshold,
+                  .density_ratio = options.density_ratio,
+                  .tension = options.tension,
+                  .smallest_radius = options.smallest_entrained_radius,
+                  .largest_radius = spacing,
+                  .spacing = spacing,
+                  .seed = carrier.scene.seed,
+                  .overdraft = options.entrainment_overdraft};
   add_snapshot_fields();
   if (options_.breakup) child_sizes_.emplace_back();
   if (population_.merge_time != nullptr)
@@ -67,27 +63,20 @@ BubbleCoupling::BubbleCoupling(const Carrier& carrier, const BubbleOptions& opti
         lattice_surface(3, carrier_.resolution.kernel, carrier_.resolution.smoothing_ratio)[0].twice_smoothed_normal;
 }
 
-void BubbleCoupling::start() {
+void BubbleCoupling::place_clouds() {
   sources_.place_clouds(population_, carrier_.time);
   history_.injected = static_cast<std::int64_t>(population_.size());
   history_.injected_volume = population_.total_volume();
   history_before_ = history_;
-  if (population_.empty()) return;
-  // alpha depends on h, which depends on alpha.
-  for (int round = 0; round < rounds_at_start; ++round) {
-    move(0);
-    carrier_.boundary.make_images(carrier_.arrangement, carrier_.particles, carrier_.intermediate_position,
-                                  carrier_.sizes.largest_length_ratio, carrier_.time);
-    share_volume();
-    parallel_for(carrier_.particles.size(),
-                 [&](std::size_t i) { (*volume_fraction)[i] = carrier_.sizes.volume_fraction[i]; });
-  }
 }
 
-void BubbleCoupling::move(double dt) {
-  carrier_.sizes.variable = !population_.empty();
-  carrier_.sizes.largest_length_ratio = 1;
-  carrier_.arrangement.context.length_ratio = carrier_.arrangement.context.volume_ratio = nullptr;
+void BubbleCoupling::accept_volume_fraction() {
+  parallel_for(carrier_.size(), [&](std::size_t i) { (*volume_fraction_)[i] = carrier_.sizes.volume_fraction[i]; });
+}
+
+void BubbleCoupling::move(double dt, ParticleSizes& sizes) {
+  sizes.variable = !population_.empty();
+  sizes.largest_length_ratio = 1;
   if (population_.empty()) return;
   parallel_for(population_.size(), [&](std::size_t b) {
     Vec3 r;
@@ -96,19 +85,18 @@ void BubbleCoupling::move(double dt) {
     for (std::size_t a = 0; a < 3; ++a) (*population_.next_position[a])[b] = r[a];
   });
   population_.sort(carrier_.arrangement.grid);
-  measure_sizes();
+  measure_sizes(sizes);
 }
 
 // h_i from the volume fraction of the last step, King (3.4).
-void BubbleCoupling::measure_sizes() {
-  const std::size_t n = carrier_.particles.size();
-  for (auto* array : {&carrier_.sizes.volume_fraction, &carrier_.sizes.length_ratio, &carrier_.sizes.volume_ratio,
-                      &carrier_.sizes.support_radius})
+void BubbleCoupling::measure_sizes(ParticleSizes& sizes) const {
+  const std::size_t n = carrier_.size();
+  for (auto* array : {&sizes.volume_fraction, &sizes.length_ratio, &sizes.volume_ratio, &sizes.support_radius})
     array->resize(n);
   const double support_radius = carrier_.arrangement.grid.support_radius();
-  const double* fraction = volume_fraction->data();
-  float *length_ratio = carrier_.sizes.length_ratio.data(), *support_radius_of = carrier_.sizes.support_radius.data();
-  carrier_.sizes.largest_length_ratio = parallel_reduce(
+  const double* fraction = volume_fraction_->data();
+  float *length_ratio = sizes.length_ratio.data(), *support_radius_of = sizes.support_radius.data();
+  sizes.largest_length_ratio = parallel_reduce(
       n, 1.0F,
       [=](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
@@ -150,15 +138,18 @@ CrossSearch BubbleCoupling::bubble_search() const {
 }
 
 CrossTargets BubbleCoupling::particle_targets() const {
-  return {carrier_.particles.size(),          read(carrier_.intermediate_position),
-          carrier_.arrangement.origin,        carrier_.resolution.smoothing_length,
-          carrier_.sizes.length_ratio.data(), carrier_.sizes.support_radius.data()};
+  return {carrier_.size(),
+          read(carrier_.intermediate_position),
+          carrier_.arrangement.origin,
+          carrier_.resolution.smoothing_length,
+          carrier_.sizes.length_ratio.data(),
+          carrier_.sizes.support_radius.data()};
 }
 
-void BubbleCoupling::share_volume() {
+void BubbleCoupling::share_volume(ParticleSizes& sizes) {
   if (population_.empty()) return;
   place_bubbles();
-  const std::size_t n = carrier_.particles.size(), nb = population_.size(), all = nb + images_.size();
+  const std::size_t n = carrier_.size(), nb = population_.size(), all = nb + images_.size();
   constexpr std::size_t width = 4;
   bubble_records_.resize(all * 8);
   float* records = bubble_records_.data();
@@ -169,7 +160,7 @@ void BubbleCoupling::share_volume() {
   });
 
   near_.resize(n);
-  with_kernel(carrier_.arrangement.context, [&]<int d, class Kernel>() {
+  with_plain_kernel(3, carrier_.resolution.kernel, [&]<int d, class Kernel>() {
     if constexpr (d == 3) {
       const double h = carrier_.resolution.smoothing_length;
       const auto peak = static_cast<float>(Kernel::normalisation(3) / (h * h * h));
@@ -177,19 +168,17 @@ void BubbleCoupling::share_volume() {
         near_[i] = sums != nullptr ? 1 : 0;
         double sum = 0;
         if (sums != nullptr) {
-          const float inverse = 1 / carrier_.sizes.length_ratio[i];
+          const float inverse = 1 / sizes.length_ratio[i];
           sum = double{peak * inverse * inverse * inverse} * sums[0];
         }
         const double alpha = sum <= 0.5 ? 1 - sum : 1 / (4 * sum);
-        carrier_.sizes.volume_fraction[i] = static_cast<float>(alpha);
-        carrier_.sizes.volume_ratio[i] = static_cast<float>(1 / std::max(alpha, least_kernel_fraction));
+        sizes.volume_fraction[i] = static_cast<float>(alpha);
+        sizes.volume_ratio[i] = static_cast<float>(1 / std::max(alpha, least_kernel_fraction));
       };
       sum_over_points<1, Kernel>(particle_targets(), bubble_search(), carrier_.arrangement.grid.support_radius(),
                                  records, store);
     }
   });
-  carrier_.arrangement.context.length_ratio = carrier_.sizes.length_ratio.data();
-  carrier_.arrangement.context.volume_ratio = carrier_.sizes.volume_ratio.data();
 }
 
 std::vector<ArrayInfo> BubbleCoupling::arrays() const {
@@ -200,9 +189,10 @@ std::vector<ArrayInfo> BubbleCoupling::arrays() const {
   list.push_back({"bubbles", population_.fields.bytes()});
   list.push_back({"bubble images", images_.bytes()});
   list.push_back(
-      {"bubble records", bytes(bubble_point_[0], bubble_point_[1], bubble_point_[2], inverse_support_radius_,
-                               liquid_records_, bubble_records_, interpolated_, dissipation_, next_merge_time_,
-                               reaction_[0], reaction_[1], reaction_[2], dead_, near_, near_particles_)});
+      {"bubble records",
+       bytes(bubble_point_[0], bubble_point_[1], bubble_point_[2], inverse_support_radius_, liquid_records_,
+             bubble_records_, interpolated_, dissipation_, next_merge_time_, reaction_[0], reaction_[1], reaction_[2],
+             dead_, near_, near_particles_, smoothed_normal_[0], smoothed_normal_[1], smoothed_normal_[2])});
   return list;
 }
 

@@ -20,7 +20,7 @@ constexpr double courant_of_entrainment = 0.2;
 
 void BubbleCoupling::accept(double dt) {
   const double t = carrier_.time;  // the end of the step
-  const std::size_t n = carrier_.particles.size(), nb = population_.size();
+  const std::size_t n = carrier_.size(), nb = population_.size();
   history_before_ = history_;
   last_step_ = dt;
   overfull_ = 0;
@@ -28,10 +28,10 @@ void BubbleCoupling::accept(double dt) {
   mean_slip_ = 0;
   if (nb > 0) {
     mean_slip_ = parallel_sum(nb, [&](std::size_t b) { return next_slip_[b]; }) / static_cast<double>(nb);
-    parallel_for(n, [&](std::size_t i) { (*volume_fraction)[i] = carrier_.sizes.volume_fraction[i]; });
-    least_volume_fraction_ = -parallel_max(n, -1.0, [&](std::size_t i) { return -(*volume_fraction)[i]; });
+    accept_volume_fraction();
+    least_volume_fraction_ = -parallel_max(n, -1.0, [&](std::size_t i) { return -(*volume_fraction_)[i]; });
     overfull_ = static_cast<std::int64_t>(
-        parallel_sum(n, [&](std::size_t i) { return (*volume_fraction)[i] < overfull_fraction ? 1.0 : 0.0; }));
+        parallel_sum(n, [&](std::size_t i) { return (*volume_fraction_)[i] < overfull_fraction ? 1.0 : 0.0; }));
     parallel_for(nb, [&](std::size_t b) {
       Vec3 r, u;
       for (std::size_t a = 0; a < 3; ++a) {
@@ -53,7 +53,7 @@ void BubbleCoupling::accept(double dt) {
     remove_dead(t);
   }
   // A liquid that was left by its last bubble.
-  if (population_.empty() && nb > 0) parallel_for(n, [&](std::size_t i) { (*volume_fraction)[i] = 1; });
+  if (population_.empty() && nb > 0) parallel_for(n, [&](std::size_t i) { (*volume_fraction_)[i] = 1; });
   if (options_.entrainment && has_surface()) entrain(dt);
   Released released = sources_.release(population_, t - dt, dt);
   const Released cloud = sources_.place_clouds(population_, t);
@@ -146,7 +146,6 @@ void BubbleCoupling::remove_dead(double t) {
 // Shepard average of the unresolved dissipation: what the threshold of entrainment was calibrated with.
 double BubbleCoupling::smoothed_dissipation(std::size_t i) const {
   double result = 0;
-  const std::size_t n = carrier_.particles.size();
   const float* x[3] = {carrier_.arrangement.list.coordinate(0), carrier_.arrangement.list.coordinate(1),
                        carrier_.arrangement.list.coordinate(2)};
   const double h = carrier_.sizes.smoothing_length(carrier_.resolution, i);
@@ -157,10 +156,7 @@ double BubbleCoupling::smoothed_dissipation(std::size_t i) const {
   with_kernel(carrier_.arrangement.context, [&]<int d, class Kernel>() {
     double weights = Kernel::w(0.0) * own_volume<Kernel>(carrier_.arrangement.context, i), sum = weights * value(i);
     for (const std::int32_t j : carrier_.arrangement.list.of(i)) {
-      const std::size_t source =
-          static_cast<std::size_t>(j) < n
-              ? static_cast<std::size_t>(j)
-              : static_cast<std::size_t>(carrier_.arrangement.images.source()[j - static_cast<std::int32_t>(n)]);
+      const std::size_t source = carrier_.arrangement.particle_of(j);
       double r2 = 0;
       for (int a = 0; a < d; ++a) r2 += (double{x[a][j]} - x[a][i]) * (double{x[a][j]} - x[a][i]);
       const double w = Kernel::w(std::sqrt(r2) / h) * own_volume<Kernel>(carrier_.arrangement.context, source);
@@ -187,14 +183,14 @@ void BubbleCoupling::entrain(double dt) {
         particle.dissipation = smoothed_dissipation(i);
         if (!(particle.dissipation > entrainment_.threshold)) return;
         for (std::size_t a = 0; a < 3; ++a) {
-          particle.position[a] = (*carrier_.particles.position[a])[i];
-          particle.velocity[a] = (*carrier_.particles.velocity[a])[i];
+          particle.position[a] = (*carrier_.position[a])[i];
+          particle.velocity[a] = (*carrier_.velocity[a])[i];
         }
         const double h = carrier_.sizes.smoothing_length(carrier_.resolution, i);
         particle.volume_fraction = carrier_.sizes.alpha(i);
-        particle.volume = carrier_.particles.volume / particle.volume_fraction;
+        particle.volume = carrier_.particle_volume / particle.volume_fraction;
         particle.kernel_peak = peak / (h * h * h);
-        particle.identifier = (*carrier_.particles.identifier)[i];
+        particle.identifier = carrier_.identifier[i];
         const std::size_t first = made.size();
         bubbles::entrain(entrainment_, particle, dt, period, step, made);
         for (std::size_t k = first; k < made.size(); ++k)

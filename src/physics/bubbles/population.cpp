@@ -2,6 +2,7 @@
 #include "spume/physics/bubbles/population.hpp"
 
 #include <string>
+#include <variant>
 
 namespace spume::bubbles {
 
@@ -28,6 +29,14 @@ Population::Population(const Models& models) {
   if (models.surface) merge_time = &fields.add<double>("bubble_merge_time", Lifetime::state);
   vector(next_position, "next_position", Lifetime::sorted);
   vector(next_velocity, "next_velocity", Lifetime::result);
+}
+
+double Population::traffic() const {
+  double bytes = 0;
+  for (const auto& field : fields.fields())
+    bytes += std::visit([](const auto& array) { return static_cast<double>(array.size() * sizeof(array[0])); },
+                        field->values);
+  return bytes;
 }
 
 double Population::total_volume() const {

@@ -20,12 +20,12 @@ double BubbleCoupling::per_time(double change) const {
 
 // Root mean square of the shift over the step.
 double BubbleCoupling::shift_speed() const {
-  const std::size_t n = carrier_.particles.size();
-  if (carrier_.shift == nullptr || n == 0) return 0;
+  const std::size_t n = carrier_.size();
+  if (carrier_.shift[0] == nullptr || n == 0) return 0;
   return per_time(std::sqrt(parallel_sum(n,
                                          [&](std::size_t i) {
                                            double shift2 = 0;
-                                           for (const auto* shift : *carrier_.shift)
+                                           for (const auto* shift : carrier_.shift)
                                              shift2 += double{(*shift)[i]} * (*shift)[i];
                                            return shift2;
                                          }) /

@@ -30,9 +30,9 @@ struct TestFilter {
   std::array<double, d> mean{};
   ScratchPool& scratch;
 
-  explicit TestFilter(const ResolvedMotion& motion) : scratch(motion.particles.scratch()) {
-    scratch.lease(value, count, motion.particles.size());
-    scratch.lease(filtered, count, motion.particles.size());
+  TestFilter(ScratchPool& pool, std::size_t particles) : scratch(pool) {
+    scratch.lease(value, count, particles);
+    scratch.lease(filtered, count, particles);
   }
   TestFilter(const TestFilter&) = delete;
   TestFilter& operator=(const TestFilter&) = delete;
@@ -42,13 +42,12 @@ struct TestFilter {
   }
 
   // Component k at image m of the products as they stand in `value`.
-  float at_image(const ResolvedMotion& motion, const ImageMap& map, std::size_t k, std::size_t m) const {
+  float at_image(const ResolvedMotion& motion, std::size_t k, std::size_t m) const {
+    const ImageMap& map = motion.images;
     const std::size_t source = map.source(m);
     if (k < symmetric) {
       const auto [a, b] = components(k);
-      const auto velocity = [&](int axis) {
-        return map.velocity(m, axis, (*motion.particles.velocity[axis])[source]) - mean[axis];
-      };
+      const auto velocity = [&](int axis) { return map.velocity(m, axis, motion.velocity[axis][source]) - mean[axis]; };
       return static_cast<float>(velocity(a) * velocity(b));
     }
     Gradient<d> gradient = gradient_at<d>(motion, source);
@@ -66,31 +65,28 @@ struct TestFilter {
     return {};
   }
 
-  void run(const ResolvedMotion& motion) {
-    const std::size_t n = motion.particles.size();
+  void run(const ResolvedMotion& motion, PackedNeighbours& packed) {
+    const std::size_t n = motion.particles;
     for (int a = 0; a < d; ++a)
-      mean[a] =
-          parallel_sum(n, [&](std::size_t i) { return (*motion.particles.velocity[a])[i]; }) / static_cast<double>(n);
+      mean[a] = parallel_sum(n, [&](std::size_t i) { return motion.velocity[a][i]; }) / static_cast<double>(n);
     parallel_for(n, [&](std::size_t i) {
       const auto strain = strain_rate<d, double>(gradient_at<d>(motion, i));
       for (int a = 0; a < d; ++a)
         for (int b = a; b < d; ++b) {
           const std::size_t k = symmetric_index<d>(a, b);
-          value[k][i] = static_cast<float>(((*motion.particles.velocity[a])[i] - mean[a]) *
-                                           ((*motion.particles.velocity[b])[i] - mean[b]));
+          value[k][i] = static_cast<float>((motion.velocity[a][i] - mean[a]) * (motion.velocity[b][i] - mean[b]));
           value[symmetric + k][i] = static_cast<float>(strain[k]);
           value[2 * symmetric + k][i] = static_cast<float>(strain[k]) * motion.strain[i];
         }
     });
-    const ImageMap map = motion.boundary.image_map(motion.arrangement.images);
     std::array<const float*, count> in;
     std::array<float*, count> out;
     for (int k = 0; k < count; ++k) {
       in[k] = value[k].data();
       out[k] = filtered[k].data();
     }
-    filter_scalars(motion.arrangement.context, motion.arrangement.packed, in, out,
-                   [&](std::size_t k, std::size_t m) { return at_image(motion, map, k, m); });
+    filter_scalars(motion.context, packed, in, out,
+                   [&](std::size_t k, std::size_t m) { return at_image(motion, k, m); });
   }
 
   TestFiltered<d> at(const ResolvedMotion& motion, std::size_t i) const {
@@ -117,13 +113,13 @@ EddyViscosity::EddyViscosity(ParticleStore& particles, const TurbulenceOptions& 
 template <int d>
 void EddyViscosity::find_static(const ResolvedMotion& motion) {
   const bool mixed = options_.model == TurbulenceModel::mixed_scale;
-  parallel_for(motion.particles.size(), [&](std::size_t i) {
+  parallel_for(motion.particles, [&](std::size_t i) {
     const double strain = motion.strain[i], width = motion.sizes.smoothing_length(motion.resolution, i);
     double viscosity = 0;
     if (mixed) {
       std::array<double, d> u, filtered;
       for (int a = 0; a < d; ++a) {
-        u[a] = (*motion.particles.velocity[a])[i];
+        u[a] = motion.velocity[a][i];
         filtered[a] = motion.filtered_velocity[static_cast<std::size_t>(a)][i];
       }
       const double energy = test_filter_energy<d, double>(u, filtered);
@@ -136,18 +132,18 @@ void EddyViscosity::find_static(const ResolvedMotion& motion) {
 }
 
 template <int d>
-void EddyViscosity::find_dynamic(const ResolvedMotion& motion, double dt) {
-  TestFilter<d> test_filter(motion);
-  test_filter.run(motion);
-  const std::size_t n = motion.particles.size();
+void EddyViscosity::find_dynamic(const ResolvedMotion& motion, const ClosureScratch& scratch, double dt) {
+  const std::size_t n = motion.particles;
+  TestFilter<d> test_filter(scratch.arrays, n);
+  test_filter.run(motion, scratch.packed);
   double ratio = 0;
-  with_kernel(motion.arrangement.context, [&]<int dimensions, class Kernel>() {
+  with_kernel(motion.context, [&]<int dimensions, class Kernel>() {
     ratio = test_filter_width_ratio(1, Kernel::variance(dimensions));
   });
   const double nu = motion.kinematic_viscosity;
   const bool lagrangian = options_.model == TurbulenceModel::dynamic_lagrangian;
 
-  if (lagrangian) motion.particles.scratch().lease(next_average_, 2, n);
+  if (lagrangian) scratch.arrays.lease(next_average_, 2, n);
   Array<float>&leonard = test_filter.value[0], &germano = test_filter.value[1];
   parallel_for(n, [&](std::size_t i) {
     const double width = motion.sizes.smoothing_length(motion.resolution, i);
@@ -166,7 +162,7 @@ void EddyViscosity::find_dynamic(const ResolvedMotion& motion, double dt) {
   if (lagrangian) return;
   const std::array<const float*, 2> in{leonard.data(), germano.data()};
   const std::array<float*, 2> out{test_filter.filtered[0].data(), test_filter.filtered[1].data()};
-  filter_scalars(motion.arrangement.context, motion.arrangement.packed, in, out);
+  filter_scalars(motion.context, scratch.packed, in, out);
   parallel_for(n, [&](std::size_t i) {
     const GermanoContractions<double> average{out[0][i], out[1][i]};
     (*viscosity_)[i] = static_cast<float>(
@@ -174,18 +170,18 @@ void EddyViscosity::find_dynamic(const ResolvedMotion& motion, double dt) {
   });
 }
 
-void EddyViscosity::find(const ResolvedMotion& motion, double dt) {
-  const bool plane = motion.particles.dimensions == 2;
+void EddyViscosity::find(const ResolvedMotion& motion, const ClosureScratch& scratch, double dt) {
+  const bool plane = motion.context.dimensions == 2;
   if (dynamic())
-    plane ? find_dynamic<2>(motion, dt) : find_dynamic<3>(motion, dt);
+    plane ? find_dynamic<2>(motion, scratch, dt) : find_dynamic<3>(motion, scratch, dt);
   else
     plane ? find_static<2>(motion) : find_static<3>(motion);
 }
 
-void EddyViscosity::accept(ParticleStore& particles) {
+void EddyViscosity::accept(ScratchPool& scratch) {
   if (options_.model != TurbulenceModel::dynamic_lagrangian) return;
   for (std::size_t k = 0; k < 2; ++k) lagrangian_average_[k]->swap(next_average_[k]);
-  particles.scratch().release(next_average_);
+  scratch.release(next_average_);
 }
 
 double EddyViscosity::largest(std::size_t particles) const {

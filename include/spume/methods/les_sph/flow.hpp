@@ -41,9 +41,10 @@ struct Flow {
   bool started = false;     // the first pressure has been found
   ParticleStore particles;  // and the fields of lifetime `state` of closures and bubbles
   Array<double>* pressure = nullptr;
-  Boundary boundary;   // positions and speed of the walls
-  EnergyGuard energy;  // what the flow may hold
-  Speeds speeds;       // of the particles
+  VectorField material_acceleration{};  // Du/Dt of the last step, for bubbles: null without
+  Boundary boundary;                    // positions and speed of the walls
+  EnergyGuard energy;                   // what the flow may hold
+  Speeds speeds;                        // of the particles
   double max_eddy_viscosity = 0;
   double max_divergence = 0;      // of u*
   double dissipation = 0;         // integral of rho (nu + nu_t) |S|^2
@@ -77,13 +78,15 @@ struct Flow {
   FloatVectorScratch viscous_acceleration;
   VectorScratch intermediate_velocity;  // u*
   VectorScratch next_velocity;          // u^{n+1}
-  Array<double> divergence;             // of u*; then what the pressure has to remove
-  Array<float> potential_laplacian;     // -lap of the potential by the sums of the matrix
+  Array<double> divergence;          // that the pressure removes: of u*, centred and relaxed by the stages that are on
+  Array<double> first_source;        // of the first pressure
+  Array<float> potential_laplacian;  // -lap of the potential by the sums of the matrix
   PressureRows rows;
   Array<double> surface_source;  // per particle near the surface
   struct {
-    double helmholtz = 0;     // 1 / (c dt)^2
-    double source_scale = 0;  // of the divergence
+    double helmholtz = 0;  // 1 / (c dt)^2
+    double source_scale = 0;
+    const Array<double>* source = nullptr;  // the divergence, or the first source
   } equation;
 
   std::size_t size() const { return particles.size(); }
@@ -92,9 +95,14 @@ struct Flow {
   double particle_mass() const { return density() * particles.volume; }
   double potential_at(const Vec3& r) const;  // -a . (r - origin)
   double potential_of(std::size_t i) const { return potential == nullptr ? 0.0 : (*potential)[i]; }
-  // Null without shifting, and without a closure.
+  // Null without shifting, without a closure, and without bubbles.
   FloatVectorField displacement_by_shift() const { return shift == nullptr ? FloatVectorField{} : shift->displacement; }
   const Array<float>* eddy_viscosity() const { return closure == nullptr ? nullptr : &closure->viscosity(); }
+  const Array<double>* volume_fraction() const { return bubbles == nullptr ? nullptr : &bubbles->volume_fraction(); }
+  ConstFloatVectorField bubble_exchange() const {
+    return bubbles == nullptr ? ConstFloatVectorField{} : bubbles->exchange();
+  }
+  const Array<float>* bubble_viscosity() const { return bubbles == nullptr ? nullptr : &bubbles->viscosity(); }
   double eddy_viscosity_of(std::size_t i) const { return closure == nullptr ? 0.0 : closure->viscosity()[i]; }
   // div(2 nu S) spreads the divergence of the velocity three times as fast as div(nu grad u) does.
   double diffusion_rate() const { return features.viscous_stress ? 3 : 1; }
@@ -105,9 +113,10 @@ struct Flow {
 
   // The stages, in the order of step.cpp. Numbers refer to King et al., section 3.3.
   void move_to_intermediate_position(double dt);  // (i)
-  void find_neighbours(double dt);                // (ii)
-  void compute_shift();                           // (iii)
-  void differentiate_velocity(bool first);        // (v)
+  void make_images(double dt);                    // (ii)
+  void find_neighbours(double dt);
+  void compute_shift();                     // (iii)
+  void differentiate_velocity(bool first);  // (v)
   void find_shift_curvature();
   void find_eddy_viscosity(double dt);
   // Gravity and a uniform body force at time t, along axes without periodicity and along the others. Throws
@@ -115,6 +124,10 @@ struct Flow {
   void find_uniform_acceleration(double t);
   void find_potential(double t);
   void find_viscous_acceleration();
+  // Bubbles, and the sizes of the particles that make room for them.
+  void place_clouds();
+  void move_bubbles(double dt);
+  void share_volume();
   void predict_velocity(double dt);  // (viii)
   void find_divergence(double dt);
   void centre_divergence(double dt);
@@ -132,7 +145,7 @@ struct Flow {
 
  private:
   void add_body_force(double t, double dt);
-  void add_gradient_trace(double factor);
+  void add_gradient_trace(double factor, Array<double>& sum);
   double regularisation() const;
   double row_scale(std::size_t i) const;
   void set_weights();

@@ -30,7 +30,6 @@
 #include "spume/io/record_table.hpp"
 #include "spume/operators/cross_sums.hpp"
 #include "spume/particles/boundary.hpp"
-#include "spume/particles/moments.hpp"
 #include "spume/particles/reports.hpp"
 #include "spume/particles/step_limits.hpp"
 #include "spume/particles/surface.hpp"
@@ -44,45 +43,49 @@
 
 namespace spume::bubbles {
 
-// What bubbles see of the liquid that carries them, and the sizes of its particles, which they set. Everything lives as
-// long as the coupling.
+// What bubbles see of the liquid that carries them: they read it, and write what they own or what a stage hands them.
+// Everything lives as long as the coupling.
 struct Carrier {
   const Scene& scene;
-  Arrangement& arrangement;
-  Boundary& boundary;
-  ParticleStore& particles;
+  const Arrangement& arrangement;
+  const Boundary& boundary;  // which keeps bubbles inside, and makes their images
   const Resolution& resolution;
-  ParticleSizes& sizes;
-  const MomentFields& moments;
-  FreeSurface* surface = nullptr;            // null: the liquid has none
-  const VectorField& intermediate_position;  // r*
+  const ParticleSizes& sizes;
+  const double particle_volume;
+  const Array<std::int64_t>& identifier;
+  const ConstVectorField position, velocity;
+  const ConstVectorField intermediate_position;  // r*
+  const ConstVectorField material_acceleration;  // Du/Dt of the last step
   const std::array<Array<float>, 9>& velocity_gradient;
-  const FloatVectorScratch& filtered_velocity;
-  bool filtered = false;                         // whether there is such
-  const Array<float>* eddy_viscosity = nullptr;  // null: none
-  const Array<float>& strain;                    // |S|
-  const FloatVectorField* shift = nullptr;       // of the last step; null: none
-  const double& time;                            // of the state
+  const Array<float>& strain;                   // |S|
+  const FloatVectorScratch* filtered_velocity;  // null: none
+  const Array<float>* eddy_viscosity;           // null: none
+  const ConstFloatVectorField normal;           // outward, times h; of a liquid with a surface
+  const FreeSurface* surface;                   // null: the liquid has none
+  const ConstFloatVectorField shift;            // of the last step; null: none
+  const double& time;                           // of the state
   const std::int64_t& steps;
   const Speeds& speeds;
+
+  std::size_t size() const { return identifier.size(); }
 };
 
 class BubbleCoupling {
  public:
-  // Adds the volume fraction and Du/Dt to the state of the particles.
-  BubbleCoupling(const Carrier& carrier, const BubbleOptions& options);
+  // Adds the volume fraction to the state of the particles, and the exchange to their fields.
+  BubbleCoupling(ParticleStore& particles, const Carrier& carrier, const BubbleOptions& options);
 
-  // The stages of a step, in its order. Without living bubbles each returns at once.
-  void move(double dt);               // bubbles to r_b^{n+1}, sorted; sizes h_i of the particles
-  void share_volume();                // alpha^{n+1}
-  void exchange_momentum(double dt);  // velocities of the bubbles, forces on the liquid
-  void accept(double dt);             // takes the step over; births and deaths
+  // The stages of a step, in its order. Without living bubbles each returns at once, and particles are all alike.
+  void move(double dt, ParticleSizes& sizes);  // bubbles to r_b^{n+1}, sorted; h_i of the particles
+  void share_volume(ParticleSizes& sizes);     // alpha^{n+1} and V_i; precondition: images of the particles at h_i
+  // Velocities of the bubbles, forces on the liquid; `packed` serves its sweeps.
+  void exchange_momentum(double dt, PackedNeighbours& packed);
+  void accept(double dt);  // takes the step over; births and deaths
 
-  // Clouds of the start, and the volume fraction that they make.
-  void start();
+  void place_clouds();            // of the start
+  void accept_volume_fraction();  // alpha of the step, while bubbles live
 
   const Population& population() const { return population_; }
-  Population& population() { return population_; }
   const History& history() const { return history_; }
   double max_speed() const { return max_speed_; }
 
@@ -93,12 +96,11 @@ class BubbleCoupling {
   // h_i of the liquid around bubble b, the width of its filter, in units of h.
   double filter_width_at_bubble(std::size_t b) const;
 
-  // State of the particles.
-  VectorField material_acceleration{};       // Du/Dt of the last step
-  Array<double>* volume_fraction = nullptr;  // alpha
-  // Results, while bubbles live.
-  FloatVectorField exchange{};  // acceleration of the liquid by the bubbles
-  Array<float> viscosity;       // that bubbles induce
+  // Of the particles: alpha of the last step; and while bubbles live the acceleration of the liquid by them and the
+  // viscosity that they induce.
+  const Array<double>& volume_fraction() const { return *volume_fraction_; }
+  ConstFloatVectorField exchange() const { return constant(exchange_); }
+  const Array<float>& viscosity() const { return viscosity_; }
   bool mixture_pressure() const { return options_.momentum_form == MomentumForm::mixture_pressure; }
 
   void add_columns(SeriesTable& table) const;
@@ -107,17 +109,28 @@ class BubbleCoupling {
   void table_rows(const std::string& name, std::vector<double>& rows);
   std::string note();  // of what happened since the last call; "" for nothing
   std::vector<ArrayInfo> arrays() const;
+  double image_traffic() const { return static_cast<double>(images_.size()) * (3 * 8 + 4 + 4); }
   void save(StateWriter& writer) const;
   void load(StateReader& reader);
 
  private:
-  void measure_sizes();
+  void measure_sizes(ParticleSizes& sizes) const;
   void place_bubbles();
   CrossSearch bubble_search() const;  // bubbles and their images
   CrossTargets particle_targets() const;
   void pack_liquid();
-  void smooth_normals();
+  void pack_particles(std::size_t first, std::size_t last);
+  void pack_images();
+  void smooth_normals(PackedNeighbours& packed);
   void move_bubbles(double dt);
+  void move_bubble(std::size_t b, double dt);
+  Vec3 advance_fluctuation_at(std::size_t b, const Vec3& slip, double dt);
+  Braking brake_at_surface(std::size_t b, const Vec3& slip, double radius, double dt);
+  struct Moved {
+    Vec3 velocity{}, reaction{};
+  };
+  Moved accelerate(std::size_t b, const Surroundings& around, const Vec3& u, double radius, const Braking& braking,
+                   double dt) const;
   void interpolate();
   void deposit();
   void remove_dead(double t);
@@ -128,6 +141,12 @@ class BubbleCoupling {
   // Without surface tension there is none, and no sizes about it.
   bool has_hinze_radius() const { return options_.hinze_radius > 0; }
 
+  const Array<float>& gradient_component(int a, int b) const {
+    return carrier_.velocity_gradient[static_cast<std::size_t>(a * 3 + b)];
+  }
+  // An image inside a box belongs to the face nearest to it: that of a particle may reach a bubble whose own does not
+  // reach the particle.
+  bool seen_beyond_reach() const { return carrier_.arrangement.images.inside_domain(); }
   bool has_surface() const { return carrier_.surface != nullptr; }
   double per_time(double change) const;
   double shift_speed() const;
@@ -141,6 +160,10 @@ class BubbleCoupling {
   EntrainmentModel entrainment_;
   double normal_at_surface_ = 0;             // |n0|
   std::vector<ChildSizeTable> child_sizes_;  // one with breakup, else none
+
+  Array<double>* volume_fraction_ = nullptr;
+  FloatVectorField exchange_{};
+  Array<float> viscosity_;
 
   Population population_;
   Sources sources_;
@@ -165,7 +188,8 @@ class BubbleCoupling {
   std::array<Array<double>, 3> reaction_;  // M_b
   Array<std::uint8_t> dead_;
   Array<std::uint8_t> near_;            // particles with bubbles in their reach
-  Array<std::int32_t> near_particles_;  // the same as a list
+  Array<std::int32_t> near_particles_;  // those whose normals are seen
+  FloatVectorScratch smoothed_normal_;  // Shepard-filtered, of these
   SnapshotTable snapshot_;
 };
 

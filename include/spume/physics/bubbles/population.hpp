@@ -47,6 +47,7 @@ class Population {
   bool empty() const { return fields.size() == 0; }
   double radius(std::size_t b) const { return radius_of((*volume)[b]); }
   double total_volume() const;
+  double traffic() const;  // compulsory (core/ledger.hpp), of everything that bubbles carry
 
   // Adds what make(item, list) appends to its list for each item of [0, items), in the order of the items, born at
   // time t. Returns the number of births.

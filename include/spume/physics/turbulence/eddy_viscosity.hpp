@@ -8,17 +8,24 @@
 
 namespace spume::turbulence {
 
-// What a closure sees of its carrier, in one step.
+// What a closure sees of its carrier, in one step: values per particle, and how to sum over neighbours.
 struct ResolvedMotion {
-  Arrangement& arrangement;
-  ParticleStore& particles;
-  const Boundary& boundary;
+  std::size_t particles = 0;
+  const SweepContext& context;
+  const ImageMap images;
   const Resolution& resolution;
   const ParticleSizes& sizes;
-  const Array<float>& strain;                            // |S| = sqrt(2 S:S)
-  const std::array<Array<float>, 9>& velocity_gradient;  // of the dynamic closures
-  const FloatVectorScratch& filtered_velocity;           // of all but Smagorinsky's
+  std::array<const double*, 3> velocity{};
+  const float* strain = nullptr;                    // |S| = sqrt(2 S:S)
+  std::array<const float*, 9> velocity_gradient{};  // of the dynamic closures
+  std::array<const float*, 3> filtered_velocity{};  // of all but Smagorinsky's
   double kinematic_viscosity = 0;
+};
+
+// What it may use while it works, and leaves without a meaning.
+struct ClosureScratch {
+  PackedNeighbours& packed;
+  ScratchPool& arrays;
 };
 
 class EddyViscosity {
@@ -27,10 +34,10 @@ class EddyViscosity {
   // Precondition: a model other than none.
   EddyViscosity(ParticleStore& particles, const TurbulenceOptions& options);
 
-  // Of a step dt. The averages of the Lagrangian dynamic closure are those at its end, taken over by accept(): a
-  // refused step leaves the state as it was.
-  void find(const ResolvedMotion& motion, double dt);
-  void accept(ParticleStore& particles);
+  // Of a step dt. The averages of the Lagrangian dynamic closure are those at its end, taken over by accept(), which
+  // gives back what they were leased from: a refused step leaves the state as it was.
+  void find(const ResolvedMotion& motion, const ClosureScratch& scratch, double dt);
+  void accept(ScratchPool& scratch);
 
   const Array<float>& viscosity() const { return *viscosity_; }  // nu_t
   double largest(std::size_t particles) const;
@@ -40,7 +47,7 @@ class EddyViscosity {
   template <int d>
   void find_static(const ResolvedMotion& motion);
   template <int d>
-  void find_dynamic(const ResolvedMotion& motion, double dt);
+  void find_dynamic(const ResolvedMotion& motion, const ClosureScratch& scratch, double dt);
 
   TurbulenceOptions options_;
   Array<float>* viscosity_ = nullptr;

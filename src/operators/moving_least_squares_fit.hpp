@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "spume/operators/moving_least_squares.hpp"
+// Definitions of MovingLeastSquares, instantiated in one file per dimension: Eigen's factorisations are compiled anew
+// for every size of the moments.
+#pragma once
 
 #include <Eigen/Cholesky>
 #include <Eigen/Dense>
@@ -7,7 +9,11 @@
 #include <cmath>
 #include <experimental/simd>
 
+#include "reciprocal_condition.hpp"
+#include "spume/operators/moving_least_squares.hpp"
+
 namespace spume {
+
 namespace {
 
 using Pack = std::experimental::native_simd<double>;
@@ -16,9 +22,6 @@ using std::experimental::element_aligned;
 // A squared pivot is the part of a monomial that the ones before it do not explain: below this the moments are singular
 // to the rounding of their sums.
 constexpr double smallest_pivot = 1e-10;
-
-// Of order 0, 1 and 2; the header has the values of lattices and surfaces that these stand below.
-constexpr std::array<double, 3> least_reciprocal_condition{0, 1e-3, 2e-4};
 
 // table[i][j]: the monomial that is the product of monomials i and j.
 template <int Dimensions, int Order>
@@ -104,10 +107,10 @@ template <int Dimensions>
 template <int Order>
 double MovingLeastSquares<Dimensions>::reciprocal_condition() const {
   constexpr std::size_t size = monomial_count(Dimensions, Order);
-  Eigen::Matrix<double, size, size> matrix;
+  std::array<double, size * size> matrix;
   for (std::size_t j = 0; j < size; ++j)
-    for (std::size_t i = 0; i < size; ++i) matrix(i, j) = moments_[product_index<Dimensions, Order>[i][j]];
-  return Eigen::LDLT<Eigen::Matrix<double, size, size>>(matrix).rcond();
+    for (std::size_t i = 0; i < size; ++i) matrix[j * size + i] = moments_[product_index<Dimensions, Order>[i][j]];
+  return detail::reciprocal_condition(matrix.data(), static_cast<int>(size));
 }
 
 template <int Dimensions>
@@ -126,7 +129,7 @@ int MovingLeastSquares<Dimensions>::fit(int order) {
     if (count_ <= 2 * monomial_count(Dimensions, o)) continue;
     const double reciprocal_condition =
         !factor(o) ? 0 : (o == 2 ? this->reciprocal_condition<2>() : this->reciprocal_condition<1>());
-    if (reciprocal_condition > least_reciprocal_condition[static_cast<std::size_t>(o)]) return o;
+    if (reciprocal_condition > detail::least_reciprocal_condition[static_cast<std::size_t>(o)]) return o;
   }
   return factor(0) ? 0 : -1;
 }
@@ -195,39 +198,6 @@ std::span<const double> MovingLeastSquares<Dimensions>::second_derivative(int a,
   ++wanted[static_cast<std::size_t>(a)];
   ++wanted[static_cast<std::size_t>(b)];
   return coefficients(Products::find(wanted), (a == b ? 2 : 1) / (h * h));
-}
-
-template class MovingLeastSquares<2>;
-template class MovingLeastSquares<3>;
-
-namespace {
-
-using FourByFour = Eigen::Map<Eigen::Matrix4d, Eigen::Aligned32>;
-using ReadFourByFour = Eigen::Map<const Eigen::Matrix4d, Eigen::Aligned32>;
-
-}  // namespace
-
-void LinearFit::add(double weight, const std::array<double, 3>& offset, const std::array<double, fields>& values) {
-  FourByFour moments(moments_.data()), sums(values_.data());
-  const Eigen::Vector4d basis(1, offset[0], offset[1], offset[2]);
-  const Eigen::Vector4d value(values[0], values[1], values[2], values[3]);
-  moments += weight * basis * basis.transpose();
-  sums += weight * basis * value.transpose();
-  ++count_;
-}
-
-LinearFit::Result LinearFit::at_centre() const {
-  const ReadFourByFour moments(moments_.data()), sums(values_.data());
-  const int monomials = dimensions_ + 1;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(moments.topLeftCorner(monomials, monomials));
-  Eigen::RowVector4d result = sums.row(0) / weight();
-  const bool fitted =
-      count_ > 2 * monomials && factor.info() == Eigen::Success && factor.rcond() > least_reciprocal_condition[1];
-  if (fitted) {
-    const Eigen::MatrixXd solution = factor.solve(sums.topRows(monomials));
-    result = solution.row(0);
-  }
-  return {{result[0], result[1], result[2], result[3]}, fitted};
 }
 
 }  // namespace spume

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Stages of a flow as its plan takes them: with the traffic of their sweeps, and of arrays that other classes keep.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "spume/methods/les_sph/flow.hpp"
+#include "spume/methods/stage.hpp"
+
+namespace spume::les_sph {
+
+using Arrays = std::vector<ArrayUse>;
+
+class AddStage {
+ public:
+  AddStage(Plan& plan, Flow& flow) : plan_(plan), flow_(flow) {}
+
+  // `sweeps`: the stage passes over the pairs; the traffic of its sweeps comes on top of the arrays that it names.
+  template <class Work>
+  void operator()(StagePart part, const char* name, bool on, std::string reason, Work work, Arrays reads, Arrays writes,
+                  bool sweeps = false) const {
+    plan_.add({name, std::move(reason), on,
+               [&f = flow_, work, sweeps](StageRun& run) {
+                 f.arrangement.packed.take_traffic();
+                 work(run);
+                 if (sweeps && run.pairs == 0) run.pairs = f.arrangement.pair_count();
+                 run.bytes += f.arrangement.packed.take_traffic();
+               },
+               std::move(reads), std::move(writes), part});
+  }
+
+ private:
+  Plan& plan_;
+  Flow& flow_;
+};
+
+// Arrays that the plan of a flow names and other classes keep.
+struct KeptArrays {
+  explicit KeptArrays(const Flow& f)
+      : images([&f] { return f.arrangement.image_traffic(); }),
+        lists([&f] { return f.arrangement.list_traffic(f.sizes); }),
+        sorted([&f] { return f.arrangement.sort_traffic(f.particles); }),
+        surface([&f] { return f.surface->traffic(); }),
+        sizes([&f] { return 4.0 * 4.0 * static_cast<double>(f.sizes.length_ratio.size()); }),
+        bubbles([&f] { return f.bubbles->population().traffic(); }),
+        bubble_images([&f] { return f.bubbles->image_traffic(); }) {}
+
+  ArrayUse images, lists, sorted, surface;  // lists: with the coordinates that they refer to
+  ArrayUse sizes, bubbles, bubble_images;
+};
+
+// What a stage of the bubbles reads or writes of the particles, while bubbles live: else it returns at once.
+inline Arrays while_bubbles_live(const Flow& f, Arrays arrays) {
+  return {ArrayUse([&f, arrays = std::move(arrays)] {
+    double sum = 0;
+    if (!f.bubbles->population().empty())
+      for (const ArrayUse& use : arrays) sum += use.bytes();
+    return sum;
+  })};
+}
+
+// A solve counts what the applications of its matrix stream itself.
+inline auto solving(Flow& f, void (Flow::*solve)()) {
+  return [&f, solve](StageRun& run) {
+    (f.*solve)();
+    run.pairs = f.arrangement.pair_count() * f.solver.report().applications;
+  };
+}
+
+}  // namespace spume::les_sph

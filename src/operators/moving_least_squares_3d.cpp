@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+#include "moving_least_squares_fit.hpp"
+
+namespace spume {
+
+template class MovingLeastSquares<3>;
+
+}  // namespace spume
