@@ -242,6 +242,10 @@ void note_places(const Node& node, const std::string& name, const std::string& f
   }
 }
 
+std::vector<ProbeScalar> probe_scalars(const MethodDeclaration* method, const Case& options) {
+  return method != nullptr && method->probe_scalars ? method->probe_scalars(options) : std::vector<ProbeScalar>{};
+}
+
 void check(const MethodDeclaration* method, Draft& draft, Problems& problems) {
   // A case of no known method is read as one of particles, which most are.
   const bool phases = method != nullptr && method->fills_phases;
@@ -258,7 +262,7 @@ void check(const MethodDeclaration* method, Draft& draft, Problems& problems) {
     check_output_fields(draft, method->output_fields(draft.options), problems);
   }
   check_output(draft, problems);
-  check_probes(draft, problems);
+  check_probes(draft, probe_scalars(method, draft.options), problems);
 }
 
 void set_grid(const Draft& draft, double most, Scene& scene, Problems& problems) {
@@ -328,6 +332,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   if (method->check_scene) method->check_scene(draft, scene, problems);
   problems.throw_if_any();
 
+  loaded.probe_scalars = probe_scalars(method, draft.options);
   draft.options.groups = describe_groups(draft, scene, compiler.scope());
   if (uses_particles(*method)) describe_lattice(scene, lattice, draft.options.groups);
   note_places(document, "", file, draft.options.places);

@@ -118,7 +118,7 @@ TEST(LesSphSamples, KnowTheHydrostaticPressureOfALoadedState) {
   saved_from.method.save(saved);
   loaded_into.method.load(saved);
   const Vec3 floor{0.31, 0, 0};
-  EXPECT_EQ(loaded_into.method.sample(floor).pressure, saved_from.method.sample(floor).pressure);
+  EXPECT_EQ(loaded_into.method.sample(floor).scalars[0], saved_from.method.sample(floor).scalars[0]);
 }
 
 TEST(LesSphSamples, AreTheSameAfterARefusedStep) {
@@ -268,11 +268,11 @@ end = 1
 TEST(LesSphSamples, SeeTheHydrostaticPressureOnTheFloor) {
   Simulation run(closed_box, {"domain.left=\"free-slip\"", "domain.right=\"free-slip\""});
   run.steps(2, 0.005);
-  const double middle = run.method.sample({0.5, 0.5, 0}).pressure;
+  const double middle = run.method.sample({0.5, 0.5, 0}).scalars[0];
   for (const double y : {0.0, 0.01, 0.1, 0.9, 1.0})
     for (const double x : {0.0, 0.3})
       // The solve's tolerance of 1e-6, over a box of 1.
-      EXPECT_NEAR(run.method.sample({x, y, 0}).pressure - middle, 0.5 - y, 2e-5) << x << " " << y;
+      EXPECT_NEAR(run.method.sample({x, y, 0}).scalars[0] - middle, 0.5 - y, 2e-5) << x << " " << y;
 }
 
 }  // namespace

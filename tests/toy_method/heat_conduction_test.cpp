@@ -171,14 +171,13 @@ TEST_F(ToyMethod, HeatIsConserved) {
   for (const auto& row : rows) ASSERT_NEAR(row[3], rows[0][3], most);
 }
 
-// The temperature of a probe stands in the column of the scalar that the program knows, the pressure.
 TEST_F(ToyMethod, AProbeFollowsTheWave) {
   Watch watch;
   const auto run = start("run");
   run->run(watch);
   std::string heading;
   const auto rows = rows_of(folder_ / "run" / "probes.csv", heading);
-  EXPECT_EQ(heading, "t,top_pressure,top_velocity_x,top_velocity_y");
+  EXPECT_EQ(heading, "t,top_temperature,top_velocity_x,top_velocity_y");
   // On the wall at an extremum of the wave, cos(pi) cos(pi) = 1, neighbours and images differ by up to A (k R)^2 / 2.
   for (const auto& [row, A] : {std::pair{rows.front(), 1.0}, std::pair{rows.back(), amplitude("run", 3200)}}) {
     EXPECT_LT(row[1], 1 + A);

@@ -43,18 +43,6 @@ double default_courant(const Case&, const Scene& scene) {
   return scene.free_surface ? 0.3 : 0.2;
 }
 
-std::vector<std::string> output_fields(const Case& options) {
-  std::vector<std::string> fields{"velocity",
-                                  "pressure",
-                                  "id",
-                                  "dissipation",
-                                  "unresolved_dissipation",
-                                  "eddy_viscosity",
-                                  "divergence_of_position"};
-  if (options.get<BubbleOptions>().on) fields.push_back("volume_fraction");
-  return fields;
-}
-
 }  // namespace
 
 Registration registration() {
@@ -69,7 +57,8 @@ Registration registration() {
   method.bytes_per_particle = bytes_per_particle;
   method.default_courant = default_courant;
   method.default_courant_in_words = "0.2, with a free surface 0.3";
-  method.output_fields = output_fields;
+  method.output_fields = [](const Case& options) { return field_infos(output_fields(), options); };
+  method.probe_scalars = [](const Case&) { return std::vector<ProbeScalar>{{"pressure", "pressure"}}; };
   method.make = [](const LoadedCase& loaded) { return std::make_unique<LesSph>(loaded); };
   return method;
 }
