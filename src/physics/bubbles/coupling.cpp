@@ -20,11 +20,11 @@ double inverse_cube_root(double x) {
 
 }  // namespace
 
-BubbleCoupling::BubbleCoupling(const Carrier& carrier, const BubbleOptions& options)
+BubbleCoupling::BubbleCoupling(const Carrier& carrier, const BubbleOptions& options, const BubbleSources& sources)
     : carrier_(carrier),
       options_(options),
       population_({options.fluctuations, options.breakup, options.surface_interaction && has_surface()}),
-      sources_(carrier.scene) {
+      sources_(sources, carrier.scene.seed) {
   carrier.particles.add_vector(exchange, "bubble_exchange", Lifetime::result);
   carrier.particles.add_vector(material_acceleration, "material_acceleration", Lifetime::state);
   volume_fraction = &carrier.particles.fields.add<double>("volume_fraction", Lifetime::state);

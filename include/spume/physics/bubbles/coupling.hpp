@@ -37,6 +37,7 @@
 #include "spume/physics/bubbles/breakup.hpp"
 #include "spume/physics/bubbles/entrainment.hpp"
 #include "spume/physics/bubbles/forces.hpp"
+#include "spume/physics/bubbles/options.hpp"
 #include "spume/physics/bubbles/population.hpp"
 #include "spume/physics/bubbles/sources.hpp"
 #include "spume/physics/bubbles/statistics.hpp"
@@ -70,7 +71,7 @@ struct Carrier {
 class BubbleCoupling {
  public:
   // Adds the volume fraction and Du/Dt to the state of the particles.
-  BubbleCoupling(const Carrier& carrier, const BubbleOptions& options);
+  BubbleCoupling(const Carrier& carrier, const BubbleOptions& options, const BubbleSources& sources);
 
   // The stages of a step, in its order. Without living bubbles each returns at once.
   void move(double dt);               // bubbles to r_b^{n+1}, sorted; sizes h_i of the particles
