@@ -238,24 +238,7 @@ end = 1
 // A linear shear between walls at rest and in motion is linear in the mirrored liquid too: the fit is exact up to and
 // on the walls.
 TEST(LesSphSamples, SeeTheVelocityOfNoSlipWalls) {
-  Simulation run(R"(method = "les-sph"
-[domain]
-lower = [0, 0]
-upper = [1, 1]
-x = "periodic"
-bottom = "no-slip"
-top = "no-slip"
-[domain.wall_velocity]
-top = ["2", "0"]
-[resolution]
-spacing = 0.05
-[fluid]
-reynolds = 100
-[[liquid]]
-velocity = ["2*y", "0"]
-[time]
-end = 1
-)");
+  Simulation run(channel, {"domain.wall_velocity.top=[\"2\", \"0\"]", "liquid.0.velocity=[\"2*y\", \"0\"]"});
   for (const double y : {0.0, 0.01, 0.2, 0.5, 0.93, 1.0}) {
     const PointSample sample = run.method.sample({0.31, y, 0});
     EXPECT_NEAR(sample.velocity[0], 2 * y, 1e-12);
