@@ -65,10 +65,11 @@ std::vector<Copy> copies_of(const SampledState& state, const Vec3& point) {
 
 }  // namespace
 
-void PointSampler::update(const SampledState& state) {
+const PointSampler& PointSampler::update(const SampledState& state) {
   state_ = state;
   const auto r = read(state.particles->position);
   table_.build(state.arrangement->grid, r[0], r[1], r[2], state.particles->size());
+  return *this;
 }
 
 double PointSampler::potential_at(const Vec3& r) const {
@@ -121,30 +122,40 @@ double PointSampler::coverage(const Vec3& point) const {
   return sum;
 }
 
+// A fit takes four fields. Scalar 0 and the velocity are fields 0 to 3, the other scalars follow.
 PointSample PointSampler::sample(const Vec3& point) const {
+  constexpr std::size_t wide = LinearFit::fields;
   const int d = state_.particles->dimensions;
-  const double density = state_.density;
-  LinearFit fit(d);  // of the pressure without its hydrostatic part, and of the velocity
-  double pressure = 0;
+  const std::vector<SampledScalar>& scalars = state_.scalars;
+  const auto field_of = [](std::size_t scalar) { return scalar == 0 ? 0 : scalar + 3; };
+  std::vector<LinearFit> fits(1 + (scalars.size() + 2) / wide, LinearFit(d));
+  std::vector<std::array<double, wide>> values(fits.size());
+  PointSample sample{.scalars = std::vector<double>(scalars.size())};
   visit(point, [&](std::size_t j, double weight, const Vec3& offset, const Copy& copy) {
-    // A wall mirrors the pressure but for its hydrostatic part, which belongs to the place of the source.
-    Vec3 place = point;
-    for (int axis = 0; axis < d; ++axis)
-      place[axis] = copy.sign[axis] > 0 ? point[axis] + offset[axis] : copy.point[axis] - offset[axis];
-    std::array<double, LinearFit::fields> values{(*state_.pressure)[j] + density * potential_at(place)};
-    Vec3 scaled{};
+    // A wall mirrors a pressure but for its hydrostatic part, which belongs to the place of the source.
+    Vec3 place = point, scaled{};
     for (int axis = 0; axis < d; ++axis) {
+      place[axis] = copy.sign[axis] > 0 ? point[axis] + offset[axis] : copy.point[axis] - offset[axis];
       scaled[axis] = offset[axis] / state_.resolution->smoothing_length;
-      values[axis + 1] = copy.velocity_sign[axis] * (*state_.particles->velocity[axis])[j] + copy.velocity_offset[axis];
+      values[0][axis + 1] =
+          copy.velocity_sign[axis] * (*state_.particles->velocity[axis])[j] + copy.velocity_offset[axis];
     }
-    fit.add(weight, scaled, values);
-    pressure += weight * (*state_.pressure)[j];
+    for (std::size_t k = 0; k < scalars.size(); ++k) {
+      const double value = (*scalars[k].values)[j];
+      values[field_of(k) / wide][field_of(k) % wide] = value + scalars[k].hydrostatic_density * potential_at(place);
+      sample.scalars[k] += weight * value;
+    }
+    for (std::size_t k = 0; k < fits.size(); ++k) fits[k].add(weight, scaled, values[k]);
   });
-  if (fit.count() == 0) return {};
-  const LinearFit::Result result = fit.at_centre();
-  PointSample sample{.coverage = fit.weight()};
-  sample.pressure = result.fitted ? result.value[0] - density * potential_at(point) : pressure / fit.weight();
-  for (int axis = 0; axis < d; ++axis) sample.velocity[axis] = result.value[axis + 1];
+  if (fits[0].count() == 0) return sample;
+  std::vector<LinearFit::Result> results;
+  for (const LinearFit& fit : fits) results.push_back(fit.at_centre());
+  sample.coverage = fits[0].weight();
+  for (std::size_t k = 0; k < scalars.size(); ++k)
+    sample.scalars[k] = results[0].fitted ? results[field_of(k) / wide].value[field_of(k) % wide] -
+                                                scalars[k].hydrostatic_density * potential_at(point)
+                                          : sample.scalars[k] / sample.coverage;
+  for (int axis = 0; axis < d; ++axis) sample.velocity[axis] = results[0].value[axis + 1];
   return sample;
 }
 
@@ -210,7 +221,9 @@ double PointSampler::front(int axis, double height) const {
 
 PlaneSample PointSampler::plane_average(int axis, double position) const {
   const auto& walls = state_.boundary->walls;
-  if (position < walls[axis][0] || position > walls[axis][1]) return {};  // a wall has moved past it
+  PlaneSample result;
+  result.scalars.assign(state_.scalars.size(), PlaneSample::nothing);
+  if (position < walls[axis][0] || position > walls[axis][1]) return result;  // a wall has moved past it
   std::array<std::size_t, 3> cells{1, 1, 1};
   Vec3 side{}, lower{};
   double cell_area = 1;
@@ -223,8 +236,15 @@ PlaneSample PointSampler::plane_average(int axis, double position) const {
     cell_area *= side[a];
   }
   struct Sum {
-    double wet = 0, pressure = 0;
+    double wet = 0;
+    std::vector<double> scalars;
     Vec3 velocity{};
+    void add(double points, const std::vector<double>& values, const Vec3& u) {
+      wet += points;
+      scalars.resize(values.size());
+      for (std::size_t k = 0; k < values.size(); ++k) scalars[k] += values[k];
+      for (std::size_t c = 0; c < 3; ++c) velocity[c] += u[c];
+    }
   };
   const Sum total = parallel_reduce(
       cells[0] * cells[1] * cells[2], Sum{},
@@ -238,21 +258,18 @@ PlaneSample PointSampler::plane_average(int axis, double position) const {
           if (inside_solid(state_.boundary->domain(), point)) continue;
           const PointSample one = sample(point);
           if (!(one.coverage >= 0.5)) continue;
-          sum.wet += 1;
-          sum.pressure += one.pressure;
-          for (int a = 0; a < state_.particles->dimensions; ++a) sum.velocity[a] += one.velocity[a];
+          sum.add(1, one.scalars, one.velocity);
         }
         return sum;
       },
       [](const Sum& a, const Sum& b) {
-        Sum sum{a.wet + b.wet, a.pressure + b.pressure, {}};
-        for (std::size_t c = 0; c < 3; ++c) sum.velocity[c] = a.velocity[c] + b.velocity[c];
+        Sum sum;
+        for (const Sum& part : {a, b}) sum.add(part.wet, part.scalars, part.velocity);
         return sum;
       });
-  PlaneSample result;
   if (!(total.wet > 0)) return result;
   result.area = total.wet * cell_area;
-  result.pressure = total.pressure / total.wet;
+  for (std::size_t k = 0; k < result.scalars.size(); ++k) result.scalars[k] = total.scalars[k] / total.wet;
   for (std::size_t c = 0; c < 3; ++c) result.velocity[c] = total.velocity[c] / total.wet;
   return result;
 }

@@ -36,7 +36,8 @@ std::vector<SeriesColumn> probe_columns(const LoadedCase& loaded) {
     if (of_the_surface(probe.kind)) columns.push_back({probe.name, "length"});
     if (of_the_surface(probe.kind) || probe.kind == ProbeKind::line) continue;
     if (probe.kind == ProbeKind::plane) columns.push_back({probe.name + "_area", dimensions == 2 ? "length" : "area"});
-    columns.push_back({probe.name + "_pressure", "pressure"});
+    for (const ProbeScalar& scalar : loaded.probe_scalars)
+      columns.push_back({probe.name + "_" + scalar.name, scalar.unit});
     for (int axis = 0; axis < dimensions; ++axis)
       columns.push_back({probe.name + "_velocity_" + "xyz"[axis], "velocity"});
   }
@@ -44,8 +45,8 @@ std::vector<SeriesColumn> probe_columns(const LoadedCase& loaded) {
 }
 
 void probe_values(const LoadedCase& loaded, Method& method, std::vector<double>& row) {
-  const auto put = [&](double pressure, const Vec3& velocity) {
-    row.push_back(pressure);
+  const auto put = [&](const std::vector<double>& scalars, const Vec3& velocity) {
+    row.insert(row.end(), scalars.begin(), scalars.end());
     row.insert(row.end(), velocity.begin(), velocity.begin() + loaded.scene.domain.dimensions);
   };
   row.assign(1, method.time());
@@ -53,14 +54,14 @@ void probe_values(const LoadedCase& loaded, Method& method, std::vector<double>&
     switch (probe.kind) {
       case ProbeKind::point: {
         const PointSample sample = method.field_probes()->sample(probe.position);
-        put(sample.pressure, sample.velocity);
+        put(sample.scalars, sample.velocity);
         break;
       }
       case ProbeKind::plane: {
         const double position = probe.position[static_cast<std::size_t>(probe.axis)];
         const PlaneSample sample = method.field_probes()->plane_average(probe.axis, position);
         row.push_back(sample.area);
-        put(sample.pressure, sample.velocity);
+        put(sample.scalars, sample.velocity);
         break;
       }
       case ProbeKind::elevation:
@@ -78,17 +79,18 @@ void probe_values(const LoadedCase& loaded, Method& method, std::vector<double>&
   }
 }
 
-std::vector<SeriesColumn> line_columns() {
-  return {{"t", "time"},
-          {"name", ""},
-          {"s", "length"},
-          {"x", "length"},
-          {"y", "length"},
-          {"z", "length"},
-          {"velocity_x", "velocity"},
-          {"velocity_y", "velocity"},
-          {"velocity_z", "velocity"},
-          {"pressure", "pressure"}};
+std::vector<SeriesColumn> line_columns(const LoadedCase& loaded) {
+  std::vector<SeriesColumn> columns{{"t", "time"},
+                                    {"name", ""},
+                                    {"s", "length"},
+                                    {"x", "length"},
+                                    {"y", "length"},
+                                    {"z", "length"},
+                                    {"velocity_x", "velocity"},
+                                    {"velocity_y", "velocity"},
+                                    {"velocity_z", "velocity"}};
+  for (const ProbeScalar& scalar : loaded.probe_scalars) columns.push_back({scalar.name, scalar.unit});
+  return columns;
 }
 
 void write_line(const ProbeOptions& line, Method& method, SeriesFile& file) {
@@ -104,8 +106,10 @@ void write_line(const ProbeOptions& line, Method& method, SeriesFile& file) {
     }
     const PointSample sample = method.field_probes()->sample(position);
     const double time = method.time();
-    const double values[] = {std::sqrt(distance2), position[0],        position[1],        position[2],
-                             sample.velocity[0],   sample.velocity[1], sample.velocity[2], sample.pressure};
+    std::vector<double> values{std::sqrt(distance2)};
+    values.insert(values.end(), position.begin(), position.end());
+    values.insert(values.end(), sample.velocity.begin(), sample.velocity.end());
+    values.insert(values.end(), sample.scalars.begin(), sample.scalars.end());
     file.row(std::span(&time, 1), line.name, values);
   }
 }

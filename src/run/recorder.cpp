@@ -30,7 +30,7 @@ Recorder::Recorder(std::filesystem::path folder, const LoadedCase& loaded, const
       resume_(resume),
       series_{"series", "quantities of the whole domain over time", series_headings(method)},
       probes_{"probes", "probes over time", probe_columns(loaded)},
-      lines_{"lines", "values along lines at output times", line_columns()},
+      lines_{"lines", "values along lines at output times", line_columns(loaded)},
       method_tables_(method.tables()) {
   if (!resume_) return;
   cut_families();

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "spume/core/machine.hpp"
+#include "spume/physics/bubbles/options.hpp"
 #include "spume/run/version.hpp"
 
 namespace spume {

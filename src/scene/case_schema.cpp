@@ -92,6 +92,7 @@ void CaseSchema::add(const Section& own, const std::string& method) {
   }
   auto& names = present->owners.names;
   if (!present->owners.all && std::find(names.begin(), names.end(), method) == names.end()) names.push_back(method);
+  if (own.compile) present->compile = own.compile;
   auto& options = present->options;
   auto at = std::find_if(options.begin(), options.end(), [&](const Option& option) { return option.key == own.after; });
   if (at != options.end()) ++at;

@@ -89,11 +89,13 @@ std::string span_in_words(std::size_t axis, double low, double high) {
 
 // The headings of a probe in probes.csv must be its own.
 void claim_columns(const Draft& draft, const std::string& probe, const ProbeOptions& options,
-                   std::map<std::string, std::string>& columns, Problems& problems) {
+                   const std::vector<ProbeScalar>& scalars, std::map<std::string, std::string>& columns,
+                   Problems& problems) {
   std::vector<std::string> headings{options.name};
   if (options.kind == ProbeKind::line) return;
   if (options.kind == ProbeKind::point || options.kind == ProbeKind::plane) {
-    headings = {options.name + "_pressure"};
+    headings.clear();
+    for (const ProbeScalar& scalar : scalars) headings.push_back(options.name + "_" + scalar.name);
     if (options.kind == ProbeKind::plane) headings.push_back(options.name + "_area");
     for (std::size_t a = 0; a < draft.lower.size(); ++a)
       headings.push_back(options.name + "_velocity_" + axis_names[a]);
@@ -351,16 +353,22 @@ void check_output(const Draft& draft, Problems& problems) {
   }
 }
 
-void check_output_fields(const Draft& draft, const std::vector<std::string>& known, Problems& problems) {
+void check_output_fields(const Draft& draft, const std::vector<OutputFieldInfo>& known, Problems& problems) {
   std::string list;
-  for (const std::string& field : known) list += (list.empty() ? "" : ", ") + field;
-  for (const std::string& field : draft.options.output.fields)
-    if (std::find(known.begin(), known.end(), field) == known.end())
-      problems.add(*draft.node("output.fields"), "output.fields names '" + field + "', which method \"" +
-                                                     draft.options.method + "\" does not have; it has " + list);
+  for (const OutputFieldInfo& field : known)
+    if (field.lacks.empty()) list += (list.empty() ? "" : ", ") + field.name;
+  for (const std::string& name : draft.options.output.fields) {
+    const auto field =
+        std::find_if(known.begin(), known.end(), [&](const OutputFieldInfo& one) { return one.name == name; });
+    if (field != known.end() && field->lacks.empty()) continue;
+    problems.add(*draft.node("output.fields"),
+                 "output.fields names '" + name + "', which " +
+                     (field != known.end() ? "needs " + field->lacks + "; without it the case has " + list
+                                           : "method \"" + draft.options.method + "\" does not have; it has " + list));
+  }
 }
 
-void check_probes(Draft& draft, Problems& problems) {
+void check_probes(Draft& draft, const std::vector<ProbeScalar>& scalars, Problems& problems) {
   if (!domain_known(draft) || !draft.usable("probe")) return;
   const std::size_t dimensions = draft.lower.size();
   std::set<std::string> names;
@@ -378,7 +386,7 @@ void check_probes(Draft& draft, Problems& problems) {
       if (plain && !names.insert(options.name).second) {
         problems.add(*draft.node(name + ".name"), "another probe has the name '" + options.name + "' already");
       } else if (plain && draft.usable(name + ".kind")) {
-        claim_columns(draft, name, options, columns, problems);
+        claim_columns(draft, name, options, scalars, columns, problems);
       }
     }
     if (!draft.usable(name + ".kind")) continue;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "spume/scene/draft.hpp"
+#include "spume/scene/method_declaration.hpp"
 
 namespace spume {
 
@@ -16,8 +17,9 @@ void check_liquids(const Draft& draft, Problems& problems);
 void check_phases(const Draft& draft, Problems& problems);  // and the regions that they fill
 void check_output(const Draft& draft, Problems& problems);
 // Of output.fields; `known` are those of the method.
-void check_output_fields(const Draft& draft, const std::vector<std::string>& known, Problems& problems);
-void check_probes(Draft& draft, Problems& problems);  // completes the probes of draft.options
+void check_output_fields(const Draft& draft, const std::vector<OutputFieldInfo>& known, Problems& problems);
+// `scalars` are those of the method; completes the probes of draft.options.
+void check_probes(Draft& draft, const std::vector<ProbeScalar>& scalars, Problems& problems);
 
 // Names of the two sides of an axis: left/right, front/back (3-D), bottom/top.
 std::array<std::string, 2> side_names(int axis, int dimensions);

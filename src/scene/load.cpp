@@ -115,12 +115,6 @@ bool any(const VectorExpression& vector) {
   return vector.component[0] || vector.component[1] || vector.component[2];
 }
 
-Vec3 to_vec3(const std::vector<double>& values) {
-  Vec3 vector{};
-  for (std::size_t a = 0; a < values.size() && a < 3; ++a) vector[a] = values[a];
-  return vector;
-}
-
 Domain make_domain(const Draft& draft, Compiler& compiler) {
   Domain domain;
   domain.dimensions = draft.dimensions;
@@ -209,24 +203,15 @@ std::vector<LiquidRegion> make_regions(const Draft& draft, Compiler& compiler) {
   return regions;
 }
 
-void add_bubble_sources(const Draft& draft, Compiler& compiler, Scene& scene) {
-  for (std::size_t k = 0; k < draft.bubbles.spargers.size(); ++k) {
-    const SpargerDraft& given = draft.bubbles.spargers[k];
-    Sparger sparger = given.sparger;
-    sparger.position = to_vec3(given.position);
-    sparger.end = to_vec3(given.end);
-    if (given.rate) sparger.rate = compiler.compile(*given.rate, "sparger." + std::to_string(k) + ".rate");
-    scene.spargers.push_back(std::move(sparger));
-  }
-  for (const BubbleCloudDraft& given : draft.bubbles.clouds) {
-    BubbleCloud cloud = given.cloud;
-    cloud.lower = to_vec3(given.lower.empty() ? draft.lower : given.lower);
-    cloud.upper = to_vec3(given.upper.empty() ? draft.upper : given.upper);
-    cloud.ball = !given.centre.empty();
-    cloud.centre = to_vec3(given.centre);
-    cloud.radius = given.radius.value_or(0);
-    scene.bubble_clouds.push_back(cloud);
-  }
+// What the method's sections make of their expressions.
+void compile_sections(const CaseSchema& schema, Draft& draft, Compiler& compiler) {
+  const MethodDeclaration* method = schema.find(draft.options.method);
+  const CompileExpression compile = [&](const ExpressionText& text, const std::string& name, Arguments arguments) {
+    return compiler.compile(text, name, arguments);
+  };
+  for (const Section& section : schema.sections())
+    if (section.compile && section.owners.include(method == nullptr ? std::string() : method->name))
+      section.compile(draft, compile);
 }
 
 // Where the case gives what, below `name`.
@@ -240,6 +225,10 @@ void note_places(const Node& node, const std::string& name, const std::string& f
     const std::string within = name.empty() ? std::string() : name + ".";
     note_places(node.children[i], within + key, file, places);
   }
+}
+
+std::vector<ProbeScalar> probe_scalars(const MethodDeclaration* method, const Case& options) {
+  return method != nullptr && method->probe_scalars ? method->probe_scalars(options) : std::vector<ProbeScalar>{};
 }
 
 void check(const MethodDeclaration* method, Draft& draft, Problems& problems) {
@@ -258,7 +247,7 @@ void check(const MethodDeclaration* method, Draft& draft, Problems& problems) {
     check_output_fields(draft, method->output_fields(draft.options), problems);
   }
   check_output(draft, problems);
-  check_probes(draft, problems);
+  check_probes(draft, probe_scalars(method, draft.options), problems);
 }
 
 void set_grid(const Draft& draft, double most, Scene& scene, Problems& problems) {
@@ -302,7 +291,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   VectorExpression body_force = compiler.compile(draft.body_force, "forces.body");
   VectorExpression initial_velocity = compiler.compile(draft.initial_velocity, "initial.velocity", Arguments::place);
   if (draft.initial_spectrum) scene.initial_spectrum = compiler.compile_spectrum(*draft.initial_spectrum);
-  add_bubble_sources(draft, compiler, scene);
+  compile_sections(schema, draft, compiler);
   problems.throw_if_any();
 
   if (any(body_force)) scene.body_force = std::move(body_force);
@@ -328,6 +317,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   if (method->check_scene) method->check_scene(draft, scene, problems);
   problems.throw_if_any();
 
+  loaded.probe_scalars = probe_scalars(method, draft.options);
   draft.options.groups = describe_groups(draft, scene, compiler.scope());
   if (uses_particles(*method)) describe_lattice(scene, lattice, draft.options.groups);
   note_places(document, "", file, draft.options.places);

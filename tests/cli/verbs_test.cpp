@@ -11,8 +11,8 @@
 #include <chrono>
 #include <thread>
 
-#include "spume/io/hdf5.hpp"
 #include "spume/io/vtkhdf.hpp"
+#include "support/stored_values.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace spume {
@@ -59,12 +59,7 @@ class Verbs : public testing::Test {
   }
   Outcome spume(const std::vector<std::string>& arguments) { return finish(launch(arguments)); }
   std::vector<float> stored(const std::string& run, const std::string& field) {
-    const auto file = hdf5::File::open(folder_ / run / "fluid.vtkhdf", false);
-    const auto data = file.dataset("/VTKHDF/PointData/" + field);
-    const auto space = file.take(H5Dget_space(data), H5Sclose, "read");
-    std::vector<float> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-    file.check(H5Dread(data, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read");
-    return values;
+    return test::stored_values(folder_ / run / "fluid.vtkhdf", "/VTKHDF/PointData/" + field);
   }
   void wait_for(const std::filesystem::path& path) {
     for (int i = 0; i < 1000 && !std::filesystem::exists(path); ++i)

@@ -13,6 +13,7 @@
 #include "spume/core/error.hpp"
 #include "spume/io/hdf5.hpp"
 #include "spume/io/vtkhdf.hpp"
+#include "support/stored_values.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace spume {
@@ -37,12 +38,7 @@ void append(VtkhdfFile& file) {
 }
 
 std::vector<double> pressures(const std::filesystem::path& path) {
-  const File file = File::open(path, false);
-  const auto data = file.dataset("/VTKHDF/PointData/pressure");
-  const auto space = file.take(H5Dget_space(data), H5Sclose, "read");
-  std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-  file.check(H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read");
-  return values;
+  return test::stored_values<double>(path, "/VTKHDF/PointData/pressure");
 }
 
 TEST(Journal, SnapshotsSurviveAKillAtAnyMoment) {

@@ -5,6 +5,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/io/hdf5.hpp"
+#include "support/stored_values.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace spume {
@@ -23,23 +24,14 @@ struct Fields {
   }
 };
 
-std::vector<float> read(const std::filesystem::path& path, const std::string& name) {
-  const auto file = hdf5::File::open(path, false);
-  const auto data = file.dataset(name);
-  const auto space = file.take(H5Dget_space(data), H5Sclose, "read");
-  std::vector<float> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-  file.check(H5Dread(data, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read");
-  return values;
-}
-
 TEST(VtkhdfGrid, StepsAreStoredWithXFastest) {
   const test::TemporaryFolder folder;
   const auto path = folder / "fluid.vtkhdf";
   VtkhdfGridFile file(path, {{"case", "text"}});
   file.append(0, Fields(0).snapshot);
   file.append(0.5, Fields(100).snapshot);
-  const std::vector<float> pressure = read(path, "/VTKHDF/PointData/pressure");
-  const std::vector<float> velocity = read(path, "/VTKHDF/PointData/velocity");
+  const std::vector<float> pressure = test::stored_values(path, "/VTKHDF/PointData/pressure");
+  const std::vector<float> velocity = test::stored_values(path, "/VTKHDF/PointData/velocity");
   ASSERT_EQ(pressure.size(), 120u);
   ASSERT_EQ(velocity.size(), 360u);
   // Point (2, 1, 4) of the second step.
@@ -48,7 +40,9 @@ TEST(VtkhdfGrid, StepsAreStoredWithXFastest) {
   EXPECT_EQ(velocity[3 * stored + 1], -static_cast<float>(given));
   EXPECT_EQ(velocity[3 * stored + 2], 2 * static_cast<float>(given));
   for (const char* field : {"velocity", "pressure"})
-    EXPECT_EQ(read(path, std::string("/VTKHDF/Steps/PointDataOffsets/") + field), (std::vector<float>{0, 1})) << field;
+    EXPECT_EQ(test::stored_values(path, std::string("/VTKHDF/Steps/PointDataOffsets/") + field),
+              (std::vector<float>{0, 1}))
+        << field;
   const auto attribute = [&](const char* name, std::size_t count) {
     const auto stored = hdf5::File::open(path, false);
     const auto id =
@@ -81,7 +75,7 @@ TEST(VtkhdfGrid, ContinuesAfterTheStepsThatAreKept) {
   file.keep_steps(1);
   file.append(7, Fields(50).snapshot);
   EXPECT_EQ(read_grid_contents(path).times, (std::vector<double>{0, 7}));
-  EXPECT_EQ(read(path, "/VTKHDF/PointData/pressure")[60], 50);
+  EXPECT_EQ(test::stored_values(path, "/VTKHDF/PointData/pressure")[60], 50);
   EXPECT_THROW(file.keep_steps(5), FileError);
   file.keep_steps(0);
   EXPECT_FALSE(std::filesystem::exists(path));

@@ -8,6 +8,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/io/hdf5.hpp"
+#include "support/stored_values.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace spume {
@@ -39,19 +40,11 @@ struct Sample {
   }
 };
 
-template <class T>
-std::vector<T> read(const File& file, const std::string& name, hid_t type) {
-  const auto data = file.dataset(name);
-  const auto space = file.take(H5Dget_space(data), H5Sclose, "read");
-  std::vector<T> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-  if (!values.empty()) file.check(H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read");
-  return values;
-}
 std::vector<std::int64_t> integers(const File& file, const std::string& name) {
-  return read<std::int64_t>(file, name, H5T_NATIVE_INT64);
+  return test::stored_values<std::int64_t>(file, name);
 }
 std::vector<double> reals(const File& file, const std::string& name) {
-  return read<double>(file, name, H5T_NATIVE_DOUBLE);
+  return test::stored_values<double>(file, name);
 }
 
 const std::vector<std::size_t> sizes = {5, 3, 7, 4};

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <array>
 #include <cmath>
 
 #include "methods/les_sph_simulation.hpp"
@@ -28,11 +29,11 @@ TEST(LesSphPlanes, AverageALinearVelocityExactly) {
 TEST(LesSphPlanes, AverageTheHydrostaticPressure) {
   Simulation run(closed_box, {"domain.left=\"free-slip\"", "domain.right=\"free-slip\""});
   run.steps(2, 0.005);
-  const double middle = run.method.sample({0.5, 0.5, 0}).pressure;
+  const double middle = run.method.sample({0.5, 0.5, 0}).scalars[0];
   // The solve's tolerance of 1e-6, over a box of 1.
-  for (const double x : {0.0, 0.3, 1.0}) EXPECT_NEAR(run.method.plane_average(0, x).pressure, middle, 2e-5) << x;
+  for (const double x : {0.0, 0.3, 1.0}) EXPECT_NEAR(run.method.plane_average(0, x).scalars[0], middle, 2e-5) << x;
   for (const double y : {0.0, 0.4, 1.0})
-    EXPECT_NEAR(run.method.plane_average(1, y).pressure - middle, 0.5 - y, 2e-5) << y;
+    EXPECT_NEAR(run.method.plane_average(1, y).scalars[0] - middle, 0.5 - y, 2e-5) << y;
 }
 
 // Water of depth 1 in a tank 1 wide and 1.5 high: the coverage passes one half at the surface, and samples stand half a
@@ -43,11 +44,11 @@ TEST(LesSphPlanes, MeasureTheLiquidAlone) {
   EXPECT_NEAR(run.method.plane_average(1, 0.5).area, 1, 1e-12);
   const PlaneSample air = run.method.plane_average(1, 1.3);
   EXPECT_EQ(air.area, 0);
-  EXPECT_TRUE(std::isnan(air.pressure));
+  EXPECT_TRUE(std::isnan(air.scalars[0]));
   EXPECT_TRUE(std::isnan(air.velocity[0]));
   // A mean over the liquid half way down, not over liquid and air.
   run.steps(1, 0.005);
-  EXPECT_NEAR(run.method.plane_average(0, 0.31).pressure, 0.5, 0.01);
+  EXPECT_NEAR(run.method.plane_average(0, 0.31).scalars[0], 0.5, 0.01);
 
   Simulation column(dam_break_3d);
   EXPECT_NEAR(column.method.plane_average(0, 0.25).area, 0.7 * 0.8, 1e-12);
@@ -73,8 +74,36 @@ TEST(LesSphPlanes, AreTheSameForAnyNumberOfThreads) {
   omp_set_num_threads(3);
   const PlaneSample three = run.method.plane_average(0, 0.25);
   omp_set_num_threads(threads);
-  EXPECT_EQ(one.pressure, three.pressure);
+  EXPECT_EQ(one.scalars[0], three.scalars[0]);
   EXPECT_EQ(one.velocity, three.velocity);
+}
+
+// Each of several scalars keeps its own place in the fits, which take four fields at a time: linear along x, exact at a
+// point and over a plane across it, between walls that mirror y.
+TEST(LesSphPlanes, AverageSeveralScalars) {
+  constexpr std::size_t scalars = 7;
+  Simulation run(closed_box);
+  run.steps(1, 0.002);
+  const les_sph::Flow& flow = run.method.flow();
+  std::array<Array<double>, scalars> values;
+  SampledState state{&flow.arrangement, &flow.boundary, &flow.particles, &flow.resolution};
+  for (std::size_t k = 0; k < scalars; ++k) {
+    values[k].resize(flow.size());
+    for (std::size_t i = 0; i < flow.size(); ++i)
+      values[k][i] =
+          1 + static_cast<double>(k) + (*flow.particles.position[0])[i] * std::pow(2.0, static_cast<double>(k));
+    state.scalars.push_back({&values[k]});
+  }
+  PointSampler sampler;
+  const PointSample point = sampler.update(state).sample({0.4, 0.5, 0});
+  const PlaneSample plane = sampler.plane_average(0, 0.5);
+  ASSERT_EQ(point.scalars.size(), scalars);
+  ASSERT_EQ(plane.scalars.size(), scalars);
+  for (std::size_t k = 0; k < scalars; ++k) {
+    const double slope = std::pow(2.0, static_cast<double>(k));
+    EXPECT_NEAR(point.scalars[k], 1 + static_cast<double>(k) + 0.4 * slope, 1e-12 * slope);
+    EXPECT_NEAR(plane.scalars[k], 1 + static_cast<double>(k) + 0.5 * slope, 1e-12 * slope);
+  }
 }
 
 }  // namespace

@@ -335,15 +335,14 @@ TEST(Sources, ReleaseTheVolumeOfTheRateInWholeBubbles) {
     double operator()(double, double, double, double t) const override { return 2e-5 * t; }
     std::unique_ptr<Expression> clone() const override { return std::make_unique<Linear>(); }
   };
-  Scene scene;
   Sparger sparger;
   sparger.shape = SpargerShape::disc;
   sparger.position = {0.1, 0.2, 0.3};
   sparger.radius = 0.05;
   sparger.sizes = {SizeLaw::truncated_gaussian, 1e-3, 1e-3, 1e-4, 0.02};
   sparger.rate = std::make_shared<Linear>();
-  scene.spargers.push_back(sparger);
-  Sources sources(scene);
+  const BubbleSources given{{sparger}, {}};
+  Sources sources(given, 1);
   Population population({});
   double released = 0;
   for (int k = 0; k < 100; ++k) released += sources.release(population, 0.02 * k, 0.02).volume;

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "helpers.hpp"
-#include "spume/scene/bubbles.hpp"
+#include "spume/physics/bubbles/options.hpp"
 
 namespace spume::test {
 namespace {
@@ -49,10 +49,11 @@ TEST(BubbleSections, AreReadWithDefaults) {
   EXPECT_NEAR(options.density_ratio, 833.333, 1e-3);
   EXPECT_DOUBLE_EQ(options.hinze_radius, std::pow(1e4, -0.6) / 2);
   EXPECT_DOUBLE_EQ(options.smallest_entrained_radius, std::pow(1e4, -0.6) / 40);
-  ASSERT_EQ(loaded.scene.spargers.size(), 1U);
-  EXPECT_DOUBLE_EQ((*loaded.scene.spargers[0].rate)(0, 0, 0, 0), 1e-4);
-  ASSERT_EQ(loaded.scene.bubble_clouds.size(), 1U);
-  const BubbleCloud& cloud = loaded.scene.bubble_clouds[0];
+  const BubbleSources& sources = loaded.options.get<BubbleSources>();
+  ASSERT_EQ(sources.spargers.size(), 1U);
+  EXPECT_DOUBLE_EQ((*sources.spargers[0].rate)(0, 0, 0, 0), 1e-4);
+  ASSERT_EQ(sources.clouds.size(), 1U);
+  const BubbleCloud& cloud = sources.clouds[0];
   EXPECT_TRUE(cloud.ball);
   EXPECT_EQ(cloud.number, 12);
   EXPECT_EQ(cloud.sizes.law, SizeLaw::log_normal);
@@ -68,7 +69,7 @@ TEST(BubbleSections, AbsentMeanNoBubblesAlsoInTheResolvedCase) {
   const LoadedCase with = load_text(tank(plain, sparger));
   const LoadedCase again = load_text(with.options.resolved);
   EXPECT_TRUE(again.options.get<BubbleOptions>().on);
-  EXPECT_EQ(again.scene.spargers.size(), 1U);
+  EXPECT_EQ(again.options.get<BubbleSources>().spargers.size(), 1U);
   EXPECT_EQ(again.options.resolved.size() > 0, true);
 }
 

@@ -52,6 +52,24 @@ TEST(LoadOutput, APlaneHasANormalAndAPlace) {
               ElementsAre(HasSubstr("its column 'p_area' of probes.csv is that of probe 'p' already")));
 }
 
+// A field that the case does not make is refused with what would make it, not left out of the snapshots.
+TEST(LoadOutput, FieldsNeedWhatMakesThem) {
+  const std::string fields = "[output]\nfields = [\"eddy_viscosity\", \"volume_fraction\", \"dissipation\"]\n";
+  const std::vector<std::string> uncorrected = {"time.centred=false", "shifting.velocity_correction=\"none\""};
+  const std::string rest = "; without it the case has velocity, pressure, id, divergence_of_position";
+  EXPECT_THAT(problems_of(small_case(fields), uncorrected),
+              ElementsAre("15:10 output.fields names 'eddy_viscosity', which needs a turbulence.model other than "
+                          "\"none\"" +
+                              rest,
+                          "15:10 output.fields names 'volume_fraction', which needs a section [bubbles]" + rest,
+                          HasSubstr("15:10 output.fields names 'dissipation', which needs a velocity gradient")));
+  EXPECT_THAT(problems_of(small_case("[output]\nfields = [\"dissipation\", \"eddy_viscosity\"]\n"),
+                          {"turbulence.model=\"smagorinsky\""}),
+              IsEmpty());
+  EXPECT_THAT(problems_of(small_case("[output]\nfields = [\"dissipations\"]\n")),
+              ElementsAre(HasSubstr("which method \"les-sph\" does not have; it has velocity, pressure, id")));
+}
+
 std::vector<std::string> unused_of(const std::string& more, const std::vector<std::string>& overrides = {}) {
   std::vector<std::string> texts;
   for (const Problem& one : load_text(small_case(more), overrides).options.warnings) {

@@ -21,7 +21,7 @@ const CaseSchema& schema() {
     method.bytes_per_particle = [](const Case&, int) { return 100.0; };
     method.default_courant = [](const Case&, const Scene&) { return 0.2; };
     method.default_courant_in_words = "0.2";
-    method.output_fields = [](const Case&) { return std::vector<std::string>{"velocity"}; };
+    method.output_fields = [](const Case&) { return std::vector<OutputFieldInfo>{{"velocity"}}; };
     return CaseSchema({method});
   }();
   return made;

@@ -51,7 +51,8 @@ MethodDeclaration particles_method(const std::string& name) {
   method.bytes_per_particle = [](const Case&, int) { return 100.0; };
   method.default_courant = [](const Case&, const Scene& scene) { return scene.free_surface ? 0.4 : 0.1; };
   method.default_courant_in_words = "0.1, " + name + " 0.4";
-  method.output_fields = [](const Case&) { return std::vector<std::string>{"temperature"}; };
+  method.output_fields = [](const Case&) { return std::vector<OutputFieldInfo>{{"temperature"}}; };
+  method.probe_scalars = [](const Case&) { return std::vector<ProbeScalar>{{"temperature", "K"}}; };
   return method;
 }
 
@@ -161,6 +162,19 @@ TEST(Schema, TheMethodChecksItsCaseAndItsScene) {
               ElementsAre("output.fields names 'heat', which method \"warm\" does not have; it has temperature"));
   EXPECT_THAT(problems(schema, small("lukewarm", "")),
               ElementsAre("method \"lukewarm\" is not available in this version; use \"warm\", \"cold\" or \"box\""));
+}
+
+TEST(Schema, TheMethodNamesTheScalarsOfProbes) {
+  const CaseSchema schema = three_methods();
+  const std::string point = "[[probe]]\nname = \"p\"\nposition = [0.5, 0.5]\n";
+  const auto front = [](const std::string& name) { return "[[probe]]\nname = \"" + name + "\"\nkind = \"front\"\n"; };
+  const LoadedCase loaded = load(schema, small("warm", point + front("p_pressure")));
+  ASSERT_EQ(loaded.probe_scalars.size(), 1U);
+  EXPECT_EQ(loaded.probe_scalars[0].name, "temperature");
+  EXPECT_EQ(loaded.probe_scalars[0].unit, "K");
+  EXPECT_THAT(
+      problems(schema, small("warm", point + front("p_temperature"))),
+      ElementsAre("its column 'p_temperature' of probes.csv is that of probe 'p' already; choose another name"));
 }
 
 TEST(Schema, TheMethodGivesCourantNumberAndMemory) {

@@ -104,14 +104,14 @@ class FakeMethod final : public Method, public FieldProbes, public SurfaceProbes
   }
   FieldProbes* field_probes() override { return this; }
   SurfaceProbes* surface_probes() override { return behaviour_.surface ? this : nullptr; }
-  PointSample sample(const Vec3& at) override { return {at[0] + time_, {position_[0][0], at[1], at[2]}, 1}; }
+  PointSample sample(const Vec3& at) override { return {{at[0] + time_}, {position_[0][0], at[1], at[2]}, 1}; }
   double elevation(const Vec3& at) override { return at[0] + position_[1][0]; }
   double wetted_length(const Vec3& at) override { return at[0] - position_[1][0]; }
   double front(int axis, double height) override {
     return *std::max_element(position_[axis].begin(), position_[axis].end()) + height;
   }
   PlaneSample plane_average(int axis, double position) override {
-    return {position, time_, {static_cast<double>(axis), position, 3}};
+    return {position, {time_}, {static_cast<double>(axis), position, 3}};
   }
   // One table of each kind, and one that never gets a row.
   std::vector<RecordTable> tables() const override {
@@ -204,6 +204,7 @@ LoadedCase load_fake_case(const std::string& path, const std::vector<std::string
   loaded.scene.domain.dimensions = static_cast<int>(number("dimensions", 2));
   loaded.scene.domain.upper = {1, 1, 1};
   loaded.scene.spacing = 0.1;
+  loaded.probe_scalars = {{"pressure", "pressure"}};
   if (table["probes"].value<bool>().value_or(false))
     options.probes = {{"tip", ProbeKind::point, {0.5, 0.25, 0}, {}, 2, 0, 0},
                       {"gauge", ProbeKind::elevation, {0.5, 0, 0}, {}, 2, 0, 0},

@@ -9,8 +9,8 @@
 
 #include "spume/operators/image_values.hpp"
 #include "spume/particles/boundary.hpp"
+#include "spume/particles/output_fields.hpp"
 #include "spume/particles/point_sampler.hpp"
-#include "spume/particles/reports.hpp"
 #include "spume/scene/expression.hpp"
 #include "spume/scene/refusal.hpp"
 
@@ -43,10 +43,12 @@ class HeatConduction final : public Method, public FieldProbes {
     series_.add("heat", "temperature times volume", [this] {
       return particles_.volume * parallel_sum(particles_.size(), [&](std::size_t i) { return temperature_[i]; });
     });
-    snapshot_.add("temperature", true, temperature_);
     saved_.add(time_).add(steps_);
   }
 
+  static std::vector<OutputField<HeatConduction>> output_fields() {
+    return {{"temperature", always, [](const HeatConduction& heat) { return &heat.temperature_; }}};
+  }
   const std::vector<Stage>& plan() const override { return plan_.stages(); }
   std::vector<ArrayInfo> arrays() const override { return particle_arrays(particles_, arrangement_); }
   std::size_t particle_count() const override { return particles_.size(); }
@@ -124,8 +126,7 @@ class HeatConduction final : public Method, public FieldProbes {
   }
 
   const PointSampler& sampler() {
-    sampler_.update({&arrangement_, &boundary_, &particles_, &resolution_, &temperature_});
-    return sampler_;
+    return sampler_.update({&arrangement_, &boundary_, &particles_, &resolution_, {{&temperature_}}});
   }
 
   const Case& options_;
@@ -140,7 +141,7 @@ class HeatConduction final : public Method, public FieldProbes {
   bool arranged_ = false;
   Plan plan_;
   SeriesTable series_;
-  SnapshotTable snapshot_;
+  SnapshotTable snapshot_ = snapshot_table(output_fields(), options_, *this);
   SavedNumbers saved_{"numbers"};
   PointSampler sampler_;
 };
@@ -158,7 +159,8 @@ Registration heat_conduction() {
   method.bytes_per_particle = [](const Case&, int dimensions) { return 8.0 * (2 * dimensions + 2); };
   method.default_courant = [](const Case&, const Scene&) { return 0.5; };
   method.default_courant_in_words = "0.5";
-  method.output_fields = [](const Case&) { return std::vector<std::string>{"temperature"}; };
+  method.output_fields = [](const Case& options) { return field_infos(HeatConduction::output_fields(), options); };
+  method.probe_scalars = [](const Case&) { return std::vector<ProbeScalar>{{"temperature", "temperature"}}; };
   method.make = [](const LoadedCase& loaded) { return std::make_unique<HeatConduction>(loaded); };
   return method;
 }

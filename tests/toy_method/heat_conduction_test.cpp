@@ -6,7 +6,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <omp.h>
-#include <signal.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -16,10 +15,10 @@
 #include "spume/cli/program.hpp"
 #include "spume/core/kernel.hpp"
 #include "spume/io/checkpoint.hpp"
-#include "spume/io/hdf5.hpp"
-#include "spume/run/driver.hpp"
 #include "spume/scene/load.hpp"
+#include "support/stored_values.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/watch.hpp"
 
 namespace spume::test {
 namespace {
@@ -46,22 +45,6 @@ std::unique_ptr<Method> make(const LoadedCase& loaded) {
   return heat_conduction().make(loaded);
 }
 
-class Watch final : public Observer {
- public:
-  explicit Watch(std::int64_t stop_after = -1) : stop_after_(stop_after) {}
-  void progress(const Progress& progress) override {
-    steps.push_back(progress.dt);
-    limited_by = progress.limited_by;
-    if (progress.step == stop_after_) raise(SIGINT);
-  }
-  void note(const std::string&) override {}
-  std::vector<double> steps;
-  std::string limited_by;
-
- private:
-  std::int64_t stop_after_;
-};
-
 // Rows of a file of results below its heading.
 std::vector<std::vector<double>> rows_of(const std::filesystem::path& path, std::string& heading) {
   std::istringstream lines(contents(path));
@@ -85,12 +68,7 @@ class ToyMethod : public testing::Test {
     return Simulation::start(load((sources / "case.toml").string(), overrides), make, folder_ / name);
   }
   std::vector<float> stored(const std::string& run, const std::string& array) {
-    const auto file = hdf5::File::open(folder_ / run / "fluid.vtkhdf", false);
-    const auto data = file.dataset(array);
-    const auto space = file.take(H5Dget_space(data), H5Sclose, "read");
-    std::vector<float> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-    file.check(H5Dread(data, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "read");
-    return values;
+    return stored_values(folder_ / run / "fluid.vtkhdf", array);
   }
   // Amplitude of cos(2 pi x) cos(2 pi y) in the last snapshot.
   double amplitude(const std::string& run, std::size_t particles) {
@@ -137,7 +115,7 @@ TEST_F(ToyMethod, AWaveDecaysAsItShouldOnTheLatticeAndInTheContinuum) {
   Watch watch;
   const auto run = start("run");
   EXPECT_EQ(run->run(watch), RunState::finished);
-  EXPECT_EQ(watch.limited_by, "diffusive");
+  EXPECT_EQ(watch.limits.back(), "diffusive");
   const double found = amplitude("run", run->method().particle_count());
   const double rate = rate_on_the_lattice();
   double expected = 1;
@@ -171,14 +149,13 @@ TEST_F(ToyMethod, HeatIsConserved) {
   for (const auto& row : rows) ASSERT_NEAR(row[3], rows[0][3], most);
 }
 
-// The temperature of a probe stands in the column of the scalar that the program knows, the pressure.
 TEST_F(ToyMethod, AProbeFollowsTheWave) {
   Watch watch;
   const auto run = start("run");
   run->run(watch);
   std::string heading;
   const auto rows = rows_of(folder_ / "run" / "probes.csv", heading);
-  EXPECT_EQ(heading, "t,top_pressure,top_velocity_x,top_velocity_y");
+  EXPECT_EQ(heading, "t,top_temperature,top_velocity_x,top_velocity_y");
   // On the wall at an extremum of the wave, cos(pi) cos(pi) = 1, neighbours and images differ by up to A (k R)^2 / 2.
   for (const auto& [row, A] : {std::pair{rows.front(), 1.0}, std::pair{rows.back(), amplitude("run", 3200)}}) {
     EXPECT_LT(row[1], 1 + A);

@@ -7,25 +7,30 @@
 
 namespace spume {
 
+// A scalar field of the particles.
+struct SampledScalar {
+  const Array<double>* values = nullptr;
+  double hydrostatic_density = 0;  // of a pressure: its hydrostatic part is interpolated exactly
+};
+
 // What is sampled: the state of a time.
 struct SampledState {
   const Arrangement* arrangement = nullptr;  // of its cells and kernel only
   const Boundary* boundary = nullptr;
   const ParticleStore* particles = nullptr;
   const Resolution* resolution = nullptr;
-  const Array<double>* pressure = nullptr;
+  std::vector<SampledScalar> scalars = {};
   const Array<double>* volume_fraction = nullptr;  // of the liquid; null: 1
-  double density = 1;
-  Vec3 uniform_acceleration{};  // its hydrostatic pressure is interpolated exactly
+  Vec3 uniform_acceleration{};                     // of the hydrostatic pressure
   double time = 0;
 };
 
 class PointSampler {
  public:
   // Bins the particles of a state; call again when they have moved.
-  void update(const SampledState& state);
+  const PointSampler& update(const SampledState& state);
 
-  // Weighted linear fit of pressure and velocity over the particles in the support (Shepard average where they are
+  // Weighted linear fit of velocity and scalars over the particles in the support (Shepard average where they are
   // too few); coverage is the kernel sum.
   PointSample sample(const Vec3& point) const;
   double coverage(const Vec3& point) const;

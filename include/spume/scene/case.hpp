@@ -71,6 +71,12 @@ struct Case : OptionGroups {
   std::string resolved;           // the case as TOML with defaults filled in and the origin of each value in comments
 };
 
+// A scalar that point, line and plane probes record.
+struct ProbeScalar {
+  std::string name;  // of its columns
+  std::string unit;
+};
+
 // A case and the scene that it describes.
 struct LoadedCase {
   Case options;
@@ -78,6 +84,7 @@ struct LoadedCase {
   // That a run holds at least once its first steps are done, per particle or point of the grid: the method's estimate
   // for this case.
   double bytes_per_particle = 0;
+  std::vector<ProbeScalar> probe_scalars;  // of the method: what probes record beside the velocity
   bool resuming = false;  // the state comes from a checkpoint: files that only the start reads may be gone
 };
 

@@ -52,23 +52,12 @@ inline bool uses_si(const FluidDraft& fluid) {
   return fluid.density || fluid.viscosity || fluid.gravity || fluid.sound_speed;
 }
 
-struct SpargerDraft {
-  Sparger sparger;
-  std::vector<double> position, end;
-  std::optional<ExpressionText> rate;
-};
-
-struct BubbleCloudDraft {
-  BubbleCloud cloud;
-  std::vector<double> lower, upper, centre;
-  std::optional<double> radius;
-};
-
-struct BubbleDraft {
-  std::optional<double> weber, surface_tension, density_ratio, gas_density, hinze_radius, smallest_entrained_radius;
-  std::vector<SpargerDraft> spargers;
-  std::vector<BubbleCloudDraft> clouds;
-};
+// Entries that are not given are 0.
+inline Vec3 to_vec3(const std::vector<double>& values) {
+  Vec3 vector{};
+  for (std::size_t a = 0; a < values.size() && a < 3; ++a) vector[a] = values[a];
+  return vector;
+}
 
 struct Draft {
   Case options;
@@ -83,7 +72,6 @@ struct Draft {
   std::vector<RegionDraft> regions;
   std::vector<SolidDraft> solids;
   std::vector<ProbeDraft> probes;
-  BubbleDraft bubbles;
   std::vector<ExpressionText> body_force;
   double jitter = 0;
   std::vector<std::int64_t> grid;  // one entry: the same along every axis

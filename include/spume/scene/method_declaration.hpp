@@ -11,6 +11,12 @@
 
 namespace spume {
 
+// A field that output.fields may name.
+struct OutputFieldInfo {
+  std::string name;
+  std::string lacks = {};  // what the case has to set for it, in words; empty: nothing
+};
+
 struct MethodDeclaration {
   std::string name;         // as a case names it
   std::string description;  // one line
@@ -38,7 +44,10 @@ struct MethodDeclaration {
   std::string default_courant_in_words;
 
   // What output.fields may name.
-  std::function<std::vector<std::string>(const Case&)> output_fields;
+  std::function<std::vector<OutputFieldInfo>(const Case&)> output_fields;
+
+  // What probes record beside the velocity, in the order of PointSample::scalars. Null: nothing.
+  std::function<std::vector<ProbeScalar>(const Case&)> probe_scalars = {};
 };
 
 inline bool uses_grid(const MethodDeclaration& method) {

@@ -113,11 +113,19 @@ struct Option {
   bool beside_case = false;  // a path from the folder of the case; the resolved case, elsewhere, names it in full
 };
 
+// Compiles the expression of the option `name`, with the constants of the case. A fault is reported at its place and
+// gives null.
+enum class Arguments;
+using CompileExpression =
+    std::function<std::shared_ptr<const Expression>(const ExpressionText&, const std::string& name, Arguments)>;
+
 struct Section {
   std::string name = {};
   bool repeated = false;                         // written [[name]], any number of times
   std::function<void(Draft&)> begin_entry = {};  // of a repeated section: appends an empty entry
   std::function<void(Case&)> declare = {};       // makes the group of options that the section fills
+  // Makes of what was read what needs compiled expressions; runs after the checks, also when they found problems.
+  std::function<void(Draft&, const CompileExpression&)> compile = {};
   std::vector<Option> options = {};
   MethodProperty property = nullptr;
   Owners owners = {};         // set by the schema

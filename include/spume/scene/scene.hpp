@@ -12,7 +12,6 @@
 
 #include "spume/core/array.hpp"
 #include "spume/core/vec3.hpp"
-#include "spume/scene/bubbles.hpp"
 
 namespace spume {
 
@@ -93,8 +92,6 @@ struct Scene {
   std::optional<VectorExpression> initial_velocity;    // of a flow on a grid
   std::shared_ptr<const Expression> initial_spectrum;  // E(k) up to a factor; its first argument is k
   std::uint64_t seed = 1;
-  std::vector<Sparger> spargers;
-  std::vector<BubbleCloud> bubble_clouds;
   InitialParticles particles;
 };
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "spume/particles/boundary.hpp"
+#include "spume/physics/bubbles/options.hpp"
 
 namespace spume::les_sph {
 namespace {
@@ -24,28 +24,41 @@ bool uniform(const VectorExpression& expression, const Domain& domain) {
   return true;
 }
 
+bool corrects_shift(const Case& options) {
+  const ShiftingOptions& shifting = options.get<ShiftingOptions>();
+  return shifting.on && shifting.velocity_correction != ShiftCorrection::none;
+}
+
 }  // namespace
 
-Features::Features(const LoadedCase& loaded) {
+bool has_closure(const Case& options) {
+  return options.get<TurbulenceOptions>().model != TurbulenceModel::none;
+}
+
+bool has_bubbles(const Case& options) {
+  return options.get<BubbleOptions>().on;
+}
+
+bool needs_velocity_gradient(const Case& options) {
+  return has_closure(options) || corrects_shift(options) || options.get<SchemeOptions>().centred ||
+         has_bubbles(options);
+}
+
+Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.domain) {
   const Scene& scene = loaded.scene;
   const Case& options = loaded.options;
-  const BoundaryFeatures boundary(scene.domain);
-  images = boundary.images;
-  moving_walls = boundary.moving_walls;
-  no_slip = boundary.no_slip;
   free_surface = scene.free_surface;
   closed = !scene.free_surface;
   shifting = options.get<ShiftingOptions>().on;
-  const ShiftCorrection correction = options.get<ShiftingOptions>().velocity_correction;
-  shift_correction = shifting && correction != ShiftCorrection::none;
-  shift_curvature = shifting && correction == ShiftCorrection::second_order;
+  shift_correction = corrects_shift(options);
+  shift_curvature = shifting && options.get<ShiftingOptions>().velocity_correction == ShiftCorrection::second_order;
   const TurbulenceModel model = options.get<TurbulenceOptions>().model;
   const bool dynamic = model == TurbulenceModel::dynamic_shepard || model == TurbulenceModel::dynamic_lagrangian;
-  eddy_viscosity = model != TurbulenceModel::none;
-  bubbles = options.get<BubbleOptions>().on;
+  eddy_viscosity = has_closure(options);
+  bubbles = has_bubbles(options);
   test_filter = (eddy_viscosity && model != TurbulenceModel::smagorinsky) ||
                 (bubbles && options.get<BubbleOptions>().fluctuations);
-  velocity_gradient = eddy_viscosity || shift_correction || options.get<SchemeOptions>().centred || bubbles;
+  velocity_gradient = needs_velocity_gradient(options);
   stored_gradient = dynamic || shift_curvature || bubbles;
   density_relaxation = options.get<PressureOptions>().density_relaxation < never_relaxed;
   viscosity = eddy_viscosity || scene.fluid.kinematic_viscosity > 0;

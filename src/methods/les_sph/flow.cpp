@@ -75,7 +75,8 @@ Flow::Flow(const LoadedCase& loaded_case)
                                    .time = time,
                                    .steps = steps,
                                    .speeds = speeds};
-    bubbles = std::make_unique<bubbles::BubbleCoupling>(particles, carrier, options.get<BubbleOptions>());
+    bubbles = std::make_unique<bubbles::BubbleCoupling>(particles, carrier, options.get<BubbleOptions>(),
+                                                        options.get<BubbleSources>());
   }
   find_extremes();
 }

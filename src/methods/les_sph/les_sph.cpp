@@ -53,11 +53,11 @@ void refuse_stirring_shift(const Case& options, const Flow& flow) {
 
 }  // namespace
 
-LesSph::LesSph(const LoadedCase& loaded) : flow_(loaded), plan_(make_plan(flow_)) {
+LesSph::LesSph(const LoadedCase& loaded)
+    : flow_(loaded), plan_(make_plan(flow_)), snapshot_(snapshot_table(output_fields(), loaded.options, flow_)) {
   refuse_high_mach(loaded.options, flow_);
   refuse_stirring_shift(loaded.options, flow_);
   declare_series();
-  declare_snapshot();
   declare_saved();
 }
 
@@ -131,9 +131,8 @@ const PointSampler& LesSph::sampler() {
                      .boundary = &flow_.boundary,
                      .particles = &flow_.particles,
                      .resolution = &flow_.resolution,
-                     .pressure = flow_.pressure,
+                     .scalars = {{flow_.pressure, flow_.density()}},
                      .volume_fraction = flow_.volume_fraction(),
-                     .density = flow_.density(),
                      .uniform_acceleration = flow_.uniform_acceleration,
                      .time = flow_.time});
     sampled_step_ = flow_.steps;

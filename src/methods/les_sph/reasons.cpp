@@ -29,8 +29,8 @@ std::string events_of(const LoadedCase& loaded) {
   };
   event(gas.entrainment, "entrainment");
   event(gas.breakup, "breakup");
-  event(!loaded.scene.spargers.empty(), "spargers");
-  event(!loaded.scene.bubble_clouds.empty(), "clouds");
+  event(!loaded.options.get<BubbleSources>().spargers.empty(), "spargers");
+  event(!loaded.options.get<BubbleSources>().clouds.empty(), "clouds");
   event(gas.surface_interaction && loaded.scene.free_surface, "bursting");
   return events;
 }

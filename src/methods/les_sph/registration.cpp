@@ -45,18 +45,6 @@ double default_courant(const Case&, const Scene& scene) {
   return scene.free_surface ? courant_with_surface : courant_in_full_domain;
 }
 
-std::vector<std::string> output_fields(const Case& options) {
-  std::vector<std::string> fields{"velocity",
-                                  "pressure",
-                                  "id",
-                                  "dissipation",
-                                  "unresolved_dissipation",
-                                  "eddy_viscosity",
-                                  "divergence_of_position"};
-  if (options.get<BubbleOptions>().on) fields.push_back("volume_fraction");
-  return fields;
-}
-
 }  // namespace
 
 Registration registration() {
@@ -72,7 +60,8 @@ Registration registration() {
   method.default_courant = default_courant;
   method.default_courant_in_words =
       brief(courant_in_full_domain) + ", with a free surface " + brief(courant_with_surface);
-  method.output_fields = output_fields;
+  method.output_fields = [](const Case& options) { return field_infos(output_fields(), options); };
+  method.probe_scalars = [](const Case&) { return std::vector<ProbeScalar>{{"pressure", "pressure"}}; };
   method.make = [](const LoadedCase& loaded) { return std::make_unique<LesSph>(loaded); };
   return method;
 }

@@ -15,7 +15,38 @@ constexpr double largest_volume_drift = 0.05;
 // 9e-5 in taylor_green_2d at 1/20 and 1/50.
 constexpr double largest_momentum_change = 1e-3;
 
+// nu |S|^2 of a particle.
+double dissipated(const Flow& flow, std::size_t i, double viscosity) {
+  const double strain = (*flow.strain)[i];
+  return viscosity * strain * strain;
+}
+
+constexpr FieldNeed with_closure{has_closure, "a turbulence.model other than \"none\""};
+constexpr FieldNeed with_bubbles{has_bubbles, "a section [bubbles]"};
+constexpr FieldNeed with_gradient{
+    needs_velocity_gradient,
+    "a velocity gradient, which turbulence.model, shifting.velocity_correction, time.centred "
+    "or [bubbles] make"};
+
 }  // namespace
+
+// Derived fields are those of the last step, in the units of the case; zero before the first.
+const std::vector<OutputField<Flow>>& output_fields() {
+  static const std::vector<OutputField<Flow>> fields{
+      {"velocity", always, [](const Flow& f) { return f.particles.velocity; }},
+      {"pressure", always, [](const Flow& f) { return f.pressure; }},
+      {"id", always, [](const Flow& f) { return f.particles.identifier; }},
+      {"dissipation", has_closure,
+       [](const Flow& f, std::size_t i) { return dissipated(f, i, f.viscosity() + f.eddy_viscosity_of(i)); },
+       with_gradient},
+      {"unresolved_dissipation", on_request,
+       [](const Flow& f, std::size_t i) { return dissipated(f, i, f.eddy_viscosity_of(i)); }, with_closure},
+      {"eddy_viscosity", on_request, [](const Flow& f, std::size_t i) { return f.eddy_viscosity_of(i); }, with_closure},
+      {"divergence_of_position", on_request,
+       [](const Flow& f, std::size_t i) { return (*f.moments.divergence_of_position)[i]; }},
+      {"volume_fraction", always, [](const Flow& f) { return f.volume_fraction(); }, with_bubbles}};
+  return fields;
+}
 
 void LesSph::declare_series() {
   const Flow& flow = flow_;
@@ -64,30 +95,6 @@ void LesSph::declare_series() {
 void LesSph::series_values(std::span<double> values) {
   ensure_started();
   series_.values(values);
-}
-
-// Derived fields are those of the last step, in the units of the case; zero before the first.
-void LesSph::declare_snapshot() {
-  const Flow& flow = flow_;
-  const auto dissipated = [&flow](std::size_t i, double viscosity) {
-    const double strain = (*flow.strain)[i];
-    return viscosity * strain * strain;
-  };
-  snapshot_.add("velocity", true, flow.particles.velocity);
-  snapshot_.add("pressure", true, *flow.pressure);
-  snapshot_.add("id", true, *flow.particles.identifier);
-  if (flow.features.velocity_gradient)
-    snapshot_.add("dissipation", flow.features.eddy_viscosity, [&flow, dissipated](std::size_t i) {
-      return dissipated(i, flow.viscosity() + flow.eddy_viscosity_of(i));
-    });
-  if (flow.features.eddy_viscosity) {
-    snapshot_.add("unresolved_dissipation", false,
-                  [&flow, dissipated](std::size_t i) { return dissipated(i, flow.eddy_viscosity_of(i)); });
-    snapshot_.add("eddy_viscosity", false, [&flow](std::size_t i) { return flow.eddy_viscosity_of(i); });
-  }
-  snapshot_.add("divergence_of_position", false,
-                [&flow](std::size_t i) { return double{(*flow.moments.divergence_of_position)[i]}; });
-  if (flow.bubbles != nullptr) snapshot_.add("volume_fraction", true, *flow.volume_fraction());
 }
 
 std::vector<ParticleSnapshot> LesSph::snapshot() {

@@ -199,13 +199,13 @@ PointSample sample_flow(const Flow<T>& flow, const Array<std::complex<T>>& total
     }
     for (std::size_t c = 0; c < 4; ++c) sums[ix][c] = (plane[c] * wave[0][ix]).real();
   });
-  PointSample sample;
-  sample.coverage = 1;
+  PointSample sample{.scalars = {0.0}, .coverage = 1};
+  double& pressure = sample.scalars[0];
   for (const auto& sum : sums) {
     for (std::size_t c = 0; c < 3; ++c) sample.velocity[c] += sum[c];
-    sample.pressure += sum[3];
+    pressure += sum[3];
   }
-  for (const double u : sample.velocity) sample.pressure -= u * u / 2;
+  for (const double u : sample.velocity) pressure -= u * u / 2;
   return sample;
 }
 
@@ -238,15 +238,16 @@ PlaneSample sample_plane(const Flow<T>& flow, const Array<std::complex<T>>& tota
 
   PlaneSample sample;
   sample.area = layout.lengths[(axis + 1) % 3] * layout.lengths[(axis + 2) % 3];
-  sample.pressure = 0;
+  sample.scalars = {0.0};
   sample.velocity = {};
+  double& pressure = sample.scalars[0];
   std::array<std::size_t, 3> line{};
   for (std::size_t i = 0; i < stored[axis]; ++i) {
     line[axis] = i;
     const auto modes = modes_at(line);
     const double weight = axis == 2 ? ModeLayout::weight(i) : 1.0;
     for (std::size_t c = 0; c < 3; ++c) sample.velocity[c] += weight * (wave[i] * modes[c]).real();
-    sample.pressure += weight * (wave[i] * modes[3]).real();
+    pressure += weight * (wave[i] * modes[3]).real();
   }
 
   // Rows of wavenumbers within the plane; along z half of the modes are stored, the others conjugates of (-kx, -ky).
@@ -273,7 +274,7 @@ PlaneSample sample_plane(const Flow<T>& flow, const Array<std::complex<T>>& tota
     }
     squares[row] = sum;
   });
-  for (const double square : squares) sample.pressure -= square / 2;
+  for (const double square : squares) pressure -= square / 2;
   return sample;
 }
 

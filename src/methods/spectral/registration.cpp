@@ -31,6 +31,13 @@ double default_courant(const Case& options, const Scene&) {
   return integrator == Integrator::rk3 ? courant_of_rk3 : courant_of_rk4;
 }
 
+// The same in both precisions.
+std::vector<OutputFieldInfo> output_fields(const Case&) {
+  std::vector<OutputFieldInfo> infos;
+  for (const auto& field : Spectral<double>::output_fields()) infos.push_back({field.name});
+  return infos;
+}
+
 std::unique_ptr<Method> make(const LoadedCase& loaded) {
   if (loaded.options.get<SpectralOptions>().precision == FieldPrecision::f32)
     return std::make_unique<Spectral<float>>(loaded);
@@ -50,7 +57,8 @@ Registration registration() {
   method.default_courant = default_courant;
   method.default_courant_in_words = "ab2 and particles " + brief(courant_of_ab2) + ", rk3 " + brief(courant_of_rk3) +
                                     ", rk4 " + brief(courant_of_rk4);
-  method.output_fields = [](const Case&) { return std::vector<std::string>{"velocity", "vorticity", "pressure"}; };
+  method.output_fields = output_fields;
+  method.probe_scalars = [](const Case&) { return std::vector<ProbeScalar>{{"pressure", "pressure"}}; };
   method.make = make;
   return method;
 }

@@ -13,11 +13,6 @@ namespace spume::spectral {
 
 template <class T>
 Spectral<T>::Spectral(const LoadedCase& loaded) : loaded_(loaded), flow_(loaded) {
-  for (const std::string& name : loaded.options.output.fields)
-    if (name != "velocity" && name != "vorticity" && name != "pressure")
-      throw refusal(loaded.options, "output.fields",
-                    "output.fields names '" + name +
-                        "', which method \"spectral\" does not have; it has velocity, vorticity, pressure");
   if (loaded.options.get<ParticleCaseOptions>().any()) suspension_ = std::make_unique<Suspension<T>>(loaded, flow_);
   plan_ = make_plan();
 }
@@ -64,8 +59,8 @@ template <class T>
 std::vector<ArrayInfo> Spectral<T>::arrays() const {
   std::vector<ArrayInfo> list = flow_.arrays();
   double drawn = static_cast<double>(total_pressure_.capacity() * sizeof(std::complex<T>));
-  for (const auto& set : drawn_)
-    for (const auto& field : set) drawn += static_cast<double>(field.capacity() * sizeof(float));
+  for (const auto& [name, components] : drawn_)
+    for (const auto& field : components) drawn += static_cast<double>(field.capacity() * sizeof(float));
   if (suspension_) suspension_->add_arrays(list);
   if (drawn > 0) list.push_back({"snapshots and probes", drawn});
   return list;

@@ -82,9 +82,17 @@ void Spectral<T>::series_values(std::span<double> values) {
 }
 
 template <class T>
-bool Spectral<T>::wants(const std::string& field) const {
+std::span<const typename Spectral<T>::OutputField> Spectral<T>::output_fields() {
+  static constexpr OutputField fields[] = {{"velocity", true, &Spectral::compute_velocity},
+                                           {"vorticity", false, &Spectral::compute_vorticity},
+                                           {"pressure", false, &Spectral::compute_pressure}};
+  return fields;
+}
+
+template <class T>
+bool Spectral<T>::wants(const OutputField& field) const {
   const auto& fields = loaded_.options.output.fields;
-  return fields.empty() ? field == "velocity" : std::find(fields.begin(), fields.end(), field) != fields.end();
+  return fields.empty() ? field.standard : std::find(fields.begin(), fields.end(), field.name) != fields.end();
 }
 
 template <class T>
@@ -97,54 +105,77 @@ template <class T>
 std::vector<GridSnapshot> Spectral<T>::grid_snapshot() {
   ensure_started();
   const ModeLayout& layout = flow_.layout();
-  const std::size_t size = particle_count(), nz = layout.points[2];
   GridSnapshot family;
   family.name = "fluid";
   family.points = layout.points;
   family.origin = loaded_.scene.domain.lower;
   for (std::size_t axis = 0; axis < 3; ++axis)
     family.spacing[axis] = layout.lengths[axis] / static_cast<double>(layout.points[axis]);
-  Array<T> values;
-  const auto draw = [&](std::size_t set, const char* name, auto&& fill) {
-    const std::size_t components = set < 2 ? 3 : 1;
-    drawn_[set].resize(components);
-    GridSnapshot::Field field{name, {}};
-    values.resize(components * size);
-    fill();
-    for (std::size_t c = 0; c < components; ++c) {
-      drawn_[set][c].resize(size);
-      parallel_for(size, [&](std::size_t i) { drawn_[set][c][i] = static_cast<float>(values[c * size + i]); });
-      field.components.push_back(drawn_[set][c].data());
-    }
-    family.fields.push_back(std::move(field));
-  };
-  const auto parts = [&] { return std::array<T*, 3>{&values[0], &values[size], &values[2 * size]}; };
-  if (wants("velocity") || wants("pressure")) {
-    draw(0, "velocity", [&] { real_velocity(flow_, flow_.potential(), {}, parts(), nz); });
-    if (!wants("velocity")) family.fields.clear();
+  drawn_.clear();
+  for (const OutputField& field : output_fields()) {
+    if (!wants(field)) continue;
+    GridSnapshot::Field entry{field.name, {}};
+    for (const Array<float>& component : draw(field)) entry.components.push_back(component.data());
+    family.fields.push_back(std::move(entry));
   }
-  if (wants("vorticity")) draw(1, "vorticity", [&] { real_vorticity(flow_, flow_.potential(), {}, parts(), nz); });
-  if (wants("pressure"))
-    draw(2, "pressure", [&] {
-      flow_.total_pressure(total_pressure_);
-      total_pressure_step_ = flow_.steps();
-      flow_.box().inverse(
-          [&](std::size_t ix, std::size_t iy, std::size_t first, std::complex<T>* block) {
-            std::copy_n(&total_pressure_[ix * layout.plane + iy * layout.row + first], lanes<T>, block);
-          },
-          values.data(), nz);
-      double mean = 0;
-      const auto square = [&](std::size_t i) {
-        double sum = 0;
-        for (const auto& u : drawn_[0]) sum += double{u[i]} * double{u[i]};
-        return sum / 2;
-      };
-      mean = parallel_sum(size, square) / static_cast<double>(size);
-      const double density = loaded_.scene.fluid.density;
-      parallel_for(
-          size, [&](std::size_t i) { values[i] = static_cast<T>(density * (double{values[i]} - square(i) + mean)); });
-    });
   return {family};
+}
+
+template <class T>
+const std::vector<Array<float>>& Spectral<T>::draw(const OutputField& field) {
+  std::vector<Array<float>>& drawn = drawn_[field.name];
+  if (!drawn.empty()) return drawn;
+  Array<T> values;
+  (this->*field.compute)(values);
+  const std::size_t size = particle_count();
+  drawn.resize(values.size() / size);
+  for (std::size_t c = 0; c < drawn.size(); ++c) {
+    drawn[c].resize(size);
+    parallel_for(size, [&](std::size_t i) { drawn[c][i] = static_cast<float>(values[c * size + i]); });
+  }
+  return drawn;
+}
+
+// Room for the three components of a vector, one behind the other.
+template <class T>
+std::array<T*, 3> Spectral<T>::components_of(Array<T>& values) const {
+  const std::size_t size = particle_count();
+  values.resize(3 * size);
+  return {&values[0], &values[size], &values[2 * size]};
+}
+
+template <class T>
+void Spectral<T>::compute_velocity(Array<T>& values) {
+  real_velocity(flow_, flow_.potential(), {}, components_of(values), flow_.layout().points[2]);
+}
+
+template <class T>
+void Spectral<T>::compute_vorticity(Array<T>& values) {
+  real_vorticity(flow_, flow_.potential(), {}, components_of(values), flow_.layout().points[2]);
+}
+
+template <class T>
+void Spectral<T>::compute_pressure(Array<T>& values) {
+  const std::vector<Array<float>>& velocity = draw(output_fields()[0]);
+  const ModeLayout& layout = flow_.layout();
+  const std::size_t size = particle_count();
+  values.resize(size);
+  flow_.total_pressure(total_pressure_);
+  total_pressure_step_ = flow_.steps();
+  flow_.box().inverse(
+      [&](std::size_t ix, std::size_t iy, std::size_t first, std::complex<T>* block) {
+        std::copy_n(&total_pressure_[ix * layout.plane + iy * layout.row + first], lanes<T>, block);
+      },
+      values.data(), layout.points[2]);
+  const auto square = [&](std::size_t i) {
+    double sum = 0;
+    for (const auto& u : velocity) sum += double{u[i]} * double{u[i]};
+    return sum / 2;
+  };
+  const double mean = parallel_sum(size, square) / static_cast<double>(size);
+  const double density = loaded_.scene.fluid.density;
+  parallel_for(size,
+               [&](std::size_t i) { values[i] = static_cast<T>(density * (double{values[i]} - square(i) + mean)); });
 }
 
 template <class T>
@@ -163,7 +194,8 @@ PointSample Spectral<T>::sample(const Vec3& position) {
   Vec3 from_lower{};
   for (std::size_t axis = 0; axis < 3; ++axis) from_lower[axis] = position[axis] - loaded_.scene.domain.lower[axis];
   PointSample sample = sample_flow(flow_, pressure, from_lower);
-  sample.pressure = loaded_.scene.fluid.density * (sample.pressure + flow_.budget().energy);  // mean pressure 0
+  double& p = sample.scalars[0];
+  p = loaded_.scene.fluid.density * (p + flow_.budget().energy);  // mean pressure 0
   return sample;
 }
 
@@ -172,7 +204,8 @@ PlaneSample Spectral<T>::plane_average(int axis, double position) {
   const auto& pressure = total_pressure();
   const auto a = static_cast<std::size_t>(axis);
   PlaneSample sample = sample_plane(flow_, pressure, a, position - loaded_.scene.domain.lower[a]);
-  sample.pressure = loaded_.scene.fluid.density * (sample.pressure + flow_.budget().energy);
+  double& p = sample.scalars[0];
+  p = loaded_.scene.fluid.density * (p + flow_.budget().energy);
   return sample;
 }
 
@@ -209,6 +242,8 @@ template std::vector<SeriesColumn> Spectral<double>::series_columns() const;
 template std::vector<SeriesColumn> Spectral<float>::series_columns() const;
 template void Spectral<double>::series_values(std::span<double>);
 template void Spectral<float>::series_values(std::span<double>);
+template std::span<const Spectral<double>::OutputField> Spectral<double>::output_fields();
+template std::span<const Spectral<float>::OutputField> Spectral<float>::output_fields();
 template std::vector<ParticleSnapshot> Spectral<double>::snapshot();
 template std::vector<ParticleSnapshot> Spectral<float>::snapshot();
 template std::vector<GridSnapshot> Spectral<double>::grid_snapshot();

@@ -5,13 +5,13 @@
 #include <numbers>
 #include <optional>
 
+#include "draft.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/periodic_grid.hpp"
 #include "spume/physics/bubbles/forces.hpp"
 #include "spume/physics/bubbles/options.hpp"
 #include "spume/physics/bubbles/population.hpp"
 #include "spume/physics/turbulence/options.hpp"
-#include "spume/scene/draft.hpp"
 #include "spume/scene/expression.hpp"
 
 namespace spume {
@@ -78,7 +78,7 @@ void add_missing_tension(const Draft& draft, const std::string& decides, Problem
 }
 
 void check_gas(Draft& draft, Problems& problems) {
-  BubbleDraft& given = draft.bubbles;
+  BubbleDraft& given = bubbles_of(draft);
   BubbleOptions& options = draft.options.get<BubbleOptions>();
   const bool si = uses_si(draft.fluid);
   const auto wrong_set = [&](const char* key, const char* instead) {
@@ -199,8 +199,8 @@ void check_bubbles(Draft& draft, Problems& problems) {
   }
   check_gas(draft, problems);
 
-  for (std::size_t k = 0; k < draft.bubbles.spargers.size(); ++k) {
-    SpargerDraft& sparger = draft.bubbles.spargers[k];
+  for (std::size_t k = 0; k < bubbles_of(draft).spargers.size(); ++k) {
+    SpargerDraft& sparger = bubbles_of(draft).spargers[k];
     const std::string name = "sparger." + std::to_string(k);
     inside(draft, name + ".position", sparger.position, problems);
     const auto missing = [&](const char* key, const char* shape) {
@@ -214,8 +214,8 @@ void check_bubbles(Draft& draft, Problems& problems) {
     if (draft.node(name + ".end")) inside(draft, name + ".end", sparger.end, problems);
     check_sizes(draft, name, sparger.sparger.sizes, problems);
   }
-  for (std::size_t k = 0; k < draft.bubbles.clouds.size(); ++k) {
-    BubbleCloudDraft& cloud = draft.bubbles.clouds[k];
+  for (std::size_t k = 0; k < bubbles_of(draft).clouds.size(); ++k) {
+    BubbleCloudDraft& cloud = bubbles_of(draft).clouds[k];
     const std::string name = "bubble_cloud." + std::to_string(k);
     for (const auto& [key, values] :
          {std::pair{"lower", &cloud.lower}, {"upper", &cloud.upper}, {"centre", &cloud.centre}})
@@ -260,8 +260,9 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
     return name + " reaches out of the liquid: there is none at (" + brief(r[0]) + ", " + brief(r[1]) + ", " +
            brief(r[2]) + "); keep all of it below the surface";
   };
-  for (std::size_t k = 0; k < scene.spargers.size(); ++k) {
-    const Sparger& sparger = scene.spargers[k];
+  const BubbleSources& sources = draft.options.get<BubbleSources>();
+  for (std::size_t k = 0; k < sources.spargers.size(); ++k) {
+    const Sparger& sparger = sources.spargers[k];
     const std::string name = "sparger." + std::to_string(k);
     bool in_liquid = true;
     for (const char* key : {"position", "end"})
@@ -298,8 +299,8 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
       problems.add(*node, name + ".rate releases " + brief(gas / smallest) + " bubbles by the end; at most " +
                               brief(most_bubbles) + " are possible: lower the rate or enlarge bubble_radius");
   }
-  for (std::size_t k = 0; k < scene.bubble_clouds.size(); ++k) {
-    const BubbleCloud& cloud = scene.bubble_clouds[k];
+  for (std::size_t k = 0; k < sources.clouds.size(); ++k) {
+    const BubbleCloud& cloud = sources.clouds[k];
     const std::string name = "bubble_cloud." + std::to_string(k);
     check_substeps(draft, scene, name, cloud.sizes, problems);
     if (const auto dry = first_dry(outline(cloud))) problems.add(*draft.node(name), reaches_out(name, *dry));

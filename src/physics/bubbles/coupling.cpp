@@ -25,11 +25,12 @@ double inverse_cube_root(double x) {
 
 }  // namespace
 
-BubbleCoupling::BubbleCoupling(ParticleStore& particles, const Carrier& carrier, const BubbleOptions& options)
+BubbleCoupling::BubbleCoupling(ParticleStore& particles, const Carrier& carrier, const BubbleOptions& options,
+                               const BubbleSources& sources)
     : carrier_(carrier),
       options_(options),
       population_({options.fluctuations, options.breakup, options.surface_interaction && has_surface()}),
-      sources_(carrier.scene) {
+      sources_(sources, carrier.scene.seed) {
   particles.add_vector(exchange_, "bubble_exchange", Lifetime::result);
   volume_fraction_ = &particles.fields.add<double>("volume_fraction", Lifetime::state);
   parallel_for(particles.size(), [&](std::size_t i) { (*volume_fraction_)[i] = 1; });

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "spume/physics/bubbles/options.hpp"
 
+#include "draft.hpp"
 #include "spume/scene/document.hpp"
+#include "spume/scene/expression.hpp"
 #include "spume/scene/option.hpp"
 
 namespace spume {
 namespace {
 
-// A value of the gas that the checks complete from others.
+// A value of the gas that the checks complete from others. The declaration of an option asks an empty draft, which has
+// no groups yet, for its default.
 auto gas(std::optional<double> BubbleDraft::*value) {
-  return [value](Draft& d) -> std::optional<double>& { return d.bubbles.*value; };
+  return [value](Draft& d) -> std::optional<double>& {
+    d.options.declare<BubbleDraft>();
+    return bubbles_of(d).*value;
+  };
 }
 
 // Defaults: C_l = C_vm = 0.5 of Derakhti & Kirby (2014), below King (2.10); 0.6 of Sato & Sekoguchi, King (2.23);
@@ -18,8 +24,13 @@ auto gas(std::optional<double> BubbleDraft::*value) {
 Section bubbles() {
   using B = BubbleOptions;
   using D = BubbleDraft;
-  return section<B>("bubbles")
-      .option("weber", gas(&D::weber), "1", positive(), "Weber number")
+  SectionOf<B> section = spume::section<B>("bubbles");
+  section.declare = [](Case& options) {
+    options.declare<BubbleOptions>();
+    options.declare<BubbleDraft>();
+    options.declare<BubbleSources>();
+  };
+  return section.option("weber", gas(&D::weber), "1", positive(), "Weber number")
       .absent("required for entrainment, breakup and a free surface")
       .option("surface_tension", gas(&D::surface_tension), "N/m", positive(),
               "surface tension, in place of weber in SI")
@@ -110,9 +121,33 @@ void add_sizes(SectionOf<Source>& section, Sizes sizes) {
       .absent("the spacing");
 }
 
+void make_spargers(Draft& draft, const CompileExpression& compile) {
+  for (std::size_t k = 0; k < bubbles_of(draft).spargers.size(); ++k) {
+    const SpargerDraft& given = bubbles_of(draft).spargers[k];
+    Sparger sparger = given.sparger;
+    sparger.position = to_vec3(given.position);
+    sparger.end = to_vec3(given.end);
+    if (given.rate)
+      sparger.rate = compile(*given.rate, "sparger." + std::to_string(k) + ".rate", Arguments::place_and_time);
+    draft.options.get<BubbleSources>().spargers.push_back(std::move(sparger));
+  }
+}
+
+void make_clouds(Draft& draft, const CompileExpression& /*compile*/) {
+  for (const BubbleCloudDraft& given : bubbles_of(draft).clouds) {
+    BubbleCloud cloud = given.cloud;
+    cloud.lower = to_vec3(given.lower.empty() ? draft.lower : given.lower);
+    cloud.upper = to_vec3(given.upper.empty() ? draft.upper : given.upper);
+    cloud.ball = !given.centre.empty();
+    cloud.centre = to_vec3(given.centre);
+    cloud.radius = given.radius.value_or(0);
+    draft.options.get<BubbleSources>().clouds.push_back(cloud);
+  }
+}
+
 Section sparger() {
   using S = SpargerDraft;
-  auto section = repeated_section<S>("sparger", [](Draft& d) -> std::vector<S>& { return d.bubbles.spargers; });
+  auto section = repeated_section<S>("sparger", [](Draft& d) -> std::vector<S>& { return bubbles_of(d).spargers; });
   section
       .word(
           "shape", [](S& s) -> SpargerShape& { return s.sparger.shape; },
@@ -128,12 +163,13 @@ Section sparger() {
       .option("rate", &S::rate, "length3/time", "volume flow rate of gas: an expression of t")
       .required();
   add_sizes(section, [](S& s) -> BubbleSizes& { return s.sparger.sizes; });
+  section.compile = make_spargers;
   return section;
 }
 
 Section cloud() {
   using C = BubbleCloudDraft;
-  auto section = repeated_section<C>("bubble_cloud", [](Draft& d) -> std::vector<C>& { return d.bubbles.clouds; });
+  auto section = repeated_section<C>("bubble_cloud", [](Draft& d) -> std::vector<C>& { return bubbles_of(d).clouds; });
   section.option("lower", &C::lower, "length", "lower corner of a box")
       .absent("the domain")
       .option("upper", &C::upper, "length", "upper corner of a box")
@@ -149,6 +185,7 @@ Section cloud() {
           "time", [](C& c) -> double& { return c.cloud.time; }, "time", not_negative(),
           "time of release, at rest relative to the liquid");
   add_sizes(section, [](C& c) -> BubbleSizes& { return c.cloud.sizes; });
+  section.compile = make_clouds;
   return section;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "spume/core/random.hpp"
+#include "spume/scene/scene.hpp"
 
 namespace spume::bubbles {
 namespace {
@@ -62,25 +63,25 @@ double draw_radius(const BubbleSizes& sizes, std::uint64_t seed, std::uint64_t s
   return sizes.mean;
 }
 
-Sources::Sources(const Scene& scene) : scene_(scene) {
-  state.pending_volume.assign(scene.spargers.size(), 0.0);
-  state.emitted.assign(scene.spargers.size(), 0);
-  state.cloud_out.assign(scene.bubble_clouds.size(), 0);
+Sources::Sources(const BubbleSources& given, std::uint64_t seed) : given_(given), seed_(seed) {
+  state.pending_volume.assign(given.spargers.size(), 0.0);
+  state.emitted.assign(given.spargers.size(), 0);
+  state.cloud_out.assign(given.clouds.size(), 0);
 }
 
 Released Sources::release(Population& population, double t, double dt) {
   Released released;
-  for (std::size_t k = 0; k < scene_.spargers.size(); ++k) {
-    const Sparger& sparger = scene_.spargers[k];
+  for (std::size_t k = 0; k < given_.spargers.size(); ++k) {
+    const Sparger& sparger = given_.spargers[k];
     double& pending = state.pending_volume[k];
     pending += dt * std::max(0.0, (*sparger.rate)(0, 0, 0, t + 0.5 * dt));
     released.bubbles += population.give_birth(1, t + dt, [&](std::size_t, std::vector<NewBubble>& made) {
       for (;;) {
         const auto count = static_cast<std::uint64_t>(state.emitted[k]);
-        const double volume = volume_of(draw_radius(sparger.sizes, scene_.seed, k, count));
+        const double volume = volume_of(draw_radius(sparger.sizes, seed_, k, count));
         if (pending < volume) break;
         NewBubble bubble;
-        bubble.position = place_on(sparger, scene_.seed, k, count);
+        bubble.position = place_on(sparger, seed_, k, count);
         bubble.volume = volume;
         bubble.at_rest_in_liquid = true;
         made.push_back(bubble);
@@ -95,16 +96,16 @@ Released Sources::release(Population& population, double t, double dt) {
 
 Released Sources::place_clouds(Population& population, double t) {
   Released released;
-  for (std::size_t k = 0; k < scene_.bubble_clouds.size(); ++k) {
-    const BubbleCloud& cloud = scene_.bubble_clouds[k];
+  for (std::size_t k = 0; k < given_.clouds.size(); ++k) {
+    const BubbleCloud& cloud = given_.clouds[k];
     if (state.cloud_out[k] != 0 || t < cloud.time) continue;
     state.cloud_out[k] = 1;
     const std::size_t before = population.size();
     released.bubbles += population.give_birth(
         static_cast<std::size_t>(cloud.number), t, [&](std::size_t item, std::vector<NewBubble>& made) {
           NewBubble bubble;
-          bubble.position = place_in(cloud, scene_.seed, first_cloud + k, item);
-          bubble.volume = volume_of(draw_radius(cloud.sizes, scene_.seed, first_cloud + k, item));
+          bubble.position = place_in(cloud, seed_, first_cloud + k, item);
+          bubble.volume = volume_of(draw_radius(cloud.sizes, seed_, first_cloud + k, item));
           bubble.at_rest_in_liquid = true;
           made.push_back(bubble);
         });

@@ -3,17 +3,20 @@
 #pragma once
 
 #include "spume/methods/les_sph/options.hpp"
+#include "spume/particles/boundary.hpp"
 #include "spume/physics/turbulence/options.hpp"
 #include "spume/scene/case.hpp"
 
 namespace spume::les_sph {
 
-struct Features {
+// What the options alone tell.
+bool has_closure(const Case& options);
+bool has_bubbles(const Case& options);
+bool needs_velocity_gradient(const Case& options);  // of a closure, shift correction, centred steps or bubbles
+
+struct Features : BoundaryFeatures {
   explicit Features(const LoadedCase& loaded);
 
-  bool images = false;        // some side is periodic or a wall, or there are solid boxes
-  bool moving_walls = false;  // some wall has a velocity
-  bool no_slip = false;       // some wall or solid holds the liquid
   bool free_surface = false;
   bool shifting = false;
   bool velocity_gradient = false;  // closure, shift correction, centred steps or bubbles

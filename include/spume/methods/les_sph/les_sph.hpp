@@ -12,10 +12,12 @@
 
 #include "spume/methods/les_sph/flow.hpp"
 #include "spume/methods/method.hpp"
+#include "spume/particles/output_fields.hpp"
 #include "spume/particles/point_sampler.hpp"
-#include "spume/particles/reports.hpp"
 
 namespace spume::les_sph {
+
+const std::vector<OutputField<Flow>>& output_fields();
 
 class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
  public:
@@ -52,7 +54,6 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   void start(Ledger& ledger);  // finds the pressure of the initial velocity field
   void ensure_started();
   void declare_series();
-  void declare_snapshot();
   void declare_saved();
   bool periodic() const;  // in all directions: the flow has an energy spectrum
   void add_spectrum_rows(std::vector<double>& rows) const;

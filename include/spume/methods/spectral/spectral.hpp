@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +20,15 @@ namespace spume::spectral {
 template <class T>
 class Spectral final : public Method, public FieldProbes {
  public:
+  // A field on the grid that output.fields may name. `compute` gives its components at all points, one behind the
+  // other.
+  struct OutputField {
+    const char* name;
+    bool standard;  // written although the case lists none
+    void (Spectral::*compute)(Array<T>& values);
+  };
+  static std::span<const OutputField> output_fields();
+
   explicit Spectral(const LoadedCase& loaded);
   Spectral(const Spectral&) = delete;  // the plan holds its address
 
@@ -50,7 +61,12 @@ class Spectral final : public Method, public FieldProbes {
   Plan make_plan();
   void set_initial_state();
   const Array<std::complex<T>>& total_pressure();  // of the present state
-  bool wants(const std::string& field) const;
+  bool wants(const OutputField& field) const;
+  const std::vector<Array<float>>& draw(const OutputField& field);  // once a snapshot
+  std::array<T*, 3> components_of(Array<T>& values) const;
+  void compute_velocity(Array<T>& values);
+  void compute_vorticity(Array<T>& values);
+  void compute_pressure(Array<T>& values);
   void ensure_started();
 
   const LoadedCase& loaded_;
@@ -58,8 +74,8 @@ class Spectral final : public Method, public FieldProbes {
   std::unique_ptr<Suspension<T>> suspension_;  // null without particles
   Plan plan_;
   bool started_ = false;
-  std::array<std::vector<Array<float>>, 3> drawn_;  // velocity, vorticity, pressure of the last snapshot
-  Array<std::complex<T>> total_pressure_;           // for probes
+  std::map<std::string, std::vector<Array<float>>> drawn_;  // components of the fields of the last snapshot
+  Array<std::complex<T>> total_pressure_;                   // for probes
   std::int64_t total_pressure_step_ = -1;
   // Energy and integrals at the last row of the series: what the balance is taken over.
   std::array<double, 4> row_{};  // energy, gain, dissipation, whether there was one

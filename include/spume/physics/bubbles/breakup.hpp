@@ -3,7 +3,7 @@
 #pragma once
 
 #include "spume/core/array.hpp"
-#include "spume/scene/scene.hpp"
+#include "spume/physics/bubbles/options.hpp"
 
 namespace spume::bubbles {
 

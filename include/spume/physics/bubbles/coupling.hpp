@@ -36,6 +36,7 @@
 #include "spume/physics/bubbles/breakup.hpp"
 #include "spume/physics/bubbles/entrainment.hpp"
 #include "spume/physics/bubbles/forces.hpp"
+#include "spume/physics/bubbles/options.hpp"
 #include "spume/physics/bubbles/population.hpp"
 #include "spume/physics/bubbles/sources.hpp"
 #include "spume/physics/bubbles/statistics.hpp"
@@ -73,7 +74,8 @@ struct Carrier {
 class BubbleCoupling {
  public:
   // Adds the volume fraction to the state of the particles, and the exchange to their fields.
-  BubbleCoupling(ParticleStore& particles, const Carrier& carrier, const BubbleOptions& options);
+  BubbleCoupling(ParticleStore& particles, const Carrier& carrier, const BubbleOptions& options,
+                 const BubbleSources& sources);
 
   // The stages of a step, in its order. Without living bubbles each returns at once, and particles are all alike.
   void move(double dt, ParticleSizes& sizes);  // bubbles to r_b^{n+1}, sorted; h_i of the particles

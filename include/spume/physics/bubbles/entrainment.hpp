@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "spume/physics/bubbles/options.hpp"
 #include "spume/physics/bubbles/population.hpp"
 #include "spume/scene/scene.hpp"
 

@@ -8,7 +8,7 @@
 // force of the accelerating liquid on the volume of the bubble without its hydrostatic part, which F_g holds.
 #pragma once
 
-#include "spume/scene/scene.hpp"
+#include "spume/physics/bubbles/options.hpp"
 
 namespace spume::bubbles {
 

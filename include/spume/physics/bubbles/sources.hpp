@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "spume/physics/bubbles/options.hpp"
 #include "spume/physics/bubbles/population.hpp"
-#include "spume/scene/scene.hpp"
 
 namespace spume::bubbles {
 
@@ -27,7 +27,8 @@ struct Released {
 
 class Sources {
  public:
-  explicit Sources(const Scene& scene);
+  // `given` outlives it.
+  Sources(const BubbleSources& given, std::uint64_t seed);
   SourceState state;
 
   // What enters in (t, t + dt]: the rate at the middle of the step, in whole bubbles; the rest waits. A bubble bigger
@@ -37,7 +38,8 @@ class Sources {
   Released place_clouds(Population& population, double t);
 
  private:
-  const Scene& scene_;
+  const BubbleSources& given_;
+  const std::uint64_t seed_;
 };
 
 }  // namespace spume::bubbles
