@@ -8,7 +8,7 @@
 
 namespace spume {
 
-// Values of the fields at a point or averaged over a region.
+// Values of the fields at a point; outside the liquid there are none: not a number.
 struct PointSample {
   double pressure = 0;
   Vec3 velocity{};
