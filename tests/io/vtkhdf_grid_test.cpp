@@ -102,7 +102,8 @@ TEST(VtkhdfGrid, OlderReadersSeeEveryStep) {
   const auto path = folder / "b" / "fluid.vtkhdf", steps = folder / "b" / "fluid_steps";
   const auto listed = [&] {
     std::vector<double> times;
-    for (const auto& one : nlohmann::json::parse(std::ifstream(folder / "b" / "fluid.hdf.series"))["files"]) {
+    const auto list = nlohmann::json::parse(std::ifstream(folder / "b" / "fluid.hdf.series"));
+    for (const auto& one : list["files"]) {
       EXPECT_TRUE(std::filesystem::exists(folder / "b" / std::string(one["name"])));
       times.push_back(one["time"]);
     }
