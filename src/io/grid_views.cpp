@@ -31,7 +31,8 @@ std::string view_name(std::size_t step) {
 
 void copy_attribute(const File& from, const File& to, hid_t object, const char* name, hid_t stored, hid_t type,
                     hsize_t count) {
-  const Id attribute = from.take(H5Aopen_by_name(from.id(), "/VTKHDF", name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "read");
+  const Id attribute =
+      from.take(H5Aopen_by_name(from.id(), "/VTKHDF", name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "read");
   std::array<std::int64_t, 9> values{};  // or as many doubles, which are as large
   from.check(H5Aread(attribute, type, values.data()), "read");
   hdf5::write_attribute(to, object, name, stored, type, count, values.data());
@@ -53,8 +54,9 @@ void view_field(const File& source, const File& view, const std::string& name, s
   const std::string file = "../" + source.path().filename().string();  // as seen from the folder of the view
   view.check(H5Pset_virtual(creation, space, file.c_str(), path.c_str(), from), "write");
   hdf5::make_groups(view, path);
-  const Id data = view.take(H5Dcreate2(view.id(), path.c_str(), H5T_IEEE_F32LE, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-                            H5Dclose, "write");
+  const Id data =
+      view.take(H5Dcreate2(view.id(), path.c_str(), H5T_IEEE_F32LE, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+                H5Dclose, "write");
 }
 
 void write_view(const File& source, const std::vector<std::string>& fields, const std::filesystem::path& path,
@@ -97,7 +99,8 @@ void write_grid_views(const std::filesystem::path& grid_file, std::size_t first)
     files.push_back({{"name", (folder.filename() / view_name(step)).string()}, {"time", contents.times[step]}});
   const nlohmann::json list = {{"file-series-version", "1.0"}, {"files", files}};
   write_text_atomically(grid_view_list(grid_file), list.dump(1) + '\n');
-  for (std::size_t step = contents.times.size(); std::filesystem::remove(folder / view_name(step), failure); ++step) {}
+  for (std::size_t step = contents.times.size(); std::filesystem::remove(folder / view_name(step), failure); ++step) {
+  }
 }
 
 void remove_grid_views(const std::filesystem::path& grid_file) {

@@ -111,7 +111,8 @@ PlaneSample PointSampler::plane_average(int axis, double position) const {
 
   std::vector<Corner> corners(plane.corners[0] * plane.corners[1]);
   parallel_for(corners.size(), [&](std::size_t k) {
-    const Vec3 point = plane.point(static_cast<double>(k % plane.corners[0]), static_cast<double>(k / plane.corners[0]));
+    const Vec3 point =
+        plane.point(static_cast<double>(k % plane.corners[0]), static_cast<double>(k / plane.corners[0]));
     corners[k] = {point, wet_share(point) - 0.5};
   });
 

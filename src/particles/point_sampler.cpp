@@ -130,7 +130,8 @@ double PointSampler::solid_share(const Vec3& point) const {
   const bool near = std::any_of(domain.boxes.begin(), domain.boxes.end(), [&](const SolidBox& box) {
     for (std::size_t axis = 0; axis < d; ++axis) {
       if (domain.periodic(static_cast<int>(axis))) continue;
-      if (point[axis] < box.lower[axis] - support_radius || point[axis] > box.upper[axis] + support_radius) return false;
+      if (point[axis] < box.lower[axis] - support_radius || point[axis] > box.upper[axis] + support_radius)
+        return false;
     }
     return true;
   });

@@ -111,7 +111,8 @@ TEST(VtkhdfGrid, OlderReadersSeeEveryStep) {
   };
   EXPECT_EQ(listed(), (std::vector<double>{0, 0.5, 1}));
   const std::vector<float> all = read(path, "/VTKHDF/PointData/velocity");
-  EXPECT_EQ(read(steps / "000002.hdf", "/VTKHDF/PointData/velocity"), (std::vector<float>(all.begin() + 360, all.end())));
+  EXPECT_EQ(read(steps / "000002.hdf", "/VTKHDF/PointData/velocity"),
+            (std::vector<float>(all.begin() + 360, all.end())));
   EXPECT_EQ(read(steps / "000001.hdf", "/VTKHDF/PointData/pressure")[0], 100);
 
   VtkhdfGridFile file(path, {});

@@ -47,7 +47,8 @@ TEST(LesSphPlanes, FollowTheSurfaceBetweenTheCells) {
 
 // In the air there is nothing to measure; beside a solid that liquid covers there is, with half a support of particles.
 TEST(LesSphPlanes, PointsInTheAirHaveNoValues) {
-  Simulation run(tank + "[[solid]]\nlower = [0.3, 0]\nupper = [0.7, 0.4]\n[[solid]]\nlower = [0, 1.2]\nupper = [0.2, 1.5]\n");
+  Simulation run(tank +
+                 "[[solid]]\nlower = [0.3, 0]\nupper = [0.7, 0.4]\n[[solid]]\nlower = [0, 1.2]\nupper = [0.2, 1.5]\n");
   run.steps(1, 0.005);
   for (const Vec3 dry : {Vec3{0.5, 1.3, 0}, Vec3{0.5, 1.02, 0}, Vec3{0.2, 1.35, 0}}) {
     EXPECT_TRUE(std::isnan(run.method.sample(dry).pressure)) << dry[1];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The steps of a VTKHDF 2.0 grid file for readers that know version 1.0 only, which has no time: VTK 9.1 and Debian 12's
-// ParaView 5.11.
+// The steps of a VTKHDF 2.0 grid file for readers that know version 1.0 only, which has no time: VTK 9.1 and Debian
+// 12's ParaView 5.11.
 //
 // Beside <name>.vtkhdf, one small file per step, <name>_steps/000000.hdf, sees the arrays of that step through virtual
 // datasets: no field is stored twice. <name>.hdf.series (JSON) lists them with their times; it is what ParaView opens.

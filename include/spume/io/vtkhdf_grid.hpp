@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Fields on a uniform grid over time in one VTKHDF 2.0 ImageData file, which current ParaView opens directly. With views
-// older readers open it too (grid_views.hpp).
+// Fields on a uniform grid over time in one VTKHDF 2.0 ImageData file, which current ParaView opens directly. With
+// views older readers open it too (grid_views.hpp).
 //
 // Layout: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html (VTKHDF, ImageData, transient data).
 // Arrays have the shape (time, z, y, x) or (time, z, y, x, components), as float32.
