@@ -42,5 +42,6 @@ def unit_of(name, note, si=False, dimensions=3):
 
 def field_label(name, si=False):
     """Name and unit of a field of a snapshot, for an axis."""
-    unit = OF_FIELD.get(name) if si else None
+    whole = name[:-2] if name[-2:] in ("_x", "_y", "_z") else name
+    unit = OF_FIELD.get(whole) if si else None
     return name.replace("_", " ") + (f" [{unit}]" if unit else "")
