@@ -7,7 +7,8 @@ from matplotlib.colors import LogNorm, Normalize
 
 from ..results import MissingResult, hinze_radius
 from .renderer import Scene, View
-from .style import chosen_steps, finish, panel_grid, panel_size, picture_axes, time_title, title_of
+from .request import request_of
+from .style import chosen_steps, evenly, finish, panel_grid, panel_size, picture_axes, time_title, title_of
 from .views import BELOW, DOTS_PER_INCH, OBLIQUE, WATER, Stage, framed, has_view, liquid_of, scale_bar, show
 
 BENEATH = View(azimuth=0, elevation=-90)
@@ -63,46 +64,56 @@ def draw_bubble_views(run, fluid, bubbles, steps, of_steps=None):
     of_steps: frame and colours are those of these steps, for a figure that is one of several.
     """
     of_steps = steps if of_steps is None else of_steps
-    stage = Stage(run, fluid, of_steps, copies=1)
     liquids = [fluid[int(step)] for step in steps]
     shots = [bubbles_at(bubbles, liquid.time) for liquid in liquids]
     unit, words = length_of_colours(run)
-    known = [bubbles_at(bubbles, fluid.times[int(step)]) for step in of_steps]
-    radius = np.concatenate([np.empty(0), *(shot.field("radius") / unit for shot in known if shot is not None)])
+    known = [shot for shot in (bubbles_at(bubbles, fluid.times[int(step)]) for step in of_steps) if shot is not None]
+    radius = np.concatenate([np.empty(0), *(shot.field("radius") / unit for shot in known)])
+    deepest = min((shot.position[:, 2].min() for shot in known if len(shot)), default=np.inf)
+    stage = Stage(run, fluid, of_steps, copies=1, deepest=deepest)
     norm, cmap = radius_norm(radius), plt.cm.plasma
     side, beneath = framed(OBLIQUE, stage), framed(BENEATH, stage)
-    # One scale for both; as many times in a row as fill about a 3:2 page.
-    widths = [side[1] - side[0], beneath[1] - beneath[0]]
-    height = max(side[3] - side[2], beneath[3] - beneath[2])
-    rows, columns = panel_grid(len(steps), sum(widths), height)
-    size = panel_size(rows, columns, sum(widths), height, page=(12.0, 8.5))
+    # One scale for both, beside or above each other, whichever leaves less room empty.
+    (w, h), (v, g) = ((f[1] - f[0], f[3] - f[2]) for f in (side, beneath))
+    above = abs(w - v) * min(h, g) < abs(h - g) * min(w, v)
+    width, height = (max(w, v), h + g) if above else (w + v, max(h, g))
+    rows, columns = panel_grid(len(steps), width, height)
+    size = panel_size(rows, columns, width, height, page=(12.0, 8.5))
     several = len(radius) and radius.max() > 1.2 * radius.min()
-    figure, axes = picture_axes(rows, widths * columns, height, size, below=BELOW, right=1.0 if several else 0.1,
-                                title=title_of(run))
-    for k, (liquid, shot) in enumerate(zip(liquids, shots)):
-        row, column = divmod(k, columns)
+    room = {"below": BELOW, "right": 1.0 if several else 0.1, "title": title_of(run)}
+    if above:
+        heights = np.tile([h, g], rows)
+        figure, axes = picture_axes(2 * rows, [width] * columns, heights, size, **room)
+        axes = axes.reshape(rows, 2, columns).swapaxes(1, 2)
+    else:
+        figure, axes = picture_axes(rows, [w, v] * columns, [height] * rows, size, **room)
+        axes = axes.reshape(rows, columns, 2)
+    for axis in axes.reshape(-1, 2)[len(steps):].flat:
+        axis.remove()
+    for pair, liquid, shot in zip(axes.reshape(-1, 2), liquids, shots):
         count = 0 if shot is None else len(shot)
         for axis, view, frame, words_of in (
-                (axes[row, 2 * column], OBLIQUE, side, f"{time_title(liquid.time, run.si)}, {count} bubble{'s' * (count != 1)}"),
-                (axes[row, 2 * column + 1], BENEATH, beneath, "from beneath")):
-            shrink(axis, frame, height)
+                (pair[0], OBLIQUE, side, f"{time_title(liquid.time, run.si)}, {count} bubble{'s' * (count != 1)}"),
+                (pair[1], BENEATH, beneath, "from beneath")):
+            shrink(axis, frame, size)
             scene = scene_of(run, stage, liquid, shot, view, size, (unit, norm, cmap))
             show(axis, scene.render(view, frame, int((frame[1] - frame[0]) * size * DOTS_PER_INCH)), frame, words_of)
-        scale_bar(axes[row, 2 * column], OBLIQUE, stage)
+        scale_bar(pair[0], OBLIQUE, stage)
     if several:
-        last = axes[0, -1].get_position()
-        bar = figure.add_axes((last.x1 + 0.015, 0.2, 0.012, 0.6))
+        wide = figure.get_figwidth()
+        bar = figure.add_axes((1 - 0.95 / wide, 0.2, 0.16 / wide, 0.6))
         figure.colorbar(ScalarMappable(norm, cmap), cax=bar, label=words)
         bar.yaxis.set_major_formatter("{x:g}")
         bar.yaxis.set_minor_formatter("")
     return figure
 
 
-def shrink(axis, frame, height):
-    """Makes an axis as high as its frame, with its top where it was."""
-    box = axis.get_position()
-    part = (frame[3] - frame[2]) / height
-    axis.set_position((box.x0, box.y1 - part * box.height, box.width, part * box.height))
+def shrink(axis, frame, size):
+    """Makes an axis as large as its frame, with its upper left corner where it was."""
+    box, figure = axis.get_position(), axis.figure
+    width = (frame[1] - frame[0]) * size / figure.get_figwidth()
+    height = (frame[3] - frame[2]) * size / figure.get_figheight()
+    axis.set_position((box.x0, box.y1 - height, width, height))
 
 
 def plot_bubble_views(run, out):
@@ -110,7 +121,11 @@ def plot_bubble_views(run, out):
     if "bubbles" not in run.case or not run.has("bubbles.vtkhdf") or not has_view(run):
         return []
     fluid, bubbles = run.snapshots(), run.snapshots("bubbles")
-    return [finish(draw_bubble_views(run, fluid, bubbles, chosen_steps(run, fluid, most=4)), out / "bubble_views.png")]
+    steps = chosen_steps(run, fluid, most=4)
+    if not request_of(run).times and len(bubbles):
+        there = np.flatnonzero(fluid.times >= bubbles.times[0])  # without bubbles there is another picture
+        steps = there[evenly(len(there), 4)] if len(there) else steps
+    return [finish(draw_bubble_views(run, fluid, bubbles, steps), out / "bubble_views.png")]
 
 
 PICTURES = (plot_bubble_views,)

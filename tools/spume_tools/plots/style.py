@@ -99,24 +99,24 @@ def panel_size(rows, columns, width, height, page=(10.0, 7.0)):
     return min(page[0] / columns / width, page[1] / rows / height)
 
 
-def picture_axes(rows, widths, height, size, title_room=0.3, below=0.0, right=0.1, title=None):
+def picture_axes(rows, widths, heights, size, title_room=0.3, below=0.0, right=0.1, title=None):
     """A figure with rows of pictures that fill their axes exactly, and these axes.
 
-    widths: of the pictures of a row, in units of length; size: inches per unit; below: inches kept free under each,
+    widths: of the pictures of a row, heights: of the rows, in units of length; size: inches per unit; below: inches kept free under each,
     right: beside the last one; title_room: above each.
     """
     gap, head = 0.12, 0.35 if title else 0.05
     wide = sum(widths) * size + gap * len(widths) + right
-    band = height * size + title_room + below
-    tall = rows * band + head
+    bands = np.asarray(heights) * size + title_room + below
+    tall = np.sum(bands) + head
     figure = plt.figure(figsize=(wide, tall))
     figure.exact = True  # where its axes are is not to be changed
     axes = np.empty((rows, len(widths)), object)
     for row in range(rows):
         left = 0.5 * gap
         for column, width in enumerate(widths):
-            bottom = tall - head - (row + 1) * band + below
-            axes[row, column] = figure.add_axes((left / wide, bottom / tall, width * size / wide, height * size / tall))
+            bottom = tall - head - np.sum(bands[: row + 1]) + below
+            axes[row, column] = figure.add_axes((left / wide, bottom / tall, width * size / wide, heights[row] * size / tall))
             axes[row, column].set_axis_off()
             left += width * size + gap
     if title:

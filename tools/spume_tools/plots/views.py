@@ -21,10 +21,11 @@ DOTS_PER_INCH = 130
 class Stage:
     """What does not move: the part of the domain that is drawn, its walls and solids.
 
-    lower, upper: the box that is drawn; copies: how often a narrow periodic width is repeated for the eye.
+    lower, upper: the box that is drawn; copies: how often a narrow periodic width is repeated for the eye; deepest: a
+    height that is drawn in any case.
     """
 
-    def __init__(self, run, snapshots, steps, copies=None):
+    def __init__(self, run, snapshots, steps, copies=None, deepest=np.inf):
         self.run = run
         self.lower, self.upper = run.bounds()
         domain = run.case["domain"]
@@ -32,9 +33,9 @@ class Stage:
         periodic = sides_of(domain, 1) == "periodic"
         self.copies = copies or (max(1, int(round(0.45 * length / width))) if periodic else 1)
         self.upper[1] += (self.copies - 1) * width
-        self._fit(snapshots, steps)
+        self._fit(snapshots, steps, deepest)
 
-    def _fit(self, snapshots, steps):
+    def _fit(self, snapshots, steps, deepest):
         """The air above the liquid and depths that never move are not drawn, nor what lies beyond open sides."""
         run, spacing = self.run, self.run.spacing
         high, low, depth = [], [], []
@@ -56,10 +57,10 @@ class Stage:
                 self.lower[axis] = max(self.lower[axis], np.min(low, axis=0)[axis] - 2 * spacing)
             if kinds[1] == "open" and axis < 2:
                 self.upper[axis] = min(self.upper[axis], np.max(high, axis=0)[axis] + 2 * spacing)
-        # Deep water is cut below its surface, where no solid stands in it.
-        shown = np.min(depth) - 0.15 * (self.upper[0] - self.lower[0])
-        if not solids and "bubbles" not in run.case:
-            self.lower[2] = max(self.lower[2], shown)
+        # Deep water without ends is cut below its surface, where no solid stands in it.
+        length = self.upper[0] - self.lower[0]
+        if not solids and sides_of(run.case["domain"], 0) == "periodic":
+            self.lower[2] = max(self.lower[2], min(np.min(depth) - 0.15 * length, deepest - 0.05 * length))
 
     def add_to(self, scene, floor=True):
         """Floor, solids and the edges of the domain."""
@@ -130,7 +131,7 @@ def draw_side_view(run, snapshots, steps, of_steps=None):
     width, height = frame[1] - frame[0], frame[3] - frame[2]
     rows, columns = panel_grid(len(steps), width, height)
     size = panel_size(rows, columns, width, height)
-    figure, axes = picture_axes(rows, [width] * columns, height, size, below=BELOW, title=title_of(run))
+    figure, axes = picture_axes(rows, [width] * columns, [height] * rows, size, below=BELOW, title=title_of(run))
     for axis, step in zip(axes.flat, steps):
         snapshot = snapshots[int(step)]
         scene = Scene()
