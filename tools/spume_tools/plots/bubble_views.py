@@ -80,7 +80,7 @@ def draw_bubble_views(run, fluid, bubbles, steps, of_steps=None):
     rows, columns = panel_grid(len(steps), width, height)
     size = panel_size(rows, columns, width, height, page=(12.0, 8.5))
     several = len(radius) and radius.max() > 1.2 * radius.min()
-    room = {"below": BELOW, "right": 1.0 if several else 0.1, "title": title_of(run)}
+    room = {"below": BELOW, "title_room": 0.45, "right": 1.0 if several else 0.1, "title": title_of(run)}
     if above:
         heights = np.tile([h, g], rows)
         figure, axes = picture_axes(2 * rows, [width] * columns, heights, size, **room)
@@ -93,7 +93,7 @@ def draw_bubble_views(run, fluid, bubbles, steps, of_steps=None):
     for pair, liquid, shot in zip(axes.reshape(-1, 2), liquids, shots):
         count = 0 if shot is None else len(shot)
         for axis, view, frame, words_of in (
-                (pair[0], OBLIQUE, side, f"{time_title(liquid.time, run.si)}, {count} bubble{'s' * (count != 1)}"),
+                (pair[0], OBLIQUE, side, f"{time_title(liquid.time, run.si)}\n{count} bubble{'s' * (count != 1)}"),
                 (pair[1], BENEATH, beneath, "from beneath")):
             shrink(axis, frame, size)
             scene = scene_of(run, stage, liquid, shot, view, size, (unit, norm, cmap))

@@ -153,7 +153,7 @@ def draw_panel(axis, run, plane, panel, frame, name, norm):
     for low, high in boxes_of(run.case):
         if plane.normal is None or low[plane.normal] <= plane.coordinate <= high[plane.normal]:
             corner = low[list(plane.axes)]
-            axis.add_patch(Rectangle(corner, *(high - low)[list(plane.axes)], facecolor=SOLID, edgecolor=EDGE, linewidth=0.8))
+            axis.add_patch(Rectangle(corner, *(high - low)[list(plane.axes)], facecolor=SOLID, edgecolor=EDGE, linewidth=0.8, zorder=3))
     # Walls are thick lines.
     for k, a in enumerate(plane.axes):
         kinds = sides_of(run.case["domain"], a)

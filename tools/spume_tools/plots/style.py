@@ -17,16 +17,18 @@ plt.rcParams.update({"figure.dpi": 130, "savefig.dpi": 130, "font.size": 9, "axe
 FIELDS = {"speed": "viridis", "pressure": "cividis", "dissipation": "inferno", "vorticity": "RdBu_r",
           "enstrophy": "inferno"}
 SIGNED = {"vorticity", "velocity_x", "velocity_y", "velocity_z", "vorticity_x", "vorticity_y", "vorticity_z"}
+TITLE_ROOM = 0.28  # inches
 SOLID = "#b9b4ab"
 EDGE = "#55524d"
 
 
 def finish(figure, path, title=None):
     """Writes a figure in the chosen format and returns the name of the file."""
+    room = TITLE_ROOM / figure.get_figheight() if title else 0
     if title:
-        figure.suptitle(title)
+        figure.suptitle(title, y=1 - 0.3 * room, va="top")
     if not figure.get_constrained_layout() and not getattr(figure, "exact", False):
-        figure.tight_layout()
+        figure.tight_layout(rect=(0, 0, 1, 1 - room))
     path = path.with_suffix("." + plt.rcParams["savefig.format"])
     figure.savefig(path)
     plt.close(figure)
