@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <new>
 
 #include "spume/core/error.hpp"
@@ -49,8 +50,10 @@ struct CommandLine {
   CLI::App app{"Spume simulates bubbly flows with particles and spectra."};
   RunArguments run;
   std::optional<int> threads;
-  std::string file, folder, section;
-  std::vector<std::string> cases;
+  std::string file, section;
+  std::vector<std::string> cases, pictured;
+  std::map<std::string, std::vector<std::string>> picture_options;  // passed on as they are
+  bool animate = false;
   bool quick = false;
   std::string keep;
   CLI::App *run_app, *check_app, *resume_app, *info_app, *verify_app, *plot_app, *options_app;
@@ -65,7 +68,7 @@ struct CommandLine {
     info_app = app.add_subcommand("info", "what a result, a checkpoint, a run folder or a case holds");
     verify_app = app.add_subcommand("verify", "run validation cases and print error against bound");
     plot_app =
-        app.add_subcommand("plot", "standard pictures (PNG) of a run, or of the runs of a case that verify kept");
+        app.add_subcommand("plot", "pictures of a run, of two runs beside each other, or of those that verify kept");
     options_app = app.add_subcommand("options", "every option of a case: unit, default, range");
 
     for (CLI::App* verb : {run_app, check_app}) {
@@ -87,7 +90,19 @@ struct CommandLine {
     verify_app->add_option("cases", cases, "names or folders of cases (default: all)");
     verify_app->add_flag("--quick", quick, "only what takes seconds");
     verify_app->add_option("--keep", keep, "keep the runs, their plots and verify.json in this folder");
-    plot_app->add_option("dir", folder, "folder of the run or runs")->required();
+    plot_app->add_option("dir", pictured, "folder of a run, of two runs, or of the runs of a case that verify kept")
+        ->required()
+        ->expected(1, 2);
+    const auto pass_on = [&](const char* name, const char* description, const char* takes) {
+      return plot_app->add_option(name, picture_options[name], description)->type_name(takes);
+    };
+    pass_on("--fields", "fields drawn in a plane: those of the snapshots, speed, enstrophy, velocity_x ...",
+            "NAME ...");
+    pass_on("--times", "times of the snapshots that are drawn", "T ...");
+    pass_on("--plane", "plane of the fields in 3-D, such as y=0.5; default: the middle y", "AXIS=VALUE")->expected(1);
+    pass_on("--range", "limits of the colours of a field, such as speed=0:2", "FIELD=LOW:HIGH ...");
+    pass_on("--format", "of the pictures: png, pdf or svg; default: png", "WORD")->expected(1);
+    plot_app->add_flag("--animate", animate, "GIFs of all snapshots in place of pictures of some");
     options_app->add_option("section", section, "only this section");
   }
 
@@ -101,6 +116,17 @@ struct CommandLine {
     return error.what();
   }
 
+  std::vector<std::string> plot_arguments() const {
+    std::vector<std::string> arguments = pictured;
+    for (const auto& [name, values] : picture_options) {
+      if (values.empty()) continue;
+      arguments.push_back(name);
+      arguments.insert(arguments.end(), values.begin(), values.end());
+    }
+    if (animate) arguments.push_back("--animate");
+    return arguments;
+  }
+
   int execute(const Program& program) {
     use_threads(threads);
     if (run_app->parsed()) return run_verb(run, program);
@@ -108,7 +134,7 @@ struct CommandLine {
     if (resume_app->parsed()) return resume_verb(run, program);
     if (info_app->parsed()) return with_output_written(info_verb(file, program));
     if (options_app->parsed()) return with_output_written(options_verb(section, program));
-    if (plot_app->parsed()) return module_verb("plots", {folder});
+    if (plot_app->parsed()) return module_verb("plots", plot_arguments());
     std::vector<std::string> arguments = {own_executable()};
     arguments.insert(arguments.end(), cases.begin(), cases.end());
     if (quick) arguments.push_back("--quick");

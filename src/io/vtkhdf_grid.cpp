@@ -6,6 +6,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/io/file.hpp"
+#include "spume/io/grid_views.hpp"
 #include "spume/io/hdf5.hpp"
 #include "spume/io/journal.hpp"
 #include "spume/io/vtkhdf_steps.hpp"
@@ -139,8 +140,8 @@ bool is_grid_file(const std::filesystem::path& path) {
   }
 }
 
-VtkhdfGridFile::VtkhdfGridFile(std::filesystem::path path, Notes notes)
-    : path_(std::move(path)), notes_(std::move(notes)) {
+VtkhdfGridFile::VtkhdfGridFile(std::filesystem::path path, Options options)
+    : path_(std::move(path)), options_(std::move(options)) {
   if (!std::filesystem::exists(path_)) return;
   hdf5::replay_journal(path_);
   steps_ = step_count(File::open(path_, false));
@@ -158,7 +159,7 @@ void VtkhdfGridFile::append(double time, const GridSnapshot& snapshot) {
 void VtkhdfGridFile::write(double time, const GridSnapshot& snapshot) {
   if (!std::filesystem::exists(path_)) {
     File file = File::create(path_, File::Format::compatible);
-    create_layout(file, snapshot, notes_);
+    create_layout(file, snapshot, options_.notes);
     file.close();
   }
   std::int64_t bytes = 1 << 16;
@@ -178,6 +179,7 @@ void VtkhdfGridFile::write(double time, const GridSnapshot& snapshot) {
   vtkhdf::write_step_count(file, steps_ + 1);
   file.close();
   ++steps_;
+  if (options_.views) write_grid_views(path_, step);
 }
 
 void VtkhdfGridFile::keep_steps(std::int64_t count) {
@@ -186,6 +188,7 @@ void VtkhdfGridFile::keep_steps(std::int64_t count) {
     std::error_code failure;
     std::filesystem::remove(path_, failure);
     if (failure) throw_file_error(path_, "remove", failure.value());
+    remove_grid_views(path_);
   } else if (count < steps_) {
     File file = File::open(path_, true);
     vtkhdf::write_step_count(file, count);
@@ -197,6 +200,7 @@ void VtkhdfGridFile::keep_steps(std::int64_t count) {
     set_steps(file, "/VTKHDF/Steps/Values", count);
     file.close();
   }
+  if (count > 0 && options_.views) write_grid_views(path_);
   steps_ = count;
 }
 

@@ -34,7 +34,8 @@ LinearFit::Result LinearFit::at_centre() const {
   const int monomials = dimensions_ + 1;
   const Eigen::LDLT<SmallMatrix> factor(moments.topLeftCorner(monomials, monomials));
   Eigen::RowVector4d result = sums.row(0) / weight();
-  const bool fitted = count_ > 2 * monomials && factor.info() == Eigen::Success && factor.rcond() > detail::least_reciprocal_condition[1];
+  const bool fitted = count_ > 2 * monomials && factor.info() == Eigen::Success &&
+                      factor.rcond() > detail::least_reciprocal_condition[1];
   if (fitted) {
     const SmallMatrix solution = factor.solve(sums.topRows(monomials));
     result = solution.row(0);

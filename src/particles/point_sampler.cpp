@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "spume/core/parallel.hpp"
@@ -122,8 +123,62 @@ double PointSampler::coverage(const Vec3& point) const {
   return sum;
 }
 
-// A fit takes four fields. Scalar 0 and the velocity are fields 0 to 3, the other scalars follow.
+double PointSampler::solid_share(const Vec3& point) const {
+  const Domain& domain = state_.boundary->domain();
+  const auto& walls = state_.boundary->walls;
+  const auto d = static_cast<std::size_t>(domain.dimensions);
+  const double support_radius = state_.arrangement->grid.support_radius();
+  const bool near = std::any_of(domain.boxes.begin(), domain.boxes.end(), [&](const SolidBox& box) {
+    for (std::size_t axis = 0; axis < d; ++axis) {
+      if (domain.periodic(static_cast<int>(axis))) continue;
+      if (point[axis] < box.lower[axis] - support_radius || point[axis] > box.upper[axis] + support_radius)
+        return false;
+    }
+    return true;
+  });
+  if (!near) return 0;
+  // Eight points across the support: a face through the point takes one half exactly.
+  constexpr int across = 8;
+  double all = 0, solid = 0;
+  with_kernel(state_.arrangement->context, [&]<int dimensions, class Kernel>() {
+    const int points = dimensions == 3 ? across * across * across : across * across;
+    for (int k = 0; k < points; ++k) {
+      const int digit[3] = {k % across, k / across % across, k / (across * across)};
+      Vec3 place = point;
+      double r2 = 0;
+      for (std::size_t axis = 0; axis < d; ++axis) {
+        const double offset = ((digit[axis] + 0.5) * 2 / across - 1) * support_radius;
+        r2 += offset * offset;
+        place[axis] += offset;
+        // Solids continue beyond a side as the liquid does: periodically or mirrored.
+        const auto [low, high] = walls[axis];
+        const bool periodic = domain.periodic(static_cast<int>(axis));
+        if (place[axis] < low) place[axis] = periodic ? place[axis] + high - low : 2 * low - place[axis];
+        if (place[axis] > high) place[axis] = periodic ? place[axis] - high + low : 2 * high - place[axis];
+      }
+      const double weight = Kernel::w(std::sqrt(r2) / state_.resolution->smoothing_length);
+      all += weight;
+      if (inside_solid(domain, place)) solid += weight;
+    }
+  });
+  return solid / all;
+}
+
+double PointSampler::wet_share(const Vec3& point) const {
+  const double free = 1 - solid_share(point);
+  return free > 0 ? coverage(point) / free : 0;
+}
+
 PointSample PointSampler::sample(const Vec3& point) const {
+  if (wet_share(point) >= 0.5) return fit(point);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  return {.scalars = std::vector<double>(state_.scalars.size(), none),
+          .velocity = {none, none, none},
+          .coverage = coverage(point)};
+}
+
+// A fit takes four fields. Scalar 0 and the velocity are fields 0 to 3, the other scalars follow.
+PointSample PointSampler::fit(const Vec3& point) const {
   constexpr std::size_t wide = LinearFit::fields;
   const int d = state_.particles->dimensions;
   const std::vector<SampledScalar>& scalars = state_.scalars;
@@ -217,61 +272,6 @@ double PointSampler::front(int axis, double height) const {
     return coverage(r) >= 0.5 ? r[axis] : lowest;
   });
   return farthest > lowest ? farthest + 0.5 * state_.resolution->spacing : lowest;
-}
-
-PlaneSample PointSampler::plane_average(int axis, double position) const {
-  const auto& walls = state_.boundary->walls;
-  PlaneSample result;
-  result.scalars.assign(state_.scalars.size(), PlaneSample::nothing);
-  if (position < walls[axis][0] || position > walls[axis][1]) return result;  // a wall has moved past it
-  std::array<std::size_t, 3> cells{1, 1, 1};
-  Vec3 side{}, lower{};
-  double cell_area = 1;
-  for (int a = 0; a < state_.particles->dimensions; ++a) {
-    if (a == axis) continue;
-    const double length = walls[a][1] - walls[a][0];
-    cells[a] = static_cast<std::size_t>(std::max(1.0, std::round(length / state_.resolution->spacing)));
-    side[a] = length / static_cast<double>(cells[a]);
-    lower[a] = walls[a][0];
-    cell_area *= side[a];
-  }
-  struct Sum {
-    double wet = 0;
-    std::vector<double> scalars;
-    Vec3 velocity{};
-    void add(double points, const std::vector<double>& values, const Vec3& u) {
-      wet += points;
-      scalars.resize(values.size());
-      for (std::size_t k = 0; k < values.size(); ++k) scalars[k] += values[k];
-      for (std::size_t c = 0; c < 3; ++c) velocity[c] += u[c];
-    }
-  };
-  const Sum total = parallel_reduce(
-      cells[0] * cells[1] * cells[2], Sum{},
-      [&](std::size_t first, std::size_t last) {
-        Sum sum;
-        for (std::size_t k = first; k < last; ++k) {
-          const std::array<std::size_t, 3> cell{k % cells[0], k / cells[0] % cells[1], k / cells[0] / cells[1]};
-          Vec3 point{};
-          for (int a = 0; a < state_.particles->dimensions; ++a)
-            point[a] = a == axis ? position : lower[a] + (static_cast<double>(cell[a]) + 0.5) * side[a];
-          if (inside_solid(state_.boundary->domain(), point)) continue;
-          const PointSample one = sample(point);
-          if (!(one.coverage >= 0.5)) continue;
-          sum.add(1, one.scalars, one.velocity);
-        }
-        return sum;
-      },
-      [](const Sum& a, const Sum& b) {
-        Sum sum;
-        for (const Sum& part : {a, b}) sum.add(part.wet, part.scalars, part.velocity);
-        return sum;
-      });
-  if (!(total.wet > 0)) return result;
-  result.area = total.wet * cell_area;
-  for (std::size_t k = 0; k < result.scalars.size(); ++k) result.scalars[k] = total.scalars[k] / total.wet;
-  for (std::size_t c = 0; c < 3; ++c) result.velocity[c] = total.velocity[c] / total.wet;
-  return result;
 }
 
 }  // namespace spume

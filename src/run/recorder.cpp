@@ -44,7 +44,7 @@ void Recorder::cut_families() {
     const auto found = resume_->find(entry.path().filename().string());
     const std::int64_t kept = found == resume_->end() ? 0 : found->second;
     if (is_grid_file(entry.path()))
-      VtkhdfGridFile(entry.path(), {}).keep_steps(kept);
+      VtkhdfGridFile(entry.path(), {loaded_.options.output.h5part_view, {}}).keep_steps(kept);
     else
       VtkhdfFile(entry.path(), {loaded_.options.output.h5part_view, {}}).keep_steps(kept);
   }
@@ -104,7 +104,10 @@ void Recorder::snapshot(Method& method) {
   for (const GridSnapshot& family : method.grid_snapshot()) {
     const std::string name = family.name + ".vtkhdf";
     auto found = grids_.find(name);
-    if (found == grids_.end()) found = grids_.emplace(name, VtkhdfGridFile(folder_ / name, notes_of(loaded_))).first;
+    if (found == grids_.end()) {
+      const VtkhdfGridFile::Options options{loaded_.options.output.h5part_view, notes_of(loaded_)};
+      found = grids_.emplace(name, VtkhdfGridFile(folder_ / name, options)).first;
+    }
     found->second.append(method.time(), family);
   }
   for (const ProbeOptions& probe : loaded_.options.probes)

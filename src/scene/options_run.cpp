@@ -25,7 +25,8 @@ Section output() {
       .option("checkpoint_every", &O::checkpoint_every, "s of wall time", not_negative(), "checkpoint interval")
       .option("spectrum_every", &O::spectrum_every, "time", not_negative(), "interval of energy spectra; 0: none")
       .option("fields", &O::fields, "fields of a snapshot; empty: the method's standard set")
-      .option("h5part_view", &O::h5part_view, "add views for ParaView's H5Part reader, linked as <name>.h5part");
+      .option("h5part_view", &O::h5part_view,
+              "add views for ParaView 5.11: <name>.h5part of particles, <name>.hdf.series of fields on a grid");
 }
 
 Section probe() {

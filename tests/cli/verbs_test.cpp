@@ -318,6 +318,8 @@ TEST_F(Verbs, ScriptsGetTheirArgumentsAndTheirExitCodeIsPassedOn) {
   EXPECT_THAT(verify.out, HasSubstr("test_cli', 'couette', '--quick']"));
   EXPECT_THAT(verify.out, HasSubstr("\n[]\n")) << "settings for this process are not handed on";
   EXPECT_THAT(spume({"plot", "results"}).out, HasSubstr("plot ['results']"));
+  EXPECT_THAT(spume({"plot", "a", "b", "--fields", "speed", "pressure", "--plane", "y=0.5", "--animate"}).out,
+              HasSubstr("plot ['a', 'b', '--fields', 'speed', 'pressure', '--plane', 'y=0.5', '--animate']"));
   test::write_contents(package / "plots" / "__main__.py", "import os\nprint(len(os.sched_getaffinity(0)), 'cores')\n");
   cpu_set_t processors;
   sched_getaffinity(0, sizeof processors, &processors);

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <nlohmann/json.hpp>
+
 #include "spume/core/error.hpp"
 #include "spume/io/hdf5.hpp"
 #include "support/stored_values.hpp"
@@ -27,7 +30,7 @@ struct Fields {
 TEST(VtkhdfGrid, StepsAreStoredWithXFastest) {
   const test::TemporaryFolder folder;
   const auto path = folder / "fluid.vtkhdf";
-  VtkhdfGridFile file(path, {{"case", "text"}});
+  VtkhdfGridFile file(path, {false, {{"case", "text"}}});
   file.append(0, Fields(0).snapshot);
   file.append(0.5, Fields(100).snapshot);
   const std::vector<float> pressure = test::stored_values(path, "/VTKHDF/PointData/pressure");
@@ -79,6 +82,50 @@ TEST(VtkhdfGrid, ContinuesAfterTheStepsThatAreKept) {
   EXPECT_THROW(file.keep_steps(5), FileError);
   file.keep_steps(0);
   EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+// Readers without time open one file per step; its arrays are those of the step, also after the folder has moved.
+TEST(VtkhdfGrid, OlderReadersSeeEveryStep) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "a");
+  {
+    VtkhdfGridFile file(folder / "a" / "fluid.vtkhdf", {});
+    for (int step = 0; step < 3; ++step) file.append(0.5 * step, Fields(100 * static_cast<float>(step)).snapshot);
+  }
+  std::filesystem::rename(folder / "a", folder / "b");
+  const auto path = folder / "b" / "fluid.vtkhdf", steps = folder / "b" / "fluid_steps";
+  const auto listed = [&] {
+    std::vector<double> times;
+    const auto list = nlohmann::json::parse(std::ifstream(folder / "b" / "fluid.hdf.series"));
+    for (const auto& one : list["files"]) {
+      EXPECT_TRUE(std::filesystem::exists(folder / "b" / std::string(one["name"])));
+      times.push_back(one["time"]);
+    }
+    return times;
+  };
+  EXPECT_EQ(listed(), (std::vector<double>{0, 0.5, 1}));
+  const std::vector<float> all = read(path, "/VTKHDF/PointData/velocity");
+  EXPECT_EQ(read(steps / "000002.hdf", "/VTKHDF/PointData/velocity"),
+            (std::vector<float>(all.begin() + 360, all.end())));
+  EXPECT_EQ(read(steps / "000001.hdf", "/VTKHDF/PointData/pressure")[0], 100);
+
+  VtkhdfGridFile file(path, {});
+  file.keep_steps(1);
+  EXPECT_EQ(listed(), (std::vector<double>{0}));
+  EXPECT_FALSE(std::filesystem::exists(steps / "000001.hdf"));
+  file.append(7, Fields(50).snapshot);
+  EXPECT_EQ(listed(), (std::vector<double>{0, 7}));
+  EXPECT_EQ(read(steps / "000001.hdf", "/VTKHDF/PointData/pressure")[0], 50);
+  file.keep_steps(0);
+  EXPECT_FALSE(std::filesystem::exists(steps));
+  EXPECT_FALSE(std::filesystem::exists(folder / "b" / "fluid.hdf.series"));
+}
+
+TEST(VtkhdfGrid, ViewsAreAnOption) {
+  const test::TemporaryFolder folder;
+  VtkhdfGridFile file(folder / "fluid.vtkhdf", {false, {}});
+  file.append(0, Fields(0).snapshot);
+  EXPECT_FALSE(std::filesystem::exists(folder / "fluid.hdf.series"));
 }
 
 TEST(VtkhdfGrid, AnotherGridIsRefused) {

@@ -63,6 +63,22 @@ def write_snapshots(path, times, position, fields):
         steps["PointOffsets"] = first
 
 
+def write_grid_snapshots(path, times, points, spacing, fields, origin=(0.0, 0.0, 0.0)):
+    """fields: name -> f(x, y, z, t) on the grid of (nx, ny, nz) points. VTKHDF ImageData with temporal steps."""
+    x, y, z = np.meshgrid(*(o + spacing * np.arange(n) for o, n in zip(origin, points)), indexing="ij")
+    with h5py.File(path, "w") as file:
+        root = file.create_group("VTKHDF")
+        root.attrs["Version"] = np.array([2, 0], "i8")
+        root.attrs.create("Type", np.array(b"ImageData", dtype="S9"))
+        root.attrs["WholeExtent"] = np.array([v for n in points for v in (0, n - 1)], "i8")
+        root.attrs["Origin"], root.attrs["Spacing"] = np.array(origin), np.full(3, float(spacing))
+        for name, f in fields.items():
+            root[f"PointData/{name}"] = np.stack([np.swapaxes(f(x, y, z, t), 0, 2) for t in times]).astype("f4")
+        steps = root.create_group("Steps")
+        steps.attrs["NSteps"] = np.int64(len(times))
+        steps["Values"] = np.asarray(times, float)
+
+
 def series_of(times, **columns):
     t = np.asarray(times, float)
     base = {"step": np.arange(len(t)), "t": t, "dt": np.full(len(t), t[1] - t[0] if len(t) > 1 else 1.0)}

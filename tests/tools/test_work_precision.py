@@ -7,8 +7,10 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import numpy as np
 import paths
 
+from spume_tools.plots.labels import free_labels, overlap
 from spume_tools.work_precision import command
 from spume_tools.work_precision.sweeps import SWEEPS, terminal_speed
 
@@ -41,6 +43,21 @@ class Front(unittest.TestCase):
     def test_terminal_speed_balances_drag_and_buoyancy(self):
         # By hand: w = 0.0683 is Re = 2.73, C_d = 24 / 2.73 (1 + 0.15 * 2.73^0.687) = 11.4, drag 0.375 * 11.4 w^2 / 0.02 = 1.
         self.assertAlmostEqual(terminal_speed(), 0.0683, 3)
+
+
+class Labels(unittest.TestCase):
+    def test_labels_of_crowded_points_cover_nothing(self):
+        from spume_tools.plots.style import plt
+
+        points = 10 ** np.random.default_rng(1).normal((0.8, 1.5), (0.15, 0.2), (39, 2))
+        figure, axis = plt.subplots(figsize=(6, 6))
+        axis.set(xscale="log", yscale="log", xlim=(0.1, 100), ylim=(1, 500))
+        boxes = free_labels(axis, points, [str(k) for k in range(39)])
+        marks = axis.transData.transform(points)
+        for k, box in enumerate(boxes):
+            self.assertFalse(any(overlap(box, other) for other in np.delete(boxes, k, axis=0)), k)
+            self.assertFalse(any(overlap(box, np.concatenate([mark, mark])) for mark in marks), k)
+        plt.close(figure)
 
 
 class Roofline(unittest.TestCase):

@@ -9,7 +9,7 @@
 
 namespace spume {
 
-// Values of the fields at a point or averaged over a region.
+// Values of the fields at a point; outside the liquid there are none: not a number.
 struct PointSample {
   std::vector<double> scalars;  // those of LoadedCase::probe_scalars, in their order
   Vec3 velocity{};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Fields on a uniform grid over time in one VTKHDF 2.0 ImageData file, which current ParaView opens directly.
+// Fields on a uniform grid over time in one VTKHDF 2.0 ImageData file, which current ParaView opens directly. With
+// views older readers open it too (grid_views.hpp).
 //
 // Layout: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html (VTKHDF, ImageData, transient data).
 // Arrays have the shape (time, z, y, x) or (time, z, y, x, components), as float32.
@@ -31,8 +32,11 @@ bool is_grid_file(const std::filesystem::path& path);
 // reason.
 class VtkhdfGridFile {
  public:
-  using Notes = std::vector<std::pair<std::string, std::string>>;  // texts kept in the group /Spume
-  VtkhdfGridFile(std::filesystem::path path, Notes notes);
+  struct Options {
+    bool views = true;
+    std::vector<std::pair<std::string, std::string>> notes;  // texts kept in the group /Spume
+  };
+  VtkhdfGridFile(std::filesystem::path path, Options options);
 
   // Adds a step; when the first one fails, there is no file. Precondition: the same grid and fields as in the steps
   // before.
@@ -44,7 +48,7 @@ class VtkhdfGridFile {
  private:
   void write(double time, const GridSnapshot& snapshot);
   std::filesystem::path path_;
-  Notes notes_;
+  Options options_;
   std::int64_t steps_ = 0;
 };
 

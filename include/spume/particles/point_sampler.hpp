@@ -31,21 +31,26 @@ class PointSampler {
   const PointSampler& update(const SampledState& state);
 
   // Weighted linear fit of velocity and scalars over the particles in the support (Shepard average where they are
-  // too few); coverage is the kernel sum.
+  // too few); coverage is the kernel sum. In the air, where `wet_share` is below one half, all are not a number.
   PointSample sample(const Vec3& point) const;
   double coverage(const Vec3& point) const;
+  // Coverage over the part of the kernel's support that no solid takes: one half at the surface, also beside a solid.
+  double wet_share(const Vec3& point) const;
   // Highest point of the column where the coverage reaches one half, found on steps of a quarter spacing and refined
   // by bisection; the bottom of the domain when there is none.
   double elevation(const Vec3& point) const;
   // Sum of the intervals of the column whose coverage is above one half, their ends found in the same way.
   double wetted_length(const Vec3& point) const;
   double front(int axis, double height) const;
-  // Averages over samples one spacing apart on a plane across the domain, at the middles of equal cells; those whose
-  // coverage is one half or more and that lie in no solid are the liquid part. Linear fields come out exact; the area
-  // is a whole number of cells.
+  // Averages over a plane across the domain, from cells one spacing wide whose middle lies in no solid. The liquid part
+  // of a cell is where `wet_share`, linear between the corners, is one half or more; the fields are sampled at its
+  // centroid. Linear fields come out exact, and the area changes continuously as the surface moves.
   PlaneSample plane_average(int axis, double position) const;
 
  private:
+  PointSample fit(const Vec3& point) const;
+  // Part of the kernel around a point that solids take.
+  double solid_share(const Vec3& point) const;
   double potential_at(const Vec3& r) const;
   // Where the coverage falls to one half between a wet point and a dry height.
   double crossing(Vec3 wet, double dry) const;

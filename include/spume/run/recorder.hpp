@@ -4,7 +4,8 @@
 //   probes.csv        a row whenever series.csv has one (run/probes.hpp)
 //   lines.csv         long: every line probe at every output time
 //   <table>.csv       the tables of the method (methods/records.hpp), such as spectrum.csv, bubble_sizes.csv
-//   <family>.vtkhdf   one per family of particles or of fields on a grid, a step per output time
+//   <family>.vtkhdf   one per family of particles or of fields on a grid, a step per output time; beside it views for
+//                     older readers
 #pragma once
 
 #include <cstdint>

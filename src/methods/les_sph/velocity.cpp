@@ -72,8 +72,8 @@ void Flow::find_neighbours(double dt) {
 }
 
 // The volume fraction depends on h, which depends on the volume fraction. A round leaves at most (1 - alpha) / alpha of
-// the error of alpha: after six 2e-6 at 0.9 and 2e-4 at 0.8. Particles of the start that hold more gas settle within the
-// first steps, each of which is such a round.
+// the error of alpha: after six 2e-6 at 0.9 and 2e-4 at 0.8. Particles of the start that hold more gas settle within
+// the first steps, each of which is such a round.
 void Flow::place_clouds() {
   constexpr int rounds = 6;
   bubbles->place_clouds();

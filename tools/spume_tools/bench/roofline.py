@@ -70,30 +70,40 @@ def draw(limits, routines, path):
     import matplotlib.pyplot as plt
     import numpy as np
 
-    figure, (roof, bars) = plt.subplots(1, 2, figsize=(13, max(5, 0.17 * len(routines))), layout="constrained")
-    x = np.logspace(-1, 2, 200)
+    from ..plots.labels import free_labels
+
     numbers = {}  # of the routines, on one thread and on several alike
     for r in routines:
         numbers.setdefault(short(r["run_name"]).split(",")[0], len(numbers) + 1)
+    tall = max(6.5, 0.19 * len(numbers) + 0.8)
+    figure = plt.figure(figsize=(13, tall))
+    roof = figure.add_axes((0.055, 0.5 / tall, 0.45, 1 - 0.9 / tall))
+    bars = figure.add_axes((0.69, 0.5 / tall, 0.29, 1 - 0.9 / tall))
+    x = np.logspace(-1, 2, 200)
     numbered = lambda r: f"{numbers[short(r['run_name']).split(',')[0]]}"
     for (threads, limit), style in zip(sorted(limits.items()), ("-", "--", ":")):
         peak = limit["flops_per_second"]
         for key, colour in (("memory_bytes_per_second", "tab:blue"), ("cache_bytes_per_second", "tab:cyan")):
             roof.plot(x, np.minimum(x * limit[key], peak) / 1e9, style, color=colour,
                       label=f"{key.split('_')[0]}, {threads} thread{'s' if threads > 1 else ''}")
-    for r in routines:
-        if "flops_per_second" in r and "bytes_per_second" in r and not short(r["run_name"]).endswith("threads"):
-            intensity = r["flops_per_second"] / r["bytes_per_second"]
-            roof.plot(intensity, r["flops_per_second"] / 1e9, "ko", markersize=4)
-            roof.annotate(numbered(r), (intensity, r["flops_per_second"] / 1e9), fontsize=8, xytext=(3, 3),
-                          textcoords="offset points")
+    counted = [r for r in routines if "flops_per_second" in r and "bytes_per_second" in r
+               and not short(r["run_name"]).endswith("threads")]
+    points = [(r["flops_per_second"] / r["bytes_per_second"], r["flops_per_second"] / 1e9) for r in counted]
+    roof.plot(*np.array(points).reshape(-1, 2).T, "ko", markersize=4)
     roof.set(xscale="log", yscale="log", xlabel="operations per byte", ylabel="GFLOP/s")
     roof.legend(fontsize=7)
-    names = [f"{short(r['run_name'])}  {numbered(r)}" for r in routines]
-    bars.barh(names, [100 * r["of_limit"] for r in routines], color="tab:blue")
-    bars.set(xlabel="share of the limit that binds, %", xlim=(0, 100))
-    bars.tick_params(axis="y", labelsize=7)
-    bars.invert_yaxis()
+    if points:
+        free_labels(roof, points, [numbered(r) for r in counted])
+    several = sorted({short(r["run_name"]).partition(", ")[2] for r in routines})
+    height = 0.8 / len(several)
+    for k, threads in enumerate(several):
+        here = [r for r in routines if short(r["run_name"]).partition(", ")[2] == threads]
+        place = [numbers[short(r["run_name"]).split(",")[0]] + (k - 0.5 * (len(several) - 1)) * height for r in here]
+        bars.barh(place, [100 * r["of_limit"] for r in here], height, color=f"C{k}", label=threads)
+    bars.set(xlabel="share of the limit that binds [%]", xlim=(0, 100), ylim=(len(numbers) + 0.6, 0.4))
+    bars.set_yticks(list(numbers.values()), [f"{name}  {number}" for name, number in numbers.items()], fontsize=7)
+    if any(several):
+        bars.legend(fontsize=7, ncol=2, loc="lower center", bbox_to_anchor=(0.5, 1.0))
     figure.savefig(path, dpi=110)
 
 

@@ -4,17 +4,17 @@ import matplotlib.pyplot as plt
 
 from ..results import DamagedResult, MissingResult
 from ..verify.cases import fault_place, find_case, load_measure
-from .style import finish
+from .style import finish, title_of
 
 
-def draw_curves(figures, out):
+def draw_curves(figures, out, title=None):
     """Comparisons as measure.py describes them: a list of
     {"file": stem, "x": label, "y": label, "curves": [(label, x, y, style)], "log": "", "x", "y" or "xy"};
     style is a matplotlib format string: 'o' for measured references, '-' for computed lines, '--' for exact ones.
     """
     files = []
     for description in figures:
-        figure, axis = plt.subplots(figsize=(5.6, 4.0))
+        figure, axis = plt.subplots(figsize=(5.6, 4.2))
         for label, x, y, style in description["curves"]:
             axis.plot(x, y, style, label=label, markersize=4, linewidth=1.3, markerfacecolor="none")
         if "x" in description.get("log", ""):
@@ -23,7 +23,7 @@ def draw_curves(figures, out):
             axis.set_yscale("log")
         axis.set(xlabel=description["x"], ylabel=description["y"])
         axis.legend(fontsize=8)
-        files.append(finish(figure, out / f"{description['file']}.png"))
+        files.append(finish(figure, out / f"{description['file']}.png", title))
     return files
 
 
@@ -39,7 +39,7 @@ def plot_comparison(runs, out):
     if module is None or not hasattr(module, "curves"):
         return []
     try:
-        return draw_curves(module.curves(runs), out)
+        return draw_curves(module.curves(runs), out, title_of(next(iter(runs.values()))))
     except (MissingResult, OSError):
         raise
     except Exception as error:  # a fault in one measure.py must not hide the other pictures

@@ -1,79 +1,218 @@
 # SPDX-License-Identifier: MIT
-"""Fields in a plane at several times: particles coloured by a field, or the middle plane of a grid."""
+"""Fields in a plane at several times, interpolated between the particles, or as the grid has them."""
+from dataclasses import dataclass
+
+import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.collections import EllipseCollection
+from matplotlib.patches import Rectangle
 
-from .style import FIELDS, chosen_steps, field_norm, plane_panels
+from ..results import MissingResult
+from ..results.units import field_label
+from .request import request_of
+from .style import (EDGE, FIELDS, SIGNED, SOLID, chosen_steps, extension, field_norm, finish, length_label, panel_grid,
+                    panel_size, time_title, title_of)
+from .sums import SUPPORT, boxes_of, kernel_sums, sides_of, with_images
+
+FINENESS = 0.5  # distance of the sums of a plane, in spacings; coarser where there are more than MOST along a side
+MOST = 600
+PIXELS = 600    # along the longer side, at least: between the sums pixels are linear
 
 
-def draw_particles(axis, x, y, values, diameter, cmap, norm):
-    """Particles as discs of the given diameter in data units, so that they fill the plane at any zoom."""
-    discs = EllipseCollection(np.full(len(x), diameter), np.full(len(x), diameter), np.zeros(len(x)), units="xy",
-                              offsets=np.column_stack([x, y]), transOffset=axis.transData, cmap=cmap, norm=norm,
-                              linewidths=0, rasterized=True)
-    discs.set_array(values)
-    axis.add_collection(discs)
-    return discs
+@dataclass
+class Plane:
+    """axes: of the picture; normal and its coordinate: None in two dimensions; low, high: corners of the frame."""
+
+    axes: tuple
+    normal: int
+    coordinate: float
+    low: np.ndarray
+    high: np.ndarray
+
+
+@dataclass
+class Panel:
+    """values (columns, rows), nan outside the liquid; extent: left, right, bottom, top; share: the kernel sums that the
+    surface is drawn from, None on grids."""
+
+    time: float
+    values: np.ndarray
+    extent: tuple
+    share: np.ndarray = None
+
+
+def plane_of(run):
+    """The plane that is asked for, as large as the domain; without a request the middle of the second axis."""
+    lower, upper = run.bounds()
+    if run.dimensions == 2:
+        return Plane((0, 1), None, None, lower, upper)
+    normal, coordinate = request_of(run).plane or (1, 0.5 * (lower[1] + upper[1]))
+    if not lower[normal] <= coordinate <= upper[normal]:
+        raise MissingResult(f"the plane {'xyz'[normal]} = {coordinate:g} is not in the domain, which reaches from "
+                            f"{lower[normal]:g} to {upper[normal]:g}")
+    axes = tuple(axis for axis in range(3) if axis != normal)
+    return Plane(axes, normal, coordinate, lower[list(axes)], upper[list(axes)])
+
+
+def field_of(snapshot, name, dimensions=3):
+    """A scalar field by name; "velocity_x" and its like are components."""
+    if name[-2:] in ("_x", "_y", "_z") and name not in snapshot.fields:
+        return snapshot.field(name[:-2])[..., "xyz".index(name[-1])]
+    values = snapshot.field(name)
+    if values.ndim == (1 if hasattr(snapshot, "position") else 3):
+        return values
+    # In two dimensions the vorticity has one component, out of the plane.
+    return values[..., -1] if name == "vorticity" and dimensions == 2 else np.linalg.norm(values, axis=-1)
+
+
+def particle_plane(run, plane, snapshot, values):
+    """The Shepard average of the particles around each pixel, where their kernel sum is one half or more."""
+    spacing = run.spacing
+    reach = SUPPORT * spacing
+    axes = list(plane.axes)
+    position, index = with_images(run.case, snapshot.position, reach)
+    beside = None
+    if plane.normal is not None:
+        away = position[:, plane.normal] - plane.coordinate
+        near = np.abs(away) < reach
+        position, index, beside = position[near], index[near], away[near] ** 2
+    # The frame is that of the liquid where the domain around it is empty.
+    own = position[:, axes]
+    if not len(own):
+        raise MissingResult(f"no liquid near the plane {'xyz'[plane.normal]} = {plane.coordinate:g} at t = {snapshot.time:g}")
+    low = np.maximum(plane.low, own.min(axis=0) - spacing)
+    high = np.minimum(plane.high, own.max(axis=0) + spacing)
+    step = max(FINENESS * spacing, np.max(high - low) / MOST)
+    shape = np.maximum(2, np.round((high - low) / step).astype(int) + 1)
+    weight, total = kernel_sums(own, spacing, low, step, shape, (values[index],), beside)
+    weight, total = finer(weight), finer(total)
+    drawn = np.where(weight >= 0.5, total / np.maximum(weight, 1e-300), np.nan)
+    return Panel(snapshot.time, drawn, extent_of(low, low + (shape - 1) * step, drawn.shape), weight)
+
+
+def extent_of(low, high, shape):
+    """Of an image whose outermost pixels have their middles at two corners."""
+    half = 0.5 * (high - low) / (np.array(shape) - 1)
+    return (low[0] - half[0], high[0] + half[0], low[1] - half[1], high[1] + half[1])
+
+
+def finer(values):
+    """The same values, linearly interpolated to PIXELS at least along the longer side."""
+    times = max(1, int(np.ceil(PIXELS / max(values.shape))))
+    for axis in (0, 1):
+        n = values.shape[axis]
+        place = np.linspace(0, n - 1, (n - 1) * times + 1)
+        first = np.minimum(place.astype(int), n - 2)
+        share = np.expand_dims(place - first, 1 - axis)
+        values = (1 - share) * np.take(values, first, axis) + share * np.take(values, first + 1, axis)
+    return values
+
+
+def grid_plane(run, plane, snapshot, values):
+    """The field of a periodic grid on a plane, linear between the two layers beside it, exact on one."""
+    n = values.shape[plane.normal]
+    place = (plane.coordinate - snapshot.origin[plane.normal]) / snapshot.spacing[plane.normal]
+    first = int(np.floor(place + 1e-9))
+    share = max(0.0, place - first)
+    drawn = np.take(values, first % n, axis=plane.normal)
+    if share > 1e-9:
+        drawn = (1 - share) * drawn + share * np.take(values, (first + 1) % n, axis=plane.normal)
+    # The first points follow on the last ones.
+    drawn = finer(np.pad(drawn, ((0, 1), (0, 1)), mode="wrap"))
+    axes = list(plane.axes)
+    low = snapshot.origin[axes]
+    high = low + snapshot.spacing[axes] * [values.shape[a] for a in axes]
+    return Panel(snapshot.time, drawn, extent_of(low, high, drawn.shape))
+
+
+def panels_of(run, name, snapshots, steps):
+    plane = plane_of(run)
+    panels = []
+    for step in steps:
+        snapshot = snapshots[int(step)]
+        values = field_of(snapshot, name, run.dimensions)
+        panels.append((grid_plane if run.on_grid else particle_plane)(run, plane, snapshot, values))
+    return plane, panels
+
+
+def frame_of(plane, panels):
+    """Left, right, bottom, top of a frame that holds the liquid of all panels."""
+    extents = np.array([panel.extent for panel in panels])
+    return (max(extents[:, 0].min(), plane.low[0]), min(extents[:, 1].max(), plane.high[0]),
+            max(extents[:, 2].min(), plane.low[1]), min(extents[:, 3].max(), plane.high[1]))
+
+
+def draw_panel(axis, run, plane, panel, frame, name, norm):
+    """One panel with walls and solids; returns the image."""
+    image = axis.imshow(panel.values.T, origin="lower", extent=panel.extent, norm=norm, interpolation="nearest",
+                        cmap=FIELDS.get(name, "RdBu_r" if name in SIGNED else "viridis"), rasterized=True)
+    if panel.share is not None and panel.share.min() < 0.5:
+        axis.contour(panel.share.T, levels=[0.5], extent=panel.extent, colors=[EDGE], linewidths=0.7)
+    axis.set(xlim=frame[:2], ylim=frame[2:], aspect="equal", title=time_title(panel.time, run.si))
+    for side in ("top", "right"):
+        axis.spines[side].set_visible(True)
+    for low, high in boxes_of(run.case):
+        if plane.normal is None or low[plane.normal] <= plane.coordinate <= high[plane.normal]:
+            corner = low[list(plane.axes)]
+            axis.add_patch(Rectangle(corner, *(high - low)[list(plane.axes)], facecolor=SOLID, edgecolor=EDGE, linewidth=0.8, zorder=3))
+    # Walls are thick lines.
+    for k, a in enumerate(plane.axes):
+        kinds = sides_of(run.case["domain"], a)
+        for side, kind in enumerate(kinds if kinds != "periodic" else ()):
+            at = (plane.low, plane.high)[side][k]
+            if kind != "open" and frame[2 * k] - 1e-9 <= at <= frame[2 * k + 1] + 1e-9:
+                spine = axis.spines[(("left", "right"), ("bottom", "top"))[k][side]]
+                spine.set(linewidth=2.2, color=EDGE)
+    return image
+
+
+def plane_figure(run, name, plane, panels, norm, ends, most=None):
+    """Panels of one plane with one colour bar."""
+    frame = frame_of(plane, most or panels)
+    width, height = frame[1] - frame[0], frame[3] - frame[2]
+    rows, columns = panel_grid(len(panels), width, height)
+    size = panel_size(rows, columns, width, height)
+    figure, axes = plt.subplots(rows, columns, squeeze=False, sharex=True, sharey=True, constrained_layout=True,
+                                figsize=(columns * (width * size + 0.15) + 1.5, rows * (height * size + 0.35) + 0.8))
+    for axis in axes.flat[len(panels):]:
+        axis.remove()
+    for axis, panel in zip(axes.flat, panels):
+        image = draw_panel(axis, run, plane, panel, frame, name, norm)
+    for axis in axes[-1, :]:
+        axis.set_xlabel(length_label("xyz"[plane.axes[0]], run.si))
+    for axis in axes[:, 0]:
+        axis.set_ylabel(length_label("xyz"[plane.axes[1]], run.si))
+    figure.colorbar(image, ax=[a for a in axes.flat if a.figure], label=field_label(name, run.si), shrink=0.9, extend=ends,
+                    aspect=30)
+    where = "" if plane.normal is None else f", {'xyz'[plane.normal]} = {plane.coordinate:.4g}" + (" m" if run.si else "")
+    figure.suptitle(f"{title_of(run)}: {name.replace('_', ' ')}{where}")
+    return figure
 
 
 def draw_slices(run, snapshots, name, path):
-    """Panels of particles coloured by one field; in 3-D the particles within half a spacing of the middle plane y."""
-    lower, upper = run.bounds()
-    spacing = run.spacing
-    steps = chosen_steps(run, snapshots)
-    loaded = []
-    for step in steps:
-        snapshot = snapshots[int(step)]
-        values = snapshot.field(name)
-        if values.ndim > 1:
-            values = values[:, -1] if run.dimensions == 2 else np.linalg.norm(values, axis=1)
-        position = snapshot.position
-        if run.dimensions == 3:
-            near = np.abs(position[:, 1] - 0.5 * (lower[1] + upper[1])) <= 0.5 * spacing
-            position, values = position[near][:, [0, 2]], values[near]
-        loaded.append((snapshot.time, position[:, 0], position[:, 1], values))
-    norm = field_norm(name, [values for *_, values in loaded])
-    # The frame is the liquid's own extent over all times, not an empty domain around it.
-    everything = np.concatenate([np.column_stack([x, y]) for _, x, y, _ in loaded])
-    corner = np.column_stack([lower[[0, -1]], upper[[0, -1]]])
-    low = np.maximum(np.percentile(everything, 0.02, axis=0) - 2 * spacing, corner[:, 0])
-    high = np.minimum(np.percentile(everything, 99.98, axis=0) + 2 * spacing, corner[:, 1])
-
-    def draw(axis, index):
-        _, x, y, values = loaded[index]
-        return draw_particles(axis, x, y, values, 1.1 * spacing, FIELDS.get(name, "viridis"), norm)
-
-    return plane_panels([time for time, *_ in loaded], low, high, draw, ("x", "y" if run.dimensions == 2 else "z"), name, path)
+    """One field at up to six times."""
+    plane, panels = panels_of(run, name, snapshots, chosen_steps(run, snapshots))
+    samples = [panel.values for panel in panels]
+    norm = field_norm(name, samples, request_of(run).ranges.get(name))
+    return finish(plane_figure(run, name, plane, panels, norm, extension(norm, samples)), path)
 
 
-def draw_grid_slices(run, snapshots, name, path):
-    """The middle plane y of a field on a grid at up to six times."""
-    lower, upper = run.bounds()
-    loaded = []
-    for step in chosen_steps(run, snapshots):
-        snapshot = snapshots[int(step)]
-        values = snapshot.field(name)
-        loaded.append((snapshot.time, values[:, values.shape[1] // 2, :]))
-    norm = field_norm(name, [values.ravel() for _, values in loaded])
-    low, high = lower[[0, 2]], upper[[0, 2]]
-
-    def draw(axis, index):
-        return axis.imshow(loaded[index][1].T, origin="lower", extent=(low[0], high[0], low[1], high[1]), norm=norm,
-                           cmap=FIELDS.get(name, "viridis"), interpolation="bilinear")
-
-    return plane_panels([time for time, _ in loaded], low, high, draw, ("x", "z"), name, path)
+def drawn_fields(run, snapshots):
+    """The fields asked for; without a request the scalars that the run has of those that are worth it."""
+    asked = request_of(run).fields
+    if asked:
+        return asked
+    names = set(snapshots.names) | {"speed"} if "velocity" in snapshots.names else set(snapshots.names)
+    if run.on_grid and "vorticity" in names:
+        names = names - {"vorticity"} | {"enstrophy"}
+    return [name for name in FIELDS if name in names]
 
 
 def plot_slices(run, out):
-    """Particles coloured by each field at up to six times; in 3-D those of the middle plane; or that plane of a grid."""
-    if run.on_grid:
-        snapshots = run.grid_snapshots()
-        derived = {"velocity": "speed", "vorticity": "enstrophy"}
-        names = [derived.get(name, name) for name in snapshots.names]
-        return [draw_grid_slices(run, snapshots, name, out / f"{name}.png") for name in names if len(snapshots)]
+    """Each field in a plane at up to six times: the middle of the second axis, or what is asked for."""
     snapshots = run.snapshots()
-    names = [name for name in FIELDS if name == "speed" or name in snapshots.names]
-    return [draw_slices(run, snapshots, name, out / f"{name}.png") for name in names if len(snapshots)]
+    if not len(snapshots):
+        return []
+    return [draw_slices(run, snapshots, name, out / f"{name}.png") for name in drawn_fields(run, snapshots)]
 
 
 PICTURES = (plot_slices,)

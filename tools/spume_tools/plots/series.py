@@ -3,7 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from .style import finish, panels_over_time
+from .style import finish, panels_over_time, title_of
 
 
 def plot_energy(run, out):
@@ -19,23 +19,24 @@ def plot_energy(run, out):
         rest = series["potential_energy"][0]
         left.plot(t, series["potential_energy"] - rest, label="potential, change from the start")
         left.plot(t, series["kinetic_energy"] + series["potential_energy"] - rest, "k", label="sum")
-    left.set(xlabel=series.label("t"), ylabel=series.label("kinetic_energy") if not has_potential else "energy")
+    left.set(xlabel=series.label("t"), ylabel=series.label("kinetic_energy") if not has_potential else series.label("kinetic_energy").replace("kinetic ", ""))
     left.legend()
     if dissipates:
         axes[0, 1].plot(t, series["dissipation"], color="C3")
         axes[0, 1].set(xlabel=series.label("t"), ylabel=series.label("dissipation"))
-    return [finish(figure, out / "energy.png")]
+    return [finish(figure, out / "energy.png", title_of(run))]
 
 
 def plot_numerics(run, out):
     """What tells whether the run was healthy: step, iterations, largest speed, divergence, drift of mass."""
     series = run.series
-    panels = [(name, series[name]) for name in ("dt", "pressure_iterations", "max_speed", "max_divergence",
+    steps = {"dt": np.where(series["dt"] > 0, series["dt"], np.nan)}  # the first row precedes all steps
+    panels = [(name, steps.get(name, series[name])) for name in ("dt", "pressure_iterations", "max_speed", "max_divergence",
                                                  "pressure_residual", "surface_particles") if name in series]
     if "mass" in series and series["mass"][0]:
         panels.append(("relative drift of mass", series["mass"] / series["mass"][0] - 1))
     figure = panels_over_time(series, panels)
-    return [finish(figure, out / "numerics.png")] if figure else []
+    return [finish(figure, out / "numerics.png", title_of(run))] if figure else []
 
 
 def plot_ledger(run, out):
@@ -54,9 +55,10 @@ def plot_ledger(run, out):
         work, unit = (stage["pairs"], "pair") if stage["pairs"] else (stage["particles"], "particle")
         cost = f"{1e9 * stage['seconds'] / work:.3g} ns per {unit}" if work else f"{stage['seconds']:.3g} s"
         axis.text(share, row, " " + cost, va="center", fontsize=7)
-    axis.set(xlabel=f"share of {whole:.3g} s, %", xlim=(0, 1.35 * max(shares)), title=f"the rest is {max(0, 100 - sum(shares)):.1f} %")
+    axis.set(xlabel=f"share of the run's {whole:.3g} s of wall time [%]", xlim=(0, 1.35 * max(shares)),
+             title=f"all else: {max(0, 100 - sum(shares)):.1f} %")
     axis.tick_params(axis="y", labelsize=8)
-    return [finish(figure, out / "ledger.png")]
+    return [finish(figure, out / "ledger.png", title_of(run))]
 
 
 def plot_turbulence(run, out):
@@ -71,7 +73,7 @@ def plot_turbulence(run, out):
             axis.legend(fontsize=8)
 
     figure = panels_over_time(series, [(name, series[name]) for name in names], injection)
-    return [finish(figure, out / "turbulence.png")] if figure else []
+    return [finish(figure, out / "turbulence.png", title_of(run))] if figure else []
 
 
 PICTURES = (plot_energy, plot_numerics, plot_ledger, plot_turbulence)

@@ -3,8 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from ..results import read_csv
-from .style import evenly, finish, shades
+from .style import evenly, finish, shades, time_title, title_of
 
 
 def asks_for_spectra(case):
@@ -19,7 +18,7 @@ def plot_spectra(run, out):
     figure, axis = plt.subplots(figsize=(5.2, 4.2))
     for time, colour in shades(times[evenly(len(times))]):
         rows = (spectrum["t"] == time) & (spectrum["wavenumber"] > 0) & (spectrum["energy"] > 0)
-        axis.loglog(spectrum["wavenumber"][rows], spectrum["energy"][rows], color=colour, label=f"t = {time:.3g}")
+        axis.loglog(spectrum["wavenumber"][rows], spectrum["energy"][rows], color=colour, label=time_title(time, run.si))
     # The reference slope passes through the last spectrum, a little above it, in the middle of its range.
     if rows.sum() > 4:
         k, energy = spectrum["wavenumber"][rows], spectrum["energy"][rows]
@@ -29,14 +28,14 @@ def plot_spectra(run, out):
         axis.set_ylim(max(energy.max() * 1e-8, 0.3 * energy.min()), 10 * energy.max())
     axis.set(xlabel=spectrum.label("wavenumber"), ylabel=spectrum.label("energy"))
     axis.legend(fontsize=8)
-    return [finish(figure, out / "spectrum.png")]
+    return [finish(figure, out / "spectrum.png", title_of(run))]
 
 
 def plot_gradient_pdf(run, out):
     """Probability densities of the velocity gradients at the last time, beside the normal one."""
     if not run.has("gradient_pdf.csv"):
         return []
-    table = read_csv(run.folder / "gradient_pdf.csv")
+    table = run.table("gradient_pdf")
     rows = table["t"] == table["t"].max()
     value = table["gradient"][rows]
     figure, axis = plt.subplots(figsize=(5.2, 4.2))
@@ -46,9 +45,9 @@ def plot_gradient_pdf(run, out):
     axis.semilogy(value, np.exp(-value**2 / 2) / np.sqrt(2 * np.pi), "k--", label="normal")
     lowest = min(table[name][rows][table[name][rows] > 0].min() for name in ("longitudinal", "transverse"))
     axis.set(xlabel="velocity gradient / standard deviation", ylabel="probability density", ylim=(lowest / 2, 2),
-             title=f"t = {table['t'].max():.4g}")
+             title=time_title(table["t"].max(), run.si))
     axis.legend(fontsize=8)
-    return [finish(figure, out / "gradient_pdf.png")]
+    return [finish(figure, out / "gradient_pdf.png", title_of(run))]
 
 
 PICTURES = (plot_spectra, plot_gradient_pdf)

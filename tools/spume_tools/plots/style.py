@@ -1,27 +1,51 @@
 # SPDX-License-Identifier: MIT
-"""What all pictures share: style, colours, panels over time, and which times are shown."""
+"""What all pictures share: style, colours, titles, panels over time, and which times are shown."""
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
+from matplotlib.colors import LogNorm, Normalize
 
-plt.rcParams.update({"figure.dpi": 130, "savefig.dpi": 130, "font.size": 9, "axes.grid": False,
-                     "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False})
+from .request import request_of
 
-# Fields drawn as slices, in this order, with a perceptual map each.
+plt.rcParams.update({"figure.dpi": 130, "savefig.dpi": 130, "font.size": 9, "axes.grid": False, "axes.titlesize": 9,
+                     "figure.titlesize": 10, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False,
+                     "savefig.format": "png", "svg.fonttype": "none", "pdf.fonttype": 42})
+
+# Fields drawn in planes, in this order, with a perceptual map each.
 FIELDS = {"speed": "viridis", "pressure": "cividis", "dissipation": "inferno", "vorticity": "RdBu_r",
           "enstrophy": "inferno"}
-WATER = LinearSegmentedColormap.from_list("water", ["#06304d", "#0b5c7a", "#1f93a3", "#7fd0c8", "#f4fbf7"])
+SIGNED = {"vorticity", "velocity_x", "velocity_y", "velocity_z", "vorticity_x", "vorticity_y", "vorticity_z"}
+TITLE_ROOM = 0.28  # inches
+SOLID = "#b9b4ab"
+EDGE = "#55524d"
 
 
-def finish(figure, path):
-    if not figure.get_constrained_layout():
-        figure.tight_layout()
+def finish(figure, path, title=None):
+    """Writes a figure in the chosen format and returns the name of the file."""
+    room = TITLE_ROOM / figure.get_figheight() if title else 0
+    if title:
+        figure.suptitle(title, y=1 - 0.3 * room, va="top")
+    if not figure.get_constrained_layout() and not getattr(figure, "exact", False):
+        figure.tight_layout(rect=(0, 0, 1, 1 - room))
+    path = path.with_suffix("." + plt.rcParams["savefig.format"])
     figure.savefig(path)
     plt.close(figure)
     return path
+
+
+def title_of(run):
+    return run.case.get("title") if run.has("case.toml") else None
+
+
+def time_title(time, si):
+    """Above a panel; as long as the time, so that panels stay aligned."""
+    return f"t = {time:.4g}" + (" s" if si else "")
+
+
+def length_label(name, si):
+    return f"{name} [m]" if si else name
 
 
 def evenly(count, most=6):
@@ -30,9 +54,10 @@ def evenly(count, most=6):
 
 
 def chosen_steps(run, snapshots, most=6):
-    """Indices of the snapshots nearest to run.picture_times; without these, evenly spaced from first to last."""
-    if run.picture_times:
-        return np.unique([int(np.argmin(np.abs(snapshots.times - time))) for time in run.picture_times])
+    """Indices of the snapshots nearest to the times asked for; without these, evenly spaced from first to last."""
+    times = request_of(run).times
+    if times:
+        return np.unique([int(np.argmin(np.abs(snapshots.times - time))) for time in times])
     return evenly(len(snapshots), most)
 
 
@@ -51,13 +76,12 @@ def panels_over_time(table, panels, decorate=None):
         return None
     columns = min(3, len(panels))
     rows = -(-len(panels) // columns)
-    figure, axes = plt.subplots(rows, columns, figsize=(4.2 * columns, 2.8 * rows), squeeze=False)
+    figure, axes = plt.subplots(rows, columns, figsize=(4.2 * columns, 2.8 * rows + 0.3), squeeze=False)
     for axis in axes.flat[len(panels):]:
         axis.remove()
     for axis, (name, values) in zip(axes.flat, panels):
         axis.plot(table["t"], values, linewidth=0.9)
-        label = table.label(name)  # units in words are long
-        axis.set(xlabel=table.label("t"), ylabel=label if len(label) < 34 else name.replace("_", " "))
+        axis.set(xlabel=table.label("t"), ylabel=table.label(name))
         positive = values[np.isfinite(values) & (values > 0)]
         if len(positive) and np.nanmin(values) >= 0 and positive.max() > 300 * np.median(positive):
             axis.set_yscale("log")
@@ -69,43 +93,62 @@ def panels_over_time(table, panels, decorate=None):
 def panel_grid(count, width, height):
     """Rows and columns of panels of the given aspect that fill about a 3:2 page."""
     shapes = [(-(-count // columns), columns) for columns in range(1, count + 1)]
-    return min(shapes, key=lambda s: abs(np.log((s[1] * width) / (s[0] * height) / 1.5)) + 0.1 * (s[0] * s[1] - count))
+    return min(shapes, key=lambda s: abs(np.log((s[1] * width) / (s[0] * height) / 1.5)) + 0.3 * (s[0] * s[1] - count))
 
 
-def field_norm(name, samples):
-    """Colour limits shared by all panels: robust percentiles, so that one stray particle does not hide the rest."""
-    values = np.concatenate([s[np.isfinite(s)] for s in samples])
+def panel_size(rows, columns, width, height, page=(10.0, 7.0)):
+    """Inches per unit of length, so that panels of width x height fill the page, whatever their shape."""
+    return min(page[0] / columns / width, page[1] / rows / height)
+
+
+def picture_axes(rows, widths, heights, size, title_room=0.3, below=0.0, right=0.1, title=None):
+    """A figure with rows of pictures that fill their axes exactly, and these axes.
+
+    widths: of the pictures of a row, heights: of the rows, in units of length; size: inches per unit; below: inches kept free under each,
+    right: beside the last one; title_room: above each.
+    """
+    gap, head = 0.12, 0.35 if title else 0.05
+    wide = sum(widths) * size + gap * len(widths) + right
+    bands = np.asarray(heights) * size + title_room + below
+    tall = np.sum(bands) + head
+    figure = plt.figure(figsize=(wide, tall))
+    figure.exact = True  # where its axes are is not to be changed
+    axes = np.empty((rows, len(widths)), object)
+    for row in range(rows):
+        left = 0.5 * gap
+        for column, width in enumerate(widths):
+            bottom = tall - head - np.sum(bands[: row + 1]) + below
+            axes[row, column] = figure.add_axes((left / wide, bottom / tall, width * size / wide, heights[row] * size / tall))
+            axes[row, column].set_axis_off()
+            left += width * size + gap
+    if title:
+        figure.suptitle(title, y=1 - 0.12 / tall, va="top")
+    return figure, axes
+
+
+def field_norm(name, samples, limits=None):
+    """Colour limits shared by all panels: as asked for, or robust percentiles, so that one stray particle does not hide
+    the rest."""
+    if limits is not None:
+        return Normalize(*limits)
+    values = np.concatenate([np.ravel(s)[np.isfinite(np.ravel(s))] for s in samples])
     if not len(values):
         return Normalize(0, 1)
-    low, high = np.percentile(values, [0.5, 99.5])
+    low, high = np.percentile(values, [0.2, 99.8])
     if name in ("dissipation", "enstrophy") and high > 0:
         return LogNorm(max(high * 1e-4, 1e-300), high)
     if name == "speed":
         low = 0.0
-    if name == "vorticity":
+    if name in SIGNED:
         high = max(abs(low), abs(high))
         low = -high
-    return Normalize(low, high if high > low else low + 1)
+    if not high - low > 1e-12 * max(abs(low), abs(high)):  # one value: a scale about it, not one of its last digits
+        high = low + 1
+    return Normalize(low, high)
 
 
-def plane_panels(times, low, high, draw, labels, colour_label, path):
-    """Panels of one plane at several times, with one colour bar: draw(axis, index) returns what the bar is for.
-
-    low, high: corners of the frame; labels: of its two axes.
-    """
-    width, height = high - low
-    rows, columns = panel_grid(len(times), width, height)
-    size = min(9.0 / columns / width, 7.0 / rows / height)
-    figure, axes = plt.subplots(rows, columns, squeeze=False, sharex=True, sharey=True, constrained_layout=True,
-                                figsize=(columns * width * size + 1.5, rows * (height * size + 0.35) + 0.5))
-    for axis in axes.flat[len(times):]:
-        axis.remove()
-    for index, (axis, time) in enumerate(zip(axes.flat, times)):
-        drawn = draw(axis, index)
-        axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal", title=f"t = {time:.4g}")
-    for axis in axes[-1, :]:
-        axis.set_xlabel(labels[0])
-    for axis in axes[:, 0]:
-        axis.set_ylabel(labels[1])
-    figure.colorbar(drawn, ax=[a for a in axes.flat if a.figure], label=colour_label, shrink=0.85, extend="max")
-    return finish(figure, path)
+def extension(norm, samples):
+    """The ends of a colour bar that values lie beyond, for its `extend`."""
+    values = np.concatenate([np.ravel(s)[np.isfinite(np.ravel(s))] for s in samples])
+    below, above = len(values) and values.min() < norm.vmin, len(values) and values.max() > norm.vmax
+    return {(True, True): "both", (True, False): "min", (False, True): "max"}.get((bool(below), bool(above)), "neither")

@@ -7,7 +7,9 @@
     run.probes["front"]                               one row per step
     run.line("centre", -1)["velocity_x"]              one profile, here of the last time
     run.snapshots("fluid")[-1].position               (N, 3), with .time and .fields["velocity"] (N, 3)
+    run.snapshots("fluid")[-1].field("velocity")      (nx, ny, nz, 3) where the flow lives on a grid
     run.case["resolution"]["spacing"]                 the resolved case file
+    run.refresh().series                              with what a run that goes on has written since
 
 Every reader raises MissingResult, with the path and what would have written it, when there is nothing to read, and
 DamagedResult, one of its kind, when what is there is not what it should be.

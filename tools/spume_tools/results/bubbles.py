@@ -3,7 +3,6 @@
 import numpy as np
 
 from .errors import MissingResult
-from .tables import read_csv
 
 
 def surface_tension(run):
@@ -52,5 +51,5 @@ def slope(values, low, high, least=20):
 
 def bubble_traces(run):
     """Traces by identifier: tables of t, x, y, z, radius, slip in order of time."""
-    table = read_csv(run.folder / "bubble_traces.csv")
+    table = run.table("bubble_traces")
     return {int(i): {name: table[name][table["id"] == i] for name in table} for i in np.unique(table["id"])}

@@ -7,10 +7,17 @@ from pathlib import Path
 import numpy as np
 
 from .errors import DamagedResult, MissingResult
+from .units import unit_of
 
 
 class Table(dict):
-    """Columns by name; `units` by name and `comments` (the lines above the header) as text."""
+    """Columns by name, as arrays of one length.
+
+    path: of the file; comments: the lines above its header; units: by column, what these lines say of it, a unit or a
+    note; si, dimensions: whether the run is in SI units, and 2 or 3.
+    """
+
+    si, dimensions = False, 3
 
     def __init__(self, path, columns, comments=()):
         super().__init__(columns)
@@ -18,6 +25,11 @@ class Table(dict):
         self.comments = list(comments)
         self.units = {}
         for line in self.comments:
+            # As runs write them, one in a line; names may hold blanks. References may give several.
+            name, colon, unit = line.partition(": ")
+            if colon and name in self:
+                self.units[name] = unit.strip()
+                continue
             for name, unit in re.findall(r"(\w+)\s*(?:[:=]|(?=\[))\s*([^,;]+)", line):
                 if name in self:
                     self.units[name] = unit.strip(" []")
@@ -26,16 +38,28 @@ class Table(dict):
         raise MissingResult(f"{self.path}: no column '{name}'; it has {', '.join(self) or 'none'}")
 
     def __len__(self):
+        """The number of rows."""
         return 0 if not self.keys() else len(next(iter(self.values())))
+
+    def __repr__(self):
+        return f"Table({str(self.path)!r}: {len(self)} rows of {', '.join(self)})"
+
+    def unit(self, name):
+        """The symbol of the unit of a column, None where it has none."""
+        return unit_of(name, self.units.get(name), self.si, self.dimensions)
 
     def label(self, name):
         """Name and unit of a column, for an axis."""
-        unit = self.units.get(name)
-        return name.replace("_", " ") + (f" [{unit}]" if unit and unit not in ("1", "-") else "")
+        unit = self.unit(name)
+        return name.replace("_", " ") + (f" [{unit}]" if unit else "")
 
 
-def _read_rows(path):
-    """Comments, header and the rows of a CSV file, each row with the number of its line; the header has one too."""
+def _read_rows(path, of_a_run=False):
+    """Comments, header and the rows of a CSV file, each row with the number of its line; the header has one too.
+
+    of_a_run: a last line without its end is one that the program is writing, or was killed while it wrote it, and does
+    not count, whatever its number of values.
+    """
     try:
         raw = path.read_bytes()
         text = raw.decode("utf-8")
@@ -45,6 +69,8 @@ def _read_rows(path):
         line = raw[: error.start].count(b"\n") + 1
         raise DamagedResult(f"{path}:{line}: byte 0x{raw[error.start]:02x} is not UTF-8 text; a table of numbers was "
                             "expected; restore the file") from error
+    if of_a_run:
+        text = text[: text.rfind("\n") + 1]
     lines = list(enumerate(text.replace("\r\n", "\n").split("\n"), 1))
     comments = [line.lstrip("# ") for _, line in lines if line.startswith("#")]
     kept = [(number, line) for number, line in lines if line.strip() and not line.startswith("#")]
@@ -65,13 +91,13 @@ def _wrong_width(path, number, row, header):
 
 
 def read_csv(path, words=None):
-    """A CSV file with `#` lines first and then the column names. Numbers become float arrays, else text arrays; with
-    words given, only the columns of these names may hold text."""
+    """A CSV file with `#` lines first and then the column names. Numbers become float arrays, else text arrays.
+
+    words: given for the tables of a run: the names of the columns that may hold text. Their last line counts when it is
+    complete. Raises MissingResult, or DamagedResult with file, line and column.
+    """
     path = Path(path)
-    comments, (_, header), rows = _read_rows(path)
-    # The last line of a run that was killed may be cut short; any other of a wrong length is damage.
-    if rows and len(rows[-1][1]) < len(header):
-        rows.pop()
+    comments, (_, header), rows = _read_rows(path, of_a_run=words is not None)
     for number, row in rows:
         if len(row) != len(header):
             raise _wrong_width(path, number, row, header)

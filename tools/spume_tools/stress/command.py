@@ -65,7 +65,8 @@ def save_picture(rows, path):
     logarithmic = {"reynolds", "bubble_radius", "response_time", "diameter"}
     planes = [p for p in planes if sum(all(isinstance(r.get(k), (int, float)) for k in p) for r in rows) > 1]
     columns = len(planes) + 1
-    figure, axes = plt.subplots(1, columns, figsize=(4 * columns, 4.2), layout="constrained", squeeze=False)
+    figure, axes = plt.subplots(1, columns, figsize=(4.2 * columns, 4.2), layout="constrained", squeeze=False)
+    figure.get_layout_engine().set(wspace=0.06)
     for axis, (x, y) in zip(axes[0], planes):
         for outcome, colour in OUTCOMES.items():
             here = [r for r in rows if r["outcome"] == outcome and isinstance(r.get(x), (int, float)) and isinstance(r.get(y), (int, float))]
@@ -79,10 +80,10 @@ def save_picture(rows, path):
     for outcome, colour in OUTCOMES.items():
         counts = np.array([sum(r["kind"] == kind and r["outcome"] == outcome for r in rows) for kind in kinds])
         if counts.any():
-            axes[0][-1].barh(kinds, counts, left=left, color=colour, label=outcome)
+            axes[0][-1].barh([kind.replace("_", " ") for kind in kinds], counts, left=left, color=colour, label=outcome)
             left += counts
     axes[0][-1].set(xlabel="runs")
-    axes[0][-1].legend(fontsize=8)
+    axes[0][-1].legend(fontsize=8, ncol=4, loc="lower center", bbox_to_anchor=(0.5, 1.0))
     figure.savefig(path, dpi=110)
 
 

@@ -47,8 +47,8 @@ struct BubbleSizes {
 };
 
 struct BubbleOptions {
-  bool on = false;                    // the case has a section [bubbles]
-  double tension = 0;                 // surface tension over liquid density: 1/We, length3/time2; 0: not given
+  bool on = false;                            // the case has a section [bubbles]
+  double tension = 0;                         // surface tension over liquid density: 1/We, length3/time2; 0: not given
   double density_ratio = 1000 / air_density;  // liquid over gas: water over air
   bool entrainment = false;
   bool breakup = false;

@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: MIT
+"""Fields in planes, the rendered liquid, and the options of `spume plot`."""
+import json
+import subprocess
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import paths
+import numpy as np
+from PIL import Image
+from spume_tools.plots import bubble_views, planes, views
+from spume_tools.plots.liquid import liquid_surface
+from spume_tools.plots.renderer import Scene, View
+from spume_tools.plots.request import DrawnRun, Request
+from spume_tools.plots.sums import kernel_sums
+from spume_tools.results import MissingResult, Results
+from synthetic import lattice, new_folder, series_of, write_case, write_grid_snapshots, write_snapshots, write_table
+from test_tools import Scratch, call
+
+TANK = {"left": "free-slip", "right": "free-slip", "front": "free-slip", "back": "free-slip", "bottom": "free-slip"}
+
+
+def pixels_of(file):
+    """Red, green and blue of the pixels of an image, (height, width, 3)."""
+    with Image.open(file) as image:
+        return np.asarray(image.convert("RGB")).astype(int)
+
+
+def write_tank(folder, spacing=0.1, height=1.0, si=True, solid=None, **domain):
+    """Still water one half deep in a tank of 2 x 1, with the speed z and the pressure 0.5 - z."""
+    write_case(folder, "Some tank", [0, 0, 0], [2, 1, height], spacing, **(domain or TANK))
+    with (folder / "case.toml").open("a") as file:
+        file.write("[fluid]\ndensity = 1000\n" if si else "[fluid]\nreynolds = 100\n")
+        if solid:
+            file.write(f"[[solid]]\nlower = {solid[0]}\nupper = {solid[1]}\n")
+    grid = lattice([0, 0, 0], [2, 1, 0.5], spacing)
+    if solid:
+        grid = grid[~np.all((grid > solid[0]) & (grid < solid[1]), axis=1)]
+    write_table(folder / "series.csv", series_of([0, 0.5, 1], kinetic_energy=[1, 2, 3], surface_particles=10), {"t": "time"})
+    write_snapshots(folder / "fluid.vtkhdf", [0, 0.5, 1], lambda t: grid,
+                    {"velocity": lambda p, t: p * [0, 0, 1], "pressure": lambda p, t: 0.5 - p[:, 2]})
+
+
+class Planes(Scratch):
+    def test_kernel_sums_of_a_lattice_are_one(self):
+        # Over a lattice with a support of two spacings the sum differs from its integral by up to 4 % in three dimensions
+        # and 3 % in two: at its points, between them and in the middle of its cells.
+        for d in (2, 3):
+            points = lattice([0] * d, [1] * d, 0.1)
+            total, = kernel_sums(points, 0.1, np.full(d, 0.5), 0.05, (2,) * d)
+            np.testing.assert_allclose(total, 1, atol=0.04)
+
+    def test_a_plane_between_two_layers_is_filled(self):
+        folder = new_folder(self.path, "run")
+        write_tank(folder)
+        for coordinate in (0.5, 0.45, 0.52):  # on no layer, on one, between
+            run = DrawnRun(folder, Request(plane=(1, coordinate)))
+            plane, (panel,) = planes.panels_of(run, "pressure", run.snapshots(), [0])
+            x = np.linspace(*panel.extent[:2], panel.values.shape[0])
+            z = np.linspace(*panel.extent[2:], panel.values.shape[1])
+            wet = panel.values[:, z < 0.49]
+            self.assertTrue(np.isfinite(wet).all(), coordinate)
+            self.assertTrue(np.isnan(panel.values[:, z > 0.53]).all())
+            # Linear between walls and surface, where the particles are even on both sides, up to the unevenness of the sums.
+            inner = (z > 0.2) & (z < 0.3)
+            np.testing.assert_allclose(panel.values[:, inner], np.broadcast_to(0.5 - z[inner], (len(x), inner.sum())), atol=0.01)
+
+    def test_a_plane_of_a_grid_is_exact_on_its_layers_and_linear_between(self):
+        folder = new_folder(self.path, "run")
+        write_case(folder, "Some box", [0, 0, 0], [0.8, 0.8, 0.8], 0.1, x="periodic", y="periodic", z="periodic")
+        text = (folder / "case.toml").read_text().replace("spacing = 0.1", "grid = 8")
+        (folder / "case.toml").write_text(text)
+        write_grid_snapshots(folder / "fluid.vtkhdf", [0.0], (8, 8, 8), 0.1, {"pressure": lambda x, y, z, t: x + 10 * y})
+        for coordinate in (0.3, 0.35):
+            run = DrawnRun(folder, Request(plane=(1, coordinate)))
+            _, (panel,) = planes.panels_of(run, "pressure", run.snapshots(), [0])
+            every = (panel.values.shape[0] - 1) // 8
+            np.testing.assert_allclose(panel.values[::every, 0][:8], 0.1 * np.arange(8) + 10 * coordinate, atol=1e-5)
+            self.assertAlmostEqual(panel.values[-1, 0], panel.values[0, 0])  # periodic
+
+    def test_a_plane_outside_the_domain_is_said(self):
+        folder = new_folder(self.path, "run")
+        write_tank(folder)
+        with self.assertRaisesRegex(MissingResult, "the plane y = 3 is not in the domain, which reaches from 0 to 1"):
+            planes.plane_of(DrawnRun(folder, Request(plane=(1, 3.0))))
+
+
+class Rendering(Scratch):
+    def test_a_box_is_as_large_as_it_is(self):
+        scene = Scene()
+        scene.add_box([0, 0, 0], [0.5, 0.5, 0.25], (0.2, 0.4, 0.8))
+        image = scene.render(View(), (0, 1, 0, 0.5), 200)
+        self.assertEqual(image.shape, (100, 200, 3))
+        inside = np.all(image != 255, axis=-1)
+        self.assertTrue(inside[55:, :95].all() and not inside[:45].any() and not inside[:, 105:].any())
+
+    def test_the_surface_is_where_the_liquid_ends(self):
+        folder = new_folder(self.path, "run")
+        write_tank(folder)
+        run = Results(folder)
+        surface = liquid_surface(run.case, run.snapshots()[0].position, run.spacing)
+        np.testing.assert_allclose(surface.GetBounds(), (0, 2, 0, 1, 0, 0.5), atol=0.1 * run.spacing)
+
+    def picture(self, folder):
+        with mock.patch.object(views, "DOTS_PER_INCH", 30):
+            file, = views.plot_side_view(DrawnRun(folder, Request(times=(0.5,))), self.path)
+        return pixels_of(file)
+
+    def test_water_fills_the_picture_and_solids_are_seen(self):
+        folder = new_folder(self.path, "run")
+        write_tank(folder, solid=([1.2, 0, 0], [1.6, 0.4, 0.9]))
+        image = self.picture(folder)
+        drawn = np.any(image < 250, axis=-1)
+        rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
+        self.assertLess(columns[0] + image.shape[1] - columns[-1], 0.06 * image.shape[1])
+        self.assertLess(image.shape[0] - rows[-1], 0.1 * image.shape[0])
+        red, blue = image[..., 0], image[..., 2]
+        self.assertGreater(np.mean(blue > red + 15), 0.2)  # water
+        self.assertGreater(np.mean((red > blue + 8) & drawn), 0.03)  # the block
+
+    def test_a_tall_tank_fits_the_page(self):
+        folder = new_folder(self.path, "run")
+        write_tank(folder, height=8.0, left="free-slip", right="free-slip", bottom="free-slip")
+        write_snapshots(folder / "fluid.vtkhdf", [0, 1], lambda t: lattice([0, 0, 0], [0.4, 0.4, 7], 0.1),
+                        {"velocity": lambda p, t: p})
+        write_snapshots(folder / "bubbles.vtkhdf", [1], lambda t: lattice([0, 0, 1], [0.3, 0.3, 2], 0.1),
+                        {"radius": lambda p, t: 0.01 * (1 + p[:, 2])})
+        with (folder / "case.toml").open("a") as file:
+            file.write("[bubbles]\n")
+        (folder / "summary.json").write_text(json.dumps({"derived": {}}))
+        with mock.patch.object(bubble_views, "DOTS_PER_INCH", 30):
+            file, = bubble_views.plot_bubble_views(DrawnRun(folder, Request()), self.path)
+        image = pixels_of(file)
+        self.assertLess(max(image.shape), 2000)
+        # The bubbles are purple to yellow, which water and tank are not.
+        self.assertGreater(np.sum(image[..., 0] > image[..., 1] + 40), 50)
+
+
+class Options(Scratch):
+    def run_folder(self, name="run"):
+        folder = new_folder(self.path, name)
+        write_case(folder, "A square", [0, 0], [1, 1], 0.1, left="free-slip", bottom="free-slip")
+        with (folder / "case.toml").open("a") as file:
+            file.write("[fluid]\ndensity = 1000\n")
+        write_table(folder / "series.csv", series_of([0, 1.0], kinetic_energy=[1, 2]), {"t": "time"})
+        write_snapshots(folder / "fluid.vtkhdf", [0, 0.5, 1], lambda t: lattice([0, 0], [1, 1], 0.1),
+                        {"velocity": lambda p, t: p, "pressure": lambda p, t: p[:, 0]})
+        return folder
+
+    def pictures(self, *arguments):
+        done = call("plots", *arguments)
+        self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
+        return [Path(line) for line in done.stdout.splitlines()]
+
+    def test_fields_times_ranges_and_formats(self):
+        folder = self.run_folder()
+        files = self.pictures(folder, "--fields", "velocity_x", "pressure", "--times", 0.5, "--range", "velocity_x=-2:3",
+                              "--format", "svg")
+        self.assertEqual({file.name for file in files}, {"energy.svg", "numerics.svg", "velocity_x.svg", "pressure.svg"})
+        text = (folder / "plots" / "velocity_x.svg").read_text()
+        for label in ("A square: velocity x", "t = 0.5 s", "x [m]", "velocity x [m/s]"):
+            self.assertTrue(f">{label}<" in text, label)
+        self.assertFalse(">t = 1 s<" in text)
+        self.assertTrue(">−2<" in text and ">3<" in text and ">4<" not in text)
+        self.assertTrue(">pressure [Pa]<" in (folder / "plots" / "pressure.svg").read_text())
+        self.assertTrue(">t [s]<" in (folder / "plots" / "energy.svg").read_text())
+        pdf = self.pictures(folder, "--fields", "pressure", "--format", "pdf")
+        self.assertTrue(all(file.read_bytes().startswith(b"%PDF") for file in pdf))
+
+    def test_two_runs_are_drawn_beside_each_other(self):
+        first, second = self.run_folder("first"), self.run_folder("second")
+        files = self.pictures(first, second)
+        self.assertEqual([str(file.relative_to(first)) for file in files],
+                         [f"plots/beside_second/{name}.png" for name in ("series", "speed", "pressure")])
+
+    def test_an_animation_has_a_frame_per_snapshot(self):
+        file, = self.pictures(self.run_folder(), "--animate")
+        with Image.open(file) as image:
+            self.assertEqual((file.name, image.n_frames), ("speed.gif", 3))
+
+    def test_bad_options_are_said(self):
+        folder = self.run_folder()
+        for arguments, words in ((("--plane", "w=1"), "'w=1' is not an axis and a coordinate, such as y=0.5"),
+                                 (("--plane", "y=a"), "'y=a': 'a' is not a number"),
+                                 (("--range", "speed"), "'speed' is not a field with two limits, such as speed=0:2"),
+                                 (("--range", "speed=2:1"), "'speed=2:1': the first limit is not below the second"),
+                                 (("--format", "bmp"), "invalid choice: 'bmp'")):
+            done = call("plots", folder, *arguments)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(words, done.stderr)
+        done = call("plots", folder, "--fields", "entropy")
+        self.assertRegex(done.stderr, "slices left out: snapshot at t = 0: no field 'entropy'; it has")
+
+
+class OlderReaders(Scratch):
+    """Needs build/release/spume."""
+
+    def test_debians_vtk_opens_every_step_of_a_spectral_run(self):
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkIOHDF import vtkHDFReader
+
+        case = new_folder(self.path, "case") / "case.toml"
+        case.write_text((paths.ROOT / "cases" / "beltrami_exact" / "case.toml").read_text())
+        program = paths.ROOT / "build" / "release" / "spume"
+        done = subprocess.run([program, "run", case, "-o", self.path / "run", "--quiet", "--until", "0.02",
+                               "--set", "output.every=0.01", "--set", "resolution.grid=12"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        snapshots = Results(self.path / "run").snapshots()
+        listed = json.loads((self.path / "run" / "fluid.hdf.series").read_text())["files"]
+        self.assertEqual([one["time"] for one in listed], list(snapshots.times))
+        self.assertGreater(len(listed), 2)
+        for one, snapshot in zip(listed, snapshots):
+            reader = vtkHDFReader()
+            reader.SetFileName(str(self.path / "run" / one["name"]))
+            self.assertTrue(reader.CanReadFile(reader.GetFileName()))
+            reader.Update()
+            image = reader.GetOutput()
+            self.assertEqual(image.GetDimensions(), (12, 12, 12))
+            np.testing.assert_allclose(image.GetSpacing(), snapshot.spacing)
+            for name in snapshot.fields:
+                read = vtk_to_numpy(image.GetPointData().GetArray(name))
+                np.testing.assert_array_equal(read, stored(snapshot.fields[name]))
+
+
+def stored(values):
+    """A field of a snapshot in the order of VTK: x fastest, components last."""
+    return np.swapaxes(values, 0, 2).reshape(-1, *values.shape[3:])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+"""Units of what a run records. A run in dimensionless groups has none; one in SI units has these."""
+import re
+
+# By the dimension that a table names above its header, or that begins its note.
+OF_DIMENSION = {"time": "s", "length": "m", "speed": "m/s", "velocity": "m/s", "pressure": "Pa", "area": "m²",
+                "length^3": "m³", "mass": "kg", "mass times speed": "kg m/s", "1/length": "1/m", "u'": "m/s",
+                "of the predicted velocity": "1/s", "velocity^2 length": "m³/s²", "speed at the start of the step": "m/s",
+                "speed relative to the resolved liquid": "m/s"}
+# By the name of a column, where the note is a formula; and of the fields of snapshots.
+OF_NAME = {"kinetic_energy": "J", "potential_energy": "J", "total_energy": "J", "dissipation": "W",
+           "unresolved_dissipation": "W", "mean_energy": "m²/s²", "mean_dissipation": "W/kg", "mean_injection": "W/kg",
+           "mean_enstrophy": "1/s²", "volume": "m³", "radius": "m", "wavenumber": "1/m", "wall_seconds": "s"}
+OF_FIELD = {"speed": "m/s", "velocity": "m/s", "pressure": "Pa", "vorticity": "1/s", "enstrophy": "1/s²",
+            "dissipation": "W/kg", "radius": "m"}
+# Two-dimensional runs give extensive quantities per metre of depth.
+PER_METRE = {"J": "J/m", "W": "W/m", "kg": "kg/m", "kg m/s": "kg/s", "m³": "m²"}
+SYMBOL = re.compile(r"(?:[kMGmcµn]?(?:m|s|g|Pa|J|W|N|Hz|K|rad)|1|°C|%)(?:[²³]|\^-?\d)?"
+                    r"(?:[ /·](?:[kMGmcµn]?(?:m|s|g|Pa|J|W|N|Hz|K|rad))(?:[²³]|\^-?\d)?)*")
+
+
+def in_si_units(case):
+    """Whether a resolved case gives its fluid in SI units and not in dimensionless groups."""
+    fluid = case.get("fluid", {})
+    in_groups = {"reynolds", "froude", "mach"} & fluid.keys()
+    return not in_groups and bool({"density", "viscosity", "gravity", "sound_speed"} & fluid.keys())
+
+
+def unit_of(name, note, si=False, dimensions=3):
+    """The symbol of a unit, or None: that of a column by its name and the note above the header of its table.
+
+    A note that is a symbol is taken as it is; the name of a dimension stands for its SI unit in a run in SI units.
+    """
+    note = (note or "").strip()
+    if SYMBOL.fullmatch(note):
+        return None if note == "1" else note
+    if not si:
+        return None
+    symbol = OF_DIMENSION.get(note) or OF_NAME.get(name) or OF_DIMENSION.get(note.split(",")[0])
+    return PER_METRE.get(symbol, symbol) if dimensions == 2 else symbol
+
+
+def field_label(name, si=False):
+    """Name and unit of a field of a snapshot, for an axis."""
+    whole = name[:-2] if name[-2:] in ("_x", "_y", "_z") else name
+    unit = OF_FIELD.get(whole) if si else None
+    return name.replace("_", " ") + (f" [{unit}]" if unit else "")
