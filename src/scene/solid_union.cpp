@@ -178,6 +178,51 @@ bool SolidUnion::sees(const Vec3& i, const Vec3& to, const Vec3& at) const {
   return false;
 }
 
+std::vector<double> SolidUnion::wetted_planes(int axis, const Vec3& lower, const Vec3& upper) const {
+  std::vector<double> result;
+  for (std::size_t plane = 0; plane < planes_[axis].size(); ++plane) {
+    if (planes_[axis][plane] <= lower[axis] || planes_[axis][plane] >= upper[axis]) continue;
+    Cell first{}, last{};
+    for (int a = 0; a < dimensions_; ++a) {
+      first[a] = cell_along(a, lower[a] + 2 * tolerance_);
+      last[a] = cell_along(a, upper[a] - 2 * tolerance_);
+    }
+    first[axis] = last[axis] = static_cast<int>(plane);
+    bool wetted = false;
+    Cell cell;
+    for (cell[2] = first[2]; cell[2] <= last[2]; ++cell[2])
+      for (cell[1] = first[1]; cell[1] <= last[1]; ++cell[1])
+        for (cell[0] = first[0]; cell[0] <= last[0]; ++cell[0]) {
+          Cell beyond = cell;
+          ++beyond[axis];
+          wetted = wetted || (owner(cell) == free_cell) != (owner(beyond) == free_cell);
+        }
+    if (wetted) result.push_back(planes_[axis][plane]);
+  }
+  return result;
+}
+
+double SolidUnion::free_volume(const Vec3& lower, const Vec3& upper) const {
+  Cell first{}, last{};
+  for (int axis = 0; axis < dimensions_; ++axis) {
+    first[axis] = cell_along(axis, lower[axis]);
+    last[axis] = cell_along(axis, upper[axis]);
+  }
+  double sum = 0;
+  Cell cell;
+  for (cell[2] = first[2]; cell[2] <= last[2]; ++cell[2])
+    for (cell[1] = first[1]; cell[1] <= last[1]; ++cell[1])
+      for (cell[0] = first[0]; cell[0] <= last[0]; ++cell[0]) {
+        if (owner(cell) != free_cell) continue;
+        double volume = 1;
+        for (int axis = 0; axis < dimensions_; ++axis)
+          volume *= std::max(0.0, std::min(upper[axis], upper_of(axis, cell[axis])) -
+                                      std::max(lower[axis], lower_of(axis, cell[axis])));
+        sum += volume;
+      }
+  return sum;
+}
+
 int SolidUnion::face_near(const Vec3& point, int axis, std::size_t plane, double reach) const {
   const double distance = point[axis] - planes_[axis][plane];
   if (std::abs(distance) >= reach) return -1;

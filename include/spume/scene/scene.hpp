@@ -79,6 +79,13 @@ struct InitialParticles {
   std::size_t size() const { return position[0].size(); }
 };
 
+// What a region asks for and what its particles hold.
+struct RegionFill {
+  std::string name;  // "liquid.0"
+  double asked = 0, got = 0;  // volumes
+  std::size_t particles = 0;
+};
+
 struct Scene {
   std::string title;
   std::string method;
@@ -96,6 +103,7 @@ struct Scene {
   std::vector<Sparger> spargers;
   std::vector<BubbleCloud> bubble_clouds;
   InitialParticles particles;
+  std::vector<RegionFill> fills;  // of the [[liquid]] entries
 };
 
 }  // namespace spume

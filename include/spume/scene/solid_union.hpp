@@ -47,6 +47,10 @@ class SolidUnion {
 
   // Planes of faces along an axis, ascending.
   const std::vector<double>& planes(int axis) const { return planes_[axis]; }
+  // Of those, the ones with a wetted face in the box.
+  std::vector<double> wetted_planes(int axis, const Vec3& lower, const Vec3& upper) const;
+  // What the box holds outside solids.
+  double free_volume(const Vec3& lower, const Vec3& upper) const;
   // The face code of the wetted part of a plane nearest to a point, within `reach` of it and turned towards it: 0 and 1
   // the lower and upper side of the domain, 2 + 2 box + side a face of a box, where boxes share it of the first.
   // -1: there is none.
