@@ -11,6 +11,10 @@
 namespace spume {
 namespace {
 
+// Spacings around the place that a normal points to. Beside the edge of a solid it points past the solid; a wall that
+// stands half a spacing beside a surface particle is not meant.
+constexpr double beside = 0.4;
+
 double dot(const Vec3& a, const Vec3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -66,7 +70,7 @@ bool FreeSurface::faces_solid(const SolidUnion& solids, const MomentFields& mome
   const double size = std::sqrt(dot(normal, normal)), reach = 0.5 * resolution_.support_radius;
   if (!(size > 0) || solids.clear_around(place, reach)) return false;
   for (int axis = 0; axis < resolution_.dimensions; ++axis) place[axis] += reach * normal[axis] / size;
-  return solids.inside(place);
+  return !solids.clear_around(place, beside * resolution_.spacing);
 }
 
 void FreeSurface::pass_over_gaps(const Arrangement& arrangement, const VectorField& at, const SolidUnion& solids) {

@@ -9,6 +9,9 @@ namespace {
 
 // Columns per block: a block is some ten thousand evaluations, so that its bookkeeping is noise.
 constexpr std::size_t column_block = 32;
+// Of the height of a layer: slabs between the levels of solids hold whole layers, which a fifth more or less in height
+// does not crowd.
+constexpr double least_slab = 2;
 
 }  // namespace
 
@@ -107,8 +110,22 @@ void Filler::find_columns() {
     const double layers = std::max(1.0, std::round(depth / lattice_.spacing[up]));
     const bool split = solids_ != nullptr && is_box(regions_[r]) && layers > ColumnFit::upper_layers;
     const double between = split ? top - ColumnFit::upper_layers * depth / layers : bottom;
-    if (split) add_columns(r, bottom, between, columns_[r]);
-    add_columns(r, between, top, columns_[r]);
+    double start = bottom;
+    if (split) {
+      // Between the levels of solids these are pillars, which columns can stand beside.
+      Vec3 from = regions_[r].lower, to = regions_[r].upper;
+      to[up] = between;
+      std::vector<double> levels = solids_->wetted_planes(static_cast<int>(up), from, to);
+      levels.push_back(between);
+      for (const double level : levels) {
+        const bool last = level == between;
+        const double least = least_slab * lattice_.spacing[up];
+        if (!last && (level - start < least || between - level < least)) continue;
+        add_columns(r, start, level, columns_[r]);
+        start = level;
+      }
+    }
+    add_columns(r, start, top, columns_[r]);
     if (!is_box(regions_[r])) continue;
     for (const ColumnCell& cell : columns_[r]) {
       for (const ColumnPart& part : parts_of(cell, r)) {
@@ -144,12 +161,25 @@ std::vector<Chunk> Filler::fill_region(std::size_t r) {
   return chunks;
 }
 
-// Only the upper columns of a region end on its surface.
+// Only the upper columns of a region end on its surface. What of a lower one is left above a solid, less than a layer,
+// belongs to the upper ones: a layer at more than half a spacing above a face is unsteady (at one spacing a wave from
+// particle to particle grew out of rounding within 4 sqrt(H/g)).
 std::vector<ColumnPart> Filler::parts_of(const ColumnCell& cell, std::size_t r) const {
-  std::vector<ColumnPart> parts =
-      ColumnFit(lattice_, solids_.get()).parts({cell.x, cell.y, 0}, cell.lower, cell.upper);
-  if (cell.upper < upper_of(r))
+  const ColumnFit fit(lattice_, solids_.get());
+  const double layer = lattice_.spacing[static_cast<std::size_t>(lattice_.dimensions) - 1];
+  const Vec3 p{cell.x, cell.y, 0};
+  if (cell.upper < upper_of(r)) {
+    std::vector<ColumnPart> parts = fit.parts(p, cell.lower, cell.upper);
     for (ColumnPart& part : parts) part.free_above = false;
+    std::erase_if(parts, [&](const ColumnPart& part) {
+      return part.upper == cell.upper && part.upper - part.lower < layer && part.lower > cell.lower;
+    });
+    return parts;
+  }
+  std::vector<ColumnPart> parts = fit.parts(p, std::max(cell.lower - layer, lower_of(r)), cell.upper);
+  std::erase_if(parts, [&](const ColumnPart& part) { return part.upper <= cell.lower; });
+  for (ColumnPart& part : parts)
+    if (part.lower <= cell.lower - layer) part.lower = cell.lower;
   return parts;
 }
 

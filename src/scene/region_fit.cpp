@@ -10,7 +10,7 @@ namespace {
 // Of a spacing: what separates a plane of the lattice from one beside it.
 constexpr double on_plane = 1e-6;
 // Of the height of a layer: no layer below is that thin, or that much thicker.
-constexpr double least_layer = 0.6;
+constexpr double least_layer = 0.75;
 
 bool whole(double x) {
   return std::abs(x - std::round(x)) < on_plane;
@@ -39,8 +39,7 @@ void ColumnFit::fit_parts(CellRun& run, std::size_t axis, double width, const st
     const double stretch = lattice_cells / cells, area = stretch * width;
     double sum = 0.5 * std::pow(std::log(stretch), 2);
     for (const ColumnPart& part : parts) {
-      const double exact = depth(part, area), n = std::round(exact);
-      if (n == 0) continue;
+      const double exact = depth(part, area), n = std::max(1.0, std::round(exact));
       sum += is_thin(n) ? std::abs(exact / n - 1) : 0.1 * std::abs(exact - n) / (n - upper_layers);
     }
     return sum;
