@@ -71,13 +71,15 @@ std::size_t axis_reflections(const SolidUnion& solids, const Vec3& r, int axis, 
   std::size_t size = 0;
   out[size++] = {r[axis], 0, {-1, -1}};
   const std::vector<double>& planes = solids.planes(axis);
-  auto plane = static_cast<std::size_t>(std::lower_bound(planes.begin(), planes.end(), r[axis] - reach) - planes.begin());
+  auto plane =
+      static_cast<std::size_t>(std::lower_bound(planes.begin(), planes.end(), r[axis] - reach) - planes.begin());
   std::array<double, 16> at{};
   for (; plane < planes.size() && planes[plane] < r[axis] + reach && size <= at.size(); ++plane) {
     const int face = solids.face_near(r, axis, plane, reach);
     if (face < 0) continue;
     at[size - 1] = planes[plane];
-    out[size++] = {2 * planes[plane] - r[axis], std::abs(planes[plane] - r[axis]), {static_cast<std::int16_t>(face), -1}};
+    out[size++] = {
+        2 * planes[plane] - r[axis], std::abs(planes[plane] - r[axis]), {static_cast<std::int16_t>(face), -1}};
   }
   const std::size_t single = size;
   for (std::size_t p = 1; p < single; ++p)

@@ -227,8 +227,9 @@ template <int dimensions>
 }  // namespace
 
 template <int dimensions>
-bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles, const std::array<const double*, 3>& position,
-                           const Images& images, const float* own_support_radius) {
+bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles,
+                           const std::array<const double*, 3>& position, const Images& images,
+                           const float* own_support_radius) {
   const std::size_t n = count_.size();
   const auto least_support_radius = static_cast<float>(grid.support_radius());
   const float far = sentinel_coordinate(least_support_radius);

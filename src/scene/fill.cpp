@@ -51,7 +51,7 @@ void Filler::report(const std::vector<std::vector<Chunk>>& chunks) {
                               "; conform needs the surface below the top: raise the domain, or remove conform");
     } else if (count == 0) {
       problems_.add(node, region.name + (replaced.count > 0 ? " is empty: later regions replace all of it"
-                                         : in_solid.count > 0
+                                         : in_solid.count > 0 || lies_in_solids(region)
                                              ? " is empty: all of its particles lie inside solids"
                                              : " is empty: it holds no particle; check its limits against the domain "
                                                "and the spacing " +
@@ -68,8 +68,8 @@ void Filler::report(const std::vector<std::vector<Chunk>>& chunks) {
 }
 
 // Particles share one volume: that of all regions over their number. Columns that conform each round for themselves, by
-// half a layer at most, which evens out below a wave (6e-4 of the volume of breaking_wave at 1/50) and not where all are
-// of one depth.
+// half a layer at most, which evens out below a wave (6e-4 of the volume of breaking_wave at 1/50) and not where all
+// are of one depth.
 void Filler::set_volume(const std::vector<std::vector<Chunk>>& chunks) {
   InitialParticles& particles = scene_.particles;
   particles.volume = lattice_.volume();

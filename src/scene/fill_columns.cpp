@@ -95,46 +95,46 @@ void Filler::add_columns(std::size_t r, double bottom, double top, std::vector<C
   for (std::size_t i = 0; i < longest; ++i)
     for (const Row& row : rows) {
       const auto& line = lines[row.cells];
-      if (i < line.size()) columns.push_back({line[i].first, row.y, line[i].second / lattice_.spacing[0] * row.width, bottom, top});
+      if (i < line.size())
+        columns.push_back({line[i].first, row.y, line[i].second / lattice_.spacing[0] * row.width, bottom, top});
     }
 }
 
-// The volume of a particle, which the layers below a surface have.
+// The columns of all regions, and the volume that the layers below the surface of each have: that of most columns,
+// which then hold one layer like the other.
 void Filler::find_columns() {
   const std::size_t up = static_cast<std::size_t>(lattice_.dimensions) - 1;
-  const ColumnFit fit(lattice_, solids_.get());
-  double volume = 0, particles = 0;
+  const double spacing = lattice_.spacing[up];
   for (std::size_t r = 0; r < regions_.size(); ++r) {
-    columns_.emplace_back();
+    std::vector<ColumnCell>& columns = columns_.emplace_back();
+    layer_volume_.push_back(1);
     const double bottom = lower_of(r), top = upper_of(r), depth = top - bottom;
-    const double layers = std::max(1.0, std::round(depth / lattice_.spacing[up]));
-    const bool split = solids_ != nullptr && is_box(regions_[r]) && layers > ColumnFit::upper_layers;
-    const double between = split ? top - ColumnFit::upper_layers * depth / layers : bottom;
     double start = bottom;
-    if (split) {
+    if (solids_ != nullptr && is_box(regions_[r])) {
       // Between the levels of solids these are pillars, which columns can stand beside.
+      const double layers = std::max(1.0, std::round(depth / spacing)), least = least_slab * spacing;
+      const double between = top - std::min(layers, ColumnFit::upper_layers) * depth / layers;
       Vec3 from = regions_[r].lower, to = regions_[r].upper;
       to[up] = between;
-      std::vector<double> levels = solids_->wetted_planes(static_cast<int>(up), from, to);
-      levels.push_back(between);
-      for (const double level : levels) {
-        const bool last = level == between;
-        const double least = least_slab * lattice_.spacing[up];
-        if (!last && (level - start < least || between - level < least)) continue;
-        add_columns(r, start, level, columns_[r]);
+      for (const double level : solids_->wetted_planes(static_cast<int>(up), from, to)) {
+        if (level - start < least || between - level < least) continue;
+        add_columns(r, start, level, columns);
         start = level;
       }
-    }
-    add_columns(r, start, top, columns_[r]);
-    if (!is_box(regions_[r])) continue;
-    for (const ColumnCell& cell : columns_[r]) {
-      for (const ColumnPart& part : parts_of(cell, r)) {
-        volume += fit.depth(part, cell.area);
-        particles += fit.layers(part, cell.area);
+      if (between - start >= least) {
+        add_columns(r, start, between, columns);
+        start = between;
       }
     }
+    const std::size_t upper = columns.size();
+    add_columns(r, start, top, columns);
+    if (!is_box(regions_[r]) || columns.size() == upper) continue;
+    std::vector<double> areas;
+    for (std::size_t c = upper; c < columns.size(); ++c) areas.push_back(columns[c].area);
+    std::nth_element(areas.begin(), areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2), areas.end());
+    const double area = areas[areas.size() / 2];
+    layer_volume_.back() = area * depth / spacing / std::max(1.0, std::round(area * depth / spacing));
   }
-  if (particles > 0) particle_volume_ = volume / particles;
 }
 
 std::vector<Chunk> Filler::fill_region(std::size_t r) {
@@ -161,25 +161,23 @@ std::vector<Chunk> Filler::fill_region(std::size_t r) {
   return chunks;
 }
 
-// Only the upper columns of a region end on its surface. What of a lower one is left above a solid, less than a layer,
-// belongs to the upper ones: a layer at more than half a spacing above a face is unsteady (at one spacing a wave from
-// particle to particle grew out of rounding within 4 sqrt(H/g)).
+// Only the uppermost columns of a region end on its surface. What is left above a solid at the top of a slab, less than
+// a layer, belongs to the slab above: a layer at more than half a spacing above a face is unsteady (at one spacing a
+// wave from particle to particle grew out of rounding within 4 sqrt(H/g)).
 std::vector<ColumnPart> Filler::parts_of(const ColumnCell& cell, std::size_t r) const {
-  const ColumnFit fit(lattice_, solids_.get());
   const double layer = lattice_.spacing[static_cast<std::size_t>(lattice_.dimensions) - 1];
-  const Vec3 p{cell.x, cell.y, 0};
-  if (cell.upper < upper_of(r)) {
-    std::vector<ColumnPart> parts = fit.parts(p, cell.lower, cell.upper);
-    for (ColumnPart& part : parts) part.free_above = false;
-    std::erase_if(parts, [&](const ColumnPart& part) {
-      return part.upper == cell.upper && part.upper - part.lower < layer && part.lower > cell.lower;
-    });
-    return parts;
+  const bool lowest = cell.lower == lower_of(r), uppermost = cell.upper == upper_of(r);
+  const double below = lowest ? cell.lower : std::max(cell.lower - layer, lower_of(r));
+  std::vector<ColumnPart> parts = ColumnFit(lattice_, solids_.get()).parts({cell.x, cell.y, 0}, below, cell.upper);
+  std::erase_if(parts, [&](const ColumnPart& part) {
+    const bool left =
+        !uppermost && part.upper == cell.upper && part.lower > cell.lower && part.upper - part.lower < layer;
+    return part.upper <= cell.lower || left;
+  });
+  for (ColumnPart& part : parts) {
+    if (part.lower == below) part.lower = cell.lower;
+    if (!uppermost) part.free_above = false;
   }
-  std::vector<ColumnPart> parts = fit.parts(p, std::max(cell.lower - layer, lower_of(r)), cell.upper);
-  std::erase_if(parts, [&](const ColumnPart& part) { return part.upper <= cell.lower; });
-  for (ColumnPart& part : parts)
-    if (part.lower <= cell.lower - layer) part.lower = cell.lower;
   return parts;
 }
 
@@ -189,7 +187,7 @@ void Filler::box_column(ThreadRegions& own, std::size_t r, const ColumnCell& cel
   const ColumnFit fit(lattice_, solids_.get());
   std::vector<double> heights;
   for (const ColumnPart& part : parts_of(cell, r)) {
-    fit.heights(part, cell.area, particle_volume_, heights);
+    fit.heights(part, cell.area, layer_volume_[r], heights);
     chunk.volume += fit.depth(part, cell.area);
   }
   for (const double height : heights) {

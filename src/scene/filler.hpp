@@ -159,6 +159,9 @@ class Filler {
 
   // A box filled with columns of its own; regions cut by a ball or an expression take sites of the lattice.
   bool is_box(const LiquidRegion& region) const { return !region.ball && !region.where && !layered(); }
+  bool lies_in_solids(const LiquidRegion& region) const {
+    return is_box(region) && solids_ != nullptr && solids_->free_volume(region.lower, region.upper) == 0;
+  }
   // Ends of the columns of a box, in the domain.
   double lower_of(std::size_t r) const {
     const auto up = static_cast<std::size_t>(lattice_.dimensions) - 1;
@@ -190,9 +193,9 @@ class Filler {
   std::atomic<std::size_t> found_ = 0;
   Problems& problems_;
   std::vector<std::unique_ptr<ThreadRegions>> threads_;
-  std::unique_ptr<const SolidUnion> solids_;  // null without boxes
+  std::unique_ptr<const SolidUnion> solids_;      // null without boxes
   std::vector<std::vector<ColumnCell>> columns_;  // of each region
-  double particle_volume_ = 1;                  // of the particles in boxes, in cells of the lattice
+  std::vector<double> layer_volume_;              // below the surface of each, in cells of the lattice
 };
 
 }  // namespace spume

@@ -6,8 +6,9 @@
 //
 // Across, cells are as near to those of the lattice as whole numbers of them fit between the faces. In a column the
 // layers follow from the volume of a particle, which all have in common. Below a free surface the upper layers have
-// exactly that volume: a surface is level when the liquid beside it has one density there, and layers that differ by 1 %
-// of a spacing make waves of 1e-3 sqrt(g H). Where box and faces lie on planes of the lattice its own cells are taken.
+// exactly that volume: a surface is level when the liquid beside it has one density there, and layers that differ by 1
+// % of a spacing make waves of 1e-3 sqrt(g H). Where box and faces lie on planes of the lattice its own cells are
+// taken.
 #pragma once
 
 #include <vector>
@@ -20,8 +21,8 @@ namespace spume {
 // Cells along an axis between two planes, of one width.
 struct CellRun {
   double lower = 0, width = 0, cells = 0;
-  bool own = false;   // of the lattice: centres are written as it writes them
-  double first = 0;   // then the number of the first
+  bool own = false;  // of the lattice: centres are written as it writes them
+  double first = 0;  // then the number of the first
 };
 
 // An interval of a column, filled with liquid.

@@ -43,9 +43,9 @@ SolidUnion::SolidUnion(const Domain& domain, const Planes& sides, double spacing
       if (planes_[axis].empty() || plane > planes_[axis].back() + tolerance_) planes_[axis].push_back(plane);
     count_[axis] = static_cast<int>(planes_[axis].size()) + 1;
   }
-  owner_.assign(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) *
-                    static_cast<std::size_t>(count_[2]),
-                free_cell);
+  owner_.assign(
+      static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) * static_cast<std::size_t>(count_[2]),
+      free_cell);
   // Cells between two coordinates that are planes, up to the tolerance, or infinite.
   const auto fill = [&](const Vec3& lower, const Vec3& upper, std::int32_t value) {
     Cell first{}, last{};
@@ -106,8 +106,7 @@ Vec3 SolidUnion::nearest_free(const Vec3& point, double tie) const {
       Vec3 candidate = point;
       double distance2 = 0;
       for (int axis = 0; axis < dimensions_; ++axis) {
-        candidate[axis] =
-            std::clamp(point[axis], lower_of(axis, cell[axis]), upper_of(axis, cell[axis]));
+        candidate[axis] = std::clamp(point[axis], lower_of(axis, cell[axis]), upper_of(axis, cell[axis]));
         distance2 += (candidate[axis] - point[axis]) * (candidate[axis] - point[axis]);
       }
       if (std::sqrt(distance2) < std::sqrt(least2) - tie) {

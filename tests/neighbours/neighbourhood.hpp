@@ -89,7 +89,8 @@ inline std::shared_ptr<const SolidUnion> unite(const ImageRules& rules, const st
 inline bool inside_any(const std::vector<SolidBox>& boxes, const Point& p, int dimensions) {
   return std::any_of(boxes.begin(), boxes.end(), [&](const SolidBox& box) {
     bool inside = true;
-    for (int axis = 0; axis < dimensions; ++axis) inside = inside && p[axis] > box.lower[axis] && p[axis] < box.upper[axis];
+    for (int axis = 0; axis < dimensions; ++axis)
+      inside = inside && p[axis] > box.lower[axis] && p[axis] < box.upper[axis];
     return inside;
   });
 }

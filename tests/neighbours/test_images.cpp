@@ -20,7 +20,8 @@ void expect_images_match_brute_force(const ImageRules& rules, const std::vector<
   const std::vector<Point> all = hood.all();
   const std::vector<Point> particles(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(hood.n));
   std::map<Key, Point> expected, found;
-  for (const auto& image : reference::images(rules, particles)) expected[{image.source, image.path.side}] = image.position;
+  for (const auto& image : reference::images(rules, particles))
+    expected[{image.source, image.path.side}] = image.position;
   for (std::size_t k = 0; k < hood.images.size(); ++k) {
     const ImagePath& path = hood.images.paths()[static_cast<std::size_t>(hood.images.path()[k])];
     const Key key{hood.images.source()[k], path.side};

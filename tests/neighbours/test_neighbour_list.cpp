@@ -219,8 +219,7 @@ void expect_lists_hold_what_is_seen(const ImageRules& base, const std::vector<So
     }
     for (const std::int32_t j : hood.list.of(i)) {
       const auto k = static_cast<std::size_t>(j);
-      if (certain(all[k]))
-        found.insert(seen_point(k < hood.n ? j : hood.images.source()[k - hood.n], all[k]));
+      if (certain(all[k])) found.insert(seen_point(k < hood.n ? j : hood.images.source()[k - hood.n], all[k]));
     }
     ASSERT_EQ(found, expected) << i;
   }
@@ -233,9 +232,12 @@ TEST(NeighbourList, HoldsWhatAParticleSeesAroundBoxesThatTouchOverlapRepeatOrAre
   for (const int dimensions : {2, 3}) {
     const ImageRules rules = unit_box_rules(dimensions, 0.15, mirror, periodic, mirror);
     // Side by side, over each other, one of them twice, and a plate.
-    const std::vector<SolidBox> boxes{{{0.3, 0.3, 0.3}, {0.5, 0.7, 0.9}, slip},  {{0.5, 0.3, 0.3}, {0.7, 0.7, 0.9}, slip},
-                                      {{0.4, 0.5, 0.2}, {0.9, 0.8, 0.6}, slip}, {{0.3, 0.3, 0.3}, {0.5, 0.7, 0.9}, slip},
-                                      {{0.14, 0.2, 0.1}, {0.16, 0.8, 0.8}, slip}};
+    // No gap is narrower than the support radius: the twin reflects once along an axis.
+    const std::vector<SolidBox> boxes{{{0.33, 0.3, 0.3}, {0.5, 0.7, 0.84}, slip},
+                                      {{0.5, 0.3, 0.3}, {0.7, 0.7, 0.84}, slip},
+                                      {{0.4, 0.5, 0.2}, {0.84, 0.8, 0.6}, slip},
+                                      {{0.33, 0.3, 0.3}, {0.5, 0.7, 0.84}, slip},
+                                      {{0.16, 0.2, 0.16}, {0.17, 0.8, 0.8}, slip}};
     expect_lists_hold_what_is_seen(rules, boxes, dimensions == 2 ? 600 : 900);
   }
 }

@@ -31,31 +31,37 @@ struct Candidates {
 // Whether the ray from `start` towards `end`, reflected at boxes and at the walls of the rules, ends at `at`: the first
 // hit among all slabs, one after the other.
 inline bool sees(const ImageRules& rules, const std::vector<SolidBox>& boxes, Point start, Point end, const Point& at) {
-  int last_axis = -1;  // that of the face just left, which is not hit again
+  // Walls and boxes are convex: one just left is not hit again at once, nor in the edge where the ray met two.
+  std::size_t last = boxes.size() + 6;
+  std::set<std::size_t> left;
   for (int hits = 0; hits < 12; ++hits) {
     double first = 2, plane = 0;
     int axis_hit = -1;
-    const auto meet = [&](int axis, double at_plane, bool outwards, auto&& wetted) {
+    std::size_t solid_hit = 0;
+    const auto meet = [&](int axis, double at_plane, bool outwards, std::size_t solid, auto&& wetted) {
+      if (solid == last) return;
       const double d = end[axis] - start[axis];
       if (d == 0 || (d > 0) != outwards) return;
       const double t = (at_plane - start[axis]) / d;
-      if (t < (axis == last_axis ? 1e-9 : 0) || t >= 1 || t >= first) return;
+      if (t < (left.count(solid) > 0 ? 1e-9 : -1e-9) || t >= 1 || t >= first) return;
       Point hit{};
       for (int a = 0; a < rules.dimensions; ++a) hit[a] = start[a] + t * (end[a] - start[a]);
       if (!wetted(hit)) return;
       first = t;
       plane = at_plane;
       axis_hit = axis;
+      solid_hit = solid;
     };
     for (int axis = 0; axis < rules.dimensions; ++axis) {
       for (int side = 0; side < 2; ++side)
         if (rules.sides[axis][side] == ImageKind::mirror)
-          meet(axis, side == 0 ? rules.lower[axis] : rules.upper[axis], side == 1, [](const Point&) { return true; });
-      for (const SolidBox& box : boxes)
+          meet(axis, side == 0 ? rules.lower[axis] : rules.upper[axis], side == 1,
+               boxes.size() + static_cast<std::size_t>(2 * axis + side), [](const Point&) { return true; });
+      for (std::size_t b = 0; b < boxes.size(); ++b)
         for (int side = 0; side < 2; ++side)
-          meet(axis, side == 0 ? box.lower[axis] : box.upper[axis], side == 0, [&](const Point& hit) {
+          meet(axis, side == 0 ? boxes[b].lower[axis] : boxes[b].upper[axis], side == 0, b, [&](const Point& hit) {
             for (int a = 0; a < rules.dimensions; ++a)
-              if (a != axis && (hit[a] < box.lower[a] || hit[a] > box.upper[a])) return false;
+              if (a != axis && (hit[a] < boxes[b].lower[a] || hit[a] > boxes[b].upper[a])) return false;
             return true;
           });
     }
@@ -66,7 +72,8 @@ inline bool sees(const ImageRules& rules, const std::vector<SolidBox>& boxes, Po
     }
     for (int a = 0; a < rules.dimensions; ++a) start[a] += first * (end[a] - start[a]);
     end[axis_hit] = 2 * plane - end[axis_hit];
-    last_axis = axis_hit;
+    left.insert(solid_hit);
+    last = solid_hit;
   }
   return false;
 }
@@ -77,15 +84,16 @@ inline std::vector<Image> images(const ImageRules& rules, const std::vector<Poin
                                  const std::vector<SolidBox>& boxes = {}) {
   struct Operation {
     double x = 0;
-    int face = -1, side = -1;
+    std::array<int, 2> face{-1, -1};
+    int side = -1;
   };
   const auto operations = [&](int axis, double x) {
-    std::vector<Operation> made{{x, -1, -1}};
+    std::vector<Operation> made{{x, {-1, -1}, -1}};
     if (axis >= rules.dimensions) return made;
     const double length = rules.upper[axis] - rules.lower[axis];
     const auto reflect = [&](double plane, int face, int side) {
       const double depth = side == 0 ? x - plane : plane - x;
-      if (depth < rules.support_radius) made.push_back({2 * plane - x, face, face < 0 ? side : -1});
+      if (depth < rules.support_radius) made.push_back({2 * plane - x, {face, -1}, face < 0 ? side : -1});
     };
     for (int side = 0; side < 2; ++side)
       if (rules.sides[axis][side] == ImageKind::mirror)
@@ -95,7 +103,14 @@ inline std::vector<Image> images(const ImageRules& rules, const std::vector<Poin
         const double plane = side == 0 ? boxes[b].lower[axis] : boxes[b].upper[axis];
         const double depth = side == 0 ? plane - x : x - plane;
         if (depth > 0 && depth < rules.support_radius)
-          made.push_back({2 * plane - x, 2 + 2 * static_cast<int>(b) + side, -1});
+          made.push_back({2 * plane - x, {2 + 2 * static_cast<int>(b) + side, -1}, -1});
+      }
+    // In a gap narrower than the support radius, one face after the other.
+    for (std::size_t p = 1, single = made.size(); p < single && !boxes.empty(); ++p)
+      for (std::size_t q = 1; q < single; ++q) {
+        const double gap = (made[q].x - made[p].x) / 2;
+        if ((made[p].x - x) * (made[q].x - x) < 0 && std::abs(gap) < rules.support_radius)
+          made.push_back({x + 2 * gap, {made[p].face[0], made[q].face[0]}, -1});
       }
     for (int side = 0; side < 2; ++side) {
       if (rules.sides[axis][side] != ImageKind::periodic) continue;
@@ -119,7 +134,8 @@ inline std::vector<Image> images(const ImageRules& rules, const std::vector<Poin
           Image image{{a.x, b.x, c.x}, static_cast<std::int32_t>(k), {}};
           const std::array<Operation, 3> all{a, b, c};
           for (int axis = 0; axis < 3; ++axis) {
-            image.path.face[axis][0] = static_cast<std::int16_t>(all[axis].face);
+            for (std::size_t which = 0; which < 2; ++which)
+              image.path.face[axis][which] = static_cast<std::int16_t>(all[axis].face[which]);
             image.path.side[axis] = static_cast<std::int8_t>(all[axis].side);
           }
           if (image.path != ImagePath{}) made.push_back(image);

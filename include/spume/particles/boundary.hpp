@@ -3,8 +3,8 @@
 // what keeps points inside.
 //
 // Flat walls are mirrors: a particle within a support radius has an image behind the wall. Its velocity follows the
-// kind of the wall (free-slip: the normal component is reversed; no-slip: all are) and the motion of the wall. Boxes and
-// walls are one solid, whose faces are those that liquid wets (scene/solid_union.hpp).
+// kind of the wall (free-slip: the normal component is reversed; no-slip: all are) and the motion of the wall. Boxes
+// and walls are one solid, whose faces are those that liquid wets (scene/solid_union.hpp).
 #pragma once
 
 #include <array>

@@ -81,7 +81,7 @@ struct InitialParticles {
 
 // What a region asks for and what its particles hold.
 struct RegionFill {
-  std::string name;  // "liquid.0"
+  std::string name;           // "liquid.0"
   double asked = 0, got = 0;  // volumes
   std::size_t particles = 0;
 };

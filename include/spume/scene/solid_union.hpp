@@ -7,10 +7,10 @@
 // Outside walls everything is solid, outside periodic and open sides nothing but boxes that reach them.
 //
 // A wall is a mirror. What a point i sees at a place P in a solid is the liquid that a straight ray of the length
-// |P - i| towards P ends at when faces reflect it: every P is seen once, through one face or, in a corner of the liquid,
-// through several. If i sees j in this way then j sees i in the same. Rays around an edge of a solid see past it, and
-// nothing is seen through a solid, however thin. A ray through an edge, to 1e-6 support radii, crosses the plane of the
-// lower axis first.
+// |P - i| towards P ends at when faces reflect it: every P is seen once, through one face or, in a corner of the
+// liquid, through several. If i sees j in this way then j sees i in the same. Rays around an edge of a solid see past
+// it, and nothing is seen through a solid, however thin. A ray through an edge, to 1e-6 support radii, crosses the
+// plane of the lower axis first.
 #pragma once
 
 #include <array>
@@ -63,12 +63,15 @@ class SolidUnion {
   int cell_along(int axis, double x) const;
   Cell cells_of(const Vec3& point) const;
   std::size_t number(const Cell& cell) const {
-    return (static_cast<std::size_t>(cell[2]) * static_cast<std::size_t>(count_[1]) + static_cast<std::size_t>(cell[1])) *
+    return (static_cast<std::size_t>(cell[2]) * static_cast<std::size_t>(count_[1]) +
+            static_cast<std::size_t>(cell[1])) *
                static_cast<std::size_t>(count_[0]) +
            static_cast<std::size_t>(cell[0]);
   }
   std::int32_t owner(const Cell& cell) const { return owner_[number(cell)]; }
-  double lower_of(int axis, int cell) const { return cell == 0 ? -far : planes_[axis][static_cast<std::size_t>(cell) - 1]; }
+  double lower_of(int axis, int cell) const {
+    return cell == 0 ? -far : planes_[axis][static_cast<std::size_t>(cell) - 1];
+  }
   double upper_of(int axis, int cell) const {
     return cell == count_[axis] - 1 ? far : planes_[axis][static_cast<std::size_t>(cell)];
   }

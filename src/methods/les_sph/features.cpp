@@ -30,6 +30,10 @@ Features::Features(const LoadedCase& loaded) {
   const Scene& scene = loaded.scene;
   const Case& options = loaded.options;
   const BoundaryFeatures boundary(scene.domain);
+  for (int axis = 0; axis < scene.domain.dimensions; ++axis)
+    for (int side = 0; side < 2; ++side)
+      open_sides = open_sides || (scene.domain.sides[axis][side].kind == BoundaryKind::open &&
+                                  !(axis == scene.domain.dimensions - 1 && side == 1 && scene.fluid.gravity[axis] < 0));
   images = boundary.images;
   moving_walls = boundary.moving_walls;
   no_slip = boundary.no_slip;

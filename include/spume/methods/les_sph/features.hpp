@@ -14,6 +14,7 @@ constexpr double never_relaxed = 1e6;
 struct Features {
   explicit Features(const LoadedCase& loaded);
 
+  bool open_sides = false;    // beside the top: liquid may leave for good
   bool images = false;        // some side is periodic or a wall, or there are solid boxes
   bool moving_walls = false;  // some wall has a velocity
   bool no_slip = false;       // some wall or solid holds the liquid
