@@ -22,22 +22,24 @@ void FieldSet::resize(std::size_t size) {
 
 void FieldSet::permute(const Array<std::int32_t>& order) {
   const std::int32_t* from = order.data();
+  const std::size_t size = order.size();
   // Field and scratch keep their own capacities: swapping grows both to the same size within two steps.
   const auto permute_one = [&]<class T>(Array<T>& values) {
     if constexpr (std::is_same_v<T, std::int64_t>) {
-      ScratchArray<double> moved(scratch_, size_);
-      parallel_for(size_, [&](std::size_t k) { moved[k] = std::bit_cast<double>(values[from[k]]); });
-      parallel_for(size_, [&](std::size_t k) { values[k] = std::bit_cast<std::int64_t>(moved[k]); });
+      ScratchArray<double> moved(scratch_, size);
+      parallel_for(size, [&](std::size_t k) { moved[k] = std::bit_cast<double>(values[from[k]]); });
+      parallel_for(size, [&](std::size_t k) { values[k] = std::bit_cast<std::int64_t>(moved[k]); });
     } else {
-      ScratchArray<T> moved(scratch_, size_);
+      ScratchArray<T> moved(scratch_, size);
       const T* source = values.data();
       T* target = moved.data();
-      parallel_for(size_, [=](std::size_t k) { target[k] = source[from[k]]; });
+      parallel_for(size, [=](std::size_t k) { target[k] = source[from[k]]; });
       values.swap(moved);
     }
   };
   for (auto& field : fields_)
     if (field->lifetime != Lifetime::result) std::visit(permute_one, field->values);
+  if (size != size_) resize(size);
 }
 
 double FieldSet::bytes() const {

@@ -2,6 +2,7 @@
 #include "spume/neighbours/images.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "spume/core/parallel.hpp"
@@ -10,7 +11,8 @@ namespace spume {
 
 int Images::sign(const ImagePath& path, const ImageRules& rules, int axis) {
   int sign = 1;
-  if (path.box_face >= 0 && (path.box_face % 6) / 2 == axis) sign = -sign;
+  for (const std::int16_t face : path.face[axis])
+    if (face >= 0) sign = -sign;
   const int side = path.side[axis];
   if (side >= 0 && rules.sides[axis][side] == ImageKind::mirror) sign = -sign;
   return sign;
@@ -54,57 +56,116 @@ void Images::append_stage(std::size_t scanned, Emit&& emit) {
   });
 }
 
-void Images::add_box_images(const ImageRules& rules, std::size_t n) {
-  const int dimensions = rules.dimensions;
-  for (std::size_t b = 0; b < rules.boxes.size(); ++b) {
-    const ImageRules::Box& box = rules.boxes[b];
-    std::array<std::array<std::int32_t, 2>, 3> path{};
-    for (int axis = 0; axis < dimensions; ++axis)
-      for (int side = 0; side < 2; ++side) {
-        ImagePath p;
-        p.box_face = static_cast<std::int16_t>(6 * b + 2 * axis + side);
-        path[axis][side] = find_path(p);
-      }
-    // Of two faces equally near up to rounding the earlier one owns an image: a lattice beside a box has many such
-    // points, and each must be filled once.
-    const double tie = 1e-6 * rules.support_radius;
-    // Depth of a point below a face of the box; faces that bound no liquid never are the nearest.
-    const auto depth = [&](const std::array<double, 3>& r, int axis, int side) {
-      if (!box.face[axis][side]) return std::numeric_limits<double>::infinity();
-      return side == 0 ? r[axis] - box.lower[axis] : box.upper[axis] - r[axis];
-    };
-    append_stage(n, [&](std::size_t k, auto& sink) {
-      std::array<double, 3> r{};
-      for (int axis = 0; axis < dimensions; ++axis) {
-        r[axis] = particle_[axis][k];
-        if (r[axis] < box.lower[axis] - rules.support_radius || r[axis] > box.upper[axis] + rules.support_radius)
-          return;
-      }
-      for (int axis = 0; axis < dimensions; ++axis)
-        for (int side = 0; side < 2; ++side) {
-          if (!box.face[axis][side]) continue;
-          const double plane = side == 0 ? box.lower[axis] : box.upper[axis];
-          const double distance = side == 0 ? plane - r[axis] : r[axis] - plane;
-          if (distance < 0 || distance >= rules.support_radius) continue;
-          std::array<double, 3> image = r;
-          image[axis] = 2 * plane - r[axis];
-          bool nearest = true;
-          for (int a = 0; a < dimensions && nearest; ++a)
-            for (int s = 0; s < 2; ++s) {
-              const double other = depth(image, a, s);
-              const bool earlier = 2 * a + s < 2 * axis + side;
-              const bool same = a == axis && s == side;
-              if (other < 0 || (!same && other < distance + (earlier ? tie : -tie))) nearest = false;
-            }
-          if (nearest) sink(image, static_cast<std::int32_t>(k), path[axis][side]);
-        }
-    });
+namespace {
+
+// What may happen to a coordinate: nothing, a reflection in one plane, or in two that face each other.
+struct AxisReflection {
+  double coordinate = 0;
+  double distance = 0;  // that a ray travels along the axis at least
+  std::array<std::int16_t, 2> face{-1, -1};
+};
+// A support radius meets few planes: more than these are beyond what particles resolve.
+using AxisReflections = std::array<AxisReflection, 48>;
+
+std::size_t axis_reflections(const SolidUnion& solids, const Vec3& r, int axis, double reach, AxisReflections& out) {
+  std::size_t size = 0;
+  out[size++] = {r[axis], 0, {-1, -1}};
+  const std::vector<double>& planes = solids.planes(axis);
+  auto plane =
+      static_cast<std::size_t>(std::lower_bound(planes.begin(), planes.end(), r[axis] - reach) - planes.begin());
+  std::array<double, 16> at{};
+  for (; plane < planes.size() && planes[plane] < r[axis] + reach && size <= at.size(); ++plane) {
+    const int face = solids.face_near(r, axis, plane, reach);
+    if (face < 0) continue;
+    at[size - 1] = planes[plane];
+    out[size++] = {
+        2 * planes[plane] - r[axis], std::abs(planes[plane] - r[axis]), {static_cast<std::int16_t>(face), -1}};
   }
+  const std::size_t single = size;
+  for (std::size_t p = 1; p < single; ++p)
+    for (std::size_t q = 1; q < single && size < out.size(); ++q) {
+      const double gap = at[q - 1] - at[p - 1];
+      if ((at[p - 1] - r[axis]) * (at[q - 1] - r[axis]) >= 0 || std::abs(gap) >= reach) continue;
+      out[size++] = {r[axis] + 2 * gap, std::abs(gap), {out[p].face[0], out[q].face[0]}};
+    }
+  return size;
+}
+
+}  // namespace
+
+void Images::add_reflections(const ImageRules& rules, std::size_t n) {
+  const SolidUnion& solids = *rules.solids;
+  const double reach = rules.support_radius;
+  // Of two faces equally near up to rounding one owns an image: a lattice beside a box has many such points.
+  const double tie = 1e-6 * reach;
+  const auto each = [&](std::size_t k, auto&& sink) {
+    Vec3 r{};
+    for (int axis = 0; axis < rules.dimensions; ++axis) r[axis] = particle_[axis][k];
+    if (solids.clear_around(r, reach)) return;
+    std::array<AxisReflections, 3> along;
+    std::array<std::size_t, 3> size{1, 1, 1};
+    for (int axis = 0; axis < rules.dimensions; ++axis)
+      size[axis] = axis_reflections(solids, r, axis, reach, along[axis]);
+    for (std::size_t combination = 1; combination < size[0] * size[1] * size[2]; ++combination) {
+      const std::array<std::size_t, 3> pick{combination % size[0], combination / size[0] % size[1],
+                                            combination / size[0] / size[1]};
+      ImagePath path;
+      Vec3 image{}, foot{};
+      double distance2 = 0;
+      for (int axis = 0; axis < rules.dimensions; ++axis) {
+        const AxisReflection& one = along[axis][pick[axis]];
+        image[axis] = one.coordinate;
+        foot[axis] = 0.5 * (one.coordinate + r[axis]);
+        distance2 += one.distance * one.distance;
+        path.face[axis] = one.face;
+        path.nearest = path.nearest && one.face[1] < 0;
+      }
+      if (distance2 >= reach * reach) continue;
+      if (path.nearest) {
+        const Vec3 nearest = solids.nearest_free(image, tie);
+        for (int axis = 0; axis < rules.dimensions; ++axis)
+          path.nearest = path.nearest && std::abs(nearest[axis] - foot[axis]) <= tie;
+        path.nearest = path.nearest && solids.inside(image);
+      }
+      if (path.nearest || !rules.only_nearest) sink(image, static_cast<std::int32_t>(k), path);
+    }
+  };
+  std::vector<std::vector<ImagePath>> of_block(max_reduction_blocks);
+  const std::size_t block = std::max<std::size_t>(1024, (n + max_reduction_blocks - 1) / max_reduction_blocks);
+  parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t last) {
+    std::vector<ImagePath>& own = of_block[b];
+    for (std::size_t k = first; k < last; ++k)
+      each(k, [&](const Vec3&, std::int32_t, const ImagePath& path) {
+        if (std::find(own.begin(), own.end(), path) == own.end()) own.push_back(path);
+      });
+  });
+  for (const auto& own : of_block) paths_.insert(paths_.end(), own.begin(), own.end());
+  std::sort(paths_.begin(), paths_.end());
+  paths_.erase(std::unique(paths_.begin(), paths_.end()), paths_.end());
+  append_stage(n, [&](std::size_t k, auto& sink) {
+    each(k, [&](const Vec3& image, std::int32_t source, const ImagePath& path) {
+      const auto number = std::lower_bound(paths_.begin(), paths_.end(), path) - paths_.begin();
+      sink(image, source, static_cast<std::int32_t>(number));
+    });
+  });
+}
+
+bool Images::sees(const Vec3& place, std::size_t k, const Vec3& source) const {
+  const ImagePath& path = paths_[static_cast<std::size_t>(path_[k])];
+  Vec3 image{}, at = source;
+  for (int axis = 0; axis < 3; ++axis) {
+    image[axis] = position_[axis][k];
+    if (path.side[axis] >= 0) at[axis] += path.side[axis] == 0 ? -period_[axis] : period_[axis];
+  }
+  return solids_->sees(place, image, at);
 }
 
 void Images::add_axis_images(const ImageRules& rules, int axis, std::size_t n) {
   const double length = rules.upper[axis] - rules.lower[axis];
-  const std::array<ImageKind, 2> kind = rules.sides[axis];
+  std::array<ImageKind, 2> kind = rules.sides[axis];
+  if (rules.solids != nullptr)
+    for (ImageKind& one : kind)
+      if (one == ImageKind::mirror) one = ImageKind::none;  // made with the solids
   if (kind[0] == ImageKind::none && kind[1] == ImageKind::none) return;
 
   // Paths of this stage for every path made so far: [old path + 1][side]; row 0 is the particle itself.
@@ -149,7 +210,9 @@ void Images::add_axis_images(const ImageRules& rules, int axis, std::size_t n) {
 void Images::build(const ImageRules& rules, const CellGrid& grid, const double* x, const double* y, const double* z,
                    std::size_t n) {
   particle_ = {x, y, z};
-  inside_domain_ = !rules.boxes.empty();
+  solids_ = rules.solids;
+  inside_domain_ = solids_ != nullptr;
+  for (int axis = 0; axis < 3; ++axis) period_[axis] = rules.upper[axis] - rules.lower[axis];
   for (int axis = 0; axis < 3; ++axis) {
     constexpr double everywhere = std::numeric_limits<double>::infinity();
     image_free_lower_[axis] = rules.sides[axis][0] == ImageKind::none ? -everywhere : rules.lower[axis];
@@ -158,7 +221,8 @@ void Images::build(const ImageRules& rules, const CellGrid& grid, const double* 
   for (auto& axis : position_) axis.resize(0);
   source_.resize(0);
   path_.resize(0);
-  add_box_images(rules, n);
+  if (solids_ != nullptr) paths_.clear();  // remade, as their numbers are their order
+  if (solids_ != nullptr) add_reflections(rules, n);
   for (int axis = 0; axis < rules.dimensions; ++axis) add_axis_images(rules, axis, n);
 
   const std::size_t m = source_.size();

@@ -200,10 +200,35 @@ template <int dimensions>
   return out;
 }
 
+// Keeps of the entries that particle i has up to `stop` those that it sees; returns their end. Points within two
+// support radii of what hides or doubles any of them lie beside the edge of a face.
+[[gnu::noinline]] std::int32_t* keep_seen(const std::array<const double*, 3>& position, int dimensions, std::size_t i,
+                                          const Images& images, double support_radius, std::size_t particles,
+                                          std::int32_t* start, std::int32_t* stop) {
+  const auto place_of = [&](std::size_t j) {
+    Vec3 place{};
+    for (int axis = 0; axis < dimensions; ++axis) place[axis] = position[axis][j];
+    return place;
+  };
+  const Vec3 place = place_of(i);
+  const SolidUnion& solids = *images.solids();
+  if (solids.open_around(place, 2 * support_radius)) return stop;
+  return std::remove_if(start, stop, [&](std::int32_t entry) {
+    const auto j = static_cast<std::size_t>(entry) / entry_scale;
+    if (j < particles) {
+      const Vec3 other = place_of(j);
+      return !solids.sees(place, other, other);
+    }
+    const std::size_t k = j - particles;
+    return !images.sees(place, k, place_of(static_cast<std::size_t>(images.source()[k])));
+  });
+}
+
 }  // namespace
 
 template <int dimensions>
-bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles, const Images& images,
+bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles,
+                           const std::array<const double*, 3>& position, const Images& images,
                            const float* own_support_radius) {
   const std::size_t n = count_.size();
   const auto least_support_radius = static_cast<float>(grid.support_radius());
@@ -285,7 +310,7 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles, con
   std::int32_t* const indices = index_.data();
   const std::int32_t nobody = entry_scale * sentinel();
 
-  parallel_blocks_dynamic(n, list_block, [=, &used, &found](std::size_t, std::size_t begin, std::size_t end) {
+  parallel_blocks_dynamic(n, list_block, [=, &used, &found, &images](std::size_t, std::size_t begin, std::size_t end) {
     // One set per thread, kept from build to build.
     thread_local Array<Block> thread_blocks;
     thread_local Array<float> thread_candidates;
@@ -322,8 +347,10 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles, con
         float& own = candidates.coordinate[0][slot];
         const float kept = std::exchange(own, far);
         if (own_support_radius != nullptr) support_radius2 = own_support_radius[i] * own_support_radius[i];
-        std::int32_t* const stop = select<dimensions>(candidates, centre, support_radius2, start);
+        std::int32_t* stop = select<dimensions>(candidates, centre, support_radius2, start);
         own = kept;
+        if (images.solids() != nullptr)
+          stop = keep_seen(position, dimensions, i, images, support_radius, n, start, stop);
         store_int(stop, i32x8{} + nobody);
         const auto count = static_cast<std::int32_t>(stop - start);
         counts[i] = count;
@@ -397,8 +424,8 @@ void NeighbourList::build(const CellGrid& grid, const CellOrder& particles, cons
     }
     if (images.inside_domain()) image_free_upper_[0] = -INFINITY;
   }
-  while (!(dimensions == 3 ? search<3>(grid, particles, images, own_support_radius)
-                           : search<2>(grid, particles, images, own_support_radius))) {
+  while (!(dimensions == 3 ? search<3>(grid, particles, {x, y, z}, images, own_support_radius)
+                           : search<2>(grid, particles, {x, y, z}, images, own_support_radius))) {
   }
 }
 

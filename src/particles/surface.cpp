@@ -18,6 +18,10 @@ double standard_threshold(int dimensions) {
   return dimensions == 3 ? surface_threshold_3d : surface_threshold_2d;
 }
 
+// Spacings around the place that a normal points to. Beside the edge of a solid it points past the solid; a wall that
+// stands half a spacing beside a surface particle is not meant.
+constexpr double beside = 0.4;
+
 double dot(const Vec3& a, const Vec3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -30,7 +34,8 @@ FreeSurface::FreeSurface(const Resolution& resolution, const Options& options)
 }
 
 void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, const MomentFields& moments,
-                       const std::vector<std::array<float, 3>>& reflection) {
+                       const std::vector<std::array<float, 3>>& reflection, const VectorField& at,
+                       const SolidUnion* solids) {
   const std::size_t n = particles.size();
   at_surface.resize(n);
   pressure_fixed.resize(n);
@@ -44,7 +49,11 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, const
     interior_weight[i] = above < 0       ? 0.0F
                          : above < width ? static_cast<float>(0.5 * (1 - std::cos(std::numbers::pi * above / width)))
                                          : 1.0F;
+    if (solids == nullptr || !is_near(moments, i) || !faces_solid(*solids, moments, at, i)) return;
+    at_surface[i] = 0;
+    interior_weight[i] = 1;
   });
+  if (solids != nullptr) pass_over_gaps(arrangement, at, *solids);
   parallel_select(n, surface_particles, [&](std::size_t i) { return at_surface[i] != 0; });
   parallel_select(n, near_surface, [&](std::size_t i) { return is_near(moments, i); });
   depth.resize(near_surface.size());
@@ -57,6 +66,37 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, const
                          write(smoothed_normal));
   }
   arrangement.packed.take_traffic();  // it counts the lists of all particles, not of those at the surface alone
+}
+
+bool FreeSurface::faces_solid(const SolidUnion& solids, const MomentFields& moments, const VectorField& at,
+                              std::size_t i) const {
+  Vec3 place = vector_at(at, resolution_.dimensions, i), normal{};
+  for (int axis = 0; axis < resolution_.dimensions; ++axis) normal[axis] = (*moments.normal[axis])[i];
+  const double size = std::sqrt(dot(normal, normal)), reach = 0.5 * resolution_.support_radius;
+  if (!(size > 0) || solids.clear_around(place, reach)) return false;
+  for (int axis = 0; axis < resolution_.dimensions; ++axis) place[axis] += reach * normal[axis] / size;
+  return !solids.clear_around(place, beside * resolution_.spacing);
+}
+
+void FreeSurface::pass_over_gaps(const Arrangement& arrangement, const VectorField& at, const SolidUnion& solids) {
+  const NeighbourList& list = arrangement.list;
+  const double reach = layer_distance * resolution_.spacing;
+  const auto reach2 = static_cast<float>(reach * reach);
+  parallel_for(interior_weight.size(), [&](std::size_t i) {
+    if (at_surface[i] != 0 || interior_weight[i] == 1 ||
+        solids.clear_around(vector_at(at, resolution_.dimensions, i), resolution_.support_radius))
+      return;
+    for (const std::int32_t j : list.of(i)) {
+      if (at_surface[arrangement.particle_of(j)] == 0) continue;
+      float distance2 = 0;
+      for (int axis = 0; axis < resolution_.dimensions; ++axis) {
+        const float d = list.coordinate(axis)[j] - list.coordinate(axis)[i];
+        distance2 += d * d;
+      }
+      if (distance2 < reach2) return;
+    }
+    interior_weight[i] = 1;
+  });
 }
 
 void FreeSurface::release_smoothed_normals(ParticleStore& particles) {

@@ -242,7 +242,6 @@ void check_solids(const Draft& draft, Problems& problems) {
       }
       const bool usable = draft.usable("resolution.spacing") && draft.usable("resolution.smoothing_ratio") &&
                           draft.usable("resolution.kernel");
-      const bool both_faces = solid.lower[a] > draft.lower[a] && solid.upper[a] < draft.upper[a];
       const double support_radius = support_ratio(draft.options.resolution) * draft.options.spacing;
       const double gap = std::min(solid.lower[a] - draft.lower[a], draft.upper[a] - solid.upper[a]);
       const bool spans = solid.lower[a] <= draft.lower[a] && solid.upper[a] >= draft.upper[a];
@@ -251,16 +250,7 @@ void check_solids(const Draft& draft, Problems& problems) {
                                             axis_names[a] + ", within the kernel support " + brief(support_radius) +
                                             ", and its mirror images would end there; move the sides of the domain, or "
                                             "let the box span it");
-        continue;
       }
-      const double least = 2 * support_ratio(draft.options.resolution);
-      const double thickness = solid.upper[a] - solid.lower[a];
-      if (!usable || !both_faces || thickness >= least * draft.options.spacing * (1 - 1e-9)) continue;
-      problems.add(*draft.node(name),
-                   name + " is " + brief(thickness) + " thick in " + axis_names[a] +
-                       "; the mirror images of its two faces would meet below two kernel supports, " +
-                       brief(least * draft.options.spacing) + ": set spacing <= " + largest_spacing(thickness, least) +
-                       " or thicken the box");
     }
   }
 }

@@ -2,21 +2,16 @@
 #include "fill.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <map>
 
 #include "checks.hpp"
+#include "filler.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/random.hpp"
 
 namespace spume {
 namespace {
 
-// Columns per block: a block is some ten thousand evaluations, so that its bookkeeping is noise.
-constexpr std::size_t column_block = 32;
-// In spacings: one layer has more than four times the volume of thinner liquid.
-constexpr double least_depth = 0.25;
 constexpr double most_particles = 2147483648.0;  // 2^31: particles are numbered by int32
 
 std::string point_in_words(const Vec3& p, int dimensions) {
@@ -26,248 +21,7 @@ std::string point_in_words(const Vec3& p, int dimensions) {
   return words.append(")");
 }
 
-// One thread's own copies of the expressions of all regions.
-struct ThreadRegions {
-  std::vector<std::unique_ptr<Expression>> where;
-  std::vector<VectorExpression> velocity;
-  explicit ThreadRegions(const std::vector<LiquidRegion>& regions) {
-    for (const LiquidRegion& region : regions) {
-      where.push_back(region.where ? region.where->clone() : nullptr);
-      velocity.push_back(region.velocity.clone());
-    }
-  }
-};
-
-struct Finding {
-  std::size_t count = 0;
-  Vec3 first{};
-  void add(const Vec3& place, std::size_t more = 1) {
-    if (count == 0) first = place;
-    count += more;
-  }
-};
-
-// What one block of columns found, merged in block order.
-struct Chunk {
-  std::vector<double> position[3];
-  std::map<std::size_t, Finding> overlap;  // by the other region
-  Finding not_finite, beyond_top, in_solid, replaced;
-};
-
-class Filler {
- public:
-  Filler(Scene& scene, const Lattice& lattice, const std::vector<LiquidRegion>& regions, double most,
-         Problems& problems)
-      : scene_(scene),
-        lattice_(lattice),
-        regions_(regions),
-        most_(most),
-        problems_(problems),
-        threads_(static_cast<std::size_t>(thread_count())) {}
-
-  // False when there are more than allowed: what was found until then is dropped.
-  bool place_particles() {
-    std::vector<std::vector<Chunk>> chunks;
-    for (std::size_t r = 0; r < regions_.size(); ++r) chunks.push_back(fill_region(r));
-    if (too_many()) return false;
-    report(chunks);
-    gather(chunks);
-    return true;
-  }
-
-  void jitter(double fraction);
-  void set_velocities();
-  bool fills_domain() const;
-
- private:
-  // Regions of phases lie on each other, the later above.
-  bool layered() const { return regions_.front().phase >= 0; }
-
-  bool too_many() const { return static_cast<double>(found_.load()) > most_; }
-
-  ThreadRegions& own() {
-    auto& regions = threads_[static_cast<std::size_t>(omp_get_thread_num())];
-    if (!regions) regions = std::make_unique<ThreadRegions>(regions_);
-    return *regions;
-  }
-
-  double centre(std::size_t axis, double k) const { return lattice_.origin[axis] + (k + 0.5) * lattice_.spacing[axis]; }
-
-  bool in_box_and_ball(const LiquidRegion& region, const Vec3& p) const {
-    double distance = 0;
-    for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a) {
-      // Half-open, so that regions that share a face share no particle; the slack keeps a face that falls on
-      // cell centres from splitting a layer by rounding.
-      const double slack = 1e-9 * lattice_.spacing[a];
-      if (p[a] < region.lower[a] - slack || p[a] >= region.upper[a] - slack) return false;
-      distance += (p[a] - region.centre[a]) * (p[a] - region.centre[a]);
-    }
-    return !region.ball || distance < region.radius * region.radius;
-  }
-
-  bool contains(ThreadRegions& own, std::size_t r, const Vec3& p, Chunk& chunk) const {
-    if (!in_box_and_ball(regions_[r], p)) return false;
-    if (!own.where[r]) return true;
-    const double value = (*own.where[r])(p[0], p[1], p[2], 0);
-    if (!std::isfinite(value)) chunk.not_finite.add(p);
-    return std::isfinite(value) && value > 0;
-  }
-
-  // The same of another region, which reports its own faults.
-  bool covers(ThreadRegions& own, std::size_t r, const Vec3& p) const {
-    if (!in_box_and_ball(regions_[r], p)) return false;
-    if (!own.where[r]) return true;
-    const double value = (*own.where[r])(p[0], p[1], p[2], 0);
-    return std::isfinite(value) && value > 0;
-  }
-
-  bool in_solid(const Vec3& p) const {
-    for (const SolidBox& box : scene_.domain.boxes) {
-      bool inside = true;
-      for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a) {
-        inside = inside && p[a] >= box.lower[a] && p[a] <= box.upper[a];
-      }
-      if (inside) return true;
-    }
-    return false;
-  }
-
-  void accept(ThreadRegions& own, std::size_t r, const Vec3& p, Chunk& chunk) const {
-    if (in_solid(p)) {
-      chunk.in_solid.add(p);
-      return;
-    }
-    if (layered()) {
-      for (std::size_t q = r + 1; q < regions_.size(); ++q)
-        if (covers(own, q, p)) {
-          chunk.replaced.add(p);
-          return;
-        }
-    }
-    for (std::size_t q = 0; q < regions_.size() && !layered(); ++q) {
-      // Lattice regions share sites, so one direction suffices; a conforming one has its own places.
-      if (q == r || (q > r && regions_[q].conform == regions_[r].conform)) continue;
-      if (covers(own, q, p)) chunk.overlap[q].add(p);
-    }
-    for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a) chunk.position[a].push_back(p[a]);
-  }
-
-  // Indices of cells whose centres may lie in the region's box.
-  std::pair<double, double> index_range(const LiquidRegion& region, std::size_t axis) const {
-    double low = region.lower[axis], high = region.upper[axis];
-    if (region.ball) {
-      low = std::max(low, region.centre[axis] - region.radius);
-      high = std::min(high, region.centre[axis] + region.radius);
-    }
-    const double first = std::floor((low - lattice_.origin[axis]) / lattice_.spacing[axis] - 0.5);
-    const double last = std::ceil((high - lattice_.origin[axis]) / lattice_.spacing[axis] + 0.5);
-    return {std::clamp(first, 0.0, lattice_.count[axis]), std::clamp(last, 0.0, lattice_.count[axis])};
-  }
-
-  std::vector<Chunk> fill_region(std::size_t r);
-  void conform_column(ThreadRegions& own, std::size_t r, Vec3 p, Chunk& chunk) const;
-  void report(const std::vector<std::vector<Chunk>>& chunks);
-  void gather(const std::vector<std::vector<Chunk>>& chunks);
-
-  Scene& scene_;
-  const Lattice& lattice_;
-  const std::vector<LiquidRegion>& regions_;
-  double most_;
-  std::atomic<std::size_t> found_ = 0;
-  Problems& problems_;
-  std::vector<std::unique_ptr<ThreadRegions>> threads_;
-};
-
-std::vector<Chunk> Filler::fill_region(std::size_t r) {
-  const LiquidRegion& region = regions_[r];
-  const std::size_t up = static_cast<std::size_t>(lattice_.dimensions) - 1;
-  std::array<std::pair<double, double>, 3> range{{{0, 1}, {0, 1}, {0, 1}}};
-  for (std::size_t a = 0; a <= up; ++a) range[a] = index_range(region, a);
-  const auto extent = [&](std::size_t a) { return static_cast<std::size_t>(range[a].second - range[a].first); };
-  const std::size_t rows = up == 2 ? extent(1) : 1;
-  const std::size_t columns = extent(0) * rows;
-
-  std::vector<Chunk> chunks(block_count(columns, column_block));
-  parallel_blocks_dynamic(columns, column_block, [&](std::size_t block, std::size_t first, std::size_t last) {
-    if (too_many()) return;
-    ThreadRegions& own = this->own();
-    Chunk& chunk = chunks[block];
-    for (std::size_t column = first; column < last; ++column) {
-      Vec3 p{};
-      p[0] = centre(0, range[0].first + static_cast<double>(column / rows));
-      if (up == 2) p[1] = centre(1, range[1].first + static_cast<double>(column % rows));
-      if (region.conform) {
-        conform_column(own, r, p, chunk);
-        continue;
-      }
-      for (double k = range[up].first; k < range[up].second; ++k) {
-        p[up] = centre(up, k);
-        if (contains(own, r, p, chunk)) accept(own, r, p, chunk);
-      }
-    }
-    found_ += chunk.position[0].size();
-  });
-  return chunks;
-}
-
-// The column through p: the surface is the highest root of `where`, found from above in steps of half a
-// spacing and bisected to the last bit. Over a depth D the n particles stand D/n apart, the highest half a distance
-// below the surface and the lowest half a distance above the bottom: the column's liquid ends on both. A depth below
-// a quarter spacing holds no particle.
-void Filler::conform_column(ThreadRegions& own, std::size_t r, Vec3 p, Chunk& chunk) const {
-  const LiquidRegion& region = regions_[r];
-  const std::size_t up = static_cast<std::size_t>(lattice_.dimensions) - 1;
-  const double spacing = lattice_.spacing[up];
-  const double bottom = region.lower[up], top = region.upper[up];
-  p[up] = 0.5 * (bottom + top);
-  if (!in_box_and_ball(region, p)) return;
-
-  const auto inside = [&](double height) {
-    p[up] = height;
-    const double value = (*own.where[r])(p[0], p[1], p[2], 0);
-    if (!std::isfinite(value)) chunk.not_finite.add(p);
-    return value > 0;
-  };
-  // The last height inside, between one that is and one that is not.
-  const auto bisect = [&](double in, double out) {
-    for (int i = 0; i < 200; ++i) {  // ends at rounding, after some 50
-      const double middle = 0.5 * (in + out);
-      if (middle == in || middle == out) break;
-      (inside(middle) ? in : out) = middle;
-    }
-    return in;
-  };
-
-  if (inside(top)) {
-    chunk.beyond_top.add(p);
-    return;
-  }
-  const double steps = std::ceil((top - bottom) / (0.5 * spacing));
-  double surface = bottom, floor = bottom;
-  bool found = false;
-  for (double i = 1; i <= steps; ++i) {
-    const double above = top - (top - bottom) * (i - 1) / steps;
-    const double height = i == steps ? bottom : top - (top - bottom) * i / steps;
-    const bool wet = inside(height);
-    if (!found && wet) {
-      surface = bisect(height, above);
-      found = true;
-    } else if (found && !wet) {
-      floor = bisect(above, height);
-      break;
-    }
-  }
-  const double depth = surface - floor;
-  if (!found || depth < least_depth * spacing) return;
-
-  const auto distance = [&](double n) { return depth / n; };
-  double layers = std::max(1.0, std::floor(depth / spacing));
-  if (std::abs(distance(layers + 1) - spacing) < std::abs(distance(layers) - spacing)) ++layers;
-  for (double k = layers - 1; k >= 0; --k) {
-    p[up] = surface - (k + 0.5) * distance(layers);
-    accept(own, r, p, chunk);
-  }
-}
+}  // namespace
 
 void Filler::report(const std::vector<std::vector<Chunk>>& chunks) {
   const int dimensions = lattice_.dimensions;
@@ -298,7 +52,7 @@ void Filler::report(const std::vector<std::vector<Chunk>>& chunks) {
                               "; conform needs the surface below the top: raise the domain, or remove conform");
     } else if (count == 0) {
       problems_.add(node, region.name + (replaced.count > 0 ? " is empty: later regions replace all of it"
-                                         : in_solid.count > 0
+                                         : in_solid.count > 0 || lies_in_solids(region)
                                              ? " is empty: all of its particles lie inside solids"
                                              : " is empty: it holds no particle; check its limits against the domain "
                                                "and the spacing " +
@@ -312,6 +66,32 @@ void Filler::report(const std::vector<std::vector<Chunk>>& chunks) {
                       " in both, the first at " + point_in_words(finding.first, dimensions) +
                       "; change one so that they only touch");
   }
+}
+
+// Particles share one volume: that of all regions over their number. Columns that conform each round for themselves, by
+// half a layer at most, which evens out below a wave (6e-4 of the volume of breaking_wave at 1/50) and not where all
+// are of one depth.
+void Filler::set_volume(const std::vector<std::vector<Chunk>>& chunks) {
+  InitialParticles& particles = scene_.particles;
+  particles.volume = lattice_.volume();
+  if (layered()) return;
+  double total = 0, count = 0;
+  bool conform = false;
+  scene_.fills.resize(regions_.size());
+  for (std::size_t r = 0; r < regions_.size(); ++r) {
+    RegionFill& fill = scene_.fills[r];
+    fill = {regions_[r].name, 0, 0, 0};
+    for (const Chunk& chunk : chunks[r]) {
+      fill.asked += chunk.volume * lattice_.volume();
+      fill.particles += chunk.position[0].size();
+    }
+    total += fill.asked;
+    count += static_cast<double>(fill.particles);
+    conform = conform || regions_[r].conform;
+  }
+  const double ratio = total / (count * lattice_.volume());
+  if (count > 0 && std::abs(ratio - 1) > (conform ? 1e-3 : 1e-9)) particles.volume *= ratio;
+  for (RegionFill& fill : scene_.fills) fill.got = static_cast<double>(fill.particles) * particles.volume;
 }
 
 void Filler::gather(const std::vector<std::vector<Chunk>>& chunks) {
@@ -332,7 +112,7 @@ void Filler::gather(const std::vector<std::vector<Chunk>>& chunks) {
   }
   particles.region.resize(start.back());
   if (layered()) particles.phase.resize(start.back());
-  particles.volume = lattice_.volume();
+  set_volume(chunks);
   parallel_blocks(all.size(), 1, [&](std::size_t c, std::size_t, std::size_t) {
     for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a) {
       std::copy(all[c]->position[a].begin(), all[c]->position[a].end(), particles.position[a].data() + start[c]);
@@ -411,6 +191,14 @@ bool Filler::fills_domain() const {
   for (const LiquidRegion& region : regions_) {
     if (region.conform) return false;
   }
+  if (!layered()) {
+    double domain = 1, filled = 0;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a)
+      domain *= scene_.domain.upper[a] - scene_.domain.lower[a];
+    if (solids_ != nullptr) domain = solids_->free_volume(scene_.domain.lower, scene_.domain.upper);
+    for (const RegionFill& fill : scene_.fills) filled += fill.asked;
+    return domain - filled < 0.5 * lattice_.volume();
+  }
   const double missing = lattice_.sites() - static_cast<double>(scene_.particles.size());
   // Solids are counted site by site, which pays only where they could make up for what is missing.
   if (missing > most_particles) return false;
@@ -432,8 +220,6 @@ bool Filler::fills_domain() const {
   }
   return missing == in_solids;
 }
-
-}  // namespace
 
 Lattice make_lattice(const Domain& domain, double spacing) {
   Lattice lattice;

@@ -80,6 +80,11 @@ std::map<std::string, std::string> describe_groups(const Draft& draft, const Sce
     groups_of_si(draft, scene, groups);
   else
     groups_as_given(draft, scene, groups);
+  for (const auto& [side, velocity] : draft.wall_velocity) {
+    std::string text;
+    for (const ExpressionText& component : velocity) text += (text.empty() ? "(" : ", ") + component.text;
+    groups["moving wall " + side] = text + ")";
+  }
   const Node* constants = draft.node("constants");
   for (std::size_t i = 0; constants && i < constants->keys.size(); ++i) {
     if (const auto value = scope.value(constants->keys[i])) groups["constant " + constants->keys[i]] = brief(*value);
@@ -95,6 +100,13 @@ void describe_lattice(const Scene& scene, const Lattice& lattice, std::map<std::
   }
   if (!effective.empty()) groups["effective spacing"] = effective;
   groups["particles"] = std::to_string(scene.particles.size());
+  const bool only = scene.fills.size() == 1;
+  for (const RegionFill& fill : scene.fills) {
+    const double density = scene.fluid.density;
+    groups["mass" + (only ? std::string() : " of " + fill.name)] = brief(density * fill.asked) + " asked, " +
+                                                                   brief(density * fill.got) + " got in " +
+                                                                   std::to_string(fill.particles) + " particles";
+  }
 }
 
 }  // namespace spume

@@ -11,11 +11,13 @@
 
 #include "checks.hpp"
 #include "fill.hpp"
+#include "open_sides.hpp"
 #include "reader.hpp"
 #include "resolved.hpp"
 #include "spume/core/machine.hpp"
 #include "spume/scene/expression.hpp"
 #include "spume/scene/find_case.hpp"
+#include "spume/scene/solid_union.hpp"
 #include "unused_options.hpp"
 
 namespace spume {
@@ -287,6 +289,11 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   LoadedCase loaded;
   Scene& scene = loaded.scene;
   scene.domain = make_domain(draft, compiler);
+  // Four bytes each.
+  constexpr double most_cells = 1e8;
+  if (const double cells = SolidUnion::cells_needed(scene.domain); !scene.domain.boxes.empty() && cells > most_cells)
+    problems.add(*draft.node("solid.0"), "the planes of all boxes cut the domain into " + brief(cells) + " cells; at most " +
+                                           brief(most_cells) + " are possible: use fewer boxes, or align their faces");
   const std::vector<LiquidRegion> regions = make_regions(draft, compiler);
   VectorExpression body_force = compiler.compile(draft.body_force, "forces.body");
   VectorExpression initial_velocity = compiler.compile(draft.initial_velocity, "initial.velocity", Arguments::place);
@@ -323,6 +330,9 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   note_places(document, "", file, draft.options.places);
   draft.options.resolved = resolved_text(document, schema, draft);
   draft.options.warnings = unused_options(draft, schema, file);
+  if (uses_particles(*method))
+    for (Problem& warning : open_side_warnings(draft, scene, file))
+      draft.options.warnings.push_back(std::move(warning));
   loaded.options = std::move(draft.options);
   return loaded;
 }

@@ -19,7 +19,7 @@ reference::Boundaries boundaries_of(const Domain& domain) {
   reference::Boundaries boundaries;
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side) boundaries.sides[axis][side] = domain.sides[axis][side].kind;
-  for (const SolidBox& box : domain.boxes) boundaries.boxes.push_back(box.kind);
+  boundaries.boxes = domain.boxes;
   return boundaries;
 }
 

@@ -2,7 +2,9 @@
 // Points, their sorted order, images and lists, built together as a method does.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -63,6 +65,34 @@ inline ImageRules unit_box_rules(int dimensions, double support_radius, ImageKin
   rules.sides = {{{x, x}, {y, y}, {z, z}}};
   rules.support_radius = support_radius;
   return rules;
+}
+
+// Walls of the rules and boxes as one solid.
+inline std::shared_ptr<const SolidUnion> unite(const ImageRules& rules, const std::vector<SolidBox>& boxes,
+                                               double spacing) {
+  Domain domain;
+  domain.dimensions = rules.dimensions;
+  domain.lower = rules.lower;
+  domain.upper = rules.upper;
+  domain.boxes = boxes;
+  SolidUnion::Planes sides{};
+  for (int axis = 0; axis < 3; ++axis) {
+    sides[axis] = {rules.lower[axis], rules.upper[axis]};
+    for (int side = 0; side < 2; ++side)
+      domain.sides[axis][side].kind = rules.sides[axis][side] == ImageKind::mirror     ? BoundaryKind::free_slip
+                                      : rules.sides[axis][side] == ImageKind::periodic ? BoundaryKind::periodic
+                                                                                       : BoundaryKind::open;
+  }
+  return std::make_shared<const SolidUnion>(domain, sides, spacing);
+}
+
+inline bool inside_any(const std::vector<SolidBox>& boxes, const Point& p, int dimensions) {
+  return std::any_of(boxes.begin(), boxes.end(), [&](const SolidBox& box) {
+    bool inside = true;
+    for (int axis = 0; axis < dimensions; ++axis)
+      inside = inside && p[axis] > box.lower[axis] && p[axis] < box.upper[axis];
+    return inside;
+  });
 }
 
 struct Neighbourhood {

@@ -12,19 +12,19 @@ namespace {
 constexpr auto none = ImageKind::none;
 constexpr auto periodic = ImageKind::periodic;
 constexpr auto mirror = ImageKind::mirror;
-constexpr std::array<std::array<bool, 2>, 3> all_faces{{{true, true}, {true, true}, {true, true}}};
 
-using Key = std::pair<std::int32_t, std::array<int, 4>>;
+using Key = std::pair<std::int32_t, std::array<std::int8_t, 3>>;
 
 void expect_images_match_brute_force(const ImageRules& rules, const std::vector<Point>& points) {
   const Neighbourhood hood(rules, points);
   const std::vector<Point> all = hood.all();
   const std::vector<Point> particles(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(hood.n));
   std::map<Key, Point> expected, found;
-  for (const auto& image : reference::images(rules, particles)) expected[{image.source, image.path}] = image.position;
+  for (const auto& image : reference::images(rules, particles))
+    expected[{image.source, image.path.side}] = image.position;
   for (std::size_t k = 0; k < hood.images.size(); ++k) {
     const ImagePath& path = hood.images.paths()[static_cast<std::size_t>(hood.images.path()[k])];
-    const Key key{hood.images.source()[k], {path.box_face, path.side[0], path.side[1], path.side[2]}};
+    const Key key{hood.images.source()[k], path.side};
     ASSERT_FALSE(found.contains(key)) << "the same image twice";
     Point position{};
     for (int axis = 0; axis < rules.dimensions; ++axis) position[axis] = hood.images.position(axis)[k];
@@ -50,18 +50,6 @@ TEST(Images, EqualBruteForceWithDifferentKindsOnTheTwoSidesOfAnAxis) {
   expect_images_match_brute_force(rules, random_points(300, 3));
 }
 
-TEST(Images, EqualBruteForceWithBoxes) {
-  for (const int dimensions : {2, 3}) {
-    ImageRules rules = unit_box_rules(dimensions, 0.15, mirror, periodic, mirror);
-    rules.boxes.push_back({{0.2, 0.3, 0.25}, {0.45, 0.7, 0.75}, all_faces});
-    // Stands on the lower side of the last axis: that face bounds no liquid.
-    ImageRules::Box step{{0.6, 0, 0}, {0.9, 0.4, 0.5}, all_faces};
-    step.face[static_cast<std::size_t>(dimensions - 1)][0] = false;
-    rules.boxes.push_back(step);
-    expect_images_match_brute_force(rules, random_points(800, dimensions));
-  }
-}
-
 TEST(Images, SignIsTheProductOfTheReflectionsAlongAnAxis) {
   ImageRules rules = unit_box_rules(3, 0.2, mirror, periodic, mirror);
   ImagePath path;
@@ -70,10 +58,12 @@ TEST(Images, SignIsTheProductOfTheReflectionsAlongAnAxis) {
   EXPECT_EQ(Images::sign(path, rules, 0), -1);
   EXPECT_EQ(Images::sign(path, rules, 1), 1);
   EXPECT_EQ(Images::sign(path, rules, 2), 1);
-  path.box_face = 6 * 3 + 2 * 0 + 1;
+  path.face[0] = {2 + 2 * 3 + 1, -1};
   EXPECT_EQ(Images::sign(path, rules, 0), 1);
-  path.box_face = 6 * 3 + 2 * 2;
+  path.face[2] = {2 + 2 * 3, -1};
   EXPECT_EQ(Images::sign(path, rules, 2), -1);
+  path.face[2] = {2 + 2 * 3, 1};
+  EXPECT_EQ(Images::sign(path, rules, 2), 1);
 }
 
 TEST(Images, ContinueALatticeBeyondSidesAndCorners) {
@@ -98,7 +88,7 @@ TEST(Images, ContinueALatticeBeyondSidesAndCorners) {
 }
 
 // Lattice with `spacing`, left out inside the box; the box is a whole number of spacings.
-std::vector<Point> lattice_around(const ImageRules::Box& box, int m, int dimensions) {
+std::vector<Point> lattice_around(const SolidBox& box, int m, int dimensions) {
   std::vector<Point> liquid;
   for (const Point& p : lattice_points(m, dimensions, 0)) {
     bool inside = true;
@@ -116,8 +106,9 @@ TEST(Images, FillABoxOnceWithinReachOfTheLiquidAlsoAtItsEdges) {
   const double spacing = 1.0 / m, support_radius = 2.6 * spacing;
   for (const int dimensions : {2, 3}) {
     ImageRules rules = unit_box_rules(dimensions, support_radius, none, none, none);
-    rules.boxes.push_back({{0.25, 0.3, 0.2}, {0.7, 0.8, 0.6}, all_faces});
-    const ImageRules::Box& box = rules.boxes[0];
+    const SolidBox box{{0.25, 0.3, 0.2}, {0.7, 0.8, 0.6}, BoundaryKind::free_slip};
+    rules.solids = unite(rules, {box}, spacing);
+    rules.only_nearest = true;
     const Neighbourhood hood(rules, lattice_around(box, m, dimensions));
     std::map<std::array<int, 3>, int> at;
     for (std::size_t k = 0; k < hood.images.size(); ++k) {
@@ -151,8 +142,9 @@ TEST(Images, BoxDensityNearEdgesEqualsTheBulk) {
   const int m = 60;
   const double spacing = 1.0 / m, support_radius = 3.7 * spacing;
   ImageRules rules = unit_box_rules(2, support_radius, none, none, none);
-  rules.boxes.push_back({{0.311, 0.307, 0}, {0.713, 0.689, 1}, all_faces});
-  const auto& box = rules.boxes[0];
+  const SolidBox box{{0.311, 0.307, 0}, {0.713, 0.689, 1}, BoundaryKind::free_slip};
+  rules.solids = unite(rules, {box}, spacing);
+  rules.only_nearest = true;
   const Neighbourhood hood(rules, lattice_around(box, m, 2));
   const double width = 3 * spacing;
   for (const int cx : {0, 1})
@@ -174,7 +166,7 @@ TEST(Images, BoxDensityNearEdgesEqualsTheBulk) {
 
 TEST(Images, DoNotDependOnTheThreadCount) {
   ImageRules rules = unit_box_rules(3, 0.13, periodic, mirror, mirror);
-  rules.boxes.push_back({{0.4, 0.4, 0.2}, {0.6, 0.7, 0.5}, all_faces});
+  rules.solids = unite(rules, {{{0.4, 0.4, 0.2}, {0.6, 0.7, 0.5}, BoundaryKind::free_slip}}, 0.05);
   const auto points = lattice_points(20, 3, 0.4);
   const auto snapshot = [&](int threads) {
     omp_set_num_threads(threads);

@@ -181,20 +181,100 @@ TEST(NeighbourList, PairsFarFromTheOriginOfALongDomainStaySymmetricAndComplete) 
   expect_pairs_symmetric(hood);
 }
 
-TEST(NeighbourList, ListsReachImagesInsideASolidBox) {
-  for (const int dimensions : {2, 3}) {
-    ImageRules rules = unit_box_rules(dimensions, 0.21, mirror, periodic, mirror);
-    rules.boxes.push_back({{0.3, 0.3, 0.3}, {0.8, 0.7, 0.9}, {{{true, true}, {true, true}, {true, true}}}});
-    std::vector<Point> liquid;
-    for (const Point& p : random_points(dimensions == 2 ? 700 : 1100, dimensions)) {
-      bool inside = true;
-      for (int axis = 0; axis < dimensions; ++axis)
-        inside = inside && p[axis] > rules.boxes[0].lower[axis] && p[axis] < rules.boxes[0].upper[axis];
-      if (!inside) liquid.push_back(p);
+// What the list of i holds, as sources and places; of points within rounding of the support radius alone.
+using Seen = std::multiset<std::pair<std::int32_t, std::array<std::int64_t, 3>>>;
+Seen::value_type seen_point(std::int32_t source, const Point& place) {
+  Seen::value_type point{source, {}};
+  for (int axis = 0; axis < 3; ++axis) point.second[axis] = std::llround(place[axis] * 1e9);
+  return point;
+}
+
+void expect_lists_hold_what_is_seen(const ImageRules& base, const std::vector<SolidBox>& boxes, std::size_t points) {
+  ImageRules rules = base;
+  rules.solids = unite(rules, boxes, 0.05);
+  std::vector<Point> liquid;
+  for (const Point& p : random_points(points, rules.dimensions))
+    if (!inside_any(boxes, p, rules.dimensions)) liquid.push_back(p);
+  const Neighbourhood hood(rules, liquid);
+  const double tolerance = distance_tolerance(hood);
+  const std::vector<Point> all = hood.all();
+  const std::vector<Point> sorted(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(hood.n));
+  auto candidates = reference::images(rules, sorted, boxes);
+  for (std::size_t j = 0; j < hood.n; ++j) candidates.push_back({sorted[j], static_cast<std::int32_t>(j), {}});
+  std::size_t hidden = 0, reflected = 0;
+  for (std::size_t i = 0; i < hood.n; ++i) {
+    Seen expected, found;
+    const auto certain = [&](const Point& place) {
+      double distance2 = 0;
+      for (int axis = 0; axis < rules.dimensions; ++axis) distance2 += std::pow(place[axis] - sorted[i][axis], 2);
+      return distance2 > 0 && std::sqrt(distance2) < rules.support_radius - tolerance;
+    };
+    for (const auto& image : candidates) {
+      if (!certain(image.position)) continue;
+      const Point end = reference::end_of_ray(rules, image, sorted[static_cast<std::size_t>(image.source)]);
+      const bool seen = reference::sees(rules, boxes, sorted[i], image.position, end);
+      hidden += !seen && image.path == ImagePath{} ? 1 : 0;
+      reflected += seen && image.path != ImagePath{} ? 1 : 0;
+      if (seen) expected.insert(seen_point(image.source, image.position));
     }
-    const Neighbourhood hood(rules, liquid);
-    expect_lists_match_brute_force(hood);
-    expect_pairs_symmetric(hood);
+    for (const std::int32_t j : hood.list.of(i)) {
+      const auto k = static_cast<std::size_t>(j);
+      if (certain(all[k])) found.insert(seen_point(k < hood.n ? j : hood.images.source()[k - hood.n], all[k]));
+    }
+    ASSERT_EQ(found, expected) << i;
+  }
+  EXPECT_GT(hidden, 10U) << "some liquid lies behind solids";
+  EXPECT_GT(reflected, hood.n / 2);
+}
+
+TEST(NeighbourList, HoldsWhatAParticleSeesAroundBoxesThatTouchOverlapRepeatOrAreThin) {
+  constexpr auto slip = BoundaryKind::free_slip;
+  for (const int dimensions : {2, 3}) {
+    const ImageRules rules = unit_box_rules(dimensions, 0.15, mirror, periodic, mirror);
+    // Side by side, over each other, one of them twice, and a plate.
+    // No gap is narrower than the support radius: the twin reflects once along an axis.
+    const std::vector<SolidBox> boxes{{{0.33, 0.3, 0.3}, {0.5, 0.7, 0.84}, slip},
+                                      {{0.5, 0.3, 0.3}, {0.7, 0.7, 0.84}, slip},
+                                      {{0.4, 0.5, 0.2}, {0.84, 0.8, 0.6}, slip},
+                                      {{0.33, 0.3, 0.3}, {0.5, 0.7, 0.84}, slip},
+                                      {{0.16, 0.2, 0.16}, {0.17, 0.8, 0.8}, slip}};
+    expect_lists_hold_what_is_seen(rules, boxes, dimensions == 2 ? 600 : 900);
+  }
+}
+
+TEST(NeighbourList, PointsSeeEachOtherAroundABox) {
+  ImageRules rules = unit_box_rules(2, 0.21, mirror, periodic, mirror);
+  const std::vector<SolidBox> boxes{{{0.3, 0.3, 0}, {0.8, 0.7, 0}, BoundaryKind::free_slip}};
+  rules.solids = unite(rules, boxes, 0.05);
+  std::vector<Point> liquid;
+  for (const Point& p : random_points(700, 2))
+    if (!inside_any(boxes, p, 2)) liquid.push_back(p);
+  expect_pairs_symmetric(Neighbourhood(rules, liquid));
+}
+
+TEST(NeighbourList, ALatticeAroundSolidsSeesALattice) {
+  // Every site within the support of a particle is seen once, liquid or image, at edges and in corners too.
+  const int m = 20;
+  const double spacing = 1.0 / m;
+  ImageRules rules = unit_box_rules(2, 2.6 * spacing, mirror, mirror, none);
+  const std::vector<SolidBox> boxes{{{0.3, 0, 0}, {0.5, 0.2, 0}, BoundaryKind::free_slip},
+                                    {{0.5, 0, 0}, {1, 0.4, 0}, BoundaryKind::free_slip},
+                                    {{0.2, 0.5, 0}, {0.25, 0.8, 0}, BoundaryKind::free_slip},
+                                    {{0.4, 0.6, 0}, {0.6, 0.65, 0}, BoundaryKind::free_slip}};
+  rules.solids = unite(rules, boxes, spacing);
+  std::vector<Point> liquid;
+  for (const Point& p : lattice_points(m, 2, 0))
+    if (!inside_any(boxes, p, 2)) liquid.push_back(p);
+  const Neighbourhood hood(rules, liquid);
+  const std::vector<Point> all = hood.all();
+  for (std::size_t i = 0; i < hood.n; ++i) {
+    std::set<std::array<std::int64_t, 2>> sites;
+    for (const std::int32_t j : hood.list.of(i)) {
+      const Point& p = all[static_cast<std::size_t>(j)];
+      sites.insert({std::llround((p[0] - all[i][0]) / spacing), std::llround((p[1] - all[i][1]) / spacing)});
+    }
+    ASSERT_EQ(sites.size(), 20U) << all[i][0] << ' ' << all[i][1];
+    ASSERT_EQ(hood.list.count(i), 20) << all[i][0] << ' ' << all[i][1];
   }
 }
 
@@ -225,7 +305,7 @@ TEST(NeighbourList, SecondBuildOfTheSameInputAllocatesNothingAndEqualsTheFirst) 
   // With one thread the per-thread scratch of the first build serves the second whatever the schedule.
   omp_set_num_threads(1);
   ImageRules rules = unit_box_rules(3, 0.13, periodic, mirror, mirror);
-  rules.boxes.push_back({{0.4, 0.4, 0}, {0.6, 0.7, 0.5}, {{{true, true}, {true, true}, {false, true}}}});
+  rules.solids = unite(rules, {{{0.4, 0.4, 0}, {0.6, 0.7, 0.5}, BoundaryKind::free_slip}}, 0.05);
   Neighbourhood hood(rules, lattice_points(20, 3, 0.4));
   const auto first = lists_of(hood.list);
   hood.build();

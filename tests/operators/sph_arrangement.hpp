@@ -42,7 +42,6 @@ struct ArrangementSetup {
                           {BoundaryKind::open, BoundaryKind::open}}},
                         {},
                         {}};
-  std::vector<ImageRules::Box> boxes;
 
   void set_sides(int axis, BoundaryKind kind) { boundaries.sides[axis] = {kind, kind}; }
   double smoothing_length() const { return smoothing_ratio * spacing; }
@@ -51,7 +50,6 @@ struct ArrangementSetup {
     result.dimensions = dimensions;
     result.upper = {1, 1, 1};
     result.support_radius = PlainKernel{kernel, dimensions}.support() * smoothing_length();
-    result.boxes = boxes;
     for (int axis = 0; axis < dimensions; ++axis)
       for (int side = 0; side < 2; ++side) {
         const BoundaryKind kind = boundaries.sides[axis][side];
@@ -59,6 +57,7 @@ struct ArrangementSetup {
                                    : kind == BoundaryKind::periodic ? ImageKind::periodic
                                                                     : ImageKind::mirror;
       }
+    if (!boundaries.boxes.empty()) result.solids = unite(result, boundaries.boxes, spacing);
     return result;
   }
 };
@@ -149,7 +148,7 @@ struct Arrangement {
     const auto& paths = hood.images.paths();
     const auto transformed = [&](std::size_t path) {
       const ImagePath& p = paths[path];
-      return reference::SphSums::transformed({{}, 0, {p.box_face, p.side[0], p.side[1], p.side[2]}}, setup.boundaries);
+      return reference::SphSums::transformed({{}, 0, p}, setup.boundaries);
     };
     for (std::size_t p = 0; p < paths.size(); ++p) {
       const auto point = transformed(p);
@@ -293,13 +292,11 @@ inline std::vector<ArrangementSetup> all_setups() {
         if (d == 3) s.set_sides(1, BoundaryKind::free_slip);
         s.boundaries.sides[last] = {BoundaryKind::free_slip, BoundaryKind::open};
       });
-      // A box standing on the bottom: its lower face bounds no liquid.
-      ImageRules::Box box;
+      // A box standing on the bottom.
+      SolidBox box;
       box.lower = {0.4, 0.35, 0.3};
       box.upper = {0.72, 0.7, 0.8};
       box.lower[last] = 0;
-      for (int axis = 0; axis < d; ++axis) box.face[axis] = {true, true};
-      box.face[last][0] = false;
       std::vector<Point> around;
       for (const Point& p : lattice) {
         bool inside = true;
@@ -308,8 +305,8 @@ inline std::vector<ArrangementSetup> all_setups() {
       }
       for (const BoundaryKind kind : {BoundaryKind::free_slip, BoundaryKind::no_slip})
         add(kind == BoundaryKind::no_slip ? "no-slip solid" : "free-slip solid", around, [&](ArrangementSetup& s) {
-          s.boxes = {box};
-          s.boundaries.boxes = {kind};
+          s.boundaries.boxes = {box};
+          s.boundaries.boxes[0].kind = kind;
           s.set_sides(0, BoundaryKind::periodic);
           for (int axis = 1; axis < d; ++axis) s.set_sides(axis, BoundaryKind::no_slip);
           s.boundaries.sides[last][1] = BoundaryKind::open;

@@ -276,7 +276,7 @@ TEST(SphExactness, AQuarterTurnTurnsTheResults) {
 // A uniform velocity that floats represent together with the field shifts no difference.
 TEST(SphExactness, AUniformVelocityChangesNoDerivative) {
   for (Arrangement& a : all_arrangements()) {
-    bool walls = !a.setup.boxes.empty();
+    bool walls = !a.setup.boundaries.boxes.empty();
     for (int axis = 0; axis < a.dimensions(); ++axis)
       for (const BoundaryKind kind : a.setup.boundaries.sides[axis])
         walls = walls || kind == BoundaryKind::free_slip || kind == BoundaryKind::no_slip;

@@ -20,7 +20,7 @@ using Point = std::array<double, 3>;
 struct Image {
   Point position{};
   std::int32_t source = 0;
-  std::array<int, 4> path{-1, -1, -1, -1};  // box face, then the side of each axis
+  ImagePath path;
 };
 
 struct Candidates {
@@ -28,78 +28,129 @@ struct Candidates {
   std::set<std::int32_t> possible;  // nearer than support_radius + tolerance
 };
 
-// Faces in the order lower x, upper x, lower y, ...: the earlier of two equally near faces owns an image.
-inline std::vector<Image> box_images(const ImageRules& rules, const std::vector<Point>& points) {
-  std::vector<Image> made;
-  for (std::size_t b = 0; b < rules.boxes.size(); ++b) {
-    const auto& box = rules.boxes[b];
-    for (std::size_t k = 0; k < points.size(); ++k)
-      for (int face = 0; face < 2 * rules.dimensions; ++face) {
-        const int axis = face / 2;
-        const bool upper = face % 2 == 1;
-        if (!box.face[axis][upper]) continue;
-        Image image{points[k], static_cast<std::int32_t>(k), {static_cast<int>(6 * b) + face, -1, -1, -1}};
-        const double plane = upper ? box.upper[axis] : box.lower[axis];
-        const double height = upper ? points[k][axis] - plane : plane - points[k][axis];
-        if (height < 0 || height >= rules.support_radius) continue;
-        image.position[axis] = 2 * plane - points[k][axis];
-        int nearest = -1;
-        double least = std::numeric_limits<double>::infinity();
-        bool inside = true;
-        for (int other = 0; other < 2 * rules.dimensions; ++other) {
-          if (!box.face[other / 2][other % 2]) continue;
-          const double x = image.position[other / 2];
-          const double depth = other % 2 == 1 ? box.upper[other / 2] - x : x - box.lower[other / 2];
-          inside = inside && depth >= 0;
-          // Equal up to rounding counts as equal.
-          if (depth < least - 1e-6 * rules.support_radius) {
-            least = depth;
-            nearest = other;
-          }
-        }
-        if (inside && nearest == face) made.push_back(image);
+// Whether the ray from `start` towards `end`, reflected at boxes and at the walls of the rules, ends at `at`: the first
+// hit among all slabs, one after the other.
+inline bool sees(const ImageRules& rules, const std::vector<SolidBox>& boxes, Point start, Point end, const Point& at) {
+  // Walls and boxes are convex: one just left is not hit again at once, nor in the edge where the ray met two.
+  std::size_t last = boxes.size() + 6;
+  std::set<std::size_t> left;
+  for (int hits = 0; hits < 12; ++hits) {
+    double first = 2, plane = 0;
+    int axis_hit = -1;
+    std::size_t solid_hit = 0;
+    const auto meet = [&](int axis, double at_plane, bool outwards, std::size_t solid, auto&& wetted) {
+      if (solid == last) return;
+      const double d = end[axis] - start[axis];
+      if (d == 0 || (d > 0) != outwards) return;
+      const double t = (at_plane - start[axis]) / d;
+      if (t < (left.count(solid) > 0 ? 1e-9 : -1e-9) || t >= 1 || t >= first) return;
+      Point hit{};
+      for (int a = 0; a < rules.dimensions; ++a) hit[a] = start[a] + t * (end[a] - start[a]);
+      if (!wetted(hit)) return;
+      first = t;
+      plane = at_plane;
+      axis_hit = axis;
+      solid_hit = solid;
+    };
+    for (int axis = 0; axis < rules.dimensions; ++axis) {
+      for (int side = 0; side < 2; ++side)
+        if (rules.sides[axis][side] == ImageKind::mirror)
+          meet(axis, side == 0 ? rules.lower[axis] : rules.upper[axis], side == 1,
+               boxes.size() + static_cast<std::size_t>(2 * axis + side), [](const Point&) { return true; });
+      for (std::size_t b = 0; b < boxes.size(); ++b)
+        for (int side = 0; side < 2; ++side)
+          meet(axis, side == 0 ? boxes[b].lower[axis] : boxes[b].upper[axis], side == 0, b, [&](const Point& hit) {
+            for (int a = 0; a < rules.dimensions; ++a)
+              if (a != axis && (hit[a] < boxes[b].lower[a] || hit[a] > boxes[b].upper[a])) return false;
+            return true;
+          });
+    }
+    if (axis_hit < 0) {
+      double distance2 = 0;
+      for (int a = 0; a < rules.dimensions; ++a) distance2 += (end[a] - at[a]) * (end[a] - at[a]);
+      return distance2 < 1e-18;
+    }
+    for (int a = 0; a < rules.dimensions; ++a) start[a] += first * (end[a] - start[a]);
+    end[axis_hit] = 2 * plane - end[axis_hit];
+    left.insert(solid_hit);
+    last = solid_hit;
+  }
+  return false;
+}
+
+// All images of the points under the rules: every point under every combination of one operation per axis. With boxes
+// these are reflections in the planes of all faces, within the support radius, and shifts after them.
+inline std::vector<Image> images(const ImageRules& rules, const std::vector<Point>& points,
+                                 const std::vector<SolidBox>& boxes = {}) {
+  struct Operation {
+    double x = 0;
+    std::array<int, 2> face{-1, -1};
+    int side = -1;
+  };
+  const auto operations = [&](int axis, double x) {
+    std::vector<Operation> made{{x, {-1, -1}, -1}};
+    if (axis >= rules.dimensions) return made;
+    const double length = rules.upper[axis] - rules.lower[axis];
+    const auto reflect = [&](double plane, int face, int side) {
+      const double depth = side == 0 ? x - plane : plane - x;
+      if (depth < rules.support_radius) made.push_back({2 * plane - x, {face, -1}, face < 0 ? side : -1});
+    };
+    for (int side = 0; side < 2; ++side)
+      if (rules.sides[axis][side] == ImageKind::mirror)
+        reflect(side == 0 ? rules.lower[axis] : rules.upper[axis], boxes.empty() ? -1 : side, side);
+    for (std::size_t b = 0; b < boxes.size(); ++b)
+      for (int side = 0; side < 2; ++side) {
+        const double plane = side == 0 ? boxes[b].lower[axis] : boxes[b].upper[axis];
+        const double depth = side == 0 ? plane - x : x - plane;
+        if (depth > 0 && depth < rules.support_radius)
+          made.push_back({2 * plane - x, {2 + 2 * static_cast<int>(b) + side, -1}, -1});
       }
+    // In a gap narrower than the support radius, one face after the other.
+    for (std::size_t p = 1, single = made.size(); p < single && !boxes.empty(); ++p)
+      for (std::size_t q = 1; q < single; ++q) {
+        const double gap = (made[q].x - made[p].x) / 2;
+        if ((made[p].x - x) * (made[q].x - x) < 0 && std::abs(gap) < rules.support_radius)
+          made.push_back({x + 2 * gap, {made[p].face[0], made[q].face[0]}, -1});
+      }
+    for (int side = 0; side < 2; ++side) {
+      if (rules.sides[axis][side] != ImageKind::periodic) continue;
+      const std::size_t before = made.size();
+      for (std::size_t k = 0; k < before; ++k) {
+        if (made[k].side >= 0) continue;
+        const double depth = side == 0 ? made[k].x - rules.lower[axis] : rules.upper[axis] - made[k].x;
+        if (length - depth < rules.support_radius)
+          made.push_back({side == 0 ? made[k].x - length : made[k].x + length, made[k].face, side});
+      }
+    }
+    return made;
+  };
+  std::vector<Image> made;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto along_x = operations(0, points[k][0]), along_y = operations(1, points[k][1]),
+               along_z = operations(2, points[k][2]);
+    for (const Operation& a : along_x)
+      for (const Operation& b : along_y)
+        for (const Operation& c : along_z) {
+          Image image{{a.x, b.x, c.x}, static_cast<std::int32_t>(k), {}};
+          const std::array<Operation, 3> all{a, b, c};
+          for (int axis = 0; axis < 3; ++axis) {
+            for (std::size_t which = 0; which < 2; ++which)
+              image.path.face[axis][which] = static_cast<std::int16_t>(all[axis].face[which]);
+            image.path.side[axis] = static_cast<std::int8_t>(all[axis].side);
+          }
+          if (image.path != ImagePath{}) made.push_back(image);
+        }
   }
   return made;
 }
 
-// All images of the points under the rules: every particle and box image under every combination of one
-// operation per axis.
-inline std::vector<Image> images(const ImageRules& rules, const std::vector<Point>& points) {
-  std::vector<Image> bases;
-  for (std::size_t k = 0; k < points.size(); ++k) bases.push_back({points[k], static_cast<std::int32_t>(k), {}});
-  for (auto& base : bases) base.path = {-1, -1, -1, -1};
-  const std::vector<Image> inside = box_images(rules, points);
-  bases.insert(bases.end(), inside.begin(), inside.end());
-
-  std::vector<Image> made;
-  for (std::size_t k = 0; k < bases.size(); ++k) {
-    // The coordinate under each operation of an axis: 0 none, 1 lower side, 2 upper side; absent ones are NaN.
-    std::array<std::array<double, 3>, 3> coordinate{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const double x = bases[k].position[axis];
-      const double length = rules.upper[axis] - rules.lower[axis];
-      coordinate[axis] = {x, NAN, NAN};
-      if (axis >= rules.dimensions) continue;
-      for (int side = 0; side < 2; ++side) {
-        const double plane = side == 0 ? rules.lower[axis] : rules.upper[axis];
-        const double depth = side == 0 ? x - plane : plane - x;
-        if (rules.sides[axis][side] == ImageKind::mirror && depth < rules.support_radius)
-          coordinate[axis][side + 1] = 2 * plane - x;
-        if (rules.sides[axis][side] == ImageKind::periodic && length - depth < rules.support_radius)
-          coordinate[axis][side + 1] = side == 0 ? x - length : x + length;
-      }
-    }
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b)
-        for (int c = 0; c < 3; ++c) {
-          const Point position{coordinate[0][a], coordinate[1][b], coordinate[2][c]};
-          if (std::isnan(position[0] + position[1] + position[2])) continue;
-          if (a + b + c == 0 && k < points.size()) continue;
-          made.push_back({position, bases[k].source, {bases[k].path[0], a - 1, b - 1, c - 1}});
-        }
-  }
-  return made;
+// Where a ray to an image ends: its source, shifted as the image is.
+inline Point end_of_ray(const ImageRules& rules, const Image& image, const Point& source) {
+  Point end = source;
+  for (int axis = 0; axis < rules.dimensions; ++axis)
+    if (rules.sides[axis][0] == ImageKind::periodic && image.path.side[axis] >= 0)
+      end[axis] += (image.path.side[axis] == 0 ? -1 : 1) * (rules.upper[axis] - rules.lower[axis]);
+  return end;
 }
 
 // Neighbours of point i among all points, itself excluded.

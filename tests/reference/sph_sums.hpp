@@ -57,7 +57,7 @@ struct PlainKernel {
 struct Boundaries {
   std::array<std::array<BoundaryKind, 2>, 3> sides{};
   std::array<std::array<Vec3, 2>, 3> wall{};
-  std::vector<BoundaryKind> boxes;
+  std::vector<SolidBox> boxes;
 };
 
 struct Sum {
@@ -78,6 +78,7 @@ class SphSums {
     Point position{};
     std::size_t source = 0;
     Vector velocity_sign{1, 1, 1}, velocity_offset{}, reflection{1, 1, 1};
+    Point end{};  // of a ray to it, reflected
   };
 
   // h_i / h and V_i / V per particle; empty: all alike.
@@ -87,18 +88,34 @@ class SphSums {
 
   SphSums(const PlainKernel& kernel, double smoothing_length, double volume, const std::vector<Point>& particles,
           const ImageRules& rules, const Boundaries& boundaries, Sizes sizes = {})
-      : kernel_(kernel), h_(smoothing_length), volume_(volume), n_(particles.size()), sizes_(std::move(sizes)) {
-    for (std::size_t i = 0; i < n_; ++i) points_.push_back({particles[i], i, {1, 1, 1}, {}, {1, 1, 1}});
-    for (const Image& image : images(rules, particles)) points_.push_back(transformed(image, boundaries));
+      : kernel_(kernel),
+        h_(smoothing_length),
+        volume_(volume),
+        n_(particles.size()),
+        sizes_(std::move(sizes)),
+        rules_(rules),
+        boxes_(boundaries.boxes) {
+    for (std::size_t i = 0; i < n_; ++i) points_.push_back({particles[i], i, {1, 1, 1}, {}, {1, 1, 1}, particles[i]});
+    for (const Image& image : images(rules, particles, boxes_)) {
+      points_.push_back(transformed(image, boundaries));
+      points_.back().end = end_of_ray(rules, image, particles[static_cast<std::size_t>(image.source)]);
+    }
   }
 
   // What an image carries, from the reflections of its path in their order.
   static SphPoint transformed(const Image& image, const Boundaries& boundaries) {
-    SphPoint point{image.position, static_cast<std::size_t>(image.source), {1, 1, 1}, {}, {1, 1, 1}};
-    if (image.path[0] >= 0)
-      reflect(point, image.path[0] % 6 / 2, boundaries.boxes[static_cast<std::size_t>(image.path[0] / 6)], {});
+    SphPoint point{image.position, static_cast<std::size_t>(image.source), {1, 1, 1}, {}, {1, 1, 1}, {}};
     for (int axis = 0; axis < 3; ++axis)
-      if (const int side = image.path[static_cast<std::size_t>(axis) + 1]; side >= 0)
+      for (const int face : image.path.face[axis]) {
+        if (face < 0) continue;
+        if (face < 2) {
+          reflect(point, axis, boundaries.sides[axis][face], boundaries.wall[axis][face]);
+        } else {
+          reflect(point, axis, boundaries.boxes[static_cast<std::size_t>(face - 2) / 2].kind, {});
+        }
+      }
+    for (int axis = 0; axis < 3; ++axis)
+      if (const int side = image.path.side[axis]; side >= 0)
         reflect(point, axis, boundaries.sides[axis][side], boundaries.wall[axis][side]);
     return point;
   }
@@ -415,6 +432,7 @@ class SphSums {
       pair.r = std::sqrt(r2);
       const double h = width(i), v = volume_ratio(points_[j].source);
       if (pair.r >= kernel_.support() * h) continue;
+      if (!boxes_.empty() && !sees(rules_, boxes_, points_[i].position, points_[j].position, points_[j].end)) continue;
       pair.w = v * weight(pair.r, h);
       pair.g = v * slope(pair.r, h);
       pair.largest_w = v * weight(0, h);
@@ -458,6 +476,8 @@ class SphSums {
   double h_, volume_;
   std::size_t n_;
   Sizes sizes_;
+  ImageRules rules_;
+  std::vector<SolidBox> boxes_;
   std::vector<SphPoint> points_;
 };
 

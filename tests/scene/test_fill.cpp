@@ -58,7 +58,7 @@ TEST(Fill, LengthThatIsNoMultipleUsesTheNearestCountAndKeepsTheVolume) {
 TEST(Fill, LatticeHangsFromTheUpperWallWhenTheLowerSideIsOpen) {
   const std::string text =
       "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [1, 1]\ntop = \"no-slip\"\n"
-      "[resolution]\nspacing = 0.07\n[time]\nend = 1\n[[liquid]]\n";
+      "[resolution]\nspacing = 0.07\n[time]\nend = 1\n[[liquid]]\nwhere = \"1\"\n";
   const InitialParticles& particles = load_text(text).scene.particles;
   double highest = 0, leftmost = 1;
   for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -76,6 +76,51 @@ TEST(Fill, BoxInATankHasTheCountOfItsAreaAndAFreeSurface) {
   EXPECT_EQ(loaded.scene.domain.sides[0][0].kind, BoundaryKind::no_slip);
   EXPECT_EQ(loaded.scene.domain.sides[0][1].kind, BoundaryKind::free_slip);
   EXPECT_EQ(loaded.scene.domain.sides[1][1].kind, BoundaryKind::open);
+}
+
+// The volume of the particles is that of their regions, whatever the spacing.
+TEST(Fill, MassIsThatOfTheRegion) {
+  const auto volume_of = [](const LoadedCase& loaded) {
+    return static_cast<double>(loaded.scene.particles.size()) * loaded.scene.particles.volume;
+  };
+  const LoadedCase shallow =
+      load_text(tank("[[liquid]]\nlower = [0, 0]\nupper = [2, 0.093]\n"), {"resolution.spacing=0.006"});
+  EXPECT_NEAR(volume_of(shallow), 2 * 0.093, 1e-12);
+  ASSERT_EQ(shallow.scene.fills.size(), 1U);
+  EXPECT_NEAR(shallow.scene.fills[0].asked, 2 * 0.093, 1e-12);
+  EXPECT_NEAR(shallow.scene.fills[0].got, 2 * 0.093, 1e-12);
+  EXPECT_THAT(shallow.options.groups.at("mass"), HasSubstr("asked"));
+  const std::string open =
+      "method = \"les-sph\"\n[domain]\nlower = [-1, -1]\nupper = [1, 1]\n[time]\nend = 1\n[resolution]\nspacing = ";
+  for (const std::string spacing : {"0.03", "0.041", "0.07"}) {
+    EXPECT_NEAR(volume_of(load_text(open + spacing + "\n[[liquid]]\nlower = [-0.5, -0.5]\nupper = [0.5, 0.5]\n")), 1,
+                1e-12);
+    // By samples of an eighth of a spacing: their error on a straight border is at most half of that all around.
+    EXPECT_NEAR(volume_of(load_text(open + spacing + "\n[[liquid]]\nwhere = \"0.5 - max(abs(x), abs(y))\"\n")), 1,
+                4 * std::stod(spacing) / 16);
+  }
+  // Around a solid, which takes its share.
+  EXPECT_NEAR(volume_of(load_text(tank("[[solid]]\nlower = [0.31, 0.13]\nupper = [0.77, 0.31]\n"
+                                       "[[liquid]]\nlower = [0, 0]\nupper = [2, 0.7]\n"))),
+              1.4 - 0.46 * 0.18, 1e-12);
+}
+
+// Beside every wetted face the nearest particles stand half a spacing away, to the third that whole numbers of cells
+// between two faces can ask for.
+TEST(Fill, ParticlesStartHalfASpacingFromEveryFace) {
+  const LoadedCase loaded =
+      load_text(tank("[[solid]]\nlower = [0.309, 0]\nupper = [1.213, 0.331]\n"
+                     "[[liquid]]\nlower = [0, 0]\nupper = [2, 0.81]\n"));
+  const InitialParticles& particles = loaded.scene.particles;
+  double left = 1, right = 1, above = 1, surface = 1;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const double x = particles.position[0][i], y = particles.position[1][i];
+    if (y < 0.331 && x < 0.309) left = std::min(left, 0.309 - x);
+    if (y < 0.331 && x > 1.213) right = std::min(right, x - 1.213);
+    if (x > 0.309 && x < 1.213) above = std::min(above, y - 0.331);
+    surface = std::min(surface, 0.81 - y);
+  }
+  for (const double distance : {left, right, above, surface}) EXPECT_NEAR(distance, 0.025, 0.025 / 3);
 }
 
 TEST(Fill, ThreeDimensionalBoxAndBallCountTheirVolume) {

@@ -215,6 +215,19 @@ class Hydrostatic(CaseTest):
         self.assertEqual(measured["mass_drift"], 0)
 
 
+class StillWater(CaseTest):
+    def test_largest_speed_and_mass_over_the_runs(self):
+        runs = {}
+        for name, speed in (("stairs", 1e-4), ("off_lattice", 3e-3)):
+            folder, module = self.run_of("still_water")
+            t = np.linspace(0, 4, 5)
+            write_table(folder / "series.csv", series_of(t, max_speed=speed * t / 4, mass=1 + 1e-6 * t))
+            runs[name] = Results(folder)
+        measured = module.measure(runs)
+        self.assertAlmostEqual(measured["largest_speed"], 3e-3 / np.sqrt(9.81 * 0.4))
+        self.assertAlmostEqual(measured["mass_error"], 4e-6)
+
+
 class Cavity(CaseTest):
     def test_table_interpolated_onto_the_lines_has_a_small_error(self):
         folder, module = self.run_of("lid_driven_cavity")

@@ -39,7 +39,8 @@ class FieldSet {
   std::size_t size() const { return size_; }
   void resize(std::size_t size);
 
-  // field[k] <- field[order[k]] for every field but the results, which belong to the order before.
+  // field[k] <- field[order[k]] for every field but the results, which belong to the order before. An order of fewer
+  // entries drops the others.
   void permute(const Array<std::int32_t>& order);
 
   const std::vector<std::unique_ptr<Field>>& fields() const { return fields_; }

@@ -2,19 +2,24 @@
 // Periodic and mirror images of particles near the sides of the domain and near solid boxes.
 //
 // An image is a copy of one particle under reflections and shifts along the axes. Axes are treated one after
-// the other, each on the particles and all images made before, which fills edges and corners. Solid boxes
-// come first: a particle is mirrored in a face when the image lies inside the box and that face is the
-// nearest one to the image, so that the box is filled once, also at its edges. Precondition: a periodic side is at
-// least one support radius long (one copy on either side suffices).
+// the other, each on the particles and all images made before, which fills edges and corners. Precondition: a periodic
+// side is at least one support radius long (one copy on either side suffices).
+//
+// With solid boxes, walls and boxes are one solid (scene/solid_union.hpp). A particle then has an image for every
+// combination of wetted faces, one or two along an axis, within the support radius of it. Around an edge of a solid
+// these overlap each other and the liquid beyond: which of them a particle sees tells sees(). Those that are the
+// reflection of the liquid point nearest to them fill the solid once: `ImagePath::nearest`.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "spume/core/array.hpp"
 #include "spume/neighbours/cell_grid.hpp"
 #include "spume/neighbours/cell_order.hpp"
+#include "spume/scene/solid_union.hpp"
 
 namespace spume {
 
@@ -24,19 +29,19 @@ struct ImageRules {
   int dimensions = 3;
   std::array<double, 3> lower{}, upper{};           // planes of the sides
   std::array<std::array<ImageKind, 2>, 3> sides{};  // [axis][0 lower, 1 upper]
-  struct Box {
-    std::array<double, 3> lower{}, upper{};
-    std::array<std::array<bool, 2>, 3> face{};  // faces that bound liquid
-  };
-  std::vector<Box> boxes;
-  double support_radius = 0;  // images farther than this from the liquid are not made
+  std::shared_ptr<const SolidUnion> solids;         // null: no boxes
+  bool only_nearest = false;                        // in solids: images without ImagePath::nearest are not made
+  double support_radius = 0;                        // images farther than this from the liquid are not made
 };
 
 // How an image came about: which faces it was reflected in, in order. Few distinct values exist.
 struct ImagePath {
-  std::int16_t box_face = -1;                   // 6 box + 2 axis + side, or -1
-  std::array<std::int8_t, 3> side{-1, -1, -1};  // per axis: -1 none, 0 lower, 1 upper
-  bool operator==(const ImagePath&) const = default;
+  // In a scene with solid boxes, per axis: codes of up to two faces (SolidUnion::face_near), walls included; -1 none.
+  using Faces = std::array<std::array<std::int16_t, 2>, 3>;
+  Faces face{{{-1, -1}, {-1, -1}, {-1, -1}}};
+  std::array<std::int8_t, 3> side{-1, -1, -1};  // then, per axis: -1 none, 0 lower, 1 upper
+  bool nearest = true;
+  auto operator<=>(const ImagePath&) const = default;
 };
 
 class Images {
@@ -53,6 +58,10 @@ class Images {
   const std::vector<ImagePath>& paths() const { return paths_; }
   // +1 or -1: whether the path reflects along the axis.
   static int sign(const ImagePath& path, const ImageRules& rules, int axis);
+  // Solids, null without. Lists of neighbours then hold what a particle sees.
+  const SolidUnion* solids() const { return solids_.get(); }
+  // Whether a particle at `place` sees image k of the source at `source`.
+  bool sees(const Vec3& place, std::size_t k, const Vec3& source) const;
   // Every image lies outside the box [image_free_lower, image_free_upper], unless inside_domain(): solid boxes
   // have images anywhere.
   double image_free_lower(int axis) const { return image_free_lower_[axis]; }
@@ -64,7 +73,7 @@ class Images {
  private:
   template <class Emit>
   void append_stage(std::size_t scanned, Emit&& emit);
-  void add_box_images(const ImageRules& rules, std::size_t n);
+  void add_reflections(const ImageRules& rules, std::size_t n);
   void add_axis_images(const ImageRules& rules, int axis, std::size_t n);
   std::int32_t find_path(const ImagePath& path);
 
@@ -74,6 +83,8 @@ class Images {
   std::vector<ImagePath> paths_;
   std::array<double, 3> image_free_lower_{}, image_free_upper_{};
   bool inside_domain_ = false;
+  std::shared_ptr<const SolidUnion> solids_;
+  std::array<double, 3> period_{};  // of periodic axes
   CellOrder table_;
 };
 

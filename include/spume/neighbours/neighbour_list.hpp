@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Neighbour lists of particles: for each particle the particles and images within the support radius, itself excluded.
+// With solids, of these what it sees (scene/solid_union.hpp).
 //
 // Points are numbered particles first (0 .. n-1), then images (n .. n+m-1), then one sentinel (n+m) far from
 // everything. Lists are padded with the sentinel to a multiple of 8, so that pair loops have no remainder:
@@ -89,7 +90,8 @@ class NeighbourList {
 
  private:
   template <int dimensions>
-  bool search(const CellGrid& grid, const CellOrder& particles, const Images& images, const float* own_support_radius);
+  bool search(const CellGrid& grid, const CellOrder& particles, const std::array<const double*, 3>& position,
+              const Images& images, const float* own_support_radius);
 
   std::array<Array<float>, 3> coordinate_;
   Array<std::int32_t> index_, count_;

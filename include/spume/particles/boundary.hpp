@@ -3,16 +3,19 @@
 // what keeps points inside.
 //
 // Flat walls are mirrors: a particle within a support radius has an image behind the wall. Its velocity follows the
-// kind of the wall (free-slip: the normal component is reversed; no-slip: all are) and the motion of the wall.
+// kind of the wall (free-slip: the normal component is reversed; no-slip: all are) and the motion of the wall. Boxes
+// and walls are one solid, whose faces are those that liquid wets (scene/solid_union.hpp).
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "spume/neighbours/images.hpp"
 #include "spume/operators/image_values.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/scene/scene.hpp"
+#include "spume/scene/solid_union.hpp"
 
 namespace spume {
 
@@ -67,17 +70,22 @@ class Boundary {
   const std::vector<std::array<float, 3>>& reflection() const { return reflection_; }
   ImageMap image_map(const Images& images) const { return {images, velocity_rule_, reflection_}; }
 
+  // Walls and boxes as one solid; null without boxes.
+  const SolidUnion* solids() const { return solids_.get(); }
+
   // Periodic wrap; a point beyond a wall or inside a solid is reflected back, its velocity too when given.
   void apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity) const;
 
   double bytes() const;
 
  private:
+  void unite_solids(const WallPositions& at);
   void find_rules(const Images& images, double support_radius, double t);
   void find_offsets(const Images& images, double t, bool friction, VelocityImageRule& rule) const;
 
   const Domain& domain_;
   double spacing_;
+  std::shared_ptr<const SolidUnion> solids_;
   VelocityImageRule velocity_rule_, mirror_rule_;  // the second in a scene with no-slip walls alone
   std::vector<std::array<float, 3>> reflection_;
 };

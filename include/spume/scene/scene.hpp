@@ -78,6 +78,13 @@ struct InitialParticles {
   std::size_t size() const { return position[0].size(); }
 };
 
+// What a region asks for and what its particles hold.
+struct RegionFill {
+  std::string name;           // "liquid.0"
+  double asked = 0, got = 0;  // volumes
+  std::size_t particles = 0;
+};
+
 struct Scene {
   std::string title;
   std::string method;
@@ -93,6 +100,7 @@ struct Scene {
   std::shared_ptr<const Expression> initial_spectrum;  // E(k) up to a factor; its first argument is k
   std::uint64_t seed = 1;
   InitialParticles particles;
+  std::vector<RegionFill> fills;  // of the [[liquid]] entries
 };
 
 }  // namespace spume

@@ -47,6 +47,10 @@ bool needs_velocity_gradient(const Case& options) {
 Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.domain) {
   const Scene& scene = loaded.scene;
   const Case& options = loaded.options;
+  for (int axis = 0; axis < scene.domain.dimensions; ++axis)
+    for (int side = 0; side < 2; ++side)
+      open_sides = open_sides || (scene.domain.sides[axis][side].kind == BoundaryKind::open &&
+                                  !(axis == scene.domain.dimensions - 1 && side == 1 && scene.fluid.gravity[axis] < 0));
   free_surface = scene.free_surface;
   closed = !scene.free_surface;
   shifting = options.get<ShiftingOptions>().on;

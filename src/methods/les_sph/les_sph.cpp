@@ -67,6 +67,14 @@ void LesSph::step(double dt, Ledger& ledger) {
   for (const Ledger::Entry& entry : start_ledger_.entries())
     ledger.count(entry.stage, entry.calls, entry.seconds, entry.particles, entry.pairs, entry.bytes);
   start_ledger_.clear();
+  const bool first = flow_.left == 0;
+  if (flow_.remove_left() > 0 && first) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "liquid leaves through an open side from t = %.4g on: particles that cannot come back are removed",
+                  flow_.time);
+    remarks_.push_back({text, false});
+  }
   sampled_step_ = -1;  // sorting changes what the bins of the sampler refer to, also when the step is refused
   plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
 }
@@ -155,7 +163,8 @@ void LesSph::declare_saved() {
 }
 
 void LesSph::save(StateWriter& writer) const {
-  const std::int64_t counters[] = {flow_.steps, flow_.started ? 1 : 0, static_cast<std::int64_t>(flow_.size())};
+  const std::int64_t counters[] = {flow_.steps, flow_.started ? 1 : 0, static_cast<std::int64_t>(flow_.size()),
+                                   flow_.left};
   const auto& w = flow_.boundary.walls;
   const double walls[] = {w[0][0], w[0][1], w[1][0], w[1][1], w[2][0], w[2][1]};
   saved_.save(writer);
@@ -172,11 +181,12 @@ void LesSph::load(StateReader& reader) {
   saved_.load(reader);
   reader.i64("counters", counters);
   reader.f64("walls", walls);
-  if (counters.size() != 3 || walls.size() != 6)
+  if (counters.size() != 4 || walls.size() != 6)
     throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(counters[2]), "particle", reader);
   flow_.steps = counters[0];
   flow_.started = counters[1] != 0;
+  flow_.left = counters[3];
   for (int axis = 0; axis < 3; ++axis) flow_.boundary.walls[axis] = {walls[2 * axis], walls[2 * axis + 1]};
   flow_.find_uniform_acceleration(flow_.time);  // samples before the next step need it
   if (flow_.bubbles != nullptr) flow_.bubbles->load(reader);

@@ -93,9 +93,10 @@ void Flow::set_first_source() {
   add_gradient_trace(1, first_source);
 }
 
-// Images in solids are those of the nearest face, which is not mutual at a box edge: the matrix of a closed
-// incompressible box around a solid is then not symmetric, its right-hand side is not compatible, and removing the mean
-// does not help. A small compressibility makes the constant solvable; it is removed afterwards.
+// A ray through the edge of a solid meets one of its faces, which is not mutual, and on a lattice some do: the matrix
+// of a closed incompressible box around a solid is then not symmetric, its right-hand side is not compatible, and
+// removing the mean does not help. A compressibility of 1e-3 over the square of the domain, far below that of the
+// smallest wave number (2 pi)^2, makes the constant solvable; it is removed afterwards.
 double Flow::regularisation() const {
   if (!features.closed || equation.helmholtz > 0 || scene.domain.boxes.empty()) return 0;
   double length = 0;

@@ -2,6 +2,7 @@
 // What a run records of the method: one entry per column, field and invariant.
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "spume/core/parallel.hpp"
 #include "spume/methods/les_sph/les_sph.hpp"
@@ -74,6 +75,9 @@ void LesSph::declare_series() {
     });
   series_.add("max_speed", "speed", [&flow] { return flow.speeds.largest; });
   series_.add("mass", "mass, of the particles in the domain", [&flow] { return flow.mass_in_domain(); });
+  if (flow.features.open_sides)
+    series_.add("mass_removed", "mass, that left through open sides for good",
+                [&flow] { return flow.particle_mass() * static_cast<double>(flow.left); });
   if (flow.features.density_relaxation)
     series_.add("volume", flow.dimensions == 3 ? "length^3, by kernel sums" : "length^2, by kernel sums",
                 [&flow] { return flow.volume; });
@@ -190,8 +194,10 @@ void LesSph::table_rows(const std::string& name, std::vector<double>& rows) {
 }
 
 std::vector<Remark> LesSph::take_remarks() {
+  std::vector<Remark> remarks = std::exchange(remarks_, {});
   const std::string text = flow_.bubbles != nullptr ? flow_.bubbles->note() : std::string();
-  return text.empty() ? std::vector<Remark>{} : std::vector<Remark>{{text, true}};
+  if (!text.empty()) remarks.push_back({text, true});
+  return remarks;
 }
 
 bool LesSph::periodic() const {

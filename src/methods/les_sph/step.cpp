@@ -47,7 +47,7 @@ Plan make_plan(Flow& f) {
        moments.kernel_sum, moments.concentration_gradient, moments.normal},
       true);
   add(both, "surface", has.free_surface, why.surface,
-      [&](StageRun&) { f.surface->find(arrangement, p, moments, f.boundary.reflection()); },
+      [&](StageRun&) { f.surface->find(arrangement, p, moments, f.boundary.reflection(), r, f.boundary.solids()); },
       {moments.divergence_of_position, moments.uncorrected, moments.normal}, {kept.surface});
   // (iii) the shift to r^{n+1}, taken with the last stage
   add(step, "shift", has.shifting, why.shift, [&](StageRun&) { f.compute_shift(); }, {moments.concentration_gradient},

@@ -113,10 +113,11 @@ void BubbleCoupling::measure_sizes(ParticleSizes& sizes) const {
 // The bubbles and their images as neighbours.
 void BubbleCoupling::place_bubbles() {
   const std::size_t nb = population_.size();
-  images_.build(
-      carrier_.boundary.image_rules(carrier_.arrangement.grid.support_radius() * carrier_.sizes.largest_length_ratio),
-      carrier_.arrangement.grid, population_.next_position[0]->data(), population_.next_position[1]->data(),
-      population_.next_position[2]->data(), nb);
+  ImageRules rules =
+      carrier_.boundary.image_rules(carrier_.arrangement.grid.support_radius() * carrier_.sizes.largest_length_ratio);
+  rules.only_nearest = true;  // places are looked up without asking what they see
+  images_.build(rules, carrier_.arrangement.grid, population_.next_position[0]->data(),
+                population_.next_position[1]->data(), population_.next_position[2]->data(), nb);
   const std::size_t all = nb + images_.size();
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);

@@ -107,7 +107,9 @@ void BubbleCoupling::pack_images() {
   const ImageMap map = carrier_.boundary.image_map(carrier_.arrangement.images);
   parallel_for(m, [&](std::size_t k) {
     const std::size_t source = map.source(k);
-    inverse_support_radius_[n + k] = inverse_support_radius_[source];
+    // Other images overlap those, and no place is nearer to one than a support radius of nothing.
+    const bool nearest = carrier_.arrangement.images.paths()[map.path(k)].nearest;
+    inverse_support_radius_[n + k] = nearest ? inverse_support_radius_[source] : 1e30F;
     if (!around_boxes && near_[source] == 0) return;
     float* value = liquid_records_.data() + (n + k) * record;
     std::copy_n(liquid_records_.data() + source * record, record, value);

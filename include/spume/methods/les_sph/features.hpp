@@ -17,6 +17,7 @@ bool needs_velocity_gradient(const Case& options);  // of a closure, shift corre
 struct Features : BoundaryFeatures {
   explicit Features(const LoadedCase& loaded);
 
+  bool open_sides = false;  // beside the top: liquid may leave for good
   bool free_surface = false;
   bool shifting = false;
   bool velocity_gradient = false;  // closure, shift correction, centred steps or bubbles

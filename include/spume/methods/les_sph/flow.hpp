@@ -51,6 +51,8 @@ struct Flow {
   double largest_body_force = 0;  // per mass, of one that varies in space, at the end of the last step
   std::array<double, 2> last_steps{};
 
+  std::int64_t left = 0;  // particles that went through open sides and were removed
+
   // --- Results of the last step.
   ParticleSizes sizes;
   Arrangement arrangement;
@@ -110,6 +112,12 @@ struct Flow {
   double leased_bytes() const;    // scratch memory of a step, leased now or idle
   // What the pressure stores in a compressible liquid: the integral of p^2 / (2 rho c^2).
   double stored_energy() const;
+
+  // Removes what cannot come back: particles that have fallen below an open bottom by more than their support, or lie
+  // farther beyond an open side than the domain is long, but for those above the top that gravity returns. Returns how
+  // many.
+  std::size_t remove_left();
+  bool has_left(std::size_t i) const;
 
   // The stages, in the order of step.cpp. Numbers refer to King et al., section 3.3.
   void move_to_intermediate_position(double dt);  // (i)

@@ -59,7 +59,8 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   void add_spectrum_rows(std::vector<double>& rows) const;
   const PointSampler& sampler();
 
-  Ledger start_ledger_;  // of a start that came before the first step
+  std::vector<Remark> remarks_;  // not yet passed on
+  Ledger start_ledger_;          // of a start that came before the first step
   Flow flow_;
   Plan plan_;
   SeriesTable series_;

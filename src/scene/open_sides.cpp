@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "open_sides.hpp"
+
+#include "spume/core/parallel.hpp"
+#include "spume/scene/solid_union.hpp"
+
+namespace spume {
+namespace {
+
+std::string side_name(int axis, int side, int dimensions) {
+  static const char* const across[2] = {"left", "right"};
+  static const char* const deep[2] = {"front", "back"};
+  static const char* const along[2] = {"bottom", "top"};
+  return axis == 0 ? across[side] : axis == dimensions - 1 ? along[side] : deep[side];
+}
+
+}  // namespace
+
+std::vector<Problem> open_side_warnings(const Draft& draft, const Scene& scene, const std::string& file) {
+  std::vector<Problem> warnings;
+  const Domain& domain = scene.domain;
+  const int up = domain.dimensions - 1;
+  if (!(scene.fluid.gravity[up] < 0)) return warnings;
+  const InitialParticles& particles = scene.particles;
+  const Node* node = draft.node("domain");
+  const auto warn = [&](const std::string& text) {
+    warnings.push_back({file, node == nullptr ? 0 : node->place.line, node == nullptr ? 0 : node->place.column, text});
+  };
+  const auto count = [&](auto&& meets) {
+    return parallel_sum(particles.size(), [&](std::size_t i) {
+      Vec3 r{};
+      for (int a = 0; a < domain.dimensions; ++a) r[a] = particles.position[a][i];
+      return meets(r) ? 1.0 : 0.0;
+    });
+  };
+  SolidUnion::Planes sides{};
+  for (int a = 0; a < domain.dimensions; ++a) sides[a] = {domain.lower[a], domain.upper[a]};
+  const SolidUnion solids(domain, sides, scene.spacing);
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      if (domain.sides[axis][side].kind != BoundaryKind::open || (axis == up && side == 1)) continue;
+      const std::string name = side_name(axis, side, domain.dimensions);
+      const double plane = side == 0 ? domain.lower[axis] : domain.upper[axis];
+      const double loose = count([&](const Vec3& r) {
+        if (axis != up && std::abs(r[axis] - plane) > scene.spacing) return false;
+        Vec3 foot = r;
+        foot[axis] = plane + (side == 0 ? -1 : 1) * scene.spacing;
+        return solids.sees(r, foot, foot);
+      });
+      if (loose == 0) continue;
+      warn("nothing holds the liquid: domain." + name + " is open and " +
+           std::to_string(static_cast<long long>(loose)) + " particles lie " + (axis == up ? "above" : "beside") +
+           " it, which leave the domain and are removed; set  " + name + " = \"free-slip\"  to hold them");
+    }
+  return warnings;
+}
+
+}  // namespace spume

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// Water at rest stays at rest, whatever solids are in it; liquid that leaves is removed and told.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "methods/les_sph_simulation.hpp"
+
+namespace spume::test {
+namespace {
+
+using testing::HasSubstr;
+
+// 0.4 deep at spacing 0.04, which gives 250 particles without solids; sqrt(g H) = 1.98, sqrt(H/g) = 0.202.
+std::string tank_with(const std::string& solids, const std::string& wall = "free-slip") {
+  return "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [1, 0.6]\nleft = \"" + wall + "\"\nright = \"" +
+         wall + "\"\nbottom = \"" + wall +
+         "\"\n[resolution]\nspacing = 0.04\n[fluid]\ndensity = 1000\nviscosity = 1e-3\ngravity = 9.81\n"
+         "[[liquid]]\nlower = [0, 0]\nupper = [1, 0.4]\n[time]\nend = 4\n" +
+         solids;
+}
+
+std::string box(double x0, double y0, double x1, double y1, const std::string& wall = "free-slip") {
+  const auto pair = [](double a, double b) { return "[" + std::to_string(a) + ", " + std::to_string(b) + "]"; };
+  return "[[solid]]\nlower = " + pair(x0, y0) + "\nupper = " + pair(x1, y1) + "\nwall = \"" + wall + "\"\n";
+}
+
+// The largest speed within 20 sqrt(H/g), over sqrt(g H).
+double largest_speed(const std::string& text, const Overrides& overrides = {}) {
+  Simulation run(text, overrides);
+  run.method.start();
+  double largest = 0;
+  while (run.method.time() < 4.04) {
+    run.steps(1, run.method.step_limit().dt);
+    largest = std::max(largest, run.series().at("max_speed"));
+  }
+  return largest / std::sqrt(9.81 * 0.4);
+}
+
+constexpr double bound = 1e-3;
+
+TEST(StillWater, StaysStillOverBoxesThatTouchOverlapOrRepeat) {
+  EXPECT_LT(largest_speed(tank_with(box(0.4, 0, 0.6, 0.2) + box(0.6, 0, 0.8, 0.2))), bound) << "side by side";
+  EXPECT_LT(largest_speed(tank_with(box(0.4, 0, 0.6, 0.08) + box(0.4, 0.08, 0.6, 0.2))), bound) << "stacked";
+  EXPECT_LT(largest_speed(tank_with(box(0.4, 0, 0.6, 0.2) + box(0.4, 0, 0.6, 0.2))), bound) << "twice";
+  EXPECT_LT(largest_speed(tank_with(box(0.4, 0, 0.6, 0.2) + box(0.52, 0, 0.8, 0.28))), bound) << "overlapping";
+  EXPECT_LT(largest_speed(tank_with(box(0.4, 0, 1, 0.04))), bound) << "one spacing high";
+  std::string wedge;
+  for (int k = 0; k < 7; ++k) wedge += box(0.4 + 0.04 * k, 0, 1, 0.04 * (k + 1));
+  EXPECT_LT(largest_speed(tank_with(wedge)), bound) << "staircase";
+}
+
+TEST(StillWater, StaysStillBesideFacesOffTheLattice) {
+  EXPECT_LT(largest_speed(tank_with(box(0.609, 0, 1, 0.309))), bound);
+  EXPECT_LT(largest_speed(tank_with(box(0.609, 0, 1, 0.309)), {"fluid.sound_speed=40"}), bound) << "compressible";
+  EXPECT_LT(largest_speed(tank_with(box(0.31, 0.11, 0.55, 0.29))), bound) << "submerged";
+  EXPECT_LT(largest_speed(tank_with(box(0, 0.1, 0.21, 0.23))), bound) << "at a side";
+  EXPECT_LT(largest_speed(tank_with(box(0.31, 0, 0.55, 0.5))), bound) << "through the surface";
+}
+
+TEST(StillWater, StaysStillBesidePlatesAndInGaps) {
+  EXPECT_LT(largest_speed(tank_with(box(0.5, 0, 0.52, 0.2))), bound) << "half a spacing thick";
+  EXPECT_LT(largest_speed(tank_with(box(0.5, 0, 0.52, 0.6))), bound) << "a wall half a spacing thick";
+  EXPECT_LT(largest_speed(tank_with(box(0.3, 0, 0.4, 0.2) + box(0.48, 0, 0.6, 0.2))), bound) << "gap of two spacings";
+  EXPECT_LT(largest_speed(tank_with(box(0.4, 0, 0.6, 0.4))), bound) << "flush with the surface";
+  EXPECT_LT(largest_speed(tank_with(box(0.4, 0, 0.6, 0.2, "no-slip") + box(0.6, 0, 1, 0.1, "no-slip"), "no-slip"),
+                          {"fluid.viscosity=1"}),
+            bound)
+      << "no slip";
+}
+
+// A wall half a spacing thick between liquids of different heights: each has its own pressure, and none gets through.
+TEST(StillWater, APlateSeparatesTwoLevels) {
+  std::string text = tank_with(box(0.5, 0, 0.52, 0.6) + "[[liquid]]\nlower = [0.52, 0]\nupper = [1, 0.2]\n");
+  text.replace(text.find("upper = [1, 0.4]"), 16, "upper = [0.5, 0.4]");
+  EXPECT_LT(largest_speed(text), bound);
+}
+
+TEST(OpenSides, LiquidThatFallsOutIsToldAndRemoved) {
+  std::string text = tank_with("");
+  text.erase(text.find("bottom"), text.find("[resolution]") - text.find("bottom"));
+  Simulation run(text);
+  ASSERT_EQ(run.loaded.options.unused_options.size(), 1U);
+  EXPECT_THAT(run.loaded.options.unused_options[0].text, HasSubstr("nothing holds the liquid: domain.bottom is open"));
+  const double mass = run.series().at("mass");
+  std::string remarks;
+  for (int k = 0; k < 60; ++k) {
+    run.steps(1, 0.01);
+    for (const Remark& remark : run.method.take_remarks()) remarks += remark.text;
+  }
+  // After 0.6 the water has fallen by 1.77, past the bottom by more than its depth.
+  EXPECT_EQ(run.method.flow().size(), 0U);
+  EXPECT_NEAR(run.series().at("mass_removed"), mass, 1e-9 * mass);
+  EXPECT_THAT(remarks, HasSubstr("liquid leaves through an open side"));
+}
+
+TEST(OpenSides, NoWarningWhereWallsOrSolidsHoldTheLiquid) {
+  EXPECT_TRUE(Simulation(tank_with("")).loaded.options.unused_options.empty());
+  std::string text = tank_with(box(0, -0.2, 1, 0));
+  text.replace(text.find("lower = [0, 0]"), 14, "lower = [0, -0.2]");
+  text.erase(text.find("bottom"), text.find("[resolution]") - text.find("bottom"));
+  EXPECT_TRUE(Simulation(text).loaded.options.unused_options.empty());
+}
+
+}  // namespace
+}  // namespace spume::test
