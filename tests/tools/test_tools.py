@@ -70,6 +70,12 @@ class Plotting(Scratch):
         self.assertEqual(drawn, {"area": ["gate"], "pressure": ["gate"], "velocity x": ["gate"],
                                  "elevation, wetted length, front": ["front"]})
 
+    def test_quantities_of_probes_are_told_by_the_names_of_the_case(self):
+        columns = {name: np.ones(2) for name in ("t", "gate", "gate_west_temperature", "gate_west_velocity_x", "gate_pressure")}
+        self.assertEqual(probes.quantities_of(columns, ["gate", "gate_west"]),
+                         {"elevation, wetted length, front": [("gate", "gate")], "temperature": [("gate_west", "gate_west_temperature")],
+                          "velocity x": [("gate_west", "gate_west_velocity_x")], "pressure": [("gate", "gate_pressure")]})
+
     def test_shares_of_the_stages_are_drawn(self):
         folder = new_folder(self.path, "run")
         write_table(folder / "series.csv", series_of([0, 1.0], kinetic_energy=1))

@@ -77,12 +77,22 @@ def plot_bubble_traces(run, out):
         rows = table["id"] == i
         lines.append(np.column_stack([distance[rows], table["z"][rows]]))
         radius.append(np.mean(table["radius"][rows]))
-    figure, axis = plt.subplots(figsize=(5.2, 5.6))
-    collection = LineCollection(lines, array=np.array(radius), cmap="viridis", linewidths=0.6)
+    if not lines:
+        return []
+    radius = np.array(radius)
+    several = radius.max() > 1.05 * radius.min()
+    figure, axis = plt.subplots(figsize=(5.6, 5.6))
+    # Many lines in one place are told apart by what shines through.
+    look = {"array": radius, "cmap": "viridis"} if several else {"colors": "C0"}
+    collection = LineCollection(lines, linewidths=0.5, alpha=min(1.0, 150 / len(lines)), **look)
     axis.add_collection(collection)
     axis.autoscale()
     axis.set(xlabel=length_label("distance from the axis", run.si), ylabel=length_label("z", run.si))
-    figure.colorbar(collection, label=length_label("radius", run.si))
+    if several:
+        bar = figure.colorbar(collection, label=length_label("radius", run.si))
+        bar.solids.set_alpha(1)
+    else:
+        axis.set_title(f"radius {radius[0]:.4g}" + (" m" if run.si else ""))
     return [finish(figure, out / "bubble_traces.png", title_of(run))]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from ..results import MissingResult
 from ..results.units import field_label
 from .planes import draw_panel, drawn_fields, frame_of, panels_of
-from .probes import file_stem
+from .probes import file_stem, quantities_along
 from .request import request_of
 from .style import evenly, extension, field_norm, finish, length_label, panel_size
 
@@ -70,7 +70,7 @@ def plot_lines(first, second, out):
         if name not in second.line_names():
             continue
         last = min(run.line_times(name)[-1] for run in (first, second))
-        quantities = [q for q in ("velocity_x", "velocity_y", "velocity_z", "pressure") if q in first.lines and q in second.lines]
+        quantities = [q for q in quantities_along(first.lines) if q in second.lines]
         figure, axes = plt.subplots(1, len(quantities), figsize=(3.8 * len(quantities), 3.8), squeeze=False)
         for run, label, colour, style in zip((first, second), names_of(first, second), COLOURS, ("-", "--")):
             times = run.line_times(name)

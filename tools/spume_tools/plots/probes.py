@@ -6,23 +6,35 @@ import numpy as np
 from .style import evenly, finish, shades, time_title, title_of
 
 
+QUANTITIES = ("_pressure", "_velocity_x", "_velocity_y", "_velocity_z", "_area")
+
+
+def quantities_along(lines):
+    """Columns of profiles that are quantities: not the time, the name or the place."""
+    return [name for name in lines if name not in ("t", "name", "s", "x", "y", "z")]
+
+
 def asks_for_probes(case, lines):
     """Whether the case has a probe that is a line, or one that is not."""
     return any((probe.get("kind") == "line") == lines for probe in case.get("probe", []))
 
 
-def quantities_of(probes):
-    """Columns that hold a number anywhere, as (name of the probe, name of the column), by their quantity."""
+def quantities_of(probes, names=()):
+    """Columns that hold a number anywhere, as (name of the probe, name of the column), by their quantity.
+
+    names: of the probes of the case; a column is that of a probe, or begins with it. Without a name that fits, the last
+    part of the column that is a known quantity is taken for it.
+    """
     groups = {}
-    for name in probes:
-        if name == "t" or not np.isfinite(probes[name]).any():
+    for column in probes:
+        if column == "t" or not np.isfinite(probes[column]).any():
             continue
-        for suffix in ("_pressure", "_velocity_x", "_velocity_y", "_velocity_z", "_area"):
-            if name.endswith(suffix):
-                groups.setdefault(suffix[1:].replace("_", " "), []).append((name[: -len(suffix)], name))
-                break
-        else:
-            groups.setdefault("elevation, wetted length, front", []).append((name, name))
+        owner = max((name for name in names if column == name or column.startswith(name + "_")), key=len, default=None)
+        if owner is None:
+            suffix = next((suffix for suffix in QUANTITIES if column.endswith(suffix)), "")
+            owner = column[: len(column) - len(suffix)]
+        quantity = column[len(owner) + 1:].replace("_", " ") or "elevation, wetted length, front"
+        groups.setdefault(quantity, []).append((owner, column))
     return groups
 
 
@@ -31,7 +43,8 @@ def plot_probes(run, out):
     if not run.has("probes.csv") and not asks_for_probes(run.case, lines=False):
         return []
     probes = run.probes
-    groups = quantities_of(probes)
+    names = [probe.get("name", "") for probe in run.case.get("probe", [])] if run.has("case.toml") else []
+    groups = quantities_of(probes, names)
     if not groups:
         return []
     figure, axes = plt.subplots(len(groups), 1, figsize=(6.8, 2.4 * len(groups) + 0.3), squeeze=False, sharex=True)
@@ -57,7 +70,7 @@ def plot_lines(run, out):
     files = []
     for name in run.line_names():
         times = run.line_times(name)
-        quantities = [q for q in ("velocity_x", "velocity_y", "velocity_z", "pressure") if q in run.lines]
+        quantities = quantities_along(run.lines)
         figure, axes = plt.subplots(1, len(quantities), figsize=(3.8 * len(quantities), 3.6), squeeze=False)
         for index, colour in shades(evenly(len(times))):
             profile = run.line(name, index)

@@ -24,11 +24,12 @@ EDGE = "#55524d"
 
 def finish(figure, path, title=None):
     """Writes a figure in the chosen format and returns the name of the file."""
+    fixed = figure.get_constrained_layout() or getattr(figure, "exact", False)
     room = TITLE_ROOM / figure.get_figheight() if title else 0
     if title:
-        figure.suptitle(title, y=1 - 0.3 * room, va="top")
-    if not figure.get_constrained_layout() and not getattr(figure, "exact", False):
-        figure.tight_layout(rect=(0, 0, 1, 1 - room))
+        figure.suptitle(title, **({} if fixed else {"y": 1 - 0.3 * room, "va": "top"}))
+    if not fixed:
+        figure.tight_layout()
     path = path.with_suffix("." + plt.rcParams["savefig.format"])
     figure.savefig(path)
     plt.close(figure)
