@@ -47,6 +47,12 @@ bool invert(const std::array<double, 6>& m, int dimensions, std::array<double, 6
   return norm2 < dimensions * largest_correction * largest_correction;
 }
 
+template <int dimensions>
+void fade(double weight, std::array<double, 6>& inverse) {
+  for (int a = 0, k = 0; a < dimensions; ++a)
+    for (int c = a; c < dimensions; ++c, ++k) inverse[k] = (a == c ? 1 - weight : 0.0) + weight * inverse[k];
+}
+
 template <int dimensions, class Kernel, bool shifting>
 void moments(const SweepContext& context, PackedNeighbours& packed, const KernelMomentOptions& options,
              const KernelMoments& out) {
@@ -89,22 +95,36 @@ void moments(const SweepContext& context, PackedNeighbours& packed, const Kernel
     const bool corrected = invert(sum, dimensions, inverse);
     if (!corrected)
       inverse = dimensions == 2 ? std::array<double, 6>{1, 0, 1} : std::array<double, 6>{1, 0, 0, 1, 0, 1};
+    auto h = static_cast<float>(context.smoothing_length);
+    if constexpr (is_variable_h<Kernel>) h *= context.length_ratio[i];
+    std::array<float, dimensions> outward;
+    for (int a = 0; a < dimensions; ++a) outward[a] = -h * simd::sum(normal[a]);
+    if (options.fading.missing > 0) {
+      double squares = 0;
+      for (const float component : outward) squares += double{component} * component;
+      const double of_plane = options.fading.bulk - options.fading.missing * std::sqrt(squares);
+      fade<dimensions>(options.fading.weight(std::max(trace, of_plane)), inverse);
+    }
     for (int k = 0; k < matrix; ++k) out.correction[k][i] = static_cast<float>(inverse[k]);
     out.uncorrected[i] = corrected ? 0 : 1;
     out.divergence_of_position[i] = static_cast<float>(trace);
     const float centre = scale.value * centre_value * own_volume<Kernel>(context, i);
     if (out.kernel_sum != nullptr) out.kernel_sum[i] = centre + scale.value * simd::sum(kernel_sum);
-    auto h = static_cast<float>(context.smoothing_length);
-    if constexpr (is_variable_h<Kernel>) h *= context.length_ratio[i];
     out.laplacian_diagonal[i] = 2 * simd::sum(laplacian_diagonal);
     for (int a = 0; a < dimensions; ++a) {
-      if (options.normals) out.normal[a][i] = -h * simd::sum(normal[a]);
+      if (options.normals) out.normal[a][i] = outward[a];
       if constexpr (shifting) out.concentration_gradient[a][i] = simd::sum(concentration[a]);
     }
   });
 }
 
 }  // namespace
+
+float InteriorWeight::operator()(double divergence_of_position) const {
+  const double above = divergence_of_position - threshold;
+  if (above >= width) return 1;
+  return above < 0 ? 0 : static_cast<float>(0.5 * (1 - std::cos(std::numbers::pi * above / width)));
+}
 
 void kernel_moment_sweep(const SweepContext& context, PackedNeighbours& packed, const KernelMomentOptions& options,
                          const KernelMoments& out) {
@@ -171,6 +191,13 @@ std::vector<SurfaceLayer> lattice_surface(int dimensions, KernelKind kernel, dou
     filter(&SurfaceLayer::smoothed_normal, &SurfaceLayer::twice_smoothed_normal);
   });
   return layers;
+}
+
+CorrectionFading correction_fading(int dimensions, KernelKind kernel, double smoothing_ratio,
+                                   const InteriorWeight& weight) {
+  const double bulk = lattice_constants(dimensions, kernel, smoothing_ratio).divergence_of_position;
+  const SurfaceLayer upper = lattice_surface(dimensions, kernel, smoothing_ratio).front();
+  return {weight, bulk, (bulk - upper.divergence_of_position) / upper.normal};
 }
 
 namespace {

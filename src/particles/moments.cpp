@@ -25,6 +25,7 @@ void MomentFields::measure(Arrangement& arrangement, ParticleStore& particles, d
   options.shifting = wanted_.concentration_gradient;
   options.normals = wanted_.normal;
   options.spacing = spacing;
+  options.fading = wanted_.fading;
   KernelMoments out;
   out.divergence_of_position = divergence_of_position->data();
   if (wanted_.kernel_sum) out.kernel_sum = kernel_sum.data();

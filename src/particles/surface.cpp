@@ -28,10 +28,12 @@ double dot(const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-FreeSurface::FreeSurface(const Resolution& resolution, const Options& options)
-    : resolution_(resolution), options_(options) {
-  if (!(options_.threshold > 0)) options_.threshold = standard_threshold(resolution.dimensions);
+InteriorWeight interior_weight(int dimensions, const SurfaceOptions& options) {
+  return {options.threshold > 0 ? options.threshold : standard_threshold(dimensions), options.blend_width};
 }
+
+FreeSurface::FreeSurface(const Resolution& resolution, const Options& options)
+    : resolution_(resolution), options_(options) {}
 
 void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, const MomentFields& moments,
                        const std::vector<std::array<float, 3>>& reflection, const VectorField& at,
@@ -40,15 +42,11 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, const
   at_surface.resize(n);
   pressure_fixed.resize(n);
   interior_weight.resize(n);
-  const double width = options_.blend_width;
   const Array<float>& divergence_of_position = *moments.divergence_of_position;
   parallel_for(n, [&](std::size_t i) {
-    const double above = divergence_of_position[i] - options_.threshold;
-    at_surface[i] = above < 0 ? 1 : 0;
-    pressure_fixed[i] = above < 0 && moments.uncorrected[i] != 0 ? 1 : 0;
-    interior_weight[i] = above < 0       ? 0.0F
-                         : above < width ? static_cast<float>(0.5 * (1 - std::cos(std::numbers::pi * above / width)))
-                                         : 1.0F;
+    at_surface[i] = divergence_of_position[i] < options_.interior.threshold ? 1 : 0;
+    pressure_fixed[i] = at_surface[i] != 0 && moments.uncorrected[i] != 0 ? 1 : 0;
+    interior_weight[i] = options_.interior(divergence_of_position[i]);
     if (solids == nullptr || !is_near(moments, i) || !faces_solid(*solids, moments, at, i)) return;
     at_surface[i] = 0;
     interior_weight[i] = 1;

@@ -173,7 +173,7 @@ struct Moments {
   Array<std::uint8_t> uncorrected;
   std::array<Array<float>, 3> concentration_gradient, normal;
 
-  explicit Moments(Arrangement& a, bool shifting = true, bool normals = true) {
+  explicit Moments(Arrangement& a, bool shifting = true, bool normals = true, CorrectionFading fading = {}) {
     const std::size_t n = a.size();
     KernelMoments out;
     for (auto* array : {&kernel_sum, &divergence_of_position, &laplacian_diagonal}) array->resize(n);
@@ -192,7 +192,7 @@ struct Moments {
       out.concentration_gradient[axis] = shifting ? concentration_gradient[axis].data() : nullptr;
       out.normal[axis] = normals ? normal[axis].data() : nullptr;
     }
-    kernel_moment_sweep(a.context, a.packed, {shifting, normals, a.setup.spacing}, out);
+    kernel_moment_sweep(a.context, a.packed, {shifting, normals, a.setup.spacing, fading}, out);
   }
   std::array<const float*, 6> read_correction() const {
     std::array<const float*, 6> pointers{};

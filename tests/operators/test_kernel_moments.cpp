@@ -64,6 +64,55 @@ TEST(KernelMoments, CorrectionIsTheInverseOfTheMomentsOrTheIdentity) {
   EXPECT_GT(fallbacks, 10U);
 }
 
+TEST(KernelMoments, TheInteriorWeightRisesOverItsWidth) {
+  const InteriorWeight weight{1.5, 0.32};
+  EXPECT_EQ(weight(1.49), 0);
+  EXPECT_EQ(weight(1.82), 1);
+  EXPECT_NEAR(weight(1.66), 0.5, 1e-6);
+  EXPECT_NEAR(weight(1.5 + 0.08) + weight(1.82 - 0.08), 1, 1e-6);
+  EXPECT_EQ(InteriorWeight{}(0), 1);
+  EXPECT_EQ((InteriorWeight{1.5, 0}(1.5)), 1);
+}
+
+// b L + (1 - b) I, from the L, div r and normals of a sweep that does not fade: none in the bulk, all of it at an edge.
+TEST(KernelMoments, CorrectionFadesWhereNeighboursAreMissingOnOneSide) {
+  std::size_t whole = 0, between = 0, gone = 0, stretched = 0;
+  for (Arrangement& a : all_arrangements()) {
+    SCOPED_TRACE(a.setup.name);
+    const int d = a.dimensions();
+    const InteriorWeight weight{0.75 * d, 0.16 * d};
+    const CorrectionFading fading = correction_fading(d, KernelKind::wendland_c2, 1.3, weight);
+    const Moments plain(a), faded(a, true, true, fading);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      double squares = 0;
+      for (int axis = 0; axis < d; ++axis) squares += std::pow(double{plain.normal[axis][i]}, 2);
+      const double trace = plain.divergence_of_position[i];
+      const double b = weight(std::max(trace, fading.bulk - fading.missing * std::sqrt(squares)));
+      ++(b == 1 ? whole : b == 0 ? gone : between);
+      stretched += b == 1 && weight(trace) < 1;
+      const auto l = plain.correction_of(i, d), f = faded.correction_of(i, d);
+      for (int r = 0; r < d; ++r)
+        for (int c = 0; c < d; ++c) {
+          const double expected = (r == c ? 1 - b : 0.0) + b * l[r][c];
+          // Rounding of div r, to float, over the width of the weight, and of L.
+          EXPECT_NEAR(f[r][c], expected, 1e-5 * (1 + std::abs(l[r][c]))) << i;
+        }
+    }
+  }
+  for (const std::size_t count : {whole, between, gone}) EXPECT_GT(count, 50U);
+  EXPECT_GT(stretched, 0U);
+}
+
+// Upper layers of lattices: div r and h |m| agree by construction.
+TEST(KernelMoments, FadingKnowsThePlaneSurface) {
+  for (const int d : {2, 3}) {
+    const CorrectionFading fading = correction_fading(d, KernelKind::wendland_c2, 1.3, {1.5, 0.32});
+    const SurfaceLayer upper = lattice_surface(d, KernelKind::wendland_c2, 1.3)[0];
+    EXPECT_NEAR(fading.bulk - fading.missing * upper.normal, upper.divergence_of_position, 1e-12);
+    EXPECT_NEAR(fading.missing, d == 2 ? 1.19 : 1.51, 0.005);
+  }
+}
+
 ArrangementSetup lattice_setup(int dimensions, int across, BoundaryKind last) {
   ArrangementSetup setup;
   setup.dimensions = dimensions;

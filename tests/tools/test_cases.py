@@ -251,6 +251,46 @@ class Cavity(CaseTest):
         self.assertLess(measured["v_error_re100"], 0.006)
 
 
+class SteepWave(CaseTest):
+    def measured(self, speed_factor=1.0, raised=0.0, periods=2.0):
+        folder, module = self.run_of("steep_wave")
+        t = np.linspace(0, periods * module.PERIOD, 81)
+        write_table(folder / "probes.csv", {"t": t} | {
+            name: module.profile(x - speed_factor * module.SPEED * t) + raised
+            for name, x in zip(module.PROBES, module.POINTS)})
+        write_table(folder / "series.csv", series_of(t, kinetic_energy=1, mass=1))
+        return module.measure({"run": Results(folder)})
+
+    def test_exact_wave_has_no_error(self):
+        measured = self.measured()
+        for quantity in ("profile_error", "phase_error", "shape_error"):
+            self.assertLess(measured[quantity], 1e-9)
+
+    def test_slow_wave_and_raised_surface_are_measured_right(self):
+        slow = self.measured(speed_factor=0.99)
+        self.assertAlmostEqual(slow["phase_error"], 0.02, places=6)
+        self.assertLess(slow["shape_error"], 1e-6)
+        self.assertAlmostEqual(slow["profile_error"], 0.02 * 0.38, delta=3e-4)  # times the steepest slope
+        self.assertAlmostEqual(self.measured(raised=0.01)["profile_error"], 0.01, places=6)
+        with self.assertRaises(MissingResult):
+            self.measured(periods=0.9)
+
+    def test_reference_holds_the_conditions_at_the_surface(self):
+        module = load_measure(CASES / "steep_wave")
+        k, j = 2 * np.pi, module.REFERENCE["harmonic"][1:]
+        x = np.linspace(0, 1, 41)
+        y, b = module.profile(x), module.REFERENCE["velocity"][1:]
+        u = np.cos(k * np.outer(x, j)) * np.cosh(k * np.outer(y, j)) @ b - module.SPEED
+        v = np.sin(k * np.outer(x, j)) * np.sinh(k * np.outer(y, j)) @ b
+        flux = np.cos(k * np.outer(x, j)) * np.sinh(k * np.outer(y, j)) @ (b / (k * j)) - module.SPEED * y
+        head = (u**2 + v**2) / 2 + y
+        # Between the points the harmonics above the tenth are missing, which sum to about twice the tenth.
+        missing = 3 * abs(module.REFERENCE["elevation"][10])
+        self.assertLess(np.ptp(head), missing)
+        self.assertLess(np.ptp(flux), missing * module.SPEED)
+        self.assertAlmostEqual(k * (y[0] - y[20]) / 2, 0.35, places=8)
+
+
 class StandingWave(CaseTest):
     """Waves of the form that is fitted, a(0) = 1."""
     def measured(self, omega_factor=1.0, gamma_factor=1.0, extra_times=()):

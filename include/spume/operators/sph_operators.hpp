@@ -30,10 +30,28 @@ struct KernelMoments {
   std::array<float*, 3> concentration_gradient{};  // (3.11): sum_j (1 + 1/4 (W/W(dr))^4) V grad W
   std::array<float*, 3> normal{};                  // (3.13) times h, outward: -h sum_j V grad W
 };
+// The interior weight b of a particle: 0 where div r is below `threshold`, neighbours missing on one side, 1 above
+// `threshold + width`, and a half wave of the cosine between.
+struct InteriorWeight {
+  double threshold = 0, width = 0;
+  float operator()(double divergence_of_position) const;
+};
+// Where neighbours are missing on one side L fades to the identity: b L + (1 - b) I, with b of the larger of div r and
+// the div r that a plane surface of the same normal has, bulk - missing h |m|. An arrangement that is stretched alike
+// on both sides keeps its L.
+//
+// The projection subtracts L times the gradient that the pressure's Laplacian stands for. Where L exceeds 2, below one
+// layer of a surface, it overshoots by more than it removes, and beside a void in a closed liquid energy grows step by
+// step. At a free surface the mirrored liquid completes both, and nothing fades.
+struct CorrectionFading {
+  InteriorWeight weight;
+  double bulk = 0, missing = 0;  // div r of a lattice; what its upper layer lacks of it over its h |m|; zero: no fading
+};
 struct KernelMomentOptions {
   bool shifting = true;
   bool normals = true;
   double spacing = 0;  // dr of the tensile term's W(dr)
+  CorrectionFading fading;
 };
 void kernel_moment_sweep(const SweepContext& context, PackedNeighbours& packed, const KernelMomentOptions& options,
                          const KernelMoments& out);
@@ -121,6 +139,8 @@ struct SurfaceLayer {
   double divergence_of_position;
 };
 std::vector<SurfaceLayer> lattice_surface(int dimensions, KernelKind kernel, double smoothing_ratio);
+CorrectionFading correction_fading(int dimensions, KernelKind kernel, double smoothing_ratio,
+                                   const InteriorWeight& weight);
 
 LatticeConstants lattice_constants(int dimensions, KernelKind kernel, double smoothing_ratio);
 

@@ -2,6 +2,7 @@
 // Kernel moments of the arrangement (operators/sph_operators.hpp) as a step keeps them.
 #pragma once
 
+#include "spume/operators/sph_operators.hpp"
 #include "spume/particles/arrangement.hpp"
 
 namespace spume {
@@ -12,6 +13,7 @@ class MomentFields {
     bool kernel_sum = false;
     bool concentration_gradient = false;
     bool normal = false;
+    CorrectionFading fading;  // of L, in a closed liquid
   };
   MomentFields(ParticleStore& particles, const Wanted& wanted);
 

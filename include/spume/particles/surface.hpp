@@ -27,6 +27,7 @@
 
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/moments.hpp"
+#include "spume/particles/options.hpp"
 #include "spume/scene/solid_union.hpp"
 
 namespace spume {
@@ -36,11 +37,13 @@ struct SurfaceRow {
   double hydrostatic_pressure = 0;  // p0 over the density, of the potential at the plane
 };
 
+// b with thresholds of [surface]; a threshold of 0 is 2.3 in 3-D, 1.5 in 2-D.
+InteriorWeight interior_weight(int dimensions, const SurfaceOptions& options);
+
 class FreeSurface {
  public:
   struct Options {
-    double threshold = 0;         // div r of a surface particle; 0: 2.3 in 3-D, 1.5 in 2-D
-    double blend_width = 0;       // span of div r over which b rises from 0 to 1
+    InteriorWeight interior;      // b; surface particles are those below its threshold
     bool smooth_normals = false;  // of surface particles, for the shift
   };
   FreeSurface(const Resolution& resolution, const Options& options);

@@ -29,13 +29,18 @@ Flow::Flow(const LoadedCase& loaded_case)
                                          options.resolution.smoothing_ratio,
                                          features.shifting && options.get<ShiftingOptions>().remove_drift)),
       dimensions(scene.domain.dimensions),
+      interior(interior_weight(dimensions, options.get<SurfaceOptions>())),
       particles(dimensions, scene.particles),
       boundary(scene.domain, scene.spacing),
       energy(scene.domain, resolution),
       arrangement(scene.domain, resolution, particles.volume, particles.size()),
-      moments(particles, {.kernel_sum = features.density_relaxation,
-                          .concentration_gradient = features.shifting,
-                          .normal = features.free_surface}),
+      moments(particles,
+              {.kernel_sum = features.density_relaxation,
+               .concentration_gradient = features.shifting,
+               .normal = features.free_surface,
+               .fading = features.free_surface ? CorrectionFading{}
+                                               : correction_fading(dimensions, options.resolution.kernel,
+                                                                   options.resolution.smoothing_ratio, interior)}),
       solver(boundary, solver_options(options)) {
   FieldSet& fields = particles.fields;
   pressure = &fields.add<double>("pressure", Lifetime::state);
@@ -46,9 +51,7 @@ Flow::Flow(const LoadedCase& loaded_case)
   strain = &fields.add<float>("strain", Lifetime::result);
   if (features.free_surface)
     surface = std::make_unique<FreeSurface>(
-        resolution, FreeSurface::Options{.threshold = options.get<SurfaceOptions>().threshold,
-                                         .blend_width = options.get<SurfaceOptions>().blend_width,
-                                         .smooth_normals = features.shifting});
+        resolution, FreeSurface::Options{.interior = interior, .smooth_normals = features.shifting});
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
   if (features.eddy_viscosity)
     closure = std::make_unique<turbulence::EddyViscosity>(particles, options.get<TurbulenceOptions>());

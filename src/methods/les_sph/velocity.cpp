@@ -290,9 +290,11 @@ void Flow::accept(double dt) {
     if (features.shifting) {
       for (int axis = 0; axis < dimensions; ++axis) r[axis] += (*shift->displacement[axis])[i];
       if (features.shift_correction) {
-        // A one-sided gradient at the surface extrapolates: fed back through the shift it accelerates particles without
-        // any force (0.5 sqrt(g lambda) in a tenth of a period at 1/50). The change fades out with the interior weight.
-        const double inside = surface != nullptr ? double{surface->interior_weight[i]} : 1.0;
+        // A one-sided gradient, at the surface or beside a void of a closed liquid, extrapolates: fed back through the
+        // shift it accelerates particles without any force (0.5 sqrt(g lambda) in a tenth of a period at 1/50). The
+        // change fades out with the interior weight.
+        const double inside =
+            surface != nullptr ? surface->interior_weight[i] : interior((*moments.divergence_of_position)[i]);
         for (int axis = 0; axis < dimensions; ++axis) u[axis] += inside * shift_velocity[axis][i];
       }
     }
