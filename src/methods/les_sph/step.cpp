@@ -12,7 +12,7 @@ using enum StagePart;
 Plan make_plan(Flow& f) {
   Plan plan;
   const Features& has = f.features;
-  const Reasons why(f.loaded, has);
+  const Reasons why(f.loaded, has, f.force_potential.has_value());
   ParticleStore& p = f.particles;
   Arrangement& arrangement = f.arrangement;
   MomentFields& moments = f.moments;
@@ -37,6 +37,8 @@ Plan make_plan(Flow& f) {
     arrangement.sort(p, r);
     run.bytes += arrangement.sort_traffic(p);
   });
+  add(step, "advecting velocity", true, why.advection, [&](StageRun& run) { f.find_advecting_velocity(run.dt); },
+      {p.velocity, f.acceleration}, {f.advecting_velocity});
   add(start, "bubble clouds", has.bubbles, why.bubbles, [&](StageRun&) { f.bubbles->start(); });
   add(both, "bubble motion", has.bubbles, why.bubbles, [&](StageRun& run) { f.bubbles->move(run.dt); });
   // (ii) images at boundaries, neighbours and their moments
@@ -64,7 +66,7 @@ Plan make_plan(Flow& f) {
       [&](StageRun&) { f.differentiate_velocity(true); }, {p.velocity, moments.correction}, {f.strain}, true);
   add(
       step, "gradients", has.velocity_gradient, why.gradients, [&](StageRun&) { f.differentiate_velocity(false); },
-      {p.velocity, moments.correction, f.displacement_by_shift()},
+      {f.advecting_velocity, moments.correction, f.displacement_by_shift()},
       {f.strain, f.velocity_gradient, f.filtered_velocity, f.gradient_trace, f.shift_velocity}, true);
   add(
       step, "shift curvature", has.shift_curvature, why.curvature, [&](StageRun&) { f.find_shift_curvature(); },
@@ -75,12 +77,14 @@ Plan make_plan(Flow& f) {
   add(step, "bubble forces", has.bubbles, why.integrator, [&](StageRun& run) { f.bubbles->exchange_momentum(run.dt); });
   // (viii) u* from forces and viscosity
   add(both, "forces", has.potential, why.forces, [&](StageRun& run) { f.find_potential(f.time + run.dt); }, {r},
-      {f.potential});
+      {f.potential, f.varying_force});
   add(
-      step, "viscosity", has.viscosity, why.viscosity, [&](StageRun&) { f.find_viscous_acceleration(); },
-      {p.velocity, moments.divergence_of_position, f.eddy_viscosity()}, {f.viscous_acceleration}, true);
+      both, "viscosity", has.viscosity, why.viscosity, [&](StageRun&) { f.find_viscous_acceleration(); },
+      {f.advecting_velocity, moments.divergence_of_position, f.eddy_viscosity()}, {f.viscous_acceleration}, true);
   add(step, "prediction", true, "velocity without pressure", [&](StageRun& run) { f.predict_velocity(run.dt); },
-      {p.velocity, f.viscous_acceleration}, {f.intermediate_velocity});
+      {f.advecting_velocity, f.viscous_acceleration}, {f.intermediate_velocity});
+  add(start, "first forces", true, "acceleration without pressure", [&](StageRun&) { f.find_first_forces(); },
+      {f.viscous_acceleration}, {f.intermediate_velocity});
   // (ix), (x) the pressure that makes the velocity at r^{n+1} free of divergence
   add(
       step, "divergence", true, why.divergence, [&](StageRun& run) { f.find_divergence(run.dt); },
@@ -90,7 +94,10 @@ Plan make_plan(Flow& f) {
   add(step, "density relaxation", has.density_relaxation, why.relaxation,
       [&](StageRun& run) { f.relax_density(run.dt); }, {moments.kernel_sum, moments.divergence_of_position},
       {f.divergence});
-  add(start, "first source", true, "tr(grad u . grad u)", [&](StageRun&) { f.set_first_source(); });
+  add(
+      start, "first source", true, "tr(grad u . grad u) less the divergence of the forces",
+      [&](StageRun&) { f.set_first_source(); }, {f.intermediate_velocity, moments.correction, f.gradient_trace},
+      {f.divergence}, true);
   add(both, "matrix", true, "rows and right-hand side", [&](StageRun&) { f.set_matrix(); },
       {moments.divergence_of_position, moments.laplacian_diagonal, f.divergence, f.pressure, f.potential},
       {f.rows.diagonal_shift, f.rows.diagonal, f.rows.right_hand_side});
@@ -104,10 +111,13 @@ Plan make_plan(Flow& f) {
   add(
       step, "projection", true, "pressure gradient", [&](StageRun& run) { f.project_velocity(run.dt); },
       {f.reduced_pressure, moments.correction, f.intermediate_velocity}, {f.next_velocity}, true);
+  add(
+      start, "first acceleration", f.acceleration[0] != nullptr, why.centring,
+      [&](StageRun&) { f.set_first_acceleration(); }, {f.reduced_pressure, moments.correction}, {f.acceleration}, true);
   // (xi) r^{n+1}, u^{n+1}
   add(step, "acceptance", true, "limits, energy, final positions", [&](StageRun& run) { f.accept(run.dt); },
       {f.next_velocity, r, f.displacement_by_shift(), f.shift_velocity, f.reduced_pressure, f.potential, f.strain},
-      {p.position, p.velocity, f.pressure});
+      {p.position, p.velocity, f.acceleration, f.pressure});
   add(step, "bubble events", has.bubbles, why.events, [&](StageRun& run) { f.bubbles->accept(run.dt); });
   return plan;
 }

@@ -67,7 +67,7 @@ void BubbleCoupling::pack_liquid() {
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
       const int b = (axis + 1) % 3, c = (axis + 2) % 3;
-      const double *velocity = carrier_.particles.velocity[a]->data() + first,
+      const double *velocity = carrier_.velocity[a].data() + first,
                    *acceleration = material_acceleration[a]->data() + first;
       const float *up = gradient_of(c, b).data() + first, *down = gradient_of(b, c).data() + first;
       put(velocity_at + axis, [=](std::size_t k) { return static_cast<float>(velocity[k]); });

@@ -47,7 +47,7 @@ struct TestFilter {
     if (k < symmetric) {
       const auto [a, b] = components(k);
       const auto velocity = [&](int axis) {
-        return map.velocity(m, axis, (*motion.particles.velocity[axis])[source]) - mean[axis];
+        return map.velocity(m, axis, motion.velocity[static_cast<std::size_t>(axis)][source]) - mean[axis];
       };
       return static_cast<float>(velocity(a) * velocity(b));
     }
@@ -69,15 +69,15 @@ struct TestFilter {
   void run(const ResolvedMotion& motion) {
     const std::size_t n = motion.particles.size();
     for (int a = 0; a < d; ++a)
-      mean[a] =
-          parallel_sum(n, [&](std::size_t i) { return (*motion.particles.velocity[a])[i]; }) / static_cast<double>(n);
+      mean[a] = parallel_sum(n, [&](std::size_t i) { return motion.velocity[static_cast<std::size_t>(a)][i]; }) /
+                static_cast<double>(n);
     parallel_for(n, [&](std::size_t i) {
       const auto strain = strain_rate<d, double>(gradient_at<d>(motion, i));
       for (int a = 0; a < d; ++a)
         for (int b = a; b < d; ++b) {
           const std::size_t k = symmetric_index<d>(a, b);
-          value[k][i] = static_cast<float>(((*motion.particles.velocity[a])[i] - mean[a]) *
-                                           ((*motion.particles.velocity[b])[i] - mean[b]));
+          value[k][i] = static_cast<float>((motion.velocity[static_cast<std::size_t>(a)][i] - mean[a]) *
+                                           (motion.velocity[static_cast<std::size_t>(b)][i] - mean[b]));
           value[symmetric + k][i] = static_cast<float>(strain[k]);
           value[2 * symmetric + k][i] = static_cast<float>(strain[k]) * motion.strain[i];
         }
@@ -123,7 +123,7 @@ void EddyViscosity::find_static(const ResolvedMotion& motion) {
     if (mixed) {
       std::array<double, d> u, filtered;
       for (int a = 0; a < d; ++a) {
-        u[a] = (*motion.particles.velocity[a])[i];
+        u[a] = motion.velocity[static_cast<std::size_t>(a)][i];
         filtered[a] = motion.filtered_velocity[static_cast<std::size_t>(a)][i];
       }
       const double energy = test_filter_energy<d, double>(u, filtered);

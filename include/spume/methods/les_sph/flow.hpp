@@ -7,10 +7,12 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "spume/methods/les_sph/features.hpp"
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/energy_guard.hpp"
+#include "spume/particles/force_potential.hpp"
 #include "spume/particles/moments.hpp"
 #include "spume/particles/projection_solver.hpp"
 #include "spume/particles/shift.hpp"
@@ -32,8 +34,12 @@ struct Flow {
   const Scene& scene;
   const Features features;
   const Resolution resolution;
+  // Of a body force that varies in space, if it has one.
+  const std::optional<ForcePotential> force_potential;
   const double largest_shift;  // coefficient of the shift at which it stirs a lattice instead of evening it out
   const int dimensions;
+
+  double weight = 0;  // of the liquid where it starts: sizes of gravity and of the body force, integral
 
   // --- State between steps: saved.
   double time = 0;
@@ -41,9 +47,11 @@ struct Flow {
   bool started = false;     // the first pressure has been found
   ParticleStore particles;  // and the fields of lifetime `state` of closures and bubbles
   Array<double>* pressure = nullptr;
-  Boundary boundary;   // positions and speed of the walls
-  EnergyGuard energy;  // what the flow may hold
-  Speeds speeds;       // of the particles
+  FloatVectorField acceleration{};  // Du/Dt at the end of the last step; null without centring
+  Boundary boundary;                // positions and speed of the walls
+  EnergyGuard energy;               // what the flow may hold
+  double work = 0;                  // of forces.body and of gravity along periodic axes since the start
+  Speeds speeds;                    // of the particles
   double max_eddy_viscosity = 0;
   double max_divergence = 0;      // of u*
   double dissipation = 0;         // integral of rho (nu + nu_t) |S|^2
@@ -58,7 +66,7 @@ struct Flow {
   std::unique_ptr<Shift> shift;               // null: no shifting
   VectorField intermediate_position{};        // r*
   Array<double>* reduced_pressure = nullptr;  // q = p / rho + potential
-  Array<double>* potential = nullptr;         // -a . r*, null without uniform acceleration
+  Array<double>* potential = nullptr;         // of the accelerations that have one, at r*; null without forces
   Array<float>* strain = nullptr;             // |S| = sqrt(2 S:S)
   Vec3 uniform_acceleration{};                // along axes that are not periodic: part of the potential
   Vec3 periodic_acceleration{};               // along periodic axes: added to the velocity
@@ -75,8 +83,10 @@ struct Flow {
   FloatVectorScratch filtered_velocity;  // Shepard filter of u
   FloatVectorScratch shift_velocity;     // what the shift adds to the velocity
   FloatVectorScratch viscous_acceleration;
+  VectorScratch advecting_velocity;     // u^{n+1/2}, which moves the particles
+  FloatVectorScratch varying_force;     // the body force at r*, where it varies in space and has a potential
   VectorScratch intermediate_velocity;  // u*
-  VectorScratch next_velocity;          // u^{n+1}
+  VectorScratch next_velocity;          // u^{n+3/2}; without centring u^{n+1}
   Array<double> divergence;             // of u*; then what the pressure has to remove
   Array<float> potential_laplacian;     // -lap of the potential by the sums of the matrix
   PressureRows rows;
@@ -91,6 +101,7 @@ struct Flow {
   double viscosity() const { return scene.fluid.kinematic_viscosity; }
   double particle_mass() const { return density() * particles.volume; }
   double potential_at(const Vec3& r) const;  // -a . (r - origin)
+  LocalAcceleration acceleration_in_potential() const { return {uniform_acceleration, &varying_force}; }
   double potential_of(std::size_t i) const { return potential == nullptr ? 0.0 : (*potential)[i]; }
   // Null without shifting, and without a closure.
   FloatVectorField displacement_by_shift() const { return shift == nullptr ? FloatVectorField{} : shift->displacement; }
@@ -105,9 +116,10 @@ struct Flow {
 
   // The stages, in the order of step.cpp. Numbers refer to King et al., section 3.3.
   void move_to_intermediate_position(double dt);  // (i)
-  void find_neighbours(double dt);                // (ii)
-  void compute_shift();                           // (iii)
-  void differentiate_velocity(bool first);        // (v)
+  void find_advecting_velocity(double dt);
+  void find_neighbours(double dt);          // (ii)
+  void compute_shift();                     // (iii)
+  void differentiate_velocity(bool first);  // (v)
   void find_shift_curvature();
   void find_eddy_viscosity(double dt);
   // Gravity and a uniform body force at time t, along axes without periodicity and along the others. Throws
@@ -119,20 +131,28 @@ struct Flow {
   void find_divergence(double dt);
   void centre_divergence(double dt);
   void relax_density(double dt);
+  void find_first_forces();
   void set_first_source();
   void set_matrix();
   void prepare_solver();
   void solve_pressure();        // (x)
-  void solve_first_pressure();  // lap p = -tr(grad u . grad u)
+  void solve_first_pressure();  // lap p = div F - tr(grad u . grad u)
+  void set_first_acceleration();
   void project_velocity(double dt);
   void accept(double dt);  // (xi)
 
-  EnergyBalance energy_balance() const;
+  // Of a step dt that starts from the present state; the work of its forces where `dt` is not zero.
+  EnergyBalance energy_balance(double dt) const;
   void find_extremes();  // largest speeds and eddy viscosity of the present state
 
  private:
+  // u^{n+1/2} = u^n + dt/2 Du/Dt; without centring u^n.
+  Vec3 advecting_velocity_of(std::size_t i, double dt) const;
   void add_body_force(double t, double dt);
-  void add_gradient_trace(double factor);
+  void add_force_potential(double t);
+  double work_of_step(double dt) const;
+  double weight_at_start() const;
+  void add_gradient_trace(const std::array<const double*, 3>& velocity, double factor);
   double regularisation() const;
   double row_scale(std::size_t i) const;
   void set_weights();

@@ -56,6 +56,7 @@ struct Carrier {
   const MomentFields& moments;
   FreeSurface* surface = nullptr;            // null: the liquid has none
   const VectorField& intermediate_position;  // r*
+  const VectorScratch& velocity;             // that moves the liquid in this step
   const std::array<Array<float>, 9>& velocity_gradient;
   const FloatVectorScratch& filtered_velocity;
   bool filtered = false;                         // whether there is such

@@ -17,7 +17,8 @@ struct ResolvedMotion {
   const ParticleSizes& sizes;
   const Array<float>& strain;                            // |S| = sqrt(2 S:S)
   const std::array<Array<float>, 9>& velocity_gradient;  // of the dynamic closures
-  const FloatVectorScratch& filtered_velocity;           // of all but Smagorinsky's
+  const VectorScratch& velocity;
+  const FloatVectorScratch& filtered_velocity;  // of all but Smagorinsky's
   double kinematic_viscosity = 0;
 };
 
