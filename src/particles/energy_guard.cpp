@@ -52,19 +52,12 @@ double EnergyGuard::after_step(const EnergyBalance& balance, const ParticleStore
   const int d = particles.dimensions;
   const std::size_t n = particles.size();
   const double mass = balance.particle_mass, all = mass * static_cast<double>(n);
-  double next_supply = supply, strength2 = 0;
-  for (int axis = 0; axis < d; ++axis) {
-    const double total = balance.acceleration[axis];
-    strength2 += total * total;
-    const double beside = total - (domain_.periodic(axis) ? 0.0 : balance.gravity[axis]);
-    if (beside != 0)
-      next_supply += dt * mass * beside * parallel_sum(n, [&](std::size_t i) { return velocity[axis][i]; });
-  }
+  const double next_supply = supply + balance.work;
   const double kinetic = kinetic_energy(balance, particles, velocity);
   const double available = next_supply - potential_energy(balance, at, n);
   // Particles rearrange within a spacing; float sums leave 1e-6 of a smoothing length in a step.
   const double noise = 1e-6 * resolution_.smoothing_length / dt;
-  const double strength = std::sqrt(strength2);
+  const double strength = balance.largest_acceleration;
   const double floor = all * (strength * resolution_.spacing + noise * noise +
                               unfollowed_supply(balance, domain_, strength, wall_speed));
   if (kinetic <= 2 * std::max(available, 0.0) + floor) return next_supply;

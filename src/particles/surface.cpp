@@ -109,8 +109,8 @@ Vec3 FreeSurface::moment_of(const MomentFields& moments, const ParticleSizes& si
   return m;
 }
 
-SurfaceRow FreeSurface::row(const MomentFields& moments, const ParticleSizes& sizes, const Vec3& uniform_acceleration,
-                            std::size_t k) const {
+SurfaceRow FreeSurface::row(const MomentFields& moments, const ParticleSizes& sizes,
+                            const LocalAcceleration& acceleration, std::size_t k) const {
   const auto i = static_cast<std::size_t>(near_surface[k]);
   const double outside = 1 - double{interior_weight[i]};
   const double s = depth[k];
@@ -122,12 +122,12 @@ SurfaceRow FreeSurface::row(const MomentFields& moments, const ParticleSizes& si
   const double missing = std::max(0.0, full - double{moments.laplacian_diagonal[i]});
   SurfaceRow row;
   row.laplacian_diagonal = outside * std::max(2 * size / s, missing);
-  if (size > 0) row.hydrostatic_pressure = s * dot(uniform_acceleration, m) / size;
+  if (size > 0) row.hydrostatic_pressure = s * dot(acceleration.at(i), m) / size;
   return row;
 }
 
 void FreeSurface::complete_gradient(const MomentFields& moments, const ParticleSizes& sizes,
-                                    const Vec3& uniform_acceleration, const Array<double>& reduced_pressure,
+                                    const LocalAcceleration& acceleration, const Array<double>& reduced_pressure,
                                     const Array<double>* potential, FloatVectorScratch& gradient_of_q) const {
   const int d = resolution_.dimensions;
   parallel_for(near_surface.size(), [&](std::size_t k) {
@@ -138,7 +138,7 @@ void FreeSurface::complete_gradient(const MomentFields& moments, const ParticleS
     const double outside = 1 - double{interior_weight[i]};
     const double s = depth[k];
     const double height = potential == nullptr ? 0.0 : (*potential)[i];
-    const double excess = reduced_pressure[i] - height - s * dot(uniform_acceleration, m) / size;
+    const double excess = reduced_pressure[i] - height - s * dot(acceleration.at(i), m) / size;
     // L' by Sherman-Morrison: with v = L m and c = 2 s / |m|, L' x = L x - c v (v . x) / (1 + c m . v).
     Vec3 v{}, gradient{};
     int slot = 0;

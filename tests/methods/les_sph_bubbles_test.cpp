@@ -218,9 +218,13 @@ TEST(Bubbles, TakeTheirVolumeFromTheLiquid) {
 TEST(Bubbles, AndLiquidSeeEachOtherThroughTheKernel) {
   Simulation run(periodic_cube, {"liquid.0.velocity=[\"sin(2*pi*z/1.2)\",\"cos(2*pi*x/1.2)\",\"1\"]"});
   run.steps(4, 0.01);
-  const State before = run.state();
-  run.steps(1, 0.01);
   const les_sph::Flow& flow = run.method.flow();
+  std::vector<Vec3> moving(flow.size());  // the velocity that moves the liquid in the next step
+  for (std::size_t i = 0; i < flow.size(); ++i)
+    for (std::size_t a = 0; a < 3; ++a)
+      moving[static_cast<std::size_t>((*flow.particles.identifier)[i])][a] =
+          (*flow.particles.velocity[a])[i] + 0.005 * (*flow.acceleration[a])[i];
+  run.steps(1, 0.01);
   const auto& population = bubbles_of(run).population();
   const double period = 1.2;
   const auto offset = [&](double from, double to) {
@@ -249,7 +253,7 @@ TEST(Bubbles, AndLiquidSeeEachOtherThroughTheKernel) {
       const double w = weight(i, b) * flow.sizes.volume_ratio[i];
       weights += w;
       for (std::size_t a = 0; a < 3; ++a)
-        seen[a] += w * before.velocity[static_cast<std::size_t>((*flow.particles.identifier)[i])][a];
+        seen[a] += w * moving[static_cast<std::size_t>((*flow.particles.identifier)[i])][a];
     }
     double slip2 = 0;
     for (std::size_t a = 0; a < 3; ++a) slip2 += std::pow(seen[a] / weights - (*population.velocity[a])[b], 2);

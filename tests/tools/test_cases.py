@@ -228,6 +228,49 @@ class StillWater(CaseTest):
         self.assertAlmostEqual(measured["mass_error"], 4e-6)
 
 
+class CentralForceDrop(CaseTest):
+    def errors(self, stretch=0.0, gain=0.0, strain=0.5):
+        folder, module = self.run_of("central_force_drop")
+        text = (folder / "case.toml").read_text().replace("strain = 0.5", f"strain = {strain}")
+        (folder / "case.toml").write_text(text)
+        grid = lattice([-1, -1], [1, 1], 0.04)
+        disc = grid[np.sum(grid**2, axis=1) < 1]
+        times = np.linspace(0, 9, 46)
+        a, sigma = module.exact(times, strain)
+
+        def position(t):
+            k = int(np.argmin(np.abs(times - t)))
+            return disc * [a[k] * (1 + stretch * t / 9), 1 / a[k]]
+
+        kinetic = sigma**2 * (a**2 + 1 / a**2) / 8
+        potential = (a**2 + 1 / a**2) / 8
+        write_table(folder / "series.csv", series_of(times, mass=1, kinetic_energy=kinetic,
+                                                     work=potential[0] - potential - gain * times / 9 * kinetic.max()))
+        write_snapshots(folder / "fluid.vtkhdf", times, position, {"velocity": lambda p, t: 0 * p})
+        return module.measure({"standard": Results(folder)})
+
+    def test_exact_solution_keeps_its_energy_area_and_semi_axes(self):
+        # The energy of the formulas is constant: a check of the equations themselves. Positions are floats.
+        for strain in (0.3, 0.5, 1.0):
+            measured = self.errors(strain=strain)
+            self.assertLess(measured["energy_error"], 1e-9)
+            self.assertLess(measured["semi_axis_error"], 1e-6)
+            self.assertLess(measured["area_error"], 1e-6)
+
+    def test_a_drop_that_grows_or_gains_energy_is_seen(self):
+        measured = self.errors(stretch=0.02)
+        self.assertAlmostEqual(measured["area_error"], 0.02, places=6)
+        self.assertGreater(measured["semi_axis_error"], 0.01)
+        self.assertAlmostEqual(self.errors(gain=0.13)["energy_error"], 0.13, places=9)
+
+    def test_two_periods_are_those_of_the_case(self):
+        module = load_measure(CASES / "central_force_drop")
+        case = tomllib.loads((CASES / "central_force_drop" / "case.toml").read_text())
+        a, sigma = module.exact(np.array([0, case["time"]["end"] / 2, case["time"]["end"]]), case["constants"]["strain"])
+        np.testing.assert_allclose(a, 1, atol=1e-7)
+        np.testing.assert_allclose(sigma, case["constants"]["strain"], atol=1e-7)
+
+
 class Cavity(CaseTest):
     def test_table_interpolated_onto_the_lines_has_a_small_error(self):
         folder, module = self.run_of("lid_driven_cavity")

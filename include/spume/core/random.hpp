@@ -21,6 +21,7 @@ enum class RandomPurpose : std::uint32_t {
   bubble_breakup = 11,
   bubble_entrainment = 12,
   bubble_source = 13,
+  force_sample = 14,
   test = 100
 };
 

@@ -3,10 +3,9 @@
 // steps, finite to the end, and reports success.
 //
 // The energy that a flow may hold is the supply: kinetic, potential and stored in the pressure at the start, and the
-// work of uniform forces since. A step is refused if the kinetic energy of its velocities is more than twice the supply
-// less the present potential energy. A consistent scheme stays below once the supply; what an instability makes passes
-// twice soon. Bubbles and moving walls add what they may give at most; with forces that vary in space there is no
-// limit.
+// work of the other forces since. A step is refused if the kinetic energy of its velocities is more than twice the
+// supply less the present potential energy. A consistent scheme stays below once the supply; what an instability makes
+// passes twice soon. Bubbles and moving walls add what they may give at most.
 #pragma once
 
 #include "spume/particles/boundary.hpp"
@@ -16,9 +15,9 @@ namespace spume {
 struct EnergyBalance {
   double particle_mass = 0;
   Vec3 gravity{};
-  // Of the step: what acts on all particles, gravity included.
-  Vec3 acceleration{};
-  bool unfollowed_work = false;  // bubbles or moving walls do work that is not followed
+  double largest_acceleration = 0;  // that acts on a particle in the step, gravity included
+  double work = 0;                  // of the step: of all forces but gravity across axes with sides
+  bool unfollowed_work = false;     // bubbles or moving walls do work that is not followed
 };
 
 class EnergyGuard {

@@ -3,8 +3,8 @@
 //
 // p = 0 holds on the surface itself, a depth s above a particle i near it along the outward normal n = -m / |m|, with
 // m = sum_j g_ij d_ij (see sph_operators.hpp). The liquid is mirrored there with the opposite pressure, which gives,
-// weighted with 1 - b (b: interior weight, 0 at surface particles, 1 inside) and for q = p + potential with uniform
-// acceleration a,
+// weighted with 1 - b (b: interior weight, 0 at surface particles, 1 inside) and for q = p + potential of the
+// acceleration a at i,
 //
 //   lap:    row i gains  E (p_i - p0_i),  E = 2 |m| / s,   p0_i = -s a . n  the hydrostatic pressure at depth s,
 //   grad:   L' (sum_j g (q_j - q_i) d + 2 (p_i - p0_i) m),   L' = (M + (2 s / |m|) m m^T)^-1,  M = sum_j g d d^T.
@@ -31,6 +31,21 @@
 #include "spume/scene/solid_union.hpp"
 
 namespace spume {
+
+// The acceleration whose potential is part of q: a uniform one and, where a force varies in space, that of a particle.
+struct LocalAcceleration {
+  LocalAcceleration(const Vec3& uniform_part, const FloatVectorScratch* beside = nullptr)  // NOLINT: most are uniform
+      : uniform(uniform_part), varying(beside) {}
+  Vec3 at(std::size_t i) const {
+    Vec3 a = uniform;
+    if (varying == nullptr) return a;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (!(*varying)[axis].empty()) a[axis] += (*varying)[axis][i];
+    return a;
+  }
+  Vec3 uniform;
+  const FloatVectorScratch* varying;
+};
 
 struct SurfaceRow {
   double laplacian_diagonal = 0;    // added to the diagonal of the row
@@ -67,10 +82,10 @@ class FreeSurface {
   }
 
   // The row of the k-th particle near the surface.
-  SurfaceRow row(const MomentFields& moments, const ParticleSizes& sizes, const Vec3& uniform_acceleration,
+  SurfaceRow row(const MomentFields& moments, const ParticleSizes& sizes, const LocalAcceleration& acceleration,
                  std::size_t k) const;
   // Adds to the corrected gradients of q what mirrored liquid above the surface contributes. `potential`: null without.
-  void complete_gradient(const MomentFields& moments, const ParticleSizes& sizes, const Vec3& uniform_acceleration,
+  void complete_gradient(const MomentFields& moments, const ParticleSizes& sizes, const LocalAcceleration& acceleration,
                          const Array<double>& reduced_pressure, const Array<double>* potential,
                          FloatVectorScratch& gradient) const;
 

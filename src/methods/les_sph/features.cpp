@@ -72,6 +72,9 @@ Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.dom
   body_force = scene.body_force.has_value();
   uniform_body_force = body_force && uniform(*scene.body_force, scene.domain);
   const Vec3& gravity = scene.fluid.gravity;
+  working_forces = body_force;
+  for (int axis = 0; axis < scene.domain.dimensions; ++axis)
+    working_forces = working_forces || (scene.domain.periodic(axis) && gravity[axis] != 0);
   potential = body_force || std::any_of(gravity.begin(), gravity.end(), [](double g) { return g != 0; });
 }
 

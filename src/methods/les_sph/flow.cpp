@@ -2,6 +2,8 @@
 // What exists for a scene, and quantities of the present state.
 #include "spume/methods/les_sph/flow.hpp"
 
+#include <cmath>
+
 #include "spume/core/parallel.hpp"
 
 namespace spume::les_sph {
@@ -25,6 +27,9 @@ Flow::Flow(const LoadedCase& loaded_case)
       scene(loaded_case.scene),
       features(loaded_case),
       resolution(scene.domain.dimensions, scene.spacing, options.resolution.kernel, options.resolution.smoothing_ratio),
+      force_potential(features.body_force && !features.uniform_body_force
+                          ? ForcePotential::find(*scene.body_force, scene.domain, scene.spacing, options.time.end)
+                          : std::nullopt),
       largest_shift(largest_stable_shift(scene.domain.dimensions, options.resolution.kernel,
                                          options.resolution.smoothing_ratio,
                                          features.shifting && options.get<ShiftingOptions>().remove_drift)),
@@ -44,6 +49,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       solver(boundary, solver_options(options)) {
   FieldSet& fields = particles.fields;
   pressure = &fields.add<double>("pressure", Lifetime::state);
+  if (options.get<SchemeOptions>().centred) particles.add_vector(acceleration, "acceleration", Lifetime::state);
   particles.add_vector(intermediate_position, "intermediate_position", Lifetime::sorted);
   reduced_pressure = &fields.add<double>("reduced_pressure", Lifetime::result);
   if (features.potential) potential = &fields.add<double>("potential", Lifetime::result);
@@ -66,6 +72,7 @@ Flow::Flow(const LoadedCase& loaded_case)
                                    .identifier = *particles.identifier,
                                    .position = constant(particles.position),
                                    .velocity = constant(particles.velocity),
+                                   .advecting_velocity = advecting_velocity,
                                    .intermediate_position = constant(intermediate_position),
                                    .material_acceleration = constant(material_acceleration),
                                    .velocity_gradient = velocity_gradient,
@@ -82,6 +89,7 @@ Flow::Flow(const LoadedCase& loaded_case)
                                                         options.get<BubbleSources>());
   }
   find_extremes();
+  weight = weight_at_start();
 }
 
 double Flow::potential_at(const Vec3& r) const {
@@ -96,6 +104,16 @@ double Flow::stored_energy() const {
   if (!(c > 0)) return 0;
   return particles.volume / (2 * density() * c * c) *
          parallel_sum(size(), [&](std::size_t i) { return (*pressure)[i] * (*pressure)[i]; });
+}
+
+double Flow::weight_at_start() const {
+  double weight = 0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    const Vec3 r = vector_at(particles.position, dimensions, i);
+    const Vec3 force = features.body_force ? (*scene.body_force)(r, 0) : Vec3{};
+    for (int axis = 0; axis < dimensions; ++axis) weight += std::abs(scene.fluid.gravity[axis]) + std::abs(force[axis]);
+  }
+  return particle_mass() * weight;
 }
 
 double Flow::mass_in_domain() const {
@@ -140,22 +158,63 @@ double Flow::leased_bytes() const {
   const auto add = [&sum](const auto&... arrays) { ((sum += arrays.bytes()), ...); };
   for (const auto& array : velocity_gradient) add(array);
   for (const auto* vector :
-       {&filtered_velocity, &shift_velocity, &viscous_acceleration, &moments.concentration_gradient})
+       {&filtered_velocity, &shift_velocity, &viscous_acceleration, &varying_force, &moments.concentration_gradient})
     for (const auto& array : *vector) add(array);
-  for (const auto* vector : {&intermediate_velocity, &next_velocity})
+  for (const auto* vector : {&advecting_velocity, &intermediate_velocity, &next_velocity})
     for (const auto& array : *vector) add(array);
   add(gradient_trace, divergence, first_source, potential_laplacian, moments.laplacian_diagonal, moments.kernel_sum,
       rows.diagonal_shift, rows.diagonal, rows.weight, rows.row, rows.right_hand_side);
   return sum;
 }
 
-EnergyBalance Flow::energy_balance() const {
-  EnergyBalance balance{.particle_mass = particle_mass(),
-                        .gravity = scene.fluid.gravity,
-                        .unfollowed_work = features.bubbles || features.moving_walls};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    balance.acceleration[axis] = uniform_acceleration[axis] + periodic_acceleration[axis];
-  return balance;
+EnergyBalance Flow::energy_balance(double dt) const {
+  double strength2 = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double a = uniform_acceleration[axis] + periodic_acceleration[axis];
+    strength2 += a * a;
+  }
+  return {.particle_mass = particle_mass(),
+          .gravity = scene.fluid.gravity,
+          .largest_acceleration = std::sqrt(strength2) + next_largest_body_force,
+          .work = features.working_forces && dt > 0 ? work_of_step(dt) : 0,
+          .unfollowed_work = features.bubbles || features.moving_walls};
+}
+
+// By the midpoint rule along the way of each particle, which its shift is a part of: exact for forces that are linear
+// in space.
+double Flow::work_of_step(double dt) const {
+  Vec3 uniform{};
+  for (int axis = 0; axis < dimensions; ++axis)
+    if (scene.domain.periodic(axis)) uniform[axis] = scene.fluid.gravity[axis];
+  const double t = time + dt / 2;
+  if (features.uniform_body_force) {
+    const Vec3 force = (*scene.body_force)(arrangement.origin, t);
+    for (int axis = 0; axis < dimensions; ++axis) uniform[axis] += force[axis];
+  }
+  const bool varying = features.body_force && !features.uniform_body_force;
+  return particle_mass() * parallel_reduce(
+                               size(), 0.0,
+                               [&](std::size_t first, std::size_t last) {
+                                 const VectorExpression force =
+                                     varying ? scene.body_force->clone() : VectorExpression();
+                                 double sum = 0;
+                                 for (std::size_t i = first; i < last; ++i) {
+                                   const Vec3 u = advecting_velocity_of(i, dt);
+                                   Vec3 way{}, middle{}, acting = uniform;
+                                   for (int axis = 0; axis < dimensions; ++axis) {
+                                     const double shifted = shift == nullptr ? 0.0 : (*shift->displacement[axis])[i];
+                                     way[axis] = dt * u[axis] + shifted;
+                                     middle[axis] = (*intermediate_position[axis])[i] + shifted - way[axis] / 2;
+                                   }
+                                   if (varying) {
+                                     const Vec3 f = force(middle, t);
+                                     for (std::size_t axis = 0; axis < 3; ++axis) acting[axis] += f[axis];
+                                   }
+                                   for (std::size_t axis = 0; axis < 3; ++axis) sum += acting[axis] * way[axis];
+                                 }
+                                 return sum;
+                               },
+                               [](double a, double b) { return a + b; });
 }
 
 void Flow::find_extremes() {

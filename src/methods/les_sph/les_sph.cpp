@@ -85,7 +85,7 @@ void LesSph::start(Ledger& ledger) {
     plan_.run_start(static_cast<double>(flow_.size()), ledger);
     flow_.boundary.accept();
     flow_.volume = flow_.particles.volume * static_cast<double>(flow_.size());
-    flow_.energy.start(flow_.energy_balance(), flow_.particles, flow_.stored_energy());
+    flow_.energy.start(flow_.energy_balance(0), flow_.particles, flow_.stored_energy());
     if (!flow_.features.velocity_gradient) flow_.strain->release();
   }
   flow_.started = true;
@@ -156,6 +156,7 @@ void LesSph::declare_saved() {
       .add(flow_.max_divergence)
       .add(flow_.dissipation)
       .add(flow_.energy.supply)
+      .add(flow_.work)
       .add(flow_.boundary.wall_speed)
       .add(flow_.largest_body_force)
       .add(flow_.last_steps[0])

@@ -43,10 +43,10 @@ void Flow::find_divergence(double dt) {
 }
 
 // Adds `factor` times tr(grad u . grad u), minus the rate of change of div u along frozen velocities, to `sum`.
-void Flow::add_gradient_trace(double factor, Array<double>& sum) {
+void Flow::add_gradient_trace(const std::array<const double*, 3>& velocity, double factor, Array<double>& sum) {
   if (features.no_slip) {
     ScratchArray<float> trace(particles.scratch(), size());
-    gradient_trace_sweep(arrangement.context, arrangement.packed, read(particles.velocity), boundary.volume_rule(),
+    gradient_trace_sweep(arrangement.context, arrangement.packed, velocity, boundary.volume_rule(),
                          moments.read_correction(), trace.data());
     parallel_for(size(), [&](std::size_t i) { sum[i] += factor * trace[i]; });
     return;
@@ -59,7 +59,7 @@ void Flow::add_gradient_trace(double factor, Array<double>& sum) {
 // div u = (div u here) - dt/2 tr(grad u . grad u). The step is then of second order, and a projection does not cost the
 // energy dt |grad p|^2 / 2 per time.
 void Flow::centre_divergence(double dt) {
-  add_gradient_trace(-0.5 * dt, divergence);
+  add_gradient_trace(read(advecting_velocity), -0.5 * dt, divergence);
 }
 
 void Flow::relax_density(double dt) {
@@ -81,16 +81,15 @@ void Flow::set_first_source() {
   if (surface != nullptr) surface->release_smoothed_normals(particles);
   scratch.release(velocity_gradient);
   scratch.release(filtered_velocity);
-  if (potential != nullptr) {
-    scratch.lease(potential_laplacian, n);
-    ScratchArray<double> initial_divergence(scratch, n);  // found with it, and not needed
-    divergence_sweep(arrangement.context, arrangement.packed, read(particles.velocity), boundary.volume_rule(),
-                     moments.read_correction(), potential->data(), initial_divergence.data(),
-                     potential_laplacian.data());
-  }
   scratch.lease(first_source, n);
-  parallel_for(n, [&](std::size_t i) { first_source[i] = 0; });
-  add_gradient_trace(1, first_source);
+  if (potential != nullptr) scratch.lease(potential_laplacian, n);
+  // Walls are taken to move steadily: the images of an acceleration have no part of their own.
+  const VelocityImageRule steady{boundary.volume_rule().sign, {}};
+  divergence_sweep(arrangement.context, arrangement.packed, read(intermediate_velocity), steady,
+                   moments.read_correction(), potential == nullptr ? nullptr : potential->data(), first_source.data(),
+                   potential == nullptr ? nullptr : potential_laplacian.data());
+  parallel_for(n, [&](std::size_t i) { first_source[i] = -first_source[i]; });
+  add_gradient_trace(read(particles.velocity), 1, first_source);
 }
 
 // A ray through the edge of a solid meets one of its faces, which is not mutual, and on a lattice some do: the matrix
@@ -119,6 +118,7 @@ void Flow::set_weights() {
 void Flow::set_matrix() {
   const std::size_t n = size();
   ScratchPool& scratch = particles.scratch();
+  scratch.release(advecting_velocity);
   if (sizes.variable) set_weights();
   for (auto* array : {&rows.diagonal_shift, &rows.diagonal}) scratch.lease(*array, n);
   rows.pressure_fixed = surface != nullptr ? &surface->pressure_fixed : nullptr;
@@ -135,7 +135,7 @@ void Flow::set_matrix() {
     surface_source.resize(surface->near_surface.size());
     parallel_for(surface->near_surface.size(), [&](std::size_t k) {
       const auto i = static_cast<std::size_t>(surface->near_surface[k]);
-      const SurfaceRow row = surface->row(moments, sizes, uniform_acceleration, k);
+      const SurfaceRow row = surface->row(moments, sizes, acceleration_in_potential(), k);
       rows.diagonal_shift[i] += static_cast<float>(row.laplacian_diagonal);
       rows.diagonal[i] += static_cast<float>(volume * row.laplacian_diagonal);
       surface_source[k] = row.laplacian_diagonal * row.hydrostatic_pressure;
@@ -221,6 +221,9 @@ void Flow::solve_first_pressure() {
   parallel_for(size(), [&](std::size_t i) { (*reduced_pressure)[i] = potential_of(i); });
   solve("the first pressure solve");
   parallel_for(size(), [&](std::size_t i) { (*pressure)[i] = density() * ((*reduced_pressure)[i] - potential_of(i)); });
+  if (acceleration[0] != nullptr) return;  // else the first acceleration reads these
+  particles.scratch().release(intermediate_velocity);
+  particles.scratch().release(varying_force);
 }
 
 }  // namespace spume::les_sph

@@ -37,7 +37,7 @@ std::string events_of(const LoadedCase& loaded) {
 
 }  // namespace
 
-Reasons::Reasons(const LoadedCase& loaded, const Features& has) {
+Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_potential) {
   const Case& options = loaded.options;
   const std::string no_bubbles = "no section [bubbles]";
   bubbles = has.bubbles ? "positions, volume fraction, sizes of particles" : no_bubbles;
@@ -58,11 +58,14 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has) {
   forces = !has.potential           ? "neither gravity nor forces.body"
            : !has.body_force        ? "gravity"
            : has.uniform_body_force ? "gravity and forces.body, uniform"
-                                    : "gravity; forces.body varies in space";
+           : force_has_potential    ? "gravity, and forces.body by its potential"
+                                    : "gravity; forces.body has no potential";
   viscosity = has.viscous_stress ? "div(2 nu S)" : has.viscosity ? "div(nu grad u)" : "inviscid";
   divergence = loaded.scene.fluid.sound_speed > 0 ? "right-hand side of the Helmholtz equation"
                                                   : "right-hand side of the Poisson equation";
-  centring = options.get<SchemeOptions>().centred ? "free of divergence half a step ahead" : "time.centred = false";
+  const bool centred = options.get<SchemeOptions>().centred;
+  advection = centred ? "velocity half a step ahead" : "time.centred = false: velocity of the step before";
+  centring = centred ? "free of divergence half a step ahead" : "time.centred = false";
   relaxation = has.density_relaxation ? "the pressure evens out the number density"
                                       : "pressure.density_relaxation = " + shortest(never_relaxed);
   preconditioner = options.get<PressureOptions>().preconditioner == PreconditionerKind::multigrid

@@ -11,7 +11,7 @@ using enum StagePart;
 Plan make_plan(Flow& f) {
   Plan plan;
   const Features& has = f.features;
-  const Reasons why(f.loaded, has);
+  const Reasons why(f.loaded, has, f.force_potential.has_value());
   ParticleStore& p = f.particles;
   Arrangement& arrangement = f.arrangement;
   MomentFields& moments = f.moments;
@@ -24,6 +24,8 @@ Plan make_plan(Flow& f) {
   add(both, "move", true, "particles to their intermediate positions",
       [&](StageRun& run) { f.move_to_intermediate_position(run.dt); }, {p.position, p.velocity}, {r});
   add(both, "sort", true, "particles in cell order", [&](StageRun&) { arrangement.sort(p, r); }, {}, {kept.sorted});
+  add(step, "advecting velocity", true, why.advection, [&](StageRun& run) { f.find_advecting_velocity(run.dt); },
+      {p.velocity, f.acceleration}, {f.advecting_velocity});
   add(
       start, "bubble clouds", has.bubbles, why.bubbles, [&](StageRun&) { f.place_clouds(); }, {r},
       living({kept.bubbles, kept.images, f.volume_fraction(), kept.sizes}));
@@ -59,7 +61,7 @@ Plan make_plan(Flow& f) {
       [&](StageRun&) { f.differentiate_velocity(true); }, {p.velocity, moments.correction}, gradients, true);
   add(
       step, "gradients", has.velocity_gradient, why.gradients, [&](StageRun&) { f.differentiate_velocity(false); },
-      {p.velocity, moments.correction, f.displacement_by_shift()}, gradients, true);
+      {f.advecting_velocity, moments.correction, f.displacement_by_shift()}, gradients, true);
   add(
       step, "shift curvature", has.shift_curvature, why.curvature, [&](StageRun&) { f.find_shift_curvature(); },
       {f.velocity_gradient, f.displacement_by_shift(), moments.correction}, {f.shift_velocity}, true);
@@ -69,17 +71,19 @@ Plan make_plan(Flow& f) {
   add(
       step, "bubble forces", has.bubbles, why.integrator,
       [&](StageRun& run) { f.bubbles->exchange_momentum(run.dt, arrangement.packed); },
-      living({kept.bubbles, kept.bubble_images, p.velocity, f.material_acceleration, f.velocity_gradient,
+      living({kept.bubbles, kept.bubble_images, f.advecting_velocity, f.material_acceleration, f.velocity_gradient,
               f.filtered_velocity, f.strain, f.eddy_viscosity(), moments.normal, kept.sizes}),
       living({kept.bubbles, f.bubble_exchange(), f.bubble_viscosity()}));
   // (viii) u* from forces and viscosity
   add(both, "forces", has.potential, why.forces, [&](StageRun& run) { f.find_potential(f.time + run.dt); }, {r},
-      {f.potential});
+      {f.potential, f.varying_force});
   add(
-      step, "viscosity", has.viscosity, why.viscosity, [&](StageRun&) { f.find_viscous_acceleration(); },
-      {p.velocity, moments.divergence_of_position, f.eddy_viscosity()}, {f.viscous_acceleration}, true);
+      both, "viscosity", has.viscosity, why.viscosity, [&](StageRun&) { f.find_viscous_acceleration(); },
+      {f.advecting_velocity, moments.divergence_of_position, f.eddy_viscosity()}, {f.viscous_acceleration}, true);
   add(step, "prediction", true, "velocity without pressure", [&](StageRun& run) { f.predict_velocity(run.dt); },
-      {p.velocity, f.viscous_acceleration}, {f.intermediate_velocity});
+      {f.advecting_velocity, f.viscous_acceleration}, {f.intermediate_velocity});
+  add(start, "first forces", true, "acceleration without pressure", [&](StageRun&) { f.find_first_forces(); },
+      {f.viscous_acceleration}, {f.intermediate_velocity});
   // (ix), (x) the pressure that makes the velocity at r^{n+1} free of divergence
   add(
       step, "divergence", true, why.divergence, [&](StageRun& run) { f.find_divergence(run.dt); },
@@ -90,9 +94,10 @@ Plan make_plan(Flow& f) {
       [&](StageRun& run) { f.relax_density(run.dt); }, {moments.kernel_sum, moments.divergence_of_position},
       {f.divergence});
   add(
-      start, "first source", true, "tr(grad u . grad u)", [&](StageRun&) { f.set_first_source(); },
-      {p.velocity, moments.correction, f.gradient_trace, f.potential}, {f.first_source, f.potential_laplacian},
-      has.potential || has.no_slip);
+      start, "first source", true, "tr(grad u . grad u) less the divergence of the forces",
+      [&](StageRun&) { f.set_first_source(); },
+      {f.intermediate_velocity, moments.correction, f.gradient_trace, f.potential},
+      {f.first_source, f.potential_laplacian}, true);
   add(both, "matrix", true, "rows and right-hand side", [&](StageRun&) { f.set_matrix(); },
       {moments.divergence_of_position, moments.laplacian_diagonal, f.divergence, f.first_source, f.pressure,
        f.potential},
@@ -106,10 +111,13 @@ Plan make_plan(Flow& f) {
   add(
       step, "projection", true, "pressure gradient", [&](StageRun& run) { f.project_velocity(run.dt); },
       {f.reduced_pressure, moments.correction, f.intermediate_velocity}, {f.next_velocity}, true);
+  add(
+      start, "first acceleration", f.acceleration[0] != nullptr, why.centring,
+      [&](StageRun&) { f.set_first_acceleration(); }, {f.reduced_pressure, moments.correction}, {f.acceleration}, true);
   // (xi) r^{n+1}, u^{n+1}
   add(step, "acceptance", true, "limits, energy, final positions", [&](StageRun& run) { f.accept(run.dt); },
       {f.next_velocity, r, f.displacement_by_shift(), f.shift_velocity, f.reduced_pressure, f.potential, f.strain},
-      {p.position, p.velocity, f.pressure});
+      {p.position, p.velocity, f.acceleration, f.pressure});
   add(
       step, "bubble events", has.bubbles, why.events, [&](StageRun& run) { f.bubbles->accept(run.dt); },
       living({kept.bubbles, f.sizes.volume_fraction}), living({kept.bubbles, f.volume_fraction()}));

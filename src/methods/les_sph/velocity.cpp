@@ -50,14 +50,29 @@ void refuse_unstable_diffusion(const Flow& flow, double dt) {
 
 }  // namespace
 
+Vec3 Flow::advecting_velocity_of(std::size_t i, double dt) const {
+  Vec3 u = vector_at(particles.velocity, dimensions, i);
+  if (acceleration[0] != nullptr)
+    for (int axis = 0; axis < dimensions; ++axis) u[axis] += 0.5 * dt * (*acceleration[axis])[i];
+  return u;
+}
+
 void Flow::move_to_intermediate_position(double dt) {
   boundary.advance(time, dt);
   parallel_for(size(), [&](std::size_t i) {
+    const Vec3 u = advecting_velocity_of(i, dt);
     Vec3 r{};
-    for (int axis = 0; axis < dimensions; ++axis)
-      r[axis] = (*particles.position[axis])[i] + dt * (*particles.velocity[axis])[i];
+    for (int axis = 0; axis < dimensions; ++axis) r[axis] = (*particles.position[axis])[i] + dt * u[axis];
     boundary.apply_walls(boundary.next_walls, r, nullptr);
     for (int axis = 0; axis < dimensions; ++axis) (*intermediate_position[axis])[i] = r[axis];
+  });
+}
+
+void Flow::find_advecting_velocity(double dt) {
+  particles.scratch().lease(advecting_velocity, dimensions, size());
+  parallel_for(size(), [&](std::size_t i) {
+    const Vec3 u = advecting_velocity_of(i, dt);
+    for (int axis = 0; axis < dimensions; ++axis) advecting_velocity[axis][i] = u[axis];
   });
 }
 
@@ -127,7 +142,8 @@ void Flow::differentiate_velocity(bool first) {
     out.displacement = read(shift->displacement);
     out.change = write(shift_velocity);
   }
-  velocity_gradient_sweep(arrangement.context, arrangement.packed, read(particles.velocity), boundary.velocity_rule(),
+  velocity_gradient_sweep(arrangement.context, arrangement.packed,
+                          first ? read(particles.velocity) : read(advecting_velocity), boundary.velocity_rule(),
                           moments.read_correction(), out);
 }
 
@@ -143,7 +159,7 @@ void Flow::find_eddy_viscosity(double dt) {
                  .images = boundary.image_map(arrangement.images),
                  .resolution = resolution,
                  .sizes = sizes,
-                 .velocity = read(particles.velocity),
+                 .velocity = read(advecting_velocity),
                  .strain = strain->data(),
                  .velocity_gradient = read(velocity_gradient),
                  .filtered_velocity = read(filtered_velocity),
@@ -169,6 +185,26 @@ void Flow::find_potential(double t) {
   find_uniform_acceleration(t);
   parallel_for(size(),
                [&](std::size_t i) { (*potential)[i] = potential_at(vector_at(intermediate_position, dimensions, i)); });
+  if (force_potential) add_force_potential(t);
+}
+
+void Flow::add_force_potential(double t) {
+  particles.scratch().lease(varying_force, dimensions, size());
+  next_largest_body_force = parallel_reduce(
+      size(), 0.0,
+      [&](std::size_t first, std::size_t last) {
+        const VectorExpression force = scene.body_force->clone();
+        double largest = 0;
+        for (std::size_t i = first; i < last; ++i) {
+          const Vec3 r = vector_at(intermediate_position, dimensions, i), f = force(r, t);
+          largest = larger_or_nan(largest, length_of(f));
+          (*potential)[i] += (*force_potential)(force, r, t);
+          for (int axis = 0; axis < dimensions; ++axis) varying_force[axis][i] = static_cast<float>(f[axis]);
+        }
+        return largest;
+      },
+      larger_or_nan);
+  if (!std::isfinite(next_largest_body_force)) refuse_body_force(*this, t);
 }
 
 void Flow::find_viscous_acceleration() {
@@ -179,8 +215,8 @@ void Flow::find_viscous_acceleration() {
   ScratchArray<float> diffusivity(particles.scratch(), size());
   parallel_for(size(), [&](std::size_t i) {
     const double div_r = std::max<double>((*moments.divergence_of_position)[i], least_divergence_of_position * bulk);
-    double eddy = eddy_viscosity_of(i);
-    if (sizes.variable) eddy += bubbles->viscosity()[i];
+    double eddy = started ? eddy_viscosity_of(i) : 0.0;  // the start knows none yet, of bubbles neither
+    if (sizes.variable && started) eddy += bubbles->viscosity()[i];
     const double alpha = sizes.alpha(i);
     // Backscatter is clipped at -nu, in float: what rounding leaves below zero would make harmonic means of two
     // diffusivities of opposite sign, which have no bound.
@@ -188,8 +224,8 @@ void Flow::find_viscous_acceleration() {
     diffusivity[i] = static_cast<float>(alpha * total * dimensions / div_r);
   });
   particles.scratch().lease(viscous_acceleration, dimensions, size());
-  viscous_sweep(arrangement.context, arrangement.packed, read(particles.velocity), boundary.velocity_rule(),
-                diffusivity.data(), write(viscous_acceleration), features.viscous_stress);
+  viscous_sweep(arrangement.context, arrangement.packed, started ? read(advecting_velocity) : read(particles.velocity),
+                boundary.velocity_rule(), diffusivity.data(), write(viscous_acceleration), features.viscous_stress);
 }
 
 void Flow::add_body_force(double t, double dt) {
@@ -217,14 +253,35 @@ void Flow::predict_velocity(double dt) {
     for (int axis = 0; axis < dimensions; ++axis) {
       double viscous = features.viscosity ? viscous_acceleration[axis][i] : 0.0;
       if (sizes.variable) viscous = viscous / sizes.alpha(i) + (*exchange[axis])[i];
-      intermediate_velocity[axis][i] = (*particles.velocity[axis])[i] + dt * (viscous + periodic_acceleration[axis]);
+      intermediate_velocity[axis][i] = advecting_velocity[axis][i] + dt * (viscous + periodic_acceleration[axis]);
     }
   });
-  if (features.body_force && !features.uniform_body_force) add_body_force(time + dt, dt);
+  if (features.body_force && !features.uniform_body_force && !force_potential) add_body_force(time + dt, dt);
   scratch.release(viscous_acceleration);
   // Closures and bubbles have read these.
   scratch.release(velocity_gradient);
   scratch.release(filtered_velocity);
+}
+
+// F, the acceleration without pressure, in the place of the intermediate velocity.
+void Flow::find_first_forces() {
+  particles.scratch().lease(intermediate_velocity, dimensions, size());
+  parallel_for(size(), [&](std::size_t i) {
+    for (int axis = 0; axis < dimensions; ++axis)
+      intermediate_velocity[axis][i] =
+          periodic_acceleration[axis] + (features.viscosity ? viscous_acceleration[axis][i] / sizes.alpha(i) : 0.0);
+  });
+  if (features.body_force && !features.uniform_body_force && !force_potential) add_body_force(time, 1);
+  particles.scratch().release(viscous_acceleration);
+}
+
+// F - grad p / rho of the first pressure.
+void Flow::set_first_acceleration() {
+  project_velocity(1);
+  parallel_for(size(), [&](std::size_t i) {
+    for (int axis = 0; axis < dimensions; ++axis) (*acceleration[axis])[i] = static_cast<float>(next_velocity[axis][i]);
+  });
+  particles.scratch().release(next_velocity);
 }
 
 void Flow::project_velocity(double dt) {
@@ -236,7 +293,8 @@ void Flow::project_velocity(double dt) {
   gradient_sweep(arrangement.context, arrangement.packed, reduced_pressure->data(), mean, moments.read_correction(),
                  write(gradient_of_q));
   if (surface != nullptr)
-    surface->complete_gradient(moments, sizes, uniform_acceleration, *reduced_pressure, potential, gradient_of_q);
+    surface->complete_gradient(moments, sizes, acceleration_in_potential(), *reduced_pressure, potential,
+                               gradient_of_q);
   for (std::size_t axis = 0; axis < 3; ++axis) next_velocity[axis].swap(intermediate_velocity[axis]);
   particles.scratch().release(intermediate_velocity);
   const NeighbourList& list = arrangement.list;
@@ -264,7 +322,8 @@ void Flow::project_velocity(double dt) {
           for (int axis = 0; axis < d; ++axis) seen[axis] += g * dr[axis] * slope;
         }
       });
-      for (int axis = 0; axis < dimensions; ++axis) gradient[axis] += -uniform_acceleration[axis] - seen[axis];
+      const Vec3 acting = acceleration_in_potential().at(i);
+      for (int axis = 0; axis < dimensions; ++axis) gradient[axis] += -acting[axis] - seen[axis];
     }
     // King (3.14b) with alpha du/dt: see physics/bubbles/coupling.hpp.
     if (bubbles != nullptr && bubbles->mixture_pressure())
@@ -272,21 +331,26 @@ void Flow::project_velocity(double dt) {
     for (int axis = 0; axis < dimensions; ++axis) next_velocity[axis][i] -= dt * gradient[axis];
   });
   particles.scratch().release(gradient_of_q);
+  particles.scratch().release(varying_force);
 }
 
 void Flow::accept(double dt) {
   const std::size_t n = size();
   refuse_long_strides(particles, intermediate_position, next_velocity, arrangement.grid.support_radius(), dt);
-  // The work of forces that vary in space has no bound.
-  if (!features.body_force || features.uniform_body_force)
-    energy.supply = energy.after_step(energy_balance(), particles, intermediate_position, next_velocity,
-                                      boundary.next_wall_speed, dt);
+  const EnergyBalance balance = energy_balance(dt);
+  energy.supply =
+      energy.after_step(balance, particles, intermediate_position, next_velocity, boundary.next_wall_speed, dt);
+  work += balance.work;
 
   parallel_for(n, [&](std::size_t i) {
-    Vec3 u = vector_at(next_velocity, dimensions, i), r = vector_at(intermediate_position, dimensions, i);
+    const Vec3 before = advecting_velocity_of(i, dt);
+    Vec3 ahead = vector_at(next_velocity, dimensions, i), r = vector_at(intermediate_position, dimensions, i);
     if (bubbles != nullptr)
       for (int axis = 0; axis < dimensions; ++axis)
-        (*material_acceleration[axis])[i] = (u[axis] - (*particles.velocity[axis])[i]) / dt;
+        (*material_acceleration[axis])[i] = (ahead[axis] - before[axis]) / dt;
+    Vec3 u = ahead;
+    if (acceleration[0] != nullptr)
+      for (int axis = 0; axis < dimensions; ++axis) u[axis] = 0.5 * (before[axis] + ahead[axis]);
     if (features.shifting) {
       for (int axis = 0; axis < dimensions; ++axis) r[axis] += (*shift->displacement[axis])[i];
       if (features.shift_correction) {
@@ -295,10 +359,18 @@ void Flow::accept(double dt) {
         // change fades out with the interior weight.
         const double inside =
             surface != nullptr ? surface->interior_weight[i] : interior((*moments.divergence_of_position)[i]);
-        for (int axis = 0; axis < dimensions; ++axis) u[axis] += inside * shift_velocity[axis][i];
+        for (int axis = 0; axis < dimensions; ++axis) {
+          u[axis] += inside * shift_velocity[axis][i];
+          ahead[axis] += inside * shift_velocity[axis][i];
+        }
       }
     }
+    Vec3 place = r;
+    boundary.apply_walls(boundary.next_walls, place, &ahead);
     boundary.apply_walls(boundary.next_walls, r, &u);
+    if (acceleration[0] != nullptr)
+      for (int axis = 0; axis < dimensions; ++axis)
+        (*acceleration[axis])[i] = static_cast<float>(2 / dt * (ahead[axis] - u[axis]));
     for (int axis = 0; axis < dimensions; ++axis) {
       (*particles.position[axis])[i] = r[axis];
       (*particles.velocity[axis])[i] = u[axis];

@@ -70,7 +70,7 @@ void BubbleCoupling::pack_particles(std::size_t first, std::size_t last) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const int b = (axis + 1) % 3, c = (axis + 2) % 3;
-    const double *velocity = carrier_.velocity[a]->data() + first,
+    const double *velocity = carrier_.advecting_velocity[a].data() + first,
                  *acceleration = carrier_.material_acceleration[a]->data() + first;
     const float *up = gradient_component(c, b).data() + first, *down = gradient_component(b, c).data() + first;
     put(velocity_at + axis, [=](std::size_t k) { return static_cast<float>(velocity[k]); });

@@ -32,6 +32,7 @@ struct Features : BoundaryFeatures {
   bool potential = false;       // gravity or a body force
   bool body_force = false;
   bool uniform_body_force = false;  // the same everywhere: part of the uniform acceleration
+  bool working_forces = false;      // forces whose work the potential energy does not hold
   bool closed = false;              // pressure known up to a constant
   bool bubbles = false;
 };

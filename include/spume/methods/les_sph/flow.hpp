@@ -7,10 +7,12 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "spume/methods/les_sph/features.hpp"
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/energy_guard.hpp"
+#include "spume/particles/force_potential.hpp"
 #include "spume/particles/moments.hpp"
 #include "spume/particles/projection_solver.hpp"
 #include "spume/particles/shift.hpp"
@@ -32,9 +34,13 @@ struct Flow {
   const Scene& scene;
   const Features features;
   const Resolution resolution;
+  // Of a body force that varies in space, if it has one.
+  const std::optional<ForcePotential> force_potential;
   const double largest_shift;  // coefficient of the shift at which it stirs a lattice instead of evening it out
   const int dimensions;
   const InteriorWeight interior;  // of div r
+
+  double weight = 0;  // of the liquid where it starts: sizes of gravity and of the body force, integral
 
   // --- State between steps: saved.
   double time = 0;
@@ -42,9 +48,11 @@ struct Flow {
   bool started = false;     // the first pressure has been found
   ParticleStore particles;  // and the fields of lifetime `state` of closures and bubbles
   Array<double>* pressure = nullptr;
-  VectorField material_acceleration{};  // Du/Dt of the last step, for bubbles: null without
+  FloatVectorField acceleration{};      // Du/Dt at the end of the last step; null without centring
+  VectorField material_acceleration{};  // Du/Dt over the last step, for bubbles: null without
   Boundary boundary;                    // positions and speed of the walls
   EnergyGuard energy;                   // what the flow may hold
+  double work = 0;                      // of forces.body and of gravity along periodic axes since the start
   Speeds speeds;                        // of the particles
   double max_eddy_viscosity = 0;
   double max_divergence = 0;      // of u*
@@ -62,7 +70,7 @@ struct Flow {
   std::unique_ptr<Shift> shift;               // null: no shifting
   VectorField intermediate_position{};        // r*
   Array<double>* reduced_pressure = nullptr;  // q = p / rho + potential
-  Array<double>* potential = nullptr;         // -a . r*, null without uniform acceleration
+  Array<double>* potential = nullptr;         // of the accelerations that have one, at r*; null without forces
   Array<float>* strain = nullptr;             // |S| = sqrt(2 S:S)
   Vec3 uniform_acceleration{};                // along axes that are not periodic: part of the potential
   Vec3 periodic_acceleration{};               // along periodic axes: added to the velocity
@@ -79,8 +87,10 @@ struct Flow {
   FloatVectorScratch filtered_velocity;  // Shepard filter of u
   FloatVectorScratch shift_velocity;     // what the shift adds to the velocity
   FloatVectorScratch viscous_acceleration;
+  VectorScratch advecting_velocity;     // u^{n+1/2}, which moves the particles
+  FloatVectorScratch varying_force;     // the body force at r*, where it varies in space and has a potential
   VectorScratch intermediate_velocity;  // u*
-  VectorScratch next_velocity;          // u^{n+1}
+  VectorScratch next_velocity;          // u^{n+3/2}; without centring u^{n+1}
   Array<double> divergence;          // that the pressure removes: of u*, centred and relaxed by the stages that are on
   Array<double> first_source;        // of the first pressure
   Array<float> potential_laplacian;  // -lap of the potential by the sums of the matrix
@@ -97,6 +107,7 @@ struct Flow {
   double viscosity() const { return scene.fluid.kinematic_viscosity; }
   double particle_mass() const { return density() * particles.volume; }
   double potential_at(const Vec3& r) const;  // -a . (r - origin)
+  LocalAcceleration acceleration_in_potential() const { return {uniform_acceleration, &varying_force}; }
   double potential_of(std::size_t i) const { return potential == nullptr ? 0.0 : (*potential)[i]; }
   // Null without shifting, without a closure, and without bubbles.
   FloatVectorField displacement_by_shift() const { return shift == nullptr ? FloatVectorField{} : shift->displacement; }
@@ -122,7 +133,8 @@ struct Flow {
 
   // The stages, in the order of step.cpp. Numbers refer to King et al., section 3.3.
   void move_to_intermediate_position(double dt);  // (i)
-  void make_images(double dt);                    // (ii)
+  void find_advecting_velocity(double dt);
+  void make_images(double dt);  // (ii)
   void find_neighbours(double dt);
   void compute_shift();                     // (iii)
   void differentiate_velocity(bool first);  // (v)
@@ -141,20 +153,28 @@ struct Flow {
   void find_divergence(double dt);
   void centre_divergence(double dt);
   void relax_density(double dt);
+  void find_first_forces();
   void set_first_source();
   void set_matrix();
   void prepare_solver();
   void solve_pressure();        // (x)
-  void solve_first_pressure();  // lap p = -tr(grad u . grad u)
+  void solve_first_pressure();  // lap p = div F - tr(grad u . grad u)
+  void set_first_acceleration();
   void project_velocity(double dt);
   void accept(double dt);  // (xi)
 
-  EnergyBalance energy_balance() const;
+  // Of a step dt that starts from the present state; the work of its forces where `dt` is not zero.
+  EnergyBalance energy_balance(double dt) const;
   void find_extremes();  // largest speeds and eddy viscosity of the present state
 
  private:
+  // u^{n+1/2} = u^n + dt/2 Du/Dt; without centring u^n.
+  Vec3 advecting_velocity_of(std::size_t i, double dt) const;
   void add_body_force(double t, double dt);
-  void add_gradient_trace(double factor, Array<double>& sum);
+  void add_force_potential(double t);
+  double work_of_step(double dt) const;
+  double weight_at_start() const;
+  void add_gradient_trace(const std::array<const double*, 3>& velocity, double factor, Array<double>& sum);
   double regularisation() const;
   double row_scale(std::size_t i) const;
   void set_weights();

@@ -13,9 +13,9 @@ Plan make_plan(Flow& flow);
 
 // Why a stage runs in this scene, or why it does not.
 struct Reasons {
-  Reasons(const LoadedCase& loaded, const Features& has);
-  std::string bubbles, images, surface, shift, gradients, curvature, closure, integrator, forces, viscosity, divergence,
-      centring, relaxation, preconditioner, pressure, events;
+  Reasons(const LoadedCase& loaded, const Features& has, bool force_has_potential);
+  std::string advection, bubbles, images, surface, shift, gradients, curvature, closure, integrator, forces, viscosity,
+      divergence, centring, relaxation, preconditioner, pressure, events;
 };
 
 }  // namespace spume::les_sph

@@ -54,7 +54,8 @@ struct Carrier {
   const ParticleSizes& sizes;
   const double particle_volume;
   const Array<std::int64_t>& identifier;
-  const ConstVectorField position, velocity;
+  const ConstVectorField position, velocity;     // at the start of the step
+  const VectorScratch& advecting_velocity;       // that moves the liquid in the step
   const ConstVectorField intermediate_position;  // r*
   const ConstVectorField material_acceleration;  // Du/Dt of the last step
   const std::array<Array<float>, 9>& velocity_gradient;
