@@ -34,7 +34,7 @@ struct Flow {
   const Resolution resolution;
   const double largest_shift;  // coefficient of the shift at which it stirs a lattice instead of evening it out
   const int dimensions;
-  const InteriorWeight interior;  // of div r
+  const CorrectionFading fading;  // beside voids of a closed liquid; none with a free surface or solids
 
   // --- State between steps: saved.
   double time = 0;
