@@ -210,6 +210,8 @@ LoadedCase load_fake_case(const std::string& path, const std::vector<std::string
                       {"toe", ProbeKind::front, {}, {}, 2, 0, 0.2},
                       {"gate", ProbeKind::plane, {0.5, 0.75, 0}, {}, 2, 1, 0},
                       {"cut", ProbeKind::line, {0, 0, 0}, {3, 4, 0}, 3, 0, 0}};
+  for (ProbeOptions& probe : options.probes)
+    if (probe.kind == ProbeKind::point || probe.kind == ProbeKind::plane) probe.average = number("average", 0);
   std::ostringstream text;
   text << table << '\n';
   options.resolved = text.str();
