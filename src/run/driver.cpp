@@ -45,9 +45,16 @@ std::string failure_text(const StepFailure& failure, std::int64_t step, double t
          failure.details().cause + "\n  " + place_of(failure.details(), dimensions);
 }
 
-std::string help_text(const StepFailure& failure) {
+// `shorter`: how many times shorter than the method's own the refused step was. Options that shorten the step do not
+// help where a step much shorter was refused as well.
+std::string help_text(const StepFailure& failure, double shorter) {
   const std::string& option = failure.details().option;
-  return option.empty() ? "" : "\n  most likely helps: change " + option;
+  if (option.empty()) return "";
+  if ((option == "time.courant" || option == "time.viscous") && shorter > 1.5)
+    return "\n  a step " + short_number(shorter) +
+           " times shorter than the method's own was refused too: its length is not the cause, the state at that "
+           "place is";
+  return "\n  most likely helps: change " + option;
 }
 
 // Quantities per step are divided by its length: far below the steps that the method takes they are lost.
@@ -141,7 +148,7 @@ RunState Simulation::run(Observer& observer) {
   } catch (const StepFailure& failure) {
     const std::string text =
         failure_text(failure, method_->step_count(), method_->time(), loaded_->scene.domain.dimensions) +
-        help_text(failure) + "\n  " + continuation();
+        help_text(failure, 1) + "\n  " + continuation();
     close_failed("numerical failure", text);
     throw NumericalFailure(text);
   } catch (const NumericalFailure& failure) {
@@ -186,6 +193,10 @@ void Simulation::record_start() {
 void Simulation::advance(Observer& observer) {
   StepLimit limit;
   const double dt = take_step(observer, limit);
+  if (recorder_->averages().any()) {
+    const auto scope = ledger_.time("averages of probes");
+    recorder_->averages().add_step(*method_, dt);
+  }
   record_due(dt);
   pass_on_remarks(observer);
   report_progress(observer, dt, limit);
@@ -230,7 +241,7 @@ void Simulation::give_up(const StepFailure& failure, double dt, int attempts) {
   std::string text =
       failure_text(failure, method_->step_count() + 1, method_->time(), loaded_->scene.domain.dimensions) +
       "\n  refused " + std::to_string(attempts) + (attempts == 1 ? " time" : " times") +
-      ", the last time with dt = " + short_number(dt) + help_text(failure);
+      ", the last time with dt = " + short_number(dt) + help_text(failure, method_->step_limit().dt / dt);
   try {
     // The order matters: a resumed run drops what was recorded after its checkpoint.
     if (checkpoint_step_ != method_->step_count()) save_checkpoint();

@@ -24,6 +24,17 @@ std::string given_or_not(const std::string& value) {
   return value.empty() ? "not set" : value;
 }
 
+// Probes that a changed case has added start anew.
+void restore_averages(const CheckpointReader& file, ProbeAverages& averages) {
+  for (std::size_t k = 0; k < averages.size(); ++k) {
+    const std::string name = "driver/average/" + std::to_string(k);
+    if (!file.has(name)) continue;
+    Array<double> marks;
+    file.f64(name, marks);
+    averages.restore(k, marks);
+  }
+}
+
 }  // namespace
 
 void Simulation::save_checkpoint() {
@@ -37,6 +48,8 @@ void Simulation::save_checkpoint() {
   file.f64("driver/clock", clock);
   file.i64("driver/counters", counters);
   if (watch_) file.f64("driver/invariants", watch_->seen());
+  const ProbeAverages& averages = recorder_->averages();
+  for (std::size_t k = 0; k < averages.size(); ++k) file.f64("driver/average/" + std::to_string(k), averages.saved(k));
   for (const auto& [name, count] : recorder_->extent()) file.i64("driver/extent/" + name, std::span(&count, 1));
   CheckpointStateWriter writer(file, "method/");
   method_->save(writer);
@@ -88,6 +101,7 @@ void Simulation::load_checkpoint(const std::filesystem::path& path) {
   }
   folder_.log("continuing from step " + std::to_string(counters[0]) + ", t = " + exact_number(clock[0]));
   recorder_ = std::make_unique<Recorder>(folder_.path(), *loaded_, *method_, extent);
+  restore_averages(file, recorder_->averages());
   watch_.emplace(method_->invariants(), recorder_->series_columns());
   if (file.has("driver/invariants")) {
     Array<double> seen;

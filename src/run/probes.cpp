@@ -44,24 +44,25 @@ std::vector<SeriesColumn> probe_columns(const LoadedCase& loaded) {
   return columns;
 }
 
-void probe_values(const LoadedCase& loaded, Method& method, std::vector<double>& row) {
+void probe_values(const LoadedCase& loaded, Method& method, const ProbeAverages& averages, std::vector<double>& row) {
   const auto put = [&](const std::vector<double>& scalars, const Vec3& velocity) {
     row.insert(row.end(), scalars.begin(), scalars.end());
     row.insert(row.end(), velocity.begin(), velocity.begin() + loaded.scene.domain.dimensions);
   };
   row.assign(1, method.time());
-  for (const ProbeOptions& probe : loaded.options.probes) {
+  for (std::size_t k = 0; k < loaded.options.probes.size(); ++k) {
+    const ProbeOptions& probe = loaded.options.probes[k];
     switch (probe.kind) {
       case ProbeKind::point: {
         const PointSample sample = method.field_probes()->sample(probe.position);
-        put(sample.scalars, sample.velocity);
+        put(averages.scalars(k, sample.scalars), sample.velocity);
         break;
       }
       case ProbeKind::plane: {
         const double position = probe.position[static_cast<std::size_t>(probe.axis)];
         const PlaneSample sample = method.field_probes()->plane_average(probe.axis, position);
         row.push_back(sample.area);
-        put(sample.scalars, sample.velocity);
+        put(averages.scalars(k, sample.scalars), sample.velocity);
         break;
       }
       case ProbeKind::elevation:

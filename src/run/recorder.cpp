@@ -28,6 +28,7 @@ Recorder::Recorder(std::filesystem::path folder, const LoadedCase& loaded, const
     : folder_(std::move(folder)),
       loaded_(loaded),
       resume_(resume),
+      averages_(loaded.options.probes, loaded.probe_scalars),
       series_{"series", "quantities of the whole domain over time", series_headings(method)},
       probes_{"probes", "probes over time", probe_columns(loaded)},
       lines_{"lines", "values along lines at output times", line_columns(loaded)},
@@ -87,7 +88,7 @@ void Recorder::series(Method& method, double dt, std::int64_t retries) {
   file_of(series_).row(series_row_);
   fill_tables(method, RecordTable::When::series);
   if (probes_.columns.size() == 1) return;
-  probe_values(loaded_, method, rows_);
+  probe_values(loaded_, method, averages_, rows_);
   file_of(probes_).row(rows_);
 }
 

@@ -427,6 +427,11 @@ void check_probes(Draft& draft, const std::vector<ProbeScalar>& scalars, Problem
       place("position", probe.position, options.position);
     }
     if (options.kind == ProbeKind::line) place("end", probe.end, options.end);
+    const double rows = draft.options.output.series_every;
+    if (options.average > 0 && options.average < rows && draft.usable(name + ".average"))
+      problems.add(*draft.node(name + ".average"),
+                   name + ".average is " + brief(options.average) + ", shorter than output.series_every, " +
+                       brief(rows) + ": impacts between the rows would be lost; make it at least as long");
   }
   draft.options.probes.clear();
   for (const ProbeDraft& probe : draft.probes) draft.options.probes.push_back(probe.options);

@@ -59,6 +59,11 @@ Section probe() {
           "samples", [](P& p) -> int& { return p.options.samples; }, "", between(2, 1e6),
           "points of a line, ends included")
       .when("kind", {"line"})
+      .option(
+          "average", [](P& p) -> double& { return p.options.average; }, "time", not_negative(),
+          "time over which the pressure is averaged, at least output.series_every: rows that far apart hold the whole "
+          "impulse of an impact; 0: the pressure of the last step")
+      .when("kind", {"point", "plane"})
       .word(
           "axis", [](P& p) -> int& { return p.options.axis; }, {{"x", 0}, {"y", 1}, {"z", 2}},
           "front: axis of the largest coordinate of the liquid; plane: normal")

@@ -101,5 +101,14 @@ TEST(LoadOutput, DefaultsAreNotRemarked) {
   EXPECT_THAT(load_text(loaded.options.resolved).options.warnings, IsEmpty());
 }
 
+// Rows further apart than the average would lose what happens between them.
+TEST(LoadOutput, AnAverageOfAProbeSpansItsRows) {
+  const std::string probe = "[[probe]]\nname = \"p\"\nposition = [0.5, 0.5]\naverage = 0.01\n";
+  EXPECT_EQ(load_text(small_case(probe), {"output.series_every=0.01"}).options.probes[0].average, 0.01);
+  EXPECT_EQ(load_text(small_case(probe)).options.probes[0].average, 0.01);
+  EXPECT_THAT(problems_of(small_case(probe), {"output.series_every=0.02"}),
+              ElementsAre(HasSubstr("probe.0.average is 0.01, shorter than output.series_every, 0.02")));
+}
+
 }  // namespace
 }  // namespace spume

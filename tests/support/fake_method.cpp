@@ -213,6 +213,8 @@ LoadedCase load_fake_case(const std::string& path, const std::vector<std::string
                       {"cut", ProbeKind::line, {0, 0, 0}, {3, 4, 0}, 3, 0, 0}};
   if (const auto* idle = table.get("idle"))
     options.warnings = {{path, static_cast<int>(idle->source().begin.line), 1, "idle has no effect"}};
+  for (ProbeOptions& probe : options.probes)
+    if (probe.kind == ProbeKind::point || probe.kind == ProbeKind::plane) probe.average = number("average", 0);
   std::ostringstream text;
   text << table << '\n';
   options.resolved = text.str();

@@ -6,6 +6,7 @@
 
 #include "spume/io/series.hpp"
 #include "spume/methods/method.hpp"
+#include "spume/run/probe_averages.hpp"
 #include "spume/scene/case.hpp"
 
 namespace spume {
@@ -18,7 +19,7 @@ void require_probes(const Case& options, Method& method);
 // probe has a column.
 std::vector<SeriesColumn> probe_columns(const LoadedCase& loaded);
 // A row of it. Precondition, here and below: require_probes().
-void probe_values(const LoadedCase& loaded, Method& method, std::vector<double>& row);
+void probe_values(const LoadedCase& loaded, Method& method, const ProbeAverages& averages, std::vector<double>& row);
 
 // lines.csv: t, name, s, x, y, z, velocity_x, velocity_y, velocity_z and the scalars, with s the distance from the
 // start.

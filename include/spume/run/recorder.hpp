@@ -21,6 +21,7 @@
 #include "spume/io/vtkhdf.hpp"
 #include "spume/io/vtkhdf_grid.hpp"
 #include "spume/methods/method.hpp"
+#include "spume/run/probe_averages.hpp"
 #include "spume/scene/case.hpp"
 
 namespace spume {
@@ -34,6 +35,8 @@ class Recorder {
   // Precondition: require_probes(). Throws FileError.
   Recorder(std::filesystem::path folder, const LoadedCase& loaded, const Method& method,
            const std::optional<Extent>& resume);
+
+  ProbeAverages& averages() { return averages_; }  // of the probes; take up every step
 
   void series(Method& method, double dt, std::int64_t retries);  // a row of series.csv and of what goes with it
   void snapshot(Method& method);                                 // families, lines and tables of output times
@@ -54,6 +57,7 @@ class Recorder {
   std::filesystem::path folder_;
   const LoadedCase& loaded_;
   std::optional<Extent> resume_;
+  ProbeAverages averages_;
   RecordTable series_, probes_, lines_;
   std::vector<RecordTable> method_tables_;
   std::map<std::string, SeriesFile> files_;  // of the tables, by name

@@ -53,6 +53,8 @@ struct ProbeOptions {
   int samples = 2;    // points of a line
   int axis = 0;       // front; normal of a plane
   double height = 0;  // front: looks below this height
+  // Point and plane: time over which the pressure is averaged; 0: the pressure of the last step.
+  double average = 0;
 };
 
 struct Case : OptionGroups {

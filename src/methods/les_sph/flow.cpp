@@ -19,6 +19,15 @@ ProjectionSolver::Options solver_options(const Case& options) {
           .cell_size = pressure.cell_ratio * options.spacing};
 }
 
+// A free surface has mirrored liquid. At the edges of a solid images are missing as neighbours are beside a void,
+// though the liquid is full there.
+CorrectionFading fading_beside_voids(const Case& options, const Scene& scene) {
+  if (scene.free_surface || !scene.domain.boxes.empty()) return {};
+  const int dimensions = scene.domain.dimensions;
+  return correction_fading(dimensions, options.resolution.kernel, options.resolution.smoothing_ratio,
+                           interior_weight(dimensions, options.get<SurfaceOptions>()));
+}
+
 }  // namespace
 
 Flow::Flow(const LoadedCase& loaded_case)
@@ -34,18 +43,15 @@ Flow::Flow(const LoadedCase& loaded_case)
                                          options.resolution.smoothing_ratio,
                                          features.shifting && options.get<ShiftingOptions>().remove_drift)),
       dimensions(scene.domain.dimensions),
-      interior(interior_weight(dimensions, options.get<SurfaceOptions>())),
+      fading(fading_beside_voids(options, scene)),
       particles(dimensions, scene.particles),
       boundary(scene.domain, scene.spacing),
       energy(scene.domain, resolution),
       arrangement(scene.domain, resolution, particles.volume, particles.size()),
-      moments(particles,
-              {.kernel_sum = features.density_relaxation,
-               .concentration_gradient = features.shifting,
-               .normal = features.free_surface,
-               .fading = features.free_surface ? CorrectionFading{}
-                                               : correction_fading(dimensions, options.resolution.kernel,
-                                                                   options.resolution.smoothing_ratio, interior)}),
+      moments(particles, {.kernel_sum = features.density_relaxation,
+                          .concentration_gradient = features.shifting,
+                          .normal = features.free_surface,
+                          .fading = fading}),
       solver(boundary, solver_options(options)) {
   FieldSet& fields = particles.fields;
   pressure = &fields.add<double>("pressure", Lifetime::state);
@@ -57,7 +63,8 @@ Flow::Flow(const LoadedCase& loaded_case)
   strain = &fields.add<float>("strain", Lifetime::result);
   if (features.free_surface)
     surface = std::make_unique<FreeSurface>(
-        resolution, FreeSurface::Options{.interior = interior, .smooth_normals = features.shifting});
+        resolution, FreeSurface::Options{.interior = interior_weight(dimensions, options.get<SurfaceOptions>()),
+                                         .smooth_normals = features.shifting});
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
   if (features.eddy_viscosity)
     closure = std::make_unique<turbulence::EddyViscosity>(particles, options.get<TurbulenceOptions>());

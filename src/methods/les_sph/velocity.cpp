@@ -358,7 +358,7 @@ void Flow::accept(double dt) {
         // shift it accelerates particles without any force (0.5 sqrt(g lambda) in a tenth of a period at 1/50). The
         // change fades out with the interior weight.
         const double inside =
-            surface != nullptr ? surface->interior_weight[i] : interior((*moments.divergence_of_position)[i]);
+            surface != nullptr ? surface->interior_weight[i] : fading.weight((*moments.divergence_of_position)[i]);
         for (int axis = 0; axis < dimensions; ++axis) {
           u[axis] += inside * shift_velocity[axis][i];
           ahead[axis] += inside * shift_velocity[axis][i];

@@ -38,7 +38,7 @@ struct Flow {
   const std::optional<ForcePotential> force_potential;
   const double largest_shift;  // coefficient of the shift at which it stirs a lattice instead of evening it out
   const int dimensions;
-  const InteriorWeight interior;  // of div r
+  const CorrectionFading fading;  // beside voids of a closed liquid; none with a free surface or solids
 
   double weight = 0;  // of the liquid where it starts: sizes of gravity and of the body force, integral
 
