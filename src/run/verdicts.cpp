@@ -65,7 +65,7 @@ std::vector<Verdict> InvariantWatch::verdicts() const {
         value = relative(larger_or_nan(w.most - w.first, w.first - w.least), scale_of(w));
         break;
       case Invariant::Kind::largest:
-        value = larger_or_nan(w.most, -w.least);
+        value = larger_or_nan(w.most, -w.least) + 0.0;  // -0 of rows of 0 is 0
         break;
     }
     verdicts.push_back({w.invariant.quantity, value, w.invariant.bound});

@@ -78,7 +78,51 @@ TEST(SpectralOutput, TheEnergyOfAFlowThatNothingDrivesMustNotGrow) {
       driven(spectral_text("8", random_start + "[forcing]\nkind = \"linear\"\nrate = 1\n"));
   ASSERT_EQ(decaying.method.invariants().size(), 1u);
   EXPECT_EQ(decaying.method.invariants()[0].quantity, "energy_growth");
-  EXPECT_TRUE(driven.method.invariants().empty());
+  ASSERT_EQ(driven.method.invariants().size(), 1u);
+  EXPECT_EQ(driven.method.invariants()[0].column, "balance_residual");
+}
+
+// u_x = cos 2 pi y + sin 2 pi (y + z): half of the energy at |k| = 2 pi and half at 2 pi sqrt 2, L = 3 pi / 4 times the
+// mean 1/|k|. The box may be longer than the field's period.
+TEST(SpectralOutput, TheIntegralScaleIsThatOfTheModesInAnyBox) {
+  const double exact = 0.75 * pi * 0.5 * (1 + 1 / std::sqrt(2.0)) / (2 * pi);
+  for (const auto& [upper, grid] :
+       {std::pair{"[1, 1, 1]", "8"}, {"[2, 1, 1]", "[16, 8, 8]"}, {"[1, 3, 1]", "[8, 24, 8]"}}) {
+    SpectralRun<> run(std::string("method = \"spectral\"\n[domain]\nlower = [0, 0, 0]\nupper = ") + upper +
+                      "\nx = \"periodic\"\ny = \"periodic\"\nz = \"periodic\"\n[resolution]\ngrid = " + grid +
+                      "\n[time]\nend = 1\n[fluid]\nreynolds = 100\n[initial]\nkind = \"expressions\"\nvelocity = "
+                      "[\"cos(2*pi*y) + sin(2*pi*(y + z))\", 0, 0]\n");
+    EXPECT_NEAR(run.start().series().at("integral_scale"), exact, 1e-12) << upper;
+  }
+}
+
+// u = exp(-nu pi^2 t) (cos pi z, -sin pi z, 0) has one speed everywhere.
+TEST(SpectralOutput, TheLargestSpeedIsThatOfTheRow) {
+  SpectralRun<> run(spectral_text("8",
+                                  "[fluid]\nreynolds = 20\n[initial]\nkind = \"expressions\"\nvelocity = "
+                                  "[\"cos(pi*z)\", \"-sin(pi*z)\", 0]\n"));
+  run.start();
+  for (int step = 0; step < 3; ++step) {
+    EXPECT_NEAR(run.series().at("max_speed"), std::exp(-pi * pi / 20 * 0.01 * step), 1e-9);
+    run.steps(1, 0.01);
+  }
+}
+
+// A constant force on the mean: energy (F t)^2 / 2, exactly, beside a dissipation of rounding.
+TEST(SpectralOutput, TheBalanceOfAMeanThatMovesCloses) {
+  SpectralRun<> run(spectral_text("8",
+                                  "[fluid]\nreynolds = 20\n[initial]\nkind = \"expressions\"\nvelocity = "
+                                  "[\"0.3 + 1e-17*cos(pi*z)\", 0.1, \"0.7\"]\n"));
+  run.start();
+  spectral::Modes<double> force;
+  for (auto& component : force) component.resize(run.method.flow().layout().size());
+  for (auto& component : force) component.fill(0);
+  force[0][0] = 0.2;
+  run.steps(1, 0.01).series();
+  EXPECT_LT(std::abs(run.steps(1, 0.01).series().at("balance_residual")), 1e-6);
+  run.method.flow().set_force(spectral::view<double>(force));
+  run.steps(2, 0.01).series();
+  EXPECT_LT(std::abs(run.steps(3, 0.01).series().at("balance_residual")), 1e-6);
 }
 
 TEST(SpectralOutput, UnresolvedScalesAreRemarkedOnce) {

@@ -167,7 +167,8 @@ double coupled_decay_error(const std::string& integrator, double dt) {
       "[spectral]\nintegrator = \"" +
       integrator +
       "\"\n[particles]\ncount = 1728\ndiameter = 0.0601117\nbeta = 3\nresponse_time = 1\nplacement = \"lattice\"\n"
-      "frozen = true\ncoupling = \"two-way\"\nspline_order = 6\nrecords = \"double\"\noverlap_samples = 0\n");
+      "frozen = true\ncoupling = \"two-way\"\nremove_self_disturbance = false\nspline_order = 6\nrecords = "
+      "\"double\"\noverlap_samples = 0\n");
   const double fraction = 1728 * M_PI / 6 * std::pow(0.0601117, 3);
   const int steps = static_cast<int>(std::lround(0.04 / dt));
   // No force is known in the first step; the rate is taken after it.
@@ -230,6 +231,17 @@ TEST(SpectralParticles, HeavyOnesShortenTheStepToWhereTheirCouplingIsStable) {
   }
 }
 
+TEST(SpectralParticles, ThatCannotLoseTheirOwnDisturbanceSaySo) {
+  SpectralRun<> stiff(heavy("ab2", "response_time = 1e-4\n")), slow(heavy("ab2", "response_time = 10\n"));
+  const auto remarks = stiff.method.take_remarks();
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_THAT(remarks[0].text, testing::HasSubstr("particles.remove_self_disturbance has no effect"));
+  EXPECT_TRUE(slow.method.take_remarks().empty());
+  EXPECT_TRUE(slow.method.suspension()->system().removes_self_disturbance());
+  EXPECT_LT(energy_growth(heavy("ab2", "response_time = 10\n"), 1, 200), 1.01);
+  EXPECT_LT(energy_growth(heavy("ab2", ""), 1, 200), 1.01);  // of its diameter: an own share of 0.6
+}
+
 TEST(SpectralParticles, CouplingThatNoReasonableStepBearsIsRefusedInWords) {
   const auto refusal = [](const std::string& text) {
     try {
@@ -259,6 +271,35 @@ TEST(SpectralParticles, CollideWithoutTheFlowFeelingThem) {
   EXPECT_EQ(colliding.saved().reals.at("potential_x"), without.saved().reals.at("potential_x"));
   EXPECT_GT(colliding.series().at("collisions"), 0);
   EXPECT_EQ(colliding.series().count("clipped_force"), 0U);
+}
+
+// Random places overlap, by 8 % of the volume of these; they start apart, and what the collisions leave is judged.
+TEST(SpectralParticles, StartApartAndAreJudgedByTheOverlapThatIsLeft) {
+  const std::string dense =
+      "[particles]\ncount = 8000\ndiameter = 0.05\nbeta = 3\nresponse_time = 0.05\noverlap_samples = "
+      "4000\ncoupling = \"";
+  SpectralRun<> colliding(spectral_text("[12, 16, 20]", random_start + dense + "four-way\"\n"));
+  colliding.start();
+  EXPECT_EQ(colliding.series().at("overlap_ratio"), 0);
+  SpectralRun<> passing(spectral_text("[12, 16, 20]", random_start + dense + "one-way\"\n"));
+  EXPECT_GT(passing.start().series().at("overlap_ratio"), 0.05);
+  std::vector<std::string> judged;
+  for (const Invariant& one : colliding.method.invariants()) judged.push_back(one.column);
+  EXPECT_THAT(judged, testing::ElementsAre("overlap_ratio", "clipped_force"));
+}
+
+// No set in space has more than three dimensions. Of touching spheres the number within a distance rises from nothing.
+TEST(SpectralParticles, HaveADimensionOfThreeAtMost) {
+  SpectralRun<> run(spectral_text("[12, 16, 20]", random_start +
+                                                      "[particles]\ncount = 8000\ndiameter = 0.05\nbeta = 3\n"
+                                                      "response_time = 0.05\ncoupling = \"four-way\"\n"));
+  run.start();
+  for (int row = 0; row < 4; ++row) {
+    const double dimension = run.series().at("correlation_dimension");
+    EXPECT_LE(dimension, 3);
+    EXPECT_GT(dimension, 2.5);
+    run.steps(2, 0.002);
+  }
 }
 
 // Close to what can go wrong: everything in one place, a dense suspension, particles that follow at once or never.

@@ -99,6 +99,15 @@ Flow<T>::Flow(const LoadedCase& loaded)
   const double unit = 2 * std::numbers::pi / *std::max_element(layout_.lengths.begin(), layout_.lengths.end());
   shell_low_ = std::pow(forcing_.wavenumber * unit, 2);
   shell_high_ = std::pow((forcing_.wavenumber + forcing_.width) * unit, 2);
+  if (forcing_.kind == ForcingKind::shell)
+    for (std::size_t ix = 0; ix < layout_.points[0]; ++ix)
+      for (std::size_t iy = 0; iy < layout_.points[1]; ++iy)
+        for (std::size_t iz = 0; iz < layout_.modes_z && keeps(ix, iy, iz); ++iz) {
+          const double k2 = std::pow(layout_.wavenumber[0][ix], 2) + std::pow(layout_.wavenumber[1][iy], 2) +
+                            std::pow(layout_.wavenumber[2][iz], 2);
+          if (k2 >= shell_high_) break;
+          if (k2 >= shell_low_) forced_decay_ = std::max(forced_decay_, viscosity_ * k2);
+        }
   for (auto* set : {&potential_, &tendency_, &earlier_})
     for (auto& field : *set) field.resize(layout_.size());
   if (options_.integrator != Integrator::ab2)

@@ -108,6 +108,14 @@ void force_modes(Flow<T>& flow, const std::array<const T*, 3>& values, std::size
 }
 
 template <class T>
+typename BoxTransform<T>::Source velocity_source(const Flow<T>& flow, int component) {
+  return [velocity = VelocityModes<T>(flow.layout(), flow.potential()), c = static_cast<std::size_t>(component)](
+             std::size_t ix, std::size_t iy, std::size_t first, std::complex<T>* block) {
+    velocity.template block<false>(c, 0, T(1), ix, iy, first, block);
+  };
+}
+
+template <class T>
 typename BoxTransform<T>::Source gradient_source(const Flow<T>& flow, int component, int axis) {
   const auto c = static_cast<std::size_t>(component), a = static_cast<std::size_t>(axis);
   return [velocity = VelocityModes<T>(flow.layout(), flow.potential()), c, a](
@@ -140,6 +148,7 @@ void add_velocity(BoxTransform<T>& box, const ModeLayout& layout, const T* value
   template void real_vorticity(Flow<T>&, const Modes<T>&, const Multiplier<T>&, const std::array<T*, 3>&,              \
                                std::size_t);                                                                           \
   template void force_modes(Flow<T>&, const std::array<const T*, 3>&, std::size_t, Modes<T>&);                         \
+  template BoxTransform<T>::Source velocity_source(const Flow<T>&, int);                                               \
   template BoxTransform<T>::Source gradient_source(const Flow<T>&, int, int);                                          \
   template void add_velocity(BoxTransform<T>&, const ModeLayout&, const T*, int, Modes<T>&)
 SPUME_INSTANTIATE(double);

@@ -89,11 +89,15 @@ ShellSpectrum shell_spectrum(const Flow<T>& flow) {
 template <class T>
 Scales flow_scales(const Flow<T>& flow, const ShellSpectrum& spectrum) {
   Scales scales;
-  double energy = 0, weighted = 0;
-  for (std::size_t n = 0; n < spectrum.energy.size(); ++n) {
-    energy += spectrum.energy[n] * spectrum.width;
-    if (n > 0) weighted += spectrum.energy[n] / spectrum.wavenumber[n] * spectrum.width;
-  }
+  double energy = 0;
+  for (const double shell : spectrum.energy) energy += shell * spectrum.width;
+  // Mode by mode: the middle of a shell is 17 % off the mean 1/|k| in the first of a cube, and shells depend on the
+  // box.
+  const double weighted = mode_sum(flow, [](const std::array<double, 3>& k, const Modes<T>& b, std::size_t at) {
+    return std::sqrt(k[0] * k[0] + k[1] * k[1] + k[2] * k[2]) / 2 *
+           (std::norm(std::complex<double>(b[0][at])) + std::norm(std::complex<double>(b[1][at])) +
+            std::norm(std::complex<double>(b[2][at])));
+  });
   const double nu = flow.viscosity(), dissipation = flow.budget().dissipation;
   scales.rms_velocity = std::sqrt(2 * energy / 3);
   scales.enstrophy =
@@ -110,6 +114,25 @@ Scales flow_scales(const Flow<T>& flow, const ShellSpectrum& spectrum) {
   scales.kolmogorov_scale = std::pow(nu * nu * nu / dissipation, 0.25);
   scales.kmax_eta = flow.largest_wavenumber() * scales.kolmogorov_scale;
   return scales;
+}
+
+template <class T>
+double largest_speed(Flow<T>& flow) {
+  const ModeLayout& layout = flow.layout();
+  const std::size_t ny = layout.points[1], nz = layout.points[2];
+  Array<T> square(layout.points[0] * ny * nz);
+  std::vector<double> largest(layout.points[0], 0.0);
+  for (int c = 0; c < 3; ++c)
+    flow.box().inverse(velocity_source(flow, c), [&](std::size_t ix, std::size_t iy, const T* values) {
+      T* const line = &square[(ix * ny + iy) * nz];
+      for (std::size_t iz = 0; iz < nz; ++iz) {
+        line[iz] = values[iz] * values[iz] + (c > 0 ? line[iz] : T(0));
+        if (c == 2) largest[ix] = larger_or_nan(largest[ix], static_cast<double>(line[iz]));
+      }
+    });
+  double all = 0;
+  for (const double of_plane : largest) all = larger_or_nan(all, of_plane);
+  return std::sqrt(all);
 }
 
 template <class T>
@@ -281,6 +304,7 @@ PlaneSample sample_plane(const Flow<T>& flow, const Array<std::complex<T>>& tota
 #define SPUME_INSTANTIATE(T)                                                                    \
   template ShellSpectrum shell_spectrum(const Flow<T>&);                                        \
   template Scales flow_scales(const Flow<T>&, const ShellSpectrum&);                            \
+  template double largest_speed(Flow<T>&);                                                      \
   template GradientMoments gradient_moments(Flow<T>&);                                          \
   template GradientDistribution gradient_distribution(Flow<T>&);                                \
   template PointSample sample_flow(const Flow<T>&, const Array<std::complex<T>>&, const Vec3&); \

@@ -32,6 +32,14 @@ std::span<const Stage2N> runge_kutta_stages(Integrator integrator) {
   return carpenter_kennedy;
 }
 
+// E - 1 of a mode from those along the axes. States become b + ((E - 1) b + ...), rounded once: the rounding of an E
+// near 1 to single precision would be the same in every step (2e-4 of the energy in 1,500 steps).
+template <class V, class T>
+[[gnu::always_inline]] inline V decayed(T x, T y, V z) {
+  const T across = x + y + x * y;
+  return across + z + across * z;
+}
+
 // How much more than its limit a step may be when the speeds are known that it was chosen without.
 constexpr double tolerated_excess = 1.5;
 
@@ -54,7 +62,12 @@ void Flow<T>::begin_start() {
 
 template <class T>
 void Flow<T>::begin_step(double dt) {
-  step_ = {.dt = dt, .tendencies = 1};
+  step_ = {.dt = dt,
+           .tendencies = 1,
+           .start = budget_,
+           .start_time = time_,
+           .start_gain = integrated_gain_,
+           .start_dissipation = integrated_dissipation_};
   if (options_.integrator != Integrator::ab2) {
     step_.scheme = Scheme::runge_kutta;
     step_.tendencies = static_cast<int>(runge_kutta_stages(options_.integrator).size());
@@ -95,7 +108,7 @@ template <class T>
 void Flow<T>::set_decay(Decay& decay, double dt) const {
   const auto factor = [&](std::size_t axis, std::size_t i) {
     const double k = layout_.wavenumber[axis][i];
-    return static_cast<T>(std::exp(-viscosity_ * k * k * dt));
+    return static_cast<T>(std::expm1(-viscosity_ * k * k * dt));
   };
   decay.x.resize(layout_.points[0]);
   decay.y.resize(layout_.points[1]);
@@ -254,11 +267,13 @@ void Flow<T>::adams_bashforth() {
   const double dt = step_.dt, ratio = dt / earlier_dt_;
   const T now = static_cast<T>(dt * (1 + ratio / 2)), before = static_cast<T>(-dt * ratio / 2);
   forward_x_with([&](std::size_t ix, std::size_t iy, std::size_t at, std::size_t iz, const V k2, const V k[3]) {
-    const V decay = decay_.x[ix] * decay_.y[iy] * load(decay_.z.data() + iz);
-    const V earlier = earlier_decay_.x[ix] * earlier_decay_.y[iy] * load(earlier_decay_.z.data() + iz);
+    const V lost = decayed(decay_.x[ix], decay_.y[iy], load(decay_.z.data() + iz)), decay = T(1) + lost;
+    const V earlier =
+        before * (T(1) + decayed(earlier_decay_.x[ix], earlier_decay_.y[iy], load(earlier_decay_.z.data() + iz)));
     V b[3];
     for (std::size_t c = 0; c < 3; ++c) {
-      b[c] = decay * (load(&potential_[c][at]) + now * k[c] + before * earlier * load(&earlier_[c][at]));
+      const V old = load(&potential_[c][at]);
+      b[c] = old + (lost * old + decay * (now * k[c] + earlier * load(&earlier_[c][at])));
       fourier::store<T>(&earlier_[c][at], b[c]);
       fourier::store<T>(&tendency_[c][at], k[c]);
     }
@@ -273,7 +288,7 @@ void Flow<T>::predict_midpoint() {
   using fourier::load;
   const T half = static_cast<T>(step_.dt / 2);
   forward_x_with([&](std::size_t ix, std::size_t iy, std::size_t at, std::size_t iz, const V, const V k[3]) {
-    const V decay = decay_.x[ix] * decay_.y[iy] * load(decay_.z.data() + iz);
+    const V lost = decayed(decay_.x[ix], decay_.y[iy], load(decay_.z.data() + iz)), decay = T(1) + lost;
     for (std::size_t c = 0; c < 3; ++c)
       fourier::store<T>(&tendency_[c][at], decay * (load(&potential_[c][at]) + half * k[c]));
   });
@@ -286,7 +301,7 @@ void Flow<T>::correct_from_midpoint() {
   using fourier::load;
   const T whole = static_cast<T>(step_.dt);
   forward_x_with([&](std::size_t ix, std::size_t iy, std::size_t at, std::size_t iz, const V k2, const V k[3]) {
-    const V decay = decay_.x[ix] * decay_.y[iy] * load(decay_.z.data() + iz);
+    const V lost = decayed(decay_.x[ix], decay_.y[iy], load(decay_.z.data() + iz)), decay = T(1) + lost;
     V b[3];
     for (std::size_t c = 0; c < 3; ++c) {
       b[c] = decay * (decay * load(&potential_[c][at]) + whole * k[c]);
@@ -306,12 +321,13 @@ void Flow<T>::runge_kutta() {
   const Stage2N& stage = runge_kutta_stages(options_.integrator)[s];
   const T a = static_cast<T>(stage.a), weight = static_cast<T>(stage.b), step = static_cast<T>(step_.dt);
   forward_x_with([&](std::size_t ix, std::size_t iy, std::size_t at, std::size_t iz, const V k2, const V k[3]) {
-    const V decay = decay_.x[ix] * decay_.y[iy] * load(decay_.z.data() + iz);
+    const V lost = decayed(decay_.x[ix], decay_.y[iy], load(decay_.z.data() + iz)), decay = T(1) + lost;
     V b[3];
     for (std::size_t c = 0; c < 3; ++c) {
+      const V old = load(&potential_[c][at]);
       V q = step * k[c];
       if (s > 0) q += a * load(&earlier_[c][at]);
-      b[c] = decay * (load(&potential_[c][at]) + weight * q);
+      b[c] = old + (lost * old + decay * (weight * q));
       fourier::store<T>(&earlier_[c][at], decay * q);
       fourier::store<T>(&potential_[c][at], b[c]);
     }
@@ -371,6 +387,18 @@ void Flow<T>::accept_tendency() {
   ++steps_;
 }
 
+// The midpoint rule leaves b of the step's start where its prediction was.
+template <class T>
+void Flow<T>::take_back_first_step() {
+  potential_.swap(step_.scheme == Scheme::runge_kutta ? start_ : tendency_);
+  has_history_ = false;
+  time_ = step_.start_time;
+  --steps_;
+  budget_ = step_.start;
+  integrated_gain_ = step_.start_gain;
+  integrated_dissipation_ = step_.start_dissipation;
+}
+
 template void Flow<double>::begin_start();
 template void Flow<float>::begin_start();
 template void Flow<double>::begin_step(double);
@@ -397,6 +425,8 @@ template void Flow<double>::forward_x();
 template void Flow<float>::forward_x();
 template void Flow<double>::update();
 template void Flow<float>::update();
+template void Flow<double>::take_back_first_step();
+template void Flow<float>::take_back_first_step();
 template void Flow<double>::accept_tendency();
 template void Flow<float>::accept_tendency();
 

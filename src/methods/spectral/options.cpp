@@ -114,6 +114,11 @@ Section particles() {
               "local volume fraction at which the force on the flow is clipped")
       .absent(brief(P{}.max_volume_fraction) + ", close packing")
       .when("coupling", {"two-way", "four-way"})
+      .option(
+          "remove_self_disturbance", &P::remove_self_disturbance,
+          "particles see the velocity of the flow without the part that their own force makes on the grid; de Wit et "
+          "al. (2024): false")
+      .when("coupling", {"two-way", "four-way"})
       .option("mean_force_moves_fluid", &P::mean_force_moves_fluid,
               "the mean force of the particles accelerates the fluid; otherwise a mean pressure gradient balances it")
       .when("coupling", {"two-way", "four-way"})

@@ -82,6 +82,19 @@ void limit_clipping(const Case& options, PointParticleOptions& out) {
   out.max_volume_fraction = bearable;
 }
 
+// What the force of a particle would add to the velocity that it is proportional to, at rest: 3 pi times the mobility
+// of the grid (0.089 / spacing) times the diameter, for the response time that belongs to the diameter. From 1 on
+// particles that see each other and not themselves push each other off without bound.
+double own_share(const PeriodicGrid& grid, const PointParticleOptions& out) {
+  const SelfDisturbance disturbance({grid.spacing(0), grid.spacing(1), grid.spacing(2)}, out.kept_phase,
+                                    out.motion.viscosity, out.spline_order);
+  const auto mobility = disturbance.steady_mobility();
+  const auto& diameters = out.placement.diameters;
+  const double largest = *std::max_element(diameters.begin(), diameters.end());
+  const double time = out.motion.response_time * std::pow(largest / diameters.front(), 2);
+  return *std::max_element(mobility.begin(), mobility.end()) * 1.5 * sphere_volume(largest) / (out.motion.beta * time);
+}
+
 int bounded(std::int64_t value) {
   return static_cast<int>(std::min<std::int64_t>(value, 1 << 30));
 }
@@ -175,6 +188,14 @@ PointParticleOptions particle_options(const LoadedCase& loaded) {
   out.sort_every = bounded(in.sort_every);
   // Adams-Bashforth extrapolates from the forces at the ends of steps; the others hold the force over the coming step.
   if (loaded.options.get<SpectralOptions>().integrator != Integrator::ab2) out.scheme = {1, 0};
+  const bool cut = loaded.options.get<SpectralOptions>().dealiasing == Dealiasing::two_thirds;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto points = static_cast<double>(loaded.scene.grid[axis]);
+    // Half a mode above the last that is kept.
+    out.kept_phase[axis] = 2 * M_PI / points * ((cut ? std::ceil(points / 3) : points / 2) - 0.5);
+  }
+  out.remove_self_disturbance = in.remove_self_disturbance && acts_on_flow(out.coupling) && motion.beta > 0 &&
+                                motion.viscosity > 0 && own_share(box, out) < 1;
   if (acts_on_flow(out.coupling) && motion.beta > 0) limit_clipping(loaded.options, out);
   require_memory(loaded, out);
   return out;

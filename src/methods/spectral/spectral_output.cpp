@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "spume/core/parallel.hpp"
 #include "spume/methods/spectral/flow_fields.hpp"
@@ -25,6 +26,15 @@ struct Column {
   double (*read)(const Row&);
 };
 
+// What energy changed by beside gain = put in - dissipated, relative to the larger of the energy put in and dissipated.
+// Where next to nothing is exchanged, as in a uniform stream, rounding of the energy is all that is left of both: it is
+// compared with the root of a rounding of it.
+double balance_residual(double energy, double change, double gain, double dissipated) {
+  const double least = std::sqrt(std::numeric_limits<double>::epsilon()) * energy;
+  const double exchanged = std::max({dissipated, std::abs(gain + dissipated), least});
+  return exchanged > 0 ? (change - gain) / exchanged : 0;
+}
+
 constexpr Column columns[] = {
     {"kinetic_energy", "rho u^2 / 2, integral", [](const Row& r) { return r.mass * r.budget.energy; }},
     {"dissipation", "rho nu |S|^2, integral", [](const Row& r) { return r.mass * r.budget.dissipation; }},
@@ -32,9 +42,9 @@ constexpr Column columns[] = {
     {"mean_dissipation", "mean", [](const Row& r) { return r.budget.dissipation; }},
     {"mean_injection", "by the force, mean", [](const Row& r) { return r.budget.injection; }},
     {"mean_enstrophy", "omega^2 / 2, mean", [](const Row& r) { return r.scales.enstrophy; }},
-    {"balance_residual", "of dE/dt since the last row, relative to dissipation",
+    {"balance_residual", "of dE/dt since the last row, relative to the energy exchanged",
      [](const Row& r) { return r.balance_residual; }},
-    {"max_speed", "speed at the start of the step", [](const Row& r) { return r.max_speed; }},
+    {"max_speed", "speed, on the grid", [](const Row& r) { return r.max_speed; }},
     {"rms_velocity", "u', speed", [](const Row& r) { return r.scales.rms_velocity; }},
     {"integral_scale", "length", [](const Row& r) { return r.scales.integral_scale; }},
     {"taylor_scale", "length", [](const Row& r) { return r.scales.taylor_scale; }},
@@ -63,9 +73,10 @@ void Spectral<T>::series_values(std::span<double> values) {
           .scales = flow_scales(flow_, shell_spectrum(flow_)),
           .gradient = gradient_moments(flow_),
           .mass = loaded_.scene.fluid.density * lengths[0] * lengths[1] * lengths[2],
-          .max_speed = flow_.peak().speed};
-  if (row_[3] > 0 && lost > 0)
-    row.balance_residual = (row.budget.energy - row_[0] - (flow_.integrated_gain() - row_[1])) / lost;
+          .max_speed = largest_speed(flow_)};
+  if (row_[3] > 0)
+    row.balance_residual =
+        balance_residual(row.budget.energy, row.budget.energy - row_[0], flow_.integrated_gain() - row_[1], lost);
   row_ = {row.budget.energy, flow_.integrated_gain(), flow_.integrated_dissipation(), 1};
   auto value = values.begin();
   for (const Column& column : columns) *value++ = column.read(row);

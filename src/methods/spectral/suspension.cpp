@@ -42,8 +42,8 @@ std::array<T*, 3> Suspension<T>::values_on_points() {
 }
 
 template <class T>
-void Suspension<T>::spread_force() {
-  system_.template spread_force<T>(values_on_points());
+void Suspension<T>::spread_force(StageRun& run) {
+  system_.template spread_force<T>(values_on_points(), run.dt);
 }
 
 template <class T>
@@ -127,6 +127,32 @@ std::vector<ParticleSystem::StateArray> Suspension<T>::state() const {
       out.push_back({"lyapunov_" + field->name, f64, nullptr});
   out.push_back({"lyapunov_growth", &tracker_.growth(), nullptr});
   return out;
+}
+
+template <class T>
+typename Suspension<T>::StateCopy Suspension<T>::copy_state() const {
+  StateCopy copy;
+  for (const auto& array : state()) {
+    if (array.f64 != nullptr) copy.f64.push_back(*array.f64);
+    if (array.i64 != nullptr) copy.i64.push_back(*array.i64);
+  }
+  return copy;
+}
+
+// Of all arrays but the forces of the first step; the sort at the start and that of the first step give one order.
+template <class T>
+void Suspension<T>::take_back_first_step(const StateCopy& start) {
+  auto f64 = start.f64.begin();
+  auto i64 = start.i64.begin();
+  for (const auto& array : state()) {
+    if (array.i64 != nullptr) *array.i64 = *i64++;
+    if (array.f64 == nullptr) continue;
+    if (array.name != "particle_amounts") *array.f64 = *f64;
+    ++f64;
+  }
+  velocity_to_points();
+  fill_records();
+  has_first_force_ = true;
 }
 
 template <class T>

@@ -2,6 +2,7 @@
 // What a run reports of its particles: columns of the series, snapshot and distributions.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "spume/methods/spectral/suspension.hpp"
 #include "spume/physics/point_particles/clustering.hpp"
@@ -12,6 +13,7 @@ namespace {
 // Shortest and longest distance of the pair statistics, in grid spacings, and the range of the dimension.
 constexpr double pair_range[2] = {0.05, 4};
 constexpr double dimension_range[2] = {0.1, 1};
+constexpr double contact_range = 4;  // of spheres that exclude each other: from contact to as many diameters at least
 // Particles around which pairs are counted: the mean over so many is off by 0.7 % of a particle's own scatter. A row of
 // the series takes a quarter of them.
 constexpr std::size_t pair_centres = 20000;
@@ -67,13 +69,27 @@ void Suspension<T>::make_columns() {
   }
 }
 
+// Of no set in space above 3: beyond that are the scatter of few pairs and, of spheres, the shells around one.
+template <class T>
+double Suspension<T>::dimension(double spacing) const {
+  const auto x = system_.particles().positions();
+  const auto statistics = [&](double from, double to) {
+    return pair_statistics(grid_.lower, grid_.length, x, system_.size(), from, to, dimension_bins, pair_centres / 4);
+  };
+  const double from = dimension_range[0] * spacing, to = dimension_range[1] * spacing;
+  const double contact = system_.collides() ? system_.largest_diameter() : 0;
+  if (contact <= from) return std::min(correlation_dimension(statistics(pair_range[0] * spacing, to), from, to), 3.0);
+  const double farthest = std::min(std::max(to, contact_range * contact),
+                                   0.45 * *std::min_element(grid_.length.begin(), grid_.length.end()));
+  if (!(farthest > contact)) return std::numeric_limits<double>::quiet_NaN();
+  return std::min(dimension_beyond_contact(statistics(contact, farthest), contact, farthest), 3.0);
+}
+
 template <class T>
 void Suspension<T>::measure() {
   const auto x = system_.particles().positions();
   const double spacing = smallest_spacing(grid_);
-  const PairStatistics pairs = pair_statistics(grid_.lower, grid_.length, x, system_.size(), pair_range[0] * spacing,
-                                               dimension_range[1] * spacing, dimension_bins, pair_centres / 4);
-  measured_.dimension = correlation_dimension(pairs, dimension_range[0] * spacing, dimension_range[1] * spacing);
+  measured_.dimension = dimension(spacing);
   const PeriodicCells boxes = PeriodicCells::with_side(grid_.lower, grid_.length, 4 * spacing * (1 - 1e-12), 1e18);
   measured_.box_variance = box_count_variance(boxes, x, system_.size());
   if (const auto samples = loaded_.options.get<ParticleCaseOptions>().overlap_samples; samples > 0)
@@ -145,6 +161,23 @@ void Suspension<T>::table_rows(const std::string& name, std::vector<double>& row
   }
 }
 
+template <class T>
+std::vector<Invariant> Suspension<T>::invariants() const {
+  std::vector<Invariant> list;
+  const auto at_most = [&list](const char* column, double bound) {
+    list.push_back({.quantity = column, .column = column, .bound = bound});
+  };
+  // De Wit et al. (2024), III A and IV: both stay below 1 % where collisions keep up with the clustering.
+  if (system_.collides() && loaded_.options.get<ParticleCaseOptions>().overlap_samples > 0)
+    at_most("overlap_ratio", 0.01);
+  if (system_.couples()) at_most("clipped_force", 0.01);
+  return list;
+}
+
+template std::vector<Invariant> Suspension<double>::invariants() const;
+template std::vector<Invariant> Suspension<float>::invariants() const;
+template double Suspension<double>::dimension(double) const;
+template double Suspension<float>::dimension(double) const;
 template void Suspension<double>::make_columns();
 template void Suspension<float>::make_columns();
 template void Suspension<double>::add_columns(std::vector<SeriesColumn>&) const;

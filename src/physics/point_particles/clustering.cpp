@@ -12,6 +12,26 @@
 #include "spume/neighbours/periodic_cells.hpp"
 
 namespace spume {
+namespace {
+
+// Slope of log y against log x by least squares; points without a y are left out.
+struct LogSlope {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  void add(double at, double value) {
+    if (!(value > 0)) return;
+    const double u = std::log(at), v = std::log(value);
+    n += 1;
+    x += u;
+    y += v;
+    xx += u * u;
+    xy += u * v;
+  }
+  double value() const {
+    return n < 2 ? std::numeric_limits<double>::quiet_NaN() : (n * xy - x * y) / (n * xx - x * x);
+  }
+};
+
+}  // namespace
 
 PairStatistics pair_statistics(const std::array<double, 3>& lower, const std::array<double, 3>& length,
                                const std::array<const double*, 3>& position, std::size_t size, double smallest,
@@ -86,17 +106,18 @@ PairStatistics pair_statistics(const std::array<double, 3>& lower, const std::ar
 }
 
 double correlation_dimension(const PairStatistics& pairs, double from, double to) {
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (std::size_t b = 0; b < pairs.radius.size(); ++b) {
-    if (pairs.radius[b] < from || pairs.radius[b] > to || !(pairs.correlation[b] > 0)) continue;
-    const double u = std::log(pairs.radius[b]), v = std::log(pairs.correlation[b]);
-    n += 1;
-    x += u;
-    y += v;
-    xx += u * u;
-    xy += u * v;
-  }
-  return n < 2 ? std::numeric_limits<double>::quiet_NaN() : (n * xy - x * y) / (n * xx - x * x);
+  LogSlope slope;
+  for (std::size_t b = 0; b < pairs.radius.size(); ++b)
+    if (pairs.radius[b] >= from && pairs.radius[b] <= to) slope.add(pairs.radius[b], pairs.correlation[b]);
+  return slope.value();
+}
+
+double dimension_beyond_contact(const PairStatistics& pairs, double from, double to) {
+  LogSlope slope;
+  for (std::size_t b = 0; b + 1 < pairs.radius.size(); ++b)
+    if (pairs.radius[b] >= from * (1 - 1e-12) && pairs.radius[b + 1] <= to * (1 + 1e-12))
+      slope.add(std::sqrt(pairs.radius[b] * pairs.radius[b + 1]), pairs.radial_distribution[b]);
+  return 3 + slope.value();
 }
 
 double box_count_variance(const PeriodicCells& boxes, const std::array<const double*, 3>& position, std::size_t size) {

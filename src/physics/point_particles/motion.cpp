@@ -39,6 +39,34 @@ double larger(double a, double b) {
   return (a > b || a != a) ? a : b;
 }
 
+// The velocity that a particle sees of its own force: mean over the step, and change.
+struct Disturbance {
+  double mean[3], change[3];
+};
+
+// Advances the disturbance of particle p by the force that the flow had in the step: with F the mean force of the step
+// before that and A the one extrapolated from it, the flow had A, and F + share (A - F) in its step before.
+Disturbance advance_disturbance(const DisturbanceStep& self, Particles& particles, const double* amounts, std::size_t p,
+                                const std::array<double, 3>& place, double speed_2) {
+  const std::array<double, 3> factor = self.disturbance->place_factor(place);
+  Disturbance out{};
+  for (std::size_t b = 0; b < particles.disturbance.size(); ++b) {
+    const SelfDisturbance::Step::Band& band = self.step.band[b];
+    const double left = SelfDisturbance::swept(band, speed_2);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double now = amounts[3 * p + c], mean = (*particles.force[c])[p];
+      double& velocity = (*particles.disturbance[b][c])[p];
+      const double next = left * (band.decay[c] * velocity + band.now[c] * now +
+                                  band.before[c] * (mean + self.force_share * (now - mean)));
+      const double seen = b == 0 ? factor[c] : 1;
+      out.mean[c] += seen * (velocity + next) / 2;
+      out.change[c] += seen * (next - velocity);
+      velocity = next;
+    }
+  }
+  return out;
+}
+
 template <int order, bool common_time, class Real>
 Sums move_range(const MotionModel& model, const SplineField<Real>& field, double dt, const StepCoefficients& common,
                 Particles& particles, const ForceOutput& output, std::size_t first, std::size_t last) {
@@ -64,6 +92,20 @@ Sums move_range(const MotionModel& model, const SplineField<Real>& field, double
       change[c] = (at.value.second(c) - at.value.first(c)) * signed_rate;
       for (int axis = 0; axis < 3; ++axis)
         gradient[c][axis] = 0.5 * (at.slope[axis].first(c) + at.slope[axis].second(c));
+    }
+    if (output.self.disturbance != nullptr) {
+      std::array<double, 3> place;
+      double speed_2 = 0;
+      for (int c = 0; c < 3; ++c) {
+        const double points = (middle[c] - grid.lower[c]) * grid.inverse_spacing(c);
+        place[static_cast<std::size_t>(c)] = points - std::floor(points);
+        speed_2 += (u[c] - v[c]) * (u[c] - v[c]);
+      }
+      const Disturbance own = advance_disturbance(output.self, particles, output.amounts, p, place, speed_2);
+      for (int c = 0; c < 3; ++c) {
+        u[c] -= own.mean[c];
+        change[c] -= own.change[c] * inverse_dt;
+      }
     }
     for (int c = 0; c < 3; ++c) {
       material[c] = change[c] + u[0] * gradient[c][0] + u[1] * gradient[c][1] + u[2] * gradient[c][2];

@@ -29,12 +29,19 @@ const PointParticleOptions& checked(const PeriodicGrid& grid, const PointParticl
   return options;
 }
 
-double largest_diameter(const PointParticleOptions& options) {
+double largest_of(const PointParticleOptions& options) {
   return *std::max_element(options.placement.diameters.begin(), options.placement.diameters.end());
 }
 
 ParticleArrays arrays_for(const PointParticleOptions& options) {
-  return {acts_on_flow(options.coupling), options.placement.diameters.size() > 1};
+  const bool coupled = acts_on_flow(options.coupling);
+  return {coupled, options.placement.diameters.size() > 1,
+          coupled && options.remove_self_disturbance ? SelfDisturbance::bands : 0};
+}
+
+// A force held over the step belongs to the places in its middle: from those of its start it would be of first order.
+bool holds_force(const PointParticleOptions& options) {
+  return options.scheme.memory == 0 && !options.motion.frozen;
 }
 
 }  // namespace
@@ -51,6 +58,11 @@ ParticleSystem::ParticleSystem(const PeriodicGrid& grid, const PointParticleOpti
   if (couples()) {
     deposition_ = LinearDeposition(grid);
     amounts_.resize(3 * options.count + 1);
+    if (options.remove_self_disturbance)
+      disturbance_.emplace(std::array<double, 3>{grid.spacing(0), grid.spacing(1), grid.spacing(2)}, options.kept_phase,
+                           options.motion.viscosity, options.spline_order);
+    if (holds_force(options))
+      for (auto& coordinate : middle_) coordinate.resize(options.count);
     constexpr int fractions = 32;
     for (int k = 0; k <= fractions; ++k)
       stable_step_.push_back(
@@ -58,6 +70,17 @@ ParticleSystem::ParticleSystem(const PeriodicGrid& grid, const PointParticleOpti
   }
   const double volume = parallel_sum(size(), [&](std::size_t i) { return sphere_volume(particles_.diameter_of(i)); });
   volume_fraction_ = volume / (grid.length[0] * grid.length[1] * grid.length[2]);
+}
+
+double ParticleSystem::largest_diameter() const {
+  return largest_of(options_);
+}
+
+void ParticleSystem::separate(int most_sweeps) {
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    if (cells().match(spheres(), options_.matching).pairs == 0) return;
+    exclusion_.separate(spheres());
+  }
 }
 
 void ParticleSystem::start() {
@@ -91,8 +114,16 @@ bool ParticleSystem::sort_due() const {
 void ParticleSystem::sort() {
   const auto x = particles_.positions();
   order().build({grid_.lower, grid_.length, grid_.points}, x[0], x[1], x[2], size());
-  // The forces need not follow: the step that follows finds them anew.
-  if (!order().already_sorted()) particles_.fields.permute(order().order());
+  if (order().already_sorted()) return;
+  particles_.fields.permute(order().order());
+  // The step finds the forces anew; what the flow had follows only where the step asks what came of it.
+  if (!disturbance_) return;
+  const Array<std::int32_t>& from = order().order();
+  ScratchArray<double> sorted(particles_.fields.scratch(), size());
+  for (std::size_t c = 0; c < 3; ++c) {
+    parallel_for(size(), [&](std::size_t i) { sorted[i] = amounts_[3 * static_cast<std::size_t>(from[i]) + c]; });
+    parallel_for(size(), [&](std::size_t i) { amounts_[3 * i + c] = sorted[i]; });
+  }
 }
 
 void ParticleSystem::move(double dt) {
@@ -101,6 +132,9 @@ void ParticleSystem::move(double dt) {
     output.amounts = amounts_.data();
     // From the middles of the last two steps to the time at which the force is wanted.
     output.extrapolation = clock_[1] > 0 ? options_.scheme.lead * dt / (0.5 * (dt + clock_[0])) : 0;
+    if (disturbance_)
+      // A is extrapolated by `lead` steps from F; the force of the step before is that of one step less.
+      output.self = {&*disturbance_, disturbance_->step(options_.scheme, dt, clock_[0]), 1 - 1 / options_.scheme.lead};
   }
   motion_ = std::visit(
       [&](const auto& field) { return move_particles(options_.motion, field, dt, particles_, output); }, field_);
@@ -136,8 +170,17 @@ double ParticleSystem::longest_step() const {
 }
 
 template <class Real>
-void ParticleSystem::spread_force(const std::array<Real*, 3>& force) {
-  const DepositedParticles given{particles_.positions(), amounts_.data(),
+void ParticleSystem::spread_force(const std::array<Real*, 3>& force, double dt) {
+  std::array<const double*, 3> places = particles_.positions();
+  if (holds_force(options_)) {
+    parallel_for(size(), [&](std::size_t i) {
+      for (int c = 0; c < 3; ++c)
+        middle_[c][i] = wrap_periodic((*particles_.position[c])[i] + dt / 2 * (*particles_.velocity[c])[i],
+                                      grid_.lower[c], grid_.length[c]);
+    });
+    places = {middle_[0].data(), middle_[1].data(), middle_[2].data()};
+  }
+  const DepositedParticles given{places, amounts_.data(),
                                  particles_.diameter == nullptr ? nullptr : particles_.diameter->data(),
                                  particles_.common_diameter};
   order().build(deposition_.cells(), given.position[0], given.position[1], given.position[2], size());
@@ -164,7 +207,7 @@ std::vector<double> ParticleSystem::overlap_histogram(int bins) {
 }
 
 Exclusion& ParticleSystem::cells() {
-  if (!has_cells_) exclusion_ = Exclusion(grid_.lower, grid_.length, largest_diameter(options_));
+  if (!has_cells_) exclusion_ = Exclusion(grid_.lower, grid_.length, largest_diameter());
   has_cells_ = true;
   return exclusion_;
 }
@@ -191,7 +234,9 @@ std::vector<ParticleSystem::ArraySize> ParticleSystem::arrays() const {
                              {"particle order", order_.bytes()},
                              {"velocity records", record_bytes(), false}};
   if (couples()) {
-    out.push_back({"particle forces", 8.0 * static_cast<double>(amounts_.capacity())});
+    double forces = 8.0 * static_cast<double>(amounts_.capacity());
+    for (const auto& coordinate : middle_) forces += 8.0 * static_cast<double>(coordinate.capacity());
+    out.push_back({"particle forces", forces});
     out.push_back({"force on the points", deposition_.bytes(), false});
   }
   if (has_cells_) out.push_back({"particle exclusion", exclusion_.bytes()});
@@ -205,6 +250,8 @@ double ParticleSystem::estimated_bytes(const PeriodicGrid& grid, const PointPart
   double per_particle = 8 * 7 + 8 + 18;
   if (options.placement.diameters.size() > 1) per_particle += 8;
   if (couples) per_particle += 8 * 3 + 8 * 3;
+  if (couples && options.remove_self_disturbance) per_particle += 8 * 3 * SelfDisturbance::bands + 8 * 3;
+  if (couples && holds_force(options)) per_particle += 8 * 3;
   if (collides) per_particle += 16 + 4 + 12 + 2;
   double points = 1;
   for (int axis = 0; axis < 3; ++axis) points *= grid.points[axis] + options.spline_order - 1;
@@ -214,7 +261,7 @@ double ParticleSystem::estimated_bytes(const PeriodicGrid& grid, const PointPart
 
 template void ParticleSystem::take_velocity(const std::array<const double*, 3>&);
 template void ParticleSystem::take_velocity(const std::array<const float*, 3>&);
-template void ParticleSystem::spread_force(const std::array<double*, 3>&);
-template void ParticleSystem::spread_force(const std::array<float*, 3>&);
+template void ParticleSystem::spread_force(const std::array<double*, 3>&, double);
+template void ParticleSystem::spread_force(const std::array<float*, 3>&, double);
 
 }  // namespace spume

@@ -60,7 +60,7 @@ class Flow {
   bool next_tendency();    // false when the scheme needs no more of them in this step
   // For each tendency, of the potential that the scheme takes it of:
   void set_forcing_coefficient();
-  void set_integrating_factors();  // exp(c dt), c = -nu k^2; not called for an inviscid flow
+  void set_integrating_factors();  // exp(c dt) - 1, c = -nu k^2; not called for an inviscid flow
   bool next_remainder();           // of the points of the product, see CrossProduct; false after the last
   bool last_remainder() const;
   void inverse_x();
@@ -68,6 +68,8 @@ class Flow {
   void forward_x();        // for every remainder but the last,
   void update();           // which hands K to the scheme, mode by mode
   void accept_tendency();  // throws StepFailure, and the potential is what it was; after the last the step is made
+  // Takes the first step back, once it is made; the force that was set stays.
+  void take_back_first_step();
   // After the last tendency.
   void measure_balance();  // of the energy, over the step
   void join_conjugates();  // with a force in proportion to the velocity
@@ -128,6 +130,8 @@ class Flow {
     int tendencies = 0, tendency = -1, remainder = -1;
     VelocityPeak peak = {};   // of the potential that the tendency is taken of
     EnergyBudget fresh = {};  // of the updated potential, without the work of forces
+    EnergyBudget start = {};
+    double start_time = 0, start_gain = 0, start_dissipation = 0;
   };
   const Modes<T>& argument() const;
   const Modes<T>& updated() const;
@@ -143,7 +147,7 @@ class Flow {
   EnergyBudget with_forces(EnergyBudget fresh) const;
   double forcing_coefficient(const Modes<T>& potential) const;
   StepLimit limit_for(const VelocityPeak& peak) const;
-  // exp(-nu k_i^2 dt) per index of an axis; along z twice each, as vectors take it.
+  // exp(-nu k_i^2 dt) - 1 per index of an axis; along z twice each, as vectors take it.
   struct Decay {
     std::vector<T> x, y;
     Array<Complex> z;
@@ -162,6 +166,7 @@ class Flow {
   std::array<double, 3> cut_{};                   // two-thirds rule: |k| below it stays
   double kept_grid_wavenumber_ = 0;               // largest wavenumber kept times spacing, of all axes
   double shell_low_ = 0, shell_high_ = 0;         // squares of the forced wavenumbers
+  double forced_decay_ = 0;                       // nu k^2 of the largest wavenumber of a forced shell
 
   // Adams-Bashforth: b, K of the present and K of the previous step. The update writes b of the next step over the
   // old K, so that three sets suffice and a refused step leaves b as it was.

@@ -27,6 +27,10 @@ void real_vorticity(Flow<T>& flow, const Modes<T>& potential, const Multiplier<T
 template <class T>
 void force_modes(Flow<T>& flow, const std::array<const T*, 3>& values, std::size_t z_stride, Modes<T>& modes);
 
+// Modes of u_component, as a source of BoxTransform.
+template <class T>
+typename BoxTransform<T>::Source velocity_source(const Flow<T>& flow, int component);
+
 // Modes of d u_component / d x_axis, as a source of BoxTransform.
 template <class T>
 typename BoxTransform<T>::Source gradient_source(const Flow<T>& flow, int component, int axis);

@@ -26,10 +26,14 @@ struct Scales {
   double reynolds_lambda = 0;   // u' lambda / nu
   double kolmogorov_scale = 0;  // eta = (nu^3 / epsilon)^(1/4)
   double kmax_eta = 0;          // with the least of the largest wavenumbers kept along the axes
-  double integral_scale = 0;    // pi / (2 u'^2) sum E(k) / k dk
+  double integral_scale = 0;    // pi / (2 u'^2) sum over the modes of |u_k|^2 / (2 |k|)
 };
 template <class T>
 Scales flow_scales(const Flow<T>& flow, const ShellSpectrum& spectrum);
+
+// Of the present velocity on the points of the grid. Takes a field of one number a point while it runs.
+template <class T>
+double largest_speed(Flow<T>& flow);
 
 // Of du/dx, dv/dy and dw/dz together: third moment over variance^(3/2), fourth over its square.
 struct GradientMoments {

@@ -60,8 +60,9 @@ struct ParticleCaseOptions {
   std::vector<double> gravity;
   Coupling coupling = Coupling::one_way;
   bool matching_by_sorting = false;
-  std::int64_t collision_sweeps = PointParticleOptions{}.collision_sweeps;
+  std::int64_t collision_sweeps = 12;  // measured in cases/exclusion; the paper makes one
   double max_volume_fraction = PointParticleOptions{}.max_volume_fraction;
+  bool remove_self_disturbance = true;
   bool mean_force_moves_fluid = false;  // else a mean pressure gradient holds it
   bool frozen = false;
   std::int64_t spline_order = PointParticleOptions{}.spline_order;

@@ -26,13 +26,23 @@ class Suspension {
   Suspension(const LoadedCase& loaded, Flow<T>& flow);
 
   // The parts of a step, in this order; the sort, the motion and the collisions are those of system().
-  void spread_force();        // of the particles to the points
-  void force_to_modes();      // hands the flow its force
-  void velocity_to_points();  // of the flow, divided by the prefilter of the splines
-  void fill_records();        // of the velocity, for the particles
+  void spread_force(StageRun& run);  // of the particles to the points
+  void force_to_modes();             // hands the flow its force
+  void velocity_to_points();         // of the flow, divided by the prefilter of the splines
+  void fill_records();               // of the velocity, for the particles
   void follow_exponents(StageRun& run);
   // After velocity_to_points and fill_records of the flow's initial state.
   void start_particles();
+
+  // True before the first step of particles that act on the flow. It is made twice: the second time with the force that
+  // the first found, from the state that copy_state gave.
+  bool lacks_force() const { return system_.couples() && system_.steps() == 0 && !has_first_force_; }
+  struct StateCopy {
+    std::vector<Array<double>> f64;
+    std::vector<Array<std::int64_t>> i64;
+  };
+  StateCopy copy_state() const;
+  void take_back_first_step(const StateCopy& start);
 
   // The shorter of the flow's limit and that of the coupling.
   StepLimit limited(const StepLimit& flow) const;
@@ -43,6 +53,7 @@ class Suspension {
   void add_columns(std::vector<SeriesColumn>& list) const;
   // In the order of add_columns.
   void values(std::span<double> row);
+  std::vector<Invariant> invariants() const;
   ParticleSnapshot snapshot();
   void add_tables(std::vector<RecordTable>& list) const;
   void table_rows(const std::string& name, std::vector<double>& rows);
@@ -62,7 +73,8 @@ class Suspension {
     std::function<double()> read;
   };
   void make_columns();
-  void measure();  // what columns read and no step leaves behind
+  double dimension(double spacing) const;  // of the set that the particles cluster on
+  void measure();                          // what columns read and no step leaves behind
   std::array<T*, 3> values_on_points();
   std::vector<ParticleSystem::StateArray> state() const;
 
@@ -74,6 +86,7 @@ class Suspension {
   std::array<Array<T>, 3> field_;  // velocity, then force, on the points
   Modes<T> force_;
   bool follows_exponents_ = false;
+  bool has_first_force_ = false;
   mutable LyapunovTracker tracker_;
   std::vector<Column> columns_;
   struct {

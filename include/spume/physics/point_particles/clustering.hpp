@@ -28,6 +28,11 @@ PairStatistics pair_statistics(const std::array<double, 3>& lower, const std::ar
 // [from, to] that found a pair; 3 for a random distribution. Not a number when fewer than two did.
 double correlation_dimension(const PairStatistics& pairs, double from, double to);
 
+// The same of spheres that exclude each other, whose correlation grows from nothing at contact and has a slope far
+// above 3 there: 3 + slope of log radial_distribution against log radius (at the middle of a bin) over the bins in
+// [from, to].
+double dimension_beyond_contact(const PairStatistics& pairs, double from, double to);
+
 // Variance of the number of particles in a box over that of particles placed at random: 1 for these in the mean,
 // exactly (their variance is mean (1 - 1/boxes), as all particles lie somewhere), 0 for a lattice. Zero without
 // particles or with a single box.

@@ -22,6 +22,7 @@
 #include "spume/operators/spline_field.hpp"
 #include "spume/physics/point_particles/kinds.hpp"
 #include "spume/physics/point_particles/particles.hpp"
+#include "spume/physics/point_particles/self_disturbance.hpp"
 
 namespace spume {
 
@@ -44,13 +45,22 @@ struct MotionStatistics {
   double max_speed = 0;                 // not a number when any velocity is not
 };
 
+// What removes the disturbance of each particle from what it sees: its constants, and the step of the flow before.
+struct DisturbanceStep {
+  const SelfDisturbance* disturbance = nullptr;  // null: particles see the flow as it is
+  SelfDisturbance::Step step;
+  double force_share = 0;  // of the force and its extrapolation, in the force that the flow had the step before
+};
+
 // What two-way coupling needs of a step. The force of a particle on the fluid, per density (8):
 //   F = volume (Du/Dt - rho_p/rho_f (V' - V) / dt - (1 - rho_p/rho_f) g)
 // is the mean over the step. `amounts` (three numbers a particle) receives F + extrapolation (F - F of the step
-// before); extrapolation = 1/2 gives the force at the end of a step of the same length to second order.
+// before); extrapolation = 1/2 gives the force at the end of a step of the same length to second order. With a
+// `self` they hold, before, the force that the flow had over the step.
 struct ForceOutput {
   double* amounts = nullptr;  // null: no force is found
   double extrapolation = 0;
+  DisturbanceStep self = {};
 };
 
 // Moves the particles from the time of the previous snapshot to that of the present one, dt later. Positions stay in

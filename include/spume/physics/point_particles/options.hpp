@@ -25,6 +25,10 @@ struct PointParticleOptions {
   // Where in time the force is wanted, from the middle of the last step, in steps (lead: 1/2 for multistep schemes that
   // take it at the present time, 1 for a scheme that holds it over the coming step), and how the flow steps with it.
   CouplingScheme scheme;
+  // Particles that act on the flow see it without their own disturbance (self_disturbance.hpp), which needs a
+  // viscosity; `kept_phase` is the largest wavenumber that the flow keeps times the spacing, along each axis.
+  bool remove_self_disturbance = false;
+  std::array<double, 3> kept_phase{M_PI, M_PI, M_PI};
 };
 
 }  // namespace spume

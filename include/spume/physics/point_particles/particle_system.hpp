@@ -17,6 +17,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -40,23 +41,30 @@ class ParticleSystem {
   // first call).
   template <class Source>
   void take_velocity(const std::array<const Source*, 3>& velocity);
+  // Moves overlapping particles apart, as collide() does, until none is left or `most_sweeps` are made: random places
+  // overlap. Before the first sort and start(). Precondition: collides().
+  void separate(int most_sweeps);
   void start();
   bool sort_due() const;
   void sort();
   void move(double dt);
   void collide();  // precondition: collides()
 
+  bool removes_self_disturbance() const { return disturbance_.has_value(); }
   bool couples() const { return acts_on_flow(options_.coupling); }
   // Frozen particles do not: exclusion would move them.
   bool collides() const { return excludes(options_.coupling) && !options_.motion.frozen; }
   // The longest step that the coupling is stable with, at the volume fractions that the force was last spread with
   // (before that, the mean); infinite without coupling.
   double longest_step() const;
-  // Writes every point of `force`: acceleration of the fluid by the particles. Precondition: couples().
+  // Writes every point of `force`: acceleration of the fluid by the particles, for a flow step of dt; schemes that hold
+  // the force over the step take it at the places of its middle. Precondition: couples().
   template <class Real>
-  void spread_force(const std::array<Real*, 3>& force);
+  void spread_force(const std::array<Real*, 3>& force, double dt = 0);
 
   std::size_t size() const { return particles_.size(); }
+  std::int64_t steps() const { return static_cast<std::int64_t>(clock_[1]); }
+  double largest_diameter() const;
   double volume_fraction() const { return volume_fraction_; }
   const Particles& particles() const { return particles_; }
   const PointParticleOptions& options() const { return options_; }
@@ -106,6 +114,8 @@ class ParticleSystem {
   Particles particles_;
   std::variant<SplineField<double>, SplineField<float>> field_;
   LinearDeposition deposition_;
+  std::optional<SelfDisturbance> disturbance_;
+  std::array<Array<double>, 3> middle_;  // places at the middle of the coming step, for a force held over it
   Exclusion exclusion_;
   bool has_cells_ = false;
   CellOrder order_;

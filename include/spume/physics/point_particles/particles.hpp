@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "spume/core/array.hpp"
 #include "spume/core/field_set.hpp"
@@ -15,6 +17,7 @@ namespace spume {
 struct ParticleArrays {
   bool force = false;         // two-way: the force of the last step is kept to extrapolate from
   bool polydisperse = false;  // every particle has its own diameter
+  int disturbances = 0;       // velocities that make up what a particle sees of its own force
 };
 
 struct Particles {
@@ -28,6 +31,9 @@ struct Particles {
     add("position", position);
     add("velocity", velocity);
     if (wanted.force) add("force", force);
+    disturbance.resize(static_cast<std::size_t>(wanted.disturbances));
+    for (std::size_t b = 0; b < disturbance.size(); ++b)
+      add(("disturbance_" + std::to_string(b)).c_str(), disturbance[b]);
     if (wanted.polydisperse) diameter = &fields.add<double>("diameter", Lifetime::state);
     identifier = &fields.add<std::int64_t>("identifier", Lifetime::state);
   }
@@ -35,6 +41,7 @@ struct Particles {
   FieldSet fields;
   std::array<Array<double>*, 3> position{}, velocity{};
   std::array<Array<double>*, 3> force{};  // on the fluid, per density of the fluid: mean over the last step
+  std::vector<std::array<Array<double>*, 3>> disturbance;  // see SelfDisturbance
   Array<double>* diameter = nullptr;
   Array<std::int64_t>* identifier = nullptr;
   double common_diameter = 0;  // of every particle without arrays of their own; else the reference diameter
