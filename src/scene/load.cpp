@@ -303,8 +303,9 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   // Four bytes each.
   constexpr double most_cells = 1e8;
   if (const double cells = SolidUnion::cells_needed(scene.domain); !scene.domain.boxes.empty() && cells > most_cells)
-    problems.add(*draft.node("solid.0"), "the planes of all boxes cut the domain into " + brief(cells) + " cells; at most " +
-                                           brief(most_cells) + " are possible: use fewer boxes, or align their faces");
+    problems.add(*draft.node("solid.0"), "the planes of all boxes cut the domain into " + brief(cells) +
+                                             " cells; at most " + brief(most_cells) +
+                                             " are possible: use fewer boxes, or align their faces");
   const std::vector<LiquidRegion> regions = make_regions(draft, compiler);
   VectorExpression body_force = compiler.compile(draft.body_force, "forces.body");
   VectorExpression initial_velocity = compiler.compile(draft.initial_velocity, "initial.velocity", Arguments::place);
