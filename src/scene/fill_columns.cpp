@@ -208,24 +208,27 @@ void Filler::site_column(ThreadRegions& own, std::size_t r, Vec3 p, double area,
   }
 }
 
-// Of a cell of the lattice around p, the share that the region fills: by its halves along each axis, and where they
-// differ by eighths.
+// Of a cell of the lattice around p, the share that the region fills: all or nothing where its corners agree, else by
+// samples of an eighth.
 double Filler::part_of_cell(ThreadRegions& own, std::size_t r, const Vec3& p, Chunk& chunk) const {
   const Vec3& width = lattice_.spacing;
-  const auto share = [&](int parts) {
-    const int deep = lattice_.dimensions == 3 ? parts : 1;
+  const bool deep = lattice_.dimensions == 3;
+  // `parts` samples along each axis, over the inner `reach` of the cell.
+  const auto share = [&](int parts, double reach) {
+    const auto offset = [&](int k) { return ((k + 0.5) / parts - 0.5) * reach; };
     int inside = 0;
-    for (int c = 0; c < deep; ++c)
+    for (int c = 0; c < (deep ? parts : 1); ++c)
       for (int b = 0; b < parts; ++b)
         for (int a = 0; a < parts; ++a) {
-          const Vec3 q{p[0] + ((a + 0.5) / parts - 0.5) * width[0], p[1] + ((b + 0.5) / parts - 0.5) * width[1],
-                       p[2] + (lattice_.dimensions == 3 ? ((c + 0.5) / parts - 0.5) * width[2] : 0)};
+          const Vec3 q{p[0] + offset(a) * width[0], p[1] + offset(b) * width[1],
+                       p[2] + (deep ? offset(c) * width[2] : 0)};
           inside += contains(own, r, q, chunk) && !(solids_ != nullptr && solids_->inside(q)) ? 1 : 0;
         }
-    return static_cast<double>(inside) / (parts * parts * deep);
+    return static_cast<double>(inside) / (parts * parts * (deep ? parts : 1));
   };
-  const double coarse = share(2);
-  return coarse == 0 || coarse == 1 ? coarse : share(8);
+  constexpr double to_corners = 2 * (1 - 1e-9);
+  const double coarse = share(2, to_corners);
+  return coarse == 0 || coarse == 1 ? coarse : share(8, 1);
 }
 
 // The column through p: the surface is the highest root of `where`, found from above in steps of half a

@@ -224,7 +224,8 @@ double SolidUnion::free_volume(const Vec3& lower, const Vec3& upper) const {
 
 int SolidUnion::face_near(const Vec3& point, int axis, std::size_t plane, double reach) const {
   const double distance = point[axis] - planes_[axis][plane];
-  if (std::abs(distance) >= reach) return -1;
+  // A point in the plane of a face lies beside it: reflected, it would be seen where it is.
+  if (std::abs(distance) >= reach || std::abs(distance) <= tolerance_) return -1;
   const bool above = distance > 0;  // the point lies above the plane: the solid below it
   Cell first{}, last{};
   for (int a = 0; a < dimensions_; ++a) {

@@ -27,7 +27,6 @@ std::string box(double x0, double y0, double x1, double y1, const std::string& w
 // The largest speed within 20 sqrt(H/g), over sqrt(g H).
 double largest_speed(const std::string& text, const Overrides& overrides = {}) {
   Simulation run(text, overrides);
-  run.method.start();
   double largest = 0;
   while (run.method.time() < 4.04) {
     run.steps(1, run.method.step_limit().dt);

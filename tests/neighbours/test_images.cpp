@@ -135,6 +135,14 @@ TEST(Images, FillABoxOnceWithinReachOfTheLiquidAlsoAtItsEdges) {
   }
 }
 
+TEST(Images, APointInThePlaneOfAFaceBesideItHasNoImageThere) {
+  ImageRules rules = unit_box_rules(2, 0.26, none, none, none);
+  rules.solids = unite(rules, {{{0.4, 0.1, 0}, {0.8, 0.3, 0}, BoundaryKind::free_slip}}, 0.1);
+  const Neighbourhood hood(rules, {{0.4, 0.5, 0}, {0.4, 0.4, 0}});
+  for (std::size_t k = 0; k < hood.images.size(); ++k) EXPECT_LT(hood.images.position(1)[k], 0.3);
+  EXPECT_EQ(hood.list.count(0), 1) << "the other point; images are farther than the support radius";
+}
+
 TEST(Images, BoxDensityNearEdgesEqualsTheBulk) {
   // A box that does not fit the lattice: the number of images in a strip along an edge is its area times the
   // number density, up to the lattice points that a strip of this perimeter can gain or lose on its border

@@ -182,16 +182,19 @@ TEST(NeighbourList, PairsFarFromTheOriginOfALongDomainStaySymmetricAndComplete) 
 }
 
 // What the list of i holds, as sources and places; of points within rounding of the support radius alone.
-using Seen = std::multiset<std::pair<std::int32_t, std::array<std::int64_t, 3>>>;
+using Seen = std::set<std::pair<std::int32_t, std::array<std::int64_t, 3>>>;
 Seen::value_type seen_point(std::int32_t source, const Point& place) {
   Seen::value_type point{source, {}};
   for (int axis = 0; axis < 3; ++axis) point.second[axis] = std::llround(place[axis] * 1e9);
   return point;
 }
 
+// `boxes` and, in the solid alone, the first of them once more.
 void expect_lists_hold_what_is_seen(const ImageRules& base, const std::vector<SolidBox>& boxes, std::size_t points) {
   ImageRules rules = base;
-  rules.solids = unite(rules, boxes, 0.05);
+  std::vector<SolidBox> repeated = boxes;
+  repeated.push_back(boxes.front());
+  rules.solids = unite(rules, repeated, 0.05);
   std::vector<Point> liquid;
   for (const Point& p : random_points(points, rules.dimensions))
     if (!inside_any(boxes, p, rules.dimensions)) liquid.push_back(p);
@@ -231,12 +234,11 @@ TEST(NeighbourList, HoldsWhatAParticleSeesAroundBoxesThatTouchOverlapRepeatOrAre
   constexpr auto slip = BoundaryKind::free_slip;
   for (const int dimensions : {2, 3}) {
     const ImageRules rules = unit_box_rules(dimensions, 0.15, mirror, periodic, mirror);
-    // Side by side, over each other, one of them twice, and a plate.
+    // Side by side, over each other, and a plate.
     // No gap is narrower than the support radius: the twin reflects once along an axis.
     const std::vector<SolidBox> boxes{{{0.33, 0.3, 0.3}, {0.5, 0.7, 0.84}, slip},
                                       {{0.5, 0.3, 0.3}, {0.7, 0.7, 0.84}, slip},
                                       {{0.4, 0.5, 0.2}, {0.84, 0.8, 0.6}, slip},
-                                      {{0.33, 0.3, 0.3}, {0.5, 0.7, 0.84}, slip},
                                       {{0.16, 0.2, 0.16}, {0.17, 0.8, 0.8}, slip}};
     expect_lists_hold_what_is_seen(rules, boxes, dimensions == 2 ? 600 : 900);
   }
