@@ -61,6 +61,25 @@ inline Arrays while_bubbles_live(const Flow& f, Arrays arrays) {
   })};
 }
 
+inline Arrays seen_by_bubbles(const Flow& f, const KeptArrays& kept) {
+  return {kept.bubbles,        kept.bubble_images, f.advecting_velocity, f.material_acceleration, f.velocity_gradient,
+          f.filtered_velocity, f.strain,           f.eddy_viscosity(),   f.moments.normal,        kept.sizes};
+}
+
+inline Arrays arrays_of(const MomentFields& m) {
+  return {m.correction, m.uncorrected, m.divergence_of_position, m.laplacian_diagonal,
+          m.kernel_sum, m.normal,      m.concentration_gradient};
+}
+
+inline Arrays read_by_matrix(const Flow& f) {
+  const MomentFields& m = f.moments;
+  return {m.divergence_of_position, m.laplacian_diagonal, f.divergence, f.first_source, f.pressure, f.potential};
+}
+
+inline Arrays arrays_of(const PressureRows& rows) {
+  return {rows.diagonal_shift, rows.diagonal, rows.weight, rows.row, rows.right_hand_side};
+}
+
 // A solve counts what the applications of its matrix stream itself.
 inline auto solving(Flow& f, void (Flow::*solve)()) {
   return [&f, solve](StageRun& run) {

@@ -13,7 +13,6 @@ Plan make_plan(Flow& f) {
   const Features& has = f.features;
   const Reasons why(f.loaded, has, f.force_potential.has_value());
   ParticleStore& p = f.particles;
-  Arrangement& arrangement = f.arrangement;
   MomentFields& moments = f.moments;
   const auto& r = f.intermediate_position;
   const KeptArrays kept(f);
@@ -23,7 +22,7 @@ Plan make_plan(Flow& f) {
   // (i) intermediate positions r* = r^n + dt u^n, in the order of cells
   add(both, "move", true, "particles to their intermediate positions",
       [&](StageRun& run) { f.move_to_intermediate_position(run.dt); }, {p.position, p.velocity}, {r});
-  add(both, "sort", true, "particles in cell order", [&](StageRun&) { arrangement.sort(p, r); }, {}, {kept.sorted});
+  add(both, "sort", true, "particles in cell order", [&](StageRun&) { f.arrangement.sort(p, r); }, {}, {kept.sorted});
   add(step, "advecting velocity", true, why.advection, [&](StageRun& run) { f.find_advecting_velocity(run.dt); },
       {p.velocity, f.acceleration}, {f.advecting_velocity});
   add(
@@ -44,12 +43,9 @@ Plan make_plan(Flow& f) {
       {}, {kept.lists});
   add(
       both, "kernel moments", true, "gradient correction, div r, concentration",
-      [&](StageRun&) { moments.measure(arrangement, p, f.resolution.spacing); }, {},
-      {moments.correction, moments.uncorrected, moments.divergence_of_position, moments.laplacian_diagonal,
-       moments.kernel_sum, moments.concentration_gradient, moments.normal},
-      true);
+      [&](StageRun&) { moments.measure(f.arrangement, p, f.resolution.spacing); }, {}, arrays_of(moments), true);
   add(both, "surface", has.free_surface, why.surface,
-      [&](StageRun&) { f.surface->find(arrangement, p, moments, f.boundary.reflection(), r, f.boundary.solids()); },
+      [&](StageRun&) { f.surface->find(f.arrangement, p, moments, f.boundary.reflection(), r, f.boundary.solids()); },
       {moments.divergence_of_position, moments.uncorrected, moments.normal}, {kept.surface});
   // (iii) the shift to r^{n+1}, taken with the last stage
   add(step, "shift", has.shifting, why.shift, [&](StageRun&) { f.compute_shift(); }, {moments.concentration_gradient},
@@ -70,10 +66,8 @@ Plan make_plan(Flow& f) {
       {f.strain, f.velocity_gradient, f.filtered_velocity}, {f.eddy_viscosity()});
   add(
       step, "bubble forces", has.bubbles, why.integrator,
-      [&](StageRun& run) { f.bubbles->exchange_momentum(run.dt, arrangement.packed); },
-      living({kept.bubbles, kept.bubble_images, f.advecting_velocity, f.material_acceleration, f.velocity_gradient,
-              f.filtered_velocity, f.strain, f.eddy_viscosity(), moments.normal, kept.sizes}),
-      living({kept.bubbles, f.bubble_exchange(), f.bubble_viscosity()}));
+      [&](StageRun& run) { f.bubbles->exchange_momentum(run.dt, f.arrangement.packed); },
+      living(seen_by_bubbles(f, kept)), living({kept.bubbles, f.bubble_exchange(), f.bubble_viscosity()}));
   // (viii) u* from forces and viscosity
   add(both, "forces", has.potential, why.forces, [&](StageRun& run) { f.find_potential(f.time + run.dt); }, {r},
       {f.potential, f.varying_force});
@@ -94,14 +88,12 @@ Plan make_plan(Flow& f) {
       [&](StageRun& run) { f.relax_density(run.dt); }, {moments.kernel_sum, moments.divergence_of_position},
       {f.divergence});
   add(
-      start, "first source", true, "tr(grad u . grad u) less the divergence of the forces",
-      [&](StageRun&) { f.set_first_source(); },
+      start, "first source", true, "tr(grad u . grad u) - div f", [&](StageRun&) { f.set_first_source(); },
       {f.intermediate_velocity, moments.correction, f.gradient_trace, f.potential},
       {f.first_source, f.potential_laplacian}, true);
-  add(both, "matrix", true, "rows and right-hand side", [&](StageRun&) { f.set_matrix(); },
-      {moments.divergence_of_position, moments.laplacian_diagonal, f.divergence, f.first_source, f.pressure,
-       f.potential},
-      {f.rows.diagonal_shift, f.rows.diagonal, f.rows.weight, f.rows.row, f.rows.right_hand_side});
+  add(
+      both, "matrix", true, "rows and right-hand side", [&](StageRun&) { f.set_matrix(); }, read_by_matrix(f),
+      arrays_of(f.rows));
   add(both, "preconditioner", f.solver.has_multigrid(), why.preconditioner, [&](StageRun&) { f.prepare_solver(); },
       {r, f.rows.diagonal}, {});
   add(start, "first pressure", true, why.pressure, solving(f, &Flow::solve_first_pressure),
