@@ -141,7 +141,6 @@ struct Flow {
  private:
   void add_body_force(double t, double dt);
   void add_gradient_trace(double factor);
-  double regularisation() const;
   double row_scale(std::size_t i) const;
   void set_weights();
   void set_right_hand_side();
