@@ -14,6 +14,8 @@ constexpr double least_depth = 0.25;
 // Of the height of a layer: slabs between the levels of solids hold whole layers, which a fifth more or less in height
 // does not crowd.
 constexpr double least_slab = 2;
+// What the upper layers take in below them; less is left to parts_of().
+constexpr double least_rest = 0.75;
 
 }  // namespace
 
@@ -119,7 +121,7 @@ void Filler::find_columns() {
       Vec3 from = regions_[r].lower, to = regions_[r].upper;
       to[up] = between;
       for (const double level : solids_->wetted_planes(static_cast<int>(up), from, to)) {
-        if (level - start < least || between - level < least) continue;
+        if (level - start < least || between - level < least_rest * spacing) continue;
         add_columns(r, start, level, columns);
         start = level;
       }

@@ -142,8 +142,7 @@ TEST(LesSphFlow, ALidDrivesACompressibleBoxAroundASolid) {
   run_around_a_solid("0.05");
 }
 
-// Around the edges of a solid the matrix is not symmetric: its left null vector is not the constant, and a right-hand
-// side without mean need not be in its range.
+// The pressure has no level, and only a symmetric matrix makes a right-hand side without mean solvable.
 TEST(LesSphFlow, ALidDrivesAnIncompressibleBoxAroundASolid) {
   run_around_a_solid("0");
 }

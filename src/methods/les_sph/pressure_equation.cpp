@@ -17,11 +17,6 @@
 namespace spume::les_sph {
 namespace {
 
-// Over the square of the longest side of the domain, far below (2 pi)^2 of its smallest wavenumber; see
-// regularisation(). In a lid-driven cavity with a solid at 1/40 a solve takes 34 iterations with 1e-2, 50 with 1e-3 and
-// one step is refused, and none converges with 1e-4; between 1e-2 and 1 the kinetic energy differs by 0.013 %.
-constexpr double least_compressibility = 1e-3;
-
 // Of the bulk value of div r. Far below it div r tells of missing neighbours, not of the arrangement; the mirrored
 // liquid makes up for those missing at a surface. The bound acts in a closed domain alone: with a surface, what is
 // below its threshold, 0.78 of the bulk value, is raised to the bulk value.
@@ -92,18 +87,6 @@ void Flow::set_first_source() {
   add_gradient_trace(read(particles.velocity), 1, first_source);
 }
 
-// A ray through the edge of a solid meets one of its faces, which is not mutual, and on a lattice some do: the matrix
-// of a closed incompressible box around a solid is then not symmetric, its right-hand side is not compatible, and
-// removing the mean does not help. A compressibility of 1e-3 over the square of the domain, far below that of the
-// smallest wave number (2 pi)^2, makes the constant solvable; it is removed afterwards.
-double Flow::regularisation() const {
-  if (!features.closed || equation.helmholtz > 0 || scene.domain.boxes.empty()) return 0;
-  double length = 0;
-  for (int axis = 0; axis < dimensions; ++axis)
-    length = std::max(length, scene.domain.upper[axis] - scene.domain.lower[axis]);
-  return least_compressibility / (length * length);
-}
-
 // V_j of (3.9), and with mixture-pressure alpha div((1/alpha) grad q), the left-hand side of King (3.17), by the
 // geometric mean of 1/alpha: alpha_i / sqrt(alpha_i alpha_j).
 void Flow::set_weights() {
@@ -123,11 +106,10 @@ void Flow::set_matrix() {
   for (auto* array : {&rows.diagonal_shift, &rows.diagonal}) scratch.lease(*array, n);
   rows.pressure_fixed = surface != nullptr ? &surface->pressure_fixed : nullptr;
   rows.helmholtz = equation.helmholtz;
-  rows.singular = features.closed && equation.helmholtz == 0 && regularisation() == 0;
-  const double helmholtz = equation.helmholtz + regularisation();
+  rows.singular = features.closed && equation.helmholtz == 0;
   const auto volume = static_cast<float>(particles.volume);
   parallel_for(n, [&](std::size_t i) {
-    rows.diagonal_shift[i] = static_cast<float>(helmholtz * row_scale(i));
+    rows.diagonal_shift[i] = static_cast<float>(equation.helmholtz * row_scale(i));
     const bool fixed = surface != nullptr && surface->pressure_fixed[i] != 0;
     rows.diagonal[i] = fixed ? 0.0F : volume * (moments.laplacian_diagonal[i] + rows.diagonal_shift[i]);
   });

@@ -175,7 +175,6 @@ struct Flow {
   double work_of_step(double dt) const;
   double weight_at_start() const;
   void add_gradient_trace(const std::array<const double*, 3>& velocity, double factor, Array<double>& sum);
-  double regularisation() const;
   double row_scale(std::size_t i) const;
   void set_weights();
   void set_right_hand_side();
