@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "checks.hpp"
 #include "filler.hpp"
@@ -94,6 +95,65 @@ void Filler::set_volume(const std::vector<std::vector<Chunk>>& chunks) {
   for (RegionFill& fill : scene_.fills) fill.got = static_cast<double>(fill.particles) * particles.volume;
 }
 
+// Whether nothing but air lies within a spacing around some particles of a region.
+bool Filler::stands_alone(std::size_t r, const std::vector<std::vector<Chunk>>& chunks) const {
+  const auto dimensions = static_cast<std::size_t>(lattice_.dimensions);
+  const auto extent_of = [&](std::size_t region) {
+    std::array<std::pair<double, double>, 3> extent{};
+    for (std::size_t a = 0; a < dimensions; ++a) {
+      extent[a] = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+      for (const Chunk& chunk : chunks[region])
+        for (const double x : chunk.position[a])
+          extent[a] = {std::min(extent[a].first, x), std::max(extent[a].second, x)};
+    }
+    return extent;
+  };
+  const auto own = extent_of(r);
+  const auto apart = [&](auto&& lower, auto&& upper) {
+    for (std::size_t a = 0; a < dimensions; ++a)
+      if (own[a].first - 2 * lattice_.spacing[a] > upper(a) || own[a].second + 2 * lattice_.spacing[a] < lower(a))
+        return true;
+    return false;
+  };
+  for (std::size_t a = 0; a < dimensions; ++a)
+    for (int side = 0; side < 2; ++side) {
+      if (scene_.domain.sides[a][side].kind == BoundaryKind::open) continue;
+      const double gap = side == 0 ? own[a].first - scene_.domain.lower[a] : scene_.domain.upper[a] - own[a].second;
+      if (gap < 1.5 * lattice_.spacing[a]) return false;
+    }
+  for (const SolidBox& box : scene_.domain.boxes)
+    if (!apart([&](std::size_t a) { return box.lower[a]; }, [&](std::size_t a) { return box.upper[a]; })) return false;
+  for (std::size_t q = 0; q < regions_.size(); ++q) {
+    if (q == r) continue;
+    const auto other = extent_of(q);
+    if (!apart([&](std::size_t a) { return other[a].first; }, [&](std::size_t a) { return other[a].second; }))
+      return false;
+  }
+  return true;
+}
+
+// Sites of the lattice whose particles have another volume than its cells are drawn together or apart about their
+// centre where they touch nothing: else the number density, 0.6 % off in a drop with a radius of 10 spacings, evens out
+// in the first steps; central_force_drop then loses 3.4 % of its energy, in place of 1.8 %. Boxes have columns of their
+// volume.
+void Filler::fit_lattice(const std::vector<std::vector<Chunk>>& chunks) {
+  InitialParticles& particles = scene_.particles;
+  const double stretch = std::pow(particles.volume / lattice_.volume(), 1.0 / lattice_.dimensions);
+  if (layered() || stretch == 1) return;
+  for (std::size_t r = 0, first = 0; r < regions_.size(); ++r) {
+    std::size_t count = 0;
+    for (const Chunk& chunk : chunks[r]) count += chunk.position[0].size();
+    const std::size_t begin = first, end = first += count;
+    if (count == 0 || is_box(regions_[r]) || regions_[r].conform || !stands_alone(r, chunks)) continue;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a) {
+      Array<double>& x = particles.position[a];
+      double centre = 0;
+      for (std::size_t i = begin; i < end; ++i) centre += x[i] / static_cast<double>(count);
+      parallel_for(count, [&](std::size_t i) { x[begin + i] = centre + stretch * (x[begin + i] - centre); });
+    }
+  }
+}
+
 void Filler::gather(const std::vector<std::vector<Chunk>>& chunks) {
   std::vector<const Chunk*> all;
   std::vector<std::size_t> start{0};
@@ -122,6 +182,7 @@ void Filler::gather(const std::vector<std::vector<Chunk>>& chunks) {
       std::fill(particles.phase.data() + start[c], particles.phase.data() + start[c + 1],
                 regions_[static_cast<std::size_t>(region[c])].phase);
   });
+  fit_lattice(chunks);
 }
 
 // Each coordinate moves by up to `fraction` of the spacing either way. Walls and solids are not crossed.

@@ -187,6 +187,8 @@ class Filler {
   double part_of_cell(ThreadRegions& own, std::size_t r, const Vec3& p, Chunk& chunk) const;
   void report(const std::vector<std::vector<Chunk>>& chunks);
   void set_volume(const std::vector<std::vector<Chunk>>& chunks);
+  bool stands_alone(std::size_t r, const std::vector<std::vector<Chunk>>& chunks) const;
+  void fit_lattice(const std::vector<std::vector<Chunk>>& chunks);
   void gather(const std::vector<std::vector<Chunk>>& chunks);
 
   Scene& scene_;

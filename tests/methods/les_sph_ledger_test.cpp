@@ -70,8 +70,9 @@ TEST(LesSphLedger, CountsEveryStageInEveryStep) {
     for (const Stage& stage : run.method.plan()) {
       if (!stage.on) continue;
       EXPECT_GT(bytes_of(first, stage.name), 0) << stage.name;
-      if (stage.part != StagePart::start)
+      if (stage.part != StagePart::start) {
         EXPECT_GT(bytes_of(run.ledger, stage.name), bytes_of(first, stage.name)) << stage.name;
+      }
     }
   }
 }

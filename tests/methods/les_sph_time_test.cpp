@@ -175,7 +175,7 @@ TEST(LesSphTime, TheWorkOfALinearForceIsTheChangeOfItsPotential) {
   const auto potential = [&] {
     double sum = 0;
     for (const Vec3& r : run.state().position) sum += (r[0] * r[0] + r[1] * r[1]) / 2;
-    return 0.01 * sum;
+    return run.method.flow().particle_mass() * sum;
   };
   const double first = potential();
   EXPECT_EQ(run.series()["work"], 0);

@@ -123,6 +123,10 @@ class SphSums {
   std::size_t size() const { return n_; }
   int dimensions() const { return kernel_.dimensions; }
   const std::vector<SphPoint>& points() const { return points_; }
+  // Whether no solid stands between a particle and a point.
+  bool seen(std::size_t i, std::size_t j) const {
+    return boxes_.empty() || sees(rules_, boxes_, points_[i].position, points_[j].position, points_[j].end);
+  }
   double width(std::size_t i) const { return sizes_.length_ratio.empty() ? h_ : h_ * sizes_.length_ratio[i]; }
   double volume_ratio(std::size_t i) const { return sizes_.volume_ratio.empty() ? 1 : sizes_.volume_ratio[i]; }
 
@@ -432,7 +436,7 @@ class SphSums {
       pair.r = std::sqrt(r2);
       const double h = width(i), v = volume_ratio(points_[j].source);
       if (pair.r >= kernel_.support() * h) continue;
-      if (!boxes_.empty() && !sees(rules_, boxes_, points_[i].position, points_[j].position, points_[j].end)) continue;
+      if (!seen(i, j)) continue;
       pair.w = v * weight(pair.r, h);
       pair.g = v * slope(pair.r, h);
       pair.largest_w = v * weight(0, h);

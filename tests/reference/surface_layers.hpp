@@ -113,10 +113,11 @@ class SurfaceLayers {
   template <class Visit>
   void each(std::size_t i, Visit&& visit) const {
     const auto& points = sums_.points();
-    for (const auto& point : points) {
+    for (std::size_t j = 0; j < points.size(); ++j) {
       Vector d{};
-      for (int a = 0; a < kernel_.dimensions; ++a) d[a] = point.position[a] - points[i].position[a];
-      if (length(d) < kernel_.support() * sums_.width(i)) visit(point.source, d, point.reflection);
+      for (int a = 0; a < kernel_.dimensions; ++a) d[a] = points[j].position[a] - points[i].position[a];
+      if (length(d) < kernel_.support() * sums_.width(i) && sums_.seen(i, j))
+        visit(points[j].source, d, points[j].reflection);
     }
   }
 

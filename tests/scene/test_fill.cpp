@@ -107,6 +107,24 @@ TEST(Fill, MassIsThatOfTheRegion) {
 
 // Beside every wetted face the nearest particles stand half a spacing away, to the third that whole numbers of cells
 // between two faces can ask for.
+// A lone drop: the cell of its lattice is the volume of its particles. Beside a wall the sites stay where they are.
+TEST(Fill, TheLatticeOfALoneDropHasTheVolumeOfItsParticles) {
+  const auto distance_to_next = [](const std::string& centre) {
+    const LoadedCase loaded = load_text(tank("[[liquid]]\ncentre = " + centre + "\nradius = 0.22\n"));
+    const InitialParticles& particles = loaded.scene.particles;
+    EXPECT_GT(std::abs(particles.volume / (0.05 * 0.05) - 1), 1e-3);
+    EXPECT_NEAR(particles.volume * static_cast<double>(particles.size()), std::numbers::pi * 0.22 * 0.22, 1e-4);
+    double nearest = 1;
+    for (std::size_t i = 1; i < particles.size(); ++i)
+      nearest = std::min(nearest, std::hypot(particles.position[0][i] - particles.position[0][0],
+                                             particles.position[1][i] - particles.position[1][0]));
+    return std::pair{nearest, std::sqrt(particles.volume)};
+  };
+  const auto [alone, side] = distance_to_next("[1, 0.5]");
+  EXPECT_NEAR(alone, side, 1e-12);
+  EXPECT_NEAR(distance_to_next("[1, 0.25]").first, 0.05, 1e-12);
+}
+
 TEST(Fill, ParticlesStartHalfASpacingFromEveryFace) {
   const LoadedCase loaded =
       load_text(tank("[[solid]]\nlower = [0.309, 0]\nupper = [1.213, 0.331]\n"
