@@ -83,7 +83,7 @@ void sum_over_points(const CrossTargets& targets, const CrossSearch& search, dou
   using simd::f32x8;
   constexpr std::size_t width = components == 1 ? 4 : 8, vectors = detail::cross_group / simd::lanes;
   static_assert(components <= 5);
-  // The least distance that counts as outside, (r / h)^2.
+  // The least distance that counts as outside, (r / h)^2: a thousandth beyond the support, far above float rounding.
   const f32x8 beyond = simd::splat(static_cast<float>(1.001 * Kernel::support * Kernel::support));
   const auto longest = static_cast<float>(1.25 * grid_support_radius);
   parallel_blocks_dynamic(targets.size, detail::cross_block, [&](std::size_t, std::size_t first, std::size_t last) {
