@@ -62,8 +62,11 @@ def printed_norms(run, steps=4):
 def measure(runs):
     main = {name: run for name, run in runs.items() if name != "drift_removed"}
     run = standard(main)
-    measured = {"decay_time": decay_time(run), "decay_time_printed": float(-1 / np.log(printed_norms(run, 2)[1])),
+    printed = {name: float(-1 / np.log(printed_norms(r, 2)[1])) for name, r in main.items()}
+    ratios = [decay_time(r) / printed[name] for name, r in main.items()]
+    measured = {"decay_time": decay_time(run), "decay_time_printed": printed[next(n for n in main if main[n] is run)],
                 **{f"decay_time_{name}": decay_time(r) for name, r in main.items() if r is not run},
+                "slowest_over_formulas": max(ratios), "fastest_over_formulas": min(ratios),
                 "speed": max(float(r.series["max_speed"].max()) for r in runs.values()),
                 "pressure": max(float(np.abs(s.field("pressure")).max()) for s in run.snapshots())}
     if len(main) > 2:
