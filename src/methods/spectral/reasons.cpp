@@ -55,7 +55,9 @@ std::string feedback(const ParticleSystem& system) {
 
 std::string motion(const ParticleSystem& system) {
   return system.options().motion.frozen ? "particles.frozen: the forces on particles at rest"
-                                        : "(3), (4), (15): Maxey-Riley, exponential in the drag";
+         : system.removes_self_disturbance()
+             ? "(3), (4), (15): Maxey-Riley, exponential in the drag, without the own disturbance"
+             : "(3), (4), (15): Maxey-Riley, exponential in the drag";
 }
 
 std::string exclusion(const ParticleSystem& system) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "spume/core/parallel.hpp"
 
@@ -67,7 +68,7 @@ Disturbance advance_disturbance(const DisturbanceStep& self, Particles& particle
   return out;
 }
 
-template <int order, bool common_time, class Real>
+template <int order, bool common_time, bool undisturbed, class Real>
 Sums move_range(const MotionModel& model, const SplineField<Real>& field, double dt, const StepCoefficients& common,
                 Particles& particles, const ForceOutput& output, std::size_t first, std::size_t last) {
   const PeriodicGrid& grid = field.grid();
@@ -93,7 +94,7 @@ Sums move_range(const MotionModel& model, const SplineField<Real>& field, double
       for (int axis = 0; axis < 3; ++axis)
         gradient[c][axis] = 0.5 * (at.slope[axis].first(c) + at.slope[axis].second(c));
     }
-    if (output.self.disturbance != nullptr) {
+    if constexpr (undisturbed) {
       std::array<double, 3> place;
       double speed_2 = 0;
       for (int c = 0; c < 3; ++c) {
@@ -198,17 +199,24 @@ MotionStatistics move_particles(const MotionModel& model, const SplineField<Real
   const bool common_time = particles.diameter == nullptr && model.drag == DragLaw::stokes;
   Sums sums;
   with_spline_order(field.order(), [&](auto order) {
-    const auto range = [&](std::size_t first, std::size_t last) {
-      return common_time ? move_range<order(), true>(model, field, dt, common, particles, output, first, last)
-                         : move_range<order(), false>(model, field, dt, common, particles, output, first, last);
+    const auto over = [&](auto common_drag, auto undisturbed) {
+      return [&](std::size_t first, std::size_t last) {
+        return move_range<order(), common_drag(), undisturbed()>(model, field, dt, common, particles, output, first,
+                                                                 last);
+      };
     };
-    sums = parallel_reduce(n, Sums{}, range, [](Sums a, const Sums& b) {
+    const auto add = [](Sums a, const Sums& b) {
       a.velocity += b.velocity;
       a.acceleration += b.acceleration;
       a.slip += b.slip;
       a.max_speed_2 = larger(a.max_speed_2, b.max_speed_2);
       return a;
-    });
+    };
+    const auto sum = [&](auto undisturbed) {
+      return common_time ? parallel_reduce(n, Sums{}, over(std::true_type{}, undisturbed), add)
+                         : parallel_reduce(n, Sums{}, over(std::false_type{}, undisturbed), add);
+    };
+    sums = output.self.disturbance != nullptr ? sum(std::true_type{}) : sum(std::false_type{});
   });
   const double inverse = n == 0 ? 0 : 1 / static_cast<double>(n);
   return {sums.velocity * inverse, sums.acceleration * inverse, sums.slip * inverse, std::sqrt(sums.max_speed_2)};
