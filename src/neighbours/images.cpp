@@ -86,7 +86,9 @@ std::size_t axis_reflections(const SolidUnion& solids, const Vec3& r, int axis, 
     for (std::size_t q = 1; q < single && size < out.size(); ++q) {
       const double gap = at[q - 1] - at[p - 1];
       if ((at[p - 1] - r[axis]) * (at[q - 1] - r[axis]) >= 0 || std::abs(gap) >= reach) continue;
-      out[size++] = {r[axis] + 2 * gap, std::abs(gap), {out[p].face[0], out[q].face[0]}};
+      // From the face that the ray meets last before the image.
+      const double image = r[axis] + 2 * gap;
+      out[size++] = {image, std::abs(image - at[q - 1]), {out[p].face[0], out[q].face[0]}};
     }
   return size;
 }

@@ -200,8 +200,9 @@ template <int dimensions>
   return out;
 }
 
-// Keeps of the entries that particle i has up to `stop` those that it sees; returns their end. Points within two
-// support radii of what hides or doubles any of them lie beside the edge of a face.
+// Keeps of the entries that particle i has up to `stop` those that it sees; returns their end. What hides or doubles a
+// particle, or its reflection in one face, lies within two support radii; the faces of other images may lie farther
+// away, and apart from each other.
 [[gnu::noinline]] std::int32_t* keep_seen(const std::array<const double*, 3>& position, int dimensions, std::size_t i,
                                           const Images& images, double support_radius, std::size_t particles,
                                           std::int32_t* start, std::int32_t* stop) {
@@ -212,14 +213,16 @@ template <int dimensions>
   };
   const Vec3 place = place_of(i);
   const SolidUnion& solids = *images.solids();
-  if (solids.open_around(place, 2 * support_radius)) return stop;
+  const bool open = solids.open_around(place, 2 * support_radius);
   return std::remove_if(start, stop, [&](std::int32_t entry) {
     const auto j = static_cast<std::size_t>(entry) / entry_scale;
     if (j < particles) {
+      if (open) return false;
       const Vec3 other = place_of(j);
       return !solids.sees(place, other, other);
     }
     const std::size_t k = j - particles;
+    if (open && images.paths()[static_cast<std::size_t>(images.path()[k])].reflections() < 2) return false;
     return !images.sees(place, k, place_of(static_cast<std::size_t>(images.source()[k])));
   });
 }

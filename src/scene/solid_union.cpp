@@ -11,13 +11,44 @@ bool is_wall(BoundaryKind kind) {
   return kind == BoundaryKind::free_slip || kind == BoundaryKind::no_slip;
 }
 
+struct NumberedBox {
+  SolidBox box;
+  std::int32_t number;
+};
+
+// The boxes of a domain, clipped at its periodic sides, and their copies beyond these.
+std::vector<NumberedBox> with_periodic_copies(const Domain& domain) {
+  std::vector<NumberedBox> boxes;
+  for (const SolidBox& box : domain.boxes) boxes.push_back({box, static_cast<std::int32_t>(boxes.size())});
+  for (int axis = 0; axis < domain.dimensions; ++axis) {
+    if (!domain.periodic(axis)) continue;
+    const double lower = domain.lower[axis], upper = domain.upper[axis];
+    const std::size_t before = boxes.size();
+    for (std::size_t b = 0; b < before; ++b) {
+      boxes[b].box.lower[axis] = std::max(boxes[b].box.lower[axis], lower);
+      boxes[b].box.upper[axis] = std::min(boxes[b].box.upper[axis], upper);
+      for (const double shift : {lower - upper, upper - lower}) {
+        boxes.push_back(boxes[b]);
+        boxes.back().box.lower[axis] += shift;
+        boxes.back().box.upper[axis] += shift;
+      }
+    }
+  }
+  return boxes;
+}
+
 }  // namespace
 
 double SolidUnion::cells_needed(const Domain& domain) {
   double cells = 1;
   for (int axis = 0; axis < domain.dimensions; ++axis) {
     std::vector<double> planes{domain.lower[axis], domain.upper[axis]};
-    for (const SolidBox& box : domain.boxes) planes.insert(planes.end(), {box.lower[axis], box.upper[axis]});
+    for (const SolidBox& box : domain.boxes) {
+      const double length = domain.upper[axis] - domain.lower[axis];
+      for (const double shift : {-length, 0.0, length})
+        if (shift == 0 || domain.periodic(axis))
+          planes.insert(planes.end(), {box.lower[axis] + shift, box.upper[axis] + shift});
+    }
     std::sort(planes.begin(), planes.end());
     cells *= static_cast<double>(std::unique(planes.begin(), planes.end()) - planes.begin()) + 1;
   }
@@ -26,15 +57,15 @@ double SolidUnion::cells_needed(const Domain& domain) {
 
 SolidUnion::SolidUnion(const Domain& domain, const Planes& sides, double spacing)
     : dimensions_(domain.dimensions), tolerance_(1e-6 * spacing) {
-  // A box that lies on or beyond a side continues there without end.
-  std::vector<SolidBox> boxes = domain.boxes;
+  // A box that lies on or beyond a side that is not periodic continues there without end.
+  std::vector<NumberedBox> boxes = with_periodic_copies(domain);
   for (int axis = 0; axis < dimensions_; ++axis) {
     std::vector<double> all;
     for (int side = 0; side < 2; ++side)
       if (is_wall(domain.sides[axis][side].kind)) all.push_back(sides[axis][side]);
-    for (SolidBox& box : boxes) {
-      if (box.lower[axis] <= sides[axis][0] + tolerance_) box.lower[axis] = -far;
-      if (box.upper[axis] >= sides[axis][1] - tolerance_) box.upper[axis] = far;
+    for (auto& [box, number] : boxes) {
+      if (!domain.periodic(axis) && box.lower[axis] <= sides[axis][0] + tolerance_) box.lower[axis] = -far;
+      if (!domain.periodic(axis) && box.upper[axis] >= sides[axis][1] - tolerance_) box.upper[axis] = far;
       for (const double plane : {box.lower[axis], box.upper[axis]})
         if (std::abs(plane) < far) all.push_back(plane);
     }
@@ -59,7 +90,7 @@ SolidUnion::SolidUnion(const Domain& domain, const Planes& sides, double spacing
         for (cell[0] = first[0]; cell[0] <= last[0]; ++cell[0])
           if (std::int32_t& entry = owner_[number(cell)]; entry == free_cell) entry = value;
   };
-  for (std::size_t b = 0; b < boxes.size(); ++b) fill(boxes[b].lower, boxes[b].upper, static_cast<std::int32_t>(b));
+  for (const auto& [box, number] : boxes) fill(box.lower, box.upper, number);
   for (int axis = 0; axis < dimensions_; ++axis)
     for (int side = 0; side < 2; ++side) {
       if (!is_wall(domain.sides[axis][side].kind)) continue;
@@ -154,27 +185,65 @@ bool SolidUnion::sees(const Vec3& i, const Vec3& to, const Vec3& at) const {
   for (int axis = 0; axis < dimensions_; ++axis) meet(axis);
   // Enough for four reflections in a gap of a quarter of the ray along each axis, and planes that are crossed freely.
   for (int crossed = 0; crossed < 1000; ++crossed) {
-    int axis = 0;
-    for (int a = 1; a < dimensions_; ++a)
-      if (next[a] < next[axis] - tie) axis = a;
-    if (next[axis] >= 1) {
+    const double first = *std::min_element(next.begin(), next.begin() + dimensions_);
+    if (first >= 1) {
       double distance2 = 0;
       for (int a = 0; a < dimensions_; ++a) distance2 += (end[a] - at[a]) * (end[a] - at[a]);
       return distance2 < tolerance_ * tolerance_;
     }
-    const bool up = end[axis] > start[axis];
-    Cell beyond = cell;
-    beyond[axis] += up ? 1 : -1;
-    if (owner(beyond) == free_cell) {
-      cell = beyond;
-    } else {
-      const double plane = up ? upper_of(axis, cell[axis]) : lower_of(axis, cell[axis]);
-      start[axis] = 2 * plane - start[axis];
-      end[axis] = 2 * plane - end[axis];
+    Cell step{};
+    for (int axis = 0; axis < dimensions_; ++axis)
+      if (next[axis] <= first + tie) step[axis] = end[axis] > start[axis] ? 1 : -1;
+    const std::optional<unsigned> reflected = reflected_axes(cell, step);
+    if (!reflected) return false;
+    for (int axis = 0; axis < dimensions_; ++axis) {
+      if (step[axis] == 0) continue;
+      if ((*reflected >> axis & 1U) == 0) {
+        cell[axis] += step[axis];
+      } else {
+        const double plane = step[axis] > 0 ? upper_of(axis, cell[axis]) : lower_of(axis, cell[axis]);
+        start[axis] = 2 * plane - start[axis];
+        end[axis] = 2 * plane - end[axis];
+      }
+      meet(axis);
     }
-    meet(axis);
   }
   return false;
+}
+
+std::optional<unsigned> SolidUnion::reflected_in_any_order(const Cell& from, const Cell& step) const {
+  std::array<int, 3> order{0, 1, 2};
+  std::optional<unsigned> common;
+  bool agree = true;
+  do {
+    Cell cell = from;
+    unsigned reflected = 0;
+    for (const int axis : order) {
+      if (step[axis] == 0) continue;
+      Cell beyond = cell;
+      beyond[axis] += step[axis];
+      if (owner(beyond) == free_cell)
+        cell = beyond;
+      else
+        reflected |= 1U << axis;
+    }
+    if (reflected == 0) return reflected;
+    agree = agree && reflected == common.value_or(reflected);
+    common = reflected;
+  } while (std::next_permutation(order.begin(), order.end()));
+  return agree ? common : std::nullopt;
+}
+
+std::optional<unsigned> SolidUnion::reflected_axes(const Cell& from, const Cell& step) const {
+  const std::optional<unsigned> reflected = reflected_in_any_order(from, step);
+  if (!reflected || *reflected == 0) return reflected;
+  Cell last = from, back = step;
+  for (int axis = 0; axis < dimensions_; ++axis) {
+    if (step[axis] == 0 || (*reflected >> axis & 1U) != 0) continue;
+    last[axis] += step[axis];
+    back[axis] = -step[axis];
+  }
+  return reflected_in_any_order(last, back) == reflected ? reflected : std::nullopt;
 }
 
 std::vector<double> SolidUnion::wetted_planes(int axis, const Vec3& lower, const Vec3& upper) const {

@@ -58,6 +58,29 @@ void expect_pairs_symmetric(const Neighbourhood& hood) {
     }
 }
 
+// Reflections too: i sees as many images of j, at the same distances, as j sees of i.
+void expect_reflections_symmetric(const Neighbourhood& hood) {
+  const double tolerance = distance_tolerance(hood);
+  const std::vector<Point> all = hood.all();
+  std::map<std::array<std::size_t, 2>, std::vector<double>> distances;
+  for (std::size_t i = 0; i < hood.n; ++i)
+    for (const std::int32_t j : hood.list.of(i)) {
+      const auto k = static_cast<std::size_t>(j);
+      double distance2 = 0;
+      for (int axis = 0; axis < hood.rules.dimensions; ++axis) distance2 += std::pow(all[k][axis] - all[i][axis], 2);
+      if (std::sqrt(distance2) > hood.rules.support_radius - tolerance) continue;
+      const std::size_t source = k < hood.n ? k : static_cast<std::size_t>(hood.images.source()[k - hood.n]);
+      distances[{i, source}].push_back(std::sqrt(distance2));
+    }
+  for (auto& [pair, there] : distances) {
+    auto& back = distances[{pair[1], pair[0]}];
+    ASSERT_EQ(there.size(), back.size()) << pair[0] << " and " << pair[1];
+    std::sort(there.begin(), there.end());
+    std::sort(back.begin(), back.end());
+    for (std::size_t k = 0; k < there.size(); ++k) ASSERT_NEAR(there[k], back[k], tolerance);
+  }
+}
+
 std::vector<std::vector<std::int32_t>> lists_of(const NeighbourList& list) {
   std::vector<std::vector<std::int32_t>> lists(list.particles());
   for (std::size_t i = 0; i < lists.size(); ++i) lists[i].assign(list.begin(i), list.padded_end(i));
@@ -252,10 +275,12 @@ TEST(NeighbourList, PointsSeeEachOtherAroundABox) {
   for (const Point& p : random_points(700, 2))
     if (!inside_any(boxes, p, 2)) liquid.push_back(p);
   expect_pairs_symmetric(Neighbourhood(rules, liquid));
+  expect_reflections_symmetric(Neighbourhood(rules, liquid));
 }
 
 TEST(NeighbourList, ALatticeAroundSolidsSeesALattice) {
-  // Every site within the support of a particle is seen once, liquid or image, at edges and in corners too.
+  // Every site within the support of a particle is seen once, liquid or image, at edges and in corners too, but for the
+  // one that stands exactly behind a convex edge.
   const int m = 20;
   const double spacing = 1.0 / m;
   ImageRules rules = unit_box_rules(2, 2.6 * spacing, mirror, mirror, none);
@@ -269,14 +294,49 @@ TEST(NeighbourList, ALatticeAroundSolidsSeesALattice) {
     if (!inside_any(boxes, p, 2)) liquid.push_back(p);
   const Neighbourhood hood(rules, liquid);
   const std::vector<Point> all = hood.all();
+  const auto solid = [&](const Point& p) {
+    return inside_any(boxes, p, 2) || p[0] < 0 || p[0] > 1 || p[1] < 0 || p[1] > 1;
+  };
+  int edges = 0;
   for (std::size_t i = 0; i < hood.n; ++i) {
     std::set<std::array<std::int64_t, 2>> sites;
     for (const std::int32_t j : hood.list.of(i)) {
       const Point& p = all[static_cast<std::size_t>(j)];
       sites.insert({std::llround((p[0] - all[i][0]) / spacing), std::llround((p[1] - all[i][1]) / spacing)});
     }
-    ASSERT_EQ(sites.size(), 20U) << all[i][0] << ' ' << all[i][1];
-    ASSERT_EQ(hood.list.count(i), 20) << all[i][0] << ' ' << all[i][1];
+    int behind_edges = 0;
+    for (const double x : {-spacing, spacing})
+      for (const double y : {-spacing, spacing})
+        behind_edges += solid({all[i][0] + x, all[i][1] + y, 0}) && !solid({all[i][0] + x, all[i][1], 0}) &&
+                                !solid({all[i][0], all[i][1] + y, 0})
+                            ? 1
+                            : 0;
+    edges += behind_edges;
+    ASSERT_EQ(sites.size(), 20U - static_cast<unsigned>(behind_edges)) << all[i][0] << ' ' << all[i][1];
+    ASSERT_EQ(hood.list.count(i), 20 - behind_edges) << all[i][0] << ' ' << all[i][1];
+  }
+  EXPECT_EQ(edges, 10) << "a stair has two convex edges, a plate four";
+}
+
+// On a lattice half a spacing from every face, rays to diagonal neighbours pass exactly through edges and corners.
+TEST(NeighbourList, ParticlesOfALatticeAroundSolidsSeeEachOther) {
+  constexpr auto slip = BoundaryKind::free_slip;
+  const int m = 12;
+  const double spacing = 1.0 / m;
+  const auto at = [&](int k) { return k * spacing; };
+  for (const int dimensions : {2, 3}) {
+    ImageRules rules = unit_box_rules(dimensions, 2.6 * spacing, mirror, periodic, mirror);
+    // A box; two that meet in an edge, in 3-D in a corner; a plate; a box at a wall.
+    const std::vector<SolidBox> boxes{{{at(1), at(2), at(1)}, {at(4), at(4), at(3)}, slip},
+                                      {{at(6), at(6), at(6)}, {at(8), at(8), at(8)}, slip},
+                                      {{at(8), at(8), at(8)}, {at(10), at(10), at(10)}, slip},
+                                      {{at(2), at(7), at(2)}, {at(5), at(8), at(9)}, slip},
+                                      {{at(9), at(2), at(0)}, {at(12), at(5), at(6)}, slip}};
+    rules.solids = unite(rules, boxes, spacing);
+    std::vector<Point> liquid;
+    for (const Point& p : lattice_points(m, dimensions, 0))
+      if (!inside_any(boxes, p, dimensions)) liquid.push_back(p);
+    expect_reflections_symmetric(Neighbourhood(rules, liquid));
   }
 }
 

@@ -42,6 +42,13 @@ struct ImagePath {
   std::array<std::int8_t, 3> side{-1, -1, -1};  // then, per axis: -1 none, 0 lower, 1 upper
   bool nearest = true;
   auto operator<=>(const ImagePath&) const = default;
+  // In faces.
+  int reflections() const {
+    int count = 0;
+    for (const auto& along : face)
+      for (const std::int16_t one : along) count += one >= 0 ? 1 : 0;
+    return count;
+  }
 };
 
 class Images {

@@ -21,8 +21,8 @@
 // Particles that stand more than half a spacing before a solid lack neighbours as those of a surface do. Taken for
 // such, they are pushed by the whole pressure of the depth: still water over a step between two layers reached 0.4
 // sqrt(g H). A particle that has the neighbours of a flat layer and finds a solid along n where its own image would
-// cease to be a neighbour, at half the support radius, is none of the surface, and within the support of a solid none is
-// near it without a surface particle in the layer above.
+// cease to be a neighbour, at half the support radius, is none of the surface, and within the support of a solid none
+// is near it without a surface particle in the layer above.
 #pragma once
 
 #include "spume/particles/arrangement.hpp"

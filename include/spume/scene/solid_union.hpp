@@ -4,17 +4,24 @@
 //
 // The planes of all faces cut space into cells, each of which is solid or free as a whole. Faces between solids do not
 // exist, and boxes may touch, overlap or repeat. A box that lies on or beyond a side of the domain has no face there.
-// Outside walls everything is solid, outside periodic and open sides nothing but boxes that reach them.
+// Outside walls everything is solid, outside open sides nothing but boxes that reach them, outside periodic sides what
+// is inside the opposite ones.
 //
 // A wall is a mirror. What a point i sees at a place P in a solid is the liquid that a straight ray of the length
 // |P - i| towards P ends at when faces reflect it: every P is seen once, through one face or, in a corner of the
 // liquid, through several. If i sees j in this way then j sees i in the same. Rays around an edge of a solid see past
-// it, and nothing is seen through a solid, however thin. A ray through an edge, to 1e-6 support radii, crosses the
-// plane of the lower axis first.
+// it, and nothing is seen through a solid, however thin.
+//
+// A ray through an edge or a corner, to 1e-6 spacings, meets several planes at once. It passes where it could cross
+// them one after the other, and else is reflected as it is in every order of the planes, seen from either end. Where
+// orders differ, which is where it meets the edge of a convex solid head-on, it sees nothing. So points of a lattice
+// see each other too: without that the matrix of the pressure is not symmetric, and in a closed liquid it has no
+// solution.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "spume/core/vec3.hpp"
@@ -69,6 +76,11 @@ class SolidUnion {
            static_cast<std::size_t>(cell[0]);
   }
   std::int32_t owner(const Cell& cell) const { return owner_[number(cell)]; }
+  // Bits of the axes along which a ray is reflected that leaves a cell through planes that it meets at once; nothing
+  // where it ends. `step`: to the next cell along each of these axes, 0 along the others.
+  std::optional<unsigned> reflected_axes(const Cell& from, const Cell& step) const;
+  // 0 where the planes can be crossed one after the other, what all their orders agree on, nothing where they differ.
+  std::optional<unsigned> reflected_in_any_order(const Cell& from, const Cell& step) const;
   double lower_of(int axis, int cell) const {
     return cell == 0 ? -far : planes_[axis][static_cast<std::size_t>(cell) - 1];
   }
