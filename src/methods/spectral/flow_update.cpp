@@ -119,6 +119,13 @@ void Flow<T>::set_decay(Decay& decay, double dt) const {
 }
 
 template <class T>
+double Flow<T>::factor_bytes() const {
+  const double axes = static_cast<double>(sizeof(T) * (decay_.x.size() + decay_.y.size()));
+  const double one = axes + static_cast<double>(sizeof(Complex) * decay_.z.size());
+  return step_.scheme == Scheme::adams_bashforth ? 2 * one : one;
+}
+
+template <class T>
 void Flow<T>::set_integrating_factors() {
   switch (step_.scheme) {
     case Scheme::none:
@@ -365,9 +372,8 @@ const Modes<T>& Flow<T>::updated() const {
 template <class T>
 void Flow<T>::accept_tendency() {
   const bool predicted = step_.scheme == Scheme::midpoint && step_.tendency == 0;
-  step_.fresh = predicted ? budget_ : tallied(updated());
   try {
-    require_acceptable(step_.dt, step_.fresh);
+    require_acceptable(step_.dt, predicted ? budget_ : tallied(updated()));
   } catch (const StepFailure&) {
     if (step_.scheme == Scheme::runge_kutta) potential_.swap(start_);
     throw;
@@ -413,6 +419,8 @@ template void Flow<double>::keep_step_start();
 template void Flow<float>::keep_step_start();
 template void Flow<double>::set_decay(Decay&, double) const;
 template void Flow<float>::set_decay(Decay&, double) const;
+template double Flow<double>::factor_bytes() const;
+template double Flow<float>::factor_bytes() const;
 template void Flow<double>::set_integrating_factors();
 template void Flow<float>::set_integrating_factors();
 template const Modes<double>& Flow<double>::argument() const;
