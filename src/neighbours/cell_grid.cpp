@@ -23,6 +23,8 @@ CellGrid::CellGrid(int dimensions, const std::array<double, 3>& lower, const std
                    double support_radius, std::size_t expected_particles)
     : dimensions_(dimensions), support_radius_(support_radius), lower_(lower) {
   const double cell_limit = 4.0 * static_cast<double>(expected_particles) + 1048576.0;
+  // The first that fits: a factor of 1.25 for the sides halves the cells in three dimensions, so that the grid has at
+  // least half of what it may have.
   double coarsening = 1;
   for (;;) {
     double cells = 1;

@@ -56,9 +56,13 @@ float sentinel_coordinate(float support_radius) {
 }
 
 // Particles that follow each other in the sorted order and lie close together: their candidates are gathered
-// once. Fewer repeat the gathering, more lengthen the candidate list.
+// once. Fewer repeat the gathering, more lengthen the candidate list: the lists of 100,000 particles take 1.16 to 1.21
+// times as long with 8, 1.02 to 1.07 with 32.
 constexpr std::size_t group_size = 16;
-// The longest box of a group along x and across, in reaches.
+// The longest box of a group along x and across, in support radii: what sixteen particles fill of a row of cells in two
+// dimensions (2.4 in length at a support of 2.6 spacings), and a row's width with room for particles on its sides. They
+// end the groups of thin liquid alone: twice these, or half the length, changes the lists of a full cube by less than
+// the repeats differ (6 %). Half the width cuts every group short, and takes 2.2 times as long.
 constexpr float group_length = 2.5F;
 constexpr float group_width = 1.2F;
 struct Group {

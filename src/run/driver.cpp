@@ -297,9 +297,11 @@ void Simulation::pass_on_remarks(Observer& observer) {
 }
 
 void Simulation::report_progress(Observer& observer, double dt, const StepLimit& limit) {
-  // The rate is that of the last 5 to 10 seconds: two marks take turns as the start of the window.
+  // The rate is that of the last one to two windows: two marks take turns as the start. Only shown: some steps of a
+  // million particles (about a second each), so that the figure stands still, and short enough to follow the flow.
+  constexpr double window = 5;  // seconds
   const auto now = Clock::now();
-  if (seconds_between(marks_[1].wall, now) > 5) {
+  if (seconds_between(marks_[1].wall, now) > window) {
     marks_[0] = marks_[1];
     marks_[1] = {now, method_->time(), particle_steps_};
   }

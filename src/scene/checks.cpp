@@ -13,6 +13,9 @@ namespace spume {
 namespace {
 
 const std::string axis_names[3] = {"x", "y", "z"};
+// Slack of lengths and times that case files give in decimals: far above what a few operations in double round (1e-15),
+// far below a spacing or a step.
+constexpr double rounding = 1e-9;
 
 // A list with one entry per direction; absent lists pass.
 bool has_size(const Draft& draft, const std::string& name, std::size_t size, std::size_t wanted, Problems& problems) {
@@ -143,7 +146,7 @@ void check_shape(const Draft& draft, const char* header, const std::string& name
   }
   const bool ball = !liquid.centre.empty() && liquid.radius;
   for (std::size_t a = 0; a < dimensions; ++a) {
-    const double slack = 1e-9 * (draft.upper[a] - draft.lower[a]);
+    const double slack = rounding * (draft.upper[a] - draft.lower[a]);
     double low = liquid.lower.empty() ? draft.lower[a] : liquid.lower[a];
     double high = liquid.upper.empty() ? draft.upper[a] : liquid.upper[a];
     if (ball && liquid.lower.empty() && liquid.upper.empty()) {
@@ -215,7 +218,7 @@ void check_resolution(const Draft& draft, Problems& problems) {
     const double length = draft.upper[a] - draft.lower[a];
     const auto sides = side_names(static_cast<int>(a), draft.dimensions);
     const bool walls = is_wall(draft, sides[0]) && is_wall(draft, sides[1]);
-    if ((!draft.periodic[a] && !walls) || length >= least * spacing * (1 - 1e-9)) continue;
+    if ((!draft.periodic[a] && !walls) || length >= least * spacing * (1 - rounding)) continue;
     problems.add(node, (draft.periodic[a] ? "the periodic length in " + axis_names[a]
                                           : "the distance between the walls " + sides[0] + " and " + sides[1]) +
                            ", " + brief(length) + ", is shorter than two kernel supports and a spacing, " +
@@ -245,7 +248,7 @@ void check_solids(const Draft& draft, Problems& problems) {
       const double support_radius = support_ratio(draft.options.resolution) * draft.options.spacing;
       const double gap = std::min(solid.lower[a] - draft.lower[a], draft.upper[a] - solid.upper[a]);
       const bool spans = solid.lower[a] <= draft.lower[a] && solid.upper[a] >= draft.upper[a];
-      if (usable && draft.periodic[a] && !spans && gap < support_radius * (1 - 1e-9)) {
+      if (usable && draft.periodic[a] && !spans && gap < support_radius * (1 - rounding)) {
         problems.add(*draft.node(name), name + " is " + brief(std::max(gap, 0.0)) + " away from a periodic side in " +
                                             axis_names[a] + ", within the kernel support " + brief(support_radius) +
                                             ", and its mirror images would end there; move the sides of the domain, or "
@@ -325,7 +328,7 @@ void check_phases(const Draft& draft, Problems& problems) {
 }
 
 // A step ends at each of these times: an interval far below the steps is a slip of the pen, which would fill the disk
-// or take for ever.
+// or take for ever. The cases ask for at most 1,000 of a kind; a million rows of series.csv have 200 to 440 MB.
 void check_output(const Draft& draft, Problems& problems) {
   constexpr double most = 1e6;
   if (!draft.usable("time.end")) return;
@@ -336,7 +339,7 @@ void check_output(const Draft& draft, Problems& problems) {
       {"output.series_every", output.series_every, "rows of series.csv"},
       {"output.spectrum_every", output.spectrum_every, "spectra"}};
   for (const auto& [name, interval, what] : intervals) {
-    if (!(interval > 0) || !draft.usable(name) || end / interval <= most * (1 + 1e-9)) continue;
+    if (!(interval > 0) || !draft.usable(name) || end / interval <= most * (1 + rounding)) continue;
     problems.add(*draft.node(name), name + (" = " + brief(interval)) + " would make " + brief(end / interval) + " " +
                                         what + " until time.end = " + brief(end) + "; expected at most " + brief(most) +
                                         "; set it to " + brief(end / most) + " or more, or to 0");
@@ -405,7 +408,7 @@ void check_probes(Draft& draft, const std::vector<ProbeScalar>& scalars, Problem
       if (!has_size(draft, name + "." + key, values.size(), dimensions, problems)) return;
       for (std::size_t a = 0; a < dimensions; ++a) {
         target[a] = values[a];
-        const double slack = 1e-9 * (draft.upper[a] - draft.lower[a]);
+        const double slack = rounding * (draft.upper[a] - draft.lower[a]);
         if (values[a] >= draft.lower[a] - slack && values[a] <= draft.upper[a] + slack) continue;
         problems.add(*given, name + "." + key + " lies outside the domain: " + axis_names[a] + " = " +
                                  brief(values[a]) + ", the domain's " +

@@ -379,7 +379,7 @@ TEST(Bubbles, HaveStagesWhoseTrafficIsCountedWhileTheyLive) {
   for (const std::string& text : {periodic_cube, stirred_tank}) {
     Simulation run(text);
     run.steps(2, 0.004);
-    EXPECT_EQ(uncounted_stages(run), "");
+    EXPECT_EQ(uncounted_stages(run.method, run.ledger), "");
   }
   Simulation later(periodic_cube, {"bubble_cloud.0.time=5"});
   later.steps(2, 0.004);

@@ -143,7 +143,7 @@ TEST(LesSphPlan, IsWhatTheLedgerTimes) {
       if (stage.on) planned.push_back(stage.name);
     for (const auto& entry : run.ledger.entries()) timed.push_back(entry.stage);
     EXPECT_EQ(timed, planned) << text;
-    EXPECT_EQ(uncounted_stages(run), "") << text;
+    EXPECT_EQ(uncounted_stages(run.method, run.ledger), "") << text;
     for (const Stage& stage : run.method.plan()) EXPECT_FALSE(stage.reason.empty()) << stage.name;
   }
 }

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "methods/uncounted_stages.hpp"
 #include "scene/helpers.hpp"
 #include "spume/core/error.hpp"
 #include "spume/methods/les_sph/les_sph.hpp"
@@ -93,16 +94,6 @@ struct Simulation {
     return result;
   }
 };
-
-// Stages of a plan that ran and whose traffic nobody counts, or that name no array.
-inline std::string uncounted_stages(const Simulation& run) {
-  std::string names;
-  for (const Stage& stage : run.method.plan())
-    if (stage.on && stage.reads.empty() && stage.writes.empty()) names += stage.name + " names no array; ";
-  for (const Ledger::Entry& entry : run.ledger.entries())
-    if (!(entry.bytes > 0)) names += entry.stage + " has no traffic; ";
-  return names;
-}
 
 // A flow whose stages a test runs one after the other.
 struct StagedFlow {

@@ -35,6 +35,16 @@ void advance(Simulation& run, int steps) {
   for (int k = 0; k < steps; ++k) run.steps(1, run.method.step_limit().dt);
 }
 
+// The largest speed of any step until `end`.
+double fastest_until(Simulation& run, double end) {
+  double fastest = 0;
+  while (run.method.time() < end) {
+    advance(run, 1);
+    fastest = std::max(fastest, run.series()["max_speed"]);
+  }
+  return fastest;
+}
+
 // div(2 nu S) by explicit steps of 0.2 h^2 / nu, beyond its limit of 0.11, made a speed of order one within 40 steps.
 TEST(LesSphStability, AViscousPoolStaysAtRestWithTheStepsThatItAllows) {
   Simulation run(still_pool);
@@ -140,11 +150,7 @@ TEST(LesSphStability, LiquidInAnEdgeOfNoSlipWallsIsNoFasterThanItFalls) {
   for (const char* side : {"left", "right", "front", "back", "bottom"})
     no_slip.push_back("domain." + std::string(side) + "=\"no-slip\"");
   Simulation run(dam_break_3d, no_slip);
-  double fastest = 0;
-  while (run.method.time() < 0.8) {
-    advance(run, 1);
-    fastest = std::max(fastest, run.series()["max_speed"]);
-  }
+  const double fastest = fastest_until(run, 0.8);
   // A dry front runs at 2 sqrt(g H).
   EXPECT_LT(fastest, 2 * std::sqrt(0.8));
   EXPECT_GT(fastest, 0.5);
@@ -153,11 +159,7 @@ TEST(LesSphStability, LiquidInAnEdgeOfNoSlipWallsIsNoFasterThanItFalls) {
 // Particles that approach a wall closely are carried away from it by the shift; their speed must not grow by that.
 TEST(LesSphStability, ShiftsAwayFromAWallGiveNoSpeed) {
   Simulation run(cavity, {"fluid.reynolds=1000", "resolution.spacing=0.025"});
-  double fastest = 0;
-  while (run.method.time() < 1.5) {
-    advance(run, 1);
-    fastest = std::max(fastest, run.series()["max_speed"]);
-  }
+  const double fastest = fastest_until(run, 1.5);
   EXPECT_LT(fastest, 1);  // nobody is faster than the lid
   EXPECT_GT(fastest, 0.5);
 }
@@ -167,11 +169,7 @@ TEST(LesSphStability, ShiftsAwayFromAWallGiveNoSpeed) {
 // threw the particles to a speed of 88 by t = 2.2.
 TEST(LesSphStability, AVoidInAClosedLiquidGainsNoEnergy) {
   Simulation run(cavity, {"fluid.reynolds=3200"});
-  double fastest = 0;
-  while (run.method.time() < 3) {
-    advance(run, 1);
-    fastest = std::max(fastest, run.series()["max_speed"]);
-  }
+  const double fastest = fastest_until(run, 3);
   EXPECT_LT(fastest, 1);  // nobody is faster than the lid
   EXPECT_GT(fastest, 0.3);
 }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "methods/spectral_flow.hpp"
+#include "methods/uncounted_stages.hpp"
 
 namespace spume {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 using test::random_start;
 using test::spectral_text;
 using test::SpectralRun;
+using test::uncounted_stages;
 using testing::ElementsAreArray;
 
 const std::string shell = "[forcing]\nkind = \"shell\"\nwidth = 2\ninjection = 0.7\n";
@@ -45,6 +47,7 @@ std::optional<Ledger::Entry> entry_of(const Ledger& ledger, const std::string& s
   return {};
 }
 
+// And the ledger knows what each of them reads and writes.
 TEST(SpectralPlan, NamesTheStagesThatTheLedgerTimes) {
   const std::string inviscid = "[initial]\nkind = \"random\"\nspectrum = \"k^2*exp(-(k/8)^2)\"\nenergy = 0.5\n";
   for (const std::string& rest :
@@ -58,6 +61,7 @@ TEST(SpectralPlan, NamesTheStagesThatTheLedgerTimes) {
     SpectralRun<> run(spectral_text("[8, 12, 10]", rest));
     run.start().steps(3, 0.001);
     EXPECT_THAT(stages_in(run.ledger), ElementsAreArray(stages_of_a_step(run.method))) << rest;
+    EXPECT_EQ(uncounted_stages(run.method, run.ledger), "") << rest;
   }
 }
 
@@ -69,7 +73,7 @@ TEST(SpectralPlan, GivesTheReasonForEveryStage) {
     EXPECT_FALSE(stage.reason.empty()) << stage.name;
     if (!stage.on) off[stage.name] = stage.reason;
   }
-  EXPECT_EQ(off["forcing"], "forcing.kind = \"none\"");
+  EXPECT_EQ(off["forcing coefficient"], "forcing.kind = \"none\"");
   EXPECT_EQ(off["force to modes"], "particles.coupling = \"one-way\"");
   EXPECT_EQ(off["Lyapunov exponents"], "particles.lyapunov = 0");
 }
@@ -87,7 +91,7 @@ TEST(SpectralPlan, RunsStagesAsOftenAsTheSchemeNeedsThem) {
                                                        particles("two-way", "sort_every = 3\n")));
     run.start().steps(4, 0.001);
     const auto calls = [&](const std::string& stage) { return entry_of(run.ledger, stage)->calls; };
-    EXPECT_EQ(calls("forcing"), e.tendencies) << e.integrator;
+    EXPECT_EQ(calls("forcing coefficient"), e.tendencies) << e.integrator;
     EXPECT_EQ(calls("product in planes"), e.tendencies * e.remainders) << e.integrator;
     EXPECT_EQ(calls("forward transforms in x"), e.tendencies * (e.remainders - 1)) << e.integrator;
     EXPECT_EQ(calls("forward transforms in x, update"), e.tendencies) << e.integrator;

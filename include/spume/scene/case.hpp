@@ -31,13 +31,15 @@ struct TimeOptions {
   double end = 0;
   double courant = 0;   // 0: not given; load_case then asks the method
   double max_step = 0;  // 0: none
+  // Each halves the step: what is refused at 1/64 of it is not refused for its length, and another half does not help.
   int max_retries = 6;
 };
 
 struct OutputOptions {
-  double every = 0;                 // snapshot interval in time; 0: start and end only
-  double series_every = 0;          // 0: every step
-  double checkpoint_every = 300;    // wall seconds
+  double every = 0;         // snapshot interval in time; 0: start and end only
+  double series_every = 0;  // 0: every step
+  // Wall seconds: the work that a kill may cost. Writing a million particles takes 0.36 s, a thousandth of it.
+  double checkpoint_every = 300;
   double spectrum_every = 0;        // 0: no spectra
   std::vector<std::string> fields;  // empty: the method's standard set
   bool h5part_view = true;

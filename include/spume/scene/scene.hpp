@@ -53,6 +53,7 @@ struct Domain {
   bool periodic(int axis) const { return sides[axis][0].kind == BoundaryKind::periodic; }
 };
 
+// What methods of one fluid solve for, gravity included; its viscosity is kinematic, as groups and equations give it.
 struct Fluid {
   double density = 1;
   double kinematic_viscosity = 0;
@@ -60,7 +61,8 @@ struct Fluid {
   Vec3 gravity{};          // uniform acceleration, points along minus the last axis; zero without gravity
 };
 
-// One of the fluids of a scene with several.
+// One of the fluids of a scene with several, as [[phase]] gives it. Not a Fluid: stresses at an interface need dynamic
+// viscosities, gravity belongs to the scene, and a density that is not given is an error.
 struct Phase {
   std::string name;
   double density = 0;

@@ -36,6 +36,26 @@ double length_of(const Vec3& v) {
   throw StepFailure(details);
 }
 
+// Calls use(i, force, r, f) with the body force f at the intermediate position r of every particle, and keeps the
+// largest.
+template <class Use>
+void for_each_body_force(Flow& flow, double t, Use&& use) {
+  flow.next_largest_body_force = parallel_reduce(
+      flow.size(), 0.0,
+      [&](std::size_t first, std::size_t last) {
+        const VectorExpression force = flow.scene.body_force->clone();
+        double largest = 0;
+        for (std::size_t i = first; i < last; ++i) {
+          const Vec3 r = vector_at(flow.intermediate_position, flow.dimensions, i), f = force(r, t);
+          largest = larger_or_nan(largest, length_of(f));
+          use(i, force, r, f);
+        }
+        return largest;
+      },
+      larger_or_nan);
+  if (!std::isfinite(flow.next_largest_body_force)) refuse_body_force(flow, t);
+}
+
 // The step was chosen for the eddy viscosity of the step before; the first one knew none.
 void refuse_unstable_diffusion(const Flow& flow, double dt) {
   const double largest = flow.closure->largest(flow.size());
@@ -190,21 +210,10 @@ void Flow::find_potential(double t) {
 
 void Flow::add_force_potential(double t) {
   particles.scratch().lease(varying_force, dimensions, size());
-  next_largest_body_force = parallel_reduce(
-      size(), 0.0,
-      [&](std::size_t first, std::size_t last) {
-        const VectorExpression force = scene.body_force->clone();
-        double largest = 0;
-        for (std::size_t i = first; i < last; ++i) {
-          const Vec3 r = vector_at(intermediate_position, dimensions, i), f = force(r, t);
-          largest = larger_or_nan(largest, length_of(f));
-          (*potential)[i] += (*force_potential)(force, r, t);
-          for (int axis = 0; axis < dimensions; ++axis) varying_force[axis][i] = static_cast<float>(f[axis]);
-        }
-        return largest;
-      },
-      larger_or_nan);
-  if (!std::isfinite(next_largest_body_force)) refuse_body_force(*this, t);
+  for_each_body_force(*this, t, [&](std::size_t i, const VectorExpression& force, const Vec3& r, const Vec3& f) {
+    (*potential)[i] += (*force_potential)(force, r, t);
+    for (int axis = 0; axis < dimensions; ++axis) varying_force[axis][i] = static_cast<float>(f[axis]);
+  });
 }
 
 void Flow::find_viscous_acceleration() {
@@ -229,20 +238,9 @@ void Flow::find_viscous_acceleration() {
 }
 
 void Flow::add_body_force(double t, double dt) {
-  next_largest_body_force = parallel_reduce(
-      size(), 0.0,
-      [&](std::size_t first, std::size_t last) {
-        const VectorExpression force = scene.body_force->clone();
-        double largest = 0;
-        for (std::size_t i = first; i < last; ++i) {
-          const Vec3 acceleration = force(vector_at(intermediate_position, dimensions, i), t);
-          largest = larger_or_nan(largest, length_of(acceleration));
-          for (int axis = 0; axis < dimensions; ++axis) intermediate_velocity[axis][i] += dt * acceleration[axis];
-        }
-        return largest;
-      },
-      larger_or_nan);
-  if (!std::isfinite(next_largest_body_force)) refuse_body_force(*this, t);
+  for_each_body_force(*this, t, [&](std::size_t i, const VectorExpression&, const Vec3&, const Vec3& f) {
+    for (int axis = 0; axis < dimensions; ++axis) intermediate_velocity[axis][i] += dt * f[axis];
+  });
 }
 
 void Flow::predict_velocity(double dt) {

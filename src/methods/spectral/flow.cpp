@@ -113,6 +113,7 @@ Flow<T>::Flow(const LoadedCase& loaded)
   if (options_.integrator != Integrator::ab2)
     for (auto& field : start_) field.resize(layout_.size());
   for (auto* decay : {&decay_, &earlier_decay_}) set_decay(*decay, 0);  // what they stay without viscosity
+  if (forcing_.kind == ForcingKind::linear) forcing_coefficient_ = forcing_.rate;
 }
 
 template <class T>

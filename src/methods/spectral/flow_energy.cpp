@@ -100,10 +100,11 @@ EnergyBudget Flow<T>::tallied(const Modes<T>& potential) const {
   return budget;
 }
 
-// Forcing and work at the end of the step, with the force of particles that the step had: see Flow::budget.
+// At the end of the step, with the force of particles that the step had: see Flow::budget.
 template <class T>
-EnergyBudget Flow<T>::with_forces(EnergyBudget fresh) const {
+EnergyBudget Flow<T>::fresh_budget() const {
   if (force_[0] != nullptr) return measure_budget();
+  EnergyBudget fresh = tallied(potential_);
   if (forcing_.kind == ForcingKind::shell)
     fresh.injection = forcing_coefficient(potential_) > 0 ? forcing_.injection : 0;
   if (forcing_.kind == ForcingKind::linear) {
@@ -116,7 +117,7 @@ EnergyBudget Flow<T>::with_forces(EnergyBudget fresh) const {
 
 template <class T>
 void Flow<T>::measure_balance() {
-  const EnergyBudget fresh = with_forces(step_.fresh);
+  const EnergyBudget fresh = fresh_budget();
   const auto gain = [](const EnergyBudget& b) { return b.injection + b.work - b.dissipation; };
   integrated_gain_ += step_.dt / 2 * (gain(budget_) + gain(fresh));
   integrated_dissipation_ += step_.dt / 2 * (budget_.dissipation + fresh.dissipation);
@@ -130,12 +131,11 @@ template <class T>
 void Flow<T>::join_conjugates() {
   const auto [nx, ny, nz] = layout_.points;
   const auto& k = layout_.wavenumber;
-  const auto forced = [&](double k2) { return forcing_.kind == ForcingKind::linear || k2 < shell_high_; };
   parallel_blocks(nx / 2 + 1, 1, [&, nx = nx, ny = ny](std::size_t, std::size_t ix, std::size_t) {
     const std::size_t other_x = (nx - ix) % nx;
     for (std::size_t iy = 0; iy < ny; ++iy) {
       const std::size_t other_y = (ny - iy) % ny;
-      if (!forced(k[0][ix] * k[0][ix] + k[1][iy] * k[1][iy]) || (ix == other_x && iy > other_y)) continue;
+      if (!joins(k[0][ix] * k[0][ix] + k[1][iy] * k[1][iy]) || (ix == other_x && iy > other_y)) continue;
       for (auto& field : potential_) {
         Complex& one = field[ix * layout_.plane + iy * layout_.row];
         Complex& other = field[other_x * layout_.plane + other_y * layout_.row];
@@ -147,6 +147,32 @@ void Flow<T>::join_conjugates() {
   });
 }
 
+template <class T>
+double Flow<T>::shell_bytes() const {
+  const auto& k = layout_.wavenumber;
+  std::size_t modes = 0;
+  for (const double x : k[0])
+    for (const double y : k[1])
+      for (std::size_t iz = 0; iz < layout_.modes_z; ++iz) {
+        const double k2 = x * x + y * y + k[2][iz] * k[2][iz];
+        if (k2 >= shell_high_) break;
+        modes += k2 >= shell_low_;
+      }
+  return static_cast<double>(3 * modes * sizeof(Complex));
+}
+
+template <class T>
+double Flow<T>::joined_bytes() const {
+  std::size_t modes = 0;
+  for (const double x : layout_.wavenumber[0])
+    for (const double y : layout_.wavenumber[1]) modes += joins(x * x + y * y);
+  return static_cast<double>(3 * modes * sizeof(Complex));
+}
+
+template double Flow<double>::shell_bytes() const;
+template double Flow<float>::shell_bytes() const;
+template double Flow<double>::joined_bytes() const;
+template double Flow<float>::joined_bytes() const;
 template void Flow<double>::set_forcing_coefficient();
 template void Flow<float>::set_forcing_coefficient();
 template double Flow<double>::forcing_coefficient(const Modes<double>&) const;

@@ -71,9 +71,9 @@ Section initial() {
 Section particles() {
   using P = ParticleCaseOptions;
   return section<P>("particles")
-      .option("count", &P::count, "", between(1, 500000000), "number of particles")
+      .option("count", &P::count, "", between(1, most_particles), "number of particles")
       .absent("from volume_fraction")
-      .option("volume_fraction", &P::volume_fraction, "1", above_up_to(0, 0.74),
+      .option("volume_fraction", &P::volume_fraction, "1", above_up_to(0, close_packing),
               "volume of all particles over that of the box; sets their number")
       .absent("from count")
       .option("diameter", &P::diameter, "length", positive(), "diameter of every particle")

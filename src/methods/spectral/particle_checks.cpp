@@ -77,10 +77,10 @@ void check_particles(const Draft& draft, Problems& problems) {
         shares += share;
       }
       const double fraction = static_cast<double>(p.count) * mean / shares / volume;
-      if (fraction > 0.74)
-        fault("count", "of these diameters fill " + brief(fraction) +
-                           " of the box, more than spheres can (0.74); take at most " +
-                           brief(std::floor(static_cast<double>(p.count) * 0.74 / fraction)));
+      if (fraction > close_packing)
+        fault("count", "of these diameters fill " + brief(fraction) + " of the box, more than spheres can (" +
+                           brief(close_packing) + "); take at most " +
+                           brief(std::floor(static_cast<double>(p.count) * close_packing / fraction)));
     }
   }
   if (has("shares") && p.shares.size() != p.diameters.size())

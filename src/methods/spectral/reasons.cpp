@@ -12,7 +12,7 @@ std::string forcing(const Case& options) {
     case ForcingKind::shell:
       return "f below (2): constant injection on a shell";
     case ForcingKind::linear:
-      return "rate times velocity";
+      return "forcing.kind = \"linear\": the rate itself";
     case ForcingKind::none:
       break;
   }

@@ -51,11 +51,15 @@ Plan Spectral<T>::make_plan() {
   };
   const auto flow = [this, run](void (Flow<T>::*verb)()) { return run(flow_, verb); };
   const Case& options = loaded_.options;
-  const bool ab2 = options.get<SpectralOptions>().integrator == Integrator::ab2,
-             forced = options.get<ForcingOptions>().kind != ForcingKind::none;
+  const bool ab2 = options.get<SpectralOptions>().integrator == Integrator::ab2;
+  const ForcingKind forcing = options.get<ForcingOptions>().kind;
+  const bool forced = forcing != ForcingKind::none, in_shell = forcing == ForcingKind::shell;
   const bool viscous = flow_.viscosity() > 0;
   const Modes<T>&b = flow_.potential(), &K = flow_.tendency(), &earlier = flow_.earlier();  // as in (A10)
-  const auto& planes = flow_.planes();
+  const auto &planes = flow_.planes(), &sums = flow_.tallies();
+  const ArrayUse factors([this] { return flow_.factor_bytes(); });
+  const ArrayUse shell([bytes = in_shell ? flow_.shell_bytes() : 0] { return bytes; });
+  const ArrayUse joined([bytes = flow_.joined_bytes()] { return bytes; });
   Suspension<T>* const p = suspension_.get();
   const auto per_particle = [p](Work work) -> Work {  // the other stages handle points of the grid
     return [p, work](StageRun& stage) {
@@ -80,9 +84,9 @@ Plan Spectral<T>::make_plan() {
   const Condition remainders = [this] { return flow_.next_remainder(); };
   const Condition last = [this] { return flow_.last_remainder(); }, not_last = [last] { return !last(); };
   plan.repeat(tendencies, [&] {
-    add("forcing", reason::forcing(options), forced, flow(&Flow<T>::set_forcing_coefficient));
+    add("forcing coefficient", reason::forcing(options), in_shell, flow(&Flow<T>::set_forcing_coefficient), {shell});
     add("viscosity", viscous ? "(A8): exact, by an integrating factor" : "inviscid", viscous,
-        flow(&Flow<T>::set_integrating_factors));
+        flow(&Flow<T>::set_integrating_factors), {}, {factors});
     plan.repeat(remainders, [&] {
       add("inverse transforms in x", "(A6): u = curl b and two gradients, in planes of x", true,
           flow(&Flow<T>::inverse_x), {b}, {planes}, both);
@@ -91,14 +95,15 @@ Plan Spectral<T>::make_plan() {
       add("forward transforms in x", "(A5): F[u x omega], partial sums", true, flow(&Flow<T>::forward_x),
           {planes[0], planes[1], planes[2], K}, {K}, StagePart::step, not_last);
       add("forward transforms in x, update", reason::update(options), true, flow(&Flow<T>::update),
-          {planes[0], planes[1], planes[2], b, K, earlier, force}, {earlier, ab2 ? K : b}, StagePart::step, last);
+          {planes[0], planes[1], planes[2], b, K, earlier, force, factors}, {earlier, ab2 ? K : b, sums},
+          StagePart::step, last);
     });
-    add("acceptance", "step limit and finite values", true, flow(&Flow<T>::accept_tendency));
+    add("acceptance", "step limit and finite values", true, flow(&Flow<T>::accept_tendency), {sums});
   });
   add("energy balance", "injection and work of the forces", true, flow(&Flow<T>::measure_balance),
-      {couples ? &b : nullptr, force});
+      couples ? Arrays{b, force} : Arrays{sums, shell});
   add("conjugate modes", forced ? "their rounding would be forced" : "forcing.kind = \"none\"", forced,
-      flow(&Flow<T>::join_conjugates));
+      flow(&Flow<T>::join_conjugates), {joined}, {joined});
   if (!p) return plan;
 
   ParticleSystem& system = p->system();

@@ -22,8 +22,9 @@ const PointParticleOptions& checked(const PeriodicGrid& grid, const PointParticl
     if (!(d > 0) || !(2 * d < shortest))
       throw InputError("a particle diameter of " + std::to_string(d) +
                        " does not lie between 0 and half of the shortest side of the box, " + std::to_string(shortest));
-  if (options.count > 500000000)
-    throw InputError(std::to_string(options.count) + " particles; at most 500,000,000 can be numbered");
+  if (options.count > static_cast<std::size_t>(most_particles))
+    throw InputError(std::to_string(options.count) + " particles; at most " + std::to_string(most_particles) +
+                     " can be numbered");
   if (acts_on_flow(options.coupling) && !(options.motion.beta > 0))
     throw InputError("two-way coupling needs particles of finite density, beta > 0");
   return options;

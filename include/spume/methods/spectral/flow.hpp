@@ -59,7 +59,7 @@ class Flow {
   void keep_step_start();  // of Runge-Kutta schemes, whose stages overwrite b
   bool next_tendency();    // false when the scheme needs no more of them in this step
   // For each tendency, of the potential that the scheme takes it of:
-  void set_forcing_coefficient();
+  void set_forcing_coefficient();  // of a shell
   void set_integrating_factors();  // exp(c dt) - 1, c = -nu k^2; not called for an inviscid flow
   bool next_remainder();           // of the points of the product, see CrossProduct; false after the last
   bool last_remainder() const;
@@ -86,6 +86,13 @@ class Flow {
   const Modes<T>& earlier() const { return earlier_; }
   const Modes<T>& step_start() const { return start_; }
   const std::array<Array<Complex>, 5>& planes() const { return product_.planes(); }
+  // Squares of the updated modes, summed row by row.
+  const auto& tallies() const { return tallies_; }
+  // Bytes of the integrating factors that a tendency takes, of the modes of b in a forced shell, and of those that
+  // join_conjugates() passes over.
+  double factor_bytes() const;
+  double shell_bytes() const;
+  double joined_bytes() const;
   double time() const { return time_; }
   std::int64_t steps() const { return steps_; }
   double viscosity() const { return viscosity_; }
@@ -128,8 +135,7 @@ class Flow {
     Scheme scheme = Scheme::none;  // none: the start
     double dt = 0;
     int tendencies = 0, tendency = -1, remainder = -1;
-    VelocityPeak peak = {};   // of the potential that the tendency is taken of
-    EnergyBudget fresh = {};  // of the updated potential, without the work of forces
+    VelocityPeak peak = {};  // of the potential that the tendency is taken of
     EnergyBudget start = {};
     double start_time = 0, start_gain = 0, start_dissipation = 0;
   };
@@ -144,7 +150,8 @@ class Flow {
   void runge_kutta();
   void require_acceptable(double dt, const EnergyBudget& fresh) const;
   EnergyBudget tallied(const Modes<T>& potential) const;
-  EnergyBudget with_forces(EnergyBudget fresh) const;
+  EnergyBudget fresh_budget() const;
+  bool joins(double k2) const { return forcing_.kind == ForcingKind::linear || k2 < shell_high_; }
   double forcing_coefficient(const Modes<T>& potential) const;
   StepLimit limit_for(const VelocityPeak& peak) const;
   // exp(-nu k_i^2 dt) - 1 per index of an axis; along z twice each, as vectors take it.
@@ -182,7 +189,7 @@ class Flow {
   VelocityPeak peak_;
   EnergyBudget budget_;
   double integrated_gain_ = 0, integrated_dissipation_ = 0;
-  std::vector<Tally> tallies_;
+  Array<Tally> tallies_;
   Decay decay_, earlier_decay_;
 };
 

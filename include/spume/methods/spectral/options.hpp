@@ -46,7 +46,8 @@ struct InitialOptions {
   std::string file;               // checkpoint
 };
 
-// Small spheres in the flow of the spectral method; none when `count` and `volume_fraction` are zero.
+// Small spheres in the flow of the spectral method, as [particles] gives them; none when `count` and `volume_fraction`
+// are zero. particle_options() makes PointParticleOptions of them.
 struct ParticleCaseOptions {
   std::int64_t count = 0;
   double volume_fraction = 0;  // sets the count

@@ -9,6 +9,12 @@
 
 namespace spume {
 
+// Of spheres in contact, the densest packing: pi / (3 sqrt 2).
+inline constexpr double close_packing = 0.74048048969306104;
+// Entries of four numbers for each are counted in 32 bits: 2^31 / 4, rounded down.
+inline constexpr std::int64_t most_particles = 500'000'000;
+
+// What ParticleSystem takes. Methods make it of what a case says, in scales of their flow, volume fractions and files.
 struct PointParticleOptions {
   std::size_t count = 0;
   MotionModel motion;
@@ -20,8 +26,8 @@ struct PointParticleOptions {
   PlacementOptions placement;  // diameters too
   int spline_order = 4;
   bool single_precision_records = true;
-  double max_volume_fraction = 0.74048048969306104;  // pi / (3 sqrt 2), close packing
-  int sort_every = 8;                                // steps between sorts of the particles by grid cell
+  double max_volume_fraction = close_packing;
+  int sort_every = 8;  // steps between sorts of the particles by grid cell
   // Where in time the force is wanted, from the middle of the last step, in steps (lead: 1/2 for multistep schemes that
   // take it at the present time, 1 for a scheme that holds it over the coming step), and how the flow steps with it.
   CouplingScheme scheme;
