@@ -128,6 +128,35 @@ void find_own_depths(const SweepContext& context, PackedNeighbours& packed, cons
   });
 }
 
+// The same where the column is counted in a box.
+template <int dimensions, class Kernel>
+void find_box_depths(const SweepContext& context, const NearSurface& near_surface, std::span<float> of_particle) {
+  const KernelScale<dimensions, Kernel> common(context);
+  const float of_lattice = lattice_column<dimensions>();
+  const auto spacing = static_cast<float>(near_surface.spacing);
+  sweep(near_surface.boxes.size(), [&](std::size_t k) {
+    const FreeBox& box = near_surface.boxes[k];
+    const auto i = static_cast<std::size_t>(box.particle);
+    auto normal = vector_of<dimensions>(near_surface.normal, i);
+    if (!(of_particle[i] > 0) || !make_unit<dimensions>(normal)) return;
+    double content = 0;
+    visit_box<dimensions>(context, *near_surface.solids, box, near_surface.spacing,
+                          Kernel::support / common.at(context, i).inverse_h,
+                          [&](const std::array<double, dimensions>& d, double share, std::size_t source) {
+                            double r2 = 0, along = 0;
+                            for (int axis = 0; axis < dimensions; ++axis) {
+                              r2 += d[axis] * d[axis];
+                              along += normal[axis] * d[axis];
+                            }
+                            const double aside = std::sqrt(std::max(0.0, r2 - along * along));
+                            content += share * own_volume<Kernel>(context, source) *
+                                       column_at<dimensions>(static_cast<float>(aside / near_surface.spacing),
+                                                             static_cast<float>(-along / near_surface.spacing));
+                          });
+    of_particle[i] = spacing * std::clamp(0.5F + static_cast<float>(content) - of_lattice, shallowest, deepest);
+  });
+}
+
 template <int dimensions, class Kernel>
 void share_depths(const SweepContext& context, PackedNeighbours& packed, const NearSurface& near_surface,
                   std::span<const float> of_particle, std::span<float> depth) {
@@ -232,6 +261,7 @@ void surface_depths(const SweepContext& context, PackedNeighbours& packed, const
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     parallel_for(of_particle.size(), [&](std::size_t i) { of_particle[i] = 0; });
     find_own_depths<dimensions, Kernel>(context, packed, near_surface, of_particle);
+    find_box_depths<dimensions, Kernel>(context, near_surface, of_particle);
     share_depths<dimensions, Kernel>(context, packed, near_surface, of_particle, depth);
   });
 }

@@ -17,12 +17,11 @@ namespace {
 // 0.01 % and 0.002 %.
 constexpr double wall_gap = 1e-3;
 
-// The kind of a face by its code (SolidUnion::face_near).
+}  // namespace
+
 BoundaryKind kind_of_face(const Domain& domain, int axis, int face) {
   return face < 2 ? domain.sides[axis][face].kind : domain.boxes[static_cast<std::size_t>(face - 2) / 2].kind;
 }
-
-}  // namespace
 
 BoundaryFeatures::BoundaryFeatures(const Domain& domain) {
   for (int axis = 0; axis < domain.dimensions; ++axis)

@@ -12,35 +12,55 @@
 namespace spume {
 namespace {
 
-// A point and its reflections: summing the particles around each copy is summing particles and images around the
-// point.
-struct Copy {
-  Vec3 point;
+// How values come from a particle to the place of its image.
+struct Mirrored {
   std::array<double, 3> sign{1, 1, 1};  // reflection of geometric offsets
   // Velocity of an image: sign * u + offset, 2 u_wall - u in the components that a wall holds.
   std::array<double, 3> velocity_sign{1, 1, 1};
   Vec3 velocity_offset{};
 };
 
-void reflect_velocity(const SampledState& state, int axis, int side, Copy& copy, const Vec3& point) {
-  const Side& wall = state.boundary->domain().sides[axis][side];
+// A point and its reflections: summing the particles around each copy is summing particles and images around the
+// point.
+struct Copy : Mirrored {
+  Vec3 point;
+};
+
+// Of a probe in a solid, in spacings: farther behind a face it tells nothing of the liquid before it.
+constexpr double deepest_probe = 0.5;
+// In spacings: a point on a face looks from before it.
+constexpr double before_face = 1e-3;
+
+// `face`: SolidUnion::face_near.
+void reflect_velocity(const SampledState& state, int axis, int face, Mirrored& copy, const Vec3& point) {
+  const Domain& domain = state.boundary->domain();
   Vec3 speed{};
-  if (wall.velocity) {
+  if (face < 2 && domain.sides[axis][face].velocity) {
     Vec3 foot = point;
-    foot[axis] = state.boundary->walls[axis][side];
-    speed = (*wall.velocity)(foot, state.time);
+    foot[axis] = state.boundary->walls[axis][face];
+    speed = (*domain.sides[axis][face].velocity)(foot, state.time);
   }
   for (int a = 0; a < state.particles->dimensions; ++a) {
-    if (a != axis && wall.kind == BoundaryKind::free_slip) continue;
+    if (a != axis && kind_of_face(domain, axis, face) == BoundaryKind::free_slip) continue;
     copy.velocity_sign[a] = -copy.velocity_sign[a];
     copy.velocity_offset[a] = 2 * speed[a] - copy.velocity_offset[a];
   }
 }
 
+Mirrored mirrored_by(const SampledState& state, const ImagePath& path, const ImageRules& rules, const Vec3& point) {
+  Mirrored result;
+  for (int axis = 0; axis < state.particles->dimensions; ++axis) {
+    result.sign[axis] = Images::sign(path, rules, axis);
+    for (const std::int16_t face : path.face[axis])
+      if (face >= 0) reflect_velocity(state, axis, face, result, point);
+  }
+  return result;
+}
+
 std::vector<Copy> copies_of(const SampledState& state, const Vec3& point) {
   const Domain& domain = state.boundary->domain();
   const double support_radius = state.arrangement->grid.support_radius();
-  std::vector<Copy> copies{{.point = point}};
+  std::vector<Copy> copies{{{}, point}};
   for (int axis = 0; axis < state.particles->dimensions; ++axis) {
     const std::size_t made = copies.size();
     const double length = state.boundary->walls[axis][1] - state.boundary->walls[axis][0];
@@ -69,7 +89,10 @@ std::vector<Copy> copies_of(const SampledState& state, const Vec3& point) {
 const PointSampler& PointSampler::update(const SampledState& state) {
   state_ = state;
   const auto r = read(state.particles->position);
-  table_.build(state.arrangement->grid, r[0], r[1], r[2], state.particles->size());
+  const CellGrid& grid = state.arrangement->grid;
+  table_.build(grid, r[0], r[1], r[2], state.particles->size());
+  if (state.boundary->solids() != nullptr)
+    images_.build(state.boundary->image_rules(grid.support_radius()), grid, r[0], r[1], r[2], state.particles->size());
   return *this;
 }
 
@@ -80,97 +103,123 @@ double PointSampler::potential_at(const Vec3& r) const {
   return sum;
 }
 
-// visit(particle, W V, offset r_j - point, copy) for every particle or image in the support of the point.
+Vec3 PointSampler::eye_of(const Vec3& point) const {
+  const SolidUnion* solids = state_.boundary->solids();
+  if (solids == nullptr || !solids->inside(point)) return point;
+  const double gap = before_face * state_.resolution->spacing;
+  const Vec3 foot = solids->nearest_free(point, 1e-3 * gap);
+  constexpr int ways = 27;  // -1, 0 or 1 along every axis, those along one first
+  Vec3 eye = foot;
+  for (int most = 1; most <= 3; ++most)
+    for (int way = 0; way < ways; ++way) {
+      const std::array<int, 3> step{way % 3 - 1, way / 3 % 3 - 1, way / 9 - 1};
+      if (std::abs(step[0]) + std::abs(step[1]) + std::abs(step[2]) != most) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis) eye[axis] = foot[axis] + gap * step[axis];
+      if (!solids->inside(eye)) return eye;
+    }
+  return foot;
+}
+
+bool PointSampler::deep_in_solid(const Vec3& point, double depth) const {
+  const Vec3 eye = eye_of(point);
+  double distance2 = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) distance2 += (eye[axis] - point[axis]) * (eye[axis] - point[axis]);
+  return std::sqrt(distance2) > (depth + 2 * before_face) * state_.resolution->spacing;
+}
+
+// visit(particle, W V, offset of it or its image from the point, its place, Mirrored) for every particle or image in
+// the support of the point; with solids, for those that the point sees.
 template <class Visit>
 void PointSampler::visit(const Vec3& point, Visit&& visit) const {
   const CellGrid& grid = state_.arrangement->grid;
   const int d = state_.particles->dimensions;
   const double support_radius = grid.support_radius();
+  const auto each_in_rows = [&](const Vec3& around, const CellOrder& table, auto&& body) {
+    const auto range = [&](int axis) {
+      return std::pair(grid.index(axis, around[axis] - support_radius),
+                       grid.index(axis, around[axis] + support_radius));
+    };
+    const auto [x0, x1] = range(0);
+    const auto [y0, y1] = range(1);
+    const auto [z0, z1] = d == 3 ? range(2) : std::pair(0, 0);
+    for (int iz = z0; iz <= z1; ++iz)
+      for (int iy = y0; iy <= y1; ++iy) {
+        const std::int64_t row = std::int64_t{grid.row(iy, iz)} * grid.columns();
+        for (std::int32_t k = table.first()[row + x0]; k < table.first()[row + x1 + 1]; ++k) body(k);
+      }
+  };
+  const auto place_of = [&](std::size_t j) {
+    Vec3 place{};
+    for (int axis = 0; axis < d; ++axis) place[axis] = (*state_.particles->position[axis])[j];
+    return place;
+  };
   with_kernel(state_.arrangement->context, [&]<int dimensions, class Kernel>() {
     const double h = state_.resolution->smoothing_length;
     const double scale = state_.particles->volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions);
-    for (const Copy& copy : copies_of(state_, point)) {
-      const auto range = [&](int axis) {
-        return std::pair(grid.index(axis, copy.point[axis] - support_radius),
-                         grid.index(axis, copy.point[axis] + support_radius));
-      };
-      const auto [x0, x1] = range(0);
-      const auto [y0, y1] = range(1);
-      const auto [z0, z1] = d == 3 ? range(2) : std::pair(0, 0);
-      for (int iz = z0; iz <= z1; ++iz)
-        for (int iy = y0; iy <= y1; ++iy) {
-          const std::int64_t row = std::int64_t{grid.row(iy, iz)} * grid.columns();
-          for (std::int32_t k = table_.first()[row + x0]; k < table_.first()[row + x1 + 1]; ++k) {
-            const auto j = static_cast<std::size_t>(table_.order()[static_cast<std::size_t>(k)]);
-            Vec3 offset{};
-            double r2 = 0;
-            for (int axis = 0; axis < d; ++axis) {
-              offset[axis] = copy.sign[axis] * ((*state_.particles->position[axis])[j] - copy.point[axis]);
-              r2 += offset[axis] * offset[axis];
-            }
-            const double swelling = state_.volume_fraction == nullptr ? 1.0 : 1 / (*state_.volume_fraction)[j];
-            if (r2 < support_radius * support_radius)
-              visit(j, swelling * scale * Kernel::w(std::sqrt(r2) / h), offset, copy);
-          }
+    const auto weigh = [&](std::size_t j, const Vec3& offset, double r2, const Vec3& place, const Mirrored& mirrored) {
+      const double swelling = state_.volume_fraction == nullptr ? 1.0 : 1 / (*state_.volume_fraction)[j];
+      visit(j, swelling * scale * Kernel::w(std::sqrt(r2) / h), offset, place, mirrored);
+    };
+    const auto particle_at = [&](std::int32_t k) {
+      return static_cast<std::size_t>(table_.order()[static_cast<std::size_t>(k)]);
+    };
+    if (const SolidUnion* solids = state_.boundary->solids(); solids != nullptr) {
+      const Vec3 eye = eye_of(point);
+      const ImageRules rules = state_.boundary->image_rules(support_radius);
+      const auto offset_of = [&](const Vec3& place, double& r2) {
+        Vec3 offset{};
+        r2 = 0;
+        for (int axis = 0; axis < d; ++axis) {
+          offset[axis] = place[axis] - point[axis];
+          r2 += offset[axis] * offset[axis];
         }
+        return offset;
+      };
+      double r2 = 0;
+      each_in_rows(point, table_, [&](std::int32_t k) {
+        const Vec3 place = place_of(particle_at(k)), offset = offset_of(place, r2);
+        if (r2 < support_radius * support_radius && solids->sees(eye, place, place))
+          weigh(particle_at(k), offset, r2, place, {});
+      });
+      each_in_rows(point, images_.table(), [&](std::int32_t k) {
+        const auto image = static_cast<std::size_t>(k), j = static_cast<std::size_t>(images_.source()[image]);
+        Vec3 at{};
+        for (int axis = 0; axis < d; ++axis) at[axis] = images_.position(axis)[image];
+        const Vec3 place = place_of(j), offset = offset_of(at, r2);
+        if (r2 < support_radius * support_radius && images_.sees(eye, image, place))
+          weigh(j, offset, r2, place,
+                mirrored_by(state_, images_.paths()[static_cast<std::size_t>(images_.path()[image])], rules, point));
+      });
+      return;
     }
+    for (const Copy& copy : copies_of(state_, point))
+      each_in_rows(copy.point, table_, [&](std::int32_t k) {
+        const std::size_t j = particle_at(k);
+        Vec3 offset{}, place = point;
+        double r2 = 0;
+        for (int axis = 0; axis < d; ++axis) {
+          offset[axis] = copy.sign[axis] * ((*state_.particles->position[axis])[j] - copy.point[axis]);
+          r2 += offset[axis] * offset[axis];
+          place[axis] = copy.sign[axis] > 0 ? point[axis] + offset[axis] : copy.point[axis] - offset[axis];
+        }
+        if (r2 < support_radius * support_radius) weigh(j, offset, r2, place, copy);
+      });
   });
 }
 
 double PointSampler::coverage(const Vec3& point) const {
   double sum = 0;
-  visit(point, [&](std::size_t, double weight, const Vec3&, const Copy&) { sum += weight; });
+  if (deep_in_solid(point, 0)) return sum;
+  visit(point, [&](std::size_t, double weight, const Vec3&, const Vec3&, const Mirrored&) { sum += weight; });
   return sum;
 }
 
-double PointSampler::solid_share(const Vec3& point) const {
-  const Domain& domain = state_.boundary->domain();
-  const auto& walls = state_.boundary->walls;
-  const auto d = static_cast<std::size_t>(domain.dimensions);
-  const double support_radius = state_.arrangement->grid.support_radius();
-  const bool near = std::any_of(domain.boxes.begin(), domain.boxes.end(), [&](const SolidBox& box) {
-    for (std::size_t axis = 0; axis < d; ++axis) {
-      if (domain.periodic(static_cast<int>(axis))) continue;
-      if (point[axis] < box.lower[axis] - support_radius || point[axis] > box.upper[axis] + support_radius)
-        return false;
-    }
-    return true;
-  });
-  if (!near) return 0;
-  // Eight points across the support: a face through the point takes one half exactly.
-  constexpr int across = 8;
-  double all = 0, solid = 0;
-  with_kernel(state_.arrangement->context, [&]<int dimensions, class Kernel>() {
-    const int points = dimensions == 3 ? across * across * across : across * across;
-    for (int k = 0; k < points; ++k) {
-      const int digit[3] = {k % across, k / across % across, k / (across * across)};
-      Vec3 place = point;
-      double r2 = 0;
-      for (std::size_t axis = 0; axis < d; ++axis) {
-        const double offset = ((digit[axis] + 0.5) * 2 / across - 1) * support_radius;
-        r2 += offset * offset;
-        place[axis] += offset;
-        // Solids continue beyond a side as the liquid does: periodically or mirrored.
-        const auto [low, high] = walls[axis];
-        const bool periodic = domain.periodic(static_cast<int>(axis));
-        if (place[axis] < low) place[axis] = periodic ? place[axis] + high - low : 2 * low - place[axis];
-        if (place[axis] > high) place[axis] = periodic ? place[axis] - high + low : 2 * high - place[axis];
-      }
-      const double weight = Kernel::w(std::sqrt(r2) / state_.resolution->smoothing_length);
-      all += weight;
-      if (inside_solid(domain, place)) solid += weight;
-    }
-  });
-  return solid / all;
-}
-
 double PointSampler::wet_share(const Vec3& point) const {
-  const double free = 1 - solid_share(point);
-  return free > 0 ? coverage(point) / free : 0;
+  return coverage(eye_of(point));
 }
 
 PointSample PointSampler::sample(const Vec3& point) const {
-  if (wet_share(point) >= 0.5) return fit(point);
+  if (!deep_in_solid(point, deepest_probe) && wet_share(point) >= 0.5) return fit(point);
   const double none = std::numeric_limits<double>::quiet_NaN();
   return {.scalars = std::vector<double>(state_.scalars.size(), none),
           .velocity = {none, none, none},
@@ -186,11 +235,10 @@ PointSample PointSampler::fit(const Vec3& point) const {
   std::vector<LinearFit> fits(1 + (scalars.size() + 2) / wide, LinearFit(d));
   std::vector<std::array<double, wide>> values(fits.size());
   PointSample sample{.scalars = std::vector<double>(scalars.size())};
-  visit(point, [&](std::size_t j, double weight, const Vec3& offset, const Copy& copy) {
+  visit(point, [&](std::size_t j, double weight, const Vec3& offset, const Vec3& place, const Mirrored& copy) {
     // A wall mirrors a pressure but for its hydrostatic part, which belongs to the place of the source.
-    Vec3 place = point, scaled{};
+    Vec3 scaled{};
     for (int axis = 0; axis < d; ++axis) {
-      place[axis] = copy.sign[axis] > 0 ? point[axis] + offset[axis] : copy.point[axis] - offset[axis];
       scaled[axis] = offset[axis] / state_.resolution->smoothing_length;
       values[0][axis + 1] =
           copy.velocity_sign[axis] * (*state_.particles->velocity[axis])[j] + copy.velocity_offset[axis];

@@ -43,14 +43,15 @@ InteriorWeight interior_weight(int dimensions, const SurfaceOptions& options) {
 FreeSurface::FreeSurface(const Resolution& resolution, const Options& options)
     : resolution_(resolution), options_(options) {}
 
-void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, const MomentFields& moments,
+void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, MomentFields& moments,
                        const std::vector<std::array<float, 3>>& reflection, const VectorField& at,
                        const SolidUnion* solids) {
   const std::size_t n = particles.size();
   at_surface.resize(n);
   pressure_fixed.resize(n);
   interior_weight.resize(n);
-  const Array<float>& divergence_of_position = *moments.divergence_of_position;
+  if (solids != nullptr) count_in_boxes(arrangement, moments, at, *solids);
+  const Array<float>& divergence_of_position = solids != nullptr ? counted_ : *moments.divergence_of_position;
   const double least = surface_layer_share(resolution_.dimensions) * options_.interior.threshold;
   parallel_for(n, [&](std::size_t i) {
     at_surface[i] = divergence_of_position[i] < options_.interior.threshold ? 1 : 0;
@@ -67,14 +68,40 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, const
   parallel_select(n, near_surface, [&](std::size_t i) { return is_near(moments, i); });
   depth.resize(near_surface.size());
   ScratchArray<float> of_particle(particles.scratch(), n);
-  surface_depths(arrangement.context, arrangement.packed, {resolution_.spacing, near_surface, read(moments.normal)},
-                 of_particle, depth);
+  surface_depths(arrangement.context, arrangement.packed,
+                 {resolution_.spacing, near_surface, read(moments.normal), solids, boxes_}, of_particle, depth);
   if (options_.smooth_normals) {
     particles.scratch().lease(smoothed_normal, resolution_.dimensions, n);
     filter_vector_subset(arrangement.context, arrangement.packed, read(moments.normal), reflection, surface_particles,
                          write(smoothed_normal));
   }
   arrangement.packed.take_traffic();  // it counts the lists of all particles, not of those at the surface alone
+}
+
+void FreeSurface::count_in_boxes(const Arrangement& arrangement, MomentFields& moments, const VectorField& at,
+                                 const SolidUnion& solids) {
+  const double reach = arrangement.grid.support_radius();
+  const std::size_t n = moments.divergence_of_position->size();
+  counted_.resize(n);
+  parallel_for(n, [&](std::size_t i) { counted_[i] = (*moments.divergence_of_position)[i]; });
+  parallel_select(n, beside_edges_,
+                  [&](std::size_t i) { return !solids.open_around(vector_at(at, resolution_.dimensions, i), reach); });
+  boxes_.resize(beside_edges_.size());
+  box_moments_.resize(beside_edges_.size());
+  parallel_for(boxes_.size(), [&](std::size_t k) {
+    FreeBox& box = boxes_[k];
+    box.particle = beside_edges_[k];
+    box.place = vector_at(at, resolution_.dimensions, static_cast<std::size_t>(box.particle));
+    const auto [lower, upper] = solids.free_box(box.place, reach);
+    box.lower = lower;
+    box.upper = upper;
+  });
+  box_moments(arrangement.context, solids, resolution_.spacing, boxes_, box_moments_);
+  parallel_for(boxes_.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(boxes_[k].particle);
+    counted_[i] = box_moments_[k].divergence_of_position;
+    for (int axis = 0; axis < resolution_.dimensions; ++axis) (*moments.normal[axis])[i] = box_moments_[k].normal[axis];
+  });
 }
 
 bool FreeSurface::faces_solid(const SolidUnion& solids, const MomentFields& moments, const VectorField& at,

@@ -81,7 +81,7 @@ void Filler::set_volume(const std::vector<std::vector<Chunk>>& chunks) {
   scene_.fills.resize(regions_.size());
   for (std::size_t r = 0; r < regions_.size(); ++r) {
     RegionFill& fill = scene_.fills[r];
-    fill = {regions_[r].name, 0, 0, 0};
+    fill = {.name = regions_[r].name, .flat = is_box(regions_[r])};
     for (const Chunk& chunk : chunks[r]) {
       fill.asked += chunk.volume * lattice_.volume();
       fill.particles += chunk.position[0].size();

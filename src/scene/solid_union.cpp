@@ -165,6 +165,52 @@ bool SolidUnion::open_around(const Vec3& point, double reach) const {
   return free_cells == (upper[0] - lower[0] + 1) * (upper[1] - lower[1] + 1) * (upper[2] - lower[2] + 1);
 }
 
+std::array<Vec3, 2> SolidUnion::free_box(const Vec3& point, double reach) const {
+  const Cell centre = cells_of(point);
+  if (owner(centre) != free_cell) return {point, point};
+  std::array<Vec3, 2> largest{point, point};
+  double most = -1;
+  std::array<int, 3> order{0, 1, 2};
+  // Grown along one axis after the other, in every order: a slab of cells is taken when all of it is free.
+  do {
+    Cell first = centre, last = centre;
+    const auto free = [&](Cell from, Cell to) {
+      Cell cell;
+      for (cell[2] = from[2]; cell[2] <= to[2]; ++cell[2])
+        for (cell[1] = from[1]; cell[1] <= to[1]; ++cell[1])
+          for (cell[0] = from[0]; cell[0] <= to[0]; ++cell[0])
+            if (owner(cell) != free_cell) return false;
+      return true;
+    };
+    double volume = 1;
+    std::array<Vec3, 2> box{Vec3{-far, -far, -far}, Vec3{far, far, far}};
+    for (const int axis : order) {
+      if (axis >= dimensions_) continue;
+      Cell from = first, to = last;
+      while (lower_of(axis, first[axis]) > point[axis] - reach) {
+        from[axis] = to[axis] = first[axis] - 1;
+        if (!free(from, to)) break;
+        --first[axis];
+      }
+      from = first, to = last;
+      while (upper_of(axis, last[axis]) < point[axis] + reach) {
+        from[axis] = to[axis] = last[axis] + 1;
+        if (!free(from, to)) break;
+        ++last[axis];
+      }
+      const double lower = lower_of(axis, first[axis]), upper = upper_of(axis, last[axis]);
+      if (lower > point[axis] - reach) box[0][axis] = lower;
+      if (upper < point[axis] + reach) box[1][axis] = upper;
+      volume *= std::min(upper, point[axis] + reach) - std::max(lower, point[axis] - reach);
+    }
+    if (volume > most + tolerance_ * reach * reach) {
+      most = volume;
+      largest = box;
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return largest;
+}
+
 bool SolidUnion::clear_around(const Vec3& point, double reach) const {
   return each_around(point, reach, [&](const Cell& cell) { return owner(cell) == free_cell; });
 }

@@ -46,6 +46,27 @@ TEST(LesSphPlanes, FollowTheSurfaceBetweenTheCells) {
   }
 }
 
+// A plate half a spacing thick between two levels: on each side a point sees the liquid of its own alone. The pressure
+// is hydrostatic below the level that whole particles of one volume make, which is off by up to a tenth of a spacing.
+TEST(LesSphPlanes, PointsDoNotSeeThroughAPlate) {
+  std::string text = tank;
+  text.replace(text.find("[[liquid]]"), std::string::npos,
+               "[[liquid]]\nupper = [0.5, 1]\n[[liquid]]\nlower = [0.5, 0]\nupper = [1, 0.5]\n"
+               "[[solid]]\nlower = [0.5, 0]\nupper = [0.525, 1.5]\n[time]\nend = 1\n");
+  Simulation run(text);
+  run.steps(2, 0.005);
+  for (const double x : {0.4, 0.48, 0.5}) {
+    EXPECT_NEAR(run.method.sample({x, 0.2, 0}).scalars[0], 0.8, 5e-3) << x;
+    EXPECT_NEAR(run.method.sample({x, 0.2, 0}).coverage, 1, 0.05) << x;
+    EXPECT_NEAR(run.method.elevation({x, 0, 0}), 1, 0.025) << x;
+  }
+  for (const double x : {0.525, 0.545, 0.6}) {
+    EXPECT_NEAR(run.method.sample({x, 0.2, 0}).scalars[0], 0.3, 5e-3) << x;
+    EXPECT_NEAR(run.method.elevation({x, 0, 0}), 0.5, 0.025) << x;
+    EXPECT_TRUE(std::isnan(run.method.sample({x, 0.7, 0}).scalars[0])) << x;
+  }
+}
+
 // In the air there is nothing to measure; beside a solid that liquid covers there is, with half a support of particles.
 TEST(LesSphPlanes, PointsInTheAirHaveNoValues) {
   Simulation run(tank +

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "spume/operators/free_box.hpp"
 #include "spume/operators/pair_sweep.hpp"
 
 namespace spume {
@@ -17,6 +18,8 @@ struct NearSurface {
   double spacing = 0;
   std::span<const std::int32_t> particles;
   std::array<const float*, 3> normal{};
+  const SolidUnion* solids = nullptr;   // null without
+  std::span<const FreeBox> boxes = {};  // of particles beside edges of solids
 };
 
 // How deep each near-surface particle lies below the surface: half a spacing and what a column around it holds more

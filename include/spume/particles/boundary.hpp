@@ -90,6 +90,9 @@ class Boundary {
   std::vector<std::array<float, 3>> reflection_;
 };
 
+// The kind of a face by its code (SolidUnion::face_near).
+BoundaryKind kind_of_face(const Domain& domain, int axis, int face);
+
 // Lies strictly within a solid box: the liquid is mirrored there.
 bool inside_solid(const Domain& domain, const Vec3& point);
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Fields of particles at arbitrary points, for probes. Points near walls see the mirrored liquid.
+// Fields of particles at arbitrary points, for probes. Points near walls and solids see the mirrored liquid, and
+// nothing behind a solid, however thin (scene/solid_union.hpp). A point on a face, or less than half a spacing behind
+// it, looks from before the face.
 #pragma once
 
 #include "spume/io/samples.hpp"
+#include "spume/neighbours/images.hpp"
 #include "spume/particles/boundary.hpp"
 
 namespace spume {
@@ -31,10 +34,11 @@ class PointSampler {
   const PointSampler& update(const SampledState& state);
 
   // Weighted linear fit of velocity and scalars over the particles in the support (Shepard average where they are
-  // too few); coverage is the kernel sum. In the air, where `wet_share` is below one half, all are not a number.
+  // too few); coverage is the kernel sum, 0 in a solid. In the air and in a solid, where `wet_share` is below one half,
+  // all are not a number.
   PointSample sample(const Vec3& point) const;
   double coverage(const Vec3& point) const;
-  // Coverage over the part of the kernel's support that no solid takes: one half at the surface, also beside a solid.
+  // Coverage of the point, or in a solid of the nearest point before it: one half at the surface.
   double wet_share(const Vec3& point) const;
   // Highest point of the column where the coverage reaches one half, found on steps of a quarter spacing and refined
   // by bisection; the bottom of the domain when there is none.
@@ -49,8 +53,10 @@ class PointSampler {
 
  private:
   PointSample fit(const Vec3& point) const;
-  // Part of the kernel around a point that solids take.
-  double solid_share(const Vec3& point) const;
+  // Where a point looks from.
+  Vec3 eye_of(const Vec3& point) const;
+  // In a solid, deeper than so many spacings.
+  bool deep_in_solid(const Vec3& point, double depth) const;
   double potential_at(const Vec3& r) const;
   // Where the coverage falls to one half between a wet point and a dry height.
   double crossing(Vec3 wet, double dry) const;
@@ -61,6 +67,7 @@ class PointSampler {
 
   SampledState state_;
   CellOrder table_;
+  Images images_;  // with solids
 };
 
 }  // namespace spume

@@ -25,6 +25,7 @@
 // is near it without a surface particle in the layer above.
 #pragma once
 
+#include "spume/operators/free_box.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/moments.hpp"
 #include "spume/particles/options.hpp"
@@ -64,7 +65,7 @@ class FreeSurface {
   FreeSurface(const Resolution& resolution, const Options& options);
 
   // From the moments of the arrangement of the particles at `at`. `reflection`: of images.
-  void find(Arrangement& arrangement, ParticleStore& particles, const MomentFields& moments,
+  void find(Arrangement& arrangement, ParticleStore& particles, MomentFields& moments,
             const std::vector<std::array<float, 3>>& reflection, const VectorField& at, const SolidUnion* solids);
 
   Array<std::uint8_t> at_surface;
@@ -93,11 +94,18 @@ class FreeSurface {
   double traffic() const;  // compulsory (core/ledger.hpp), of what find() writes
 
  private:
+  void count_in_boxes(const Arrangement& arrangement, MomentFields& moments, const VectorField& at,
+                      const SolidUnion& solids);
   bool faces_solid(const SolidUnion& solids, const MomentFields& moments, const VectorField& at, std::size_t i) const;
   void pass_over_gaps(const Arrangement& arrangement, const VectorField& at, const SolidUnion& solids);
   Vec3 moment_of(const MomentFields& moments, const ParticleSizes& sizes, std::size_t i) const;
   const Resolution& resolution_;
   Options options_;
+  // Particles beside edges of solids, their boxes, and what these hold.
+  Array<std::int32_t> beside_edges_;
+  std::vector<FreeBox> boxes_;
+  std::vector<BoxMoments> box_moments_;
+  Array<float> counted_;  // div r of the surface rule
 };
 
 }  // namespace spume

@@ -85,6 +85,7 @@ struct RegionFill {
   std::string name;           // "liquid.0"
   double asked = 0, got = 0;  // volumes
   std::size_t particles = 0;
+  bool flat = false;  // a box: its surface is level
 };
 
 struct Scene {

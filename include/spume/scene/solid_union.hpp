@@ -47,6 +47,9 @@ class SolidUnion {
   // Whether the free space nearer to `point` than `reach` along every axis is one box, bounded by whole faces or by
   // nothing: then everything in it sees everything.
   bool open_around(const Vec3& point, double reach) const;
+  // The largest box of free space around a point within `reach` of it along every axis; sides farther than that are
+  // infinite. Empty in a solid.
+  std::array<Vec3, 2> free_box(const Vec3& point, double reach) const;
   // No solid in the box of half the width `reach`.
   bool clear_around(const Vec3& point, double reach) const;
   // The ray from i towards `to`, reflected at faces, ends at `at`, to 1e-6 spacings.

@@ -24,6 +24,19 @@
 
 namespace spume::les_sph {
 
+// Particles of regions with a level surface that stand above each other at the start, columns of a region one after the
+// other.
+struct StartColumns {
+  explicit StartColumns(const Scene& scene);
+  struct Column {
+    std::size_t first = 0, last = 0;  // of `order`, the uppermost first
+    std::int32_t region = 0;
+  };
+  std::vector<std::int32_t> order;  // identifiers
+  std::vector<Column> columns;
+  std::size_t regions = 0;
+};
+
 struct Flow {
   explicit Flow(const LoadedCase& loaded_case);
   Flow(const Flow&) = delete;
@@ -41,6 +54,8 @@ struct Flow {
   const CorrectionFading fading;  // beside voids of a closed liquid; none with a free surface or solids
 
   double weight = 0;  // of the liquid where it starts: sizes of gravity and of the body force, integral
+
+  std::unique_ptr<const StartColumns> start_columns;  // until the start has levelled them; null without solids
 
   // --- State between steps: saved.
   double time = 0;
@@ -136,6 +151,7 @@ struct Flow {
   void find_advecting_velocity(double dt);
   void make_images(double dt);  // (ii)
   void find_neighbours(double dt);
+  void level_surface();                     // of the start
   void compute_shift();                     // (iii)
   void differentiate_velocity(bool first);  // (v)
   void find_shift_curvature();
