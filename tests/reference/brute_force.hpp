@@ -28,9 +28,27 @@ struct Candidates {
   std::set<std::int32_t> possible;  // nearer than support_radius + tolerance
 };
 
+// The boxes and their copies beyond periodic sides; copy k is of box k % boxes.size().
+inline std::vector<SolidBox> with_periodic_copies(const ImageRules& rules, const std::vector<SolidBox>& boxes) {
+  std::vector<SolidBox> all = boxes;
+  for (int axis = 0; axis < rules.dimensions; ++axis) {
+    if (rules.sides[axis][0] != ImageKind::periodic) continue;
+    const std::vector<SolidBox> before = all;
+    for (const int shift : {-1, 1})
+      for (SolidBox box : before) {
+        box.lower[axis] += shift * (rules.upper[axis] - rules.lower[axis]);
+        box.upper[axis] += shift * (rules.upper[axis] - rules.lower[axis]);
+        all.push_back(box);
+      }
+  }
+  return all;
+}
+
 // Whether the ray from `start` towards `end`, reflected at boxes and at the walls of the rules, ends at `at`: the first
 // hit among all slabs, one after the other.
-inline bool sees(const ImageRules& rules, const std::vector<SolidBox>& boxes, Point start, Point end, const Point& at) {
+inline bool sees(const ImageRules& rules, const std::vector<SolidBox>& in_domain, Point start, Point end,
+                 const Point& at) {
+  const std::vector<SolidBox> boxes = with_periodic_copies(rules, in_domain);
   // Walls and boxes are convex: one just left is not hit again at once, nor in the edge where the ray met two.
   std::size_t last = boxes.size() + 6;
   std::set<std::size_t> left;
@@ -81,7 +99,8 @@ inline bool sees(const ImageRules& rules, const std::vector<SolidBox>& boxes, Po
 // All images of the points under the rules: every point under every combination of one operation per axis. With boxes
 // these are reflections in the planes of all faces, within the support radius, and shifts after them.
 inline std::vector<Image> images(const ImageRules& rules, const std::vector<Point>& points,
-                                 const std::vector<SolidBox>& boxes = {}) {
+                                 const std::vector<SolidBox>& in_domain = {}) {
+  const std::vector<SolidBox> boxes = with_periodic_copies(rules, in_domain);
   struct Operation {
     double x = 0;
     std::array<int, 2> face{-1, -1};
@@ -102,8 +121,12 @@ inline std::vector<Image> images(const ImageRules& rules, const std::vector<Poin
       for (int side = 0; side < 2; ++side) {
         const double plane = side == 0 ? boxes[b].lower[axis] : boxes[b].upper[axis];
         const double depth = side == 0 ? plane - x : x - plane;
-        if (depth > 0 && depth < rules.support_radius)
-          made.push_back({2 * plane - x, {2 + 2 * static_cast<int>(b) + side, -1}, -1});
+        // Copies along other axes have the same plane.
+        const std::array<int, 2> face{2 + 2 * static_cast<int>(b % in_domain.size()) + side, -1};
+        const bool known = std::any_of(made.begin(), made.end(), [&](const Operation& o) {
+          return o.face == face && std::abs(o.x - (2 * plane - x)) < 1e-12;
+        });
+        if (depth > 0 && depth < rules.support_radius && !known) made.push_back({2 * plane - x, face, -1});
       }
     // In a gap narrower than the support radius, one face after the other.
     for (std::size_t p = 1, single = made.size(); p < single && !boxes.empty(); ++p)

@@ -3,6 +3,7 @@
 #include "spume/methods/les_sph/flow.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "spume/core/parallel.hpp"
 
@@ -126,10 +127,14 @@ double Flow::weight_at_start() const {
 }
 
 double Flow::mass_in_domain() const {
+  const int up = dimensions - 1;
+  const bool falls_back = scene.fluid.gravity[up] < 0 && scene.domain.sides[up][1].kind == BoundaryKind::open;
   const double inside = parallel_sum(size(), [&](std::size_t i) {
     for (int axis = 0; axis < dimensions; ++axis) {
       const double x = (*particles.position[axis])[i];
-      if (!(x >= boundary.walls[axis][0] && x <= boundary.walls[axis][1])) return 0.0;
+      const double upper =
+          axis == up && falls_back ? std::numeric_limits<double>::max() : boundary.walls[axis][1];
+      if (!(x >= boundary.walls[axis][0] && x <= upper)) return 0.0;
     }
     return 1.0;
   });

@@ -135,7 +135,8 @@ struct Flow {
   double eddy_viscosity_of(std::size_t i) const { return closure == nullptr ? 0.0 : closure->viscosity()[i]; }
   // div(2 nu S) spreads the divergence of the velocity three times as fast as div(nu grad u) does.
   double diffusion_rate() const { return features.viscous_stress ? 3 : 1; }
-  double mass_in_domain() const;  // of particles between the walls, at finite places
+  // Of particles between the walls, at finite places. Liquid above an open top falls back.
+  double mass_in_domain() const;
   double leased_bytes() const;    // scratch memory of a step, leased now or idle
   // What the pressure stores in a compressible liquid: the integral of p^2 / (2 rho c^2).
   double stored_energy() const;
