@@ -272,7 +272,7 @@ TEST(Mesh, DamagedFilesAreReadOrRefused) {
     for (int change = 0; change < 150; ++change) {
       std::string damaged = whole;
       for (int n = 0; n < 1 + change % 5; ++n) {
-        const auto u = random_uniform(11, RandomPurpose::initial_jitter, draw++, 0, 0);
+        const auto u = random_uniform(11, RandomPurpose::test, draw++, 0, 0);
         // Half of the changes hit the head, which holds the counts.
         const double span = static_cast<double>(n % 2 ? damaged.size() : std::min<std::size_t>(damaged.size(), 250));
         damaged[static_cast<std::size_t>(u[0] * span)] = static_cast<char>(static_cast<int>(u[1] * 256));

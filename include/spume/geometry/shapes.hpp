@@ -38,7 +38,7 @@ ShapePointer make_outline(const std::vector<std::array<double, 2>>& points, std:
                           int dimensions);
 
 // Where a shape stands: a point x of its own coordinates is at position + scale * rotation x.
-struct Placement {
+struct Pose {
   Vec3 position{};
   std::array<Vec3, 3> rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  // rows of an orthogonal matrix
   double scale = 1;
@@ -48,10 +48,10 @@ struct Placement {
 std::array<Vec3, 3> rotation_by(const Vec3& degrees);
 
 // The point of the shape's own coordinates that is placed at `point`.
-Vec3 to_own_coordinates(const Placement& placement, const Vec3& point);
+Vec3 to_own_coordinates(const Pose& pose, const Vec3& point);
 
 // With `inside` false the solid is what lies outside the shape.
-ShapePointer place(ShapePointer shape, const Placement& placement, bool inside, int dimensions);
+ShapePointer place(ShapePointer shape, const Pose& pose, bool inside, int dimensions);
 
 // The union of shapes, each of which is added to what those before it make, or taken away from it. Outside a union and
 // inside a difference the distance is exact; else its size is a lower bound of the distance.

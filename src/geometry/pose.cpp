@@ -37,39 +37,36 @@ Bounds turned(const std::array<Vec3, 3>& rotation, const Bounds& bounds, double 
 
 class Placed final : public Shape {
  public:
-  Placed(ShapePointer shape, const Placement& placement, bool inside, int dimensions)
+  Placed(ShapePointer shape, const Pose& pose, bool inside, int dimensions)
       : shape_(std::move(shape)),
-        placement_(placement),
-        back_(transposed(placement.rotation)),
+        pose_(pose),
+        back_(transposed(pose.rotation)),
         inside_(inside),
         dimensions_(dimensions) {}
 
   NearestPoint nearest(const Vec3& p) const override {
     const NearestPoint own = shape_->nearest(own_point(p));
     const double sign = inside_ ? 1 : -1;
-    return {sign * placement_.scale * own.distance, times(sign, turned(placement_.rotation, own.normal)),
-            placed(own.point)};
+    return {sign * pose_.scale * own.distance, times(sign, turned(pose_.rotation, own.normal)), placed(own.point)};
   }
   double distance(const Vec3& p) const override {
-    return (inside_ ? 1 : -1) * placement_.scale * shape_->distance(own_point(p));
+    return (inside_ ? 1 : -1) * pose_.scale * shape_->distance(own_point(p));
   }
   Bounds bounds() const override {
     if (!inside_) {
       const double z = dimensions_ == 3 ? infinite : 0;
       return {{-infinite, -infinite, -z}, {infinite, infinite, z}};
     }
-    Bounds bounds = turned(placement_.rotation, shape_->bounds(), placement_.scale);
-    bounds.lower = add(bounds.lower, placement_.position);
-    bounds.upper = add(bounds.upper, placement_.position);
+    Bounds bounds = turned(pose_.rotation, shape_->bounds(), pose_.scale);
+    bounds.lower = add(bounds.lower, pose_.position);
+    bounds.upper = add(bounds.upper, pose_.position);
     return bounds;
   }
-  double volume() const override {
-    return inside_ ? shape_->volume() * std::pow(placement_.scale, dimensions_) : infinite;
-  }
-  double error() const override { return placement_.scale * shape_->error(); }
+  double volume() const override { return inside_ ? shape_->volume() * std::pow(pose_.scale, dimensions_) : infinite; }
+  double error() const override { return pose_.scale * shape_->error(); }
   TriangleSurface surface(const Bounds& window, double step) const override {
-    const Bounds moved{subtract(window.lower, placement_.position), subtract(window.upper, placement_.position)};
-    TriangleSurface surface = shape_->surface(turned(back_, moved, 1 / placement_.scale), step / placement_.scale);
+    const Bounds moved{subtract(window.lower, pose_.position), subtract(window.upper, pose_.position)};
+    TriangleSurface surface = shape_->surface(turned(back_, moved, 1 / pose_.scale), step / pose_.scale);
     for (Vec3& p : surface.points) p = placed(p);
     if (!inside_ && dimensions_ == 3)
       for (auto& triangle : surface.triangles) std::swap(triangle[1], triangle[2]);
@@ -77,15 +74,11 @@ class Placed final : public Shape {
   }
 
  private:
-  Vec3 own_point(const Vec3& p) const {
-    return times(1 / placement_.scale, turned(back_, subtract(p, placement_.position)));
-  }
-  Vec3 placed(const Vec3& p) const {
-    return add(placement_.position, times(placement_.scale, turned(placement_.rotation, p)));
-  }
+  Vec3 own_point(const Vec3& p) const { return times(1 / pose_.scale, turned(back_, subtract(p, pose_.position))); }
+  Vec3 placed(const Vec3& p) const { return add(pose_.position, times(pose_.scale, turned(pose_.rotation, p))); }
 
   ShapePointer shape_;
-  Placement placement_;
+  Pose pose_;
   std::array<Vec3, 3> back_;
   bool inside_;
   int dimensions_;
@@ -113,12 +106,12 @@ std::array<Vec3, 3> rotation_by(const Vec3& degrees) {
   return total;
 }
 
-Vec3 to_own_coordinates(const Placement& placement, const Vec3& point) {
-  return times(1 / placement.scale, turned(transposed(placement.rotation), subtract(point, placement.position)));
+Vec3 to_own_coordinates(const Pose& pose, const Vec3& point) {
+  return times(1 / pose.scale, turned(transposed(pose.rotation), subtract(point, pose.position)));
 }
 
-ShapePointer place(ShapePointer shape, const Placement& placement, bool inside, int dimensions) {
-  return std::make_shared<Placed>(std::move(shape), placement, inside, dimensions);
+ShapePointer place(ShapePointer shape, const Pose& pose, bool inside, int dimensions) {
+  return std::make_shared<Placed>(std::move(shape), pose, inside, dimensions);
 }
 
 NearestPoint Combination::nearest(const Vec3& point) const {
