@@ -14,6 +14,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "ply_reader.hpp"
 #include "spume/core/error.hpp"
 #include "spume/geometry/mesh.hpp"
 #include "surfaces.hpp"
@@ -89,30 +90,30 @@ void add_polygon(const std::vector<std::int32_t>& corners, TriangleSurface& surf
                                  corners[static_cast<std::size_t>(c)]});
 }
 
-// Faces are cut here: assimp's own step ends the program on polygons of damaged files.
-void append(const aiMesh& mesh, const std::string& path, TriangleSurface& surface) {
+// Adds faces to the triangles. They are cut here: assimp's own step ends the program on polygons of damaged files.
+void append(const PolygonMesh& mesh, const std::string& path, TriangleSurface& surface) {
   const auto first = static_cast<std::int32_t>(surface.points.size());
-  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-    const aiVector3D& p = mesh.mVertices[i];
-    surface.points.push_back({p.x, p.y, p.z});
-    for (const double x : surface.points.back())
+  for (const Vec3& p : mesh.points) {
+    surface.points.push_back(p);
+    for (const double x : p)
       if (!std::isfinite(x))
         throw InputError("the mesh '" + path + "' is damaged: point " + std::to_string(surface.points.size()) +
                          " is not finite");
   }
-  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
-    const aiFace& face = mesh.mFaces[i];
-    if (face.mNumIndices < 3) continue;  // points and lines
-    constexpr unsigned most_corners = 1000;
-    if (face.mNumIndices > most_corners)
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const std::vector<std::uint32_t>& face = mesh.faces[i];
+    if (face.size() < 3) continue;  // points and lines
+    constexpr std::size_t most_corners = 1000;
+    if (face.size() > most_corners)
       throw InputError("face " + std::to_string(i + 1) + " of the mesh '" + path + "' has " +
-                       std::to_string(face.mNumIndices) + " corners; expected triangles, or polygons of up to 1000");
+                       std::to_string(face.size()) + " corners; expected triangles, or polygons of up to 1000");
     std::vector<std::int32_t> corners;
-    for (unsigned k = 0; k < face.mNumIndices; ++k) {
-      if (face.mIndices[k] >= mesh.mNumVertices)
+    for (const std::uint32_t corner : face) {
+      if (corner >= mesh.points.size())
         throw InputError("the mesh '" + path + "' is damaged: face " + std::to_string(i + 1) + " names point " +
-                         std::to_string(face.mIndices[k] + 1) + ", and there are " + std::to_string(mesh.mNumVertices));
-      corners.push_back(first + static_cast<std::int32_t>(face.mIndices[k]));
+                         std::to_string(corner) + ", counted from 0, and there are " +
+                         std::to_string(mesh.points.size()));
+      corners.push_back(first + static_cast<std::int32_t>(corner));
     }
     if (corners.size() == 3)
       surface.triangles.push_back({corners[0], corners[1], corners[2]});
@@ -121,23 +122,36 @@ void append(const aiMesh& mesh, const std::string& path, TriangleSurface& surfac
   }
 }
 
-// An element takes a byte at least. The reader of assimp believes the head, whatever the size of the file, and looks
-// for its end without end.
-void check_ply(const std::string& path, std::uintmax_t size) {
-  std::ifstream in(path, std::ios::binary);
-  constexpr int longest_head = 1000;
-  std::string line;
-  for (int n = 1; n <= longest_head && std::getline(in, line); ++n) {
-    std::istringstream words(line);
-    std::string word, name;
-    double count = 0;
-    words >> word;
-    if (word == "end_header") return;
-    if (word == "element" && !(words >> name >> count && count >= 0 && count <= static_cast<double>(size)))
-      throw InputError("the mesh '" + path + "' is damaged: line " + std::to_string(n) + ", '" + printable(line) +
-                       "', must count elements that the file of " + std::to_string(size) + " bytes can hold");
+void check_size(std::size_t points, std::size_t faces, const std::string& path) {
+  if (faces > most_triangles || points > 3 * most_triangles)
+    throw InputError("the mesh '" + path + "' has " + std::to_string(faces) + " faces; at most 40000000 are possible");
+}
+
+PolygonMesh from_assimp(const aiMesh& mesh) {
+  PolygonMesh polygons;
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i)
+    polygons.points.push_back({mesh.mVertices[i].x, mesh.mVertices[i].y, mesh.mVertices[i].z});
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    const aiFace& face = mesh.mFaces[i];
+    polygons.faces.emplace_back(face.mIndices, face.mIndices + face.mNumIndices);
   }
-  throw InputError("the mesh '" + path + "' is damaged: its head has no line 'end_header'");
+  return polygons;
+}
+
+std::vector<PolygonMesh> read_with_assimp(const std::string& path, const std::string& extension) {
+  Assimp::Importer importer;
+  keep_only(importer, extension);
+  const aiScene* scene = importer.ReadFile(path, 0);
+  if (scene == nullptr)
+    throw InputError("the mesh '" + path + "' cannot be read: " + printable(importer.GetErrorString()));
+  std::vector<PolygonMesh> meshes;
+  std::size_t points = 0, faces = 0;
+  for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene->mMeshes[i];
+    check_size(points += mesh.mNumVertices, faces += mesh.mNumFaces, path);
+    meshes.push_back(from_assimp(mesh));
+  }
+  return meshes;
 }
 
 // Corners at the same place become one point; formats such as STL write them once per triangle.
@@ -176,23 +190,16 @@ TriangleSurface read_mesh(const std::string& path) {
   if (failure) throw InputError("cannot read the mesh '" + path + "': " + failure.message());
   if (size > largest_file) throw InputError("the mesh '" + path + "' is larger than 2 GiB");
   if (extension == ".stl") check_binary_stl(path, size);
-  if (extension == ".ply") check_ply(path, size);
 
-  Assimp::Importer importer;
-  keep_only(importer, extension);
-  const aiScene* scene = importer.ReadFile(path, 0);
-  if (scene == nullptr) {
-    throw InputError("the mesh '" + path + "' cannot be read: " + printable(importer.GetErrorString()));
+  std::vector<PolygonMesh> meshes;
+  if (extension == ".ply") {
+    meshes.push_back(read_ply(path));
+    check_size(meshes[0].points.size(), meshes[0].faces.size(), path);
+  } else {
+    meshes = read_with_assimp(path, extension);
   }
-  std::size_t corners = 0, faces = 0;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
-    corners += scene->mMeshes[i]->mNumVertices;
-    faces += scene->mMeshes[i]->mNumFaces;
-  }
-  if (faces > most_triangles || corners > 3 * most_triangles)
-    throw InputError("the mesh '" + path + "' has " + std::to_string(faces) + " faces; at most 40000000 are possible");
   TriangleSurface surface;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) append(*scene->mMeshes[i], path, surface);
+  for (const PolygonMesh& mesh : meshes) append(mesh, path, surface);
   if (surface.triangles.empty()) throw InputError("the mesh '" + path + "' holds no triangle");
   weld(surface);
   return surface;

@@ -72,6 +72,36 @@ std::string ply(const TriangleSurface& surface) {
   return text.str();
 }
 
+// Both byte orders, with values that are not asked for.
+std::string binary_ply(const TriangleSurface& surface, bool big) {
+  std::string data =
+      std::string("ply\r\nformat binary_") + (big ? "big" : "little") +
+      "_endian 1.0\r\ncomment made by hand\r\nelement vertex " + std::to_string(surface.points.size()) +
+      "\r\nproperty double x\r\nproperty float y\r\nproperty uchar red\r\nproperty float z\r\nelement face " +
+      std::to_string(surface.triangles.size()) +
+      "\r\nproperty list uchar float texture\r\nproperty list uint ushort vertex_index\r\nend_header\r\n";
+  const auto put = [&](auto value) {
+    char bytes[sizeof value];
+    std::memcpy(bytes, &value, sizeof value);
+    if (big) std::reverse(bytes, bytes + sizeof value);
+    data.append(bytes, sizeof value);
+  };
+  for (const Vec3& p : surface.points) {
+    put(p[0]);
+    put(static_cast<float>(p[1]));
+    put(std::uint8_t{7});
+    put(static_cast<float>(p[2]));
+  }
+  for (const auto& triangle : surface.triangles) {
+    put(std::uint8_t{2});
+    put(0.5f);
+    put(0.25f);
+    put(std::uint32_t{3});
+    for (const std::int32_t corner : triangle) put(static_cast<std::uint16_t>(corner));
+  }
+  return data;
+}
+
 std::string refusal_of(const std::string& path) {
   try {
     read_mesh(path);
@@ -158,7 +188,9 @@ TEST(Mesh, EveryFormatGivesTheSameTriangles) {
   write_contents(folder / "b.STL", binary_stl(box));
   write_contents(folder / "c.obj", obj(box));
   write_contents(folder / "d.ply", ply(box));
-  for (const char* name : {"a.stl", "b.STL", "c.obj", "d.ply"}) {
+  write_contents(folder / "e.ply", binary_ply(box, false));
+  write_contents(folder / "f.ply", binary_ply(box, true));
+  for (const char* name : {"a.stl", "b.STL", "c.obj", "d.ply", "e.ply", "f.ply"}) {
     SCOPED_TRACE(name);
     const TriangleSurface read = read_mesh(folder / name);
     EXPECT_EQ(read.points.size(), 8u);
@@ -250,7 +282,21 @@ TEST(Mesh, FilesThatAreNoMeshAreRefusedWithTheReason) {
   std::string text = ply(box);
   text.insert(text.find("\n3 ") + 3, "77");
   write_contents(folder / "beyond.ply", text);
-  EXPECT_NE(refusal_of(folder / "beyond.ply"), "");
+  EXPECT_THAT(refusal_of(folder / "beyond.ply"), HasSubstr("face 1 names point 773, counted from 0, and there are 8"));
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 3\n", xy = "property float x\nproperty float y\n";
+  for (const auto& [damaged, reason] :
+       {std::pair<std::string, const char*>{"ply\nformat ascii 1.0\n", "no line 'end_header'"},
+        {"obj\n", "its first line must be 'ply'"},
+        {"ply\nend_header\n", "no line 'format'"},
+        {"ply\nformat ebcdic 1.0\nend_header\n", "line 2 of its head must name the format"},
+        {"ply\nformat ascii 1.0\nelement vertex 99999999\nend_header\n", "line 3 of its head must count elements"},
+        {head + "property real x\nend_header\n", "line 4 of its head must be  property"},
+        {head + xy + "end_header\n0 0\n", "must have the properties x, y and z"},
+        {head + xy + "property float z\nend_header\n0 0 zero\n", "must begin a number"},
+        {head + xy + "property float z\nend_header\n0 0 0 0 0\n", "it ends before its last element"}}) {
+    write_contents(folder / "damaged.ply", damaged);
+    EXPECT_THAT(refusal_of(folder / "damaged.ply"), HasSubstr(reason));
+  }
   for (const char* name : {"empty.stl", "empty.obj", "empty.ply"}) {
     write_contents(folder / name, "");
     EXPECT_NE(refusal_of(folder / name), "") << name;
@@ -261,8 +307,11 @@ TEST(Mesh, FilesThatAreNoMeshAreRefusedWithTheReason) {
 TEST(Mesh, DamagedFilesAreReadOrRefused) {
   const TemporaryFolder folder;
   const TriangleSurface ball = make_ball(0.5, 3)->surface(window, 1);
-  const std::pair<const char*, std::string> files[] = {
-      {"a.stl", ascii_stl(ball)}, {"b.stl", binary_stl(ball)}, {"c.obj", obj(ball)}, {"d.ply", ply(ball)}};
+  const std::pair<const char*, std::string> files[] = {{"a.stl", ascii_stl(ball)},
+                                                       {"b.stl", binary_stl(ball)},
+                                                       {"c.obj", obj(ball)},
+                                                       {"d.ply", ply(ball)},
+                                                       {"e.ply", binary_ply(ball, true)}};
   std::uint64_t draw = 0;
   for (const auto& [name, whole] : files) {
     for (std::size_t part = 0; part < 40; ++part) {

@@ -9,8 +9,9 @@
 
 namespace spume {
 
-// The triangles of an STL, OBJ or PLY file in its order; polygons are cut into triangles, corners at the same place are
-// one point. Throws InputError with the reason when the file is missing, damaged, too large, of another kind or empty.
+// The triangles of an STL, OBJ (by assimp) or PLY file in its order; polygons are cut into triangles, corners at the
+// same place are one point. Throws InputError with the reason when the file is missing, damaged, too large, of another
+// kind or empty.
 TriangleSurface read_mesh(const std::string& path);
 
 // What keeps triangles from bounding a solid, each fault with the number and the place of its first triangle and the
