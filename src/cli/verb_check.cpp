@@ -5,6 +5,7 @@
 #include "spume/core/error.hpp"
 #include "spume/core/machine.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/run/body_report.hpp"
 #include "spume/run/probes.hpp"
 #include "spume/run/report.hpp"
 #include "verbs.hpp"
@@ -42,6 +43,7 @@ int check_verb(const RunArguments& arguments, const Program& program) {
   loaded.scene.particles = {};
   std::printf("%s\nplan\n%s\n", start_table(loaded, *method, thread_count()).c_str(),
               plan_table(method->plan()).c_str());
+  if (!loaded.scene.bodies.empty()) std::printf("bodies\n%s\n", body_table(loaded.scene).c_str());
   for (const Problem& unused : loaded.options.warnings) std::printf("%s\n", unused.message("warning").c_str());
   if (!loaded.options.warnings.empty()) std::printf("\n");
   std::fflush(stdout);

@@ -7,6 +7,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/io/body_surfaces.hpp"
 #include "spume/io/file.hpp"
 #include "spume/run/probes.hpp"
 #include "spume/run/report.hpp"
@@ -97,6 +98,7 @@ std::unique_ptr<Simulation> Simulation::start(LoadedCase loaded, const MethodFac
   require_some_time(owned->options, *method);
   RunFolder made = RunFolder::create(owned->options.path, folder);
   write_text_atomically(made / "case.toml", owned->options.resolved);
+  if (!owned->scene.bodies.empty()) write_body_surfaces(made / "bodies.vtp", owned->scene);
   return std::unique_ptr<Simulation>(new Simulation(std::move(owned), std::move(method), std::move(made)));
 }
 

@@ -316,7 +316,7 @@ void fill_scene(Scene& scene, const Lattice& lattice, const std::vector<LiquidRe
     sites += cells;
     // What phases replace counts once.
     const bool layered = region.phase >= 0;
-    if (!region.where && !region.ball && scene.domain.boxes.empty())
+    if (!region.where && !region.ball && !region.body && scene.domain.boxes.empty())
       certain = layered ? std::max(certain, cells) : certain + cells;
   }
   if (regions.front().phase >= 0) sites = std::min(sites, lattice.sites());

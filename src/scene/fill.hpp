@@ -24,6 +24,7 @@ struct LiquidRegion {
   bool ball = false;
   Vec3 centre{};
   double radius = 0;
+  ShapePointer body;  // null: no body
   VectorExpression velocity;
   bool conform = false;
   std::int32_t phase = -1;  // index of the phase that fills it, in place of what earlier regions put there; -1: none

@@ -243,7 +243,7 @@ void Filler::conform_column(ThreadRegions& own, std::size_t r, Vec3 p, double ar
   const double spacing = lattice_.spacing[up];
   const double bottom = region.lower[up], top = region.upper[up];
   p[up] = 0.5 * (bottom + top);
-  if (!in_box_and_ball(region, p)) return;
+  if (!in_shapes(own, r, p)) return;
 
   const auto inside = [&](double height) {
     p[up] = height;

@@ -15,14 +15,38 @@
 
 namespace spume {
 
-// One thread's own copies of the expressions of all regions.
+// Tells the inside of a body. Within its distance around a place the body has no surface: only places further away
+// are asked for, which are few along a column. Of a mesh of 1e5 triangles a question takes 7 to 50 us.
+class BodySide {
+ public:
+  explicit BodySide(const Shape* body) : body_(body) {}
+  bool inside(const Vec3& p) {
+    const double way = std::hypot(p[0] - place_[0], p[1] - place_[1], p[2] - place_[2]);
+    if (!(way < std::abs(distance_))) {
+      const double distance = body_->distance(p);
+      place_ = p;
+      // Interpolated distances are off, and may change by more than the way.
+      distance_ = std::copysign(body_->error() > 0 ? 0 : (1 - 1e-6) * std::abs(distance), distance);
+    }
+    return std::signbit(distance_);
+  }
+
+ private:
+  const Shape* body_;
+  Vec3 place_{};
+  double distance_ = 0;
+};
+
+// One thread's own copies of the expressions of all regions, and what it knows of their bodies.
 struct ThreadRegions {
   std::vector<std::unique_ptr<Expression>> where;
   std::vector<VectorExpression> velocity;
+  std::vector<BodySide> body;
   explicit ThreadRegions(const std::vector<LiquidRegion>& regions) {
     for (const LiquidRegion& region : regions) {
       where.push_back(region.where ? region.where->clone() : nullptr);
       velocity.push_back(region.velocity.clone());
+      body.emplace_back(region.body.get());
     }
   }
 };
@@ -89,7 +113,8 @@ class Filler {
 
   double centre(std::size_t axis, double k) const { return lattice_.origin[axis] + (k + 0.5) * lattice_.spacing[axis]; }
 
-  bool in_box_and_ball(const LiquidRegion& region, const Vec3& p) const {
+  bool in_shapes(ThreadRegions& own, std::size_t r, const Vec3& p) const {
+    const LiquidRegion& region = regions_[r];
     double distance = 0;
     for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a) {
       // Half-open, so that regions that share a face share no particle; the slack keeps a face that falls on
@@ -98,11 +123,12 @@ class Filler {
       if (p[a] < region.lower[a] - slack || p[a] >= region.upper[a] - slack) return false;
       distance += (p[a] - region.centre[a]) * (p[a] - region.centre[a]);
     }
-    return !region.ball || distance < region.radius * region.radius;
+    if (region.ball && !(distance < region.radius * region.radius)) return false;
+    return !region.body || own.body[r].inside(p);
   }
 
   bool contains(ThreadRegions& own, std::size_t r, const Vec3& p, Chunk& chunk) const {
-    if (!in_box_and_ball(regions_[r], p)) return false;
+    if (!in_shapes(own, r, p)) return false;
     if (!own.where[r]) return true;
     const double value = (*own.where[r])(p[0], p[1], p[2], 0);
     if (!std::isfinite(value)) chunk.not_finite.add(p);
@@ -111,7 +137,7 @@ class Filler {
 
   // The same of another region, which reports its own faults.
   bool covers(ThreadRegions& own, std::size_t r, const Vec3& p) const {
-    if (!in_box_and_ball(regions_[r], p)) return false;
+    if (!in_shapes(own, r, p)) return false;
     if (!own.where[r]) return true;
     const double value = (*own.where[r])(p[0], p[1], p[2], 0);
     return std::isfinite(value) && value > 0;
@@ -160,8 +186,8 @@ class Filler {
     return {std::clamp(first, 0.0, lattice_.count[axis]), std::clamp(last, 0.0, lattice_.count[axis])};
   }
 
-  // A box filled with columns of its own; regions cut by a ball or an expression take sites of the lattice.
-  bool is_box(const LiquidRegion& region) const { return !region.ball && !region.where && !layered(); }
+  // A box filled with columns of its own; regions cut by a ball, a body or an expression take sites of the lattice.
+  bool is_box(const LiquidRegion& region) const { return !region.ball && !region.body && !region.where && !layered(); }
   bool lies_in_solids(const LiquidRegion& region) const {
     return is_box(region) && solids_ != nullptr && solids_->free_volume(region.lower, region.upper) == 0;
   }

@@ -9,6 +9,7 @@
 #include <limits>
 #include <sstream>
 
+#include "bodies.hpp"
 #include "checks.hpp"
 #include "fill.hpp"
 #include "open_sides.hpp"
@@ -175,7 +176,8 @@ void set_grid(Scene& scene, const std::vector<std::int64_t>& grid) {
   }
 }
 
-LiquidRegion make_region(const Draft& draft, const LiquidDraft& given, const std::string& name, Compiler& compiler) {
+LiquidRegion make_region(const Draft& draft, const LiquidDraft& given, const std::string& name,
+                         const std::vector<Body>& bodies, Compiler& compiler) {
   LiquidRegion region;
   region.name = name;
   region.node = draft.node(name);
@@ -187,17 +189,26 @@ LiquidRegion make_region(const Draft& draft, const LiquidDraft& given, const std
     region.centre = to_vec3(given.centre);
     region.radius = *given.radius;
   }
+  for (const Body& body : bodies)
+    if (body.name == given.body && body.shape) {
+      region.body = body.shape;
+      const Bounds bounds = body.shape->bounds();
+      for (std::size_t a = 0; a < static_cast<std::size_t>(draft.dimensions); ++a) {
+        region.lower[a] = std::max(region.lower[a], bounds.lower[a]);
+        region.upper[a] = std::min(region.upper[a], bounds.upper[a]);
+      }
+    }
   region.velocity = compiler.compile(given.velocity, name + ".velocity", Arguments::place);
   region.conform = given.conform;
   return region;
 }
 
-std::vector<LiquidRegion> make_regions(const Draft& draft, Compiler& compiler) {
+std::vector<LiquidRegion> make_regions(const Draft& draft, const std::vector<Body>& bodies, Compiler& compiler) {
   std::vector<LiquidRegion> regions;
   for (std::size_t k = 0; k < draft.liquids.size(); ++k)
-    regions.push_back(make_region(draft, draft.liquids[k], "liquid." + std::to_string(k), compiler));
+    regions.push_back(make_region(draft, draft.liquids[k], "liquid." + std::to_string(k), bodies, compiler));
   for (std::size_t k = 0; k < draft.regions.size(); ++k) {
-    regions.push_back(make_region(draft, draft.regions[k], "region." + std::to_string(k), compiler));
+    regions.push_back(make_region(draft, draft.regions[k], "region." + std::to_string(k), bodies, compiler));
     const auto phase = std::find_if(draft.phases.begin(), draft.phases.end(),
                                     [&](const Phase& one) { return one.name == draft.regions[k].phase; });
     regions.back().phase = static_cast<std::int32_t>(phase - draft.phases.begin());
@@ -205,12 +216,16 @@ std::vector<LiquidRegion> make_regions(const Draft& draft, Compiler& compiler) {
   return regions;
 }
 
+CompileExpression compile_with(Compiler& compiler) {
+  return [&](const ExpressionText& text, const std::string& name, Arguments arguments) {
+    return compiler.compile(text, name, arguments);
+  };
+}
+
 // What the method's sections make of their expressions.
 void compile_sections(const CaseSchema& schema, Draft& draft, Compiler& compiler) {
   const MethodDeclaration* method = schema.find(draft.options.method);
-  const CompileExpression compile = [&](const ExpressionText& text, const std::string& name, Arguments arguments) {
-    return compiler.compile(text, name, arguments);
-  };
+  const CompileExpression compile = compile_with(compiler);
   for (const Section& section : schema.sections())
     if (section.compile && section.owners.include(method == nullptr ? std::string() : method->name))
       section.compile(draft, compile);
@@ -241,6 +256,7 @@ void check(const MethodDeclaration* method, Draft& draft, Problems& problems) {
   check_domain(draft, problems);
   if (liquids || phases) check_resolution(draft, problems);
   check_solids(draft, problems);
+  check_bodies(draft, method, problems);
   if (!phases) check_fluid(draft, problems);
   if (liquids) check_liquids(draft, problems);
   if (phases) check_phases(draft, problems);
@@ -295,13 +311,15 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
     problems.add(*draft.node("solid.0"), "the planes of all boxes cut the domain into " + brief(cells) +
                                              " cells; at most " + brief(most_cells) +
                                              " are possible: use fewer boxes, or align their faces");
-  const std::vector<LiquidRegion> regions = make_regions(draft, compiler);
+  scene.bodies = make_bodies(draft, compile_with(compiler), problems);
+  const std::vector<LiquidRegion> regions = make_regions(draft, scene.bodies, compiler);
   VectorExpression body_force = compiler.compile(draft.body_force, "forces.body");
   VectorExpression initial_velocity = compiler.compile(draft.initial_velocity, "initial.velocity", Arguments::place);
   if (draft.initial_spectrum) scene.initial_spectrum = compiler.compile_spectrum(*draft.initial_spectrum);
   compile_sections(schema, draft, compiler);
   problems.throw_if_any();
 
+  scene.walls = make_walls(scene.bodies);
   if (any(body_force)) scene.body_force = std::move(body_force);
   if (!draft.initial_velocity.empty()) scene.initial_velocity = std::move(initial_velocity);
   scene.title = draft.options.title;
@@ -331,6 +349,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   note_places(document, "", file, draft.options.places);
   draft.options.resolved = resolved_text(document, schema, draft);
   draft.options.warnings = unused_options(draft, schema, file);
+  for (Problem& warning : body_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
   if (uses_particles(*method))
     for (Problem& warning : open_side_warnings(draft, scene, file))
       draft.options.warnings.push_back(std::move(warning));

@@ -43,6 +43,8 @@ std::string type_in_words(OptionType type) {
       return "a list of expressions (strings or numbers)";
     case OptionType::integers:
       return "an integer or a list of integers";
+    case OptionType::points:
+      return "a list of points [<number>, <number>]";
     case OptionType::free_table:
       return "a table";
   }

@@ -141,6 +141,8 @@ void add_shape(SectionOf<Region>& section) {
       .absent("no ball")
       .option("radius", &L::radius, "length", positive(), "radius of a ball (disc in 2-D)")
       .absent("no ball")
+      .option("body", &L::body, "name of a [[body]], whose inside it fills")
+      .absent("no body")
       .option("velocity", &L::velocity, "length/time", "velocity at the start: expressions of x y z")
       .absent("at rest");
 }
@@ -198,8 +200,8 @@ Section forces() {
 }  // namespace
 
 std::vector<Section> scene_sections() {
-  return {general(), domain(), wall_velocity(),     solid(),  resolution(), fluid(), constants(),
-          liquid(),  phase(),  interface_section(), region(), initial(),    forces()};
+  return {general(), domain(), wall_velocity(),     solid(),  body_section(), resolution(), fluid(), constants(),
+          liquid(),  phase(),  interface_section(), region(), initial(),      forces()};
 }
 
 }  // namespace spume

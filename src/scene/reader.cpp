@@ -27,6 +27,8 @@ std::string example_value(const Option& option) {
       return option.words.size() == 1 ? to_toml_string(option.words[0]) : "<word>";
     case OptionType::numbers:
       return "[<number>, <number>]";
+    case OptionType::points:
+      return "[[<number>, <number>], ...]";
     case OptionType::strings:
       return "[\"<text>\"]";
     case OptionType::expressions:
@@ -155,6 +157,8 @@ class SectionReader {
         return expression(node, value.expression) ? true : wrong_type(option, name, node);
       case OptionType::integers:
         return integers(option, name, node, value);
+      case OptionType::points:
+        return points(option, name, node, value);
       case OptionType::numbers:
       case OptionType::strings:
       case OptionType::expressions:
@@ -195,6 +199,23 @@ class SectionReader {
         good = false;
       }
       value.integers.push_back(element.integer);
+    }
+    return good;
+  }
+
+  bool points(const Option& option, const std::string& name, const Node& node, Value& value) {
+    if (node.kind != Node::Kind::array) return wrong_type(option, name, node);
+    bool good = true;
+    for (std::size_t i = 0; i < node.children.size(); ++i) {
+      const Node& point = node.children[i];
+      const auto number = [](const Node& entry) { return entry.is_number() && std::isfinite(entry.number); };
+      if (point.kind != Node::Kind::array || point.children.size() != 2 || !number(point.children[0]) ||
+          !number(point.children[1])) {
+        good = refuse(
+            point, name + "[" + std::to_string(i) + "] must be a point of two finite numbers, found " + to_toml(point));
+        continue;
+      }
+      value.points.push_back({point.children[0].number, point.children[1].number});
     }
     return good;
   }

@@ -22,6 +22,7 @@ struct LiquidDraft {
   std::optional<ExpressionText> where;
   std::vector<double> lower, upper, centre;
   std::optional<double> radius;
+  std::string body;  // name of the body whose inside is filled; empty: none
   std::vector<ExpressionText> velocity;
   bool conform = false;
 };
@@ -34,6 +35,25 @@ struct RegionDraft : LiquidDraft {
 struct SolidDraft {
   std::vector<double> lower, upper;
   BoundaryKind wall = BoundaryKind::free_slip;
+};
+
+// What a [[body]] says of its shape; `expression` and `mesh` are not words of the key `shape`.
+enum class BodyKind { none, box, ball, cylinder, cone, capsule, ellipsoid, half_space, outline, expression, mesh };
+
+struct BodyDraft {
+  std::string name;
+  BodyKind kind = BodyKind::none;
+  std::optional<ExpressionText> where;
+  std::string mesh;
+  std::vector<double> size, semi_axes, normal;
+  std::optional<double> radius, length;
+  double top_radius = 0;
+  std::vector<std::array<double, 2>> points;
+  std::vector<double> position, rotation;
+  double scale = 1;
+  bool inside = true;
+  bool subtract = false;
+  BoundaryKind wall = BoundaryKind::free_slip;  // open: none
 };
 
 struct ProbeDraft {
@@ -71,6 +91,7 @@ struct Draft {
   double surface_tension = 0;
   std::vector<RegionDraft> regions;
   std::vector<SolidDraft> solids;
+  std::vector<BodyDraft> bodies;
   std::vector<ProbeDraft> probes;
   std::vector<ExpressionText> body_force;
   double jitter = 0;

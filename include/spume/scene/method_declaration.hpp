@@ -26,6 +26,9 @@ struct MethodDeclaration {
   bool fills_regions = false;  // resolution.spacing; particles of one fluid fill [[liquid]] between walls and solids
   bool fills_phases = false;   // the same with the fluids of [[phase]], which fill each [[region]]
 
+  bool honours_bodies =
+      false;  // liquid does not pass the walls of [[body]]; a case with such walls is refused otherwise
+
   // Sections of its own, and options that it adds to sections of the scene. Several methods may name the same
   // declaration: its options then belong to all of them.
   std::vector<Section> sections;

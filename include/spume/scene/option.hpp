@@ -9,6 +9,7 @@
 //       .when("preconditioner", {"multigrid"});
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <functional>
 #include <limits>
@@ -37,6 +38,7 @@ enum class OptionType {
   strings,
   expressions,
   integers,
+  points,
   free_table
 };
 
@@ -75,6 +77,7 @@ struct Value {
   std::vector<double> numbers;
   std::vector<std::int64_t> integers;
   std::vector<std::string> texts;
+  std::vector<std::array<double, 2>> points;
   ExpressionText expression;
   std::vector<ExpressionText> expressions;
 };
@@ -160,6 +163,7 @@ constexpr OptionType type_of() {
   if constexpr (std::is_same_v<M, std::vector<double>>) return OptionType::numbers;
   if constexpr (std::is_same_v<M, std::vector<std::int64_t>>) return OptionType::integers;
   if constexpr (std::is_same_v<M, std::vector<std::string>>) return OptionType::strings;
+  if constexpr (std::is_same_v<M, std::vector<std::array<double, 2>>>) return OptionType::points;
   if constexpr (std::is_same_v<M, std::optional<ExpressionText>>) return OptionType::expression;
   if constexpr (std::is_same_v<M, std::vector<ExpressionText>>) return OptionType::expressions;
   return OptionType::number;
@@ -179,6 +183,8 @@ void assign(M& target, const Value& value) {
     target = value.integers;
   else if constexpr (std::is_same_v<M, std::vector<std::string>>)
     target = value.texts;
+  else if constexpr (std::is_same_v<M, std::vector<std::array<double, 2>>>)
+    target = value.points;
   else if constexpr (std::is_same_v<M, std::optional<ExpressionText>>)
     target = value.expression;
   else if constexpr (std::is_same_v<M, std::vector<ExpressionText>>)

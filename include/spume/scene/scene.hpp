@@ -12,6 +12,7 @@
 
 #include "spume/core/array.hpp"
 #include "spume/core/vec3.hpp"
+#include "spume/geometry/shapes.hpp"
 
 namespace spume {
 
@@ -43,6 +44,17 @@ struct Side {
 struct SolidBox {
   Vec3 lower{}, upper{};
   BoundaryKind kind = BoundaryKind::free_slip;
+};
+
+// A [[body]]: a shape, and what it is for.
+struct Body {
+  std::string name;
+  std::string kind;    // "box", ..., "expression", "mesh"
+  ShapePointer shape;  // where it stands; what `[[liquid]] body` fills
+  ShapePointer solid;  // the shape, or with inside = false what lies outside
+  bool inside = true;
+  bool subtract = false;                        // taken away from the walls of the bodies before it
+  BoundaryKind wall = BoundaryKind::free_slip;  // open: it is no wall
 };
 
 struct Domain {
@@ -104,6 +116,8 @@ struct Scene {
   std::uint64_t seed = 1;
   InitialParticles particles;
   std::vector<RegionFill> fills;  // of the [[liquid]] entries
+  std::vector<Body> bodies;
+  Combination walls;  // of the bodies that are walls, in their order
 };
 
 }  // namespace spume

@@ -15,7 +15,7 @@ FLOOR = {
     "cli": 8,
 }
 # Folders of one floor are strangers, save for these one-way acquaintances.
-SAME_FLOOR = {("neighbours", "scene"), ("io", "scene"), ("operators", "fourier"), ("solvers", "operators")}
+SAME_FLOOR = {("neighbours", "scene"), ("io", "scene"), ("scene", "geometry"), ("io", "geometry"), ("operators", "fourier"), ("solvers", "operators")}
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]spume/([a-z0-9_]+)/(?:([a-z0-9_]+)/)?')
 
 

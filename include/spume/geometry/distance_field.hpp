@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Distances on a regular grid, between whose nodes they are interpolated linearly along each axis.
+#pragma once
+
+#include <functional>
+
+#include "spume/geometry/shape.hpp"
+
+namespace spume {
+
+// The distances of a shape, for one whose own take long (of a mesh of 1e5 triangles 7 us near its surface and 50 us far
+// from it, against 0.01 to 0.03 us here: bench/geometry.cpp); the shape itself is asked outside `box`, and once at
+// every node. Its error() adds to that of the shape the largest difference at the centres of the cells that the surface
+// passes: of the order spacing^2 / (8 radius of curvature) at smooth faces, and of a tenth of the spacing at edges.
+ShapePointer make_distance_field(ShapePointer exact, const Bounds& box, double spacing, int dimensions);
+
+// The solid where a function is positive, in a finite window. The surface is found on a grid of this spacing, or of the
+// next larger one at which the grid has no more than 4 million nodes: where the sign changes between nodes the root
+// is bisected, and facets join the roots. Features thinner than the grid may be missed. error() is that of the
+// interpolation, as above, and the largest distance from the middle of a facet to the root, to first order. Beyond the
+// window the distance is that of its nearest point and the way to there.
+// Throws InputError where the function is not finite, and when its sign does not change in the window.
+ShapePointer make_level_set(const std::function<double(const Vec3&)>& value, const Bounds& window, double spacing,
+                            int dimensions);
+
+}  // namespace spume

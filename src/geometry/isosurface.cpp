@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "isosurface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "vectors.hpp"
+
+namespace spume {
+
+NodeGrid cover(const Bounds& box, double spacing, int dimensions, std::size_t most) {
+  NodeGrid grid;
+  for (;; spacing *= 1.1) {
+    double nodes = 1;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a)
+      nodes *= std::max(1.0, std::ceil((box.upper[a] - box.lower[a]) / spacing)) + 1;
+    if (nodes <= static_cast<double>(most)) break;
+  }
+  grid.spacing = spacing;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a) {
+    const double cells = std::max(1.0, std::ceil((box.upper[a] - box.lower[a]) / spacing));
+    grid.count[a] = static_cast<std::size_t>(cells) + 1;
+    grid.lower[a] = 0.5 * (box.lower[a] + box.upper[a] - cells * spacing);
+  }
+  return grid;
+}
+
+namespace {
+
+// In spacings: facets that are thinner are left out, which opens gaps no wider than that.
+constexpr double thinnest = 1e-6;
+
+class Marcher {
+ public:
+  Marcher(const std::function<double(const Vec3&)>& value, const NodeGrid& grid, const std::vector<double>& nodes)
+      : value_(value), grid_(grid), nodes_(nodes) {}
+
+  Isosurface in_space() {
+    // The six tetrahedra around the diagonal of a cell: from its lowest corner along the axes in each order.
+    static constexpr int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+    for (std::size_t k = 0; k + 1 < grid_.count[2]; ++k)
+      for (std::size_t j = 0; j + 1 < grid_.count[1]; ++j)
+        for (std::size_t i = 0; i + 1 < grid_.count[0]; ++i) {
+          if (!mixed(i, j, k)) continue;
+          for (const auto& order : orders) {
+            std::array<std::size_t, 3> at{i, j, k};
+            std::array<std::size_t, 4> corners{grid_.number(i, j, k)};
+            for (std::size_t s = 0; s < 3; ++s) {
+              ++at[static_cast<std::size_t>(order[s])];
+              corners[s + 1] = grid_.number(at[0], at[1], at[2]);
+            }
+            tetrahedron(corners);
+          }
+        }
+    found_.body = found_.boundary;
+    return std::move(found_);
+  }
+
+  Isosurface in_plane() {
+    height_ = grid_.spacing * static_cast<double>(std::max(grid_.count[0], grid_.count[1]));
+    for (std::size_t j = 0; j + 1 < grid_.count[1]; ++j)
+      for (std::size_t i = 0; i + 1 < grid_.count[0]; ++i) {
+        const std::size_t a = grid_.number(i, j, 0), b = grid_.number(i + 1, j, 0), c = grid_.number(i + 1, j + 1, 0),
+                          d = grid_.number(i, j + 1, 0);
+        flat_triangle({a, b, c});
+        flat_triangle({a, c, d});
+      }
+    return std::move(found_);
+  }
+
+ private:
+  bool positive(std::size_t node) const { return nodes_[node] > 0; }
+  bool mixed(std::size_t i, std::size_t j, std::size_t k) const {
+    int count = 0;
+    for (int c = 0; c < 8; ++c)
+      count += positive(grid_.number(i + static_cast<std::size_t>(c & 1), j + static_cast<std::size_t>(c >> 1 & 1),
+                                     k + static_cast<std::size_t>(c >> 2)));
+    return count != 0 && count != 8;
+  }
+
+  Vec3 root(std::size_t in, std::size_t out) const {
+    Vec3 inner = grid_.node(in), outer = grid_.node(out);
+    if (nodes_[out] == 0) return outer;
+    // 40 halvings: 1e-12 of the spacing.
+    for (int i = 0; i < 40; ++i) {
+      const Vec3 middle = times(0.5, add(inner, outer));
+      (value_(middle) > 0 ? inner : outer) = middle;
+    }
+    return times(0.5, add(inner, outer));
+  }
+
+  // The point of `points` on the edge between two nodes, one positive, the other not.
+  std::int32_t on_edge(std::size_t in, std::size_t out) {
+    const auto [entry, fresh] = edges_.try_emplace({std::min(in, out), std::max(in, out)},
+                                                   static_cast<std::int32_t>(found_.boundary.points.size()));
+    if (fresh) found_.boundary.points.push_back(root(in, out));
+    return entry->second;
+  }
+
+  // Counter-clockwise seen from where the function is not positive. Roots next to a node make needles.
+  void facet(std::int32_t a, std::int32_t b, std::int32_t c, const Vec3& positive_side) {
+    const auto& points = found_.boundary.points;
+    const Vec3 &p = points[static_cast<std::size_t>(a)], &q = points[static_cast<std::size_t>(b)],
+               &r = points[static_cast<std::size_t>(c)];
+    const Vec3 normal = cross(subtract(q, p), subtract(r, p));
+    const double longest = std::max({length(subtract(q, p)), length(subtract(r, q)), length(subtract(p, r))});
+    if (length(normal) <= thinnest * grid_.spacing * longest) return;
+    if (dot(normal, subtract(positive_side, p)) > 0) std::swap(b, c);
+    found_.boundary.triangles.push_back({a, b, c});
+  }
+
+  void tetrahedron(const std::array<std::size_t, 4>& corners) {
+    std::array<std::size_t, 4> in{}, out{};
+    std::size_t ins = 0, outs = 0;
+    for (const std::size_t corner : corners) (positive(corner) ? in[ins++] : out[outs++]) = corner;
+    if (ins == 0 || outs == 0) return;
+    const Vec3 side = grid_.node(in[0]);
+    if (ins == 2) {
+      const std::int32_t a = on_edge(in[0], out[0]), b = on_edge(in[0], out[1]), c = on_edge(in[1], out[1]),
+                         d = on_edge(in[1], out[0]);
+      facet(a, b, c, times(0.5, add(side, grid_.node(in[1]))));
+      facet(a, c, d, times(0.5, add(side, grid_.node(in[1]))));
+    } else if (ins == 1) {
+      facet(on_edge(in[0], out[0]), on_edge(in[0], out[1]), on_edge(in[0], out[2]), side);
+    } else {
+      facet(on_edge(in[0], out[0]), on_edge(in[1], out[0]), on_edge(in[2], out[0]),
+            times(1.0 / 3, add(side, add(grid_.node(in[1]), grid_.node(in[2])))));
+    }
+  }
+
+  // What of a triangle is positive, as a fan, and the segment where it ends.
+  void flat_triangle(const std::array<std::size_t, 3>& corners) {
+    std::vector<Vec3> area, ends;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t from = corners[k], to = corners[(k + 1) % 3];
+      if (positive(from)) area.push_back(grid_.node(from));
+      if (positive(from) == positive(to)) continue;
+      const auto [entry, fresh] = roots_.try_emplace({std::min(from, to), std::max(from, to)}, Vec3{});
+      if (fresh) entry->second = positive(from) ? root(from, to) : root(to, from);
+      area.push_back(entry->second);
+      ends.push_back(entry->second);
+    }
+    const auto first = static_cast<std::int32_t>(found_.body.points.size());
+    for (const Vec3& p : area) found_.body.points.push_back(p);
+    for (std::int32_t k = 1; k + 1 < static_cast<std::int32_t>(area.size()); ++k)
+      found_.body.triangles.push_back({first, first + k, first + k + 1});
+    if (ends.size() != 2 || length(subtract(ends[0], ends[1])) <= thinnest * grid_.spacing) return;
+    TriangleSurface& wall = found_.boundary;
+    const auto foot = static_cast<std::int32_t>(wall.points.size());
+    for (const double z : {-height_, height_})
+      for (const Vec3& p : ends) wall.points.push_back({p[0], p[1], z});
+    wall.triangles.push_back({foot, foot + 1, foot + 3});
+    wall.triangles.push_back({foot, foot + 3, foot + 2});
+  }
+
+  using Edge = std::pair<std::size_t, std::size_t>;
+  struct Hash {
+    std::size_t operator()(const Edge& edge) const { return edge.first * 0x9E3779B97F4A7C15ull + edge.second; }
+  };
+
+  const std::function<double(const Vec3&)>& value_;
+  const NodeGrid& grid_;
+  const std::vector<double>& nodes_;
+  std::unordered_map<Edge, std::int32_t, Hash> edges_;
+  std::unordered_map<Edge, Vec3, Hash> roots_;
+  Isosurface found_;
+  double height_ = 0;
+};
+
+}  // namespace
+
+Isosurface find_isosurface(const std::function<double(const Vec3&)>& value, const NodeGrid& grid,
+                           const std::vector<double>& nodes, int dimensions) {
+  Marcher marcher(value, grid, nodes);
+  return dimensions == 3 ? marcher.in_space() : marcher.in_plane();
+}
+
+}  // namespace spume

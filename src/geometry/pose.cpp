@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// Where shapes stand, turned inside out or not, and what they make together.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "spume/geometry/shapes.hpp"
+#include "vectors.hpp"
+
+namespace spume {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+Vec3 turned(const std::array<Vec3, 3>& rotation, const Vec3& p) {
+  return {dot(rotation[0], p), dot(rotation[1], p), dot(rotation[2], p)};
+}
+
+std::array<Vec3, 3> transposed(const std::array<Vec3, 3>& m) {
+  return {Vec3{m[0][0], m[1][0], m[2][0]}, Vec3{m[0][1], m[1][1], m[2][1]}, Vec3{m[0][2], m[1][2], m[2][2]}};
+}
+
+// The box around a turned box; entries of a rotation below 1e-15 are rounding and turn no infinite side.
+Bounds turned(const std::array<Vec3, 3>& rotation, const Bounds& bounds, double scale) {
+  Bounds result;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double entry = rotation[i][a];
+      if (std::abs(entry) < 1e-15) continue;
+      const auto part = [&](double side) { return side == 0 ? 0 : scale * entry * side; };
+      result.lower[i] += std::min(part(bounds.lower[a]), part(bounds.upper[a]));
+      result.upper[i] += std::max(part(bounds.lower[a]), part(bounds.upper[a]));
+    }
+  return result;
+}
+
+class Placed final : public Shape {
+ public:
+  Placed(ShapePointer shape, const Pose& pose, bool inside, int dimensions)
+      : shape_(std::move(shape)),
+        pose_(pose),
+        back_(transposed(pose.rotation)),
+        inside_(inside),
+        dimensions_(dimensions) {}
+
+  NearestPoint nearest(const Vec3& p) const override {
+    const NearestPoint own = shape_->nearest(own_point(p));
+    const double sign = inside_ ? 1 : -1;
+    return {sign * pose_.scale * own.distance, times(sign, turned(pose_.rotation, own.normal)), placed(own.point)};
+  }
+  double distance(const Vec3& p) const override {
+    return (inside_ ? 1 : -1) * pose_.scale * shape_->distance(own_point(p));
+  }
+  Bounds bounds() const override {
+    if (!inside_) {
+      const double z = dimensions_ == 3 ? infinite : 0;
+      return {{-infinite, -infinite, -z}, {infinite, infinite, z}};
+    }
+    Bounds bounds = turned(pose_.rotation, shape_->bounds(), pose_.scale);
+    bounds.lower = add(bounds.lower, pose_.position);
+    bounds.upper = add(bounds.upper, pose_.position);
+    return bounds;
+  }
+  double volume() const override { return inside_ ? shape_->volume() * std::pow(pose_.scale, dimensions_) : infinite; }
+  double error() const override { return pose_.scale * shape_->error(); }
+  TriangleSurface surface(const Bounds& window, double step) const override {
+    const Bounds moved{subtract(window.lower, pose_.position), subtract(window.upper, pose_.position)};
+    TriangleSurface surface = shape_->surface(turned(back_, moved, 1 / pose_.scale), step / pose_.scale);
+    for (Vec3& p : surface.points) p = placed(p);
+    if (!inside_ && dimensions_ == 3)
+      for (auto& triangle : surface.triangles) std::swap(triangle[1], triangle[2]);
+    return surface;
+  }
+
+ private:
+  Vec3 own_point(const Vec3& p) const { return times(1 / pose_.scale, turned(back_, subtract(p, pose_.position))); }
+  Vec3 placed(const Vec3& p) const { return add(pose_.position, times(pose_.scale, turned(pose_.rotation, p))); }
+
+  ShapePointer shape_;
+  Pose pose_;
+  std::array<Vec3, 3> back_;
+  bool inside_;
+  int dimensions_;
+};
+
+}  // namespace
+
+std::array<Vec3, 3> rotation_by(const Vec3& degrees) {
+  std::array<Vec3, 3> total{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // Multiples of 90 degrees turn axes into axes exactly.
+    const double quarter = degrees[axis] / 90;
+    const double angle = degrees[axis] * std::numbers::pi / 180;
+    double c = std::cos(angle), s = std::sin(angle);
+    if (quarter == std::round(quarter)) {
+      c = std::round(c);
+      s = std::round(s);
+    }
+    const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
+    std::array<Vec3, 3> next = total;
+    next[i] = subtract(times(c, total[i]), times(s, total[j]));
+    next[j] = add(times(s, total[i]), times(c, total[j]));
+    total = next;
+  }
+  return total;
+}
+
+Vec3 to_own_coordinates(const Pose& pose, const Vec3& point) {
+  return times(1 / pose.scale, turned(transposed(pose.rotation), subtract(point, pose.position)));
+}
+
+ShapePointer place(ShapePointer shape, const Pose& pose, bool inside, int dimensions) {
+  return std::make_shared<Placed>(std::move(shape), pose, inside, dimensions);
+}
+
+NearestPoint Combination::nearest(const Vec3& point) const {
+  NearestPoint best{infinite, {0, 0, 0}, point};
+  for (const CombinedPart& part : parts_) {
+    NearestPoint next = part.shape->nearest(point);
+    if (part.subtract) {
+      next.distance = -next.distance;
+      next.normal = times(-1, next.normal);
+    }
+    if (part.subtract ? next.distance > best.distance : next.distance < best.distance) best = next;
+  }
+  return best;
+}
+
+double Combination::distance(const Vec3& point) const {
+  double best = infinite;
+  for (const CombinedPart& part : parts_) {
+    const double next = part.shape->distance(point);
+    best = part.subtract ? std::max(best, -next) : std::min(best, next);
+  }
+  return best;
+}
+
+}  // namespace spume

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "bodies.hpp"
+
+namespace spume {
+namespace {
+
+std::string sides_of(const Bounds& bounds, int dimensions) {
+  std::string words;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a)
+    words += (a == 0 ? "" : ", ") + std::string(1, "xyz"[a]) + " from " + brief(bounds.lower[a]) + " to " +
+             brief(bounds.upper[a]);
+  return words;
+}
+
+bool apart(const Bounds& a, const Bounds& b, int dimensions) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(dimensions); ++k)
+    if (a.lower[k] >= b.upper[k] || a.upper[k] <= b.lower[k]) return true;
+  return false;
+}
+
+double longest(const Bounds& bounds, int dimensions) {
+  double size = 0;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a)
+    size = std::max(size, bounds.upper[a] - bounds.lower[a]);
+  return size;
+}
+
+// A place of the surface and its weight.
+struct SurfacePart {
+  Vec3 place;
+  double size;
+};
+
+// The middle of every facet with its area; in two dimensions of every outer edge with its length.
+std::vector<SurfacePart> parts_of(const TriangleSurface& surface, int dimensions) {
+  std::vector<SurfacePart> parts;
+  const auto at = [&](std::int32_t i) -> const Vec3& { return surface.points[static_cast<std::size_t>(i)]; };
+  std::map<std::pair<Vec3, Vec3>, int> edges;
+  for (const auto& corners : surface.triangles) {
+    const Vec3 &a = at(corners[0]), &b = at(corners[1]), &c = at(corners[2]);
+    if (dimensions == 3) {
+      Vec3 middle{}, u{}, v{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        middle[k] = (a[k] + b[k] + c[k]) / 3;
+        u[k] = b[k] - a[k];
+        v[k] = c[k] - a[k];
+      }
+      parts.push_back(
+          {middle, 0.5 * std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])});
+    }
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+      if (dimensions == 2) ++edges[std::minmax(from, to)];
+  }
+  for (const auto& [edge, count] : edges) {
+    if (count != 1) continue;
+    const auto& [a, b] = edge;
+    parts.push_back({{0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0}, std::hypot(b[0] - a[0], b[1] - a[1])});
+  }
+  return parts;
+}
+
+// The share of the surface in the domain behind which the solid ends within a spacing.
+double thin_share(const Body& body, const Bounds& domain, double spacing, int dimensions) {
+  double thin = 0, all = 0;
+  const std::vector<SurfacePart> parts = parts_of(body.solid->surface(domain, spacing), dimensions);
+  // Of a large mesh some of its facets tell the share to a per cent: each is asked for nine distances.
+  constexpr std::size_t most_parts = 4000;
+  const std::size_t stride = 1 + parts.size() / most_parts;
+  for (std::size_t i = 0; i < parts.size(); i += stride) {
+    const SurfacePart& part = parts[i];
+    const auto in_domain = [&] {
+      for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a)
+        if (part.place[a] < domain.lower[a] || part.place[a] > domain.upper[a]) return false;
+      return true;
+    };
+    if (!in_domain()) continue;
+    const NearestPoint found = body.solid->nearest(part.place);
+    // Where the surface was cut at the window the solid goes on: that is no face of it.
+    if (std::abs(found.distance) > 0.5 * spacing) continue;
+    all += part.size;
+    constexpr int steps = 8;
+    for (int k = 1; k <= steps; ++k) {
+      Vec3 p = found.point;
+      // Rounding decides at the far face of a body that is just a spacing thick.
+      for (std::size_t a = 0; a < 3; ++a) p[a] -= found.normal[a] * spacing * (1 - 1e-6) * k / steps;
+      if (body.solid->distance(p) <= 0) continue;
+      thin += part.size;
+      break;
+    }
+  }
+  return all > 0 ? thin / all : 0;
+}
+
+}  // namespace
+
+std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const std::string& file) {
+  std::vector<Problem> warnings;
+  const int dimensions = scene.domain.dimensions;
+  const Bounds domain{scene.domain.lower, scene.domain.upper};
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+    const Body& body = scene.bodies[k];
+    const Node* node = draft.node("body." + std::to_string(k));
+    const auto warn = [&](const std::string& text) {
+      warnings.push_back({file, node->place.line, node->place.column, "the body '" + body.name + "' " + text});
+    };
+    const Bounds bounds = body.shape->bounds();
+    const double size = longest(bounds, dimensions), room = longest(domain, dimensions);
+    // A hull in mm in a tank in m.
+    constexpr double factor = 1000;
+    if (std::isfinite(size) && size >= factor * room) {
+      warn("is " + brief(size) + " long, " + brief(size / room) + " times the domain of " + brief(room) +
+           "; if its lengths are in another unit, set scale, 0.001 from mm to m");
+      continue;
+    }
+    if (apart(bounds, domain, dimensions)) {
+      warn("lies outside the domain: " + sides_of(bounds, dimensions) + ", the domain's " +
+           sides_of(domain, dimensions) + "; move it with position, or remove it");
+      continue;
+    }
+    // Edges of a shape that is thick elsewhere are thin too, a wedge behind a part of its faces.
+    constexpr double most_thin = 0.05;
+    const double thin = body.wall == BoundaryKind::open ? 0 : thin_share(body, domain, scene.spacing, dimensions);
+    if (thin > most_thin)
+      warn("is thinner than a spacing, " + brief(scene.spacing) + ", behind " + brief(std::round(100 * thin)) +
+           " % of its surface; liquid may pass there: make it thicker, or lower resolution.spacing");
+  }
+  return warnings;
+}
+
+}  // namespace spume

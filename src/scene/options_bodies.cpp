@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Options of [[body]].
+#include "scene_sections.hpp"
+
+namespace spume {
+
+Section body_section() {
+  using B = BodyDraft;
+  return repeated_section<B>("body", &Draft::bodies)
+      .option("name", &B::name, "name, by which [[liquid]] refers to the body")
+      .absent("body.<number>, from 0")
+      .word("shape", &B::kind,
+            {{"box", BodyKind::box},
+             {"ball", BodyKind::ball},
+             {"cylinder", BodyKind::cylinder},
+             {"cone", BodyKind::cone},
+             {"capsule", BodyKind::capsule},
+             {"ellipsoid", BodyKind::ellipsoid},
+             {"half-space", BodyKind::half_space},
+             {"outline", BodyKind::outline}},
+            "shape, in 2-D its section: disc, rectangle, ...; or where, or mesh")
+      .absent("given by where or mesh")
+      .option("where", &B::where, "expression of x y z, positive inside the shape, as far as the domain")
+      .absent("given by shape or mesh")
+      .option("mesh", &B::mesh, "closed triangle mesh: .stl, .obj or .ply file beside the case (3-D)")
+      .beside_case()
+      .absent("given by shape or where")
+      .option("size", &B::size, "length", "box: lengths of its edges")
+      .absent("not a box")
+      .option("radius", &B::radius, "length", positive(),
+              "ball, cylinder, capsule: radius; cone: radius of its base, at the lower end")
+      .absent("not round")
+      .option("top_radius", &B::top_radius, "length", not_negative(), "cone: radius at the upper end; 0: a tip")
+      .absent("0")
+      .option("length", &B::length, "length", positive(),
+              "cylinder, cone along the last axis; capsule between the centres of its caps; outline along y (3-D)")
+      .absent("without end, of a cylinder or an outline")
+      .option("semi_axes", &B::semi_axes, "length", "ellipsoid: half its lengths along the axes")
+      .absent("not an ellipsoid")
+      .option("normal", &B::normal, "half-space: direction out of the solid")
+      .absent("up")
+      .option("points", &B::points, "length", "outline: corners x and height (y in 2-D, z in 3-D), in order")
+      .absent("not an outline")
+      .option("position", &B::position, "length",
+              "where the centre stands, or the origin of an outline, an expression or a mesh; on the face of a "
+              "half-space")
+      .absent("the origin")
+      .option("rotation", &B::rotation, "degree",
+              "about the position: one angle in 2-D; three in 3-D, about the fixed axes x, then y, then z")
+      .absent("none")
+      .option("scale", &B::scale, "1", positive(), "factor on all lengths of the shape, as from mm to m for a mesh")
+      .option("inside", &B::inside, "true: the solid is inside the shape; false: outside it, and the liquid inside")
+      .option("subtract", &B::subtract, "take the solid away from the bodies before it, in place of adding it to them")
+      .word("wall", &B::wall,
+            {{"free-slip", BoundaryKind::free_slip}, {"no-slip", BoundaryKind::no_slip}, {"none", BoundaryKind::open}},
+            "condition on its surface; none: no wall, a shape for [[liquid]] to fill")
+      .whole_only(uses_particles);
+}
+
+}  // namespace spume

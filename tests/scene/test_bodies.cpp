@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+// Bodies of the case file: what they become, what liquid fills of them, and what is said of those that cannot be.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "helpers.hpp"
+#include "spume/scene/load.hpp"
+
+namespace spume {
+namespace {
+
+using test::CaseFile;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// A method that keeps liquid within the walls of bodies, which none of the program does yet.
+const CaseSchema& schema() {
+  static const CaseSchema made = [] {
+    MethodDeclaration method;
+    method.name = "walled";
+    method.fills_regions = true;
+    method.honours_bodies = true;
+    method.bytes_per_particle = [](const Case&, int) { return 100.0; };
+    method.default_courant = [](const Case&, const Scene&) { return 0.2; };
+    method.default_courant_in_words = "0.2";
+    method.output_fields = [](const Case&) { return std::vector<OutputFieldInfo>{{"velocity"}}; };
+    MethodDeclaration other = method;
+    other.name = "wall-less";
+    other.honours_bodies = false;
+    return CaseSchema({method, other});
+  }();
+  return made;
+}
+
+const std::string head2 =
+    "method = \"walled\"\n[domain]\nlower = [-1, -1]\nupper = [1, 1]\n[resolution]\nspacing = 0.05\n[time]\nend = 1\n"
+    "[fluid]\nreynolds = 100\n";                                                  // 10 lines
+const std::string liquid2 = "[[liquid]]\nlower = [-1, -1]\nupper = [1, -0.9]\n";  // 11 to 13
+const std::string head3 =
+    "method = \"walled\"\n[domain]\nlower = [-1, -1, -1]\nupper = [1, 1, 1]\n[resolution]\nspacing = 0.1\n[time]\nend "
+    "= 1\n[fluid]\nreynolds = 100\n[[liquid]]\nupper = [1, 1, -0.8]\n";  // 12 lines
+
+LoadedCase load(const std::string& text) {
+  const CaseFile file(text);
+  return load_case(file.path(), {}, schema());
+}
+
+std::vector<std::string> problems(const std::string& text) {
+  std::vector<std::string> found;
+  try {
+    load(text);
+  } catch (const InputError& error) {
+    for (const Problem& problem : error.problems())
+      found.push_back(std::to_string(problem.line) + ":" + std::to_string(problem.column) + " " + problem.text);
+  }
+  return found;
+}
+
+std::vector<std::string> warnings(const std::string& text) {
+  std::vector<std::string> found;
+  for (const Problem& problem : load(text).options.warnings)
+    found.push_back(std::to_string(problem.line) + ":" + std::to_string(problem.column) + " " + problem.text);
+  return found;
+}
+
+double distance2(const std::string& body, double x, double y) {
+  const LoadedCase loaded = load(head2 + liquid2 + "[[body]]\n" + body);
+  return loaded.scene.bodies.front().solid->distance({x, y, 0});
+}
+
+double distance3(const std::string& body, const Vec3& p) {
+  const LoadedCase loaded = load(head3 + "[[body]]\n" + body);
+  return loaded.scene.bodies.front().solid->distance(p);
+}
+
+TEST(Bodies, EveryShapeStandsWhereItsKeysSay) {
+  EXPECT_NEAR(distance2("shape = \"box\"\nsize = [0.4, 0.2]\nposition = [0.5, 0]", 0, 0), 0.3, 1e-15);
+  EXPECT_NEAR(distance2("shape = \"box\"\nsize = [0.4, 0.2]\nrotation = [90]", 0.5, 0), 0.4, 1e-15);
+  EXPECT_NEAR(distance2("shape = \"ball\"\nradius = 0.25\nscale = 2", 0, 0.7), 0.2, 1e-15);
+  EXPECT_NEAR(distance2("shape = \"ball\"\nradius = 0.5\ninside = false", 0, 0), 0.5, 1e-15);
+  EXPECT_NEAR(distance2("shape = \"cylinder\"\nradius = 0.5", 0, 0.7), 0.2, 1e-15);
+  EXPECT_NEAR(distance2("shape = \"capsule\"\nradius = 0.1\nlength = 0.6", 0, 0.9), 0.5, 1e-15);
+  EXPECT_NEAR(distance2("shape = \"ellipsoid\"\nsemi_axes = [0.6, 0.2]", 0.9, 0), 0.3, 1e-15);
+  EXPECT_NEAR(distance2("shape = \"half-space\"\nposition = [0, -0.5]", 0.3, 0), 0.5, 1e-15);
+  EXPECT_NEAR(distance2("shape = \"half-space\"\nnormal = [1, 0]", 0.3, 0), 0.3, 1e-15);
+  EXPECT_NEAR(distance2("shape = \"outline\"\npoints = [[0, 0], [0.5, 0], [0, 0.5]]", -0.2, 0.2), 0.2, 1e-15);
+  EXPECT_NEAR(distance2("where = \"0.25 - x^2 - y^2\"", 0.8, 0), 0.3, 1e-3);
+  EXPECT_NEAR(distance2("where = \"0.25 - x^2 - y^2\"\nposition = [0.2, 0]\nscale = 0.5", 0.8, 0), 0.35, 1e-3);
+
+  EXPECT_NEAR(distance3("shape = \"cylinder\"\nradius = 0.5", {0, 0.7, 0.9}), 0.2, 1e-15);
+  EXPECT_NEAR(distance3("shape = \"cylinder\"\nradius = 0.5\nlength = 1", {0, 0.2, 0.9}), 0.4, 1e-15);
+  EXPECT_NEAR(distance3("shape = \"cone\"\nradius = 0.5\nlength = 1", {0, 0, 0.7}), 0.2, 1e-15);
+  EXPECT_NEAR(distance3("shape = \"cone\"\nradius = 0.5\nlength = 1\ntop_radius = 0.5", {0.7, 0, 0}), 0.2, 1e-15);
+  EXPECT_NEAR(distance3("shape = \"outline\"\npoints = [[0, 0], [0.5, 0], [0, 0.5]]", {-0.2, 0.9, 0.2}), 0.2, 1e-15);
+  EXPECT_NEAR(distance3("shape = \"outline\"\npoints = [[0, 0], [0.5, 0], [0, 0.5]]\nlength = 1", {0.1, 0.9, 0.1}), 0.4,
+              1e-15);
+  EXPECT_NEAR(distance3("shape = \"box\"\nsize = [1, 0.4, 0.2]\nrotation = [90, 0, 0]", {0, 0, 0.5}), 0.3, 1e-15);
+}
+
+TEST(Bodies, AMeshStandsBesideTheCase) {
+  const std::string text = head3 + "[[body]]\nmesh = \"cube.obj\"\nposition = [0.5, 0, 0]\nscale = 0.1\n";
+  const std::string cube =
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+      "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  const CaseFile file(text);
+  const auto refused = [&] {
+    try {
+      load_case(file.path(), {}, schema());
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refused(), HasSubstr("bad.toml:14:8: error: body.0.mesh: there is no mesh file '" + file.folder()));
+  std::ofstream(file.folder() + "/cube.obj") << cube;
+  const LoadedCase loaded = load_case(file.path(), {}, schema());
+  EXPECT_NEAR(loaded.scene.bodies[0].solid->distance({0.4, 0.05, 0.05}), 0.1, 1e-7);
+  EXPECT_EQ(loaded.scene.bodies[0].kind, "mesh");
+  // In the run's folder the resolved case names the file in full.
+  EXPECT_THAT(loaded.options.resolved, HasSubstr("mesh = \"" + file.folder() + "/cube.obj\""));
+  std::ofstream(file.folder() + "/cube.obj") << cube.substr(0, cube.find("f 4 1"));
+  EXPECT_THAT(refused(), HasSubstr("/cube.obj': it is not closed: the edge from (0, "));
+  std::ofstream(file.folder() + "/cube.obj") << test::replaced(cube, "f 1 2 6 5", "f 5 6 2 1");
+  EXPECT_THAT(refused(), HasSubstr("triangle 5 at ("));
+}
+
+TEST(Bodies, WallsAreJoinedAndTakenAwayInTheOrderOfTheFile) {
+  const LoadedCase loaded = load(head2 + liquid2 +
+                                 "[[body]]\nshape = \"box\"\nsize = [1, 1]\n"
+                                 "[[body]]\nname = \"hole\"\nshape = \"ball\"\nradius = 0.3\nsubtract = true\nwall = "
+                                 "\"no-slip\"\n"
+                                 "[[body]]\nshape = \"ball\"\nradius = 0.1\n"
+                                 "[[body]]\nshape = \"ball\"\nradius = 0.9\nwall = \"none\"\n");
+  const Scene& scene = loaded.scene;
+  ASSERT_EQ(scene.bodies.size(), 4u);
+  EXPECT_EQ(scene.bodies[0].name, "body.0");
+  EXPECT_EQ(scene.bodies[1].name, "hole");
+  EXPECT_EQ(scene.bodies[1].wall, BoundaryKind::no_slip);
+  EXPECT_EQ(scene.bodies[3].wall, BoundaryKind::open);
+  EXPECT_NEAR(scene.walls.distance({0.2, 0, 0}), 0.1, 1e-15) << "0.1 from either, in the ring";
+  EXPECT_NEAR(scene.walls.distance({0, 0, 0}), -0.1, 1e-15);
+  EXPECT_NEAR(scene.walls.distance({0.8, 0, 0}), 0.3, 1e-15);
+}
+
+// The sum of the lattice's cells that the region fills, to what samples of a quarter of a cell at its surface leave:
+// with n cells there and errors of up to an eighth of a cell that is 1/8 of them at most, and sqrt(n)/8 if they are
+// random.
+TEST(Bodies, LiquidFillsTheInsideOfABody) {
+  const LoadedCase loaded =
+      load(head2 +
+           "[[body]]\nname = \"drop\"\nshape = \"ellipsoid\"\nsemi_axes = [0.8, 0.4]\nrotation = [30]\nwall = "
+           "\"none\"\n[[liquid]]\nbody = \"drop\"\nvelocity = [1, 0]\n");
+  const Scene& scene = loaded.scene;
+  const double area = std::numbers::pi * 0.8 * 0.4;
+  ASSERT_EQ(scene.fills.size(), 1u);
+  EXPECT_NEAR(scene.fills[0].asked, area, 160 / 8.0 * 0.05 * 0.05 / 4);
+  EXPECT_NEAR(scene.fills[0].got, scene.fills[0].asked, 1e-12);
+  ASSERT_GT(scene.particles.size(), 380u);
+  for (std::size_t i = 0; i < scene.particles.size(); ++i)
+    EXPECT_LT(scene.bodies[0].shape->distance({scene.particles.position[0][i], scene.particles.position[1][i], 0}),
+              0.02);
+  EXPECT_TRUE(scene.free_surface);
+  // Cut by the other limits of the region; the inside also of a body whose solid is outside.
+  const LoadedCase half = load(head2 +
+                               "[[body]]\nname = \"tank\"\nshape = \"ball\"\nradius = 0.9\ninside = false\n"
+                               "[[liquid]]\nbody = \"tank\"\nwhere = \"-y\"\n");
+  EXPECT_NEAR(half.scene.fills[0].asked, 0.5 * std::numbers::pi * 0.81, 0.01);
+  // Closed forms and meshes alike, in space.
+  const LoadedCase ball =
+      load(test::replaced(head3, "[[liquid]]\nupper = [1, 1, -0.8]\n", "") +
+           "[[body]]\nname = \"drop\"\nshape = \"ball\"\nradius = 0.8\nwall = \"none\"\n[[liquid]]\nbody = \"drop\"\n");
+  EXPECT_NEAR(ball.scene.fills[0].asked, 4 * std::numbers::pi / 3 * 0.512, 0.01);
+}
+
+TEST(Bodies, KeysThatDoNotFitTheShapeAreRefused) {
+  const std::string start = head2 + liquid2 + "[[body]]\n";  // the body's keys begin in line 15
+  EXPECT_THAT(problems(start), ElementsAre(HasSubstr("14:1 missing shape in [[body]]; add  shape = ")));
+  EXPECT_THAT(problems(start + "shape = \"ball\""),
+              ElementsAre("14:1 missing key 'radius' in [[body]], a ball; add  radius = <number>  # length, > 0"));
+  EXPECT_THAT(problems(start + "shape = \"boll\""),
+              ElementsAre(AllOf(HasSubstr("15:9 body.0.shape must be"), HasSubstr("did you mean \"ball\"?"))));
+  EXPECT_THAT(problems(start + "shape = \"ball\"\nradius = 1\nsize = [1, 1]"),
+              ElementsAre("17:1 body.0.size is no key of a ball in 2-D; remove it"));
+  EXPECT_THAT(problems(start + "shape = \"cylinder\"\nradius = 1\nlength = 1"),
+              ElementsAre("17:1 body.0.length is no key of a cylinder in 2-D; remove it"));
+  EXPECT_THAT(problems(start + "shape = \"box\"\nsize = [1, 1, 1]"),
+              ElementsAre("16:8 body.0.size must have 2 entries in a 2-D domain, found 3"));
+  EXPECT_THAT(problems(start + "shape = \"box\"\nsize = [1, -1]"),
+              ElementsAre("16:12 body.0.size[1] must be > 0, found -1"));
+  EXPECT_THAT(problems(start + "shape = \"half-space\"\nnormal = [0, 0]\nrotation = [1, 2]"),
+              ElementsAre("16:10 body.0.normal must not be zero",
+                          "17:12 body.0.rotation must have 1 entry in a 2-D domain, found 2"));
+  EXPECT_THAT(problems(start + "shape = \"ball\"\nradius = 1\nscale = 0"),
+              ElementsAre("17:9 body.0.scale must be > 0, found 0"));
+  EXPECT_THAT(problems(start + "shape = \"ball\"\nradius = 1\nwhere = \"x\""),
+              ElementsAre(HasSubstr("body.0 has more than one shape")));
+  EXPECT_THAT(problems(start + "mesh = \"a.stl\""), ElementsAre(HasSubstr("15:8 body.0.mesh needs a 3-D domain")));
+  EXPECT_THAT(problems(start + "shape = \"outline\"\npoints = [[0, 0], [1, \"a\"], 3, [1, 2, 3]]"),
+              ElementsAre(HasSubstr("16:19 body.0.points[1] must be a point of two finite numbers, found [1, \"a\"]"),
+                          HasSubstr("16:29 body.0.points[2]"), HasSubstr("16:32 body.0.points[3]")));
+  EXPECT_THAT(problems(start + "shape = \"outline\"\npoints = [[0, 0], [1, 1], [1, 0], [0, 1]]"),
+              ElementsAre(HasSubstr("16:10 body.0.points: the side from point 1")));
+  EXPECT_THAT(problems(start + "where = \"x + zz\""), ElementsAre(HasSubstr("15:14 body.0.where: unknown name 'zz'")));
+  EXPECT_THAT(problems(start + "where = \"1 + x^2\""),
+              ElementsAre(HasSubstr("15:9 body.0.where: it is positive everywhere in the domain")));
+}
+
+TEST(Bodies, NamesAreTheirOwnAndRefersExist) {
+  const std::string ball = "shape = \"ball\"\nradius = 0.5\n";
+  EXPECT_THAT(problems(head2 + liquid2 + "[[body]]\nname = \"a\"\n" + ball + "[[body]]\nname = \"a\"\n" + ball),
+              ElementsAre(HasSubstr("another body has the name 'a' already")));
+  EXPECT_THAT(problems(head2 + liquid2 + "[[body]]\nname = \"\"\n" + ball),
+              ElementsAre(HasSubstr("must not be empty")));
+  EXPECT_THAT(problems(head2 + "[[body]]\nname = \"tank\"\n" + ball + "[[liquid]]\nbody = \"tonk\"\n"),
+              ElementsAre("16:8 liquid.0.body must be the name of a [[body]], \"tank\", found \"tonk\"; did you mean "
+                          "\"tank\"?"));
+  EXPECT_THAT(problems(head2 + "[[liquid]]\nbody = \"tank\"\n"), ElementsAre(HasSubstr("and there is none")));
+  EXPECT_THAT(
+      problems(head2 + liquid2 + "[[body]]\nsubtract = true\n" + ball),
+      ElementsAre(HasSubstr("body.0.subtract takes away from the walls of bodies before it, and there are none")));
+}
+
+TEST(Bodies, WallsOfAMethodThatHasNoneAreRefused) {
+  const std::string text =
+      test::replaced(head2, "walled", "wall-less") + liquid2 + "[[body]]\nshape = \"ball\"\nradius = 0.5\n";
+  EXPECT_THAT(problems(text),
+              ElementsAre(AllOf(HasSubstr("14:1 body.0 is a wall, and method \"wall-less\" has no walls"),
+                                HasSubstr("wall = \"none\""))));
+  EXPECT_THAT(problems(text + "wall = \"none\"\n"), IsEmpty());
+  EXPECT_THAT(test::problems_of(test::small_case("[[body]]\nshape = \"ball\"\nradius = 0.5\n")),
+              ElementsAre(HasSubstr("method \"les-sph\" has no walls of bodies")));
+}
+
+TEST(Bodies, SuspiciousBodiesAreWarnedOf) {
+  const std::string start = head2 + liquid2 + "[[body]]\nname = \"it\"\n";
+  EXPECT_THAT(warnings(start + "shape = \"ball\"\nradius = 0.5\n"), IsEmpty());
+  EXPECT_THAT(
+      warnings(start + "shape = \"ball\"\nradius = 0.5\nposition = [3, 0]\n"),
+      Contains("14:1 the body 'it' lies outside the domain: x from 2.5 to 3.5, y from -0.5 to 0.5, the domain's x "
+               "from -1 to 1, y from -1 to 1; move it with position, or remove it"));
+  EXPECT_THAT(
+      warnings(start + "shape = \"ball\"\nradius = 2000\n"),
+      Contains(AllOf(HasSubstr("the body 'it' is 4000 long, 2000 times the domain of 2"), HasSubstr("set scale"))));
+  EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.04, 1]\n"),
+              Contains(HasSubstr("the body 'it' is thinner than a spacing, 0.05, behind 96 % of its surface")));
+  EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.05, 1]\n"), IsEmpty());
+  EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.04, 1]\nwall = \"none\"\n"), IsEmpty());
+  EXPECT_THAT(warnings(start + "shape = \"half-space\"\n"), IsEmpty());
+  // What lies between the tank and the side of the domain goes on beyond it.
+  EXPECT_THAT(warnings(start + "shape = \"ball\"\nradius = 0.98\ninside = false\n"), IsEmpty());
+  EXPECT_THAT(warnings(head3 + "[[body]]\nshape = \"box\"\nsize = [0.5, 0.5, 0.05]\n"),
+              Contains(HasSubstr("thinner than a spacing, 0.1")));
+}
+
+TEST(Bodies, TheResolvedCaseIsReadBackToTheSameBodies) {
+  const std::string text = head2 + liquid2 +
+                           "[[body]]\nshape = \"outline\"\npoints = [[0, 0], [0.5, 0.25], [0, 0.5]]\nrotation = [15]\n"
+                           "[[body]]\nname = \"b\"\nwhere = \"0.04 - x^2 - y^2\"\ninside = false\nwall = \"no-slip\"\n";
+  const LoadedCase first = load(text), second = load(first.options.resolved);
+  ASSERT_EQ(second.scene.bodies.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(second.scene.bodies[k].name, first.scene.bodies[k].name);
+    EXPECT_EQ(second.scene.bodies[k].solid->distance({0.3, 0.2, 0}),
+              first.scene.bodies[k].solid->distance({0.3, 0.2, 0}));
+  }
+}
+
+}  // namespace
+}  // namespace spume
