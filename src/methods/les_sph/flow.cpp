@@ -132,8 +132,7 @@ double Flow::mass_in_domain() const {
   const double inside = parallel_sum(size(), [&](std::size_t i) {
     for (int axis = 0; axis < dimensions; ++axis) {
       const double x = (*particles.position[axis])[i];
-      const double upper =
-          axis == up && falls_back ? std::numeric_limits<double>::max() : boundary.walls[axis][1];
+      const double upper = axis == up && falls_back ? std::numeric_limits<double>::max() : boundary.walls[axis][1];
       if (!(x >= boundary.walls[axis][0] && x <= upper)) return 0.0;
     }
     return 1.0;

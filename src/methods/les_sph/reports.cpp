@@ -78,7 +78,8 @@ void LesSph::declare_series() {
              });
     });
   series_.add("max_speed", "speed", [&flow] { return flow.speeds.largest; });
-  series_.add("mass", "mass, of the particles in the domain and above an open top", [&flow] { return flow.mass_in_domain(); });
+  series_.add("mass", "mass, of the particles in the domain and above an open top",
+              [&flow] { return flow.mass_in_domain(); });
   if (flow.features.open_sides)
     series_.add("mass_removed", "mass, that left through open sides for good",
                 [&flow] { return flow.particle_mass() * static_cast<double>(flow.left); });

@@ -137,7 +137,7 @@ struct Flow {
   double diffusion_rate() const { return features.viscous_stress ? 3 : 1; }
   // Of particles between the walls, at finite places. Liquid above an open top falls back.
   double mass_in_domain() const;
-  double leased_bytes() const;    // scratch memory of a step, leased now or idle
+  double leased_bytes() const;  // scratch memory of a step, leased now or idle
   // What the pressure stores in a compressible liquid: the integral of p^2 / (2 rho c^2).
   double stored_energy() const;
 
