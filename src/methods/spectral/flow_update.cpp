@@ -41,7 +41,7 @@ template <class V, class T>
 }
 
 // How much more than its limit a step may be when the speeds are known that it was chosen without. Of eight flows on
-// 24^3 to 64^3 points, decaying and forced, with all integrators, the worst step was 1.034 times its limit: where half
+// 24^3 and 32^3 points, decaying and forced, with all integrators, the worst step was 1.034 times its limit: where half
 // as much again is needed, speeds jump and the step does not follow them.
 constexpr double tolerated_excess = 1.5;
 
