@@ -17,9 +17,10 @@
 namespace spume::les_sph {
 namespace {
 
-// In spacings. What is level to the first stays as it is; rounds end at the second: 1e-4 makes waves of 6e-5 sqrt(g H).
+// In spacings. What is level to the first stays as it is; rounds end at the second: in proportion to the above, a
+// hundredth of those waves.
 constexpr double level_enough = 1e-3, levelled = 1e-4;
-// A border of two sizes is level after about ten.
+// Bounds what the start costs: what is not level by then starts as it is.
 constexpr int most_rounds = 40;
 // Columns that stand farther off lie beside liquid of another height.
 constexpr double most_moved = 0.1;
