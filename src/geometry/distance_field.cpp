@@ -11,9 +11,9 @@
 #include "mesh_tree.hpp"
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
 #include "spume/geometry/mesh.hpp"
 #include "triangles.hpp"
-#include "vectors.hpp"
 
 namespace spume {
 namespace {
@@ -67,7 +67,7 @@ class NodeValues {
     }
     const double higher = plane(v + sz, dx1, dy1);
     if (gradient)
-      *gradient = times(1 / grid_.spacing, {mix(dx0, dx1, part[2]), mix(dy0, dy1, part[2]), higher - lower});
+      *gradient = multiply(1 / grid_.spacing, {mix(dx0, dx1, part[2]), mix(dy0, dy1, part[2]), higher - lower});
     return mix(lower, higher, part[2]);
   }
 
@@ -76,7 +76,7 @@ class NodeValues {
     Vec3 gradient{};
     found.distance = at(p, &gradient);
     found.normal = unit(gradient, static_cast<int>(dimensions_));
-    found.point = subtract(p, times(found.distance, found.normal));
+    found.point = subtract(p, multiply(found.distance, found.normal));
     return found;
   }
 
@@ -182,7 +182,7 @@ class LevelSet final : public Shape {
       Vec3 middle{};
       const double share = dimensions_ == 3 ? 1.0 / 3 : 0.5;
       for (std::size_t k = 0; k < (dimensions_ == 3 ? 3u : 2u); ++k)
-        middle = add(middle, times(share, boundary.points[static_cast<std::size_t>(corners[k])]));
+        middle = add(middle, multiply(share, boundary.points[static_cast<std::size_t>(corners[k])]));
       if (dimensions_ == 2) middle[2] = 0;
       Vec3 gradient{};
       const double step = 1e-4 * spacing;

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "spume/core/vectors.hpp"
 #include "triangles.hpp"
-#include "vectors.hpp"
 
 namespace spume {
 

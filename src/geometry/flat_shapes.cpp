@@ -7,8 +7,8 @@
 
 #include "polygon.hpp"
 #include "spume/core/error.hpp"
+#include "spume/core/vectors.hpp"
 #include "spume/geometry/shapes.hpp"
-#include "vectors.hpp"
 
 namespace spume {
 namespace {
@@ -17,7 +17,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 class Box final : public Shape {
  public:
-  Box(const Vec3& size, int dimensions) : half_(times(0.5, size)), count_(static_cast<std::size_t>(dimensions)) {}
+  Box(const Vec3& size, int dimensions) : half_(multiply(0.5, size)), count_(static_cast<std::size_t>(dimensions)) {}
   NearestPoint nearest(const Vec3& p) const override {
     NearestPoint found;
     double squared = 0, deepest = -infinite;
@@ -46,7 +46,7 @@ class Box final : public Shape {
   }
   Bounds bounds() const override {
     const Vec3 upper{half_[0], half_[1], count_ == 3 ? half_[2] : 0};
-    return {times(-1, upper), upper};
+    return {multiply(-1, upper), upper};
   }
   double volume() const override {
     double volume = 1;
@@ -70,7 +70,7 @@ class HalfSpace final : public Shape {
   HalfSpace(const Vec3& normal, int dimensions) : normal_(unit(normal, dimensions)), dimensions_(dimensions) {}
   NearestPoint nearest(const Vec3& p) const override {
     const double distance = dot(normal_, p);
-    return {distance, normal_, subtract(p, times(distance, normal_))};
+    return {distance, normal_, subtract(p, multiply(distance, normal_))};
   }
   double distance(const Vec3& p) const override { return dot(normal_, p); }
   Bounds bounds() const override {
@@ -89,13 +89,13 @@ class HalfSpace final : public Shape {
     Vec3 across{};
     across[std::abs(normal_[0]) < 0.5 ? 0 : 1] = 1;
     if (dimensions_ == 2) across = {-normal_[1], normal_[0], 0};
-    const Vec3 u = times(far, unit(subtract(across, times(dot(across, normal_), normal_))));
+    const Vec3 u = multiply(far, unit(subtract(across, multiply(dot(across, normal_), normal_))));
     if (dimensions_ == 2) {
-      const Vec3 down = times(-2 * far, normal_);
-      return fan(clip({u, add(u, down), subtract(down, u), times(-1, u)}, window));
+      const Vec3 down = multiply(-2 * far, normal_);
+      return fan(clip({u, add(u, down), subtract(down, u), multiply(-1, u)}, window));
     }
     const Vec3 v = cross(normal_, u);
-    return fan(clip({add(u, v), subtract(v, u), times(-1, add(u, v)), subtract(u, v)}, window));
+    return fan(clip({add(u, v), subtract(v, u), multiply(-1, add(u, v)), subtract(u, v)}, window));
   }
 
  private:

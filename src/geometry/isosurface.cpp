@@ -5,7 +5,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "vectors.hpp"
+#include "spume/core/vectors.hpp"
 
 namespace spume {
 
@@ -84,10 +84,10 @@ class Marcher {
     if (nodes_[out] == 0) return outer;
     // 40 halvings: 1e-12 of the spacing.
     for (int i = 0; i < 40; ++i) {
-      const Vec3 middle = times(0.5, add(inner, outer));
+      const Vec3 middle = multiply(0.5, add(inner, outer));
       (value_(middle) > 0 ? inner : outer) = middle;
     }
-    return times(0.5, add(inner, outer));
+    return multiply(0.5, add(inner, outer));
   }
 
   // The point of `points` on the edge between two nodes, one positive, the other not.
@@ -119,13 +119,13 @@ class Marcher {
     if (ins == 2) {
       const std::int32_t a = on_edge(in[0], out[0]), b = on_edge(in[0], out[1]), c = on_edge(in[1], out[1]),
                          d = on_edge(in[1], out[0]);
-      facet(a, b, c, times(0.5, add(side, grid_.node(in[1]))));
-      facet(a, c, d, times(0.5, add(side, grid_.node(in[1]))));
+      facet(a, b, c, multiply(0.5, add(side, grid_.node(in[1]))));
+      facet(a, c, d, multiply(0.5, add(side, grid_.node(in[1]))));
     } else if (ins == 1) {
       facet(on_edge(in[0], out[0]), on_edge(in[0], out[1]), on_edge(in[0], out[2]), side);
     } else {
       facet(on_edge(in[0], out[0]), on_edge(in[1], out[0]), on_edge(in[2], out[0]),
-            times(1.0 / 3, add(side, add(grid_.node(in[1]), grid_.node(in[2])))));
+            multiply(1.0 / 3, add(side, add(grid_.node(in[1]), grid_.node(in[2])))));
     }
   }
 

@@ -6,8 +6,8 @@
 #include <map>
 
 #include "mesh_tree.hpp"
+#include "spume/core/vectors.hpp"
 #include "triangles.hpp"
-#include "vectors.hpp"
 
 namespace spume {
 
@@ -19,7 +19,7 @@ TrianglePoint nearest_on_edges(const std::array<Vec3, 3>& corners, const Vec3& p
     const Vec3 &from = corners[k], way = subtract(corners[(k + 1) % 3], from);
     const double square = dot(way, way);
     const double along = square > 0 ? std::clamp(dot(subtract(p, from), way) / square, 0.0, 1.0) : 0;
-    const TrianglePoint found{add(from, times(along, way)), static_cast<int>(k) + 1};
+    const TrianglePoint found{add(from, multiply(along, way)), static_cast<int>(k) + 1};
     if (length(subtract(p, found.point)) < length(subtract(p, best.point))) best = found;
   }
   return best;
@@ -36,19 +36,19 @@ TrianglePoint nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, c
   const double d3 = dot(ab, bp), d4 = dot(ac, bp);
   if (d3 >= 0 && d4 <= d3) return {b, 5};
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {add(a, times(d1 / (d1 - d3), ab)), 1};
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {add(a, multiply(d1 / (d1 - d3), ab)), 1};
   const Vec3 cp = subtract(p, c);
   const double d5 = dot(ab, cp), d6 = dot(ac, cp);
   if (d6 >= 0 && d5 <= d6) return {c, 6};
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {add(a, times(d2 / (d2 - d6), ac)), 3};
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {add(a, multiply(d2 / (d2 - d6), ac)), 3};
   const double va = d3 * d6 - d5 * d4;
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-    return {add(b, times((d4 - d3) / ((d4 - d3) + (d5 - d6)), subtract(c, b))), 2};
+    return {add(b, multiply((d4 - d3) / ((d4 - d3) + (d5 - d6)), subtract(c, b))), 2};
   const double whole = va + vb + vc;
   // A needle, whose plane rounding hides.
   if (!(whole > 0)) return nearest_on_edges({a, b, c}, p);
-  return {add(a, add(times(vb / whole, ab), times(vc / whole, ac))), 0};
+  return {add(a, add(multiply(vb / whole, ab), multiply(vc / whole, ac))), 0};
 }
 
 double enclosed_volume(const TriangleSurface& surface) {
@@ -78,7 +78,7 @@ class Mesh final : public Shape {
         edge = add(edge, normal);
         const Vec3 u = subtract(point(to), point(from)), v = subtract(point(corners[(k + 2) % 3]), point(from));
         Vec3& corner = corner_normals_[static_cast<std::size_t>(from)];
-        corner = add(corner, times(std::atan2(length(cross(u, v)), dot(u, v)), normal));
+        corner = add(corner, multiply(std::atan2(length(cross(u, v)), dot(u, v)), normal));
       }
     }
     for (std::size_t t = 0; t < surface_.triangles.size(); ++t)
@@ -106,7 +106,7 @@ class Mesh final : public Shape {
     const double distance = length(away), sign = dot(away, pseudonormal) < 0 ? -1 : 1;
     // Next to the surface the direction to the point is rounding.
     constexpr double next_to = 1e-9;
-    const Vec3 normal = distance > next_to * size_ ? times(sign / distance, away) : pseudonormal;
+    const Vec3 normal = distance > next_to * size_ ? multiply(sign / distance, away) : pseudonormal;
     return {sign * distance, normal, found.point};
   }
   Bounds bounds() const override { return bounds_; }

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "spume/core/vectors.hpp"
 #include "spume/geometry/mesh.hpp"
-#include "vectors.hpp"
 
 namespace spume {
 namespace {
@@ -43,7 +43,7 @@ class Faults {
   const Vec3& point(std::int32_t i) const { return surface_.points[static_cast<std::size_t>(i)]; }
   std::string triangle_at(std::size_t t) const {
     const Triangle& corners = surface_.triangles[t];
-    const Vec3 centre = times(1.0 / 3, add(add(point(corners[0]), point(corners[1])), point(corners[2])));
+    const Vec3 centre = multiply(1.0 / 3, add(add(point(corners[0]), point(corners[1])), point(corners[2])));
     return "triangle " + std::to_string(t + 1) + " at " + words(centre);
   }
   std::string edge_at(const Edge& edge) const {

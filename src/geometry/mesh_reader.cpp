@@ -16,9 +16,9 @@
 
 #include "ply_reader.hpp"
 #include "spume/core/error.hpp"
+#include "spume/core/vectors.hpp"
 #include "spume/geometry/mesh.hpp"
 #include "surfaces.hpp"
-#include "vectors.hpp"
 
 namespace spume {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "spume/core/vectors.hpp"
 #include "spume/geometry/shapes.hpp"
-#include "vectors.hpp"
 
 namespace spume {
 namespace {
@@ -47,7 +47,7 @@ class Placed final : public Shape {
   NearestPoint nearest(const Vec3& p) const override {
     const NearestPoint own = shape_->nearest(own_point(p));
     const double sign = inside_ ? 1 : -1;
-    return {sign * pose_.scale * own.distance, times(sign, turned(pose_.rotation, own.normal)), placed(own.point)};
+    return {sign * pose_.scale * own.distance, multiply(sign, turned(pose_.rotation, own.normal)), placed(own.point)};
   }
   double distance(const Vec3& p) const override {
     return (inside_ ? 1 : -1) * pose_.scale * shape_->distance(own_point(p));
@@ -74,8 +74,8 @@ class Placed final : public Shape {
   }
 
  private:
-  Vec3 own_point(const Vec3& p) const { return times(1 / pose_.scale, turned(back_, subtract(p, pose_.position))); }
-  Vec3 placed(const Vec3& p) const { return add(pose_.position, times(pose_.scale, turned(pose_.rotation, p))); }
+  Vec3 own_point(const Vec3& p) const { return multiply(1 / pose_.scale, turned(back_, subtract(p, pose_.position))); }
+  Vec3 placed(const Vec3& p) const { return add(pose_.position, multiply(pose_.scale, turned(pose_.rotation, p))); }
 
   ShapePointer shape_;
   Pose pose_;
@@ -99,15 +99,15 @@ std::array<Vec3, 3> rotation_by(const Vec3& degrees) {
     }
     const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
     std::array<Vec3, 3> next = total;
-    next[i] = subtract(times(c, total[i]), times(s, total[j]));
-    next[j] = add(times(s, total[i]), times(c, total[j]));
+    next[i] = subtract(multiply(c, total[i]), multiply(s, total[j]));
+    next[j] = add(multiply(s, total[i]), multiply(c, total[j]));
     total = next;
   }
   return total;
 }
 
 Vec3 to_own_coordinates(const Pose& pose, const Vec3& point) {
-  return times(1 / pose.scale, turned(transposed(pose.rotation), subtract(point, pose.position)));
+  return multiply(1 / pose.scale, turned(transposed(pose.rotation), subtract(point, pose.position)));
 }
 
 ShapePointer place(ShapePointer shape, const Pose& pose, bool inside, int dimensions) {
@@ -120,7 +120,7 @@ NearestPoint Combination::nearest(const Vec3& point) const {
     NearestPoint next = part.shape->nearest(point);
     if (part.subtract) {
       next.distance = -next.distance;
-      next.normal = times(-1, next.normal);
+      next.normal = multiply(-1, next.normal);
     }
     if (part.subtract ? next.distance > best.distance : next.distance < best.distance) best = next;
   }

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "polygon.hpp"
+#include "spume/core/vectors.hpp"
 #include "spume/geometry/shapes.hpp"
-#include "vectors.hpp"
 
 namespace spume {
 namespace {
@@ -27,7 +27,7 @@ TriangleSurface from_profile(const std::vector<Point2>& profile, int facets, int
 NearestPoint from_centre(const Vec3& centre, double radius, const Vec3& point, int dimensions) {
   const Vec3 away = subtract(point, centre);
   const Vec3 normal = unit(away, dimensions);
-  return {length(away) - radius, normal, add(centre, times(radius, normal))};
+  return {length(away) - radius, normal, add(centre, multiply(radius, normal))};
 }
 
 class Ball final : public Shape {
@@ -70,14 +70,14 @@ class Capsule final : public Shape {
     } else if (p == centre) {
       found.normal = {};
       found.normal[up_] = p[up_] < 0 ? -1 : 1;
-      found.point = add(centre, times(radius_, found.normal));
+      found.point = add(centre, multiply(radius_, found.normal));
     }
     return found;
   }
   Bounds bounds() const override {
     Vec3 upper{radius_, up_ == 2 ? radius_ : 0, 0};
     upper[up_] = half_ + radius_;
-    return {times(-1, upper), upper};
+    return {multiply(-1, upper), upper};
   }
   double volume() const override {
     const double circle = pi * radius_ * radius_;
@@ -224,7 +224,7 @@ class Ellipsoid final : public Shape {
   }
   Bounds bounds() const override {
     const Vec3 upper{axes_[0], axes_[1], count_ == 3 ? axes_[2] : 0};
-    return {times(-1, upper), upper};
+    return {multiply(-1, upper), upper};
   }
   double volume() const override {
     return count_ == 3 ? 4 * pi / 3 * axes_[0] * axes_[1] * axes_[2] : pi * axes_[0] * axes_[1];

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "vectors.hpp"
+#include "spume/core/vectors.hpp"
 
 namespace spume {
 
@@ -109,7 +109,7 @@ std::vector<Vec3> clip(std::vector<Vec3> polygon, const Bounds& box) {
         const double from = depth(p), to = depth(q);
         if (from >= 0) kept.push_back(p);
         if ((from < 0 && to > 0) || (from > 0 && to < 0))
-          kept.push_back(add(p, times(from / (from - to), subtract(q, p))));
+          kept.push_back(add(p, multiply(from / (from - to), subtract(q, p))));
       }
       polygon = std::move(kept);
     }

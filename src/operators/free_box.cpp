@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "spume/operators/free_box.hpp"
 
+#include "free_box_sweep.hpp"
+
 namespace spume {
 
 void box_moments(const SweepContext& context, const SolidUnion& solids, double spacing, std::span<const FreeBox> boxes,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "free_box_sweep.hpp"
 #include "spume/operators/image_values.hpp"
 
 namespace spume {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "spume/core/random.hpp"
+#include "spume/core/vectors.hpp"
 
 namespace spume {
 namespace {
@@ -53,10 +54,6 @@ double line_integral(const Quadrature& rule, const VectorExpression& force, cons
   return sum;
 }
 
-double length_of(const Vec3& v) {
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 Vec3 place(const Domain& domain, int k) {
   const auto fraction = random_uniform(1, RandomPurpose::force_sample, static_cast<std::uint64_t>(k), 0, 0);
   Vec3 r{};
@@ -94,7 +91,7 @@ bool ForcePotential::follows(const VectorExpression& force, const Domain& domain
     for (int k = 0; k < places; ++k) {
       const double t = fraction * end;
       const Vec3 r = place(domain, k);
-      largest = std::max(largest, length_of(force(r, t)));
+      largest = std::max(largest, length(force(r, t)));
       const double here = (*this)(force, r, t);
       for (int axis = 0; axis < domain.dimensions; ++axis) {
         Vec3 beside = r;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
 #include "spume/operators/surface_layers.hpp"
 #include "spume/particles/options.hpp"
 
@@ -29,10 +30,6 @@ double surface_layer_share(int dimensions) {
 // Spacings around the place that a normal points to. Beside the edge of a solid it points past the solid; a wall that
 // stands half a spacing beside a surface particle is not meant.
 constexpr double beside = 0.4;
-
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 #include "spume/scene/solid_union.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace spume {
@@ -281,6 +282,13 @@ std::optional<unsigned> SolidUnion::reflected_in_any_order(const Cell& from, con
 }
 
 std::optional<unsigned> SolidUnion::reflected_axes(const Cell& from, const Cell& step) const {
+  unsigned met = 0;
+  Cell beyond = from;
+  for (int axis = 0; axis < dimensions_; ++axis) {
+    beyond[axis] += step[axis];
+    if (step[axis] != 0) met |= 1U << axis;
+  }
+  if (std::has_single_bit(met)) return owner(beyond) == free_cell ? 0U : met;  // nearly every ray
   const std::optional<unsigned> reflected = reflected_in_any_order(from, step);
   if (!reflected || *reflected == 0) return reflected;
   Cell last = from, back = step;

@@ -49,30 +49,6 @@ upper = [0.4, 0.4, 0.3]
 end = 4
 )";
 
-const std::string tank_with_a_box = R"(method = "les-sph"
-[domain]
-lower = [0, 0, 0]
-upper = [0.8, 0.8, 0.6]
-left = "free-slip"
-right = "free-slip"
-front = "free-slip"
-back = "free-slip"
-bottom = "free-slip"
-[resolution]
-spacing = 0.05
-[fluid]
-reynolds = 1e6
-froude = 1
-mach = 0.05
-[[liquid]]
-upper = [0.4, 0.4, 0.6]
-[[solid]]
-lower = [0.6, 0.6, 0.3]
-upper = [0.8, 0.8, 0.6]
-[time]
-end = 1
-)";
-
 const std::string wave = R"(method = "les-sph"
 [domain]
 lower = [0, -1]
@@ -137,7 +113,8 @@ TEST(LesSphSurface, GradientOfALinearPressureIsExactOnADisorderedSurface) {
 // Liquid scattered to a quarter of its number density has a div r of about 0.7 everywhere, beside walls too, which is a
 // quarter of the 2.94 of the bulk.
 TEST(LesSphSurface, SprayBesideSolidsIsAllSurface) {
-  StagedFlow staged(tank_with_a_box);
+  StagedFlow staged(dam_break_3d + "[[solid]]\nlower = [0.75, 0.5, 0.5]\nupper = [1, 0.7, 1]\n",
+                    {"resolution.spacing=0.05", "liquid.0.upper=[0.5, 0.35, 1]"});
   les_sph::Flow& flow = staged.flow;
   for (std::size_t i = 0; i < flow.size(); ++i) {
     const auto r = random_uniform(3, RandomPurpose::test, i, 0, 0);

@@ -12,6 +12,8 @@
 
 #include "spume/core/error.hpp"
 #include "spume/methods/registry.hpp"
+#include "spume/scene/case_schema.hpp"
+#include "spume/scene/load.hpp"
 
 namespace spume::test {
 
@@ -51,12 +53,18 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-// The problems of a case as "line:col text", or of an override as "--set a=b text".
-inline std::vector<std::string> problems_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+inline LoadedCase load_text(const std::string& text, const CaseSchema& schema) {
+  const CaseFile file(text);
+  return load_case(file.path(), {}, schema);
+}
+
+// What loading a case file throws, as "line:col text", or of an override as "--set a=b text".
+template <class Load>
+std::vector<std::string> problems_found(const std::string& text, Load&& load) {
   const CaseFile file(text);
   std::vector<std::string> found;
   try {
-    load_case(file.path(), overrides);
+    load(file.path());
   } catch (const InputError& error) {
     for (const Problem& problem : error.problems()) {
       EXPECT_TRUE(problem.line == 0 || problem.file == file.path()) << problem.message();
@@ -66,6 +74,14 @@ inline std::vector<std::string> problems_of(const std::string& text, const std::
     }
   }
   return found;
+}
+
+inline std::vector<std::string> problems_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return problems_found(text, [&](const std::string& path) { load_case(path, overrides); });
+}
+
+inline std::vector<std::string> problems_of(const std::string& text, const CaseSchema& schema) {
+  return problems_found(text, [&](const std::string& path) { load_case(path, {}, schema); });
 }
 
 // A closed 2-D box full of liquid, 10 x 10 particles; `extra` goes at the end.

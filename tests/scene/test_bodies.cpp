@@ -45,19 +45,11 @@ const std::string head3 =
     "= 1\n[fluid]\nreynolds = 100\n[[liquid]]\nupper = [1, 1, -0.8]\n";  // 12 lines
 
 LoadedCase load(const std::string& text) {
-  const CaseFile file(text);
-  return load_case(file.path(), {}, schema());
+  return test::load_text(text, schema());
 }
 
 std::vector<std::string> problems(const std::string& text) {
-  std::vector<std::string> found;
-  try {
-    load(text);
-  } catch (const InputError& error) {
-    for (const Problem& problem : error.problems())
-      found.push_back(std::to_string(problem.line) + ":" + std::to_string(problem.column) + " " + problem.text);
-  }
-  return found;
+  return test::problems_of(text, schema());
 }
 
 std::vector<std::string> warnings(const std::string& text) {

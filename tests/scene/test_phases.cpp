@@ -36,19 +36,11 @@ const std::string air =
 const std::string everywhere = "[[region]]\nphase = \"water\"\n";                         // 20, 21
 
 LoadedCase load(const std::string& text) {
-  const CaseFile file(text);
-  return load_case(file.path(), {}, schema());
+  return test::load_text(text, schema());
 }
 
 std::vector<std::string> problems(const std::string& text) {
-  std::vector<std::string> found;
-  try {
-    load(text);
-  } catch (const InputError& error) {
-    for (const Problem& problem : error.problems())
-      found.push_back(std::to_string(problem.line) + ":" + std::to_string(problem.column) + " " + problem.text);
-  }
-  return found;
+  return test::problems_of(text, schema());
 }
 
 // Particles start at 0.05, 0.15, ...: in each quadrant about the middle (0.05, 0.05), (0.05, 0.15), (0.15, 0.05) and

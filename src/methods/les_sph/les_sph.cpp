@@ -187,6 +187,7 @@ void LesSph::load(StateReader& reader) {
   load_fields(flow_.particles.fields, static_cast<std::size_t>(counters[2]), "particle", reader);
   flow_.steps = counters[0];
   flow_.started = counters[1] != 0;
+  if (flow_.started) flow_.start_columns.reset();
   flow_.left = counters[3];
   for (int axis = 0; axis < 3; ++axis) flow_.boundary.walls[axis] = {walls[2 * axis], walls[2 * axis + 1]};
   flow_.find_uniform_acceleration(flow_.time);  // samples before the next step need it

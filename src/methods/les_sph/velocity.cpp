@@ -5,6 +5,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
 #include "spume/methods/les_sph/flow.hpp"
 #include "spume/particles/number_density.hpp"
 
@@ -16,18 +17,13 @@ namespace {
 // by 0.02 %.
 constexpr double least_divergence_of_position = 0.95;
 
-// NaN when a component is, which the library's function of three numbers is not.
-double length_of(const Vec3& v) {
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 [[noreturn]] void refuse_body_force(const Flow& flow, double t) {
   StepFailure::Details details;
   details.cause = "the body force is not a finite number";
   details.option = "forces.body";
   for (std::size_t i = 0; i < flow.size() && details.particle < 0; ++i) {
     const Vec3 r = vector_at(flow.intermediate_position, flow.dimensions, i);
-    const double size = length_of((*flow.scene.body_force)(r, t));
+    const double size = length((*flow.scene.body_force)(r, t));
     if (std::isfinite(size)) continue;
     details.particle = (*flow.particles.identifier)[i];
     std::copy(r.begin(), r.end(), details.position);
@@ -47,7 +43,7 @@ void for_each_body_force(Flow& flow, double t, Use&& use) {
         double largest = 0;
         for (std::size_t i = first; i < last; ++i) {
           const Vec3 r = vector_at(flow.intermediate_position, flow.dimensions, i), f = force(r, t);
-          largest = larger_or_nan(largest, length_of(f));
+          largest = larger_or_nan(largest, length(f));
           use(i, force, r, f);
         }
         return largest;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spume/core/vectors.hpp"
+
 namespace spume::bubbles {
 namespace {
 
@@ -18,16 +20,6 @@ constexpr double small_change = 1e-5, closed_bracket = 1e-10;
 // More than either method ever needs: bisection halves a bracket to rounding in 53.
 constexpr int most_iterations = 100, most_halvings = 200;
 constexpr double rounding = 1e-15;
-
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double length(const Vec3& a) {
-  return std::sqrt(dot(a, a));
-}
 
 // dw/dt = rate (push - K(|w|) w - w x spin), w = u_l - u_b.
 struct Slip {

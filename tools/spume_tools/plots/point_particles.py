@@ -37,7 +37,8 @@ def draw_slab(run, path):
     thickness = grid.spacing[plane.normal]
     near = np.abs(bubbles.position[:, plane.normal] - plane.coordinate) < thickness
     place = bubbles.position[near][:, list(plane.axes)]
-    figure, axes = plt.subplots(1, 2, figsize=(11.0, 5.2), constrained_layout=True)
+    shape = (plane.high[1] - plane.low[1]) / (plane.high[0] - plane.low[0])
+    figure, axes = plt.subplots(1, 2, figsize=(11.0, np.clip(1.2 + 4.2 * shape, 2.6, 9.0)), layout="compressed")
     for axis, part in zip(axes, (1.0, 0.3)):
         drawn = axis.imshow(panel.values.T, origin="lower", extent=panel.extent, cmap=FIELDS[name],
                             vmax=np.percentile(panel.values, 99.5), interpolation="bilinear", rasterized=True)
