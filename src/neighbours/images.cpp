@@ -98,6 +98,7 @@ std::size_t axis_reflections(const SolidUnion& solids, const Vec3& r, int axis, 
 void Images::add_reflections(const ImageRules& rules, std::size_t n) {
   const SolidUnion& solids = *rules.solids;
   const double reach = rules.support_radius;
+  const bool find_nearest = rules.find_nearest || rules.only_nearest;
   // Of two faces equally near up to rounding one owns an image: a lattice beside a box has many such points.
   const double tie = 1e-6 * reach;
   const auto each = [&](std::size_t k, auto&& sink) {
@@ -123,7 +124,7 @@ void Images::add_reflections(const ImageRules& rules, std::size_t n) {
         path.nearest = path.nearest && one.face[1] < 0;
       }
       if (distance2 >= reach * reach) continue;
-      if (path.nearest) {
+      if (path.nearest && find_nearest) {
         const Vec3 nearest = solids.nearest_free(image, tie);
         for (int axis = 0; axis < rules.dimensions; ++axis)
           path.nearest = path.nearest && std::abs(nearest[axis] - foot[axis]) <= tie;
@@ -132,23 +133,40 @@ void Images::add_reflections(const ImageRules& rules, std::size_t n) {
       if (path.nearest || !rules.only_nearest) sink(image, static_cast<std::int32_t>(k), path);
     }
   };
+  // Blocks of particles, each with the paths that it found: which of all they are is known at the end.
   std::vector<std::vector<ImagePath>> of_block(max_reduction_blocks);
+  reflected_.resize(max_reduction_blocks);
   const std::size_t block = std::max<std::size_t>(1024, (n + max_reduction_blocks - 1) / max_reduction_blocks);
   parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t last) {
     std::vector<ImagePath>& own = of_block[b];
+    reflected_[b].clear();
     for (std::size_t k = first; k < last; ++k)
-      each(k, [&](const Vec3&, std::int32_t, const ImagePath& path) {
-        if (std::find(own.begin(), own.end(), path) == own.end()) own.push_back(path);
+      each(k, [&](const Vec3& place, std::int32_t source, const ImagePath& path) {
+        const auto known = std::find(own.begin(), own.end(), path);
+        reflected_[b].push_back({place, source, static_cast<std::int32_t>(known - own.begin())});
+        if (known == own.end()) own.push_back(path);
       });
   });
   for (const auto& own : of_block) paths_.insert(paths_.end(), own.begin(), own.end());
   std::sort(paths_.begin(), paths_.end());
   paths_.erase(std::unique(paths_.begin(), paths_.end()), paths_.end());
-  append_stage(n, [&](std::size_t k, auto& sink) {
-    each(k, [&](const Vec3& image, std::int32_t source, const ImagePath& path) {
-      const auto number = std::lower_bound(paths_.begin(), paths_.end(), path) - paths_.begin();
-      sink(image, source, static_cast<std::int32_t>(number));
-    });
+  std::array<std::size_t, max_reduction_blocks + 1> start{};
+  const std::size_t blocks = block_count(n, block);
+  for (std::size_t b = 0; b < blocks; ++b) start[b + 1] = start[b] + reflected_[b].size();
+  for (auto& axis : position_) axis.resize(start[blocks]);
+  source_.resize(start[blocks]);
+  path_.resize(start[blocks]);
+  parallel_blocks(n, block, [&](std::size_t b, std::size_t, std::size_t) {
+    std::vector<std::int32_t> number;  // of the paths of the block among all
+    for (const ImagePath& path : of_block[b])
+      number.push_back(
+          static_cast<std::int32_t>(std::lower_bound(paths_.begin(), paths_.end(), path) - paths_.begin()));
+    std::size_t slot = start[b];
+    for (const Reflected& one : reflected_[b]) {
+      for (std::size_t axis = 0; axis < 3; ++axis) position_[axis][slot] = one.place[axis];
+      source_[slot] = one.source;
+      path_[slot++] = number[static_cast<std::size_t>(one.path)];
+    }
   });
 }
 
@@ -259,6 +277,7 @@ double Images::bytes() const {
       table_.bytes() + 4.0 * static_cast<double>(source_.capacity() + path_.capacity() + scratch_.capacity());
   for (int axis = 0; axis < 3; ++axis)
     total += 8.0 * static_cast<double>(position_[axis].capacity() + scratch_position_[axis].capacity());
+  for (const auto& block : reflected_) total += static_cast<double>(sizeof(Reflected) * block.capacity());
   return total;
 }
 

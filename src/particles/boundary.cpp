@@ -80,6 +80,7 @@ ImageRules Boundary::image_rules(double support_radius) const {
     }
   }
   rules.solids = solids_;
+  rules.find_nearest = find_nearest_images;
   return rules;
 }
 

@@ -30,7 +30,8 @@ struct ImageRules {
   std::array<double, 3> lower{}, upper{};           // planes of the sides
   std::array<std::array<ImageKind, 2>, 3> sides{};  // [axis][0 lower, 1 upper]
   std::shared_ptr<const SolidUnion> solids;         // null: no boxes
-  bool only_nearest = false;                        // in solids: images without ImagePath::nearest are not made
+  bool find_nearest = false;                        // in solids: ImagePath::nearest is wanted
+  bool only_nearest = false;                        // in solids: images without it are not made
   double support_radius = 0;                        // images farther than this from the liquid are not made
 };
 
@@ -40,7 +41,7 @@ struct ImagePath {
   using Faces = std::array<std::array<std::int16_t, 2>, 3>;
   Faces face{{{-1, -1}, {-1, -1}, {-1, -1}}};
   std::array<std::int8_t, 3> side{-1, -1, -1};  // then, per axis: -1 none, 0 lower, 1 upper
-  bool nearest = true;
+  bool nearest = true;                          // false is found on demand: ImageRules::find_nearest
   auto operator<=>(const ImagePath&) const = default;
   // In faces.
   int reflections() const {
@@ -84,7 +85,12 @@ class Images {
   void add_axis_images(const ImageRules& rules, int axis, std::size_t n);
   std::int32_t find_path(const ImagePath& path);
 
+  struct Reflected {
+    Vec3 place;
+    std::int32_t source, path;
+  };
   std::array<const double*, 3> particle_{};
+  std::vector<std::vector<Reflected>> reflected_;  // of blocks of particles, while images at solids are made
   std::array<Array<double>, 3> position_, scratch_position_;
   Array<std::int32_t> source_, path_, scratch_;
   std::vector<ImagePath> paths_;

@@ -44,6 +44,7 @@ class Boundary {
   WallPositions walls{};       // at the start of the step; state between steps
   WallPositions next_walls{};  // at its end
   // Largest speed of the moving walls where images see them: of the accepted step (state), and of this one.
+  bool find_nearest_images = false;  // ImagePath::nearest, which bubbles ask for
   double wall_speed = 0, next_wall_speed = 0;
 
   // Wall planes at t + dt from the time integral of the walls' normal velocities: `next_walls`.
