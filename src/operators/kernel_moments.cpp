@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "spume/operators/sph_operators.hpp"
+#include "symmetric_matrix.hpp"
 
 namespace spume {
 namespace {
@@ -23,28 +24,9 @@ constexpr double tensile_factor = 0.25;
 
 // Inverse of a symmetric matrix; false when it is singular or amplifies too much.
 bool invert(const std::array<double, 6>& m, int dimensions, std::array<double, 6>& inverse) {
-  double norm2 = 0;
-  if (dimensions == 2) {
-    const double det = m[0] * m[2] - m[1] * m[1];
-    if (!(det > singular)) return false;
-    inverse = {m[2] / det, -m[1] / det, m[0] / det, 0, 0, 0};
-    norm2 = inverse[0] * inverse[0] + 2 * inverse[1] * inverse[1] + inverse[2] * inverse[2];
-  } else {
-    const double c00 = m[3] * m[5] - m[4] * m[4];
-    const double c01 = m[2] * m[4] - m[1] * m[5];
-    const double c02 = m[1] * m[4] - m[2] * m[3];
-    const double det = m[0] * c00 + m[1] * c01 + m[2] * c02;
-    if (!(det > singular)) return false;
-    inverse = {c00 / det,
-               c01 / det,
-               c02 / det,
-               (m[0] * m[5] - m[2] * m[2]) / det,
-               (m[1] * m[2] - m[0] * m[4]) / det,
-               (m[0] * m[3] - m[1] * m[1]) / det};
-    norm2 = inverse[0] * inverse[0] + inverse[3] * inverse[3] + inverse[5] * inverse[5] +
-            2 * (inverse[1] * inverse[1] + inverse[2] * inverse[2] + inverse[4] * inverse[4]);
-  }
-  return norm2 < dimensions * largest_correction * largest_correction;
+  double squares = 0;
+  return invert_symmetric(m, dimensions, singular, inverse, squares) &&
+         squares < dimensions * largest_correction * largest_correction;
 }
 
 template <int dimensions>

@@ -4,32 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "symmetric_matrix.hpp"
+
 namespace spume {
 namespace {
 
 using simd::f32n;
 
-// Row a, column c of a symmetric matrix stored as its upper triangle.
-template <int dimensions>
-constexpr int symmetric_index(int a, int c) {
-  const int low = a < c ? a : c, high = a < c ? c : a;
-  return dimensions == 2 ? low + high : (low == 0 ? high : low + high + 1);
-}
-
 // Volumes of the particles as the last payload of a sweep with a variable h.
 template <class Kernel>
 void pack_volumes(const SweepContext& context, float* records, int width, int slot) {
   if constexpr (is_variable_h<Kernel>) pack_scalar(context, records, width, slot, context.volume_ratio);
-}
-
-// The corrected vector L v of particle i.
-template <int dimensions>
-std::array<float, dimensions> correct(const std::array<const float*, 6>& correction, std::size_t i,
-                                      const std::array<float, dimensions>& v) {
-  std::array<float, dimensions> result{};
-  for (int a = 0; a < dimensions; ++a)
-    for (int c = 0; c < dimensions; ++c) result[a] += correction[symmetric_index<dimensions>(a, c)][i] * v[c];
-  return result;
 }
 
 // The differences u_j - u_i of a particle from all its neighbours lie between `low` and `high`, which include 0.
@@ -84,7 +69,7 @@ void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
     std::array<std::array<float, dimensions>, dimensions> gradient{};
     for (int a = 0; a < dimensions; ++a) {
       for (int c = 0; c < dimensions; ++c) gradient[a][c] = simd::sum(m[a][c]);
-      gradient[a] = correct<dimensions>(correction, i, gradient[a]);
+      gradient[a] = symmetric_product<dimensions>(correction, i, gradient[a]);
       if constexpr (filter) out[a][i] = (centre * own[a][0] + simd::sum(filtered[a])) * weight;
     }
     DifferenceBounds<dimensions> bounds;
@@ -151,7 +136,7 @@ void shift_curvature(const SweepContext& context, PackedNeighbours& packed, cons
     std::array<float, dimensions> s;
     for (int a = 0; a < dimensions; ++a) s[a] = shift[a][i];
     // L is symmetric: (L sum g d f) . s = sum g f (d . L s).
-    const std::array<float, dimensions> direction = correct<dimensions>(correction, i, s);
+    const std::array<float, dimensions> direction = symmetric_product<dimensions>(correction, i, s);
     std::array<f32n, dimensions> sum{};
     std::array<float, entries> own;
     for (int k = 0; k < entries; ++k) own[k] = records[i * width + dimensions + k];
@@ -280,7 +265,7 @@ void gradient_of(const SweepContext& context, PackedNeighbours& packed, const do
     });
     std::array<float, dimensions> v{};
     for (int a = 0; a < dimensions; ++a) v[a] = simd::sum(sum[a]);
-    v = correct<dimensions>(correction, i, v);
+    v = symmetric_product<dimensions>(correction, i, v);
     for (int a = 0; a < dimensions; ++a) out[a][i] = v[a];
   });
 }

@@ -121,6 +121,7 @@ class SphSums {
   }
 
   std::size_t size() const { return n_; }
+  const PlainKernel& kernel() const { return kernel_; }
   int dimensions() const { return kernel_.dimensions; }
   const std::vector<SphPoint>& points() const { return points_; }
   // Whether no solid stands between a particle and a point.
@@ -129,6 +130,35 @@ class SphSums {
   }
   double width(std::size_t i) const { return sizes_.length_ratio.empty() ? h_ : h_ * sizes_.length_ratio[i]; }
   double volume_ratio(std::size_t i) const { return sizes_.volume_ratio.empty() ? 1 : sizes_.volume_ratio[i]; }
+
+  struct Pair {
+    const SphPoint* point;
+    Vector d;  // r_j - r_i
+    double r, w, g, largest_w, largest_g;
+  };
+
+  // Calls visit(pair) for what particle i sees in its support.
+  template <class Visit>
+  void each(std::size_t i, Visit&& visit) const {
+    for (std::size_t j = 0; j < points_.size(); ++j) {
+      if (j == i) continue;
+      Pair pair{&points_[j], {}, 0, 0, 0, 0, 0};
+      double r2 = 0;
+      for (int a = 0; a < dimensions(); ++a) {
+        pair.d[a] = points_[j].position[a] - points_[i].position[a];
+        r2 += pair.d[a] * pair.d[a];
+      }
+      pair.r = std::sqrt(r2);
+      const double h = width(i), v = volume_ratio(points_[j].source);
+      if (pair.r >= kernel_.support() * h) continue;
+      if (!seen(i, j)) continue;
+      pair.w = v * weight(pair.r, h);
+      pair.g = v * slope(pair.r, h);
+      pair.largest_w = v * weight(0, h);
+      pair.largest_g = v * slope(0, h);
+      visit(pair);
+    }
+  }
 
   std::size_t neighbours(std::size_t i) const {
     std::size_t count = 0;
@@ -408,12 +438,6 @@ class SphSums {
   }
 
  private:
-  struct Pair {
-    const SphPoint* point;
-    Vector d;  // r_j - r_i
-    double r, w, g, largest_w, largest_g;
-  };
-
   // Volume V times W and -F sigma / h^(d+2).
   double weight(double r, double h) const {
     return volume_ * kernel_.normalisation() / std::pow(h, dimensions()) * kernel_.w(r / h);
@@ -422,28 +446,6 @@ class SphSums {
     return -volume_ * kernel_.normalisation() / std::pow(h, dimensions() + 2) * kernel_.f(r / h);
   }
   double own_weight(std::size_t i) const { return volume_ratio(i) * weight(0, width(i)); }
-
-  template <class Visit>
-  void each(std::size_t i, Visit&& visit) const {
-    for (std::size_t j = 0; j < points_.size(); ++j) {
-      if (j == i) continue;
-      Pair pair{&points_[j], {}, 0, 0, 0, 0, 0};
-      double r2 = 0;
-      for (int a = 0; a < dimensions(); ++a) {
-        pair.d[a] = points_[j].position[a] - points_[i].position[a];
-        r2 += pair.d[a] * pair.d[a];
-      }
-      pair.r = std::sqrt(r2);
-      const double h = width(i), v = volume_ratio(points_[j].source);
-      if (pair.r >= kernel_.support() * h) continue;
-      if (!seen(i, j)) continue;
-      pair.w = v * weight(pair.r, h);
-      pair.g = v * slope(pair.r, h);
-      pair.largest_w = v * weight(0, h);
-      pair.largest_g = v * slope(0, h);
-      visit(pair);
-    }
-  }
 
   static void reflect(SphPoint& point, int axis, BoundaryKind kind, const Vec3& wall) {
     if (kind == BoundaryKind::periodic) return;

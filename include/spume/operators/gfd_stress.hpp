@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Diffusion of momentum by generalised finite differences (operators/gfd_moments.hpp), Joubert et al., equations (9),
+// (12) and (19), and the form that converges at sharp interfaces. With d = r_j - r_i,
+//
+//   <lap u>    = f sum_j (u_j - u_i) W (1 + d . o)                                                     (9)
+//   <mu lap u> = f sum_j mu_ij (u_j - u_i) W (1 + d . o),  mu_ij = 2 mu_i mu_j / (mu_i + mu_j)          (12)
+//
+// (12) is printed with u_i - u_j, the negative of this. It stands for div(mu grad u), and what it lacks of the shear
+// divergence div(2 mu T), T = (grad u + (grad u)^T) / 2, is (grad u)^T . grad mu, which vanishes in plane shear and not
+// on a curved interface:
+//
+//   split         <mu lap u> + (grad u)^T . <grad mu>,  component a: sum_b d u_b / d x_a  d mu / d x_b
+//   printed       <grad mu> . 2 T + mu <lap u>                                                         (19)
+//   mu_laplacian  <mu lap u>
+//   laplacian     mu <lap u>
+//
+// At a sharp interface grad mu is a delta and the normal derivative of u jumps: (19) multiplies them and does not
+// converge. The split multiplies the delta by derivatives of the normal velocity alone, which are continuous.
+//
+// All of them are divided by the density rho_i of the particle: the result is an acceleration. Without a density it is
+// a force per volume. Viscosities (not negative) and densities (positive) are filtered.
+#pragma once
+
+#include "spume/operators/gfd_moments.hpp"
+#include "spume/operators/image_values.hpp"
+
+namespace spume {
+
+enum class MomentumDiffusion { split, printed, mu_laplacian, laplacian };
+
+struct DiffusionProperties {
+  PhaseProperty viscosity;
+  const float* density = nullptr;
+  // <grad mu / rho> (18), or grad mu without a density: for split and printed where the viscosity varies, and read only
+  // there.
+  std::array<const float*, 3> viscosity_gradient{};
+};
+
+void gfd_stress_sweep(const SweepContext& context, PackedNeighbours& packed,
+                      const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
+                      const GfdStencils& stencils, MomentumDiffusion form, const DiffusionProperties& properties,
+                      const std::array<float*, 3>& out);
+
+}  // namespace spume

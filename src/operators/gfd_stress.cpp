@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "spume/operators/gfd_stress.hpp"
+
+#include "gfd_row.hpp"
+
+namespace spume {
+namespace {
+
+using simd::f32n;
+
+// What a row computes where the viscosity varies.
+template <MomentumDiffusion form>
+inline constexpr bool takes_means = form == MomentumDiffusion::split || form == MomentumDiffusion::mu_laplacian;
+template <MomentumDiffusion form>
+inline constexpr bool takes_gradient = form == MomentumDiffusion::split || form == MomentumDiffusion::printed;
+
+// Particle i, whose records hold u and, where a form takes means, mu after it.
+template <int dimensions, class Kernel, int payload, MomentumDiffusion form>
+void stress_row(const SweepContext& context, const float* records, std::size_t i, const GfdStencils& stencils,
+                const DiffusionProperties& properties, const std::array<float*, 3>& out) {
+  const float* own = records + i * record_width(dimensions, payload) + dimensions;
+  const auto o = own_vector<dimensions>(stencils.offset, i);
+  [[maybe_unused]] const f32n own_viscosity = simd::splat<f32n>(properties.viscosity.value[i]);
+  std::array<f32n, dimensions> sum{};
+  std::array<std::array<f32n, dimensions>, dimensions> m{};
+  for_each_batch<dimensions, payload>(*context.list, records, i, inverse_width(context), [&](const auto& b) {
+    const f32n w = Kernel::w(b.q);
+    f32n weight = w * offset_factor(b, o);
+    if constexpr (takes_means<form>) weight = weight * harmonic_mean(own_viscosity, b.payload[dimensions]);
+    std::array<f32n, dimensions> wd;
+    if constexpr (takes_gradient<form>)
+      for (int c = 0; c < dimensions; ++c) wd[c] = w * b.d[c];
+    for (int a = 0; a < dimensions; ++a) {
+      const f32n difference = b.payload[a] - own[a];
+      sum[a] = sum[a] + weight * difference;
+      if constexpr (takes_gradient<form>)
+        for (int c = 0; c < dimensions; ++c) m[a][c] = m[a][c] + difference * wd[c];
+    }
+  });
+  float factor = stencils.laplacian_factor[i];
+  if constexpr (!takes_means<form>) factor *= properties.viscosity.value[i];
+  if (properties.density != nullptr) factor /= properties.density[i];
+  std::array<float, dimensions> result;
+  for (int a = 0; a < dimensions; ++a) result[a] = factor * simd::sum(sum[a]);
+  if constexpr (takes_gradient<form>) {
+    const auto slope = own_vector<dimensions>(properties.viscosity_gradient, i);
+    for (int b = 0; b < dimensions; ++b) {
+      std::array<float, dimensions> gradient;  // of u_b
+      for (int c = 0; c < dimensions; ++c) gradient[c] = simd::sum(m[b][c]);
+      gradient = symmetric_product<dimensions>(stencils.correction, i, gradient);
+      for (int a = 0; a < dimensions; ++a) {
+        result[a] += gradient[a] * slope[b];
+        if constexpr (form == MomentumDiffusion::printed) result[b] += gradient[a] * slope[a];
+      }
+    }
+  }
+  for (int a = 0; a < dimensions; ++a) out[a][i] = result[a];
+}
+
+template <int dimensions, class Kernel, MomentumDiffusion form, bool varies>
+void stress(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
+            const VelocityImageRule& rule, const GfdStencils& stencils, const DiffusionProperties& properties,
+            const std::array<float*, 3>& out) {
+  constexpr int payload = dimensions + (varies && takes_means<form> ? 1 : 0);
+  constexpr int width = record_width(dimensions, payload);
+  float* records = packed.prepare(context, payload);
+  pack_velocity(context, records, width, 0, velocity, rule);
+  if constexpr (payload > dimensions) pack_scalar(context, records, width, dimensions, properties.viscosity.value);
+  sweep(context.list->particles(), [&](std::size_t i) {
+    if constexpr (varies)
+      if (properties.viscosity.varies[i] != 0)
+        return stress_row<dimensions, Kernel, payload, form>(context, records, i, stencils, properties, out);
+    stress_row<dimensions, Kernel, payload, MomentumDiffusion::laplacian>(context, records, i, stencils, properties,
+                                                                          out);
+  });
+}
+
+}  // namespace
+
+void gfd_stress_sweep(const SweepContext& context, PackedNeighbours& packed,
+                      const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
+                      const GfdStencils& stencils, MomentumDiffusion form, const DiffusionProperties& properties,
+                      const std::array<float*, 3>& out) {
+  with_gfd_kernel(context, [&]<int dimensions, class Kernel>() {
+    const auto run = [&]<MomentumDiffusion chosen, bool varies>() {
+      stress<dimensions, Kernel, chosen, varies>(context, packed, velocity, rule, stencils, properties, out);
+    };
+    using enum MomentumDiffusion;
+    if (properties.viscosity.varies == nullptr || form == laplacian)
+      run.template operator()<laplacian, false>();
+    else if (form == split)
+      run.template operator()<split, true>();
+    else if (form == printed)
+      run.template operator()<printed, true>();
+    else
+      run.template operator()<mu_laplacian, true>();
+  });
+}
+
+}  // namespace spume

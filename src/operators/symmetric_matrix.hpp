@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Symmetric matrices of two or three rows, stored as their upper triangle: xx, xy, yy or xx, xy, xz, yy, yz, zz.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace spume {
+
+template <int dimensions>
+inline constexpr int symmetric_entries = dimensions*(dimensions + 1) / 2;
+
+// Row a, column c.
+template <int dimensions>
+constexpr int symmetric_index(int a, int c) {
+  const int low = a < c ? a : c, high = a < c ? c : a;
+  return dimensions == 2 ? low + high : (low == 0 ? high : low + high + 1);
+}
+
+// The product M v of particle i.
+template <int dimensions>
+std::array<float, dimensions> symmetric_product(const std::array<const float*, 6>& matrix, std::size_t i,
+                                                const std::array<float, dimensions>& v) {
+  std::array<float, dimensions> result{};
+  for (int a = 0; a < dimensions; ++a)
+    for (int c = 0; c < dimensions; ++c) result[a] += matrix[symmetric_index<dimensions>(a, c)][i] * v[c];
+  return result;
+}
+
+// The inverse, where the determinant exceeds `singular`, and the sum of the squares of its entries; else false.
+inline bool invert_symmetric(const std::array<double, 6>& m, int dimensions, double singular,
+                             std::array<double, 6>& inverse, double& squares) {
+  if (dimensions == 2) {
+    const double det = m[0] * m[2] - m[1] * m[1];
+    if (!(det > singular)) return false;
+    inverse = {m[2] / det, -m[1] / det, m[0] / det, 0, 0, 0};
+    squares = inverse[0] * inverse[0] + 2 * inverse[1] * inverse[1] + inverse[2] * inverse[2];
+  } else {
+    const double c00 = m[3] * m[5] - m[4] * m[4];
+    const double c01 = m[2] * m[4] - m[1] * m[5];
+    const double c02 = m[1] * m[4] - m[2] * m[3];
+    const double det = m[0] * c00 + m[1] * c01 + m[2] * c02;
+    if (!(det > singular)) return false;
+    inverse = {c00 / det,
+               c01 / det,
+               c02 / det,
+               (m[0] * m[5] - m[2] * m[2]) / det,
+               (m[1] * m[2] - m[0] * m[4]) / det,
+               (m[0] * m[3] - m[1] * m[1]) / det};
+    squares = inverse[0] * inverse[0] + inverse[3] * inverse[3] + inverse[5] * inverse[5] +
+              2 * (inverse[1] * inverse[1] + inverse[2] * inverse[2] + inverse[4] * inverse[4]);
+  }
+  return true;
+}
+
+}  // namespace spume
