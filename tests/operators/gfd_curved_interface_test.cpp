@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// What the forms of momentum diffusion say of the flow of two fluids between turning cylinders, whose shear divergence
+// is zero and whose viscosity jumps on a circle.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "operators/gfd_arrangement.hpp"
+#include "spume/operators/gfd_stress.hpp"
+#include "spume/operators/interface_curvature.hpp"
+#include "spume/operators/interface_filters.hpp"
+
+namespace spume::test {
+namespace {
+
+constexpr double radius = 0.25, inner_viscosity = 5, outer_viscosity = 1;
+
+// u_theta = A r + B / r on either side, with u = 1 on the circle and the torque -4 pi mu B the same on both.
+double turning_velocity(double r) {
+  const double b = (r < radius ? 1 / inner_viscosity : 1 / outer_viscosity) * 0.05;
+  const double a = (1 - b / radius) / radius;
+  return a * r + b / r;
+}
+
+// The torque of the particles near the circle over that of the part of the shear divergence that div(mu grad u) lacks:
+// (grad u)^T . grad mu is -u / R times the jump of the viscosity, in all -2 pi R (mu_outer - mu_inner) u.
+double relative_torque(int across, double jitter, MomentumDiffusion form) {
+  ArrangementSetup setup;
+  setup.spacing = 1.0 / across;
+  setup.points = lattice_points(across, 2, jitter);
+  Arrangement a(setup);
+  const Stencils stencils(a);
+  std::vector<std::uint8_t> phase(a.size());
+  VectorArrays<double> u(a.size(), 2);
+  const auto from_centre = a.sample([](const Point& p) { return std::hypot(p[0] - 0.5, p[1] - 0.5); });
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double r = std::max(from_centre[i], 0.25 * radius);  // nothing near the centre is asked
+    phase[i] = from_centre[i] < radius ? 1 : 0;
+    u[0][i] = -turning_velocity(r) * (a.hood.y[i] - 0.5) / r;
+    u[1][i] = turning_velocity(r) * (a.hood.x[i] - 0.5) / r;
+  }
+  InterfaceBands bands;
+  bands.build(a.context, a.hood.grid, a.hood.table, phase);
+  Array<float> raw(a.size()), viscosity(a.size());
+  const Array<float> one(a.size(), 1.0F);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    raw[i] = static_cast<float>(phase[i] == 1 ? inner_viscosity : outer_viscosity);
+  filter_property(a.context, a.packed, bands, raw.data(), viscosity);
+  VectorArrays<float> slope(a.size(), 2), force(a.size(), 2);
+  gfd_gradient_over_density_subset(a.context, a.packed, viscosity.data(), one.data(), stencils.read().correction,
+                                   bands.varying(), slope.write());
+  gfd_stress_sweep(a.context, a.packed, u.read(), a.rule, stencils.read(), form,
+                   {{viscosity.data(), bands.varies()}, nullptr, slope.read()}, force.write());
+  double torque = 0;
+  for (const std::int32_t s : bands.varying()) {
+    const auto i = static_cast<std::size_t>(s);
+    torque += a.context.volume * ((a.hood.x[i] - 0.5) * force[1][i] - (a.hood.y[i] - 0.5) * force[0][i]);
+  }
+  return torque / (2 * std::numbers::pi * radius * (outer_viscosity - inner_viscosity));
+}
+
+// <mu lap u> has the torque that it lacks, 0.99 of it, whatever the spacing. That of the split is 0.65 spacings over
+// the side of the box on a lattice, first order; displaced particles scatter around it by less than that. The printed
+// form balances in sum too: what keeps flows computed with it from converging is where it puts the force.
+TEST(GfdCurvedInterface, TheSplitBalancesTheTorqueOfTwoFluidsBetweenCylindersAndMuLaplacianDoesNot) {
+  for (const double jitter : {0.0, 0.2}) {
+    SCOPED_TRACE("jitter " + std::to_string(jitter));
+    double coarser = 0;
+    for (const int across : {32, 64, 128}) {
+      const double split = relative_torque(across, jitter, MomentumDiffusion::split);
+      EXPECT_LT(std::abs(split), 1.0 / across);
+      if (jitter == 0 && across > 32) {
+        EXPECT_NEAR(coarser / split, 2, 0.1);
+      }
+      coarser = split;
+      EXPECT_NEAR(relative_torque(across, jitter, MomentumDiffusion::mu_laplacian), 1, 0.02);
+      EXPECT_NEAR(relative_torque(across, jitter, MomentumDiffusion::printed), 0, 0.02);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spume::test
