@@ -14,9 +14,9 @@
 //   mu_laplacian  <mu lap u>
 //   laplacian     mu <lap u>
 //
-// At a sharp interface grad mu is a delta and the normal derivative of u jumps: (19) multiplies them, and flows computed
-// with it do not converge. The split multiplies the delta by derivatives of the normal velocity alone, which are
-// continuous.
+// At a sharp interface grad mu is a delta and the normal derivative of u jumps: (19) multiplies them, and flows
+// computed with it do not converge. The split multiplies the delta by derivatives of the normal velocity alone, which
+// are continuous.
 //
 // All of them are divided by the density rho_i of the particle: the result is an acceleration. Without a density it is
 // a force per volume. Viscosities (not negative) and densities (positive) are filtered.
