@@ -13,16 +13,13 @@ using simd::f64n;
 // Rows handled at a time by one thread, as in sweep(). Dot products add up block by block, whoever worked on it.
 constexpr std::size_t block = 256;
 
-// Lists are padded to a multiple of this.
-constexpr std::uint32_t list_padding = simd::lanes;
-
 // The rows of a matrix for one kernel.
 template <int dimensions, class Kernel>
 struct Rows {
   const SweepContext& context;
   const GfdPressureMatrix& matrix;
-  const std::uint32_t* first_coefficient;
-  const float* coefficient;
+  const std::uint32_t* first_weight;
+  const float* weight;
 
   bool masked(std::size_t i) const { return matrix.masked != nullptr && matrix.masked[i] != 0; }
   bool varies(std::size_t i) const { return matrix.density.varies != nullptr && matrix.density.varies[i] != 0; }
@@ -30,41 +27,46 @@ struct Rows {
   float volume() const { return static_cast<float>(context.volume); }
 
   // Calls add(W (1 + d . o) / rho_ij, batch) for row i, with 1 / rho_i in the factor that it returns where the density
-  // does not vary. If it varies somewhere all rows take coefficients, those of one density the same ones: rows of two
-  // kinds in turn took 1.2 times as long as rows with coefficients, as the branch between them is guessed wrongly.
-  template <int payload, bool somewhere, class Add>
+  // does not vary.
+  template <int payload, bool stored, class Add>
   [[gnu::always_inline]] float visit(const float* records, std::size_t i, Add&& add) const {
-    const auto o = own_vector<dimensions>(matrix.stencils.offset, i);
     const float factor = volume() * matrix.stencils.laplacian_factor[i];
-    [[maybe_unused]] const float* next = nullptr;
-    [[maybe_unused]] std::size_t step = 0;
-    if constexpr (somewhere) {
-      next = coefficient + std::size_t{list_padding} * first_coefficient[i];
-      step = varies(i) ? simd::pair_lanes : 0;
+    if constexpr (stored) {
+      const float* next = weight + std::size_t{simd::pair_lanes} * first_weight[i];
+      for_each_batch<dimensions, payload>(*context.list, records, i, inverse_width(context), [&](const auto& b) {
+        add(simd::load<f32n>(next), b);
+        next += simd::pair_lanes;
+      });
+      return factor;
+    } else {
+      const auto o = own_vector<dimensions>(matrix.stencils.offset, i);
+      for_each_batch<dimensions, payload>(*context.list, records, i, inverse_width(context),
+                                          [&](const auto& b) { add(Kernel::w(b.q) * offset_factor(b, o), b); });
+      return factor / matrix.density.value[i];
     }
-    for_each_batch<dimensions, payload>(*context.list, records, i, inverse_width(context), [&](const auto& b) {
-      f32n weight = Kernel::w(b.q) * offset_factor(b, o);
-      if constexpr (somewhere) {
-        weight = weight * simd::load<f32n>(next);
-        next += step;
-      }
-      add(weight, b);
-    });
-    return somewhere && step != 0 ? factor : factor / matrix.density.value[i];
   }
   template <int payload, class Add>
   [[gnu::always_inline]] float visit_any(const float* records, std::size_t i, Add&& add) const {
-    return matrix.density.varies != nullptr ? visit<payload, true>(records, i, add)
-                                            : visit<payload, false>(records, i, add);
+    return varies(i) ? visit<payload, true>(records, i, add) : visit<payload, false>(records, i, add);
+  }
+
+  // Multiplies 1 / rho_ij of the neighbours of row i, in `out`, by W (1 + d . o).
+  void multiply_weights(const float* records, std::size_t i, float* out) const {
+    const auto o = own_vector<dimensions>(matrix.stencils.offset, i);
+    for_each_batch<dimensions, 0>(*context.list, records, i, inverse_width(context), [&](const auto& b) {
+      const f32n product = Kernel::w(b.q) * offset_factor(b, o) * simd::load<f32n>(out);
+      std::memcpy(out, &product, sizeof product);
+      out += simd::pair_lanes;
+    });
   }
 
   // V <-lap x / rho> of row i, whose records hold x.
-  template <bool density_varies>
+  template <bool stored>
   float in_float(const float* records, std::size_t i) const {
     const f32n own = simd::splat<f32n>(records[i * record_width(dimensions, 1) + dimensions]);
     f32n sum{};
-    const float factor = visit<1, density_varies>(
-        records, i, [&](f32n weight, const auto& b) { sum = sum + weight * (own - b.payload[0]); });
+    const float factor =
+        visit<1, stored>(records, i, [&](f32n weight, const auto& b) { sum = sum + weight * (own - b.payload[0]); });
     return factor * simd::sum(sum);
   }
 
@@ -98,45 +100,47 @@ void GfdPressureOperator::bind(const SweepContext& context, PackedNeighbours& pa
   packed_ = &packed;
   matrix_ = matrix;
   partial_.resize(block_count(size(), block));
-  if (matrix.density.varies != nullptr) find_coefficients();
+  if (matrix.density.varies != nullptr) find_weights();
 }
 
-void GfdPressureOperator::find_coefficients() {
+void GfdPressureOperator::find_weights() {
   const NeighbourList& list = *context_.list;
   const std::uint8_t* varies = matrix_.density.varies;
   const float* density = matrix_.density.value;
-  const auto length = [&](std::size_t i) -> std::uint32_t {
-    return varies[i] != 0 ? static_cast<std::uint32_t>(list.padded_end(i) - list.begin(i)) / list_padding : 0;
-  };
   const std::size_t n = size();
-  first_coefficient_.resize(n);
+  const auto batches = [&](std::size_t i) {
+    return varies[i] != 0 ? static_cast<std::uint32_t>(block_count(list.of(i).size(), simd::pair_lanes)) : 0U;
+  };
+  first_weight_.resize(n);
   block_start_.resize(block_count(n, block) + 1);
-  constexpr std::uint32_t ones = simd::pair_lanes / list_padding;
-  block_start_[0] = ones;  // of rows of one density
+  block_start_[0] = 0;
   parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t last) {
     std::uint32_t sum = 0;
-    for (std::size_t i = first; i < last; ++i) sum += length(i);
+    for (std::size_t i = first; i < last; ++i) sum += batches(i);
     block_start_[b + 1] = sum;
   });
   for (std::size_t b = 0; b + 1 < block_start_.size(); ++b) block_start_[b + 1] += block_start_[b];
-  // The last batch can read past its row.
-  coefficient_.resize(std::size_t{list_padding} * block_start_[block_start_.size() - 1] + simd::pair_lanes);
-  for (std::size_t k = 1; k <= simd::pair_lanes; ++k) coefficient_[coefficient_.size() - k] = 0;
-  for (std::size_t k = 0; k < simd::pair_lanes; ++k) coefficient_[k] = 1;
+  weight_.resize(std::size_t{simd::pair_lanes} * block_start_[block_start_.size() - 1]);
   const std::int32_t* source = context_.images->source();
   const auto particles = static_cast<std::int32_t>(n);
-  parallel_blocks_dynamic(n, block, [&](std::size_t b, std::size_t first, std::size_t last) {
-    std::uint32_t start = block_start_[b];
-    for (std::size_t i = first; i < last; ++i) {
-      first_coefficient_[i] = varies[i] != 0 ? start : 0;
-      if (varies[i] == 0) continue;
-      float* out = coefficient_.data() + std::size_t{list_padding} * start;
-      for (const std::int32_t j : list.of(i))
-        *out++ = 2 / (density[i] + density[j < particles ? j : source[j - particles]]);
-      start += length(i);
-      // Of the sentinel, whose weight is zero.
-      for (float* const end = coefficient_.data() + std::size_t{list_padding} * start; out < end; ++out) *out = 0;
-    }
+  const float* records = packed_->prepare(context_, 0);
+  with_gfd_kernel(context_, [&]<int dimensions, class Kernel>() {
+    const Rows<dimensions, Kernel> rows{context_, matrix_, first_weight_.data(), weight_.data()};
+    parallel_blocks_dynamic(n, block, [&](std::size_t b, std::size_t first, std::size_t last) {
+      std::uint32_t start = block_start_[b];
+      for (std::size_t i = first; i < last; ++i) {
+        first_weight_[i] = start;
+        if (varies[i] == 0) continue;
+        float* out = weight_.data() + std::size_t{simd::pair_lanes} * start;
+        start += batches(i);
+        float* const end = weight_.data() + std::size_t{simd::pair_lanes} * start;
+        float* next = out;
+        for (const std::int32_t j : list.of(i))
+          *next++ = 2 / (density[i] + density[j < particles ? j : source[j - particles]]);
+        std::fill(next, end, 0.0F);
+        rows.multiply_weights(records, i, out);
+      }
+    });
   });
 }
 
@@ -147,24 +151,21 @@ Dots GfdPressureOperator::apply(std::span<const float> x, std::span<float> y, st
   // x, offset, factor, density, shift, w, y and what tells whether the density varies.
   packed_->count(static_cast<double>(size()) * (24 + 4 * context_.dimensions));
   with_gfd_kernel(context_, [&]<int dimensions, class Kernel>() {
-    const Rows<dimensions, Kernel> rows{context_, matrix_, first_coefficient_.data(), coefficient_.data()};
+    const Rows<dimensions, Kernel> rows{context_, matrix_, first_weight_.data(), weight_.data()};
     parallel_blocks_dynamic(size(), block, [&](std::size_t b, std::size_t first, std::size_t last) {
-      // Rows of one density first: taken in turn, wrong guesses of the branch made a third of them 1.3 times as slow.
       Dots dots;
-      const auto add_row = [&]<bool density_varies>(std::size_t i) {
+      const auto add_row = [&]<bool stored>(std::size_t i) {
         if (rows.masked(i)) {
           y[i] = 0;
           return;
         }
-        const float value = rows.template in_float<density_varies>(records, i) + rows.volume() * rows.shift(i) * x[i];
+        const float value = rows.template in_float<stored>(records, i) + rows.volume() * rows.shift(i) * x[i];
         y[i] = value;
         dots.wy += double{w[i]} * value;
         dots.yy += double{value} * value;
       };
-      if (matrix_.density.varies != nullptr)
-        for (std::size_t i = first; i < last; ++i) add_row.template operator()<true>(i);
-      else
-        for (std::size_t i = first; i < last; ++i) add_row.template operator()<false>(i);
+      for (std::size_t i = first; i < last; ++i)
+        rows.varies(i) ? add_row.template operator()<true>(i) : add_row.template operator()<false>(i);
       partial_[b] = dots;
     });
   });
@@ -176,7 +177,7 @@ Dots GfdPressureOperator::apply(std::span<const float> x, std::span<float> y, st
 void GfdPressureOperator::diagonal(std::span<float> out) {
   const float* records = packed_->prepare(context_, 0);
   with_gfd_kernel(context_, [&]<int dimensions, class Kernel>() {
-    const Rows<dimensions, Kernel> rows{context_, matrix_, first_coefficient_.data(), coefficient_.data()};
+    const Rows<dimensions, Kernel> rows{context_, matrix_, first_weight_.data(), weight_.data()};
     sweep(size(), [&](std::size_t i) {
       f32n sum{};
       const float factor =
@@ -200,7 +201,7 @@ void GfdPressureOperator::residual(std::span<const double> q, std::span<const do
   parallel_for(context_.images->size(), [&](std::size_t k) { split(out + (n + k) * width, q[source[k]]); });
   packed_->count(static_cast<double>(n) * (40 + 4 * context_.dimensions));
   with_gfd_kernel(context_, [&]<int dimensions, class Kernel>() {
-    const Rows<dimensions, Kernel> rows{context_, matrix_, first_coefficient_.data(), coefficient_.data()};
+    const Rows<dimensions, Kernel> rows{context_, matrix_, first_weight_.data(), weight_.data()};
     sweep(n, [&](std::size_t i) {
       r[i] = rows.masked(i)
                  ? 0
@@ -214,7 +215,7 @@ void GfdPressureOperator::subtract_product(double scale, std::span<const float> 
   pack_scalar(context_, records, record_width(context_.dimensions, 1), 0, x.data());
   packed_->count(static_cast<double>(size()) * (32 + 4 * context_.dimensions));
   with_gfd_kernel(context_, [&]<int dimensions, class Kernel>() {
-    const Rows<dimensions, Kernel> rows{context_, matrix_, first_coefficient_.data(), coefficient_.data()};
+    const Rows<dimensions, Kernel> rows{context_, matrix_, first_weight_.data(), weight_.data()};
     sweep(size(), [&](std::size_t i) {
       if (rows.masked(i)) return;
       r[i] -= scale * (rows.template in_double<1>(records, i) + double{rows.volume() * rows.shift(i)} * x[i]);
