@@ -198,6 +198,26 @@ void gfd_pressure_apply(benchmark::State& state) {
                [&] { benchmark::DoNotOptimize(pressure.apply(cube.single, cube.result, cube.single)); });
 }
 
+// Once per solve: the weights of the rows where the density varies.
+void gfd_pressure_bind(benchmark::State& state) {
+  GfdCube cube(state);
+  GfdPressureOperator pressure;
+  const auto bind = [&] {
+    pressure.bind(cube.context, cube.packed, {cube.stencils(), cube.property(cube.density), nullptr, nullptr});
+  };
+  if (cube.fluids == Fluids::mixed)
+    cube.run_all(state, 10 + 8 + 6 + 2 + 2, 1, 24, bind);
+  else
+    cube.run(state, cube.pairs_of(cube.bands.varying()), 10 + 8 + 6 + 2 + 2, 1, 24, bind);
+}
+
+void gfd_pressure_subtract_product(benchmark::State& state) {
+  GfdCube cube(state);
+  GfdPressureOperator pressure;
+  pressure.bind(cube.context, cube.packed, {cube.stencils(), cube.property(cube.density), nullptr, nullptr});
+  cube.run_all(state, 10 + 8 + 6 + 1 + 3, 1, 44, [&] { pressure.subtract_product(0.5, cube.single, cube.divergence); });
+}
+
 void gfd_pressure_residual(benchmark::State& state) {
   GfdCube cube(state);
   GfdPressureOperator pressure;
@@ -224,6 +244,12 @@ void interface_bands(benchmark::State& state) {
 void interface_colours(benchmark::State& state) {
   GfdCube cube(state);
   cube.run(state, cube.pairs_of(cube.bands.mixed()), 10 + 8 + 1 + 2, 1, 5, [&] { cube.filter(); });
+}
+
+void interface_property(benchmark::State& state) {
+  GfdCube cube(state);
+  cube.run(state, cube.pairs_of(cube.bands.mixed()), 10 + 8 + 1 + 2, 1, 12,
+           [&] { filter_property(cube.context, cube.packed, cube.bands, cube.density.data(), cube.result); });
 }
 
 void interface_normals(benchmark::State& state) {
@@ -265,10 +291,13 @@ BENCHMARK(gfd_mu_laplacian)->Apply(all_fluids);
 BENCHMARK(hu_adams_diffusion)->Apply(all_fluids);
 BENCHMARK(gfd_pressure_gradient)->Apply(all_fluids);
 BENCHMARK(gfd_pressure_apply)->Apply(all_fluids);
+BENCHMARK(gfd_pressure_bind)->Apply(all_fluids);
+BENCHMARK(gfd_pressure_subtract_product)->Apply(all_fluids);
 BENCHMARK(gfd_pressure_residual)->Apply(all_fluids);
 BENCHMARK(sph_pressure_apply)->Apply(one_phase);
 BENCHMARK(interface_bands)->Apply(two_phases);
 BENCHMARK(interface_colours)->Apply(two_phases);
+BENCHMARK(interface_property)->Apply(two_phases);
 BENCHMARK(interface_normals)->Apply(two_phases);
 BENCHMARK(interface_curvature)->Apply(two_phases);
 

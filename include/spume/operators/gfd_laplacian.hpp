@@ -6,7 +6,8 @@
 //
 // Zero to rounding for linear f on any arrangement, exact for quadratic f on lattices. For smooth f its error is of
 // second order on lattices; where particles are displaced at random by a fixed share of the spacing it tends to a
-// floor, 0.03 of the Laplacian at a tenth of a spacing.
+// floor, 0.03 of the Laplacian at a tenth of a spacing. Differences of floats leave an error of at most about
+// 2^-24 4 |f| / spacing^2: that of Franke's function comes down to it at 300 spacings.
 #pragma once
 
 #include "spume/operators/gfd_moments.hpp"
