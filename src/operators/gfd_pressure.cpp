@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "spume/operators/gfd_pressure.hpp"
 
+#include <algorithm>
+#include <cstring>
+
 #include "gfd_row.hpp"
 #include "spume/operators/image_values.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pressure matrix of generalised finite differences (operators/gfd_moments.hpp), applied without being stored:
+// The pressure matrix of generalised finite differences (operators/gfd_moments.hpp), applied without being assembled:
 // Joubert et al., equation (24). Row i, times the particle volume V,
 //
 //   (A q)_i = V [ -<lap q / rho>_i + shift_i q_i ],
