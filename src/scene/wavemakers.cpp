@@ -115,17 +115,23 @@ std::pair<int, int> place_of(const std::string& side, int dimensions) {
   return {-1, -1};
 }
 
-// Twice the mean height above the bottom of the particles within five spacings of a wall: exact for columns that are
-// evenly filled. 0: there are none.
+// Depth of the liquid within five spacings of a wall, from its bed to its surface: exact for columns that are evenly
+// filled. 0: there is none.
 double still_depth_beside(const Scene& scene, int end) {
   const InitialParticles& particles = scene.particles;
   const auto up = static_cast<std::size_t>(scene.domain.dimensions) - 1;
-  const double wall = end == 0 ? scene.domain.lower[0] : scene.domain.upper[0], bottom = scene.domain.lower[up];
-  const auto near = [&](std::size_t i) { return std::abs(particles.position[0][i] - wall) < 5 * scene.spacing; };
-  const double count = parallel_sum(particles.size(), [&](std::size_t i) { return near(i) ? 1.0 : 0.0; });
-  const double sum =
-      parallel_sum(particles.size(), [&](std::size_t i) { return near(i) ? particles.position[up][i] - bottom : 0.0; });
-  return count > 0 ? 2 * sum / count : 0;
+  const double wall = end == 0 ? scene.domain.lower[0] : scene.domain.upper[0];
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  const auto highest = [&](double sign) {
+    return parallel_max(particles.size(), none, [&](std::size_t i) {
+      const bool near = std::abs(particles.position[0][i] - wall) < 5 * scene.spacing;
+      return near ? sign * particles.position[up][i] : none;
+    });
+  };
+  const double way = highest(1) + highest(-1);  // from the lowest layer to the uppermost
+  if (!(way >= 0)) return 0;
+  const double layers = std::round(way / scene.spacing) + 1;
+  return layers > 1 ? way * layers / (layers - 1) : scene.spacing;
 }
 
 std::shared_ptr<const PistonMotion> motion_of(const WavemakerDraft& draft, Wavemaker& maker, const Scene& scene) {
@@ -247,8 +253,7 @@ class WarnOfWaves {
            name + " damps the waves where " + maker.name + " makes them; put it at the other end");
     else if (sponge.length < length / 2)
       warn(*draft_.node(name + ".length"), name + ".length is " + brief(sponge.length / length) +
-                                               " wavelengths; below 0.5 a tenth of a wave and more comes back: "
-                                               "make it " +
+                                               " wavelengths; below 0.5 more than 6 % of a wave comes back: make it " +
                                                brief(length) + " or longer");
   }
 

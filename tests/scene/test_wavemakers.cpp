@@ -91,6 +91,11 @@ TEST(Wavemakers, OtherWavesMoveTheSideByTheirTheory) {
   }
 }
 
+TEST(Wavemakers, TheDepthIsThatAboveTheBedBesideTheWall) {
+  const std::string bed = "[[solid]]\nlower = [0, 0]\nupper = [10, 0.3]\n";
+  EXPECT_THAT(load_text(flume + bed).options.groups.at("wavemaker left"), HasSubstr("depth 0.7"));
+}
+
 TEST(Wavemakers, ACloneOfTheVelocityFollowsItsOwnTime) {
   const Scene scene = load_text(flume).scene;
   const VectorExpression& velocity = *scene.domain.sides[0][0].velocity;
