@@ -20,6 +20,7 @@
 #include "spume/scene/find_case.hpp"
 #include "spume/scene/solid_union.hpp"
 #include "unused_options.hpp"
+#include "wavemakers.hpp"
 
 namespace spume {
 namespace {
@@ -260,6 +261,8 @@ void check(const MethodDeclaration* method, Draft& draft, Problems& problems) {
   if (!phases) check_fluid(draft, problems);
   if (liquids) check_liquids(draft, problems);
   if (phases) check_phases(draft, problems);
+  check_wavemakers(draft, problems);
+  check_sponges(draft, problems);
   if (method != nullptr) {
     if (method->check) method->check(draft, problems);
     check_output_fields(draft, method->output_fields(draft.options), problems);
@@ -338,6 +341,8 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
     fill_scene(scene, lattice, regions, draft.jitter, most, problems);
   }
   problems.throw_if_any();
+  const std::vector<Wavemaker> wavemakers = make_wavemakers(draft, scene, problems);
+  scene.sponges = make_sponges(draft, wavemakers);
   double& courant = draft.options.time.courant;
   if (courant == 0) courant = method->default_courant(draft.options, scene);
   if (method->check_scene) method->check_scene(draft, scene, problems);
@@ -346,6 +351,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   loaded.probe_scalars = probe_scalars(method, draft.options);
   draft.options.groups = describe_groups(draft, scene, compiler.scope());
   if (uses_particles(*method)) describe_lattice(scene, lattice, draft.options.groups);
+  describe_waves(draft, scene, wavemakers, draft.options.groups);
   note_places(document, "", file, draft.options.places);
   draft.options.resolved = resolved_text(document, schema, draft);
   draft.options.warnings = unused_options(draft, schema, file);
@@ -353,6 +359,8 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   if (uses_particles(*method))
     for (Problem& warning : open_side_warnings(draft, scene, file))
       draft.options.warnings.push_back(std::move(warning));
+  for (Problem& warning : wave_warnings(draft, scene, wavemakers, file))
+    draft.options.warnings.push_back(std::move(warning));
   loaded.options = std::move(draft.options);
   return loaded;
 }

@@ -200,8 +200,11 @@ Section forces() {
 }  // namespace
 
 std::vector<Section> scene_sections() {
-  return {general(), domain(), wall_velocity(),     solid(),  body_section(), resolution(), fluid(), constants(),
-          liquid(),  phase(),  interface_section(), region(), initial(),      forces()};
+  std::vector<Section> sections{general(),           domain(), wall_velocity(), solid(),  body_section(),
+                                resolution(),        fluid(),  constants(),     liquid(), phase(),
+                                interface_section(), region(), initial(),       forces()};
+  for (Section& section : wave_sections()) sections.push_back(std::move(section));
+  return sections;
 }
 
 }  // namespace spume

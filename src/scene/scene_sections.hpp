@@ -10,6 +10,7 @@ namespace spume {
 
 std::vector<Section> scene_sections();  // title ... forces
 Section body_section();
+std::vector<Section> wave_sections();  // wavemaker, sponge
 // time, output, probes, verify; `default_courant` says what a case without time.courant gets.
 std::vector<Section> run_sections(const std::string& default_courant);
 

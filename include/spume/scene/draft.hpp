@@ -56,6 +56,32 @@ struct BodyDraft {
   BoundaryKind wall = BoundaryKind::free_slip;  // open: none
 };
 
+enum class WavemakerKind { piston };
+enum class WaveKind { regular, jonswap, focused, solitary };
+
+// A [[wavemaker]]: a side of the domain that moves as a piston. `side` is "left" or "right".
+struct WavemakerDraft {
+  std::string side;
+  WavemakerKind kind = WavemakerKind::piston;
+  WaveKind waves = WaveKind::regular;
+  std::optional<double> height, amplitude, period;
+  double gamma = 3.3;  // mean of the spectra that Hasselmann et al. (1973) measured
+  // A hundred bands of 0.025 peak frequencies; the peak of a spectrum with gamma = 3.3 is 0.2 wide at half its height.
+  std::int64_t components = 100;
+  std::int64_t seed = 0;
+  std::optional<double> focus_place, focus_time;
+  std::optional<double> depth;
+  std::optional<double> ramp;
+  std::int64_t order = 0;  // 0: the highest that there is for the waves
+};
+
+struct SpongeDraft {
+  std::string side;
+  double length = 0;
+  std::optional<double> strength;
+  std::vector<double> velocity;
+};
+
 struct ProbeDraft {
   ProbeOptions options;
   std::vector<double> position, end;
@@ -92,6 +118,8 @@ struct Draft {
   std::vector<RegionDraft> regions;
   std::vector<SolidDraft> solids;
   std::vector<BodyDraft> bodies;
+  std::vector<WavemakerDraft> wavemakers;
+  std::vector<SpongeDraft> sponges;
   std::vector<ProbeDraft> probes;
   std::vector<ExpressionText> body_force;
   double jitter = 0;

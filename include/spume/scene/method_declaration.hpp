@@ -29,6 +29,8 @@ struct MethodDeclaration {
   bool honours_bodies =
       false;  // liquid does not pass the walls of [[body]]; a case with such walls is refused otherwise
 
+  bool damps_sponges = false;  // [[sponge]]
+
   // Sections of its own, and options that it adds to sections of the scene. Several methods may name the same
   // declaration: its options then belong to all of them.
   std::vector<Section> sections;
@@ -64,6 +66,9 @@ inline bool fills_phases(const MethodDeclaration& method) {
 }
 inline bool uses_particles(const MethodDeclaration& method) {
   return method.fills_regions || method.fills_phases;
+}
+inline bool damps_sponges(const MethodDeclaration& method) {
+  return method.damps_sponges;
 }
 inline bool has_one_fluid(const MethodDeclaration& method) {
   return !method.fills_phases;

@@ -57,6 +57,15 @@ struct Body {
   BoundaryKind wall = BoundaryKind::free_slip;  // open: it is no wall
 };
 
+// A layer beside a side of the domain in which the velocity is damped, d being the distance from that side:
+// du/dt = -strength (1 - d / length)^2 (u - velocity).
+struct Sponge {
+  int axis = 0, side = 0;  // sides[axis][side] of the domain
+  double length = 0;
+  double strength = 0;  // 1/time
+  Vec3 velocity{};
+};
+
 struct Domain {
   int dimensions = 3;
   Vec3 lower{}, upper{};                     // the third entry is 0 in two dimensions
@@ -118,6 +127,7 @@ struct Scene {
   std::vector<RegionFill> fills;  // of the [[liquid]] entries
   std::vector<Body> bodies;
   Combination walls;  // of the bodies that are walls, in their order
+  std::vector<Sponge> sponges;
 };
 
 }  // namespace spume

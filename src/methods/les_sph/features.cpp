@@ -52,6 +52,7 @@ Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.dom
       open_sides = open_sides || (scene.domain.sides[axis][side].kind == BoundaryKind::open &&
                                   !(axis == scene.domain.dimensions - 1 && side == 1 && scene.fluid.gravity[axis] < 0));
   free_surface = scene.free_surface;
+  sponges = !scene.sponges.empty();
   closed = !scene.free_surface;
   shifting = options.get<ShiftingOptions>().on;
   shift_correction = corrects_shift(options);

@@ -190,7 +190,7 @@ EnergyBalance Flow::energy_balance(double dt) const {
   return {.particle_mass = particle_mass(),
           .gravity = scene.fluid.gravity,
           .largest_acceleration = std::sqrt(strength2) + next_largest_body_force,
-          .work = features.working_forces && dt > 0 ? work_of_step(dt) : 0,
+          .work = dt > 0 ? (features.working_forces ? work_of_step(dt) : 0) + work_of_sponges : 0,
           .unfollowed_work = features.bubbles || features.moving_walls};
 }
 

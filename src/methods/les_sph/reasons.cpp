@@ -64,6 +64,7 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_p
            : force_has_potential    ? "gravity, and forces.body by its potential"
                                     : "gravity; forces.body has no potential";
   viscosity = has.viscous_stress ? "div(2 nu S)" : has.viscosity ? "div(nu grad u)" : "inviscid";
+  sponges = has.sponges ? "velocity damped in layers beside sides" : "no section [[sponge]]";
   divergence = loaded.scene.fluid.sound_speed > 0 ? "right-hand side of the Helmholtz equation"
                                                   : "right-hand side of the Poisson equation";
   const bool centred = options.get<SchemeOptions>().centred;

@@ -53,6 +53,7 @@ Registration registration() {
   method.description =
       "semi-implicit, weakly compressible SPH for a liquid with a free surface, with turbulence closures and bubbles";
   method.fills_regions = true;
+  method.damps_sponges = true;
   method.sections = sections();
   method.check = check;
   method.check_scene = check_bubble_sources;

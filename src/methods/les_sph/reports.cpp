@@ -66,8 +66,10 @@ void LesSph::declare_series() {
   series_.add("kinetic_energy", "rho u^2 / 2, integral", [this] { return row_energy_.kinetic; });
   series_.add("potential_energy", "rho g z, integral", [this] { return row_energy_.potential; });
   series_.add("total_energy", "kinetic + potential", [this] { return row_energy_.kinetic + row_energy_.potential; });
-  if (flow.features.working_forces)
-    series_.add("work", "of forces.body and of gravity along periodic axes, since the start",
+  if (flow.features.working_forces || flow.features.sponges)
+    series_.add("work",
+                flow.features.sponges ? "of forces.body, of gravity along periodic axes and of sponges, since the start"
+                                      : "of forces.body and of gravity along periodic axes, since the start",
                 [&flow] { return flow.work; });
   series_.add("dissipation", "rho (nu + nu_t) |S|^2, integral", [&flow] { return flow.dissipation; });
   if (flow.features.eddy_viscosity)
@@ -151,7 +153,7 @@ std::vector<Invariant> LesSph::invariants() const {
                      .bound = 0.01,
                      .scale_column = "kinetic_energy",
                      .scale_floor = 0.1 * flow_.weight * flow_.resolution.spacing};
-    if (has.working_forces || flow_.scene.fluid.sound_speed > 0)
+    if (has.working_forces || has.sponges || flow_.scene.fluid.sound_speed > 0)
       energy.beside = [this] { return flow_.stored_energy() - flow_.work; };
     list.push_back(std::move(energy));
   }

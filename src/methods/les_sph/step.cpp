@@ -79,6 +79,8 @@ Plan make_plan(Flow& f) {
       {f.advecting_velocity, moments.divergence_of_position, f.eddy_viscosity()}, {f.viscous_acceleration}, true);
   add(step, "prediction", true, "velocity without pressure", [&](StageRun& run) { f.predict_velocity(run.dt); },
       {f.advecting_velocity, f.viscous_acceleration}, {f.intermediate_velocity});
+  add(step, "sponges", has.sponges, why.sponges, [&](StageRun& run) { f.damp_velocity(run.dt); },
+      {r, f.intermediate_velocity}, {f.intermediate_velocity});
   add(start, "first forces", true, "acceleration without pressure", [&](StageRun&) { f.find_first_forces(); },
       {f.viscous_acceleration}, {f.intermediate_velocity});
   // (ix), (x) the pressure that makes the velocity at r^{n+1} free of divergence

@@ -8,6 +8,7 @@
 #include "spume/core/vectors.hpp"
 #include "spume/methods/les_sph/flow.hpp"
 #include "spume/particles/number_density.hpp"
+#include "spume/particles/sponge.hpp"
 
 namespace spume::les_sph {
 namespace {
@@ -255,6 +256,11 @@ void Flow::predict_velocity(double dt) {
   // Closures and bubbles have read these.
   scratch.release(velocity_gradient);
   scratch.release(filtered_velocity);
+}
+
+void Flow::damp_velocity(double dt) {
+  work_of_sponges = particle_mass() * damp_in_sponges(scene.domain, scene.sponges, intermediate_position, size(), dt,
+                                                      intermediate_velocity);
 }
 
 // F, the acceleration without pressure, in the place of the intermediate velocity.

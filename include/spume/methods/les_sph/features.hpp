@@ -33,6 +33,7 @@ struct Features : BoundaryFeatures {
   bool body_force = false;
   bool uniform_body_force = false;  // the same everywhere: part of the uniform acceleration
   bool working_forces = false;      // forces whose work the potential energy does not hold
+  bool sponges = false;             // layers that damp the velocity
   bool closed = false;              // pressure known up to a constant
   bool bubbles = false;
 };

@@ -67,7 +67,7 @@ struct Flow {
   VectorField material_acceleration{};  // Du/Dt over the last step, for bubbles: null without
   Boundary boundary;                    // positions and speed of the walls
   EnergyGuard energy;                   // what the flow may hold
-  double work = 0;                      // of forces.body and of gravity along periodic axes since the start
+  double work = 0;                      // of forces.body, gravity along periodic axes and sponges since the start
   Speeds speeds;                        // of the particles
   double max_eddy_viscosity = 0;
   double max_divergence = 0;      // of u*
@@ -91,6 +91,7 @@ struct Flow {
   Vec3 periodic_acceleration{};               // along periodic axes: added to the velocity
   double displacement = 0;                    // displacement_fraction of the step
   double next_max_divergence = 0, next_largest_body_force = 0;  // of the step, taken over when it is accepted
+  double work_of_sponges = 0;                                   // of the step
   double volume = 0;                                            // that the liquid takes, by its kernel sums
   ProjectionSolver solver;
   std::unique_ptr<turbulence::EddyViscosity> closure;  // null: none
@@ -167,6 +168,7 @@ struct Flow {
   void move_bubbles(double dt);
   void share_volume();
   void predict_velocity(double dt);  // (viii)
+  void damp_velocity(double dt);     // in sponges
   void find_divergence(double dt);
   void centre_divergence(double dt);
   void relax_density(double dt);

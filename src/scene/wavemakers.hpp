@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// From the [[wavemaker]] and [[sponge]] entries of a case to moving sides and damping layers of the scene.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "spume/scene/draft.hpp"
+
+namespace spume {
+
+// What a wavemaker makes, and how far and fast it moves for it until the end of the run.
+struct Wavemaker {
+  std::string name;  // "wavemaker.0"
+  std::string side;
+  double depth = 0, still_depth = 0;  // that the theory takes, and that of the liquid beside the wall at the start
+  double height = 0;                  // of the waves; of jonswap significant, of focused twice the crest
+  double angular_frequency = 0;       // of jonswap and focused waves at the peak, of a solitary wave kappa c
+  double wavenumber = 0;              // at that frequency; of a solitary wave kappa
+  double stroke = 0, largest_displacement = 0, largest_speed = 0;
+};
+
+// A wavemaker needs a wall that nothing else moves, gravity, and what its waves are described by; a sponge a side.
+void check_wavemakers(const Draft& draft, Problems& problems);
+void check_sponges(const Draft& draft, Problems& problems);
+
+// Sets the velocities of the sides. The scene has its particles: the still water is measured beside the wall.
+std::vector<Wavemaker> make_wavemakers(const Draft& draft, Scene& scene, Problems& problems);
+std::vector<Sponge> make_sponges(const Draft& draft, const std::vector<Wavemaker>& wavemakers);
+
+// For the start-up table.
+void describe_waves(const Draft& draft, const Scene& scene, const std::vector<Wavemaker>& wavemakers,
+                    std::map<std::string, std::string>& groups);
+
+// Waves that break or are beyond the theory, a depth that is not that of the still water, sponges too short to absorb.
+std::vector<Problem> wave_warnings(const Draft& draft, const Scene& scene, const std::vector<Wavemaker>& wavemakers,
+                                   const std::string& file);
+
+}  // namespace spume

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+// [[wavemaker]] and [[sponge]]: what the scene makes of them, and what is refused or warned of.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "helpers.hpp"
+#include "spume/scene/wave_theory.hpp"
+
+namespace spume {
+namespace {
+
+using std::numbers::pi;
+using test::load_text;
+using test::problems_of;
+using test::replaced;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// A flume 10 long with liquid 1 deep; line 18 is the wavemaker, 23 the sponge.
+const std::string flume = R"toml(method = "les-sph"
+[domain]
+lower = [0, 0]
+upper = [10, 1.5]
+left = "free-slip"
+right = "free-slip"
+bottom = "free-slip"
+[resolution]
+spacing = 0.1
+[fluid]
+froude = 1
+[[liquid]]
+where = "1 - y"
+conform = true
+[time]
+end = 20
+
+[[wavemaker]]
+side = "left"
+waves = "regular"
+height = 0.1
+period = 5
+[[sponge]]
+side = "right"
+length = 4
+)toml";
+
+double velocity_of(const Scene& scene, int end, double t) {
+  const auto& velocity = scene.domain.sides[0][static_cast<std::size_t>(end)].velocity;
+  EXPECT_TRUE(velocity.has_value());
+  EXPECT_EQ(velocity->component[1], nullptr);
+  return (*velocity)({0, 0.3, 0}, t)[0];
+}
+
+TEST(Wavemakers, ARegularWaveMovesTheSideByTheoryOfSecondOrder) {
+  const LoadedCase loaded = load_text(flume);
+  const double w = 2 * pi / 5, kh = wavenumber(w, 1, 1), stroke = 0.1 / piston_transfer(kh);
+  const OscillatingPiston second({{stroke / 2, w, 0}, {piston_second_amplitude(0.1, kh, 1), 2 * w, 0}}, 10);
+  const OscillatingPiston first({{stroke / 2, w, 0}}, 3);
+  const Scene one = load_text(flume, {"wavemaker.0.order=1", "wavemaker.0.ramp=3"}).scene;
+  const Scene right = load_text(flume, {"wavemaker.0.side=right", "sponge.0.side=left"}).scene;
+  for (const double t : {0.0, 0.3, 4.0, 12.0, 12.7}) {
+    // The depth is measured: columns of particles of equal height give it to rounding.
+    EXPECT_NEAR(velocity_of(loaded.scene, 0, t), second.velocity(t), 1e-12) << t;
+    EXPECT_NEAR(velocity_of(one, 0, t), first.velocity(t), 1e-12) << t;
+    EXPECT_NEAR(velocity_of(right, 1, t), -second.velocity(t), 1e-12) << t;
+  }
+  EXPECT_FALSE(loaded.scene.domain.sides[0][1].velocity.has_value());
+  EXPECT_THAT(loaded.options.groups.at("wavemaker left"),
+              testing::AllOf(HasSubstr("wavelength "), HasSubstr("kh "), HasSubstr("steepness"), HasSubstr("stroke"),
+                             HasSubstr("largest speed"), HasSubstr("depth 1")));
+  EXPECT_THAT(loaded.options.warnings, IsEmpty());
+}
+
+TEST(Wavemakers, OtherWavesMoveTheSideByTheirTheory) {
+  const Scene solitary =
+      load_text(flume, {"wavemaker.0.waves=solitary", "wavemaker.0.height=0.2", "wavemaker.0.depth=1.02"}).scene;
+  const SolitaryPiston piston(SolitaryWave(0.2, 1.02, 1));
+  const Scene irregular = load_text(flume, {"wavemaker.0.waves=jonswap", "wavemaker.0.seed=3", "seed=9"}).scene;
+  const OscillatingPiston sum(piston_motion(jonswap_waves(0.1, 5, 3.3, 100, 9, 3), 1, 1), 10);
+  const std::string focus = replaced(flume, "waves = \"regular\"\nheight = 0.1",
+                                     "waves = \"focused\"\namplitude = 0.05\nfocus_place = 6\nfocus_time = 30");
+  const Scene focused = load_text(focus).scene;
+  const OscillatingPiston meeting(piston_motion(focused_waves(0.05, 5, 3.3, 100, 6, 30, 1, 1), 1, 1), 10);
+  for (const double t : {0.5, 8.0, 15.0, 31.0}) {
+    EXPECT_DOUBLE_EQ(velocity_of(solitary, 0, t), piston.velocity(t));
+    EXPECT_NEAR(velocity_of(irregular, 0, t), sum.velocity(t), 1e-12);
+    EXPECT_NEAR(velocity_of(focused, 0, t), meeting.velocity(t), 1e-12);
+  }
+}
+
+TEST(Wavemakers, TheDepthIsThatAboveTheBedBesideTheWall) {
+  const std::string bed = "[[solid]]\nlower = [0, 0]\nupper = [10, 0.3]\n";
+  EXPECT_THAT(load_text(flume + bed).options.groups.at("wavemaker left"), HasSubstr("depth 0.7"));
+}
+
+TEST(Wavemakers, ACloneOfTheVelocityFollowsItsOwnTime) {
+  const Scene scene = load_text(flume).scene;
+  const VectorExpression& velocity = *scene.domain.sides[0][0].velocity;
+  const double at_3 = velocity({}, 3)[0];
+  const VectorExpression copy = velocity.clone();
+  EXPECT_NE(copy({}, 11)[0], at_3);
+  EXPECT_EQ(copy({}, 3)[0], at_3);
+  EXPECT_EQ(velocity({}, 3)[0], at_3);
+}
+
+TEST(Wavemakers, ASpongeTakesItsStrengthFromTheWaves) {
+  const Scene scene = load_text(flume).scene;
+  ASSERT_EQ(scene.sponges.size(), 1U);
+  EXPECT_EQ(scene.sponges[0].axis, 0);
+  EXPECT_EQ(scene.sponges[0].side, 1);
+  EXPECT_DOUBLE_EQ(scene.sponges[0].length, 4);
+  EXPECT_DOUBLE_EQ(scene.sponges[0].strength, 3 * 2 * pi / 5);
+  const Scene other = load_text(flume, {"sponge.0.strength=2", "sponge.0.side=top", "sponge.0.length=0.5",
+                                        "sponge.0.velocity=[0.5, 0]"})
+                          .scene;
+  EXPECT_EQ(other.sponges[0].axis, 1);
+  EXPECT_DOUBLE_EQ(other.sponges[0].strength, 2);
+  EXPECT_DOUBLE_EQ(other.sponges[0].velocity[0], 0.5);
+}
+
+TEST(Wavemakers, WhatCannotBeIsRefusedWithTheFix) {
+  EXPECT_THAT(problems_of(replaced(flume, "left = \"free-slip\"\n", "")),
+              ElementsAre("18:8 wavemaker.0 moves a side that is not a wall; add  left = \"free-slip\"  to [domain]"));
+  EXPECT_THAT(problems_of(flume, {"domain.wall_velocity.left=[\"t\", 0]"}),
+              ElementsAre("19:8 wavemaker.0 and domain.wall_velocity.left move the same wall; remove one of the two"));
+  EXPECT_THAT(problems_of(flume + "[[wavemaker]]\nside = \"left\"\nwaves = \"regular\"\nheight = 0.1\nperiod = 2\n"),
+              ElementsAre("27:8 another wavemaker moves the left wall already"));
+  EXPECT_THAT(problems_of(replaced(flume, "froude = 1", "mach = 0")),
+              ElementsAre(HasSubstr("18:1 wavemaker.0 needs gravity, without which there are no waves")));
+  EXPECT_THAT(problems_of(replaced(flume, "height = 0.1\nperiod = 5\n", "")),
+              ElementsAre("18:1 missing key 'height' in [[wavemaker]]; add  height = <number>  # length",
+                          "18:1 missing key 'period' in [[wavemaker]]; add  period = <number>  # time"));
+  EXPECT_THAT(problems_of(flume, {"wavemaker.0.waves=jonswap", "wavemaker.0.order=2"}),
+              ElementsAre(HasSubstr("for sums of waves there is the theory of first order only; remove it")));
+  EXPECT_THAT(problems_of(flume, {"wavemaker.0.waves=focused", "wavemaker.0.amplitude=0.1",
+                                  "wavemaker.0.focus_place=11", "wavemaker.0.focus_time=9"}),
+              ElementsAre(HasSubstr("focus_place lies outside the domain: x = 11, the domain's x from 0 to 10")));
+  EXPECT_THAT(problems_of(replaced(flume, "where = \"1 - y\"\nconform = true", "lower = [5, 0]\nupper = [10, 1]")),
+              ElementsAre("18:1 wavemaker.0 has no liquid beside its wall; fill the domain there, or choose the other "
+                          "side"));
+  EXPECT_THAT(problems_of(flume, {"wavemaker.0.height=9", "wavemaker.0.period=15", "wavemaker.0.ramp=0"}),
+              ElementsAre(HasSubstr("into the liquid, which has room for 9.38; make the waves lower or shorter, or the "
+                                    "domain longer")));
+  EXPECT_THAT(
+      problems_of(flume, {"fluid.mach=0.9", "wavemaker.0.height=2"}),
+      ElementsAre(HasSubstr("more than half the sound speed 1.11111; make the waves lower or longer, or raise")));
+}
+
+TEST(Wavemakers, SpongesThatCannotBeAreRefusedWithTheFix) {
+  EXPECT_THAT(problems_of(flume, {"sponge.0.side=back"}),
+              ElementsAre("--set sponge.0.side=back sponge.0.side: a 2-D domain has left, right, bottom, top"));
+  EXPECT_THAT(problems_of(flume, {"sponge.0.length=11"}),
+              ElementsAre(HasSubstr("sponge.0.length is 11, longer than the domain, which is 10 long in x")));
+  EXPECT_THAT(problems_of(flume, {"sponge.0.velocity=[1]"}),
+              ElementsAre(HasSubstr("sponge.0.velocity must have 2 entries in a 2-D domain, found 1")));
+  EXPECT_THAT(problems_of(flume + "[[sponge]]\nside = \"right\"\nlength = 1\n"),
+              ElementsAre("27:8 another sponge lies at the side right already; keep one of them"));
+  const std::size_t maker = flume.find("[[wavemaker]]"), sponge = flume.find("[[sponge]]");
+  const std::string alone = flume.substr(0, maker) + flume.substr(sponge);
+  EXPECT_THAT(problems_of(alone), ElementsAre(HasSubstr("18:1 sponge.0 has no strength, and there is no wavemaker")));
+  EXPECT_THAT(problems_of(replaced(alone, "left = \"free-slip\"\nright = \"free-slip\"", "x = \"periodic\""),
+                          {"sponge.0.strength=1"}),
+              ElementsAre(HasSubstr("18:8 sponge.0.side is a side of the periodic direction x, which has none")));
+}
+
+std::vector<std::string> warnings_of(const std::vector<std::string>& overrides) {
+  std::vector<std::string> texts;
+  for (const Problem& warning : load_text(flume, overrides).options.warnings) texts.push_back(warning.text);
+  return texts;
+}
+
+TEST(Wavemakers, WavesThatBreakAndSpongesTooShortAreWarnedOf) {
+  EXPECT_THAT(warnings_of({"wavemaker.0.height=0.8", "wavemaker.0.order=1"}),
+              ElementsAre(HasSubstr("the wave height 0.8 is 0.8 of the depth; waves break above 0.78")));
+  // kh = 4: 1.58 long; 0.14 tanh kh is 0.14 of that.
+  EXPECT_THAT(warnings_of({"wavemaker.0.height=0.23", "wavemaker.0.period=3.143"}),
+              ElementsAre(HasSubstr("of the wavelength; waves break above 0.14 tanh kh = 0.1399")));
+  EXPECT_THAT(warnings_of({"wavemaker.0.height=0.21", "wavemaker.0.period=3.143"}), IsEmpty());
+  EXPECT_THAT(warnings_of({"wavemaker.0.height=0.3", "wavemaker.0.period=12", "sponge.0.length=6"}),
+              ElementsAre(HasSubstr("are too long for second-order theory: H L^2 / h^3 is")));
+  EXPECT_THAT(warnings_of({"wavemaker.0.depth=1.06"}),
+              ElementsAre("wavemaker.0.depth is 1.06, and the liquid beside the wall is 1 deep; remove the key to "
+                          "take that"));
+  EXPECT_THAT(warnings_of({"sponge.0.length=1.7"}), ElementsAre(HasSubstr("sponge.0.length is 0.4")));
+  EXPECT_THAT(warnings_of({"sponge.0.side=left"}),
+              ElementsAre(HasSubstr("sponge.0 damps the waves where wavemaker.0 makes them")));
+}
+
+}  // namespace
+}  // namespace spume
