@@ -55,6 +55,7 @@ struct Body {
   bool inside = true;
   bool subtract = false;                        // taken away from the walls of the bodies before it
   BoundaryKind wall = BoundaryKind::free_slip;  // open: it is no wall
+  std::optional<VectorExpression> velocity = {};  // of its surface, which slides along itself
 };
 
 struct Domain {
