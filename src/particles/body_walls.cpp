@@ -122,6 +122,7 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
     const WallPoint& point = points_[g];
     near.clear();
     double kernel_sum = 0;
+    bool seen = false;  // from within the support radius
     std::int32_t nearest = -1;
     double nearest2 = std::numeric_limits<double>::infinity();
     with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
@@ -136,15 +137,16 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
           for (int iy = from[1]; iy <= to[1]; ++iy) {
             const std::int64_t row = std::int64_t{grid.row(iy, iz)} * grid.columns();
             for (std::int32_t j = starts[row + from[0]]; j < starts[row + to[0] + 1]; ++j) {
-              Vec3 offset{}, from_foot{};
-              double r2 = 0, across = 0;
+              Vec3 offset{};
+              double r2 = 0, across = 0, way2 = 0;
               for (int axis = 0; axis < d; ++axis) {
                 const double x = r[axis][j] + shift[axis];
                 offset[axis] = x - point.mirror[axis];
-                from_foot[axis] = x - point.foot[axis];
                 r2 += offset[axis] * offset[axis];
-                across += from_foot[axis] * point.normal[axis];
+                across += (x - point.foot[axis]) * point.normal[axis];
+                way2 += (x - point.position[axis]) * (x - point.position[axis]);
               }
+              seen = seen || way2 < resolution_.support_radius * resolution_.support_radius;
               // Behind the tangent plane stands liquid of another side, or of a curved one, which the fit can miss.
               if (across < 0 || r2 >= reach * reach) continue;
               const double mirrored2 = r2 + 4 * across * dot(subtract(point.mirror, point.foot), point.normal);
@@ -173,14 +175,14 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
         }
       };
       along(along, 0, Vec3{});
-      if (kernel_sum < wet_share) return;
+      if (kernel_sum < wet_share || !seen) return;
       fit.resize(near.size());
       for (std::size_t k = 0; k < near.size(); ++k) {
         for (int axis = 0; axis < d; ++axis) fit.offset(axis)[k] = near[k].offset[axis] / h;
         fit.weight()[k] = WendlandC2::w(WendlandC2::support * std::sqrt(near[k].r2) / reach);
       }
     });
-    if (kernel_sum < wet_share || near.empty() || fit.fit(fit_order) < 0) continue;
+    if (kernel_sum < wet_share || !seen || fit.fit(fit_order) < 0) continue;
     const auto coefficient = fit.value();
     block.point.push_back(static_cast<std::int32_t>(g));
     block.nearest.push_back(nearest);

@@ -3,6 +3,7 @@
 // same list is the start, what `spume check` prints and what the ledger times.
 #include "spume/methods/les_sph/step.hpp"
 
+#include "spume/particles/packing.hpp"
 #include "stage_list.hpp"
 
 namespace spume::les_sph {
@@ -26,6 +27,10 @@ Plan make_plan(Flow& f) {
   add(
       start, "level", has.free_surface && f.boundary.solids() != nullptr, why.level,
       [&](StageRun&) { f.level_surface(); }, {r}, {p.position, r}, true);
+  add(
+      start, "packing", has.bodies, why.packing,
+      [&](StageRun&) { pack_beside_bodies(f.arrangement, p, f.boundary, f.resolution, r, f.time); }, {r},
+      {p.position, r}, true);
   add(step, "advecting velocity", true, why.advection, [&](StageRun& run) { f.find_advecting_velocity(run.dt); },
       {p.velocity, f.acceleration}, {f.advecting_velocity});
   add(
