@@ -51,7 +51,8 @@ void BodyForces::add_elements(std::int32_t b) {
   const Body& body = scene_.bodies[static_cast<std::size_t>(b)];
   const double spacing = resolution_.spacing, sign = body.inside != body.subtract ? 1 : -1;
   Bounds window{scene_.domain.lower, scene_.domain.upper};
-  const TriangleSurface surface = body.shape->surface(window, spacing);
+  // Facets lie within the surface: of a disc of eight spacings radius, half a spacing long, they lack 0.06 % of its area.
+  const TriangleSurface surface = body.shape->surface(window, 0.5 * spacing);
   std::vector<Element> found;
   if (scene_.domain.dimensions == 3) {
     std::vector<Corners> pieces;

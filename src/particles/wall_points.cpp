@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "spume/core/parallel.hpp"
+#include "spume/core/random.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/neighbours/neighbour_list.hpp"
 #include "spume/operators/pair_sweep.hpp"
@@ -22,6 +24,18 @@ struct ShellPoint {
   Vec3 place{};
   double distance = 0;  // from the surface, of the middle of its shell; negative inside the solid
 };
+
+// Sites of the lattice per point, along each axis: counts are those of finer cells, which a ring of ten spacings has 2 %
+// off, in place of 10 % for one site a point.
+constexpr std::size_t finer_2d = 3, finer_3d = 2;
+
+// Bits of a, b and c in turns: numbers along a curve whose pieces are compact.
+std::uint64_t interleave(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
+  std::uint64_t code = 0;
+  for (unsigned bit = 0; bit < 21; ++bit)
+    code |= ((a >> bit & 1) << 3 * bit) | ((b >> bit & 1) << (3 * bit + 1)) | ((c >> bit & 1) << (3 * bit + 2));
+  return code;
+}
 
 // A lattice over the domain, beyond open sides by `reach`.
 struct ShellLattice {
@@ -56,27 +70,54 @@ NearestPoint onto_shell(const Combination& walls, ShellPoint& point) {
 }
 
 std::vector<ShellPoint> cut_shells(const Scene& scene, double spacing, double reach) {
-  const ShellLattice lattice(scene.domain, spacing, reach);
+  const int d = scene.domain.dimensions;
+  const std::size_t finer = d == 3 ? finer_3d : finer_2d;
+  const ShellLattice lattice(scene.domain, spacing / static_cast<double>(finer), reach);
   const double layers = std::ceil(reach / spacing);
-  std::vector<std::vector<ShellPoint>> rows(lattice.count[1] * lattice.count[2]);
+  struct Site {
+    int shell = 0;  // from -layers to layers - 1
+    std::uint64_t code = 0;
+    Vec3 place{};
+  };
+  std::vector<std::vector<Site>> rows(lattice.count[1] * lattice.count[2]);
   parallel_blocks_dynamic(rows.size(), 1, [&](std::size_t row, std::size_t, std::size_t) {
     for (std::size_t i = 0; i < lattice.count[0];) {
-      ShellPoint point{lattice.place(i, row % lattice.count[1], row / lattice.count[1])};
-      const double distance = scene.walls.distance(point.place);
+      const std::size_t j = row % lattice.count[1], k = row / lattice.count[1];
+      const Vec3 place = lattice.place(i, j, k);
+      const double distance = scene.walls.distance(place);
       const double layer = std::floor(std::abs(distance) / spacing);
       if (layer >= layers) {
         // Along the row distances change by no more than the way.
         i += 1 + static_cast<std::size_t>(std::min(1e6, std::max(0.0, (layer - layers) * spacing / lattice.step[0])));
         continue;
       }
-      point.distance = std::copysign((layer + 0.5) * spacing, distance);
-      onto_shell(scene.walls, point);
-      rows[row].push_back(point);
+      rows[row].push_back({static_cast<int>(std::floor(distance / spacing)), interleave(i, j, k), place});
       ++i;
     }
   });
+  std::vector<Site> sites;
+  for (const auto& row : rows) sites.insert(sites.end(), row.begin(), row.end());
+  std::sort(sites.begin(), sites.end(), [](const Site& a, const Site& b) {
+    return a.shell == b.shell ? a.code < b.code : a.shell < b.shell;
+  });
+  // Of each shell one of as many sites as a point has volume of.
+  const double share = lattice.step[0] * lattice.step[1] * (d == 3 ? lattice.step[2] : 1.0) / std::pow(spacing, d);
   std::vector<ShellPoint> points;
-  for (const auto& row : rows) points.insert(points.end(), row.begin(), row.end());
+  double counted = 0.5;
+  for (std::size_t s = 0; s < sites.size(); ++s) {
+    if (s > 0 && sites[s].shell != sites[s - 1].shell) counted = 0.5;
+    counted += share;
+    if (counted < 1) continue;
+    counted -= 1;
+    points.push_back({sites[s].place, (sites[s].shell + 0.5) * spacing});
+  }
+  // Sites above each other come to one place, and points at one place do not part.
+  parallel_for(points.size(), [&](std::size_t i) {
+    const auto random = random_uniform(0, RandomPurpose::wall_point, i, 0, 0);
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(d); ++axis)
+      points[i].place[axis] += 0.1 * spacing * (random[axis] - 0.5);
+    onto_shell(scene.walls, points[i]);
+  });
   return points;
 }
 

@@ -267,12 +267,12 @@ double Filler::open_volume() const {
   const auto columns = static_cast<std::size_t>(lattice_.count[0]), rows = static_cast<std::size_t>(lattice_.count[1]);
   const auto layers = static_cast<std::size_t>(lattice_.count[2]);
   return lattice_.volume() * parallel_sum(rows * layers, [&](std::size_t row) {
-           WallDistance distance = wall_distance();
+           ThreadRegions own(regions_, wall_distance());
            double cells = 0;
            for (std::size_t i = 0; i < columns; ++i) {
              const Vec3 p{centre(0, static_cast<double>(i)), centre(1, static_cast<double>(row % rows)),
                           lattice_.dimensions == 3 ? centre(2, static_cast<double>(row / rows)) : 0.0};
-             cells += std::clamp(0.5 + distance.at(p) / scene_.spacing, 0.0, 1.0);
+             cells += open_part(own, p);
            }
            return cells;
          });

@@ -128,7 +128,7 @@ class Filler {
     double error = 0;
     for (const Body& body : scene_.bodies)
       if (body.solid) error = std::max(error, body.solid->error());
-    return {&scene_.walls, error, 0.5 * scene_.spacing};
+    return {&scene_.walls, error, scene_.spacing};
   }
 
   // Regions of phases lie on each other, the later above.
@@ -191,10 +191,12 @@ class Filler {
       return;
     }
     if (!scene_.walls.empty()) {
-      const double distance = own.walls.at(p);
-      chunk.cells += 1;
-      chunk.open_cells += std::clamp(0.5 + distance / scene_.spacing, 0.0, 1.0);
-      if (distance <= 0) {
+      // Regions on sites of the lattice have taken the walls into their volume.
+      if (is_box(regions_[r]) || regions_[r].conform) {
+        chunk.cells += 1;
+        chunk.open_cells += open_part(own, p);
+      }
+      if (own.walls.at(p) <= 0) {
         chunk.in_solid.add(p);
         return;
       }
@@ -251,6 +253,9 @@ class Filler {
   void conform_column(ThreadRegions& own, std::size_t r, Vec3 p, double area, Chunk& chunk) const;
   void site_column(ThreadRegions& own, std::size_t r, Vec3 p, double area, Chunk& chunk) const;
   double part_of_cell(ThreadRegions& own, std::size_t r, const Vec3& p, Chunk& chunk) const;
+  double open_part(ThreadRegions& own, const Vec3& p) const;
+  template <class Inside>
+  double share_of_cell(const Vec3& p, int parts, double reach, Inside&& inside) const;
   void report(const std::vector<std::vector<Chunk>>& chunks);
   void set_volume(const std::vector<std::vector<Chunk>>& chunks);
   bool stands_alone(std::size_t r, const std::vector<std::vector<Chunk>>& chunks) const;

@@ -22,6 +22,7 @@ enum class RandomPurpose : std::uint32_t {
   bubble_entrainment = 12,
   bubble_source = 13,
   force_sample = 14,
+  wall_point = 15,
   test = 100
 };
 
