@@ -295,9 +295,8 @@ void Images::build(const ImageRules& rules, const CellGrid& grid, const double* 
 }
 
 double Images::bytes() const {
-  double total =
-      table_.bytes() + 4.0 * static_cast<double>(source_.capacity() + path_.capacity() + scratch_.capacity() +
-                                                 wall_point_.capacity());
+  double total = table_.bytes() + 4.0 * static_cast<double>(source_.capacity() + path_.capacity() +
+                                                            scratch_.capacity() + wall_point_.capacity());
   for (int axis = 0; axis < 3; ++axis)
     total += 8.0 * static_cast<double>(position_[axis].capacity() + scratch_position_[axis].capacity());
   for (const auto& block : reflected_) total += static_cast<double>(sizeof(Reflected) * block.capacity());

@@ -169,9 +169,8 @@ void PressureOperator::residual(std::span<const double> q, std::span<const doubl
     record[1] = static_cast<float>(value - double{record[0]});
   };
   parallel_for(n, [&, out, width](std::size_t i) { split(out + i * width, q[i]); });
-  for_each_image_value(context_, q.data(), [&, out, width, n](std::size_t k, double value) {
-    split(out + (n + k) * width, value);
-  });
+  for_each_image_value(context_, q.data(),
+                       [&, out, width, n](std::size_t k, double value) { split(out + (n + k) * width, value); });
   const auto volume = static_cast<float>(context_.volume);
   parallel_for(n, [&](std::size_t i) { r[i] = 0; });
   with_kernel(context_, [&]<int dimensions, class Kernel>() {

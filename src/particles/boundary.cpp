@@ -140,13 +140,13 @@ void Boundary::find_rules(const Images& images, double support_radius, double t)
   if (features.no_slip && features.displaced_walls) find_offsets(images, t, false, mirror_rule_);
   // An image behind a wall moves with twice the velocity of the wall.
   const double of_images = 0.5 * std::sqrt(parallel_max(images.size(), 0.0, [&](std::size_t k) {
-                      double speed2 = 0;
-                      for (int a = 0; a < d; ++a) {
-                        const double u = velocity_rule_.offset[a][k];
-                        speed2 += u * u;
-                      }
-                      return speed2;
-                    }));
+                             double speed2 = 0;
+                             for (int a = 0; a < d; ++a) {
+                               const double u = velocity_rule_.offset[a][k];
+                               speed2 += u * u;
+                             }
+                             return speed2;
+                           }));
   next_wall_speed = bodies_ == nullptr ? of_images : std::max(of_images, next_wall_speed);
   if (std::isfinite(of_images)) return;
   StepFailure::Details details;

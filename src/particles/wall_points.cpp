@@ -25,8 +25,8 @@ struct ShellPoint {
   double distance = 0;  // from the surface, of the middle of its shell; negative inside the solid
 };
 
-// Sites of the lattice per point, along each axis: counts are those of finer cells, which a ring of ten spacings has 2 %
-// off, in place of 10 % for one site a point.
+// Sites of the lattice per point, along each axis: counts are those of finer cells, which a ring of ten spacings has 2
+// % off, in place of 10 % for one site a point.
 constexpr std::size_t finer_2d = 3, finer_3d = 2;
 
 // Bits of a, b and c in turns: numbers along a curve whose pieces are compact.
@@ -97,9 +97,8 @@ std::vector<ShellPoint> cut_shells(const Scene& scene, double spacing, double re
   });
   std::vector<Site> sites;
   for (const auto& row : rows) sites.insert(sites.end(), row.begin(), row.end());
-  std::sort(sites.begin(), sites.end(), [](const Site& a, const Site& b) {
-    return a.shell == b.shell ? a.code < b.code : a.shell < b.shell;
-  });
+  std::sort(sites.begin(), sites.end(),
+            [](const Site& a, const Site& b) { return a.shell == b.shell ? a.code < b.code : a.shell < b.shell; });
   // Of each shell one of as many sites as a point has volume of.
   const double share = lattice.step[0] * lattice.step[1] * (d == 3 ? lattice.step[2] : 1.0) / std::pow(spacing, d);
   std::vector<ShellPoint> points;

@@ -18,8 +18,8 @@ namespace spume::test {
 namespace {
 
 std::string scene_text(const std::string& domain, double spacing, const std::string& bodies) {
-  return "method = \"les-sph\"\n[time]\nend = 1\n[domain]\n" + domain + "[resolution]\nspacing = " + std::to_string(spacing) +
-         "\n[fluid]\nreynolds = 100\n[[liquid]]\n" + bodies;
+  return "method = \"les-sph\"\n[time]\nend = 1\n[domain]\n" + domain +
+         "[resolution]\nspacing = " + std::to_string(spacing) + "\n[fluid]\nreynolds = 100\n[[liquid]]\n" + bodies;
 }
 
 const std::string square = "lower = [-1, -1]\nupper = [1, 1]\nleft = \"open\"\nright = \"open\"\nbottom = \"open\"\n";
@@ -27,8 +27,10 @@ const std::string disc = "[[body]]\nshape = \"cylinder\"\nradius = 0.4\nposition
 const std::string pipe =
     "[[body]]\nshape = \"cylinder\"\nradius = 0.8\ninside = false\nwall = \"no-slip\"\nvelocity = [\"-y\", \"x\"]\n";
 const std::string turned = "[[body]]\nshape = \"box\"\nsize = [0.9, 0.7]\nrotation = [30]\nwall = \"no-slip\"\n";
-const std::string channel = "lower = [-1, -1]\nupper = [1, 1]\nx = \"periodic\"\nbottom = \"no-slip\"\ntop = \"free-slip\"\n";
-const std::string cube = "lower = [-0.6, -0.6, -0.6]\nupper = [0.6, 0.6, 0.6]\nx = \"periodic\"\ny = \"periodic\"\nbottom = \"no-slip\"\n";
+const std::string channel =
+    "lower = [-1, -1]\nupper = [1, 1]\nx = \"periodic\"\nbottom = \"no-slip\"\ntop = \"free-slip\"\n";
+const std::string cube =
+    "lower = [-0.6, -0.6, -0.6]\nupper = [0.6, 0.6, 0.6]\nx = \"periodic\"\ny = \"periodic\"\nbottom = \"no-slip\"\n";
 const std::string ball = "[[body]]\nshape = \"ball\"\nradius = 0.3\nposition = [0.4, 0.05, 0.02]\nwall = \"no-slip\"\n";
 
 // A scene with its particles jittered, in cell order, with images and lists.
@@ -43,8 +45,7 @@ struct Walled {
       : loaded(load_text(text)),
         resolution(scene().domain.dimensions, scene().spacing, KernelKind::wendland_c2, 1.3),
         particles(scene().domain.dimensions, scene().particles),
-        boundary(scene().domain, scene().spacing,
-                 std::make_unique<BodyWalls>(scene(), resolution, particles.volume)),
+        boundary(scene().domain, scene().spacing, std::make_unique<BodyWalls>(scene(), resolution, particles.volume)),
         arrangement(scene().domain, resolution, particles.volume, particles.size()) {
     for (std::size_t i = 0; i < particles.size(); ++i) {
       Vec3 r = vector_at(particles.position, particles.dimensions, i);
@@ -93,9 +94,9 @@ std::vector<Layout> layouts() {
 TEST(WallPoints, StandInLayersOfAsManyAsTheyHaveVolumeFor) {
   const double spacing = 0.02, radius = 0.4;
   for (const bool inside : {true, false}) {
-    const LoadedCase loaded = load_text(
-        scene_text(square, spacing,
-                   "[[body]]\nshape = \"cylinder\"\nradius = 0.4\ninside = " + std::string(inside ? "true\n" : "false\n")));
+    const LoadedCase loaded = load_text(scene_text(
+        square, spacing,
+        "[[body]]\nshape = \"cylinder\"\nradius = 0.4\ninside = " + std::string(inside ? "true\n" : "false\n")));
     const Resolution resolution(2, spacing, KernelKind::wendland_c2, 1.3);
     const double volume = loaded.scene.particles.volume, step = std::sqrt(volume);
     std::array<int, 3> count{};
@@ -128,8 +129,7 @@ TEST(BodyWalls, MirrorValuesAsFitsOverAllParticlesDo) {
     const WallStencils& stencils = walled.boundary.bodies()->stencils();
     const WallPointView wet = walled.boundary.bodies()->wet();
     ASSERT_GT(wet.size, 30U);
-    const std::vector<WallPoint> all =
-        make_wall_points(walled.scene(), walled.resolution, walled.particles.volume);
+    const std::vector<WallPoint> all = make_wall_points(walled.scene(), walled.resolution, walled.particles.volume);
     Array<double> scalar(walled.particles.size());
     for (std::size_t i = 0; i < scalar.size(); ++i) scalar[i] = smooth(walled.place(i)).scalar;
     for (std::size_t g = 0; g < wet.size; ++g) {
@@ -163,11 +163,10 @@ TEST(BodyWalls, SweepsSeeWallPointsAndTheirImages) {
       points.push_back(*std::find_if(all.begin(), all.end(), [&](const WallPoint& p) { return p.position == place; }));
       const Body* nearest = nullptr;
       for (const Body& body : walled.scene().bodies)
-        if (nearest == nullptr || std::abs(body.solid->distance(points.back().foot)) <
-                                      std::abs(nearest->solid->distance(points.back().foot)))
+        if (nearest == nullptr ||
+            std::abs(body.solid->distance(points.back().foot)) < std::abs(nearest->solid->distance(points.back().foot)))
           nearest = &body;
-      for (const bool friction : {false, true})
-        carried[friction].push_back(twin.at(points.back(), *nearest, friction));
+      for (const bool friction : {false, true}) carried[friction].push_back(twin.at(points.back(), *nearest, friction));
     }
     Array<double> scalar(n);
     std::array<Array<double>, 3> velocity;
@@ -196,8 +195,8 @@ TEST(BodyWalls, SweepsSeeWallPointsAndTheirImages) {
     const Array<float> kappa(n, 1.0F);
     std::array<const double*, 3> u{velocity[0].data(), velocity[1].data(), d == 3 ? velocity[2].data() : nullptr};
     gradient_sweep(walled.arrangement.context, walled.arrangement.packed, scalar.data(), 0, correction, gradient_out);
-    divergence_sweep(walled.arrangement.context, walled.arrangement.packed, u, walled.boundary.volume_rule(), correction,
-                     nullptr, divergence.data(), nullptr);
+    divergence_sweep(walled.arrangement.context, walled.arrangement.packed, u, walled.boundary.volume_rule(),
+                     correction, nullptr, divergence.data(), nullptr);
     viscous_sweep(walled.arrangement.context, walled.arrangement.packed, u, walled.boundary.velocity_rule(),
                   kappa.data(), viscous_out, false);
     const Array<float> no_shift(n, 0.0F);

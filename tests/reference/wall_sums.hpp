@@ -80,8 +80,8 @@ struct WallSums {
         row << 1, x, y, x * x, x * y, y * y;
       else
         row << 1, x, y, z, x * x, x * y, x * z, y * y, y * z, z * z;
-      const double weight = std::sqrt(
-          WendlandC2::w(2 * length(offset[static_cast<std::size_t>(k)]) * smoothing_length / reach));
+      const double weight =
+          std::sqrt(WendlandC2::w(2 * length(offset[static_cast<std::size_t>(k)]) * smoothing_length / reach));
       const Carried& v = values[static_cast<std::size_t>(k)];
       basis.row(k) = weight * row;
       right.row(k) << weight * v.scalar, weight * v.velocity[0], weight * v.velocity[1], weight * v.velocity[2];

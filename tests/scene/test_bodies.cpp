@@ -40,7 +40,7 @@ const std::string head2 =
     "method = \"walled\"\n[domain]\nlower = [-1, -1]\nupper = [1, 1]\n[resolution]\nspacing = 0.05\n[time]\nend = 1\n"
     "[fluid]\nreynolds = 100\n";                                                  // 10 lines
 const std::string liquid2 = "[[liquid]]\nlower = [-1, -1]\nupper = [1, -0.9]\n";  // 11 to 13
-const std::string liquid_beside = "[[liquid]]\nlower = [-1, -1]\n";  // all but the body
+const std::string liquid_beside = "[[liquid]]\nlower = [-1, -1]\n";               // all but the body
 const std::string head3 =
     "method = \"walled\"\n[domain]\nlower = [-1, -1, -1]\nupper = [1, 1, 1]\n[resolution]\nspacing = 0.1\n[time]\nend "
     "= 1\n[fluid]\nreynolds = 100\n[[liquid]]\nupper = [1, 1, -0.8]\n";  // 12 lines

@@ -41,7 +41,8 @@ struct WallStencils {
   template <class T>
   double mirrored(std::size_t g, const T* values) const {
     double sum = 0;
-    for (std::int64_t k = first[g]; k < first[g + 1]; ++k) sum += coefficient[k] * static_cast<double>(values[source[k]]);
+    for (std::int64_t k = first[g]; k < first[g + 1]; ++k)
+      sum += coefficient[k] * static_cast<double>(values[source[k]]);
     return sum;
   }
   // u_g; `moving` false leaves the velocity of the surface out, as for accelerations beside a steady wall.

@@ -49,8 +49,8 @@ class BodyForces {
     std::int32_t body = 0;
   };
   template <int dimensions>
-  bool traction(const Fields& fields, const CellOrder& table, const Element& element, const Vec3& wall_velocity, Vec3& pressure,
-                Vec3& viscous) const;
+  bool traction(const Fields& fields, const CellOrder& table, const Element& element, const Vec3& wall_velocity,
+                Vec3& pressure, Vec3& viscous) const;
   void add_elements(std::int32_t body);
 
   const Scene& scene_;

@@ -80,6 +80,13 @@ class Boundary {
   // Walls and boxes as one solid; null without boxes.
   const SolidUnion* solids() const { return solids_.get(); }
 
+  // Boxes and bodies in the domain, and whether one of them is nearer than `reach` to a point.
+  bool has_obstacles() const { return solids_ != nullptr || bodies_ != nullptr; }
+  bool obstacle_near(const Vec3& point, double reach) const {
+    return (solids_ != nullptr && !solids_->clear_around(point, reach)) ||
+           (bodies_ != nullptr && bodies_->distance(point) < reach);
+  }
+
   // Periodic wrap; a point beyond a wall or inside a solid is reflected back, its velocity too when given.
   void apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity) const;
 

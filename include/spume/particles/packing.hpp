@@ -13,6 +13,6 @@ namespace spume {
 
 // Moves particles, in both `particles.position` and `at`, and leaves them in cell order of `at`.
 void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boundary& boundary,
-                        const Resolution& resolution, const VectorField& at, double t);
+                        const Resolution& resolution, const VectorField& at, bool free_surface, double t);
 
 }  // namespace spume

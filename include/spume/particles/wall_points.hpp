@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Points inside the walls of bodies that stand for the liquid mirrored at them: in layers half a spacing, one and a half
+// Points inside the walls of bodies that stand for the liquid mirrored at them: in layers half a spacing, one and a
+// half
 // ... below the surface, as liquid stands above it, each with the volume of a particle.
 //
 // A lattice is cut into shells of one spacing along the distance from the surface; the points of a shell, which are as

@@ -38,7 +38,7 @@ struct CellGeometry {
   std::vector<Box> solids;                    // impermeable boxes inside the domain
   // Of impermeable bodies of any shape: the distance from their surface, negative inside; null without.
   std::function<double(const std::array<double, 3>&)> distance = {};
-  double cell_size = 0;                       // about 1.5 particle spacings; adjusted to fit between walls
+  double cell_size = 0;  // about 1.5 particle spacings; adjusted to fit between walls
 };
 
 class CellMultigrid final : public Preconditioner<float>, public Preconditioner<double> {
@@ -132,9 +132,9 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
   // shore_first_[s + 1]. With zero there, a liquid around a box takes 42 iterations in place of 7.
   std::vector<std::size_t> shore_, shore_first_, shore_next_;
   Array<std::int32_t> shore_cells_;
-  Array<float> partial_;                     // spread sums per row of stencil cells and side
-  Array<float> corner_value_;                // cell values with wrapped upper neighbours
-  Array<float> residual_, correction_;       // float copies for double vectors
+  Array<float> partial_;                // spread sums per row of stencil cells and side
+  Array<float> corner_value_;           // cell values with wrapped upper neighbours
+  Array<float> residual_, correction_;  // float copies for double vectors
   CellHierarchy hierarchy_;
 };
 

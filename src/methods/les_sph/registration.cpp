@@ -25,8 +25,9 @@ void check_walls_of_bodies(Draft& draft, Problems& problems) {
     if (draft.bodies[k].wall == BoundaryKind::open) continue;
     const std::string place = "body." + std::to_string(k);
     if (draft.node("solid.0"))
-      problems.add(*draft.node("solid.0"), "a scene with walls of [[body]] takes no [[solid]] box; write it as  "
-                                           "[[body]]  with  shape = \"box\"");
+      problems.add(*draft.node("solid.0"),
+                   "a scene with walls of [[body]] takes no [[solid]] box; write it as  "
+                   "[[body]]  with  shape = \"box\"");
     if (draft.node("bubbles"))
       problems.add(*draft.node("bubbles"), "[bubbles] needs walls along the axes, and " + place +
                                                " is a wall of another shape; remove one of them, or write a box as "

@@ -168,7 +168,8 @@ std::vector<ArrayInfo> LesSph::arrays() const {
   list.push_back({"gradient corrections left out", flow_.moments.uncorrected.bytes()});
   list.push_back({"leased within a step", flow_.leased_bytes()});
   if (flow_.boundary.bodies() != nullptr) list.push_back({"wall points", flow_.boundary.bytes()});
-  if (flow_.features.moving_walls && flow_.boundary.bodies() == nullptr) list.push_back({"velocities of images", flow_.boundary.bytes()});
+  if (flow_.features.moving_walls && flow_.boundary.bodies() == nullptr)
+    list.push_back({"velocities of images", flow_.boundary.bytes()});
   if (flow_.surface != nullptr) list.push_back({"surface", flow_.surface->bytes() + flow_.surface_source.bytes()});
   if (flow_.shift != nullptr) list.push_back({"layers of the shift", flow_.shift->bytes()});
   if (flow_.bubbles == nullptr) return list;

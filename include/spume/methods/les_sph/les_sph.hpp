@@ -12,8 +12,8 @@
 
 #include "spume/methods/les_sph/flow.hpp"
 #include "spume/methods/method.hpp"
-#include "spume/particles/output_fields.hpp"
 #include "spume/particles/body_forces.hpp"
+#include "spume/particles/output_fields.hpp"
 #include "spume/particles/point_sampler.hpp"
 
 namespace spume::les_sph {
@@ -70,7 +70,7 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   SavedNumbers saved_{"scalars"};
   struct {
     double kinetic = 0, potential = 0;
-  } row_energy_;  // of the row of the series that is being read
+  } row_energy_;                                   // of the row of the series that is being read
   std::unique_ptr<const BodyForces> body_forces_;  // null without walls of bodies
   PointSampler sampler_;
   std::int64_t sampled_step_ = -1;  // that the sampler has binned
