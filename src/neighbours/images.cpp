@@ -33,7 +33,7 @@ void Images::append_stage(std::size_t scanned, Emit&& emit) {
   std::array<std::size_t, max_reduction_blocks + 1> start{};
   parallel_blocks(scanned, block, [&](std::size_t b, std::size_t first, std::size_t last) {
     std::size_t count = 0;
-    const auto counter = [&](const std::array<double, 3>&, std::int32_t, std::int32_t) { ++count; };
+    const auto counter = [&](const std::array<double, 3>&, std::int32_t, std::int32_t, std::int32_t) { ++count; };
     for (std::size_t k = first; k < last; ++k) emit(k, counter);
     start[b + 1] = count;
   });
@@ -44,10 +44,14 @@ void Images::append_stage(std::size_t scanned, Emit&& emit) {
   for (auto& axis : position_) axis.resize(after);
   source_.resize(after);
   path_.resize(after);
+  const bool walls = !wall_point_.empty();
+  if (walls) wall_point_.resize(after);
   parallel_blocks(scanned, block, [&](std::size_t b, std::size_t first, std::size_t last) {
     std::size_t slot = before + start[b];
-    const auto writer = [&](const std::array<double, 3>& position, std::int32_t source, std::int32_t path) {
+    const auto writer = [&](const std::array<double, 3>& position, std::int32_t source, std::int32_t path,
+                            std::int32_t wall_point) {
       for (int axis = 0; axis < 3; ++axis) position_[axis][slot] = position[axis];
+      if (walls) wall_point_[slot] = wall_point;
       source_[slot] = source;
       path_[slot] = path;
       ++slot;
@@ -222,16 +226,31 @@ void Images::add_axis_images(const ImageRules& rules, int axis, std::size_t n) {
       r[axis] = image;
       const std::int32_t source = particle ? static_cast<std::int32_t>(k) : source_[k - n];
       const std::size_t row = particle ? 0 : static_cast<std::size_t>(path_[k - n]) + 1;
-      sink(r, source, next[row][side]);
+      sink(r, source, next[row][side], particle || wall_point_.empty() ? -1 : wall_point_[k - n]);
     }
   });
 }
 
+void Images::add_wall_points(const WallPointView& walls) {
+  const std::int32_t path = find_path({});
+  for (auto& axis : position_) axis.resize(walls.size);
+  source_.resize(walls.size);
+  path_.resize(walls.size);
+  wall_point_.resize(walls.size);
+  parallel_for(walls.size, [&](std::size_t g) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      position_[axis][g] = walls.position[axis] == nullptr ? 0 : walls.position[axis][g];
+    source_[g] = walls.source[g];
+    path_[g] = path;
+    wall_point_[g] = static_cast<std::int32_t>(g);
+  });
+}
+
 void Images::build(const ImageRules& rules, const CellGrid& grid, const double* x, const double* y, const double* z,
-                   std::size_t n) {
+                   std::size_t n, const WallPointView* walls) {
   particle_ = {x, y, z};
   solids_ = rules.solids;
-  inside_domain_ = solids_ != nullptr;
+  inside_domain_ = solids_ != nullptr || walls != nullptr;
   for (int axis = 0; axis < 3; ++axis) period_[axis] = rules.upper[axis] - rules.lower[axis];
   for (int axis = 0; axis < 3; ++axis) {
     constexpr double everywhere = std::numeric_limits<double>::infinity();
@@ -243,6 +262,8 @@ void Images::build(const ImageRules& rules, const CellGrid& grid, const double* 
   path_.resize(0);
   if (solids_ != nullptr) paths_.clear();  // remade, as their numbers are their order
   if (solids_ != nullptr) add_reflections(rules, n);
+  wall_point_.resize(0);
+  if (walls != nullptr) add_wall_points(*walls);
   for (int axis = 0; axis < rules.dimensions; ++axis) add_axis_images(rules, axis, n);
 
   const std::size_t m = source_.size();
@@ -270,11 +291,12 @@ void Images::build(const ImageRules& rules, const CellGrid& grid, const double* 
   for (int axis = 0; axis < 3; ++axis) reorder(position_[axis], scratch_position_[axis]);
   reorder(source_, scratch_);
   reorder(path_, scratch_);
+  if (!wall_point_.empty()) reorder(wall_point_, scratch_);
 }
 
 double Images::bytes() const {
-  double total =
-      table_.bytes() + 4.0 * static_cast<double>(source_.capacity() + path_.capacity() + scratch_.capacity());
+  double total = table_.bytes() + 4.0 * static_cast<double>(source_.capacity() + path_.capacity() +
+                                                            scratch_.capacity() + wall_point_.capacity());
   for (int axis = 0; axis < 3; ++axis)
     total += 8.0 * static_cast<double>(position_[axis].capacity() + scratch_position_[axis].capacity());
   for (const auto& block : reflected_) total += static_cast<double>(sizeof(Reflected) * block.capacity());

@@ -7,12 +7,11 @@ namespace {
 template <class T>
 void pack_scalar_any(const SweepContext& context, float* records, int width, int slot, const T* values) {
   const std::size_t n = context.list->particles();
-  const std::size_t m = context.images->size();
-  const std::int32_t* source = context.images->source();
   float* out = records + context.dimensions + slot;
   const auto w = static_cast<std::size_t>(width);
   parallel_for(n, [=](std::size_t i) { out[i * w] = static_cast<float>(values[i]); });
-  parallel_for(m, [=](std::size_t k) { out[(n + k) * w] = static_cast<float>(values[source[k]]); });
+  for_each_image_value(context, values,
+                       [=](std::size_t k, double value) { out[(n + k) * w] = static_cast<float>(value); });
 }
 
 }  // namespace
@@ -22,6 +21,15 @@ void pack_scalar(const SweepContext& context, float* records, int width, int slo
 }
 void pack_scalar(const SweepContext& context, float* records, int width, int slot, const float* values) {
   pack_scalar_any(context, records, width, slot, values);
+}
+
+void pack_coefficient(const SweepContext& context, float* records, int width, int slot, const float* values) {
+  const std::size_t n = context.list->particles();
+  const std::int32_t* source = context.images->source();
+  float* out = records + context.dimensions + slot;
+  const auto w = static_cast<std::size_t>(width);
+  parallel_for(n, [=](std::size_t i) { out[i * w] = values[i]; });
+  parallel_for(context.images->size(), [=](std::size_t k) { out[(n + k) * w] = values[source[k]]; });
 }
 
 void pack_velocity(const SweepContext& context, float* records, int width, int slot,
@@ -36,8 +44,18 @@ void pack_velocity(const SweepContext& context, float* records, int width, int s
     for (int axis = 0; axis < dimensions; ++axis) out[i * w + axis] = static_cast<float>(velocity[axis][i]);
   });
   const bool moving = !rule.offset[0].empty();
-  parallel_for(context.images->size(), [&, out, w, n, moving](std::size_t k) {
+  const std::int32_t* point = context.walls == nullptr ? nullptr : context.images->wall_point();
+  parallel_for(context.images->size(), [&, out, w, n, moving, point](std::size_t k) {
     const auto& sign = rule.sign[path[k]];
+    if (point != nullptr && point[k] >= 0) {
+      const auto u =
+          context.walls->velocity(static_cast<std::size_t>(point[k]), dimensions, velocity, rule.friction, rule.moving);
+      for (int axis = 0; axis < dimensions; ++axis) {
+        const float value = sign[axis] * static_cast<float>(u[axis]);
+        out[(n + k) * w + axis] = moving ? value + rule.offset[axis][k] : value;
+      }
+      return;
+    }
     for (int axis = 0; axis < dimensions; ++axis) {
       const float value = sign[axis] * static_cast<float>(velocity[axis][source[k]]);
       out[(n + k) * w + axis] = moving ? value + rule.offset[axis][k] : value;
@@ -56,7 +74,14 @@ void pack_vector(const SweepContext& context, float* records, int width, int slo
   parallel_for(n, [=](std::size_t i) {
     for (int axis = 0; axis < dimensions; ++axis) out[i * w + axis] = values[axis][i];
   });
-  parallel_for(context.images->size(), [&, out, w, n](std::size_t k) {
+  const std::int32_t* point = context.walls == nullptr ? nullptr : context.images->wall_point();
+  parallel_for(context.images->size(), [&, out, w, n, point](std::size_t k) {
+    if (point != nullptr && point[k] >= 0) {
+      const auto v = context.walls->vector(static_cast<std::size_t>(point[k]), dimensions, values);
+      for (int axis = 0; axis < dimensions; ++axis)
+        out[(n + k) * w + axis] = reflection[path[k]][axis] * static_cast<float>(v[axis]);
+      return;
+    }
     for (int axis = 0; axis < dimensions; ++axis)
       out[(n + k) * w + axis] = reflection[path[k]][axis] * values[axis][source[k]];
   });

@@ -135,7 +135,9 @@ Dots PressureOperator::apply(std::span<const float> x, std::span<float> y, std::
                  [&, out, width, n](std::size_t k) { out[(n + k) * width] = weight[source[k]] * x[source[k]]; });
   } else {
     parallel_for(n, [&, out, width](std::size_t i) { out[i * width] = x[i]; });
-    parallel_for(context_.images->size(), [&, out, width, n](std::size_t k) { out[(n + k) * width] = x[source[k]]; });
+    for_each_image_value(context_, x.data(), [out, width, n](std::size_t k, double value) {
+      out[(n + k) * width] = static_cast<float>(value);
+    });
   }
   with_kernel(context_, [&]<int dimensions, class Kernel>() {
     apply_rows<dimensions, Kernel>(context_, records, matrix_, x.data(), weight_sum_.data(), w.data(), y.data(),
@@ -161,15 +163,14 @@ void PressureOperator::residual(std::span<const double> q, std::span<const doubl
   packed_->count(static_cast<double>(n) * (44 + mask_and_sizes(8)));
   const auto width = static_cast<std::size_t>(record_width(context_.dimensions, payload));
   if (matrix_.weight != nullptr) pack_scalar(context_, records, static_cast<int>(width), 2, matrix_.weight);
-  const std::int32_t* source = context_.images->source();
   float* out = records + context_.dimensions;
   const auto split = [=](float* record, double value) {
     record[0] = static_cast<float>(value);
     record[1] = static_cast<float>(value - double{record[0]});
   };
   parallel_for(n, [&, out, width](std::size_t i) { split(out + i * width, q[i]); });
-  parallel_for(context_.images->size(),
-               [&, out, width, n](std::size_t k) { split(out + (n + k) * width, q[source[k]]); });
+  for_each_image_value(context_, q.data(),
+                       [&, out, width, n](std::size_t k, double value) { split(out + (n + k) * width, value); });
   const auto volume = static_cast<float>(context_.volume);
   parallel_for(n, [&](std::size_t i) { r[i] = 0; });
   with_kernel(context_, [&]<int dimensions, class Kernel>() {

@@ -106,6 +106,29 @@ void store_gradient(const VelocityGradientOut& out, std::size_t i,
   }
 }
 
+// The velocity gradient G of the nearest particle as wall point g has it: S G R, with R the reflection at the surface
+// and S = R, or -1 where the surface holds the liquid.
+template <int dimensions>
+void mirror_gradient(const WallStencils& walls, std::size_t g, bool friction,
+                     std::array<float, dimensions * dimensions>& gradient) {
+  std::array<float, dimensions> n;
+  for (int a = 0; a < dimensions; ++a) n[a] = walls.normal[a][g];
+  for (int a = 0; a < dimensions; ++a) {
+    float along = 0;
+    for (int b = 0; b < dimensions; ++b) along += gradient[a * dimensions + b] * n[b];
+    for (int b = 0; b < dimensions; ++b) gradient[a * dimensions + b] -= 2 * along * n[b];
+  }
+  const bool holds = friction && walls.no_slip[g] != 0;
+  for (int b = 0; b < dimensions; ++b) {
+    float along = 0;
+    for (int a = 0; a < dimensions; ++a) along += gradient[a * dimensions + b] * n[a];
+    for (int a = 0; a < dimensions; ++a) {
+      float& entry = gradient[a * dimensions + b];
+      entry = holds ? -entry : entry - 2 * along * n[a];
+    }
+  }
+}
+
 template <int dimensions, class Kernel>
 void shift_curvature(const SweepContext& context, PackedNeighbours& packed, const std::array<const float*, 9>& gradient,
                      const VelocityImageRule& rule, const std::vector<std::array<float, 3>>& reflection,
@@ -124,10 +147,15 @@ void shift_curvature(const SweepContext& context, PackedNeighbours& packed, cons
   parallel_for(context.images->size(), [&](std::size_t m) {
     const auto source = static_cast<std::size_t>(context.images->source()[m]);
     const auto path = static_cast<std::size_t>(context.images->path()[m]);
+    std::array<float, entries> own;
+    for (int k = 0; k < entries; ++k) own[k] = gradient[k][source];
+    if (context.walls != nullptr && context.images->wall_point()[m] >= 0)
+      mirror_gradient<dimensions>(*context.walls, static_cast<std::size_t>(context.images->wall_point()[m]),
+                                  rule.friction, own);
     for (int a = 0; a < dimensions; ++a)
       for (int b = 0; b < dimensions; ++b)
         records[(n + m) * width + dimensions + a * dimensions + b] =
-            rule.sign[path][a] * reflection[path][b] * gradient[a * dimensions + b][source];
+            rule.sign[path][a] * reflection[path][b] * own[a * dimensions + b];
   });
   const KernelScale<dimensions, Kernel> common(context);
 
@@ -169,7 +197,7 @@ void viscous(const SweepContext& context, PackedNeighbours& packed, const std::a
   float* records = packed.prepare(context, payload);
   constexpr int width = record_width(dimensions, payload);
   pack_velocity(context, records, width, 0, velocity, rule);
-  pack_scalar(context, records, width, dimensions, kappa);
+  pack_coefficient(context, records, width, dimensions, kappa);
   pack_volumes<Kernel>(context, records, width, dimensions + 1);
   const KernelScale<dimensions, Kernel> common(context);
   const auto tiny = static_cast<float>(coincident * context.smoothing_length * context.smoothing_length);
@@ -248,10 +276,9 @@ void gradient_of(const SweepContext& context, PackedNeighbours& packed, const do
   float* records = packed.prepare(context, payload);
   constexpr int width = record_width(dimensions, payload);
   pack_volumes<Kernel>(context, records, width, 1);
-  const std::int32_t* source = context.images->source();
   parallel_for(n, [=](std::size_t i) { records[i * width + dimensions] = static_cast<float>(values[i] - reference); });
-  parallel_for(context.images->size(), [=](std::size_t k) {
-    records[(n + k) * width + dimensions] = static_cast<float>(values[source[k]] - reference);
+  for_each_image_value(context, values, [=](std::size_t k, double value) {
+    records[(n + k) * width + dimensions] = static_cast<float>(value - reference);
   });
   const KernelScale<dimensions, Kernel> common(context);
 

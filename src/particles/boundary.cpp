@@ -23,7 +23,13 @@ BoundaryKind kind_of_face(const Domain& domain, int axis, int face) {
   return face < 2 ? domain.sides[axis][face].kind : domain.boxes[static_cast<std::size_t>(face - 2) / 2].kind;
 }
 
-BoundaryFeatures::BoundaryFeatures(const Domain& domain) {
+BoundaryFeatures::BoundaryFeatures(const Domain& domain, const std::vector<Body>& all_bodies) {
+  for (const Body& body : all_bodies) {
+    if (body.wall == BoundaryKind::open) continue;
+    bodies = true;
+    moving_bodies = moving_bodies || body.velocity;
+    no_slip = no_slip || body.wall == BoundaryKind::no_slip;
+  }
   for (int axis = 0; axis < domain.dimensions; ++axis)
     for (const Side& side : domain.sides[axis]) {
       images = images || side.kind != BoundaryKind::open;
@@ -32,11 +38,15 @@ BoundaryFeatures::BoundaryFeatures(const Domain& domain) {
       moving_walls = true;
       displaced_walls = displaced_walls || side.velocity->component[axis] != nullptr;
     }
-  images = images || !domain.boxes.empty();
+  images = images || bodies || !domain.boxes.empty();
   for (const SolidBox& box : domain.boxes) no_slip = no_slip || box.kind == BoundaryKind::no_slip;
 }
 
-Boundary::Boundary(const Domain& domain, double spacing) : features(domain), domain_(domain), spacing_(spacing) {
+Boundary::Boundary(const Domain& domain, double spacing, std::unique_ptr<BodyWalls> bodies)
+    : features(domain, bodies == nullptr ? std::vector<Body>{} : bodies->bodies()),
+      domain_(domain),
+      spacing_(spacing),
+      bodies_(std::move(bodies)) {
   for (int axis = 0; axis < domain.dimensions; ++axis) walls[axis] = {domain.lower[axis], domain.upper[axis]};
   next_walls = walls;
   unite_solids(walls);
@@ -88,7 +98,15 @@ void Boundary::make_images(Arrangement& arrangement, const ParticleStore& partic
                            double largest_length_ratio, double t) {
   const double support_radius = arrangement.grid.support_radius() * largest_length_ratio;
   const auto r = read(at);
-  arrangement.images.build(image_rules(support_radius), arrangement.grid, r[0], r[1], r[2], particles.size());
+  WallPointView wall_points;
+  if (bodies_ != nullptr) {
+    bodies_->find_stencils(arrangement, at, particles.volume, t);
+    wall_points = bodies_->wet();
+  }
+  const bool wet = wall_points.size > 0;
+  arrangement.context.walls = wet ? &bodies_->stencils() : nullptr;
+  arrangement.images.build(image_rules(support_radius), arrangement.grid, r[0], r[1], r[2], particles.size(),
+                           wet ? &wall_points : nullptr);
   find_rules(arrangement.images, support_radius, t);
 }
 
@@ -115,23 +133,26 @@ void Boundary::find_rules(const Images& images, double support_radius, double t)
       reflection_[p][axis] = axis < d ? static_cast<float>(Images::sign(paths[p], rules, axis)) : 1.0F;
   }
   if (features.no_slip) mirror_rule_.sign = reflection_;
+  mirror_rule_.friction = false;
+  if (bodies_ != nullptr) next_wall_speed = bodies_->largest_speed();
   if (!features.moving_walls) return;
   find_offsets(images, t, true, velocity_rule_);
   if (features.no_slip && features.displaced_walls) find_offsets(images, t, false, mirror_rule_);
   // An image behind a wall moves with twice the velocity of the wall.
-  next_wall_speed = 0.5 * std::sqrt(parallel_max(images.size(), 0.0, [&](std::size_t k) {
-                      double speed2 = 0;
-                      for (int a = 0; a < d; ++a) {
-                        const double u = velocity_rule_.offset[a][k];
-                        speed2 += u * u;
-                      }
-                      return speed2;
-                    }));
-  if (std::isfinite(next_wall_speed)) return;
+  const double of_images = 0.5 * std::sqrt(parallel_max(images.size(), 0.0, [&](std::size_t k) {
+                             double speed2 = 0;
+                             for (int a = 0; a < d; ++a) {
+                               const double u = velocity_rule_.offset[a][k];
+                               speed2 += u * u;
+                             }
+                             return speed2;
+                           }));
+  next_wall_speed = bodies_ == nullptr ? of_images : std::max(of_images, next_wall_speed);
+  if (std::isfinite(of_images)) return;
   StepFailure::Details details;
   details.cause = "the velocity of a wall is not a finite number";
   details.option = "domain.wall_velocity";
-  details.value = next_wall_speed;
+  details.value = of_images;
   throw StepFailure(details);
 }
 
@@ -191,6 +212,7 @@ void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* veloci
       if (velocity != nullptr) (*velocity)[axis] = std::min((*velocity)[axis], 0.0);
     }
   }
+  if (bodies_ != nullptr) bodies_->keep_outside(position, velocity, wall_gap * spacing_);
   if (solids_ == nullptr || !solids_->inside(position)) return;
   // Out through the nearest face, as far before it as it was behind, unless another solid is there.
   const Vec3 foot = solids_->nearest_free(position, 0);
@@ -209,7 +231,7 @@ void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* veloci
 }
 
 double Boundary::bytes() const {
-  double sum = 0;
+  double sum = bodies_ == nullptr ? 0 : bodies_->bytes();
   for (const auto* rule : {&velocity_rule_, &mirror_rule_})
     for (const auto& array : rule->offset) sum += array.bytes();
   return sum;

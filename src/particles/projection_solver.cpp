@@ -23,7 +23,16 @@ CellGeometry cell_geometry(const Boundary& boundary, double cell_size) {
     for (int side = 0; side < 2; ++side) geometry.wall[axis][side] = is_wall(domain.sides[axis][side].kind);
   }
   for (const SolidBox& box : domain.boxes) geometry.solids.push_back({box.lower, box.upper});
+  if (const BodyWalls* bodies = boundary.bodies(); bodies != nullptr)
+    geometry.distance = [bodies](const std::array<double, 3>& place) { return bodies->distance(place); };
   return geometry;
+}
+
+template <class Real>
+void subtract_mean(std::span<Real> values) {
+  const double mean = parallel_sum(values.size(), [&](std::size_t i) { return static_cast<double>(values[i]); }) /
+                      static_cast<double>(std::max<std::size_t>(values.size(), 1));
+  parallel_for(values.size(), [&](std::size_t i) { values[i] -= static_cast<Real>(mean); });
 }
 
 // The vectors of a correction in float, leased for a solve.
@@ -62,25 +71,33 @@ void PressureRows::release(ScratchPool& scratch) {
 
 // The particle matrix as the Krylov solvers see it.
 struct ProjectionSolver::Operator final : LinearOperator<float> {
-  explicit Operator(PressureOperator& matrix) : matrix_(matrix) {}
+  Operator(PressureOperator& matrix, const PressureRows& rows)
+      : matrix_(matrix), without_mean_(rows.singular && rows.unsymmetric) {}
   std::size_t size() const override { return matrix_.size(); }
-  void apply(std::span<const float> x, std::span<float> y) override { matrix_.apply(x, y, x); }
+  void apply(std::span<const float> x, std::span<float> y) override {
+    matrix_.apply(x, y, x);
+    if (without_mean_) subtract_mean(y);
+  }
   Dots apply_with_dots(std::span<const float> x, std::span<float> y, std::span<const float> w) override {
-    return matrix_.apply(x, y, w);
+    return without_mean_ ? LinearOperator<float>::apply_with_dots(x, y, w) : matrix_.apply(x, y, w);
   }
   PressureOperator& matrix_;
+  bool without_mean_;
 };
 
 // The same in double, for comparison: A x = -(0 - A x).
 struct ProjectionSolver::DoubleOperator final : LinearOperator<double> {
-  DoubleOperator(PressureOperator& matrix, std::span<const double> zero) : matrix_(matrix), zero_(zero) {}
+  DoubleOperator(PressureOperator& matrix, const PressureRows& rows, std::span<const double> zero)
+      : matrix_(matrix), zero_(zero), without_mean_(rows.singular && rows.unsymmetric) {}
   std::size_t size() const override { return matrix_.size(); }
   void apply(std::span<const double> x, std::span<double> y) override {
     matrix_.residual(x, zero_, y);
     parallel_for(y.size(), [&](std::size_t i) { y[i] = -y[i]; });
+    if (without_mean_) subtract_mean(y);
   }
   PressureOperator& matrix_;
   std::span<const double> zero_;
+  bool without_mean_;
 };
 
 // Residuals in double, corrections in float.
@@ -92,7 +109,7 @@ class ProjectionSolver::MixedSystem final : public RefinedSystem {
   void residual(std::span<double> r) override { solver_.operator_.residual(q_, rows_.right_hand_side, r); }
   KrylovResult correct(std::span<const double> r, const CorrectionTask& task) override {
     size_ = task.size;
-    Operator a(solver_.operator_);
+    Operator a(solver_.operator_, rows_);
     JacobiPreconditioner<float> jacobi(rows_.diagonal);
     return correct_by_krylov<float>(solver_.options_.method, a, solver_.preconditioner(jacobi), r, task, q_, work_);
   }
@@ -119,7 +136,7 @@ class ProjectionSolver::DoubleSystem final : public RefinedSystem {
     solver_.zero_.resize(r.size());
     solver_.double_diagonal_.resize(r.size());
     parallel_for(r.size(), [&](std::size_t i) { solver_.double_diagonal_[i] = rows_.diagonal[i]; });
-    DoubleOperator a(solver_.operator_, solver_.zero_);
+    DoubleOperator a(solver_.operator_, rows_, solver_.zero_);
     JacobiPreconditioner<double> jacobi(solver_.double_diagonal_);
     return correct_by_krylov<double>(solver_.options_.method, a, solver_.preconditioner(jacobi), r, task, q_,
                                      solver_.double_work_);

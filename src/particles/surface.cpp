@@ -41,9 +41,10 @@ FreeSurface::FreeSurface(const Resolution& resolution, const Options& options)
     : resolution_(resolution), options_(options) {}
 
 void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, MomentFields& moments,
-                       const std::vector<std::array<float, 3>>& reflection, const VectorField& at,
-                       const SolidUnion* solids) {
+                       const Boundary& boundary, const VectorField& at) {
   const std::size_t n = particles.size();
+  const SolidUnion* solids = boundary.solids();
+  const bool obstacles = boundary.has_obstacles();
   at_surface.resize(n);
   pressure_fixed.resize(n);
   interior_weight.resize(n);
@@ -54,13 +55,13 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, Momen
     at_surface[i] = divergence_of_position[i] < options_.interior.threshold ? 1 : 0;
     pressure_fixed[i] = at_surface[i] != 0 && moments.uncorrected[i] != 0 ? 1 : 0;
     interior_weight[i] = options_.interior(divergence_of_position[i]);
-    if (solids == nullptr || !is_near(moments, i) || divergence_of_position[i] < least ||
-        !faces_solid(*solids, moments, at, i))
+    if (!obstacles || !is_near(moments, i) || divergence_of_position[i] < least ||
+        !faces_solid(boundary, moments, at, i))
       return;
     at_surface[i] = 0;
     interior_weight[i] = 1;
   });
-  if (solids != nullptr) pass_over_gaps(arrangement, at, *solids);
+  if (obstacles) pass_over_gaps(arrangement, at, boundary);
   parallel_select(n, surface_particles, [&](std::size_t i) { return at_surface[i] != 0; });
   parallel_select(n, near_surface, [&](std::size_t i) { return is_near(moments, i); });
   depth.resize(near_surface.size());
@@ -69,8 +70,8 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, Momen
                  {resolution_.spacing, near_surface, read(moments.normal), solids, boxes_}, of_particle, depth);
   if (options_.smooth_normals) {
     particles.scratch().lease(smoothed_normal, resolution_.dimensions, n);
-    filter_vector_subset(arrangement.context, arrangement.packed, read(moments.normal), reflection, surface_particles,
-                         write(smoothed_normal));
+    filter_vector_subset(arrangement.context, arrangement.packed, read(moments.normal), boundary.reflection(),
+                         surface_particles, write(smoothed_normal));
   }
   arrangement.packed.take_traffic();  // it counts the lists of all particles, not of those at the surface alone
 }
@@ -101,23 +102,23 @@ void FreeSurface::count_in_boxes(const Arrangement& arrangement, MomentFields& m
   });
 }
 
-bool FreeSurface::faces_solid(const SolidUnion& solids, const MomentFields& moments, const VectorField& at,
+bool FreeSurface::faces_solid(const Boundary& boundary, const MomentFields& moments, const VectorField& at,
                               std::size_t i) const {
   Vec3 place = vector_at(at, resolution_.dimensions, i), normal{};
   for (int axis = 0; axis < resolution_.dimensions; ++axis) normal[axis] = (*moments.normal[axis])[i];
   const double size = std::sqrt(dot(normal, normal)), reach = 0.5 * resolution_.support_radius;
-  if (!(size > 0) || solids.clear_around(place, reach)) return false;
+  if (!(size > 0) || !boundary.obstacle_near(place, reach)) return false;
   for (int axis = 0; axis < resolution_.dimensions; ++axis) place[axis] += reach * normal[axis] / size;
-  return !solids.clear_around(place, beside * resolution_.spacing);
+  return boundary.obstacle_near(place, beside * resolution_.spacing);
 }
 
-void FreeSurface::pass_over_gaps(const Arrangement& arrangement, const VectorField& at, const SolidUnion& solids) {
+void FreeSurface::pass_over_gaps(const Arrangement& arrangement, const VectorField& at, const Boundary& boundary) {
   const NeighbourList& list = arrangement.list;
   const double reach = layer_distance * resolution_.spacing;
   const auto reach2 = static_cast<float>(reach * reach);
   parallel_for(interior_weight.size(), [&](std::size_t i) {
     if (at_surface[i] != 0 || interior_weight[i] == 1 ||
-        solids.clear_around(vector_at(at, resolution_.dimensions, i), resolution_.support_radius))
+        !boundary.obstacle_near(vector_at(at, resolution_.dimensions, i), resolution_.support_radius))
       return;
     for (const std::int32_t j : list.of(i)) {
       if (at_surface[arrangement.particle_of(j)] == 0) continue;

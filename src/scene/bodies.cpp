@@ -310,6 +310,12 @@ std::vector<Body> make_bodies(const Draft& draft, const CompileExpression& compi
     } else if (given.where) {
       compile(*given.where, name + ".where", Arguments::place);
     }
+    if (!given.velocity.empty()) {
+      VectorExpression velocity;
+      for (std::size_t a = 0; a < given.velocity.size() && a < 3; ++a)
+        velocity.component[a] = compile(given.velocity[a], name + ".velocity", Arguments::place_and_time);
+      body.velocity = std::move(velocity);
+    }
     bodies.push_back(std::move(body));
   }
   return bodies;

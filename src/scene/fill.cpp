@@ -82,10 +82,14 @@ void Filler::set_volume(const std::vector<std::vector<Chunk>>& chunks) {
   for (std::size_t r = 0; r < regions_.size(); ++r) {
     RegionFill& fill = scene_.fills[r];
     fill = {.name = regions_[r].name, .flat = is_box(regions_[r])};
+    double cells = 0, open_cells = 0;
     for (const Chunk& chunk : chunks[r]) {
       fill.asked += chunk.volume * lattice_.volume();
       fill.particles += chunk.position[0].size();
+      cells += chunk.cells;
+      open_cells += chunk.open_cells;
     }
+    if (cells > 0) fill.asked *= open_cells / cells;  // less what walls of bodies take of the region
     total += fill.asked;
     count += static_cast<double>(fill.particles);
     conform = conform || regions_[r].conform;
@@ -97,6 +101,7 @@ void Filler::set_volume(const std::vector<std::vector<Chunk>>& chunks) {
 
 // Whether nothing but air lies within a spacing around some particles of a region.
 bool Filler::stands_alone(std::size_t r, const std::vector<std::vector<Chunk>>& chunks) const {
+  if (!scene_.walls.empty()) return false;
   const auto dimensions = static_cast<std::size_t>(lattice_.dimensions);
   const auto extent_of = [&](std::size_t region) {
     std::array<std::pair<double, double>, 3> extent{};
@@ -243,11 +248,40 @@ void Filler::set_velocities() {
   }
 }
 
+// Whether walls of bodies cover a side of the domain: no liquid reaches it.
+bool Filler::behind_walls(std::size_t axis, int side) const {
+  if (scene_.walls.empty()) return false;
+  const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
+  const auto columns = static_cast<std::size_t>(lattice_.count[b]), rows = static_cast<std::size_t>(lattice_.count[c]);
+  return parallel_max(columns * rows, 0.0, [&](std::size_t k) {
+           Vec3 p{};
+           p[axis] = side == 0 ? scene_.domain.lower[axis] : scene_.domain.upper[axis];
+           p[b] = b < static_cast<std::size_t>(lattice_.dimensions) ? centre(b, static_cast<double>(k % columns)) : 0;
+           p[c] = c < static_cast<std::size_t>(lattice_.dimensions) ? centre(c, static_cast<double>(k / columns)) : 0;
+           return scene_.walls.distance(p) > 0.5 * scene_.spacing ? 1.0 : 0.0;
+         }) == 0;
+}
+
+// Of the domain, outside the walls of bodies.
+double Filler::open_volume() const {
+  const auto columns = static_cast<std::size_t>(lattice_.count[0]), rows = static_cast<std::size_t>(lattice_.count[1]);
+  const auto layers = static_cast<std::size_t>(lattice_.count[2]);
+  return lattice_.volume() * parallel_sum(rows * layers, [&](std::size_t row) {
+           ThreadRegions own(regions_, wall_distance());
+           double cells = 0;
+           for (std::size_t i = 0; i < columns; ++i) {
+             const Vec3 p{centre(0, static_cast<double>(i)), centre(1, static_cast<double>(row % rows)),
+                          lattice_.dimensions == 3 ? centre(2, static_cast<double>(row / rows)) : 0.0};
+             cells += open_part(own, p);
+           }
+           return cells;
+         });
+}
+
 bool Filler::fills_domain() const {
   for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a) {
-    for (const Side& side : scene_.domain.sides[a]) {
-      if (side.kind == BoundaryKind::open) return false;
-    }
+    for (int side = 0; side < 2; ++side)
+      if (scene_.domain.sides[a][side].kind == BoundaryKind::open && !behind_walls(a, side)) return false;
   }
   for (const LiquidRegion& region : regions_) {
     if (region.conform) return false;
@@ -258,6 +292,8 @@ bool Filler::fills_domain() const {
       domain *= scene_.domain.upper[a] - scene_.domain.lower[a];
     if (solids_ != nullptr) domain = solids_->free_volume(scene_.domain.lower, scene_.domain.upper);
     for (const RegionFill& fill : scene_.fills) filled += fill.asked;
+    // Bodies cut the cells of the lattice, by which both are counted, each off by a part of its own.
+    if (!scene_.walls.empty()) return open_volume() - filled < 1e-3 * filled + 0.5 * lattice_.volume();
     return domain - filled < 0.5 * lattice_.volume();
   }
   const double missing = lattice_.sites() - static_cast<double>(scene_.particles.size());

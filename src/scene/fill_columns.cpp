@@ -210,27 +210,39 @@ void Filler::site_column(ThreadRegions& own, std::size_t r, Vec3 p, double area,
   }
 }
 
-// Of a cell of the lattice around p, the share that the region fills: all or nothing where its corners agree, else by
-// samples of an eighth.
-double Filler::part_of_cell(ThreadRegions& own, std::size_t r, const Vec3& p, Chunk& chunk) const {
+// Of `parts` samples along each axis, over the inner `reach` of the cell of the lattice around p, the share inside.
+template <class Inside>
+double Filler::share_of_cell(const Vec3& p, int parts, double reach, Inside&& inside) const {
   const Vec3& width = lattice_.spacing;
   const bool deep = lattice_.dimensions == 3;
-  // `parts` samples along each axis, over the inner `reach` of the cell.
-  const auto share = [&](int parts, double reach) {
-    const auto offset = [&](int k) { return ((k + 0.5) / parts - 0.5) * reach; };
-    int inside = 0;
-    for (int c = 0; c < (deep ? parts : 1); ++c)
-      for (int b = 0; b < parts; ++b)
-        for (int a = 0; a < parts; ++a) {
-          const Vec3 q{p[0] + offset(a) * width[0], p[1] + offset(b) * width[1],
-                       p[2] + (deep ? offset(c) * width[2] : 0)};
-          inside += contains(own, r, q, chunk) && !(solids_ != nullptr && solids_->inside(q)) ? 1 : 0;
-        }
-    return static_cast<double>(inside) / (parts * parts * (deep ? parts : 1));
+  const auto offset = [&](int k) { return ((k + 0.5) / parts - 0.5) * reach; };
+  int count = 0;
+  for (int c = 0; c < (deep ? parts : 1); ++c)
+    for (int b = 0; b < parts; ++b)
+      for (int a = 0; a < parts; ++a)
+        count += inside(Vec3{p[0] + offset(a) * width[0], p[1] + offset(b) * width[1],
+                             p[2] + (deep ? offset(c) * width[2] : 0)})
+                     ? 1
+                     : 0;
+  return static_cast<double>(count) / (parts * parts * (deep ? parts : 1));
+}
+
+// Of the cell, the share that the region fills: all or nothing where its corners agree, else by samples of an eighth.
+double Filler::part_of_cell(ThreadRegions& own, std::size_t r, const Vec3& p, Chunk& chunk) const {
+  const auto inside = [&](const Vec3& q) {
+    return contains(own, r, q, chunk) && !(solids_ != nullptr && solids_->inside(q)) &&
+           (scene_.walls.empty() || own.walls.at(q) > 0);
   };
   constexpr double to_corners = 2 * (1 - 1e-9);
-  const double coarse = share(2, to_corners);
-  return coarse == 0 || coarse == 1 ? coarse : share(8, 1);
+  const double coarse = share_of_cell(p, 2, to_corners, inside);
+  return coarse == 0 || coarse == 1 ? coarse : share_of_cell(p, 8, 1, inside);
+}
+
+// Of the cell, the share outside the walls of bodies.
+double Filler::open_part(ThreadRegions& own, const Vec3& p) const {
+  const double distance = own.walls.at(p), half_diagonal = 0.5 * std::sqrt(lattice_.dimensions) * scene_.spacing;
+  if (std::abs(distance) > half_diagonal) return distance > 0 ? 1 : 0;
+  return share_of_cell(p, 8, 1, [&](const Vec3& q) { return own.walls.at(q) > 0; });
 }
 
 // The column through p: the surface is the highest root of `where`, found from above in steps of half a

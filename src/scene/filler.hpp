@@ -37,12 +37,33 @@ class BodySide {
   double distance_ = 0;
 };
 
+// The distance from the walls of bodies, as far as it says whether a cell of the lattice is cut by them: farther away
+// only its sign is right. Asked along columns, most questions do not reach the bodies.
+class WallDistance {
+ public:
+  WallDistance(const Combination* walls, double error, double enough) : walls_(walls), error_(error), enough_(enough) {}
+  double at(const Vec3& p) {
+    const double way = std::hypot(p[0] - place_[0], p[1] - place_[1], p[2] - place_[2]);
+    const double left = std::abs(distance_) - way - error_;
+    if (left > enough_) return std::copysign(left, distance_);
+    place_ = p;
+    return distance_ = walls_->distance(p);
+  }
+
+ private:
+  const Combination* walls_;
+  double error_, enough_;
+  Vec3 place_{};
+  double distance_ = 0;
+};
+
 // One thread's own copies of the expressions of all regions, and what it knows of their bodies.
 struct ThreadRegions {
   std::vector<std::unique_ptr<Expression>> where;
   std::vector<VectorExpression> velocity;
   std::vector<BodySide> body;
-  explicit ThreadRegions(const std::vector<LiquidRegion>& regions) {
+  WallDistance walls;
+  ThreadRegions(const std::vector<LiquidRegion>& regions, const WallDistance& distance) : walls(distance) {
     for (const LiquidRegion& region : regions) {
       where.push_back(region.where ? region.where->clone() : nullptr);
       velocity.push_back(region.velocity.clone());
@@ -64,6 +85,7 @@ struct Finding {
 struct Chunk {
   std::vector<double> position[3];
   double volume = 0;                       // of the region, in cells of the lattice
+  double cells = 0, open_cells = 0;        // of the region, and their parts outside the walls of bodies
   std::map<std::size_t, Finding> overlap;  // by the other region
   Finding not_finite, beyond_top, in_solid, replaced;
 };
@@ -100,6 +122,15 @@ class Filler {
   bool fills_domain() const;
 
  private:
+  bool behind_walls(std::size_t axis, int side) const;
+  double open_volume() const;
+  WallDistance wall_distance() const {
+    double error = 0;
+    for (const Body& body : scene_.bodies)
+      if (body.solid) error = std::max(error, body.solid->error());
+    return {&scene_.walls, error, scene_.spacing};
+  }
+
   // Regions of phases lie on each other, the later above.
   bool layered() const { return regions_.front().phase >= 0; }
 
@@ -107,7 +138,7 @@ class Filler {
 
   ThreadRegions& own() {
     auto& regions = threads_[static_cast<std::size_t>(omp_get_thread_num())];
-    if (!regions) regions = std::make_unique<ThreadRegions>(regions_);
+    if (!regions) regions = std::make_unique<ThreadRegions>(regions_, wall_distance());
     return *regions;
   }
 
@@ -158,6 +189,17 @@ class Filler {
     if (in_solid(p)) {
       chunk.in_solid.add(p);
       return;
+    }
+    if (!scene_.walls.empty()) {
+      // Regions on sites of the lattice have taken the walls into their volume.
+      if (is_box(regions_[r]) || regions_[r].conform) {
+        chunk.cells += 1;
+        chunk.open_cells += open_part(own, p);
+      }
+      if (own.walls.at(p) <= 0) {
+        chunk.in_solid.add(p);
+        return;
+      }
     }
     if (layered()) {
       for (std::size_t q = r + 1; q < regions_.size(); ++q)
@@ -211,6 +253,9 @@ class Filler {
   void conform_column(ThreadRegions& own, std::size_t r, Vec3 p, double area, Chunk& chunk) const;
   void site_column(ThreadRegions& own, std::size_t r, Vec3 p, double area, Chunk& chunk) const;
   double part_of_cell(ThreadRegions& own, std::size_t r, const Vec3& p, Chunk& chunk) const;
+  double open_part(ThreadRegions& own, const Vec3& p) const;
+  template <class Inside>
+  double share_of_cell(const Vec3& p, int parts, double reach, Inside&& inside) const;
   void report(const std::vector<std::vector<Chunk>>& chunks);
   void set_volume(const std::vector<std::vector<Chunk>>& chunks);
   bool stands_alone(std::size_t r, const std::vector<std::vector<Chunk>>& chunks) const;

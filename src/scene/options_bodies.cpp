@@ -54,6 +54,9 @@ Section body_section() {
       .word("wall", &B::wall,
             {{"free-slip", BoundaryKind::free_slip}, {"no-slip", BoundaryKind::no_slip}, {"none", BoundaryKind::open}},
             "condition on its surface; none: no wall, a shape for [[liquid]] to fill")
+      .option("velocity", &B::velocity, "length/time",
+              "velocity of the surface along itself, as of a turning cylinder: expressions of x y z t")
+      .absent("it stands still")
       .whole_only(uses_particles);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/simd.hpp"
@@ -60,7 +61,7 @@ void CellMultigrid::collect() {
   const bool three_dimensional = geometry_.dimensions == 3;
   parallel_blocks(level.rows(), level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t row = first; row < last; ++row) {
-      if (level.range[row][0] >= level.range[row][1]) continue;
+      if (level.range[row][0] >= level.range[row][1] && shore_.empty()) continue;
       const int j = static_cast<int>(row) % n[1], k = static_cast<int>(row) / n[1];
       const int below = j > 0 ? j - 1 : n[1] - 1, behind = k > 0 ? k - 1 : n[2] - 1;
       const auto part = [&](int side, int jj, int kk) {
@@ -78,6 +79,24 @@ void CellMultigrid::collect() {
         for (int i = 0; i < n[0]; ++i) f[i] = p0[i] + p1[i];
     }
   });
+}
+
+// What particles give to solid cells goes to the liquid around these: the transpose of extend_to_shore().
+void CellMultigrid::spread_from_shore() {
+  float* f = hierarchy_.finest().right_hand_side.data();
+  for (std::size_t s = 0; s < shore_.size(); ++s) {
+    const float share = std::exchange(f[shore_[s]], 0.0F) / static_cast<float>(shore_first_[s + 1] - shore_first_[s]);
+    for (std::size_t k = shore_first_[s]; k < shore_first_[s + 1]; ++k) f[shore_next_[k]] += share;
+  }
+}
+
+void CellMultigrid::extend_to_shore() {
+  float* u = hierarchy_.finest().solution.data();
+  for (std::size_t s = 0; s < shore_.size(); ++s) {
+    float sum = 0;
+    for (std::size_t k = shore_first_[s]; k < shore_first_[s + 1]; ++k) sum += u[shore_next_[k]];
+    u[shore_[s]] = sum / static_cast<float>(shore_first_[s + 1] - shore_first_[s]);
+  }
 }
 
 template <class Real>
@@ -99,7 +118,9 @@ void CellMultigrid::apply_any(std::span<const Real> r, std::span<Real> z) {
     spread(r.data());
   }
   collect();
+  spread_from_shore();
   hierarchy_.v_cycle();
+  extend_to_shore();
   const CellLevel& level = hierarchy_.finest();
   const auto& n = level.cells;
   const std::size_t row_pitch = static_cast<std::size_t>(n[0]) + 1;

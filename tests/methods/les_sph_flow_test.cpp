@@ -158,8 +158,7 @@ ShiftBounds shifts_of_a_dam_break(const std::vector<std::string>& overrides = {}
     run.steps(1, 0.004);
     auto& flow = const_cast<les_sph::Flow&>(run.method.flow());
     // The shift has released the smoothed normals.
-    flow.surface->find(flow.arrangement, flow.particles, flow.moments, flow.boundary.reflection(),
-                       flow.intermediate_position, flow.boundary.solids());
+    flow.surface->find(flow.arrangement, flow.particles, flow.moments, flow.boundary, flow.intermediate_position);
     const double h = flow.resolution.smoothing_length;
     for (std::size_t i = 0; i < flow.size(); ++i) {
       double length2 = 0, normal2 = 1e-30, along = 0;

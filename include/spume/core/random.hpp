@@ -23,6 +23,7 @@ enum class RandomPurpose : std::uint32_t {
   bubble_source = 13,
   force_sample = 14,
   wave_component = 15,
+  wall_point = 16,
   test = 100
 };
 

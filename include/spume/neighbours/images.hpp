@@ -52,15 +52,26 @@ struct ImagePath {
   }
 };
 
+// Points inside bodies that stand for mirrored liquid, beside the images: periodic and mirror sides have images of them
+// as of particles.
+struct WallPointView {
+  std::size_t size = 0;
+  std::array<const double*, 3> position{};
+  const std::int32_t* source = nullptr;  // the particle that each stands for where one is asked for
+};
+
 class Images {
  public:
-  // Remakes all images of the n particles at (x, y, z). Sorted by cell of `grid`.
+  // Remakes all images of the n particles at (x, y, z). Sorted by cell of `grid`. `walls`: null without; not beside
+  // solid boxes.
   void build(const ImageRules& rules, const CellGrid& grid, const double* x, const double* y, const double* z,
-             std::size_t n);
+             std::size_t n, const WallPointView* walls = nullptr);
 
   std::size_t size() const { return source_.size(); }
   const std::int32_t* source() const { return source_.data(); }
   const double* position(int axis) const { return position_[axis].data(); }
+  // The wall point that an image is or mirrors, -1 for those of particles; null without wall points.
+  const std::int32_t* wall_point() const { return wall_point_.empty() ? nullptr : wall_point_.data(); }
   // Index into paths(), per image.
   const std::int32_t* path() const { return path_.data(); }
   const std::vector<ImagePath>& paths() const { return paths_; }
@@ -83,6 +94,7 @@ class Images {
   void append_stage(std::size_t scanned, Emit&& emit);
   void add_reflections(const ImageRules& rules, std::size_t n);
   void add_axis_images(const ImageRules& rules, int axis, std::size_t n);
+  void add_wall_points(const WallPointView& walls);
   std::int32_t find_path(const ImagePath& path);
 
   struct Reflected {
@@ -93,6 +105,7 @@ class Images {
   std::vector<std::vector<Reflected>> reflected_;  // of blocks of particles, while images at solids are made
   std::array<Array<double>, 3> position_, scratch_position_;
   Array<std::int32_t> source_, path_, scratch_;
+  Array<std::int32_t> wall_point_;  // empty without wall points
   std::vector<ImagePath> paths_;
   std::array<double, 3> image_free_lower_{}, image_free_upper_{};
   bool inside_domain_ = false;

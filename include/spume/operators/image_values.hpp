@@ -8,6 +8,7 @@
 
 #include "spume/core/array.hpp"
 #include "spume/operators/pair_sweep.hpp"
+#include "spume/operators/wall_stencils.hpp"
 
 namespace spume {
 
@@ -17,6 +18,8 @@ struct VelocityImageRule {
   std::vector<std::array<float, 3>> sign;
   // Per image and component; empty when no wall moves.
   std::array<Array<float>, 3> offset;
+  // At wall points of bodies: whether no-slip surfaces hold the liquid, and whether their motion counts.
+  bool friction = true, moving = true;
 };
 
 // How values at images follow from those of their sources: the one place for everyone who reads images one by one.
@@ -45,6 +48,24 @@ struct ImageMap {
 // Writes `payload` component `slot` (0-based) of all records from a scalar per particle.
 void pack_scalar(const SweepContext& context, float* records, int width, int slot, const double* values);
 void pack_scalar(const SweepContext& context, float* records, int width, int slot, const float* values);
+// The same of a coefficient that must not change its sign: wall points take it from the nearest particle, not from a
+// fit.
+void pack_coefficient(const SweepContext& context, float* records, int width, int slot, const float* values);
+
+// write(k, value) for every image k, with the scalar that it carries; `values` is indexed by particle.
+template <class T, class Write>
+void for_each_image_value(const SweepContext& context, const T* values, Write&& write) {
+  const std::int32_t* source = context.images->source();
+  if (context.walls == nullptr) {
+    parallel_for(context.images->size(), [&](std::size_t k) { write(k, static_cast<double>(values[source[k]])); });
+    return;
+  }
+  const std::int32_t* point = context.images->wall_point();
+  parallel_for(context.images->size(), [&](std::size_t k) {
+    write(k, point[k] < 0 ? static_cast<double>(values[source[k]])
+                          : context.walls->mirrored(static_cast<std::size_t>(point[k]), values));
+  });
+}
 
 // Writes components slot .. slot + dimensions - 1 from a velocity per particle.
 void pack_velocity(const SweepContext& context, float* records, int width, int slot,

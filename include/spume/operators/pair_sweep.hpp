@@ -21,6 +21,8 @@
 
 namespace spume {
 
+struct WallStencils;
+
 constexpr int record_width(int dimensions, int payload) {
   return (dimensions + payload + 3) / 4 * 4;
 }
@@ -29,6 +31,7 @@ constexpr int record_width(int dimensions, int payload) {
 struct SweepContext {
   const NeighbourList* list = nullptr;
   const Images* images = nullptr;
+  const WallStencils* walls = nullptr;  // of the wall points among the images; null: there are none
   int dimensions = 3;
   KernelKind kernel = KernelKind::wendland_c2;
   double smoothing_length = 0;

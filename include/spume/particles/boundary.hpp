@@ -14,6 +14,7 @@
 #include "spume/neighbours/images.hpp"
 #include "spume/operators/image_values.hpp"
 #include "spume/particles/arrangement.hpp"
+#include "spume/particles/body_walls.hpp"
 #include "spume/scene/scene.hpp"
 #include "spume/scene/solid_union.hpp"
 
@@ -27,8 +28,10 @@ inline bool is_wall(BoundaryKind kind) {
 
 // What the boundaries of a domain ask for.
 struct BoundaryFeatures {
-  explicit BoundaryFeatures(const Domain& domain);
+  explicit BoundaryFeatures(const Domain& domain, const std::vector<Body>& bodies = {});
   bool images = false;           // some side is periodic or a wall, or there are solid boxes
+  bool bodies = false;           // some body is a wall
+  bool moving_bodies = false;    // the surface of some of them moves
   bool no_slip = false;          // some wall or solid holds the liquid
   bool moving_walls = false;     // some wall has a velocity
   bool displaced_walls = false;  // some wall velocity has a normal component
@@ -37,7 +40,8 @@ struct BoundaryFeatures {
 class Boundary {
  public:
   // `domain` outlives the boundary.
-  Boundary(const Domain& domain, double spacing);
+  // `bodies`: null without walls of bodies.
+  Boundary(const Domain& domain, double spacing, std::unique_ptr<BodyWalls> bodies = nullptr);
 
   const Domain& domain() const { return domain_; }
   const BoundaryFeatures features;
@@ -71,8 +75,17 @@ class Boundary {
   const std::vector<std::array<float, 3>>& reflection() const { return reflection_; }
   ImageMap image_map(const Images& images) const { return {images, velocity_rule_, reflection_}; }
 
+  // Walls of bodies; null without.
+  const BodyWalls* bodies() const { return bodies_.get(); }
   // Walls and boxes as one solid; null without boxes.
   const SolidUnion* solids() const { return solids_.get(); }
+
+  // Boxes and bodies in the domain, and whether one of them is nearer than `reach` to a point.
+  bool has_obstacles() const { return solids_ != nullptr || bodies_ != nullptr; }
+  bool obstacle_near(const Vec3& point, double reach) const {
+    return (solids_ != nullptr && !solids_->clear_around(point, reach)) ||
+           (bodies_ != nullptr && bodies_->distance(point) < reach);
+  }
 
   // Periodic wrap; a point beyond a wall or inside a solid is reflected back, its velocity too when given.
   void apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity) const;
@@ -86,6 +99,7 @@ class Boundary {
 
   const Domain& domain_;
   double spacing_;
+  std::unique_ptr<BodyWalls> bodies_;
   std::shared_ptr<const SolidUnion> solids_;
   VelocityImageRule velocity_rule_, mirror_rule_;  // the second in a scene with no-slip walls alone
   std::vector<std::array<float, 3>> reflection_;

@@ -29,6 +29,9 @@ struct PressureRows {
   double reference_norm = 0;  // of the right-hand side, to which residuals are relative
   double helmholtz = 0;       // diagonal shift of a full row over V, for the preconditioner
   bool singular = false;      // constants are in the null space: the mean is taken out of residuals
+  // The matrix is not symmetric: its residuals sum to anything. The mean is taken out of products as well, which makes
+  // a singular system solvable: what is left over is a uniform source.
+  bool unsymmetric = false;
 
   void release(ScratchPool& scratch);
 };

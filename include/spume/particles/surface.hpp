@@ -27,6 +27,7 @@
 
 #include "spume/operators/free_box.hpp"
 #include "spume/particles/arrangement.hpp"
+#include "spume/particles/boundary.hpp"
 #include "spume/particles/moments.hpp"
 #include "spume/particles/options.hpp"
 #include "spume/scene/solid_union.hpp"
@@ -64,9 +65,9 @@ class FreeSurface {
   };
   FreeSurface(const Resolution& resolution, const Options& options);
 
-  // From the moments of the arrangement of the particles at `at`. `reflection`: of images.
-  void find(Arrangement& arrangement, ParticleStore& particles, MomentFields& moments,
-            const std::vector<std::array<float, 3>>& reflection, const VectorField& at, const SolidUnion* solids);
+  // From the moments of the arrangement of the particles at `at`, with images of `boundary`.
+  void find(Arrangement& arrangement, ParticleStore& particles, MomentFields& moments, const Boundary& boundary,
+            const VectorField& at);
 
   Array<std::uint8_t> at_surface;
   Array<std::uint8_t> pressure_fixed;  // p = 0: at the surface with too few neighbours for a corrected gradient
@@ -96,8 +97,8 @@ class FreeSurface {
  private:
   void count_in_boxes(const Arrangement& arrangement, MomentFields& moments, const VectorField& at,
                       const SolidUnion& solids);
-  bool faces_solid(const SolidUnion& solids, const MomentFields& moments, const VectorField& at, std::size_t i) const;
-  void pass_over_gaps(const Arrangement& arrangement, const VectorField& at, const SolidUnion& solids);
+  bool faces_solid(const Boundary& boundary, const MomentFields& moments, const VectorField& at, std::size_t i) const;
+  void pass_over_gaps(const Arrangement& arrangement, const VectorField& at, const Boundary& boundary);
   Vec3 moment_of(const MomentFields& moments, const ParticleSizes& sizes, std::size_t i) const;
   const Resolution& resolution_;
   Options options_;

@@ -54,6 +54,7 @@ struct BodyDraft {
   bool inside = true;
   bool subtract = false;
   BoundaryKind wall = BoundaryKind::free_slip;  // open: none
+  std::vector<ExpressionText> velocity;
 };
 
 enum class WavemakerKind { piston };

@@ -53,8 +53,9 @@ struct Body {
   ShapePointer shape;  // where it stands; what `[[liquid]] body` fills
   ShapePointer solid;  // the shape, or with inside = false what lies outside
   bool inside = true;
-  bool subtract = false;                        // taken away from the walls of the bodies before it
-  BoundaryKind wall = BoundaryKind::free_slip;  // open: it is no wall
+  bool subtract = false;                          // taken away from the walls of the bodies before it
+  BoundaryKind wall = BoundaryKind::free_slip;    // open: it is no wall
+  std::optional<VectorExpression> velocity = {};  // of its surface, which slides along itself
 };
 
 // A layer beside a side of the domain in which the velocity is damped, d being the distance from that side:

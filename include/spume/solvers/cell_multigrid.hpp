@@ -17,6 +17,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -35,7 +36,9 @@ struct CellGeometry {
   std::array<bool, 3> periodic{};
   std::array<std::array<bool, 2>, 3> wall{};  // wall[axis][0] at lower, [1] at upper; otherwise open
   std::vector<Box> solids;                    // impermeable boxes inside the domain
-  double cell_size = 0;                       // about 1.5 particle spacings; adjusted to fit between walls
+  // Of impermeable bodies of any shape: the distance from their surface, negative inside; null without.
+  std::function<double(const std::array<double, 3>&)> distance = {};
+  double cell_size = 0;  // about 1.5 particle spacings; adjusted to fit between walls
 };
 
 class CellMultigrid final : public Preconditioner<float>, public Preconditioner<double> {
@@ -96,6 +99,10 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
   void sort_cells();
   void bin(std::span<const double> const (&position)[3], std::span<const float> interior);
   void mark_solids();
+  void mark_bodies();
+  void find_shore();
+  void spread_from_shore();
+  void extend_to_shore();
   void fill_holes();
   void set_coefficients(double helmholtz);
   void spread(const float* r);
@@ -120,9 +127,14 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
   Array<std::int32_t> row_total_;     // particles per row of stencil cells
   Array<std::uint8_t> status_;        // per cell: empty, interior or solid
   Array<float> open_volume_, open_face_[3];  // open fractions, only with solids
-  Array<float> partial_;                     // spread sums per row of stencil cells and side
-  Array<float> corner_value_;                // cell values with wrapped upper neighbours
-  Array<float> residual_, correction_;       // float copies for double vectors
+  // Solid cells beside liquid, which particles before the solid interpolate between: each has the mean of the liquid
+  // across its faces, else its edges, else its corners, cells shore_next_[k] for k from shore_first_[s] to
+  // shore_first_[s + 1]. With zero there, a liquid around a box takes 42 iterations in place of 7.
+  std::vector<std::size_t> shore_, shore_first_, shore_next_;
+  Array<std::int32_t> shore_cells_;
+  Array<float> partial_;                // spread sums per row of stencil cells and side
+  Array<float> corner_value_;           // cell values with wrapped upper neighbours
+  Array<float> residual_, correction_;  // float copies for double vectors
   CellHierarchy hierarchy_;
 };
 

@@ -44,7 +44,7 @@ bool needs_velocity_gradient(const Case& options) {
          has_bubbles(options);
 }
 
-Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.domain) {
+Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies) {
   const Scene& scene = loaded.scene;
   const Case& options = loaded.options;
   for (int axis = 0; axis < scene.domain.dimensions; ++axis)

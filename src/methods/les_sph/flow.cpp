@@ -24,10 +24,15 @@ ProjectionSolver::Options solver_options(const Case& options) {
 // though the liquid is full there. Without density relaxation voids stay, and the solve of a cavity at Re = 100 and
 // 1/20 fails with the fading.
 CorrectionFading fading_beside_voids(const Case& options, const Scene& scene, const Features& features) {
-  if (scene.free_surface || !scene.domain.boxes.empty() || !features.density_relaxation) return {};
+  if (scene.free_surface || !scene.domain.boxes.empty() || features.bodies || !features.density_relaxation) return {};
   const int dimensions = scene.domain.dimensions;
   return correction_fading(dimensions, options.resolution.kernel, options.resolution.smoothing_ratio,
                            interior_weight(dimensions, options.get<SurfaceOptions>()));
+}
+
+std::unique_ptr<BodyWalls> make_body_walls(const Scene& scene, const Resolution& resolution, const Features& features) {
+  if (!features.bodies) return nullptr;
+  return std::make_unique<BodyWalls>(scene, resolution, scene.particles.volume);
 }
 
 }  // namespace
@@ -47,7 +52,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       dimensions(scene.domain.dimensions),
       fading(fading_beside_voids(options, scene, features)),
       particles(dimensions, scene.particles),
-      boundary(scene.domain, scene.spacing),
+      boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution, features)),
       energy(scene.domain, resolution),
       arrangement(scene.domain, resolution, particles.volume, particles.size()),
       moments(particles, {.kernel_sum = features.density_relaxation,
@@ -191,7 +196,7 @@ EnergyBalance Flow::energy_balance(double dt) const {
           .gravity = scene.fluid.gravity,
           .largest_acceleration = std::sqrt(strength2) + next_largest_body_force,
           .work = dt > 0 ? (features.working_forces ? work_of_step(dt) : 0) + work_of_sponges : 0,
-          .unfollowed_work = features.bubbles || features.moving_walls};
+          .unfollowed_work = features.bubbles || features.moving_walls || features.moving_bodies};
 }
 
 // By the midpoint rule along the way of each particle, which its shift is a part of: exact for forces that are linear

@@ -59,6 +59,7 @@ LesSph::LesSph(const LoadedCase& loaded)
   refuse_stirring_shift(loaded.options, flow_);
   declare_series();
   declare_saved();
+  if (flow_.features.bodies) body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution);
 }
 
 void LesSph::step(double dt, Ledger& ledger) {

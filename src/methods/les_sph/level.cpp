@@ -66,7 +66,7 @@ void Flow::level_surface() {
     make_images(0);
     find_neighbours(0);
     moments.measure(arrangement, particles, resolution.spacing);
-    surface->find(arrangement, particles, moments, boundary.reflection(), intermediate_position, boundary.solids());
+    surface->find(arrangement, particles, moments, boundary, intermediate_position);
     parallel_for(size(), [&](std::size_t i) {
       index_of[static_cast<std::size_t>((*particles.identifier)[i])] = i;
       depth_of[i] = 0;

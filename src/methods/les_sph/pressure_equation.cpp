@@ -79,7 +79,7 @@ void Flow::set_first_source() {
   scratch.lease(first_source, n);
   if (potential != nullptr) scratch.lease(potential_laplacian, n);
   // Walls are taken to move steadily: the images of an acceleration have no part of their own.
-  const VelocityImageRule steady{boundary.volume_rule().sign, {}};
+  const VelocityImageRule steady{boundary.volume_rule().sign, {}, false, false};
   divergence_sweep(arrangement.context, arrangement.packed, read(intermediate_velocity), steady,
                    moments.read_correction(), potential == nullptr ? nullptr : potential->data(), first_source.data(),
                    potential == nullptr ? nullptr : potential_laplacian.data());
@@ -107,6 +107,7 @@ void Flow::set_matrix() {
   rows.pressure_fixed = surface != nullptr ? &surface->pressure_fixed : nullptr;
   rows.helmholtz = equation.helmholtz;
   rows.singular = features.closed && equation.helmholtz == 0;
+  rows.unsymmetric = features.bodies;
   const auto volume = static_cast<float>(particles.volume);
   parallel_for(n, [&](std::size_t i) {
     rows.diagonal_shift[i] = static_cast<float>(equation.helmholtz * row_scale(i));

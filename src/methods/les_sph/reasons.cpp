@@ -50,6 +50,7 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_p
   level = !has.free_surface                   ? "the liquid fills the domain"
           : loaded.scene.domain.boxes.empty() ? "no solids: columns are those of the lattice"
                                               : "columns beside faces off the lattice end on the surface";
+  packing = has.bodies ? "particles beside bodies evened out" : "no walls of bodies";
   shift = has.shifting ? "Fickian shifting" : "shifting.on = false";
   gradients = has.eddy_viscosity      ? "strain of the closure"
               : has.bubbles           ? "vorticity at the bubbles"

@@ -19,8 +19,26 @@ std::vector<Section> sections() {
   return all;
 }
 
+// Wall points of bodies have images in the sides of the domain alone, and bubbles know nothing of them.
+void check_walls_of_bodies(Draft& draft, Problems& problems) {
+  for (std::size_t k = 0; k < draft.bodies.size(); ++k) {
+    if (draft.bodies[k].wall == BoundaryKind::open) continue;
+    const std::string place = "body." + std::to_string(k);
+    if (draft.node("solid.0"))
+      problems.add(*draft.node("solid.0"),
+                   "a scene with walls of [[body]] takes no [[solid]] box; write it as  "
+                   "[[body]]  with  shape = \"box\"");
+    if (draft.node("bubbles"))
+      problems.add(*draft.node("bubbles"), "[bubbles] needs walls along the axes, and " + place +
+                                               " is a wall of another shape; remove one of them, or write a box as "
+                                               "[[solid]]");
+    return;
+  }
+}
+
 void check(Draft& draft, Problems& problems) {
   check_bubbles(draft, problems);
+  check_walls_of_bodies(draft, problems);
   if (draft.node("bubbles") && draft.dimensions != 2 && draft.node("pressure.solver") &&
       draft.options.get<PressureOptions>().solver == PressureSolver::cg)
     problems.add(*draft.node("pressure.solver"),
@@ -54,6 +72,7 @@ Registration registration() {
       "semi-implicit, weakly compressible SPH for a liquid with a free surface, with turbulence closures and bubbles";
   method.fills_regions = true;
   method.damps_sponges = true;
+  method.honours_bodies = true;
   method.sections = sections();
   method.check = check;
   method.check_scene = check_bubble_sources;

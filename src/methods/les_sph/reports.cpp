@@ -146,7 +146,7 @@ std::vector<Invariant> LesSph::invariants() const {
   // its discretisation a resolved run gains a few thousandths of its largest kinetic energy (breaking_wave 0.17 % at
   // 1/50), and the rearrangement of particles lifts liquid by a fraction of a spacing: 5e-4 in standing_wave, whose
   // waves are lower than a spacing and hold less than that would. Hence the bound, and the floor of the scale.
-  if (!has.moving_walls && !has.bubbles) {
+  if (!has.moving_walls && !has.moving_bodies && !has.bubbles) {
     Invariant energy{.quantity = "energy_growth",
                      .kind = Invariant::Kind::growth,
                      .column = "total_energy",
@@ -169,7 +169,9 @@ std::vector<ArrayInfo> LesSph::arrays() const {
   list.push_back({"pressure solver", flow_.solver.bytes()});
   list.push_back({"gradient corrections left out", flow_.moments.uncorrected.bytes()});
   list.push_back({"leased within a step", flow_.leased_bytes()});
-  if (flow_.features.moving_walls) list.push_back({"velocities of images", flow_.boundary.bytes()});
+  if (flow_.boundary.bodies() != nullptr) list.push_back({"wall points", flow_.boundary.bytes()});
+  if (flow_.features.moving_walls && flow_.boundary.bodies() == nullptr)
+    list.push_back({"velocities of images", flow_.boundary.bytes()});
   if (flow_.surface != nullptr) list.push_back({"surface", flow_.surface->bytes() + flow_.surface_source.bytes()});
   if (flow_.shift != nullptr) list.push_back({"layers of the shift", flow_.shift->bytes()});
   if (flow_.bubbles == nullptr) return list;
@@ -181,6 +183,7 @@ std::vector<ArrayInfo> LesSph::arrays() const {
 std::vector<RecordTable> LesSph::tables() const {
   std::vector<RecordTable> list;
   if (periodic()) list.push_back(spectrum_table());
+  if (body_forces_ != nullptr) list.push_back(BodyForces::table(flow_.dimensions));
   if (flow_.bubbles != nullptr)
     for (RecordTable& table : flow_.bubbles->tables()) list.push_back(std::move(table));
   return list;
@@ -190,6 +193,8 @@ void LesSph::table_rows(const std::string& name, std::vector<double>& rows) {
   ensure_started();
   if (name == "spectrum")
     add_spectrum_rows(rows);
+  else if (name == "bodies")
+    add_force_rows(rows);
   else if (flow_.bubbles != nullptr)
     flow_.bubbles->table_rows(name, rows);
 }
@@ -199,6 +204,19 @@ std::vector<Remark> LesSph::take_remarks() {
   const std::string text = flow_.bubbles != nullptr ? flow_.bubbles->note() : std::string();
   if (!text.empty()) remarks.push_back({text, true});
   return remarks;
+}
+
+void LesSph::add_force_rows(std::vector<double>& rows) const {
+  const std::vector<SurfaceForce> forces =
+      body_forces_->measure({.grid = flow_.arrangement.grid,
+                             .particles = flow_.size(),
+                             .position = read(flow_.particles.position),
+                             .velocity = read(flow_.particles.velocity),
+                             .pressure = flow_.pressure->data(),
+                             .particle_volume = flow_.particles.volume,
+                             .dynamic_viscosity = flow_.density() * flow_.viscosity()},
+                            flow_.time);
+  BodyForces::add_rows(flow_.dimensions, flow_.time, flow_.scene.bodies, forces, rows);
 }
 
 bool LesSph::periodic() const {

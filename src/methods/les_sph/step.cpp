@@ -3,6 +3,7 @@
 // same list is the start, what `spume check` prints and what the ledger times.
 #include "spume/methods/les_sph/step.hpp"
 
+#include "spume/particles/packing.hpp"
 #include "stage_list.hpp"
 
 namespace spume::les_sph {
@@ -26,6 +27,10 @@ Plan make_plan(Flow& f) {
   add(
       start, "level", has.free_surface && f.boundary.solids() != nullptr, why.level,
       [&](StageRun&) { f.level_surface(); }, {r}, {p.position, r}, true);
+  add(
+      start, "packing", has.bodies, why.packing,
+      [&](StageRun&) { pack_beside_bodies(f.arrangement, p, f.boundary, f.resolution, r, has.free_surface, f.time); },
+      {r}, {p.position, r}, true);
   add(step, "advecting velocity", true, why.advection, [&](StageRun& run) { f.find_advecting_velocity(run.dt); },
       {p.velocity, f.acceleration}, {f.advecting_velocity});
   add(
@@ -48,7 +53,7 @@ Plan make_plan(Flow& f) {
       both, "kernel moments", true, "gradient correction, div r, concentration",
       [&](StageRun&) { moments.measure(f.arrangement, p, f.resolution.spacing); }, {}, arrays_of(moments), true);
   add(both, "surface", has.free_surface, why.surface,
-      [&](StageRun&) { f.surface->find(f.arrangement, p, moments, f.boundary.reflection(), r, f.boundary.solids()); },
+      [&](StageRun&) { f.surface->find(f.arrangement, p, moments, f.boundary, r); },
       {moments.divergence_of_position, moments.uncorrected, moments.normal}, {kept.surface});
   // (iii) the shift to r^{n+1}, taken with the last stage
   add(step, "shift", has.shifting, why.shift, [&](StageRun&) { f.compute_shift(); }, {moments.concentration_gradient},

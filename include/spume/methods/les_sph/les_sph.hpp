@@ -12,6 +12,7 @@
 
 #include "spume/methods/les_sph/flow.hpp"
 #include "spume/methods/method.hpp"
+#include "spume/particles/body_forces.hpp"
 #include "spume/particles/output_fields.hpp"
 #include "spume/particles/point_sampler.hpp"
 
@@ -57,6 +58,7 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   void declare_saved();
   bool periodic() const;  // in all directions: the flow has an energy spectrum
   void add_spectrum_rows(std::vector<double>& rows) const;
+  void add_force_rows(std::vector<double>& rows) const;
   const PointSampler& sampler();
 
   std::vector<Remark> remarks_;  // not yet passed on
@@ -68,7 +70,8 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   SavedNumbers saved_{"scalars"};
   struct {
     double kinetic = 0, potential = 0;
-  } row_energy_;  // of the row of the series that is being read
+  } row_energy_;                                   // of the row of the series that is being read
+  std::unique_ptr<const BodyForces> body_forces_;  // null without walls of bodies
   PointSampler sampler_;
   std::int64_t sampled_step_ = -1;  // that the sampler has binned
 };

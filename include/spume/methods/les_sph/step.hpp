@@ -15,7 +15,7 @@ Plan make_plan(Flow& flow);
 struct Reasons {
   Reasons(const LoadedCase& loaded, const Features& has, bool force_has_potential);
   std::string advection, bubbles, images, surface, shift, gradients, curvature, closure, integrator, forces, viscosity,
-      sponges, divergence, centring, relaxation, preconditioner, pressure, events, level;
+      sponges, divergence, centring, relaxation, preconditioner, pressure, events, level, packing;
 };
 
 }  // namespace spume::les_sph

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Values at wall points: points inside a solid of any shape that stand for the liquid mirrored at its surface
+// (S. Marrone et al., Comput. Methods Appl. Mech. Engrg. 200 (2011), fixed ghost particles).
+//
+// Wall point g at a depth s below its foot on the surface, with the normal n out of the solid, mirrors the point
+// m = foot + s n of the liquid. A value there is a sum over particles near m,
+//
+//   f(m) = sum_j c_j f_j,   sum_j c_j = 1,
+//
+// by a moving-least-squares fit of the highest order, up to 2, that the particles bear. With the velocity u_w of the
+// surface,
+//
+//   scalar            f_g = f(m)                                       zero normal gradient at the surface
+//   vector            v_g = v(m) - 2 (v(m) . n) n
+//   velocity          u_g = u(m) - 2 ((u(m) - u_w) . n) n             free-slip, and all walls in rates of volume
+//                     u_g = 2 u_w - u(m)                               no-slip, where friction is meant
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "spume/core/array.hpp"
+
+namespace spume {
+
+struct WallStencils {
+  // Per wall point: its entries begin at first[g] and end at first[g + 1].
+  Array<std::int64_t> first;
+  std::array<Array<float>, 3> normal, wall_velocity;
+  Array<std::uint8_t> no_slip;
+  Array<std::int32_t> nearest;  // the particle nearest to m
+  // Per entry.
+  Array<std::int32_t> source;
+  Array<double> coefficient;
+
+  std::size_t size() const { return nearest.size(); }
+  double bytes() const;
+
+  // f(m).
+  template <class T>
+  double mirrored(std::size_t g, const T* values) const {
+    double sum = 0;
+    for (std::int64_t k = first[g]; k < first[g + 1]; ++k)
+      sum += coefficient[k] * static_cast<double>(values[source[k]]);
+    return sum;
+  }
+  // u_g; `moving` false leaves the velocity of the surface out, as for accelerations beside a steady wall.
+  std::array<double, 3> velocity(std::size_t g, int dimensions, const std::array<const double*, 3>& velocity,
+                                 bool friction, bool moving) const;
+  // v_g.
+  std::array<double, 3> vector(std::size_t g, int dimensions, const std::array<const float*, 3>& values) const;
+};
+
+}  // namespace spume

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// Force and torque of the liquid on each body, by integration over its surface:
+//
+//   F = int (-p n + mu (grad u + grad u^T) n) dA,   n out of the body into the liquid,
+//
+// torque about the origin of the coordinates, in two dimensions its component out of the plane. Surfaces are cut into
+// elements of about a spacing; pressure and velocity gradient of an element are quadratic fits to the particles before
+// it, that of the velocity through the velocity of a no-slip surface. Elements without liquid before them feel nothing.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "spume/io/record_table.hpp"
+#include "spume/particles/boundary.hpp"
+
+namespace spume {
+
+struct SurfaceForce {
+  Vec3 pressure{}, viscous{};                // forces
+  Vec3 pressure_torque{}, viscous_torque{};  // torques
+};
+
+class BodyForces {
+ public:
+  // `scene` outlives the forces.
+  BodyForces(const Scene& scene, const Resolution& resolution);
+
+  struct Fields {
+    const CellGrid& grid;
+    std::size_t particles = 0;
+    std::array<const double*, 3> position, velocity;
+    const double* pressure;
+    double particle_volume = 0;
+    double dynamic_viscosity = 0;
+  };
+  // Per [[body]] entry; zero for those that are no walls.
+  std::vector<SurfaceForce> measure(const Fields& fields, double t) const;
+
+  // bodies.csv: t, body, force and torque by pressure and by viscosity.
+  static RecordTable table(int dimensions);
+  static void add_rows(int dimensions, double t, const std::vector<Body>& bodies,
+                       const std::vector<SurfaceForce>& forces, std::vector<double>& rows);
+  std::size_t elements() const { return elements_.size(); }
+
+ private:
+  struct Element {
+    Vec3 middle{}, area{};  // area times the normal out of the body
+    std::int32_t body = 0;
+  };
+  template <int dimensions>
+  bool traction(const Fields& fields, const CellOrder& table, const Element& element, const Vec3& wall_velocity,
+                Vec3& pressure, Vec3& viscous) const;
+  void add_elements(std::int32_t body);
+
+  const Scene& scene_;
+  const Resolution& resolution_;
+  std::vector<Element> elements_;
+};
+
+}  // namespace spume

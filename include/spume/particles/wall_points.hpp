@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Points inside the walls of bodies that stand for the liquid mirrored at them: in layers half a spacing, one and a
+// half
+// ... below the surface, as liquid stands above it, each with the volume of a particle.
+//
+// A lattice is cut into shells of one spacing along the distance from the surface; the points of a shell, which are as
+// many as it has volume for, move to its middle and are evened out along it by the gradient of their concentration,
+// together with shells on the side of the liquid.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "spume/particles/resolution.hpp"
+#include "spume/scene/scene.hpp"
+
+namespace spume {
+
+struct WallPoint {
+  Vec3 position{};
+  Vec3 foot{}, normal{};  // on the surface, and out of the solid there
+  Vec3 mirror{};          // as far before the foot as the position is behind it
+};
+
+// Down to the support radius below the walls of the scene, as far as liquid may see: inside the domain, and beyond its
+// open sides. Sides that are walls or periodic have images of what lies inside.
+std::vector<WallPoint> make_wall_points(const Scene& scene, const Resolution& resolution, double particle_volume);
+
+}  // namespace spume

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "spume/operators/wall_stencils.hpp"
+
+namespace spume {
+
+std::array<double, 3> WallStencils::velocity(std::size_t g, int dimensions,
+                                             const std::array<const double*, 3>& velocity, bool friction,
+                                             bool moving) const {
+  std::array<double, 3> u{}, wall{};
+  double across = 0;
+  for (int axis = 0; axis < dimensions; ++axis) {
+    u[axis] = mirrored(g, velocity[axis]);
+    wall[axis] = moving ? wall_velocity[axis][g] : 0.0;
+    across += (u[axis] - wall[axis]) * normal[axis][g];
+  }
+  const bool holds = friction && no_slip[g] != 0;
+  for (int axis = 0; axis < dimensions; ++axis)
+    u[axis] = holds ? 2 * wall[axis] - u[axis] : u[axis] - 2 * across * normal[axis][g];
+  return u;
+}
+
+std::array<double, 3> WallStencils::vector(std::size_t g, int dimensions,
+                                           const std::array<const float*, 3>& values) const {
+  std::array<double, 3> v{};
+  double across = 0;
+  for (int axis = 0; axis < dimensions; ++axis) {
+    v[axis] = mirrored(g, values[axis]);
+    across += v[axis] * normal[axis][g];
+  }
+  for (int axis = 0; axis < dimensions; ++axis) v[axis] -= 2 * across * normal[axis][g];
+  return v;
+}
+
+double WallStencils::bytes() const {
+  double sum = first.bytes() + no_slip.bytes() + nearest.bytes() + source.bytes() + coefficient.bytes();
+  for (const auto* vector : {&normal, &wall_velocity})
+    for (const auto& component : *vector) sum += component.bytes();
+  return sum;
+}
+
+}  // namespace spume

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/body_forces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
+#include "spume/operators/moving_least_squares.hpp"
+
+namespace spume {
+namespace {
+
+// Of the support radius, as the fits of wall points.
+constexpr double fit_reach = 1.25;
+// Spacings: an element farther from the walls lies inside another body, or where the scene ends.
+constexpr double on_surface = 0.25;
+// Of the sum of all weights: what pins the fit of a velocity to that of a no-slip surface.
+constexpr double pinned = 10;
+
+using Corners = std::array<Vec3, 3>;
+
+void split(const Corners& c, double longest, std::vector<Corners>& out) {
+  std::size_t edge = 0;
+  double size = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double own = length(subtract(c[(k + 1) % 3], c[k]));
+    if (own > size) {
+      size = own;
+      edge = k;
+    }
+  }
+  if (size <= longest) {
+    out.push_back(c);
+    return;
+  }
+  const Vec3 a = c[edge], b = c[(edge + 1) % 3], far = c[(edge + 2) % 3], middle = multiply(0.5, add(a, b));
+  split({a, middle, far}, longest, out);
+  split({middle, b, far}, longest, out);
+}
+
+}  // namespace
+
+BodyForces::BodyForces(const Scene& scene, const Resolution& resolution) : scene_(scene), resolution_(resolution) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    if (scene.bodies[b].wall != BoundaryKind::open) add_elements(static_cast<std::int32_t>(b));
+}
+
+void BodyForces::add_elements(std::int32_t b) {
+  const Body& body = scene_.bodies[static_cast<std::size_t>(b)];
+  const double spacing = resolution_.spacing, sign = body.inside != body.subtract ? 1 : -1;
+  Bounds window{scene_.domain.lower, scene_.domain.upper};
+  const TriangleSurface surface = body.shape->surface(window, 0.5 * spacing);
+  std::vector<Element> found;
+  if (scene_.domain.dimensions == 3) {
+    std::vector<Corners> pieces;
+    for (const auto& triangle : surface.triangles) {
+      Corners corners{};
+      for (std::size_t k = 0; k < 3; ++k) corners[k] = surface.points[static_cast<std::size_t>(triangle[k])];
+      split(corners, spacing, pieces);
+    }
+    for (const Corners& c : pieces)
+      found.push_back({multiply(1.0 / 3, add(c[0], add(c[1], c[2]))),
+                       multiply(0.5 * sign, cross(subtract(c[1], c[0]), subtract(c[2], c[0]))), b});
+  } else {
+    // The edges that belong to one triangle alone go around the shape, counter-clockwise.
+    std::map<std::pair<std::int32_t, std::int32_t>, int> edges;
+    for (const auto& triangle : surface.triangles)
+      for (std::size_t k = 0; k < 3; ++k) ++edges[{triangle[k], triangle[(k + 1) % 3]}];
+    for (const auto& [edge, count] : edges) {
+      if (edges.contains({edge.second, edge.first})) continue;
+      const Vec3 from = surface.points[static_cast<std::size_t>(edge.first)],
+                 way = subtract(surface.points[static_cast<std::size_t>(edge.second)], from);
+      const double pieces = std::max(1.0, std::ceil(length(way) / spacing));
+      for (double k = 0; k < pieces; ++k)
+        found.push_back(
+            {add(from, multiply((k + 0.5) / pieces, way)), {sign * way[1] / pieces, -sign * way[0] / pieces}, b});
+    }
+  }
+  // Facets lie within a curved surface: their areas are made those of the volume of the shape, and their middles lie on
+  // it. The half of a spacing that facets have is off by 0.6 % of the volume of a ball of four spacings radius.
+  double volume = 0;
+  for (const Element& element : found) volume += sign * dot(element.middle, element.area) / scene_.domain.dimensions;
+  const double ratio = body.shape->volume() / volume, dimensions = scene_.domain.dimensions;
+  const double stretch = std::isfinite(ratio) && ratio > 0 ? std::pow(ratio, (dimensions - 1) / dimensions) : 1;
+  for (const Element& element : found) {
+    if (std::abs(scene_.walls.distance(element.middle)) >= on_surface * spacing) continue;
+    elements_.push_back({scene_.walls.nearest(element.middle).point, multiply(stretch, element.area), b});
+  }
+}
+
+template <int dimensions>
+bool BodyForces::traction(const Fields& fields, const CellOrder& table, const Element& element,
+                          const Vec3& wall_velocity, Vec3& pressure, Vec3& viscous) const {
+  const CellGrid& grid = fields.grid;
+  const double h = resolution_.smoothing_length, reach = fit_reach * resolution_.support_radius;
+  const Vec3 normal = multiply(1 / length(element.area), element.area);
+  struct Near {
+    std::size_t particle;
+    Vec3 offset;
+    double weight;
+  };
+  std::vector<Near> near;
+  double sum = 0, covered = 0;
+  with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
+    const double scale = fields.particle_volume * Kernel::normalisation(d) / std::pow(h, d);
+    const auto visit = [&](const Vec3& shift) {
+      std::array<int, 3> from{}, to{};
+      for (int axis = 0; axis < d; ++axis) {
+        from[axis] = grid.index(axis, element.middle[axis] - shift[axis] - reach);
+        to[axis] = grid.index(axis, element.middle[axis] - shift[axis] + reach);
+      }
+      for (int iz = from[2]; iz <= to[2]; ++iz)
+        for (int iy = from[1]; iy <= to[1]; ++iy) {
+          const std::int64_t row = std::int64_t{grid.row(iy, iz)} * grid.columns();
+          const std::int32_t* starts = table.first();
+          for (std::int32_t k = starts[row + from[0]]; k < starts[row + to[0] + 1]; ++k) {
+            const auto j = static_cast<std::size_t>(table.order()[static_cast<std::size_t>(k)]);
+            Vec3 offset{};
+            double r2 = 0;
+            for (int axis = 0; axis < d; ++axis) {
+              offset[axis] = fields.position[axis][j] + shift[axis] - element.middle[axis];
+              r2 += offset[axis] * offset[axis];
+            }
+            if (r2 >= reach * reach || dot(offset, normal) < 0) continue;
+            const double weight = WendlandC2::w(WendlandC2::support * std::sqrt(r2) / reach);
+            near.push_back({j, offset, weight});
+            sum += weight;
+            covered += 2 * scale * Kernel::w(std::sqrt(r2) / h);
+          }
+        }
+    };
+    const auto along = [&](auto&& self, int axis, const Vec3& shift) -> void {
+      if (axis == d) return visit(shift);
+      self(self, axis + 1, shift);
+      if (!scene_.domain.periodic(axis)) return;
+      for (const double way : {-1.0, 1.0}) {
+        Vec3 other = shift;
+        other[axis] = way * (scene_.domain.upper[axis] - scene_.domain.lower[axis]);
+        const double end = way < 0 ? scene_.domain.lower[axis] : scene_.domain.upper[axis];
+        if (std::abs(element.middle[axis] - end) < reach) self(self, axis + 1, other);
+      }
+    };
+    along(along, 0, Vec3{});
+  });
+  if (covered < 0.5) return false;
+  MovingLeastSquares<dimensions> fit;
+  const auto fill = [&](bool pin) {
+    fit.resize(near.size() + (pin ? 1 : 0));
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      for (int axis = 0; axis < dimensions; ++axis) fit.offset(axis)[k] = near[k].offset[axis] / h;
+      fit.weight()[k] = near[k].weight;
+    }
+    if (!pin) return;
+    for (int axis = 0; axis < dimensions; ++axis) fit.offset(axis)[near.size()] = 0;
+    fit.weight()[near.size()] = pinned * sum;
+  };
+  fill(false);
+  if (fit.fit(2) < 0) return false;
+  double p = 0;
+  const auto value = fit.value();
+  for (std::size_t k = 0; k < near.size(); ++k) p += value[k] * fields.pressure[near[k].particle];
+  pressure = multiply(-p, element.area);
+  viscous = {};
+  const bool holds = scene_.bodies[static_cast<std::size_t>(element.body)].wall == BoundaryKind::no_slip;
+  if (!(fields.dynamic_viscosity > 0) || !holds) return true;
+  fill(true);
+  if (!fit.factor(2) && !fit.factor(1)) return true;
+  std::array<Vec3, 3> gradient{};  // [a][b] = d u_a / d x_b
+  for (int b = 0; b < dimensions; ++b) {
+    const auto slope = fit.gradient(b, h);
+    for (int a = 0; a < dimensions; ++a) {
+      double total = slope[near.size()] * wall_velocity[a];
+      for (std::size_t k = 0; k < near.size(); ++k) total += slope[k] * fields.velocity[a][near[k].particle];
+      gradient[a][b] = total;
+    }
+  }
+  for (int a = 0; a < dimensions; ++a)
+    for (int b = 0; b < dimensions; ++b)
+      viscous[a] += fields.dynamic_viscosity * (gradient[a][b] + gradient[b][a]) * element.area[b];
+  return true;
+}
+
+std::vector<SurfaceForce> BodyForces::measure(const Fields& fields, double t) const {
+  struct OfElement {
+    Vec3 pressure{}, viscous{};
+  };
+  std::vector<OfElement> of(elements_.size());
+  CellOrder table;
+  table.build(fields.grid, fields.position[0], fields.position[1], fields.position[2], fields.particles);
+  parallel_blocks(elements_.size(), 256, [&](std::size_t, std::size_t first, std::size_t last) {
+    // Expressions keep their variables inside: each block evaluates its own copies.
+    std::vector<VectorExpression> velocity;
+    for (const Body& body : scene_.bodies)
+      velocity.push_back(body.velocity ? body.velocity->clone() : VectorExpression{});
+    for (std::size_t e = first; e < last; ++e) {
+      const Vec3 wall = velocity[static_cast<std::size_t>(elements_[e].body)](elements_[e].middle, t);
+      if (scene_.domain.dimensions == 3)
+        traction<3>(fields, table, elements_[e], wall, of[e].pressure, of[e].viscous);
+      else
+        traction<2>(fields, table, elements_[e], wall, of[e].pressure, of[e].viscous);
+    }
+  });
+  std::vector<SurfaceForce> total(scene_.bodies.size());
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    SurfaceForce& body = total[static_cast<std::size_t>(elements_[e].body)];
+    body.pressure = add(body.pressure, of[e].pressure);
+    body.viscous = add(body.viscous, of[e].viscous);
+    body.pressure_torque = add(body.pressure_torque, cross(elements_[e].middle, of[e].pressure));
+    body.viscous_torque = add(body.viscous_torque, cross(elements_[e].middle, of[e].viscous));
+  }
+  return total;
+}
+
+RecordTable BodyForces::table(int dimensions) {
+  RecordTable table{.name = "bodies", .title = "forces of the liquid on bodies, torques about the origin"};
+  table.when = RecordTable::When::series;
+  table.columns = {{"t", "time"}, {"body", "number of the [[body]] entry, from 0"}};
+  const std::string axes = "xyz";
+  for (const char* kind : {"pressure", "viscous"})
+    for (int a = 0; a < dimensions; ++a)
+      table.columns.push_back({std::string(kind) + "_force_" + axes[static_cast<std::size_t>(a)],
+                               dimensions == 3 ? "force" : "force / length"});
+  for (const char* kind : {"pressure", "viscous"})
+    for (int a = dimensions == 3 ? 0 : 2; a < 3; ++a)
+      table.columns.push_back({std::string(kind) + "_torque_" + axes[static_cast<std::size_t>(a)],
+                               dimensions == 3 ? "force length" : "force"});
+  return table;
+}
+
+void BodyForces::add_rows(int dimensions, double t, const std::vector<Body>& bodies,
+                          const std::vector<SurfaceForce>& forces, std::vector<double>& rows) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (bodies[b].wall == BoundaryKind::open) continue;
+    rows.push_back(t);
+    rows.push_back(static_cast<double>(b));
+    for (const Vec3* force : {&forces[b].pressure, &forces[b].viscous})
+      for (int a = 0; a < dimensions; ++a) rows.push_back((*force)[a]);
+    for (const Vec3* torque : {&forces[b].pressure_torque, &forces[b].viscous_torque})
+      for (int a = dimensions == 3 ? 0 : 2; a < 3; ++a) rows.push_back((*torque)[a]);
+  }
+}
+
+}  // namespace spume

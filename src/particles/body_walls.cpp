@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/body_walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
+#include "spume/operators/moving_least_squares.hpp"
+
+namespace spume {
+namespace {
+
+// Of the support radius: where fits look for particles. Half a disc beside a wall then holds 17 particles, enough for a
+// quadratic fit in two dimensions, where the support radius alone has 11.
+constexpr double fit_reach = 1.25;
+constexpr double wet_share = 0.5;
+constexpr int fit_order = 2;
+
+}  // namespace
+
+// What a block of wall points found, in their order.
+struct BodyWalls::Block {
+  std::vector<std::int32_t> point, nearest, source, entries;
+  std::vector<double> coefficient;
+};
+
+BodyWalls::BodyWalls(const Scene& scene, const Resolution& resolution, double particle_volume)
+    : scene_(scene), resolution_(resolution), points_(make_wall_points(scene, resolution, particle_volume)) {
+  const int d = scene.domain.dimensions;
+  cell_ = 2 * resolution.support_radius;
+  for (int axis = 0; axis < d; ++axis) {
+    cell_lower_[axis] = scene.domain.lower[axis] - cell_;
+    cells_[axis] = static_cast<std::size_t>(std::ceil((scene.domain.upper[axis] - cell_lower_[axis]) / cell_)) + 1;
+  }
+  middle_.resize(cells_[0] * cells_[1] * cells_[2]);
+  parallel_blocks_dynamic(cells_[1] * cells_[2], 1, [&](std::size_t row, std::size_t, std::size_t) {
+    for (std::size_t i = 0; i < cells_[0]; ++i) {
+      Vec3 place{cell_lower_[0] + (static_cast<double>(i) + 0.5) * cell_,
+                 cell_lower_[1] + (static_cast<double>(row % cells_[1]) + 0.5) * cell_,
+                 d == 3 ? cell_lower_[2] + (static_cast<double>(row / cells_[1]) + 0.5) * cell_ : 0.0};
+      middle_[row * cells_[0] + i] = static_cast<float>(scene.walls.distance(place));
+    }
+  });
+  body_.resize(points_.size());
+  parallel_for(points_.size(), [&](std::size_t g) { body_[g] = static_cast<std::uint8_t>(body_at(points_[g].foot)); });
+  for (const Body& body : scene.bodies) moving_ = moving_ || (body.wall != BoundaryKind::open && body.velocity);
+}
+
+// The wall whose surface the foot lies on: the later of two that touch there.
+std::size_t BodyWalls::body_at(const Vec3& foot) const {
+  std::size_t best = 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+    if (scene_.bodies[b].wall == BoundaryKind::open) continue;
+    const double away = std::abs(scene_.bodies[b].solid->distance(foot));
+    if (away <= nearest) {
+      nearest = away;
+      best = b;
+    }
+  }
+  return best;
+}
+
+double BodyWalls::distance(const Vec3& point) const {
+  std::array<std::size_t, 3> at{};
+  double outside = 0;  // of the cells, along one axis at most
+  for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
+    const double cell = (point[axis] - cell_lower_[axis]) / cell_;
+    const double inside = std::clamp(cell, 0.0, static_cast<double>(cells_[axis]) - 0.5);
+    outside = std::max(outside, std::abs(cell - inside));
+    at[axis] = static_cast<std::size_t>(inside);
+  }
+  const double middle = middle_[(at[2] * cells_[1] + at[1]) * cells_[0] + at[0]];
+  // Half the diagonal of a cell, and the reach of whoever asks.
+  const double half = 0.5 * std::sqrt(static_cast<double>(scene_.domain.dimensions)) * cell_;
+  if (outside == 0 && std::abs(middle) > half + 2 * cell_) return std::copysign(std::abs(middle) - half, middle);
+  return scene_.walls.distance(point);
+}
+
+void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
+  if (distance(position) >= gap) return;
+  NearestPoint near = scene_.walls.nearest(position);
+  const NearestPoint first = near;
+  position = add(near.point, multiply(std::max(gap, std::abs(near.distance)), near.normal));
+  if (!(scene_.walls.distance(position) >= 0.5 * gap)) {
+    // Another wall is there: before the nearest face.
+    for (int round = 0; round < 3 && near.distance < gap; ++round) {
+      position = add(near.point, multiply(gap, near.normal));
+      near = scene_.walls.nearest(position);
+    }
+  }
+  if (velocity == nullptr) return;
+  const double inwards = dot(*velocity, first.normal);
+  if (inwards < 0) *velocity = subtract(*velocity, multiply(inwards, first.normal));
+}
+
+WallPointView BodyWalls::wet() const {
+  WallPointView view{.size = stencils_.size(), .source = stencils_.nearest.data()};
+  for (int axis = 0; axis < scene_.domain.dimensions; ++axis) view.position[axis] = wet_position_[axis].data();
+  return view;
+}
+
+template <int dimensions>
+void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at, double particle_volume,
+                          std::size_t first, std::size_t last, Block& block) const {
+  const CellGrid& grid = arrangement.grid;
+  const std::int32_t* starts = arrangement.table.first();
+  const auto r = read(at);
+  const double h = resolution_.smoothing_length, reach = fit_reach * resolution_.support_radius;
+  const Domain& domain = scene_.domain;
+  MovingLeastSquares<dimensions> fit;
+  struct Near {
+    std::int32_t particle;
+    Vec3 offset;
+    double r2;
+  };
+  std::vector<Near> near;
+  for (std::size_t g = first; g < last; ++g) {
+    const WallPoint& point = points_[g];
+    near.clear();
+    double kernel_sum = 0;
+    bool seen = false;  // from within the support radius
+    std::int32_t nearest = -1;
+    double nearest2 = std::numeric_limits<double>::infinity();
+    with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
+      const double scale = particle_volume * Kernel::normalisation(d) / std::pow(h, d);
+      const auto visit = [&](const Vec3& shift) {
+        std::array<int, 3> from{}, to{};
+        for (int axis = 0; axis < d; ++axis) {
+          from[axis] = grid.index(axis, point.mirror[axis] - shift[axis] - reach);
+          to[axis] = grid.index(axis, point.mirror[axis] - shift[axis] + reach);
+        }
+        for (int iz = from[2]; iz <= to[2]; ++iz)
+          for (int iy = from[1]; iy <= to[1]; ++iy) {
+            const std::int64_t row = std::int64_t{grid.row(iy, iz)} * grid.columns();
+            for (std::int32_t j = starts[row + from[0]]; j < starts[row + to[0] + 1]; ++j) {
+              Vec3 offset{};
+              double r2 = 0, across = 0, way2 = 0;
+              for (int axis = 0; axis < d; ++axis) {
+                const double x = r[axis][j] + shift[axis];
+                offset[axis] = x - point.mirror[axis];
+                r2 += offset[axis] * offset[axis];
+                across += (x - point.foot[axis]) * point.normal[axis];
+                way2 += (x - point.position[axis]) * (x - point.position[axis]);
+              }
+              seen = seen || way2 < resolution_.support_radius * resolution_.support_radius;
+              // Behind the tangent plane stands liquid of another side, or of a curved one, which the fit can miss.
+              if (across < 0 || r2 >= reach * reach) continue;
+              const double mirrored2 = r2 + 4 * across * dot(subtract(point.mirror, point.foot), point.normal);
+              kernel_sum += scale * (Kernel::w(std::sqrt(r2) / h) + Kernel::w(std::sqrt(mirrored2) / h));
+              near.push_back({j, offset, r2});
+              if (r2 < nearest2) {
+                nearest2 = r2;
+                nearest = j;
+              }
+            }
+          }
+      };
+      const auto along = [&](auto&& self, int axis, const Vec3& shift) -> void {
+        if (axis == d) return visit(shift);
+        self(self, axis + 1, shift);
+        if (!domain.periodic(axis)) return;
+        Vec3 other = shift;
+        const double length = domain.upper[axis] - domain.lower[axis];
+        if (point.mirror[axis] - reach < domain.lower[axis]) {
+          other[axis] = -length;
+          self(self, axis + 1, other);
+        }
+        if (point.mirror[axis] + reach > domain.upper[axis]) {
+          other[axis] = length;
+          self(self, axis + 1, other);
+        }
+      };
+      along(along, 0, Vec3{});
+      if (kernel_sum < wet_share || !seen) return;
+      fit.resize(near.size());
+      for (std::size_t k = 0; k < near.size(); ++k) {
+        for (int axis = 0; axis < d; ++axis) fit.offset(axis)[k] = near[k].offset[axis] / h;
+        fit.weight()[k] = WendlandC2::w(WendlandC2::support * std::sqrt(near[k].r2) / reach);
+      }
+    });
+    if (kernel_sum < wet_share || !seen || fit.fit(fit_order) < 0) continue;
+    const auto coefficient = fit.value();
+    block.point.push_back(static_cast<std::int32_t>(g));
+    block.nearest.push_back(nearest);
+    block.entries.push_back(static_cast<std::int32_t>(near.size()));
+    double sum = 0;
+    for (const double c : coefficient) sum += c;
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      block.source.push_back(near[k].particle);
+      block.coefficient.push_back(coefficient[k] / sum);
+    }
+  }
+}
+
+void BodyWalls::find_stencils(const Arrangement& arrangement, const VectorField& at, double particle_volume, double t) {
+  constexpr std::size_t size = 128;
+  std::vector<Block> blocks(block_count(points_.size(), size));
+  parallel_blocks_dynamic(points_.size(), size, [&](std::size_t b, std::size_t first, std::size_t last) {
+    if (scene_.domain.dimensions == 3)
+      fit_block<3>(arrangement, at, particle_volume, first, last, blocks[b]);
+    else
+      fit_block<2>(arrangement, at, particle_volume, first, last, blocks[b]);
+  });
+  std::vector<std::size_t> point(blocks.size() + 1), entry(blocks.size() + 1);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    point[b + 1] = point[b] + blocks[b].point.size();
+    entry[b + 1] = entry[b] + blocks[b].source.size();
+  }
+  const std::size_t wet = point.back();
+  wet_points_.resize(wet);
+  stencils_.first.resize(wet + 1);
+  stencils_.nearest.resize(wet);
+  stencils_.no_slip.resize(wet);
+  for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
+    wet_position_[axis].resize(wet);
+    stencils_.normal[axis].resize(wet);
+    stencils_.wall_velocity[axis].resize(wet);
+  }
+  stencils_.source.resize(entry.back());
+  stencils_.coefficient.resize(entry.back());
+  stencils_.first[wet] = static_cast<std::int64_t>(entry.back());
+  parallel_blocks(blocks.size(), 1, [&](std::size_t b, std::size_t, std::size_t) {
+    const Block& block = blocks[b];
+    auto next = static_cast<std::int64_t>(entry[b]);
+    std::copy(block.source.begin(), block.source.end(), stencils_.source.data() + next);
+    std::copy(block.coefficient.begin(), block.coefficient.end(), stencils_.coefficient.data() + next);
+    for (std::size_t k = 0; k < block.point.size(); ++k) {
+      const std::size_t g = point[b] + k;
+      const auto p = static_cast<std::size_t>(block.point[k]);
+      wet_points_[g] = block.point[k];
+      stencils_.first[g] = next;
+      next += block.entries[k];
+      stencils_.nearest[g] = block.nearest[k];
+      stencils_.no_slip[g] = scene_.bodies[body_[p]].wall == BoundaryKind::no_slip ? 1 : 0;
+      for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
+        wet_position_[axis][g] = points_[p].position[axis];
+        stencils_.normal[axis][g] = static_cast<float>(points_[p].normal[axis]);
+      }
+    }
+  });
+  set_surfaces(t);
+}
+
+void BodyWalls::set_surfaces(double t) {
+  const int d = scene_.domain.dimensions;
+  const std::size_t wet = stencils_.size();
+  if (!moving_) {
+    for (int axis = 0; axis < d; ++axis) stencils_.wall_velocity[axis].fill(0);
+    return;
+  }
+  parallel_blocks(wet, 1024, [&](std::size_t, std::size_t first, std::size_t last) {
+    // Expressions keep their variables inside: each block evaluates its own copies.
+    std::vector<VectorExpression> velocity;
+    for (const Body& body : scene_.bodies)
+      velocity.push_back(body.velocity ? body.velocity->clone() : VectorExpression{});
+    for (std::size_t g = first; g < last; ++g) {
+      const auto p = static_cast<std::size_t>(wet_points_[g]);
+      const Vec3 u = velocity[body_[p]](points_[p].foot, t);
+      for (int axis = 0; axis < d; ++axis) stencils_.wall_velocity[axis][g] = static_cast<float>(u[axis]);
+    }
+  });
+  largest_speed_ = std::sqrt(parallel_max(wet, 0.0, [&](std::size_t g) {
+    double speed2 = 0;
+    for (int axis = 0; axis < d; ++axis) {
+      const double u = stencils_.wall_velocity[axis][g];
+      speed2 += u * u;
+    }
+    return speed2;
+  }));
+  if (std::isfinite(largest_speed_)) return;
+  StepFailure::Details details;
+  details.cause = "the velocity of the surface of a body is not a finite number";
+  details.option = "body.velocity";
+  details.value = largest_speed_;
+  throw StepFailure(details);
+}
+
+double BodyWalls::bytes() const {
+  double sum = stencils_.bytes() + static_cast<double>(points_.capacity() * sizeof(WallPoint) + body_.capacity() +
+                                                       4 * middle_.capacity() + 4 * wet_points_.capacity());
+  for (const auto& component : wet_position_) sum += component.bytes();
+  return sum;
+}
+
+}  // namespace spume

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/packing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
+
+namespace spume {
+namespace {
+
+constexpr double packed_layers = 4;     // spacings from a body: the support radius, and where it fades into the lattice
+constexpr double coefficient = 0.25;    // of the move: King (3.12)
+constexpr double longest_move = 0.1;    // spacings a round
+constexpr double still_enough = 0.005;  // spacings: rounds end when nothing moves farther
+constexpr int most_rounds = 60;
+// Of the kernel sum of a lattice: half a layer less than full beside a surface. Less is a free surface, and what stands
+// within a support radius and a spacing of it stays: there the surface counts the liquid below it.
+constexpr double full_share = 0.9;
+constexpr double beyond_support = 1.1;
+
+// 1 for particles that the height of a free surface depends on.
+void find_surface(const Arrangement& arrangement, const ParticleStore& particles, const Resolution& resolution,
+                  std::vector<std::uint8_t>& fixed) {
+  const NeighbourList& list = arrangement.list;
+  const std::size_t n = particles.size();
+  const auto identifier = [&](std::size_t i) { return static_cast<std::size_t>((*particles.identifier)[i]); };
+  const double near2 = std::pow(beyond_support * resolution.spacing, 2);
+  const auto distance2 = [&](std::size_t i, std::int32_t j) {
+    double r2 = 0;
+    for (int axis = 0; axis < particles.dimensions; ++axis)
+      r2 += std::pow(double{list.coordinate(axis)[j]} - double{list.coordinate(axis)[i]}, 2);
+    return r2;
+  };
+  std::vector<std::uint8_t> surface(n), seen(n);
+  with_plain_kernel(particles.dimensions, resolution.kernel, [&]<int dimensions, class Kernel>() {
+    const double h = resolution.smoothing_length;
+    const double value = particles.volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions);
+    parallel_for(n, [&](std::size_t i) {
+      double sum = value * Kernel::w(0.0);
+      for (const std::int32_t j : list.of(i)) sum += value * Kernel::w(std::sqrt(distance2(i, j)) / h);
+      surface[i] = sum < full_share * resolution.lattice.kernel_sum ? 1 : 0;
+    });
+  });
+  parallel_for(n, [&](std::size_t i) {
+    seen[i] = surface[i];
+    for (const std::int32_t j : list.of(i)) seen[i] = seen[i] != 0 || surface[arrangement.particle_of(j)] != 0 ? 1 : 0;
+  });
+  parallel_for(n, [&](std::size_t i) {
+    std::uint8_t& stays = fixed[identifier(i)];
+    stays = seen[i];
+    for (const std::int32_t j : list.of(i))
+      if (seen[arrangement.particle_of(j)] != 0 && distance2(i, j) < near2) stays = 1;
+  });
+}
+
+}  // namespace
+
+void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boundary& boundary,
+                        const Resolution& resolution, const VectorField& at, bool free_surface, double t) {
+  const int d = particles.dimensions;
+  const std::size_t n = particles.size();
+  const BodyWalls& bodies = *boundary.bodies();
+  const double reach = packed_layers * resolution.spacing, longest = longest_move * resolution.spacing;
+  std::vector<std::uint8_t> fixed(n);  // by identifier: the order changes
+  VectorScratch way;
+  particles.scratch().lease(way, d, n);
+  for (int round = 0; round < most_rounds; ++round) {
+    arrangement.sort(particles, at);
+    boundary.make_images(arrangement, particles, at, 1, t);
+    arrangement.find_neighbours(particles, at, {});
+    const NeighbourList& list = arrangement.list;
+    double farthest = 0;
+    if (round == 0 && free_surface) find_surface(arrangement, particles, resolution, fixed);
+    with_plain_kernel(d, resolution.kernel, [&]<int dimensions, class Kernel>() {
+      const double h = resolution.smoothing_length;
+      const double value = particles.volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions);
+      farthest = parallel_max(n, 0.0, [&](std::size_t i) {
+        for (int axis = 0; axis < d; ++axis) way[axis][i] = 0;
+        const double distance = bodies.distance(vector_at(at, d, i));
+        if (distance >= reach || fixed[static_cast<std::size_t>((*particles.identifier)[i])] != 0) return 0.0;
+        Vec3 gradient{};
+        for (const std::int32_t j : list.of(i)) {
+          Vec3 dr{};
+          double r2 = 0;
+          for (int axis = 0; axis < d; ++axis) {
+            dr[axis] = double{list.coordinate(axis)[j]} - double{list.coordinate(axis)[i]};
+            r2 += dr[axis] * dr[axis];
+          }
+          const double q = std::sqrt(r2) / h;
+          for (int axis = 0; axis < d; ++axis) gradient[axis] -= value * Kernel::f(q) * dr[axis];
+        }
+        // Less and less towards the lattice, which stays.
+        Vec3 move = multiply(-coefficient * std::min(1.0, 2 * (1 - distance / reach)), gradient);
+        const double size = length(move);
+        if (size > longest) move = multiply(longest / size, move);
+        for (int axis = 0; axis < d; ++axis) way[axis][i] = move[axis];
+        return std::min(size, longest);
+      });
+    });
+    parallel_for(n, [&](std::size_t i) {
+      Vec3 place = add(vector_at(at, d, i), vector_at(way, d, i));
+      boundary.apply_walls(boundary.walls, place, nullptr);
+      for (int axis = 0; axis < d; ++axis) {
+        (*at[axis])[i] = place[axis];
+        (*particles.position[axis])[i] = place[axis];
+      }
+    });
+    if (farthest < still_enough * resolution.spacing) break;
+  }
+  particles.scratch().release(way);
+  arrangement.sort(particles, at);
+}
+
+}  // namespace spume

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/wall_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "spume/core/parallel.hpp"
+#include "spume/core/random.hpp"
+#include "spume/core/vectors.hpp"
+#include "spume/neighbours/neighbour_list.hpp"
+#include "spume/operators/pair_sweep.hpp"
+
+namespace spume {
+namespace {
+
+// Of the concentration gradient: King (3.12) inside the liquid.
+constexpr double even_out = 0.25;
+// Rounds until points move by less than 1 % of a spacing a round, around discs, balls and the inside of a pipe.
+constexpr int rounds = 40;
+constexpr double longest_move = 0.2;  // spacings a round
+
+struct ShellPoint {
+  Vec3 place{};
+  double distance = 0;  // from the surface, of the middle of its shell; negative inside the solid
+};
+
+// Sites of the lattice per point, along each axis: counts are those of finer cells, which a ring of ten spacings has 2
+// % off, in place of 10 % for one site a point.
+constexpr std::size_t finer_2d = 3, finer_3d = 2;
+
+// Bits of a, b and c in turns: numbers along a curve whose pieces are compact.
+std::uint64_t interleave(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
+  std::uint64_t code = 0;
+  for (unsigned bit = 0; bit < 21; ++bit)
+    code |= ((a >> bit & 1) << 3 * bit) | ((b >> bit & 1) << (3 * bit + 1)) | ((c >> bit & 1) << (3 * bit + 2));
+  return code;
+}
+
+// A lattice over the domain, beyond open sides by `reach`.
+struct ShellLattice {
+  int dimensions;
+  Vec3 origin{}, step{1, 1, 1};
+  std::array<std::size_t, 3> count{1, 1, 1};
+
+  ShellLattice(const Domain& domain, double spacing, double reach) : dimensions(domain.dimensions) {
+    for (int axis = 0; axis < dimensions; ++axis) {
+      double lower = domain.lower[axis], upper = domain.upper[axis];
+      if (domain.sides[axis][0].kind == BoundaryKind::open) lower -= reach;
+      if (domain.sides[axis][1].kind == BoundaryKind::open) upper += reach;
+      count[axis] = static_cast<std::size_t>(std::max(1.0, std::round((upper - lower) / spacing)));
+      step[axis] = (upper - lower) / static_cast<double>(count[axis]);
+      origin[axis] = lower;
+    }
+  }
+  Vec3 place(std::size_t i, std::size_t j, std::size_t k) const {
+    return {origin[0] + (static_cast<double>(i) + 0.5) * step[0], origin[1] + (static_cast<double>(j) + 0.5) * step[1],
+            dimensions == 3 ? origin[2] + (static_cast<double>(k) + 0.5) * step[2] : 0.0};
+  }
+};
+
+// Onto the middle of the shell, along the normal: twice, as a normal turns on the way.
+NearestPoint onto_shell(const Combination& walls, ShellPoint& point) {
+  NearestPoint near = walls.nearest(point.place);
+  for (int round = 0; round < 2; ++round) {
+    point.place = add(point.place, multiply(point.distance - near.distance, near.normal));
+    near = walls.nearest(point.place);
+  }
+  return near;
+}
+
+std::vector<ShellPoint> cut_shells(const Scene& scene, double spacing, double reach) {
+  const int d = scene.domain.dimensions;
+  const std::size_t finer = d == 3 ? finer_3d : finer_2d;
+  const ShellLattice lattice(scene.domain, spacing / static_cast<double>(finer), reach);
+  const double layers = std::ceil(reach / spacing);
+  struct Site {
+    int shell = 0;  // from -layers to layers - 1
+    std::uint64_t code = 0;
+    Vec3 place{};
+  };
+  std::vector<std::vector<Site>> rows(lattice.count[1] * lattice.count[2]);
+  parallel_blocks_dynamic(rows.size(), 1, [&](std::size_t row, std::size_t, std::size_t) {
+    for (std::size_t i = 0; i < lattice.count[0];) {
+      const std::size_t j = row % lattice.count[1], k = row / lattice.count[1];
+      const Vec3 place = lattice.place(i, j, k);
+      const double distance = scene.walls.distance(place);
+      const double layer = std::floor(std::abs(distance) / spacing);
+      if (layer >= layers) {
+        // Along the row distances change by no more than the way.
+        i += 1 + static_cast<std::size_t>(std::min(1e6, std::max(0.0, (layer - layers) * spacing / lattice.step[0])));
+        continue;
+      }
+      rows[row].push_back({static_cast<int>(std::floor(distance / spacing)), interleave(i, j, k), place});
+      ++i;
+    }
+  });
+  std::vector<Site> sites;
+  for (const auto& row : rows) sites.insert(sites.end(), row.begin(), row.end());
+  std::sort(sites.begin(), sites.end(),
+            [](const Site& a, const Site& b) { return a.shell == b.shell ? a.code < b.code : a.shell < b.shell; });
+  // Of each shell one of as many sites as a point has volume of.
+  const double share = lattice.step[0] * lattice.step[1] * (d == 3 ? lattice.step[2] : 1.0) / std::pow(spacing, d);
+  std::vector<ShellPoint> points;
+  double counted = 0.5;
+  for (std::size_t s = 0; s < sites.size(); ++s) {
+    if (s > 0 && sites[s].shell != sites[s - 1].shell) counted = 0.5;
+    counted += share;
+    if (counted < 1) continue;
+    counted -= 1;
+    points.push_back({sites[s].place, (sites[s].shell + 0.5) * spacing});
+  }
+  // Sites above each other come to one place, and points at one place do not part.
+  parallel_for(points.size(), [&](std::size_t i) {
+    const auto random = random_uniform(0, RandomPurpose::wall_point, i, 0, 0);
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(d); ++axis)
+      points[i].place[axis] += 0.1 * spacing * (random[axis] - 0.5);
+    onto_shell(scene.walls, points[i]);
+  });
+  return points;
+}
+
+ImageRules rules_of(const Domain& domain, double support_radius) {
+  ImageRules rules;
+  rules.dimensions = domain.dimensions;
+  rules.lower = domain.lower;
+  rules.upper = domain.upper;
+  rules.support_radius = support_radius;
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const BoundaryKind kind = domain.sides[axis][side].kind;
+      rules.sides[axis][side] = kind == BoundaryKind::periodic ? ImageKind::periodic
+                                : kind == BoundaryKind::open   ? ImageKind::none
+                                                               : ImageKind::mirror;
+    }
+  return rules;
+}
+
+// One round of evening out.
+class Evening {
+ public:
+  Evening(const Scene& scene, const Resolution& resolution, double volume, double spacing)
+      : scene_(scene), resolution_(resolution), volume_(volume), spacing_(spacing) {}
+
+  void round(std::vector<ShellPoint>& points) {
+    const int d = scene_.domain.dimensions;
+    const double reach = resolution_.support_radius;
+    Vec3 lower{}, upper{}, middle{};
+    for (int axis = 0; axis < d; ++axis) {
+      lower[axis] = scene_.domain.lower[axis] - 2 * reach;
+      upper[axis] = scene_.domain.upper[axis] + 2 * reach;
+      middle[axis] = 0.5 * (lower[axis] + upper[axis]);
+    }
+    const CellGrid grid(d, lower, upper, reach, points.size());
+    load(points);
+    order_.build(grid, position_[0].data(), position_[1].data(), d == 3 ? position_[2].data() : nullptr, points.size());
+    std::vector<ShellPoint> sorted(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) sorted[i] = points[static_cast<std::size_t>(order_.order()[i])];
+    points.swap(sorted);
+    load(points);
+    images_.build(rules_of(scene_.domain, reach), grid, position_[0].data(), position_[1].data(),
+                  d == 3 ? position_[2].data() : nullptr, points.size());
+    list_.build(grid, order_, position_[0].data(), position_[1].data(), d == 3 ? position_[2].data() : nullptr,
+                points.size(), images_, middle);
+    with_plain_kernel(d, resolution_.kernel, [&]<int dimensions, class Kernel>() { move<dimensions, Kernel>(points); });
+  }
+
+ private:
+  void load(const std::vector<ShellPoint>& points) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      position_[axis].resize(points.size());
+      parallel_for(points.size(), [&](std::size_t i) { position_[axis][i] = points[i].place[axis]; });
+    }
+  }
+
+  template <int dimensions, class Kernel>
+  void move(std::vector<ShellPoint>& points) {
+    const double h = resolution_.smoothing_length;
+    const double scale = -volume_ * Kernel::normalisation(dimensions) / std::pow(h, dimensions);  // times h^2
+    const double longest = longest_move * spacing_;
+    parallel_for(points.size(), [&](std::size_t i) {
+      Vec3 gradient{};
+      for (const std::int32_t j : list_.of(i)) {
+        Vec3 d{};
+        double r2 = 0;
+        for (int axis = 0; axis < dimensions; ++axis) {
+          d[axis] = double{list_.coordinate(axis)[j]} - double{list_.coordinate(axis)[i]};
+          r2 += d[axis] * d[axis];
+        }
+        const double g = scale * Kernel::f(std::sqrt(r2) / h);
+        for (int axis = 0; axis < dimensions; ++axis) gradient[axis] += g * d[axis];
+      }
+      Vec3 way = multiply(-even_out, gradient);
+      const double length = std::sqrt(dot(way, way));
+      if (length > longest) way = multiply(longest / length, way);
+      points[i].place = add(points[i].place, way);
+      onto_shell(scene_.walls, points[i]);
+      for (int axis = 0; axis < dimensions; ++axis) {
+        double& x = points[i].place[axis];
+        const double low = scene_.domain.lower[axis], high = scene_.domain.upper[axis];
+        if (scene_.domain.periodic(axis)) {
+          if (x < low) x += high - low;
+          if (x >= high) x -= high - low;
+          continue;
+        }
+        if (scene_.domain.sides[axis][0].kind != BoundaryKind::open && x < low) x = 2 * low - x;
+        if (scene_.domain.sides[axis][1].kind != BoundaryKind::open && x > high) x = 2 * high - x;
+      }
+    });
+  }
+
+  const Scene& scene_;
+  const Resolution& resolution_;
+  double volume_, spacing_;
+  std::array<Array<double>, 3> position_;
+  CellOrder order_;
+  Images images_;
+  NeighbourList list_;
+};
+
+}  // namespace
+
+std::vector<WallPoint> make_wall_points(const Scene& scene, const Resolution& resolution, double particle_volume) {
+  const double spacing = std::pow(particle_volume, 1.0 / scene.domain.dimensions);
+  std::vector<ShellPoint> shells = cut_shells(scene, spacing, resolution.support_radius);
+  Evening evening(scene, resolution, particle_volume, spacing);
+  for (int round = 0; round < rounds; ++round) evening.round(shells);
+  std::vector<WallPoint> points;
+  for (ShellPoint& point : shells) {
+    if (point.distance > 0) continue;
+    const NearestPoint near = scene.walls.nearest(point.place);
+    if (near.distance >= 0) continue;
+    points.push_back({point.place, near.point, near.normal, subtract(multiply(2, near.point), point.place)});
+  }
+  return points;
+}
+
+}  // namespace spume

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/body_walls.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "neighbours/neighbourhood.hpp"
+#include "reference/wall_sums.hpp"
+#include "scene/helpers.hpp"
+#include "spume/operators/pressure_operator.hpp"
+#include "spume/operators/sph_operators.hpp"
+#include "spume/particles/boundary.hpp"
+
+namespace spume::test {
+namespace {
+
+std::string scene_text(const std::string& domain, double spacing, const std::string& bodies) {
+  return "method = \"les-sph\"\n[time]\nend = 1\n[domain]\n" + domain +
+         "[resolution]\nspacing = " + std::to_string(spacing) + "\n[fluid]\nreynolds = 100\n[[liquid]]\n" + bodies;
+}
+
+const std::string square = "lower = [-1, -1]\nupper = [1, 1]\nleft = \"open\"\nright = \"open\"\nbottom = \"open\"\n";
+const std::string disc = "[[body]]\nshape = \"cylinder\"\nradius = 0.4\nposition = [0.03, -0.02]\n";
+const std::string pipe =
+    "[[body]]\nshape = \"cylinder\"\nradius = 0.8\ninside = false\nwall = \"no-slip\"\nvelocity = [\"-y\", \"x\"]\n";
+const std::string turned = "[[body]]\nshape = \"box\"\nsize = [0.9, 0.7]\nrotation = [30]\nwall = \"no-slip\"\n";
+const std::string channel =
+    "lower = [-1, -1]\nupper = [1, 1]\nx = \"periodic\"\nbottom = \"no-slip\"\ntop = \"free-slip\"\n";
+const std::string cube =
+    "lower = [-0.6, -0.6, -0.6]\nupper = [0.6, 0.6, 0.6]\nx = \"periodic\"\ny = \"periodic\"\nbottom = \"no-slip\"\n";
+const std::string ball = "[[body]]\nshape = \"ball\"\nradius = 0.3\nposition = [0.4, 0.05, 0.02]\nwall = \"no-slip\"\n";
+
+// A scene with its particles jittered, in cell order, with images and lists.
+struct Walled {
+  LoadedCase loaded;
+  Resolution resolution;
+  ParticleStore particles;
+  Boundary boundary;
+  Arrangement arrangement;
+
+  explicit Walled(const std::string& text, double jitter = 0.2)
+      : loaded(load_text(text)),
+        resolution(scene().domain.dimensions, scene().spacing, KernelKind::wendland_c2, 1.3),
+        particles(scene().domain.dimensions, scene().particles),
+        boundary(scene().domain, scene().spacing, std::make_unique<BodyWalls>(scene(), resolution, particles.volume)),
+        arrangement(scene().domain, resolution, particles.volume, particles.size()) {
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      Vec3 r = vector_at(particles.position, particles.dimensions, i);
+      for (int axis = 0; axis < particles.dimensions; ++axis)
+        r[axis] += jitter * scene().spacing * (uniform(i, 3)[static_cast<std::size_t>(axis)] - 0.5);
+      boundary.apply_walls(boundary.walls, r, nullptr);
+      for (int axis = 0; axis < particles.dimensions; ++axis) (*particles.position[axis])[i] = r[axis];
+    }
+    arrangement.sort(particles, particles.position);
+    boundary.make_images(arrangement, particles, particles.position, 1, 0);
+    arrangement.find_neighbours(particles, particles.position, {});
+  }
+  const Scene& scene() const { return loaded.scene; }
+  Vec3 place(std::size_t i) const { return vector_at(particles.position, particles.dimensions, i); }
+  reference::WallSums twin(const std::function<reference::Carried(const Vec3&)>& value) const {
+    reference::WallSums sums{scene(), resolution.smoothing_length, resolution.support_radius, particles.volume, {}, {}};
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      sums.particle.push_back(place(i));
+      sums.value.push_back(value(place(i)));
+    }
+    return sums;
+  }
+};
+
+reference::Carried smooth(const Vec3& r) {
+  return {std::sin(3 * r[0]) + r[1] * r[1] + r[2],
+          {std::cos(2 * r[1]) + r[2], r[0] * r[1] - 0.3, r[0] * r[0] + 0.4 * r[2]}};
+}
+
+struct Layout {
+  const char* name;
+  std::string text;
+};
+std::vector<Layout> layouts() {
+  return {{"disc", scene_text(square, 0.05, disc)},
+          {"pipe", scene_text(square, 0.05, pipe)},
+          {"ring", scene_text(square, 0.05, disc + pipe)},
+          {"box, turned, in a periodic channel", scene_text(channel, 0.05, turned)},
+          {"disc through the floor of a channel",
+           scene_text(channel, 0.05, "[[body]]\nshape = \"cylinder\"\nradius = 0.5\nposition = [0.97, -1]\n")},
+          {"ball across a periodic side", scene_text(cube, 0.1, ball)}};
+}
+
+}  // namespace
+
+TEST(WallPoints, StandInLayersOfAsManyAsTheyHaveVolumeFor) {
+  const double spacing = 0.02, radius = 0.4;
+  for (const bool inside : {true, false}) {
+    const LoadedCase loaded = load_text(scene_text(
+        square, spacing,
+        "[[body]]\nshape = \"cylinder\"\nradius = 0.4\ninside = " + std::string(inside ? "true\n" : "false\n")));
+    const Resolution resolution(2, spacing, KernelKind::wendland_c2, 1.3);
+    const double volume = loaded.scene.particles.volume, step = std::sqrt(volume);
+    std::array<int, 3> count{};
+    const std::vector<WallPoint> points = make_wall_points(loaded.scene, resolution, volume);
+    for (const WallPoint& point : points) {
+      const double depth = length(subtract(point.position, point.foot));
+      EXPECT_NEAR(std::fmod(depth, step), 0.5 * step, 1e-6 * step);
+      EXPECT_NEAR(length(point.foot), radius, 1e-9);
+      EXPECT_NEAR(length(subtract(add(point.position, point.mirror), multiply(2, point.foot))), 0, 1e-12);
+      ++count[static_cast<std::size_t>(depth / step)];
+    }
+    for (int layer = 0; layer < 3; ++layer) {
+      const double middle = radius + (inside ? -1 : 1) * (layer + 0.5) * step;
+      const double wanted = 2 * std::numbers::pi * middle * step / volume;
+      // A lattice counts the points of a ring of one spacing to about the square root of those on its edges.
+      EXPECT_NEAR(count[static_cast<std::size_t>(layer)], wanted, 0.06 * wanted) << "layer " << layer;
+    }
+    // Evened out: none near another.
+    for (const WallPoint& a : points)
+      for (const WallPoint& b : points)
+        if (&a != &b) EXPECT_GT(length(subtract(a.position, b.position)), 0.6 * step);
+  }
+}
+
+TEST(BodyWalls, MirrorValuesAsFitsOverAllParticlesDo) {
+  for (const Layout& layout : layouts()) {
+    SCOPED_TRACE(layout.name);
+    const Walled walled(layout.text);
+    const reference::WallSums twin = walled.twin(smooth);
+    const WallStencils& stencils = walled.boundary.bodies()->stencils();
+    const WallPointView wet = walled.boundary.bodies()->wet();
+    ASSERT_GT(wet.size, 30U);
+    const std::vector<WallPoint> all = make_wall_points(walled.scene(), walled.resolution, walled.particles.volume);
+    Array<double> scalar(walled.particles.size());
+    for (std::size_t i = 0; i < scalar.size(); ++i) scalar[i] = smooth(walled.place(i)).scalar;
+    for (std::size_t g = 0; g < wet.size; ++g) {
+      Vec3 place{};
+      for (int axis = 0; axis < walled.particles.dimensions; ++axis) place[axis] = wet.position[axis][g];
+      const auto point = std::find_if(all.begin(), all.end(), [&](const WallPoint& p) { return p.position == place; });
+      ASSERT_NE(point, all.end());
+      double sum = 0;
+      for (std::int64_t k = stencils.first[g]; k < stencils.first[g + 1]; ++k) sum += stencils.coefficient[k];
+      EXPECT_NEAR(sum, 1, 1e-14);
+      // Normal equations square the condition number, at most 5e3 for a fit of this order.
+      EXPECT_NEAR(stencils.mirrored(g, scalar.data()), twin.fit(*point).scalar, 1e-8);
+    }
+  }
+}
+
+TEST(BodyWalls, SweepsSeeWallPointsAndTheirImages) {
+  for (const Layout& layout : layouts()) {
+    SCOPED_TRACE(layout.name);
+    Walled walled(layout.text);
+    const int d = walled.particles.dimensions;
+    const std::size_t n = walled.particles.size();
+    const reference::WallSums twin = walled.twin(smooth);
+    const WallPointView wet = walled.boundary.bodies()->wet();
+    const std::vector<WallPoint> all = make_wall_points(walled.scene(), walled.resolution, walled.particles.volume);
+    std::vector<WallPoint> points;
+    std::array<std::vector<reference::Carried>, 2> carried;  // by friction
+    for (std::size_t g = 0; g < wet.size; ++g) {
+      Vec3 place{};
+      for (int axis = 0; axis < d; ++axis) place[axis] = wet.position[axis][g];
+      points.push_back(*std::find_if(all.begin(), all.end(), [&](const WallPoint& p) { return p.position == place; }));
+      const Body* nearest = nullptr;
+      for (const Body& body : walled.scene().bodies)
+        if (nearest == nullptr ||
+            std::abs(body.solid->distance(points.back().foot)) < std::abs(nearest->solid->distance(points.back().foot)))
+          nearest = &body;
+      for (const bool friction : {false, true}) carried[friction].push_back(twin.at(points.back(), *nearest, friction));
+    }
+    Array<double> scalar(n);
+    std::array<Array<double>, 3> velocity;
+    for (auto& component : velocity) component.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      scalar[i] = twin.value[i].scalar;
+      for (std::size_t axis = 0; axis < 3; ++axis) velocity[axis][i] = twin.value[i].velocity[axis];
+    }
+    // Without correction, so that the sums themselves are compared.
+    std::array<Array<float>, 6> identity;
+    std::array<const float*, 6> correction{};
+    for (std::size_t k = 0; k < 6; ++k) {
+      const bool diagonal = d == 2 ? k == 0 || k == 2 : k == 0 || k == 3 || k == 5;
+      identity[k] = Array<float>(n, diagonal ? 1.0F : 0.0F);
+      correction[k] = identity[k].data();
+    }
+    std::array<Array<float>, 3> gradient, viscous;
+    std::array<float*, 3> gradient_out{}, viscous_out{};
+    for (int axis = 0; axis < d; ++axis) {
+      gradient[axis].resize(n);
+      viscous[axis].resize(n);
+      gradient_out[axis] = gradient[axis].data();
+      viscous_out[axis] = viscous[axis].data();
+    }
+    Array<double> divergence(n);
+    const Array<float> kappa(n, 1.0F);
+    std::array<const double*, 3> u{velocity[0].data(), velocity[1].data(), d == 3 ? velocity[2].data() : nullptr};
+    gradient_sweep(walled.arrangement.context, walled.arrangement.packed, scalar.data(), 0, correction, gradient_out);
+    divergence_sweep(walled.arrangement.context, walled.arrangement.packed, u, walled.boundary.volume_rule(),
+                     correction, nullptr, divergence.data(), nullptr);
+    viscous_sweep(walled.arrangement.context, walled.arrangement.packed, u, walled.boundary.velocity_rule(),
+                  kappa.data(), viscous_out, false);
+    const Array<float> no_shift(n, 0.0F);
+    PressureOperator matrix;
+    matrix.bind(walled.arrangement.context, walled.arrangement.packed, {no_shift.data(), nullptr});
+    Array<float> x(n), y(n);
+    Array<double> zero(n, 0.0), residual(n);
+    for (std::size_t i = 0; i < n; ++i) x[i] = static_cast<float>(scalar[i]);
+    matrix.apply(x, y, x);
+    matrix.residual(scalar, zero, residual);
+    // Of a sum of the size s over 20 (2-D) or 80 neighbours in float, with values of size 1.
+    const double h = walled.resolution.smoothing_length, tolerance = d == 2 ? 4e-6 : 8e-6;
+    for (std::size_t i = 0; i < n; ++i) {
+      Vec3 of_gradient{}, of_viscous{};
+      double of_divergence = 0, of_laplacian = 0;
+      twin.sum(i, points, carried[0], false, [&](const Vec3& way, double r, const reference::Carried& other) {
+        const double g = twin.g(r);
+        of_laplacian += 2 * g * (twin.value[i].scalar - other.scalar);
+        for (int axis = 0; axis < d; ++axis) {
+          of_gradient[axis] += g * (other.scalar - twin.value[i].scalar) * way[axis];
+          of_divergence += g * (other.velocity[axis] - twin.value[i].velocity[axis]) * way[axis];
+        }
+      });
+      twin.sum(i, points, carried[1], true, [&](const Vec3&, double r, const reference::Carried& other) {
+        for (int axis = 0; axis < d; ++axis)
+          of_viscous[axis] += 2 * twin.g(r) * (other.velocity[axis] - twin.value[i].velocity[axis]);
+      });
+      EXPECT_NEAR(divergence[i], of_divergence, tolerance / h * 10);
+      for (int axis = 0; axis < d; ++axis) {
+        EXPECT_NEAR(gradient[axis][i], of_gradient[axis], tolerance / h * 10);
+        EXPECT_NEAR(viscous[axis][i], of_viscous[axis], tolerance / (h * h) * 10);
+      }
+      EXPECT_NEAR(y[i] / walled.particles.volume, of_laplacian, tolerance / (h * h) * 10);
+      EXPECT_NEAR(-residual[i] / walled.particles.volume, of_laplacian, tolerance / (h * h) * 10);
+    }
+  }
+}
+
+TEST(BodyWalls, KeepLiquidOutside) {
+  const Walled walled(scene_text(square, 0.05, disc + pipe));
+  const BodyWalls& bodies = *walled.boundary.bodies();
+  for (std::size_t k = 0; k < 2000; ++k) {
+    const auto random = uniform(k, 5);
+    Vec3 place{2 * random[0] - 1, 2 * random[1] - 1, 0}, velocity{random[2] - 0.5, random[0] - 0.5, 0};
+    const bool was_outside = walled.scene().walls.distance(place) > 1e-4;
+    const Vec3 before = place, speed = velocity;
+    bodies.keep_outside(place, &velocity, 1e-4);
+    EXPECT_GE(walled.scene().walls.distance(place), 0.99e-4);
+    if (was_outside) {
+      EXPECT_EQ(place, before);
+      EXPECT_EQ(velocity, speed);
+    } else {
+      EXPECT_LE(length(velocity), length(speed) * (1 + 1e-12));
+    }
+    // The cells that say how far the walls are at least know the side.
+    EXPECT_GT(bodies.distance(place), 0);
+  }
+}
+
+TEST(BodyWalls, WithoutLiquidNearTakeNoPart) {
+  const Walled walled(scene_text(square, 0.05, "upper = [1, -0.5]\n" + disc));
+  EXPECT_EQ(walled.boundary.bodies()->wet().size, 0U);
+  EXPECT_EQ(walled.arrangement.context.walls, nullptr);
+  EXPECT_GT(walled.boundary.bodies()->points(), 0U);
+}
+
+}  // namespace spume::test
