@@ -214,7 +214,9 @@ std::vector<SurfaceForce> BodyForces::measure(const Fields& fields, double t) co
 }
 
 RecordTable BodyForces::table(int dimensions) {
-  RecordTable table{.name = "bodies", .title = "forces of the liquid on bodies, torques about the origin"};
+  RecordTable table;
+  table.name = "bodies";
+  table.title = "forces of the liquid on bodies, torques about the origin";
   table.when = RecordTable::When::series;
   table.columns = {{"t", "time"}, {"body", "number of the [[body]] entry, from 0"}};
   const std::string axes = "xyz";

@@ -8,14 +8,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "cell_status.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/solvers/cell_multigrid.hpp"
 
 namespace spume {
 
 namespace {
-
-enum Status : std::uint8_t { no_liquid = 0, interior_cell = 1, solid_cell = 2, hole = 3 };
 
 // Box edges are multiples of this, so that the first two levels pair the same cells from step to step. With 1 a
 // collapsing column at 1/200 takes as many iterations, with 16 0.6 % fewer.
@@ -24,13 +23,9 @@ constexpr int box_alignment = 4;
 // reason for that. A full domain has 0.3 (3-D) or 0.44 (2-D); a collapsing column has the same bits with 4 and 100.
 constexpr double most_cells_per_particle = 8;
 constexpr double fewest_cells = 65536;
-// A cell without particles and with less open volume than this is taken for a part of the solid.
-constexpr float least_open_volume = 0.6F;
 // Of the mass of a cell of liquid that solids cover: keeps its row positive. A cavity around a solid has the same bits
-// with 0.01 (and with 0.9 for the constant above).
+// with 0.01 (and with 0.9 for the least open volume of cell_multigrid_solids.cpp).
 constexpr float least_mass = 0.1F;
-// In cell widths, of the faces of a solid.
-constexpr double rounding = 1e-6;
 // Entries of a cell up to which they are sorted by insertion, as std::sort does; cells hold 2 particles (2-D) or 3
 // (3-D).
 constexpr int sorted_by_insertion = 16;
@@ -48,10 +43,6 @@ int even_count(double length, double cell_size) {
       if (std::abs(std::log(count / wanted)) < std::abs(std::log(best / wanted))) best = count;
     }
   return best;
-}
-
-bool holds_liquid(std::uint8_t status) {
-  return status == interior_cell || status == hole;
 }
 
 int floor_to(int i, int step) {
@@ -285,80 +276,6 @@ void CellMultigrid::sort_cells() {
   });
 }
 
-// The open part of a cell or of a face of it is that of a surface that is flat and lies across the axis.
-void CellMultigrid::mark_bodies() {
-  const CellLevel& level = hierarchy_.finest();
-  const auto& n = level.cells;
-  const auto dimensions = static_cast<std::size_t>(geometry_.dimensions);
-  parallel_blocks_dynamic(level.rows(), 1, [&](std::size_t row, std::size_t, std::size_t) {
-    const int start[3] = {0, static_cast<int>(row) % n[1], static_cast<int>(row) / n[1]};
-    for (int i = 0; i < n[0]; ++i) {
-      const std::size_t c = row * static_cast<std::size_t>(n[0]) + static_cast<std::size_t>(i);
-      std::array<double, 3> middle{};
-      for (std::size_t a = 0; a < dimensions; ++a)
-        middle[a] = axis_[a].origin + (first_cell_[a] + (a == 0 ? i : start[a]) + 0.5) * width_[a];
-      const double distance = geometry_.distance(middle);
-      const auto open = [&](double away, std::size_t a) {
-        return static_cast<float>(std::clamp(0.5 + away / width_[a], 0.0, 1.0));
-      };
-      open_volume_[c] = std::min(open_volume_[c], open(distance, 0));
-      if (std::abs(distance) > 2 * width_[0]) {
-        for (std::size_t a = 0; a < dimensions; ++a) open_face_[a][c] = std::min(open_face_[a][c], open(distance, 0));
-        continue;
-      }
-      for (std::size_t a = 0; a < dimensions; ++a) {
-        std::array<double, 3> face = middle;
-        face[a] -= 0.5 * width_[a];
-        open_face_[a][c] = std::min(open_face_[a][c], open(geometry_.distance(face), (a + 1) % dimensions));
-      }
-    }
-  });
-}
-
-void CellMultigrid::mark_solids() {
-  const CellLevel& level = hierarchy_.finest();
-  const auto& n = level.cells;
-  const std::size_t total = level.rows() * static_cast<std::size_t>(n[0]);
-  for (Array<float>* field : {&open_volume_, &open_face_[0], &open_face_[1], &open_face_[2]}) {
-    field->resize(total);
-    field->fill(1.0F);
-  }
-  const auto dimensions = static_cast<std::size_t>(geometry_.dimensions);
-  for (const CellGeometry::Box& box : geometry_.solids) {
-    double lower[3] = {0, 0, 0}, upper[3] = {1, 1, 1};  // in cell widths of the box of cells
-    int first[3] = {0, 0, 0}, last[3] = {1, 1, 1};
-    for (std::size_t a = 0; a < dimensions; ++a) {
-      lower[a] = (box.lower[a] - axis_[a].origin) / width_[a] - first_cell_[a];
-      upper[a] = (box.upper[a] - axis_[a].origin) / width_[a] - first_cell_[a];
-      first[a] = static_cast<int>(std::floor(std::clamp<double>(lower[a], 0, n[a])));
-      last[a] = static_cast<int>(std::ceil(std::clamp<double>(upper[a] + rounding, 0, n[a])));
-    }
-    const auto overlap = [&](std::size_t a, int i) {
-      return std::max(0.0, std::min(upper[a], i + 1.0) - std::max(lower[a], double(i)));
-    };
-    for (int k = first[2]; k < last[2]; ++k) {
-      for (int j = first[1]; j < last[1]; ++j) {
-        for (int i = first[0]; i < last[0]; ++i) {
-          const int at[3] = {i, j, k};
-          const std::size_t c =
-              static_cast<std::size_t>(k * n[1] + j) * static_cast<std::size_t>(n[0]) + static_cast<std::size_t>(i);
-          const double part[3] = {overlap(0, i), overlap(1, j), dimensions == 3 ? overlap(2, k) : 1.0};
-          open_volume_[c] -= static_cast<float>(part[0] * part[1] * part[2]);
-          for (std::size_t a = 0; a < dimensions; ++a) {
-            if (at[a] < lower[a] - rounding || at[a] > upper[a] + rounding) continue;
-            const double covered = part[(a + 1) % 3] * part[(a + 2) % 3];
-            open_face_[a][c] = std::max(0.0F, open_face_[a][c] - static_cast<float>(covered));
-          }
-        }
-      }
-    }
-  }
-  if (geometry_.distance) mark_bodies();
-  parallel_for(total, [&](std::size_t c) {
-    if (status_[c] == no_liquid && open_volume_[c] < least_open_volume) status_[c] = solid_cell;
-  });
-}
-
 // A cell inside the liquid may by chance hold no particle; taken for air it would pin the pressure to zero there.
 void CellMultigrid::fill_holes() {
   const CellLevel& level = hierarchy_.finest();
@@ -390,56 +307,6 @@ void CellMultigrid::fill_holes() {
       }
     }
   });
-}
-
-void CellMultigrid::find_shore() {
-  shore_.clear();
-  shore_first_.assign(1, 0);
-  shore_next_.clear();
-  if (geometry_.solids.empty() && !geometry_.distance) return;
-  const CellLevel& level = hierarchy_.finest();
-  const auto& n = level.cells;
-  const auto cell = [&](const std::array<int, 3>& at) {
-    return static_cast<std::size_t>(at[2] * n[1] + at[1]) * static_cast<std::size_t>(n[0]) +
-           static_cast<std::size_t>(at[0]);
-  };
-  const auto slot = [&](const std::array<int, 3>& at) {
-    return level.row_start(static_cast<std::size_t>(at[2] * n[1] + at[1])) + static_cast<std::size_t>(at[0]);
-  };
-  // visit(slot) of the neighbours that hold liquid, across faces (steps 1), edges or corners.
-  const auto each_neighbour = [&](const std::array<int, 3>& at, int steps, auto&& visit) {
-    for (int way = 0; way < 27; ++way) {
-      const std::array<int, 3> step{way % 3 - 1, way / 3 % 3 - 1, way / 9 - 1};
-      if (std::abs(step[0]) + std::abs(step[1]) + std::abs(step[2]) != steps) continue;
-      std::array<int, 3> there = at;
-      bool exists = true;
-      for (std::size_t a = 0; a < 3; ++a) {
-        there[a] += step[a];
-        if (there[a] >= 0 && there[a] < n[a]) continue;
-        exists = exists && axis_[a].periodic && n[a] > 1;
-        there[a] = (there[a] + n[a]) % n[a];
-      }
-      if (exists && holds_liquid(status_[cell(there)])) visit(slot(there));
-    }
-  };
-  const auto place = [&](std::size_t c) {
-    const auto columns = static_cast<std::size_t>(n[0]), rows = static_cast<std::size_t>(n[1]);
-    return std::array<int, 3>{static_cast<int>(c % columns), static_cast<int>(c / columns % rows),
-                              static_cast<int>(c / (columns * rows))};
-  };
-  parallel_select(level.rows() * static_cast<std::size_t>(n[0]), shore_cells_, [&](std::size_t c) {
-    if (status_[c] != solid_cell) return false;
-    bool beside_liquid = false;
-    for (const int steps : {1, 2, 3}) each_neighbour(place(c), steps, [&](std::size_t) { beside_liquid = true; });
-    return beside_liquid;
-  });
-  for (const std::int32_t c : shore_cells_) {
-    const std::array<int, 3> at = place(static_cast<std::size_t>(c));
-    for (int steps = 1; shore_next_.size() == shore_first_.back(); ++steps)
-      each_neighbour(at, steps, [&](std::size_t there) { shore_next_.push_back(there); });
-    shore_.push_back(slot(at));
-    shore_first_.push_back(shore_next_.size());
-  }
 }
 
 void CellMultigrid::set_coefficients(double helmholtz) {
