@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+// les-sph beside walls of bodies.
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+#include "methods/les_sph_simulation.hpp"
+
+namespace spume::test {
+namespace {
+
+const std::string head = "method = \"les-sph\"\n[time]\nend = 1\n";
+
+// Two turning cylinders, ten spacings apart.
+const std::string couette = head + R"toml([domain]
+lower = [-2.3, -2.3]
+upper = [2.3, 2.3]
+[resolution]
+spacing = 0.1
+[fluid]
+reynolds = 1
+[[liquid]]
+[[body]]
+shape = "cylinder"
+radius = 2
+inside = false
+wall = "no-slip"
+[[body]]
+shape = "cylinder"
+radius = 1
+wall = "no-slip"
+velocity = ["-y", "x"]
+)toml";
+
+const std::string pool = head + R"toml([domain]
+lower = [0, 0]
+upper = [1.5, 1]
+left = "free-slip"
+right = "free-slip"
+bottom = "free-slip"
+[resolution]
+spacing = 0.05
+[fluid]
+froude = 1
+mach = 0.05
+[[liquid]]
+upper = [1.5, 0.8]
+)toml";
+const std::string turned_box =
+    "[[body]]\nshape = \"box\"\nsize = [0.4, 0.2]\nrotation = [25]\nposition = [0.7, 0.33]\n";
+
+}  // namespace
+
+TEST(LesSphBodies, GiveTheSameBitsForAnyNumberOfThreads) {
+  const int threads = omp_get_max_threads();
+  State first;
+  for (const int count : {1, 2, 3}) {
+    omp_set_num_threads(count);
+    Simulation run(couette);
+    run.steps(4, 0.002);
+    if (count == 1)
+      first = run.state();
+    else
+      EXPECT_TRUE(run.state() == first) << count << " threads";
+  }
+  omp_set_num_threads(threads);
+}
+
+TEST(LesSphBodies, GoOnBitForBitFromASavedState) {
+  Simulation straight(couette), restored(couette);
+  straight.steps(3, 0.002);
+  MemoryState saved;
+  straight.method.save(saved);
+  straight.steps(2, 0.002);
+  restored.method.load(saved);
+  restored.steps(2, 0.002);
+  EXPECT_TRUE(restored.state() == straight.state());
+}
+
+TEST(LesSphBodies, ARefusedStepLeavesTheState) {
+  EXPECT_EQ(changed_by_a_refused_step(couette, {}, 0.002), "");
+}
+
+// Steady: u = (4/r - r)/3, its torque per length 16 pi / 3. 20 across the gap are off by 0.2 % of the wall's speed and
+// 0.5 % of the torque, 40 by a quarter of that (cases/taylor_couette): the scheme is of second order, and ten by 0.8 %
+// and 2 %.
+TEST(LesSphBodies, TurningCylindersDriveTheExactFlow) {
+  Simulation run(couette, {"liquid.0.velocity=[\"-y*(4/(x^2+y^2)-1)/3\", \"x*(4/(x^2+y^2)-1)/3\"]"});
+  while (run.method.time() < 0.3) run.steps(1, run.method.step_limit().dt);
+  const State state = run.state();
+  double squares = 0;
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    const auto [x, y, z] = state.position[i];
+    const double r = std::hypot(x, y), turning = (x * state.velocity[i][1] - y * state.velocity[i][0]) / r;
+    squares += std::pow(turning - (4 / r - r) / 3, 2);
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(state.position.size())), 0.008);
+  std::vector<double> rows;
+  run.method.table_rows("bodies", rows);
+  // t, body, forces by pressure and by viscosity, torques by pressure and by viscosity.
+  ASSERT_EQ(rows.size(), 16U);
+  const double torque = 16 * std::numbers::pi / 3;
+  // The stress is a slope at the wall, of first order there: 5 % of ten spacings.
+  EXPECT_NEAR(rows[7], torque, 0.06 * torque) << "outer";
+  EXPECT_NEAR(rows[15], -torque, 0.06 * torque) << "inner";
+}
+
+TEST(LesSphBodies, StillWaterStaysStillAndBearsThem) {
+  for (const std::string& body : {turned_box, std::string("[[body]]\nshape = \"cylinder\"\nradius = 0.17\nposition = "
+                                                          "[0.71, 0.33]\nwall = \"no-slip\"\n")}) {
+    Simulation run(pool + body);
+    while (run.method.time() < 1) run.steps(1, run.method.step_limit().dt);
+    EXPECT_LT(run.series()["max_speed"], 1e-5);
+    std::vector<double> rows;
+    run.method.table_rows("bodies", rows);
+    const double buoyancy = run.loaded.scene.bodies[0].shape->volume();
+    EXPECT_NEAR(rows[3], buoyancy, 0.005 * buoyancy);
+    EXPECT_NEAR(rows[2], 0, 0.005 * buoyancy);
+  }
+}
+
+// Against a wedge and over it, in a tank that is shaken: none gets in, none is lost.
+TEST(LesSphBodies, KeepMovingLiquidOut) {
+  Simulation run(pool + "[[body]]\nshape = \"outline\"\npoints = [[0.4, -0.2], [1.2, -0.2], [0.8, 0.5]]\n",
+                 {"forces.body=[\"0.8*sin(5*t)\", \"0\"]"});
+  const std::size_t particles = run.state().position.size();
+  while (run.method.time() < 2) run.steps(1, run.method.step_limit().dt);
+  const State state = run.state();
+  ASSERT_EQ(state.position.size(), particles);
+  for (const Vec3& place : state.position) {
+    EXPECT_GT(run.loaded.scene.walls.distance(place), 0);
+    for (int axis = 0; axis < 2; ++axis) EXPECT_TRUE(place[axis] > 0 && place[axis] < 1.5);
+  }
+}
+
+// With the solid cells at zero, these took 42 and 48 iterations.
+TEST(LesSphBodies, ThePreconditionerGoesOnBehindSolids) {
+  const std::string box = head + R"toml([domain]
+lower = [-1, -1]
+upper = [1, 1]
+left = "no-slip"
+right = "no-slip"
+bottom = "no-slip"
+top = "no-slip"
+[resolution]
+spacing = 0.03125
+[fluid]
+reynolds = 10
+[[liquid]]
+velocity = ["sin(pi*x)*cos(pi*y)", "-cos(pi*x)*sin(pi*y)"]
+)toml";
+  for (const std::string solid :
+       {"[[solid]]\nlower = [-0.5, -0.5]\nupper = [0.5, 0.5]\n", "[[body]]\nshape = \"box\"\nsize = [1, 1]\n"}) {
+    Simulation run(box + solid);
+    run.steps(3, 0.002);
+    EXPECT_LE(run.series()["pressure_iterations"], 12) << solid;
+  }
+}
+
+TEST(LesSphBodies, AreRefusedBesideBoxesAndBubbles) {
+  using testing::Contains, testing::HasSubstr;
+  EXPECT_THAT(problems_of(pool + turned_box + "[[solid]]\nlower = [0, 0]\nupper = [0.2, 0.2]\n"),
+              Contains(HasSubstr("takes no [[solid]] box; write it as  [[body]]")));
+  EXPECT_THAT(problems_of(pool + turned_box + "[bubbles]\n"), Contains(HasSubstr("body.0 is a wall of another shape")));
+}
+
+}  // namespace spume::test
