@@ -127,6 +127,17 @@ std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const
     if (thin > most_thin)
       warn("is thinner than a spacing, " + brief(scene.spacing) + ", behind " + brief(std::round(100 * thin)) +
            " % of its surface; liquid may pass there: make it thicker, or lower resolution.spacing");
+    // Twice the support radius of the standard kernel, 2.6 spacings: liquid on one side then sees none on the other.
+    constexpr double screening = 5;
+    constexpr double most_unscreened = 0.5;
+    const double unscreened = body.wall == BoundaryKind::open || thin > most_thin
+                                  ? 0
+                                  : thin_share(body, domain, screening * scene.spacing, dimensions);
+    if (unscreened > most_unscreened)
+      warn("is thinner than five spacings, " + brief(screening * scene.spacing) + ", behind " +
+           brief(std::round(100 * unscreened)) +
+           " % of its surface; liquid on its two sides acts on each other through it: lower resolution.spacing, or make "
+           "it thicker unless there is liquid on one side alone");
   }
   return warnings;
 }

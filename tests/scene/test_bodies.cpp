@@ -238,7 +238,9 @@ TEST(Bodies, SuspiciousBodiesAreWarnedOf) {
       Contains(AllOf(HasSubstr("the body 'it' is 4000 long, 2000 times the domain of 2"), HasSubstr("set scale"))));
   EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.04, 1]\n"),
               Contains(HasSubstr("the body 'it' is thinner than a spacing, 0.05, behind 96 % of its surface")));
-  EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.05, 1]\n"), IsEmpty());
+  EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.05, 1]\n"),
+              ElementsAre(HasSubstr("the body 'it' is thinner than five spacings, 0.25, behind")));
+  EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.26, 1]\n"), IsEmpty());
   EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.04, 1]\nwall = \"none\"\n"), IsEmpty());
   EXPECT_THAT(warnings(start + "shape = \"half-space\"\n"), IsEmpty());
   // What lies between the tank and the side of the domain goes on beyond it.
