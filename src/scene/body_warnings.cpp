@@ -134,10 +134,11 @@ std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const
                                   ? 0
                                   : thin_share(body, domain, screening * scene.spacing, dimensions);
     if (unscreened > most_unscreened)
-      warn("is thinner than five spacings, " + brief(screening * scene.spacing) + ", behind " +
-           brief(std::round(100 * unscreened)) +
-           " % of its surface; liquid on its two sides acts on each other through it: lower resolution.spacing, or make "
-           "it thicker unless there is liquid on one side alone");
+      warn(
+          "is thinner than five spacings, " + brief(screening * scene.spacing) + ", behind " +
+          brief(std::round(100 * unscreened)) +
+          " % of its surface; liquid on its two sides acts on each other through it: lower resolution.spacing, or make "
+          "it thicker unless there is liquid on one side alone");
   }
   return warnings;
 }
