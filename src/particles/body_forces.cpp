@@ -8,12 +8,11 @@
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/operators/moving_least_squares.hpp"
+#include "spume/particles/near_particles.hpp"
 
 namespace spume {
 namespace {
 
-// Of the support radius, as the fits of wall points.
-constexpr double fit_reach = 1.25;
 // Spacings: an element farther from the walls lies inside another body, or where the scene ends.
 constexpr double on_surface = 0.25;
 // Of the sum of all weights: what pins the fit of a velocity to that of a no-slip surface.
@@ -93,7 +92,6 @@ void BodyForces::add_elements(std::int32_t b) {
 template <int dimensions>
 bool BodyForces::traction(const Fields& fields, const CellOrder& table, const Element& element,
                           const Vec3& wall_velocity, Vec3& pressure, Vec3& viscous) const {
-  const CellGrid& grid = fields.grid;
   const double h = resolution_.smoothing_length, reach = fit_reach * resolution_.support_radius;
   const Vec3 normal = multiply(1 / length(element.area), element.area);
   struct Near {
@@ -105,44 +103,20 @@ bool BodyForces::traction(const Fields& fields, const CellOrder& table, const El
   double sum = 0, covered = 0;
   with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
     const double scale = fields.particle_volume * Kernel::normalisation(d) / std::pow(h, d);
-    const auto visit = [&](const Vec3& shift) {
-      std::array<int, 3> from{}, to{};
+    visit_near(scene_.domain, fields.grid, table, element.middle, reach, [&](std::int32_t k, const Vec3& shift) {
+      const auto j = static_cast<std::size_t>(table.order()[static_cast<std::size_t>(k)]);
+      Vec3 offset{};
+      double r2 = 0;
       for (int axis = 0; axis < d; ++axis) {
-        from[axis] = grid.index(axis, element.middle[axis] - shift[axis] - reach);
-        to[axis] = grid.index(axis, element.middle[axis] - shift[axis] + reach);
+        offset[axis] = fields.position[axis][j] + shift[axis] - element.middle[axis];
+        r2 += offset[axis] * offset[axis];
       }
-      for (int iz = from[2]; iz <= to[2]; ++iz)
-        for (int iy = from[1]; iy <= to[1]; ++iy) {
-          const std::int64_t row = std::int64_t{grid.row(iy, iz)} * grid.columns();
-          const std::int32_t* starts = table.first();
-          for (std::int32_t k = starts[row + from[0]]; k < starts[row + to[0] + 1]; ++k) {
-            const auto j = static_cast<std::size_t>(table.order()[static_cast<std::size_t>(k)]);
-            Vec3 offset{};
-            double r2 = 0;
-            for (int axis = 0; axis < d; ++axis) {
-              offset[axis] = fields.position[axis][j] + shift[axis] - element.middle[axis];
-              r2 += offset[axis] * offset[axis];
-            }
-            if (r2 >= reach * reach || dot(offset, normal) < 0) continue;
-            const double weight = WendlandC2::w(WendlandC2::support * std::sqrt(r2) / reach);
-            near.push_back({j, offset, weight});
-            sum += weight;
-            covered += 2 * scale * Kernel::w(std::sqrt(r2) / h);
-          }
-        }
-    };
-    const auto along = [&](auto&& self, int axis, const Vec3& shift) -> void {
-      if (axis == d) return visit(shift);
-      self(self, axis + 1, shift);
-      if (!scene_.domain.periodic(axis)) return;
-      for (const double way : {-1.0, 1.0}) {
-        Vec3 other = shift;
-        other[axis] = way * (scene_.domain.upper[axis] - scene_.domain.lower[axis]);
-        const double end = way < 0 ? scene_.domain.lower[axis] : scene_.domain.upper[axis];
-        if (std::abs(element.middle[axis] - end) < reach) self(self, axis + 1, other);
-      }
-    };
-    along(along, 0, Vec3{});
+      if (r2 >= reach * reach || dot(offset, normal) < 0) return;
+      const double weight = WendlandC2::w(WendlandC2::support * std::sqrt(r2) / reach);
+      near.push_back({j, offset, weight});
+      sum += weight;
+      covered += 2 * scale * Kernel::w(std::sqrt(r2) / h);
+    });
   });
   if (covered < 0.5) return false;
   MovingLeastSquares<dimensions> fit;

@@ -9,13 +9,11 @@
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/operators/moving_least_squares.hpp"
+#include "spume/particles/near_particles.hpp"
 
 namespace spume {
 namespace {
 
-// Of the support radius: where fits look for particles. Half a disc beside a wall then holds 17 particles, enough for a
-// quadratic fit in two dimensions, where the support radius alone has 11.
-constexpr double fit_reach = 1.25;
 constexpr double wet_share = 0.5;
 constexpr int fit_order = 2;
 
@@ -106,11 +104,8 @@ WallPointView BodyWalls::wet() const {
 template <int dimensions>
 void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at, double particle_volume,
                           std::size_t first, std::size_t last, Block& block) const {
-  const CellGrid& grid = arrangement.grid;
-  const std::int32_t* starts = arrangement.table.first();
   const auto r = read(at);
   const double h = resolution_.smoothing_length, reach = fit_reach * resolution_.support_radius;
-  const Domain& domain = scene_.domain;
   MovingLeastSquares<dimensions> fit;
   struct Near {
     std::int32_t particle;
@@ -127,54 +122,29 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
     double nearest2 = std::numeric_limits<double>::infinity();
     with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
       const double scale = particle_volume * Kernel::normalisation(d) / std::pow(h, d);
-      const auto visit = [&](const Vec3& shift) {
-        std::array<int, 3> from{}, to{};
-        for (int axis = 0; axis < d; ++axis) {
-          from[axis] = grid.index(axis, point.mirror[axis] - shift[axis] - reach);
-          to[axis] = grid.index(axis, point.mirror[axis] - shift[axis] + reach);
-        }
-        for (int iz = from[2]; iz <= to[2]; ++iz)
-          for (int iy = from[1]; iy <= to[1]; ++iy) {
-            const std::int64_t row = std::int64_t{grid.row(iy, iz)} * grid.columns();
-            for (std::int32_t j = starts[row + from[0]]; j < starts[row + to[0] + 1]; ++j) {
-              Vec3 offset{};
-              double r2 = 0, across = 0, way2 = 0;
-              for (int axis = 0; axis < d; ++axis) {
-                const double x = r[axis][j] + shift[axis];
-                offset[axis] = x - point.mirror[axis];
-                r2 += offset[axis] * offset[axis];
-                across += (x - point.foot[axis]) * point.normal[axis];
-                way2 += (x - point.position[axis]) * (x - point.position[axis]);
-              }
-              seen = seen || way2 < resolution_.support_radius * resolution_.support_radius;
-              // Behind the tangent plane stands liquid of another side, or of a curved one, which the fit can miss.
-              if (across < 0 || r2 >= reach * reach) continue;
-              const double mirrored2 = r2 + 4 * across * dot(subtract(point.mirror, point.foot), point.normal);
-              kernel_sum += scale * (Kernel::w(std::sqrt(r2) / h) + Kernel::w(std::sqrt(mirrored2) / h));
-              near.push_back({j, offset, r2});
-              if (r2 < nearest2) {
-                nearest2 = r2;
-                nearest = j;
-              }
-            }
-          }
-      };
-      const auto along = [&](auto&& self, int axis, const Vec3& shift) -> void {
-        if (axis == d) return visit(shift);
-        self(self, axis + 1, shift);
-        if (!domain.periodic(axis)) return;
-        Vec3 other = shift;
-        const double length = domain.upper[axis] - domain.lower[axis];
-        if (point.mirror[axis] - reach < domain.lower[axis]) {
-          other[axis] = -length;
-          self(self, axis + 1, other);
-        }
-        if (point.mirror[axis] + reach > domain.upper[axis]) {
-          other[axis] = length;
-          self(self, axis + 1, other);
-        }
-      };
-      along(along, 0, Vec3{});
+      visit_near(scene_.domain, arrangement.grid, arrangement.table, point.mirror, reach,
+                 [&](std::int32_t j, const Vec3& shift) {
+                   Vec3 offset{};
+                   double r2 = 0, across = 0, way2 = 0;
+                   for (int axis = 0; axis < d; ++axis) {
+                     const double x = r[axis][j] + shift[axis];
+                     offset[axis] = x - point.mirror[axis];
+                     r2 += offset[axis] * offset[axis];
+                     across += (x - point.foot[axis]) * point.normal[axis];
+                     way2 += (x - point.position[axis]) * (x - point.position[axis]);
+                   }
+                   seen = seen || way2 < resolution_.support_radius * resolution_.support_radius;
+                   // Behind the tangent plane stands liquid of another side, or of a curved one, which the fit can
+                   // miss.
+                   if (across < 0 || r2 >= reach * reach) return;
+                   const double mirrored2 = r2 + 4 * across * dot(subtract(point.mirror, point.foot), point.normal);
+                   kernel_sum += scale * (Kernel::w(std::sqrt(r2) / h) + Kernel::w(std::sqrt(mirrored2) / h));
+                   near.push_back({j, offset, r2});
+                   if (r2 < nearest2) {
+                     nearest2 = r2;
+                     nearest = j;
+                   }
+                 });
       if (kernel_sum < wet_share || !seen) return;
       fit.resize(near.size());
       for (std::size_t k = 0; k < near.size(); ++k) {
