@@ -42,6 +42,22 @@ BodyWalls::BodyWalls(const Scene& scene, const Resolution& resolution, double pa
       middle_[row * cells_[0] + i] = static_cast<float>(scene.walls.distance(place));
     }
   });
+  fine_ = resolution.spacing;
+  for (int axis = 0; axis < d; ++axis) {
+    fine_lower_[axis] = scene.domain.lower[axis];
+    fine_cells_[axis] =
+        static_cast<std::size_t>(std::ceil((scene.domain.upper[axis] - scene.domain.lower[axis]) / fine_));
+  }
+  least_.resize(fine_cells_[0] * fine_cells_[1] * fine_cells_[2]);
+  const double half_diagonal = 0.5 * std::sqrt(static_cast<double>(d)) * fine_;
+  parallel_blocks_dynamic(fine_cells_[1] * fine_cells_[2], 1, [&](std::size_t row, std::size_t, std::size_t) {
+    for (std::size_t i = 0; i < fine_cells_[0]; ++i) {
+      const Vec3 place{fine_lower_[0] + (static_cast<double>(i) + 0.5) * fine_,
+                       fine_lower_[1] + (static_cast<double>(row % fine_cells_[1]) + 0.5) * fine_,
+                       d == 3 ? fine_lower_[2] + (static_cast<double>(row / fine_cells_[1]) + 0.5) * fine_ : 0.0};
+      least_[row * fine_cells_[0] + i] = static_cast<float>(distance(place) - half_diagonal);
+    }
+  });
   body_.resize(points_.size());
   parallel_for(points_.size(), [&](std::size_t g) { body_[g] = static_cast<std::uint8_t>(body_at(points_[g].foot)); });
   for (const Body& body : scene.bodies) moving_ = moving_ || (body.wall != BoundaryKind::open && body.velocity);
@@ -78,8 +94,20 @@ double BodyWalls::distance(const Vec3& point) const {
   return scene_.walls.distance(point);
 }
 
+bool BodyWalls::surely_outside(const Vec3& point, double gap) const {
+  std::array<std::size_t, 3> at{};
+  for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
+    const double cell = (point[axis] - fine_lower_[axis]) / fine_;
+    if (!(cell >= 0 && cell < static_cast<double>(fine_cells_[axis]))) return false;
+    at[axis] = static_cast<std::size_t>(cell);
+  }
+  // Rounded to float, and of surfaces whose distance is itself interpolated: a hundredth of a spacing is more than
+  // both.
+  return least_[(at[2] * fine_cells_[1] + at[1]) * fine_cells_[0] + at[0]] > gap + 0.01 * fine_;
+}
+
 void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
-  if (distance(position) >= gap) return;
+  if (surely_outside(position, gap) || distance(position) >= gap) return;
   NearestPoint near = scene_.walls.nearest(position);
   const NearestPoint first = near;
   position = add(near.point, multiply(std::max(gap, std::abs(near.distance)), near.normal));
@@ -250,8 +278,9 @@ void BodyWalls::set_surfaces(double t) {
 }
 
 double BodyWalls::bytes() const {
-  double sum = stencils_.bytes() + static_cast<double>(points_.capacity() * sizeof(WallPoint) + body_.capacity() +
-                                                       4 * middle_.capacity() + 4 * wet_points_.capacity());
+  double sum = stencils_.bytes() +
+               static_cast<double>(points_.capacity() * sizeof(WallPoint) + body_.capacity() + 4 * middle_.capacity() +
+                                   4 * least_.capacity() + 4 * wet_points_.capacity());
   for (const auto& component : wet_position_) sum += component.bytes();
   return sum;
 }

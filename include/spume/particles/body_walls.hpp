@@ -44,6 +44,7 @@ class BodyWalls {
   void fit_block(const Arrangement& arrangement, const VectorField& at, double particle_volume, std::size_t first,
                  std::size_t last, Block& block) const;
   void set_surfaces(double t);
+  bool surely_outside(const Vec3& point, double gap) const;
   std::size_t body_at(const Vec3& foot) const;
 
   const Scene& scene_;
@@ -57,6 +58,12 @@ class BodyWalls {
   std::array<std::size_t, 3> cells_{1, 1, 1};
   double cell_ = 0;
   std::vector<float> middle_;
+  // Cells of a spacing, with what every point in them is farther from the walls than; negative where that is unknown.
+  // Around a torus of 2304 triangles the stages that keep particles outside take 14 to 31 times as long without it.
+  std::array<double, 3> fine_lower_{};
+  std::array<std::size_t, 3> fine_cells_{1, 1, 1};
+  double fine_ = 0;
+  std::vector<float> least_;
 
   std::vector<std::int32_t> wet_points_;
   std::array<Array<double>, 3> wet_position_;
