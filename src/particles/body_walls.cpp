@@ -49,13 +49,16 @@ BodyWalls::BodyWalls(const Scene& scene, const Resolution& resolution, double pa
         static_cast<std::size_t>(std::ceil((scene.domain.upper[axis] - scene.domain.lower[axis]) / fine_));
   }
   least_.resize(fine_cells_[0] * fine_cells_[1] * fine_cells_[2]);
-  const double half_diagonal = 0.5 * std::sqrt(static_cast<double>(d)) * fine_;
+  // Half a diagonal, what rounding to float takes, and what interpolated distances are off by.
+  double off = (0.5 * std::sqrt(static_cast<double>(d)) + 1e-3) * fine_;
+  for (const Body& body : scene.bodies)
+    if (body.wall != BoundaryKind::open) off += body.solid->error();
   parallel_blocks_dynamic(fine_cells_[1] * fine_cells_[2], 1, [&](std::size_t row, std::size_t, std::size_t) {
     for (std::size_t i = 0; i < fine_cells_[0]; ++i) {
       const Vec3 place{fine_lower_[0] + (static_cast<double>(i) + 0.5) * fine_,
                        fine_lower_[1] + (static_cast<double>(row % fine_cells_[1]) + 0.5) * fine_,
                        d == 3 ? fine_lower_[2] + (static_cast<double>(row / fine_cells_[1]) + 0.5) * fine_ : 0.0};
-      least_[row * fine_cells_[0] + i] = static_cast<float>(distance(place) - half_diagonal);
+      least_[row * fine_cells_[0] + i] = static_cast<float>(distance(place) - off);
     }
   });
   body_.resize(points_.size());
@@ -101,9 +104,7 @@ bool BodyWalls::surely_outside(const Vec3& point, double gap) const {
     if (!(cell >= 0 && cell < static_cast<double>(fine_cells_[axis]))) return false;
     at[axis] = static_cast<std::size_t>(cell);
   }
-  // Rounded to float, and of surfaces whose distance is itself interpolated: a hundredth of a spacing is more than
-  // both.
-  return least_[(at[2] * fine_cells_[1] + at[1]) * fine_cells_[0] + at[0]] > gap + 0.01 * fine_;
+  return least_[(at[2] * fine_cells_[1] + at[1]) * fine_cells_[0] + at[0]] > gap;
 }
 
 void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
