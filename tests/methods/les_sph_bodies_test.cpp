@@ -32,20 +32,8 @@ wall = "no-slip"
 velocity = ["-y", "x"]
 )toml";
 
-const std::string pool = head + R"toml([domain]
-lower = [0, 0]
-upper = [1.5, 1]
-left = "free-slip"
-right = "free-slip"
-bottom = "free-slip"
-[resolution]
-spacing = 0.05
-[fluid]
-froude = 1
-mach = 0.05
-[[liquid]]
-upper = [1.5, 0.8]
-)toml";
+// The tank, wider.
+const Overrides wide{"domain.upper=[1.5, 1.5]", "fluid.mach=0.05"};
 const std::string turned_box =
     "[[body]]\nshape = \"box\"\nsize = [0.4, 0.2]\nrotation = [25]\nposition = [0.7, 0.33]\n";
 
@@ -108,7 +96,7 @@ TEST(LesSphBodies, TurningCylindersDriveTheExactFlow) {
 TEST(LesSphBodies, StillWaterStaysStillAndBearsThem) {
   for (const std::string& body : {turned_box, std::string("[[body]]\nshape = \"cylinder\"\nradius = 0.17\nposition = "
                                                           "[0.71, 0.33]\nwall = \"no-slip\"\n")}) {
-    Simulation run(pool + body);
+    Simulation run(tank + body, wide);
     while (run.method.time() < 1) run.steps(1, run.method.step_limit().dt);
     EXPECT_LT(run.series()["max_speed"], 1e-5);
     std::vector<double> rows;
@@ -121,8 +109,8 @@ TEST(LesSphBodies, StillWaterStaysStillAndBearsThem) {
 
 // Against a wedge and over it, in a tank that is shaken: none gets in, none is lost.
 TEST(LesSphBodies, KeepMovingLiquidOut) {
-  Simulation run(pool + "[[body]]\nshape = \"outline\"\npoints = [[0.4, -0.2], [1.2, -0.2], [0.8, 0.5]]\n",
-                 {"forces.body=[\"0.8*sin(5*t)\", \"0\"]"});
+  Simulation run(tank + "[[body]]\nshape = \"outline\"\npoints = [[0.4, -0.2], [1.2, -0.2], [0.8, 0.5]]\n",
+                 {wide[0], wide[1], "forces.body=[\"0.8*sin(5*t)\", \"0\"]"});
   const std::size_t particles = run.state().position.size();
   while (run.method.time() < 2) run.steps(1, run.method.step_limit().dt);
   const State state = run.state();
@@ -131,6 +119,17 @@ TEST(LesSphBodies, KeepMovingLiquidOut) {
     EXPECT_GT(run.loaded.scene.walls.distance(place), 0);
     for (int axis = 0; axis < 2; ++axis) EXPECT_TRUE(place[axis] > 0 && place[axis] < 1.5);
   }
+}
+
+// A beach through the surface is less accurate, which is said; a box below the surface is not.
+TEST(LesSphBodies, AreRemarkedOnWhereTheyMeetASurface) {
+  using testing::Contains, testing::Field, testing::HasSubstr, testing::IsEmpty;
+  Simulation beach(tank + "[[body]]\nshape = \"outline\"\npoints = [[-0.5, -0.5], [1.5, -0.5], [1.5, 1.5]]\n", wide);
+  beach.steps(1, 0.004);
+  EXPECT_THAT(beach.method.take_remarks(), Contains(Field(&Remark::text, HasSubstr("where a surface meets a body"))));
+  Simulation below(tank + turned_box, wide);
+  below.steps(1, 0.004);
+  EXPECT_THAT(below.method.take_remarks(), IsEmpty());
 }
 
 // With the solid cells at zero, these took 42 and 48 iterations.
@@ -159,9 +158,9 @@ velocity = ["sin(pi*x)*cos(pi*y)", "-cos(pi*x)*sin(pi*y)"]
 
 TEST(LesSphBodies, AreRefusedBesideBoxesAndBubbles) {
   using testing::Contains, testing::HasSubstr;
-  EXPECT_THAT(problems_of(pool + turned_box + "[[solid]]\nlower = [0, 0]\nupper = [0.2, 0.2]\n"),
+  EXPECT_THAT(problems_of(tank + turned_box + "[[solid]]\nlower = [0, 0]\nupper = [0.2, 0.2]\n"),
               Contains(HasSubstr("takes no [[solid]] box; write it as  [[body]]")));
-  EXPECT_THAT(problems_of(pool + turned_box + "[bubbles]\n"), Contains(HasSubstr("body.0 is a wall of another shape")));
+  EXPECT_THAT(problems_of(tank + turned_box + "[bubbles]\n"), Contains(HasSubstr("body.0 is a wall of another shape")));
 }
 
 }  // namespace spume::test

@@ -54,6 +54,8 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
  private:
   void start(Ledger& ledger);  // finds the pressure of the initial velocity field
   void ensure_started();
+  // Says where walls of bodies are less accurate than elsewhere.
+  void remark_surface_at_bodies();
   void declare_series();
   void declare_saved();
   bool periodic() const;  // in all directions: the flow has an energy spectrum
