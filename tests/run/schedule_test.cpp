@@ -52,6 +52,22 @@ TEST(Schedule, EventsThatDifferByRoundingCoincide) {
   EXPECT_EQ(steps, 10);
 }
 
+TEST(Schedule, EventsThatDifferByTheDigitsOfACaseCoincide) {
+  Schedule schedule({10, 0.1, 0.1 * (1 + 2.5e-11), 0});
+  double t = 0, smallest = 1;
+  int both = 0;
+  while (!schedule.finished(t)) {
+    const double dt = schedule.step(t, 0.04);
+    smallest = std::min(smallest, dt);
+    t += dt;
+    const Schedule::Due due = schedule.arrive(t);
+    EXPECT_EQ(due.output, due.series) << t;
+    both += due.output && due.series ? 1 : 0;
+  }
+  EXPECT_EQ(both, 100);
+  EXPECT_GE(smallest, 0.02);
+}
+
 TEST(Schedule, TheEndMakesEverythingDue) {
   Schedule schedule({0.25, 0.1, 0.1, 0.2});
   const auto due = schedule.arrive(0.25);

@@ -43,8 +43,10 @@ class Schedule {
   void set_next(const std::array<std::int64_t, 3>& next) { next_ = next; }
 
  private:
-  // Events closer than this coincide: k1 * a and k2 * b that mean the same time differ by rounding.
-  static double tolerance(double t) { return 1e-12 * (t < 0 ? -t : t); }
+  // Events closer than this coincide: k1 * a and k2 * b that mean the same time differ by rounding, or by that of a
+  // case that writes ten digits. A step of 8e-10 between two such events ended a run: what a step adds to the velocity
+  // is divided by its length there.
+  static double tolerance(double t) { return 1e-9 * (t < 0 ? -t : t); }
   double interval(int event) const;
   Times times_;
   std::array<std::int64_t, 3> next_ = {1, 1, 1};
