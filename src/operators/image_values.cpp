@@ -23,6 +23,17 @@ void pack_scalar(const SweepContext& context, float* records, int width, int slo
   pack_scalar_any(context, records, width, slot, values);
 }
 
+void clear_wall_points(const SweepContext& context, float* records, int width, int slot) {
+  if (context.walls == nullptr) return;
+  const std::size_t n = context.list->particles();
+  const std::int32_t* point = context.images->wall_point();
+  float* out = records + context.dimensions + slot;
+  const auto w = static_cast<std::size_t>(width);
+  parallel_for(context.images->size(), [=](std::size_t k) {
+    if (point != nullptr && point[k] >= 0) out[(n + k) * w] = 0;
+  });
+}
+
 void pack_coefficient(const SweepContext& context, float* records, int width, int slot, const float* values) {
   const std::size_t n = context.list->particles();
   const std::int32_t* source = context.images->source();

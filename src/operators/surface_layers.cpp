@@ -163,6 +163,7 @@ void share_depths(const SweepContext& context, PackedNeighbours& packed, const N
                   std::span<const float> of_particle, std::span<float> depth) {
   float* records = packed.prepare(context, 1);
   pack_scalar(context, records, record_width(dimensions, 1), 0, of_particle.data());
+  clear_wall_points(context, records, record_width(dimensions, 1), 0);
   const KernelScale<dimensions, Kernel> common(context);
   const auto centre = static_cast<float>(Kernel::w(0.0));
   const auto per_half_spacing = static_cast<float>(2 / near_surface.spacing);
@@ -263,8 +264,21 @@ void surface_depths(const SweepContext& context, PackedNeighbours& packed, const
     parallel_for(of_particle.size(), [&](std::size_t i) { of_particle[i] = 0; });
     find_own_depths<dimensions, Kernel>(context, packed, near_surface, of_particle);
     find_box_depths<dimensions, Kernel>(context, near_surface, of_particle);
+    for (const KnownDepth& known : near_surface.known)
+      if (of_particle[static_cast<std::size_t>(known.particle)] > 0)
+        of_particle[static_cast<std::size_t>(known.particle)] = known.depth;
     share_depths<dimensions, Kernel>(context, packed, near_surface, of_particle, depth);
   });
+}
+
+double column_weight(int dimensions, double aside, double below) {
+  const auto x = static_cast<float>(aside), z = static_cast<float>(below);
+  return double{dimensions == 3 ? column_at<3>(x, z) : column_at<2>(x, z)};
+}
+
+double depth_of_column(int dimensions, double content) {
+  const double of_lattice = dimensions == 3 ? lattice_column<3>() : lattice_column<2>();
+  return std::clamp(0.5 + content - of_lattice, double{shallowest}, double{deepest});
 }
 
 void mark_upper_layers(const SweepContext& context, double spacing, std::span<const std::int32_t> near_surface,

@@ -124,6 +124,10 @@ void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
   if (inwards < 0) *velocity = subtract(*velocity, multiply(inwards, first.normal));
 }
 
+bool BodyWalls::is_wet(std::size_t point) const {
+  return std::binary_search(wet_points_.begin(), wet_points_.end(), static_cast<std::int32_t>(point));
+}
+
 WallPointView BodyWalls::wet() const {
   WallPointView view{.size = stencils_.size(), .source = stencils_.nearest.data()};
   for (int axis = 0; axis < scene_.domain.dimensions; ++axis) view.position[axis] = wet_position_[axis].data();

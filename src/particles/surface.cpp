@@ -38,7 +38,7 @@ InteriorWeight interior_weight(int dimensions, const SurfaceOptions& options) {
 }
 
 FreeSurface::FreeSurface(const Resolution& resolution, const Options& options)
-    : resolution_(resolution), options_(options) {}
+    : resolution_(resolution), options_(options), continued_(resolution, options.interior) {}
 
 void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, MomentFields& moments,
                        const Boundary& boundary, const VectorField& at) {
@@ -49,13 +49,16 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, Momen
   pressure_fixed.resize(n);
   interior_weight.resize(n);
   if (solids != nullptr) count_in_boxes(arrangement, moments, at, *solids);
-  const Array<float>& divergence_of_position = solids != nullptr ? counted_ : *moments.divergence_of_position;
+  if (boundary.bodies() != nullptr) continue_into_bodies(arrangement, moments, boundary, at);
+  const Array<float>& divergence_of_position = obstacles ? counted_ : *moments.divergence_of_position;
   const double least = surface_layer_share(resolution_.dimensions) * options_.interior.threshold;
   parallel_for(n, [&](std::size_t i) {
     at_surface[i] = divergence_of_position[i] < options_.interior.threshold ? 1 : 0;
     pressure_fixed[i] = at_surface[i] != 0 && moments.uncorrected[i] != 0 ? 1 : 0;
     interior_weight[i] = options_.interior(divergence_of_position[i]);
-    if (!obstacles || !is_near(moments, i) || divergence_of_position[i] < least ||
+    // Where the liquid continues into a body, what a surface particle lacks is no gap before it.
+    const bool continued = at_surface[i] != 0 && boundary.bodies() != nullptr && continues_into_body(i);
+    if (!obstacles || !is_near(moments, i) || divergence_of_position[i] < least || continued ||
         !faces_solid(boundary, moments, at, i))
       return;
     at_surface[i] = 0;
@@ -67,7 +70,8 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, Momen
   depth.resize(near_surface.size());
   ScratchArray<float> of_particle(particles.scratch(), n);
   surface_depths(arrangement.context, arrangement.packed,
-                 {resolution_.spacing, near_surface, read(moments.normal), solids, boxes_}, of_particle, depth);
+                 {resolution_.spacing, near_surface, read(moments.normal), solids, boxes_, continued_.depths()},
+                 of_particle, depth);
   if (options_.smooth_normals) {
     particles.scratch().lease(smoothed_normal, resolution_.dimensions, n);
     filter_vector_subset(arrangement.context, arrangement.packed, read(moments.normal), boundary.reflection(),
@@ -100,6 +104,15 @@ void FreeSurface::count_in_boxes(const Arrangement& arrangement, MomentFields& m
     counted_[i] = box_moments_[k].divergence_of_position;
     for (int axis = 0; axis < resolution_.dimensions; ++axis) (*moments.normal[axis])[i] = box_moments_[k].normal[axis];
   });
+}
+
+void FreeSurface::continue_into_bodies(const Arrangement& arrangement, MomentFields& moments, const Boundary& boundary,
+                                       const VectorField& at) {
+  const Array<float>& divergence_of_position = *moments.divergence_of_position;
+  const std::size_t n = divergence_of_position.size();
+  counted_.resize(n);
+  parallel_for(n, [&](std::size_t i) { counted_[i] = divergence_of_position[i]; });
+  continued_.find(arrangement, moments, boundary, at, counted_);
 }
 
 bool FreeSurface::faces_solid(const Boundary& boundary, const MomentFields& moments, const VectorField& at,
@@ -197,7 +210,7 @@ double FreeSurface::bytes() const {
   for (const auto* flags : {&at_surface, &pressure_fixed}) sum += flags->bytes();
   for (const auto* values : {&interior_weight, &depth}) sum += values->bytes();
   for (const auto* numbers : {&surface_particles, &near_surface}) sum += numbers->bytes();
-  return sum;
+  return sum + continued_.bytes();
 }
 
 double FreeSurface::traffic() const {

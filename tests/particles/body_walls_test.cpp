@@ -117,7 +117,9 @@ TEST(WallPoints, StandInLayersOfAsManyAsTheyHaveVolumeFor) {
     // Evened out: none near another.
     for (const WallPoint& a : points)
       for (const WallPoint& b : points)
-        if (&a != &b) EXPECT_GT(length(subtract(a.position, b.position)), 0.6 * step);
+        if (&a != &b) {
+          EXPECT_GT(length(subtract(a.position, b.position)), 0.6 * step);
+        }
   }
 }
 

@@ -48,6 +48,8 @@ struct ImageMap {
 // Writes `payload` component `slot` (0-based) of all records from a scalar per particle.
 void pack_scalar(const SweepContext& context, float* records, int width, int slot, const double* values);
 void pack_scalar(const SweepContext& context, float* records, int width, int slot, const float* values);
+// Sets it to 0 at wall points and their images.
+void clear_wall_points(const SweepContext& context, float* records, int width, int slot);
 // The same of a coefficient that must not change its sign: wall points take it from the nearest particle, not from a
 // fit.
 void pack_coefficient(const SweepContext& context, float* records, int width, int slot, const float* values);

@@ -13,6 +13,12 @@
 
 namespace spume {
 
+// How deep a particle lies below the surface, found elsewhere.
+struct KnownDepth {
+  std::int32_t particle = 0;
+  float depth = 0;
+};
+
 // Near-surface particles, and vectors at all particles that point out of the liquid there, of any length.
 struct NearSurface {
   double spacing = 0;
@@ -20,6 +26,7 @@ struct NearSurface {
   std::array<const float*, 3> normal{};
   const SolidUnion* solids = nullptr;   // null without
   std::span<const FreeBox> boxes = {};  // of particles beside edges of solids
+  std::span<const KnownDepth> known = {};
 };
 
 // How deep each near-surface particle lies below the surface: half a spacing and what a column around it holds more
@@ -33,8 +40,14 @@ struct NearSurface {
 // cubic lattice heaved. Where the normal vanishes s = dr.
 //
 // of_particle: scratch, one per particle. depth: one per near-surface particle.
+//
+// Images of wall points share no depths: theirs would be fits to values that only near-surface particles have.
 void surface_depths(const SweepContext& context, PackedNeighbours& packed, const NearSurface& near_surface,
                     std::span<float> of_particle, std::span<float> depth);
+
+// A(aside) B(below), in spacings, and the depth, in spacings, of the particle whose column holds `content`.
+double column_weight(int dimensions, double aside, double below);
+double depth_of_column(int dimensions, double content);
 
 // Near-surface particles and those of the layer below them: which, or an image of which, lie within `layer_distance`
 // spacings of a near-surface particle. On a lattice the layer below has neighbours in the surface layer at 1 and 1.41

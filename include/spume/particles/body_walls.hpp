@@ -29,8 +29,12 @@ class BodyWalls {
 
   const std::vector<Body>& bodies() const { return scene_.bodies; }
   std::size_t points() const { return points_.size(); }
+  const std::vector<WallPoint>& all_points() const { return points_; }
+  bool is_wet(std::size_t point) const;
   // Distance from the walls, negative inside them; farther than four support radii from a surface a bound of it.
   double distance(const Vec3& point) const;
+  Vec3 normal(const Vec3& point) const { return scene_.walls.nearest(point).normal; }
+  bool nearer_than(const Vec3& point, double gap) const { return !surely_outside(point, gap) && distance(point) < gap; }
   // A point nearer than `gap` to a wall, or inside it, is reflected back; of its velocity what goes into the wall is
   // lost.
   // Surfaces move along themselves alone.

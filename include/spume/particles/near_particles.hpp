@@ -30,22 +30,17 @@ void visit_near(const Domain& domain, const CellGrid& grid, const CellOrder& tab
         for (std::int32_t k = row[from[0]]; k < row[to[0] + 1]; ++k) visit(k, shift);
       }
   };
-  const auto along = [&](auto&& self, int axis, const Vec3& shift) -> void {
-    if (axis == d) return visit_cells(shift);
-    self(self, axis + 1, shift);
-    if (!domain.periodic(axis)) return;
-    Vec3 other = shift;
+  std::array<std::array<double, 3>, 3> choice{};  // per axis: no shift, then whole periods
+  std::array<std::size_t, 3> choices{1, 1, 1};
+  for (int axis = 0; axis < d; ++axis) {
+    if (!domain.periodic(axis)) continue;
     const double length = domain.upper[axis] - domain.lower[axis];
-    if (place[axis] - reach < domain.lower[axis]) {
-      other[axis] = -length;
-      self(self, axis + 1, other);
-    }
-    if (place[axis] + reach > domain.upper[axis]) {
-      other[axis] = length;
-      self(self, axis + 1, other);
-    }
-  };
-  along(along, 0, Vec3{});
+    if (place[axis] - reach < domain.lower[axis]) choice[axis][choices[axis]++] = -length;
+    if (place[axis] + reach > domain.upper[axis]) choice[axis][choices[axis]++] = length;
+  }
+  for (std::size_t i = 0; i < choices[0]; ++i)
+    for (std::size_t j = 0; j < choices[1]; ++j)
+      for (std::size_t k = 0; k < choices[2]; ++k) visit_cells({choice[0][i], choice[1][j], choice[2][k]});
 }
 
 }  // namespace spume

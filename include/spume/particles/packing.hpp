@@ -3,7 +3,7 @@
 // closer to it than half a spacing, some leave a gap.
 //
 // Particles nearer than four spacings to a body move by -C h^2 grad C of their concentration, wall points included,
-// until the largest move is short. Those that see a free surface stay, and with them its height.
+// until the largest move is short. Those that see a free surface keep its height: they move horizontally.
 #pragma once
 
 #include "spume/particles/arrangement.hpp"

@@ -22,12 +22,14 @@
 // such, they are pushed by the whole pressure of the depth: still water over a step between two layers reached 0.4
 // sqrt(g H). A particle that has the neighbours of a flat layer and finds a solid along n where its own image would
 // cease to be a neighbour, at half the support radius, is none of the surface, and within the support of a solid none
-// is near it without a surface particle in the layer above.
+// is near it without a surface particle in the layer above. Surface particles beside bodies into which a surface
+// continues (particles/continued_liquid.hpp) are those of the surface: taken for others, one beside a round wall sank.
 #pragma once
 
 #include "spume/operators/free_box.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/boundary.hpp"
+#include "spume/particles/continued_liquid.hpp"
 #include "spume/particles/moments.hpp"
 #include "spume/particles/options.hpp"
 #include "spume/scene/solid_union.hpp"
@@ -79,6 +81,8 @@ class FreeSurface {
   FloatVectorScratch smoothed_normal;
   void release_smoothed_normals(ParticleStore& particles);
 
+  // At the surface beside a body, into which the surface of the liquid around continues.
+  bool continues_into_body(std::size_t i) const { return continued_.sees_surface(i); }
   bool is_near(const MomentFields& moments, std::size_t i) const {
     return interior_weight[i] < 1 && moments.uncorrected[i] == 0;
   }
@@ -98,6 +102,8 @@ class FreeSurface {
   void count_in_boxes(const Arrangement& arrangement, MomentFields& moments, const VectorField& at,
                       const SolidUnion& solids);
   bool faces_solid(const Boundary& boundary, const MomentFields& moments, const VectorField& at, std::size_t i) const;
+  void continue_into_bodies(const Arrangement& arrangement, MomentFields& moments, const Boundary& boundary,
+                            const VectorField& at);
   void pass_over_gaps(const Arrangement& arrangement, const VectorField& at, const Boundary& boundary);
   Vec3 moment_of(const MomentFields& moments, const ParticleSizes& sizes, std::size_t i) const;
   const Resolution& resolution_;
@@ -107,6 +113,7 @@ class FreeSurface {
   std::vector<FreeBox> boxes_;
   std::vector<BoxMoments> box_moments_;
   Array<float> counted_;  // div r of the surface rule
+  ContinuedLiquid continued_;
 };
 
 }  // namespace spume

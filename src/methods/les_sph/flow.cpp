@@ -69,7 +69,7 @@ Flow::Flow(const LoadedCase& loaded_case)
   // Without a stage that differentiates the velocity this serves the first pressure only, and is released after it.
   strain = &fields.add<float>("strain", Lifetime::result);
   boundary.find_nearest_images = features.bubbles;
-  if (features.free_surface && boundary.solids() != nullptr) start_columns = std::make_unique<StartColumns>(scene);
+  if (features.free_surface && boundary.has_obstacles()) start_columns = std::make_unique<StartColumns>(scene);
   if (features.free_surface)
     surface = std::make_unique<FreeSurface>(
         resolution, FreeSurface::Options{.interior = interior_weight(dimensions, options.get<SurfaceOptions>()),

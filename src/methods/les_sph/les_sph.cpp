@@ -99,14 +99,14 @@ void LesSph::remark_surface_at_bodies() {
   const double reach = flow_.resolution.support_radius;
   const double beside = parallel_sum(surface.size(), [&](std::size_t k) {
     const Vec3 place = vector_at(flow_.particles.position, flow_.dimensions, static_cast<std::size_t>(surface[k]));
-    return flow_.boundary.bodies()->distance(place) < reach ? 1.0 : 0.0;
+    const bool continued = flow_.surface->continues_into_body(static_cast<std::size_t>(surface[k]));
+    return !continued && flow_.boundary.bodies()->nearer_than(place, reach) ? 1.0 : 0.0;
   });
   if (beside == 0) return;
   remarks_.push_back({std::to_string(static_cast<long long>(beside)) +
-                          " particles at the start count as the free surface beside walls of bodies: where a surface "
-                          "meets a body, or in a gap too narrow for particles, still water does not stay still (0.04 "
-                          "sqrt(g H) at a beach, 0.24 in a round tank of 29 spacings across); bodies below the surface "
-                          "and walls along the axes hold it",
+                          " particles at the start count as a free surface between bodies: in a gap too narrow for "
+                          "particles still water does not stay still (0.5 sqrt(g H) where a ball touches a box); join "
+                          "the bodies, or part them by five spacings",
                       false});
 }
 

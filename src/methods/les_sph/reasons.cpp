@@ -47,9 +47,10 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_p
   events = has.bubbles ? events_of(loaded) : no_bubbles;
   images = has.images ? "periodic sides, walls or solids" : "every side is open";
   surface = has.free_surface ? "the liquid has a free surface" : "the liquid fills the domain";
-  level = !has.free_surface                   ? "the liquid fills the domain"
-          : loaded.scene.domain.boxes.empty() ? "no solids: columns are those of the lattice"
-                                              : "columns beside faces off the lattice end on the surface";
+  const bool lattice = loaded.scene.domain.boxes.empty() && !has.bodies;
+  level = !has.free_surface ? "the liquid fills the domain"
+          : lattice         ? "no solids: columns are those of the lattice"
+                            : "columns beside solids and bodies end on the surface";
   packing = has.bodies ? "particles beside bodies evened out" : "no walls of bodies";
   shift = has.shifting ? "Fickian shifting" : "shifting.on = false";
   gradients = has.eddy_viscosity      ? "strain of the closure"

@@ -25,11 +25,11 @@ Plan make_plan(Flow& f) {
       [&](StageRun& run) { f.move_to_intermediate_position(run.dt); }, {p.position, p.velocity}, {r});
   add(both, "sort", true, "particles in cell order", [&](StageRun&) { f.arrangement.sort(p, r); }, {}, {kept.sorted});
   add(
-      start, "level", has.free_surface && f.boundary.solids() != nullptr, why.level,
-      [&](StageRun&) { f.level_surface(); }, {r}, {p.position, r}, true);
-  add(
       start, "packing", has.bodies, why.packing,
       [&](StageRun&) { pack_beside_bodies(f.arrangement, p, f.boundary, f.resolution, r, has.free_surface, f.time); },
+      {r}, {p.position, r}, true);
+  add(
+      start, "level", has.free_surface && f.boundary.has_obstacles(), why.level, [&](StageRun&) { f.level_surface(); },
       {r}, {p.position, r}, true);
   add(step, "advecting velocity", true, why.advection, [&](StageRun& run) { f.find_advecting_velocity(run.dt); },
       {p.velocity, f.acceleration}, {f.advecting_velocity});

@@ -55,7 +55,8 @@ struct Flow {
 
   double weight = 0;  // of the liquid where it starts: sizes of gravity and of the body force, integral
 
-  std::unique_ptr<const StartColumns> start_columns;  // until the start has levelled them; null without solids
+  // Until the start has levelled them; null without solids and bodies, and where no surface is free.
+  std::unique_ptr<const StartColumns> start_columns;
 
   // --- State between steps: saved.
   double time = 0;

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/continued_liquid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
+#include "spume/operators/pair_sweep.hpp"
+#include "spume/operators/surface_layers.hpp"
+#include "spume/particles/near_particles.hpp"
+
+namespace spume {
+namespace {
+
+// In support radii: a wall point beside the surface lies up to one from a particle that sees it, which itself is up to
+// one from liquid that sees no body; and some way along the surface, so that a slope is not taken from one particle.
+constexpr double plane_reach = 2.2;
+
+// Calls visit(seen, sign) for the place and its mirror images in walls nearer than `reach`; what is found beside an
+// image is seen at the place with the components of its offset multiplied by `sign`.
+template <class Visit>
+void visit_reflections(const Domain& domain, const WallPositions& walls, const Vec3& place, double reach,
+                       Visit&& visit) {
+  std::array<std::array<double, 3>, 3> choice{};  // per axis: the place, then its images
+  std::array<std::size_t, 3> choices{1, 1, 1};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    choice[axis][0] = place[axis];
+    if (axis >= static_cast<std::size_t>(domain.dimensions)) continue;
+    for (std::size_t side = 0; side < 2; ++side)
+      if (is_wall(domain.sides[axis][side].kind) && std::abs(place[axis] - walls[axis][side]) < reach)
+        choice[axis][choices[axis]++] = 2 * walls[axis][side] - place[axis];
+  }
+  for (std::size_t k = 0; k < choices[2]; ++k)
+    for (std::size_t j = 0; j < choices[1]; ++j)
+      for (std::size_t i = 0; i < choices[0]; ++i)
+        visit(Vec3{choice[0][i], choice[1][j], choice[2][k]},
+              Vec3{i == 0 ? 1.0 : -1.0, j == 0 ? 1.0 : -1.0, k == 0 ? 1.0 : -1.0});
+}
+
+}  // namespace
+
+void ContinuedLiquid::sort_points(const Boundary& boundary) {
+  const std::vector<WallPoint>& points = boundary.bodies()->all_points();
+  const Domain& domain = boundary.domain();
+  Vec3 lower = domain.lower, upper = domain.upper;
+  for (int axis = 0; axis < domain.dimensions; ++axis) {
+    lower[axis] -= resolution_.support_radius;
+    upper[axis] += resolution_.support_radius;
+  }
+  grid_ = CellGrid(domain.dimensions, lower, upper, resolution_.support_radius, points.size());
+  std::array<Array<double>, 3> at;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    at[axis].resize(points.size());
+    parallel_for(points.size(), [&](std::size_t g) { at[axis][g] = points[g].position[axis]; });
+  }
+  table_.build(grid_, at[0].data(), at[1].data(), domain.dimensions == 3 ? at[2].data() : nullptr, points.size());
+  point_.resize(points.size());
+  share_.resize(points.size());
+  continued_.resize(points.size());
+  parallel_for(points.size(),
+               [&](std::size_t k) { point_[k] = points[static_cast<std::size_t>(table_.order()[k])].position; });
+}
+
+void ContinuedLiquid::find(const Arrangement& arrangement, MomentFields& moments, const Boundary& boundary,
+                           const VectorField& at, Array<float>& counted) {
+  if (point_.empty()) sort_points(boundary);
+  plane_of_.resize(moments.divergence_of_position->size());
+  sees_surface_.resize(plane_of_.size());
+  const int d = resolution_.dimensions;
+  const double reach = resolution_.support_radius;
+  const NeighbourList& list = arrangement.list;
+  const Array<float>& divergence_of_position = *moments.divergence_of_position;
+  const auto is_near = [&](std::size_t i) { return interior_(divergence_of_position[i]) < 1; };
+  parallel_select(divergence_of_position.size(), beside_, [&](std::size_t i) {
+    if (!boundary.bodies()->nearer_than(vector_at(at, d, i), reach)) return false;
+    bool sees = is_near(i);
+    for (const std::int32_t j : list.of(i)) sees = sees || is_near(arrangement.particle_of(j));
+    return sees;
+  });
+  with_plain_kernel(d, resolution_.kernel, [&]<int dimensions, class Kernel>() {
+    parallel_for(plane_of_.size(), [&](std::size_t i) {
+      plane_of_[i] = -1;
+      sees_surface_[i] = 0;
+    });
+    find_planes<dimensions>(arrangement, moments, boundary, at);
+    find_shares<dimensions, Kernel>(arrangement, boundary);
+    count<dimensions, Kernel>(arrangement, boundary, at);
+  });
+  depths_.resize(beside_.size());
+  parallel_for(beside_.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(beside_[k]);
+    counted[i] = static_cast<float>(count_[k].divergence_of_position);
+    for (int axis = 0; axis < d; ++axis) (*moments.normal[axis])[i] = static_cast<float>(count_[k].normal[axis]);
+    depths_[k] = {beside_[k], static_cast<float>(count_[k].depth)};
+    sees_surface_[i] = count_[k].sees_surface ? 1 : 0;
+  });
+}
+
+template <int dimensions>
+void ContinuedLiquid::find_planes(const Arrangement& arrangement, const MomentFields& moments, const Boundary& boundary,
+                                  const VectorField& at) {
+  const NeighbourList& list = arrangement.list;
+  const std::size_t n = list.particles();
+  const double dr = resolution_.spacing;
+  const auto reach = (1 + plane_reach) * resolution_.support_radius;
+  parallel_select(n, planar_, [&](std::size_t i) {
+    const Vec3 place = vector_at(at, dimensions, i);
+    return interior_((*moments.divergence_of_position)[i]) == 0 && boundary.bodies()->nearer_than(place, reach) &&
+           !boundary.bodies()->nearer_than(place, resolution_.support_radius);
+  });
+  plane_.resize(planar_.size());
+  parallel_for(planar_.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(planar_[k]);
+    Vec3 normal{};
+    for (int axis = 0; axis < dimensions; ++axis) normal[axis] = (*moments.normal[axis])[i];
+    const double size = length(normal);
+    if (!(size > 0)) return;
+    normal = multiply(1 / size, normal);
+    double content = column_weight(dimensions, 0, 0);
+    for (const std::int32_t j : list.of(i)) {
+      Vec3 offset{};
+      for (int axis = 0; axis < dimensions; ++axis)
+        offset[axis] = (double{list.coordinate(axis)[j]} - double{list.coordinate(axis)[i]}) / dr;
+      const double outwards = dot(offset, normal);
+      content +=
+          column_weight(dimensions, std::sqrt(std::max(0.0, dot(offset, offset) - outwards * outwards)), -outwards);
+    }
+    plane_[k] = {add(vector_at(at, dimensions, i), multiply(dr * depth_of_column(dimensions, content), normal)),
+                 normal};
+    plane_of_[i] = static_cast<std::int32_t>(k);
+  });
+}
+
+template <int dimensions, class Kernel>
+void ContinuedLiquid::find_shares(const Arrangement& arrangement, const Boundary& boundary) {
+  const double reach = plane_reach * resolution_.support_radius, dr = resolution_.spacing;
+  parallel_blocks_dynamic(share_.size(), 256, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t g = first; g < last; ++g) {
+      double weights = 0, sum = 0;
+      const auto weigh = [&](const Vec3& seen, const Vec3&) {
+        visit_near(boundary.domain(), arrangement.grid, arrangement.table, seen, reach,
+                   [&](std::int32_t j, const Vec3& shift) {
+                     const std::int32_t k = plane_of_[static_cast<std::size_t>(j)];
+                     if (k < 0) return;
+                     const Plane& plane = plane_[static_cast<std::size_t>(k)];
+                     const Vec3 offset = subtract(seen, add(plane.place, shift));
+                     const double weight = Kernel::w(Kernel::support * length(offset) / reach);
+                     weights += weight;
+                     sum += weight * std::clamp(0.5 - dot(offset, plane.normal) / dr, 0.0, 1.0);
+                   });
+      };
+      visit_reflections(boundary.domain(), boundary.next_walls, point_[g], reach, weigh);
+      continued_[g] = weights > 0 ? 1 : 0;
+      if (weights > 0)
+        share_[g] = static_cast<float>(sum / weights);
+      else
+        share_[g] = boundary.bodies()->is_wet(static_cast<std::size_t>(table_.order()[g])) ? 1 : 0;
+    }
+  });
+}
+
+template <int dimensions, class Kernel>
+void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boundary, const VectorField& at) {
+  const NeighbourList& list = arrangement.list;
+  const auto particles = static_cast<std::int32_t>(list.particles());
+  const std::int32_t* const wall_point = arrangement.images.wall_point();
+  const double h = resolution_.smoothing_length, reach = resolution_.support_radius, dr = resolution_.spacing;
+  const double gradient = arrangement.context.volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions + 2);
+  // What a particle sees: others and images of them, and wall points by their share.
+  const auto visit_liquid = [&](std::size_t i, auto&& visit) {
+    for (const std::int32_t j : list.of(i)) {
+      if (j >= particles && wall_point != nullptr && wall_point[j - particles] >= 0) continue;
+      Vec3 offset{};
+      for (int axis = 0; axis < dimensions; ++axis)
+        offset[axis] = double{list.coordinate(axis)[j]} - double{list.coordinate(axis)[i]};
+      visit(1.0, offset, dot(offset, offset), false);
+    }
+    const auto visit_points = [&](const Vec3& seen, const Vec3& sign) {
+      visit_near(boundary.domain(), grid_, table_, seen, reach, [&](std::int32_t g, const Vec3& shift) {
+        Vec3 offset{};
+        for (int axis = 0; axis < dimensions; ++axis)
+          offset[axis] = sign[axis] * (point_[static_cast<std::size_t>(g)][axis] + shift[axis] - seen[axis]);
+        const double r2 = dot(offset, offset);
+        if (r2 < reach * reach)
+          visit(double{share_[static_cast<std::size_t>(g)]}, offset, r2, continued_[static_cast<std::size_t>(g)] != 0);
+      });
+    };
+    visit_reflections(boundary.domain(), boundary.next_walls, vector_at(at, dimensions, i), reach, visit_points);
+  };
+  count_.resize(beside_.size());
+  parallel_blocks_dynamic(beside_.size(), 64, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      const auto i = static_cast<std::size_t>(beside_[k]);
+      Count& count = count_[k];
+      count = {.depth = dr};
+      visit_liquid(i, [&](double share, const Vec3& offset, double r2, bool continued) {
+        count.sees_surface = count.sees_surface || continued;
+        const double g = -share * gradient * Kernel::f(std::sqrt(r2) / h);
+        count.divergence_of_position += g * r2;
+        for (int axis = 0; axis < dimensions; ++axis) count.normal[axis] -= h * g * offset[axis];
+      });
+      const double size = length(count.normal);
+      if (!(size > 0)) continue;
+      double content = column_weight(dimensions, 0, 0);
+      visit_liquid(i, [&](double share, const Vec3& offset, double r2, bool) {
+        const double outwards = dot(offset, count.normal) / size;
+        content +=
+            share * column_weight(dimensions, std::sqrt(std::max(0.0, r2 - outwards * outwards)) / dr, -outwards / dr);
+      });
+      count.depth = dr * depth_of_column(dimensions, content);
+    }
+  });
+}
+
+double ContinuedLiquid::bytes() const {
+  return static_cast<double>(point_.capacity() * sizeof(Vec3) + plane_.capacity() * sizeof(Plane) +
+                             count_.capacity() * sizeof(Count) + depths_.capacity() * sizeof(KnownDepth)) +
+         share_.bytes() + continued_.bytes() + sees_surface_.bytes() + plane_of_.bytes() + table_.bytes() +
+         beside_.bytes() + planar_.bytes();
+}
+
+}  // namespace spume
