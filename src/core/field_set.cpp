@@ -28,6 +28,7 @@ void FieldSet::permute(const Array<std::int32_t>& order) {
     if constexpr (std::is_same_v<T, std::int64_t>) {
       ScratchArray<double> moved(scratch_, size);
       parallel_for(size, [&](std::size_t k) { moved[k] = std::bit_cast<double>(values[from[k]]); });
+      values.resize(size);
       parallel_for(size, [&](std::size_t k) { values[k] = std::bit_cast<std::int64_t>(moved[k]); });
     } else {
       ScratchArray<T> moved(scratch_, size);

@@ -223,6 +223,11 @@ void Images::add_axis_images(const ImageRules& rules, int axis, std::size_t n) {
       }
       std::array<double, 3> r{};
       for (int a = 0; a < rules.dimensions; ++a) r[a] = particle ? particle_[a][k] : position_[a][k - n];
+      if (kind[side] == ImageKind::mirror && rules.open_at) {
+        std::array<double, 3> foot = r;
+        foot[axis] = plane;
+        if (rules.open_at(axis, side, foot)) continue;
+      }
       r[axis] = image;
       const std::int32_t source = particle ? static_cast<std::int32_t>(k) : source_[k - n];
       const std::size_t row = particle ? 0 : static_cast<std::size_t>(path_[k - n]) + 1;

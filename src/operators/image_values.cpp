@@ -34,6 +34,15 @@ void clear_wall_points(const SweepContext& context, float* records, int width, i
   });
 }
 
+void pack_pressure_change(const SweepContext& context, float* records, int width, int slot, const float* values) {
+  const std::size_t n = context.list->particles();
+  float* out = records + context.dimensions + slot;
+  const auto w = static_cast<std::size_t>(width);
+  parallel_for(n, [=](std::size_t i) { out[i * w] = values[i]; });
+  for_each_image_pressure(context, values, false,
+                          [=](std::size_t k, double value) { out[(n + k) * w] = static_cast<float>(value); });
+}
+
 void pack_coefficient(const SweepContext& context, float* records, int width, int slot, const float* values) {
   const std::size_t n = context.list->particles();
   const std::int32_t* source = context.images->source();
@@ -60,7 +69,8 @@ void pack_velocity(const SweepContext& context, float* records, int width, int s
     const auto& sign = rule.sign[path[k]];
     if (point != nullptr && point[k] >= 0) {
       const auto u =
-          context.walls->velocity(static_cast<std::size_t>(point[k]), dimensions, velocity, rule.friction, rule.moving);
+          context.walls->velocity(static_cast<std::size_t>(point[k]), dimensions, velocity, rule.friction, rule.moving,
+                                  rule.before_pressure);
       for (int axis = 0; axis < dimensions; ++axis) {
         const float value = sign[axis] * static_cast<float>(u[axis]);
         out[(n + k) * w + axis] = moving ? value + rule.offset[axis][k] : value;

@@ -135,7 +135,7 @@ Dots PressureOperator::apply(std::span<const float> x, std::span<float> y, std::
                  [&, out, width, n](std::size_t k) { out[(n + k) * width] = weight[source[k]] * x[source[k]]; });
   } else {
     parallel_for(n, [&, out, width](std::size_t i) { out[i * width] = x[i]; });
-    for_each_image_value(context_, x.data(), [out, width, n](std::size_t k, double value) {
+    for_each_image_pressure(context_, x.data(), false, [out, width, n](std::size_t k, double value) {
       out[(n + k) * width] = static_cast<float>(value);
     });
   }
@@ -155,7 +155,8 @@ double PressureOperator::mask_and_sizes(double sizes) const {
   return (matrix_.masked != nullptr ? 1 : 0) + (matrix_.weight != nullptr ? sizes + 4 : 0);  // and h_i
 }
 
-void PressureOperator::residual(std::span<const double> q, std::span<const double> b, std::span<double> r) {
+void PressureOperator::residual(std::span<const double> q, std::span<const double> b, std::span<double> r,
+                                bool given) {
   const int payload = matrix_.weight != nullptr ? 3 : 2;
   float* records = packed_->prepare(context_, payload);
   const std::size_t n = size();
@@ -169,8 +170,8 @@ void PressureOperator::residual(std::span<const double> q, std::span<const doubl
     record[1] = static_cast<float>(value - double{record[0]});
   };
   parallel_for(n, [&, out, width](std::size_t i) { split(out + i * width, q[i]); });
-  for_each_image_value(context_, q.data(),
-                       [&, out, width, n](std::size_t k, double value) { split(out + (n + k) * width, value); });
+  for_each_image_pressure(context_, q.data(), given,
+                          [&, out, width, n](std::size_t k, double value) { split(out + (n + k) * width, value); });
   const auto volume = static_cast<float>(context_.volume);
   parallel_for(n, [&](std::size_t i) { r[i] = 0; });
   with_kernel(context_, [&]<int dimensions, class Kernel>() {
@@ -184,7 +185,7 @@ void PressureOperator::subtract_product(double scale, std::span<const float> x, 
   const bool weighted = matrix_.weight != nullptr;
   float* records = packed_->prepare(context_, weighted ? 2 : 1);
   const int width = record_width(context_.dimensions, weighted ? 2 : 1);
-  pack_scalar(context_, records, width, 0, x.data());
+  pack_pressure_change(context_, records, width, 0, x.data());
   // x twice, r read and written, the diagonal shift; the mask; weights and rows.
   packed_->count(static_cast<double>(size()) * (28 + mask_and_sizes(8)));
   if (weighted) pack_scalar(context_, records, width, 1, matrix_.weight);

@@ -107,10 +107,11 @@ void store_gradient(const VelocityGradientOut& out, std::size_t i,
 }
 
 // The velocity gradient G of the nearest particle as wall point g has it: S G R, with R the reflection at the surface
-// and S = R, or -1 where the surface holds the liquid.
+// and S = R, or -1 where the surface holds the liquid. Behind an opening it is G.
 template <int dimensions>
 void mirror_gradient(const WallStencils& walls, std::size_t g, bool friction,
                      std::array<float, dimensions * dimensions>& gradient) {
+  if (!walls.is_wall(g)) return;
   std::array<float, dimensions> n;
   for (int a = 0; a < dimensions; ++a) n[a] = walls.normal[a][g];
   for (int a = 0; a < dimensions; ++a) {
@@ -277,7 +278,7 @@ void gradient_of(const SweepContext& context, PackedNeighbours& packed, const do
   constexpr int width = record_width(dimensions, payload);
   pack_volumes<Kernel>(context, records, width, 1);
   parallel_for(n, [=](std::size_t i) { records[i * width + dimensions] = static_cast<float>(values[i] - reference); });
-  for_each_image_value(context, values, [=](std::size_t k, double value) {
+  for_each_image_pressure(context, values, true, [=](std::size_t k, double value) {
     records[(n + k) * width + dimensions] = static_cast<float>(value - reference);
   });
   const KernelScale<dimensions, Kernel> common(context);

@@ -5,14 +5,20 @@ namespace spume {
 
 std::array<double, 3> WallStencils::velocity(std::size_t g, int dimensions,
                                              const std::array<const double*, 3>& velocity, bool friction,
-                                             bool moving) const {
+                                             bool moving, bool before) const {
   std::array<double, 3> u{}, wall{};
   double across = 0;
+  if (!is_wall(g) && moving && kind[g] == PointKind::inflow) {
+    for (int axis = 0; axis < dimensions; ++axis)
+      u[axis] = double{wall_velocity[axis][g]} + (before ? predicted[axis][g] : 0.0F);
+    return u;
+  }
   for (int axis = 0; axis < dimensions; ++axis) {
     u[axis] = mirrored(g, velocity[axis]);
     wall[axis] = moving ? wall_velocity[axis][g] : 0.0;
     across += (u[axis] - wall[axis]) * normal[axis][g];
   }
+  if (!is_wall(g)) return u;
   const bool holds = friction && no_slip[g] != 0;
   for (int axis = 0; axis < dimensions; ++axis)
     u[axis] = holds ? 2 * wall[axis] - u[axis] : u[axis] - 2 * across * normal[axis][g];
@@ -27,13 +33,14 @@ std::array<double, 3> WallStencils::vector(std::size_t g, int dimensions,
     v[axis] = mirrored(g, values[axis]);
     across += v[axis] * normal[axis][g];
   }
+  if (!is_wall(g)) return v;
   for (int axis = 0; axis < dimensions; ++axis) v[axis] -= 2 * across * normal[axis][g];
   return v;
 }
 
 double WallStencils::bytes() const {
-  double sum = first.bytes() + no_slip.bytes() + nearest.bytes() + source.bytes() + coefficient.bytes();
-  for (const auto* vector : {&normal, &wall_velocity})
+  double sum = kind.bytes() + pressure_sign.bytes() + given_pressure.bytes() + first.bytes() + no_slip.bytes() + nearest.bytes() + source.bytes() + coefficient.bytes();
+  for (const auto* vector : {&normal, &wall_velocity, &predicted})
     for (const auto& component : *vector) sum += component.bytes();
   return sum;
 }

@@ -23,7 +23,12 @@ BoundaryKind kind_of_face(const Domain& domain, int axis, int face) {
   return face < 2 ? domain.sides[axis][face].kind : domain.boxes[static_cast<std::size_t>(face - 2) / 2].kind;
 }
 
-BoundaryFeatures::BoundaryFeatures(const Domain& domain, const std::vector<Body>& all_bodies) {
+BoundaryFeatures::BoundaryFeatures(const Domain& domain, const std::vector<Body>& all_bodies,
+                                   const std::vector<Opening>& all_openings) {
+  for (const Opening& opening : all_openings) {
+    openings = true;
+    outflow = outflow || !opening.inflow;
+  }
   for (const Body& body : all_bodies) {
     if (body.wall == BoundaryKind::open) continue;
     bodies = true;
@@ -38,15 +43,18 @@ BoundaryFeatures::BoundaryFeatures(const Domain& domain, const std::vector<Body>
       moving_walls = true;
       displaced_walls = displaced_walls || side.velocity->component[axis] != nullptr;
     }
-  images = images || bodies || !domain.boxes.empty();
+  images = images || bodies || openings || !domain.boxes.empty();
   for (const SolidBox& box : domain.boxes) no_slip = no_slip || box.kind == BoundaryKind::no_slip;
 }
 
-Boundary::Boundary(const Domain& domain, double spacing, std::unique_ptr<BodyWalls> bodies)
-    : features(domain, bodies == nullptr ? std::vector<Body>{} : bodies->bodies()),
+Boundary::Boundary(const Domain& domain, double spacing, std::unique_ptr<BodyWalls> bodies,
+                   std::unique_ptr<OpenSides> openings)
+    : features(domain, bodies == nullptr ? std::vector<Body>{} : bodies->bodies(),
+               openings == nullptr ? std::vector<Opening>{} : openings->openings()),
       domain_(domain),
       spacing_(spacing),
-      bodies_(std::move(bodies)) {
+      bodies_(std::move(bodies)),
+      openings_(std::move(openings)) {
   for (int axis = 0; axis < domain.dimensions; ++axis) walls[axis] = {domain.lower[axis], domain.upper[axis]};
   next_walls = walls;
   unite_solids(walls);
@@ -58,6 +66,7 @@ void Boundary::unite_solids(const WallPositions& at) {
 
 void Boundary::advance(double t, double dt) {
   next_walls = walls;
+  if (openings_ != nullptr) openings_->advance(t, dt);
   if (!features.displaced_walls) return;
   for (int axis = 0; axis < domain_.dimensions; ++axis)
     for (int side = 0; side < 2; ++side) {
@@ -91,6 +100,8 @@ ImageRules Boundary::image_rules(double support_radius) const {
   }
   rules.solids = solids_;
   rules.find_nearest = find_nearest_images;
+  if (openings_ != nullptr)
+    rules.open_at = [this](int axis, int side, const Vec3& foot) { return openings_->open_at(axis, side, foot); };
   return rules;
 }
 
@@ -103,8 +114,20 @@ void Boundary::make_images(Arrangement& arrangement, const ParticleStore& partic
     bodies_->find_stencils(arrangement, at, particles.volume, t);
     wall_points = bodies_->wet();
   }
+  const WallStencils* stencils = bodies_ == nullptr ? nullptr : &bodies_->stencils();
+  if (openings_ != nullptr) {
+    stencils_ = stencils == nullptr ? WallStencils{} : *stencils;
+    for (int axis = 0; axis < domain_.dimensions; ++axis) {
+      point_position_[axis].resize(wall_points.size);
+      std::copy_n(wall_points.position[axis], wall_points.size, point_position_[axis].data());
+    }
+    openings_->find_stencils(arrangement, at, t, stencils_, point_position_);
+    stencils = &stencils_;
+    wall_points = {.size = stencils_.size(), .source = stencils_.nearest.data()};
+    for (int axis = 0; axis < domain_.dimensions; ++axis) wall_points.position[axis] = point_position_[axis].data();
+  }
   const bool wet = wall_points.size > 0;
-  arrangement.context.walls = wet ? &bodies_->stencils() : nullptr;
+  arrangement.context.walls = wet ? stencils : nullptr;
   arrangement.images.build(image_rules(support_radius), arrangement.grid, r[0], r[1], r[2], particles.size(),
                            wet ? &wall_points : nullptr);
   find_rules(arrangement.images, support_radius, t);
@@ -134,7 +157,9 @@ void Boundary::find_rules(const Images& images, double support_radius, double t)
   }
   if (features.no_slip) mirror_rule_.sign = reflection_;
   mirror_rule_.friction = false;
-  if (bodies_ != nullptr) next_wall_speed = bodies_->largest_speed();
+  double of_points = bodies_ != nullptr ? bodies_->largest_speed() : 0;
+  if (openings_ != nullptr) of_points = std::max(of_points, openings_->largest_speed());
+  if (bodies_ != nullptr || openings_ != nullptr) next_wall_speed = of_points;
   if (!features.moving_walls) return;
   find_offsets(images, t, true, velocity_rule_);
   if (features.no_slip && features.displaced_walls) find_offsets(images, t, false, mirror_rule_);
@@ -147,7 +172,7 @@ void Boundary::find_rules(const Images& images, double support_radius, double t)
                              }
                              return speed2;
                            }));
-  next_wall_speed = bodies_ == nullptr ? of_images : std::max(of_images, next_wall_speed);
+  next_wall_speed = std::max(of_images, of_points);
   if (std::isfinite(of_images)) return;
   StepFailure::Details details;
   details.cause = "the velocity of a wall is not a finite number";
@@ -194,11 +219,46 @@ void Boundary::find_offsets(const Images& images, double t, bool friction, Veloc
   });
 }
 
+VelocityImageRule Boundary::predicted_rule() const {
+  VelocityImageRule rule = volume_rule();
+  rule.before_pressure = true;
+  return rule;
+}
+
+// A side with openings holds back what is not before an outflow.
+void Boundary::keep_before_sides(const WallPositions& at, int axis, Vec3& position, Vec3* velocity) const {
+  const double tiny = wall_gap * spacing_, lower = at[axis][0], upper = at[axis][1];
+  double& x = position[axis];
+  const auto holds = [&](int side) {
+    if (openings_->outflow_at(axis, side, position)) return false;
+    return is_wall(domain_.sides[axis][side].kind) || openings_->open_at(axis, side, position);
+  };
+  if (x < lower + tiny && holds(0)) {
+    x = std::clamp(2 * lower - x, lower + tiny, upper);
+    if (velocity != nullptr) (*velocity)[axis] = std::max((*velocity)[axis], 0.0);
+  } else if (x > upper - tiny && holds(1)) {
+    x = std::clamp(2 * upper - x, lower, upper - tiny);
+    if (velocity != nullptr) (*velocity)[axis] = std::min((*velocity)[axis], 0.0);
+  }
+}
+
+bool Boundary::holds(int axis, int side) const {
+  if (is_wall(domain_.sides[axis][side].kind)) return true;
+  if (openings_ == nullptr || !domain_.sides[axis][side].opening) return false;
+  Vec3 middle;
+  for (std::size_t a = 0; a < 3; ++a) middle[a] = (domain_.lower[a] + domain_.upper[a]) / 2;
+  return !openings_->outflow_at(axis, side, middle);
+}
+
 void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity) const {
   const double tiny = wall_gap * spacing_;
   for (int axis = 0; axis < domain_.dimensions; ++axis) {
     double& x = position[axis];
     const double lower = at[axis][0], upper = at[axis][1];
+    if (openings_ != nullptr && !domain_.periodic(axis)) {
+      keep_before_sides(at, axis, position, velocity);
+      continue;
+    }
     if (domain_.periodic(axis)) {
       x = wrap_periodic(x, lower, upper - lower);
       continue;
@@ -231,7 +291,8 @@ void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* veloci
 }
 
 double Boundary::bytes() const {
-  double sum = bodies_ == nullptr ? 0 : bodies_->bytes();
+  double sum = (bodies_ == nullptr ? 0 : bodies_->bytes()) +
+               (openings_ == nullptr ? 0 : openings_->bytes() + stencils_.bytes());
   for (const auto* rule : {&velocity_rule_, &mirror_rule_})
     for (const auto& array : rule->offset) sum += array.bytes();
   return sum;

@@ -42,9 +42,13 @@ double EnergyGuard::potential_energy(const EnergyBalance& balance, const VectorF
          });
 }
 
+double EnergyGuard::held(const EnergyBalance& balance, const ParticleStore& particles) const {
+  return kinetic_energy(balance, particles, particles.velocity) +
+         potential_energy(balance, particles.position, particles.size());
+}
+
 void EnergyGuard::start(const EnergyBalance& balance, const ParticleStore& particles, double stored_energy) {
-  supply = kinetic_energy(balance, particles, particles.velocity) +
-           potential_energy(balance, particles.position, particles.size()) + stored_energy;
+  supply = held(balance, particles) + stored_energy;
 }
 
 double EnergyGuard::after_step(const EnergyBalance& balance, const ParticleStore& particles, const VectorField& at,

@@ -20,7 +20,7 @@ CellGeometry cell_geometry(const Boundary& boundary, double cell_size) {
     geometry.lower[axis] = boundary.next_walls[axis][0];
     geometry.upper[axis] = boundary.next_walls[axis][1];
     geometry.periodic[axis] = domain.periodic(axis);
-    for (int side = 0; side < 2; ++side) geometry.wall[axis][side] = is_wall(domain.sides[axis][side].kind);
+    for (int side = 0; side < 2; ++side) geometry.wall[axis][side] = boundary.holds(axis, side);
   }
   for (const SolidBox& box : domain.boxes) geometry.solids.push_back({box.lower, box.upper});
   if (const BodyWalls* bodies = boundary.bodies(); bodies != nullptr)
@@ -91,7 +91,7 @@ struct ProjectionSolver::DoubleOperator final : LinearOperator<double> {
       : matrix_(matrix), zero_(zero), without_mean_(rows.singular && rows.unsymmetric) {}
   std::size_t size() const override { return matrix_.size(); }
   void apply(std::span<const double> x, std::span<double> y) override {
-    matrix_.residual(x, zero_, y);
+    matrix_.residual(x, zero_, y, false);
     parallel_for(y.size(), [&](std::size_t i) { y[i] = -y[i]; });
     if (without_mean_) subtract_mean(y);
   }

@@ -122,7 +122,7 @@ bool Filler::stands_alone(std::size_t r, const std::vector<std::vector<Chunk>>& 
   };
   for (std::size_t a = 0; a < dimensions; ++a)
     for (int side = 0; side < 2; ++side) {
-      if (scene_.domain.sides[a][side].kind == BoundaryKind::open) continue;
+      if (!scene_.domain.sides[a][side].bounds_liquid()) continue;
       const double gap = side == 0 ? own[a].first - scene_.domain.lower[a] : scene_.domain.upper[a] - own[a].second;
       if (gap < 1.5 * lattice_.spacing[a]) return false;
     }
@@ -204,8 +204,8 @@ void Filler::jitter(double fraction) {
         if (q >= upper) q -= upper - lower;
       } else {
         const double gap = 1e-3 * d;
-        if (scene_.domain.sides[a][0].kind != BoundaryKind::open) q = std::max(q, lower + gap);
-        if (scene_.domain.sides[a][1].kind != BoundaryKind::open) q = std::min(q, upper - gap);
+        if (scene_.domain.sides[a][0].bounds_liquid()) q = std::max(q, lower + gap);
+        if (scene_.domain.sides[a][1].bounds_liquid()) q = std::min(q, upper - gap);
       }
       moved[a] = q;
     }
@@ -281,7 +281,7 @@ double Filler::open_volume() const {
 bool Filler::fills_domain() const {
   for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a) {
     for (int side = 0; side < 2; ++side)
-      if (scene_.domain.sides[a][side].kind == BoundaryKind::open && !behind_walls(a, side)) return false;
+      if (!scene_.domain.sides[a][side].bounds_liquid() && !behind_walls(a, side)) return false;
   }
   for (const LiquidRegion& region : regions_) {
     if (region.conform) return false;
@@ -324,8 +324,8 @@ Lattice make_lattice(const Domain& domain, double spacing) {
   lattice.spacing = {1, 1, 1};
   for (std::size_t a = 0; a < static_cast<std::size_t>(domain.dimensions); ++a) {
     const double length = domain.upper[a] - domain.lower[a];
-    const bool lower_closed = domain.sides[a][0].kind != BoundaryKind::open;
-    const bool upper_closed = domain.sides[a][1].kind != BoundaryKind::open;
+    const bool lower_closed = domain.sides[a][0].bounds_liquid();
+    const bool upper_closed = domain.sides[a][1].bounds_liquid();
     lattice.origin[a] = domain.lower[a];
     if (lower_closed && upper_closed) {
       lattice.count[a] = std::max(1.0, std::round(length / spacing));

@@ -13,6 +13,7 @@
 #include "checks.hpp"
 #include "fill.hpp"
 #include "open_sides.hpp"
+#include "openings.hpp"
 #include "reader.hpp"
 #include "resolved.hpp"
 #include "spume/core/machine.hpp"
@@ -263,6 +264,7 @@ void check(const MethodDeclaration* method, Draft& draft, Problems& problems) {
   if (phases) check_phases(draft, problems);
   check_wavemakers(draft, problems);
   check_sponges(draft, problems);
+  check_openings(draft, problems);
   if (method != nullptr) {
     if (method->check) method->check(draft, problems);
     check_output_fields(draft, method->output_fields(draft.options), problems);
@@ -315,6 +317,8 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
                                              " cells; at most " + brief(most_cells) +
                                              " are possible: use fewer boxes, or align their faces");
   scene.bodies = make_bodies(draft, compile_with(compiler), problems);
+  scene.openings = make_openings(draft, compile_with(compiler), problems);
+  open_sides_at(scene.openings, scene.domain);
   const std::vector<LiquidRegion> regions = make_regions(draft, scene.bodies, compiler);
   VectorExpression body_force = compiler.compile(draft.body_force, "forces.body");
   VectorExpression initial_velocity = compiler.compile(draft.initial_velocity, "initial.velocity", Arguments::place);
@@ -343,6 +347,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   problems.throw_if_any();
   const std::vector<Wavemaker> wavemakers = make_wavemakers(draft, scene, problems);
   scene.sponges = make_sponges(draft, wavemakers);
+  check_openings_of(draft, scene, problems);
   double& courant = draft.options.time.courant;
   if (courant == 0) courant = method->default_courant(draft.options, scene);
   if (method->check_scene) method->check_scene(draft, scene, problems);

@@ -38,7 +38,7 @@ std::vector<Problem> open_side_warnings(const Draft& draft, const Scene& scene, 
   const SolidUnion solids(domain, sides, scene.spacing);
   for (int axis = 0; axis < domain.dimensions; ++axis)
     for (int side = 0; side < 2; ++side) {
-      if (domain.sides[axis][side].kind != BoundaryKind::open || (axis == up && side == 1)) continue;
+      if (domain.sides[axis][side].bounds_liquid() || (axis == up && side == 1)) continue;
       const std::string name = side_name(axis, side, domain.dimensions);
       const double plane = side == 0 ? domain.lower[axis] : domain.upper[axis];
       const double loose = count([&](const Vec3& r) {

@@ -204,6 +204,7 @@ std::vector<Section> scene_sections() {
                                 resolution(),        fluid(),  constants(),     liquid(), phase(),
                                 interface_section(), region(), initial(),       forces()};
   for (Section& section : wave_sections()) sections.push_back(std::move(section));
+  for (Section& section : opening_sections()) sections.push_back(std::move(section));
   return sections;
 }
 

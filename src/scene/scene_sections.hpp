@@ -10,7 +10,8 @@ namespace spume {
 
 std::vector<Section> scene_sections();  // title ... forces
 Section body_section();
-std::vector<Section> wave_sections();  // wavemaker, sponge
+std::vector<Section> wave_sections();     // wavemaker, sponge
+std::vector<Section> opening_sections();  // inflow, outflow
 // time, output, probes, verify; `default_courant` says what a case without time.courant gets.
 std::vector<Section> run_sections(const std::string& default_courant);
 

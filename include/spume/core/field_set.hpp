@@ -40,7 +40,7 @@ class FieldSet {
   void resize(std::size_t size);
 
   // field[k] <- field[order[k]] for every field but the results, which belong to the order before. An order of fewer
-  // entries drops the others.
+  // entries drops the others, one that repeats some copies them.
   void permute(const Array<std::int32_t>& order);
 
   const std::vector<std::unique_ptr<Field>>& fields() const { return fields_; }

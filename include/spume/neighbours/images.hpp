@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct ImageRules {
   std::shared_ptr<const SolidUnion> solids;         // null: no boxes
   bool find_nearest = false;                        // in solids: ImagePath::nearest is wanted
   bool only_nearest = false;                        // in solids: images without it are not made
+  // Parts of mirror sides that make no images; null: none.
+  std::function<bool(int axis, int side, const Vec3& foot)> open_at;
   double support_radius = 0;                        // images farther than this from the liquid are not made
 };
 

@@ -20,6 +20,7 @@ struct VelocityImageRule {
   std::array<Array<float>, 3> offset;
   // At wall points of bodies: whether no-slip surfaces hold the liquid, and whether their motion counts.
   bool friction = true, moving = true;
+  bool before_pressure = false;  // the velocities are those that the pressure of the step is to correct
 };
 
 // How values at images follow from those of their sources: the one place for everyone who reads images one by one.
@@ -54,6 +55,9 @@ void clear_wall_points(const SweepContext& context, float* records, int width, i
 // fit.
 void pack_coefficient(const SweepContext& context, float* records, int width, int slot, const float* values);
 
+// The same of a change of the pressure, which behind openings keeps to what is given there.
+void pack_pressure_change(const SweepContext& context, float* records, int width, int slot, const float* values);
+
 // write(k, value) for every image k, with the scalar that it carries; `values` is indexed by particle.
 template <class T, class Write>
 void for_each_image_value(const SweepContext& context, const T* values, Write&& write) {
@@ -66,6 +70,21 @@ void for_each_image_value(const SweepContext& context, const T* values, Write&& 
   parallel_for(context.images->size(), [&](std::size_t k) {
     write(k, point[k] < 0 ? static_cast<double>(values[source[k]])
                           : context.walls->mirrored(static_cast<std::size_t>(point[k]), values));
+  });
+}
+
+// The same of the pressure q, which is given behind openings; `given` as of WallStencils::pressure.
+template <class T, class Write>
+void for_each_image_pressure(const SweepContext& context, const T* values, bool given, Write&& write) {
+  if (context.walls == nullptr || !context.walls->openings()) {
+    for_each_image_value(context, values, write);
+    return;
+  }
+  const std::int32_t* source = context.images->source();
+  const std::int32_t* point = context.images->wall_point();
+  parallel_for(context.images->size(), [&](std::size_t k) {
+    write(k, point[k] < 0 ? static_cast<double>(values[source[k]])
+                          : context.walls->pressure(static_cast<std::size_t>(point[k]), values, given));
   });
 }
 

@@ -36,7 +36,8 @@ class PressureOperator {
   // r = b - A q with q in double: differences are exact and sums are double, so that the residual of a smooth
   // field does not drown in rounding (a float field of 100 spacings per wave would leave 1e-3). Masked rows
   // give zero, but their q enters their neighbours' rows.
-  void residual(std::span<const double> q, std::span<const double> b, std::span<double> r);
+  // `given` false: without the pressures given behind openings, as for a change of q.
+  void residual(std::span<const double> q, std::span<const double> b, std::span<double> r, bool given = true);
 
   // r -= scale A x with x in float and all else as in residual(): what a correction x leaves of r. Masked rows keep r.
   void subtract_product(double scale, std::span<const float> x, std::span<double> r);

@@ -14,6 +14,15 @@
 //   vector            v_g = v(m) - 2 (v(m) . n) n
 //   velocity          u_g = u(m) - 2 ((u(m) - u_w) . n) n             free-slip, and all walls in rates of volume
 //                     u_g = 2 u_w - u(m)                               no-slip, where friction is meant
+//
+// Points behind an opening of the domain (particles/open_sides.hpp) stand for liquid that is to enter or has left:
+//
+//   scalar, vector    f(m)
+//   velocity          u_w                                              inflow: given
+//                     u(m)                                             outflow; of an acceleration inflow too
+//   pressure          q(m) - 2 s a . n                                 inflow: grad q . n = a . n on the side
+//                     2 q_o - q(m)                                     outflow: q_o on the side
+//                     q_o                                              without liquid at m
 #pragma once
 
 #include <array>
@@ -24,17 +33,27 @@
 
 namespace spume {
 
+enum class PointKind : std::uint8_t { wall, inflow, outflow };
+
 struct WallStencils {
   // Per wall point: its entries begin at first[g] and end at first[g + 1].
   Array<std::int64_t> first;
   std::array<Array<float>, 3> normal, wall_velocity;
   Array<std::uint8_t> no_slip;
   Array<std::int32_t> nearest;  // the particle nearest to m
+  // Of openings; empty without. What the pressure q takes: sign f(m) + given.
+  Array<PointKind> kind;
+  // Of inflows: what a predicted velocity has beside u_w, the pressure gradient a times the step.
+  std::array<Array<float>, 3> predicted;
+  Array<float> pressure_sign;
+  Array<double> given_pressure;
   // Per entry.
   Array<std::int32_t> source;
   Array<double> coefficient;
 
   std::size_t size() const { return nearest.size(); }
+  bool openings() const { return !kind.empty(); }
+  bool is_wall(std::size_t g) const { return kind.empty() || kind[g] == PointKind::wall; }
   double bytes() const;
 
   // f(m).
@@ -45,9 +64,16 @@ struct WallStencils {
       sum += coefficient[k] * static_cast<double>(values[source[k]]);
     return sum;
   }
-  // u_g; `moving` false leaves the velocity of the surface out, as for accelerations beside a steady wall.
+  // q_g; `given` false leaves out what is given, as for a correction of q.
+  template <class T>
+  double pressure(std::size_t g, const T* values, bool given) const {
+    if (kind.empty()) return mirrored(g, values);
+    return pressure_sign[g] * mirrored(g, values) + (given ? given_pressure[g] : 0.0);
+  }
+  // u_g; `moving` false leaves the velocity of the surface out, as for accelerations beside a steady wall; `before` adds
+  // what the pressure of the step is to take away.
   std::array<double, 3> velocity(std::size_t g, int dimensions, const std::array<const double*, 3>& velocity,
-                                 bool friction, bool moving) const;
+                                 bool friction, bool moving, bool before) const;
   // v_g.
   std::array<double, 3> vector(std::size_t g, int dimensions, const std::array<const float*, 3>& values) const;
 };

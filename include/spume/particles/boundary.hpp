@@ -15,6 +15,7 @@
 #include "spume/operators/image_values.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/body_walls.hpp"
+#include "spume/particles/open_sides.hpp"
 #include "spume/scene/scene.hpp"
 #include "spume/scene/solid_union.hpp"
 
@@ -28,9 +29,12 @@ inline bool is_wall(BoundaryKind kind) {
 
 // What the boundaries of a domain ask for.
 struct BoundaryFeatures {
-  explicit BoundaryFeatures(const Domain& domain, const std::vector<Body>& bodies = {});
+  explicit BoundaryFeatures(const Domain& domain, const std::vector<Body>& bodies = {},
+                            const std::vector<Opening>& openings = {});
   bool images = false;           // some side is periodic or a wall, or there are solid boxes
   bool bodies = false;           // some body is a wall
+  bool openings = false;         // liquid enters or leaves
+  bool outflow = false;          // where the pressure is given
   bool moving_bodies = false;    // the surface of some of them moves
   bool no_slip = false;          // some wall or solid holds the liquid
   bool moving_walls = false;     // some wall has a velocity
@@ -41,7 +45,9 @@ class Boundary {
  public:
   // `domain` outlives the boundary.
   // `bodies`: null without walls of bodies.
-  Boundary(const Domain& domain, double spacing, std::unique_ptr<BodyWalls> bodies = nullptr);
+  // `openings`: null without.
+  Boundary(const Domain& domain, double spacing, std::unique_ptr<BodyWalls> bodies = nullptr,
+           std::unique_ptr<OpenSides> openings = nullptr);
 
   const Domain& domain() const { return domain_; }
   const BoundaryFeatures features;
@@ -56,6 +62,7 @@ class Boundary {
   void accept() {
     walls = next_walls;
     wall_speed = next_wall_speed;
+    if (openings_ != nullptr) openings_->accept();
   }
 
   // Images at `at` for walls at `next_walls`, and how they mirror values at time t. Throws StepFailure for a wall
@@ -77,6 +84,24 @@ class Boundary {
 
   // Walls of bodies; null without.
   const BodyWalls* bodies() const { return bodies_.get(); }
+  // Null without.
+  OpenSides* openings() const { return openings_.get(); }
+  // Behind openings, for the images as they are: pressure gradients by OpenSides::give_gradients(), of a predicted
+  // velocity whose images then follow predicted_rule().
+  void give_gradients(const std::array<const double*, 3>& before, const std::array<const double*, 3>& after,
+                      double dt) {
+    openings_->give_gradients(before, after, dt, stencils_);
+  }
+  VelocityImageRule predicted_rule() const;
+  // Pressures behind openings, for the images as they are: OpenSides::give_pressures().
+  void give_pressures(const std::function<double(const Vec3&)>& potential, double t) {
+    openings_->give_pressures(potential, t, stencils_);
+  }
+  // The points behind outflows move on with this velocity.
+  void follow(const std::array<const double*, 3>& velocity) { openings_->follow(stencils_, velocity); }
+  // Whether a side ends the multigrid as a wall does: inflows have no pressure gradient either.
+  bool holds(int axis, int side) const;
+
   // Walls and boxes as one solid; null without boxes.
   const SolidUnion* solids() const { return solids_.get(); }
 
@@ -93,6 +118,7 @@ class Boundary {
   double bytes() const;
 
  private:
+  void keep_before_sides(const WallPositions& at, int axis, Vec3& position, Vec3* velocity) const;
   void unite_solids(const WallPositions& at);
   void find_rules(const Images& images, double support_radius, double t);
   void find_offsets(const Images& images, double t, bool friction, VelocityImageRule& rule) const;
@@ -100,6 +126,10 @@ class Boundary {
   const Domain& domain_;
   double spacing_;
   std::unique_ptr<BodyWalls> bodies_;
+  std::unique_ptr<OpenSides> openings_;
+  // With openings: all points behind walls of bodies and openings.
+  WallStencils stencils_;
+  std::array<Array<double>, 3> point_position_;
   std::shared_ptr<const SolidUnion> solids_;
   VelocityImageRule velocity_rule_, mirror_rule_;  // the second in a scene with no-slip walls alone
   std::vector<std::array<float, 3>> reflection_;

@@ -26,6 +26,8 @@ class EnergyGuard {
 
   double supply = 0;  // state between steps
 
+  // Kinetic energy, and potential energy across axes with sides.
+  double held(const EnergyBalance& balance, const ParticleStore& particles) const;
   void start(const EnergyBalance& balance, const ParticleStore& particles, double stored_energy);
   // The supply at the end of a step; throws StepFailure. `at`: positions that the velocities belong to.
   double after_step(const EnergyBalance& balance, const ParticleStore& particles, const VectorField& at,

@@ -83,6 +83,16 @@ struct SpongeDraft {
   std::vector<double> velocity;
 };
 
+// An [[inflow]] or [[outflow]].
+struct OpeningDraft {
+  std::string side;
+  std::vector<double> lower, upper;
+  std::optional<ExpressionText> where;
+  std::vector<ExpressionText> velocity;
+  std::optional<ExpressionText> flow_rate, pressure, level;
+  std::string table;
+};
+
 struct ProbeDraft {
   ProbeOptions options;
   std::vector<double> position, end;
@@ -121,6 +131,7 @@ struct Draft {
   std::vector<BodyDraft> bodies;
   std::vector<WavemakerDraft> wavemakers;
   std::vector<SpongeDraft> sponges;
+  std::vector<OpeningDraft> inflows, outflows;
   std::vector<ProbeDraft> probes;
   std::vector<ExpressionText> body_force;
   double jitter = 0;

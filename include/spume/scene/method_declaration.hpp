@@ -29,7 +29,8 @@ struct MethodDeclaration {
   bool honours_bodies =
       false;  // liquid does not pass the walls of [[body]]; a case with such walls is refused otherwise
 
-  bool damps_sponges = false;  // [[sponge]]
+  bool damps_sponges = false;   // [[sponge]]
+  bool passes_openings = false;  // [[inflow]], [[outflow]]
 
   // Sections of its own, and options that it adds to sections of the scene. Several methods may name the same
   // declaration: its options then belong to all of them.
@@ -69,6 +70,9 @@ inline bool uses_particles(const MethodDeclaration& method) {
 }
 inline bool damps_sponges(const MethodDeclaration& method) {
   return method.damps_sponges;
+}
+inline bool passes_openings(const MethodDeclaration& method) {
+  return method.passes_openings;
 }
 inline bool has_one_fluid(const MethodDeclaration& method) {
   return !method.fills_phases;

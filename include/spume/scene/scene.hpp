@@ -38,6 +38,23 @@ enum class BoundaryKind { periodic, free_slip, no_slip, open };
 struct Side {
   BoundaryKind kind = BoundaryKind::open;
   std::optional<VectorExpression> velocity;
+  bool opening = false;  // an opening covers all of it: the kind is open, and the liquid goes on behind it
+  bool bounds_liquid() const { return kind != BoundaryKind::open || opening; }
+};
+
+// An [[inflow]] or [[outflow]]: a part of a side that liquid passes.
+struct Opening {
+  std::string name;                         // "inflow.0"
+  bool inflow = true;                       // else an outflow
+  int axis = 0, side = 0;                   // sides[axis][side] of the domain
+  Vec3 lower{}, upper{};                    // box on the side that it lies in
+  std::shared_ptr<const Expression> where;  // positive in it; null: in the whole box
+  // Inflow: the velocity, or the volume per time.
+  std::optional<VectorExpression> velocity;
+  std::shared_ptr<const Expression> flow_rate;
+  std::shared_ptr<const Expression> pressure;  // outflow, at the level where there is one; null: zero
+  // Height of the surface: liquid enters below it; the pressure out is hydrostatic from it on. Null: none.
+  std::shared_ptr<const Expression> level;
 };
 
 // A solid box inside the domain. Faces that lie on or beyond a wall of the domain bound no liquid.
@@ -129,6 +146,7 @@ struct Scene {
   std::vector<Body> bodies;
   Combination walls;  // of the bodies that are walls, in their order
   std::vector<Sponge> sponges;
+  std::vector<Opening> openings;
 };
 
 }  // namespace spume

@@ -44,16 +44,17 @@ bool needs_velocity_gradient(const Case& options) {
          has_bubbles(options);
 }
 
-Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies) {
+Features::Features(const LoadedCase& loaded)
+    : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies, loaded.scene.openings) {
   const Scene& scene = loaded.scene;
   const Case& options = loaded.options;
   for (int axis = 0; axis < scene.domain.dimensions; ++axis)
     for (int side = 0; side < 2; ++side)
-      open_sides = open_sides || (scene.domain.sides[axis][side].kind == BoundaryKind::open &&
+      open_sides = open_sides || (!scene.domain.sides[axis][side].bounds_liquid() &&
                                   !(axis == scene.domain.dimensions - 1 && side == 1 && scene.fluid.gravity[axis] < 0));
   free_surface = scene.free_surface;
   sponges = !scene.sponges.empty();
-  closed = !scene.free_surface;
+  closed = !scene.free_surface && !outflow;
   shifting = options.get<ShiftingOptions>().on;
   shift_correction = corrects_shift(options);
   shift_curvature = shifting && options.get<ShiftingOptions>().velocity_correction == ShiftCorrection::second_order;

@@ -35,6 +35,11 @@ std::unique_ptr<BodyWalls> make_body_walls(const Scene& scene, const Resolution&
   return std::make_unique<BodyWalls>(scene, resolution, scene.particles.volume);
 }
 
+std::unique_ptr<OpenSides> make_openings(const Scene& scene, const Resolution& resolution) {
+  if (scene.openings.empty()) return nullptr;
+  return std::make_unique<OpenSides>(scene, resolution, scene.particles.volume);
+}
+
 }  // namespace
 
 Flow::Flow(const LoadedCase& loaded_case)
@@ -52,7 +57,8 @@ Flow::Flow(const LoadedCase& loaded_case)
       dimensions(scene.domain.dimensions),
       fading(fading_beside_voids(options, scene, features)),
       particles(dimensions, scene.particles),
-      boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution, features)),
+      boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution, features),
+               make_openings(scene, resolution)),
       energy(scene.domain, resolution),
       arrangement(scene.domain, resolution, particles.volume, particles.size()),
       moments(particles, {.kernel_sum = features.density_relaxation,
@@ -137,6 +143,7 @@ double Flow::mass_in_domain() const {
   const bool falls_back = scene.fluid.gravity[up] < 0 && scene.domain.sides[up][1].kind == BoundaryKind::open;
   const double inside = parallel_sum(size(), [&](std::size_t i) {
     for (int axis = 0; axis < dimensions; ++axis) {
+      if (scene.domain.sides[axis][0].opening || scene.domain.sides[axis][1].opening) continue;
       const double x = (*particles.position[axis])[i];
       const double upper = axis == up && falls_back ? std::numeric_limits<double>::max() : boundary.walls[axis][1];
       if (!(x >= boundary.walls[axis][0] && x <= upper)) return 0.0;
@@ -146,6 +153,15 @@ double Flow::mass_in_domain() const {
   return particle_mass() * inside;
 }
 
+bool Flow::exchange_with_openings() {
+  if (!features.openings) return false;
+  const EnergyBalance balance = energy_balance(0);
+  const double before = energy.held(balance, particles);
+  if (!boundary.openings()->exchange(particles, time)) return false;
+  energy.supply += energy.held(balance, particles) - before;
+  return true;
+}
+
 bool Flow::has_left(std::size_t i) const {
   const int up = dimensions - 1;
   const bool falls = scene.fluid.gravity[up] < 0;
@@ -153,9 +169,9 @@ bool Flow::has_left(std::size_t i) const {
     const double x = (*particles.position[axis])[i], lower = boundary.walls[axis][0], upper = boundary.walls[axis][1];
     const double reach = upper - lower;
     const double below = axis == up && falls ? arrangement.grid.support_radius() * sizes.largest_length_ratio : reach;
-    if (x < lower - below && scene.domain.sides[axis][0].kind == BoundaryKind::open) return true;
+    if (x < lower - below && !scene.domain.sides[axis][0].bounds_liquid()) return true;
     if (axis == up && falls) continue;
-    if (x > upper + reach && scene.domain.sides[axis][1].kind == BoundaryKind::open) return true;
+    if (x > upper + reach && !scene.domain.sides[axis][1].bounds_liquid()) return true;
   }
   return false;
 }
@@ -196,7 +212,7 @@ EnergyBalance Flow::energy_balance(double dt) const {
           .gravity = scene.fluid.gravity,
           .largest_acceleration = std::sqrt(strength2) + next_largest_body_force,
           .work = dt > 0 ? (features.working_forces ? work_of_step(dt) : 0) + work_of_sponges : 0,
-          .unfollowed_work = features.bubbles || features.moving_walls || features.moving_bodies};
+          .unfollowed_work = features.bubbles || features.moving_walls || features.moving_bodies || features.openings};
 }
 
 // By the midpoint rule along the way of each particle, which its shift is a part of: exact for forces that are linear

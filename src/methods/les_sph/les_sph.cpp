@@ -68,6 +68,7 @@ void LesSph::step(double dt, Ledger& ledger) {
   for (const Ledger::Entry& entry : start_ledger_.entries())
     ledger.count(entry.stage, entry.calls, entry.seconds, entry.particles, entry.pairs, entry.bytes);
   start_ledger_.clear();
+  if (flow_.exchange_with_openings()) sampled_step_ = -1;
   const bool first = flow_.left == 0;
   if (flow_.remove_left() > 0 && first) {
     char text[160];
@@ -85,6 +86,7 @@ void LesSph::start(Ledger& ledger) {
   if (flow_.size() > 0) {
     plan_.run_start(static_cast<double>(flow_.size()), ledger);
     flow_.boundary.accept();
+    if (flow_.features.openings) flow_.boundary.follow(read(flow_.particles.velocity));
     flow_.volume = flow_.particles.volume * static_cast<double>(flow_.size());
     flow_.energy.start(flow_.energy_balance(0), flow_.particles, flow_.stored_energy());
     if (!flow_.features.velocity_gradient) flow_.strain->release();
@@ -191,6 +193,7 @@ void LesSph::save(StateWriter& writer) const {
   writer.i64("counters", counters);
   writer.f64("walls", walls);
   save_fields(flow_.particles.fields, writer);
+  if (flow_.features.openings) flow_.boundary.openings()->save(writer);
   if (flow_.bubbles != nullptr) flow_.bubbles->save(writer);
 }
 
@@ -210,6 +213,7 @@ void LesSph::load(StateReader& reader) {
   flow_.left = counters[3];
   for (int axis = 0; axis < 3; ++axis) flow_.boundary.walls[axis] = {walls[2 * axis], walls[2 * axis + 1]};
   flow_.find_uniform_acceleration(flow_.time);  // samples before the next step need it
+  if (flow_.features.openings) flow_.boundary.openings()->load(reader);
   if (flow_.bubbles != nullptr) flow_.bubbles->load(reader);
 }
 

@@ -31,8 +31,13 @@ void Flow::find_divergence(double dt) {
   ScratchPool& scratch = particles.scratch();
   scratch.lease(divergence, n);
   if (potential != nullptr) scratch.lease(potential_laplacian, n);
-  divergence_sweep(arrangement.context, arrangement.packed, read(intermediate_velocity), boundary.volume_rule(),
-                   moments.read_correction(), potential == nullptr ? nullptr : potential->data(), divergence.data(),
+  std::optional<VelocityImageRule> predicted;
+  if (features.openings) {
+    boundary.give_gradients(read(advecting_velocity), read(intermediate_velocity), dt);
+    predicted = boundary.predicted_rule();
+  }
+  divergence_sweep(arrangement.context, arrangement.packed, read(intermediate_velocity),
+                   predicted ? *predicted : boundary.volume_rule(), moments.read_correction(), potential == nullptr ? nullptr : potential->data(), divergence.data(),
                    potential == nullptr ? nullptr : potential_laplacian.data());
   next_max_divergence = parallel_max(n, 0.0, [&](std::size_t i) { return std::abs(divergence[i]); });
 }
@@ -78,6 +83,7 @@ void Flow::set_first_source() {
   scratch.release(filtered_velocity);
   scratch.lease(first_source, n);
   if (potential != nullptr) scratch.lease(potential_laplacian, n);
+  if (features.openings) boundary.give_gradients({}, read(intermediate_velocity), 1);
   // Walls are taken to move steadily: the images of an acceleration have no part of their own.
   const VelocityImageRule steady{boundary.volume_rule().sign, {}, false, false};
   divergence_sweep(arrangement.context, arrangement.packed, read(intermediate_velocity), steady,
@@ -98,16 +104,25 @@ void Flow::set_weights() {
   });
 }
 
-void Flow::set_matrix() {
+// Of the next time, as the potential is.
+void Flow::give_pressures(double t) {
+  const auto potential_of_place = [&](const Vec3& r) {
+    return potential_at(r) + (force_potential ? (*force_potential)(*scene.body_force, r, t) : 0.0);
+  };
+  boundary.give_pressures(potential_of_place, t);
+}
+
+void Flow::set_matrix(double t) {
   const std::size_t n = size();
   ScratchPool& scratch = particles.scratch();
   scratch.release(advecting_velocity);
   if (sizes.variable) set_weights();
   for (auto* array : {&rows.diagonal_shift, &rows.diagonal}) scratch.lease(*array, n);
+  if (features.openings) give_pressures(t);
   rows.pressure_fixed = surface != nullptr ? &surface->pressure_fixed : nullptr;
   rows.helmholtz = equation.helmholtz;
   rows.singular = features.closed && equation.helmholtz == 0;
-  rows.unsymmetric = features.bodies;
+  rows.unsymmetric = features.bodies || features.openings;
   const auto volume = static_cast<float>(particles.volume);
   parallel_for(n, [&](std::size_t i) {
     rows.diagonal_shift[i] = static_cast<float>(equation.helmholtz * row_scale(i));

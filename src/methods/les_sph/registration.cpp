@@ -73,6 +73,7 @@ Registration registration() {
   method.fills_regions = true;
   method.damps_sponges = true;
   method.honours_bodies = true;
+  method.passes_openings = true;
   method.sections = sections();
   method.check = check;
   method.check_scene = check_bubble_sources;

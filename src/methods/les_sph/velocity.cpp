@@ -381,6 +381,7 @@ void Flow::accept(double dt) {
   particles.scratch().release(shift_velocity);
   if (closure != nullptr) closure->accept(particles.scratch());
   boundary.accept();
+  if (features.openings) boundary.follow(read(particles.velocity));
   max_divergence = next_max_divergence;
   largest_body_force = next_largest_body_force;
   time += dt;

@@ -143,6 +143,8 @@ struct Flow {
   // What the pressure stores in a compressible liquid: the integral of p^2 / (2 rho c^2).
   double stored_energy() const;
 
+  // Particles enter and leave through openings; whether any do.
+  bool exchange_with_openings();
   // Removes what cannot come back: particles that have fallen below an open bottom by more than their support, or lie
   // farther beyond an open side than the domain is long, but for those above the top that gravity returns. Returns how
   // many.
@@ -175,7 +177,7 @@ struct Flow {
   void relax_density(double dt);
   void find_first_forces();
   void set_first_source();
-  void set_matrix();
+  void set_matrix(double t);
   void prepare_solver();
   void solve_pressure();        // (x)
   void solve_first_pressure();  // lap p = div F - tr(grad u . grad u)
@@ -197,6 +199,7 @@ struct Flow {
   void add_gradient_trace(const std::array<const double*, 3>& velocity, double factor, Array<double>& sum);
   double row_scale(std::size_t i) const;
   void set_weights();
+  void give_pressures(double t);
   void set_right_hand_side();
   void solve(const char* name);
 };
