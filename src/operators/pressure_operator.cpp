@@ -155,8 +155,7 @@ double PressureOperator::mask_and_sizes(double sizes) const {
   return (matrix_.masked != nullptr ? 1 : 0) + (matrix_.weight != nullptr ? sizes + 4 : 0);  // and h_i
 }
 
-void PressureOperator::residual(std::span<const double> q, std::span<const double> b, std::span<double> r,
-                                bool given) {
+void PressureOperator::residual(std::span<const double> q, std::span<const double> b, std::span<double> r, bool given) {
   const int payload = matrix_.weight != nullptr ? 3 : 2;
   float* records = packed_->prepare(context_, payload);
   const std::size_t n = size();

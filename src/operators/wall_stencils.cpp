@@ -4,8 +4,8 @@
 namespace spume {
 
 std::array<double, 3> WallStencils::velocity(std::size_t g, int dimensions,
-                                             const std::array<const double*, 3>& velocity, bool friction,
-                                             bool moving, bool before) const {
+                                             const std::array<const double*, 3>& velocity, bool friction, bool moving,
+                                             bool before) const {
   std::array<double, 3> u{}, wall{};
   double across = 0;
   if (!is_wall(g) && moving && kind[g] == PointKind::inflow) {
@@ -39,7 +39,8 @@ std::array<double, 3> WallStencils::vector(std::size_t g, int dimensions,
 }
 
 double WallStencils::bytes() const {
-  double sum = kind.bytes() + pressure_sign.bytes() + given_pressure.bytes() + first.bytes() + no_slip.bytes() + nearest.bytes() + source.bytes() + coefficient.bytes();
+  double sum = kind.bytes() + pressure_sign.bytes() + given_pressure.bytes() + first.bytes() + no_slip.bytes() +
+               nearest.bytes() + source.bytes() + coefficient.bytes();
   for (const auto* vector : {&normal, &wall_velocity, &predicted})
     for (const auto& component : *vector) sum += component.bytes();
   return sum;

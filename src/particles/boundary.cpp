@@ -291,8 +291,8 @@ void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* veloci
 }
 
 double Boundary::bytes() const {
-  double sum = (bodies_ == nullptr ? 0 : bodies_->bytes()) +
-               (openings_ == nullptr ? 0 : openings_->bytes() + stencils_.bytes());
+  double sum =
+      (bodies_ == nullptr ? 0 : bodies_->bytes()) + (openings_ == nullptr ? 0 : openings_->bytes() + stencils_.bytes());
   for (const auto* rule : {&velocity_rule_, &mirror_rule_})
     for (const auto& array : rule->offset) sum += array.bytes();
   return sum;

@@ -77,8 +77,9 @@ class CheckOpening {
     const auto has = [&](const char* key) { return draft_.node(named_.name + "." + key) != nullptr; };
     if (has("table") || !named_.inflow()) return;
     if (!has("velocity") && !has("flow_rate"))
-      problems_.add(node_, "missing key 'velocity' in [[inflow]]; add  velocity = [<expression>, ...]  or  flow_rate = "
-                           "<expression>");
+      problems_.add(node_,
+                    "missing key 'velocity' in [[inflow]]; add  velocity = [<expression>, ...]  or  flow_rate = "
+                    "<expression>");
     if (has("velocity") && has("flow_rate"))
       problems_.add(*draft_.node(named_.name + ".flow_rate"),
                     named_.name + " has a velocity and a flow rate, which follow from each other; remove one of them");
@@ -91,8 +92,8 @@ class CheckOpening {
 
   void moving(const Node& side) {
     if (draft_.wall_velocity.count(one_.side))
-      problems_.add(side, named_.name + " opens a side that domain.wall_velocity." + one_.side +
-                              " moves; remove one of the two");
+      problems_.add(
+          side, named_.name + " opens a side that domain.wall_velocity." + one_.side + " moves; remove one of the two");
     for (const WavemakerDraft& maker : draft_.wavemakers)
       if (maker.side == one_.side)
         problems_.add(side, named_.name + " opens a side that a wavemaker moves; choose another side");
@@ -186,10 +187,12 @@ void read_table(const Draft& draft, const Named& named, Opening& opening, Proble
     if (velocity.component[0] || velocity.component[1] || velocity.component[2]) opening.velocity = velocity;
     if (take("flow_rate")) opening.flow_rate = take("flow_rate");
     if (!opening.velocity && !opening.flow_rate)
-      problems.add(node, named.name + ".table has neither velocities nor a flow rate; give a column  flow_rate,  or "
-                                      "velocity_x ...");
+      problems.add(node, named.name +
+                             ".table has neither velocities nor a flow rate; give a column  flow_rate,  or "
+                             "velocity_x ...");
     else if (opening.velocity && opening.flow_rate)
-      problems.add(node, named.name + " has a velocity and a flow rate, which follow from each other; keep one of them");
+      problems.add(node,
+                   named.name + " has a velocity and a flow rate, which follow from each other; keep one of them");
   } else {
     known.emplace_back("pressure");
     if (take("pressure")) opening.pressure = take("pressure");
@@ -199,12 +202,13 @@ void read_table(const Draft& draft, const Named& named, Opening& opening, Proble
     if (std::find(known.begin(), known.end(), column) == known.end()) {
       std::string names = "t";
       for (const std::string& one : known) names += ", " + one;
-      problems.add(node, named.name + ".table has a column '" + column + "'; those of an " + named.section + " are " +
-                             names);
+      problems.add(node,
+                   named.name + ".table has a column '" + column + "'; those of an " + named.section + " are " + names);
     }
 }
 
-// Calls look(place, t) on a lattice over an opening, at the start and over the run: 17 places along an axis and 33 times.
+// Calls look(place, t) on a lattice over an opening, at the start and over the run: 17 places along an axis and 33
+// times.
 template <class Look>
 void sample(const Opening& opening, const Domain& domain, double end, Look&& look) {
   constexpr int places = 17, times = 33;
@@ -262,9 +266,9 @@ void check_openings(const Draft& draft, Problems& problems) {
   for (std::size_t k = 0; k < all.size(); ++k)
     for (std::size_t other = 0; other < k; ++other)
       if (share_a_place(draft, all[k].draft, all[other].draft))
-        problems.add(*draft.node(all[k].name + ".side"),
-                     all[k].name + " and " + all[other].name + " share a part of the " + all[k].draft.side +
-                         " side; give them parts of their own by lower and upper");
+        problems.add(*draft.node(all[k].name + ".side"), all[k].name + " and " + all[other].name +
+                                                             " share a part of the " + all[k].draft.side +
+                                                             " side; give them parts of their own by lower and upper");
 }
 
 std::vector<Opening> make_openings(const Draft& draft, const CompileExpression& compile, Problems& problems) {
@@ -324,8 +328,9 @@ void check_openings_of(const Draft& draft, const Scene& scene, Problems& problem
   }
   if (inflow != nullptr && !outflow && !scene.free_surface)
     problems.add(*draft.node(inflow->name),
-                 inflow->name + " fills a tank that is full and closed; add an [[outflow]], or leave room above the "
-                                "liquid");
+                 inflow->name +
+                     " fills a tank that is full and closed; add an [[outflow]], or leave room above the "
+                     "liquid");
 }
 
 }  // namespace spume

@@ -17,8 +17,8 @@ std::vector<Opening> make_openings(const Draft& draft, const CompileExpression& 
 // Sides that an opening covers wholly are no walls, whatever [domain] says.
 void open_sides_at(const std::vector<Opening>& openings, Domain& domain);
 
-// What can be told only of the filled scene: a velocity that leads out of the domain at an inflow, a closed tank that is
-// filled, an outflow of an incompressible liquid that nothing enters.
+// What can be told only of the filled scene: a velocity that leads out of the domain at an inflow, a closed tank that
+// is filled, an outflow of an incompressible liquid that nothing enters.
 void check_openings_of(const Draft& draft, const Scene& scene, Problems& problems);
 
 }  // namespace spume

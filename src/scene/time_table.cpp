@@ -63,8 +63,9 @@ TimeTable read_time_table(const std::string& file) {
       continue;
     }
     if (cells.size() != names.size())
-      return {{},
-              place + "has " + std::to_string(cells.size()) + " values for " + std::to_string(names.size()) + " columns"};
+      return {
+          {},
+          place + "has " + std::to_string(cells.size()) + " values for " + std::to_string(names.size()) + " columns"};
     for (std::size_t k = 0; k < cells.size(); ++k) {
       char* end = nullptr;
       const double value = std::strtod(cells[k].c_str(), &end);

@@ -35,7 +35,7 @@ struct ImageRules {
   bool only_nearest = false;                        // in solids: images without it are not made
   // Parts of mirror sides that make no images; null: none.
   std::function<bool(int axis, int side, const Vec3& foot)> open_at;
-  double support_radius = 0;                        // images farther than this from the liquid are not made
+  double support_radius = 0;  // images farther than this from the liquid are not made
 };
 
 // How an image came about: which faces it was reflected in, in order. Few distinct values exist.

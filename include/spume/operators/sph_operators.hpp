@@ -104,8 +104,8 @@ void divergence_sweep(const SweepContext& context, PackedNeighbours& packed,
                       const std::array<const float*, 6>& correction, const double* potential, double* divergence,
                       float* negative_laplacian);
 
-// Corrected gradient of the pressure q, which behind openings is what is given there. Differences are formed from value - reference in float, so that a large constant
-// part costs no digits.
+// Corrected gradient of the pressure q, which behind openings is what is given there. Differences are formed from value
+// - reference in float, so that a large constant part costs no digits.
 void gradient_sweep(const SweepContext& context, PackedNeighbours& packed, const double* values, double reference,
                     const std::array<const float*, 6>& correction, const std::array<float*, 3>& out);
 

@@ -70,8 +70,8 @@ struct WallStencils {
     if (kind.empty()) return mirrored(g, values);
     return pressure_sign[g] * mirrored(g, values) + (given ? given_pressure[g] : 0.0);
   }
-  // u_g; `moving` false leaves the velocity of the surface out, as for accelerations beside a steady wall; `before` adds
-  // what the pressure of the step is to take away.
+  // u_g; `moving` false leaves the velocity of the surface out, as for accelerations beside a steady wall; `before`
+  // adds what the pressure of the step is to take away.
   std::array<double, 3> velocity(std::size_t g, int dimensions, const std::array<const double*, 3>& velocity,
                                  bool friction, bool moving, bool before) const;
   // v_g.

@@ -6,9 +6,9 @@
 // Sweeps see the points as they see wall points (operators/wall_stencils.hpp). Behind an inflow they stand in columns
 // that move towards the side with the given normal velocity: by their volume over their cross-section a column brings
 // exactly what the velocity gives, to a particle. The foremost becomes a particle where it passes the side, and one
-// comes in at the end. Behind an outflow they are the particles that have passed it: they go on with the velocity of the
-// liquid at the mirrored place and are dropped out of reach. Where liquid comes back the foremost becomes a particle
-// again, and one comes in at the end of its way.
+// comes in at the end. Behind an outflow they are the particles that have passed it: they go on with the velocity of
+// the liquid at the mirrored place and are dropped out of reach. Where liquid comes back the foremost becomes a
+// particle again, and one comes in at the end of its way.
 #pragma once
 
 #include <functional>
@@ -42,11 +42,12 @@ class OpenSides {
   // not finite.
   void find_stencils(const Arrangement& arrangement, const VectorField& at, double t, WallStencils& stencils,
                      std::array<Array<double>, 3>& position);
-  // The pressure gradient a behind inflows, for the points that find_stencils() appended: with it a velocity that has
-  // grown by `change` in a step `dt` becomes the given one again. A given velocity that is held alone, with grad q = 0,
-  // costs as much pressure in total, but all of it in the steps in which a particle enters.
-  void give_gradients(const std::array<const double*, 3>& before, const std::array<const double*, 3>& after,
-                      double dt, WallStencils& stencils) const;
+  // The pressure gradient behind inflows, for the points that find_stencils() appended: what a velocity has gained in a
+  // step `dt` without pressure, beside what is given, the pressure takes away. With zero in its place the pressure of
+  // an incompressible channel of 20 particles across has a standard deviation of 24 % of its mean in place of 1.8 %,
+  // and its velocity an error of 0.4 % in place of 0.17 %. `before`: null components are zero.
+  void give_gradients(const std::array<const double*, 3>& before, const std::array<const double*, 3>& after, double dt,
+                      WallStencils& stencils) const;
   // Pressures over density for the points that find_stencils() appended, with the potential that is part of q.
   void give_pressures(const std::function<double(const Vec3&)>& potential, double t, WallStencils& stencils) const;
   // Velocities with which the points of outflows move on, by the stencils.

@@ -29,7 +29,7 @@ struct MethodDeclaration {
   bool honours_bodies =
       false;  // liquid does not pass the walls of [[body]]; a case with such walls is refused otherwise
 
-  bool damps_sponges = false;   // [[sponge]]
+  bool damps_sponges = false;    // [[sponge]]
   bool passes_openings = false;  // [[inflow]], [[outflow]]
 
   // Sections of its own, and options that it adds to sections of the scene. Several methods may name the same

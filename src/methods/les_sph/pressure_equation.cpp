@@ -37,7 +37,8 @@ void Flow::find_divergence(double dt) {
     predicted = boundary.predicted_rule();
   }
   divergence_sweep(arrangement.context, arrangement.packed, read(intermediate_velocity),
-                   predicted ? *predicted : boundary.volume_rule(), moments.read_correction(), potential == nullptr ? nullptr : potential->data(), divergence.data(),
+                   predicted ? *predicted : boundary.volume_rule(), moments.read_correction(),
+                   potential == nullptr ? nullptr : potential->data(), divergence.data(),
                    potential == nullptr ? nullptr : potential_laplacian.data());
   next_max_divergence = parallel_max(n, 0.0, [&](std::size_t i) { return std::abs(divergence[i]); });
 }

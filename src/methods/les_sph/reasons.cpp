@@ -45,7 +45,8 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_p
                : options.get<BubbleOptions>().integrator == BubbleIntegrator::stable ? "stable integrator"
                                                                                      : "explicit sub-steps";
   events = has.bubbles ? events_of(loaded) : no_bubbles;
-  images = has.images ? "periodic sides, walls or solids" : "every side is open";
+  images = has.images ? has.openings ? "sides, solids, points behind openings" : "periodic sides, walls or solids"
+                      : "every side is open";
   surface = has.free_surface ? "the liquid has a free surface" : "the liquid fills the domain";
   const bool lattice = loaded.scene.domain.boxes.empty() && !has.bodies;
   level = !has.free_surface ? "the liquid fills the domain"
@@ -77,7 +78,9 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_p
   preconditioner = options.get<PressureOptions>().preconditioner == PreconditionerKind::multigrid
                        ? "Jacobi and a V-cycle on cells"
                        : "pressure.preconditioner = \"jacobi\"";
-  pressure = has.closed ? "closed domain: the constant is removed" : "zero pressure at the free surface";
+  pressure = has.closed    ? "closed domain: the constant is removed"
+             : has.outflow ? "given pressure at outflows"
+                           : "zero pressure at the free surface";
 }
 
 }  // namespace spume::les_sph

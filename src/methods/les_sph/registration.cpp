@@ -36,7 +36,30 @@ void check_walls_of_bodies(Draft& draft, Problems& problems) {
   }
 }
 
+// Points behind openings have images in the sides of the domain alone, bubbles know nothing of them, and their pressure
+// is a fit, which makes the matrix unsymmetric.
+void check_openings(Draft& draft, Problems& problems) {
+  for (const char* section : {"inflow", "outflow"}) {
+    const Node* opening = draft.node(std::string(section) + ".0");
+    if (opening == nullptr) continue;
+    const std::string name = std::string("[[") + section + "]]";
+    if (draft.node("solid.0"))
+      problems.add(*draft.node("solid.0"),
+                   "a scene with " + name + " takes no [[solid]] box; write it as  [[body]]  with  shape = \"box\"");
+    if (draft.node("bubbles"))
+      problems.add(*draft.node("bubbles"),
+                   "[bubbles] does not go with " + name + ": bubbles do not enter or leave; remove one of them");
+    if (draft.node("pressure.solver") && draft.options.get<PressureOptions>().solver == PressureSolver::cg)
+      problems.add(*draft.node("pressure.solver"),
+                   "pressure.solver = \"cg\" needs a symmetric matrix, which a liquid "
+                   "with " +
+                       name + " does not have; use \"bicgstab\"");
+    return;
+  }
+}
+
 void check(Draft& draft, Problems& problems) {
+  check_openings(draft, problems);
   check_bubbles(draft, problems);
   check_walls_of_bodies(draft, problems);
   if (draft.node("bubbles") && draft.dimensions != 2 && draft.node("pressure.solver") &&

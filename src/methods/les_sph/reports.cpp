@@ -84,12 +84,10 @@ void LesSph::declare_series() {
               [&flow] { return flow.mass_in_domain(); });
   if (flow.features.openings) {
     const char* const unit = flow.dimensions == 3 ? "length^3, since the start" : "length^2, since the start";
-    series_.add("volume_in", unit, [&flow] {
-      return flow.particles.volume * static_cast<double>(flow.boundary.openings()->entered());
-    });
-    series_.add("volume_out", unit, [&flow] {
-      return flow.particles.volume * static_cast<double>(flow.boundary.openings()->left());
-    });
+    series_.add("volume_in", unit,
+                [&flow] { return flow.particles.volume * static_cast<double>(flow.boundary.openings()->entered()); });
+    series_.add("volume_out", unit,
+                [&flow] { return flow.particles.volume * static_cast<double>(flow.boundary.openings()->left()); });
   }
   if (flow.features.open_sides)
     series_.add("mass_removed", "mass, that left through open sides for good",

@@ -102,8 +102,8 @@ Plan make_plan(Flow& f) {
       {f.intermediate_velocity, moments.correction, f.gradient_trace, f.potential},
       {f.first_source, f.potential_laplacian}, true);
   add(
-      both, "matrix", true, "rows and right-hand side", [&](StageRun& run) { f.set_matrix(f.time + run.dt); }, read_by_matrix(f),
-      arrays_of(f.rows));
+      both, "matrix", true, "rows and right-hand side", [&](StageRun& run) { f.set_matrix(f.time + run.dt); },
+      read_by_matrix(f), arrays_of(f.rows));
   add(both, "preconditioner", f.solver.has_multigrid(), why.preconditioner, [&](StageRun&) { f.prepare_solver(); },
       {r, f.rows.diagonal}, {});
   add(start, "first pressure", true, why.pressure, solving(f, &Flow::solve_first_pressure),
