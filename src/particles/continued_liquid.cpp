@@ -170,7 +170,9 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
   // What a particle sees: others and images of them, and wall points by their share.
   const auto visit_liquid = [&](std::size_t i, auto&& visit) {
     for (const std::int32_t j : list.of(i)) {
-      if (j >= particles && wall_point != nullptr && wall_point[j - particles] >= 0) continue;
+      if (j >= particles && wall_point != nullptr && wall_point[j - particles] >= 0 &&
+          arrangement.context.walls->is_wall(static_cast<std::size_t>(wall_point[j - particles])))
+        continue;
       Vec3 offset{};
       for (int axis = 0; axis < dimensions; ++axis)
         offset[axis] = double{list.coordinate(axis)[j]} - double{list.coordinate(axis)[i]};
