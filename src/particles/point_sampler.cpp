@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
 #include "spume/operators/moving_least_squares.hpp"
 
 namespace spume {
@@ -215,7 +216,13 @@ double PointSampler::coverage(const Vec3& point) const {
 }
 
 double PointSampler::wet_share(const Vec3& point) const {
-  return coverage(eye_of(point));
+  const BodyWalls* bodies = state_.boundary->bodies();
+  if (bodies == nullptr || !bodies->nearer_than(point, state_.arrangement->grid.support_radius()))
+    return coverage(eye_of(point));
+  const double distance = bodies->distance(point);
+  if (distance < -deepest_probe * state_.resolution->spacing) return 0;
+  // With the liquid mirrored in the tangent plane: beside a wall about half of the surroundings is liquid.
+  return coverage(point) + coverage(subtract(point, multiply(2 * distance, bodies->normal(point))));
 }
 
 PointSample PointSampler::sample(const Vec3& point) const {

@@ -171,6 +171,18 @@ TEST(LesSphBodies, AreRemarkedOnWhereAGapIsTooNarrow) {
   EXPECT_THAT(below.method.take_remarks(), IsEmpty());
 }
 
+// Less than half of the surroundings of a point on a concave wall is liquid, and about half on a flat one.
+TEST(LesSphBodies, ProbesOnTheirSurfaceAreWet) {
+  Simulation run(level_tank + "[[body]]\nshape = \"ball\"\nradius = 0.6\nposition = [0.75, 0.75]\ninside = false\n");
+  run.steps(2, run.method.step_limit().dt);
+  for (int k = 1; k < 16; ++k) {
+    const double angle = -k * std::numbers::pi / 16, radius = 0.5999;
+    const Vec3 point{0.75 + radius * std::cos(angle), 0.75 + radius * std::sin(angle), 0};
+    EXPECT_NEAR(run.method.sample(point).scalars[0], 1 - point[1], 5e-3) << k;
+  }
+  EXPECT_TRUE(std::isnan(run.method.sample({0.75, 0.05, 0}).scalars[0]));
+}
+
 // With the solid cells at zero, these took 42 and 48 iterations.
 TEST(LesSphBodies, ThePreconditionerGoesOnBehindSolids) {
   const std::string box = head + R"toml([domain]

@@ -38,7 +38,8 @@ class PointSampler {
   // all are not a number.
   PointSample sample(const Vec3& point) const;
   double coverage(const Vec3& point) const;
-  // Coverage of the point, or in a solid of the nearest point before it: one half at the surface.
+  // Coverage of the point, or in a solid of the nearest point before it: one half at the surface. Beside bodies with
+  // the liquid mirrored at them.
   double wet_share(const Vec3& point) const;
   // Highest point of the column where the coverage reaches one half, found on steps of a quarter spacing and refined
   // by bisection; the bottom of the domain when there is none.
