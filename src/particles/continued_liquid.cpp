@@ -65,8 +65,7 @@ void ContinuedLiquid::sort_points(const Boundary& boundary) {
 void ContinuedLiquid::find(const Arrangement& arrangement, MomentFields& moments, const Boundary& boundary,
                            const VectorField& at, Array<float>& counted) {
   if (point_.empty()) sort_points(boundary);
-  plane_of_.resize(moments.divergence_of_position->size());
-  sees_surface_.resize(plane_of_.size());
+  sees_surface_.resize(moments.divergence_of_position->size());
   const int d = resolution_.dimensions;
   const double reach = resolution_.support_radius;
   const NeighbourList& list = arrangement.list;
@@ -79,10 +78,7 @@ void ContinuedLiquid::find(const Arrangement& arrangement, MomentFields& moments
     return sees;
   });
   with_plain_kernel(d, resolution_.kernel, [&]<int dimensions, class Kernel>() {
-    parallel_for(plane_of_.size(), [&](std::size_t i) {
-      plane_of_[i] = -1;
-      sees_surface_[i] = 0;
-    });
+    parallel_for(sees_surface_.size(), [&](std::size_t i) { sees_surface_[i] = 0; });
     find_planes<dimensions>(arrangement, moments, boundary, at);
     find_shares<dimensions, Kernel>(arrangement, boundary);
     count<dimensions, Kernel>(arrangement, boundary, at);
@@ -109,12 +105,14 @@ void ContinuedLiquid::find_planes(const Arrangement& arrangement, const MomentFi
     return interior_((*moments.divergence_of_position)[i]) == 0 && boundary.bodies()->nearer_than(place, reach) &&
            !boundary.bodies()->nearer_than(place, resolution_.support_radius);
   });
-  plane_.resize(planar_.size());
+  plane_.assign(planar_.size(), {});
+  for (auto& component : plane_place_) component.resize(planar_.size());
   parallel_for(planar_.size(), [&](std::size_t k) {
     const auto i = static_cast<std::size_t>(planar_[k]);
     Vec3 normal{};
     for (int axis = 0; axis < dimensions; ++axis) normal[axis] = (*moments.normal[axis])[i];
     const double size = length(normal);
+    for (std::size_t axis = 0; axis < 3; ++axis) plane_place_[axis][k] = vector_at(at, dimensions, i)[axis];
     if (!(size > 0)) return;
     normal = multiply(1 / size, normal);
     double content = column_weight(dimensions, 0, 0);
@@ -128,8 +126,9 @@ void ContinuedLiquid::find_planes(const Arrangement& arrangement, const MomentFi
     }
     plane_[k] = {add(vector_at(at, dimensions, i), multiply(dr * depth_of_column(dimensions, content), normal)),
                  normal};
-    plane_of_[i] = static_cast<std::int32_t>(k);
   });
+  plane_table_.build(arrangement.grid, plane_place_[0].data(), plane_place_[1].data(),
+                     dimensions == 3 ? plane_place_[2].data() : nullptr, planar_.size());
 }
 
 template <int dimensions, class Kernel>
@@ -139,11 +138,11 @@ void ContinuedLiquid::find_shares(const Arrangement& arrangement, const Boundary
     for (std::size_t g = first; g < last; ++g) {
       double weights = 0, sum = 0;
       const auto weigh = [&](const Vec3& seen, const Vec3&) {
-        visit_near(boundary.domain(), arrangement.grid, arrangement.table, seen, reach,
+        visit_near(boundary.domain(), arrangement.grid, plane_table_, seen, reach,
                    [&](std::int32_t j, const Vec3& shift) {
-                     const std::int32_t k = plane_of_[static_cast<std::size_t>(j)];
-                     if (k < 0) return;
-                     const Plane& plane = plane_[static_cast<std::size_t>(k)];
+                     const auto k = static_cast<std::size_t>(plane_table_.order()[static_cast<std::size_t>(j)]);
+                     const Plane& plane = plane_[k];
+                     if (plane.normal == Vec3{}) return;  // a particle without one
                      const Vec3 offset = subtract(seen, add(plane.place, shift));
                      const double weight = Kernel::w(Kernel::support * length(offset) / reach);
                      weights += weight;
@@ -218,7 +217,7 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
 double ContinuedLiquid::bytes() const {
   return static_cast<double>(point_.capacity() * sizeof(Vec3) + plane_.capacity() * sizeof(Plane) +
                              count_.capacity() * sizeof(Count) + depths_.capacity() * sizeof(KnownDepth)) +
-         share_.bytes() + continued_.bytes() + sees_surface_.bytes() + plane_of_.bytes() + table_.bytes() +
+         share_.bytes() + continued_.bytes() + sees_surface_.bytes() + plane_table_.bytes() + table_.bytes() +
          beside_.bytes() + planar_.bytes();
 }
 

@@ -65,11 +65,13 @@ class ContinuedLiquid {
   CellGrid grid_;
   CellOrder table_;
   std::vector<Vec3> point_;
-  Array<std::uint8_t> continued_;          // 1 where w_g follows from planes
-  Array<std::uint8_t> sees_surface_;       // of particles
-  Array<float> share_;                     // w_g
-  Array<std::int32_t> planar_, plane_of_;  // particles with a plane; the plane of each particle, -1 without
+  Array<std::uint8_t> continued_;     // 1 where w_g follows from planes
+  Array<std::uint8_t> sees_surface_;  // of particles
+  Array<float> share_;                // w_g
+  Array<std::int32_t> planar_;        // particles with a plane
   std::vector<Plane> plane_;
+  std::array<Array<double>, 3> plane_place_;
+  CellOrder plane_table_;  // of the planes, by the cells of their particles
   Array<std::int32_t> beside_;
   std::vector<Count> count_;
   std::vector<KnownDepth> depths_;
