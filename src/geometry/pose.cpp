@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "spume/core/vectors.hpp"
 #include "spume/geometry/shapes.hpp"
@@ -84,6 +85,35 @@ class Placed final : public Shape {
   int dimensions_;
 };
 
+class Repeated final : public Shape {
+ public:
+  Repeated(ShapePointer shape, std::vector<Vec3> shifts) : shape_(std::move(shape)), shifts_(std::move(shifts)) {}
+
+  NearestPoint nearest(const Vec3& p) const override {
+    NearestPoint best = shape_->nearest(p);
+    for (const Vec3& shift : shifts_) {
+      NearestPoint other = shape_->nearest(subtract(p, shift));
+      if (other.distance >= best.distance) continue;
+      best = other;
+      best.point = add(best.point, shift);
+    }
+    return best;
+  }
+  double distance(const Vec3& p) const override {
+    double least = shape_->distance(p);
+    for (const Vec3& shift : shifts_) least = std::min(least, shape_->distance(subtract(p, shift)));
+    return least;
+  }
+  Bounds bounds() const override { return shape_->bounds(); }
+  double volume() const override { return shape_->volume(); }
+  double error() const override { return shape_->error(); }
+  TriangleSurface surface(const Bounds& window, double step) const override { return shape_->surface(window, step); }
+
+ private:
+  ShapePointer shape_;
+  std::vector<Vec3> shifts_;
+};
+
 }  // namespace
 
 std::array<Vec3, 3> rotation_by(const Vec3& degrees) {
@@ -112,6 +142,28 @@ Vec3 to_own_coordinates(const Pose& pose, const Vec3& point) {
 
 ShapePointer place(ShapePointer shape, const Pose& pose, bool inside, int dimensions) {
   return std::make_shared<Placed>(std::move(shape), pose, inside, dimensions);
+}
+
+ShapePointer repeat(ShapePointer shape, const Bounds& domain, const Vec3& periods) {
+  const Bounds bounds = shape->bounds();
+  std::vector<Vec3> shifts{{}};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // A shape without end along an axis is its own copy there.
+    if (periods[axis] == 0 || !std::isfinite(bounds.upper[axis] - bounds.lower[axis])) continue;
+    const std::size_t before = shifts.size();
+    for (const double period : {-periods[axis], periods[axis]}) {
+      if (bounds.lower[axis] + period >= domain.upper[axis] || bounds.upper[axis] + period <= domain.lower[axis])
+        continue;
+      for (std::size_t k = 0; k < before; ++k) {
+        Vec3 shift = shifts[k];
+        shift[axis] += period;
+        shifts.push_back(shift);
+      }
+    }
+  }
+  if (shifts.size() == 1) return shape;
+  shifts.erase(shifts.begin());
+  return std::make_shared<Repeated>(std::move(shape), std::move(shifts));
 }
 
 NearestPoint Combination::nearest(const Vec3& point) const {

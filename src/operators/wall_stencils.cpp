@@ -38,6 +38,19 @@ std::array<double, 3> WallStencils::vector(std::size_t g, int dimensions,
   return v;
 }
 
+void WallStencils::clear() {
+  first.resize(0);
+  no_slip.resize(0);
+  nearest.resize(0);
+  kind.resize(0);
+  pressure_sign.resize(0);
+  given_pressure.resize(0);
+  source.resize(0);
+  coefficient.resize(0);
+  for (auto* vector : {&normal, &wall_velocity, &predicted})
+    for (auto& component : *vector) component.resize(0);
+}
+
 double WallStencils::bytes() const {
   double sum = kind.bytes() + pressure_sign.bytes() + given_pressure.bytes() + first.bytes() + no_slip.bytes() +
                nearest.bytes() + source.bytes() + coefficient.bytes();

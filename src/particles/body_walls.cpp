@@ -8,21 +8,19 @@
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
-#include "spume/operators/moving_least_squares.hpp"
-#include "spume/particles/near_particles.hpp"
+#include "spume/particles/point_fits.hpp"
 
 namespace spume {
 namespace {
 
 constexpr double wet_share = 0.5;
-constexpr int fit_order = 2;
 
 }  // namespace
 
-// What a block of wall points found, in their order.
+// What a block of wall points found: those that are wet, in their order.
 struct BodyWalls::Block {
-  std::vector<std::int32_t> point, nearest, source, entries;
-  std::vector<double> coefficient;
+  std::vector<std::int32_t>& point;
+  PointFits& fits;
 };
 
 BodyWalls::BodyWalls(const Scene& scene, const Resolution& resolution, double particle_volume)
@@ -97,7 +95,7 @@ double BodyWalls::distance(const Vec3& point) const {
   return scene_.walls.distance(point);
 }
 
-bool BodyWalls::surely_outside(const Vec3& point, double gap) const {
+bool BodyWalls::surely_farther(const Vec3& point, double gap) const {
   std::array<std::size_t, 3> at{};
   for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
     const double cell = (point[axis] - fine_lower_[axis]) / fine_;
@@ -108,7 +106,7 @@ bool BodyWalls::surely_outside(const Vec3& point, double gap) const {
 }
 
 void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
-  if (surely_outside(position, gap) || distance(position) >= gap) return;
+  if (surely_farther(position, gap) || distance(position) >= gap) return;
   NearestPoint near = scene_.walls.nearest(position);
   const NearestPoint first = near;
   position = add(near.point, multiply(std::max(gap, std::abs(near.distance)), near.normal));
@@ -138,21 +136,14 @@ template <int dimensions>
 void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at, double particle_volume,
                           std::size_t first, std::size_t last, Block& block) const {
   const auto r = read(at);
-  const double h = resolution_.smoothing_length, reach = fit_reach * resolution_.support_radius;
-  MovingLeastSquares<dimensions> fit;
-  struct Near {
-    std::int32_t particle;
-    Vec3 offset;
-    double r2;
-  };
-  std::vector<Near> near;
+  const double h = resolution_.smoothing_length;
+  PointFit<dimensions> fit(resolution_);
+  const double reach = fit.reach();
   for (std::size_t g = first; g < last; ++g) {
     const WallPoint& point = points_[g];
-    near.clear();
+    fit.clear();
     double kernel_sum = 0;
     bool seen = false;  // from within the support radius
-    std::int32_t nearest = -1;
-    double nearest2 = std::numeric_limits<double>::infinity();
     with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
       const double scale = particle_volume * Kernel::normalisation(d) / std::pow(h, d);
       visit_near(scene_.domain, arrangement.grid, arrangement.table, point.mirror, reach,
@@ -172,77 +163,38 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
                    if (across < 0 || r2 >= reach * reach) return;
                    const double mirrored2 = r2 + 4 * across * dot(subtract(point.mirror, point.foot), point.normal);
                    kernel_sum += scale * (Kernel::w(std::sqrt(r2) / h) + Kernel::w(std::sqrt(mirrored2) / h));
-                   near.push_back({j, offset, r2});
-                   if (r2 < nearest2) {
-                     nearest2 = r2;
-                     nearest = j;
-                   }
+                   fit.add(j, offset, r2);
                  });
-      if (kernel_sum < wet_share || !seen) return;
-      fit.resize(near.size());
-      for (std::size_t k = 0; k < near.size(); ++k) {
-        for (int axis = 0; axis < d; ++axis) fit.offset(axis)[k] = near[k].offset[axis] / h;
-        fit.weight()[k] = WendlandC2::w(WendlandC2::support * std::sqrt(near[k].r2) / reach);
-      }
     });
-    if (kernel_sum < wet_share || !seen || fit.fit(fit_order) < 0) continue;
-    const auto coefficient = fit.value();
+    if (kernel_sum < wet_share || !seen || !fit.fit()) continue;
     block.point.push_back(static_cast<std::int32_t>(g));
-    block.nearest.push_back(nearest);
-    block.entries.push_back(static_cast<std::int32_t>(near.size()));
-    double sum = 0;
-    for (const double c : coefficient) sum += c;
-    for (std::size_t k = 0; k < near.size(); ++k) {
-      block.source.push_back(near[k].particle);
-      block.coefficient.push_back(coefficient[k] / sum);
-    }
+    fit.append(block.fits);
   }
 }
 
 void BodyWalls::find_stencils(const Arrangement& arrangement, const VectorField& at, double particle_volume, double t) {
-  constexpr std::size_t size = 128;
-  std::vector<Block> blocks(block_count(points_.size(), size));
-  parallel_blocks_dynamic(points_.size(), size, [&](std::size_t b, std::size_t first, std::size_t last) {
-    if (scene_.domain.dimensions == 3)
-      fit_block<3>(arrangement, at, particle_volume, first, last, blocks[b]);
+  const int d = scene_.domain.dimensions;
+  std::vector<PointFits> fits(block_count(points_.size(), PointFits::block));
+  std::vector<std::vector<std::int32_t>> wet_of(fits.size());
+  parallel_blocks_dynamic(points_.size(), PointFits::block, [&](std::size_t b, std::size_t first, std::size_t last) {
+    Block block{wet_of[b], fits[b]};
+    if (d == 3)
+      fit_block<3>(arrangement, at, particle_volume, first, last, block);
     else
-      fit_block<2>(arrangement, at, particle_volume, first, last, blocks[b]);
+      fit_block<2>(arrangement, at, particle_volume, first, last, block);
   });
-  std::vector<std::size_t> point(blocks.size() + 1), entry(blocks.size() + 1);
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    point[b + 1] = point[b] + blocks[b].point.size();
-    entry[b + 1] = entry[b] + blocks[b].source.size();
-  }
-  const std::size_t wet = point.back();
-  wet_points_.resize(wet);
-  stencils_.first.resize(wet + 1);
-  stencils_.nearest.resize(wet);
-  stencils_.no_slip.resize(wet);
-  for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
-    wet_position_[axis].resize(wet);
-    stencils_.normal[axis].resize(wet);
-    stencils_.wall_velocity[axis].resize(wet);
-  }
-  stencils_.source.resize(entry.back());
-  stencils_.coefficient.resize(entry.back());
-  stencils_.first[wet] = static_cast<std::int64_t>(entry.back());
-  parallel_blocks(blocks.size(), 1, [&](std::size_t b, std::size_t, std::size_t) {
-    const Block& block = blocks[b];
-    auto next = static_cast<std::int64_t>(entry[b]);
-    std::copy(block.source.begin(), block.source.end(), stencils_.source.data() + next);
-    std::copy(block.coefficient.begin(), block.coefficient.end(), stencils_.coefficient.data() + next);
-    for (std::size_t k = 0; k < block.point.size(); ++k) {
-      const std::size_t g = point[b] + k;
-      const auto p = static_cast<std::size_t>(block.point[k]);
-      wet_points_[g] = block.point[k];
-      stencils_.first[g] = next;
-      next += block.entries[k];
-      stencils_.nearest[g] = block.nearest[k];
-      stencils_.no_slip[g] = scene_.bodies[body_[p]].wall == BoundaryKind::no_slip ? 1 : 0;
-      for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
-        wet_position_[axis][g] = points_[p].position[axis];
-        stencils_.normal[axis][g] = static_cast<float>(points_[p].normal[axis]);
-      }
+  stencils_.clear();
+  append_points(fits, d, stencils_);
+  const std::size_t wet = stencils_.size();
+  wet_points_.clear();
+  for (const auto& points : wet_of) wet_points_.insert(wet_points_.end(), points.begin(), points.end());
+  for (int axis = 0; axis < d; ++axis) wet_position_[axis].resize(wet);
+  parallel_for(wet, [&](std::size_t g) {
+    const auto p = static_cast<std::size_t>(wet_points_[g]);
+    stencils_.no_slip[g] = scene_.bodies[body_[p]].wall == BoundaryKind::no_slip ? 1 : 0;
+    for (int axis = 0; axis < d; ++axis) {
+      wet_position_[axis][g] = points_[p].position[axis];
+      stencils_.normal[axis][g] = static_cast<float>(points_[p].normal[axis]);
     }
   });
   set_surfaces(t);

@@ -106,17 +106,20 @@ ImageRules Boundary::image_rules(double support_radius) const {
 }
 
 void Boundary::make_images(Arrangement& arrangement, const ParticleStore& particles, const VectorField& at,
-                           double largest_length_ratio, double t) {
+                           double largest_length_ratio, double t, bool find_wet) {
   const double support_radius = arrangement.grid.support_radius() * largest_length_ratio;
   const auto r = read(at);
   WallPointView wall_points;
   if (bodies_ != nullptr) {
-    bodies_->find_stencils(arrangement, at, particles.volume, t);
+    if (find_wet) bodies_->find_stencils(arrangement, at, particles.volume, t);
     wall_points = bodies_->wet();
   }
   const WallStencils* stencils = bodies_ == nullptr ? nullptr : &bodies_->stencils();
   if (openings_ != nullptr) {
-    stencils_ = stencils == nullptr ? WallStencils{} : *stencils;
+    if (stencils == nullptr)
+      stencils_.clear();
+    else
+      stencils_ = *stencils;
     for (int axis = 0; axis < domain_.dimensions; ++axis) {
       point_position_[axis].resize(wall_points.size);
       std::copy_n(wall_points.position[axis], wall_points.size, point_position_[axis].data());

@@ -71,19 +71,23 @@ void ContinuedLiquid::find(const Arrangement& arrangement, MomentFields& moments
   const NeighbourList& list = arrangement.list;
   const Array<float>& divergence_of_position = *moments.divergence_of_position;
   const auto is_near = [&](std::size_t i) { return interior_(divergence_of_position[i]) < 1; };
+  const BodyWalls& bodies = *boundary.bodies();
   parallel_select(divergence_of_position.size(), beside_, [&](std::size_t i) {
-    if (!boundary.bodies()->nearer_than(vector_at(at, d, i), reach)) return false;
+    const Vec3 place = vector_at(at, d, i);
+    if (bodies.surely_farther(place, reach)) return false;
+    // The surface before the distance, which a mesh takes 7 us for.
     bool sees = is_near(i);
     for (const std::int32_t j : list.of(i)) sees = sees || is_near(arrangement.particle_of(j));
-    return sees;
+    return sees && bodies.nearer_than(place, reach);
   });
+  parallel_for(sees_surface_.size(), [&](std::size_t i) { sees_surface_[i] = 0; });
+  depths_.resize(beside_.size());
+  if (beside_.size() == 0) return;
   with_plain_kernel(d, resolution_.kernel, [&]<int dimensions, class Kernel>() {
-    parallel_for(sees_surface_.size(), [&](std::size_t i) { sees_surface_[i] = 0; });
     find_planes<dimensions>(arrangement, moments, boundary, at);
     find_shares<dimensions, Kernel>(arrangement, boundary);
     count<dimensions, Kernel>(arrangement, boundary, at);
   });
-  depths_.resize(beside_.size());
   parallel_for(beside_.size(), [&](std::size_t k) {
     const auto i = static_cast<std::size_t>(beside_[k]);
     counted[i] = static_cast<float>(count_[k].divergence_of_position);

@@ -2,13 +2,10 @@
 // What the points behind openings carry in a step.
 #include "gate.hpp"
 #include "spume/core/parallel.hpp"
-#include "spume/operators/moving_least_squares.hpp"
-#include "spume/particles/near_particles.hpp"
+#include "spume/particles/point_fits.hpp"
 
 namespace spume {
 namespace {
-
-constexpr int fit_order = 2;
 
 // Below this share of a full kernel sum, of the liquid and its reflection in the side, a point has no liquid before it.
 // The foremost point of a lattice has 0.4 where it passes the side with the next layer a spacing ahead, and at a
@@ -16,12 +13,6 @@ constexpr int fit_order = 2;
 constexpr double wet_share = 0.15;
 
 }  // namespace
-
-// Stencils of a block of points.
-struct OpenSides::Fits {
-  std::vector<std::int32_t> source, entries, nearest;
-  std::vector<double> coefficient;
-};
 
 void OpenSides::list_points(double t) {
   points_.clear();
@@ -57,23 +48,17 @@ void OpenSides::list_points(double t) {
 
 template <int dimensions>
 void OpenSides::fit(const Arrangement& arrangement, const VectorField& at, std::size_t first, std::size_t last,
-                    Fits& fits) const {
+                    PointFits& fits) const {
   const auto r = read(at);
-  const double h = resolution_.smoothing_length, reach = fit_reach * resolution_.support_radius;
-  MovingLeastSquares<dimensions> fit;
-  struct Near {
-    std::int32_t particle;
-    Vec3 offset;
-    double r2;
-  };
-  std::vector<Near> near;
+  const double h = resolution_.smoothing_length;
+  PointFit<dimensions> fit(resolution_);
+  const double reach = fit.reach();
   for (std::size_t k = first; k < last; ++k) {
     const Point& point = points_[k];
     const Gate& gate = gates_[static_cast<std::size_t>(point.gate)];
     const double above = gate.inwards * (point.mirror[gate.opening->axis] - gate.plane);
-    near.clear();
-    double kernel_sum = 0, nearest2 = std::numeric_limits<double>::infinity();
-    std::int32_t nearest = 0;
+    fit.clear();
+    double kernel_sum = 0;
     with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
       const double scale = particle_volume_ * Kernel::normalisation(d) / std::pow(h, d);
       visit_near(scene_.domain, arrangement.grid, arrangement.table, point.mirror, reach,
@@ -84,96 +69,60 @@ void OpenSides::fit(const Arrangement& arrangement, const VectorField& at, std::
                      offset[axis] = r[axis][j] + shift[axis] - point.mirror[axis];
                      r2 += offset[axis] * offset[axis];
                    }
-                   if (r2 < nearest2) {
-                     nearest2 = r2;
-                     nearest = j;
-                   }
                    if (r2 >= reach * reach) return;
                    const double height = gate.inwards * offset[gate.opening->axis] + above;
                    const double mirrored2 = r2 + 4 * std::max(0.0, height) * above;
                    kernel_sum += scale * (Kernel::w(std::sqrt(r2) / h) + Kernel::w(std::sqrt(mirrored2) / h));
-                   near.push_back({j, offset, r2});
+                   fit.add(j, offset, r2);
                  });
     });
-    fit.resize(near.size());
-    for (std::size_t j = 0; j < near.size(); ++j) {
-      for (int axis = 0; axis < dimensions; ++axis) fit.offset(axis)[j] = near[j].offset[axis] / h;
-      fit.weight()[j] = WendlandC2::w(WendlandC2::support * std::sqrt(near[j].r2) / reach);
-    }
-    const bool wet = kernel_sum >= wet_share && fit.fit(fit_order) >= 0;
-    fits.nearest.push_back(nearest);
-    fits.entries.push_back(wet ? static_cast<std::int32_t>(near.size()) : 0);
-    if (!wet) continue;
-    const auto coefficient = fit.value();
-    double sum = 0;
-    for (const double c : coefficient) sum += c;
-    for (std::size_t j = 0; j < near.size(); ++j) {
-      fits.source.push_back(near[j].particle);
-      fits.coefficient.push_back(coefficient[j] / sum);
-    }
+    if (kernel_sum >= wet_share && fit.fit())
+      fit.append(fits);
+    else
+      fit.append_none(fits);
   }
 }
 
 void OpenSides::find_stencils(const Arrangement& arrangement, const VectorField& at, double t, WallStencils& stencils,
                               std::array<Array<double>, 3>& position) {
   list_points(t);
-  constexpr std::size_t size = 128;
   const int d = scene_.domain.dimensions;
   const std::size_t n = points_.size();
-  std::vector<Fits> blocks(block_count(n, size));
-  parallel_blocks_dynamic(n, size, [&](std::size_t b, std::size_t first, std::size_t last) {
+  std::vector<PointFits> blocks(block_count(n, PointFits::block));
+  parallel_blocks_dynamic(n, PointFits::block, [&](std::size_t b, std::size_t first, std::size_t last) {
     if (d == 3)
       fit<3>(arrangement, at, first, last, blocks[b]);
     else
       fit<2>(arrangement, at, first, last, blocks[b]);
   });
-  first_point_ = stencils.size();
-  const std::size_t before = first_point_, all = before + n;
-  std::vector<std::size_t> entry(blocks.size() + 1, stencils.source.size());
-  for (std::size_t b = 0; b < blocks.size(); ++b) entry[b + 1] = entry[b] + blocks[b].source.size();
-  stencils.first.resize(all + 1);
-  stencils.nearest.resize(all);
-  stencils.no_slip.resize(all);
+  first_point_ = append_points(blocks, d, stencils);
+  const std::size_t all = first_point_ + n;
   stencils.kind.resize(all);
   stencils.pressure_sign.resize(all);
   stencils.given_pressure.resize(all);
-  for (std::size_t g = 0; g < before; ++g) {
+  for (int axis = 0; axis < d; ++axis) {
+    position[axis].resize(all);
+    stencils.predicted[axis].resize(all);
+  }
+  parallel_for(first_point_, [&](std::size_t g) {
     stencils.kind[g] = PointKind::wall;
     stencils.pressure_sign[g] = 1;
     stencils.given_pressure[g] = 0;
-  }
-  for (int axis = 0; axis < d; ++axis) {
-    position[axis].resize(all);
-    stencils.normal[axis].resize(all);
-    stencils.wall_velocity[axis].resize(all);
-    stencils.predicted[axis].resize(all);
-  }
-  stencils.source.resize(entry.back());
-  stencils.coefficient.resize(entry.back());
-  stencils.first[all] = static_cast<std::int64_t>(entry.back());
-  parallel_blocks(blocks.size(), 1, [&](std::size_t b, std::size_t, std::size_t) {
-    const Fits& fits = blocks[b];
-    auto next = static_cast<std::int64_t>(entry[b]);
-    std::copy(fits.source.begin(), fits.source.end(), stencils.source.data() + next);
-    std::copy(fits.coefficient.begin(), fits.coefficient.end(), stencils.coefficient.data() + next);
-    for (std::size_t k = 0; k < fits.nearest.size(); ++k) {
-      const std::size_t p = b * size + k, g = before + p;
-      const Point& point = points_[p];
-      const Gate& gate = gates_[static_cast<std::size_t>(point.gate)];
-      const bool inflow = gate.opening->inflow, wet = fits.entries[k] > 0;
-      stencils.first[g] = next;
-      next += fits.entries[k];
-      stencils.nearest[g] = fits.nearest[k];
-      stencils.no_slip[g] = 0;
-      // What has left without liquid behind it keeps its velocity.
-      stencils.kind[g] = inflow || !wet ? PointKind::inflow : PointKind::outflow;
-      stencils.pressure_sign[g] = !wet ? 0.0F : inflow ? 1.0F : -1.0F;
-      stencils.given_pressure[g] = 0;
-      for (int axis = 0; axis < d; ++axis) {
-        position[axis][g] = point.place[axis];
-        stencils.normal[axis][g] = axis == gate.opening->axis ? static_cast<float>(gate.inwards) : 0.0F;
-        stencils.wall_velocity[axis][g] = static_cast<float>(point.velocity[axis]);
-      }
+  });
+  parallel_for(n, [&](std::size_t p) {
+    const std::size_t g = first_point_ + p;
+    const Point& point = points_[p];
+    const Gate& gate = gates_[static_cast<std::size_t>(point.gate)];
+    const bool inflow = gate.opening->inflow, wet = stencils.first[g + 1] > stencils.first[g];
+    stencils.no_slip[g] = 0;
+    // What has left without liquid behind it keeps its velocity.
+    stencils.kind[g] = inflow || !wet ? PointKind::inflow : PointKind::outflow;
+    stencils.pressure_sign[g] = !wet ? 0.0F : inflow ? 1.0F : -1.0F;
+    stencils.given_pressure[g] = 0;
+    for (int axis = 0; axis < d; ++axis) {
+      position[axis][g] = point.place[axis];
+      stencils.normal[axis][g] = axis == gate.opening->axis ? static_cast<float>(gate.inwards) : 0.0F;
+      stencils.wall_velocity[axis][g] = static_cast<float>(point.velocity[axis]);
     }
   });
   double speed2 = 0;

@@ -54,7 +54,7 @@ OpenSides::OpenSides(const Scene& scene, const Resolution& resolution, double pa
     if (gate.opening->inflow) continue;
     for (std::size_t i = 0; i < initial.size(); ++i) {
       Drifting one;
-      one.gate = static_cast<std::int32_t>(g);
+      one.gate = static_cast<int>(g);
       for (int axis = 0; axis < d; ++axis) {
         one.place[axis] = initial.position[axis][i];
         one.velocity[axis] = initial.velocity[axis][i];
@@ -128,27 +128,18 @@ void OpenSides::accept() {
   for (Drifting& one : drifting_) one.place = one.next;
 }
 
-bool OpenSides::exchange(ParticleStore& particles, double t) {
-  const int d = particles.dimensions;
-  const std::size_t n = particles.size();
-  // Particles beyond an outflow.
-  Array<std::int32_t> gone;
-  const auto gate_of = [&](std::size_t i) {
-    const Vec3 r = vector_at(particles.position, d, i);
-    for (std::size_t g = 0; g < gates_.size(); ++g)
-      if (!gates_[g].opening->inflow && depth_behind(gates_[g], r) > 0 && gates_[g].column_at(r) >= 0)
-        return static_cast<std::int32_t>(g);
-    return -1;
-  };
-  parallel_select(n, gone, [&](std::size_t i) { return gate_of(i) >= 0; });
-  struct Newcomer {
-    Vec3 place, velocity;
-  };
-  std::vector<Newcomer> newcomers;
+int OpenSides::outflow_behind(const Vec3& place) const {
+  for (std::size_t g = 0; g < gates_.size(); ++g)
+    if (!gates_[g].opening->inflow && depth_behind(gates_[g], place) > 0 && gates_[g].column_at(place) >= 0)
+      return static_cast<int>(g);
+  return -1;
+}
+
+void OpenSides::take_entering(int up, double t, std::vector<Newcomer>& newcomers) {
   for (Gate& gate : gates_) {
     const Opening& opening = *gate.opening;
     if (!opening.inflow) continue;
-    const std::size_t wet = gate.find_wet(d - 1, t);
+    const std::size_t wet = gate.find_wet(up, t);
     std::unique_ptr<Entering> entering;
     for (Gate::Column& column : gate.columns)
       for (; column.travelled > 0.5 * gate.layer; column.travelled -= gate.layer) {
@@ -159,57 +150,52 @@ bool OpenSides::exchange(ParticleStore& particles, double t) {
         ++entered_;
       }
   }
-  const std::size_t drifting = drifting_.size();
-  std::size_t kept = 0;
-  std::vector<Drifting> behind;
-  for (std::size_t k = 0; k < drifting; ++k) {
-    Drifting one = drifting_[k];
+}
+
+void OpenSides::take_returning(std::vector<Newcomer>& newcomers) {
+  std::vector<Drifting> kept, behind;
+  for (Drifting one : drifting_) {
     const Gate& gate = gates_[static_cast<std::size_t>(one.gate)];
     const double depth = depth_behind(gate, one.place), reach = resolution_.support_radius + gate.layer;
     if (depth > reach || gate.column_at(one.place) < 0) continue;
-    if (depth < 0) {
-      newcomers.push_back({one.place, one.velocity});
-      --left_;
-      one.place[gate.opening->axis] -= gate.inwards * std::ceil(reach / gate.layer) * gate.layer;
-      behind.push_back(one);
+    if (depth >= 0) {
+      kept.push_back(one);
       continue;
     }
-    drifting_[kept++] = one;
+    newcomers.push_back({one.place, one.velocity});
+    --left_;
+    one.place[gate.opening->axis] -= gate.inwards * std::ceil(reach / gate.layer) * gate.layer;
+    behind.push_back(one);
   }
-  drifting_.resize(kept);
+  drifting_.swap(kept);
   drifting_.insert(drifting_.end(), behind.begin(), behind.end());
+}
+
+bool OpenSides::exchange(ParticleStore& particles, double t) {
+  const int d = particles.dimensions;
+  const std::size_t n = particles.size();
+  Array<std::int32_t> gone, order;
+  const auto place_of = [&](std::size_t i) { return vector_at(particles.position, d, i); };
+  parallel_select(n, gone, [&](std::size_t i) { return outflow_behind(place_of(i)) >= 0; });
+  std::vector<Newcomer> newcomers;
+  take_entering(d - 1, t, newcomers);
+  take_returning(newcomers);
   for (const std::int32_t i : gone) {
     const auto k = static_cast<std::size_t>(i);
-    Drifting one;
-    one.gate = gate_of(k);
-    one.place = vector_at(particles.position, d, k);
-    one.velocity = vector_at(particles.velocity, d, k);
-    one.next = one.place;
-    drifting_.push_back(one);
+    const Vec3 place = place_of(k);
+    drifting_.push_back({place, place, vector_at(particles.velocity, d, k), outflow_behind(place)});
     ++left_;
   }
   if (gone.empty() && newcomers.empty()) return false;
-  // Of each newcomer the nearest of the particles that stay.
-  Array<std::int32_t> order;
-  parallel_select(n, order, [&](std::size_t i) { return gate_of(i) < 0; });
-  const std::size_t staying = order.size();
-  if (staying == 0) return false;
-  order.resize(staying + newcomers.size());
-  const auto r = read(particles.position);
-  parallel_blocks_dynamic(newcomers.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
-    double nearest2 = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < staying; ++i) {
-      double distance2 = 0;
-      for (int axis = 0; axis < d; ++axis) {
-        const double x = r[axis][order[i]] - newcomers[k].place[axis];
-        distance2 += x * x;
-      }
-      if (distance2 >= nearest2) continue;
-      nearest2 = distance2;
-      order[staying + k] = order[i];
-    }
-  });
-  particles.fields.permute(order);
+  parallel_select(n, order, [&](std::size_t i) { return outflow_behind(place_of(i)) < 0; });
+  add_copies_of_nearest(particles, newcomers, order);
+  const std::size_t staying = order.size() - newcomers.size();
+  if (n > 0) {
+    particles.fields.permute(order);
+  } else {
+    particles.fields.resize(order.size());
+    for (const auto& field : particles.fields.fields()) std::visit([](auto& values) { values.fill(0); }, field->values);
+  }
   for (std::size_t k = 0; k < newcomers.size(); ++k) {
     for (int axis = 0; axis < d; ++axis) {
       (*particles.position[axis])[staying + k] = newcomers[k].place[axis];
@@ -218,6 +204,43 @@ bool OpenSides::exchange(ParticleStore& particles, double t) {
     (*particles.identifier)[staying + k] = next_identifier_++;
   }
   return true;
+}
+
+// Of each newcomer the nearest of the particles that stay, and of those that leave where none stays.
+void OpenSides::add_copies_of_nearest(const ParticleStore& particles, const std::vector<Newcomer>& newcomers,
+                                      Array<std::int32_t>& order) const {
+  const int d = particles.dimensions;
+  const std::size_t staying = order.size();
+  // Newcomers stand at the openings: what lies farther from all of them than two support radii is asked only where
+  // nothing is nearer.
+  std::vector<std::int32_t> candidates;
+  for (std::size_t k = 0; k < staying; ++k) {
+    const Vec3 place = vector_at(particles.position, d, static_cast<std::size_t>(order[k]));
+    for (const Gate& gate : gates_)
+      if (depth_behind(gate, place) > -2 * resolution_.support_radius) {
+        candidates.push_back(order[k]);
+        break;
+      }
+  }
+  if (candidates.empty()) candidates.assign(order.begin(), order.end());
+  if (candidates.empty())
+    for (std::size_t i = 0; i < particles.size(); ++i) candidates.push_back(static_cast<std::int32_t>(i));
+  order.resize(staying + newcomers.size());
+  const auto r = read(particles.position);
+  parallel_blocks_dynamic(newcomers.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+    double nearest2 = std::numeric_limits<double>::infinity();
+    order[staying + k] = 0;
+    for (const std::int32_t i : candidates) {
+      double distance2 = 0;
+      for (int axis = 0; axis < d; ++axis) {
+        const double x = r[axis][i] - newcomers[k].place[axis];
+        distance2 += x * x;
+      }
+      if (distance2 >= nearest2) continue;
+      nearest2 = distance2;
+      order[staying + k] = i;
+    }
+  });
 }
 
 void OpenSides::follow(const WallStencils& stencils, const std::array<const double*, 3>& velocity) {
@@ -269,7 +292,7 @@ void OpenSides::load(StateReader& reader) {
       one.place[axis] = one.next[axis] = place[6 * p + axis];
       one.velocity[axis] = place[6 * p + 3 + axis];
     }
-    one.gate = static_cast<std::int32_t>(gate[3 + p]);
+    one.gate = static_cast<int>(gate[3 + p]);
   }
 }
 

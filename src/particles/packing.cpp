@@ -19,6 +19,8 @@ constexpr double coefficient = 0.25;    // of the move: King (3.12)
 constexpr double longest_move = 0.1;    // spacings a round
 constexpr double still_enough = 0.005;  // spacings: rounds end when nothing moves farther
 constexpr int most_rounds = 200;
+constexpr int wet_rounds =
+    10;  // which wall points are wet is found once in so many: particles move by a spacing at most
 // Of the kernel sum of a lattice: half a layer less than full beside a surface. Less is a free surface, and what stands
 // within a support radius and a spacing of it stays: there the surface counts the liquid below it.
 constexpr double full_share = 0.9;
@@ -74,7 +76,7 @@ void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boun
   particles.scratch().lease(way, d, n);
   for (int round = 0; round < most_rounds; ++round) {
     arrangement.sort(particles, at);
-    boundary.make_images(arrangement, particles, at, 1, t);
+    boundary.make_images(arrangement, particles, at, 1, t, round % wet_rounds == 0);
     arrangement.find_neighbours(particles, at, {});
     const NeighbourList& list = arrangement.list;
     const auto particle_count = static_cast<std::int32_t>(n);

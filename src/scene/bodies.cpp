@@ -299,8 +299,15 @@ std::vector<Body> make_bodies(const Draft& draft, const CompileExpression& compi
       try {
         if (ShapePointer shape = make_shape(draft, given, name, compile, problems)) {
           const Pose pose = pose_of(given, draft.dimensions);
-          body.shape = place(shape, pose, true, draft.dimensions);
-          body.solid = given.inside ? body.shape : place(shape, pose, false, draft.dimensions);
+          Bounds domain;
+          Vec3 periods{};
+          for (std::size_t a = 0; a < static_cast<std::size_t>(draft.dimensions); ++a) {
+            domain.lower[a] = draft.lower[a];
+            domain.upper[a] = draft.upper[a];
+            if (draft.periodic[a]) periods[a] = draft.upper[a] - draft.lower[a];
+          }
+          body.shape = repeat(place(shape, pose, true, draft.dimensions), domain, periods);
+          body.solid = given.inside ? body.shape : place(body.shape, Pose{}, false, draft.dimensions);
         }
       } catch (const InputError& error) {
         const std::string key = key_of(given.kind);

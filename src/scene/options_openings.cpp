@@ -7,15 +7,7 @@ namespace {
 
 void add_place(SectionOf<OpeningDraft>& section, const char* what) {
   using O = OpeningDraft;
-  section
-      .word("side", &O::side,
-            {{"left", "left"},
-             {"right", "right"},
-             {"front", "front"},
-             {"back", "back"},
-             {"bottom", "bottom"},
-             {"top", "top"}},
-            what)
+  section.word("side", &O::side, side_words(), what)
       .required()
       .option("lower", &O::lower, "length", "lower corner of a box: the part of the side within it")
       .absent("the whole side")

@@ -55,14 +55,7 @@ Section wavemaker() {
 Section sponge() {
   using S = SpongeDraft;
   return repeated_section<S>("sponge", &Draft::sponges)
-      .word("side", &S::side,
-            {{"left", "left"},
-             {"right", "right"},
-             {"front", "front"},
-             {"back", "back"},
-             {"bottom", "bottom"},
-             {"top", "top"}},
-            "side of the domain at which the velocity is damped")
+      .word("side", &S::side, side_words(), "side of the domain at which the velocity is damped")
       .required()
       .option("length", &S::length, "length", positive(), "thickness of the layer, from the side inwards")
       .required()

@@ -16,6 +16,30 @@ namespace {
 using namespace test;
 using testing::HasSubstr;
 
+// Across the corner of a domain of periods 2 and 3: four copies. One without end along an axis has none there.
+TEST(Shapes, GoOnBeyondPeriodicSides) {
+  const Bounds domain{{0, 0, 0}, {2, 3, 1}};
+  const Vec3 periods{2, 3, 0};
+  const ShapePointer ball = place(make_ball(0.5, 3), {.position = {0.1, 2.8, 0.4}}, true, 3);
+  const ShapePointer repeated = repeat(ball, domain, periods);
+  for (std::uint64_t k = 0; k < 200; ++k) {
+    Vec3 p = random_point(k, 1, 3);
+    p = {1 + p[0], 1.5 + 1.5 * p[1], 0.5 + 0.5 * p[2]};
+    double least = std::numeric_limits<double>::infinity();
+    for (const double x : {-2.0, 0.0, 2.0})
+      for (const double y : {-3.0, 0.0, 3.0}) least = std::min(least, ball->distance({p[0] - x, p[1] - y, p[2]}));
+    EXPECT_DOUBLE_EQ(repeated->distance(p), least);
+    const NearestPoint near = repeated->nearest(p);
+    EXPECT_DOUBLE_EQ(near.distance, least);
+    EXPECT_NEAR(length_of(between(near.point, p)), std::abs(least), 1e-12);
+  }
+  EXPECT_EQ(repeated->volume(), ball->volume());
+  const ShapePointer within = place(make_ball(0.5, 3), {.position = {1, 1, 0.4}}, true, 3);
+  EXPECT_EQ(repeat(within, domain, periods), within);
+  const ShapePointer floor = make_half_space({0, 0, 1}, 3);
+  EXPECT_EQ(repeat(floor, domain, periods), floor);
+}
+
 // The distance is no less than that of some point of the boundary, which nearest() names, and no more than that of all
 // points that bisection finds, which lie no further apart than `reach`.
 TEST(Shapes, DistancesAreThoseOfTheNearestPointOfTheBoundary) {

@@ -53,6 +53,11 @@ Vec3 to_own_coordinates(const Pose& pose, const Vec3& point);
 // With `inside` false the solid is what lies outside the shape.
 ShapePointer place(ShapePointer shape, const Pose& pose, bool inside, int dimensions);
 
+// The shape and what it is seen at beyond the periodic sides of a domain from `lower` to `upper`, whose periods are 0
+// along other axes: the copies one period away, as far as they reach into the domain. Bounds, volume and surface are
+// those of the shape itself. Returns the shape where no copy does.
+ShapePointer repeat(ShapePointer shape, const Bounds& domain, const Vec3& periods);
+
 // The union of shapes, each of which is added to what those before it make, or taken away from it. Outside a union and
 // inside a difference the distance is exact; else its size is a lower bound of the distance.
 struct CombinedPart {

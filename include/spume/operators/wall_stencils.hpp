@@ -55,6 +55,7 @@ struct WallStencils {
   bool openings() const { return !kind.empty(); }
   bool is_wall(std::size_t g) const { return kind.empty() || kind[g] == PointKind::wall; }
   double bytes() const;
+  void clear();  // no points; the memory stays
 
   // f(m).
   template <class T>

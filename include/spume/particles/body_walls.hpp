@@ -34,7 +34,8 @@ class BodyWalls {
   // Distance from the walls, negative inside them; farther than four support radii from a surface a bound of it.
   double distance(const Vec3& point) const;
   Vec3 normal(const Vec3& point) const { return scene_.walls.nearest(point).normal; }
-  bool nearer_than(const Vec3& point, double gap) const { return !surely_outside(point, gap) && distance(point) < gap; }
+  bool nearer_than(const Vec3& point, double gap) const { return !surely_farther(point, gap) && distance(point) < gap; }
+  bool surely_farther(const Vec3& point, double gap) const;  // false where the cells do not tell
   // A point nearer than `gap` to a wall, or inside it, is reflected back; of its velocity what goes into the wall is
   // lost.
   // Surfaces move along themselves alone.
@@ -48,7 +49,6 @@ class BodyWalls {
   void fit_block(const Arrangement& arrangement, const VectorField& at, double particle_volume, std::size_t first,
                  std::size_t last, Block& block) const;
   void set_surfaces(double t);
-  bool surely_outside(const Vec3& point, double gap) const;
   std::size_t body_at(const Vec3& foot) const;
 
   const Scene& scene_;

@@ -66,9 +66,10 @@ class Boundary {
   }
 
   // Images at `at` for walls at `next_walls`, and how they mirror values at time t. Throws StepFailure for a wall
-  // velocity that is not finite.
+  // velocity that is not finite. `find_wet` false keeps the wet wall points of bodies as they are, for arrangements
+  // that hardly differ and images that stand for places alone.
   void make_images(Arrangement& arrangement, const ParticleStore& particles, const VectorField& at,
-                   double largest_length_ratio, double t);
+                   double largest_length_ratio, double t, bool find_wet = true);
   ImageRules image_rules(double support_radius) const;
 
   // How images change velocities: under friction, and with walls holding the liquid back along their normals alone,

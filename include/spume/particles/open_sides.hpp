@@ -22,6 +22,8 @@
 
 namespace spume {
 
+struct PointFits;
+
 class OpenSides {
  public:
   // `scene` outlives them; its particles are those of the start.
@@ -79,16 +81,24 @@ class OpenSides {
   };
   struct Drifting {
     Vec3 place{}, next{}, velocity{};
-    std::int32_t gate = 0;
+    int gate = 0;
   };
-  struct Fits;
+  // Becomes a particle.
+  struct Newcomer {
+    Vec3 place, velocity;
+  };
 
   int opening_at(int axis, int side, const Vec3& place) const;
   double depth_behind(const Gate& gate, const Vec3& place) const;
+  int outflow_behind(const Vec3& place) const;  // the gate of the outflow that the place lies behind, or -1
+  void take_entering(int up, double t, std::vector<Newcomer>& newcomers);
+  void take_returning(std::vector<Newcomer>& newcomers);
+  void add_copies_of_nearest(const ParticleStore& particles, const std::vector<Newcomer>& newcomers,
+                             Array<std::int32_t>& order) const;
   void list_points(double t);
   template <int dimensions>
   void fit(const Arrangement& arrangement, const VectorField& at, std::size_t first, std::size_t last,
-           Fits& fits) const;
+           PointFits& fits) const;
 
   const Scene& scene_;
   const Resolution resolution_;

@@ -153,13 +153,10 @@ double Flow::mass_in_domain() const {
   return particle_mass() * inside;
 }
 
-bool Flow::exchange_with_openings() {
-  if (!features.openings) return false;
+void Flow::exchange_with_openings() {
   const EnergyBalance balance = energy_balance(0);
   const double before = energy.held(balance, particles);
-  if (!boundary.openings()->exchange(particles, time)) return false;
-  energy.supply += energy.held(balance, particles) - before;
-  return true;
+  if (boundary.openings()->exchange(particles, time)) energy.supply += energy.held(balance, particles) - before;
 }
 
 bool Flow::has_left(std::size_t i) const {

@@ -68,7 +68,6 @@ void LesSph::step(double dt, Ledger& ledger) {
   for (const Ledger::Entry& entry : start_ledger_.entries())
     ledger.count(entry.stage, entry.calls, entry.seconds, entry.particles, entry.pairs, entry.bytes);
   start_ledger_.clear();
-  if (flow_.exchange_with_openings()) sampled_step_ = -1;
   const bool first = flow_.left == 0;
   if (flow_.remove_left() > 0 && first) {
     char text[160];

@@ -20,6 +20,8 @@ Plan make_plan(Flow& f) {
   const auto living = [&f](Arrays arrays) { return while_bubbles_live(f, std::move(arrays)); };
   const AddStage add(plan, f);
 
+  add(step, "openings", has.openings, why.openings, [&](StageRun&) { f.exchange_with_openings(); },
+      {p.position, p.velocity}, {p.position, p.velocity});
   // (i) intermediate positions r* = r^n + dt u^n, in the order of cells
   add(both, "move", true, "particles to their intermediate positions",
       [&](StageRun& run) { f.move_to_intermediate_position(run.dt); }, {p.position, p.velocity}, {r});

@@ -143,8 +143,6 @@ struct Flow {
   // What the pressure stores in a compressible liquid: the integral of p^2 / (2 rho c^2).
   double stored_energy() const;
 
-  // Particles enter and leave through openings; whether any do.
-  bool exchange_with_openings();
   // Removes what cannot come back: particles that have fallen below an open bottom by more than their support, or lie
   // farther beyond an open side than the domain is long, but for those above the top that gravity returns. Returns how
   // many.
@@ -175,6 +173,7 @@ struct Flow {
   void find_divergence(double dt);
   void centre_divergence(double dt);
   void relax_density(double dt);
+  void exchange_with_openings();  // particles enter and leave, where they stand at the start of the step
   void find_first_forces();
   void set_first_source();
   void set_matrix(double t);

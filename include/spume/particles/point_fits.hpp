@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// How values at points behind walls and openings follow from particles: by the fit of the highest order, up to 2, that
+// the particles around a place bear, with coefficients that add up to 1. Blocks of points are fitted side by side and
+// joined in their order.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "spume/operators/moving_least_squares.hpp"
+#include "spume/operators/wall_stencils.hpp"
+#include "spume/particles/arrangement.hpp"
+#include "spume/particles/near_particles.hpp"
+
+namespace spume {
+
+// What a block of points found, in their order.
+struct PointFits {
+  static constexpr std::size_t block = 128;    // points of a block
+  std::vector<std::int32_t> nearest, entries;  // per point
+  std::vector<std::int32_t> source;            // per entry
+  std::vector<double> coefficient;
+};
+
+// The particles around one place after another. One per thread.
+template <int dimensions>
+class PointFit {
+ public:
+  explicit PointFit(const Resolution& resolution)
+      : smoothing_length_(resolution.smoothing_length), reach_(fit_reach * resolution.support_radius) {}
+
+  double reach() const { return reach_; }
+  void clear() {
+    near_.clear();
+    nearest_ = 0;
+    nearest2_ = std::numeric_limits<double>::infinity();
+  }
+  // A particle at a squared distance within the reach.
+  void add(std::int32_t particle, const Vec3& offset, double r2) {
+    near_.push_back({particle, offset, r2});
+    if (r2 >= nearest2_) return;
+    nearest2_ = r2;
+    nearest_ = particle;
+  }
+  // False where the particles bear no fit.
+  bool fit();
+  // Adds the point of the last fit.
+  void append(PointFits& fits);
+  // Adds a point without entries.
+  void append_none(PointFits& fits) const {
+    fits.nearest.push_back(nearest_);
+    fits.entries.push_back(0);
+  }
+
+ private:
+  struct Near {
+    std::int32_t particle;
+    Vec3 offset;
+    double r2;
+  };
+  const double smoothing_length_, reach_;
+  MovingLeastSquares<dimensions> fit_;
+  std::vector<Near> near_;
+  std::int32_t nearest_ = 0;
+  double nearest2_ = 0;
+};
+
+// Makes room for the points of the blocks behind those that the stencils have, and sets their entries and the nearest
+// particles. Returns the first of the new points.
+std::size_t append_points(const std::vector<PointFits>& blocks, int dimensions, WallStencils& stencils);
+
+}  // namespace spume
