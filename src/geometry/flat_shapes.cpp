@@ -2,7 +2,6 @@
 // Box, half-space and extruded outline.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "polygon.hpp"
@@ -12,8 +11,6 @@
 
 namespace spume {
 namespace {
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 class Box final : public Shape {
  public:

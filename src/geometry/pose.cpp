@@ -2,7 +2,6 @@
 // Where shapes stand, turned inside out or not, and what they make together.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -11,8 +10,6 @@
 
 namespace spume {
 namespace {
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 Vec3 turned(const std::array<Vec3, 3>& rotation, const Vec3& p) {
   return {dot(rotation[0], p), dot(rotation[1], p), dot(rotation[2], p)};

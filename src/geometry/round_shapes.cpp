@@ -2,7 +2,6 @@
 // Ball, ellipsoid, capsule, cylinder and cone.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "polygon.hpp"
@@ -12,7 +11,6 @@
 namespace spume {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double pi = std::numbers::pi;
 
 // Facets from pole to pole.

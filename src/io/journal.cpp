@@ -286,7 +286,7 @@ void use_journal(hid_t access) {
 void replay_journal(const std::filesystem::path& path) {
   const std::string name = journal_of(path.string());
   if (!std::filesystem::is_regular_file(name)) return;
-  if (const auto change = change_of(read_text(name))) {
+  if (const auto change = change_of(spume::read_text(name))) {
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
     if (descriptor < 0) throw_file_error(path, "write", errno);
     const int reason = change->apply(descriptor);

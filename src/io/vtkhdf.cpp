@@ -82,7 +82,7 @@ void create_layout(const File& file, const ParticleSnapshot& snapshot, const vtk
   vtkhdf::write_header(file, "PolyData", notes);
 }
 
-std::int64_t step_count(const File& file) {
+std::int64_t particle_step_count(const File& file) {
   return vtkhdf::read_step_count(file, true, "particles");
 }
 
@@ -298,7 +298,7 @@ void cut_steps(const File& file, std::int64_t count, std::int64_t steps) {
 
 VtkhdfContents read_vtkhdf_contents(const std::filesystem::path& path) {
   File file = File::open(path, false);
-  const std::int64_t steps = step_count(file);
+  const std::int64_t steps = particle_step_count(file);
   VtkhdfContents contents;
   contents.times = read_column<double>(file, "/VTKHDF/Steps/Values", H5T_NATIVE_DOUBLE, steps);
   contents.sizes = read_column<std::int64_t>(file, "/VTKHDF/NumberOfPoints", H5T_NATIVE_INT64, steps);
@@ -312,7 +312,7 @@ VtkhdfFile::VtkhdfFile(std::filesystem::path path, Options options)
     : path_(std::move(path)), options_(std::move(options)) {
   if (!std::filesystem::exists(path_)) return;
   hdf5::replay_journal(path_);
-  steps_ = step_count(File::open(path_, false));
+  steps_ = particle_step_count(File::open(path_, false));
 }
 
 void VtkhdfFile::append(double time, const ParticleSnapshot& snapshot) {

@@ -19,7 +19,7 @@ using hdf5::Id;
 
 constexpr hsize_t chunk_bytes = 1 << 20;
 
-std::int64_t step_count(const File& file) {
+std::int64_t grid_step_count(const File& file) {
   return vtkhdf::read_step_count(file, false, "grid");
 }
 
@@ -113,7 +113,7 @@ void write_value(const File& file, const std::string& name, hsize_t step, hid_t 
 
 GridContents read_grid_contents(const std::filesystem::path& path) {
   const File file = File::open(path, false);
-  const std::int64_t steps = step_count(file);
+  const std::int64_t steps = grid_step_count(file);
   GridContents contents;
   contents.fields = vtkhdf::member_names(file, "/VTKHDF/PointData");
   contents.times.resize(static_cast<std::size_t>(steps));
@@ -133,7 +133,7 @@ GridContents read_grid_contents(const std::filesystem::path& path) {
 
 bool is_grid_file(const std::filesystem::path& path) {
   try {
-    step_count(File::open(path, false));
+    grid_step_count(File::open(path, false));
     return true;
   } catch (const FileError&) {
     return false;
@@ -144,7 +144,7 @@ VtkhdfGridFile::VtkhdfGridFile(std::filesystem::path path, Options options)
     : path_(std::move(path)), options_(std::move(options)) {
   if (!std::filesystem::exists(path_)) return;
   hdf5::replay_journal(path_);
-  steps_ = step_count(File::open(path_, false));
+  steps_ = grid_step_count(File::open(path_, false));
 }
 
 void VtkhdfGridFile::append(double time, const GridSnapshot& snapshot) {

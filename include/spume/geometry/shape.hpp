@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct NearestPoint {
   Vec3 normal{};        // of length 1, out of the solid: the gradient of the distance, at an edge towards the point
   Vec3 point{};         // on the surface
 };
+
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
 // An axis-parallel box; infinite where a shape has no end.
 struct Bounds {

@@ -21,7 +21,7 @@ auto gas(std::optional<double> BubbleDraft::*value) {
 // Defaults: C_l = C_vm = 0.5 of Derakhti & Kirby (2014), below King (2.10); 0.6 of Sato & Sekoguchi, King (2.23);
 // C_eps = 0.01 and the threshold 0.2, King section 3.4.1; c_def = 8.2 of Batchelor (1953), King (3.24); Sc = 700, sea
 // water at 20 C, King (3.34); hinze_radius / 20, King section 3.4.1.
-Section bubbles() {
+Section bubbles_section() {
   using B = BubbleOptions;
   using D = BubbleDraft;
   SectionOf<B> section = spume::section<B>("bubbles");
@@ -192,7 +192,7 @@ Section cloud() {
 }  // namespace
 
 std::vector<Section> bubble_sections() {
-  return {bubbles(), sparger(), cloud()};
+  return {bubbles_section(), sparger(), cloud()};
 }
 
 }  // namespace spume
