@@ -21,7 +21,7 @@ void PrintTo(const UniformGrid& grid, std::ostream* out) {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::array<Array<double>, 3> random_velocity(std::size_t size) {
   std::array<Array<double>, 3> velocity{Array<double>(size), Array<double>(size), Array<double>(size)};

@@ -8,7 +8,7 @@
 namespace spume::test {
 namespace {
 
-const std::string stirred_tank = R"toml(method = "les-sph"
+const std::string driven_tank = R"toml(method = "les-sph"
 [domain]
 lower = [0, 0]
 upper = [1, 1.4]
@@ -94,7 +94,7 @@ TEST(NumberDensity, IsEvenedOutAtTheStatedRateBeyondDisorder) {
 
 // A tank with a surface, stirred by its bottom: the level of the liquid, here twice the height of its centre.
 double level_after_stirring(const Overrides& overrides) {
-  Simulation run(stirred_tank, overrides);
+  Simulation run(driven_tank, overrides);
   run.steps(1000, 0.01);
   double height = 0;
   const State after = run.state();

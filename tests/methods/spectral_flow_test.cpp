@@ -16,7 +16,7 @@ using test::random_start;
 using test::spectral_text;
 using test::SpectralRun;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Largest difference of the velocity at a few points from that of beltrami_start.
 template <class T>

@@ -14,7 +14,7 @@ using test::random_start;
 using test::spectral_text;
 using test::SpectralRun;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(SpectralOutput, SampledVelocityAndPressureAreThoseOfTheTaylorGreenVortex) {
   SpectralRun<> run(

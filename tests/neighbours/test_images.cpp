@@ -9,9 +9,7 @@
 namespace spume::test {
 namespace {
 
-constexpr auto none = ImageKind::none;
-constexpr auto periodic = ImageKind::periodic;
-constexpr auto mirror = ImageKind::mirror;
+using enum ImageKind;
 
 using Key = std::pair<std::int32_t, std::array<std::int8_t, 3>>;
 

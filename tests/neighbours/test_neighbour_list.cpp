@@ -11,9 +11,7 @@
 namespace spume::test {
 namespace {
 
-constexpr auto none = ImageKind::none;
-constexpr auto periodic = ImageKind::periodic;
-constexpr auto mirror = ImageKind::mirror;
+using enum ImageKind;
 
 // Float coordinates are off by half a unit in the last place of the largest one; a distance by that of both
 // ends in each axis, and by the rounding of its own sum of squares (four roundings of 2^-24).

@@ -18,7 +18,7 @@ namespace spume {
 namespace {
 
 using testing::JitteredParticles;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // u(x) = amplitude cos(2 pi mode.x + phase), amplitude normal to mode.
 struct Wave {

@@ -18,7 +18,7 @@ namespace spume {
 namespace {
 
 using testing::JitteredParticles;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 UniformGrid unit_grid(int dimensions, std::size_t across) {
   UniformGrid grid{dimensions, {0, 0, 0}, {1, 1, 1}, {across, across, dimensions == 3 ? across : 1}};

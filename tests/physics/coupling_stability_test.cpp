@@ -8,7 +8,7 @@
 namespace spume::test {
 namespace {
 
-MotionModel particles_of(double beta) {
+MotionModel particles_of_ratio(double beta) {
   MotionModel model;
   model.beta = beta;
   return model;
@@ -21,27 +21,27 @@ TEST(CouplingStability, OfStepsFarAboveTheResponseTimeIsThatOfTheMassLoading) {
   const double ratio = 10, beta = 3 / (1 + 2 * ratio);
   for (const auto& [scheme, bound] : {std::pair{adams_bashforth, 0.25}, std::pair{held, 1.0 / 3}}) {
     const double alpha = bound / (ratio - 1);
-    EXPECT_LT(coupling_growth(particles_of(beta), scheme, 0.99 * alpha, 1e6), 1 + 1e-6);
-    EXPECT_GT(coupling_growth(particles_of(beta), scheme, 1.01 * alpha, 1e6), 1.001);
-    EXPECT_TRUE(std::isinf(stable_coupling_step(particles_of(beta), scheme, 0.99 * alpha)));
-    EXPECT_TRUE(std::isfinite(stable_coupling_step(particles_of(beta), scheme, 1.05 * alpha)));
+    EXPECT_LT(coupling_growth(particles_of_ratio(beta), scheme, 0.99 * alpha, 1e6), 1 + 1e-6);
+    EXPECT_GT(coupling_growth(particles_of_ratio(beta), scheme, 1.01 * alpha, 1e6), 1.001);
+    EXPECT_TRUE(std::isinf(stable_coupling_step(particles_of_ratio(beta), scheme, 0.99 * alpha)));
+    EXPECT_TRUE(std::isfinite(stable_coupling_step(particles_of_ratio(beta), scheme, 1.05 * alpha)));
   }
 }
 
 TEST(CouplingStability, OfShortStepsIsThatOfTheAddedMass) {
   const double beta = 0.05;
-  EXPECT_NEAR(stable_volume_fraction(particles_of(beta), adams_bashforth, 0.74), 0.25 / ((1 - beta) / 2), 2e-3);
-  EXPECT_NEAR(stable_volume_fraction(particles_of(beta), held, 0.74), 1 / 3.0 / ((1 - beta) / 2), 2e-3);
-  EXPECT_EQ(stable_volume_fraction(particles_of(0.5), adams_bashforth, 0.74), 0.74);
-  EXPECT_EQ(stable_coupling_step(particles_of(beta), adams_bashforth, 0.6), 0);
+  EXPECT_NEAR(stable_volume_fraction(particles_of_ratio(beta), adams_bashforth, 0.74), 0.25 / ((1 - beta) / 2), 2e-3);
+  EXPECT_NEAR(stable_volume_fraction(particles_of_ratio(beta), held, 0.74), 1 / 3.0 / ((1 - beta) / 2), 2e-3);
+  EXPECT_EQ(stable_volume_fraction(particles_of_ratio(0.5), adams_bashforth, 0.74), 0.74);
+  EXPECT_EQ(stable_coupling_step(particles_of_ratio(beta), adams_bashforth, 0.6), 0);
 }
 
 TEST(CouplingStability, OfBubblesIsThatOfThePaper) {
   for (const auto& scheme : {adams_bashforth, held}) {
-    EXPECT_TRUE(std::isinf(stable_coupling_step(particles_of(3), scheme, 0.74)));
-    EXPECT_LT(coupling_growth(particles_of(3), scheme, 0.99, 10), 1 + 1e-6);
-    EXPECT_GT(coupling_growth(particles_of(3), scheme, 1.01, 1e3), 1.001);
-    MotionModel frozen = particles_of(3);
+    EXPECT_TRUE(std::isinf(stable_coupling_step(particles_of_ratio(3), scheme, 0.74)));
+    EXPECT_LT(coupling_growth(particles_of_ratio(3), scheme, 0.99, 10), 1 + 1e-6);
+    EXPECT_GT(coupling_growth(particles_of_ratio(3), scheme, 1.01, 1e3), 1.001);
+    MotionModel frozen = particles_of_ratio(3);
     frozen.frozen = true;
     EXPECT_GT(coupling_growth(frozen, scheme, 1.01, 1), 1.001);
   }
@@ -53,7 +53,7 @@ TEST(CouplingStability, MoreParticlesNeverBearLongerSteps) {
     for (const auto& scheme : {adams_bashforth, held}) {
       double before = std::numeric_limits<double>::infinity();
       for (double alpha = 0.02; alpha < 0.75; alpha += 0.04) {
-        const double now = stable_coupling_step(particles_of(beta), scheme, alpha);
+        const double now = stable_coupling_step(particles_of_ratio(beta), scheme, alpha);
         EXPECT_LE(now, before * 1.002) << beta << " " << alpha;
         before = now;
       }

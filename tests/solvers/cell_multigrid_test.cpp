@@ -35,21 +35,21 @@ std::vector<double> applied(CellMultigrid& m, const std::vector<double>& r) {
   return z;
 }
 
-struct Case {
+struct GridCase {
   const char* name;
   SphSetup (*make)(int, double, double);
   int dimensions;
   double coarse, fine;
 };
-void PrintTo(const Case& c, std::ostream* out) {
+void PrintTo(const GridCase& c, std::ostream* out) {
   *out << c.name << ' ' << c.dimensions << "-D";
 }
 
-class Everywhere : public testing::TestWithParam<Case> {};
+class Everywhere : public testing::TestWithParam<GridCase> {};
 
 // x.My and y.Mx are sums of n terms computed in float: they differ by rounding, about 1e-7 of |x||My|.
 TEST_P(Everywhere, IsSymmetricAndPositive) {
-  const Case& c = GetParam();
+  const GridCase& c = GetParam();
   for (const double mach : {0.0, 0.05}) {
     Problem problem(c.make(c.dimensions, c.coarse, mach));
     for (unsigned seed = 1; seed <= 3; ++seed) {
@@ -64,7 +64,7 @@ TEST_P(Everywhere, IsSymmetricAndPositive) {
 // The bar of the project is 8 BiCGStab iterations to 1e-6 from a warm start; here from zero, for twice the resolution
 // too.
 TEST_P(Everywhere, FewIterationsAtTwoResolutions) {
-  const Case& c = GetParam();
+  const GridCase& c = GetParam();
   for (const double mach : {0.0, 0.05}) {
     int iterations[2];
     for (const int level : {0, 1}) {
@@ -103,10 +103,10 @@ TEST_P(Everywhere, FewIterationsAtTwoResolutions) {
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, Everywhere,
-    testing::Values(Case{"open wave", open_wave, 2, 0.02, 0.01}, Case{"open wave", open_wave, 3, 0.05, 0.025},
-                    Case{"closed box", closed_box, 2, 0.02, 0.01}, Case{"closed box", closed_box, 3, 0.04, 0.025},
-                    Case{"periodic", periodic_box, 2, 0.02, 0.01}, Case{"periodic", periodic_box, 3, 0.04, 0.025},
-                    Case{"drops", drops, 2, 0.02, 0.01}, Case{"drops", drops, 3, 0.05, 0.03}));
+    testing::Values(GridCase{"open wave", open_wave, 2, 0.02, 0.01}, GridCase{"open wave", open_wave, 3, 0.05, 0.025},
+                    GridCase{"closed box", closed_box, 2, 0.02, 0.01}, GridCase{"closed box", closed_box, 3, 0.04, 0.025},
+                    GridCase{"periodic", periodic_box, 2, 0.02, 0.01}, GridCase{"periodic", periodic_box, 3, 0.04, 0.025},
+                    GridCase{"drops", drops, 2, 0.02, 0.01}, GridCase{"drops", drops, 3, 0.05, 0.03}));
 
 TEST(CellMultigrid, SolidBoxInTheLiquidCostsFewIterations) {
   // The particles see no mirror images in the box, which is its zero normal gradient: no neighbour, no flux.

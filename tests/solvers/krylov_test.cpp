@@ -35,22 +35,22 @@ double relative_difference(const std::vector<double>& x, const Eigen::VectorXd& 
   return (Eigen::Map<const Eigen::VectorXd>(x.data(), exact.size()) - exact).norm() / exact.norm();
 }
 
-struct Case {
+struct SolverCase {
   const char* name;
   SphSetup (*make)(int, double, double);
   int dimensions;
   double spacing, mach;
 };
-void PrintTo(const Case& c, std::ostream* out) {
+void PrintTo(const SolverCase& c, std::ostream* out) {
   *out << c.name << ' ' << c.dimensions << "-D Ma " << c.mach;
 }
 
-class Direct : public testing::TestWithParam<Case> {};
+class Direct : public testing::TestWithParam<SolverCase> {};
 
 // ||x - x*|| / ||x*|| <= cond(A) ||r|| / ||b||. The condition number is of order (domain / spacing)^2 < 1e4 here, so a
 // residual of 1e-11 leaves the solution within 1e-7.
 TEST_P(Direct, EverySolverAgreesWithTheFactorisation) {
-  const Case& c = GetParam();
+  const SolverCase& c = GetParam();
   Problem problem(c.make(c.dimensions, c.spacing, c.mach));
   const Eigen::VectorXd exact = direct_solution(problem);
   JacobiPreconditioner<double> jacobi(problem.diagonal);
@@ -91,12 +91,12 @@ TEST_P(Direct, EverySolverAgreesWithTheFactorisation) {
 
 INSTANTIATE_TEST_SUITE_P(
     Systems, Direct,
-    testing::Values(Case{"open wave", open_wave, 2, 0.02, 0.05}, Case{"open wave", open_wave, 2, 0.02, 0},
-                    Case{"open wave", open_wave, 3, 1.0 / 14, 0.05}, Case{"open wave", open_wave, 3, 1.0 / 14, 0},
-                    Case{"closed box", closed_box, 2, 0.02, 0.05}, Case{"closed box", closed_box, 2, 0.02, 0},
-                    Case{"closed box", closed_box, 3, 0.0625, 0}, Case{"periodic", periodic_box, 2, 0.02, 0},
-                    Case{"periodic", periodic_box, 3, 0.0625, 0.05}, Case{"drops", drops, 2, 0.02, 0},
-                    Case{"drops", drops, 3, 0.07, 0}));
+    testing::Values(SolverCase{"open wave", open_wave, 2, 0.02, 0.05}, SolverCase{"open wave", open_wave, 2, 0.02, 0},
+                    SolverCase{"open wave", open_wave, 3, 1.0 / 14, 0.05}, SolverCase{"open wave", open_wave, 3, 1.0 / 14, 0},
+                    SolverCase{"closed box", closed_box, 2, 0.02, 0.05}, SolverCase{"closed box", closed_box, 2, 0.02, 0},
+                    SolverCase{"closed box", closed_box, 3, 0.0625, 0}, SolverCase{"periodic", periodic_box, 2, 0.02, 0},
+                    SolverCase{"periodic", periodic_box, 3, 0.0625, 0.05}, SolverCase{"drops", drops, 2, 0.02, 0},
+                    SolverCase{"drops", drops, 3, 0.07, 0}));
 
 TEST(Krylov, ReportedResidualIsTheMeasuredOne) {
   Problem problem(open_wave(3, 0.05, 0));
