@@ -13,14 +13,14 @@ namespace {
 constexpr double pairs_per_bubble = 4.18879 * 2.6 * 2.6 * 2.6;  // particles in its support
 constexpr double candidates_per_bubble = 27 * 2.6 * 2.6 * 2.6;  // in the cells around it
 
-struct Swarm {
+struct BubbleSwarm {
   Particles particles;
   std::size_t size;
   CellOrder table;
   std::array<Array<float>, 3> place, liquid_place;
   Array<float> records, length_ratio, support_radius, inverse_support_radius;
 
-  explicit Swarm(const benchmark::State& state) : particles(state), size(particles.n / 10) {
+  explicit BubbleSwarm(const benchmark::State& state) : particles(state), size(particles.n / 10) {
     const std::size_t n = particles.n;
     std::array<Array<double>, 3> at, sorted;
     for (int a = 0; a < 3; ++a) {
@@ -69,7 +69,7 @@ struct Swarm {
 
 // Force and viscosity of bubbles at particles: distance 10, kernel 7, four sums 8.
 void bubble_sums(benchmark::State& state) {
-  Swarm swarm(state);
+  BubbleSwarm swarm(state);
   const std::size_t n = swarm.particles.n;
   Array<float> result(4 * n);
   const CrossSearch search = swarm.search(swarm.table, swarm.size, swarm.place);
@@ -94,7 +94,7 @@ void bubble_sums(benchmark::State& state) {
 // Candidates are the particles of the cells that come near: distance 8 and the comparison with the reach. With lines
 // also what is found: kernel 7, products and sums 32.
 void around_bubbles(benchmark::State& state, bool with_lines) {
-  Swarm swarm(state);
+  BubbleSwarm swarm(state);
   const CrossSearch search = swarm.search(swarm.particles.table, swarm.particles.n, swarm.liquid_place);
   Array<float> lines(with_lines ? line_floats * swarm.particles.n : 0), sums(line_floats * swarm.size);
   for (std::size_t k = 0; k < lines.size(); ++k) lines[k] = static_cast<float>(k % 7);

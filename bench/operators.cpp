@@ -107,7 +107,7 @@ void pressure_solve(benchmark::State& state) {
     sums.normal[k] = rest[6 + k].data();
     sums.concentration_gradient[k] = rest[9 + k].data();
   }
-  kernel_moment_sweep(pressure.context, pressure.packed, {true, true, spacing}, sums);
+  kernel_moment_sweep(pressure.context, pressure.packed, {true, true, spacing, {}}, sums);
   Array<double> b(n), q(n);
   for (std::size_t i = 0; i < n; ++i) {
     const bool top = particles.z[i] > 1 - spacing;

@@ -18,7 +18,7 @@ namespace spume {
 namespace {
 
 constexpr int points = 128;
-enum Arrangement { unsorted, sorted, clustered };  // at random places; in the order of the cells; in clouds, in order
+enum Order { unsorted, sorted, clustered };  // at random places; in the order of the cells; in clouds, in order
 constexpr std::size_t clouds = 64;
 
 PeriodicGrid grid() {
@@ -235,24 +235,24 @@ void particle_search(benchmark::State& state) {
   swarm.count(state, {48 + 36, 8 * 27 * share * static_cast<double>(swarm.particles.size()), 0, 0});
 }
 
-void sizes(benchmark::internal::Benchmark* b) {
+void particle_sizes(benchmark::internal::Benchmark* b) {
   b->ArgNames({"particles", "arrangement", "threads"})
       ->ArgsProduct({{10000, 100000, 1000000, 2097152}, {unsorted, sorted, clustered}, thread_counts()})
       ->UseRealTime()
       ->Unit(benchmark::kMillisecond);
 }
-BENCHMARK(particle_gather<double>)->Apply(sizes);
-BENCHMARK(particle_gather<float>)->Apply(sizes);
-BENCHMARK(particle_motion<double>)->Apply(sizes);
-BENCHMARK(particle_motion<float>)->Apply(sizes);
-BENCHMARK(particle_field_records)->Apply(sizes);
-BENCHMARK(particle_sort)->Apply(sizes);
-BENCHMARK(particle_reorder)->Apply(sizes);
-BENCHMARK(particle_feedback)->Apply(sizes);
+BENCHMARK(particle_gather<double>)->Apply(particle_sizes);
+BENCHMARK(particle_gather<float>)->Apply(particle_sizes);
+BENCHMARK(particle_motion<double>)->Apply(particle_sizes);
+BENCHMARK(particle_motion<float>)->Apply(particle_sizes);
+BENCHMARK(particle_field_records)->Apply(particle_sizes);
+BENCHMARK(particle_sort)->Apply(particle_sizes);
+BENCHMARK(particle_reorder)->Apply(particle_sizes);
+BENCHMARK(particle_feedback)->Apply(particle_sizes);
 // The matching by rounds, and the sort and purge of the paper; the search for overlaps alone, the cells included.
-BENCHMARK(particle_exclusion<MatchingMethod::rounds>)->Apply(sizes)->Name("particle_exclusion");
-BENCHMARK(particle_exclusion<MatchingMethod::sorting>)->Apply(sizes)->Name("particle_exclusion_by_sorting");
-BENCHMARK(particle_search)->Apply(sizes);
+BENCHMARK(particle_exclusion<MatchingMethod::rounds>)->Apply(particle_sizes)->Name("particle_exclusion");
+BENCHMARK(particle_exclusion<MatchingMethod::sorting>)->Apply(particle_sizes)->Name("particle_exclusion_by_sorting");
+BENCHMARK(particle_search)->Apply(particle_sizes);
 
 }  // namespace
 }  // namespace spume

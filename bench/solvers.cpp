@@ -45,7 +45,7 @@ struct Cloud {
   spume::CellGeometry geometry;
 };
 
-void sizes(benchmark::internal::Benchmark* bench) {
+void solver_sizes(benchmark::internal::Benchmark* bench) {
   bench->ArgNames({"particles", "threads"})
       ->ArgsProduct({{10000, 100000, 1000000}, spume::thread_counts()})
       ->UseRealTime()
@@ -70,7 +70,7 @@ void cell_multigrid_setup(benchmark::State& state) {
   report(state, cloud.x.size(),
          21);  // places 6, stencil 4, order, rank and corner 3; cells: three passes over eight numbers 8
 }
-BENCHMARK(cell_multigrid_setup)->Apply(sizes);
+BENCHMARK(cell_multigrid_setup)->Apply(solver_sizes);
 
 void cell_multigrid_apply(benchmark::State& state) {
   spume::use_threads(state, 1);
@@ -86,6 +86,6 @@ void cell_multigrid_apply(benchmark::State& state) {
   report(state, cloud.x.size(),
          28);  // stencils twice 8, order and corner 2, vectors 4; cells: five passes over eight numbers 14
 }
-BENCHMARK(cell_multigrid_apply)->Apply(sizes);
+BENCHMARK(cell_multigrid_apply)->Apply(solver_sizes);
 
 }  // namespace

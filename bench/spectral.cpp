@@ -208,20 +208,20 @@ void force_to_modes(benchmark::State& state) {
   count_against_machine(state, three_transforms<T>(n), threads);
 }
 
-void sizes(benchmark::internal::Benchmark* bench) {
+void grid_sizes(benchmark::internal::Benchmark* bench) {
   bench->ArgNames({"points", "threads"})
       ->ArgsProduct({{64, 128}, thread_counts()})
       ->UseRealTime()
       ->Unit(benchmark::kMillisecond);
 }
-BENCHMARK(flow_step<double>)->Apply(sizes);
-BENCHMARK(fused_floor<double>)->Apply(sizes);
-BENCHMARK(flow_step<float>)->Apply(sizes);
-BENCHMARK(fused_floor<float>)->Apply(sizes);
-BENCHMARK(velocity_on_points<double>)->Apply(sizes);
-BENCHMARK(velocity_on_points<float>)->Apply(sizes);
-BENCHMARK(force_to_modes<double>)->Apply(sizes);
-BENCHMARK(force_to_modes<float>)->Apply(sizes);
+BENCHMARK(flow_step<double>)->Apply(grid_sizes);
+BENCHMARK(fused_floor<double>)->Apply(grid_sizes);
+BENCHMARK(flow_step<float>)->Apply(grid_sizes);
+BENCHMARK(fused_floor<float>)->Apply(grid_sizes);
+BENCHMARK(velocity_on_points<double>)->Apply(grid_sizes);
+BENCHMARK(velocity_on_points<float>)->Apply(grid_sizes);
+BENCHMARK(force_to_modes<double>)->Apply(grid_sizes);
+BENCHMARK(force_to_modes<float>)->Apply(grid_sizes);
 
 }  // namespace
 }  // namespace spume

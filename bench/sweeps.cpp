@@ -89,7 +89,7 @@ struct Sweeps {
     for (int k = 0; k < 6; ++k) result.correction[k] = correction[k].data();
     result.concentration_gradient = write(out);
     result.normal = write(vector);
-    kernel_moment_sweep(context, packed, {true, true, particles.spacing()}, result);
+    kernel_moment_sweep(context, packed, {true, true, particles.spacing(), {}}, result);
   }
   void velocity_gradient(bool with_change) {
     VelocityGradientOut result;

@@ -159,10 +159,6 @@ std::string text_of(const Point2& p) {
   return text;
 }
 
-double turn(const Point2& a, const Point2& b, const Point2& c) {
-  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
 bool on_side(const Point2& a, const Point2& b, const Point2& p) {
   return turn(a, b, p) == 0 && (p[0] - a[0]) * (p[0] - b[0]) + (p[1] - a[1]) * (p[1] - b[1]) <= 0;
 }

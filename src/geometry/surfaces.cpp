@@ -47,14 +47,6 @@ TriangleSurface revolve(const std::vector<Point2>& profile, int facets) {
   return surface;
 }
 
-namespace {
-
-double turn(const Point2& a, const Point2& b, const Point2& c) {
-  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-}  // namespace
-
 // Ears are cut off one by one: corners whose triangle holds no other point.
 TriangleSurface fill_polygon(const std::vector<Point2>& points) {
   TriangleSurface surface;

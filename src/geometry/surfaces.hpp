@@ -10,6 +10,11 @@ namespace spume {
 
 using Point2 = std::array<double, 2>;
 
+// Twice the area of a triangle: positive when its corners go counter-clockwise.
+inline double turn(const Point2& a, const Point2& b, const Point2& c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
 // Facets around a circle: at least 24, of about the length `step`.
 int facets_around(double radius, double step);
 

@@ -13,7 +13,7 @@
 namespace spume {
 namespace {
 
-constexpr double wet_share = 0.5;
+constexpr double wet_wall_share = 0.5;
 
 }  // namespace
 
@@ -166,7 +166,7 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
                    fit.add(j, offset, r2);
                  });
     });
-    if (kernel_sum < wet_share || !seen || !fit.fit()) continue;
+    if (kernel_sum < wet_wall_share || !seen || !fit.fit()) continue;
     block.point.push_back(static_cast<std::int32_t>(g));
     fit.append(block.fits);
   }

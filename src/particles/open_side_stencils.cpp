@@ -10,7 +10,7 @@ namespace {
 // Below this share of a full kernel sum, of the liquid and its reflection in the side, a point has no liquid before it.
 // The foremost point of a lattice has 0.4 where it passes the side with the next layer a spacing ahead, and at a
 // surface half of what it has below one.
-constexpr double wet_share = 0.15;
+constexpr double wet_opening_share = 0.15;
 
 }  // namespace
 
@@ -76,7 +76,7 @@ void OpenSides::fit(const Arrangement& arrangement, const VectorField& at, std::
                    fit.add(j, offset, r2);
                  });
     });
-    if (kernel_sum >= wet_share && fit.fit())
+    if (kernel_sum >= wet_opening_share && fit.fit())
       fit.append(fits);
     else
       fit.append_none(fits);

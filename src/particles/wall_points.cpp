@@ -18,7 +18,7 @@ namespace {
 constexpr double even_out = 0.25;
 // Rounds until points move by less than 1 % of a spacing a round, around discs, balls and the inside of a pipe.
 constexpr int rounds = 40;
-constexpr double longest_move = 0.2;  // spacings a round
+constexpr double longest_slide = 0.2;  // spacings a round
 
 struct ShellPoint {
   Vec3 place{};
@@ -177,7 +177,7 @@ class Evening {
   void move(std::vector<ShellPoint>& points) {
     const double h = resolution_.smoothing_length;
     const double scale = -volume_ * Kernel::normalisation(dimensions) / std::pow(h, dimensions);  // times h^2
-    const double longest = longest_move * spacing_;
+    const double longest = longest_slide * spacing_;
     parallel_for(points.size(), [&](std::size_t i) {
       Vec3 gradient{};
       for (const std::int32_t j : list_.of(i)) {

@@ -167,6 +167,13 @@ std::array<std::string, 2> side_names(int axis, int dimensions) {
   return axis == 0 ? std::array<std::string, 2>{"left", "right"} : std::array<std::string, 2>{"front", "back"};
 }
 
+std::pair<int, int> side_place(const std::string& side, int dimensions) {
+  for (int axis = 0; axis < dimensions; ++axis)
+    for (int end = 0; end < 2; ++end)
+      if (side_names(axis, dimensions)[static_cast<std::size_t>(end)] == side) return {axis, end};
+  return {-1, -1};
+}
+
 // The title stands in the first line of every table, which its readers count by lines.
 void check_title(const Draft& draft, Problems& problems) {
   const std::string& title = draft.options.title;

@@ -23,5 +23,6 @@ void check_probes(Draft& draft, const std::vector<ProbeScalar>& scalars, Problem
 
 // Names of the two sides of an axis: left/right, front/back (3-D), bottom/top.
 std::array<std::string, 2> side_names(int axis, int dimensions);
+std::pair<int, int> side_place(const std::string& side, int dimensions);  // axis and end, or -1
 
 }  // namespace spume

@@ -31,14 +31,6 @@ std::vector<Named> all_of(const Draft& draft) {
   return all;
 }
 
-// Axis and end of a side, or -1.
-std::pair<int, int> place_of(const std::string& side, int dimensions) {
-  for (int axis = 0; axis < dimensions; ++axis)
-    for (int end = 0; end < 2; ++end)
-      if (side_names(axis, dimensions)[static_cast<std::size_t>(end)] == side) return {axis, end};
-  return {-1, -1};
-}
-
 double plane_of(const Draft& draft, int axis, int end) {
   return (end == 0 ? draft.lower : draft.upper)[static_cast<std::size_t>(axis)];
 }
@@ -57,7 +49,7 @@ class CheckOpening {
   void check() {
     given();
     if (!draft_.usable(named_.name + ".side") || draft_.dimensions == 0) return;
-    const auto [axis, end] = place_of(one_.side, draft_.dimensions);
+    const auto [axis, end] = side_place(one_.side, draft_.dimensions);
     const Node& side = *draft_.node(named_.name + ".side");
     if (axis < 0) {
       problems_.add(side, named_.name + ".side: a 2-D domain has left, right, bottom, top");
@@ -279,7 +271,7 @@ std::vector<Opening> make_openings(const Draft& draft, const CompileExpression& 
     Opening opening;
     opening.name = named.name;
     opening.inflow = named.inflow();
-    const auto [axis, end] = place_of(one.side, draft.dimensions);
+    const auto [axis, end] = side_place(one.side, draft.dimensions);
     if (axis < 0) continue;
     opening.axis = axis;
     opening.side = end;

@@ -107,14 +107,6 @@ class CheckWavemaker {
   Problems& problems_;
 };
 
-// Axis and end of a side, or -1.
-std::pair<int, int> place_of(const std::string& side, int dimensions) {
-  for (int axis = 0; axis < dimensions; ++axis)
-    for (int end = 0; end < 2; ++end)
-      if (side_names(axis, dimensions)[static_cast<std::size_t>(end)] == side) return {axis, end};
-  return {-1, -1};
-}
-
 // Depth of the liquid within five spacings of a wall, from its bed to its surface: exact for columns that are evenly
 // filled. 0: there is none.
 double still_depth_beside(const Scene& scene, int end) {
@@ -289,7 +281,7 @@ void check_sponges(const Draft& draft, Problems& problems) {
     const std::string name = entry("sponge", k);
     if (!draft.usable(name + ".side")) continue;
     const Node& node = *draft.node(name + ".side");
-    const auto [axis, end] = place_of(sponge.side, draft.dimensions);
+    const auto [axis, end] = side_place(sponge.side, draft.dimensions);
     if (axis < 0) {
       problems.add(node, name + ".side: a 2-D domain has left, right, bottom, top");
       continue;
@@ -354,7 +346,7 @@ std::vector<Sponge> make_sponges(const Draft& draft, const std::vector<Wavemaker
   constexpr double best_strength = 3;
   std::vector<Sponge> made;
   for (const SpongeDraft& one : draft.sponges) {
-    const auto [axis, end] = place_of(one.side, draft.dimensions);
+    const auto [axis, end] = side_place(one.side, draft.dimensions);
     made.push_back({axis, end, one.length, one.strength.value_or(best_strength * lowest), to_vec3(one.velocity)});
   }
   return made;

@@ -11,9 +11,9 @@
 namespace spume::test {
 namespace {
 
-class SavedState : public ::testing::TestWithParam<std::string> {};
+class SavedRun : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(SavedState, ARestoredRunContinuesToTheSameBits) {
+TEST_P(SavedRun, ARestoredRunContinuesToTheSameBits) {
   const Overrides overrides{"turbulence.model=\"dynamic-lagrangian\""};
   for (const Overrides& set : {Overrides{}, overrides}) {
     Simulation straight(GetParam(), set);
@@ -33,7 +33,7 @@ TEST_P(SavedState, ARestoredRunContinuesToTheSameBits) {
 }
 
 // A method that has already run elsewhere forgets it.
-TEST_P(SavedState, LoadingReplacesAnyEarlierState) {
+TEST_P(SavedRun, LoadingReplacesAnyEarlierState) {
   Simulation straight(GetParam());
   straight.steps(2, 0.004);
   MemoryState saved;
@@ -47,7 +47,7 @@ TEST_P(SavedState, LoadingReplacesAnyEarlierState) {
   EXPECT_TRUE(other.state() == straight.state());
 }
 
-TEST_P(SavedState, ARefusedStepLeavesIt) {
+TEST_P(SavedRun, ARefusedStepLeavesIt) {
   Simulation run(GetParam());
   run.steps(2, 0.004);
   MemoryState saved;
@@ -80,7 +80,7 @@ TEST(LesSphRefusal, LeavesEveryNumberOfTheState) {
 }
 
 // A step far too long moves a particle across its support: refused as well, and a shorter one succeeds.
-TEST_P(SavedState, ARefusedStepCanBeRepeatedShorter) {
+TEST_P(SavedRun, ARefusedStepCanBeRepeatedShorter) {
   Simulation run(GetParam()), untroubled(GetParam());
   run.steps(2, 0.004);
   untroubled.steps(2, 0.004);
@@ -132,7 +132,7 @@ TEST(LesSphSamples, AreTheSameAfterARefusedStep) {
   for (int axis = 0; axis < 2; ++axis) EXPECT_NEAR(after.velocity[axis], before.velocity[axis], 1e-12);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, SavedState, ::testing::Values(taylor_green, taylor_green_3d, dam_break),
+INSTANTIATE_TEST_SUITE_P(Cases, SavedRun, ::testing::Values(taylor_green, taylor_green_3d, dam_break),
                          [](const auto& info) {
                            return info.index == 0 ? "Vortices2D" : info.index == 1 ? "Vortices3D" : "DamBreak";
                          });

@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-namespace spume::testing {
+namespace spume::test {
 
 DirectStencil direct_stencil(const JitteredParticles& particles, const std::array<double, 3>& x,
                              double support_radius) {
@@ -44,4 +44,4 @@ DirectStencil direct_stencil(const JitteredParticles& particles, const std::arra
   return stencil;
 }
 
-}  // namespace spume::testing
+}  // namespace spume::test

@@ -7,7 +7,7 @@
 
 #include "operators/jittered_particles.hpp"
 
-namespace spume::testing {
+namespace spume::test {
 
 struct DirectStencil {
   std::vector<std::size_t> particle;
@@ -20,4 +20,4 @@ struct DirectStencil {
 // do not appear.
 DirectStencil direct_stencil(const JitteredParticles& particles, const std::array<double, 3>& x, double support_radius);
 
-}  // namespace spume::testing
+}  // namespace spume::test

@@ -14,10 +14,9 @@
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 
-namespace spume {
+namespace spume::test {
 namespace {
 
-using testing::JitteredParticles;
 using std::numbers::pi;
 
 // u(x) = amplitude cos(2 pi mode.x + phase), amplitude normal to mode.
@@ -94,8 +93,8 @@ std::array<Array<double>, 3> velocity_at(const JitteredParticles& particles, con
   return velocity;
 }
 
-class ParticleEnergySpectrum : public ::testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Dimensions, ParticleEnergySpectrum, ::testing::Values(2, 3));
+class ParticleEnergySpectrum : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Dimensions, ParticleEnergySpectrum, testing::Values(2, 3));
 
 TEST_P(ParticleEnergySpectrum, OfAKnownFieldIsRecoveredUpToHalfTheNyquistWavenumber) {
   const int dimensions = GetParam();
@@ -116,7 +115,7 @@ TEST_P(ParticleEnergySpectrum, OfAKnownFieldIsRecoveredUpToHalfTheNyquistWavenum
     std::array<double, 3> x{};
     const auto random = random_uniform(22, RandomPurpose::test, s, 0, 0);
     for (int d = 0; d < dimensions; ++d) x[d] = (std::floor(random[d] * across) + 0.5) * particles.spacing;
-    const auto stencil = testing::direct_stencil(particles, x, support_radius);
+    const auto stencil = direct_stencil(particles, x, support_radius);
     for (std::size_t w = 0; w < waves.size(); ++w) {
       std::complex<double> transfer = 0;
       for (std::size_t j = 0; j < stencil.weight.size(); ++j)
@@ -205,4 +204,4 @@ TEST(ParticleEnergySpectrumErrors, AreNamed) {
 }
 
 }  // namespace
-}  // namespace spume
+}  // namespace spume::test

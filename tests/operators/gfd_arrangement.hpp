@@ -67,19 +67,6 @@ struct Stencils {
   }
 };
 
-template <class T>
-Array<float> to_float(const Array<T>& values) {
-  Array<float> result(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) result[i] = static_cast<float>(values[i]);
-  return result;
-}
-
-inline VectorArrays<double> random_velocity(const Arrangement& a, std::uint32_t draw) {
-  VectorArrays<double> u;
-  for (int axis = 0; axis < a.dimensions(); ++axis) u[axis] = a.random(draw + static_cast<std::uint32_t>(axis));
-  return u;
-}
-
 // A positive property at random, a hundredfold apart at most, and rows that take it as varying: two of three.
 struct RandomProperty {
   Array<float> value;

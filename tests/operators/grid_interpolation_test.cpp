@@ -14,10 +14,9 @@
 #include "operators/jittered_particles.hpp"
 #include "spume/core/error.hpp"
 
-namespace spume {
+namespace spume::test {
 namespace {
 
-using testing::JitteredParticles;
 using std::numbers::pi;
 
 UniformGrid unit_grid(int dimensions, std::size_t across) {
@@ -47,8 +46,8 @@ Interpolated interpolate(const UniformGrid& grid, const JitteredParticles& parti
   return result;
 }
 
-class GridInterpolation : public ::testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Dimensions, GridInterpolation, ::testing::Values(2, 3));
+class GridInterpolation : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Dimensions, GridInterpolation, testing::Values(2, 3));
 
 // The weights solve the consistency conditions to rounding times the condition number of the scaled moment matrix
 // (below 1e4 here) times sum |w| (below 2): 1e-12 of a field of order one.
@@ -116,7 +115,7 @@ TEST_P(GridInterpolation, AgreesWithDirectlySolvedStencils) {
   const Interpolated result = interpolate(grid, particles, field, true);
   for (std::size_t n = 0; n < grid.size(); n += 13) {
     const auto stencil =
-        testing::direct_stencil(particles, grid_point(grid, n), GridInterpolationOptions{}.support * particles.spacing);
+        direct_stencil(particles, grid_point(grid, n), GridInterpolationOptions{}.support * particles.spacing);
     double expected = 0;
     for (std::size_t j = 0; j < stencil.weight.size(); ++j) expected += stencil.weight[j] * field[stencil.particle[j]];
     EXPECT_NEAR(result.values[n], expected, 10 * reproduction_tolerance) << n;
@@ -269,11 +268,11 @@ TEST(GridInterpolationInputErrors, AreNamed) {
     }
     return "no error";
   };
-  EXPECT_THAT(message({particles.positions(), fields, 0, {}}), ::testing::HasSubstr("spacing"));
-  EXPECT_THAT(message({particles.positions(), fields, 0.5, {true, true, true}}), ::testing::HasSubstr("periodic x"));
-  EXPECT_THAT(message({{particles.position[0], {}, {}}, fields, 0.25, {}}), ::testing::HasSubstr("y coordinates"));
+  EXPECT_THAT(message({particles.positions(), fields, 0, {}}), testing::HasSubstr("spacing"));
+  EXPECT_THAT(message({particles.positions(), fields, 0.5, {true, true, true}}), testing::HasSubstr("periodic x"));
+  EXPECT_THAT(message({{particles.position[0], {}, {}}, fields, 0.25, {}}), testing::HasSubstr("y coordinates"));
   grid.points[1] = 0;
-  EXPECT_THAT(message({particles.positions(), fields, 0.25, {}}), ::testing::HasSubstr("no points along y"));
+  EXPECT_THAT(message({particles.positions(), fields, 0.25, {}}), testing::HasSubstr("no points along y"));
 }
 
 TEST(GridInterpolationInputErrors, ParticlesWithoutAPlaceAreLeftOut) {
@@ -286,4 +285,4 @@ TEST(GridInterpolationInputErrors, ParticlesWithoutAPlaceAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace spume
+}  // namespace spume::test

@@ -9,7 +9,7 @@
 #include "spume/core/array.hpp"
 #include "spume/core/random.hpp"
 
-namespace spume::testing {
+namespace spume::test {
 
 struct JitteredParticles {
   int dimensions;
@@ -44,4 +44,4 @@ struct JitteredParticles {
   }
 };
 
-}  // namespace spume::testing
+}  // namespace spume::test

@@ -329,4 +329,17 @@ inline std::deque<Arrangement>& all_arrangements() {
   return arrangements;
 }
 
+template <class T>
+Array<float> to_float(const Array<T>& values) {
+  Array<float> result(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) result[i] = static_cast<float>(values[i]);
+  return result;
+}
+
+inline VectorArrays<double> random_velocity(const Arrangement& a, std::uint32_t draw) {
+  VectorArrays<double> u;
+  for (int axis = 0; axis < a.dimensions(); ++axis) u[axis] = a.random(draw + static_cast<std::uint32_t>(axis));
+  return u;
+}
+
 }  // namespace spume::test

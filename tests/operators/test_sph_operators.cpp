@@ -10,19 +10,6 @@
 namespace spume::test {
 namespace {
 
-VectorArrays<double> random_velocity(const Arrangement& a, std::uint32_t draw) {
-  VectorArrays<double> u;
-  for (int axis = 0; axis < a.dimensions(); ++axis) u[axis] = a.random(draw + static_cast<std::uint32_t>(axis));
-  return u;
-}
-
-template <class T>
-Array<float> to_float(const Array<T>& values) {
-  Array<float> result(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) result[i] = static_cast<float>(values[i]);
-  return result;
-}
-
 TEST(SphOperators, VelocityGradientAndFilterAgreeWithTheSlowTwin) {
   for (Arrangement& a : all_arrangements()) {
     SCOPED_TRACE(a.setup.name);

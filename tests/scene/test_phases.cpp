@@ -13,7 +13,7 @@ using test::CaseFile;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const CaseSchema& schema() {
+const CaseSchema& phase_schema() {
   static const CaseSchema made = [] {
     MethodDeclaration method;
     method.name = "mixed";
@@ -35,22 +35,22 @@ const std::string air =
     "[[phase]]\nname = \"air\"\ndensity = 1.2\nviscosity = 1.8e-5\nsound_speed = 340\n";  // 15 to 19
 const std::string everywhere = "[[region]]\nphase = \"water\"\n";                         // 20, 21
 
-LoadedCase load(const std::string& text) {
-  return test::load_text(text, schema());
+LoadedCase load_phases(const std::string& text) {
+  return test::load_text(text, phase_schema());
 }
 
-std::vector<std::string> problems(const std::string& text) {
-  return test::problems_of(text, schema());
+std::vector<std::string> phase_problems(const std::string& text) {
+  return test::problems_of(text, phase_schema());
 }
 
 // Particles start at 0.05, 0.15, ...: in each quadrant about the middle (0.05, 0.05), (0.05, 0.15), (0.15, 0.05) and
 // (0.15, 0.15) are within 0.25 of it, (0.05, 0.25) is 0.255 away.
 TEST(Phases, ALaterRegionReplacesWhatAnEarlierOneFilled) {
   const LoadedCase loaded =
-      load(head + water + air + everywhere +
-           "[[region]]\nphase = \"air\"\ncentre = [0.5, 0.5]\nradius = 0.25\nvelocity = [2, 0]\n"
-           "[[region]]\nphase = \"water\"\nwhere = \"0.1 - y\"\n[interface]\nsurface_tension = 0.072\n"
-           "[fluid]\ngravity = 9.81\n");
+      load_phases(head + water + air + everywhere +
+                  "[[region]]\nphase = \"air\"\ncentre = [0.5, 0.5]\nradius = 0.25\nvelocity = [2, 0]\n"
+                  "[[region]]\nphase = \"water\"\nwhere = \"0.1 - y\"\n[interface]\nsurface_tension = 0.072\n"
+                  "[fluid]\ngravity = 9.81\n");
   const Scene& scene = loaded.scene;
   ASSERT_EQ(scene.phases.size(), 2u);
   EXPECT_EQ(scene.phases[0].name, "water");
@@ -79,51 +79,51 @@ TEST(Phases, ALaterRegionReplacesWhatAnEarlierOneFilled) {
   EXPECT_EQ(bottom, 10u);
   EXPECT_THAT(loaded.options.groups.at("phase air"), HasSubstr("1.2 kg/m3"));
   EXPECT_THAT(loaded.options.resolved, HasSubstr("spacing = 0.1                             # case, m\n"));
-  const LoadedCase again = load(loaded.options.resolved);
+  const LoadedCase again = load_phases(loaded.options.resolved);
   EXPECT_EQ(again.scene.phases.size(), 2u);
   EXPECT_EQ(again.scene.surface_tension, 0.072);
 }
 
 TEST(Phases, WhatIsMissingIsNamed) {
-  EXPECT_THAT(problems(head),
+  EXPECT_THAT(phase_problems(head),
               ElementsAre("1:1 no phase: add a fluid,  [[phase]]  with  name, density, viscosity",
                           "1:1 no region: say what a phase fills,  [[region]]  with  phase = \"<name>\""));
-  EXPECT_THAT(problems(head + "[[phase]]\nname = \"water\"\ndensity = 1000\n" + everywhere),
+  EXPECT_THAT(phase_problems(head + "[[phase]]\nname = \"water\"\ndensity = 1000\n" + everywhere),
               ElementsAre("11:1 missing key 'viscosity' in [[phase]]; add  viscosity = <number>  # Pa s, >= 0"));
-  EXPECT_THAT(problems(head + water + "[[region]]\nradius = 0.1\n"),
+  EXPECT_THAT(phase_problems(head + water + "[[region]]\nradius = 0.1\n"),
               ElementsAre("15:1 missing key 'phase' in [[region]]; add  phase = \"<text>\"",
                           HasSubstr("15:1 missing key 'centre' in [[region]], which has a radius")));
 }
 
 TEST(Phases, NamesAreKnownAndUnique) {
-  EXPECT_THAT(problems(head + water + air + "[[region]]\nphase = \"wter\"\n"),
+  EXPECT_THAT(phase_problems(head + water + air + "[[region]]\nphase = \"wter\"\n"),
               ElementsAre("21:9 region.0.phase must be the name of a phase, \"water\" or \"air\", found \"wter\"; did "
                           "you mean \"water\"?"));
-  EXPECT_THAT(problems(head + water + water + everywhere),
+  EXPECT_THAT(phase_problems(head + water + water + everywhere),
               ElementsAre("16:8 another phase has the name 'water' already"));
-  EXPECT_THAT(problems(head + water + "[[phase]]\nname = \"\"\ndensity = 1\nviscosity = 0\n" + everywhere),
+  EXPECT_THAT(phase_problems(head + water + "[[phase]]\nname = \"\"\ndensity = 1\nviscosity = 0\n" + everywhere),
               ElementsAre("16:8 phase.1.name must not be empty"));
 }
 
 TEST(Phases, TensionIsPositiveAndBetweenTwo) {
-  EXPECT_THAT(problems(head + water + air + everywhere + "[interface]\nsurface_tension = -1\n"),
+  EXPECT_THAT(phase_problems(head + water + air + everywhere + "[interface]\nsurface_tension = -1\n"),
               ElementsAre("23:19 interface.surface_tension must be >= 0 (N/m), found -1"));
   EXPECT_THAT(
-      problems(head + water + everywhere + "[interface]\nsurface_tension = 1\n"),
+      phase_problems(head + water + everywhere + "[interface]\nsurface_tension = 1\n"),
       ElementsAre("18:19 interface.surface_tension needs two phases, found one; add a [[phase]], or remove it"));
 }
 
 TEST(Phases, RegionsLieInTheDomainAndHoldSomething) {
-  EXPECT_THAT(problems(head + water + "[[region]]\nphase = \"water\"\nlower = [0, 0]\nupper = [1, 2]\n"),
+  EXPECT_THAT(phase_problems(head + water + "[[region]]\nphase = \"water\"\nlower = [0, 0]\nupper = [1, 2]\n"),
               ElementsAre(HasSubstr("15:1 region.0 reaches outside the domain: y from 0 to 2")));
-  EXPECT_THAT(problems(head + water + air + everywhere + "[[region]]\nphase = \"air\"\n"),
+  EXPECT_THAT(phase_problems(head + water + air + everywhere + "[[region]]\nphase = \"air\"\n"),
               ElementsAre("20:1 region.0 is empty: later regions replace all of it"));
-  EXPECT_THAT(problems(head + water + everywhere + "[[region]]\nphase = \"water\"\nwhere = \"sqrt(-1 - x)\"\n"),
+  EXPECT_THAT(phase_problems(head + water + everywhere + "[[region]]\nphase = \"water\"\nwhere = \"sqrt(-1 - x)\"\n"),
               ElementsAre(HasSubstr("19:9 region.1.where is not finite at")));
 }
 
 TEST(Phases, OneFluidAndSeveralDoNotMix) {
-  EXPECT_THAT(problems(head + water + everywhere + "[fluid]\ndensity = 1\n"),
+  EXPECT_THAT(phase_problems(head + water + everywhere + "[fluid]\ndensity = 1\n"),
               ElementsAre("18:1 fluid.density is taken by no method of this version, and this case is of method "
                           "\"mixed\"; remove it"));
   EXPECT_THAT(test::problems_of(test::small_case("[[phase]]\nname = \"water\"\n")),

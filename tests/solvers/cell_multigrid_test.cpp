@@ -101,12 +101,15 @@ TEST_P(Everywhere, FewIterationsAtTwoResolutions) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Scenes, Everywhere,
-    testing::Values(GridCase{"open wave", open_wave, 2, 0.02, 0.01}, GridCase{"open wave", open_wave, 3, 0.05, 0.025},
-                    GridCase{"closed box", closed_box, 2, 0.02, 0.01}, GridCase{"closed box", closed_box, 3, 0.04, 0.025},
-                    GridCase{"periodic", periodic_box, 2, 0.02, 0.01}, GridCase{"periodic", periodic_box, 3, 0.04, 0.025},
-                    GridCase{"drops", drops, 2, 0.02, 0.01}, GridCase{"drops", drops, 3, 0.05, 0.03}));
+INSTANTIATE_TEST_SUITE_P(Scenes, Everywhere,
+                         testing::Values(GridCase{"open wave", open_wave, 2, 0.02, 0.01},
+                                         GridCase{"open wave", open_wave, 3, 0.05, 0.025},
+                                         GridCase{"closed box", closed_box, 2, 0.02, 0.01},
+                                         GridCase{"closed box", closed_box, 3, 0.04, 0.025},
+                                         GridCase{"periodic", periodic_box, 2, 0.02, 0.01},
+                                         GridCase{"periodic", periodic_box, 3, 0.04, 0.025},
+                                         GridCase{"drops", drops, 2, 0.02, 0.01},
+                                         GridCase{"drops", drops, 3, 0.05, 0.03}));
 
 TEST(CellMultigrid, SolidBoxInTheLiquidCostsFewIterations) {
   // The particles see no mirror images in the box, which is its zero normal gradient: no neighbour, no flux.

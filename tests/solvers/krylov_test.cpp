@@ -89,14 +89,18 @@ TEST_P(Direct, EverySolverAgreesWithTheFactorisation) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Systems, Direct,
-    testing::Values(SolverCase{"open wave", open_wave, 2, 0.02, 0.05}, SolverCase{"open wave", open_wave, 2, 0.02, 0},
-                    SolverCase{"open wave", open_wave, 3, 1.0 / 14, 0.05}, SolverCase{"open wave", open_wave, 3, 1.0 / 14, 0},
-                    SolverCase{"closed box", closed_box, 2, 0.02, 0.05}, SolverCase{"closed box", closed_box, 2, 0.02, 0},
-                    SolverCase{"closed box", closed_box, 3, 0.0625, 0}, SolverCase{"periodic", periodic_box, 2, 0.02, 0},
-                    SolverCase{"periodic", periodic_box, 3, 0.0625, 0.05}, SolverCase{"drops", drops, 2, 0.02, 0},
-                    SolverCase{"drops", drops, 3, 0.07, 0}));
+INSTANTIATE_TEST_SUITE_P(Systems, Direct,
+                         testing::Values(SolverCase{"open wave", open_wave, 2, 0.02, 0.05},
+                                         SolverCase{"open wave", open_wave, 2, 0.02, 0},
+                                         SolverCase{"open wave", open_wave, 3, 1.0 / 14, 0.05},
+                                         SolverCase{"open wave", open_wave, 3, 1.0 / 14, 0},
+                                         SolverCase{"closed box", closed_box, 2, 0.02, 0.05},
+                                         SolverCase{"closed box", closed_box, 2, 0.02, 0},
+                                         SolverCase{"closed box", closed_box, 3, 0.0625, 0},
+                                         SolverCase{"periodic", periodic_box, 2, 0.02, 0},
+                                         SolverCase{"periodic", periodic_box, 3, 0.0625, 0.05},
+                                         SolverCase{"drops", drops, 2, 0.02, 0},
+                                         SolverCase{"drops", drops, 3, 0.07, 0}));
 
 TEST(Krylov, ReportedResidualIsTheMeasuredOne) {
   Problem problem(open_wave(3, 0.05, 0));
