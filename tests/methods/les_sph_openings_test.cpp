@@ -8,14 +8,15 @@ namespace spume::test {
 namespace {
 
 // From the left to the right, between walls below and above.
-std::string channel(const std::string& upper, const std::string& wall, double spacing, const std::string& velocity) {
+std::string open_channel(const std::string& upper, const std::string& wall, double spacing,
+                         const std::string& velocity) {
   return "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = " + upper + "\nbottom = \"" + wall + "\"\ntop = \"" +
          wall + "\"\n[resolution]\nspacing = " + std::to_string(spacing) +
          "\n[fluid]\nreynolds = 20\n[[liquid]]\nvelocity = " + velocity +
          "\n[[inflow]]\nside = \"left\"\nvelocity = " + velocity + "\n[[outflow]]\nside = \"right\"\n[time]\nend = 2\n";
 }
-const std::string stream = channel("[1, 0.5]", "free-slip", 0.05, "[\"1\", \"0\"]");
-const std::string poiseuille = channel("[1.5, 1]", "no-slip", 0.0625, "[\"4*y*(1-y)\", \"0\"]");  // 16 across
+const std::string stream = open_channel("[1, 0.5]", "free-slip", 0.05, "[\"1\", \"0\"]");
+const std::string poiseuille = open_channel("[1.5, 1]", "no-slip", 0.0625, "[\"4*y*(1-y)\", \"0\"]");  // 16 across
 
 // A tank that a patch of its wall fills.
 const std::string filling =

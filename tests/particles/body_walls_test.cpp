@@ -30,11 +30,7 @@ reference::Carried smooth(const Vec3& r) {
           {std::cos(2 * r[1]) + r[2], r[0] * r[1] - 0.3, r[0] * r[0] + 0.4 * r[2]}};
 }
 
-struct Layout {
-  const char* name;
-  std::string text;
-};
-std::vector<Layout> layouts() {
+std::vector<Layout> wall_layouts() {
   return {{"disc", scene_text(square, 0.05, disc)},
           {"pipe", scene_text(square, 0.05, pipe)},
           {"ring", scene_text(square, 0.05, disc + pipe)},
@@ -79,7 +75,7 @@ TEST(WallPoints, StandInLayersOfAsManyAsTheyHaveVolumeFor) {
 }
 
 TEST(BodyWalls, MirrorValuesAsFitsOverAllParticlesDo) {
-  for (const Layout& layout : layouts()) {
+  for (const Layout& layout : wall_layouts()) {
     SCOPED_TRACE(layout.name);
     const Walled walled(layout.text);
     const reference::WallSums twin = walled.twin(smooth);
@@ -104,7 +100,7 @@ TEST(BodyWalls, MirrorValuesAsFitsOverAllParticlesDo) {
 }
 
 TEST(BodyWalls, SweepsSeeWallPointsAndTheirImages) {
-  for (const Layout& layout : layouts()) {
+  for (const Layout& layout : wall_layouts()) {
     SCOPED_TRACE(layout.name);
     Walled walled(layout.text);
     const int d = walled.particles.dimensions;

@@ -21,11 +21,7 @@ const std::string basin =
     "= \"free-slip\"\n";
 const std::string upper_half = "where = \"0.5 + 0.03*sin(5*x) - y\"\n";
 
-struct Layout {
-  const char* name;
-  std::string text;
-};
-std::vector<Layout> layouts() {
+std::vector<Layout> surface_layouts() {
   const std::string half_space = "[[body]]\nshape = \"half-space\"\nposition = ";
   return {
       {"beach", scene_text(tank, 0.04, half_space + "[0.3, 0]\nnormal = [0.866, 0.5]\n", upper_half)},
@@ -142,7 +138,7 @@ class Twin {
 }  // namespace
 
 TEST(ContinuedLiquid, CountsAsSumsOverAllWallPointsDo) {
-  for (const Layout& layout : layouts()) {
+  for (const Layout& layout : surface_layouts()) {
     SCOPED_TRACE(layout.name);
     Walled walled(layout.text, 0.05);
     const int d = walled.particles.dimensions;

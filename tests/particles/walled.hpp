@@ -20,6 +20,11 @@ inline std::string scene_text(const std::string& domain, double spacing, const s
          bodies;
 }
 
+struct Layout {
+  const char* name;
+  std::string text;
+};
+
 // A scene with its particles jittered, in cell order, with images and lists.
 struct Walled {
   LoadedCase loaded;

@@ -13,7 +13,7 @@ class MomentFields {
     bool kernel_sum = false;
     bool concentration_gradient = false;
     bool normal = false;
-    CorrectionFading fading;  // of L, in a closed liquid
+    CorrectionFading fading{};  // of L, in a closed liquid
   };
   MomentFields(ParticleStore& particles, const Wanted& wanted);
 
