@@ -16,7 +16,7 @@
 namespace spume {
 namespace {
 
-std::string spacing(const benchmark::State& state) {
+std::string scene_spacing(const benchmark::State& state) {
   char text[60];
   std::snprintf(text, sizeof text, "resolution.spacing=%.17g", 1.0 / static_cast<double>(state.range(0)));
   return text;
@@ -30,7 +30,8 @@ struct Tank {
     Ledger ledger;
     method.step(method.step_limit().dt, ledger);
   }
-  explicit Tank(const benchmark::State& state) : Tank(load_case(SPUME_BENCH_CASES "/drum.toml", {spacing(state)})) {}
+  explicit Tank(const benchmark::State& state)
+      : Tank(load_case(SPUME_BENCH_CASES "/drum.toml", {scene_spacing(state)})) {}
 };
 
 void wall_stencils(benchmark::State& state) {
@@ -67,11 +68,11 @@ BENCHMARK(wall_points)
 
 // A box of the same volume: sides of sqrt(pi) 0.45.
 LoadedCase box_or_drum(const benchmark::State& state) {
-  if (state.range(2) == 1) return load_case(SPUME_BENCH_CASES "/drum.toml", {spacing(state)});
+  if (state.range(2) == 1) return load_case(SPUME_BENCH_CASES "/drum.toml", {scene_spacing(state)});
   const std::string half = std::to_string(0.45 * std::sqrt(M_PI) / 2);
   return load_case(
       SPUME_BENCH_CASES "/drum.toml",
-      {spacing(state), "body=[]", "liquid=[{upper=[" + half + ", " + half + ", 0.6]}]",
+      {scene_spacing(state), "body=[]", "liquid=[{upper=[" + half + ", " + half + ", 0.6]}]",
        "domain.lower=[-" + half + ", -" + half + ", 0]", "domain.upper=[" + half + ", " + half + ", 1]",
        "domain.left=free-slip", "domain.right=free-slip", "domain.front=free-slip", "domain.back=free-slip"});
 }

@@ -14,7 +14,7 @@ constexpr double pairs_per_bubble = 4.18879 * 2.6 * 2.6 * 2.6;  // particles in 
 constexpr double candidates_per_bubble = 27 * 2.6 * 2.6 * 2.6;  // in the cells around it
 
 struct BubbleSwarm {
-  Particles particles;
+  ParticleCube particles;
   std::size_t size;
   CellOrder table;
   std::array<Array<float>, 3> place, liquid_place;
@@ -166,9 +166,9 @@ void births_and_deaths(benchmark::State& state) {
       static_cast<double>(items), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-BENCHMARK(bubble_sums)->Apply(Particles::sizes);
-BENCHMARK(particles_around_bubbles)->Apply(Particles::sizes);
-BENCHMARK(interpolation_to_bubbles)->Apply(Particles::sizes);
+BENCHMARK(bubble_sums)->Apply(ParticleCube::sizes);
+BENCHMARK(particles_around_bubbles)->Apply(ParticleCube::sizes);
+BENCHMARK(interpolation_to_bubbles)->Apply(ParticleCube::sizes);
 BENCHMARK(entrainment)->Arg(5)->Arg(15);
 BENCHMARK(births_and_deaths)
     ->ArgNames({"bubbles", "threads"})

@@ -20,7 +20,7 @@ namespace {
 enum class Fluids { one_phase, drop, mixed };
 
 struct GfdCube {
-  Particles particles;
+  ParticleCube particles;
   SweepContext context;
   PackedNeighbours packed;
   Fluids fluids;

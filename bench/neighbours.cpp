@@ -8,7 +8,7 @@ namespace spume {
 namespace {
 
 void sort(benchmark::State& state) {
-  Particles particles(state);
+  ParticleCube particles(state);
   for (auto _ : state) particles.sort();
   particles.count(state, 0);
   // Three coordinates read and a key, an order and a count written and read again.
@@ -17,7 +17,7 @@ void sort(benchmark::State& state) {
 }
 
 void images(benchmark::State& state) {
-  Particles particles(state);
+  ParticleCube particles(state);
   for (auto _ : state) particles.make_images();
   particles.count(state, 0);
   const auto images = static_cast<double>(particles.images.size());
@@ -28,7 +28,7 @@ void images(benchmark::State& state) {
 }
 
 void neighbour_list(benchmark::State& state) {
-  Particles particles(state);
+  ParticleCube particles(state);
   for (auto _ : state) particles.make_list();
   const double per_particle = static_cast<double>(particles.list.pair_count()) / static_cast<double>(particles.n);
   particles.count(state, per_particle);
@@ -40,9 +40,9 @@ void neighbour_list(benchmark::State& state) {
                         static_cast<int>(state.range(2)));
 }
 
-BENCHMARK(sort)->Apply(Particles::sizes);
-BENCHMARK(images)->Apply(Particles::sizes);
-BENCHMARK(neighbour_list)->Apply(Particles::sizes);
+BENCHMARK(sort)->Apply(ParticleCube::sizes);
+BENCHMARK(images)->Apply(ParticleCube::sizes);
+BENCHMARK(neighbour_list)->Apply(ParticleCube::sizes);
 
 }  // namespace
 }  // namespace spume

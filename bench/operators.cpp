@@ -12,7 +12,7 @@ namespace spume {
 namespace {
 
 struct Pressure {
-  Particles particles;
+  ParticleCube particles;
   SweepContext context;
   PackedNeighbours packed;
   Array<float> diagonal_shift, x, y;
@@ -90,7 +90,7 @@ struct Refined final : RefinedSystem {
 // as particles at a surface are.
 void pressure_solve(benchmark::State& state) {
   Pressure pressure(state);
-  const Particles& particles = pressure.particles;
+  const ParticleCube& particles = pressure.particles;
   const std::size_t n = particles.n;
   const double spacing = particles.spacing();
   Array<float> kernel_sum(n), trace(n), diagonal(n), interior(n);
@@ -143,10 +143,10 @@ void pressure_solve(benchmark::State& state) {
       static_cast<int>(state.range(2)));
 }
 
-BENCHMARK(pressure_apply)->Apply(Particles::sizes);
-BENCHMARK(pressure_residual)->Apply(Particles::sizes);
-BENCHMARK(pressure_subtract_product)->Apply(Particles::sizes);
-BENCHMARK(pressure_solve)->Apply(Particles::sizes);
+BENCHMARK(pressure_apply)->Apply(ParticleCube::sizes);
+BENCHMARK(pressure_residual)->Apply(ParticleCube::sizes);
+BENCHMARK(pressure_subtract_product)->Apply(ParticleCube::sizes);
+BENCHMARK(pressure_solve)->Apply(ParticleCube::sizes);
 
 }  // namespace
 }  // namespace spume

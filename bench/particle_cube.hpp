@@ -17,7 +17,7 @@
 
 namespace spume {
 
-struct Particles {
+struct ParticleCube {
   ImageRules rules;
   CellGrid grid;
   CellOrder table;
@@ -26,7 +26,7 @@ struct Particles {
   Array<double> x, y, z;
   std::size_t n;
 
-  explicit Particles(const benchmark::State& state) {
+  explicit ParticleCube(const benchmark::State& state) {
     omp_set_num_threads(static_cast<int>(state.range(2)));
     const auto m = static_cast<std::size_t>(std::lround(std::cbrt(static_cast<double>(state.range(0)))));
     n = m * m * m;

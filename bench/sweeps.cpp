@@ -18,7 +18,7 @@ struct PairWork {
 };
 
 struct Sweeps {
-  Particles particles;
+  ParticleCube particles;
   SweepContext context;
   PackedNeighbours packed;
   VelocityImageRule rule;
@@ -244,16 +244,16 @@ void shift_shared_by_layers(benchmark::State& state) {
   });
 }
 
-BENCHMARK(geometry_sums)->Apply(Particles::sizes);
-BENCHMARK(velocity_gradient)->Apply(Particles::sizes);
-BENCHMARK(shift_curvature)->Apply(Particles::sizes);
-BENCHMARK(viscous_stress)->Apply(Particles::sizes);
-BENCHMARK(velocity_divergence)->Apply(Particles::sizes);
-BENCHMARK(pressure_gradient)->Apply(Particles::sizes);
-BENCHMARK(filter_of_vector)->Apply(Particles::sizes);
-BENCHMARK(filter_of_two_scalars)->Apply(Particles::sizes);
-BENCHMARK(depths_below_surface)->Apply(Particles::sizes);
-BENCHMARK(shift_shared_by_layers)->Apply(Particles::sizes);
+BENCHMARK(geometry_sums)->Apply(ParticleCube::sizes);
+BENCHMARK(velocity_gradient)->Apply(ParticleCube::sizes);
+BENCHMARK(shift_curvature)->Apply(ParticleCube::sizes);
+BENCHMARK(viscous_stress)->Apply(ParticleCube::sizes);
+BENCHMARK(velocity_divergence)->Apply(ParticleCube::sizes);
+BENCHMARK(pressure_gradient)->Apply(ParticleCube::sizes);
+BENCHMARK(filter_of_vector)->Apply(ParticleCube::sizes);
+BENCHMARK(filter_of_two_scalars)->Apply(ParticleCube::sizes);
+BENCHMARK(depths_below_surface)->Apply(ParticleCube::sizes);
+BENCHMARK(shift_shared_by_layers)->Apply(ParticleCube::sizes);
 
 }  // namespace
 }  // namespace spume
