@@ -57,6 +57,7 @@ Boundary::Boundary(const Domain& domain, double spacing, std::unique_ptr<BodyWal
       openings_(std::move(openings)) {
   for (int axis = 0; axis < domain.dimensions; ++axis) walls[axis] = {domain.lower[axis], domain.upper[axis]};
   next_walls = walls;
+  if (openings_ != nullptr) wall_speed = openings_->largest_speed();
   unite_solids(walls);
 }
 

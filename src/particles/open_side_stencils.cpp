@@ -20,7 +20,13 @@ void OpenSides::list_points(double t) {
     const Gate& gate = gates_[g];
     Point point{place, place, place, static_cast<std::int32_t>(g), number, velocity, {}};
     point.foot[gate.opening->axis] = gate.plane;
-    point.mirror[gate.opening->axis] = gate.plane + gate.inwards * std::abs(depth_behind(gate, place));
+    // Behind an inflow the first liquid is at least half a layer before the foremost point. A value nearer to the side
+    // would be one beyond all particles, and the gradient that an inflow gives would act over no distance: plug flow
+    // into a channel of 16 across between no-slip walls, Re = 50, then loses 13 % of its flow rate as points pass the
+    // side and has blown up at t = 0.6.
+    const double depth = depth_behind(gate, place);
+    const double ahead = number >= 0 ? std::abs(depth) : std::max(depth, gate.layer - depth);
+    point.mirror[gate.opening->axis] = gate.plane + gate.inwards * ahead;
     points_.push_back(point);
   };
   for (std::size_t g = 0; g < gates_.size(); ++g) {
@@ -44,6 +50,9 @@ void OpenSides::list_points(double t) {
   for (std::size_t k = 0; k < drifting_.size(); ++k)
     add_point(static_cast<std::size_t>(drifting_[k].gate), drifting_[k].next, drifting_[k].velocity,
               static_cast<std::int32_t>(k));
+  double speed2 = 0;
+  for (const Point& point : points_) speed2 = std::max(speed2, dot(point.velocity, point.velocity));
+  largest_speed_ = std::sqrt(speed2);
 }
 
 template <int dimensions>
@@ -125,9 +134,6 @@ void OpenSides::find_stencils(const Arrangement& arrangement, const VectorField&
       stencils.wall_velocity[axis][g] = static_cast<float>(point.velocity[axis]);
     }
   });
-  double speed2 = 0;
-  for (const Point& point : points_) speed2 = std::max(speed2, dot(point.velocity, point.velocity));
-  largest_speed_ = std::sqrt(speed2);
 }
 
 void OpenSides::give_gradients(const std::array<const double*, 3>& before, const std::array<const double*, 3>& after,
@@ -143,7 +149,14 @@ void OpenSides::give_gradients(const std::array<const double*, 3>& before, const
     const double change =
         stencils.mirrored(g, after[axis]) - (before[axis] == nullptr ? 0.0 : stencils.mirrored(g, before[axis]));
     const double gradient = change / dt - point.acceleration[axis];
-    stencils.predicted[axis][g] = static_cast<float>(dt * gradient);
+    if (before[axis] != nullptr) {
+      // The velocity goes on linearly through what is given: a zero gradient in its place lets half of a difference
+      // between the two pass, as the divergence of the other half is behind the side.
+      const double behind = depth_behind(gate, point.place) / std::abs(point.mirror[axis] - gate.plane);
+      for (int k = 0; k < d; ++k)
+        stencils.predicted[k][g] = static_cast<float>(behind * (point.velocity[k] - stencils.mirrored(g, before[k])));
+    }
+    stencils.predicted[axis][g] += static_cast<float>(dt * gradient);
     stencils.given_pressure[g] = (point.place[axis] - point.mirror[axis]) * gradient;
   });
 }

@@ -67,6 +67,7 @@ OpenSides::OpenSides(const Scene& scene, const Resolution& resolution, double pa
       drifting_.push_back(one);
     }
   }
+  list_points(0);  // for largest_speed()
 }
 
 OpenSides::~OpenSides() = default;
