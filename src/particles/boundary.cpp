@@ -235,7 +235,8 @@ void Boundary::keep_before_sides(const WallPositions& at, int axis, Vec3& positi
   double& x = position[axis];
   const auto holds = [&](int side) {
     if (openings_->outflow_at(axis, side, position)) return false;
-    return is_wall(domain_.sides[axis][side].kind) || openings_->open_at(axis, side, position);
+    const Side& of = domain_.sides[axis][side];
+    return is_wall(of.kind) || of.opening || openings_->open_at(axis, side, position);
   };
   if (x < lower + tiny && holds(0)) {
     x = std::clamp(2 * lower - x, lower + tiny, upper);

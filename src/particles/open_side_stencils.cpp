@@ -32,16 +32,17 @@ void OpenSides::list_points(double t) {
   for (std::size_t g = 0; g < gates_.size(); ++g) {
     Gate& gate = gates_[g];
     if (!gate.opening->inflow) continue;
-    const std::size_t wet = gate.find_wet(scene_.domain.dimensions - 1, t);
-    const Entering entering(*gate.opening, gate.area, wet, t), last(*gate.opening, gate.area, wet, t - step_);
+    const double wet = gate.find_wet(scene_.domain.dimensions - 1, t);
+    const Entering entering(*gate.opening, wet, t), last(*gate.opening, wet, t - step_);
     for (const Gate::Column& column : gate.columns) {
       if (!column.wet) continue;
       const Vec3 velocity = entering.velocity(column.foot);
       Vec3 acceleration{};
       if (step_ > 0) acceleration = multiply(1 / step_, subtract(velocity, last.velocity(column.foot)));
-      for (int layer = 0; layer < gate.layers; ++layer) {
+      const int layers = static_cast<int>(std::ceil(resolution_.support_radius / column.layer)) + 1;
+      for (int layer = 0; layer < layers; ++layer) {
         Vec3 place = column.foot;
-        place[gate.opening->axis] -= gate.inwards * ((layer + 0.5) * gate.layer - column.next);
+        place[gate.opening->axis] -= gate.inwards * ((layer + 0.5) * column.layer - column.next);
         add_point(g, place, velocity, -1);
         points_.back().acceleration = acceleration;
       }
@@ -95,6 +96,9 @@ void OpenSides::fit(const Arrangement& arrangement, const VectorField& at, std::
 void OpenSides::find_stencils(const Arrangement& arrangement, const VectorField& at, double t, WallStencils& stencils,
                               std::array<Array<double>, 3>& position) {
   list_points(t);
+  const std::size_t walls = stencils.size();
+  find_corners(at, t, stencils, position);
+  append_corners(stencils, position);
   const int d = scene_.domain.dimensions;
   const std::size_t n = points_.size();
   std::vector<PointFits> blocks(block_count(n, PointFits::block));
@@ -115,7 +119,8 @@ void OpenSides::find_stencils(const Arrangement& arrangement, const VectorField&
   }
   parallel_for(first_point_, [&](std::size_t g) {
     stencils.kind[g] = PointKind::wall;
-    stencils.pressure_sign[g] = 1;
+    const bool out = g >= walls && !gates_[static_cast<std::size_t>(corners_[g - walls].gate)].opening->inflow;
+    stencils.pressure_sign[g] = out ? -1 : 1;
     stencils.given_pressure[g] = 0;
   });
   parallel_for(n, [&](std::size_t p) {
@@ -139,6 +144,7 @@ void OpenSides::find_stencils(const Arrangement& arrangement, const VectorField&
 void OpenSides::give_gradients(const std::array<const double*, 3>& before, const std::array<const double*, 3>& after,
                                double dt, WallStencils& stencils) const {
   const int d = scene_.domain.dimensions;
+  give_corner_gradients(before, after, dt, stencils);
   parallel_for(points_.size(), [&](std::size_t p) {
     const Point& point = points_[p];
     const Gate& gate = gates_[static_cast<std::size_t>(point.gate)];
@@ -161,22 +167,33 @@ void OpenSides::give_gradients(const std::array<const double*, 3>& before, const
   });
 }
 
-void OpenSides::give_pressures(const std::function<double(const Vec3&)>& potential, double t,
-                               WallStencils& stencils) const {
+double OpenSides::pressure_outside(const Opening& opening, const Vec3& foot, double t) const {
   const Fluid& fluid = scene_.fluid;
   const int up = scene_.domain.dimensions - 1;
+  double pressure = 0;
+  if (opening.pressure) pressure = value_at(*opening.pressure, foot, t);
+  if (opening.level && !opening.inflow)
+    pressure += fluid.density * -fluid.gravity[up] * std::max(0.0, value_at(*opening.level, {}, t) - foot[up]);
+  if (!std::isfinite(pressure)) refuse_value(opening, "the pressure of an outflow", pressure);
+  return pressure / fluid.density;
+}
+
+void OpenSides::give_pressures(const std::function<double(const Vec3&)>& potential, double t,
+                               WallStencils& stencils) const {
+  for (std::size_t k = 0; k < corners_.size(); ++k) {
+    const Corner& corner = corners_[k];
+    const Opening& opening = *gates_[static_cast<std::size_t>(corner.gate)].opening;
+    if (opening.inflow) continue;
+    stencils.given_pressure[first_corner_ + k] =
+        2 * (pressure_outside(opening, corner.foot, t) + potential(corner.foot));
+  }
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const Point& point = points_[p];
     const Opening& opening = *gates_[static_cast<std::size_t>(point.gate)].opening;
     const std::size_t g = first_point_ + p;
     const bool wet = stencils.pressure_sign[g] != 0;
     if (wet && opening.inflow) continue;
-    double pressure = 0;
-    if (opening.pressure) pressure = value_at(*opening.pressure, point.foot, t);
-    if (opening.level && !opening.inflow)
-      pressure += fluid.density * -fluid.gravity[up] * std::max(0.0, value_at(*opening.level, {}, t) - point.foot[up]);
-    if (!std::isfinite(pressure)) refuse_value(opening, "the pressure of an outflow", pressure);
-    const double q = pressure / fluid.density + potential(wet ? point.foot : point.place);
+    const double q = pressure_outside(opening, point.foot, t) + potential(wet ? point.foot : point.place);
     stencils.given_pressure[g] = wet ? 2 * q : q;
   }
 }

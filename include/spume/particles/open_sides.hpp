@@ -84,6 +84,14 @@ class OpenSides {
     Vec3 place{}, next{}, velocity{};
     int gate = 0;
   };
+  // Image of a wall point of a body that goes through an opening.
+  struct Corner {
+    std::size_t wall_point = 0;
+    std::int32_t gate = 0;
+    Vec3 foot{};              // on the side, where the liquid that the wall point stands for enters or leaves
+    double way = 0;           // along the axis of the opening, from the image of that liquid to itself
+    double acceleration = 0;  // of what is given, over the last step
+  };
   // Becomes a particle.
   struct Newcomer {
     Vec3 place, velocity;
@@ -97,6 +105,14 @@ class OpenSides {
   void add_copies_of_nearest(const ParticleStore& particles, const std::vector<Newcomer>& newcomers,
                              Array<std::int32_t>& order) const;
   void list_points(double t);
+  // Corners between the walls of bodies and the sides that openings cover.
+  void find_corners(const VectorField& at, double t, const WallStencils& walls,
+                    const std::array<Array<double>, 3>& position);
+  void append_corners(WallStencils& stencils, std::array<Array<double>, 3>& position);
+  void give_corner_gradients(const std::array<const double*, 3>& before, const std::array<const double*, 3>& after,
+                             double dt, WallStencils& stencils) const;
+  // Pressure over density.
+  double pressure_outside(const Opening& opening, const Vec3& foot, double t) const;
   template <int dimensions>
   void fit(const Arrangement& arrangement, const VectorField& at, std::size_t first, std::size_t last,
            PointFits& fits) const;
@@ -107,6 +123,8 @@ class OpenSides {
   std::vector<Gate> gates_;
   std::vector<Drifting> drifting_;
   std::vector<Point> points_;
+  std::vector<Corner> corners_;
+  std::size_t first_corner_ = 0;
   std::size_t first_point_ = 0;  // among the points of the stencils
   std::int64_t entered_ = 0, left_ = 0, next_identifier_ = 0;
   double largest_speed_ = 0;
