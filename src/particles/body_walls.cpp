@@ -14,6 +14,10 @@ namespace spume {
 namespace {
 
 constexpr double wet_share = 0.5;
+// Means of a few particles are no values of liquid mirrored at a wall: where one of them has a pressure and the others
+// hold p = 0, the mean draws it into the wall, the faster the more its pressure grows. At the back of a weir spray
+// reached 135 m/s where the water falls with 2.6 m/s.
+constexpr int least_order = 1;
 
 }  // namespace
 
@@ -166,7 +170,7 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
                    fit.add(j, offset, r2);
                  });
     });
-    if (kernel_sum < wet_share || !seen || !fit.fit()) continue;
+    if (kernel_sum < wet_share || !seen || fit.fit() < least_order) continue;
     block.point.push_back(static_cast<std::int32_t>(g));
     fit.append(block.fits);
   }

@@ -86,7 +86,7 @@ void OpenSides::fit(const Arrangement& arrangement, const VectorField& at, std::
                    fit.add(j, offset, r2);
                  });
     });
-    if (kernel_sum >= wet_share && fit.fit())
+    if (kernel_sum >= wet_share && fit.fit() >= 0)
       fit.append(fits);
     else
       fit.append_none(fits);

@@ -343,11 +343,22 @@ void Flow::accept(double dt) {
   work += balance.work;
 
   parallel_for(n, [&](std::size_t i) {
-    const Vec3 before = advecting_velocity_of(i, dt);
+    Vec3 before = advecting_velocity_of(i, dt);
     Vec3 ahead = vector_at(next_velocity, dimensions, i), r = vector_at(intermediate_position, dimensions, i);
     if (bubbles != nullptr)
       for (int axis = 0; axis < dimensions; ++axis)
         (*material_acceleration[axis])[i] = (ahead[axis] - before[axis]) / dt;
+    if (surface != nullptr && surface->pressure_fixed[i] != 0) {
+      // No pressure has stopped what has met a wall on its way here.
+      Vec3 straight{};
+      for (int axis = 0; axis < dimensions; ++axis) straight[axis] = (*particles.position[axis])[i] + dt * before[axis];
+      Vec3 stopped = before;
+      boundary.apply_walls(boundary.next_walls, straight, &stopped);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        ahead[axis] += stopped[axis] - before[axis];
+        before[axis] = stopped[axis];
+      }
+    }
     Vec3 u = ahead;
     if (acceleration[0] != nullptr)
       for (int axis = 0; axis < dimensions; ++axis) u[axis] = 0.5 * (before[axis] + ahead[axis]);
