@@ -126,6 +126,14 @@ void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
   if (inwards < 0) *velocity = subtract(*velocity, multiply(inwards, first.normal));
 }
 
+void BodyWalls::limit_approach(const Vec3& position, double gap, double speed, const Vec3& before,
+                               Vec3& velocity) const {
+  if (surely_farther(position, gap) || distance(position) >= gap) return;
+  const Vec3 normal = scene_.walls.nearest(position).normal;
+  const double approach = dot(velocity, normal), most = std::min(-speed, dot(before, normal));
+  if (approach < most) velocity = add(velocity, multiply(most - approach, normal));
+}
+
 bool BodyWalls::is_wet(std::size_t point) const {
   return std::binary_search(wet_points_.begin(), wet_points_.end(), static_cast<std::int32_t>(point));
 }

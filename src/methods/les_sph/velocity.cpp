@@ -18,6 +18,10 @@ namespace {
 // by 0.02 %.
 constexpr double least_divergence_of_position = 0.95;
 
+// Of a spacing a step: faster than this the pressure of the surface does not draw a particle into the wall of a body.
+// At wall points a pressure that one particle has alone is lower than its own.
+constexpr double least_approach = 0.05;
+
 [[noreturn]] void refuse_body_force(const Flow& flow, double t) {
   StepFailure::Details details;
   details.cause = "the body force is not a finite number";
@@ -359,6 +363,8 @@ void Flow::accept(double dt) {
         before[axis] = stopped[axis];
       }
     }
+    if (surface != nullptr && boundary.bodies() != nullptr && surface->at_surface[i] != 0)
+      boundary.bodies()->limit_approach(r, resolution.spacing, least_approach * resolution.spacing / dt, before, ahead);
     Vec3 u = ahead;
     if (acceleration[0] != nullptr)
       for (int axis = 0; axis < dimensions; ++axis) u[axis] = 0.5 * (before[axis] + ahead[axis]);
