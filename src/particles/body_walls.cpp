@@ -14,6 +14,10 @@ namespace spume {
 namespace {
 
 constexpr double wet_wall_share = 0.5;
+// Means of a few particles are no values of liquid mirrored at a wall: where one of them has a pressure and the others
+// hold p = 0, the mean draws it into the wall, the faster the more its pressure grows. At the back of a weir spray
+// reached 135 m/s where the water falls with 2.6 m/s.
+constexpr int least_order = 1;
 
 }  // namespace
 
@@ -122,6 +126,14 @@ void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
   if (inwards < 0) *velocity = subtract(*velocity, multiply(inwards, first.normal));
 }
 
+void BodyWalls::limit_approach(const Vec3& position, double gap, double speed, const Vec3& before,
+                               Vec3& velocity) const {
+  if (surely_farther(position, gap) || distance(position) >= gap) return;
+  const Vec3 normal = scene_.walls.nearest(position).normal;
+  const double approach = dot(velocity, normal), most = std::min(-speed, dot(before, normal));
+  if (approach < most) velocity = add(velocity, multiply(most - approach, normal));
+}
+
 bool BodyWalls::is_wet(std::size_t point) const {
   return std::binary_search(wet_points_.begin(), wet_points_.end(), static_cast<std::int32_t>(point));
 }
@@ -166,7 +178,7 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
                    fit.add(j, offset, r2);
                  });
     });
-    if (kernel_sum < wet_wall_share || !seen || !fit.fit()) continue;
+    if (kernel_sum < wet_wall_share || !seen || fit.fit() < least_order) continue;
     block.point.push_back(static_cast<std::int32_t>(g));
     fit.append(block.fits);
   }

@@ -57,6 +57,7 @@ Boundary::Boundary(const Domain& domain, double spacing, std::unique_ptr<BodyWal
       openings_(std::move(openings)) {
   for (int axis = 0; axis < domain.dimensions; ++axis) walls[axis] = {domain.lower[axis], domain.upper[axis]};
   next_walls = walls;
+  if (openings_ != nullptr) wall_speed = openings_->largest_speed();
   unite_solids(walls);
 }
 
@@ -234,7 +235,8 @@ void Boundary::keep_before_sides(const WallPositions& at, int axis, Vec3& positi
   double& x = position[axis];
   const auto holds = [&](int side) {
     if (openings_->outflow_at(axis, side, position)) return false;
-    return is_wall(domain_.sides[axis][side].kind) || openings_->open_at(axis, side, position);
+    const Side& of = domain_.sides[axis][side];
+    return is_wall(of.kind) || of.opening || openings_->open_at(axis, side, position);
   };
   if (x < lower + tiny && holds(0)) {
     x = std::clamp(2 * lower - x, lower + tiny, upper);

@@ -17,6 +17,15 @@ namespace {
 // one from liquid that sees no body; and some way along the surface, so that a slope is not taken from one particle.
 constexpr double plane_reach = 2.2;
 
+// div r in a single layer of a lattice, a row in 2-D.
+double layer_divergence_of_position(int dimensions) {
+  return dimensions == 3 ? 1.12 : 0.55;
+}
+constexpr double sparse_share = 0.75;
+
+// A particle or an image of one; a wall point counted by planes, and one that counts whole.
+enum class Seen { particle, continued, wet };
+
 // Calls visit(seen, sign) for the place and its mirror images in walls nearer than `reach`; what is found beside an
 // image is seen at the place with the components of its offset multiplied by `sign`.
 template <class Visit>
@@ -65,7 +74,7 @@ void ContinuedLiquid::sort_points(const Boundary& boundary) {
 void ContinuedLiquid::find(const Arrangement& arrangement, MomentFields& moments, const Boundary& boundary,
                            const VectorField& at, Array<float>& counted) {
   if (point_.empty()) sort_points(boundary);
-  sees_surface_.resize(moments.divergence_of_position->size());
+  for (auto* flags : {&sees_surface_, &sparse_}) flags->resize(moments.divergence_of_position->size());
   const int d = resolution_.dimensions;
   const double reach = resolution_.support_radius;
   const NeighbourList& list = arrangement.list;
@@ -80,7 +89,7 @@ void ContinuedLiquid::find(const Arrangement& arrangement, MomentFields& moments
     for (const std::int32_t j : list.of(i)) sees = sees || is_near(arrangement.particle_of(j));
     return sees && bodies.nearer_than(place, reach);
   });
-  parallel_for(sees_surface_.size(), [&](std::size_t i) { sees_surface_[i] = 0; });
+  parallel_for(sees_surface_.size(), [&](std::size_t i) { sees_surface_[i] = sparse_[i] = 0; });
   depths_.resize(beside_.size());
   if (beside_.size() == 0) return;
   with_plain_kernel(d, resolution_.kernel, [&]<int dimensions, class Kernel>() {
@@ -94,6 +103,7 @@ void ContinuedLiquid::find(const Arrangement& arrangement, MomentFields& moments
     for (int axis = 0; axis < d; ++axis) (*moments.normal[axis])[i] = static_cast<float>(count_[k].normal[axis]);
     depths_[k] = {beside_[k], static_cast<float>(count_[k].depth)};
     sees_surface_[i] = count_[k].sees_surface ? 1 : 0;
+    sparse_[i] = count_[k].of_particles < sparse_share * layer_divergence_of_position(d) ? 1 : 0;
   });
 }
 
@@ -179,7 +189,7 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
       Vec3 offset{};
       for (int axis = 0; axis < dimensions; ++axis)
         offset[axis] = double{list.coordinate(axis)[j]} - double{list.coordinate(axis)[i]};
-      visit(1.0, offset, dot(offset, offset), false);
+      visit(1.0, offset, dot(offset, offset), Seen::particle);
     }
     const auto visit_points = [&](const Vec3& seen, const Vec3& sign) {
       visit_near(boundary.domain(), grid_, table_, seen, reach, [&](std::int32_t g, const Vec3& shift) {
@@ -188,7 +198,8 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
           offset[axis] = sign[axis] * (point_[static_cast<std::size_t>(g)][axis] + shift[axis] - seen[axis]);
         const double r2 = dot(offset, offset);
         if (r2 < reach * reach)
-          visit(double{share_[static_cast<std::size_t>(g)]}, offset, r2, continued_[static_cast<std::size_t>(g)] != 0);
+          visit(double{share_[static_cast<std::size_t>(g)]}, offset, r2,
+                continued_[static_cast<std::size_t>(g)] != 0 ? Seen::continued : Seen::wet);
       });
     };
     visit_reflections(boundary.domain(), boundary.next_walls, vector_at(at, dimensions, i), reach, visit_points);
@@ -199,16 +210,17 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
       const auto i = static_cast<std::size_t>(beside_[k]);
       Count& count = count_[k];
       count = {.depth = dr};
-      visit_liquid(i, [&](double share, const Vec3& offset, double r2, bool continued) {
-        count.sees_surface = count.sees_surface || continued;
+      visit_liquid(i, [&](double share, const Vec3& offset, double r2, Seen seen) {
+        count.sees_surface = count.sees_surface || seen == Seen::continued;
         const double g = -share * gradient * Kernel::f(std::sqrt(r2) / h);
         count.divergence_of_position += g * r2;
+        if (seen == Seen::particle) count.of_particles += g * r2;
         for (int axis = 0; axis < dimensions; ++axis) count.normal[axis] -= h * g * offset[axis];
       });
       const double size = length(count.normal);
       if (!(size > 0)) continue;
       double content = column_weight(dimensions, 0, 0);
-      visit_liquid(i, [&](double share, const Vec3& offset, double r2, bool) {
+      visit_liquid(i, [&](double share, const Vec3& offset, double r2, Seen) {
         const double outwards = dot(offset, count.normal) / size;
         content +=
             share * column_weight(dimensions, std::sqrt(std::max(0.0, r2 - outwards * outwards)) / dr, -outwards / dr);
@@ -221,8 +233,8 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
 double ContinuedLiquid::bytes() const {
   return static_cast<double>(point_.capacity() * sizeof(Vec3) + plane_.capacity() * sizeof(Plane) +
                              count_.capacity() * sizeof(Count) + depths_.capacity() * sizeof(KnownDepth)) +
-         share_.bytes() + continued_.bytes() + sees_surface_.bytes() + plane_table_.bytes() + table_.bytes() +
-         beside_.bytes() + planar_.bytes();
+         share_.bytes() + continued_.bytes() + sees_surface_.bytes() + sparse_.bytes() + plane_table_.bytes() +
+         table_.bytes() + beside_.bytes() + planar_.bytes();
 }
 
 }  // namespace spume

@@ -15,7 +15,9 @@ namespace spume {
 // An opening, cut into cells of about a spacing across: the cross-sections of its columns.
 struct OpenSides::Gate {
   struct Column {
-    Vec3 foot{};
+    Vec3 foot{};  // middle of the part of its cell that is outside bodies
+    double area = 0;
+    double layer = 0;                // distance of its points
     double travelled = 0, next = 0;  // since the last of its points passed the side, less half a layer
     bool wet = true;                 // below the level, where it is looked at
   };
@@ -26,17 +28,15 @@ struct OpenSides::Gate {
   std::array<double, 2> lower{}, size{1, 1};
   std::vector<std::int32_t> column_of;  // of a cell, -1: closed
   std::vector<Column> columns;
-  double area = 0;   // of a column
-  double layer = 0;  // distance of the points of a column
-  int layers = 0;
+  double layer = 0;  // distance of the points of a column of a whole cell
 
-  // Marks the columns below the level at time t, and counts them.
-  std::size_t find_wet(int up, double t) {
+  // Marks the columns below the level at time t, and adds up their areas.
+  double find_wet(int up, double t) {
     const double level = opening->level ? (*opening->level)(0, 0, 0, t) : std::numeric_limits<double>::infinity();
-    std::size_t wet = 0;
+    double wet = 0;
     for (Column& column : columns) {
       column.wet = column.foot[up] < level;
-      wet += column.wet ? 1 : 0;
+      wet += column.wet ? column.area : 0;
     }
     return wet;
   }
@@ -68,11 +68,11 @@ inline double value_at(const Expression& expression, const Vec3& r, double t) {
 
 // What an inflow gives at a time.
 struct Entering {
-  Entering(const Opening& opening, double columns_area, std::size_t wet_columns, double t) : opening_(opening), t_(t) {
+  Entering(const Opening& opening, double wet_area, double t) : opening_(opening), t_(t) {
     if (!opening.flow_rate) return;
     const double rate = value_at(*opening.flow_rate, {}, t);
     if (!std::isfinite(rate)) refuse_value(opening, "the flow rate of an inflow", rate);
-    speed_ = wet_columns > 0 ? rate / (static_cast<double>(wet_columns) * columns_area) : 0;
+    speed_ = wet_area > 0 ? rate / wet_area : 0;
   }
   Vec3 velocity(const Vec3& foot) const {
     Vec3 u{};

@@ -6,6 +6,34 @@
 #include "spume/particles/boundary.hpp"
 
 namespace spume {
+namespace {
+
+// Of a cell: through less nothing enters, as its particles would be farther apart than kernels reach.
+constexpr double least_share = 0.25;
+
+// Moves the middle of a cell of an opening to that of its part outside bodies and boxes, and returns the share of it.
+template <class Gate>
+double keep_outside_bodies(const Scene& scene, const Gate& gate, Vec3& middle) {
+  constexpr int places = 8;  // along each side of the cell
+  const bool flat = gate.across[1] < 0;
+  Vec3 sum{};
+  int outside = 0;
+  for (int i = 0; i < places; ++i)
+    for (int j = 0; j < (flat ? 1 : places); ++j) {
+      Vec3 place = middle;
+      place[gate.across[0]] += ((i + 0.5) / places - 0.5) * gate.size[0];
+      if (!flat) place[gate.across[1]] += ((j + 0.5) / places - 0.5) * gate.size[1];
+      if (inside_solid(scene.domain, place)) continue;
+      if (!scene.walls.empty() && !(scene.walls.distance(place) > 0)) continue;
+      sum = add(sum, place);
+      ++outside;
+    }
+  const int all = flat ? places : places * places;
+  if (outside > 0 && outside < all) middle = multiply(1.0 / outside, sum);
+  return static_cast<double>(outside) / all;
+}
+
+}  // namespace
 
 OpenSides::OpenSides(const Scene& scene, const Resolution& resolution, double particle_volume)
     : scene_(scene), resolution_(resolution), particle_volume_(particle_volume) {
@@ -16,7 +44,7 @@ OpenSides::OpenSides(const Scene& scene, const Resolution& resolution, double pa
     gate.opening = &opening;
     gate.plane = opening.side == 0 ? domain.lower[opening.axis] : domain.upper[opening.axis];
     gate.inwards = opening.side == 0 ? 1 : -1;
-    gate.area = 1;
+    double area = 1;
     std::size_t k = 0;
     for (int axis = 0; axis < d; ++axis) {
       if (axis == opening.axis) continue;
@@ -25,10 +53,9 @@ OpenSides::OpenSides(const Scene& scene, const Resolution& resolution, double pa
       gate.lower[k] = opening.lower[axis];
       gate.cells[k] = static_cast<std::size_t>(std::max(1.0, std::round(length / scene.spacing)));
       gate.size[k] = length / static_cast<double>(gate.cells[k]);
-      gate.area *= gate.size[k++];
+      area *= gate.size[k++];
     }
-    gate.layer = particle_volume / gate.area;
-    gate.layers = static_cast<int>(std::ceil(resolution.support_radius / gate.layer)) + 1;
+    gate.layer = particle_volume / area;
     gate.column_of.assign(gate.cells[0] * gate.cells[1], -1);
     for (std::size_t cell = 0; cell < gate.column_of.size(); ++cell) {
       Gate::Column column;
@@ -37,10 +64,10 @@ OpenSides::OpenSides(const Scene& scene, const Resolution& resolution, double pa
       for (std::size_t a = 0; a < 2; ++a)
         if (gate.across[a] >= 0)
           column.foot[gate.across[a]] = gate.lower[a] + (static_cast<double>(at[a]) + 0.5) * gate.size[a];
-      const Vec3& foot = column.foot;
-      if (opening.where && !((*opening.where)(foot[0], foot[1], foot[2], 0) > 0)) continue;
-      if (inside_solid(domain, foot)) continue;
-      if (!scene.walls.empty() && !(scene.walls.distance(foot) > 0)) continue;
+      if (opening.where && !((*opening.where)(column.foot[0], column.foot[1], column.foot[2], 0) > 0)) continue;
+      column.area = area * keep_outside_bodies(scene, gate, column.foot);
+      if (opening.inflow && column.area < least_share * area) continue;
+      column.layer = particle_volume / column.area;
       gate.column_of[cell] = static_cast<std::int32_t>(gate.columns.size());
       gate.columns.push_back(column);
     }
@@ -67,6 +94,7 @@ OpenSides::OpenSides(const Scene& scene, const Resolution& resolution, double pa
       drifting_.push_back(one);
     }
   }
+  list_points(0);  // for largest_speed()
 }
 
 OpenSides::~OpenSides() = default;
@@ -93,10 +121,9 @@ void OpenSides::advance(double t, double dt) {
   for (Gate& gate : gates_) {
     const Opening& opening = *gate.opening;
     if (!opening.inflow) continue;
-    const std::size_t wet = gate.find_wet(scene_.domain.dimensions - 1, t + dt);
+    const double wet = gate.find_wet(scene_.domain.dimensions - 1, t + dt);
     // Simpson's rule in time, as for moving walls.
-    const Entering before(opening, gate.area, wet, t), middle(opening, gate.area, wet, t + dt / 2),
-        after(opening, gate.area, wet, t + dt);
+    const Entering before(opening, wet, t), middle(opening, wet, t + dt / 2), after(opening, wet, t + dt);
     for (Gate::Column& column : gate.columns) {
       column.next = column.travelled;
       if (!column.wet) continue;
@@ -139,13 +166,13 @@ void OpenSides::take_entering(int up, double t, std::vector<Newcomer>& newcomers
   for (Gate& gate : gates_) {
     const Opening& opening = *gate.opening;
     if (!opening.inflow) continue;
-    const std::size_t wet = gate.find_wet(up, t);
+    const double wet = gate.find_wet(up, t);
     std::unique_ptr<Entering> entering;
     for (Gate::Column& column : gate.columns)
-      for (; column.travelled > 0.5 * gate.layer; column.travelled -= gate.layer) {
-        if (entering == nullptr) entering = std::make_unique<Entering>(opening, gate.area, wet, t);
+      for (; column.travelled > 0.5 * column.layer; column.travelled -= column.layer) {
+        if (entering == nullptr) entering = std::make_unique<Entering>(opening, wet, t);
         Newcomer one{column.foot, entering->velocity(column.foot)};
-        one.place[opening.axis] += gate.inwards * (column.travelled - 0.5 * gate.layer);
+        one.place[opening.axis] += gate.inwards * (column.travelled - 0.5 * column.layer);
         newcomers.push_back(one);
         ++entered_;
       }

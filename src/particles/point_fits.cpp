@@ -14,13 +14,13 @@ constexpr int highest_order = 2;
 }  // namespace
 
 template <int dimensions>
-bool PointFit<dimensions>::fit() {
+int PointFit<dimensions>::fit() {
   fit_.resize(near_.size());
   for (std::size_t k = 0; k < near_.size(); ++k) {
     for (int axis = 0; axis < dimensions; ++axis) fit_.offset(axis)[k] = near_[k].offset[axis] / smoothing_length_;
     fit_.weight()[k] = WendlandC2::w(WendlandC2::support * std::sqrt(near_[k].r2) / reach_);
   }
-  return fit_.fit(highest_order) >= 0;
+  return fit_.fit(highest_order);
 }
 
 template <int dimensions>

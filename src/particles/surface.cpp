@@ -54,7 +54,8 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, Momen
   const double least = surface_layer_share(resolution_.dimensions) * options_.interior.threshold;
   parallel_for(n, [&](std::size_t i) {
     at_surface[i] = divergence_of_position[i] < options_.interior.threshold ? 1 : 0;
-    pressure_fixed[i] = at_surface[i] != 0 && moments.uncorrected[i] != 0 ? 1 : 0;
+    const bool sparse = boundary.bodies() != nullptr && continued_.is_sparse(i);
+    pressure_fixed[i] = at_surface[i] != 0 && (moments.uncorrected[i] != 0 || sparse) ? 1 : 0;
     interior_weight[i] = options_.interior(divergence_of_position[i]);
     // Where the liquid continues into a body, what a surface particle lacks is no gap before it.
     const bool continued = at_surface[i] != 0 && boundary.bodies() != nullptr && continues_into_body(i);

@@ -37,6 +37,11 @@ std::uint64_t interleave(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
   return code;
 }
 
+// Beyond a side that an opening covers points are the images of those before it (particles/open_sides.hpp).
+bool goes_on(const Side& side) {
+  return side.kind == BoundaryKind::open && !side.opening;
+}
+
 // A lattice over the domain, beyond open sides by `reach`.
 struct ShellLattice {
   int dimensions;
@@ -46,8 +51,8 @@ struct ShellLattice {
   ShellLattice(const Domain& domain, double spacing, double reach) : dimensions(domain.dimensions) {
     for (int axis = 0; axis < dimensions; ++axis) {
       double lower = domain.lower[axis], upper = domain.upper[axis];
-      if (domain.sides[axis][0].kind == BoundaryKind::open) lower -= reach;
-      if (domain.sides[axis][1].kind == BoundaryKind::open) upper += reach;
+      if (goes_on(domain.sides[axis][0])) lower -= reach;
+      if (goes_on(domain.sides[axis][1])) upper += reach;
       count[axis] = static_cast<std::size_t>(std::max(1.0, std::round((upper - lower) / spacing)));
       step[axis] = (upper - lower) / static_cast<double>(count[axis]);
       origin[axis] = lower;
@@ -129,9 +134,9 @@ ImageRules rules_of(const Domain& domain, double support_radius) {
   for (int axis = 0; axis < domain.dimensions; ++axis)
     for (int side = 0; side < 2; ++side) {
       const BoundaryKind kind = domain.sides[axis][side].kind;
-      rules.sides[axis][side] = kind == BoundaryKind::periodic ? ImageKind::periodic
-                                : kind == BoundaryKind::open   ? ImageKind::none
-                                                               : ImageKind::mirror;
+      rules.sides[axis][side] = kind == BoundaryKind::periodic      ? ImageKind::periodic
+                                : goes_on(domain.sides[axis][side]) ? ImageKind::none
+                                                                    : ImageKind::mirror;
     }
   return rules;
 }
@@ -203,8 +208,8 @@ class Evening {
           if (x >= high) x -= high - low;
           continue;
         }
-        if (scene_.domain.sides[axis][0].kind != BoundaryKind::open && x < low) x = 2 * low - x;
-        if (scene_.domain.sides[axis][1].kind != BoundaryKind::open && x > high) x = 2 * high - x;
+        if (!goes_on(scene_.domain.sides[axis][0]) && x < low) x = 2 * low - x;
+        if (!goes_on(scene_.domain.sides[axis][1]) && x > high) x = 2 * high - x;
       }
     });
   }

@@ -347,7 +347,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   problems.throw_if_any();
   const std::vector<Wavemaker> wavemakers = make_wavemakers(draft, scene, problems);
   scene.sponges = make_sponges(draft, wavemakers);
-  check_openings_of(draft, scene, problems);
+  check_openings_of(draft, scene, lattice.volume(), problems);
   double& courant = draft.options.time.courant;
   if (courant == 0) courant = method->default_courant(draft.options, scene);
   if (method->check_scene) method->check_scene(draft, scene, problems);

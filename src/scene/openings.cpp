@@ -199,11 +199,16 @@ void read_table(const Draft& draft, const Named& named, Opening& opening, Proble
     }
 }
 
-// Calls look(place, t) on a lattice over an opening, at the start and over the run: 17 places along an axis and 33
-// times.
+constexpr int places = 17;  // of sample() along an axis
+
+double sampled_places(const Domain& domain) {
+  return domain.dimensions == 3 ? places * places : places;
+}
+
+// Calls look(place, t) on a lattice over an opening, at the start and over the run, at 33 times.
 template <class Look>
 void sample(const Opening& opening, const Domain& domain, double end, Look&& look) {
-  constexpr int places = 17, times = 33;
+  constexpr int times = 33;
   const int d = domain.dimensions;
   const int first = opening.axis == 0 ? 1 : 0;
   const int second = d == 3 ? 3 - opening.axis - first : -1;
@@ -246,6 +251,100 @@ void check_velocity(const Draft& draft, const Scene& scene, const Opening& openi
   if (!covered)
     problems.add(draft.node(opening.name + ".where") != nullptr ? *draft.node(opening.name + ".where") : node,
                  opening.name + ".where is nowhere positive on its side; the expression is that of a place on it");
+}
+
+bool holds_liquid(const Scene& scene, const Vec3& place) {
+  const Domain& domain = scene.domain;
+  const auto holds = [&](const SolidBox& box) {
+    for (int axis = 0; axis < domain.dimensions; ++axis)
+      if (place[axis] < box.lower[axis] || place[axis] > box.upper[axis]) return false;
+    return true;
+  };
+  if (std::any_of(domain.boxes.begin(), domain.boxes.end(), holds)) return false;
+  return scene.walls.empty() || scene.walls.distance(place) > 0;
+}
+
+// Rate at which liquid enters, at the 33 times of sample().
+std::vector<double> rates_of(const Scene& scene, const Opening& opening, double end) {
+  const int up = scene.domain.dimensions - 1;
+  double area = 1;
+  for (int axis = 0; axis < scene.domain.dimensions; ++axis)
+    if (axis != opening.axis) area *= opening.upper[axis] - opening.lower[axis];
+  std::vector<double> sums, counts, times;
+  sample(opening, scene.domain, end, [&](const Vec3& place, double t) {
+    if (times.empty() || times.back() != t) {
+      times.push_back(t);
+      sums.push_back(0);
+      counts.push_back(0);
+    }
+    ++counts.back();
+    const bool wet = !opening.level || place[static_cast<std::size_t>(up)] < (*opening.level)(0, 0, 0, t);
+    if (opening.velocity && wet && holds_liquid(scene, place))
+      sums.back() += std::abs((*opening.velocity)(place, t)[opening.axis]);
+    return true;
+  });
+  for (std::size_t n = 0; n < times.size(); ++n) {
+    const double share = opening.where ? counts[n] / sampled_places(scene.domain) : 1;
+    sums[n] = opening.flow_rate ? (*opening.flow_rate)(0, 0, 0, times[n]) : share * area * sums[n] / counts[n];
+  }
+  return sums;
+}
+
+bool closed(const Domain& domain) {
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    for (const Side& side : domain.sides[axis])
+      if (!side.bounds_liquid()) return false;
+  return true;
+}
+
+// Of the domain, outside bodies and boxes: of at most 100 places along an axis, to 1 %.
+double volume_for_liquid(const Scene& scene) {
+  const Domain& domain = scene.domain;
+  std::array<std::size_t, 3> count{1, 1, 1};
+  Vec3 cell{1, 1, 1};
+  for (int axis = 0; axis < domain.dimensions; ++axis) {
+    const double length = domain.upper[axis] - domain.lower[axis];
+    count[axis] = static_cast<std::size_t>(std::clamp(length / scene.spacing, 1.0, 100.0));
+    cell[axis] = length / static_cast<double>(count[axis]);
+  }
+  double cells = 0;
+  for (std::size_t n = 0; n < count[0] * count[1] * count[2]; ++n) {
+    const std::array<std::size_t, 3> at{n % count[0], n / count[0] % count[1], n / (count[0] * count[1])};
+    Vec3 place{};
+    for (int axis = 0; axis < domain.dimensions; ++axis)
+      place[axis] = domain.lower[axis] + (static_cast<double>(at[axis]) + 0.5) * cell[axis];
+    cells += holds_liquid(scene, place) ? 1 : 0;
+  }
+  return cells * cell[0] * cell[1] * cell[2];
+}
+
+// A closed tank with room above its liquid: what enters until the end of the run must fit.
+void check_room(const Draft& draft, const Scene& scene, double particle_volume, Problems& problems) {
+  const double end = draft.options.time.end;
+  std::vector<double> rates;
+  const Opening* first = nullptr;
+  for (const Opening& opening : scene.openings) {
+    if (first == nullptr) first = &opening;
+    const std::vector<double> own = rates_of(scene, opening, end);
+    rates.resize(std::max(rates.size(), own.size()));
+    for (std::size_t n = 0; n < own.size(); ++n) rates[n] += own[n];
+  }
+  const double held = particle_volume * static_cast<double>(scene.particles.size());
+  const double room = volume_for_liquid(scene) - held;
+  double entered = 0;
+  for (std::size_t n = 1; n < rates.size(); ++n) {
+    const double step = end / static_cast<double>(rates.size() - 1), gained = step * (rates[n - 1] + rates[n]) / 2;
+    if (!(entered + gained > room)) {
+      entered += gained;
+      continue;
+    }
+    const double full = step * (static_cast<double>(n - 1) + (room - entered) / gained);
+    problems.add(*draft.node(first->name),
+                 first->name + " fills the closed tank: its room of " + brief(room) + " is full at t = " + brief(full) +
+                     ", the run ends at " + brief(end) +
+                     "; add an [[outflow]], open a side (top = \"open\"), or end the run before");
+    return;
+  }
 }
 
 }  // namespace
@@ -309,7 +408,7 @@ void open_sides_at(const std::vector<Opening>& openings, Domain& domain) {
   }
 }
 
-void check_openings_of(const Draft& draft, const Scene& scene, Problems& problems) {
+void check_openings_of(const Draft& draft, const Scene& scene, double particle_volume, Problems& problems) {
   const Opening* inflow = nullptr;
   bool outflow = false;
   for (const Opening& opening : scene.openings) {
@@ -323,6 +422,8 @@ void check_openings_of(const Draft& draft, const Scene& scene, Problems& problem
                  inflow->name +
                      " fills a tank that is full and closed; add an [[outflow]], or leave room above the "
                      "liquid");
+  else if (inflow != nullptr && !outflow && closed(scene.domain) && problems.empty())
+    check_room(draft, scene, particle_volume, problems);
 }
 
 }  // namespace spume

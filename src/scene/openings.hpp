@@ -19,6 +19,6 @@ void open_sides_at(const std::vector<Opening>& openings, Domain& domain);
 
 // What can be told only of the filled scene: a velocity that leads out of the domain at an inflow, a closed tank that
 // is filled, an outflow of an incompressible liquid that nothing enters.
-void check_openings_of(const Draft& draft, const Scene& scene, Problems& problems);
+void check_openings_of(const Draft& draft, const Scene& scene, double particle_volume, Problems& problems);
 
 }  // namespace spume

@@ -136,6 +136,53 @@ TEST(LesSphOpenings, PressureDoesNotPulseAsParticlesEnter) {
   EXPECT_LT(std::sqrt(squares / count - mean * mean), 0.04 * exact);  // 0.25 with a zero gradient behind the inflow
 }
 
+// Plug flow from rest, which stops at once where it meets the walls. It speeds up along the axis towards 1.5 and no
+// further; the mean velocity is what enters, to half a step of 0.016, in which the pulsating one gains 0.025, as soon
+// as the layers at the walls have stopped.
+TEST(LesSphOpenings, PlugFlowEntersBetweenNoSlipWalls) {
+  for (const char* inflow : {"velocity = [\"1\", \"0\"]", "flow_rate = \"0.5*(1 - cos(2*pi*t))\""}) {
+    Simulation run(replaced(replaced(open_channel("[2, 1]", "no-slip", 0.0625, "[\"1\", \"0\"]"),
+                                     "[[liquid]]\nvelocity = [\"1\", \"0\"]", "[[liquid]]"),
+                            "velocity = [\"1\", \"0\"]", inflow));
+    double fastest = 0, largest_error = 0;
+    while (run.method.time() < 1.25) {
+      run.steps(1, run.method.step_limit().dt);
+      const les_sph::Flow& flow = run.method.flow();
+      fastest = std::max(fastest, run.series()["max_speed"]);
+      double mean = 0;
+      for (std::size_t i = 0; i < flow.size(); ++i)
+        mean += (*flow.particles.velocity[0])[i] / static_cast<double>(flow.size());
+      const double t = run.method.time();
+      const double given = inflow[0] == 'v' ? 1 : 0.5 * (1 - std::cos(2 * std::numbers::pi * t));
+      if (t > 0.1) largest_error = std::max(largest_error, std::abs(mean - given));
+    }
+    EXPECT_LT(fastest, 1.55) << inflow;
+    EXPECT_LT(largest_error, 0.03) << inflow;
+  }
+}
+
+// Hagen-Poiseuille flow between openings that a body cuts, 10 across: u = 2 (1 - r^2), p = 8 nu (3 - x). Walls that the
+// stencils of mirrored places resolve to second order, (1/5)^2 of the mean speed, with a friction 6 % off as in
+// cases/cylinder_2d.
+TEST(LesSphOpenings, AFlowGoesThroughARoundPipe) {
+  Simulation run(
+      "method = \"les-sph\"\n[domain]\nlower = [0, -1.1, -1.1]\nupper = [3, 1.1, 1.1]\n[resolution]\nspacing = "
+      "0.2\n[fluid]\ndensity = 1\nviscosity = 0.5\n[[liquid]]\nvelocity = [\"2*(1-y^2-z^2)\", \"0\", "
+      "\"0\"]\n[[body]]\nshape = \"cylinder\"\nradius = 1\ninside = false\nrotation = [0, 90, 0]\nwall = "
+      "\"no-slip\"\n[[inflow]]\nside = \"left\"\nvelocity = [\"2*max(0,1-y^2-z^2)\", \"0\", "
+      "\"0\"]\n[[outflow]]\nside = \"right\"\n[time]\nend = 2\n");
+  const double start = run.series()["mass"];
+  run_until(run, 1);
+  const auto exact = [](const Vec3& r) { return Vec3{2 * (1 - r[1] * r[1] - r[2] * r[2]), 0, 0}; };
+  const Errors errors = errors_of(run, exact, [](const Vec3& r) { return 4 * (3 - r[0]); });
+  EXPECT_LT(errors.velocity, 0.04);
+  EXPECT_LT(errors.pressure, 0.08 * 12);
+  auto series = run.series();
+  EXPECT_NEAR(series["volume_in"], std::numbers::pi, 0.03 * std::numbers::pi);
+  EXPECT_NEAR(series["mass"], start + series["volume_in"] - series["volume_out"], 1e-12);
+  EXPECT_NEAR(series["mass"], start, 0.02 * start);
+}
+
 TEST(LesSphOpenings, APatchOfAWallFillsATank) {
   Simulation run(filling, {"fluid.mach=0.05"});
   run_until(run, 2);

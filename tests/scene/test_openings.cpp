@@ -130,6 +130,25 @@ TEST(Openings, AreRefusedWhenTheFlowMakesNoSense) {
                   "the liquid"));
 }
 
+// Half of a tank 2 x 1 is room for 1; half a side lets 0.5 t enter by t^2 / 4.
+TEST(Openings, AClosedTankIsNotFilledBeyondItsRoom) {
+  const std::string tank =
+      replaced(replaced(replaced(replaced(stream, "[[outflow]]\nside = \"right\"\npressure = \"1 + t\"\n", ""),
+                                 "side = \"left\"", "side = \"left\"\nlower = [0, 0]\nupper = [0, 0.5]"),
+                        "\"y*t\"", "\"t\""),
+               "[[liquid]]", "[[liquid]]\nupper = [2, 0.5]");
+  const std::string walled = replaced(tank, "bottom =", "left = \"free-slip\"\nright = \"free-slip\"\nbottom =");
+  EXPECT_TRUE(problems_of(replaced(walled, "end = 2", "end = 1.95")).empty());
+  const std::vector<std::string> found = problems_of(replaced(walled, "end = 2", "end = 4"));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_THAT(found[0], HasSubstr("18:1 inflow.0 fills the closed tank: its room of 1 is full at t = 2"));
+  EXPECT_THAT(found[0], HasSubstr("the run ends at 4; add an [[outflow]], open a side (top = \"open\"), or end"));
+  EXPECT_TRUE(problems_of(replaced(replaced(walled, "end = 2", "end = 4"), "top = \"free-slip\"\n", "")).empty());
+  // A body that fills half of the room leaves it full at sqrt 2.
+  const std::string body = "[[body]]\nshape = \"box\"\nsize = [1, 0.5]\nposition = [1.5, 0.75]\n";
+  EXPECT_THAT(problems_of(walled + body), ElementsAre(HasSubstr("its room of 0.5 is full at t = 1.41")));
+}
+
 TEST(Openings, DoNotGoWithWhatCannotPassThem) {
   EXPECT_THAT(of("[time]", "[bubbles]\nweber = 100\ndensity_ratio = 800\n[time]"),
               Contains(HasSubstr("[bubbles] does not go with [[inflow]]")));

@@ -20,9 +20,11 @@
 //   scalar, vector    f(m)
 //   velocity          u_w                                              inflow: given
 //                     u(m)                                             outflow; of an acceleration inflow too
-//   pressure          q(m) - 2 s a . n                                 inflow: grad q . n = a . n on the side
+//   pressure          q(m) - (m - r_g) . n (a . n)                     inflow: grad q . n = a . n
 //                     2 q_o - q(m)                                     outflow: q_o on the side
 //                     q_o                                              without liquid at m
+//
+// m of a point that is about to enter is a layer of points ahead of it.
 #pragma once
 
 #include <array>
@@ -43,7 +45,7 @@ struct WallStencils {
   Array<std::int32_t> nearest;  // the particle nearest to m
   // Of openings; empty without. What the pressure q takes: sign f(m) + given.
   Array<PointKind> kind;
-  // Of inflows: what a predicted velocity has beside u_w, the pressure gradient a times the step.
+  // Of inflows: what a predicted velocity has beside u_w, see OpenSides::give_gradients().
   std::array<Array<float>, 3> predicted;
   Array<float> pressure_sign;
   Array<double> given_pressure;

@@ -40,6 +40,8 @@ class BodyWalls {
   // lost.
   // Surfaces move along themselves alone.
   void keep_outside(Vec3& position, Vec3* velocity, double gap) const;
+  // Nearer than `gap` a velocity that leads to the wall faster than `speed` is no faster than it was before.
+  void limit_approach(const Vec3& position, double gap, double speed, const Vec3& before, Vec3& velocity) const;
 
   double bytes() const;
 

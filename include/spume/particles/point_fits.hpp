@@ -43,8 +43,8 @@ class PointFit {
     nearest2_ = r2;
     nearest_ = particle;
   }
-  // False where the particles bear no fit.
-  bool fit();
+  // The order that the particles bear, -1: none.
+  int fit();
   // Adds the point of the last fit.
   void append(PointFits& fits);
   // Adds a point without entries.

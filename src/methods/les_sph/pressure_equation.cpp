@@ -107,19 +107,19 @@ void Flow::set_weights() {
 
 // Of the next time, as the potential is.
 void Flow::give_pressures(double t) {
+  if (!features.openings) return;
   const auto potential_of_place = [&](const Vec3& r) {
     return potential_at(r) + (force_potential ? (*force_potential)(*scene.body_force, r, t) : 0.0);
   };
   boundary.give_pressures(potential_of_place, t);
 }
 
-void Flow::set_matrix(double t) {
+void Flow::set_matrix() {
   const std::size_t n = size();
   ScratchPool& scratch = particles.scratch();
   scratch.release(advecting_velocity);
   if (sizes.variable) set_weights();
   for (auto* array : {&rows.diagonal_shift, &rows.diagonal}) scratch.lease(*array, n);
-  if (features.openings) give_pressures(t);
   rows.pressure_fixed = surface != nullptr ? &surface->pressure_fixed : nullptr;
   rows.helmholtz = equation.helmholtz;
   rows.singular = features.closed && equation.helmholtz == 0;

@@ -49,6 +49,7 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_p
                       : "every side is open";
   surface = has.free_surface ? "the liquid has a free surface" : "the liquid fills the domain";
   openings = has.openings ? "particles enter and leave" : "no inflow, no outflow";
+  impulse = has.openings ? "the liquid moves with what enters" : "no inflow, no outflow";
   const bool lattice = loaded.scene.domain.boxes.empty() && !has.bodies;
   level = !has.free_surface ? "the liquid fills the domain"
           : lattice         ? "no solids: columns are those of the lattice"

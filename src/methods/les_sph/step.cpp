@@ -60,6 +60,9 @@ Plan make_plan(Flow& f) {
   // (iii) the shift to r^{n+1}, taken with the last stage
   add(step, "shift", has.shifting, why.shift, [&](StageRun&) { f.compute_shift(); }, {moments.concentration_gradient},
       {f.displacement_by_shift()});
+  add(
+      start, "impulse", has.openings, why.impulse, [&](StageRun&) { f.set_in_motion(); }, {p.velocity}, {p.velocity},
+      true);
   // (v) gradients of u^n, and what follows from them
   const Arrays gradients{f.strain, f.velocity_gradient, f.filtered_velocity, f.gradient_trace, f.shift_velocity};
   add(
@@ -104,7 +107,11 @@ Plan make_plan(Flow& f) {
       {f.intermediate_velocity, moments.correction, f.gradient_trace, f.potential},
       {f.first_source, f.potential_laplacian}, true);
   add(
-      both, "matrix", true, "rows and right-hand side", [&](StageRun& run) { f.set_matrix(f.time + run.dt); },
+      both, "matrix", true, "rows and right-hand side",
+      [&](StageRun& run) {
+        f.give_pressures(f.time + run.dt);
+        f.set_matrix();
+      },
       read_by_matrix(f), arrays_of(f.rows));
   add(both, "preconditioner", f.solver.has_multigrid(), why.preconditioner, [&](StageRun&) { f.prepare_solver(); },
       {r, f.rows.diagonal}, {});

@@ -18,6 +18,10 @@ namespace {
 // by 0.02 %.
 constexpr double least_divergence_of_position = 0.95;
 
+// Of a spacing a step: faster than this the pressure of the surface does not draw a particle into the wall of a body.
+// At wall points a pressure that one particle has alone is lower than its own.
+constexpr double least_approach = 0.05;
+
 [[noreturn]] void refuse_body_force(const Flow& flow, double t) {
   StepFailure::Details details;
   details.cause = "the body force is not a finite number";
@@ -343,11 +347,24 @@ void Flow::accept(double dt) {
   work += balance.work;
 
   parallel_for(n, [&](std::size_t i) {
-    const Vec3 before = advecting_velocity_of(i, dt);
+    Vec3 before = advecting_velocity_of(i, dt);
     Vec3 ahead = vector_at(next_velocity, dimensions, i), r = vector_at(intermediate_position, dimensions, i);
     if (bubbles != nullptr)
       for (int axis = 0; axis < dimensions; ++axis)
         (*material_acceleration[axis])[i] = (ahead[axis] - before[axis]) / dt;
+    if (surface != nullptr && surface->pressure_fixed[i] != 0) {
+      // No pressure has stopped what has met a wall on its way here.
+      Vec3 straight{};
+      for (int axis = 0; axis < dimensions; ++axis) straight[axis] = (*particles.position[axis])[i] + dt * before[axis];
+      Vec3 stopped = before;
+      boundary.apply_walls(boundary.next_walls, straight, &stopped);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        ahead[axis] += stopped[axis] - before[axis];
+        before[axis] = stopped[axis];
+      }
+    }
+    if (surface != nullptr && boundary.bodies() != nullptr && surface->at_surface[i] != 0)
+      boundary.bodies()->limit_approach(r, resolution.spacing, least_approach * resolution.spacing / dt, before, ahead);
     Vec3 u = ahead;
     if (acceleration[0] != nullptr)
       for (int axis = 0; axis < dimensions; ++axis) u[axis] = 0.5 * (before[axis] + ahead[axis]);

@@ -174,9 +174,11 @@ struct Flow {
   void centre_divergence(double dt);
   void relax_density(double dt);
   void exchange_with_openings();  // particles enter and leave, where they stand at the start of the step
+  void set_in_motion();           // of the start, with what enters
   void find_first_forces();
   void set_first_source();
-  void set_matrix(double t);
+  void give_pressures(double t);  // behind openings
+  void set_matrix();
   void prepare_solver();
   void solve_pressure();        // (x)
   void solve_first_pressure();  // lap p = div F - tr(grad u . grad u)
@@ -198,7 +200,6 @@ struct Flow {
   void add_gradient_trace(const std::array<const double*, 3>& velocity, double factor, Array<double>& sum);
   double row_scale(std::size_t i) const;
   void set_weights();
-  void give_pressures(double t);
   void set_right_hand_side();
   void solve(const char* name);
 };

@@ -14,8 +14,8 @@ Plan make_plan(Flow& flow);
 // Why a stage runs in this scene, or why it does not.
 struct Reasons {
   Reasons(const LoadedCase& loaded, const Features& has, bool force_has_potential);
-  std::string openings, advection, bubbles, images, surface, shift, gradients, curvature, closure, integrator, forces,
-      viscosity, sponges, divergence, centring, relaxation, preconditioner, pressure, events, level, packing;
+  std::string openings, impulse, advection, bubbles, images, surface, shift, gradients, curvature, closure, integrator,
+      forces, viscosity, sponges, divergence, centring, relaxation, preconditioner, pressure, events, level, packing;
 };
 
 }  // namespace spume::les_sph
