@@ -89,8 +89,20 @@ void Flow::blend_properties() {
   filter_colours(arrangement.context, arrangement.packed, bands, phase, out);
   const std::vector<const float*> in(out.begin(), out.end());
   blend_property(bands, phase, in, densities, *density);
-  if (viscosity != nullptr) blend_property(bands, phase, in, viscosities, *viscosity);
+  if (viscosity != nullptr) blend_viscosity(in);
   for (Array<float>& colour : first) particles.scratch().release(colour);
+}
+
+// Across layers in shear the stress is continuous and resistances add up: the harmonic mean keeps the integral of 1 /
+// mu of the sharp interface, where the arithmetic one of (7) makes the thinner fluid narrower by a part of the support.
+void Flow::blend_viscosity(std::span<const float* const> colour) {
+  const bool harmonic = options.get<MomentumOptions>().viscosity_mean == ViscosityMean::harmonic &&
+                        std::none_of(viscosities.begin(), viscosities.end(), [](double mu) { return mu == 0; });
+  if (!harmonic) return blend_property(bands, phase, colour, viscosities, *viscosity);
+  std::vector<double> fluidity;
+  for (const double mu : viscosities) fluidity.push_back(1 / mu);
+  blend_property(bands, phase, colour, fluidity, *viscosity);
+  parallel_for(size(), [&](std::size_t i) { (*viscosity)[i] = 1 / (*viscosity)[i]; });
 }
 
 void Flow::find_potentials() {

@@ -13,7 +13,10 @@ Section momentum_section() {
              {"mu-laplacian", Diffusion::mu_laplacian},
              {"laplacian", Diffusion::laplacian},
              {"hu-adams", Diffusion::hu_adams}},
-            "diffusion of momentum where the viscosity varies; split alone converges to div(2 mu T) at an interface");
+            "diffusion of momentum where the viscosity varies; split alone converges to div(2 mu T) at an interface")
+      .word("viscosity_mean", &MomentumOptions::viscosity_mean,
+            {{"harmonic", ViscosityMean::harmonic}, {"arithmetic", ViscosityMean::arithmetic}},
+            "filter of the viscosity across interfaces; arithmetic as in the paper's (7)");
 }
 
 Section interface_band_section() {

@@ -140,6 +140,7 @@ struct Flow {
 
  private:
   void find_potential(Colour& colour);
+  void blend_viscosity(std::span<const float* const> colour);
 };
 
 }  // namespace spume::gfd

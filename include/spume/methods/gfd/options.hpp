@@ -9,8 +9,12 @@ namespace spume::gfd {
 // Joubert et al. and operators/gfd_stress.hpp; hu_adams: operators/sph_diffusion.hpp.
 enum class Diffusion { split, printed, mu_laplacian, laplacian, hu_adams };
 
+// How the viscosity of mixed particles is blended from the phases.
+enum class ViscosityMean { arithmetic, harmonic };
+
 struct MomentumOptions {
   Diffusion diffusion = Diffusion::split;
+  ViscosityMean viscosity_mean = ViscosityMean::harmonic;
 };
 
 // Of [interface], beside the tension.
