@@ -20,7 +20,7 @@ class PoiseuilleTwoPhase(CaseTest):
             y, u = np.asarray(table["y"])[rows], np.asarray(table["u"])[rows]
             self.assertGreater(len(y), 10)
             np.testing.assert_allclose(module.steady(y, chi), u, atol=1e-8)
-            inner = y[np.abs(y) < 0.99]
+            inner = y[(np.abs(y) < 0.99) & (y != 0)]  # the kink lies between two cells
             np.testing.assert_allclose(module.startup(inner, 50.0, chi), module.steady(inner, chi), atol=1e-5)
 
     def test_the_start_has_the_acceleration_of_the_force(self):
