@@ -173,10 +173,9 @@ void Flow::accept(double dt) {
   refuse_long_strides(particles, particles.position, next_velocity, arrangement.grid.support_radius(), dt);
   boundary.advance(time, dt);
   parallel_for(size(), [&](std::size_t i) {
-    const Vec3 before = vector_at(particles.velocity, dimensions, i);
     Vec3 u = vector_at(next_velocity, dimensions, i), r = vector_at(particles.position, dimensions, i);
     for (int axis = 0; axis < dimensions; ++axis) {
-      r[axis] += 0.5 * dt * (before[axis] + u[axis]);
+      r[axis] += dt * u[axis];
       if (features.shifting) r[axis] += (*shift->displacement[axis])[i];
       if (features.shift_correction) u[axis] += shift_velocity[axis][i];
     }
