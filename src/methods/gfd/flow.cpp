@@ -112,8 +112,8 @@ double Flow::gravity_potential(std::size_t i) const {
 }
 
 double Flow::hydrostatic_part(std::size_t i) const {
-  double sum = features.gravity ? -double{(*density)[i]} * gravity_potential(i) : 0;
-  for (const Colour& colour : colours) sum += colour.mean_potential * colour.value[i];
+  double sum = features.gravity ? -densities[phase[i]] * gravity_potential(i) : 0;
+  for (const Colour& colour : colours) sum += colour.mean_potential * colour.is(phase[i]);
   return sum;
 }
 

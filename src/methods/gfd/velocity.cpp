@@ -111,10 +111,15 @@ void Flow::set_matrix(double dt) {
   source.fill(0.0);
   scratch.lease(force_acceleration, features.interfaces ? dimensions : 0, n);
   for (int axis = 0; axis < dimensions && features.interfaces; ++axis) force_acceleration[axis].fill(0.0F);
-  for (const Colour& colour : colours)
+  // The jumps are those of the sharp phases. Those of the filtered colours, as wide again as the support, make the
+  // interface softer: a capillary wave of 32 spacings is then 4.8 % too slow, in place of 2.8 %.
+  for (const Colour& colour : colours) {
+    ScratchArray<float> sharp(scratch, n);
+    parallel_for(n, [&](std::size_t i) { sharp[i] = static_cast<float>(colour.is(phase[i])); });
     interface_jump_sweep(arrangement.context, arrangement.packed, bands,
-                         {colour.value.data(), colour.potential.data(), density->data()}, stencils(),
+                         {sharp.data(), colour.potential.data(), density->data()}, stencils(),
                          {write(force_acceleration), source.data()});
+  }
   for (Array<float>* array : {&rows.diagonal_shift, &rows.diagonal, &reciprocal_density}) scratch.lease(*array, n);
   scratch.lease(rows.right_hand_side, n);
   matrix.bind(arrangement.context, arrangement.packed, {stencils(), density_property()});

@@ -4,10 +4,11 @@
 //
 // Pressure, tension and gravity act pairwise (operators/interface_jump.hpp). The unknown is the reduced pressure
 //
-//   pi = p - rho~ g . (x - x_0) - sum_n <phi^n> C^n,
+//   pi = p - rho g . (x - x_0) - sum_n <phi^n> c^n,
 //
-// which is continuous across an interface in balance; what the mean potentials <phi^n> leave out is the force. A flat
-// interface at rest and a drop of uniform curvature have pi = 0 and no force.
+// with the density rho and c^n of the particle, 1 in phase n and 0 elsewhere. It is continuous across an interface in
+// balance; what the mean potentials <phi^n> leave out is the force. A flat interface at rest and a drop of uniform
+// curvature have pi = 0 and no force.
 #pragma once
 
 #include <memory>
@@ -50,6 +51,7 @@ struct Colour {
   Array<float> potential{};   // phi - <phi>, at the varying particles
   double mean_potential = 0;  // <phi>
   double area = 0;            // of the interface: integral of |grad C|
+  double is(std::uint8_t number) const { return number == phase ? 1 : 0; }  // c
 };
 
 struct Flow {
