@@ -77,6 +77,27 @@ TEST(GfdAllocations, ASteadyRunAllocatesNothing) {
   }
 }
 
+// With nothing left to gain the fall of the drop comes from nothing.
+TEST(GfdEnergy, AStepThatMakesItIsRefusedAndTheStateIsKept) {
+  GfdRun run(drop_in_a_box, {"fluid.gravity=10", "interface.surface_tension=0"});
+  run.steps(10, 0.002);
+  auto& flow = const_cast<gfd::Flow&>(run.flow());
+  const double supply = flow.energy_supply;
+  flow.energy_supply = flow.potential_energy() - 1;
+  const auto before = run.state();
+  try {
+    run.steps(100, 0.004);
+    FAIL() << "accepted";
+  } catch (const StepFailure& failure) {
+    EXPECT_THAT(failure.what(), HasSubstr("energy from nothing"));
+  }
+  EXPECT_LT(run.method.step_count(), 110);
+  EXPECT_GT(run.state().size(), 5U);
+  flow.energy_supply = supply;
+  run.steps(1, 0.002);
+  EXPECT_NE(run.state(), before);
+}
+
 std::vector<std::string> running(const GfdRun& run) {
   std::vector<std::string> names;
   for (const Stage& stage : run.method.plan())

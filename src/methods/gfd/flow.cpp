@@ -93,6 +93,25 @@ Flow::Flow(const LoadedCase& loaded_case)
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
   parallel_for(size(), [&](std::size_t i) { (*phase_number)[i] = scene.particles.phase[i]; });
   speeds = find_speeds(arrangement, particles);
+  double g2 = 0;
+  for (int axis = 0; axis < dimensions && features.gravity; ++axis)
+    if (!scene.domain.periodic(axis)) g2 += scene.fluid.gravity[axis] * scene.fluid.gravity[axis];
+  weight = std::sqrt(g2) * parallel_sum(size(), [&](std::size_t i) { return mass(i); });
+}
+
+double Flow::kinetic_energy() const {
+  return parallel_sum(size(),
+                      [&](std::size_t i) { return mass(i) * squared_norm(particles.velocity, dimensions, i) / 2; });
+}
+
+double Flow::potential_energy() const {
+  if (!features.gravity) return 0;
+  return parallel_sum(size(), [&](std::size_t i) { return mass(i) * gravity_potential(i); });
+}
+
+void Flow::start_energy() {
+  energy_supply = kinetic_energy() + potential_energy();
+  for (const Colour& colour : colours) energy_supply += colour.tension * colour.area;
 }
 
 GfdStencils Flow::stencils() const {

@@ -44,6 +44,7 @@ Gfd::Gfd(const LoadedCase& loaded)
       .add(flow_.steps)
       .add(flow_.speeds.largest)
       .add(flow_.speeds.limiting)
+      .add(flow_.energy_supply)
       .add(flow_.boundary.wall_speed);
 }
 
@@ -54,6 +55,7 @@ void Gfd::ensure_arranged() {
 }
 
 void Gfd::step(double dt, Ledger& ledger) {
+  if (flow_.steps == 0) ensure_arranged();
   plan_.list(ledger);
   for (const Ledger::Entry& entry : start_ledger_.entries())
     ledger.count(entry.stage, entry.calls, entry.seconds, entry.particles, entry.pairs, entry.bytes);
@@ -113,15 +115,9 @@ void Gfd::declare_series() {
   series_.prepare = [this] {
     for (std::size_t n = 0; n < row_sums_.size(); ++n) row_sums_[n] = sums_of(n);
   };
-  series_.add("kinetic_energy", "rho u^2 / 2, integral", [&flow] {
-    return parallel_sum(flow.size(), [&](std::size_t i) {
-      return flow.mass(i) * squared_norm(flow.particles.velocity, flow.dimensions, i) / 2;
-    });
-  });
+  series_.add("kinetic_energy", "rho u^2 / 2, integral", [&flow] { return flow.kinetic_energy(); });
   if (flow.features.gravity)
-    series_.add("potential_energy", "rho g z, integral", [&flow] {
-      return parallel_sum(flow.size(), [&](std::size_t i) { return flow.mass(i) * flow.gravity_potential(i); });
-    });
+    series_.add("potential_energy", "rho g z, integral", [&flow] { return flow.potential_energy(); });
   if (flow.features.interfaces)
     series_.add("interface_area", flow.dimensions == 3 ? "length^2" : "length", [&flow] {
       double area = 0;

@@ -79,6 +79,11 @@ Plan make_plan(Flow& f) {
       both, "potentials", has.interfaces,
       has.interfaces ? "(14) to (17): tension and weight of the interfaces, pairwise" : several,
       [&](StageRun&) { f.find_potentials(); }, {colours, f.correction}, {colours}, true);
+  add(start, "energy", true, "what the flow may hold",
+      [&](StageRun&) {
+        if (f.steps == 0) f.start_energy();
+      },
+      {p.position, p.velocity}, {});
   // (20) u* from momentum diffusion and body forces
   add(
       step, "viscosity gradient", has.viscosity_jump && takes_gradient,

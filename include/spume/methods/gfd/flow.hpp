@@ -68,6 +68,8 @@ struct Flow {
   const double largest_shift;  // coefficient of the shift at which it stirs a lattice instead of evening it out
   const std::vector<double> densities, viscosities;  // of the phases; dynamic
 
+  double weight = 0;  // sum of m |g|, of gravity across sides
+
   // --- State between steps: saved.
   double time = 0;
   std::int64_t steps = 0;
@@ -76,6 +78,7 @@ struct Flow {
   Array<std::int64_t>* phase_number = nullptr;
   Boundary boundary;
   Speeds speeds;
+  double energy_supply = 0;  // mechanical energy at the start and that of the interfaces
 
   // --- Results of the last step, at the positions that it started from.
   Arrangement arrangement;
@@ -117,6 +120,10 @@ struct Flow {
   double largest_kinematic_viscosity() const;
   // Least sqrt((rho_a + rho_b) spacing^3 / (4 pi sigma)) of two phases; infinite without tension.
   double capillary_time() const;
+  double kinetic_energy() const;
+  double potential_energy() const;  // across axes with sides
+  // What the guard of the energy measures by; after the first interfaces have been found.
+  void start_energy();
 
   // The stages.
   void make_images(double dt);
@@ -141,6 +148,7 @@ struct Flow {
   double leased_bytes() const;
 
  private:
+  void refuse_energy_from_nothing() const;
   void find_potential(Colour& colour);
   void blend_viscosity(std::span<const float* const> colour);
 };
