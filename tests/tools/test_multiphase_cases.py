@@ -82,5 +82,32 @@ class RisingBubble(CaseTest):
         self.assertAlmostEqual(module.circularity(at, inside, 1 / 64), 0.97007, delta=0.004)
 
 
+class Oscillations(CaseTest):
+    def test_a_capillary_wave_of_the_normal_mode_has_no_error(self):
+        folder, module = self.run_of("capillary_wave")
+        omega, gamma = module.exact(Results(folder))
+        self.assertAlmostEqual(omega / np.sqrt((2 * np.pi) ** 3 / 2), 0.96462295, places=6)
+        at = lattice([0, -1], [1, 1], 1 / 128)
+        for slower, damped in ((1, 1), (0.97, 1.1)):
+            def phase(p, t):
+                amplitude = 0.1 * np.exp(-damped * gamma * t) * np.cos(slower * omega * t + 0.3)
+                return p[:, 1] > amplitude * np.cos(2 * np.pi * p[:, 0])
+            write_snapshots(folder / "fluid.vtkhdf", np.linspace(0, 1.8, 91), lambda t: at, {"phase": phase})
+            measured = module.measure({"wave": Results(folder)})
+            self.assertAlmostEqual(measured["frequency_ratio"], slower, delta=0.002)
+            self.assertAlmostEqual(measured["damping_ratio"], damped, delta=0.03)
+
+    def test_an_oscillating_drop_of_the_exact_frequency_has_no_error(self):
+        folder, module = self.run_of("oscillating_drop")
+        at = lattice([-2, -2], [2, 2], 1 / 32)
+        for slower in (1, 0.95):
+            def phase(p, t):
+                size = 1 + 0.05 * np.cos(slower * np.sqrt(3) * t) * np.cos(2 * np.arctan2(p[:, 1], p[:, 0]))
+                return np.hypot(p[:, 0], p[:, 1]) < size
+            write_snapshots(folder / "fluid.vtkhdf", np.linspace(0, 8, 81), lambda t: at, {"phase": phase})
+            measured = module.measure({"equal": Results(folder)})
+            self.assertAlmostEqual(measured["equal_frequency_ratio"], slower, delta=0.003)
+
+
 if __name__ == "__main__":
     unittest.main()
