@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The list of methods, in the order in which messages name them.
+#include "spume/methods/gfd/registration.hpp"
 #include "spume/methods/les_sph/registration.hpp"
 #include "spume/methods/registry.hpp"
 #include "spume/methods/spectral/registration.hpp"
@@ -8,12 +9,13 @@ namespace spume {
 namespace {
 
 // Methods that a later version may have, for the message of a case that asks for one.
-const std::vector<std::string> unavailable{"gfd", "wcsph"};
+const std::vector<std::string> unavailable{"wcsph"};
 
 }  // namespace
 
 const std::vector<Registration>& registered_methods() {
-  static const std::vector<Registration> methods{les_sph::registration(), spectral::registration()};
+  static const std::vector<Registration> methods{les_sph::registration(), spectral::registration(),
+                                                 gfd::registration()};
   return methods;
 }
 

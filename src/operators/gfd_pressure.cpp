@@ -190,7 +190,8 @@ void GfdPressureOperator::diagonal(std::span<float> out) {
   });
 }
 
-void GfdPressureOperator::residual(std::span<const double> q, std::span<const double> b, std::span<double> r) {
+void GfdPressureOperator::residual(std::span<const double> q, std::span<const double> b, std::span<double> r,
+                                   bool /*given*/) {
   float* records = packed_->prepare(context_, 2);
   const auto width = static_cast<std::size_t>(record_width(context_.dimensions, 2));
   const std::size_t n = size();

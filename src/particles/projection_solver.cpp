@@ -71,7 +71,7 @@ void PressureRows::release(ScratchPool& scratch) {
 
 // The particle matrix as the Krylov solvers see it.
 struct ProjectionSolver::Operator final : LinearOperator<float> {
-  Operator(PressureOperator& matrix, const PressureRows& rows)
+  Operator(ProjectionMatrix& matrix, const PressureRows& rows)
       : matrix_(matrix), without_mean_(rows.singular && rows.unsymmetric) {}
   std::size_t size() const override { return matrix_.size(); }
   void apply(std::span<const float> x, std::span<float> y) override {
@@ -81,13 +81,13 @@ struct ProjectionSolver::Operator final : LinearOperator<float> {
   Dots apply_with_dots(std::span<const float> x, std::span<float> y, std::span<const float> w) override {
     return without_mean_ ? LinearOperator<float>::apply_with_dots(x, y, w) : matrix_.apply(x, y, w);
   }
-  PressureOperator& matrix_;
+  ProjectionMatrix& matrix_;
   bool without_mean_;
 };
 
 // The same in double, for comparison: A x = -(0 - A x).
 struct ProjectionSolver::DoubleOperator final : LinearOperator<double> {
-  DoubleOperator(PressureOperator& matrix, const PressureRows& rows, std::span<const double> zero)
+  DoubleOperator(ProjectionMatrix& matrix, const PressureRows& rows, std::span<const double> zero)
       : matrix_(matrix), zero_(zero), without_mean_(rows.singular && rows.unsymmetric) {}
   std::size_t size() const override { return matrix_.size(); }
   void apply(std::span<const double> x, std::span<double> y) override {
@@ -95,7 +95,7 @@ struct ProjectionSolver::DoubleOperator final : LinearOperator<double> {
     parallel_for(y.size(), [&](std::size_t i) { y[i] = -y[i]; });
     if (without_mean_) subtract_mean(y);
   }
-  PressureOperator& matrix_;
+  ProjectionMatrix& matrix_;
   std::span<const double> zero_;
   bool without_mean_;
 };
@@ -106,16 +106,14 @@ class ProjectionSolver::MixedSystem final : public RefinedSystem {
   MixedSystem(ProjectionSolver& solver, const PressureRows& rows, ScratchPool& scratch, std::span<double> q)
       : solver_(solver), rows_(rows), work_(scratch, q.size()), q_(q) {}
 
-  void residual(std::span<double> r) override { solver_.operator_.residual(q_, rows_.right_hand_side, r); }
+  void residual(std::span<double> r) override { solver_.matrix_->residual(q_, rows_.right_hand_side, r, true); }
   KrylovResult correct(std::span<const double> r, const CorrectionTask& task) override {
     size_ = task.size;
-    Operator a(solver_.operator_, rows_);
+    Operator a(*solver_.matrix_, rows_);
     JacobiPreconditioner<float> jacobi(rows_.diagonal);
     return correct_by_krylov<float>(solver_.options_.method, a, solver_.preconditioner(jacobi), r, task, q_, work_);
   }
-  void subtract_product(std::span<double> r) override {
-    solver_.operator_.subtract_product(size_, work_.correction, r);
-  }
+  void subtract_product(std::span<double> r) override { solver_.matrix_->subtract_product(size_, work_.correction, r); }
 
  private:
   ProjectionSolver& solver_;
@@ -131,12 +129,12 @@ class ProjectionSolver::DoubleSystem final : public RefinedSystem {
   DoubleSystem(ProjectionSolver& solver, const PressureRows& rows, std::span<double> q)
       : solver_(solver), rows_(rows), q_(q) {}
 
-  void residual(std::span<double> r) override { solver_.operator_.residual(q_, rows_.right_hand_side, r); }
+  void residual(std::span<double> r) override { solver_.matrix_->residual(q_, rows_.right_hand_side, r, true); }
   KrylovResult correct(std::span<const double> r, const CorrectionTask& task) override {
     solver_.zero_.resize(r.size());
     solver_.double_diagonal_.resize(r.size());
     parallel_for(r.size(), [&](std::size_t i) { solver_.double_diagonal_[i] = rows_.diagonal[i]; });
-    DoubleOperator a(solver_.operator_, rows_, solver_.zero_);
+    DoubleOperator a(*solver_.matrix_, rows_, solver_.zero_);
     JacobiPreconditioner<double> jacobi(solver_.double_diagonal_);
     return correct_by_krylov<double>(solver_.options_.method, a, solver_.preconditioner(jacobi), r, task, q_,
                                      solver_.double_work_);
@@ -172,12 +170,12 @@ void ProjectionSolver::prepare(const PressureRows& rows, ParticleStore& particle
   const auto span = [&](int axis) {
     return axis < particles.dimensions ? std::span(r[axis], n) : std::span<const double>();
   };
-  multigrid_->setup(span(0), span(1), span(2), inside, rows.helmholtz, rows.diagonal);
+  multigrid_->setup(span(0), span(1), span(2), inside, rows.helmholtz, rows.diagonal,
+                    rows.coefficient == nullptr ? std::span<const float>() : std::span(rows.coefficient, n));
 }
 
 void ProjectionSolver::solve(const PressureRows& rows, Arrangement& arrangement, ParticleStore& particles,
                              Array<double>& q) {
-  const std::size_t n = particles.size();
   PressureMatrix matrix{rows.diagonal_shift.data(),
                         rows.pressure_fixed == nullptr ? nullptr : rows.pressure_fixed->data()};
   if (!rows.weight.empty()) {
@@ -185,6 +183,13 @@ void ProjectionSolver::solve(const PressureRows& rows, Arrangement& arrangement,
     matrix.row = rows.row.data();
   }
   operator_.bind(arrangement.context, arrangement.packed, matrix);
+  solve(rows, operator_, particles, q);
+}
+
+void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix, ParticleStore& particles,
+                             Array<double>& q) {
+  const std::size_t n = particles.size();
+  matrix_ = &matrix;
   ScratchArray<double> residual(particles.scratch(), n);
   const RefinementOptions refinement{options_.tolerance, rows.reference_norm, options_.max_iterations, rows.singular};
   if (options_.mixed) {

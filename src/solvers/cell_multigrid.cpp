@@ -158,8 +158,8 @@ void CellMultigrid::apply_any(std::span<const Real> r, std::span<Real> z) {
 double CellMultigrid::bytes() const {
   double total = stencil_.bytes() + status_.bytes() + hierarchy_.bytes();
   for (const auto* array : {&corner_, &stencil_cell_, &rank_, &start_, &order_, &row_total_}) total += array->bytes();
-  for (const auto* array : {&open_volume_, &open_face_[0], &open_face_[1], &open_face_[2], &partial_, &corner_value_,
-                            &residual_, &correction_})
+  for (const auto* array : {&open_volume_, &open_face_[0], &open_face_[1], &open_face_[2], &cell_coefficient_,
+                            &partial_, &corner_value_, &residual_, &correction_})
     total += array->bytes();
   return total;
 }

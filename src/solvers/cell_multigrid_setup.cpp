@@ -357,14 +357,62 @@ void CellMultigrid::set_coefficients(double helmholtz) {
     }
   });
   if (n[1] == 1) level.face[1].fill(0.0F);
-  hierarchy_.build();
+}
+
+// Means over the particles by the weights that residuals are spread with; cells without particles have 1. The rows of
+// active cells must be known.
+void CellMultigrid::find_cell_coefficients(std::span<const float> coefficient) {
+  CellLevel& level = hierarchy_.finest();
+  const std::size_t total = level.rows() * level.pitch();
+  cell_coefficient_.resize(total);
+  spread(coefficient.data());
+  collect();
+  std::copy_n(level.right_hand_side.data(), total, cell_coefficient_.data());
+  residual_.resize(particles_);
+  residual_.fill(1.0F);
+  spread(residual_.data());
+  collect();
+  const float* weight = level.right_hand_side.data();
+  parallel_blocks(level.rows(), level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row)
+      for (std::size_t o = level.row_start(row); o < level.row_start(row) + static_cast<std::size_t>(level.cells[0]);
+           ++o)
+        cell_coefficient_[o] = weight[o] > 0 && cell_coefficient_[o] > 0 ? cell_coefficient_[o] / weight[o] : 1.0F;
+  });
+}
+
+void CellMultigrid::multiply_faces() {
+  CellLevel& level = hierarchy_.finest();
+  const auto& n = level.cells;
+  const auto cell = [&](int i, int j, int k) {
+    return cell_coefficient_[level.row_start(static_cast<std::size_t>(k * n[1] + j)) + static_cast<std::size_t>(i)];
+  };
+  parallel_blocks(level.rows(), level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t row = first; row < last; ++row) {
+      const int j = static_cast<int>(row) % n[1], k = static_cast<int>(row) / n[1];
+      const std::size_t at = level.row_start(row);
+      for (int i = 0; i < n[0]; ++i) {
+        const auto o = at + static_cast<std::size_t>(i);
+        const float own = cell(i, j, k);
+        const int below[3] = {(i + n[0] - 1) % n[0], (j + n[1] - 1) % n[1], (k + n[2] - 1) % n[2]};
+        for (int a = 0; a < geometry_.dimensions; ++a) {
+          const float other = a == 0 ? cell(below[0], j, k) : a == 1 ? cell(i, below[1], k) : cell(i, j, below[2]);
+          level.face[a][o] *= 2 * own * other / (own + other);
+        }
+        level.dirichlet[o] *= own;
+      }
+      level.face[0][at + static_cast<std::size_t>(n[0])] = level.face[0][at];
+    }
+  });
 }
 
 void CellMultigrid::setup(std::span<const double> x, std::span<const double> y, std::span<const double> z,
-                          std::span<const float> interior, double helmholtz, std::span<const float> diagonal) {
+                          std::span<const float> interior, double helmholtz, std::span<const float> diagonal,
+                          std::span<const float> coefficient) {
   particles_ = x.size();
   if (y.size() != particles_ || interior.size() != particles_ || diagonal.size() != particles_ ||
-      (geometry_.dimensions == 3 && z.size() != particles_))
+      (geometry_.dimensions == 3 && z.size() != particles_) ||
+      (!coefficient.empty() && coefficient.size() != particles_))
     throw std::invalid_argument("CellMultigrid::setup: all spans must have one entry per particle");
   if (!(helmholtz >= 0))
     throw std::invalid_argument("CellMultigrid::setup: the Helmholtz coefficient must not be negative");
@@ -381,6 +429,11 @@ void CellMultigrid::setup(std::span<const double> x, std::span<const double> y, 
   partial_.resize(4 * hierarchy_.finest().rows() * hierarchy_.finest().pitch());
   corner_value_.resize((static_cast<std::size_t>(n[0]) + 1) * (static_cast<std::size_t>(n[1]) + 1) *
                        (static_cast<std::size_t>(n[2]) + 1));
+  hierarchy_.build();
+  if (coefficient.empty()) return;
+  find_cell_coefficients(coefficient);
+  multiply_faces();
+  hierarchy_.build();
 }
 
 }  // namespace spume

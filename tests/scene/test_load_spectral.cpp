@@ -83,10 +83,11 @@ TEST(LoadSpectral, ResolvedCaseReadsBack) {
 }
 
 TEST(LoadSpectral, KeysOfTheOtherMethodAreRefusedInWords) {
-  EXPECT_THAT(problems_of(spectral_case("kind = \"rest\"\n", "[pressure]\ntolerance = 1e-6\n[[liquid]]\n")),
-              ElementsAre("16:2 [pressure] belongs to method \"les-sph\", and this case is of method \"spectral\"; "
-                          "remove the section",
-                          HasSubstr("18:3 [liquid] belongs to method \"les-sph\"")));
+  EXPECT_THAT(
+      problems_of(spectral_case("kind = \"rest\"\n", "[pressure]\ntolerance = 1e-6\n[[liquid]]\n")),
+      ElementsAre("16:2 [pressure] belongs to method \"les-sph\" or \"gfd\", and this case is of method \"spectral\"; "
+                  "remove the section",
+                  HasSubstr("18:3 [liquid] belongs to method \"les-sph\"")));
   EXPECT_THAT(problems_of(spectral_case("kind = \"rest\"\njitter = 0.1\n", "", "grid = 16\nspacing = 0.1\n")),
               ElementsAre(HasSubstr("10:1 resolution.spacing belongs to method \"les-sph\""),
                           HasSubstr("17:1 initial.jitter belongs to method \"les-sph\"")));

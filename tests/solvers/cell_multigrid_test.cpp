@@ -143,6 +143,36 @@ TEST(CellMultigrid, SolidBoxInTheLiquidCostsFewIterations) {
   EXPECT_LT(iterations[1], iterations[0]);  // taken for air, the box would pin the pressure to zero
 }
 
+// A coefficient c of all particles divides the cells' part of z by c: with 1 / c of the diagonal it is M / c.
+TEST(CellMultigrid, AUniformCoefficientScalesIt) {
+  Problem plain(closed_box(2, 0.02, 0)), scaled(closed_box(2, 0.02, 0));
+  constexpr float c = 1.0F / 1024;
+  std::vector<float> diagonal(scaled.system.diagonal), coefficient(scaled.size(), c);
+  for (float& entry : diagonal) entry *= c;
+  scaled.multigrid.setup(scaled.system.x, scaled.system.y, scaled.system.z, scaled.system.interior, 0.0, diagonal,
+                         coefficient);
+  const std::vector<double> r = noise(plain.size(), 3);
+  const std::vector<double> one = applied(plain.multigrid, r), other = applied(scaled.multigrid, r);
+  const double size = std::sqrt(dot(one, one));
+  // c is a power of two; means of it over a cell are off by a rounding or two.
+  for (std::size_t i = 0; i < r.size(); ++i) ASSERT_NEAR(other[i] * c, one[i], 1e-5 * size);
+}
+
+TEST(CellMultigrid, IsSymmetricAndPositiveWithACoefficientThatJumpsAThousandfold) {
+  Problem problem(closed_box(3, 0.05, 0));
+  std::vector<float> coefficient(problem.size());
+  for (std::size_t i = 0; i < coefficient.size(); ++i) coefficient[i] = problem.system.x[i] < 0.5 ? 1.0F : 1e-3F;
+  problem.multigrid.setup(problem.system.x, problem.system.y, problem.system.z, problem.system.interior, 0.0,
+                          problem.system.diagonal, coefficient);
+  const std::vector<double> x = noise(problem.size(), 1), y = noise(problem.size(), 2);
+  const std::vector<double> mx = applied(problem.multigrid, x), my = applied(problem.multigrid, y);
+  EXPECT_NEAR(dot(x, my), dot(y, mx), 3e-6 * std::sqrt(dot(x, x) * dot(my, my)));
+  EXPECT_GT(dot(x, mx), 0.0);
+  EXPECT_THROW(problem.multigrid.setup(problem.system.x, problem.system.y, problem.system.z, problem.system.interior,
+                                       0.0, problem.system.diagonal, std::vector<float>(3, 1.0F)),
+               std::invalid_argument);
+}
+
 TEST(CellMultigrid, ApplicationIsTheSameToTheBitForAnyThreadCount) {
   const SphSetup setup = open_wave(3, 0.02, 0.05);
   Problem problem(setup);

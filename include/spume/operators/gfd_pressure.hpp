@@ -13,8 +13,8 @@
 #include <cstdint>
 #include <span>
 
-#include "spume/operators/dots.hpp"
 #include "spume/operators/gfd_moments.hpp"
+#include "spume/operators/projection_matrix.hpp"
 
 namespace spume {
 
@@ -29,23 +29,23 @@ struct GfdPressureMatrix {
 // Rows where the density varies read weights with 1 / rho_ij that bind() stores, 4 bytes a pair: they then take 0.9
 // times as long as the rows of one density, whose weights are found anew. With densities gathered for each application
 // they took 2 times as long. bind() again when positions, stencils or densities change.
-class GfdPressureOperator {
+class GfdPressureOperator final : public ProjectionMatrix {
  public:
   void bind(const SweepContext& context, PackedNeighbours& packed, const GfdPressureMatrix& matrix);
   // y = A x in float, with sum w y and sum y y accumulated in double in fixed blocks.
-  Dots apply(std::span<const float> x, std::span<float> y, std::span<const float> w);
+  Dots apply(std::span<const float> x, std::span<float> y, std::span<const float> w) override;
 
   // The diagonal of A, with the particle's own images in it; 1 in masked rows.
   void diagonal(std::span<float> out);
 
   // r = b - A q with q, differences and sums in double, as PressureOperator::residual. Masked rows give zero, but their
-  // q enters their neighbours' rows.
-  void residual(std::span<const double> q, std::span<const double> b, std::span<double> r);
+  // q enters their neighbours' rows. No pressure is given behind openings.
+  void residual(std::span<const double> q, std::span<const double> b, std::span<double> r, bool given = true) override;
 
   // r -= scale A x with x in float and all else as in residual(). Masked rows keep r.
-  void subtract_product(double scale, std::span<const float> x, std::span<double> r);
+  void subtract_product(double scale, std::span<const float> x, std::span<double> r) override;
 
-  std::size_t size() const { return context_.list->particles(); }
+  std::size_t size() const override { return context_.list->particles(); }
   double bytes() const { return partial_.bytes() + first_weight_.bytes() + block_start_.bytes() + weight_.bytes(); }
 
  private:

@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <span>
 
-#include "spume/operators/dots.hpp"
 #include "spume/operators/pair_sweep.hpp"
+#include "spume/operators/projection_matrix.hpp"
 
 namespace spume {
 
@@ -27,22 +27,22 @@ struct PressureMatrix {
 };
 
 // y = A x in float, with sum w y and sum y y accumulated in double in fixed blocks.
-class PressureOperator {
+class PressureOperator final : public ProjectionMatrix {
  public:
   // Throws std::logic_error unless the matrix has weights and rows exactly where the context has sizes.
   void bind(const SweepContext& context, PackedNeighbours& packed, const PressureMatrix& matrix);
-  Dots apply(std::span<const float> x, std::span<float> y, std::span<const float> w);
+  Dots apply(std::span<const float> x, std::span<float> y, std::span<const float> w) override;
 
   // r = b - A q with q in double: differences are exact and sums are double, so that the residual of a smooth
   // field does not drown in rounding (a float field of 100 spacings per wave would leave 1e-3). Masked rows
   // give zero, but their q enters their neighbours' rows.
   // `given` false: without the pressures given behind openings, as for a change of q.
-  void residual(std::span<const double> q, std::span<const double> b, std::span<double> r, bool given = true);
+  void residual(std::span<const double> q, std::span<const double> b, std::span<double> r, bool given = true) override;
 
   // r -= scale A x with x in float and all else as in residual(): what a correction x leaves of r. Masked rows keep r.
-  void subtract_product(double scale, std::span<const float> x, std::span<double> r);
+  void subtract_product(double scale, std::span<const float> x, std::span<double> r) override;
 
-  std::size_t size() const { return context_.list->particles(); }
+  std::size_t size() const override { return context_.list->particles(); }
   double bytes() const { return partial_.bytes() + weight_sum_.bytes(); }
 
  private:

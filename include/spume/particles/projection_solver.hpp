@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Solves the pressure equation of a projection, whatever its rows are: the method gives the matrix beyond the pair sums
-// (operators/pressure_operator.hpp) and the right-hand side.
+// Solves the pressure equation of a projection, whatever its rows are: the method gives the right-hand side and the
+// matrix, either a ProjectionMatrix of its own or what stands beyond the pair sums of operators/pressure_operator.hpp:
 //
 //   V [ row_i sum_j 2 g_ij weight_j (q_i - q_j) + diagonal_shift_i q_i ] = right_hand_side_i
 //
@@ -32,6 +32,9 @@ struct PressureRows {
   // The matrix is not symmetric: its residuals sum to anything. The mean is taken out of products as well, which makes
   // a singular system solvable: what is left over is a uniform source.
   bool unsymmetric = false;
+  // Of a coefficient 1 / rho in the equation, for the preconditioner: per particle, positive. Null: constant, and then
+  // folded into the rows.
+  const float* coefficient = nullptr;
 
   void release(ScratchPool& scratch);
 };
@@ -53,6 +56,8 @@ class ProjectionSolver {
   // Improves `q`, which holds the guess and where the pressure is fixed the value. What did not converge is said in the
   // report: the caller decides.
   void solve(const PressureRows& rows, Arrangement& arrangement, ParticleStore& particles, Array<double>& q);
+  // The same for a matrix of the caller's, bound to these rows.
+  void solve(const PressureRows& rows, ProjectionMatrix& matrix, ParticleStore& particles, Array<double>& q);
 
   bool has_multigrid() const { return multigrid_ != nullptr; }
   const RefinementResult& report() const { return report_; }
@@ -68,6 +73,7 @@ class ProjectionSolver {
 
   Options options_;
   PressureOperator operator_;
+  ProjectionMatrix* matrix_ = nullptr;  // of the present solve
   std::unique_ptr<CellMultigrid> multigrid_;
   CorrectionWorkspace<double> double_work_;  // empty in mixed precision, as are the next
   Array<double> double_diagonal_, zero_;

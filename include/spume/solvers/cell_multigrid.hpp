@@ -54,10 +54,14 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
   //                diagonal alone), 1 inside the liquid
   //   helmholtz    Ma^2 / dt^2 in 1/length^2, zero for an incompressible liquid
   //   diagonal     A_ii; stays the caller's, who keeps it until the next setup()
+  //   coefficient  c of -div(c grad), positive; empty: 1. Cells have the mean of their particles, 1 / c the mean of two
+  //                cells across their face: what differs a thousandfold from cell to cell then conducts as little as
+  //                the pairs do
   // Particles with non-finite positions take part through the diagonal only. Particles outside a wall count for the
   // cell at that wall.
   void setup(std::span<const double> x, std::span<const double> y, std::span<const double> z,
-             std::span<const float> interior, double helmholtz, std::span<const float> diagonal);
+             std::span<const float> interior, double helmholtz, std::span<const float> diagonal,
+             std::span<const float> coefficient = {});
 
   void apply(std::span<const float> r, std::span<float> z) override;
   void apply(std::span<const double> r, std::span<double> z) override;
@@ -105,6 +109,8 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
   void extend_to_shore();
   void fill_holes();
   void set_coefficients(double helmholtz);
+  void find_cell_coefficients(std::span<const float> coefficient);
+  void multiply_faces();
   void spread(const float* r);
   void collect();
   template <class Real>
@@ -132,6 +138,7 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
   // shore_first_[s + 1]. With zero there, a liquid around a box takes 42 iterations in place of 7.
   std::vector<std::size_t> shore_, shore_first_, shore_next_;
   Array<std::int32_t> shore_cells_;
+  Array<float> cell_coefficient_;       // of the cells, with a coefficient alone; laid out as their right-hand side
   Array<float> partial_;                // spread sums per row of stencil cells and side
   Array<float> corner_value_;           // cell values with wrapped upper neighbours
   Array<float> residual_, correction_;  // float copies for double vectors

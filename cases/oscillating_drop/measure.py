@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""Frequency of a two-dimensional drop against Lamb and Rayleigh (reference/drop_bubble_frequencies.csv), unbounded and
+without viscosity."""
+from pathlib import Path
+
+import numpy as np
+from spume_tools.results import read_reference
+
+REFERENCE = Path(__file__).parent / "reference" / "drop_bubble_frequencies.csv"
+
+
+def exact(run):
+    outside, drop = (float(phase["density"]) for phase in run.case["phase"])
+    n = int(run.case["constants"]["n"])
+    table = read_reference(REFERENCE, ("dim", "rho_d", "rho_c", "n", "omega"))
+    for row in zip(*(table[name] for name in ("dim", "rho_d", "rho_c", "n", "omega"))):
+        if tuple(float(v) for v in row[:4]) == (2.0, drop, outside, float(n)):
+            return float(row[4])
+    raise ValueError("the reference has no drop of these fluids")
+
+
+def moment(run):
+    """t and the mean of r^n cos(n theta) over the drop about its centre, linear in the amplitude of mode n."""
+    n = int(run.case["constants"]["n"])
+    t, values = [], []
+    for snapshot in run.snapshots():
+        inside = snapshot.position[snapshot.field("phase") == 1, :2]
+        away = inside - inside.mean(axis=0)
+        t.append(snapshot.time)
+        values.append(np.mean(((away[:, 0] + 1j * away[:, 1]) ** n).real))
+    return np.array(t), np.array(values)
+
+
+def fitted(t, a, omega):
+    """omega and gamma of c exp(-gamma t) cos(omega t + phi), by Gauss and Newton."""
+    parameters = np.array([a[0], 0.0, omega, 0.01 * omega])
+    for _ in range(100):
+        c, s, w, g = parameters
+        decay = np.exp(-g * t)
+        wave, other = np.cos(w * t), np.sin(w * t)
+        model = decay * (c * wave + s * other)
+        slope = np.column_stack([decay * wave, decay * other, decay * t * (s * wave - c * other), -t * model])
+        change, *_ = np.linalg.lstsq(slope, a - model, rcond=None)
+        parameters = parameters + 0.7 * change
+    return float(parameters[2]), float(parameters[3])
+
+
+def measure(runs):
+    measured = {}
+    for name, run in runs.items():
+        omega = exact(run)
+        t, a = moment(run)
+        found, rate = fitted(t, a, omega)
+        measured[f"{name}_frequency_ratio"] = found / omega
+        measured[f"{name}_frequency_error"] = abs(found / omega - 1)
+        measured[f"{name}_damping_over_frequency"] = rate / omega
+    return measured
+
+
+def curves(runs):
+    lines = []
+    for name, run in runs.items():
+        t, a = moment(run)
+        lines.append((f"Spume, {name}", exact(run) * t, a / a[0], "-"))
+    return [{"file": "oscillation", "x": "omega t", "y": "amplitude", "curves": lines}]

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// The state of a multiphase flow and the stages of its step, in the order of step.cpp. Numbers refer to Joubert, Wilke
+// and Pizette.
+//
+// Pressure, tension and gravity act pairwise (operators/interface_jump.hpp). The unknown is the reduced pressure
+//
+//   pi = p - rho g . (x - x_0) - sum_n <phi^n> c^n,
+//
+// with the density rho and c^n of the particle, 1 in phase n and 0 elsewhere. It is continuous across an interface in
+// balance; what the mean potentials <phi^n> leave out is the force. A flat interface at rest and a drop of uniform
+// curvature have pi = 0 and no force.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "spume/methods/gfd/options.hpp"
+#include "spume/operators/gfd_pressure.hpp"
+#include "spume/operators/interface_bands.hpp"
+#include "spume/particles/arrangement.hpp"
+#include "spume/particles/boundary.hpp"
+#include "spume/particles/moments.hpp"
+#include "spume/particles/projection_solver.hpp"
+#include "spume/particles/shift.hpp"
+#include "spume/particles/step_limits.hpp"
+#include "spume/scene/case.hpp"
+
+namespace spume::gfd {
+
+// What a scene needs. Stages and arrays exist by these alone.
+struct Features : BoundaryFeatures {
+  explicit Features(const LoadedCase& loaded);
+  bool interfaces = false;  // several phases
+  bool tension = false;
+  bool gravity = false;  // across sides: part of the reduced pressure
+  bool forces = false;   // added to the velocity: forces.body, gravity along a periodic axis
+  bool viscosity = false;
+  bool viscosity_jump = false;  // between phases
+  bool shifting = false;
+  bool shift_correction = false;
+  bool density_relaxation = false;
+};
+
+// A colour function C^n whose interface is followed: of every phase but the first in a scene of two, else of all.
+struct Colour {
+  std::size_t phase = 0;
+  double tension = 0;         // share of sigma: sigma_ab = sigma_a + sigma_b
+  double density_jump = 0;    // rho_n - rho_0
+  Array<float> value{};       // C
+  Array<float> potential{};   // phi - <phi>, at the varying particles
+  double mean_potential = 0;  // <phi>
+  double area = 0;            // of the interface: integral of |grad C|
+  double is(std::uint8_t number) const { return number == phase ? 1 : 0; }  // c
+};
+
+struct Flow {
+  explicit Flow(const LoadedCase& loaded_case);
+  Flow(const Flow&) = delete;
+  Flow& operator=(const Flow&) = delete;
+
+  const LoadedCase& loaded;
+  const Case& options;
+  const Scene& scene;
+  const Features features;
+  const Resolution resolution;
+  const int dimensions;
+  const double largest_shift;  // coefficient of the shift at which it stirs a lattice instead of evening it out
+  const std::vector<double> densities, viscosities;  // of the phases; dynamic
+
+  double weight = 0;  // sum of m |g|, of gravity across sides
+
+  // --- State between steps: saved.
+  double time = 0;
+  std::int64_t steps = 0;
+  ParticleStore particles;
+  Array<double>* pressure = nullptr;  // p
+  Array<std::int64_t>* phase_number = nullptr;
+  Boundary boundary;
+  Speeds speeds;
+  double energy_supply = 0;  // mechanical energy at the start and that of the interfaces
+
+  // --- Results of the last step, at the positions that it started from.
+  Arrangement arrangement;
+  ParticleSizes sizes;  // all alike
+  MomentFields moments;
+  std::unique_ptr<Shift> shift;               // null: no shifting
+  std::array<Array<float>*, 6> correction{};  // B
+  FloatVectorField offset{};                  // o
+  Array<float>* laplacian_factor = nullptr;   // f
+  Array<std::uint8_t> phase;
+  InterfaceBands bands;
+  std::vector<Colour> colours;
+  Array<float>* density = nullptr;    // rho~
+  Array<float>* viscosity = nullptr;  // mu~; null without viscosity
+  double displacement = 0, volume_ratio = 1;
+  double max_divergence = 0;
+  std::vector<double> phase_volume;  // by kernel sums
+  ProjectionSolver solver;
+  GfdPressureOperator matrix;
+
+  // --- Leased within a step.
+  FloatVectorScratch viscosity_gradient;  // <grad mu / rho>
+  FloatVectorScratch viscous_acceleration, force_acceleration, shift_velocity;
+  VectorScratch intermediate_velocity, next_velocity;
+  Array<double> divergence, source, reduced_pressure;
+  Array<float> reciprocal_density;
+  PressureRows rows;
+
+  std::size_t size() const { return particles.size(); }
+  double spacing() const { return resolution.spacing; }
+  double mass(std::size_t i) const {
+    return particles.volume * densities[static_cast<std::size_t>((*phase_number)[i])];
+  }
+  GfdStencils stencils() const;
+  PhaseProperty density_property() const { return {density->data(), bands.varies()}; }
+  FloatVectorField displacement_by_shift() const { return shift == nullptr ? FloatVectorField{} : shift->displacement; }
+  double gravity_potential(std::size_t i) const;  // -g . (x - x_0), of gravity across sides
+  double hydrostatic_part(std::size_t i) const;   // p - pi
+  double largest_kinematic_viscosity() const;
+  // Least sqrt((rho_a + rho_b) spacing^3 / (4 pi sigma)) of two phases; infinite without tension.
+  double capillary_time() const;
+  double kinetic_energy() const;
+  double potential_energy() const;  // across axes with sides
+  // What the guard of the energy measures by; after the first interfaces have been found.
+  void start_energy();
+
+  // The stages.
+  void make_images(double dt);
+  void find_neighbours(double dt);
+  void measure_stencils();  // (10), (11)
+  void find_bands();
+  void blend_properties();           // (6), (7)
+  void find_potentials();            // (14) to (17), pairwise
+  void find_viscosity_gradient();    // (18)
+  void find_viscous_acceleration();  // (9), (12), (13), (19)
+  void predict_velocity(double dt);  // (20)
+  void find_divergence(double dt);
+  void relax_density(double dt);
+  void compute_shift();
+  void correct_for_shift();
+  void set_matrix(double dt);  // (23)
+  void prepare_solver();
+  void solve_pressure();             // (24)
+  void project_velocity(double dt);  // (21), (22)
+  void accept(double dt);            // (25)
+
+  double leased_bytes() const;
+
+ private:
+  void refuse_energy_from_nothing() const;
+  void find_potential(Colour& colour);
+  void blend_viscosity(std::span<const float* const> colour);
+};
+
+}  // namespace spume::gfd

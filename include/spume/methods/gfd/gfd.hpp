@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Incompressible flow of several phases by generalised finite differences (Joubert, Wilke and Pizette): what the driver
+// knows of it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "spume/methods/gfd/flow.hpp"
+#include "spume/methods/method.hpp"
+#include "spume/particles/output_fields.hpp"
+#include "spume/particles/point_sampler.hpp"
+
+namespace spume::gfd {
+
+// The stages of a flow, which outlives the plan.
+Plan make_plan(Flow& flow);
+
+const std::vector<OutputField<Flow>>& output_fields();
+
+class Gfd final : public Method, public FieldProbes {
+ public:
+  explicit Gfd(const LoadedCase& loaded);
+
+  const std::vector<Stage>& plan() const override { return plan_.stages(); }
+  std::vector<ArrayInfo> arrays() const override;
+  std::size_t particle_count() const override { return flow_.size(); }
+  double time() const override { return flow_.time; }
+  std::int64_t step_count() const override { return flow_.steps; }
+  StepLimit step_limit() const override;
+  void step(double dt, Ledger& ledger) override;
+  std::vector<SeriesColumn> series_columns() const override { return series_.columns(); }
+  void series_values(std::span<double> values) override;
+  std::vector<ParticleSnapshot> snapshot() override;
+  FieldProbes* field_probes() override { return this; }
+  PointSample sample(const Vec3& position) override { return sampler().sample(position); }
+  PlaneSample plane_average(int axis, double position) override { return sampler().plane_average(axis, position); }
+  // The volume of each phase; the residual of the pressure.
+  std::vector<Invariant> invariants() const override;
+  void save(StateWriter& writer) const override;
+  void load(StateReader& reader) override;
+
+  const Flow& flow() const { return flow_; }
+
+ private:
+  // Finds the arrangement and the interfaces of a state that no step has left, for who looks at it.
+  void ensure_arranged();
+  void declare_series();
+  const PointSampler& sampler();
+
+  struct PhaseSums {
+    double mass = 0;
+    Vec3 momentum{}, moment{};
+  };
+  PhaseSums sums_of(std::size_t phase) const;
+
+  Ledger start_ledger_;  // of an arrangement that came before the first step
+  Flow flow_;
+  Plan plan_;
+  SeriesTable series_;
+  SnapshotTable snapshot_;
+  SavedNumbers saved_{"scalars"};
+  std::vector<PhaseSums> row_sums_;  // of the row of the series that is being read
+  PointSampler sampler_;
+  bool arranged_ = false;
+  std::int64_t sampled_step_ = -1;
+};
+
+}  // namespace spume::gfd

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Options of the multiphase scheme alone. Those of its parts: particles/options.hpp.
+#pragma once
+
+#include "spume/particles/options.hpp"
+
+namespace spume::gfd {
+
+// Joubert et al. and operators/gfd_stress.hpp; hu_adams: operators/sph_diffusion.hpp.
+enum class Diffusion { split, printed, mu_laplacian, laplacian, hu_adams };
+
+// How the viscosity of mixed particles is blended from the phases.
+enum class ViscosityMean { arithmetic, harmonic };
+
+struct MomentumOptions {
+  Diffusion diffusion = Diffusion::split;
+  ViscosityMean viscosity_mean = ViscosityMean::harmonic;
+};
+
+// Of [interface], beside the tension.
+struct InterfaceOptions {
+  int smoothing = 2;  // passes of the average that continues the curvature across the band
+};
+
+// What the scheme adds to [time].
+struct LimitOptions {
+  double diffusive = 0.2;
+  double capillary = 0.5;
+};
+
+Section momentum_section();
+Section interface_band_section();
+Section limits_section();
+
+}  // namespace spume::gfd

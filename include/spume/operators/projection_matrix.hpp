@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// The matrix of a pressure equation as its solver sees it, whatever sums it stands for.
+#pragma once
+
+#include <span>
+
+#include "spume/operators/dots.hpp"
+
+namespace spume {
+
+class ProjectionMatrix {
+ public:
+  virtual ~ProjectionMatrix() = default;
+  virtual std::size_t size() const = 0;
+  // y = A x in float, with sum w y and sum y y accumulated in double in fixed blocks.
+  virtual Dots apply(std::span<const float> x, std::span<float> y, std::span<const float> w) = 0;
+  // r = b - A q with q, differences and sums in double. `given` false: without the pressures given behind openings, as
+  // for a change of q.
+  virtual void residual(std::span<const double> q, std::span<const double> b, std::span<double> r, bool given) = 0;
+  // r -= scale A x with x in float and all else as in residual().
+  virtual void subtract_product(double scale, std::span<const float> x, std::span<double> r) = 0;
+};
+
+}  // namespace spume

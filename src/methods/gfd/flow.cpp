@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+// What exists for a scene, and quantities of the present state.
+#include "spume/methods/gfd/flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "spume/core/parallel.hpp"
+
+namespace spume::gfd {
+namespace {
+
+ProjectionSolver::Options solver_options(const Case& options) {
+  const PressureOptions& pressure = options.get<PressureOptions>();
+  return {.method = KrylovMethod::bicgstab,  // the matrix is not symmetric
+          .multigrid = pressure.preconditioner == PreconditionerKind::multigrid,
+          .mixed = pressure.precision == Precision::mixed,
+          .tolerance = pressure.tolerance,
+          .max_iterations = pressure.max_iterations,
+          .cell_size = pressure.cell_ratio * options.spacing};
+}
+
+std::vector<double> of_phases(const Scene& scene, double Phase::*property) {
+  std::vector<double> values;
+  for (const Phase& phase : scene.phases) values.push_back(phase.*property);
+  return values;
+}
+
+bool differ(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [&](double value) { return value != values.front(); });
+}
+
+std::vector<Colour> make_colours(const Scene& scene) {
+  std::vector<Colour> colours;
+  const std::size_t count = scene.phases.size();
+  if (count < 2) return colours;
+  for (std::size_t n = count == 2 ? 1 : 0; n < count; ++n)
+    colours.push_back({.phase = n,
+                       .tension = scene.surface_tension / (count == 2 ? 1 : 2),
+                       .density_jump = scene.phases[n].density - scene.phases[0].density});
+  return colours;
+}
+
+}  // namespace
+
+Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.domain) {
+  const Scene& scene = loaded.scene;
+  const Vec3& g = scene.fluid.gravity;
+  interfaces = scene.phases.size() > 1;
+  tension = interfaces && scene.surface_tension > 0;
+  forces = scene.body_force.has_value();
+  for (int axis = 0; axis < scene.domain.dimensions; ++axis)
+    if (g[axis] != 0) (scene.domain.periodic(axis) ? forces : gravity) = true;
+  const std::vector<double> mu = of_phases(scene, &Phase::viscosity);
+  viscosity = std::any_of(mu.begin(), mu.end(), [](double value) { return value > 0; });
+  viscosity_jump = viscosity && differ(mu);
+  const ShiftingOptions& shift = loaded.options.get<ShiftingOptions>();
+  shifting = shift.on;
+  shift_correction = shifting && shift.velocity_correction != ShiftCorrection::none;
+  density_relaxation = loaded.options.get<PressureOptions>().density_relaxation < never_relaxed;
+}
+
+Flow::Flow(const LoadedCase& loaded_case)
+    : loaded(loaded_case),
+      options(loaded_case.options),
+      scene(loaded_case.scene),
+      features(loaded_case),
+      resolution(scene.domain.dimensions, scene.spacing, options.resolution.kernel, options.resolution.smoothing_ratio),
+      dimensions(scene.domain.dimensions),
+      largest_shift(largest_stable_shift(dimensions, options.resolution.kernel, options.resolution.smoothing_ratio,
+                                         features.shifting && options.get<ShiftingOptions>().remove_drift)),
+      densities(of_phases(scene, &Phase::density)),
+      viscosities(of_phases(scene, &Phase::viscosity)),
+      particles(dimensions, scene.particles),
+      boundary(scene.domain, scene.spacing),
+      arrangement(scene.domain, resolution, particles.volume, particles.size()),
+      moments(particles, {.kernel_sum = true, .concentration_gradient = features.shifting, .fading = {}}),
+      colours(make_colours(scene)),
+      phase_volume(scene.phases.size()),
+      solver(boundary, solver_options(options)) {
+  FieldSet& fields = particles.fields;
+  pressure = &fields.add<double>("pressure", Lifetime::state);
+  phase_number = &fields.add<std::int64_t>("phase", Lifetime::state);
+  for (int k = 0; k < dimensions * (dimensions + 1) / 2; ++k)
+    correction[static_cast<std::size_t>(k)] =
+        &fields.add<float>("truncation_tensor_" + std::to_string(k), Lifetime::result);
+  particles.add_vector(offset, "offset", Lifetime::result);
+  laplacian_factor = &fields.add<float>("laplacian_factor", Lifetime::result);
+  density = &fields.add<float>("density", Lifetime::result);
+  if (features.viscosity) viscosity = &fields.add<float>("viscosity", Lifetime::result);
+  if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
+  parallel_for(size(), [&](std::size_t i) { (*phase_number)[i] = scene.particles.phase[i]; });
+  speeds = find_speeds(arrangement, particles);
+  double g2 = 0;
+  for (int axis = 0; axis < dimensions && features.gravity; ++axis)
+    if (!scene.domain.periodic(axis)) g2 += scene.fluid.gravity[axis] * scene.fluid.gravity[axis];
+  weight = std::sqrt(g2) * parallel_sum(size(), [&](std::size_t i) { return mass(i); });
+}
+
+double Flow::kinetic_energy() const {
+  return parallel_sum(size(),
+                      [&](std::size_t i) { return mass(i) * squared_norm(particles.velocity, dimensions, i) / 2; });
+}
+
+double Flow::potential_energy() const {
+  if (!features.gravity) return 0;
+  return parallel_sum(size(), [&](std::size_t i) { return mass(i) * gravity_potential(i); });
+}
+
+void Flow::start_energy() {
+  energy_supply = kinetic_energy() + potential_energy();
+  for (const Colour& colour : colours) energy_supply += colour.tension * colour.area;
+}
+
+GfdStencils Flow::stencils() const {
+  GfdStencils all;
+  for (std::size_t k = 0; k < 6; ++k) all.correction[k] = correction[k] == nullptr ? nullptr : correction[k]->data();
+  all.offset = read(offset);
+  all.laplacian_factor = laplacian_factor->data();
+  return all;
+}
+
+double Flow::gravity_potential(std::size_t i) const {
+  double sum = 0;
+  for (int axis = 0; axis < dimensions; ++axis)
+    if (!scene.domain.periodic(axis))
+      sum -= scene.fluid.gravity[axis] * ((*particles.position[axis])[i] - arrangement.origin[axis]);
+  return sum;
+}
+
+double Flow::hydrostatic_part(std::size_t i) const {
+  double sum = features.gravity ? -densities[phase[i]] * gravity_potential(i) : 0;
+  for (const Colour& colour : colours) sum += colour.mean_potential * colour.is(phase[i]);
+  return sum;
+}
+
+// Where the properties vary the filtered ones lie between those of the phases: so does their ratio, up to the ratio of
+// the largest viscosity to the least density of the mixture, which no particle reaches.
+double Flow::largest_kinematic_viscosity() const {
+  double largest = 0;
+  for (std::size_t n = 0; n < densities.size(); ++n) largest = std::max(largest, viscosities[n] / densities[n]);
+  return largest;
+}
+
+double Flow::capillary_time() const {
+  if (!features.tension) return std::numeric_limits<double>::infinity();
+  std::vector<double> sorted = densities;
+  std::sort(sorted.begin(), sorted.end());
+  return std::sqrt((sorted[0] + sorted[1]) * std::pow(spacing(), 3) / (4 * std::numbers::pi * scene.surface_tension));
+}
+
+double Flow::leased_bytes() const {
+  double sum = particles.fields.scratch().idle_bytes();
+  const auto add = [&sum](const auto&... arrays) { ((sum += arrays.bytes()), ...); };
+  for (const auto* vector : {&viscosity_gradient, &viscous_acceleration, &force_acceleration, &shift_velocity})
+    for (const auto& array : *vector) add(array);
+  for (const auto* vector : {&intermediate_velocity, &next_velocity})
+    for (const auto& array : *vector) add(array);
+  add(divergence, source, reduced_pressure, reciprocal_density, rows.diagonal, rows.diagonal_shift,
+      rows.right_hand_side, moments.kernel_sum, moments.laplacian_diagonal);
+  return sum;
+}
+
+}  // namespace spume::gfd

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "spume/methods/gfd/gfd.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+
+namespace spume::gfd {
+namespace {
+
+// A flow at rest without forces: the first steps follow the time scale of the run.
+constexpr double steps_of_run_at_rest = 1000;
+// The number density of a phase changes with the order of its particles: 1 % from a lattice to a disordered state.
+constexpr double largest_volume_drift = 0.05;
+
+const char* const axis_name[3] = {"x", "y", "z"};
+
+}  // namespace
+
+// Derived fields are those of the last step, at the positions that it started from.
+const std::vector<OutputField<Flow>>& output_fields() {
+  static const std::vector<OutputField<Flow>> fields{
+      {"velocity", always, [](const Flow& f) { return f.particles.velocity; }},
+      {"pressure", always, [](const Flow& f) { return f.pressure; }},
+      {"phase", always, [](const Flow& f) { return f.phase_number; }},
+      {"id", always, [](const Flow& f) { return f.particles.identifier; }},
+      {"density", on_request, [](const Flow& f, std::size_t i) { return (*f.density)[i]; }},
+      {"viscosity", on_request,
+       [](const Flow& f, std::size_t i) { return f.viscosity == nullptr ? 0.0F : (*f.viscosity)[i]; }},
+      {"colour", on_request,
+       [](const Flow& f, std::size_t i) { return f.colours.empty() ? 0.0F : f.colours.back().value[i]; }},
+      {"interface_potential", on_request, [](const Flow& f, std::size_t i) {
+         return f.colours.empty() ? 0.0 : f.colours.back().mean_potential + f.colours.back().potential[i];
+       }}};
+  return fields;
+}
+
+Gfd::Gfd(const LoadedCase& loaded)
+    : flow_(loaded), plan_(make_plan(flow_)), snapshot_(snapshot_table(output_fields(), loaded.options, flow_)) {
+  declare_series();
+  saved_.add(flow_.time)
+      .add(flow_.steps)
+      .add(flow_.speeds.largest)
+      .add(flow_.speeds.limiting)
+      .add(flow_.energy_supply)
+      .add(flow_.boundary.wall_speed);
+}
+
+void Gfd::ensure_arranged() {
+  if (arranged_) return;
+  plan_.run_start(static_cast<double>(flow_.size()), start_ledger_);
+  arranged_ = true;
+}
+
+void Gfd::step(double dt, Ledger& ledger) {
+  if (flow_.steps == 0) ensure_arranged();
+  plan_.list(ledger);
+  for (const Ledger::Entry& entry : start_ledger_.entries())
+    ledger.count(entry.stage, entry.calls, entry.seconds, entry.particles, entry.pairs, entry.bytes);
+  start_ledger_.clear();
+  sampled_step_ = -1;
+  arranged_ = true;
+  plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
+}
+
+StepLimit Gfd::step_limit() const {
+  const TimeOptions& options = flow_.options.time;
+  const LimitOptions& limits = flow_.options.get<LimitOptions>();
+  const double h = flow_.resolution.smoothing_length, spacing = flow_.spacing();
+  double gravity2 = 0;
+  for (const double g : flow_.scene.fluid.gravity) gravity2 += g * g;
+  // From rest the speed that gravity gives over one smoothing length stands in for the largest speed.
+  const double speed = std::max({flow_.speeds.limiting, flow_.boundary.wall_speed, std::sqrt(std::sqrt(gravity2) * h)});
+  SmallestStep step;
+  if (speed > 0) step.bound(options.courant * h / speed, "courant");
+  const double nu = flow_.largest_kinematic_viscosity();
+  if (nu > 0) step.bound(limits.diffusive * spacing * spacing / nu, "viscous");
+  if (flow_.features.tension) step.bound(limits.capillary * flow_.capillary_time(), "capillary");
+  if (options.max_step > 0) step.bound(options.max_step, "max_step");
+  if (speed == 0 && options.max_step == 0) step.bound(options.end / steps_of_run_at_rest, "end of run");
+  return step.limit();
+}
+
+Gfd::PhaseSums Gfd::sums_of(std::size_t phase) const {
+  return parallel_reduce(
+      flow_.size(), PhaseSums{},
+      [&](std::size_t first, std::size_t last) {
+        PhaseSums sums;
+        for (std::size_t i = first; i < last; ++i) {
+          if (static_cast<std::size_t>((*flow_.phase_number)[i]) != phase) continue;
+          const double mass = flow_.mass(i);
+          sums.mass += mass;
+          for (int axis = 0; axis < flow_.dimensions; ++axis) {
+            sums.momentum[axis] += mass * (*flow_.particles.velocity[axis])[i];
+            sums.moment[axis] += mass * (*flow_.particles.position[axis])[i];
+          }
+        }
+        return sums;
+      },
+      [](PhaseSums a, const PhaseSums& b) {
+        a.mass += b.mass;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          a.momentum[axis] += b.momentum[axis];
+          a.moment[axis] += b.moment[axis];
+        }
+        return a;
+      });
+}
+
+void Gfd::declare_series() {
+  const Flow& flow = flow_;
+  row_sums_.resize(flow.densities.size());
+  series_.prepare = [this] {
+    for (std::size_t n = 0; n < row_sums_.size(); ++n) row_sums_[n] = sums_of(n);
+  };
+  series_.add("kinetic_energy", "rho u^2 / 2, integral", [&flow] { return flow.kinetic_energy(); });
+  if (flow.features.gravity)
+    series_.add("potential_energy", "rho g z, integral", [&flow] { return flow.potential_energy(); });
+  if (flow.features.interfaces)
+    series_.add("interface_area", flow.dimensions == 3 ? "length^2" : "length", [&flow] {
+      double area = 0;
+      for (const Colour& colour : flow.colours) area += colour.area / (flow.colours.size() == 1 ? 1 : 2);
+      return area;
+    });
+  series_.add("max_speed", "speed", [&flow] { return flow.speeds.largest; });
+  for (std::size_t n = 0; n < row_sums_.size(); ++n) {
+    const std::string& name = flow.scene.phases[n].name;
+    series_.add("volume_" + name, flow.dimensions == 3 ? "length^3, by kernel sums" : "length^2, by kernel sums",
+                [&flow, n] { return flow.phase_volume[n]; });
+    for (int axis = 0; axis < flow.dimensions; ++axis)
+      series_.add("centre_" + name + "_" + axis_name[axis], "length",
+                  [this, n, axis] { return row_sums_[n].moment[axis] / row_sums_[n].mass; });
+    for (int axis = 0; axis < flow.dimensions; ++axis)
+      series_.add("velocity_" + name + "_" + axis_name[axis], "length/time, mean",
+                  [this, n, axis] { return row_sums_[n].momentum[axis] / row_sums_[n].mass; });
+  }
+  series_.add("max_divergence", "of the predicted velocity, 1 / time", [&flow] { return flow.max_divergence; });
+  series_.add("pressure_iterations", "1", [&flow] { return double(flow.solver.report().iterations); });
+  series_.add("pressure_residual", "relative", [&flow] { return flow.solver.report().relative_residual; });
+}
+
+void Gfd::series_values(std::span<double> values) {
+  ensure_arranged();
+  series_.values(values);
+}
+
+std::vector<ParticleSnapshot> Gfd::snapshot() {
+  ensure_arranged();
+  return {snapshot_.take("fluid", flow_.size(), flow_.particles.position, flow_.options.output.fields)};
+}
+
+const PointSampler& Gfd::sampler() {
+  ensure_arranged();
+  if (sampled_step_ != flow_.steps) {
+    sampler_.update({.arrangement = &flow_.arrangement,
+                     .boundary = &flow_.boundary,
+                     .particles = &flow_.particles,
+                     .resolution = &flow_.resolution,
+                     .scalars = {{flow_.pressure}},
+                     .time = flow_.time});
+    sampled_step_ = flow_.steps;
+  }
+  return sampler_;
+}
+
+std::vector<Invariant> Gfd::invariants() const {
+  std::vector<Invariant> list;
+  for (const Phase& phase : flow_.scene.phases)
+    list.push_back({.quantity = "volume_" + phase.name + "_drift",
+                    .kind = Invariant::Kind::drift,
+                    .column = "volume_" + phase.name,
+                    .bound = largest_volume_drift});
+  list.push_back({.quantity = "pressure_residual",
+                  .kind = Invariant::Kind::largest,
+                  .column = "pressure_residual",
+                  .bound = flow_.options.get<PressureOptions>().tolerance});
+  return list;
+}
+
+std::vector<ArrayInfo> Gfd::arrays() const {
+  std::vector<ArrayInfo> list = particle_arrays(flow_.particles, flow_.arrangement);
+  list.push_back({"pressure solver", flow_.solver.bytes() + flow_.matrix.bytes()});
+  list.push_back({"leased within a step", flow_.leased_bytes()});
+  double interfaces = flow_.bands.bytes() + flow_.phase.bytes();
+  for (const Colour& colour : flow_.colours) interfaces += colour.value.bytes() + colour.potential.bytes();
+  list.push_back({"interfaces", interfaces});
+  return list;
+}
+
+void Gfd::save(StateWriter& writer) const {
+  const std::int64_t count[] = {static_cast<std::int64_t>(flow_.size())};
+  const auto& w = flow_.boundary.walls;
+  const double walls[] = {w[0][0], w[0][1], w[1][0], w[1][1], w[2][0], w[2][1]};
+  saved_.save(writer);
+  writer.i64("counters", count);
+  writer.f64("walls", walls);
+  save_fields(flow_.particles.fields, writer);
+}
+
+void Gfd::load(StateReader& reader) {
+  sampled_step_ = -1;
+  arranged_ = false;
+  Array<double> walls;
+  Array<std::int64_t> count;
+  saved_.load(reader);
+  reader.i64("counters", count);
+  reader.f64("walls", walls);
+  if (count.size() != 1 || walls.size() != 6)
+    throw FileError("the checkpoint was written by another version of the method");
+  load_fields(flow_.particles.fields, static_cast<std::size_t>(count[0]), "particle", reader);
+  for (int axis = 0; axis < 3; ++axis) flow_.boundary.walls[axis] = {walls[2 * axis], walls[2 * axis + 1]};
+}
+
+}  // namespace spume::gfd

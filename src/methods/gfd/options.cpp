@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include "spume/methods/gfd/options.hpp"
+
+#include "spume/scene/option.hpp"
+
+namespace spume::gfd {
+
+Section momentum_section() {
+  return section<MomentumOptions>("momentum")
+      .word("diffusion", &MomentumOptions::diffusion,
+            {{"split", Diffusion::split},
+             {"printed", Diffusion::printed},
+             {"mu-laplacian", Diffusion::mu_laplacian},
+             {"laplacian", Diffusion::laplacian},
+             {"hu-adams", Diffusion::hu_adams}},
+            "diffusion of momentum where the viscosity varies; split alone converges to div(2 mu T) at an interface")
+      .word("viscosity_mean", &MomentumOptions::viscosity_mean,
+            {{"harmonic", ViscosityMean::harmonic}, {"arithmetic", ViscosityMean::arithmetic}},
+            "filter of the viscosity across interfaces; arithmetic as in the paper's (7)");
+}
+
+Section interface_band_section() {
+  return section<InterfaceOptions>("interface")
+      .behind("surface_tension")
+      .option("smoothing", &InterfaceOptions::smoothing, "", between(1, 20),
+              "averages of the curvature along the interface");
+}
+
+Section limits_section() {
+  using L = LimitOptions;
+  return section<L>("time")
+      .behind("courant")
+      .option("diffusive", &L::diffusive, "1", above_up_to(0, 0.4), "step limit by viscosity, of spacing^2 / nu")
+      .option("capillary", &L::capillary, "1", above_up_to(0, 1),
+              "step limit by tension, of sqrt((rho_1 + rho_2) spacing^3 / (4 pi sigma))");
+}
+
+}  // namespace spume::gfd

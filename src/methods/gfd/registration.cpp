@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "spume/methods/gfd/registration.hpp"
+
+#include <numbers>
+
+#include "spume/methods/gfd/gfd.hpp"
+#include "spume/scene/document.hpp"
+#include "spume/scene/option.hpp"
+
+namespace spume::gfd {
+namespace {
+
+// Numbers of phases are bytes.
+constexpr std::size_t most_phases = 200;
+
+void check(Draft& draft, Problems& problems) {
+  if (draft.node("pressure.solver") && draft.options.get<PressureOptions>().solver == PressureSolver::cg)
+    problems.add(*draft.node("pressure.solver"),
+                 "pressure.solver = \"cg\" needs a symmetric matrix, which generalised finite differences do not have; "
+                 "use \"bicgstab\"");
+  if (draft.phases.size() > most_phases)
+    problems.add(*draft.node("phase.0"), "the case has " + std::to_string(draft.phases.size()) + " phases; at most " +
+                                             std::to_string(most_phases) + " are possible");
+  for (std::size_t k = 0; k < draft.phases.size(); ++k)
+    if (draft.phases[k].sound_speed > 0)
+      problems.add(*draft.node("phase." + std::to_string(k) + ".sound_speed"),
+                   "method \"gfd\" is incompressible; remove sound_speed, or use a weakly compressible method");
+}
+
+// Regions may lie below others or be cut away by solids: only the particles tell.
+void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
+  std::vector<std::size_t> count(scene.phases.size());
+  for (const std::int32_t phase : scene.particles.phase) ++count[static_cast<std::size_t>(phase)];
+  for (std::size_t n = 0; n < count.size(); ++n)
+    if (count[n] == 0)
+      problems.add(*draft.node("phase." + std::to_string(n)),
+                   "phase '" + scene.phases[n].name +
+                       "' fills nothing: no [[region]] of it is left; add a region behind the others, or remove it");
+  if (scene.free_surface)
+    problems.add(
+        *draft.node("region.0"),
+        "the phases leave a part of the domain empty or a side open; method \"gfd\" has no free surface: begin "
+        "with a [[region]] that fills the domain, between walls or periodic sides");
+}
+
+// Fields, lists of neighbours, sweep records and the pressure system of a large case: `spume check` and the arrays of a
+// run of 40 000 particles give what is left beside the lists.
+double bytes_per_particle(const Case& options, int dimensions) {
+  const double support = support_ratio(options.resolution);
+  const double neighbours = std::numbers::pi * support * support * (dimensions == 3 ? 4.0 / 3 * support : 1);
+  return (dimensions == 3 ? 460 : 390) + 4.63 * neighbours;
+}
+
+constexpr double standard_courant = 0.2;
+
+}  // namespace
+
+Registration registration() {
+  Registration method;
+  method.name = "gfd";
+  method.description =
+      "incompressible flow of several phases by generalised finite differences, with tension and the full stress";
+  method.fills_phases = true;
+  method.sections = {pressure_section(), shifting_section(), momentum_section(), interface_band_section(),
+                     limits_section()};
+  method.check = check;
+  method.check_scene = check_scene;
+  method.bytes_per_particle = bytes_per_particle;
+  method.default_courant = [](const Case&, const Scene&) { return standard_courant; };
+  method.default_courant_in_words = "of gfd " + brief(standard_courant);
+  method.output_fields = [](const Case& options) { return field_infos(output_fields(), options); };
+  method.probe_scalars = [](const Case&) { return std::vector<ProbeScalar>{{"pressure", "pressure"}}; };
+  method.make = [](const LoadedCase& loaded) { return std::make_unique<Gfd>(loaded); };
+  return method;
+}
+
+}  // namespace spume::gfd

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// gfd on tiny cases.
+#pragma once
+
+#include "methods/les_sph_simulation.hpp"
+#include "spume/methods/gfd/gfd.hpp"
+
+namespace spume::test {
+
+struct GfdRun {
+  LoadedCase loaded;
+  gfd::Gfd method;
+  Ledger ledger;
+
+  explicit GfdRun(const std::string& text, const Overrides& overrides = {})
+      : loaded(load_text(text, overrides)), method(loaded) {}
+  GfdRun(const GfdRun&) = delete;
+  GfdRun& operator=(const GfdRun&) = delete;
+
+  const gfd::Flow& flow() const { return method.flow(); }
+  void steps(int count, double dt) {
+    for (int k = 0; k < count; ++k) method.step(dt, ledger);
+  }
+  // In equal parts of what is left, as long as the limits of the steps allow: the pressure of a sliver of a step has
+  // all that the last projections left of the divergence over the time of the sliver.
+  void until(double end) {
+    while (true) {
+      const double parts = std::ceil((end - method.time()) / method.step_limit().dt - 1e-9);
+      if (parts < 1) return;
+      method.step((end - method.time()) / parts, ledger);
+    }
+  }
+  std::map<std::string, std::vector<double>> state() const {
+    MemoryState saved;
+    method.save(saved);
+    return saved.in_order_of_identifiers();
+  }
+  std::map<std::string, double> series() {
+    const auto columns = method.series_columns();
+    std::vector<double> values(columns.size());
+    method.series_values(values);
+    std::map<std::string, double> result;
+    for (std::size_t k = 0; k < columns.size(); ++k) result[columns[k].name] = values[k];
+    return result;
+  }
+  double max_speed() const { return flow().speeds.largest; }
+};
+
+// A drop in a box, 20 x 20 particles; walls of both kinds.
+inline const std::string drop_in_a_box = R"toml(method = "gfd"
+[domain]
+lower = [0, 0]
+upper = [1, 1]
+left = "free-slip"
+right = "free-slip"
+bottom = "no-slip"
+top = "no-slip"
+[resolution]
+spacing = 0.05
+[fluid]
+gravity = 1
+[[phase]]
+name = "outside"
+density = 1
+viscosity = 0.01
+[[phase]]
+name = "drop"
+density = 10
+viscosity = 0.1
+[interface]
+surface_tension = 1
+[[region]]
+phase = "outside"
+[[region]]
+phase = "drop"
+centre = [0.5, 0.5]
+radius = 0.25
+[time]
+end = 1
+)toml";
+
+// A ball in a periodic box, 12^3 particles.
+inline const std::string ball_in_a_box = R"toml(method = "gfd"
+[domain]
+lower = [0, 0, 0]
+upper = [1, 1, 1]
+x = "periodic"
+y = "periodic"
+z = "periodic"
+[resolution]
+spacing = 0.0833333333333333333
+[[phase]]
+name = "outside"
+density = 1
+viscosity = 0.1
+[[phase]]
+name = "ball"
+density = 2
+viscosity = 0.5
+[interface]
+surface_tension = 1
+[[region]]
+phase = "outside"
+velocity = ["0.2", "0", "0.1"]
+[[region]]
+phase = "ball"
+centre = [0.5, 0.5, 0.5]
+radius = 0.3
+[time]
+end = 1
+)toml";
+
+// Layers of three phases, the heaviest below, at rest under gravity.
+inline const std::string three_layers = R"toml(method = "gfd"
+[domain]
+lower = [0, 0]
+upper = [1, 1.5]
+x = "periodic"
+bottom = "no-slip"
+top = "no-slip"
+[resolution]
+spacing = 0.05
+[fluid]
+gravity = 9.81
+[[phase]]
+name = "air"
+density = 1.2
+viscosity = 1.8e-5
+[[phase]]
+name = "oil"
+density = 800
+viscosity = 0.1
+[[phase]]
+name = "water"
+density = 1000
+viscosity = 1e-3
+[interface]
+surface_tension = 0.07
+[[region]]
+phase = "air"
+[[region]]
+phase = "oil"
+where = "1 - y"
+[[region]]
+phase = "water"
+where = "0.5 - y"
+[time]
+end = 1
+)toml";
+
+}  // namespace spume::test

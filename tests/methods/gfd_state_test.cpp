@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// gfd between steps: saved and restored to the bit, untouched by a refused step, the same for any number of threads;
+// and what its plan says.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "methods/gfd_run.hpp"
+
+namespace spume::test {
+namespace {
+
+using testing::HasSubstr;
+
+class GfdState : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(GfdState, ARestoredRunContinuesToTheSameBits) {
+  for (const Overrides& set : {Overrides{}, Overrides{"momentum.diffusion=\"printed\"", "interface.smoothing=3"}}) {
+    GfdRun straight(GetParam(), set);
+    straight.steps(3, 0.002);
+    MemoryState saved;
+    straight.method.save(saved);
+    straight.steps(2, 0.002);
+    GfdRun restored(GetParam(), set);
+    restored.method.load(saved);
+    EXPECT_EQ(restored.method.step_count(), 3);
+    restored.series();  // who looks at a state does not change it
+    restored.steps(2, 0.002);
+    EXPECT_EQ(restored.method.time(), straight.method.time());
+    EXPECT_EQ(restored.state(), straight.state());
+    EXPECT_EQ(restored.method.step_limit().dt, straight.method.step_limit().dt);
+    EXPECT_EQ(restored.series(), straight.series());
+  }
+}
+
+TEST_P(GfdState, DoesNotDependOnTheNumberOfThreads) {
+  const int before = omp_get_max_threads();
+  std::vector<std::map<std::string, std::vector<double>>> states;
+  for (const int threads : {1, 2, 3}) {
+    omp_set_num_threads(threads);
+    GfdRun run(GetParam());
+    run.steps(4, 0.002);
+    states.push_back(run.state());
+  }
+  omp_set_num_threads(before);
+  EXPECT_EQ(states[0], states[1]);
+  EXPECT_EQ(states[0], states[2]);
+}
+
+TEST_P(GfdState, ARefusedStepLeavesIt) {
+  GfdRun run(GetParam());
+  run.steps(2, 0.002);
+  MemoryState saved;
+  run.method.save(saved);
+  GfdRun strict(GetParam(), {"pressure.max_iterations=1", "pressure.tolerance=1e-14"});
+  strict.method.load(saved);
+  const auto before = strict.state();
+  EXPECT_THROW(strict.steps(1, 0.002), StepFailure);
+  EXPECT_EQ(strict.state(), before);
+  EXPECT_EQ(strict.method.step_count(), 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, GfdState, ::testing::Values(drop_in_a_box, ball_in_a_box, three_layers),
+                         [](const auto& info) {
+                           return info.index == 0 ? "Drop2D" : info.index == 1 ? "Ball3D" : "ThreeLayers";
+                         });
+
+TEST(GfdAllocations, ASteadyRunAllocatesNothing) {
+  const OneThread alone;
+  for (const std::string& text : {drop_in_a_box, ball_in_a_box}) {
+    GfdRun run(text);
+    run.steps(10, 0.002);
+    const auto before = array_statistics();
+    run.steps(5, 0.002);
+    EXPECT_EQ(array_statistics().allocations, before.allocations) << text;
+    EXPECT_EQ(array_statistics().bytes, before.bytes);
+  }
+}
+
+// With nothing left to gain the fall of the drop comes from nothing.
+TEST(GfdEnergy, AStepThatMakesItIsRefusedAndTheStateIsKept) {
+  GfdRun run(drop_in_a_box, {"fluid.gravity=10", "interface.surface_tension=0"});
+  run.steps(10, 0.002);
+  auto& flow = const_cast<gfd::Flow&>(run.flow());
+  const double supply = flow.energy_supply;
+  flow.energy_supply = flow.potential_energy() - 1;
+  const auto before = run.state();
+  try {
+    run.steps(100, 0.004);
+    FAIL() << "accepted";
+  } catch (const StepFailure& failure) {
+    EXPECT_THAT(failure.what(), HasSubstr("energy from nothing"));
+  }
+  EXPECT_LT(run.method.step_count(), 110);
+  EXPECT_GT(run.state().size(), 5U);
+  flow.energy_supply = supply;
+  run.steps(1, 0.002);
+  EXPECT_NE(run.state(), before);
+}
+
+std::vector<std::string> running(const GfdRun& run) {
+  std::vector<std::string> names;
+  for (const Stage& stage : run.method.plan())
+    if (stage.on) names.push_back(stage.name);
+  return names;
+}
+
+TEST(GfdPlan, OnePhaseHasNoInterface) {
+  const std::string one = replaced(replaced(replaced(drop_in_a_box, "[interface]\nsurface_tension = 1\n", ""),
+                                            "[[region]]\nphase = \"drop\"\ncentre = [0.5, 0.5]\nradius = 0.25\n", ""),
+                                   "[[phase]]\nname = \"drop\"\ndensity = 10\nviscosity = 0.1\n", "");
+  GfdRun run(one);
+  run.steps(2, 0.002);
+  for (const char* name : {"bands", "potentials", "viscosity gradient"})
+    EXPECT_THAT(running(run), testing::Not(testing::Contains(std::string(name))));
+  EXPECT_EQ(run.flow().bands.varies(), nullptr);
+  EXPECT_TRUE(run.flow().colours.empty());
+  EXPECT_EQ(run.max_speed(), 0) << "still liquid";
+}
+
+TEST(GfdPlan, EveryStageCountsItsTraffic) {
+  GfdRun run(drop_in_a_box);
+  run.steps(3, 0.002);
+  EXPECT_EQ(uncounted_stages(run.method, run.ledger), "");
+  EXPECT_THAT(running(run), testing::Contains("viscosity gradient"));
+  GfdRun plain(drop_in_a_box, {"momentum.diffusion=\"mu-laplacian\""});
+  EXPECT_THAT(running(plain), testing::Not(testing::Contains("viscosity gradient")));
+}
+
+std::string refused(const std::string& text, const Overrides& overrides = {}) {
+  try {
+    load_text(text, overrides);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(GfdCases, WhatItCannotDoIsRefusedWithTheFix) {
+  EXPECT_THAT(refused(drop_in_a_box, {"pressure.solver=\"cg\""}), HasSubstr("use \"bicgstab\""));
+  EXPECT_THAT(refused(drop_in_a_box, {"phase.1.sound_speed=340"}), HasSubstr("remove sound_speed"));
+  EXPECT_THAT(refused(drop_in_a_box, {"region.0.where=\"0.9 - y\""}), HasSubstr("no free surface"));
+  EXPECT_THAT(refused(drop_in_a_box, {"domain.top=\"open\""}), HasSubstr("no free surface"));
+  EXPECT_THAT(refused(replaced(drop_in_a_box, "[[region]]\nphase = \"drop\"", "[[region]]\nphase = \"outside\"")),
+              HasSubstr("phase 'drop' fills nothing"));
+  EXPECT_THAT(refused(drop_in_a_box, {"interface.surface_tension=-1"}), HasSubstr(">= 0"));
+  EXPECT_THAT(refused(drop_in_a_box, {"momentum.diffusion=\"full\""}), HasSubstr("split"));
+}
+
+}  // namespace
+}  // namespace spume::test

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: MIT
+"""Measures of the cases with several phases, on run folders written from exact and from wrong answers."""
+import unittest
+
+import numpy as np
+from case_test import CaseTest
+from spume_tools.places import CASES
+from spume_tools.results import Results, read_reference
+from spume_tools.verify.cases import load_measure
+from synthetic import lattice, series_of, write_snapshots, write_table
+
+
+class PoiseuilleTwoPhase(CaseTest):
+    def test_the_steady_profile_is_that_of_the_reference(self):
+        module = load_measure(CASES / "poiseuille_two_phase")
+        table = read_reference(CASES / "poiseuille_two_phase" / "reference" / "poiseuille_two_phase.csv",
+                               ("chi", "y", "u"))
+        for chi in (1, 5, 100):
+            rows = np.asarray(table["chi"]) == chi
+            y, u = np.asarray(table["y"])[rows], np.asarray(table["u"])[rows]
+            self.assertGreater(len(y), 10)
+            np.testing.assert_allclose(module.steady(y, chi), u, atol=1e-8)
+            inner = y[(np.abs(y) < 0.99) & (y != 0)]  # the kink lies between two cells
+            np.testing.assert_allclose(module.startup(inner, 50.0, chi), module.steady(inner, chi), atol=1e-5)
+
+    def test_the_start_has_the_acceleration_of_the_force(self):
+        module = load_measure(CASES / "poiseuille_two_phase")
+        np.testing.assert_allclose(module.startup(np.array([-0.5, 0.5]), 1e-4, 5.0), 1e-4, rtol=1e-6)
+
+    def test_measures_a_constant_error_and_its_order(self):
+        peak, runs = None, {}
+        for name, offset in (("ratio_5_coarse", 0.04), ("ratio_5", 0.01)):
+            folder, module = self.run_of("poiseuille_two_phase")
+            if name == "ratio_5_coarse":
+                text = (folder / "case.toml").read_text(encoding="utf-8")
+                (folder / "case.toml").write_text(text.replace("spacing = 0.05", "spacing = 0.1"), encoding="utf-8")
+            peak = float(np.max(module.steady(np.linspace(-1, 1, 2001), 5.0)))
+            write_snapshots(folder / "fluid.vtkhdf", [0, 0.4], lambda t: lattice([0, -1], [0.5, 1], 0.1), {
+                "velocity": lambda p, t, offset=offset: np.column_stack(
+                    [module.startup(p[:, 1], t, 5.0) + offset * peak, 0 * p[:, 0]])})
+            runs[name] = Results(folder)
+        measured = module.measure(runs)
+        self.assertAlmostEqual(measured["ratio_5_error"], 0.01, places=6)
+        self.assertAlmostEqual(measured["ratio_5_order"], 2, places=4)
+
+
+class StaticDrop(CaseTest):
+    def test_jump_and_speed(self):
+        folder, module = self.run_of("static_drop")
+        at = lattice([0, 0], [1, 1], 1 / 32)
+        inside = np.hypot(at[:, 0] - 0.5, at[:, 1] - 0.5) < 0.25
+        radius = np.sqrt(inside.mean() / np.pi)
+        write_snapshots(folder / "fluid.vtkhdf", np.linspace(0, 1, 11), lambda t: at, {
+            "pressure": lambda p, t: np.where(inside, 1.01 / radius, 0),
+            "phase": lambda p, t: inside,
+            "velocity": lambda p, t: np.column_stack([np.full(len(p), 0.3 if t < 0.3 else 0.004), 0 * p[:, 0]])})
+        measured = module.measure({"ratio_1": Results(folder)})
+        self.assertAlmostEqual(measured["ratio_1_jump"], 1.01, places=5)
+        self.assertAlmostEqual(measured["ratio_1_capillary_number"], 0.1 * 0.004, places=8)
+
+
+class RisingBubble(CaseTest):
+    def test_the_reference_has_no_error_and_a_slower_bubble_has(self):
+        folder, module = self.run_of("rising_bubble_2d")
+        known = module.reference()
+        at = lattice([0, 0], [1, 2], 1 / 64)
+        inside = np.hypot(at[:, 0] - 0.5, at[:, 1] - 0.5) < 0.25
+        write_snapshots(folder / "fluid.vtkhdf", [0], lambda t: at, {"phase": lambda p, t: inside})
+        for factor in (1, 0.9):
+            write_table(folder / "series.csv", series_of(known[:, 0], centre_bubble_y=known[:, 2],
+                                                         velocity_bubble_y=factor * known[:, 3], volume_bubble=0.2))
+            measured = module.measure({"bubble": Results(folder)})
+            self.assertLess(measured["y_com_error"], 1e-6)
+            self.assertAlmostEqual(measured["rise_velocity_error"], 1 - factor, places=3)
+            self.assertLess(measured["circularity_error"], 1e-3)
+            self.assertEqual(measured["area_drift"], 0)
+
+    def test_circularity_of_an_ellipse(self):
+        module = load_measure(CASES / "rising_bubble_2d")
+        at = lattice([0, 0], [1, 1], 1 / 64)
+        inside = ((at[:, 0] - 0.5) / 0.3) ** 2 + ((at[:, 1] - 0.5) / 0.2) ** 2 < 1
+        self.assertAlmostEqual(module.circularity(at, inside, 1 / 64), 0.97007, delta=0.004)
+
+
+class Oscillations(CaseTest):
+    def test_a_capillary_wave_of_the_normal_mode_has_no_error(self):
+        folder, module = self.run_of("capillary_wave")
+        omega, gamma = module.exact(Results(folder))
+        self.assertAlmostEqual(omega / np.sqrt((2 * np.pi) ** 3 / 2), 0.96462295, places=6)
+        at = lattice([0, -1], [1, 1], 1 / 128)
+        for slower, damped in ((1, 1), (0.97, 1.1)):
+            def phase(p, t):
+                amplitude = 0.1 * np.exp(-damped * gamma * t) * np.cos(slower * omega * t + 0.3)
+                return p[:, 1] > amplitude * np.cos(2 * np.pi * p[:, 0])
+            write_snapshots(folder / "fluid.vtkhdf", np.linspace(0, 1.8, 91), lambda t: at, {"phase": phase})
+            measured = module.measure({"wave": Results(folder)})
+            self.assertAlmostEqual(measured["frequency_ratio"], slower, delta=0.002)
+            self.assertAlmostEqual(measured["damping_ratio"], damped, delta=0.03)
+
+    def test_an_oscillating_drop_of_the_exact_frequency_has_no_error(self):
+        folder, module = self.run_of("oscillating_drop")
+        at = lattice([-2, -2], [2, 2], 1 / 32)
+        for slower in (1, 0.95):
+            def phase(p, t):
+                size = 1 + 0.05 * np.cos(slower * np.sqrt(3) * t) * np.cos(2 * np.arctan2(p[:, 1], p[:, 0]))
+                return np.hypot(p[:, 0], p[:, 1]) < size
+            write_snapshots(folder / "fluid.vtkhdf", np.linspace(0, 8, 81), lambda t: at, {"phase": phase})
+            measured = module.measure({"equal": Results(folder)})
+            self.assertAlmostEqual(measured["equal_frequency_ratio"], slower, delta=0.003)
+
+
+if __name__ == "__main__":
+    unittest.main()
