@@ -143,7 +143,7 @@ TEST(ContinuedLiquid, CountsAsSumsOverAllWallPointsDo) {
     Walled walled(layout.text, 0.05);
     const int d = walled.particles.dimensions;
     const std::size_t n = walled.particles.size();
-    MomentFields moments(walled.particles, {.normal = true});
+    MomentFields moments(walled.particles, {.normal = true, .fading = {}});
     moments.measure(walled.arrangement, walled.particles, walled.scene().spacing);
     const Twin twin(walled, moments);
     Array<float> before(n), counted(n);
