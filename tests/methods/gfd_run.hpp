@@ -2,25 +2,19 @@
 // gfd on tiny cases.
 #pragma once
 
-#include "methods/les_sph_simulation.hpp"
+#include <cmath>
+#include <string>
+
+#include "methods/method_run.hpp"
+#include "methods/uncounted_stages.hpp"
 #include "spume/methods/gfd/gfd.hpp"
 
 namespace spume::test {
 
-struct GfdRun {
-  LoadedCase loaded;
-  gfd::Gfd method;
-  Ledger ledger;
-
-  explicit GfdRun(const std::string& text, const Overrides& overrides = {})
-      : loaded(load_text(text, overrides)), method(loaded) {}
-  GfdRun(const GfdRun&) = delete;
-  GfdRun& operator=(const GfdRun&) = delete;
+struct GfdRun : MethodRun<gfd::Gfd> {
+  using MethodRun::MethodRun;
 
   const gfd::Flow& flow() const { return method.flow(); }
-  void steps(int count, double dt) {
-    for (int k = 0; k < count; ++k) method.step(dt, ledger);
-  }
   // In equal parts of what is left, as long as the limits of the steps allow: the pressure of a sliver of a step has
   // all that the last projections left of the divergence over the time of the sliver.
   void until(double end) {
@@ -29,19 +23,6 @@ struct GfdRun {
       if (parts < 1) return;
       method.step((end - method.time()) / parts, ledger);
     }
-  }
-  std::map<std::string, std::vector<double>> state() const {
-    MemoryState saved;
-    method.save(saved);
-    return saved.in_order_of_identifiers();
-  }
-  std::map<std::string, double> series() {
-    const auto columns = method.series_columns();
-    std::vector<double> values(columns.size());
-    method.series_values(values);
-    std::map<std::string, double> result;
-    for (std::size_t k = 0; k < columns.size(); ++k) result[columns[k].name] = values[k];
-    return result;
   }
   double max_speed() const { return flow().speeds.largest; }
 };

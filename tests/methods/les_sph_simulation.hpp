@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "methods/method_run.hpp"
 #include "methods/uncounted_stages.hpp"
 #include "scene/helpers.hpp"
 #include "spume/core/error.hpp"
@@ -18,8 +19,6 @@
 #include "spume/methods/les_sph/step.hpp"
 
 namespace spume::test {
-
-using Overrides = std::vector<std::string>;
 
 // One wavelength of deep water in two dimensions, 50 particles long; what follows says where the liquid is.
 inline const std::string wave_tank = R"toml(method = "les-sph"
@@ -44,32 +43,9 @@ struct State {
   bool operator==(const State&) const = default;
 };
 
-// One thread for a test that counts allocations: threads keep room of their own for lists, a few blocks long, and which
-// of them meets its first large block when is a matter of chance.
-class OneThread {
- public:
-  OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
-  ~OneThread() { omp_set_num_threads(before_); }
-  OneThread(const OneThread&) = delete;
-  OneThread& operator=(const OneThread&) = delete;
+struct Simulation : MethodRun<les_sph::LesSph> {
+  using MethodRun::MethodRun;
 
- private:
-  int before_;
-};
-
-struct Simulation {
-  LoadedCase loaded;
-  les_sph::LesSph method;
-  Ledger ledger;
-
-  explicit Simulation(const std::string& text, const Overrides& overrides = {})
-      : loaded(load_text(text, overrides)), method(loaded) {}
-  Simulation(const Simulation&) = delete;
-  Simulation& operator=(const Simulation&) = delete;
-
-  void steps(int count, double dt) {
-    for (int k = 0; k < count; ++k) method.step(dt, ledger);
-  }
   State state() const {
     const les_sph::Flow& flow = method.flow();
     State s;
@@ -84,14 +60,6 @@ struct Simulation {
       s.pressure[k] = (*flow.pressure)[i];
     }
     return s;
-  }
-  std::map<std::string, double> series() {
-    const auto columns = method.series_columns();
-    std::vector<double> values(columns.size());
-    method.series_values(values);
-    std::map<std::string, double> result;
-    for (std::size_t k = 0; k < columns.size(); ++k) result[columns[k].name] = values[k];
-    return result;
   }
 };
 
@@ -126,72 +94,8 @@ inline double max_speed(const State& s) {
   return most;
 }
 
-// A checkpoint in memory.
-class MemoryState final : public StateWriter, public StateReader {
- public:
-  void f64(const std::string& name, std::span<const double> values) override {
-    f64_[name] = {values.begin(), values.end()};
-  }
-  void i64(const std::string& name, std::span<const std::int64_t> values) override {
-    i64_[name] = {values.begin(), values.end()};
-  }
-  void f64(const std::string& name, Array<double>& values) override { copy(f64_, name, values); }
-  void i64(const std::string& name, Array<std::int64_t>& values) override { copy(i64_, name, values); }
-
-  // Every number of the state; arrays of particles and of bubbles in the order of their identifiers, as a step may sort
-  // them without changing the state.
-  std::map<std::string, std::vector<double>> in_order_of_identifiers() const {
-    std::map<std::string, std::vector<double>> state = f64_;
-    for (const auto& [name, values] : i64_) state[name].assign(values.begin(), values.end());
-    for (const std::string family : {"", "bubble_"}) {
-      const auto found = i64_.find(family + "identifier");
-      if (found == i64_.end()) continue;
-      const std::vector<std::int64_t>& identifier = found->second;
-      std::vector<std::size_t> order(identifier.size());
-      for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-      std::sort(order.begin(), order.end(),
-                [&](std::size_t a, std::size_t b) { return identifier[a] < identifier[b]; });
-      for (auto& [name, values] : state) {
-        if (values.size() != order.size() || name.starts_with("bubble_") != (family == "bubble_")) continue;
-        std::vector<double> sorted(values.size());
-        for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = values[order[i]];
-        values = sorted;
-      }
-    }
-    return state;
-  }
-
- private:
-  template <class T>
-  static void copy(const std::map<std::string, std::vector<T>>& from, const std::string& name, Array<T>& values) {
-    const auto found = from.find(name);
-    if (found == from.end()) throw FileError("no array '" + name + "'");
-    values.resize(found->second.size());
-    std::copy(found->second.begin(), found->second.end(), values.begin());
-  }
-  std::map<std::string, std::vector<double>> f64_;
-  std::map<std::string, std::vector<std::int64_t>> i64_;
-};
-
-// Runs some steps, then one whose pressure cannot converge: what is wrong with the state after it, nothing or a name.
 inline std::string changed_by_a_refused_step(const std::string& text, const Overrides& overrides, double dt) {
-  Simulation run(text, overrides);
-  run.steps(3, dt);
-  MemoryState saved;
-  run.method.save(saved);
-  Overrides impossible = overrides;
-  impossible.insert(impossible.end(), {"pressure.max_iterations=1", "pressure.tolerance=1e-14"});
-  Simulation strict(text, impossible);
-  strict.method.load(saved);
-  EXPECT_THROW(strict.steps(1, dt), StepFailure);
-  MemoryState after;
-  strict.method.save(after);
-  const auto a = saved.in_order_of_identifiers(), b = after.in_order_of_identifiers();
-  EXPECT_GT(a.size(), 5U);
-  std::string changed;
-  for (const auto& [name, values] : a)
-    if (b.at(name) != values) changed += name + " ";
-  return changed;
+  return changed_by_a_refused_step<les_sph::LesSph>(text, overrides, dt);
 }
 
 // --- cases, all about one unit across
