@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 from spume_tools.results import read_reference
+from spume_tools.waves import damped_oscillation
 
 REFERENCE = Path(__file__).parent / "reference" / "capillary_wave.csv"
 
@@ -38,28 +39,12 @@ def amplitude(run):
     return np.array(t), np.array(a)
 
 
-def fitted(t, a, omega, gamma):
-    """Least squares of c exp(-gamma t) cos(omega t + phi) by Gauss and Newton, from the exact values."""
-    parameters = np.array([a[0], 0.0, omega, gamma])
-    for _ in range(50):
-        c, s, w, g = parameters
-        decay = np.exp(-g * t)
-        wave, other = np.cos(w * t), np.sin(w * t)
-        model = decay * (c * wave + s * other)
-        slope = np.column_stack([decay * wave, decay * other, decay * t * (s * wave - c * other), -t * model])
-        change, *_ = np.linalg.lstsq(slope, a - model, rcond=None)
-        parameters = parameters + change
-        if np.max(np.abs(change[2:])) < 1e-9 * omega:
-            break
-    return float(parameters[2]), float(parameters[3])
-
-
 def errors(run):
     """A wave that starts at rest is no pure mode: the first period is left out."""
     omega, gamma = exact(run)
     t, a = amplitude(run)
     late = t > 2 * np.pi / omega
-    found_omega, found_gamma = fitted(t[late], a[late], omega, gamma)
+    _, _, found_gamma, found_omega = damped_oscillation(t[late], a[late], gamma, omega)
     return {"frequency_ratio": found_omega / omega, "damping_ratio": found_gamma / gamma,
             "frequency_error": abs(found_omega / omega - 1), "damping_error": abs(found_gamma / gamma - 1)}
 

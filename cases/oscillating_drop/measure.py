@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 from spume_tools.results import read_reference
+from spume_tools.waves import damped_oscillation
 
 REFERENCE = Path(__file__).parent / "reference" / "drop_bubble_frequencies.csv"
 
@@ -31,26 +32,12 @@ def moment(run):
     return np.array(t), np.array(values)
 
 
-def fitted(t, a, omega):
-    """omega and gamma of c exp(-gamma t) cos(omega t + phi), by Gauss and Newton."""
-    parameters = np.array([a[0], 0.0, omega, 0.01 * omega])
-    for _ in range(100):
-        c, s, w, g = parameters
-        decay = np.exp(-g * t)
-        wave, other = np.cos(w * t), np.sin(w * t)
-        model = decay * (c * wave + s * other)
-        slope = np.column_stack([decay * wave, decay * other, decay * t * (s * wave - c * other), -t * model])
-        change, *_ = np.linalg.lstsq(slope, a - model, rcond=None)
-        parameters = parameters + 0.7 * change
-    return float(parameters[2]), float(parameters[3])
-
-
 def measure(runs):
     measured = {}
     for name, run in runs.items():
         omega = exact(run)
         t, a = moment(run)
-        found, rate = fitted(t, a, omega)
+        _, _, rate, found = damped_oscillation(t, a, 0.01 * omega, omega)
         measured[f"{name}_frequency_ratio"] = found / omega
         measured[f"{name}_frequency_error"] = abs(found / omega - 1)
         measured[f"{name}_damping_over_frequency"] = rate / omega

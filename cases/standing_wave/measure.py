@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from spume_tools.results import MissingResult, read_reference, standard
+from spume_tools.waves import damped_oscillation
 
 K = 2 * np.pi
 PERIOD = 2 * np.pi / np.sqrt(K)
@@ -52,21 +53,6 @@ def integral(t, f):
     return np.concatenate([[0], np.cumsum(parts)]) * (t[1] - t[0]) / 24
 
 
-def fit(t, signal, gamma, omega):
-    """(C, S, gamma, omega) of exp(-gamma t)(C cos wt + S sin wt) by Gauss-Newton from the given rates."""
-    def basis(gamma, omega):
-        return np.exp(-gamma * t)[:, None] * np.column_stack([np.cos(omega * t), np.sin(omega * t)])
-
-    c, s = np.linalg.lstsq(basis(gamma, omega), signal, rcond=None)[0]
-    for _ in range(30):
-        cosine, sine = basis(gamma, omega).T
-        model = c * cosine + s * sine
-        jacobian = np.column_stack([cosine, sine, -t * model, t * (s * cosine - c * sine)])
-        step = np.linalg.lstsq(jacobian, signal - model, rcond=None)[0]
-        c, s, gamma, omega = np.array([c, s, gamma, omega]) + step
-    return c, s, gamma, omega
-
-
 def amplitude(wave, t):
     c, s, gamma, _ = wave
     return np.hypot(c, s) * np.exp(-gamma * t)
@@ -97,7 +83,7 @@ def errors(run):
     Period and decay are the errors of the two fitted rates. The last one takes no fit."""
     at, amplitudes, reference = histories(run)
     guess = 2 * viscosity(run) * K**2, np.sqrt(K)
-    measured, exact = fit(at, amplitudes, *guess), fit(at, reference, *guess)
+    measured, exact = damped_oscillation(at, amplitudes, *guess), damped_oscillation(at, reference, *guess)
     t = np.linspace(0, at[-1], 200)
     lag = np.angle(np.exp(1j * (phase(measured, t[-1]) - phase(exact, t[-1]))))
     series = run.series

@@ -303,6 +303,19 @@ double Boundary::bytes() const {
   return sum;
 }
 
+void Boundary::save_walls(StateWriter& writer) const {
+  std::array<double, 6> all{};
+  for (std::size_t axis = 0; axis < 3; ++axis) std::copy_n(walls[axis].data(), 2, all.data() + 2 * axis);
+  writer.f64("walls", all);
+}
+
+void Boundary::load_walls(StateReader& reader) {
+  Array<double> all;
+  reader.f64("walls", all);
+  if (all.size() != 6) throw FileError("the checkpoint was written by another version of the method");
+  for (std::size_t axis = 0; axis < 3; ++axis) walls[axis] = {all[2 * axis], all[2 * axis + 1]};
+}
+
 bool inside_solid(const Domain& domain, const Vec3& point) {
   return std::any_of(domain.boxes.begin(), domain.boxes.end(), [&](const SolidBox& box) {
     for (int axis = 0; axis < domain.dimensions; ++axis)

@@ -2,6 +2,8 @@
 // Where a body goes through an opening: beyond the side stand the images of its wall points, as the body is taken to go
 // on symmetrically. An image has the values of its wall point, by the same coefficients, and the pressure that the
 // opening gives there.
+#include <optional>
+
 #include "gate.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/particles/point_fits.hpp"
@@ -37,15 +39,17 @@ void OpenSides::find_corners(const VectorField& at, double t, const WallStencils
         opening.inflow ? static_cast<std::size_t>(std::count_if(gate.columns.begin(), gate.columns.end(),
                                                                 [](const Gate::Column& column) { return column.wet; }))
                        : 0;
+    const bool given = opening.inflow && step_ > 0;
+    const std::optional<Entering> entering = given ? std::optional<Entering>({opening, wet, t}) : std::nullopt,
+                                  last = given ? std::optional<Entering>({opening, wet, t - step_}) : std::nullopt;
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       Corner& corner = corners_[first + k];
       corner.wall_point = static_cast<std::size_t>(chosen[k]);
       corner.gate = static_cast<std::int32_t>(g);
       corner.foot = foot_of(corner.wall_point);
       corner.way = 2 * (walls.mirrored(corner.wall_point, r[axis]) - gate.plane);
-      if (!opening.inflow || !(step_ > 0)) continue;
-      const Entering entering(opening, wet, t), last(opening, wet, t - step_);
-      corner.acceleration = (entering.velocity(corner.foot)[axis] - last.velocity(corner.foot)[axis]) / step_;
+      if (given)
+        corner.acceleration = (entering->velocity(corner.foot)[axis] - last->velocity(corner.foot)[axis]) / step_;
     }
   }
 }

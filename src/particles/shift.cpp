@@ -17,6 +17,14 @@ constexpr double share_of_largest_shift = 0.9;
 
 }  // namespace
 
+ShiftInput shift_input(const ShiftingOptions& options, double largest_stable, double displacement) {
+  return {.coefficient = options.coefficient,
+          .limit = options.limit,
+          .remove_drift = options.remove_drift,
+          .largest_stable = largest_stable,
+          .displacement = displacement};
+}
+
 Shift::Shift(ParticleStore& particles, const Resolution& resolution) : resolution_(resolution) {
   particles.add_vector(displacement, "shift", Lifetime::result);
 }

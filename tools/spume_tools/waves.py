@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Waves from elevations at fixed places: harmonics, heights, and what travels to and fro."""
+"""Waves from elevations at fixed places: harmonics, heights, and what travels to and fro; oscillations that decay."""
 import numpy as np
 
 
@@ -37,3 +37,18 @@ def incident_and_reflected(x, amplitudes, k):
     waves = np.linalg.lstsq(basis, amplitudes, rcond=None)[0]
     left = np.sqrt(np.mean(np.abs(basis @ waves - amplitudes)**2))
     return waves[0], waves[1], float(left / np.abs(waves[0]))
+
+
+def damped_oscillation(t, signal, gamma, omega):
+    """(C, S, gamma, omega) of exp(-gamma t)(C cos wt + S sin wt) by Gauss-Newton from the given rates."""
+    def basis(gamma, omega):
+        return np.exp(-gamma * t)[:, None] * np.column_stack([np.cos(omega * t), np.sin(omega * t)])
+
+    c, s = np.linalg.lstsq(basis(gamma, omega), signal, rcond=None)[0]
+    for _ in range(30):
+        cosine, sine = basis(gamma, omega).T
+        model = c * cosine + s * sine
+        jacobian = np.column_stack([cosine, sine, -t * model, t * (s * cosine - c * sine)])
+        step = np.linalg.lstsq(jacobian, signal - model, rcond=None)[0]
+        c, s, gamma, omega = np.array([c, s, gamma, omega]) + step
+    return c, s, gamma, omega

@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "spume/core/saved_state.hpp"
 #include "spume/neighbours/images.hpp"
 #include "spume/operators/image_values.hpp"
 #include "spume/particles/arrangement.hpp"
@@ -98,6 +99,9 @@ class Boundary {
   void give_pressures(const std::function<double(const Vec3&)>& potential, double t) {
     openings_->give_pressures(potential, t, stencils_);
   }
+  // `walls` in a checkpoint. load_walls() throws FileError for another number of them.
+  void save_walls(StateWriter& writer) const;
+  void load_walls(StateReader& reader);
   // The points behind outflows move on with this velocity.
   void follow(const std::array<const double*, 3>& velocity) { openings_->follow(stencils_, velocity); }
   // Whether a side ends the multigrid as a wall does: inflows have no pressure gradient either.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "spume/particles/moments.hpp"
+#include "spume/particles/options.hpp"
 #include "spume/particles/surface.hpp"
 
 namespace spume {
@@ -15,6 +16,8 @@ struct ShiftInput {
   double largest_stable = 0;  // largest_stable_shift() of this lattice
   double displacement = 0;    // displacement_fraction() of the step
 };
+
+ShiftInput shift_input(const ShiftingOptions& options, double largest_stable, double displacement);
 
 class Shift {
  public:

@@ -12,8 +12,9 @@ namespace {
 
 // A flow at rest without forces: the first steps follow the time scale of the run.
 constexpr double steps_of_run_at_rest = 1000;
-// The number density of a phase changes with the order of its particles: 1 % from a lattice to a disordered state.
-constexpr double largest_volume_drift = 0.05;
+// The number density of a phase changes with the order of its particles: 1.1 % from a lattice to a disordered state in
+// rising_bubble_2d at 1/32. A drop of mercury that wets its floor, 7 particles across, gains 2.4 %.
+constexpr double largest_volume_drift = 0.02;
 
 const char* const axis_name[3] = {"x", "y", "z"};
 
@@ -191,26 +192,21 @@ std::vector<ArrayInfo> Gfd::arrays() const {
 
 void Gfd::save(StateWriter& writer) const {
   const std::int64_t count[] = {static_cast<std::int64_t>(flow_.size())};
-  const auto& w = flow_.boundary.walls;
-  const double walls[] = {w[0][0], w[0][1], w[1][0], w[1][1], w[2][0], w[2][1]};
   saved_.save(writer);
   writer.i64("counters", count);
-  writer.f64("walls", walls);
+  flow_.boundary.save_walls(writer);
   save_fields(flow_.particles.fields, writer);
 }
 
 void Gfd::load(StateReader& reader) {
   sampled_step_ = -1;
   arranged_ = false;
-  Array<double> walls;
   Array<std::int64_t> count;
   saved_.load(reader);
   reader.i64("counters", count);
-  reader.f64("walls", walls);
-  if (count.size() != 1 || walls.size() != 6)
-    throw FileError("the checkpoint was written by another version of the method");
+  flow_.boundary.load_walls(reader);
+  if (count.size() != 1) throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(count[0]), "particle", reader);
-  for (int axis = 0; axis < 3; ++axis) flow_.boundary.walls[axis] = {walls[2 * axis], walls[2 * axis + 1]};
 }
 
 }  // namespace spume::gfd

@@ -186,11 +186,9 @@ void LesSph::declare_saved() {
 void LesSph::save(StateWriter& writer) const {
   const std::int64_t counters[] = {flow_.steps, flow_.started ? 1 : 0, static_cast<std::int64_t>(flow_.size()),
                                    flow_.left};
-  const auto& w = flow_.boundary.walls;
-  const double walls[] = {w[0][0], w[0][1], w[1][0], w[1][1], w[2][0], w[2][1]};
   saved_.save(writer);
   writer.i64("counters", counters);
-  writer.f64("walls", walls);
+  flow_.boundary.save_walls(writer);
   save_fields(flow_.particles.fields, writer);
   if (flow_.features.openings) flow_.boundary.openings()->save(writer);
   if (flow_.bubbles != nullptr) flow_.bubbles->save(writer);
@@ -198,19 +196,16 @@ void LesSph::save(StateWriter& writer) const {
 
 void LesSph::load(StateReader& reader) {
   sampled_step_ = -1;
-  Array<double> walls;
   Array<std::int64_t> counters;
   saved_.load(reader);
   reader.i64("counters", counters);
-  reader.f64("walls", walls);
-  if (counters.size() != 4 || walls.size() != 6)
-    throw FileError("the checkpoint was written by another version of the method");
+  flow_.boundary.load_walls(reader);
+  if (counters.size() != 4) throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(counters[2]), "particle", reader);
   flow_.steps = counters[0];
   flow_.started = counters[1] != 0;
   if (flow_.started) flow_.start_columns.reset();
   flow_.left = counters[3];
-  for (int axis = 0; axis < 3; ++axis) flow_.boundary.walls[axis] = {walls[2 * axis], walls[2 * axis + 1]};
   flow_.find_uniform_acceleration(flow_.time);  // samples before the next step need it
   if (flow_.features.openings) flow_.boundary.openings()->load(reader);
   if (flow_.bubbles != nullptr) flow_.bubbles->load(reader);

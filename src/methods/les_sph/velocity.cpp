@@ -132,13 +132,7 @@ void Flow::share_volume() {
 }
 
 void Flow::compute_shift() {
-  const ShiftingOptions& shifting = options.get<ShiftingOptions>();
-  shift->compute(arrangement, particles,
-                 {.coefficient = shifting.coefficient,
-                  .limit = shifting.limit,
-                  .remove_drift = shifting.remove_drift,
-                  .largest_stable = largest_shift,
-                  .displacement = displacement},
+  shift->compute(arrangement, particles, shift_input(options.get<ShiftingOptions>(), largest_shift, displacement),
                  sizes, moments, surface.get(), boundary.reflection());
 }
 
