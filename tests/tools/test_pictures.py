@@ -79,6 +79,19 @@ class Planes(Scratch):
             np.testing.assert_allclose(panel.values[::every, 0][:8], 0.1 * np.arange(8) + 10 * coordinate, atol=1e-5)
             self.assertAlmostEqual(panel.values[-1, 0], panel.values[0, 0])  # periodic
 
+    def test_interfaces_are_where_half_of_the_particles_are_of_a_phase(self):
+        folder = new_folder(self.path, "run")
+        write_case(folder, "Two layers", [0, 0], [1, 1], 0.05, x="periodic")
+        grid = lattice([0, 0], [1, 1], 0.05)
+        write_snapshots(folder / "fluid.vtkhdf", [0.0], lambda t: grid,
+                        {"pressure": lambda p, t: p[:, 1], "phase": lambda p, t: 1.0 * (p[:, 1] > 0.3)})
+        run = DrawnRun(folder)
+        _, (panel,) = planes.panels_of(run, "pressure", run.snapshots(), [0])
+        (above,) = panel.phases
+        y = np.linspace(*panel.extent[2:], above.shape[1])
+        crossing = [np.interp(0.5, column, y) for column in above]
+        np.testing.assert_allclose(crossing, 0.3, atol=0.01)  # a fifth of a spacing: the sums are on half spacings
+
     def test_a_plane_outside_the_domain_is_said(self):
         folder = new_folder(self.path, "run")
         write_tank(folder)

@@ -32,12 +32,13 @@ class Plane:
 @dataclass
 class Panel:
     """values (columns, rows), nan outside the liquid; extent: left, right, bottom, top; share: the kernel sums that the
-    surface is drawn from, None on grids."""
+    surface is drawn from, None on grids; phases: of each phase but the first its share, whose half is the interface."""
 
     time: float
     values: np.ndarray
     extent: tuple
     share: np.ndarray = None
+    phases: tuple = ()
 
 
 def plane_of(run):
@@ -83,10 +84,12 @@ def particle_plane(run, plane, snapshot, values):
     high = np.minimum(plane.high, own.max(axis=0) + spacing)
     step = max(FINENESS * spacing, np.max(high - low) / MOST)
     shape = np.maximum(2, np.round((high - low) / step).astype(int) + 1)
-    weight, total = kernel_sums(own, spacing, low, step, shape, (values[index],), beside)
-    weight, total = finer(weight), finer(total)
-    drawn = np.where(weight >= 0.5, total / np.maximum(weight, 1e-300), np.nan)
-    return Panel(snapshot.time, drawn, extent_of(low, low + (shape - 1) * step, drawn.shape), weight)
+    phase = snapshot.field("phase") if "phase" in snapshot.fields else np.zeros(len(values))
+    inside = [(phase[index] == number).astype(float) for number in np.unique(phase)[1:]]
+    weight, *totals = (finer(sums) for sums in kernel_sums(own, spacing, low, step, shape, (values[index], *inside), beside))
+    total, *phases = (sums / np.maximum(weight, 1e-300) for sums in totals)
+    drawn = np.where(weight >= 0.5, total, np.nan)
+    return Panel(snapshot.time, drawn, extent_of(low, low + (shape - 1) * step, drawn.shape), weight, tuple(phases))
 
 
 def extent_of(low, high, shape):
@@ -147,6 +150,10 @@ def draw_panel(axis, run, plane, panel, frame, name, norm):
                         cmap=FIELDS.get(name, "RdBu_r" if name in SIGNED else "viridis"), rasterized=True)
     if panel.share is not None and panel.share.min() < 0.5:
         axis.contour(panel.share.T, levels=[0.5], extent=panel.extent, colors=[EDGE], linewidths=0.7)
+    for phase in panel.phases:
+        if phase.min() < 0.5 < phase.max():
+            for color, width in ((EDGE, 1.8), ("white", 0.8)):  # seen on dark and on light
+                axis.contour(phase.T, levels=[0.5], extent=panel.extent, colors=[color], linewidths=width)
     axis.set(xlim=frame[:2], ylim=frame[2:], aspect="equal", title=time_title(panel.time, run.si))
     for side in ("top", "right"):
         axis.spines[side].set_visible(True)
