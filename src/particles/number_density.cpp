@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include "spume/core/parallel.hpp"
 
@@ -136,26 +134,6 @@ double even_out_density(const DensityRelaxation& relaxation, const Arrangement& 
     const double rate = own < 0 ? closing * std::max(1.0, -own / thin_as_void) : expanding;
     divergence[i] -= expanding * of_all + std::min(rate, 1 / relaxation.dt) * (own - within(own, local_disorder));
   });
-  if (getenv("DBGR")) {
-    double a = 0, lo = 0, hi = 0;
-    size_t il = 0, ih = 0;
-    for (size_t i = 0; i < divergence.size(); ++i) {
-      if (!read.tells_density(i)) continue;
-      const double own = read.excess(i);
-      const double rate = own < 0 ? closing * std::max(1.0, -own / thin_as_void) : expanding;
-      a += expanding * of_all + std::min(rate, 1 / relaxation.dt) * (own - within(own, local_disorder));
-      if (own < lo) {
-        lo = own;
-        il = i;
-      }
-      if (own > hi) {
-        hi = own;
-        ih = i;
-      }
-    }
-    fprintf(stderr, "all %g closing %g sum %g lo %g (%g %g) hi %g (%g %g)\n", of_all, closing, a / 1040, lo,
-            il < divergence.size() ? (*at[0])[il] : 0, (*at[1])[il], hi, (*at[0])[ih], (*at[1])[ih]);
-  }
   return total.volume;
 }
 

@@ -71,6 +71,15 @@ class MethodNames(Tree):
             self.assertIsNone(named(token, methods), token)
 
 
+class Silence(Tree):
+    def test_prints_and_exits_outside_the_command_line_are_named(self):
+        said = self.check({"src/core/a.cpp": "// std::cerr\nfprintf(stderr, \"x\");\n", "src/cli/main.cpp": "std::cout;\n",
+                           "include/spume/core/b.hpp": "if (std::getenv(\"X\"))\nsnprintf(a, n, b);\n"})
+        self.assertEqual([line.split("; ")[0] for line in said],
+                         ["include/spume/core/b.hpp:1: error: 'getenv(' outside of src/cli",
+                          "src/core/a.cpp:2: error: 'fprintf(' outside of src/cli"])
+
+
 class Sizes(Tree):
     def test_a_file_of_more_than_500_lines_is_named(self):
         said = self.check({"src/core/a.cpp": "\n" * 500, "tools/b.py": "\n" * 501, "cases/c/measure.py": "\n" * 900})

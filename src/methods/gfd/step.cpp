@@ -106,7 +106,7 @@ Plan make_plan(Flow& f) {
       [&](StageRun&) { f.correct_for_shift(); }, {p.velocity, f.displacement_by_shift()}, {f.shift_velocity}, true);
   // (23), (24) the pressure that makes the velocity free of divergence
   add(
-      step, "divergence", true, "right-hand side of (23)", [&](StageRun& run) { f.find_divergence(run.dt); },
+      step, "divergence", true, "right-hand side of (23)", [&](StageRun&) { f.find_divergence(); },
       {f.intermediate_velocity, f.correction}, {f.divergence}, true);
   add(step, "density relaxation", has.density_relaxation,
       has.density_relaxation ? "number density" : "pressure.density_relaxation is off",

@@ -71,8 +71,7 @@ void Flow::predict_velocity(double dt) {
   particles.scratch().release(viscous_acceleration);
 }
 
-void Flow::find_divergence(double dt) {
-  static_cast<void>(dt);
+void Flow::find_divergence() {
   particles.scratch().lease(divergence, size());
   gfd_velocity_gradient_sweep(arrangement.context, arrangement.packed, read(intermediate_velocity),
                               boundary.volume_rule(), stencils().correction, {{}, divergence.data()});

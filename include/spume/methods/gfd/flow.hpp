@@ -135,7 +135,7 @@ struct Flow {
   void find_viscosity_gradient();    // (18)
   void find_viscous_acceleration();  // (9), (12), (13), (19)
   void predict_velocity(double dt);  // (20)
-  void find_divergence(double dt);
+  void find_divergence();
   void relax_density(double dt);
   void compute_shift();
   void correct_for_shift();
