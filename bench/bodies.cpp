@@ -56,7 +56,8 @@ void wall_points(benchmark::State& state) {
   const Tank tank(state);
   const les_sph::Flow& flow = tank.method.flow();
   std::size_t points = 0;
-  for (auto _ : state) points = make_wall_points(flow.scene, flow.resolution, flow.particles.volume).size();
+  for (auto _ : state)
+    points = make_wall_points(flow.scene.walls, flow.scene.domain, flow.resolution, flow.particles.volume).size();
   state.counters["time_per_point"] = benchmark::Counter(
       static_cast<double>(points), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }

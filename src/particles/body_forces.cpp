@@ -6,6 +6,7 @@
 #include <map>
 
 #include "spume/core/parallel.hpp"
+#include "spume/core/periodic_grid.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/operators/moving_least_squares.hpp"
 #include "spume/particles/near_particles.hpp"
@@ -71,7 +72,8 @@ std::vector<Element> join(const std::vector<Element>& elements, double spacing) 
 
 }  // namespace
 
-BodyForces::BodyForces(const Scene& scene, const Resolution& resolution) : scene_(scene), resolution_(resolution) {
+BodyForces::BodyForces(const Scene& scene, const Resolution& resolution, const BodyWalls& walls)
+    : scene_(scene), resolution_(resolution), walls_(walls) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
     if (scene.bodies[b].wall != BoundaryKind::open) add_elements(static_cast<std::int32_t>(b));
 }
@@ -80,6 +82,15 @@ void BodyForces::add_elements(std::int32_t b) {
   const Body& body = scene_.bodies[static_cast<std::size_t>(b)];
   const double spacing = resolution_.spacing, sign = body.inside != body.subtract ? 1 : -1;
   Bounds window{scene_.domain.lower, scene_.domain.upper};
+  if (body.motion) {
+    // What is outside the domain now may come in.
+    const double diagonal = length(subtract(window.upper, window.lower));
+    for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
+      window.lower[axis] -= diagonal;
+      window.upper[axis] += diagonal;
+    }
+  }
+  const RigidWalls& walls = walls_.part_of(static_cast<std::size_t>(b));
   const TriangleSurface surface = body.shape->surface(window, 0.5 * spacing);
   std::vector<Element> found;
   if (scene_.domain.dimensions == 3) {
@@ -114,8 +125,8 @@ void BodyForces::add_elements(std::int32_t b) {
   const double ratio = body.shape->volume() / volume, dimensions = scene_.domain.dimensions;
   const double stretch = std::isfinite(ratio) && ratio > 0 ? std::pow(ratio, (dimensions - 1) / dimensions) : 1;
   for (const Element& element : scene_.domain.dimensions == 3 ? join(found, spacing) : found) {
-    if (std::abs(scene_.walls.distance(element.middle)) >= on_surface * spacing) continue;
-    elements_.push_back({scene_.walls.nearest(element.middle).point, multiply(stretch, element.area), b});
+    if (std::abs(walls.exact_distance(element.middle)) >= on_surface * spacing) continue;
+    elements_.push_back({walls.nearest(element.middle).point, multiply(stretch, element.area), b});
   }
 }
 
@@ -186,6 +197,18 @@ bool BodyForces::traction(const Fields& fields, const CellOrder& table, const El
   return true;
 }
 
+BodyForces::Element BodyForces::now(const Element& element) const {
+  const auto body = static_cast<std::size_t>(element.body);
+  if (!scene_.bodies[body].motion) return element;
+  const RigidPlace& place = walls_.part_of(body).place;
+  Vec3 middle = place.now(element.middle);
+  for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
+    const double period = scene_.domain.upper[axis] - scene_.domain.lower[axis];
+    if (scene_.domain.periodic(axis)) middle[axis] = wrap_periodic(middle[axis], scene_.domain.lower[axis], period);
+  }
+  return {middle, place.direction_now(element.area), element.body};
+}
+
 std::vector<SurfaceForce> BodyForces::measure(const Fields& fields, double t) const {
   struct OfElement {
     Vec3 pressure{}, viscous{};
@@ -199,11 +222,14 @@ std::vector<SurfaceForce> BodyForces::measure(const Fields& fields, double t) co
     for (const Body& body : scene_.bodies)
       velocity.push_back(body.velocity ? body.velocity->clone() : VectorExpression{});
     for (std::size_t e = first; e < last; ++e) {
-      const Vec3 wall = velocity[static_cast<std::size_t>(elements_[e].body)](elements_[e].middle, t);
+      const Element element = now(elements_[e]);
+      const auto body = static_cast<std::size_t>(element.body);
+      const Vec3 wall = scene_.bodies[body].motion ? walls_.part_of(body).velocity_at(element.middle)
+                                                   : velocity[body](element.middle, t);
       if (scene_.domain.dimensions == 3)
-        traction<3>(fields, table, elements_[e], wall, of[e].pressure, of[e].viscous);
+        traction<3>(fields, table, element, wall, of[e].pressure, of[e].viscous);
       else
-        traction<2>(fields, table, elements_[e], wall, of[e].pressure, of[e].viscous);
+        traction<2>(fields, table, element, wall, of[e].pressure, of[e].viscous);
     }
   });
   std::vector<SurfaceForce> total(scene_.bodies.size());
@@ -211,8 +237,9 @@ std::vector<SurfaceForce> BodyForces::measure(const Fields& fields, double t) co
     SurfaceForce& body = total[static_cast<std::size_t>(elements_[e].body)];
     body.pressure = add(body.pressure, of[e].pressure);
     body.viscous = add(body.viscous, of[e].viscous);
-    body.pressure_torque = add(body.pressure_torque, cross(elements_[e].middle, of[e].pressure));
-    body.viscous_torque = add(body.viscous_torque, cross(elements_[e].middle, of[e].viscous));
+    const Vec3 middle = now(elements_[e]).middle;
+    body.pressure_torque = add(body.pressure_torque, cross(middle, of[e].pressure));
+    body.viscous_torque = add(body.viscous_torque, cross(middle, of[e].viscous));
   }
   return total;
 }

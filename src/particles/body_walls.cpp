@@ -28,110 +28,110 @@ struct BodyWalls::Block {
 };
 
 BodyWalls::BodyWalls(const Scene& scene, const Resolution& resolution, double particle_volume)
-    : scene_(scene), resolution_(resolution), points_(make_wall_points(scene, resolution, particle_volume)) {
-  const int d = scene.domain.dimensions;
-  cell_ = 2 * resolution.support_radius;
-  for (int axis = 0; axis < d; ++axis) {
-    cell_lower_[axis] = scene.domain.lower[axis] - cell_;
-    cells_[axis] = static_cast<std::size_t>(std::ceil((scene.domain.upper[axis] - cell_lower_[axis]) / cell_)) + 1;
-  }
-  middle_.resize(cells_[0] * cells_[1] * cells_[2]);
-  parallel_blocks_dynamic(cells_[1] * cells_[2], 1, [&](std::size_t row, std::size_t, std::size_t) {
-    for (std::size_t i = 0; i < cells_[0]; ++i) {
-      Vec3 place{cell_lower_[0] + (static_cast<double>(i) + 0.5) * cell_,
-                 cell_lower_[1] + (static_cast<double>(row % cells_[1]) + 0.5) * cell_,
-                 d == 3 ? cell_lower_[2] + (static_cast<double>(row / cells_[1]) + 0.5) * cell_ : 0.0};
-      middle_[row * cells_[0] + i] = static_cast<float>(scene.walls.distance(place));
-    }
-  });
-  fine_ = resolution.spacing;
-  for (int axis = 0; axis < d; ++axis) {
-    fine_lower_[axis] = scene.domain.lower[axis];
-    fine_cells_[axis] =
-        static_cast<std::size_t>(std::ceil((scene.domain.upper[axis] - scene.domain.lower[axis]) / fine_));
-  }
-  least_.resize(fine_cells_[0] * fine_cells_[1] * fine_cells_[2]);
-  // Half a diagonal, what rounding to float takes, and what interpolated distances are off by.
-  double off = (0.5 * std::sqrt(static_cast<double>(d)) + 1e-3) * fine_;
+    : scene_(scene), resolution_(resolution) {
+  parts_.push_back(std::make_unique<RigidWalls>(scene, std::nullopt, resolution, particle_volume));
+  for (std::size_t m = 0; m < scene.motions.size(); ++m)
+    parts_.push_back(std::make_unique<RigidWalls>(scene, m, resolution, particle_volume));
   for (const Body& body : scene.bodies)
-    if (body.wall != BoundaryKind::open) off += body.solid->error();
-  parallel_blocks_dynamic(fine_cells_[1] * fine_cells_[2], 1, [&](std::size_t row, std::size_t, std::size_t) {
-    for (std::size_t i = 0; i < fine_cells_[0]; ++i) {
-      const Vec3 place{fine_lower_[0] + (static_cast<double>(i) + 0.5) * fine_,
-                       fine_lower_[1] + (static_cast<double>(row % fine_cells_[1]) + 0.5) * fine_,
-                       d == 3 ? fine_lower_[2] + (static_cast<double>(row / fine_cells_[1]) + 0.5) * fine_ : 0.0};
-      least_[row * fine_cells_[0] + i] = static_cast<float>(distance(place) - off);
-    }
-  });
-  body_.resize(points_.size());
-  parallel_for(points_.size(), [&](std::size_t g) { body_[g] = static_cast<std::uint8_t>(body_at(points_[g].foot)); });
-  for (const Body& body : scene.bodies) moving_ = moving_ || (body.wall != BoundaryKind::open && body.velocity);
+    surfaces_move_ = surfaces_move_ || (body.wall != BoundaryKind::open && (body.velocity || body.motion));
+  const RigidWalls& still = *parts_[0];
+  points_ = still.points();
+  standing_ = points_.size();
+  body_.resize(standing_);
+  for (std::size_t g = 0; g < standing_; ++g) body_[g] = static_cast<std::uint8_t>(still.body_of(g));
+  gather_points();
 }
 
-// The wall whose surface the foot lies on: the later of two that touch there.
-std::size_t BodyWalls::body_at(const Vec3& foot) const {
-  std::size_t best = 0;
-  double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
-    if (scene_.bodies[b].wall == BoundaryKind::open) continue;
-    const double away = std::abs(scene_.bodies[b].solid->distance(foot));
-    if (away <= nearest) {
-      nearest = away;
-      best = b;
+void BodyWalls::move_to(double t) {
+  for (std::size_t m = 0; m < scene_.motions.size(); ++m)
+    if (!scene_.motions[m].floats) parts_[m + 1]->place = given_place(scene_.motions[m], t);
+  gather_points();
+}
+
+void BodyWalls::set_place(std::size_t motion, const RigidPlace& place) {
+  parts_[motion + 1]->place = place;
+  gather_points();
+}
+
+// Where bodies overlap, the points of the first of them stand for all.
+void BodyWalls::gather_points() {
+  if (scene_.motions.empty()) return;
+  points_.resize(standing_);
+  body_.resize(standing_);
+  for (std::size_t part = 1; part < parts_.size(); ++part) {
+    const RigidWalls& walls = *parts_[part];
+    const std::size_t count = walls.points().size();
+    std::vector<WallPoint> now(count);
+    std::vector<std::uint8_t> seen(count);
+    parallel_for(count, [&](std::size_t g) {
+      bool is_first = walls.now(g, now[g]);
+      for (std::size_t before = 0; before < part && is_first; ++before)
+        is_first = parts_[before]->empty() || parts_[before]->surely_farther(now[g].position, 0) ||
+                   !(parts_[before]->distance(now[g].position) < 0);
+      seen[g] = is_first ? 1 : 0;
+    });
+    for (std::size_t g = 0; g < count; ++g) {
+      if (seen[g] == 0) continue;
+      points_.push_back(now[g]);
+      body_.push_back(static_cast<std::uint8_t>(walls.body_of(g)));
     }
   }
-  return best;
 }
 
 double BodyWalls::distance(const Vec3& point) const {
-  std::array<std::size_t, 3> at{};
-  double outside = 0;  // of the cells, along one axis at most
-  for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
-    const double cell = (point[axis] - cell_lower_[axis]) / cell_;
-    const double inside = std::clamp(cell, 0.0, static_cast<double>(cells_[axis]) - 0.5);
-    outside = std::max(outside, std::abs(cell - inside));
-    at[axis] = static_cast<std::size_t>(inside);
-  }
-  const double middle = middle_[(at[2] * cells_[1] + at[1]) * cells_[0] + at[0]];
-  // Half the diagonal of a cell, and the reach of whoever asks.
-  const double half = 0.5 * std::sqrt(static_cast<double>(scene_.domain.dimensions)) * cell_;
-  if (outside == 0 && std::abs(middle) > half + 2 * cell_) return std::copysign(std::abs(middle) - half, middle);
-  return scene_.walls.distance(point);
+  double least = infinite;
+  for (const auto& part : parts_)
+    if (!part->empty()) least = std::min(least, part->distance(point));
+  return least;
 }
 
 bool BodyWalls::surely_farther(const Vec3& point, double gap) const {
-  std::array<std::size_t, 3> at{};
-  for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
-    const double cell = (point[axis] - fine_lower_[axis]) / fine_;
-    if (!(cell >= 0 && cell < static_cast<double>(fine_cells_[axis]))) return false;
-    at[axis] = static_cast<std::size_t>(cell);
+  for (const auto& part : parts_)
+    if (!part->empty() && !part->surely_farther(point, gap)) return false;
+  return true;
+}
+
+const RigidWalls& BodyWalls::nearest_part(const Vec3& point) const {
+  if (parts_.size() == 1) return *parts_[0];
+  const RigidWalls* best = nullptr;
+  double least = infinite;
+  for (const auto& part : parts_) {
+    if (part->empty()) continue;
+    const double own = part->distance(point);
+    if (best != nullptr && own >= least) continue;
+    least = own;
+    best = part.get();
   }
-  return least_[(at[2] * fine_cells_[1] + at[1]) * fine_cells_[0] + at[0]] > gap;
+  return *best;
 }
 
 void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
   if (surely_farther(position, gap) || distance(position) >= gap) return;
-  NearestPoint near = scene_.walls.nearest(position);
+  const RigidWalls& walls = nearest_part(position);
+  NearestPoint near = walls.nearest(position);
   const NearestPoint first = near;
   position = add(near.point, multiply(std::max(gap, std::abs(near.distance)), near.normal));
-  if (!(scene_.walls.distance(position) >= 0.5 * gap)) {
+  if (!(nearest_part(position).exact_distance(position) >= 0.5 * gap)) {
     // Another wall is there: before the nearest face.
     for (int round = 0; round < 3 && near.distance < gap; ++round) {
       position = add(near.point, multiply(gap, near.normal));
-      near = scene_.walls.nearest(position);
+      near = nearest_part(position).nearest(position);
     }
   }
   if (velocity == nullptr) return;
-  const double inwards = dot(*velocity, first.normal);
+  const double inwards = dot(subtract(*velocity, walls.velocity_at(first.point)), first.normal);
   if (inwards < 0) *velocity = subtract(*velocity, multiply(inwards, first.normal));
 }
 
 void BodyWalls::limit_approach(const Vec3& position, double gap, double speed, const Vec3& before,
                                Vec3& velocity) const {
   if (surely_farther(position, gap) || distance(position) >= gap) return;
-  const Vec3 normal = scene_.walls.nearest(position).normal;
-  const double approach = dot(velocity, normal), most = std::min(-speed, dot(before, normal));
-  if (approach < most) velocity = add(velocity, multiply(most - approach, normal));
+  const RigidWalls& walls = nearest_part(position);
+  const NearestPoint near = walls.nearest(position);
+  const Vec3 surface = walls.velocity_at(near.point);
+  const double approach = dot(subtract(velocity, surface), near.normal),
+               most = std::min(-speed, dot(subtract(before, surface), near.normal));
+  if (approach < most) velocity = add(velocity, multiply(most - approach, near.normal));
 }
 
 bool BodyWalls::is_wet(std::size_t point) const {
@@ -184,7 +184,8 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
   }
 }
 
-void BodyWalls::find_stencils(const Arrangement& arrangement, const VectorField& at, double particle_volume, double t) {
+void BodyWalls::find_stencils(const Arrangement& arrangement, const VectorField& at, double particle_volume, double t,
+                              double ahead) {
   const int d = scene_.domain.dimensions;
   std::vector<PointFits> fits(block_count(points_.size(), PointFits::block));
   std::vector<std::vector<std::int32_t>> wet_of(fits.size());
@@ -209,15 +210,20 @@ void BodyWalls::find_stencils(const Arrangement& arrangement, const VectorField&
       stencils_.normal[axis][g] = static_cast<float>(points_[p].normal[axis]);
     }
   });
-  set_surfaces(t);
+  set_surfaces(t, ahead);
 }
 
-void BodyWalls::set_surfaces(double t) {
+void BodyWalls::set_surfaces(double t, double ahead) {
   const int d = scene_.domain.dimensions;
   const std::size_t wet = stencils_.size();
-  if (!moving_) {
+  if (!surfaces_move_) {
     for (int axis = 0; axis < d; ++axis) stencils_.wall_velocity[axis].fill(0);
     return;
+  }
+  for (std::size_t m = 0; m < scene_.motions.size(); ++m) {
+    if (scene_.motions[m].floats) continue;
+    parts_[m + 1]->behind = given_place(scene_.motions[m], t);
+    parts_[m + 1]->ahead = given_place(scene_.motions[m], ahead);
   }
   parallel_blocks(wet, 1024, [&](std::size_t, std::size_t first, std::size_t last) {
     // Expressions keep their variables inside: each block evaluates its own copies.
@@ -226,10 +232,13 @@ void BodyWalls::set_surfaces(double t) {
       velocity.push_back(body.velocity ? body.velocity->clone() : VectorExpression{});
     for (std::size_t g = first; g < last; ++g) {
       const auto p = static_cast<std::size_t>(wet_points_[g]);
-      const Vec3 u = velocity[body_[p]](points_[p].foot, t);
+      const std::size_t body = body_[p];
+      const Vec3 u = scene_.bodies[body].motion ? part_of(body).velocity_behind(points_[p].foot)
+                                                : velocity[body](points_[p].foot, t);
       for (int axis = 0; axis < d; ++axis) stencils_.wall_velocity[axis][g] = static_cast<float>(u[axis]);
     }
   });
+  set_pressure_behind(ahead - t);
   largest_speed_ = std::sqrt(parallel_max(wet, 0.0, [&](std::size_t g) {
     double speed2 = 0;
     for (int axis = 0; axis < d; ++axis) {
@@ -241,15 +250,28 @@ void BodyWalls::set_surfaces(double t) {
   if (std::isfinite(largest_speed_)) return;
   StepFailure::Details details;
   details.cause = "the velocity of the surface of a body is not a finite number";
-  details.option = "body.velocity";
+  details.option = scene_.motions.empty() ? "body.velocity" : "body.displacement";
   details.value = largest_speed_;
   throw StepFailure(details);
 }
 
+void BodyWalls::set_pressure_behind(double duration) {
+  pressure_behind_.resize(scene_.motions.empty() || !(duration > 0) ? 0 : stencils_.size());
+  parallel_for(pressure_behind_.size(), [&](std::size_t g) {
+    const auto p = static_cast<std::size_t>(wet_points_[g]);
+    pressure_behind_[g] = 0;
+    if (!scene_.bodies[body_[p]].motion) return;
+    const RigidWalls& walls = part_of(body_[p]);
+    const WallPoint& at = points_[p];
+    const Vec3 gained = subtract(walls.velocity_ahead(at.foot), walls.velocity_behind(at.foot));
+    pressure_behind_[g] = dot(gained, subtract(at.mirror, at.position)) / duration;
+  });
+}
+
 double BodyWalls::bytes() const {
-  double sum = stencils_.bytes() +
-               static_cast<double>(points_.capacity() * sizeof(WallPoint) + body_.capacity() + 4 * middle_.capacity() +
-                                   4 * least_.capacity() + 4 * wet_points_.capacity());
+  double sum = stencils_.bytes() + static_cast<double>(points_.capacity() * sizeof(WallPoint) + body_.capacity() +
+                                                       4 * wet_points_.capacity());
+  for (const auto& part : parts_) sum += part->bytes();
   for (const auto& component : wet_position_) sum += component.bytes();
   return sum;
 }

@@ -32,7 +32,8 @@ BoundaryFeatures::BoundaryFeatures(const Domain& domain, const std::vector<Body>
   for (const Body& body : all_bodies) {
     if (body.wall == BoundaryKind::open) continue;
     bodies = true;
-    moving_bodies = moving_bodies || body.velocity;
+    moving_bodies = moving_bodies || body.velocity || body.motion;
+    displaced_bodies = displaced_bodies || body.motion;
     no_slip = no_slip || body.wall == BoundaryKind::no_slip;
   }
   for (int axis = 0; axis < domain.dimensions; ++axis)
@@ -68,6 +69,7 @@ void Boundary::unite_solids(const WallPositions& at) {
 void Boundary::advance(double t, double dt) {
   next_walls = walls;
   if (openings_ != nullptr) openings_->advance(t, dt);
+  if (features.displaced_bodies) bodies_->move_to(t + dt);
   if (!features.displaced_walls) return;
   for (int axis = 0; axis < domain_.dimensions; ++axis)
     for (int side = 0; side < 2; ++side) {
@@ -107,12 +109,12 @@ ImageRules Boundary::image_rules(double support_radius) const {
 }
 
 void Boundary::make_images(Arrangement& arrangement, const ParticleStore& particles, const VectorField& at,
-                           double largest_length_ratio, double t, bool find_wet) {
+                           double largest_length_ratio, const WallTimes& times, bool find_wet) {
   const double support_radius = arrangement.grid.support_radius() * largest_length_ratio;
   const auto r = read(at);
   WallPointView wall_points;
   if (bodies_ != nullptr) {
-    if (find_wet) bodies_->find_stencils(arrangement, at, particles.volume, t);
+    if (find_wet) bodies_->find_stencils(arrangement, at, particles.volume, times.velocity, times.ahead);
     wall_points = bodies_->wet();
   }
   const WallStencils* stencils = bodies_ == nullptr ? nullptr : &bodies_->stencils();
@@ -125,7 +127,7 @@ void Boundary::make_images(Arrangement& arrangement, const ParticleStore& partic
       point_position_[axis].resize(wall_points.size);
       std::copy_n(wall_points.position[axis], wall_points.size, point_position_[axis].data());
     }
-    openings_->find_stencils(arrangement, at, t, stencils_, point_position_);
+    openings_->find_stencils(arrangement, at, times.place, stencils_, point_position_);
     stencils = &stencils_;
     wall_points = {.size = stencils_.size(), .source = stencils_.nearest.data()};
     for (int axis = 0; axis < domain_.dimensions; ++axis) wall_points.position[axis] = point_position_[axis].data();
@@ -134,10 +136,11 @@ void Boundary::make_images(Arrangement& arrangement, const ParticleStore& partic
   arrangement.context.walls = wet ? stencils : nullptr;
   arrangement.images.build(image_rules(support_radius), arrangement.grid, r[0], r[1], r[2], particles.size(),
                            wet ? &wall_points : nullptr);
-  find_rules(arrangement.images, support_radius, t);
+  find_rules(arrangement.images, support_radius, times);
+  find_image_pressure(arrangement, at, times);
 }
 
-void Boundary::find_rules(const Images& images, double support_radius, double t) {
+void Boundary::find_rules(const Images& images, double support_radius, const WallTimes& times) {
   const ImageRules rules = image_rules(support_radius);
   const auto& paths = images.paths();
   const int d = domain_.dimensions;
@@ -165,8 +168,8 @@ void Boundary::find_rules(const Images& images, double support_radius, double t)
   if (openings_ != nullptr) of_points = std::max(of_points, openings_->largest_speed());
   if (bodies_ != nullptr || openings_ != nullptr) next_wall_speed = of_points;
   if (!features.moving_walls) return;
-  find_offsets(images, t, true, velocity_rule_);
-  if (features.no_slip && features.displaced_walls) find_offsets(images, t, false, mirror_rule_);
+  find_offsets(images, times.velocity, true, velocity_rule_);
+  if (features.no_slip && features.displaced_walls) find_offsets(images, times.velocity, false, mirror_rule_);
   // An image behind a wall moves with twice the velocity of the wall.
   const double of_images = 0.5 * std::sqrt(parallel_max(images.size(), 0.0, [&](std::size_t k) {
                              double speed2 = 0;
@@ -221,6 +224,49 @@ void Boundary::find_offsets(const Images& images, double t, bool friction, Veloc
       for (int a = 0; a < d; ++a) rule.offset[a][k] = static_cast<float>(offset[a]);
     }
   });
+}
+
+// Behind a wall with the acceleration a, as Du/Dt = -grad q demands: q_k = q - a . (r_k - r), r being the place that
+// the image mirrors. Mirrored as they are, pressures leave the row of particles at such a wall with half of its
+// gradient.
+void Boundary::find_image_pressure(Arrangement& arrangement, const VectorField& at, const WallTimes& times) {
+  const double duration = times.ahead - times.velocity;
+  arrangement.context.image_pressure = nullptr;
+  if (!displaces() || !(duration > 0)) return;
+  const Images& images = arrangement.images;
+  const int d = domain_.dimensions;
+  image_pressure_.resize(images.size());
+  std::array<std::array<double, 2>, 3> acceleration{};
+  for (int axis = 0; axis < d; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const auto& velocity = domain_.sides[axis][side].velocity;
+      if (!velocity || velocity->component[axis] == nullptr) continue;
+      Vec3 middle;
+      for (std::size_t a = 0; a < 3; ++a) middle[a] = (domain_.lower[a] + domain_.upper[a]) / 2;
+      middle[axis] = next_walls[axis][side];
+      acceleration[axis][side] =
+          ((*velocity)(middle, times.ahead)[axis] - (*velocity)(middle, times.velocity)[axis]) / duration;
+    }
+  const auto r = read(at);
+  const std::int32_t* point = bodies_ == nullptr ? nullptr : images.wall_point();
+  const Array<double>* behind = bodies_ == nullptr ? nullptr : &bodies_->pressure_behind();
+  parallel_for(images.size(), [&](std::size_t k) {
+    const bool of_point = point != nullptr && point[k] >= 0;
+    const auto g = static_cast<std::size_t>(of_point ? point[k] : 0);
+    double sum = of_point && g < behind->size() ? (*behind)[g] : 0;
+    const ImagePath& path = images.paths()[static_cast<std::size_t>(images.path()[k])];
+    for (int axis = 0; axis < d && features.displaced_walls; ++axis)
+      if (const int side = path.side[axis]; side >= 0 && acceleration[axis][side] != 0) {
+        const double from = of_point ? point_place(g, axis) : r[axis][images.source()[k]];
+        sum -= acceleration[axis][side] * (images.position(axis)[k] - from);
+      }
+    image_pressure_[k] = sum;
+  });
+  arrangement.context.image_pressure = image_pressure_.data();
+}
+
+double Boundary::point_place(std::size_t g, int axis) const {
+  return openings_ != nullptr ? point_position_[axis][g] : bodies_->wet().position[axis][g];
 }
 
 VelocityImageRule Boundary::predicted_rule() const {
@@ -300,7 +346,7 @@ double Boundary::bytes() const {
       (bodies_ == nullptr ? 0 : bodies_->bytes()) + (openings_ == nullptr ? 0 : openings_->bytes() + stencils_.bytes());
   for (const auto* rule : {&velocity_rule_, &mirror_rule_})
     for (const auto& array : rule->offset) sum += array.bytes();
-  return sum;
+  return sum + image_pressure_.bytes();
 }
 
 void Boundary::save_walls(StateWriter& writer) const {
@@ -309,11 +355,12 @@ void Boundary::save_walls(StateWriter& writer) const {
   writer.f64("walls", all);
 }
 
-void Boundary::load_walls(StateReader& reader) {
+void Boundary::load_walls(StateReader& reader, double t) {
   Array<double> all;
   reader.f64("walls", all);
   if (all.size() != 6) throw FileError("the checkpoint was written by another version of the method");
   for (std::size_t axis = 0; axis < 3; ++axis) walls[axis] = {all[2 * axis], all[2 * axis + 1]};
+  if (features.displaced_bodies) bodies_->move_to(t);
 }
 
 bool inside_solid(const Domain& domain, const Vec3& point) {

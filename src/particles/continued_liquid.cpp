@@ -73,7 +73,7 @@ void ContinuedLiquid::sort_points(const Boundary& boundary) {
 
 void ContinuedLiquid::find(const Arrangement& arrangement, MomentFields& moments, const Boundary& boundary,
                            const VectorField& at, Array<float>& counted) {
-  if (point_.empty()) sort_points(boundary);
+  if (point_.empty() || boundary.features.displaced_bodies) sort_points(boundary);
   for (auto* flags : {&sees_surface_, &sparse_}) flags->resize(moments.divergence_of_position->size());
   const int d = resolution_.dimensions;
   const double reach = resolution_.support_radius;

@@ -33,12 +33,13 @@ struct OpenSides::Gate {
   // Marks the columns below the level at time t, and adds up their areas.
   double find_wet(int up, double t) {
     const double level = opening->level ? (*opening->level)(0, 0, 0, t) : std::numeric_limits<double>::infinity();
-    double wet = 0;
-    for (Column& column : columns) {
-      column.wet = column.foot[up] < level;
-      wet += column.wet ? column.area : 0;
-    }
-    return wet;
+    for (Column& column : columns) column.wet = column.foot[up] < level;
+    return wet_area();
+  }
+  double wet_area() const {
+    double area = 0;
+    for (const Column& column : columns) area += column.wet ? column.area : 0;
+    return area;
   }
 
   // -1: none.

@@ -35,13 +35,13 @@ void OpenSides::find_corners(const VectorField& at, double t, const WallStencils
     if (chosen.size() == 0) continue;
     std::size_t first = corners_.size();
     corners_.resize(first + chosen.size());
-    const std::size_t wet =
-        opening.inflow ? static_cast<std::size_t>(std::count_if(gate.columns.begin(), gate.columns.end(),
-                                                                [](const Gate::Column& column) { return column.wet; }))
-                       : 0;
     const bool given = opening.inflow && step_ > 0;
-    const std::optional<Entering> entering = given ? std::optional<Entering>({opening, wet, t}) : std::nullopt,
-                                  last = given ? std::optional<Entering>({opening, wet, t - step_}) : std::nullopt;
+    const double wet = given ? gate.wet_area() : 0;
+    std::optional<Entering> entering, last;
+    if (given) {
+      entering.emplace(opening, wet, t);
+      last.emplace(opening, wet, t - step_);
+    }
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       Corner& corner = corners_[first + k];
       corner.wall_point = static_cast<std::size_t>(chosen[k]);

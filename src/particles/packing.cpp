@@ -76,7 +76,7 @@ void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boun
   particles.scratch().lease(way, d, n);
   for (int round = 0; round < most_rounds; ++round) {
     arrangement.sort(particles, at);
-    boundary.make_images(arrangement, particles, at, 1, t, round % wet_rounds == 0);
+    boundary.make_images(arrangement, particles, at, 1, {t, t, t}, round % wet_rounds == 0);
     arrangement.find_neighbours(particles, at, {});
     const NeighbourList& list = arrangement.list;
     const auto particle_count = static_cast<std::int32_t>(n);

@@ -161,7 +161,8 @@ void ProjectionSolver::prepare(const PressureRows& rows, ParticleStore& particle
                                const Boundary& boundary) {
   if (multigrid_ == nullptr) return;
   const std::size_t n = particles.size();
-  if (boundary.features.displaced_walls) multigrid_->set_geometry(cell_geometry(boundary, options_.cell_size));
+  if (boundary.features.displaced_walls || boundary.features.displaced_bodies)
+    multigrid_->set_geometry(cell_geometry(boundary, options_.cell_size));
   ScratchArray<float> inside(particles.scratch(), n);
   parallel_for(n, [&](std::size_t i) {
     inside[i] = rows.pressure_fixed != nullptr && (*rows.pressure_fixed)[i] != 0 ? 0.0F : 1.0F;
@@ -183,7 +184,19 @@ void ProjectionSolver::solve(const PressureRows& rows, Arrangement& arrangement,
     matrix.row = rows.row.data();
   }
   operator_.bind(arrangement.context, arrangement.packed, matrix);
+  given_norm_ = arrangement.context.image_pressure == nullptr ? 0 : given_norm(particles);
   solve(rows, operator_, particles, q);
+  given_norm_ = 0;
+}
+
+// Of what pressures given behind walls bring to the right-hand side.
+double ProjectionSolver::given_norm(ParticleStore& particles) {
+  const std::size_t n = particles.size();
+  ScratchArray<double> zero(particles.scratch(), n), given(particles.scratch(), n);
+  parallel_for(n, [&](std::size_t i) { zero[i] = 0; });
+  const std::span<const double> none(zero.data(), n);
+  operator_.residual(none, none, std::span(given.data(), n), true);
+  return std::sqrt(parallel_sum(n, [&](std::size_t i) { return given[i] * given[i]; }));
 }
 
 void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix, ParticleStore& particles,
@@ -191,7 +204,8 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
   const std::size_t n = particles.size();
   matrix_ = &matrix;
   ScratchArray<double> residual(particles.scratch(), n);
-  const RefinementOptions refinement{options_.tolerance, rows.reference_norm, options_.max_iterations, rows.singular};
+  const double reference_norm = std::hypot(rows.reference_norm, given_norm_);
+  const RefinementOptions refinement{options_.tolerance, reference_norm, options_.max_iterations, rows.singular};
   if (options_.mixed) {
     MixedSystem system(*this, rows, particles.scratch(), q);
     report_ = solve_refined(system, refinement, residual);

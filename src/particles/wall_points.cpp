@@ -74,10 +74,10 @@ NearestPoint onto_shell(const Combination& walls, ShellPoint& point) {
   return near;
 }
 
-std::vector<ShellPoint> cut_shells(const Scene& scene, double spacing, double reach) {
-  const int d = scene.domain.dimensions;
+std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domain, double spacing, double reach) {
+  const int d = domain.dimensions;
   const std::size_t finer = d == 3 ? finer_3d : finer_2d;
-  const ShellLattice lattice(scene.domain, spacing / static_cast<double>(finer), reach);
+  const ShellLattice lattice(domain, spacing / static_cast<double>(finer), reach);
   const double layers = std::ceil(reach / spacing);
   struct Site {
     int shell = 0;  // from -layers to layers - 1
@@ -89,7 +89,7 @@ std::vector<ShellPoint> cut_shells(const Scene& scene, double spacing, double re
     for (std::size_t i = 0; i < lattice.count[0];) {
       const std::size_t j = row % lattice.count[1], k = row / lattice.count[1];
       const Vec3 place = lattice.place(i, j, k);
-      const double distance = scene.walls.distance(place);
+      const double distance = walls.distance(place);
       const double layer = std::floor(std::abs(distance) / spacing);
       if (layer >= layers) {
         // Along the row distances change by no more than the way.
@@ -120,7 +120,7 @@ std::vector<ShellPoint> cut_shells(const Scene& scene, double spacing, double re
     const auto random = random_uniform(0, RandomPurpose::wall_point, i, 0, 0);
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(d); ++axis)
       points[i].place[axis] += 0.1 * spacing * (random[axis] - 0.5);
-    onto_shell(scene.walls, points[i]);
+    onto_shell(walls, points[i]);
   });
   return points;
 }
@@ -144,16 +144,16 @@ ImageRules rules_of(const Domain& domain, double support_radius) {
 // One round of evening out.
 class Evening {
  public:
-  Evening(const Scene& scene, const Resolution& resolution, double volume, double spacing)
-      : scene_(scene), resolution_(resolution), volume_(volume), spacing_(spacing) {}
+  Evening(const Combination& walls, const Domain& domain, const Resolution& resolution, double volume, double spacing)
+      : walls_(walls), domain_(domain), resolution_(resolution), volume_(volume), spacing_(spacing) {}
 
   void round(std::vector<ShellPoint>& points) {
-    const int d = scene_.domain.dimensions;
+    const int d = domain_.dimensions;
     const double reach = resolution_.support_radius;
     Vec3 lower{}, upper{}, middle{};
     for (int axis = 0; axis < d; ++axis) {
-      lower[axis] = scene_.domain.lower[axis] - 2 * reach;
-      upper[axis] = scene_.domain.upper[axis] + 2 * reach;
+      lower[axis] = domain_.lower[axis] - 2 * reach;
+      upper[axis] = domain_.upper[axis] + 2 * reach;
       middle[axis] = 0.5 * (lower[axis] + upper[axis]);
     }
     const CellGrid grid(d, lower, upper, reach, points.size());
@@ -163,7 +163,7 @@ class Evening {
     for (std::size_t i = 0; i < points.size(); ++i) sorted[i] = points[static_cast<std::size_t>(order_.order()[i])];
     points.swap(sorted);
     load(points);
-    images_.build(rules_of(scene_.domain, reach), grid, position_[0].data(), position_[1].data(),
+    images_.build(rules_of(domain_, reach), grid, position_[0].data(), position_[1].data(),
                   d == 3 ? position_[2].data() : nullptr, points.size());
     list_.build(grid, order_, position_[0].data(), position_[1].data(), d == 3 ? position_[2].data() : nullptr,
                 points.size(), images_, middle);
@@ -199,22 +199,23 @@ class Evening {
       const double length = std::sqrt(dot(way, way));
       if (length > longest) way = multiply(longest / length, way);
       points[i].place = add(points[i].place, way);
-      onto_shell(scene_.walls, points[i]);
+      onto_shell(walls_, points[i]);
       for (int axis = 0; axis < dimensions; ++axis) {
         double& x = points[i].place[axis];
-        const double low = scene_.domain.lower[axis], high = scene_.domain.upper[axis];
-        if (scene_.domain.periodic(axis)) {
+        const double low = domain_.lower[axis], high = domain_.upper[axis];
+        if (domain_.periodic(axis)) {
           if (x < low) x += high - low;
           if (x >= high) x -= high - low;
           continue;
         }
-        if (!goes_on(scene_.domain.sides[axis][0]) && x < low) x = 2 * low - x;
-        if (!goes_on(scene_.domain.sides[axis][1]) && x > high) x = 2 * high - x;
+        if (!goes_on(domain_.sides[axis][0]) && x < low) x = 2 * low - x;
+        if (!goes_on(domain_.sides[axis][1]) && x > high) x = 2 * high - x;
       }
     });
   }
 
-  const Scene& scene_;
+  const Combination& walls_;
+  const Domain& domain_;
   const Resolution& resolution_;
   double volume_, spacing_;
   std::array<Array<double>, 3> position_;
@@ -225,15 +226,16 @@ class Evening {
 
 }  // namespace
 
-std::vector<WallPoint> make_wall_points(const Scene& scene, const Resolution& resolution, double particle_volume) {
-  const double spacing = std::pow(particle_volume, 1.0 / scene.domain.dimensions);
-  std::vector<ShellPoint> shells = cut_shells(scene, spacing, resolution.support_radius);
-  Evening evening(scene, resolution, particle_volume, spacing);
+std::vector<WallPoint> make_wall_points(const Combination& walls, const Domain& domain, const Resolution& resolution,
+                                        double particle_volume) {
+  const double spacing = std::pow(particle_volume, 1.0 / domain.dimensions);
+  std::vector<ShellPoint> shells = cut_shells(walls, domain, spacing, resolution.support_radius);
+  Evening evening(walls, domain, resolution, particle_volume, spacing);
   for (int round = 0; round < rounds; ++round) evening.round(shells);
   std::vector<WallPoint> points;
   for (ShellPoint& point : shells) {
     if (point.distance > 0) continue;
-    const NearestPoint near = scene.walls.nearest(point.place);
+    const NearestPoint near = walls.nearest(point.place);
     if (near.distance >= 0) continue;
     points.push_back({point.place, near.point, near.normal, subtract(multiply(2, near.point), point.place)});
   }

@@ -277,13 +277,14 @@ void check_bodies(Draft& draft, const MethodDeclaration* method, Problems& probl
                        "\" has no walls of bodies; write a box along the axes as [[solid]], or  wall = \"none\"  for a "
                        "shape that [[liquid]] fills");
     }
-    if (body.subtract && !(wall && walls))
+    const bool moves_along = !body.moves_with.empty();  // see check_body_motions()
+    if (body.subtract && !moves_along && !(wall && walls))
       problems.add(
           *draft.node(place + ".subtract"),
           place + (wall ? ".subtract takes away from the walls of bodies before it, and there are none; put it "
                           "behind the body that it cuts"
                         : ".subtract needs a wall to take away; remove it, or set wall"));
-    walls = walls || wall;
+    walls = walls || (wall && !moves_along);
   }
   check_references(draft, names, problems);
 }
@@ -294,7 +295,13 @@ std::vector<Body> make_bodies(const Draft& draft, const CompileExpression& compi
   for (std::size_t k = 0; k < draft.bodies.size(); ++k) {
     const BodyDraft& given = draft.bodies[k];
     const std::string name = "body." + std::to_string(k);
-    Body body{given.name, kind_of(given), nullptr, nullptr, given.inside, given.subtract, given.wall};
+    Body body{.name = given.name,
+              .kind = kind_of(given),
+              .shape = nullptr,
+              .solid = nullptr,
+              .inside = given.inside,
+              .subtract = given.subtract,
+              .wall = given.wall};
     if (ready) {
       try {
         if (ShapePointer shape = make_shape(draft, given, name, compile, problems)) {
@@ -306,8 +313,10 @@ std::vector<Body> make_bodies(const Draft& draft, const CompileExpression& compi
             domain.upper[a] = draft.upper[a];
             if (draft.periodic[a]) periods[a] = draft.upper[a] - draft.lower[a];
           }
-          body.shape = repeat(place(shape, pose, true, draft.dimensions), domain, periods);
+          const ShapePointer placed = place(shape, pose, true, draft.dimensions);
+          body.shape = repeat(placed, domain, periods);
           body.solid = given.inside ? body.shape : place(body.shape, Pose{}, false, draft.dimensions);
+          body.alone = given.inside ? placed : place(placed, Pose{}, false, draft.dimensions);
         }
       } catch (const InputError& error) {
         const std::string key = key_of(given.kind);

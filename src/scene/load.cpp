@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "bodies.hpp"
+#include "body_motion.hpp"
 #include "checks.hpp"
 #include "fill.hpp"
 #include "open_sides.hpp"
@@ -259,6 +260,7 @@ void check(const MethodDeclaration* method, Draft& draft, Problems& problems) {
   if (liquids || phases) check_resolution(draft, problems);
   check_solids(draft, problems);
   check_bodies(draft, method, problems);
+  check_body_motions(draft, method, problems);
   if (!phases) check_fluid(draft, problems);
   if (liquids) check_liquids(draft, problems);
   if (phases) check_phases(draft, problems);
@@ -317,6 +319,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
                                              " cells; at most " + brief(most_cells) +
                                              " are possible: use fewer boxes, or align their faces");
   scene.bodies = make_bodies(draft, compile_with(compiler), problems);
+  scene.motions = make_body_motions(draft, compile_with(compiler), draft.options.time.end, scene.bodies, problems);
   scene.openings = make_openings(draft, compile_with(compiler), problems);
   open_sides_at(scene.openings, scene.domain);
   const std::vector<LiquidRegion> regions = make_regions(draft, scene.bodies, compiler);

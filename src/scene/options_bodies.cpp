@@ -57,6 +57,33 @@ Section body_section() {
       .option("velocity", &B::velocity, "length/time",
               "velocity of the surface along itself, as of a turning cylinder: expressions of x y z t")
       .absent("it stands still")
+      .option("displacement", &B::displacement, "length",
+              "way from where it stands, as the body moves: expressions of t; its pictures are those of t = 0")
+      .absent("it does not move")
+      .option("angle", &B::angle, "degree", "by which it turns about the pivot: expression of t")
+      .absent("it does not turn")
+      .option("axis", &B::axis, "direction that it turns about, by the right hand (3-D)")
+      .absent("in 2-D out of the plane")
+      .option("pivot", &B::pivot, "length", "point that it turns about; of a floating body its centre of mass")
+      .absent("the position; of a floating body the centroid")
+      .option("motion", &B::motion,
+              "CSV file with columns t and x, y, z (displacement) or angle, smooth between its rows")
+      .beside_case()
+      .absent("given by displacement and angle")
+      .option("moves_with", &B::moves_with, "name of a body before it with which it moves as one")
+      .absent("it moves alone")
+      .option("mass", &B::mass, "mass", positive(), "makes it float: mass, in 2-D per length")
+      .absent("it does not float, unless density is given")
+      .option("density", &B::density, "density", positive(), "in place of mass: that of a uniform floating body")
+      .absent("it does not float, unless mass is given")
+      .option("inertia", &B::inertia, "mass length^2",
+              "of a floating body about its centre of mass: one number in 2-D, three about x, y, z in 3-D")
+      .absent("that of a uniform body")
+      .option("free", &B::free,
+              "motions that a floating body is free in: of \"x\", \"y\", \"z\", and \"turn\" in 2-D, \"turn_x\", "
+              "\"turn_y\", "
+              "\"turn_z\" in 3-D")
+      .absent("all")
       .whole_only(uses_particles);
 }
 

@@ -2,6 +2,7 @@
 #include "time_table.hpp"
 
 #include <algorithm>
+#include <boost/math/interpolators/makima.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -27,6 +28,24 @@ class Interpolated final : public Expression {
   Values times_, values_;
 };
 
+class Smooth final : public Expression {
+ public:
+  using Interpolator = boost::math::interpolators::makima<std::vector<double>>;
+  Smooth(const std::vector<double>& times, const std::vector<double>& values)
+      : first_(times.front()),
+        last_(times.back()),
+        value_(std::make_shared<const Interpolator>(std::vector<double>(times), std::vector<double>(values))) {}
+  double operator()(double, double, double, double t) const override { return (*value_)(std::clamp(t, first_, last_)); }
+  std::unique_ptr<Expression> clone() const override { return std::make_unique<Smooth>(*this); }
+
+ private:
+  double first_, last_;
+  std::shared_ptr<const Interpolator> value_;
+};
+
+// What the interpolation needs, with both ends included.
+constexpr std::size_t least_smooth_rows = 4;
+
 std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> cells(1);
   for (const char c : line) {
@@ -44,7 +63,7 @@ std::vector<std::string> split(const std::string& line) {
 
 }  // namespace
 
-TimeTable read_time_table(const std::string& file) {
+TimeTable read_time_table(const std::string& file, TableValues values) {
   TimeTable table;
   std::ifstream in(file);
   if (!in) return {{}, "cannot read '" + file + "'"};
@@ -77,6 +96,13 @@ TimeTable read_time_table(const std::string& file) {
       return {{}, place + "has a time that does not come after the one before"};
   }
   if (columns.empty() || columns[0].empty()) return {{}, "'" + file + "' has no rows of numbers"};
+  if (values == TableValues::smooth) {
+    if (columns[0].size() < least_smooth_rows)
+      return {{}, "'" + file + "' has " + std::to_string(columns[0].size()) + " rows, and a smooth motion needs 4"};
+    for (std::size_t k = 1; k < names.size(); ++k)
+      table.columns[names[k]] = std::make_shared<Smooth>(columns[0], columns[k]);
+    return table;
+  }
   const auto times = std::make_shared<const std::vector<double>>(columns[0]);
   for (std::size_t k = 1; k < names.size(); ++k)
     table.columns[names[k]] =

@@ -51,7 +51,7 @@ TEST(WallPoints, StandInLayersOfAsManyAsTheyHaveVolumeFor) {
     const Resolution resolution(2, spacing, KernelKind::wendland_c2, 1.3);
     const double volume = loaded.scene.particles.volume, step = std::sqrt(volume);
     std::array<int, 3> count{};
-    const std::vector<WallPoint> points = make_wall_points(loaded.scene, resolution, volume);
+    const std::vector<WallPoint> points = make_wall_points(loaded.scene.walls, loaded.scene.domain, resolution, volume);
     for (const WallPoint& point : points) {
       const double depth = length(subtract(point.position, point.foot));
       EXPECT_NEAR(std::fmod(depth, step), 0.5 * step, 1e-6 * step);
@@ -82,7 +82,8 @@ TEST(BodyWalls, MirrorValuesAsFitsOverAllParticlesDo) {
     const WallStencils& stencils = walled.boundary.bodies()->stencils();
     const WallPointView wet = walled.boundary.bodies()->wet();
     ASSERT_GT(wet.size, 30U);
-    const std::vector<WallPoint> all = make_wall_points(walled.scene(), walled.resolution, walled.particles.volume);
+    const std::vector<WallPoint> all =
+        make_wall_points(walled.scene().walls, walled.scene().domain, walled.resolution, walled.particles.volume);
     Array<double> scalar(walled.particles.size());
     for (std::size_t i = 0; i < scalar.size(); ++i) scalar[i] = smooth(walled.place(i)).scalar;
     for (std::size_t g = 0; g < wet.size; ++g) {
@@ -107,7 +108,8 @@ TEST(BodyWalls, SweepsSeeWallPointsAndTheirImages) {
     const std::size_t n = walled.particles.size();
     const reference::WallSums twin = walled.twin(smooth);
     const WallPointView wet = walled.boundary.bodies()->wet();
-    const std::vector<WallPoint> all = make_wall_points(walled.scene(), walled.resolution, walled.particles.volume);
+    const std::vector<WallPoint> all =
+        make_wall_points(walled.scene().walls, walled.scene().domain, walled.resolution, walled.particles.volume);
     std::vector<WallPoint> points;
     std::array<std::vector<reference::Carried>, 2> carried;  // by friction
     for (std::size_t g = 0; g < wet.size; ++g) {

@@ -47,7 +47,7 @@ struct Walled {
       for (int axis = 0; axis < particles.dimensions; ++axis) (*particles.position[axis])[i] = r[axis];
     }
     arrangement.sort(particles, particles.position);
-    boundary.make_images(arrangement, particles, particles.position, 1, 0);
+    boundary.make_images(arrangement, particles, particles.position, 1, {});
     arrangement.find_neighbours(particles, particles.position, {});
   }
   const Scene& scene() const { return loaded.scene; }

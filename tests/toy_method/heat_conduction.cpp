@@ -100,7 +100,7 @@ class HeatConduction final : public Method, public FieldProbes {
 
   void find_neighbours() {
     arrangement_.sort(particles_, particles_.position);
-    boundary_.make_images(arrangement_, particles_, particles_.position, 1, time_);
+    boundary_.make_images(arrangement_, particles_, particles_.position, 1, {time_, time_, time_});
     arrangement_.find_neighbours(particles_, particles_.position, ParticleSizes{});
     arranged_ = true;
   }

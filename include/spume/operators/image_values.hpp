@@ -73,18 +73,22 @@ void for_each_image_value(const SweepContext& context, const T* values, Write&& 
   });
 }
 
-// The same of the pressure q, which is given behind openings; `given` as of WallStencils::pressure.
+// The same of the pressure q, which has a part that is given behind openings and accelerated walls; `given` false
+// leaves that out, as for a correction of q.
 template <class T, class Write>
 void for_each_image_pressure(const SweepContext& context, const T* values, bool given, Write&& write) {
-  if (context.walls == nullptr || !context.walls->openings()) {
+  const double* own = given ? context.image_pressure : nullptr;
+  if (own == nullptr && (context.walls == nullptr || !context.walls->openings())) {
     for_each_image_value(context, values, write);
     return;
   }
   const std::int32_t* source = context.images->source();
-  const std::int32_t* point = context.images->wall_point();
+  const std::int32_t* point = context.walls == nullptr ? nullptr : context.images->wall_point();
   parallel_for(context.images->size(), [&](std::size_t k) {
-    write(k, point[k] < 0 ? static_cast<double>(values[source[k]])
-                          : context.walls->pressure(static_cast<std::size_t>(point[k]), values, given));
+    const double value = point == nullptr || point[k] < 0
+                             ? static_cast<double>(values[source[k]])
+                             : context.walls->pressure(static_cast<std::size_t>(point[k]), values, given);
+    write(k, own == nullptr ? value : value + own[k]);
   });
 }
 

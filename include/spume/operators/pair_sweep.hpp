@@ -32,6 +32,9 @@ struct SweepContext {
   const NeighbourList* list = nullptr;
   const Images* images = nullptr;
   const WallStencils* walls = nullptr;  // of the wall points among the images; null: there are none
+  // Per image: what the pressure there has beside that of its source, as behind walls that are accelerated. Null:
+  // nothing.
+  const double* image_pressure = nullptr;
   int dimensions = 3;
   KernelKind kernel = KernelKind::wendland_c2;
   double smoothing_length = 0;

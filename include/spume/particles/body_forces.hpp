@@ -23,8 +23,8 @@ struct SurfaceForce {
 
 class BodyForces {
  public:
-  // `scene` outlives the forces.
-  BodyForces(const Scene& scene, const Resolution& resolution);
+  // Scene and walls, where they stand at the start, outlive the forces.
+  BodyForces(const Scene& scene, const Resolution& resolution, const BodyWalls& walls);
 
   struct Fields {
     const CellGrid& grid;
@@ -45,9 +45,10 @@ class BodyForces {
 
  private:
   struct Element {
-    Vec3 middle{}, area{};  // area times the normal out of the body
+    Vec3 middle{}, area{};  // at the start; area times the normal out of the body
     std::int32_t body = 0;
   };
+  Element now(const Element& element) const;
   template <int dimensions>
   bool traction(const Fields& fields, const CellOrder& table, const Element& element, const Vec3& wall_velocity,
                 Vec3& pressure, Vec3& viscous) const;
@@ -55,6 +56,7 @@ class BodyForces {
 
   const Scene& scene_;
   const Resolution& resolution_;
+  const BodyWalls& walls_;
   std::vector<Element> elements_;
 };
 

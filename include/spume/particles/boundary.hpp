@@ -32,14 +32,22 @@ inline bool is_wall(BoundaryKind kind) {
 struct BoundaryFeatures {
   explicit BoundaryFeatures(const Domain& domain, const std::vector<Body>& bodies = {},
                             const std::vector<Opening>& openings = {});
-  bool images = false;           // some side is periodic or a wall, or there are solid boxes
-  bool bodies = false;           // some body is a wall
-  bool openings = false;         // liquid enters or leaves
-  bool outflow = false;          // where the pressure is given
-  bool moving_bodies = false;    // the surface of some of them moves
-  bool no_slip = false;          // some wall or solid holds the liquid
-  bool moving_walls = false;     // some wall has a velocity
-  bool displaced_walls = false;  // some wall velocity has a normal component
+  bool images = false;            // some side is periodic or a wall, or there are solid boxes
+  bool bodies = false;            // some body is a wall
+  bool openings = false;          // liquid enters or leaves
+  bool outflow = false;           // where the pressure is given
+  bool moving_bodies = false;     // the surface of some of them moves
+  bool displaced_bodies = false;  // some body does
+  bool no_slip = false;           // some wall or solid holds the liquid
+  bool moving_walls = false;      // some wall has a velocity
+  bool displaced_walls = false;   // some wall velocity has a normal component
+};
+
+// Times of a step at which walls are asked for their velocities.
+struct WallTimes {
+  double place = 0;     // of the images, and of what openings give
+  double velocity = 0;  // of the velocities that the liquid has
+  double ahead = 0;     // of those that the pressure of the step makes; the same: walls are not accelerated
 };
 
 class Boundary {
@@ -66,11 +74,11 @@ class Boundary {
     if (openings_ != nullptr) openings_->accept();
   }
 
-  // Images at `at` for walls at `next_walls`, and how they mirror values at time t. Throws StepFailure for a wall
+  // Images at `at` for walls at `next_walls`, and how they mirror values. Throws StepFailure for a wall
   // velocity that is not finite. `find_wet` false keeps the wet wall points of bodies as they are, for arrangements
   // that hardly differ and images that stand for places alone.
   void make_images(Arrangement& arrangement, const ParticleStore& particles, const VectorField& at,
-                   double largest_length_ratio, double t, bool find_wet = true);
+                   double largest_length_ratio, const WallTimes& times, bool find_wet = true);
   ImageRules image_rules(double support_radius) const;
 
   // How images change velocities: under friction, and with walls holding the liquid back along their normals alone,
@@ -99,9 +107,9 @@ class Boundary {
   void give_pressures(const std::function<double(const Vec3&)>& potential, double t) {
     openings_->give_pressures(potential, t, stencils_);
   }
-  // `walls` in a checkpoint. load_walls() throws FileError for another number of them.
+  // `walls` in a checkpoint at time t. load_walls() throws FileError for another number of them.
   void save_walls(StateWriter& writer) const;
-  void load_walls(StateReader& reader);
+  void load_walls(StateReader& reader, double t);
   // The points behind outflows move on with this velocity.
   void follow(const std::array<const double*, 3>& velocity) { openings_->follow(stencils_, velocity); }
   // Whether a side ends the multigrid as a wall does: inflows have no pressure gradient either.
@@ -125,8 +133,11 @@ class Boundary {
  private:
   void keep_before_sides(const WallPositions& at, int axis, Vec3& position, Vec3* velocity) const;
   void unite_solids(const WallPositions& at);
-  void find_rules(const Images& images, double support_radius, double t);
+  bool displaces() const { return features.displaced_walls || features.displaced_bodies; }
+  void find_rules(const Images& images, double support_radius, const WallTimes& times);
   void find_offsets(const Images& images, double t, bool friction, VelocityImageRule& rule) const;
+  void find_image_pressure(Arrangement& arrangement, const VectorField& at, const WallTimes& times);
+  double point_place(std::size_t g, int axis) const;
 
   const Domain& domain_;
   double spacing_;
@@ -138,6 +149,7 @@ class Boundary {
   std::shared_ptr<const SolidUnion> solids_;
   VelocityImageRule velocity_rule_, mirror_rule_;  // the second in a scene with no-slip walls alone
   std::vector<std::array<float, 3>> reflection_;
+  Array<double> image_pressure_;  // behind walls and bodies that are displaced
 };
 
 // The kind of a face by its code (SolidUnion::face_near).

@@ -66,6 +66,7 @@ class ProjectionSolver {
  private:
   struct Operator;
   struct DoubleOperator;
+  double given_norm(ParticleStore& particles);
   class MixedSystem;
   class DoubleSystem;
   template <class Real>
@@ -77,6 +78,7 @@ class ProjectionSolver {
   std::unique_ptr<CellMultigrid> multigrid_;
   CorrectionWorkspace<double> double_work_;  // empty in mixed precision, as are the next
   Array<double> double_diagonal_, zero_;
+  double given_norm_ = 0;
   RefinementResult report_;
 };
 

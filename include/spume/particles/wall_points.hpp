@@ -22,8 +22,9 @@ struct WallPoint {
   Vec3 mirror{};          // as far before the foot as the position is behind it
 };
 
-// Down to the support radius below the walls of the scene, as far as liquid may see: inside the domain, and beyond its
-// open sides. Sides that are walls or periodic have images of what lies inside.
-std::vector<WallPoint> make_wall_points(const Scene& scene, const Resolution& resolution, double particle_volume);
+// Down to the support radius below the walls, as far as liquid may see: inside the domain, and beyond its open sides.
+// Sides that are walls or periodic have images of what lies inside.
+std::vector<WallPoint> make_wall_points(const Combination& walls, const Domain& domain, const Resolution& resolution,
+                                        double particle_volume);
 
 }  // namespace spume

@@ -55,6 +55,13 @@ struct BodyDraft {
   bool subtract = false;
   BoundaryKind wall = BoundaryKind::free_slip;  // open: none
   std::vector<ExpressionText> velocity;
+  // How it moves: by expressions of time, by a table, with another body, or floating.
+  std::vector<ExpressionText> displacement;
+  std::optional<ExpressionText> angle;
+  std::string motion, moves_with;
+  std::vector<double> axis, pivot, inertia;
+  std::optional<double> mass, density;
+  std::vector<std::string> free;
 };
 
 enum class WavemakerKind { piston };

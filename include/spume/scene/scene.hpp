@@ -12,6 +12,7 @@
 
 #include "spume/core/array.hpp"
 #include "spume/core/vec3.hpp"
+#include "spume/geometry/rigid_place.hpp"
 #include "spume/geometry/shapes.hpp"
 
 namespace spume {
@@ -73,7 +74,30 @@ struct Body {
   bool subtract = false;                          // taken away from the walls of the bodies before it
   BoundaryKind wall = BoundaryKind::free_slip;    // open: it is no wall
   std::optional<VectorExpression> velocity = {};  // of its surface, which slides along itself
+  std::optional<std::size_t> motion = {};         // among the motions of the scene; none: it stands still
+  ShapePointer alone = {};  // of a moving body: its solid at the start without copies beyond periodic sides
 };
+
+// Bodies that move as one: as is given, or floating.
+struct BodyMotion {
+  std::vector<std::size_t> bodies;  // in their order
+  Vec3 pivot{};                     // at the start
+  // Given: way from the start and angle in degrees about an axis of length 1.
+  VectorExpression displacement;
+  std::shared_ptr<const Expression> angle;
+  Vec3 axis{0, 0, 1};
+  double time_scale = 1;  // that differences in time are short against
+  // Floating about its centre of mass, the pivot.
+  bool floats = false;
+  double mass = 0;
+  RotationMatrix inertia{};         // about the pivot, at the start
+  Vec3 free_along{}, free_about{};  // 1 or 0 per axis
+  bool turns() const { return floats ? free_about != Vec3{} : angle != nullptr; }
+};
+
+// Where bodies with a given motion are at time t, with the start as reference. Their velocities are differences over
+// 1e-7 time scales of fourth order.
+RigidPlace given_place(const BodyMotion& motion, double t);
 
 // A layer beside a side of the domain in which the velocity is damped, d being the distance from that side:
 // du/dt = -strength (1 - d / length)^2 (u - velocity).
@@ -144,7 +168,8 @@ struct Scene {
   InitialParticles particles;
   std::vector<RegionFill> fills;  // of the [[liquid]] entries
   std::vector<Body> bodies;
-  Combination walls;  // of the bodies that are walls, in their order
+  std::vector<BodyMotion> motions;
+  Combination walls;  // of the bodies that are walls, in their order, where they stand at the start
   std::vector<Sponge> sponges;
   std::vector<Opening> openings;
 };

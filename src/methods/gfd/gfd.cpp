@@ -204,7 +204,7 @@ void Gfd::load(StateReader& reader) {
   Array<std::int64_t> count;
   saved_.load(reader);
   reader.i64("counters", count);
-  flow_.boundary.load_walls(reader);
+  flow_.boundary.load_walls(reader, flow_.time);
   if (count.size() != 1) throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(count[0]), "particle", reader);
 }

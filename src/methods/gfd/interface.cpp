@@ -38,7 +38,8 @@ double band_weight(double colour) {
 // end, which the new velocities must meet.
 void Flow::make_images(double dt) {
   boundary.next_walls = boundary.walls;
-  boundary.make_images(arrangement, particles, particles.position, sizes.largest_length_ratio, time + dt);
+  const double end = time + dt;
+  boundary.make_images(arrangement, particles, particles.position, sizes.largest_length_ratio, {end, end, end});
 }
 
 void Flow::find_neighbours(double dt) {

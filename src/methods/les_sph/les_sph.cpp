@@ -59,7 +59,8 @@ LesSph::LesSph(const LoadedCase& loaded)
   refuse_stirring_shift(loaded.options, flow_);
   declare_series();
   declare_saved();
-  if (flow_.features.bodies) body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution);
+  if (flow_.features.bodies)
+    body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
 }
 
 void LesSph::step(double dt, Ledger& ledger) {
@@ -199,7 +200,7 @@ void LesSph::load(StateReader& reader) {
   Array<std::int64_t> counters;
   saved_.load(reader);
   reader.i64("counters", counters);
-  flow_.boundary.load_walls(reader);
+  flow_.boundary.load_walls(reader, flow_.time);
   if (counters.size() != 4) throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(counters[2]), "particle", reader);
   flow_.steps = counters[0];

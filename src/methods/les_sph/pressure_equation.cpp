@@ -122,7 +122,9 @@ void Flow::set_matrix() {
   for (auto* array : {&rows.diagonal_shift, &rows.diagonal}) scratch.lease(*array, n);
   rows.pressure_fixed = surface != nullptr ? &surface->pressure_fixed : nullptr;
   rows.helmholtz = equation.helmholtz;
-  rows.singular = features.closed && equation.helmholtz == 0;
+  // Bodies may enclose the liquid in a domain that is open.
+  const bool enclosed = surface != nullptr && !features.outflow && surface->near_surface.size() == 0;
+  rows.singular = (features.closed || enclosed) && equation.helmholtz == 0;
   rows.unsymmetric = features.bodies || features.openings;
   const auto volume = static_cast<float>(particles.volume);
   parallel_for(n, [&](std::size_t i) {

@@ -96,6 +96,7 @@ Registration registration() {
   method.fills_regions = true;
   method.damps_sponges = true;
   method.honours_bodies = true;
+  method.honours_floating_bodies = true;
   method.passes_openings = true;
   method.sections = sections();
   method.check = check;

@@ -98,7 +98,12 @@ void Flow::find_advecting_velocity(double dt) {
 }
 
 void Flow::make_images(double dt) {
-  boundary.make_images(arrangement, particles, intermediate_position, sizes.largest_length_ratio, time + dt);
+  // u^{n+1/2} becomes u^{n+3/2}; without centring u^n becomes u^{n+1}. The start takes an acceleration over a time that
+  // is short beside any motion that a run resolves.
+  const double behind = options.get<SchemeOptions>().centred ? dt / 2 : 0;
+  const double duration = dt > 0 ? dt : 1e-6 * options.time.end;
+  boundary.make_images(arrangement, particles, intermediate_position, sizes.largest_length_ratio,
+                       {.place = time + dt, .velocity = time + behind, .ahead = time + behind + duration});
 }
 
 void Flow::find_neighbours(double dt) {

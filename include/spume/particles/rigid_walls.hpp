@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// The walls of bodies that move as one, or of all that stand still: distances from them and the points behind them, in
+// the coordinates of the start, asked for where the bodies are now.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "spume/particles/distance_cells.hpp"
+#include "spume/particles/wall_points.hpp"
+
+namespace spume {
+
+class RigidWalls {
+ public:
+  // `motion` among those of the scene, or none. The scene outlives the walls.
+  RigidWalls(const Scene& scene, std::optional<std::size_t> motion, const Resolution& resolution,
+             double particle_volume);
+  RigidWalls(const RigidWalls&) = delete;
+  RigidWalls& operator=(const RigidWalls&) = delete;
+
+  const BodyMotion* motion() const { return motion_; }  // null: they stand still
+  bool empty() const { return bodies_.empty(); }
+  const std::vector<std::size_t>& bodies() const { return bodies_; }
+
+  RigidPlace place;          // in use; without a motion it stays
+  RigidPlace behind, ahead;  // at the times of the velocities that the liquid has, and that it is to have
+
+  // Negative inside; farther than four support radii from a surface a bound of it.
+  double distance(const Vec3& point) const;
+  double exact_distance(const Vec3& point) const { return walls_.distance(start(point)); }
+  bool surely_farther(const Vec3& point, double gap) const;
+  NearestPoint nearest(const Vec3& point) const;
+  // Of the point of the body that is now there.
+  Vec3 velocity_behind(const Vec3& point) const { return behind.velocity_at(behind.now(start(point))); }
+  Vec3 velocity_ahead(const Vec3& point) const { return ahead.velocity_at(ahead.now(start(point))); }
+  Vec3 velocity_at(const Vec3& point) const { return motion_ == nullptr ? Vec3{} : place.velocity_at(point); }
+
+  // At the start, and the bodies that they belong to.
+  const std::vector<WallPoint>& points() const { return points_; }
+  std::size_t body_of(std::size_t point) const { return body_[point]; }
+  // The point as it is now, with the period that brings it into the domain; false where it is beyond a wall of the
+  // domain.
+  bool now(std::size_t point, WallPoint& found) const;
+
+  double bytes() const;
+
+ private:
+  Vec3 start(const Vec3& now) const;
+  double distance_from_bounds(const Vec3& start) const;
+  // Where surfaces of moving bodies are at the start, as far as they may come into the domain.
+  Bounds window(double margin) const;
+  Domain domain_at_start(double reach) const;
+  bool keeps(int axis) const;  // the motion does not lead along it
+  double error() const;
+  std::size_t body_at(const Vec3& foot) const;
+
+  const Scene& scene_;
+  const BodyMotion* motion_ = nullptr;
+  std::vector<std::size_t> bodies_;  // that are walls
+  Combination walls_;
+  Bounds bounds_{};  // of the solid
+  double reach_ = 0;
+  std::optional<DistanceCells> cells_;
+  std::vector<WallPoint> points_;
+  std::vector<std::uint8_t> body_;  // of each point, among the bodies of the scene
+};
+
+}  // namespace spume

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// les-sph with bodies that move.
+#include <gmock/gmock.h>
+
+#include "methods/les_sph_simulation.hpp"
+
+namespace spume::test {
+namespace {
+
+// A closed tank of liquid, itself a body that moves in a domain without walls.
+const std::string moving_tank = R"toml(method = "les-sph"
+[time]
+end = 1
+[domain]
+lower = [-1.6, -1.1]
+upper = [1.6, 1.1]
+[resolution]
+spacing = 0.05
+[fluid]
+reynolds = 1e4
+[[liquid]]
+lower = [-0.5, -0.4]
+upper = [0.5, 0.4]
+[[body]]
+shape = "box"
+size = [1, 0.8]
+inside = false
+)toml";
+
+// The particles' largest deviation from the velocity of the tank that they are in, per component.
+double deviation(const Simulation& run, const std::function<Vec3(const Vec3&)>& tank) {
+  const les_sph::Flow& flow = run.method.flow();
+  double most = 0;
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    const Vec3 u = tank(vector_at(flow.particles.position, flow.dimensions, i));
+    for (int axis = 0; axis < flow.dimensions; ++axis)
+      most = std::max(most, std::abs((*flow.particles.velocity[axis])[i] - u[axis]));
+  }
+  return most;
+}
+
+const std::string shaken = moving_tank + "displacement = [\"0.25*t^2\", \"0\"]\nangle = \"90*t^2\"\n";
+
+}  // namespace
+
+// The pressure of a tank that is pushed evenly is linear across it and moves all of the liquid alike. Fits at the walls
+// take single precision.
+TEST(LesSphBodyMotion, LiquidMovesWithATankThatIsPushed) {
+  Simulation run(moving_tank + "displacement = [\"0.25*t^2\", \"-0.1*t^2\"]\n");
+  for (int step = 0; step < 30; ++step) run.steps(1, 0.02);
+  const double t = run.method.time();
+  EXPECT_NEAR(t, 0.6, 1e-12);
+  EXPECT_LT(deviation(run, [t](const Vec3&) { return Vec3{0.5 * t, -0.2 * t, 0}; }), 2e-3 * 0.5 * t);
+  const les_sph::Flow& flow = run.method.flow();
+  double slope = 0, squares = 0;
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    const double x = (*flow.particles.position[0])[i] - 0.25 * t * t;
+    slope += x * (*flow.pressure)[i];
+    squares += x * x;
+  }
+  EXPECT_NEAR(slope / squares, -0.5, 0.005);
+}
+
+TEST(LesSphBodyMotion, LiquidTurnsOnWithATankThatTurns) {
+  Simulation run(replaced(moving_tank, "upper = [0.5, 0.4]\n", "upper = [0.5, 0.4]\nvelocity = [\"-y\", \"x\"]\n") +
+                 "angle = \"180/pi*t\"\n");
+  for (int step = 0; step < 100; ++step) run.steps(1, 0.01);
+  EXPECT_LT(deviation(run, [](const Vec3& r) { return Vec3{-r[1], r[0], 0}; }), 0.02);
+}
+
+TEST(LesSphBodyMotion, GivesTheSameBitsForAnyNumberOfThreads) {
+  const int threads = omp_get_max_threads();
+  State first;
+  for (const int count : {1, 2, 3}) {
+    omp_set_num_threads(count);
+    Simulation run(shaken);
+    run.steps(4, 0.01);
+    if (count == 1)
+      first = run.state();
+    else
+      EXPECT_TRUE(run.state() == first) << count << " threads";
+  }
+  omp_set_num_threads(threads);
+}
+
+TEST(LesSphBodyMotion, GoesOnBitForBitFromASavedState) {
+  Simulation straight(shaken), restored(shaken);
+  straight.steps(3, 0.01);
+  MemoryState saved;
+  straight.method.save(saved);
+  straight.steps(2, 0.01);
+  restored.method.load(saved);
+  restored.steps(2, 0.01);
+  EXPECT_TRUE(restored.state() == straight.state());
+}
+
+TEST(LesSphBodyMotion, ARefusedStepLeavesTheState) {
+  EXPECT_EQ(changed_by_a_refused_step(shaken, {}, 0.01), "");
+}
+
+}  // namespace spume::test

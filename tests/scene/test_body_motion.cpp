@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// Bodies that move: where they are, what floats, and what is said of motions that cannot be.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "helpers.hpp"
+#include "spume/core/vectors.hpp"
+
+namespace spume {
+namespace {
+
+using std::numbers::pi;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string plane =
+    "method = \"les-sph\"\n[domain]\nlower = [-1, -1]\nupper = [1, 1]\n[resolution]\nspacing = 0.05\n[time]\nend = 2\n"
+    "[fluid]\nreynolds = 100\n[[liquid]]\nlower = [-1, -1]\nupper = [1, -0.8]\n";
+const std::string space =
+    "method = \"les-sph\"\n[domain]\nlower = [-1, -1, -1]\nupper = [1, 1, 1]\n[resolution]\nspacing = 0.1\n[time]\nend "
+    "= 2\n[fluid]\nreynolds = 100\n[[liquid]]\nupper = [1, 1, -0.8]\n";
+const std::string slab = "[[body]]\nname = \"box\"\nshape = \"box\"\nsize = [0.4, 0.2]\nposition = [0.1, 0.2]\n";
+const std::string brick =
+    "[[body]]\nname = \"brick\"\nshape = \"box\"\nsize = [0.4, 0.2, 0.6]\nposition = [0.1, 0.2, 0.3]\n";
+
+BodyMotion motion_of(const std::string& text) {
+  const LoadedCase loaded = test::load_text(text);
+  EXPECT_EQ(loaded.scene.motions.size(), 1u);
+  return loaded.scene.motions.at(0);
+}
+
+std::vector<std::string> complaints(const std::string& text) {
+  std::vector<std::string> found;
+  try {
+    test::load_text(text);
+  } catch (const InputError& error) {
+    for (const Problem& problem : error.problems()) found.push_back(problem.text);
+  }
+  return found;
+}
+
+void expect_near(const Vec3& found, const Vec3& expected, double tolerance) {
+  for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(found[a], expected[a], tolerance) << "component " << a;
+}
+
+// Velocities are differences of fourth order over 2e-7: rounding leaves 1e-16 / 2e-7 of the way.
+TEST(BodyMotion, IsWhatExpressionsSay) {
+  const BodyMotion motion =
+      motion_of(plane + slab + "displacement = [\"0.3*sin(t)\", \"t^2\"]\nangle = \"90*t\"\npivot = [0, 0.1]\n");
+  const RigidPlace place = given_place(motion, 0.5);
+  expect_near(place.now({0, 0.1, 0}), {0.3 * std::sin(0.5), 0.1 + 0.25, 0}, 1e-15);
+  const double c = std::cos(pi / 4);
+  expect_near(place.now({0.2, 0.1, 0}), {0.3 * std::sin(0.5) + 0.2 * c, 0.35 + 0.2 * c, 0}, 1e-15);
+  expect_near(place.start(place.now({0.3, -0.4, 0})), {0.3, -0.4, 0}, 1e-15);
+  expect_near(place.velocity, {0.3 * std::cos(0.5), 1, 0}, 1e-8);
+  expect_near(place.angular_velocity, {0, 0, pi / 2}, 1e-8);
+  expect_near(place.velocity_at(place.now({0.2, 0.1, 0})),
+              {0.3 * std::cos(0.5) - 0.2 * c * pi / 2, 1 + 0.2 * c * pi / 2, 0}, 1e-8);
+}
+
+TEST(BodyMotion, StartsWhereItLeadsToAtTheStart) {
+  const LoadedCase loaded = test::load_text(plane + slab + "displacement = [\"0.5 + t\", \"0\"]\nangle = \"90\"\n");
+  const Body& body = loaded.scene.bodies.at(0);
+  EXPECT_NEAR(body.solid->distance({0.6, 0.2, 0}), -0.1, 1e-15);
+  EXPECT_NEAR(body.solid->distance({0.6, 0.5, 0}), 0.1, 1e-15);
+  EXPECT_NEAR(loaded.scene.walls.distance({0.6, 0.5, 0}), 0.1, 1e-15);
+  const RigidPlace place = given_place(loaded.scene.motions.at(0), 0.25);
+  expect_near(place.now({0.6, 0.2, 0}), {0.85, 0.2, 0}, 1e-15);
+  expect_near(place.now({0.6, 0.5, 0}), {0.85, 0.5, 0}, 1e-15);
+}
+
+TEST(BodyMotion, TurnsAboutItsAxisInThreeDimensions) {
+  const BodyMotion motion = motion_of(space + brick + "angle = \"90*t\"\naxis = [0, 2, 0]\n");
+  expect_near(given_place(motion, 1).now({0.3, 0.2, 0.3}), {0.1, 0.2, 0.1}, 1e-15);
+}
+
+TEST(BodyMotion, IsWhatATableSaysSmoothly) {
+  std::string rows = "t, x, angle\n";
+  for (int k = 0; k <= 40; ++k)
+    rows += std::to_string(0.05 * k) + ", " + std::to_string(0.1 * std::sin(0.05 * k)) + ", " +
+            std::to_string(10 * std::cos(0.05 * k)) + "\n";
+  const test::CaseFile table(rows, "motion.csv");
+  const BodyMotion motion = motion_of(plane + slab + "motion = \"" + table.path() + "\"\n");
+  const RigidPlace place = given_place(motion, 0.775);
+  // Cubics through rows 0.05 apart err by their fourth derivative, 3e-8 of the way; columns are rounded at 1e-6.
+  EXPECT_NEAR(place.position[0], 0.1 + 0.1 * std::sin(0.775), 2e-6);
+  EXPECT_NEAR(place.velocity[0], 0.1 * std::cos(0.775), 1e-3 * 0.1);
+  EXPECT_NEAR(place.angular_velocity[2], -10 * std::sin(0.775) * pi / 180, 1e-3 * 10 * pi / 180);
+}
+
+// Cells that the surface passes count by the distance of their middle: 1e-4 of the area of a disc with 512 across.
+TEST(BodyMotion, AFloatingBodyHasTheMassAndInertiaOfItsShape) {
+  BodyMotion motion = motion_of(plane + slab + "density = 0.5\n");
+  EXPECT_NEAR(motion.mass, 0.5 * 0.08, 1e-12);
+  EXPECT_NEAR(motion.inertia[2][2], motion.mass * (0.16 + 0.04) / 12, 1e-5 * motion.mass);
+  expect_near(motion.pivot, {0.1, 0.2, 0}, 1e-12);
+  motion = motion_of(plane + "[[body]]\nshape = \"ball\"\nradius = 0.3\nposition = [0.1, 0]\nmass = 2\n");
+  EXPECT_EQ(motion.mass, 2);
+  EXPECT_NEAR(motion.inertia[2][2], 0.5 * 2 * 0.09, 1e-4 * 0.09);
+  motion = motion_of(space + brick + "mass = 3\nfree = [\"z\", \"turn_y\"]\n");
+  EXPECT_NEAR(motion.inertia[1][1], 3 * (0.16 + 0.36) / 12, 1e-3);
+  expect_near(motion.free_along, {0, 0, 1}, 0);
+  expect_near(motion.free_about, {0, 1, 0}, 0);
+}
+
+TEST(BodyMotion, TakesAlongTheBodiesThatMoveWithIt) {
+  const LoadedCase loaded = test::load_text(
+      plane + slab +
+      "mass = 1\n[[body]]\nshape = \"ball\"\nradius = 0.1\nposition = [0.1, 0.4]\nmoves_with = \"box\"\n");
+  ASSERT_EQ(loaded.scene.motions.size(), 1u);
+  EXPECT_THAT(loaded.scene.motions[0].bodies, testing::ElementsAre(0, 1));
+  const double areas[] = {0.08, pi * 0.01};
+  EXPECT_NEAR(loaded.scene.motions[0].pivot[1], (areas[0] * 0.2 + areas[1] * 0.4) / (areas[0] + areas[1]), 1e-3);
+}
+
+TEST(BodyMotion, WhatCannotMoveIsRefused) {
+  const auto expect = [](const std::string& keys, const std::string& said) {
+    EXPECT_THAT(complaints(plane + slab + keys), Contains(HasSubstr(said))) << keys;
+  };
+  expect("displacement = [\"x\", \"0\"]\n", "use t alone");
+  expect("displacement = [\"t\"]\n", "must have 2 entries in a 2-D domain, found 1");
+  expect("displacement = [\"1/t\", \"0\"]\n", "stands nowhere at t = 0");
+  expect("displacement = [\"t\", \"0\"]\nmass = 1\n", "has a given motion and floats");
+  expect("displacement = [\"t\", \"0\"]\nmotion = \"m.csv\"\n", "both say how it moves");
+  expect("motion = \"missing.csv\"\n", "cannot read");
+  expect("mass = 1\ndensity = 2\n", "follow from each other");
+  expect("mass = 1\nfree = [\"z\"]\n", "must hold of \"x\", \"y\" or \"turn\"");
+  expect("mass = 1\ninside = false\n", "all that lies outside its shape");
+  expect("angle = \"t\"\naxis = [0, 1]\n", "in 2-D bodies turn about");
+  expect("pivot = [0, 0]\n", "this one does not");
+  expect("moves_with = \"bax\"\n", "must be the name of a moving [[body]] before it");
+  expect("wall = \"none\"\nangle = \"t\"\n", "moves and is no wall");
+  expect("velocity = [\"1\", \"0\"]\nangle = \"t\"\n", "slides the surface of a body that stands still");
+  EXPECT_THAT(complaints(space + brick + "angle = \"t\"\n"), Contains(HasSubstr("missing key 'axis'")));
+  EXPECT_THAT(complaints(plane + "[[body]]\nshape = \"half-space\"\nmass = 1\n"), Contains(HasSubstr("has no end")));
+}
+
+}  // namespace
+}  // namespace spume
