@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/periodic_grid.hpp"
@@ -131,8 +132,8 @@ void BodyForces::add_elements(std::int32_t b) {
 }
 
 template <int dimensions>
-bool BodyForces::traction(const Fields& fields, const CellOrder& table, const Element& element,
-                          const Vec3& wall_velocity, Vec3& pressure, Vec3& viscous) const {
+BodyForces::Traction BodyForces::traction(const Fields& fields, const CellOrder& table, const Element& element,
+                                          const Vec3& wall_velocity, std::vector<PressureWeight>* weights) const {
   const double h = resolution_.smoothing_length, reach = fit_reach * resolution_.support_radius;
   const Vec3 normal = multiply(1 / length(element.area), element.area);
   struct Near {
@@ -159,7 +160,8 @@ bool BodyForces::traction(const Fields& fields, const CellOrder& table, const El
       covered += 2 * scale * Kernel::w(std::sqrt(r2) / h);
     });
   });
-  if (covered < 0.5) return false;
+  Traction found;
+  if (covered < 0.5) return found;
   MovingLeastSquares<dimensions> fit;
   const auto fill = [&](bool pin) {
     fit.resize(near.size() + (pin ? 1 : 0));
@@ -172,16 +174,21 @@ bool BodyForces::traction(const Fields& fields, const CellOrder& table, const El
     fit.weight()[near.size()] = pinned * sum;
   };
   fill(false);
-  if (fit.fit(2) < 0) return false;
+  if (fit.fit(2) < 0) return found;
   double p = 0;
   const auto value = fit.value();
-  for (std::size_t k = 0; k < near.size(); ++k) p += value[k] * fields.pressure[near[k].particle];
-  pressure = multiply(-p, element.area);
-  viscous = {};
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    if (weights != nullptr)
+      weights->push_back({static_cast<std::int32_t>(near[k].particle), element.body, element.middle,
+                          multiply(-value[k], element.area)});
+    else
+      p += value[k] * fields.pressure[near[k].particle];
+  }
+  found.pressure = multiply(-p, element.area);
   const bool holds = scene_.bodies[static_cast<std::size_t>(element.body)].wall == BoundaryKind::no_slip;
-  if (!(fields.dynamic_viscosity > 0) || !holds) return true;
+  if (!(fields.dynamic_viscosity > 0) || !holds) return found;
   fill(true);
-  if (!fit.factor(2) && !fit.factor(1)) return true;
+  if (!fit.factor(2) && !fit.factor(1)) return found;
   std::array<Vec3, 3> gradient{};  // [a][b] = d u_a / d x_b
   for (int b = 0; b < dimensions; ++b) {
     const auto slope = fit.gradient(b, h);
@@ -193,8 +200,8 @@ bool BodyForces::traction(const Fields& fields, const CellOrder& table, const El
   }
   for (int a = 0; a < dimensions; ++a)
     for (int b = 0; b < dimensions; ++b)
-      viscous[a] += fields.dynamic_viscosity * (gradient[a][b] + gradient[b][a]) * element.area[b];
-  return true;
+      found.viscous[a] += fields.dynamic_viscosity * (gradient[a][b] + gradient[b][a]) * element.area[b];
+  return found;
 }
 
 BodyForces::Element BodyForces::now(const Element& element) const {
@@ -209,29 +216,38 @@ BodyForces::Element BodyForces::now(const Element& element) const {
   return {middle, place.direction_now(element.area), element.body};
 }
 
-std::vector<SurfaceForce> BodyForces::measure(const Fields& fields, double t) const {
-  struct OfElement {
-    Vec3 pressure{}, viscous{};
-  };
-  std::vector<OfElement> of(elements_.size());
+bool BodyForces::floats(const Element& element) const {
+  const auto& motion = scene_.bodies[static_cast<std::size_t>(element.body)].motion;
+  return motion && scene_.motions[*motion].floats;
+}
+
+std::vector<BodyForces::Traction> BodyForces::tractions(const Fields& fields, double t,
+                                                        std::vector<std::vector<PressureWeight>>* weights) const {
+  constexpr std::size_t block = 256;
+  std::vector<Traction> of(elements_.size());
+  if (weights != nullptr) weights->resize(block_count(elements_.size(), block));
   CellOrder table;
   table.build(fields.grid, fields.position[0], fields.position[1], fields.position[2], fields.particles);
-  parallel_blocks(elements_.size(), 256, [&](std::size_t, std::size_t first, std::size_t last) {
+  parallel_blocks(elements_.size(), block, [&](std::size_t b, std::size_t first, std::size_t last) {
     // Expressions keep their variables inside: each block evaluates its own copies.
     std::vector<VectorExpression> velocity;
     for (const Body& body : scene_.bodies)
       velocity.push_back(body.velocity ? body.velocity->clone() : VectorExpression{});
+    std::vector<PressureWeight>* const own = weights == nullptr ? nullptr : &(*weights)[b];
     for (std::size_t e = first; e < last; ++e) {
+      if (weights != nullptr && !floats(elements_[e])) continue;
       const Element element = now(elements_[e]);
       const auto body = static_cast<std::size_t>(element.body);
       const Vec3 wall = scene_.bodies[body].motion ? walls_.part_of(body).velocity_at(element.middle)
                                                    : velocity[body](element.middle, t);
-      if (scene_.domain.dimensions == 3)
-        traction<3>(fields, table, element, wall, of[e].pressure, of[e].viscous);
-      else
-        traction<2>(fields, table, element, wall, of[e].pressure, of[e].viscous);
+      of[e] = scene_.domain.dimensions == 3 ? traction<3>(fields, table, element, wall, own)
+                                            : traction<2>(fields, table, element, wall, own);
     }
   });
+  return of;
+}
+
+std::vector<SurfaceForce> BodyForces::add_up(const std::vector<Traction>& of) const {
   std::vector<SurfaceForce> total(scene_.bodies.size());
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     SurfaceForce& body = total[static_cast<std::size_t>(elements_[e].body)];
@@ -244,34 +260,59 @@ std::vector<SurfaceForce> BodyForces::measure(const Fields& fields, double t) co
   return total;
 }
 
-RecordTable BodyForces::table(int dimensions) {
+std::vector<SurfaceForce> BodyForces::measure(const Fields& fields, double t) const {
+  return add_up(tractions(fields, t, nullptr));
+}
+
+void BodyForces::find_weights(const Fields& fields, std::vector<PressureWeight>& weights,
+                              std::vector<SurfaceForce>& viscous) const {
+  std::vector<std::vector<PressureWeight>> blocks;
+  viscous = add_up(tractions(fields, 0, &blocks));
+  weights.clear();
+  for (const auto& block : blocks) weights.insert(weights.end(), block.begin(), block.end());
+}
+
+RecordTable BodyForces::table() const {
+  const int dimensions = scene_.domain.dimensions;
   RecordTable table;
   table.name = "bodies";
   table.title = "forces of the liquid on bodies, torques about the origin";
   table.when = RecordTable::When::series;
   table.columns = {{"t", "time"}, {"body", "number of the [[body]] entry, from 0"}};
-  const std::string axes = "xyz";
+  const auto add = [&](const std::string& name, int first, int last, const std::string& unit) {
+    for (int a = first; a < last; ++a) table.columns.push_back({name + "_" + "xyz"[static_cast<std::size_t>(a)], unit});
+  };
+  const int about = dimensions == 3 ? 0 : 2;
   for (const char* kind : {"pressure", "viscous"})
-    for (int a = 0; a < dimensions; ++a)
-      table.columns.push_back({std::string(kind) + "_force_" + axes[static_cast<std::size_t>(a)],
-                               dimensions == 3 ? "force" : "force / length"});
+    add(std::string(kind) + "_force", 0, dimensions, dimensions == 3 ? "force" : "force / length");
   for (const char* kind : {"pressure", "viscous"})
-    for (int a = dimensions == 3 ? 0 : 2; a < 3; ++a)
-      table.columns.push_back({std::string(kind) + "_torque_" + axes[static_cast<std::size_t>(a)],
-                               dimensions == 3 ? "force length" : "force"});
+    add(std::string(kind) + "_torque", about, 3, dimensions == 3 ? "force length" : "force");
+  if (scene_.motions.empty()) return table;
+  add("position", 0, dimensions, "length");
+  add("turn", about, 3, "degree");
+  add("velocity", 0, dimensions, "length / time");
+  add("spin", about, 3, "degree / time");
   return table;
 }
 
-void BodyForces::add_rows(int dimensions, double t, const std::vector<Body>& bodies,
-                          const std::vector<SurfaceForce>& forces, std::vector<double>& rows) {
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (bodies[b].wall == BoundaryKind::open) continue;
+void BodyForces::add_rows(double t, const std::vector<SurfaceForce>& forces, std::vector<double>& rows) const {
+  const int dimensions = scene_.domain.dimensions, about = dimensions == 3 ? 0 : 2;
+  constexpr double degree = std::numbers::pi / 180;
+  const auto add = [&](const Vec3& vector, int first, int last, double unit = 1) {
+    for (int a = first; a < last; ++a) rows.push_back(vector[a] / unit);
+  };
+  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+    if (scene_.bodies[b].wall == BoundaryKind::open) continue;
     rows.push_back(t);
     rows.push_back(static_cast<double>(b));
-    for (const Vec3* force : {&forces[b].pressure, &forces[b].viscous})
-      for (int a = 0; a < dimensions; ++a) rows.push_back((*force)[a]);
-    for (const Vec3* torque : {&forces[b].pressure_torque, &forces[b].viscous_torque})
-      for (int a = dimensions == 3 ? 0 : 2; a < 3; ++a) rows.push_back((*torque)[a]);
+    for (const Vec3* force : {&forces[b].pressure, &forces[b].viscous}) add(*force, 0, dimensions);
+    for (const Vec3* torque : {&forces[b].pressure_torque, &forces[b].viscous_torque}) add(*torque, about, 3);
+    if (scene_.motions.empty()) continue;
+    const RigidPlace& place = walls_.part_of(b).place;
+    add(place.position, 0, dimensions);
+    add(rotation_vector(place.rotation), about, 3, degree);
+    add(place.velocity, 0, dimensions);
+    add(place.angular_velocity, about, 3, degree);
   }
 }
 

@@ -48,9 +48,12 @@ void BodyWalls::move_to(double t) {
   gather_points();
 }
 
-void BodyWalls::set_place(std::size_t motion, const RigidPlace& place) {
-  parts_[motion + 1]->place = place;
-  gather_points();
+void BodyWalls::set_place(std::size_t motion, const RigidPlace& place, const RigidPlace& behind,
+                          const RigidPlace& ahead) {
+  RigidWalls& walls = *parts_[motion + 1];
+  walls.place = place;
+  walls.behind = behind;
+  walls.ahead = ahead;
 }
 
 // Where bodies overlap, the points of the first of them stand for all.
@@ -266,6 +269,16 @@ void BodyWalls::set_pressure_behind(double duration) {
     const Vec3 gained = subtract(walls.velocity_ahead(at.foot), walls.velocity_behind(at.foot));
     pressure_behind_[g] = dot(gained, subtract(at.mirror, at.position)) / duration;
   });
+}
+
+double BodyWalls::pressure_behind_unit(std::size_t wet_point, std::size_t motion, const Vec3& direction,
+                                       bool turning) const {
+  if (wet_point >= wet_points_.size()) return 0;  // of an opening
+  const auto p = static_cast<std::size_t>(wet_points_[wet_point]);
+  if (scene_.bodies[body_[p]].motion != motion) return 0;
+  const WallPoint& at = points_[p];
+  const Vec3 acceleration = turning ? cross(direction, part_of(body_[p]).arm_ahead(at.foot)) : direction;
+  return dot(acceleration, subtract(at.mirror, at.position));
 }
 
 double BodyWalls::bytes() const {

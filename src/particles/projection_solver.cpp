@@ -175,27 +175,24 @@ void ProjectionSolver::prepare(const PressureRows& rows, ParticleStore& particle
                     rows.coefficient == nullptr ? std::span<const float>() : std::span(rows.coefficient, n));
 }
 
-void ProjectionSolver::solve(const PressureRows& rows, Arrangement& arrangement, ParticleStore& particles,
-                             Array<double>& q) {
+PressureOperator& ProjectionSolver::bind(const PressureRows& rows, const SweepContext& context,
+                                         PackedNeighbours& packed) {
   PressureMatrix matrix{rows.diagonal_shift.data(),
                         rows.pressure_fixed == nullptr ? nullptr : rows.pressure_fixed->data()};
   if (!rows.weight.empty()) {
     matrix.weight = rows.weight.data();
     matrix.row = rows.row.data();
   }
-  operator_.bind(arrangement.context, arrangement.packed, matrix);
-  given_norm_ = arrangement.context.image_pressure == nullptr ? 0 : given_norm(particles);
-  solve(rows, operator_, particles, q);
-  given_norm_ = 0;
+  operator_.bind(context, packed, matrix);
+  return operator_;
 }
 
-// Of what pressures given behind walls bring to the right-hand side.
-double ProjectionSolver::given_norm(ParticleStore& particles) {
+double given_norm(ProjectionMatrix& matrix, ParticleStore& particles) {
   const std::size_t n = particles.size();
   ScratchArray<double> zero(particles.scratch(), n), given(particles.scratch(), n);
   parallel_for(n, [&](std::size_t i) { zero[i] = 0; });
   const std::span<const double> none(zero.data(), n);
-  operator_.residual(none, none, std::span(given.data(), n), true);
+  matrix.residual(none, none, std::span(given.data(), n), true);
   return std::sqrt(parallel_sum(n, [&](std::size_t i) { return given[i] * given[i]; }));
 }
 
@@ -204,8 +201,7 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
   const std::size_t n = particles.size();
   matrix_ = &matrix;
   ScratchArray<double> residual(particles.scratch(), n);
-  const double reference_norm = std::hypot(rows.reference_norm, given_norm_);
-  const RefinementOptions refinement{options_.tolerance, reference_norm, options_.max_iterations, rows.singular};
+  const RefinementOptions refinement{options_.tolerance, rows.reference_norm, options_.max_iterations, rows.singular};
   if (options_.mixed) {
     MixedSystem system(*this, rows, particles.scratch(), q);
     report_ = solve_refined(system, refinement, residual);

@@ -51,6 +51,23 @@ inline RotationMatrix rotation_by_vector(const Vec3& turn) {
   return m;
 }
 
+// Of an angle from 0 to pi.
+inline Vec3 rotation_vector(const RotationMatrix& m) {
+  // Of twice the size of the sine.
+  const Vec3 axis{m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]};
+  const double sine = 0.5 * length(axis), cosine = 0.5 * (m[0][0] + m[1][1] + m[2][2] - 1);
+  const double angle = std::atan2(sine, cosine);
+  if (sine > 1e-6) return multiply(0.5 * angle / sine, axis);
+  if (cosine > 0) return multiply(0.5, axis);
+  // About half a turn: (1 + m) / 2 is the square of the axis.
+  std::size_t largest = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (m[k][k] > m[largest][largest]) largest = k;
+  Vec3 direction = m[largest];
+  direction[largest] += 1;
+  return multiply(angle / length(direction), direction);
+}
+
 struct RigidPlace {
   Vec3 pivot{}, position{};
   RotationMatrix rotation = no_rotation;

@@ -37,10 +37,19 @@ class BodyForces {
   // Per [[body]] entry; zero for those that are no walls.
   std::vector<SurfaceForce> measure(const Fields& fields, double t) const;
 
-  // bodies.csv: t, body, force and torque by pressure and by viscosity.
-  static RecordTable table(int dimensions);
-  static void add_rows(int dimensions, double t, const std::vector<Body>& bodies,
-                       const std::vector<SurfaceForce>& forces, std::vector<double>& rows);
+  // Of bodies that float: the force on an element by the pressure of one of its particles, per pressure.
+  struct PressureWeight {
+    std::int32_t particle = 0, body = 0;
+    Vec3 place{}, force{};
+  };
+  // All of them, and per [[body]] entry the forces by viscosity.
+  void find_weights(const Fields& fields, std::vector<PressureWeight>& weights,
+                    std::vector<SurfaceForce>& viscous) const;
+
+  // bodies.csv: t, body, force and torque by pressure and by viscosity; where bodies move, the place of the pivot, by
+  // how much and about what the body has turned, and the velocities of both.
+  RecordTable table() const;
+  void add_rows(double t, const std::vector<SurfaceForce>& forces, std::vector<double>& rows) const;
   std::size_t elements() const { return elements_.size(); }
 
  private:
@@ -49,9 +58,18 @@ class BodyForces {
     std::int32_t body = 0;
   };
   Element now(const Element& element) const;
+  struct Traction {
+    Vec3 pressure{}, viscous{};
+  };
+  // Null `weights`: they are not asked for.
   template <int dimensions>
-  bool traction(const Fields& fields, const CellOrder& table, const Element& element, const Vec3& wall_velocity,
-                Vec3& pressure, Vec3& viscous) const;
+  Traction traction(const Fields& fields, const CellOrder& table, const Element& element, const Vec3& wall_velocity,
+                    std::vector<PressureWeight>* weights) const;
+  // Of every element; with `weights` those of floating bodies alone, and what they are made of, block by block.
+  std::vector<Traction> tractions(const Fields& fields, double t,
+                                  std::vector<std::vector<PressureWeight>>* weights) const;
+  std::vector<SurfaceForce> add_up(const std::vector<Traction>& of) const;
+  bool floats(const Element& element) const;
   void add_elements(std::int32_t body);
 
   const Scene& scene_;

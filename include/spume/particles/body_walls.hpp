@@ -23,7 +23,7 @@ class BodyWalls {
 
   // Bodies with a given motion stand where they are at time t; those that float where they are told to.
   void move_to(double t);
-  void set_place(std::size_t motion, const RigidPlace& place);
+  void set_place(std::size_t motion, const RigidPlace& place, const RigidPlace& behind, const RigidPlace& ahead);
   // Of bodies that move as one.
   const RigidWalls& moving(std::size_t motion) const { return *parts_[motion + 1]; }
   // What the surface of a body is part of.
@@ -38,6 +38,8 @@ class BodyWalls {
                      double ahead);
   // Of wet points, what the pressure behind an accelerated surface has beside that before it.
   const Array<double>& pressure_behind() const { return pressure_behind_; }
+  // The same of a unit acceleration of a motion, along a direction or about it.
+  double pressure_behind_unit(std::size_t wet_point, std::size_t motion, const Vec3& direction, bool turning) const;
   const WallStencils& stencils() const { return stencils_; }
   WallPointView wet() const;
   double largest_speed() const { return largest_speed_; }  // of the surfaces at wet points

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "spume/core/saved_state.hpp"
@@ -88,6 +89,9 @@ class Boundary {
   // 40 x 40, against 0.4 %).
   const VelocityImageRule& velocity_rule() const { return velocity_rule_; }
   const VelocityImageRule& volume_rule() const { return features.no_slip ? mirror_rule_ : velocity_rule_; }
+  // Beside those of their sources; empty where no wall is accelerated.
+  std::span<double> image_pressure() { return {image_pressure_.data(), image_pressure_.size()}; }
+  BodyWalls* bodies() { return bodies_.get(); }
   // Of geometric vectors, per path of the images.
   const std::vector<std::array<float, 3>>& reflection() const { return reflection_; }
   ImageMap image_map(const Images& images) const { return {images, velocity_rule_, reflection_}; }

@@ -53,10 +53,10 @@ class ProjectionSolver {
 
   // Cells for the particles at `at`. Without multigrid nothing.
   void prepare(const PressureRows& rows, ParticleStore& particles, const VectorField& at, const Boundary& boundary);
-  // Improves `q`, which holds the guess and where the pressure is fixed the value. What did not converge is said in the
-  // report: the caller decides.
-  void solve(const PressureRows& rows, Arrangement& arrangement, ParticleStore& particles, Array<double>& q);
-  // The same for a matrix of the caller's, bound to these rows.
+  // The matrix of these rows. Pressures given behind walls, in the context, are part of its residuals.
+  PressureOperator& bind(const PressureRows& rows, const SweepContext& context, PackedNeighbours& packed);
+  // Improves `q`, which holds the guess and where the pressure is fixed the value, with a matrix bound to these rows.
+  // What did not converge is said in the report: the caller decides.
   void solve(const PressureRows& rows, ProjectionMatrix& matrix, ParticleStore& particles, Array<double>& q);
 
   bool has_multigrid() const { return multigrid_ != nullptr; }
@@ -66,7 +66,6 @@ class ProjectionSolver {
  private:
   struct Operator;
   struct DoubleOperator;
-  double given_norm(ParticleStore& particles);
   class MixedSystem;
   class DoubleSystem;
   template <class Real>
@@ -78,9 +77,11 @@ class ProjectionSolver {
   std::unique_ptr<CellMultigrid> multigrid_;
   CorrectionWorkspace<double> double_work_;  // empty in mixed precision, as are the next
   Array<double> double_diagonal_, zero_;
-  double given_norm_ = 0;
   RefinementResult report_;
 };
+
+// Of what pressures given behind walls bring to the right-hand side.
+double given_norm(ProjectionMatrix& matrix, ParticleStore& particles);
 
 // Throws StepFailure that names `solve` when the report says that it did not converge.
 void demand_convergence(const RefinementResult& report, const std::string& solve);

@@ -34,6 +34,8 @@ class RigidWalls {
   // Of the point of the body that is now there.
   Vec3 velocity_behind(const Vec3& point) const { return behind.velocity_at(behind.now(start(point))); }
   Vec3 velocity_ahead(const Vec3& point) const { return ahead.velocity_at(ahead.now(start(point))); }
+  // From the pivot, then.
+  Vec3 arm_ahead(const Vec3& point) const { return subtract(ahead.now(start(point)), ahead.position); }
   Vec3 velocity_at(const Vec3& point) const { return motion_ == nullptr ? Vec3{} : place.velocity_at(point); }
 
   // At the start, and the bodies that they belong to.

@@ -2,6 +2,7 @@
 // What exists for a scene, and quantities of the present state.
 #include "spume/methods/les_sph/flow.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -80,6 +81,9 @@ Flow::Flow(const LoadedCase& loaded_case)
     surface = std::make_unique<FreeSurface>(
         resolution, FreeSurface::Options{.interior = interior_weight(dimensions, options.get<SurfaceOptions>()),
                                          .smooth_normals = features.shifting});
+  if (std::any_of(scene.motions.begin(), scene.motions.end(), [](const BodyMotion& motion) { return motion.floats; }))
+    floating =
+        std::make_unique<FloatingBodies>(scene, resolution, *boundary.bodies(), options.get<SchemeOptions>().centred);
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
   if (features.eddy_viscosity)
     closure = std::make_unique<turbulence::EddyViscosity>(particles, options.get<TurbulenceOptions>());

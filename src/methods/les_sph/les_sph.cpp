@@ -85,6 +85,7 @@ void LesSph::step(double dt, Ledger& ledger) {
 void LesSph::start(Ledger& ledger) {
   if (flow_.size() > 0) {
     plan_.run_start(static_cast<double>(flow_.size()), ledger);
+    if (flow_.floating != nullptr) flow_.floating->accept(0);
     flow_.boundary.accept();
     if (flow_.features.openings) flow_.boundary.follow(read(flow_.particles.velocity));
     flow_.volume = flow_.particles.volume * static_cast<double>(flow_.size());
@@ -193,6 +194,7 @@ void LesSph::save(StateWriter& writer) const {
   save_fields(flow_.particles.fields, writer);
   if (flow_.features.openings) flow_.boundary.openings()->save(writer);
   if (flow_.bubbles != nullptr) flow_.bubbles->save(writer);
+  if (flow_.floating != nullptr) flow_.floating->save(writer);
 }
 
 void LesSph::load(StateReader& reader) {
@@ -200,6 +202,7 @@ void LesSph::load(StateReader& reader) {
   Array<std::int64_t> counters;
   saved_.load(reader);
   reader.i64("counters", counters);
+  if (flow_.floating != nullptr) flow_.floating->load(reader);
   flow_.boundary.load_walls(reader, flow_.time);
   if (counters.size() != 4) throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(counters[2]), "particle", reader);

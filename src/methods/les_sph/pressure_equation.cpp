@@ -198,7 +198,24 @@ void Flow::prepare_solver() {
 }
 
 void Flow::solve(const char* name) {
-  solver.solve(rows, arrangement, particles, *reduced_pressure);
+  if (floating != nullptr) {
+    const BodyForces::Fields fields{.grid = arrangement.grid,
+                                    .particles = size(),
+                                    .position = read(intermediate_position),
+                                    .velocity = read(particles.velocity),
+                                    .pressure = pressure->data(),
+                                    .particle_volume = particles.volume,
+                                    .dynamic_viscosity = density() * viscosity()};
+    ProjectionMatrix& matrix = floating->couple(solver, rows, arrangement, particles, {fields, density(), potential});
+    rows.reference_norm = std::hypot(rows.reference_norm, given_norm(matrix, particles));
+    solver.solve(rows, matrix, particles, *reduced_pressure);
+    floating->find_accelerations(*reduced_pressure, boundary.image_pressure());
+  } else {
+    PressureOperator& matrix = solver.bind(rows, arrangement.context, arrangement.packed);
+    if (arrangement.context.image_pressure != nullptr)
+      rows.reference_norm = std::hypot(rows.reference_norm, given_norm(matrix, particles));
+    solver.solve(rows, matrix, particles, *reduced_pressure);
+  }
   rows.release(particles.scratch());
   demand_convergence(solver.report(), name);
   if (!features.closed) return;

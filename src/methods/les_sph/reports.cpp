@@ -195,7 +195,7 @@ std::vector<ArrayInfo> LesSph::arrays() const {
 std::vector<RecordTable> LesSph::tables() const {
   std::vector<RecordTable> list;
   if (periodic()) list.push_back(spectrum_table());
-  if (body_forces_ != nullptr) list.push_back(BodyForces::table(flow_.dimensions));
+  if (body_forces_ != nullptr) list.push_back(body_forces_->table());
   if (flow_.bubbles != nullptr)
     for (RecordTable& table : flow_.bubbles->tables()) list.push_back(std::move(table));
   return list;
@@ -228,7 +228,7 @@ void LesSph::add_force_rows(std::vector<double>& rows) const {
                              .particle_volume = flow_.particles.volume,
                              .dynamic_viscosity = flow_.density() * flow_.viscosity()},
                             flow_.time);
-  BodyForces::add_rows(flow_.dimensions, flow_.time, flow_.scene.bodies, forces, rows);
+  body_forces_->add_rows(flow_.time, forces, rows);
 }
 
 bool LesSph::periodic() const {

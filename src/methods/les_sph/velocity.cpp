@@ -79,6 +79,7 @@ Vec3 Flow::advecting_velocity_of(std::size_t i, double dt) const {
 }
 
 void Flow::move_to_intermediate_position(double dt) {
+  if (floating != nullptr) floating->advance(dt);
   boundary.advance(time, dt);
   parallel_for(size(), [&](std::size_t i) {
     const Vec3 u = advecting_velocity_of(i, dt);
@@ -396,6 +397,7 @@ void Flow::accept(double dt) {
   particles.scratch().release(next_velocity);
   particles.scratch().release(shift_velocity);
   if (closure != nullptr) closure->accept(particles.scratch());
+  if (floating != nullptr) floating->accept(dt);
   boundary.accept();
   if (features.openings) boundary.follow(read(particles.velocity));
   max_divergence = next_max_divergence;

@@ -12,6 +12,7 @@
 #include "spume/methods/les_sph/features.hpp"
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/energy_guard.hpp"
+#include "spume/particles/floating_bodies.hpp"
 #include "spume/particles/force_potential.hpp"
 #include "spume/particles/moments.hpp"
 #include "spume/particles/projection_solver.hpp"
@@ -97,6 +98,7 @@ struct Flow {
   ProjectionSolver solver;
   std::unique_ptr<turbulence::EddyViscosity> closure;  // null: none
   std::unique_ptr<bubbles::BubbleCoupling> bubbles;    // null: none
+  std::unique_ptr<FloatingBodies> floating;            // null: none; its places are state
 
   // --- Leased within a step: by the stage that writes one until the stage that reads it last.
   std::array<Array<float>, 9> velocity_gradient;

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Rigid bodies that float: their accelerations are found together with the pressure that drives them.
+//
+// A body of mass M and inertia I about its centre of mass has, in the motions that it is free in,
+//
+//   M A = M g + F,   I alpha = T - omega x (I omega),
+//
+// F and T by the pressure p = rho (q - potential) and by viscosity on its surface (particles/body_forces.hpp), linear
+// in q: F = F_0 + C q. Behind its surface the pressure follows the acceleration of the surface
+// (particles/boundary.hpp), again linearly: unit accelerations add the columns G to the right-hand side of the pressure
+// equation. With the matrix m of masses both make one system without a step between them,
+//
+//   (K - G m^-1 C) q = b + G m^-1 F_0,
+//
+// K q = b being the equation beside bodies that keep their velocity. Bodies lighter than the water that they accelerate
+// are as stable as heavy ones: alternating, steps of body and liquid diverge for them (Causin, Gerbeau and Nobile,
+// Comput. Methods Appl. Mech. Engrg. 194 (2005)).
+//
+// Bodies are stepped as particles are: with centring, velocities half a step apart from places.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "spume/core/saved_state.hpp"
+#include "spume/particles/body_forces.hpp"
+#include "spume/particles/projection_solver.hpp"
+
+namespace spume {
+
+class FloatingBodies {
+ public:
+  // What is given outlives this. `centred`: velocities lead by half a step.
+  FloatingBodies(const Scene& scene, const Resolution& resolution, BodyWalls& walls, bool centred);
+  ~FloatingBodies();
+  FloatingBodies(const FloatingBodies&) = delete;
+  FloatingBodies& operator=(const FloatingBodies&) = delete;
+
+  // Places at the end of a step, with the velocities that they are reached with.
+  void advance(double dt);
+
+  struct Liquid {
+    BodyForces::Fields fields;  // at the places of the solve; its pressure is not read
+    double density = 0;
+    const Array<double>* potential = nullptr;  // null: zero
+  };
+  // The matrix with the bodies in it, for a right-hand side without them. Binds that of the solver to the rows.
+  ProjectionMatrix& couple(ProjectionSolver& solver, const PressureRows& rows, Arrangement& arrangement,
+                           ParticleStore& particles, const Liquid& liquid);
+  // Of the solution; adds to the pressures behind walls what they bring.
+  void find_accelerations(std::span<const double> q, std::span<double> image_pressure);
+  void accept(double dt);
+
+  void save(StateWriter& writer) const;
+  void load(StateReader& reader);
+
+ private:
+  struct State {
+    RigidPlace place;  // with the velocities at the same time
+    Vec3 acceleration{}, angular_acceleration{};
+  };
+  struct Freedom {
+    std::size_t body = 0;  // among those that float
+    int axis = 0;          // 0 to 2 along, 3 to 5 about x, y, z
+  };
+  class Coupled;
+  void place_walls();
+  void set_forces(const Liquid& liquid);
+  void set_columns(ProjectionSolver& solver, const PressureRows& rows, Arrangement& arrangement,
+                   ParticleStore& particles);
+  // m^-1 (F_0 + C q), or without F_0.
+  template <class T>
+  std::vector<double> accelerations(std::span<const T> q, bool given) const;
+
+  const Scene& scene_;
+  BodyWalls& walls_;
+  BodyForces forces_;
+  bool centred_;
+  std::vector<std::size_t> motions_;  // that float, among those of the scene
+  std::vector<State> now_, next_;     // at the ends of steps
+  double step_ = 0;
+  std::vector<Freedom> freedoms_;
+  std::vector<double> inverse_mass_;  // square, over freedoms
+  std::vector<double> given_force_;   // F_0
+  // C: the force per unit q, by particle.
+  std::vector<std::int32_t> particle_;
+  std::vector<double> force_;                  // an entry for each freedom
+  std::vector<Array<double>> column_;          // G
+  std::vector<Array<double>> image_pressure_;  // behind walls, by unit accelerations
+  std::unique_ptr<Coupled> coupled_;
+};
+
+}  // namespace spume

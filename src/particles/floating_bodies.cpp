@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/floating_bodies.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+
+namespace spume {
+namespace {
+
+RotationMatrix transposed(const RotationMatrix& m) {
+  return {Vec3{m[0][0], m[1][0], m[2][0]}, Vec3{m[0][1], m[1][1], m[2][1]}, Vec3{m[0][2], m[1][2], m[2][2]}};
+}
+
+// The inertia in the axes of space of a body that has turned.
+RotationMatrix turned(const RotationMatrix& rotation, const RotationMatrix& inertia) {
+  return combined(combined(rotation, inertia), transposed(rotation));
+}
+
+RigidPlace turned_on(RigidPlace place, double dt) {
+  place.rotation = combined(rotation_by_vector(multiply(dt, place.angular_velocity)), place.rotation);
+  return place;
+}
+
+Vec3 along(int axis) {
+  Vec3 direction{};
+  direction[axis] = 1;
+  return direction;
+}
+
+// From a centre to the nearest of the places that are one beyond periodic sides.
+Vec3 nearest_arm(const Domain& domain, Vec3 arm) {
+  for (int axis = 0; axis < domain.dimensions; ++axis) {
+    const double period = domain.upper[axis] - domain.lower[axis];
+    if (domain.periodic(axis)) arm[axis] -= period * std::round(arm[axis] / period);
+  }
+  return arm;
+}
+
+}  // namespace
+
+// K - G m^-1 C.
+class FloatingBodies::Coupled final : public ProjectionMatrix {
+ public:
+  Coupled(const FloatingBodies& bodies, PressureOperator& liquid) : bodies_(bodies), liquid_(liquid) {}
+  std::size_t size() const override { return liquid_.size(); }
+  Dots apply(std::span<const float> x, std::span<float> y, std::span<const float> w) override {
+    liquid_.apply(x, y, w);
+    const std::vector<double> a = bodies_.accelerations(x, false);
+    return parallel_reduce(
+        y.size(), Dots{},
+        [&](std::size_t first, std::size_t last) {
+          Dots sum;
+          for (std::size_t i = first; i < last; ++i) {
+            double value = y[i];
+            for (std::size_t k = 0; k < a.size(); ++k) value -= a[k] * bodies_.column_[k][i];
+            y[i] = static_cast<float>(value);
+            sum.wy += double{w[i]} * y[i];
+            sum.yy += double{y[i]} * y[i];
+          }
+          return sum;
+        },
+        [](const Dots& one, const Dots& other) {
+          return Dots{one.wy + other.wy, one.yy + other.yy};
+        });
+  }
+  void residual(std::span<const double> q, std::span<const double> b, std::span<double> r, bool given) override {
+    liquid_.residual(q, b, r, given);
+    add(bodies_.accelerations(q, given), 1, r);
+  }
+  void subtract_product(double scale, std::span<const float> x, std::span<double> r) override {
+    liquid_.subtract_product(scale, x, r);
+    add(bodies_.accelerations(x, false), scale, r);
+  }
+
+ private:
+  void add(const std::vector<double>& a, double scale, std::span<double> r) const {
+    parallel_for(r.size(), [&](std::size_t i) {
+      for (std::size_t k = 0; k < a.size(); ++k) r[i] += scale * a[k] * bodies_.column_[k][i];
+    });
+  }
+  const FloatingBodies& bodies_;
+  PressureOperator& liquid_;
+};
+
+FloatingBodies::FloatingBodies(const Scene& scene, const Resolution& resolution, BodyWalls& walls, bool centred)
+    : scene_(scene), walls_(walls), forces_(scene, resolution, walls), centred_(centred) {
+  for (std::size_t m = 0; m < scene.motions.size(); ++m) {
+    const BodyMotion& motion = scene.motions[m];
+    if (!motion.floats) continue;
+    State state;
+    state.place.pivot = state.place.position = motion.pivot;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (motion.free_along[axis] != 0) freedoms_.push_back({motions_.size(), axis});
+      if (motion.free_about[axis] != 0) freedoms_.push_back({motions_.size(), 3 + axis});
+    }
+    motions_.push_back(m);
+    now_.push_back(state);
+  }
+  next_ = now_;
+  column_.resize(freedoms_.size());
+  image_pressure_.resize(freedoms_.size());
+}
+
+FloatingBodies::~FloatingBodies() = default;
+
+void FloatingBodies::advance(double dt) {
+  step_ = dt;
+  next_ = now_;
+  for (State& state : next_) {
+    RigidPlace& place = state.place;
+    if (centred_) {
+      place.velocity = add(place.velocity, multiply(dt / 2, state.acceleration));
+      place.angular_velocity = add(place.angular_velocity, multiply(dt / 2, state.angular_acceleration));
+    }
+    place.position = add(place.position, multiply(dt, place.velocity));
+    place = turned_on(place, dt);
+  }
+  place_walls();
+}
+
+void FloatingBodies::place_walls() {
+  for (std::size_t b = 0; b < motions_.size(); ++b) {
+    const RigidPlace& place = next_[b].place;
+    const double half = centred_ ? step_ / 2 : 0;
+    // Velocities belong to the middles of the steps before and after.
+    walls_.set_place(motions_[b], place, turned_on(place, -half), turned_on(place, centred_ ? half : step_));
+  }
+}
+
+ProjectionMatrix& FloatingBodies::couple(ProjectionSolver& solver, const PressureRows& rows, Arrangement& arrangement,
+                                         ParticleStore& particles, const Liquid& liquid) {
+  set_forces(liquid);
+  set_columns(solver, rows, arrangement, particles);
+  coupled_ = std::make_unique<Coupled>(*this, solver.bind(rows, arrangement.context, arrangement.packed));
+  return *coupled_;
+}
+
+void FloatingBodies::set_forces(const Liquid& liquid) {
+  const std::size_t count = freedoms_.size();
+  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count));
+  given_force_.assign(count, 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto [body, axis] = freedoms_[k];
+    const BodyMotion& motion = scene_.motions[motions_[body]];
+    const RigidPlace& place = next_[body].place;
+    const RotationMatrix inertia = turned(place.rotation, motion.inertia);
+    if (axis < 3) {
+      mass(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) = motion.mass;
+      given_force_[k] += motion.mass * scene_.fluid.gravity[axis];
+      continue;
+    }
+    const Vec3 momentum = rotated(inertia, place.angular_velocity);
+    given_force_[k] -= cross(place.angular_velocity, momentum)[axis - 3];
+    for (std::size_t j = 0; j < count; ++j)
+      if (freedoms_[j].body == body && freedoms_[j].axis >= 3)
+        mass(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j)) =
+            inertia[static_cast<std::size_t>(axis - 3)][freedoms_[j].axis - 3];
+  }
+  const Eigen::MatrixXd inverse = mass.inverse();
+  inverse_mass_.resize(count * count);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < count; ++j)
+      inverse_mass_[i * count + j] = inverse(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+
+  std::vector<BodyForces::PressureWeight> weights;
+  std::vector<SurfaceForce> viscous;
+  forces_.find_weights(liquid.fields, weights, viscous);
+  // Per particle, in the order of particles: the sums below have one order.
+  std::stable_sort(weights.begin(), weights.end(),
+                   [](const auto& a, const auto& b) { return a.particle < b.particle; });
+  particle_.clear();
+  force_.clear();
+  for (const BodyForces::PressureWeight& weight : weights) {
+    if (particle_.empty() || particle_.back() != weight.particle) {
+      particle_.push_back(weight.particle);
+      force_.resize(force_.size() + count, 0);
+    }
+    double* const sums = force_.data() + force_.size() - count;
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto [body, axis] = freedoms_[k];
+      if (scene_.bodies[static_cast<std::size_t>(weight.body)].motion != motions_[body]) continue;
+      const Vec3 arm = nearest_arm(scene_.domain, subtract(weight.place, next_[body].place.position));
+      sums[k] += liquid.density * (axis < 3 ? weight.force[axis] : cross(arm, weight.force)[axis - 3]);
+    }
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto [body, axis] = freedoms_[k];
+    for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+      if (scene_.bodies[b].motion != motions_[body]) continue;
+      const Vec3 about = subtract(viscous[b].viscous_torque, cross(next_[body].place.position, viscous[b].viscous));
+      given_force_[k] += axis < 3 ? viscous[b].viscous[axis] : about[axis - 3];
+    }
+    if (liquid.potential != nullptr)
+      for (std::size_t e = 0; e < particle_.size(); ++e)
+        given_force_[k] -= force_[e * count + k] * (*liquid.potential)[static_cast<std::size_t>(particle_[e])];
+  }
+}
+
+void FloatingBodies::set_columns(ProjectionSolver& solver, const PressureRows& rows, Arrangement& arrangement,
+                                 ParticleStore& particles) {
+  const std::size_t n = particles.size();
+  const Images& images = arrangement.images;
+  ScratchArray<double> zero(particles.scratch(), n);
+  parallel_for(n, [&](std::size_t i) { zero[i] = 0; });
+  for (std::size_t k = 0; k < freedoms_.size(); ++k) {
+    const auto [body, axis] = freedoms_[k];
+    const std::int32_t* point = images.wall_point();
+    Array<double>& behind = image_pressure_[k];
+    behind.resize(images.size());
+    parallel_for(images.size(), [&, motion = motions_[body], axis = axis](std::size_t m) {
+      behind[m] = point == nullptr || point[m] < 0 ? 0.0
+                                                   : walls_.pressure_behind_unit(static_cast<std::size_t>(point[m]),
+                                                                                 motion, along(axis % 3), axis >= 3);
+    });
+    SweepContext context = arrangement.context;
+    context.image_pressure = behind.data();
+    column_[k].resize(n);
+    const std::span<const double> none(zero.data(), n);
+    solver.bind(rows, context, arrangement.packed).residual(none, none, std::span(column_[k].data(), n), true);
+    // What is given behind openings is none of the bodies' doing.
+    if (context.walls != nullptr && context.walls->openings()) {
+      ScratchArray<double> without(particles.scratch(), n);
+      context.image_pressure = nullptr;
+      solver.bind(rows, context, arrangement.packed).residual(none, none, std::span(without.data(), n), true);
+      parallel_for(n, [&](std::size_t i) { column_[k][i] -= without[i]; });
+    }
+  }
+}
+
+template <class T>
+std::vector<double> FloatingBodies::accelerations(std::span<const T> q, bool given) const {
+  const std::size_t count = freedoms_.size();
+  std::vector<double> force(count, 0), result(count, 0);
+  if (given) force = given_force_;
+  for (std::size_t e = 0; e < particle_.size(); ++e) {
+    const double value = q[static_cast<std::size_t>(particle_[e])];
+    for (std::size_t k = 0; k < count; ++k) force[k] += force_[e * count + k] * value;
+  }
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < count; ++j) result[i] += inverse_mass_[i * count + j] * force[j];
+  return result;
+}
+
+void FloatingBodies::find_accelerations(std::span<const double> q, std::span<double> image_pressure) {
+  const std::vector<double> found = accelerations(q, true);
+  for (State& state : next_) state.acceleration = state.angular_acceleration = {};
+  for (std::size_t k = 0; k < freedoms_.size(); ++k) {
+    if (!std::isfinite(found[k])) {
+      StepFailure::Details details;
+      details.cause = "the acceleration of a floating body is not a finite number";
+      details.option = "body.mass";
+      details.value = found[k];
+      throw StepFailure(details);
+    }
+    const auto [body, axis] = freedoms_[k];
+    (axis < 3 ? next_[body].acceleration[axis] : next_[body].angular_acceleration[axis - 3]) = found[k];
+  }
+  parallel_for(image_pressure.size(), [&](std::size_t m) {
+    for (std::size_t k = 0; k < found.size(); ++k) image_pressure[m] += found[k] * image_pressure_[k][m];
+  });
+}
+
+void FloatingBodies::accept(double dt) {
+  const double part = centred_ ? dt / 2 : dt;  // the velocities reached were those of the middle of the step
+  for (State& state : next_) {
+    state.place.velocity = add(state.place.velocity, multiply(part, state.acceleration));
+    state.place.angular_velocity = add(state.place.angular_velocity, multiply(part, state.angular_acceleration));
+  }
+  now_ = next_;
+  step_ = 0;
+  place_walls();
+}
+
+void FloatingBodies::save(StateWriter& writer) const {
+  std::vector<double> values;
+  for (const State& state : now_) {
+    const RigidPlace& place = state.place;
+    for (const Vec3* vector :
+         {&place.position, &place.rotation[0], &place.rotation[1], &place.rotation[2], &place.velocity,
+          &place.angular_velocity, &state.acceleration, &state.angular_acceleration})
+      values.insert(values.end(), vector->begin(), vector->end());
+  }
+  writer.f64("floating_bodies", values);
+}
+
+void FloatingBodies::load(StateReader& reader) {
+  Array<double> values;
+  reader.f64("floating_bodies", values);
+  if (values.size() != 24 * now_.size())
+    throw FileError("the checkpoint is of another number of floating bodies than the case has");
+  std::size_t at = 0;
+  for (State& state : now_) {
+    RigidPlace& place = state.place;
+    for (Vec3* vector : {&place.position, &place.rotation[0], &place.rotation[1], &place.rotation[2], &place.velocity,
+                         &place.angular_velocity, &state.acceleration, &state.angular_acceleration})
+      for (double& value : *vector) value = values[at++];
+  }
+  next_ = now_;
+  step_ = 0;
+  place_walls();
+}
+
+}  // namespace spume
