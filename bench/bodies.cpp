@@ -39,7 +39,8 @@ void wall_stencils(benchmark::State& state) {
   const Tank tank(state);
   const les_sph::Flow& flow = tank.method.flow();
   BodyWalls walls(flow.scene, flow.resolution, flow.particles.volume);
-  for (auto _ : state) walls.find_stencils(flow.arrangement, flow.particles.position, flow.particles.volume, flow.time);
+  for (auto _ : state)
+    walls.find_stencils(flow.arrangement, flow.particles.position, flow.particles.volume, flow.time, flow.time);
   state.counters["wet_points"] = static_cast<double>(walls.stencils().size());
   state.counters["time_per_wet_point"] =
       benchmark::Counter(static_cast<double>(walls.stencils().size()),
