@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <Eigen/Cholesky>
-#include <Eigen/Dense>
 
 #include "reciprocal_condition.hpp"
 #include "spume/operators/moving_least_squares.hpp"

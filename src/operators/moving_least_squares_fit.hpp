@@ -4,7 +4,6 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <experimental/simd>

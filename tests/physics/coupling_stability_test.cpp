@@ -28,6 +28,13 @@ TEST(CouplingStability, OfStepsFarAboveTheResponseTimeIsThatOfTheMassLoading) {
   }
 }
 
+// At A = -1/2 the largest root of x^2 = A (2 x - 1) is -(1 + sqrt 3) / 2. Steps of h response times leave 1 / h of A.
+TEST(CouplingStability, GrowthIsTheLargestEigenvalue) {
+  const double ratio = 10, beta = 3 / (1 + 2 * ratio);
+  const double h = 1e9;
+  EXPECT_NEAR(coupling_growth(particles_of_ratio(beta), held, 0.5 / (ratio - 1), h), (1 + std::sqrt(3.0)) / 2, 1e-7);
+}
+
 TEST(CouplingStability, OfShortStepsIsThatOfTheAddedMass) {
   const double beta = 0.05;
   EXPECT_NEAR(stable_volume_fraction(particles_of_ratio(beta), adams_bashforth, 0.74), 0.25 / ((1 - beta) / 2), 2e-3);
