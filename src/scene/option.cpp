@@ -2,6 +2,7 @@
 #include "spume/scene/option.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace spume {
 
@@ -19,6 +20,53 @@ std::string Range::in_words() const {
 
 bool Owners::include(const std::string& method) const {
   return all || method.empty() || std::find(names.begin(), names.end(), method) != names.end();
+}
+
+SectionChain::SectionChain(const std::string& section_name, std::function<void*(Draft&)> target)
+    : target_(std::move(target)) {
+  name = section_name;
+}
+
+void SectionChain::add(const char* key, OptionType type, const char* unit, const std::string& default_text,
+                       const Range& range, const char* description, Assign assign) {
+  options.push_back({.key = key,
+                     .type = type,
+                     .unit = unit,
+                     .default_text = default_text,
+                     .range = range,
+                     .description = description,
+                     .set = [target = target_, assign = std::move(assign)](Draft& d, const Value& value) {
+                       assign(target(d), d, value);
+                     }});
+}
+
+void SectionChain::add_word(const char* key, std::vector<std::string> words, std::size_t standard,
+                            const char* description, AssignWord assign) {
+  Option option{.key = key, .type = OptionType::word, .words = words, .description = description};
+  if (standard < words.size()) option.default_text = to_toml_string(words[standard]);
+  option.set = [target = target_, words = std::move(words), assign = std::move(assign)](Draft& d, const Value& value) {
+    const auto found = std::find(words.begin(), words.end(), value.text);
+    if (found != words.end()) assign(target(d), d, static_cast<std::size_t>(found - words.begin()));
+  };
+  options.push_back(std::move(option));
+}
+
+void SectionChain::make_required() {
+  options.back().required = true;
+  options.back().default_text.clear();
+}
+
+void SectionChain::set_absent(const std::string& meaning) {
+  options.back().absent = meaning;
+  options.back().default_text.clear();
+}
+
+void SectionChain::set_needs(const char* key, std::initializer_list<const char*> words) {
+  options.back().needs = {key, {words.begin(), words.end()}};
+}
+
+void SectionChain::set_chosen(std::function<std::string(const Draft&)> value) {
+  options.back().chosen = std::move(value);
 }
 
 std::string type_in_words(OptionType type) {

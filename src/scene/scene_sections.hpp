@@ -2,6 +2,7 @@
 // The sections that the scene declares itself.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,9 +14,9 @@ namespace spume {
 std::vector<Section> scene_sections();  // title ... forces
 Section body_section();
 // Names of the sides of a domain, as an option takes them.
-inline std::vector<std::pair<std::string, std::string>> side_words() {
-  std::vector<std::pair<std::string, std::string>> words;
-  for (const char* side : {"left", "right", "front", "back", "bottom", "top"}) words.emplace_back(side, side);
+inline const auto& side_words() {
+  static const std::initializer_list<std::pair<const char*, std::string>> words = {
+      {"left", "left"}, {"right", "right"}, {"front", "front"}, {"back", "back"}, {"bottom", "bottom"}, {"top", "top"}};
   return words;
 }
 std::vector<Section> wave_sections();     // wavemaker, sponge

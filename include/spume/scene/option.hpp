@@ -12,6 +12,7 @@
 #include <array>
 #include <concepts>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <string>
@@ -209,28 +210,45 @@ std::string default_text(const M& standard) {
 
 }  // namespace member
 
+// What a chain does whatever type its section fills: compiled once, where a template would be for every type.
+class SectionChain : public Section {
+ protected:
+  using Assign = std::function<void(void* target, Draft&, const Value&)>;
+  using AssignWord = std::function<void(void* target, Draft&, std::size_t word)>;
+
+  SectionChain(const std::string& section_name, std::function<void*(Draft&)> target);
+  void add(const char* key, OptionType type, const char* unit, const std::string& default_text, const Range& range,
+           const char* description, Assign assign);
+  // `standard`: the index of the default, or that behind the last.
+  void add_word(const char* key, std::vector<std::string> words, std::size_t standard, const char* description,
+                AssignWord assign);
+  void make_required();
+  void set_absent(const std::string& meaning);
+  void set_needs(const char* key, std::initializer_list<const char*> words);
+  void set_chosen(std::function<std::string(const Draft&)> value);
+
+ private:
+  std::function<void*(Draft&)> target_;
+};
+
 // A section whose options fill a T. The place of a value is a member of T, of Draft or of Case, or a function from one
 // of these to it. What follows an option in the chain (when, absent, required, ...) speaks of that option.
 template <class T>
-class SectionOf : public Section {
+class SectionOf : public SectionChain {
  public:
   using Target = std::function<T&(Draft&)>;
-  SectionOf(std::string section_name, Target target) : target_(std::move(target)) { name = std::move(section_name); }
+  SectionOf(const std::string& section_name, Target target)
+      : SectionChain(section_name, [target = std::move(target)](Draft& d) -> void* { return &target(d); }) {}
 
   template <class Place>
   SectionOf& option(const char* key, Place place, const char* unit, Range range, const char* description) {
     using M = member::Held<T, Place>;
     T standard{};
     Draft draft;
-    options.push_back({.key = key,
-                       .type = member::type_of<M>(),
-                       .unit = unit,
-                       .default_text = member::default_text<M>(member::reach(standard, draft, place)),
-                       .range = range,
-                       .description = description,
-                       .set = [target = target_, place](Draft& d, const Value& value) {
-                         member::assign(member::reach(target(d), d, place), value);
-                       }});
+    add(key, member::type_of<M>(), unit, member::default_text<M>(member::reach(standard, draft, place)), range,
+        description, [place](void* target, Draft& d, const Value& value) {
+          member::assign(member::reach(*static_cast<T*>(target), d, place), value);
+        });
     return *this;
   }
   template <class Place>
@@ -245,36 +263,36 @@ class SectionOf : public Section {
   // An option whose words stand for values of the member.
   template <class Place>
   SectionOf& word(const char* key, Place place,
-                  std::vector<std::pair<std::string, std::type_identity_t<member::Held<T, Place>>>> meanings,
+                  std::initializer_list<std::pair<const char*, std::type_identity_t<member::Held<T, Place>>>> meanings,
                   const char* description) {
     T standard{};
     Draft draft;
-    Option option{.key = key, .type = OptionType::word, .description = description};
+    std::vector<std::string> words;
+    std::vector<member::Held<T, Place>> values;
+    std::size_t standard_word = meanings.size();
     for (const auto& [text, meaning] : meanings) {
-      option.words.push_back(text);
-      if (meaning == member::reach(standard, draft, place)) option.default_text = to_toml_string(text);
+      if (meaning == member::reach(standard, draft, place)) standard_word = words.size();
+      words.emplace_back(text);
+      values.push_back(meaning);
     }
-    option.set = [target = target_, place, meanings = std::move(meanings)](Draft& d, const Value& value) {
-      for (const auto& [text, meaning] : meanings)
-        if (text == value.text) member::reach(target(d), d, place) = meaning;
-    };
-    options.push_back(std::move(option));
+    add_word(key, std::move(words), standard_word, description,
+             [place, values = std::move(values)](void* target, Draft& d, std::size_t word) {
+               member::reach(*static_cast<T*>(target), d, place) = values[word];
+             });
     return *this;
   }
 
   SectionOf& required() {
-    options.back().required = true;
-    options.back().default_text.clear();
+    make_required();
     return *this;
   }
   // What it means that the case does not give it: the option has no default.
   SectionOf& absent(const std::string& meaning) {
-    options.back().absent = meaning;
-    options.back().default_text.clear();
+    set_absent(meaning);
     return *this;
   }
-  SectionOf& when(std::string key, std::vector<std::string> words) {
-    options.back().needs = {std::move(key), std::move(words)};
+  SectionOf& when(const char* key, std::initializer_list<const char*> words) {
+    set_needs(key, words);
     return *this;
   }
   // Only methods with this property take the option.
@@ -283,7 +301,7 @@ class SectionOf : public Section {
     return *this;
   }
   SectionOf& chosen(std::function<std::string(const Draft&)> value) {
-    options.back().chosen = std::move(value);
+    set_chosen(std::move(value));
     return *this;
   }
   SectionOf& beside_case() {
@@ -300,17 +318,14 @@ class SectionOf : public Section {
     optional = true;
     return *this;
   }
-  SectionOf& behind(std::string key) {
-    after = std::move(key);
+  SectionOf& behind(const char* key) {
+    after = key;
     return *this;
   }
   SectionOf& behind_output() {
     after_output = true;
     return *this;
   }
-
- private:
-  Target target_;
 };
 
 // A section, or more options of a section of the scene, that fill a group of a method: Case::get<T>().
