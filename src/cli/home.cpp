@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cstdlib>
 
+#include "home_paths.hpp"
 #include "spume/cli/program.hpp"
 #include "spume/scene/find_case.hpp"
 #include "verbs.hpp"
