@@ -392,14 +392,9 @@ void velocity_gradient_sweep(const SweepContext& context, PackedNeighbours& pack
 void gradient_trace_sweep(const SweepContext& context, PackedNeighbours& packed,
                           const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
                           const std::array<const float*, 6>& correction, float* trace) {
-  with_kernel(context, [&]<int dimensions, class Kernel>() {
-    VelocityGradientOut out;
-    out.trace = trace;
-    const auto store = [&](std::size_t i, const auto& gradient, const auto& bounds) {
-      store_gradient<dimensions>(out, i, gradient, bounds);
-    };
-    velocity_gradient<dimensions, Kernel, false, false>(context, packed, velocity, rule, correction, {}, store);
-  });
+  VelocityGradientOut out;
+  out.trace = trace;
+  velocity_gradient_sweep(context, packed, velocity, rule, correction, out);
 }
 
 void shift_curvature_sweep(const SweepContext& context, PackedNeighbours& packed,
