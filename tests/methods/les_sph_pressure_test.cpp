@@ -2,13 +2,11 @@
 // The pressure of a step against a direct solution of the system that the slow twin assembles.
 #include <gtest/gtest.h>
 
-#include <Eigen/SparseCore>
-#include <Eigen/UmfPackSupport>
-
 #include "methods/les_sph_simulation.hpp"
 #include "reference/sph_sums.hpp"
 #include "reference/surface_layers.hpp"
 #include "spume/core/random.hpp"
+#include "support/direct_solution.hpp"
 
 namespace spume::test {
 namespace {
@@ -163,9 +161,7 @@ struct PreparedStep : StagedFlow {
       matrix.coeffRef(0, 0) = 1;
       b[0] = 0;
     }
-    Eigen::UmfPackLU<Eigen::SparseMatrix<double>> factor(matrix);
-    EXPECT_EQ(factor.info(), Eigen::Success);
-    const Eigen::VectorXd q = factor.solve(b);
+    const Eigen::VectorXd q = test::direct_solution(matrix, b);
     std::vector<double> p(n);
     for (std::size_t i = 0; i < n; ++i) p[i] = q[static_cast<Eigen::Index>(i)] - potential(i);
     return p;

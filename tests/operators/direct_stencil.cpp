@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "operators/direct_stencil.hpp"
 
-#include <Eigen/Dense>
 #include <cmath>
+
+#include "support/direct_solution.hpp"
 
 namespace spume::test {
 
@@ -37,9 +38,7 @@ DirectStencil direct_stencil(const JitteredParticles& particles, const std::arra
       for (int d = 0; d < 3; ++d) value *= std::pow(stencil.offset[j][d] / support_radius, exponents[m][d]);
       conditions(m, j) = value;
     }
-  Eigen::VectorXd target = Eigen::VectorXd::Zero(rows);
-  target(0) = 1;
-  const Eigen::VectorXd solution = conditions.completeOrthogonalDecomposition().solve(target);
+  const Eigen::MatrixXd solution = least_squares(conditions, Eigen::VectorXd::Unit(rows, 0));
   for (Eigen::Index j = 0; j < columns; ++j) stencil.weight.push_back(solution(j) * root_kernel[j]);
   return stencil;
 }

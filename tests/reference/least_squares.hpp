@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Slow twin of moving_least_squares.hpp: the polynomial with the least weighted squares by a Householder QR of the
-// neighbours' rows sqrt(W_j) p(xi_j); the moments do not appear.
+// Slow twin of moving_least_squares.hpp: the polynomial with the least weighted squares by an orthogonal decomposition
+// of the neighbours' rows sqrt(W_j) p(xi_j); the moments do not appear.
 #pragma once
 
-#include <Eigen/QR>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
+
+#include "support/direct_solution.hpp"
 
 namespace spume::reference {
 
@@ -40,7 +41,7 @@ inline Eigen::MatrixXd fit_coefficients(int dimensions, int order, const std::ve
       rows(j, m) = value;
     }
   }
-  return rows.colPivHouseholderQr().solve(roots);
+  return test::least_squares(rows, roots);
 }
 
 }  // namespace spume::reference

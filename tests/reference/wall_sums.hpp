@@ -3,7 +3,6 @@
 // particles, wall points and their images.
 #pragma once
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "spume/core/vectors.hpp"
 #include "spume/particles/wall_points.hpp"
 #include "spume/scene/scene.hpp"
+#include "support/direct_solution.hpp"
 
 namespace spume::reference {
 
@@ -86,7 +86,7 @@ struct WallSums {
       basis.row(k) = weight * row;
       right.row(k) << weight * v.scalar, weight * v.velocity[0], weight * v.velocity[1], weight * v.velocity[2];
     }
-    const Eigen::MatrixXd c = basis.colPivHouseholderQr().solve(right);
+    const Eigen::MatrixXd c = test::least_squares(basis, right);
     return {c(0, 0), {c(0, 1), c(0, 2), c(0, 3)}};
   }
 

@@ -6,11 +6,11 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include <Eigen/UmfPackSupport>
 #include <limits>
 
 #include "problems.hpp"
 #include "spume/solvers/refinement.hpp"
+#include "support/direct_solution.hpp"
 
 namespace spume {
 namespace {
@@ -20,13 +20,12 @@ using namespace reference;
 // Solves A x = b directly; in the singular case with the first unknown pinned, then shifted to zero mean.
 Eigen::VectorXd direct_solution(const Problem& problem) {
   Eigen::SparseMatrix<double> matrix = problem.system.matrix;
-  Eigen::VectorXd b = Eigen::Map<const Eigen::VectorXd>(problem.b.data(), static_cast<Eigen::Index>(problem.size()));
+  const Eigen::VectorXd b =
+      Eigen::Map<const Eigen::VectorXd>(problem.b.data(), static_cast<Eigen::Index>(problem.size()));
   if (problem.singular) {
     matrix.coeffRef(0, 0) *= 2;  // any equation x_0 = c added to a consistent singular system leaves the solution set
   }
-  Eigen::UmfPackLU<Eigen::SparseMatrix<double>> lu(matrix);
-  EXPECT_EQ(lu.info(), Eigen::Success);
-  Eigen::VectorXd x = lu.solve(b);
+  Eigen::VectorXd x = test::direct_solution(matrix, b);
   if (problem.singular) x.array() -= x.mean();
   return x;
 }
