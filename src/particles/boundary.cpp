@@ -157,7 +157,7 @@ void Boundary::find_rules(const Images& images, double support_radius, const Wal
       for (const int face : paths[p].face[axis])
         if (face >= 0) reflect(sign, axis, kind_of_face(domain_, axis, face));
     for (int axis = 0; axis < d; ++axis)
-      if (const int side = paths[p].side[axis]; side >= 0) reflect(sign, axis, domain_.sides[axis][side].kind);
+      if (const auto side = paths[p].side[axis]; side >= 0) reflect(sign, axis, domain_.sides[axis][side].kind);
     velocity_rule_.sign[p] = sign;
     for (int axis = 0; axis < 3; ++axis)
       reflection_[p][axis] = axis < d ? static_cast<float>(Images::sign(paths[p], rules, axis)) : 1.0F;
@@ -218,7 +218,7 @@ void Boundary::find_offsets(const Images& images, double t, bool friction, Veloc
       for (int axis = 0; axis < d; ++axis) {
         for (const int face : path.face[axis])
           if (face >= 0) reflect(axis, face);
-        const int side = path.side[axis];
+        const auto side = path.side[axis];
         if (side >= 0 && is_wall(domain_.sides[axis][side].kind)) reflect(axis, side);
       }
       for (int a = 0; a < d; ++a) rule.offset[a][k] = static_cast<float>(offset[a]);
@@ -256,7 +256,7 @@ void Boundary::find_image_pressure(Arrangement& arrangement, const VectorField& 
     double sum = of_point && g < behind->size() ? (*behind)[g] : 0;
     const ImagePath& path = images.paths()[static_cast<std::size_t>(images.path()[k])];
     for (int axis = 0; axis < d && features.displaced_walls; ++axis)
-      if (const int side = path.side[axis]; side >= 0 && acceleration[axis][side] != 0) {
+      if (const auto side = path.side[axis]; side >= 0 && acceleration[axis][side] != 0) {
         const double from = of_point ? point_place(g, axis) : r[axis][images.source()[k]];
         sum -= acceleration[axis][side] * (images.position(axis)[k] - from);
       }

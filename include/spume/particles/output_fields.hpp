@@ -69,6 +69,7 @@ class OutputField {
 template <class State>
 std::vector<OutputFieldInfo> field_infos(const std::vector<OutputField<State>>& fields, const Case& options) {
   std::vector<OutputFieldInfo> infos;
+  infos.reserve(fields.size());
   for (const OutputField<State>& field : fields) infos.push_back(field.info(options));
   return infos;
 }
