@@ -84,6 +84,7 @@ TriangleSurface fill_polygon(const std::vector<Point2>& points) {
 
 TriangleSurface fill_profile(const std::vector<Point2>& profile) {
   std::vector<Point2> points;
+  points.reserve(2 * profile.size());
   for (const Point2& p : profile) points.push_back({-p[0], p[1]});
   for (auto p = profile.rbegin(); p != profile.rend(); ++p)
     if ((*p)[0] > 0) points.push_back(*p);
