@@ -28,10 +28,11 @@ void DistanceCells::fill(std::vector<float>& values, const std::array<std::size_
                          double side, Value&& value) const {
   values.resize(count[0] * count[1] * count[2]);
   parallel_blocks_dynamic(count[1] * count[2], 1, [&](std::size_t row, std::size_t, std::size_t) {
+    const std::size_t j = row % count[1], k = row / count[1];
     for (std::size_t i = 0; i < count[0]; ++i) {
       const Vec3 place{lower[0] + (static_cast<double>(i) + 0.5) * side,
-                       lower[1] + (static_cast<double>(row % count[1]) + 0.5) * side,
-                       dimensions_ == 3 ? lower[2] + (static_cast<double>(row / count[1]) + 0.5) * side : 0.0};
+                       lower[1] + (static_cast<double>(j) + 0.5) * side,
+                       dimensions_ == 3 ? lower[2] + (static_cast<double>(k) + 0.5) * side : 0.0};
       values[row * count[0] + i] = static_cast<float>(value(place));
     }
   });
