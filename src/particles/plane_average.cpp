@@ -114,8 +114,8 @@ PlaneSample PointSampler::plane_average(int axis, double position) const {
 
   std::vector<Corner> corners(plane.corners[0] * plane.corners[1]);
   parallel_for(corners.size(), [&](std::size_t k) {
-    const Vec3 point =
-        plane.point(static_cast<double>(k % plane.corners[0]), static_cast<double>(k / plane.corners[0]));
+    const auto column = k % plane.corners[0], row = k / plane.corners[0];
+    const Vec3 point = plane.point(static_cast<double>(column), static_cast<double>(row));
     corners[k] = {point, wet_share(point) - 0.5};
   });
 

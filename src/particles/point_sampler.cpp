@@ -259,6 +259,7 @@ PointSample PointSampler::fit(const Vec3& point) const {
   });
   if (fits[0].count() == 0) return sample;
   std::vector<LinearFit::Result> results;
+  results.reserve(fits.size());
   for (const LinearFit& fit : fits) results.push_back(fit.at_centre());
   sample.coverage = fits[0].weight();
   for (std::size_t k = 0; k < scalars.size(); ++k)
