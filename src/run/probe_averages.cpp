@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spume/run/probes.hpp"
+
 namespace spume {
 namespace {
 
@@ -12,7 +14,7 @@ double pressure_of(const ProbeOptions& probe, Method& method, std::size_t scalar
   const std::vector<double> scalars =
       probe.kind == ProbeKind::plane
           ? fields.plane_average(probe.axis, probe.position[static_cast<std::size_t>(probe.axis)]).scalars
-          : fields.sample(probe.position).scalars;
+          : fields.sample(place_of(probe, probe.position, fields)).scalars;
   return std::isfinite(scalars[scalar]) ? scalars[scalar] : 0.0;
 }
 

@@ -44,6 +44,10 @@ std::vector<SeriesColumn> probe_columns(const LoadedCase& loaded) {
   return columns;
 }
 
+Vec3 place_of(const ProbeOptions& probe, const Vec3& start, const FieldProbes& fields) {
+  return probe.motion ? fields.carried(*probe.motion, start) : start;
+}
+
 void probe_values(const LoadedCase& loaded, Method& method, const ProbeAverages& averages, std::vector<double>& row) {
   const auto put = [&](const std::vector<double>& scalars, const Vec3& velocity) {
     row.insert(row.end(), scalars.begin(), scalars.end());
@@ -54,7 +58,8 @@ void probe_values(const LoadedCase& loaded, Method& method, const ProbeAverages&
     const ProbeOptions& probe = loaded.options.probes[k];
     switch (probe.kind) {
       case ProbeKind::point: {
-        const PointSample sample = method.field_probes()->sample(probe.position);
+        FieldProbes& fields = *method.field_probes();
+        const PointSample sample = fields.sample(place_of(probe, probe.position, fields));
         put(averages.scalars(k, sample.scalars), sample.velocity);
         break;
       }
@@ -105,6 +110,7 @@ void write_line(const ProbeOptions& line, Method& method, SeriesFile& file) {
       position[axis] = line.position[axis] + run;
       distance2 += run * run;
     }
+    position = place_of(line, position, *method.field_probes());
     const PointSample sample = method.field_probes()->sample(position);
     const double time = method.time();
     std::vector<double> values{std::sqrt(distance2)};

@@ -341,6 +341,28 @@ std::vector<BodyMotion> make_body_motions(const Draft& draft, const CompileExpre
   return motions;
 }
 
+void carry_probes(const Draft& draft, const std::vector<Body>& bodies, std::vector<ProbeOptions>& probes,
+                  Problems& problems) {
+  std::vector<std::string> known;
+  for (const Body& body : bodies)
+    if (body.motion) known.push_back(body.name);
+  for (std::size_t k = 0; k < probes.size(); ++k) {
+    ProbeOptions& probe = probes[k];
+    if (probe.moves_with.empty()) continue;
+    const auto body = std::find_if(bodies.begin(), bodies.end(),
+                                   [&](const Body& one) { return one.motion && one.name == probe.moves_with; });
+    if (body != bodies.end()) {
+      probe.motion = body->motion;
+      continue;
+    }
+    const std::string name = "probe." + std::to_string(k) + ".moves_with", best = nearest(probe.moves_with, known);
+    problems.add(*draft.node(name), name + " must be the name of a moving [[body]]" +
+                                        (known.empty() ? ", and there is none" : ", " + words_in_words(known)) +
+                                        ", found " + to_toml_string(probe.moves_with) +
+                                        (best.empty() ? "" : "; did you mean \"" + best + "\"?"));
+  }
+}
+
 RigidPlace given_place(const BodyMotion& motion, double t) {
   const auto way = [&](double at) {
     Vec3 sum{};

@@ -14,4 +14,8 @@ void check_body_motions(const Draft& draft, const MethodDeclaration* method, Pro
 std::vector<BodyMotion> make_body_motions(const Draft& draft, const CompileExpression& compile, double duration,
                                           std::vector<Body>& bodies, Problems& problems);
 
+// Finds the motions that probes are carried by.
+void carry_probes(const Draft& draft, const std::vector<Body>& bodies, std::vector<ProbeOptions>& probes,
+                  Problems& problems);
+
 }  // namespace spume

@@ -320,6 +320,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
                                              " are possible: use fewer boxes, or align their faces");
   scene.bodies = make_bodies(draft, compile_with(compiler), problems);
   scene.motions = make_body_motions(draft, compile_with(compiler), draft.options.time.end, scene.bodies, problems);
+  carry_probes(draft, scene.bodies, draft.options.probes, problems);
   scene.openings = make_openings(draft, compile_with(compiler), problems);
   open_sides_at(scene.openings, scene.domain);
   const std::vector<LiquidRegion> regions = make_regions(draft, scene.bodies, compiler);

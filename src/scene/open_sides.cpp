@@ -2,6 +2,7 @@
 #include "open_sides.hpp"
 
 #include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
 #include "spume/scene/solid_union.hpp"
 
 namespace spume {
@@ -12,6 +13,20 @@ std::string side_name(int axis, int side, int dimensions) {
   static const char* const deep[2] = {"front", "back"};
   static const char* const along[2] = {"bottom", "top"};
   return axis == 0 ? across[side] : axis == dimensions - 1 ? along[side] : deep[side];
+}
+
+// Whether the straight way from one place to another meets a wall of a body: by steps of its distance, of which those
+// of unions and differences are never too long.
+bool bodies_between(const Scene& scene, const Vec3& from, const Vec3& to) {
+  if (scene.walls.empty()) return false;
+  const Vec3 way = subtract(to, from);
+  const double whole = length(way), least = 0.1 * scene.spacing;
+  for (double gone = 0; gone < whole;) {
+    const double distance = scene.walls.distance(add(from, multiply(gone / whole, way)));
+    if (distance < least) return true;
+    gone += distance;
+  }
+  return false;
 }
 
 }  // namespace
@@ -45,7 +60,7 @@ std::vector<Problem> open_side_warnings(const Draft& draft, const Scene& scene, 
         if (axis != up && std::abs(r[axis] - plane) > scene.spacing) return false;
         Vec3 foot = r;
         foot[axis] = plane + (side == 0 ? -1 : 1) * scene.spacing;
-        return solids.sees(r, foot, foot);
+        return solids.sees(r, foot, foot) && !bodies_between(scene, r, foot);
       });
       if (loose == 0) continue;
       warn("nothing holds the liquid: domain." + name + " is open and " +

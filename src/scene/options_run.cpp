@@ -64,6 +64,11 @@ Section probe() {
           "time over which the pressure is averaged, at least output.series_every: rows that far apart hold the whole "
           "impulse of an impact; 0: the pressure of the last step")
       .when("kind", {"point", "plane"})
+      .option(
+          "moves_with", [](P& p) -> std::string& { return p.options.moves_with; },
+          "name of a moving [[body]] that carries it from its place at the start")
+      .absent("it stands still")
+      .when("kind", {"point", "line"})
       .word(
           "axis", [](P& p) -> int& { return p.options.axis; }, {{"x", 0}, {"y", 1}, {"z", 2}},
           "front: axis of the largest coordinate of the liquid; plane: normal")

@@ -22,7 +22,7 @@ const std::string plane =
 const std::string space =
     "method = \"les-sph\"\n[domain]\nlower = [-1, -1, -1]\nupper = [1, 1, 1]\n[resolution]\nspacing = 0.1\n[time]\nend "
     "= 2\n[fluid]\nreynolds = 100\n[[liquid]]\nupper = [1, 1, -0.8]\n";
-const std::string slab = "[[body]]\nname = \"box\"\nshape = \"box\"\nsize = [0.4, 0.2]\nposition = [0.1, 0.2]\n";
+const std::string slab = "[[body]]\nname = \"slab\"\nshape = \"box\"\nsize = [0.4, 0.2]\nposition = [0.1, 0.2]\n";
 const std::string brick =
     "[[body]]\nname = \"brick\"\nshape = \"box\"\nsize = [0.4, 0.2, 0.6]\nposition = [0.1, 0.2, 0.3]\n";
 
@@ -109,11 +109,28 @@ TEST(BodyMotion, AFloatingBodyHasTheMassAndInertiaOfItsShape) {
 TEST(BodyMotion, TakesAlongTheBodiesThatMoveWithIt) {
   const LoadedCase loaded = test::load_text(
       plane + slab +
-      "mass = 1\n[[body]]\nshape = \"ball\"\nradius = 0.1\nposition = [0.1, 0.4]\nmoves_with = \"box\"\n");
+      "mass = 1\n[[body]]\nshape = \"ball\"\nradius = 0.1\nposition = [0.1, 0.4]\nmoves_with = \"slab\"\n");
   ASSERT_EQ(loaded.scene.motions.size(), 1u);
   EXPECT_THAT(loaded.scene.motions[0].bodies, testing::ElementsAre(0, 1));
   const double areas[] = {0.08, pi * 0.01};
   EXPECT_NEAR(loaded.scene.motions[0].pivot[1], (areas[0] * 0.2 + areas[1] * 0.4) / (areas[0] + areas[1]), 1e-3);
+}
+
+TEST(BodyMotion, ATankThatIsABodyHoldsItsLiquid) {
+  const std::string water = test::replaced(plane, "reynolds = 100\n", "reynolds = 100\nfroude = 1\n");
+  const std::string tank = "[[body]]\nshape = \"box\"\nsize = [1.8, 1.8]\ninside = false\nangle = \"t\"\n";
+  EXPECT_THAT(test::load_text(test::replaced(water, "lower = [-1, -1]\nupper = [1, -0.8]", "upper = [1, -0.8]") + tank)
+                  .options.warnings,
+              IsEmpty());
+  const auto without = test::load_text(water).options.warnings;
+  ASSERT_FALSE(without.empty());
+  EXPECT_THAT(without.front().text, HasSubstr("nothing holds the liquid"));
+}
+
+TEST(BodyMotion, AProbeIsCarriedByABody) {
+  const std::string probe = "[[probe]]\nname = \"p\"\nposition = [0, 0]\nmoves_with = \"slab\"\n";
+  EXPECT_EQ(test::load_text(plane + slab + "angle = \"t\"\n" + probe).options.probes.at(0).motion, 0u);
+  EXPECT_THAT(complaints(plane + slab + probe), Contains(HasSubstr("must be the name of a moving [[body]]")));
 }
 
 TEST(BodyMotion, WhatCannotMoveIsRefused) {

@@ -13,6 +13,8 @@ class FieldProbes {
   virtual PointSample sample(const Vec3& position) = 0;
   // Over the plane where the coordinate along `axis` is `position`.
   virtual PlaneSample plane_average(int axis, double position) = 0;
+  // Where bodies of a motion of the scene have taken a place that moves with them; of methods with moving bodies.
+  virtual Vec3 carried(std::size_t /*motion*/, const Vec3& start) const { return start; }
 
  protected:
   ~FieldProbes() = default;

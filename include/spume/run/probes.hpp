@@ -21,6 +21,9 @@ std::vector<SeriesColumn> probe_columns(const LoadedCase& loaded);
 // A row of it. Precondition, here and below: require_probes().
 void probe_values(const LoadedCase& loaded, Method& method, const ProbeAverages& averages, std::vector<double>& row);
 
+// Where a point of a probe is now, that was at `start`.
+Vec3 place_of(const ProbeOptions& probe, const Vec3& start, const FieldProbes& fields);
+
 // lines.csv: t, name, s, x, y, z, velocity_x, velocity_y, velocity_z and the scalars, with s the distance from the
 // start.
 std::vector<SeriesColumn> line_columns(const LoadedCase& loaded);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,9 @@ struct ProbeOptions {
   double height = 0;  // front: looks below this height
   // Point and plane: time over which the pressure is averaged; 0: the pressure of the last step.
   double average = 0;
+  // Point and line: the body that carries it, and its motion among those of the scene; none: it stands still.
+  std::string moves_with = {};
+  std::optional<std::size_t> motion = {};
 };
 
 struct Case : OptionGroups {

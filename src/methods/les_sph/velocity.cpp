@@ -99,12 +99,13 @@ void Flow::find_advecting_velocity(double dt) {
 }
 
 void Flow::make_images(double dt) {
-  // u^{n+1/2} becomes u^{n+3/2}; without centring u^n becomes u^{n+1}. The start takes an acceleration over a time that
-  // is short beside any motion that a run resolves.
+  // u^{n+1/2} becomes u^{n+3/2}; without centring u^n becomes u^{n+1}.
   const double behind = options.get<SchemeOptions>().centred ? dt / 2 : 0;
-  const double duration = dt > 0 ? dt : 1e-6 * options.time.end;
-  boundary.make_images(arrangement, particles, intermediate_position, sizes.largest_length_ratio,
-                       {.place = time + dt, .velocity = time + behind, .ahead = time + behind + duration});
+  WallTimes times{.place = time + dt, .velocity = time + behind, .ahead = time + dt + behind};
+  // The start takes the acceleration right after it, over a time that is short beside any motion that a run resolves.
+  if (const double soon = 1e-6 * options.time.end; dt == 0)
+    times = {.place = time, .velocity = time + soon, .ahead = time + 2 * soon};
+  boundary.make_images(arrangement, particles, intermediate_position, sizes.largest_length_ratio, times);
 }
 
 void Flow::find_neighbours(double dt) {

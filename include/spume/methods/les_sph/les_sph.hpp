@@ -37,6 +37,9 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   FieldProbes* field_probes() override { return this; }
   SurfaceProbes* surface_probes() override { return this; }
   PointSample sample(const Vec3& position) override { return sampler().sample(position); }
+  Vec3 carried(std::size_t motion, const Vec3& start) const override {
+    return flow_.boundary.bodies()->moving(motion).place.now(start);
+  }
   double elevation(const Vec3& position) override { return sampler().elevation(position); }
   double wetted_length(const Vec3& position) override { return sampler().wetted_length(position); }
   double front(int axis, double height) override { return sampler().front(axis, height); }
