@@ -223,6 +223,33 @@ class DamBreaks(CaseTest):
         self.assertAlmostEqual(measured["P1_peak_time"], 0.415, delta=0.008)
 
 
+class FloatingBox(CaseTest):
+    def test_the_theory_itself_has_no_error_and_a_slow_box_is_measured_right(self):
+        for slow in (1.0, 1.02):
+            folder, module = self.run_of("floating_box")
+            peak_time, peak, trough_time, trough = module.theory()
+            t = np.linspace(0, 1.2, 241)
+            # Parabolas about both extremes.
+            heave = np.where(t < 0.75 * slow, trough + 5 * (t - slow * trough_time) ** 2, peak - 5 * (t - slow * peak_time) ** 2)
+            write_table(folder / "bodies.csv", {"t": t, "body": 0 * t, "position_y": module.RISE * heave})
+            measured = module.measure({"run": Results(folder)})
+            self.assertAlmostEqual(measured["run_period_error"], slow - 1, places=6)
+            self.assertAlmostEqual(measured["run_half_period_error"], slow - 1, places=6)
+            self.assertAlmostEqual(measured["run_trough"], trough, places=6)
+
+
+class Sloshing(CaseTest):
+    def test_the_record_itself_is_on_time_and_a_late_one_is_seen(self):
+        for liquid, expected in (("oil", 2.377), ("water", 2.364)):
+            folder, module = self.run_of("sloshing")
+            t, p = module.measured(liquid)
+            write_table(folder / "probes.csv", {"t": 1.01 * t, "sensor_pressure": p})
+            measured = module.measure({f"the_{liquid}": Results(folder)})
+            self.assertAlmostEqual(measured[f"{liquid}_impact_time_error"], 0.01, places=6)
+            self.assertAlmostEqual(measured[f"{liquid}_peak"], measured[f"{liquid}_measured_peak"])
+            self.assertAlmostEqual(module.impact(t, p)[0], expected)
+
+
 class BreakingWave(CaseTest):
     def test_overhang_is_told_from_a_steep_wave_and_from_spray(self):
         module = load_measure(CASES / "breaking_wave")
