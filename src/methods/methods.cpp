@@ -4,23 +4,17 @@
 #include "spume/methods/les_sph/registration.hpp"
 #include "spume/methods/registry.hpp"
 #include "spume/methods/spectral/registration.hpp"
+#include "spume/methods/wcsph/registration.hpp"
 
 namespace spume {
-namespace {
-
-// Methods that a later version may have, for the message of a case that asks for one.
-const std::vector<std::string> unavailable{"wcsph"};
-
-}  // namespace
-
 const std::vector<Registration>& registered_methods() {
-  static const std::vector<Registration> methods{les_sph::registration(), spectral::registration(),
-                                                 gfd::registration()};
+  static const std::vector<Registration> methods{les_sph::registration(), spectral::registration(), gfd::registration(),
+                                                 wcsph::registration()};
   return methods;
 }
 
 const CaseSchema& case_schema() {
-  static const CaseSchema schema({registered_methods().begin(), registered_methods().end()}, unavailable);
+  static const CaseSchema schema({registered_methods().begin(), registered_methods().end()});
   return schema;
 }
 

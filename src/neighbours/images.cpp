@@ -299,6 +299,25 @@ void Images::build(const ImageRules& rules, const CellGrid& grid, const double* 
   if (!wall_point_.empty()) reorder(wall_point_, scratch_);
 }
 
+void Images::move(const ImageRules& rules, const std::array<const double*, 3>& position) {
+  // Along every axis a path is x -> sign x + shift.
+  for (int axis = 0; axis < rules.dimensions; ++axis) {
+    const double lower = rules.lower[axis], upper = rules.upper[axis];
+    const double* from = position[axis];
+    double* to = position_[axis].data();
+    parallel_for(source_.size(), [&, from, to, axis](std::size_t k) {
+      const int side = paths_[static_cast<std::size_t>(path_[k])].side[axis];
+      const double x = from[source_[k]];
+      if (side < 0)
+        to[k] = x;
+      else if (rules.sides[axis][side] == ImageKind::mirror)
+        to[k] = 2 * (side == 0 ? lower : upper) - x;
+      else
+        to[k] = side == 0 ? x - (upper - lower) : x + (upper - lower);
+    });
+  }
+}
+
 double Images::bytes() const {
   double total = table_.bytes() + 4.0 * static_cast<double>(source_.capacity() + path_.capacity() +
                                                             scratch_.capacity() + wall_point_.capacity());

@@ -404,19 +404,13 @@ void NeighbourList::build(const CellGrid& grid, const CellOrder& particles, cons
   origin_ = origin;
   count_.resize(n);
   first_.resize(n);
-  const double* particle[3] = {x, y, z};
   for (int axis = 0; axis < dimensions; ++axis) {
     // A vector more: loads may read past the last point.
     coordinate_[axis].resize(points_ + 1 + pair_lanes);
-    float* out = coordinate_[axis].data();
-    const double* in = particle[axis];
-    const double* image = images.position(axis);
-    const double zero = origin[axis];
-    parallel_for(n, [=](std::size_t i) { out[i] = static_cast<float>(in[i] - zero); });
-    parallel_for(m, [=](std::size_t i) { out[n + i] = static_cast<float>(image[i] - zero); });
     for (int k = 0; k <= pair_lanes; ++k)
-      out[points_ + k] = sentinel_coordinate(static_cast<float>(grid.support_radius()));
+      coordinate_[axis][points_ + k] = sentinel_coordinate(static_cast<float>(grid.support_radius()));
   }
+  move({x, y, z}, images, dimensions);
 
   // The box that no image comes near: outside it lists look at images too.
   for (int axis = 0; axis < 3; ++axis) {
@@ -433,6 +427,18 @@ void NeighbourList::build(const CellGrid& grid, const CellOrder& particles, cons
   }
   while (!(dimensions == 3 ? search<3>(grid, particles, {x, y, z}, images, own_support_radius)
                            : search<2>(grid, particles, {x, y, z}, images, own_support_radius))) {
+  }
+}
+
+void NeighbourList::move(const std::array<const double*, 3>& position, const Images& images, int dimensions) {
+  const std::size_t n = count_.size();
+  for (int axis = 0; axis < dimensions; ++axis) {
+    float* out = coordinate_[axis].data();
+    const double* in = position[axis];
+    const double* image = images.position(axis);
+    const double zero = origin_[axis];
+    parallel_for(n, [=](std::size_t i) { out[i] = static_cast<float>(in[i] - zero); });
+    parallel_for(images.size(), [=](std::size_t i) { out[n + i] = static_cast<float>(image[i] - zero); });
   }
 }
 

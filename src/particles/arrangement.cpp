@@ -18,10 +18,10 @@ CellGrid grid_of(const Domain& domain, double support_radius, std::size_t partic
 }  // namespace
 
 Arrangement::Arrangement(const Domain& domain, const Resolution& resolution, double particle_volume,
-                         std::size_t particles)
+                         std::size_t particles, double skin)
     : origin{(domain.lower[0] + domain.upper[0]) / 2, (domain.lower[1] + domain.upper[1]) / 2,
              (domain.lower[2] + domain.upper[2]) / 2},
-      grid(grid_of(domain, resolution.support_radius, particles)) {
+      grid(grid_of(domain, resolution.support_radius + skin, particles)) {
   context.list = &list;
   context.images = &images;
   context.dimensions = domain.dimensions;
@@ -41,6 +41,11 @@ void Arrangement::find_neighbours(const ParticleStore& particles, const VectorFi
   list.build(grid, table, r[0], r[1], r[2], particles.size(), images, origin,
              sizes.variable ? sizes.support_radius.data() : nullptr,
              grid.support_radius() * sizes.largest_length_ratio);
+  packed.invalidate();
+}
+
+void Arrangement::move(const std::array<const double*, 3>& at) {
+  list.move(at, images, context.dimensions);
   packed.invalidate();
 }
 

@@ -140,6 +140,13 @@ void Boundary::make_images(Arrangement& arrangement, const ParticleStore& partic
   find_image_pressure(arrangement, at, times);
 }
 
+void Boundary::move_images(Arrangement& arrangement, const std::array<const double*, 3>& at, const WallTimes& times) {
+  const double support_radius = arrangement.grid.support_radius();
+  arrangement.images.move(image_rules(support_radius), at);
+  arrangement.move(at);
+  if (features.moving_walls) find_rules(arrangement.images, support_radius, times);
+}
+
 void Boundary::find_rules(const Images& images, double support_radius, const WallTimes& times) {
   const ImageRules rules = image_rules(support_radius);
   const auto& paths = images.paths();

@@ -61,9 +61,8 @@ void groups_as_given(const Draft& draft, const Scene& scene, std::map<std::strin
 
 void groups_of_phases(const Scene& scene, std::map<std::string, std::string>& groups) {
   for (const Phase& phase : scene.phases)
-    groups["phase " + phase.name] =
-        brief(phase.density) + " kg/m3, " + brief(phase.viscosity) + " Pa s" +
-        (phase.sound_speed > 0 ? ", sound speed " + brief(phase.sound_speed) + " m/s" : ", incompressible");
+    groups["phase " + phase.name] = brief(phase.density) + " kg/m3, " + brief(phase.viscosity) + " Pa s" +
+                                    (phase.sound_speed > 0 ? ", sound speed " + brief(phase.sound_speed) + " m/s" : "");
   groups["surface tension"] = brief(scene.surface_tension) + " N/m";
   const double gravity = -scene.fluid.gravity[static_cast<std::size_t>(scene.domain.dimensions) - 1];
   groups["gravity"] = gravity > 0 ? brief(gravity) + " m/s2" : "none";

@@ -162,7 +162,11 @@ Section phase() {
       .required()
       .option("viscosity", &P::viscosity, "Pa s", not_negative(), "dynamic viscosity; 0: inviscid")
       .required()
-      .option("sound_speed", &P::sound_speed, "m/s", not_negative(), "sound speed; 0: incompressible")
+      .option("sound_speed", &P::sound_speed, "m/s", not_negative(),
+              "sound speed; 0: incompressible, or chosen by a weakly compressible method")
+      .option(
+          "exponent", &P::exponent, "1", not_negative(),
+          "exponent of the equation of state; 0: chosen by a weakly compressible method, 7 for liquids, 1.4 for gases")
       .whole_only(fills_phases);
 }
 

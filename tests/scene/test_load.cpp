@@ -70,14 +70,11 @@ TEST(Load, UnknownSectionsAndMisplacedKeysGetASuggestion) {
               ElementsAre(HasSubstr("13:2 [liquid] must be written [[liquid]]")));
 }
 
-TEST(Load, WordsAreOfferedAndOtherMethodsRefusedInWords) {
+TEST(Load, WordsAreOffered) {
   EXPECT_THAT(
       problems_of(small_case("[turbulence]\nmodel = \"smagorinski\"\n")),
       ElementsAre("15:9 turbulence.model must be \"none\", \"mixed-scale\", \"smagorinsky\", \"dynamic-shepard\" "
                   "or \"dynamic-lagrangian\", found \"smagorinski\"; did you mean \"smagorinsky\"?"));
-  EXPECT_THAT(problems_of(replaced(small_case(), "les-sph", "wcsph")),
-              ElementsAre("1:10 method \"wcsph\" is not available in this version; use \"les-sph\", \"spectral\" or "
-                          "\"gfd\""));
 }
 
 TEST(Load, SyntaxErrorsHaveTheirPlace) {

@@ -59,6 +59,49 @@ class StaticDrop(CaseTest):
         self.assertAlmostEqual(measured["ratio_1_capillary_number"], 0.1 * 0.004, places=8)
 
 
+class HydrostaticLayers(CaseTest):
+    def test_the_exact_pressure_has_no_error_and_a_linear_one_has(self):
+        folder, module = self.run_of("hydrostatic_layers")
+        at = lattice([0, 0], [1, 2], 1 / 32)
+        for scale, largest in ((1, 0), (1.01, 0.01)):
+            exact = {"pressure": lambda p, t, scale=scale: 7 + scale * module.exact_pressure(Results(folder), p[:, 1]),
+                     "phase": lambda p, t: p[:, 1] > 1,
+                     "velocity": lambda p, t: 0 * p[:, :2]}
+            t = np.linspace(0, 20, 41)
+            write_table(folder / "series.csv", series_of(t, max_speed=np.where(t < 10, 0.5, 0.004),
+                                                         centre_water_y=0.5 + 1e-4 * t, centre_air_y=1.5 + 0 * t))
+            write_snapshots(folder / "fluid.vtkhdf", [0, 20], lambda t: at, exact)
+            measured = module.measure({"viscous": Results(folder)})
+            self.assertLessEqual(measured["viscous_pressure_max"], largest + 1e-6)
+            self.assertGreaterEqual(measured["viscous_pressure_max"], largest / 2)
+            self.assertAlmostEqual(measured["viscous_speed"], 0.004)
+            self.assertAlmostEqual(measured["viscous_centre_water"], 2e-3)
+            self.assertEqual(measured["viscous_crossed"], 0)
+
+
+class TaylorGreenWcsph(CaseTest):
+    def test_the_decay_rate(self):
+        folder, module = self.run_of("taylor_green_wcsph")
+        t = np.linspace(0, 1, 101)
+        write_table(folder / "series.csv", series_of(t, kinetic_energy=0.25 * np.exp(-1.03 * 16 * np.pi**2 * 0.01 * t)))
+        measured = module.measure({"standard": Results(folder)})
+        self.assertAlmostEqual(measured["decay_rate_error"], 0.03, places=6)
+        self.assertAlmostEqual(measured["early_decay_rate_error"], 0.03, places=6)
+
+
+class DamBreakAir(CaseTest):
+    def test_the_front_and_single_particles(self):
+        folder, module = self.run_of("dam_break_air")
+        spacing = float(Results(folder).case["resolution"]["spacing"])
+        at = lattice([0, 0], [2, 1], spacing)
+        water = (at[:, 0] < 1) & (at[:, 1] < 0.5)
+        water[np.argmin(np.hypot(at[:, 0] - 1.6, at[:, 1] - 0.8))] = True
+        write_snapshots(folder / "fluid.vtkhdf", [1.5], lambda t: at, {"phase": lambda p, t: ~water})
+        measured = module.measure({"coarse": Results(folder)})
+        self.assertAlmostEqual(measured["coarse_strays"], 1 / len(at))
+        self.assertAlmostEqual(measured["coarse_front"], 1, delta=spacing)
+
+
 class RisingBubble(CaseTest):
     def test_the_reference_has_no_error_and_a_slower_bubble_has(self):
         folder, module = self.run_of("rising_bubble_2d")

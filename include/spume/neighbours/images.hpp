@@ -70,6 +70,10 @@ class Images {
   void build(const ImageRules& rules, const CellGrid& grid, const double* x, const double* y, const double* z,
              std::size_t n, const WallPointView* walls = nullptr);
 
+  // The same images where the particles have gone since, and the sides. Precondition: no solid boxes and no wall
+  // points.
+  void move(const ImageRules& rules, const std::array<const double*, 3>& position);
+
   std::size_t size() const { return source_.size(); }
   const std::int32_t* source() const { return source_.data(); }
   const double* position(int axis) const { return position_[axis].data(); }

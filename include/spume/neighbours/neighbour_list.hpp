@@ -74,6 +74,10 @@ class NeighbourList {
              std::size_t n, const Images& images, const std::array<double, 3>& origin, const float* own_support_radius,
              double largest_support_radius);
 
+  // New coordinates of the points; the lists stay as they are. They hold who came within the support radius where they
+  // were built: less twice what a point has moved since, they still do.
+  void move(const std::array<const double*, 3>& position, const Images& images, int dimensions);
+
   std::size_t particles() const { return count_.size(); }
   std::size_t points() const { return points_; }  // particles and images
   std::int32_t sentinel() const { return static_cast<std::int32_t>(points_); }

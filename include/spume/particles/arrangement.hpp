@@ -13,8 +13,10 @@
 namespace spume {
 
 struct Arrangement {
-  // Cells cover the domain and one support radius around it. `particles`: how many there will be, about.
-  Arrangement(const Domain& domain, const Resolution& resolution, double particle_volume, std::size_t particles);
+  // Cells cover the domain and one support radius around it. `particles`: how many there will be, about. `skin`: how
+  // much farther than the support the lists reach; they hold until a particle has moved by half of it (move()).
+  Arrangement(const Domain& domain, const Resolution& resolution, double particle_volume, std::size_t particles,
+              double skin = 0);
   Arrangement(const Arrangement&) = delete;
   Arrangement& operator=(const Arrangement&) = delete;
 
@@ -30,6 +32,8 @@ struct Arrangement {
   void sort(ParticleStore& particles, const VectorField& at);
   // Lists of neighbours at `at`, within the support of each particle.
   void find_neighbours(const ParticleStore& particles, const VectorField& at, const ParticleSizes& sizes);
+  // Particles and images are at new places, the lists are those of the old ones; Boundary::move_images() does so.
+  void move(const std::array<const double*, 3>& at);
 
   // Sweeps see particles of these sizes from now on; null: all alike.
   void set_sizes(const ParticleSizes* sizes);

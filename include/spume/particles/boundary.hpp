@@ -80,6 +80,9 @@ class Boundary {
   // that hardly differ and images that stand for places alone.
   void make_images(Arrangement& arrangement, const ParticleStore& particles, const VectorField& at,
                    double largest_length_ratio, const WallTimes& times, bool find_wet = true);
+  // The images that there are, of particles that have moved to `at`, for walls at `next_walls`; then the arrangement
+  // there. Precondition: as of Images::move().
+  void move_images(Arrangement& arrangement, const std::array<const double*, 3>& at, const WallTimes& times);
   ImageRules image_rules(double support_radius) const;
 
   // How images change velocities: under friction, and with walls holding the liquid back along their normals alone,

@@ -130,7 +130,8 @@ struct Phase {
   std::string name;
   double density = 0;
   double viscosity = 0;    // dynamic
-  double sound_speed = 0;  // 0: incompressible
+  double sound_speed = 0;  // 0: incompressible, or left to the method
+  double exponent = 0;     // of the equation of state; 0: left to the method
 };
 
 // Liquid particles at the start, one array per component (z arrays are empty in two dimensions).

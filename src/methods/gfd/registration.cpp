@@ -21,10 +21,15 @@ void check(Draft& draft, Problems& problems) {
   if (draft.phases.size() > most_phases)
     problems.add(*draft.node("phase.0"), "the case has " + std::to_string(draft.phases.size()) + " phases; at most " +
                                              std::to_string(most_phases) + " are possible");
-  for (std::size_t k = 0; k < draft.phases.size(); ++k)
-    if (draft.phases[k].sound_speed > 0)
-      problems.add(*draft.node("phase." + std::to_string(k) + ".sound_speed"),
-                   "method \"gfd\" is incompressible; remove sound_speed, or use a weakly compressible method");
+  for (std::size_t k = 0; k < draft.phases.size(); ++k) {
+    const auto refuse = [&](const char* key) {
+      problems.add(
+          *draft.node("phase." + std::to_string(k) + "." + key),
+          "method \"gfd\" is incompressible; remove " + std::string(key) + ", or use a weakly compressible method");
+    };
+    if (draft.phases[k].sound_speed > 0) refuse("sound_speed");
+    if (draft.phases[k].exponent > 0) refuse("exponent");
+  }
 }
 
 // Regions may lie below others or be cut away by solids: only the particles tell.

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// The state of a weakly compressible flow and the stages of its step, in the order of step.cpp. Numbers refer to the
+// README of the method.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "spume/methods/wcsph/options.hpp"
+#include "spume/operators/wcsph_sums.hpp"
+#include "spume/particles/arrangement.hpp"
+#include "spume/particles/boundary.hpp"
+#include "spume/scene/case.hpp"
+
+namespace spume::wcsph {
+
+// The equation of state (3) of a phase, p = B ((1 + s)^gamma - 1) with s = rho / rho_0 - 1 and B = rho_0 c^2 / gamma.
+struct PhaseLaw {
+  double density = 0, viscosity = 0, sound_speed = 0, exponent = 7;
+  double stiffness() const { return density * sound_speed * sound_speed / exponent; }
+  double pressure(double excess) const;
+  double excess(double pressure) const;
+  double local_sound_speed(double excess) const;
+};
+
+// What a scene needs. Stages and arrays exist by these alone.
+struct Features : BoundaryFeatures {
+  explicit Features(const LoadedCase& loaded);
+  bool several = false;  // phases
+  bool gravity = false;  // across sides
+  bool viscosity = false;
+  bool friction = false;  // at no-slip walls
+  bool diffusion = false, shepard = false;
+};
+
+struct Flow {
+  explicit Flow(const LoadedCase& loaded_case);
+  Flow(const Flow&) = delete;
+  Flow& operator=(const Flow&) = delete;
+
+  const LoadedCase& loaded;
+  const Case& options;
+  const Scene& scene;
+  const Features features;
+  const Resolution resolution;
+  const int dimensions;
+  const double skin;
+  const double expected_speed;
+  const std::vector<PhaseLaw> laws;
+  const double background;
+  const Vec3 wall_gravity;  // across sides: the pressure at walls follows it
+
+  // --- State between steps: saved.
+  double time = 0;
+  std::int64_t steps = 0;
+  ParticleStore particles;
+  VectorField acceleration{};  // at the positions of the state
+  VectorField listed{};        // where the lists were made
+  Array<double>* excess = nullptr;
+  Array<std::int64_t>* phase_number = nullptr;
+  Boundary boundary;
+  double signal = 0;  // largest sum of sound speed and speed
+  double largest_speed = 0;
+
+  // --- Lists of neighbours at `listed`, seen from where the particles are.
+  Arrangement arrangement;
+  ParticleSizes sizes;  // all alike
+  bool has_lists = false;
+  std::int64_t list_builds = 0;
+
+  // --- Leased within a step.
+  VectorScratch half_velocity, place;
+  Array<double> next_excess, pressure;
+  Array<float> volume, reduced_excess, rate, diffusion, density, phase, viscosity;
+  FloatVectorScratch viscous_force, pressure_force;
+
+  std::size_t size() const { return particles.size(); }
+  std::size_t phase_of(std::size_t i) const { return static_cast<std::size_t>((*phase_number)[i]); }
+  const PhaseLaw& law(std::size_t i) const { return laws[phase_of(i)]; }
+  double mass(std::size_t i) const { return particles.volume * law(i).density; }
+  double kinetic_energy() const;
+  double potential_energy() const;  // across axes with sides
+  double compression_energy() const;
+  double largest_excess(std::size_t phase) const;
+  double largest_kinematic_viscosity() const;
+  std::string laws_in_words() const;
+
+  // The stages.
+  void keep_lists(double dt);
+  void drift(double dt);            // (5), to the middle of the step
+  void find_rates();                // (1), and the viscous part of (2)
+  void advance_density(double dt);  // (1), (3), and (5) to the end of the step
+  void filter_density();
+  void find_pressure_force();  // (2), (4)
+  void accept(double dt);      // (2)
+
+  double leased_bytes() const;
+
+ private:
+  void start_density();
+  void build_lists();
+  bool lists_hold(double dt) const;
+  void move_images(double t);
+  void lease_properties();
+  void find_signal();
+};
+
+}  // namespace spume::wcsph

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Options of weakly compressible SPH. The sound speed and the exponent of a phase stand in [[phase]].
+#pragma once
+
+#include "spume/scene/option.hpp"
+
+namespace spume::wcsph {
+
+// How the density is smoothed within each phase: operators/wcsph_sums.hpp.
+enum class DensityFilter { delta, shepard, none };
+
+struct CompressibilityOptions {
+  double max_speed = 0;             // that the flow will reach; 0: estimated
+  double background_pressure = -1;  // negative: chosen by the scene
+  double repulsion = 0.04;          // of Monaghan (2013), who takes 0.08
+  DensityFilter density_filter = DensityFilter::delta;
+  double diffusion = 0.1;    // delta of Molteni and Colagrossi (2009)
+  int filter_interval = 25;  // steps, of the Shepard filter
+};
+
+struct ListOptions {
+  double skin = 0.4;  // in spacings
+};
+
+Section compressibility_section();
+Section list_section();
+
+}  // namespace spume::wcsph

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// Multiphase weakly compressible SPH (Meister and Rauch 2015, Monaghan 2013): what the driver knows of it.
+#pragma once
+
+#include <vector>
+
+#include "spume/methods/method.hpp"
+#include "spume/methods/wcsph/flow.hpp"
+#include "spume/particles/output_fields.hpp"
+#include "spume/particles/reports.hpp"
+
+namespace spume::wcsph {
+
+// The stages of a flow, which outlives the plan.
+Plan make_plan(Flow& flow);
+
+const std::vector<OutputField<Flow>>& output_fields();
+
+class Wcsph final : public Method {
+ public:
+  explicit Wcsph(const LoadedCase& loaded);
+
+  const std::vector<Stage>& plan() const override { return plan_.stages(); }
+  std::vector<ArrayInfo> arrays() const override;
+  std::size_t particle_count() const override { return flow_.size(); }
+  double time() const override { return flow_.time; }
+  std::int64_t step_count() const override { return flow_.steps; }
+  StepLimit step_limit() const override;
+  void step(double dt, Ledger& ledger) override;
+  std::vector<SeriesColumn> series_columns() const override { return series_.columns(); }
+  void series_values(std::span<double> values) override { series_.values(values); }
+  std::vector<ParticleSnapshot> snapshot() override;
+  // A phase that leaves the range of its sound speed.
+  std::vector<Remark> take_remarks() override;
+  void save(StateWriter& writer) const override;
+  void load(StateReader& reader) override;
+
+  const Flow& flow() const { return flow_; }
+
+ private:
+  void declare_series();
+
+  struct PhaseSums {
+    double mass = 0;
+    Vec3 momentum{}, moment{};
+  };
+  PhaseSums sums_of(std::size_t phase) const;
+
+  Flow flow_;
+  Plan plan_;
+  SeriesTable series_;
+  SnapshotTable snapshot_;
+  SavedNumbers saved_{"scalars"};
+  std::vector<PhaseSums> row_sums_;  // of the row of the series that is being read
+  std::vector<bool> remarked_;       // of the phases
+};
+
+}  // namespace spume::wcsph

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// The two sums of multiphase weakly compressible SPH. With d = r_j - r_i and g = -V F(q) sigma / h^(d+2) >= 0, the
+// particle volume times the kernel gradient is V grad_i W_ij = g d; v = V_j / V is the volume of a particle over that
+// at rest, s = rho / rho_0 - 1 its density excess.
+//
+//   rate of density   (d ln rho / dt)_i = - sum_j v_j g (u_j - u_i) . d
+//   its diffusion     sum_j 2 v_j g (s'_j - s'_i), j of the phase of i, s' the excess less its hydrostatic part
+//   viscous force     V_i (rho du / dt)_i / V_i = sum_j 2 v_j g mu_ij (u_j - u_i), mu_ij the harmonic mean
+//   pressure force    (rho du / dt)_i = - sum_j v_j g (P_i + P_j + R_ij) d,
+//                     R_ij = eps |rho0_i - rho0_j| / (rho0_i + rho0_j) |P_i + P_j|   (Monaghan 2013)
+//
+// The diffusion is that of Molteni and Colagrossi (2009) without the hydrostatic part (Fourtakas et al. 2019); the
+// viscous force that of Morris et al. (1997). Forces times V_i are antisymmetric. Results do not depend on the thread
+// count. Particles are of one size and the kernel is Wendland's C2; throws std::logic_error otherwise.
+#pragma once
+
+#include <array>
+
+#include "spume/core/vec3.hpp"
+#include "spume/operators/image_values.hpp"
+#include "spume/operators/pair_sweep.hpp"
+
+namespace spume {
+
+// Per particle. Images have the values of their sources, and velocities by the rules.
+struct ContinuityFields {
+  std::array<const double*, 3> velocity{};
+  const VelocityImageRule* mirror = nullptr;    // of rates of volume
+  const VelocityImageRule* friction = nullptr;  // of the viscous force; null: the same
+  const float* volume = nullptr;                // v
+  const float* excess = nullptr;                // s'
+  const float* phase = nullptr;                 // its number; null: one phase
+  const float* viscosity = nullptr;             // mu; null: inviscid
+};
+struct ContinuityOut {
+  float* rate = nullptr;            // d ln rho / dt
+  float* diffusion = nullptr;       // the sum above
+  std::array<float*, 3> viscous{};  // the sum above; null without viscosity
+};
+void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, const ContinuityFields& fields,
+                      const ContinuityOut& out);
+
+struct PressureFields {
+  const double* pressure = nullptr;
+  const float* volume = nullptr;   // v
+  const float* density = nullptr;  // rho_0
+  bool several = false;            // phases: repulsion between them
+  float repulsion = 0;             // eps
+  // Images at mirrors continue the pressure of their source by density gravity . (r_image - r_source), as Adami et al.
+  // (2012) do at walls.
+  Vec3 gravity{};
+  std::array<const double*, 3> position{};
+};
+// out: (rho du/dt)_i by pressure.
+void pressure_force_sweep(const SweepContext& context, PackedNeighbours& packed, const PressureFields& fields,
+                          const std::array<float*, 3>& out);
+
+// The Shepard filter of the density over the particles of the same phase, itself included:
+//   out = sum_j m_j W / sum_j V_j W / rho_0 - 1 = sum_j W (1 - v_j) / sum_j v_j W.
+void density_filter_sweep(const SweepContext& context, PackedNeighbours& packed, const float* volume,
+                          const float* phase, float* out);
+
+}  // namespace spume

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+// The stages of a step.
+#include <cmath>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+#include "spume/methods/wcsph/flow.hpp"
+
+namespace spume::wcsph {
+namespace {
+
+// A density that has changed by half is that of no weakly compressible flow.
+constexpr double largest_excess_of_a_flow = 0.5;
+
+}  // namespace
+
+// Where the particles will be at the end of the step is known: r + dt (u + dt/2 a).
+bool Flow::lists_hold(double dt) const {
+  const double moved2 = parallel_max(size(), 0.0, [&](std::size_t i) {
+    double sum = 0;
+    for (int axis = 0; axis < dimensions; ++axis) {
+      const double u = (*particles.velocity[axis])[i] + dt / 2 * (*acceleration[axis])[i];
+      const double moved = (*particles.position[axis])[i] + dt * u - (*listed[axis])[i];
+      sum += moved * moved;
+    }
+    return sum;
+  });
+  return moved2 <= skin * skin / 4;
+}
+
+void Flow::build_lists() {
+  arrangement.sort(particles, listed);
+  boundary.next_walls = boundary.walls;
+  boundary.make_images(arrangement, particles, listed, 1, {time, time, time});
+  arrangement.find_neighbours(particles, listed, sizes);
+  has_lists = true;
+  ++list_builds;
+}
+
+// A restored state has the places of its lists: the same lists follow, with their neighbours in the same order.
+void Flow::keep_lists(double dt) {
+  if (!has_lists && steps > 0) build_lists();
+  if (has_lists && lists_hold(dt)) return;
+  parallel_for(size(), [&](std::size_t i) {
+    Vec3 r = vector_at(particles.position, dimensions, i);
+    boundary.apply_walls(boundary.walls, r, nullptr);
+    for (int axis = 0; axis < dimensions; ++axis) (*listed[axis])[i] = (*particles.position[axis])[i] = r[axis];
+  });
+  build_lists();
+  if (lists_hold(dt)) return;
+  StepFailure::Details details;
+  details.cause = "a particle would leave its lists of neighbours in one step";
+  details.option = "time.courant";
+  details.value = largest_speed;
+  throw StepFailure(details);
+}
+
+void Flow::move_images(double t) {
+  boundary.move_images(arrangement, read(place), {t, t, t});
+}
+
+void Flow::drift(double dt) {
+  ScratchPool& scratch = particles.scratch();
+  scratch.lease(half_velocity, dimensions, size());
+  scratch.lease(place, dimensions, size());
+  parallel_for(size(), [&](std::size_t i) {
+    for (int axis = 0; axis < dimensions; ++axis) {
+      half_velocity[axis][i] = (*particles.velocity[axis])[i] + dt / 2 * (*acceleration[axis])[i];
+      place[axis][i] = (*particles.position[axis])[i] + dt / 2 * half_velocity[axis][i];
+    }
+  });
+  move_images(time + dt / 2);
+}
+
+void Flow::lease_properties() {
+  ScratchPool& scratch = particles.scratch();
+  scratch.lease(volume, size());
+  scratch.lease(reduced_excess, size());
+  scratch.lease(density, size());
+  if (features.several) scratch.lease(phase, size());
+  if (features.viscosity) scratch.lease(viscosity, size());
+  parallel_for(size(), [&](std::size_t i) {
+    const PhaseLaw& own = law(i);
+    double head = 0;
+    for (int axis = 0; axis < dimensions; ++axis)
+      head += wall_gravity[axis] * (place[axis][i] - arrangement.origin[axis]);
+    volume[i] = static_cast<float>(1 / (1 + (*excess)[i]));
+    reduced_excess[i] = static_cast<float>((*excess)[i] - head / (own.sound_speed * own.sound_speed));
+    density[i] = static_cast<float>(own.density);
+    if (features.several) phase[i] = static_cast<float>(phase_of(i));
+    if (features.viscosity) viscosity[i] = static_cast<float>(own.viscosity);
+  });
+}
+
+void Flow::find_rates() {
+  lease_properties();
+  ScratchPool& scratch = particles.scratch();
+  scratch.lease(rate, size());
+  scratch.lease(diffusion, size());
+  if (features.viscosity) scratch.lease(viscous_force, dimensions, size());
+  continuity_sweep(arrangement.context, arrangement.packed,
+                   {.velocity = read(half_velocity),
+                    .mirror = &boundary.volume_rule(),
+                    .friction = features.friction ? &boundary.velocity_rule() : nullptr,
+                    .volume = volume.data(),
+                    .excess = reduced_excess.data(),
+                    .phase = features.several ? phase.data() : nullptr,
+                    .viscosity = features.viscosity ? viscosity.data() : nullptr},
+                   {.rate = rate.data(), .diffusion = diffusion.data(), .viscous = write(viscous_force)});
+}
+
+void Flow::advance_density(double dt) {
+  ScratchPool& scratch = particles.scratch();
+  scratch.lease(next_excess, size());
+  scratch.lease(pressure, size());
+  const double smoothing =
+      features.diffusion ? options.get<CompressibilityOptions>().diffusion * resolution.smoothing_length : 0;
+  parallel_for(size(), [&](std::size_t i) {
+    const PhaseLaw& own = law(i);
+    // d rho / dt = rho D by the midpoint rule: rho' = rho (1 + dt D / 2) / (1 - dt D / 2).
+    const double grown = dt / 2 * rate[i];
+    double s = (*excess)[i];
+    s += (1 + s) * 2 * grown / (1 - grown) + dt * smoothing * own.sound_speed * diffusion[i];
+    next_excess[i] = s;
+    pressure[i] = own.pressure(s) + background;
+    volume[i] = static_cast<float>(1 / (1 + s));
+    Vec3 r{}, u{};
+    for (int axis = 0; axis < dimensions; ++axis) {
+      u[axis] = half_velocity[axis][i];
+      r[axis] = place[axis][i] + dt / 2 * u[axis];
+    }
+    const Vec3 before = r;
+    boundary.apply_walls(boundary.walls, r, &u);
+    for (int axis = 0; axis < dimensions; ++axis) {
+      // Particles go round periodic sides when lists are made.
+      place[axis][i] = scene.domain.periodic(axis) ? before[axis] : r[axis];
+      half_velocity[axis][i] = u[axis];
+    }
+  });
+  scratch.release(rate);
+  scratch.release(diffusion);
+  scratch.release(reduced_excess);
+  move_images(time + dt);
+}
+
+void Flow::filter_density() {
+  ScratchPool& scratch = particles.scratch();
+  ScratchArray<float> filtered(scratch, size());
+  if (!features.several) {
+    scratch.lease(phase, size());
+    phase.fill(0.0F);
+  }
+  density_filter_sweep(arrangement.context, arrangement.packed, volume.data(), phase.data(), filtered.data());
+  parallel_for(size(), [&](std::size_t i) {
+    next_excess[i] = filtered[i];
+    pressure[i] = law(i).pressure(filtered[i]) + background;
+    volume[i] = 1 / (1 + filtered[i]);
+  });
+}
+
+void Flow::find_pressure_force() {
+  ScratchPool& scratch = particles.scratch();
+  scratch.lease(pressure_force, dimensions, size());
+  pressure_force_sweep(arrangement.context, arrangement.packed,
+                       {.pressure = pressure.data(),
+                        .volume = volume.data(),
+                        .density = density.data(),
+                        .several = features.several,
+                        .repulsion = static_cast<float>(options.get<CompressibilityOptions>().repulsion),
+                        .gravity = wall_gravity,
+                        .position = read(place)},
+                       write(pressure_force));
+}
+
+void Flow::accept(double dt) {
+  ScratchPool& scratch = particles.scratch();
+  const double worst = parallel_max(size(), 0.0, [&](std::size_t i) {
+    double sum = std::abs(next_excess[i]) / largest_excess_of_a_flow;
+    for (int axis = 0; axis < dimensions; ++axis)
+      if (!std::isfinite(pressure_force[axis][i])) sum = NAN;
+    return sum;
+  });
+  if (!(worst <= 1)) {
+    StepFailure::Details details;
+    details.cause =
+        std::isfinite(worst) ? "the density has changed by more than half" : "a force is not a finite number";
+    details.option = "compressibility.max_speed";
+    details.value = worst * largest_excess_of_a_flow;
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (std::abs(next_excess[i]) <= largest_excess_of_a_flow && std::isfinite(pressure_force[0][i])) continue;
+      details.particle = (*particles.identifier)[i];
+      for (int axis = 0; axis < dimensions; ++axis) details.position[axis] = (*particles.position[axis])[i];
+      break;
+    }
+    throw StepFailure(details);
+  }
+  parallel_blocks(size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    const VectorExpression force = scene.body_force ? scene.body_force->clone() : VectorExpression();
+    for (std::size_t i = first; i < last; ++i) {
+      Vec3 a = scene.fluid.gravity;
+      if (scene.body_force) {
+        const Vec3 f = force(vector_at(place, dimensions, i), time + dt);
+        for (std::size_t axis = 0; axis < 3; ++axis) a[axis] += f[axis];
+      }
+      const double specific_volume = 1 / (law(i).density * (1 + next_excess[i]));
+      for (int axis = 0; axis < dimensions; ++axis) {
+        const double viscous = features.viscosity ? viscous_force[axis][i] : 0.0F;
+        a[axis] += specific_volume * (double{pressure_force[axis][i]} + viscous);
+        (*acceleration[axis])[i] = a[axis];
+        (*particles.position[axis])[i] = place[axis][i];
+        (*particles.velocity[axis])[i] = half_velocity[axis][i] + dt / 2 * a[axis];
+      }
+      (*excess)[i] = next_excess[i];
+    }
+  });
+  for (auto* vector : {&half_velocity, &place}) scratch.release(*vector);
+  for (auto* vector : {&viscous_force, &pressure_force}) scratch.release(*vector);
+  for (auto* array : {&next_excess, &pressure}) scratch.release(*array);
+  for (auto* array : {&volume, &density, &phase, &viscosity}) scratch.release(*array);
+  boundary.accept();
+  time += dt;
+  if (dt > 0) ++steps;
+  find_signal();
+}
+
+}  // namespace spume::wcsph

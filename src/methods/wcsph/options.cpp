@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#include "spume/methods/wcsph/options.hpp"
+
+namespace spume::wcsph {
+
+Section compressibility_section() {
+  using C = CompressibilityOptions;
+  return section<C>("compressibility")
+      .option(
+          "max_speed", &C::max_speed, "m/s", not_negative(),
+          "largest speed that is expected; sound is ten times as fast; 0: from gravity, forces and first velocities")
+      .option("background_pressure", &C::background_pressure, "Pa", any_value,
+              "added to every pressure; negative: rho max_speed^2 in scenes without gravity and free surface, else 0")
+      .option("repulsion", &C::repulsion, "1", between(0, 0.2), "between phases, of the sum of their pressures")
+      .word("density_filter", &C::density_filter,
+            {{"delta", DensityFilter::delta}, {"shepard", DensityFilter::shepard}, {"none", DensityFilter::none}},
+            "smoothing of the density within each phase: diffusion, or the kernel average every so many steps")
+      .option("diffusion", &C::diffusion, "1", between(0, 0.5), "coefficient of the diffusion of density")
+      .option("filter_interval", &C::filter_interval, "", between(1, 10000), "steps between kernel averages");
+}
+
+Section list_section() {
+  return section<ListOptions>("lists").option("skin", &ListOptions::skin, "spacing", above_up_to(0, 2),
+                                              "how much farther than the kernel the lists of neighbours reach");
+}
+
+}  // namespace spume::wcsph

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "spume/methods/wcsph/registration.hpp"
+
+#include <numbers>
+
+#include "spume/methods/wcsph/wcsph.hpp"
+#include "spume/scene/document.hpp"
+#include "spume/scene/option.hpp"
+
+namespace spume::wcsph {
+namespace {
+
+void check(Draft& draft, Problems& problems) {
+  if (draft.options.resolution.kernel != KernelKind::wendland_c2)
+    problems.add(
+        *draft.node("resolution.kernel"),
+        "method \"wcsph\" takes resolution.kernel = \"wendland-c2\" alone, under which particles do not pair up; "
+        "remove the key");
+  if (draft.surface_tension > 0)
+    problems.add(*draft.node("interface.surface_tension"),
+                 "method \"wcsph\" has no surface tension; expected 0: remove the key, or use method \"gfd\"");
+  if (!draft.solids.empty())
+    problems.add(
+        *draft.node("solid.0"),
+        "method \"wcsph\" knows the sides of the domain as walls, not [[solid]]; remove it, or use \"les-sph\"");
+}
+
+void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
+  std::vector<std::size_t> count(scene.phases.size());
+  for (const std::int32_t phase : scene.particles.phase) ++count[static_cast<std::size_t>(phase)];
+  for (std::size_t n = 0; n < count.size(); ++n)
+    if (count[n] == 0)
+      problems.add(*draft.node("phase." + std::to_string(n)),
+                   "phase '" + scene.phases[n].name +
+                       "' fills nothing: no [[region]] of it is left; add a region behind the others, or remove it");
+  const auto up = static_cast<std::size_t>(scene.domain.dimensions) - 1;
+  for (const auto& [name, velocity] : draft.wall_velocity) {
+    const std::size_t axis = name == "left" || name == "right" ? 0 : name == "front" || name == "back" ? 1 : up;
+    for (const Side& side : scene.domain.sides[axis])
+      if (side.velocity && side.velocity->component[axis] != nullptr) {
+        problems.add(*draft.node("domain.wall_velocity." + name),
+                     "the wall moves along its normal; method \"wcsph\" takes walls that slide along themselves: set "
+                     "that component to \"0\"");
+        break;
+      }
+  }
+}
+
+// Fields, lists of neighbours and sweep records: the arrays of runs of 40 000 particles.
+double bytes_per_particle(const Case& options, int dimensions) {
+  const double reach = support_ratio(options.resolution) + options.get<ListOptions>().skin;
+  const double neighbours = std::numbers::pi * reach * reach * (dimensions == 3 ? 4.0 / 3 * reach : 1);
+  return (dimensions == 3 ? 380 : 280) + 4.63 * neighbours;
+}
+
+// Of the smoothing length over the sum of sound speed and speed.
+constexpr double standard_courant = 0.6;
+
+}  // namespace
+
+Registration registration() {
+  Registration method;
+  method.name = "wcsph";
+  method.description = "flow of several phases by weakly compressible SPH, with repulsion between them";
+  method.fills_phases = true;
+  method.sections = {compressibility_section(), list_section()};
+  method.check = check;
+  method.check_scene = check_scene;
+  method.bytes_per_particle = bytes_per_particle;
+  method.default_courant = [](const Case&, const Scene&) { return standard_courant; };
+  method.default_courant_in_words = "of wcsph " + brief(standard_courant);
+  method.output_fields = [](const Case& options) { return field_infos(output_fields(), options); };
+  method.make = [](const LoadedCase& loaded) { return std::make_unique<Wcsph>(loaded); };
+  return method;
+}
+
+}  // namespace spume::wcsph

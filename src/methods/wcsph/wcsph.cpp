@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "spume/methods/wcsph/wcsph.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+#include "spume/particles/step_limits.hpp"
+#include "spume/scene/refusal.hpp"
+
+namespace spume::wcsph {
+namespace {
+
+// Of h^2 / nu and of sqrt(h / g): Morris et al. (1997).
+constexpr double viscous_limit = 0.125, force_limit = 0.25;
+// Three times the change of density that the sound speeds are chosen for, 1 % in liquids and, with equal stiffness, 5 %
+// in air: impacts of a dam break reach 4 % in water.
+constexpr double liquid_range = 0.03, gas_range = 0.15;
+// The exponents of liquids are 4 to 7, those of gases 1 to 1.7.
+constexpr double least_liquid_exponent = 2;
+
+const char* const axis_name[3] = {"x", "y", "z"};
+
+double range_of(const PhaseLaw& law) {
+  return law.exponent < least_liquid_exponent ? gas_range : liquid_range;
+}
+
+}  // namespace
+
+const std::vector<OutputField<Flow>>& output_fields() {
+  static const std::vector<OutputField<Flow>> fields{
+      {"velocity", always, [](const Flow& f) { return f.particles.velocity; }},
+      {"pressure", always, [](const Flow& f, std::size_t i) { return f.law(i).pressure((*f.excess)[i]); }},
+      {"phase", always, [](const Flow& f) { return f.phase_number; }},
+      {"id", always, [](const Flow& f) { return f.particles.identifier; }},
+      {"density", on_request, [](const Flow& f, std::size_t i) { return f.law(i).density * (1 + (*f.excess)[i]); }},
+      {"acceleration", on_request, [](const Flow& f) { return f.acceleration; }}};
+  return fields;
+}
+
+Wcsph::Wcsph(const LoadedCase& loaded)
+    : flow_(loaded),
+      plan_(make_plan(flow_)),
+      snapshot_(snapshot_table(output_fields(), loaded.options, flow_)),
+      row_sums_(flow_.laws.size()),
+      remarked_(flow_.laws.size(), false) {
+  for (const PhaseLaw& law : flow_.laws)
+    if (!(law.sound_speed > 0))
+      throw refusal(loaded.options, "compressibility.max_speed",
+                    "nothing tells how fast the flow will be: it starts at rest, without gravity, forces and moving "
+                    "walls; set compressibility.max_speed");
+  declare_series();
+  saved_.add(flow_.time).add(flow_.steps).add(flow_.signal).add(flow_.largest_speed).add(flow_.boundary.wall_speed);
+}
+
+void Wcsph::step(double dt, Ledger& ledger) {
+  if (flow_.steps == 0 && !flow_.has_lists) plan_.run_start(static_cast<double>(flow_.size()), ledger);
+  plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
+}
+
+StepLimit Wcsph::step_limit() const {
+  const TimeOptions& options = flow_.options.time;
+  const double h = flow_.resolution.smoothing_length;
+  SmallestStep step;
+  step.bound(options.courant * h / (flow_.signal + flow_.boundary.wall_speed), "courant");
+  const double nu = flow_.largest_kinematic_viscosity();
+  if (nu > 0) step.bound(viscous_limit * h * h / nu, "viscous");
+  double gravity2 = 0;
+  for (const double g : flow_.scene.fluid.gravity) gravity2 += g * g;
+  if (gravity2 > 0) step.bound(force_limit * std::sqrt(h / std::sqrt(gravity2)), "body force");
+  if (options.max_step > 0) step.bound(options.max_step, "max_step");
+  return step.limit();
+}
+
+Wcsph::PhaseSums Wcsph::sums_of(std::size_t phase) const {
+  return parallel_reduce(
+      flow_.size(), PhaseSums{},
+      [&](std::size_t first, std::size_t last) {
+        PhaseSums sums;
+        for (std::size_t i = first; i < last; ++i) {
+          if (flow_.phase_of(i) != phase) continue;
+          const double mass = flow_.mass(i);
+          sums.mass += mass;
+          for (int axis = 0; axis < flow_.dimensions; ++axis) {
+            sums.momentum[axis] += mass * (*flow_.particles.velocity[axis])[i];
+            sums.moment[axis] += mass * (*flow_.particles.position[axis])[i];
+          }
+        }
+        return sums;
+      },
+      [](PhaseSums a, const PhaseSums& b) {
+        a.mass += b.mass;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          a.momentum[axis] += b.momentum[axis];
+          a.moment[axis] += b.moment[axis];
+        }
+        return a;
+      });
+}
+
+void Wcsph::declare_series() {
+  const Flow& flow = flow_;
+  series_.prepare = [this] {
+    for (std::size_t n = 0; n < row_sums_.size(); ++n) row_sums_[n] = sums_of(n);
+  };
+  series_.add("kinetic_energy", "rho u^2 / 2, integral", [&flow] { return flow.kinetic_energy(); });
+  if (flow.features.gravity)
+    series_.add("potential_energy", "rho g z, integral", [&flow] { return flow.potential_energy(); });
+  series_.add("compression_energy", "rho e, integral", [&flow] { return flow.compression_energy(); });
+  series_.add("max_speed", "speed", [&flow] { return flow.largest_speed; });
+  for (std::size_t n = 0; n < row_sums_.size(); ++n) {
+    const std::string& name = flow.scene.phases[n].name;
+    series_.add("density_change_" + name, "1, largest", [&flow, n] { return flow.largest_excess(n); });
+    for (int axis = 0; axis < flow.dimensions; ++axis)
+      series_.add("centre_" + name + "_" + axis_name[axis], "length",
+                  [this, n, axis] { return row_sums_[n].moment[axis] / row_sums_[n].mass; });
+    for (int axis = 0; axis < flow.dimensions; ++axis)
+      series_.add("velocity_" + name + "_" + axis_name[axis], "length/time, mean",
+                  [this, n, axis] { return row_sums_[n].momentum[axis] / row_sums_[n].mass; });
+  }
+}
+
+std::vector<ParticleSnapshot> Wcsph::snapshot() {
+  return {snapshot_.take("fluid", flow_.size(), flow_.particles.position, flow_.options.output.fields)};
+}
+
+std::vector<Remark> Wcsph::take_remarks() {
+  std::vector<Remark> remarks;
+  for (std::size_t n = 0; n < flow_.laws.size(); ++n) {
+    if (remarked_[n]) continue;
+    const double change = flow_.largest_excess(n), range = range_of(flow_.laws[n]);
+    if (change <= range) continue;
+    remarked_[n] = true;
+    remarks.push_back({"the density of " + flow_.scene.phases[n].name + " has changed by " + brief(100 * change) +
+                       " %, where " + brief(100 * range) +
+                       " % is what its sound speed allows for: raise compressibility.max_speed above " +
+                       brief(flow_.expected_speed) + " m/s"});
+  }
+  return remarks;
+}
+
+std::vector<ArrayInfo> Wcsph::arrays() const {
+  std::vector<ArrayInfo> list = particle_arrays(flow_.particles, flow_.arrangement);
+  list.push_back({"leased within a step", flow_.leased_bytes()});
+  return list;
+}
+
+void Wcsph::save(StateWriter& writer) const {
+  const std::int64_t count[] = {static_cast<std::int64_t>(flow_.size())};
+  saved_.save(writer);
+  writer.i64("counters", count);
+  flow_.boundary.save_walls(writer);
+  save_fields(flow_.particles.fields, writer);
+}
+
+void Wcsph::load(StateReader& reader) {
+  Array<std::int64_t> count;
+  saved_.load(reader);
+  reader.i64("counters", count);
+  flow_.boundary.load_walls(reader, flow_.time);
+  if (count.size() != 1) throw FileError("the checkpoint was written by another version of the method");
+  load_fields(flow_.particles.fields, static_cast<std::size_t>(count[0]), "particle", reader);
+  flow_.has_lists = false;
+}
+
+}  // namespace spume::wcsph

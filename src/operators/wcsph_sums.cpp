@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "spume/operators/wcsph_sums.hpp"
+
+#include <stdexcept>
+
+#include "gfd_row.hpp"
+
+namespace spume {
+namespace {
+
+using simd::f32n;
+using Kernel = WendlandC2;
+
+template <class Body>
+void with_wcsph_dimensions(const SweepContext& context, Body&& body) {
+  if (context.length_ratio != nullptr || context.kernel != KernelKind::wendland_c2)
+    throw std::logic_error("weakly compressible sums take particles of one size and the kernel of Wendland");
+  if (context.dimensions == 2)
+    body.template operator()<2>();
+  else
+    body.template operator()<3>();
+}
+
+[[gnu::always_inline]] inline f32n equals(f32n a, f32n b, f32n then) {
+  return a == b ? then : f32n{};
+}
+
+// Payload of the continuity records: u, v, s', and then what the scene has: mu, phase, the velocity under friction.
+template <int dimensions, bool several, bool viscous, bool friction>
+struct ContinuityLayout {
+  static constexpr int velocity = 0, volume = dimensions, excess = dimensions + 1;
+  static constexpr int viscosity = excess + 1, phase = viscosity + (viscous ? 1 : 0);
+  static constexpr int held = phase + (several ? 1 : 0);
+  static constexpr int payload = held + (friction ? dimensions : 0);
+  static constexpr int width = record_width(dimensions, payload);
+};
+
+template <int dimensions, bool several, bool viscous, bool friction>
+void continuity(const SweepContext& context, PackedNeighbours& packed, const ContinuityFields& fields,
+                const ContinuityOut& out) {
+  using At = ContinuityLayout<dimensions, several, viscous, friction>;
+  constexpr int width = At::width;
+  float* records = packed.prepare(context, At::payload);
+  pack_velocity(context, records, width, At::velocity, fields.velocity, *fields.mirror);
+  pack_scalar(context, records, width, At::volume, fields.volume);
+  pack_scalar(context, records, width, At::excess, fields.excess);
+  if constexpr (viscous) pack_scalar(context, records, width, At::viscosity, fields.viscosity);
+  if constexpr (several) pack_scalar(context, records, width, At::phase, fields.phase);
+  if constexpr (friction) pack_velocity(context, records, width, At::held, fields.velocity, *fields.friction);
+  const KernelScale<dimensions, Kernel> scale(context);
+  sweep(context.list->particles(), [&](std::size_t i) {
+    const float* own = records + i * width + dimensions;
+    f32n rate{}, diffusion{};
+    std::array<f32n, dimensions> force{};
+    for_each_batch<dimensions, At::payload>(*context.list, records, i, scale.inverse_h, [&](const auto& b) {
+      const f32n weight = Kernel::f(b.q) * b.payload[At::volume];
+      f32n approach{};
+      for (int a = 0; a < dimensions; ++a) approach = approach + (b.payload[At::velocity + a] - own[a]) * b.d[a];
+      rate = rate + weight * approach;
+      f32n same = weight;
+      if constexpr (several) same = equals(b.payload[At::phase], simd::splat<f32n>(own[At::phase]), weight);
+      diffusion = diffusion + same * (b.payload[At::excess] - own[At::excess]);
+      if constexpr (viscous) {
+        f32n drag = weight;
+        if constexpr (several)
+          drag = drag * harmonic_mean(simd::splat<f32n>(own[At::viscosity]), b.payload[At::viscosity]);
+        constexpr int u = friction ? At::held : At::velocity;
+        for (int a = 0; a < dimensions; ++a) force[a] = force[a] + drag * (b.payload[u + a] - own[a]);
+      }
+    });
+    out.rate[i] = scale.gradient * simd::sum(rate);
+    out.diffusion[i] = -2 * scale.gradient * simd::sum(diffusion);
+    if constexpr (viscous) {
+      const float factor = -2 * scale.gradient * (several ? 1 : own[At::viscosity]);
+      for (int a = 0; a < dimensions; ++a) out.viscous[a][i] = factor * simd::sum(force[a]);
+    }
+  });
+}
+
+template <int dimensions, bool several>
+void pressure_force(const SweepContext& context, PackedNeighbours& packed, const PressureFields& fields,
+                    const std::array<float*, 3>& out) {
+  constexpr int payload = several ? 3 : 2, width = record_width(dimensions, payload);
+  const std::size_t n = context.list->particles();
+  float* records = packed.prepare(context, payload);
+  pack_scalar(context, records, width, 0, fields.volume);
+  parallel_for(n, [&](std::size_t i) { records[i * width + dimensions + 1] = static_cast<float>(fields.pressure[i]); });
+  parallel_for(context.images->size(), [&](std::size_t k) {
+    const auto source = static_cast<std::size_t>(context.images->source()[k]);
+    double head = 0;
+    for (int a = 0; a < dimensions; ++a)
+      if (fields.gravity[a] != 0)
+        head += fields.gravity[a] * (context.images->position(a)[k] - fields.position[a][source]);
+    records[(n + k) * width + dimensions + 1] =
+        static_cast<float>(fields.pressure[source] + fields.density[source] * head);
+  });
+  if constexpr (several) pack_scalar(context, records, width, 2, fields.density);
+  const KernelScale<dimensions, Kernel> scale(context);
+  sweep(n, [&](std::size_t i) {
+    const float* own = records + i * width + dimensions;
+    std::array<f32n, dimensions> force{};
+    for_each_batch<dimensions, payload>(*context.list, records, i, scale.inverse_h, [&](const auto& b) {
+      f32n both = b.payload[1] + own[1];
+      if constexpr (several) {
+        const f32n zero{}, own_density = simd::splat<f32n>(own[2]);
+        const f32n jump = simd::max(b.payload[2] - own_density, own_density - b.payload[2]);
+        both = both + fields.repulsion * (jump / (b.payload[2] + own_density)) * simd::max(both, zero - both);
+      }
+      const f32n weight = Kernel::f(b.q) * b.payload[0] * both;
+      for (int a = 0; a < dimensions; ++a) force[a] = force[a] + weight * b.d[a];
+    });
+    for (int a = 0; a < dimensions; ++a) out[a][i] = scale.gradient * simd::sum(force[a]);
+  });
+}
+
+}  // namespace
+
+void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, const ContinuityFields& fields,
+                      const ContinuityOut& out) {
+  with_wcsph_dimensions(context, [&]<int dimensions>() {
+    const auto run = [&]<bool several>() {
+      if (fields.viscosity == nullptr)
+        continuity<dimensions, several, false, false>(context, packed, fields, out);
+      else if (fields.friction == nullptr)
+        continuity<dimensions, several, true, false>(context, packed, fields, out);
+      else
+        continuity<dimensions, several, true, true>(context, packed, fields, out);
+    };
+    if (fields.phase != nullptr)
+      run.template operator()<true>();
+    else
+      run.template operator()<false>();
+  });
+}
+
+void pressure_force_sweep(const SweepContext& context, PackedNeighbours& packed, const PressureFields& fields,
+                          const std::array<float*, 3>& out) {
+  with_wcsph_dimensions(context, [&]<int dimensions>() {
+    if (fields.several)
+      pressure_force<dimensions, true>(context, packed, fields, out);
+    else
+      pressure_force<dimensions, false>(context, packed, fields, out);
+  });
+}
+
+void density_filter_sweep(const SweepContext& context, PackedNeighbours& packed, const float* volume,
+                          const float* phase, float* out) {
+  with_wcsph_dimensions(context, [&]<int dimensions>() {
+    constexpr int width = record_width(dimensions, 2);
+    float* records = packed.prepare(context, 2);
+    pack_scalar(context, records, width, 0, volume);
+    pack_scalar(context, records, width, 1, phase);
+    const KernelScale<dimensions, Kernel> scale(context);
+    sweep(context.list->particles(), [&](std::size_t i) {
+      const float* own = records + i * width + dimensions;
+      f32n lack{}, sum{};
+      for_each_batch<dimensions, 2>(*context.list, records, i, scale.inverse_h, [&](const auto& b) {
+        const f32n w = equals(b.payload[1], simd::splat<f32n>(own[1]), Kernel::w(b.q));
+        sum = sum + w * b.payload[0];
+        lack = lack + w * (1.0F - b.payload[0]);
+      });
+      out[i] = (simd::sum(lack) + (1 - own[0])) / (simd::sum(sum) + own[0]);
+    });
+  });
+}
+
+}  // namespace spume

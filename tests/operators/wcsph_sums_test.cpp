@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// The sums of weakly compressible SPH against their slow twins, on random fields over every arrangement of particles of
+// one size under Wendland's kernel.
+#include "reference/wcsph_sums.hpp"
+
+#include <gtest/gtest.h>
+
+#include "operators/sph_arrangement.hpp"
+#include "spume/operators/wcsph_sums.hpp"
+
+namespace spume::test {
+namespace {
+
+std::vector<Arrangement*> wcsph_arrangements() {
+  std::vector<Arrangement*> chosen;
+  for (Arrangement& a : all_arrangements())
+    if (a.setup.kernel == KernelKind::wendland_c2 && !a.setup.sizes) chosen.push_back(&a);
+  return chosen;
+}
+
+// Three phases, dispersed among each other.
+struct Fields {
+  Array<float> volume, excess, phase, density, viscosity;
+  Array<double> pressure;
+  VectorArrays<double> velocity;
+  VelocityImageRule mirror;
+
+  explicit Fields(const Arrangement& a)
+      : volume(a.size()),
+        excess(to_float(a.random(3))),
+        phase(a.size()),
+        density(a.size()),
+        viscosity(a.size()),
+        pressure(a.random(4)),
+        velocity(random_velocity(a, 11)) {
+    const Array<double> change = a.random(5);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      volume[i] = static_cast<float>(1 + 0.05 * change[i]);
+      phase[i] = static_cast<float>(i % 3);
+      density[i] = i % 3 == 0 ? 1000.0F : i % 3 == 1 ? 1.0F : 800.0F;
+      viscosity[i] = i % 3 == 0 ? 1.0F : i % 3 == 1 ? 0.018F : 0.0F;
+    }
+    mirror.sign = a.reflection;
+    mirror.friction = false;
+  }
+};
+
+TEST(WcsphSums, ContinuityDiffusionAndViscosityAgreeWithTheSlowTwin) {
+  for (Arrangement* arrangement : wcsph_arrangements()) {
+    Arrangement& a = *arrangement;
+    SCOPED_TRACE(a.setup.name);
+    const Fields f(a);
+    const reference::WcsphSums twin{a.twin};
+    const auto held = [&](const reference::SphSums::SphPoint& point, int axis) {
+      return a.twin.velocity_at(f.velocity, point, axis);
+    };
+    const auto mirrored = [&](const reference::SphSums::SphPoint& point, int axis) {
+      return point.reflection[axis] * f.velocity[axis][point.source];
+    };
+    for (const bool several : {false, true})
+      for (const bool viscous : {false, true})
+        for (const bool friction : {false, true}) {
+          if (friction && !viscous) continue;
+          Array<float> rate(a.size()), diffusion(a.size());
+          VectorArrays<float> force(a.size(), a.dimensions());
+          Array<float> one_viscosity(a.size());
+          one_viscosity.fill(0.3F);
+          const Array<float>& mu = several ? f.viscosity : one_viscosity;
+          continuity_sweep(a.context, a.packed,
+                           {.velocity = f.velocity.read(),
+                            .mirror = friction ? &f.mirror : &a.rule,
+                            .friction = friction ? &a.rule : nullptr,
+                            .volume = f.volume.data(),
+                            .excess = f.excess.data(),
+                            .phase = several ? f.phase.data() : nullptr,
+                            .viscosity = viscous ? mu.data() : nullptr},
+                           {rate.data(), diffusion.data(), force.write()});
+          Comparison rates("rate of density"), diffusions("diffusion"), forces("viscous force");
+          const auto same = [&](std::size_t i, std::size_t j) { return !several || f.phase[i] == f.phase[j]; };
+          for (std::size_t i = 0; i < a.size(); ++i) {
+            const double rounding = a.twin.tolerance(i);
+            rates.add(rate[i], friction ? twin.rate(i, mirrored, f.volume) : twin.rate(i, held, f.volume), rounding, i);
+            diffusions.add(diffusion[i], twin.diffusion(i, f.excess, f.volume, same), rounding, i);
+            for (int axis = 0; viscous && axis < a.dimensions(); ++axis)
+              forces.add(force[axis][i], twin.viscous(i, axis, held, f.volume, mu), rounding, i);
+          }
+        }
+  }
+}
+
+TEST(WcsphSums, PressureAndRepulsionAgreeWithTheSlowTwin) {
+  for (Arrangement* arrangement : wcsph_arrangements()) {
+    Arrangement& a = *arrangement;
+    SCOPED_TRACE(a.setup.name);
+    const Fields f(a);
+    const reference::WcsphSums twin{a.twin};
+    const double* position[3] = {a.hood.x.data(), a.hood.y.data(), a.hood.z.data()};
+    for (const bool several : {false, true}) {
+      const Vec3 gravity = several ? Vec3{0, -2e-3, 1e-3} : Vec3{};
+      VectorArrays<float> force(a.size(), a.dimensions());
+      pressure_force_sweep(a.context, a.packed,
+                           {.pressure = f.pressure.data(),
+                            .volume = f.volume.data(),
+                            .density = f.density.data(),
+                            .several = several,
+                            .repulsion = 0.08F,
+                            .gravity = gravity,
+                            .position = {position[0], position[1], position[2]}},
+                           force.write());
+      Comparison forces(several ? "pressure and repulsion" : "pressure");
+      for (std::size_t i = 0; i < a.size(); ++i)
+        for (int axis = 0; axis < a.dimensions(); ++axis)
+          forces.add(force[axis][i],
+                     twin.pressure_force(i, axis, f.pressure, f.volume, f.density, several ? 0.08 : 0, gravity),
+                     a.twin.tolerance(i), i);
+    }
+  }
+}
+
+TEST(WcsphSums, TheDensityFilterAgreesWithTheSlowTwin) {
+  for (Arrangement* arrangement : wcsph_arrangements()) {
+    Arrangement& a = *arrangement;
+    SCOPED_TRACE(a.setup.name);
+    const Fields f(a);
+    const reference::WcsphSums twin{a.twin};
+    Array<float> filtered(a.size());
+    density_filter_sweep(a.context, a.packed, f.volume.data(), f.phase.data(), filtered.data());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const auto [lack, sum] =
+          twin.filter(i, f.volume, [&](std::size_t j, std::size_t k) { return f.phase[j] == f.phase[k]; });
+      // 1 - v is 0.05 at most, and so is its mean.
+      EXPECT_NEAR(filtered[i], lack / sum, 0.05 * 2 * a.twin.tolerance(i)) << "particle " << i;
+    }
+  }
+}
+
+// Volumes times forces, over a periodic box.
+TEST(WcsphSums, ForcesInAPeriodicBoxAddUpToNothing) {
+  for (Arrangement* arrangement : wcsph_arrangements()) {
+    Arrangement& a = *arrangement;
+    if (a.setup.name.find("jittered, periodic") == std::string::npos) continue;
+    SCOPED_TRACE(a.setup.name);
+    const Fields f(a);
+    VectorArrays<float> pressure(a.size(), a.dimensions()), viscous(a.size(), a.dimensions());
+    Array<float> rate(a.size()), diffusion(a.size());
+    continuity_sweep(a.context, a.packed,
+                     {.velocity = f.velocity.read(),
+                      .mirror = &a.rule,
+                      .volume = f.volume.data(),
+                      .excess = f.excess.data(),
+                      .phase = f.phase.data(),
+                      .viscosity = f.viscosity.data()},
+                     {rate.data(), diffusion.data(), viscous.write()});
+    pressure_force_sweep(a.context, a.packed,
+                         {.pressure = f.pressure.data(),
+                          .volume = f.volume.data(),
+                          .density = f.density.data(),
+                          .several = true,
+                          .repulsion = 0.04F,
+                          .position = {}},
+                         pressure.write());
+    for (int axis = 0; axis < a.dimensions(); ++axis)
+      for (const auto* force : {&pressure[axis], &viscous[axis]}) {
+        double sum = 0, moduli = 0, rounding = 0;
+        for (std::size_t i = 0; i < a.size(); ++i) {
+          sum += double{f.volume[i]} * (*force)[i];
+          moduli += std::abs(double{f.volume[i]} * (*force)[i]);
+          rounding = std::max(rounding, a.twin.tolerance(i));
+        }
+        // Terms of one sum cancel tenfold at most where pressures and velocities are random.
+        EXPECT_LT(std::abs(sum), 10 * rounding * moduli);
+        EXPECT_GT(moduli, 0);
+      }
+  }
+}
+
+}  // namespace
+}  // namespace spume::test
