@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
+from spume_tools.results import standard
+
 REFERENCE = Path(__file__).parent / "reference" / "floating_box.csv"
 RISE = 0.01  # of the start, from where the box floats at y = 0
 BEAM, DRAFT, DEPTH = "0.3", "0.1", "0.4"
@@ -11,7 +13,7 @@ BEAM, DRAFT, DEPTH = "0.3", "0.1", "0.4"
 
 def theory():
     """Times of the first peak and trough after the release, and the heave there over that of the start."""
-    for line in open(REFERENCE):
+    for line in REFERENCE.read_text().splitlines():
         cells = line.strip().split(",")
         if cells[0] == "period" and cells[1:4] == [BEAM, DRAFT, DEPTH]:
             return [float(cell) for cell in cells[4:8]]
@@ -35,4 +37,4 @@ def errors(run):
 
 
 def measure(runs):
-    return {f"{name}_{quantity}": float(value) for name, run in runs.items() for quantity, value in errors(run).items()}
+    return {quantity: float(value) for quantity, value in errors(standard(runs)).items()}

@@ -11,7 +11,8 @@ WITHIN = 0.12   # s after the onset, as long as the measured record
 
 
 def measured(liquid):
-    rows = [line.strip().split(",") for line in open(REFERENCE) if line.startswith(f"{liquid}_impact,")]
+    rows = [line.strip().split(",") for line in REFERENCE.read_text().splitlines()
+            if line.startswith(f"{liquid}_impact,")]
     return np.array([float(row[1]) for row in rows]), 100 * np.array([float(row[3]) for row in rows])
 
 

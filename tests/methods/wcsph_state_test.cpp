@@ -79,7 +79,7 @@ radius = 0.3
 end = 1
 )toml";
 
-const std::string vortices = R"toml(method = "wcsph"
+const std::string periodic_vortices = R"toml(method = "wcsph"
 [domain]
 lower = [0, 0]
 upper = [1, 1]
@@ -203,7 +203,7 @@ TEST(WcsphConservation, MomentumStaysInAPeriodicBox) {
 // lattice, sum_j 2 g (1 - cos k d_y), 2.5 % below the exact one at h = 1.3 spacings. The lattice shears by k t, which
 // changes its even sums by the square of that.
 TEST(WcsphAccuracy, AShearWaveDecaysAtTheRateOfTheLattice) {
-  WcsphRun run(replaced(vortices, "velocity = [\"-cos(2*pi*x)*sin(2*pi*y)\", \"sin(2*pi*x)*cos(2*pi*y)\"]",
+  WcsphRun run(replaced(periodic_vortices, "velocity = [\"-cos(2*pi*x)*sin(2*pi*y)\", \"sin(2*pi*x)*cos(2*pi*y)\"]",
                         "velocity = [\"sin(2*pi*y)\", \"0\"]"));
   const double spacing = 1.0 / 32, h = 1.3 * spacing, k = 2 * std::numbers::pi, nu = 0.05;
   double k2 = 0;
@@ -256,7 +256,8 @@ TEST(WcsphCases, WhatItCannotDoIsRefusedWithTheFix) {
   EXPECT_THAT(refused(replaced(column_in_air, "\"0.1*sin(t)\", \"0\"", "\"0\", \"1\"")), HasSubstr("along its normal"));
   EXPECT_THAT(refused(replaced(column_in_air, "[time]", "[[solid]]\nlower = [1, 0]\nupper = [1.2, 0.3]\n[time]")),
               HasSubstr("remove it"));
-  EXPECT_THAT(refused(replaced(vortices, "velocity = [\"-cos(2*pi*x)*sin(2*pi*y)\", \"sin(2*pi*x)*cos(2*pi*y)\"]", "")),
+  EXPECT_THAT(refused(replaced(periodic_vortices,
+                               "velocity = [\"-cos(2*pi*x)*sin(2*pi*y)\", \"sin(2*pi*x)*cos(2*pi*y)\"]", "")),
               HasSubstr("set compressibility.max_speed"));
 }
 
