@@ -42,8 +42,7 @@ bool declared_alike(const Option& a, const Option& b) {
 
 }  // namespace
 
-CaseSchema::CaseSchema(std::vector<MethodDeclaration> methods, std::vector<std::string> unavailable)
-    : methods_(std::move(methods)), unavailable_(std::move(unavailable)) {
+CaseSchema::CaseSchema(std::vector<MethodDeclaration> methods) : methods_(std::move(methods)) {
   sections_ = scene_sections();
   Option& choice = *std::find_if(sections_[0].options.begin(), sections_[0].options.end(),
                                  [](const Option& option) { return option.key == "method"; });

@@ -173,11 +173,6 @@ class SectionReader {
     if (node.kind != Node::Kind::string) return wrong_type(option, name, node);
     value.text = node.text;
     if (std::find(option.words.begin(), option.words.end(), node.text) != option.words.end()) return true;
-    const auto& unavailable = schema_.unavailable();
-    if (name == "method" && std::find(unavailable.begin(), unavailable.end(), node.text) != unavailable.end()) {
-      return refuse(
-          node, "method \"" + node.text + "\" is not available in this version; use " + words_in_words(option.words));
-    }
     if (node.text == "periodic" && section_.name == "domain") {
       return refuse(node, name + " is one side; a periodic direction is written by its axis: x = \"periodic\"");
     }

@@ -71,7 +71,7 @@ CaseSchema three_methods() {
   box.fills_regions = false;
   box.uses_grid = true;
   box.sections.clear();
-  return CaseSchema({particles_method("warm"), cold, box}, {"lukewarm"});
+  return CaseSchema({particles_method("warm"), cold, box});
 }
 
 std::string small(const std::string& method, const std::string& rest) {
@@ -161,7 +161,7 @@ TEST(Schema, TheMethodChecksItsCaseAndItsScene) {
   EXPECT_THAT(problems(schema, small("warm", "[output]\nfields = [\"temperature\", \"heat\"]\n")),
               ElementsAre("output.fields names 'heat', which method \"warm\" does not have; it has temperature"));
   EXPECT_THAT(problems(schema, small("lukewarm", "")),
-              ElementsAre("method \"lukewarm\" is not available in this version; use \"warm\", \"cold\" or \"box\""));
+              ElementsAre("method must be \"warm\", \"cold\" or \"box\", found \"lukewarm\""));
 }
 
 TEST(Schema, TheMethodNamesTheScalarsOfProbes) {

@@ -13,13 +13,11 @@ namespace spume {
 
 class CaseSchema {
  public:
-  // `unavailable` names methods that this version does not have, for the message of a case that asks for one. Throws
-  // std::logic_error for two methods of one name and for two different declarations of one option.
-  explicit CaseSchema(std::vector<MethodDeclaration> methods, std::vector<std::string> unavailable = {});
+  // Throws std::logic_error for two methods of one name and for two different declarations of one option.
+  explicit CaseSchema(std::vector<MethodDeclaration> methods);
 
   const std::vector<Section>& sections() const { return sections_; }
   const std::vector<MethodDeclaration>& methods() const { return methods_; }
-  const std::vector<std::string>& unavailable() const { return unavailable_; }
   const std::vector<OptionInfo>& option_table() const { return table_; }
 
   // The method of that name, or null.
@@ -33,7 +31,6 @@ class CaseSchema {
   void add(const Section& own, const std::string& method);
 
   std::vector<MethodDeclaration> methods_;
-  std::vector<std::string> unavailable_;
   std::vector<Section> sections_;
   std::vector<OptionInfo> table_;
 };

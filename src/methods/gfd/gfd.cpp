@@ -16,8 +16,6 @@ constexpr double steps_of_run_at_rest = 1000;
 // rising_bubble_2d at 1/32. A drop of mercury that wets its floor, 7 particles across, gains 2.4 %.
 constexpr double largest_volume_drift = 0.02;
 
-const char* const axis_name[3] = {"x", "y", "z"};
-
 }  // namespace
 
 // Derived fields are those of the last step, at the positions that it started from.
@@ -39,7 +37,10 @@ const std::vector<OutputField<Flow>>& output_fields() {
 }
 
 Gfd::Gfd(const LoadedCase& loaded)
-    : flow_(loaded), plan_(make_plan(flow_)), snapshot_(snapshot_table(output_fields(), loaded.options, flow_)) {
+    : flow_(loaded),
+      plan_(make_plan(flow_)),
+      snapshot_(snapshot_table(output_fields(), loaded.options, flow_)),
+      phase_sums_(flow_.particles, *flow_.phase_number, flow_.densities) {
   declare_series();
   saved_.add(flow_.time)
       .add(flow_.steps)
@@ -84,38 +85,9 @@ StepLimit Gfd::step_limit() const {
   return step.limit();
 }
 
-Gfd::PhaseSums Gfd::sums_of(std::size_t phase) const {
-  return parallel_reduce(
-      flow_.size(), PhaseSums{},
-      [&](std::size_t first, std::size_t last) {
-        PhaseSums sums;
-        for (std::size_t i = first; i < last; ++i) {
-          if (static_cast<std::size_t>((*flow_.phase_number)[i]) != phase) continue;
-          const double mass = flow_.mass(i);
-          sums.mass += mass;
-          for (int axis = 0; axis < flow_.dimensions; ++axis) {
-            sums.momentum[axis] += mass * (*flow_.particles.velocity[axis])[i];
-            sums.moment[axis] += mass * (*flow_.particles.position[axis])[i];
-          }
-        }
-        return sums;
-      },
-      [](PhaseSums a, const PhaseSums& b) {
-        a.mass += b.mass;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          a.momentum[axis] += b.momentum[axis];
-          a.moment[axis] += b.moment[axis];
-        }
-        return a;
-      });
-}
-
 void Gfd::declare_series() {
   const Flow& flow = flow_;
-  row_sums_.resize(flow.densities.size());
-  series_.prepare = [this] {
-    for (std::size_t n = 0; n < row_sums_.size(); ++n) row_sums_[n] = sums_of(n);
-  };
+  series_.prepare = [this] { phase_sums_.find(); };
   series_.add("kinetic_energy", "rho u^2 / 2, integral", [&flow] { return flow.kinetic_energy(); });
   if (flow.features.gravity)
     series_.add("potential_energy", "rho g z, integral", [&flow] { return flow.potential_energy(); });
@@ -126,16 +98,11 @@ void Gfd::declare_series() {
       return area;
     });
   series_.add("max_speed", "speed", [&flow] { return flow.speeds.largest; });
-  for (std::size_t n = 0; n < row_sums_.size(); ++n) {
+  for (std::size_t n = 0; n < phase_sums_.size(); ++n) {
     const std::string& name = flow.scene.phases[n].name;
     series_.add("volume_" + name, flow.dimensions == 3 ? "length^3, by kernel sums" : "length^2, by kernel sums",
                 [&flow, n] { return flow.phase_volume[n]; });
-    for (int axis = 0; axis < flow.dimensions; ++axis)
-      series_.add("centre_" + name + "_" + axis_name[axis], "length",
-                  [this, n, axis] { return row_sums_[n].moment[axis] / row_sums_[n].mass; });
-    for (int axis = 0; axis < flow.dimensions; ++axis)
-      series_.add("velocity_" + name + "_" + axis_name[axis], "length/time, mean",
-                  [this, n, axis] { return row_sums_[n].momentum[axis] / row_sums_[n].mass; });
+    phase_sums_.add_columns(series_, n, name);
   }
   series_.add("max_divergence", "of the predicted velocity, 1 / time", [&flow] { return flow.max_divergence; });
   series_.add("pressure_iterations", "1", [&flow] { return double(flow.solver.report().iterations); });

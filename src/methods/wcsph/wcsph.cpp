@@ -20,7 +20,11 @@ constexpr double liquid_range = 0.03, gas_range = 0.15;
 // The exponents of liquids are 4 to 7, those of gases 1 to 1.7.
 constexpr double least_liquid_exponent = 2;
 
-const char* const axis_name[3] = {"x", "y", "z"};
+std::vector<double> densities_of(const Flow& flow) {
+  std::vector<double> densities;
+  for (const PhaseLaw& law : flow.laws) densities.push_back(law.density);
+  return densities;
+}
 
 double range_of(const PhaseLaw& law) {
   return law.exponent < least_liquid_exponent ? gas_range : liquid_range;
@@ -43,7 +47,7 @@ Wcsph::Wcsph(const LoadedCase& loaded)
     : flow_(loaded),
       plan_(make_plan(flow_)),
       snapshot_(snapshot_table(output_fields(), loaded.options, flow_)),
-      row_sums_(flow_.laws.size()),
+      phase_sums_(flow_.particles, *flow_.phase_number, densities_of(flow_)),
       remarked_(flow_.laws.size(), false) {
   for (const PhaseLaw& law : flow_.laws)
     if (!(law.sound_speed > 0))
@@ -73,51 +77,18 @@ StepLimit Wcsph::step_limit() const {
   return step.limit();
 }
 
-Wcsph::PhaseSums Wcsph::sums_of(std::size_t phase) const {
-  return parallel_reduce(
-      flow_.size(), PhaseSums{},
-      [&](std::size_t first, std::size_t last) {
-        PhaseSums sums;
-        for (std::size_t i = first; i < last; ++i) {
-          if (flow_.phase_of(i) != phase) continue;
-          const double mass = flow_.mass(i);
-          sums.mass += mass;
-          for (int axis = 0; axis < flow_.dimensions; ++axis) {
-            sums.momentum[axis] += mass * (*flow_.particles.velocity[axis])[i];
-            sums.moment[axis] += mass * (*flow_.particles.position[axis])[i];
-          }
-        }
-        return sums;
-      },
-      [](PhaseSums a, const PhaseSums& b) {
-        a.mass += b.mass;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          a.momentum[axis] += b.momentum[axis];
-          a.moment[axis] += b.moment[axis];
-        }
-        return a;
-      });
-}
-
 void Wcsph::declare_series() {
   const Flow& flow = flow_;
-  series_.prepare = [this] {
-    for (std::size_t n = 0; n < row_sums_.size(); ++n) row_sums_[n] = sums_of(n);
-  };
+  series_.prepare = [this] { phase_sums_.find(); };
   series_.add("kinetic_energy", "rho u^2 / 2, integral", [&flow] { return flow.kinetic_energy(); });
   if (flow.features.gravity)
     series_.add("potential_energy", "rho g z, integral", [&flow] { return flow.potential_energy(); });
   series_.add("compression_energy", "rho e, integral", [&flow] { return flow.compression_energy(); });
   series_.add("max_speed", "speed", [&flow] { return flow.largest_speed; });
-  for (std::size_t n = 0; n < row_sums_.size(); ++n) {
+  for (std::size_t n = 0; n < phase_sums_.size(); ++n) {
     const std::string& name = flow.scene.phases[n].name;
     series_.add("density_change_" + name, "1, largest", [&flow, n] { return flow.largest_excess(n); });
-    for (int axis = 0; axis < flow.dimensions; ++axis)
-      series_.add("centre_" + name + "_" + axis_name[axis], "length",
-                  [this, n, axis] { return row_sums_[n].moment[axis] / row_sums_[n].mass; });
-    for (int axis = 0; axis < flow.dimensions; ++axis)
-      series_.add("velocity_" + name + "_" + axis_name[axis], "length/time, mean",
-                  [this, n, axis] { return row_sums_[n].momentum[axis] / row_sums_[n].mass; });
+    phase_sums_.add_columns(series_, n, name);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "spume/methods/gfd/flow.hpp"
 #include "spume/methods/method.hpp"
 #include "spume/particles/output_fields.hpp"
+#include "spume/particles/phase_sums.hpp"
 #include "spume/particles/point_sampler.hpp"
 
 namespace spume::gfd {
@@ -48,19 +49,13 @@ class Gfd final : public Method, public FieldProbes {
   void declare_series();
   const PointSampler& sampler();
 
-  struct PhaseSums {
-    double mass = 0;
-    Vec3 momentum{}, moment{};
-  };
-  PhaseSums sums_of(std::size_t phase) const;
-
   Ledger start_ledger_;  // of an arrangement that came before the first step
   Flow flow_;
   Plan plan_;
   SeriesTable series_;
   SnapshotTable snapshot_;
   SavedNumbers saved_{"scalars"};
-  std::vector<PhaseSums> row_sums_;  // of the row of the series that is being read
+  PhaseSums phase_sums_;  // of the row of the series that is being read
   PointSampler sampler_;
   bool arranged_ = false;
   std::int64_t sampled_step_ = -1;

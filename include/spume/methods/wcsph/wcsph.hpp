@@ -7,6 +7,7 @@
 #include "spume/methods/method.hpp"
 #include "spume/methods/wcsph/flow.hpp"
 #include "spume/particles/output_fields.hpp"
+#include "spume/particles/phase_sums.hpp"
 #include "spume/particles/reports.hpp"
 
 namespace spume::wcsph {
@@ -40,19 +41,13 @@ class Wcsph final : public Method {
  private:
   void declare_series();
 
-  struct PhaseSums {
-    double mass = 0;
-    Vec3 momentum{}, moment{};
-  };
-  PhaseSums sums_of(std::size_t phase) const;
-
   Flow flow_;
   Plan plan_;
   SeriesTable series_;
   SnapshotTable snapshot_;
   SavedNumbers saved_{"scalars"};
-  std::vector<PhaseSums> row_sums_;  // of the row of the series that is being read
-  std::vector<bool> remarked_;       // of the phases
+  PhaseSums phase_sums_;        // of the row of the series that is being read
+  std::vector<bool> remarked_;  // of the phases
 };
 
 }  // namespace spume::wcsph

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Mass, centre and momentum of each phase, for the series of methods with several.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "spume/particles/reports.hpp"
+#include "spume/particles/store.hpp"
+
+namespace spume {
+
+class PhaseSums {
+ public:
+  struct Sums {
+    double mass = 0;
+    Vec3 momentum{}, moment{};  // sum m u, sum m x
+  };
+  // `density` of each phase; `phase` of each particle, its index.
+  PhaseSums(const ParticleStore& particles, const Array<std::int64_t>& phase, std::vector<double> density)
+      : particles_(particles), phase_(phase), density_(std::move(density)), sums_(density_.size()) {}
+
+  std::size_t size() const { return density_.size(); }
+  void find();  // of the present state
+  const Sums& of(std::size_t phase) const { return sums_[phase]; }
+  // Columns centre_<name>_x ... and velocity_<name>_x ..., of the sums as they were found last.
+  void add_columns(SeriesTable& series, std::size_t phase, const std::string& name) const;
+
+ private:
+  Sums sums_of(std::size_t phase) const;
+
+  const ParticleStore& particles_;
+  const Array<std::int64_t>& phase_;
+  std::vector<double> density_;
+  std::vector<Sums> sums_;
+};
+
+}  // namespace spume
