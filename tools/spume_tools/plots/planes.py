@@ -8,6 +8,7 @@ from matplotlib.patches import Rectangle
 
 from ..results import MissingResult
 from ..results.units import field_label
+from .bodies import draw_bodies, extent_with_bodies
 from .request import request_of
 from .style import (EDGE, FIELDS, SIGNED, SOLID, chosen_steps, extension, field_norm, finish, length_label, panel_grid,
                     panel_size, time_title, title_of)
@@ -161,6 +162,7 @@ def draw_panel(axis, run, plane, panel, frame, name, norm):
         if plane.normal is None or low[plane.normal] <= plane.coordinate <= high[plane.normal]:
             corner = low[list(plane.axes)]
             axis.add_patch(Rectangle(corner, *(high - low)[list(plane.axes)], facecolor=SOLID, edgecolor=EDGE, linewidth=0.8, zorder=3))
+    draw_bodies(axis, run, plane, panel.time)
     # Walls are thick lines.
     for k, a in enumerate(plane.axes):
         kinds = sides_of(run.case["domain"], a)
@@ -174,7 +176,7 @@ def draw_panel(axis, run, plane, panel, frame, name, norm):
 
 def plane_figure(run, name, plane, panels, norm, ends, most=None):
     """Panels of one plane with one colour bar."""
-    frame = frame_of(plane, most or panels)
+    frame = extent_with_bodies(run, plane, [panel.time for panel in most or panels], frame_of(plane, most or panels))
     width, height = frame[1] - frame[0], frame[3] - frame[2]
     rows, columns = panel_grid(len(panels), width, height)
     size = panel_size(rows, columns, width, height)

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+"""Bodies in pictures of planes: where they stand at a time, their outline, and where a plane cuts them."""
+import unittest
+from types import SimpleNamespace
+
+import paths
+import numpy as np
+from spume_tools.plots.bodies import Body, cut, outline, places, turned
+
+# A square of two triangles.
+SQUARE = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0, 0], [1, 1, 0], [0, 1, 0]]], float)
+
+
+def run_of(**columns):
+    table = {name: np.array(values, float) for name, values in columns.items()}
+    return SimpleNamespace(dimensions=2, has=lambda name: True, table=lambda name: table)
+
+
+class Bodies(unittest.TestCase):
+    def test_a_turn_is_by_the_right_hand(self):
+        np.testing.assert_allclose(turned([0, 0, 90], np.array([[1.0, 0, 5]])), [[0, 1, 5]], atol=1e-15)
+        np.testing.assert_allclose(turned([0, 90, 0], np.array([[1.0, 2, 0]])), [[0, 2, -1]], atol=1e-15)
+
+    def test_the_row_of_the_time_tells_the_place(self):
+        run = run_of(t=[0, 0, 1, 1], body=[0, 1, 0, 1], position_x=[9, 0.5, 9, 2.5], position_y=[9, 0.5, 9, 0.5],
+                     turn_z=[0, 0, 0, 90])
+        at = places(run, Body(1, SQUARE, False))
+        np.testing.assert_allclose(at(0.1), SQUARE, atol=1e-15)
+        np.testing.assert_allclose(at(0.9)[0], [[3, 0, 0], [3, 1, 0], [2, 1, 0]], atol=1e-12)
+
+    def test_the_outline_leaves_inner_edges_out(self):
+        edges = outline(SQUARE)
+        self.assertEqual(len(edges), 4)
+        self.assertAlmostEqual(np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1).sum(), 4)
+
+    def test_a_plane_through_corners_cuts_all_around(self):
+        corners = np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
+        octahedron = np.array([[corners[a], corners[b], corners[c]] for a in (0, 2) for b in (1, 3) for c in (4, 5)])
+        lines = cut(octahedron, 1, 0.0, (0, 2))
+        self.assertAlmostEqual(sum(np.linalg.norm(line[1] - line[0]) for line in lines), 4 * np.sqrt(2), places=5)
+
+
+if __name__ == "__main__":
+    unittest.main()

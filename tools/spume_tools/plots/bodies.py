@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: MIT
+"""The walls of bodies in a plane, where they stand at a time: bodies.vtp has them at the start, bodies.csv where they go."""
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+from .style import EDGE, SOLID
+
+
+@dataclass
+class Body:
+    """corners (triangles, 3, 3) at the start; outside: all around the shape is solid."""
+
+    number: int
+    corners: np.ndarray
+    outside: bool
+
+
+def bodies_of(run):
+    """The bodies that are walls; those that are taken away from others are part of none."""
+    path = run.folder / "bodies.vtp"
+    if not path.exists():
+        return []
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    surface = reader.GetOutput()
+    if not surface.GetNumberOfPolys():
+        return []
+    cells = surface.GetCellData()
+    number, wall, inside, subtract = (vtk_to_numpy(cells.GetArray(name)) for name in ("body", "wall", "inside", "subtract"))
+    corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    points = vtk_to_numpy(surface.GetPoints().GetData()).astype(float)[corners]
+    return [Body(int(n), points[number == n], not inside[number == n][0])
+            for n in np.unique(number) if wall[number == n][0] and not subtract[number == n][0]]
+
+
+def turned(vector, points):
+    """Points turned about the direction of a vector by its length in degrees (Rodrigues)."""
+    angle = np.radians(np.linalg.norm(vector))
+    if angle == 0:
+        return points
+    k = np.asarray(vector) / np.linalg.norm(vector)
+    return (points * np.cos(angle) + np.cross(k, points) * np.sin(angle)
+            + np.multiply.outer(points @ k, k) * (1 - np.cos(angle)))
+
+
+def places(run, body):
+    """t -> the corners of a body then."""
+    table = run.table("bodies") if run.has("bodies.csv") else {}
+    if "position_x" not in table:
+        return lambda t: body.corners
+    rows = np.flatnonzero(table["body"] == body.number)
+    axes = range(run.dimensions)
+
+    def at(t):
+        row = rows[np.argmin(np.abs(table["t"][rows] - t))]
+        vector = [table[f"turn_{a}"][row] if f"turn_{a}" in table else 0.0 for a in "xyz"]
+        position, start = (np.array([table["position_" + "xyz"[a]][r] for a in axes] + [0.0] * (3 - len(axes)))
+                           for r in (row, rows[0]))
+        return position + turned(vector, body.corners - start)
+
+    return at
+
+
+def outline(corners):
+    """The edges that belong to one triangle alone."""
+    edges = np.concatenate([corners[:, [a, b], :2] for a, b in ((0, 1), (1, 2), (2, 0))])
+    ends = np.round(edges, 9)
+    swap = (ends[:, 0, 0] > ends[:, 1, 0]) | ((ends[:, 0, 0] == ends[:, 1, 0]) & (ends[:, 0, 1] > ends[:, 1, 1]))
+    ends[swap] = ends[swap][:, ::-1]
+    _, first, count = np.unique(ends.reshape(-1, 4), axis=0, return_index=True, return_counts=True)
+    return edges[first[count == 1]]
+
+
+def cut(corners, normal, coordinate, axes):
+    """Lines in which triangles cross a plane, which is moved by a rounding so that no corner lies on it."""
+    coordinate += 1e-7 * np.ptp(corners[:, :, normal])
+    height = corners[:, :, normal] - coordinate
+    crossing = (height.min(axis=1) < 0) & (height.max(axis=1) > 0)
+    lines = []
+    for triangle, h in zip(corners[crossing], height[crossing]):
+        ends = [triangle[a] + (triangle[b] - triangle[a]) * h[a] / (h[a] - h[b])
+                for a, b in ((0, 1), (1, 2), (2, 0)) if (h[a] < 0) != (h[b] < 0)]
+        lines.append(np.array(ends[:2])[:, list(axes)])
+    return lines
+
+
+def draw_bodies(axis, run, plane, time):
+    """Solids are filled in two dimensions, where they lie inside their shape, and cut by the plane in three."""
+    for body in bodies_of(run):
+        corners = places(run, body)(time)
+        if plane.normal is not None:
+            axis.add_collection(LineCollection(cut(corners, plane.normal, plane.coordinate, plane.axes), colors=EDGE,
+                                               linewidths=1.2, zorder=3), autolim=False)
+            continue
+        if not body.outside:
+            axis.add_collection(PolyCollection(corners[:, :, :2], facecolors=SOLID, edgecolors=SOLID, linewidths=0.3,
+                                               zorder=3), autolim=False)
+        axis.add_collection(LineCollection(outline(corners), colors=EDGE, linewidths=0.8, zorder=3), autolim=False)
+
+
+def extent_with_bodies(run, plane, times, frame):
+    """The frame widened for bodies that are smaller than nine tenths of the domain."""
+    low, high = np.array(frame[::2], float), np.array(frame[1::2], float)
+    for body in bodies_of(run):
+        if body.outside:
+            continue
+        for time in times:
+            points = places(run, body)(time)[:, :, list(plane.axes)].reshape(-1, 2)
+            own_low, own_high = points.min(axis=0), points.max(axis=0)
+            if np.any(own_high - own_low > 0.9 * (plane.high - plane.low)):
+                continue
+            margin = 0.05 * (own_high - own_low)
+            low = np.maximum(np.minimum(low, own_low - margin), np.minimum(plane.low, low))
+            high = np.minimum(np.maximum(high, own_high + margin), np.maximum(plane.high, high))
+    return low[0], high[0], low[1], high[1]
