@@ -221,6 +221,28 @@ bool BodyForces::floats(const Element& element) const {
   return motion && scene_.motions[*motion].floats;
 }
 
+std::optional<std::size_t> BodyForces::floats_through() const {
+  // Those that lie on each other at the start do not count.
+  const double deep = 0.5 * resolution_.spacing;
+  const Domain& domain = scene_.domain;
+  for (const Element& element : elements_) {
+    if (!floats(element)) continue;
+    const auto body = static_cast<std::size_t>(element.body);
+    const RigidWalls& own = walls_.part_of(body);
+    const Vec3 at = own.place.now(element.middle);
+    for (int axis = 0; axis < domain.dimensions; ++axis)
+      if ((is_wall(domain.sides[axis][0].kind) && at[axis] < domain.lower[axis] - deep) ||
+          (is_wall(domain.sides[axis][1].kind) && at[axis] > domain.upper[axis] + deep))
+        return body;
+    for (std::size_t other = 0; other < scene_.bodies.size(); ++other) {
+      const RigidWalls& walls = walls_.part_of(other);
+      if (scene_.bodies[other].wall == BoundaryKind::open || &walls == &own) continue;
+      if (!walls.surely_farther(at, 0) && walls.distance(at) < -deep) return body;
+    }
+  }
+  return std::nullopt;
+}
+
 std::vector<BodyForces::Traction> BodyForces::tractions(const Fields& fields, double t,
                                                         std::vector<std::vector<PressureWeight>>* weights) const {
   constexpr std::size_t block = 256;

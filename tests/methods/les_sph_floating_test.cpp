@@ -111,6 +111,17 @@ TEST(LesSphFloating, APlankTurnsToTheLevelAndFloats) {
   EXPECT_NEAR(row.y, 0.03, 0.1);  // 0.4 of 0.3 below the surface: its middle 0.03 above
 }
 
+TEST(LesSphFloating, ABodyThatSinksThroughTheFloorIsRemarkedOn) {
+  Simulation run(replaced(plank, "density = 400", "density = 4000\nposition = [0, -0.3]"));
+  bool remarked = false;
+  for (int step = 0; step < 60 && !remarked; ++step) {
+    run.steps(1, std::min(0.01, run.method.step_limit().dt));
+    for (const Remark& remark : run.method.take_remarks())
+      remarked = remarked || remark.text.find("goes through a wall") != std::string::npos;
+  }
+  EXPECT_TRUE(remarked);
+}
+
 TEST(LesSphFloating, GivesTheSameBitsForAnyNumberOfThreads) {
   const int threads = omp_get_max_threads();
   State first;

@@ -8,6 +8,7 @@
 // it, that of the velocity through the velocity of a no-slip surface. Elements without liquid before them feel nothing.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,8 @@ class BodyForces {
   RecordTable table() const;
   void add_rows(double t, const std::vector<SurfaceForce>& forces, std::vector<double>& rows) const;
   std::size_t elements() const { return elements_.size(); }
+  // The first body that floats and has gone through a wall of the domain or another body; none: no such body.
+  std::optional<std::size_t> floats_through() const;
 
  private:
   struct Element {

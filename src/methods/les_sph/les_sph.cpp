@@ -79,6 +79,20 @@ void LesSph::step(double dt, Ledger& ledger) {
   }
   sampled_step_ = -1;  // sorting changes what the bins of the sampler refer to, also when the step is refused
   plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
+  remark_bodies_that_collide();
+}
+
+void LesSph::remark_bodies_that_collide() {
+  if (flow_.floating == nullptr || collided_) return;
+  const std::optional<std::size_t> body = body_forces_->floats_through();
+  if (!body) return;
+  collided_ = true;
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "the body '%s' goes through a wall or another body at t = %.4g: floating bodies do not collide; make "
+                "room for it, or hold it with free",
+                flow_.scene.bodies[*body].name.c_str(), flow_.time);
+  remarks_.push_back({text, false});
 }
 
 // A Helmholtz step needs p^n: without this solve the first step would start from zero pressure.

@@ -59,6 +59,7 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   void ensure_started();
   // Says where walls of bodies are less accurate than elsewhere.
   void remark_surface_at_bodies();
+  void remark_bodies_that_collide();
   void declare_series();
   void declare_saved();
   bool periodic() const;  // in all directions: the flow has an energy spectrum
@@ -67,6 +68,7 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   const PointSampler& sampler();
 
   std::vector<Remark> remarks_;  // not yet passed on
+  bool collided_ = false;        // was remarked on
   Ledger start_ledger_;          // of a start that came before the first step
   Flow flow_;
   Plan plan_;
