@@ -118,7 +118,7 @@ void check_parentheses(const std::string& text) {
   for (char& c : message) c = c == '"' ? '\'' : c;
   if (!message.empty()) message[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(message[0])));
   std::size_t position = error.GetPos() < 0 ? text.size() : static_cast<std::size_t>(error.GetPos());
-  const std::string token = error.GetToken();
+  const std::string& token = error.GetToken();
   const bool about_arguments = error.GetCode() == mu::ecTOO_MANY_PARAMS || error.GetCode() == mu::ecTOO_FEW_PARAMS;
   if (about_arguments && !token.empty()) {
     const std::size_t found = text.rfind(token, position);

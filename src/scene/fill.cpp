@@ -254,10 +254,11 @@ bool Filler::behind_walls(std::size_t axis, int side) const {
   const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
   const auto columns = static_cast<std::size_t>(lattice_.count[b]), rows = static_cast<std::size_t>(lattice_.count[c]);
   return parallel_max(columns * rows, 0.0, [&](std::size_t k) {
+           const std::size_t column = k % columns, row = k / columns;
            Vec3 p{};
            p[axis] = side == 0 ? scene_.domain.lower[axis] : scene_.domain.upper[axis];
-           p[b] = b < static_cast<std::size_t>(lattice_.dimensions) ? centre(b, static_cast<double>(k % columns)) : 0;
-           p[c] = c < static_cast<std::size_t>(lattice_.dimensions) ? centre(c, static_cast<double>(k / columns)) : 0;
+           p[b] = b < static_cast<std::size_t>(lattice_.dimensions) ? centre(b, static_cast<double>(column)) : 0;
+           p[c] = c < static_cast<std::size_t>(lattice_.dimensions) ? centre(c, static_cast<double>(row)) : 0;
            return scene_.walls.distance(p) > 0.5 * scene_.spacing ? 1.0 : 0.0;
          }) == 0;
 }
@@ -267,11 +268,12 @@ double Filler::open_volume() const {
   const auto columns = static_cast<std::size_t>(lattice_.count[0]), rows = static_cast<std::size_t>(lattice_.count[1]);
   const auto layers = static_cast<std::size_t>(lattice_.count[2]);
   return lattice_.volume() * parallel_sum(rows * layers, [&](std::size_t row) {
+           const std::size_t layer = row / rows;
            ThreadRegions own(regions_, wall_distance());
            double cells = 0;
            for (std::size_t i = 0; i < columns; ++i) {
              const Vec3 p{centre(0, static_cast<double>(i)), centre(1, static_cast<double>(row % rows)),
-                          lattice_.dimensions == 3 ? centre(2, static_cast<double>(row / rows)) : 0.0};
+                          lattice_.dimensions == 3 ? centre(2, static_cast<double>(layer)) : 0.0};
              cells += open_part(own, p);
            }
            return cells;

@@ -13,7 +13,7 @@ namespace spume {
 struct Place {
   int line = 0;  // 1-based; 0: no place in the file
   int column = 0;
-  auto operator<=>(const Place&) const = default;
+  auto operator<=>(const Place&) const = default;  // NOLINT(modernize-use-nullptr): of the code that it stands for
 };
 
 struct Node {
