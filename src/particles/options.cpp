@@ -30,25 +30,27 @@ Section pressure_section() {
               relaxation_text.c_str());
 }
 
-Section shifting_section() {
+Section shifting_section(bool removes_drift) {
   using S = ShiftingOptions;
   const std::string limit_text = "largest displacement per step up to courant " + brief(full_displacement) +
                                  "; above it in proportion to the step";
-  return section<S>("shifting")
-      .option("on", &S::on, "particle shifting towards a uniform distribution")
+  SectionOf<S> made = section<S>("shifting");
+  made.option("on", &S::on, "particle shifting towards a uniform distribution")
       .option("coefficient", &S::coefficient, "1", between(0, 1), "displacement = -coefficient h^2 grad C")
       .when("on", {"true"})
       .option("limit", &S::limit, "h", above_up_to(0, 0.5), limit_text.c_str())
-      .when("on", {"true"})
-      .option("remove_drift", &S::remove_drift, "subtract the Shepard mean of the shift: no net transport")
-      .when("on", {"true"})
-      .word(
+      .when("on", {"true"});
+  if (removes_drift)
+    made.option("remove_drift", &S::remove_drift, "subtract the Shepard mean of the shift: no net transport")
+        .when("on", {"true"});
+  made.word(
           "velocity_correction", &S::velocity_correction,
           {{"none", ShiftCorrection::none},
            {"first-order", ShiftCorrection::first_order},
            {"second-order", ShiftCorrection::second_order}},
           "Taylor terms of the velocity at the shifted position; the first is bounded by the velocities of neighbours")
       .when("on", {"true"});
+  return made;
 }
 
 Section surface_section() {

@@ -44,6 +44,23 @@ TYPED_TEST(Kernels, IntegratesToOneAndHasTheStatedVariance) {
   }
 }
 
+TYPED_TEST(Kernels, KurtosisIsThatOfOneDirection) {
+  using Kernel = typename TypeParam::Kernel;
+  const int steps = 6000;  // a multiple of the pieces, midpoints: an error of the step squared
+  const double width = Kernel::support / steps;
+  for (const int dimensions : {2, 3}) {
+    double moment[3]{};
+    for (int k = 0; k < steps; ++k) {
+      const double q = (k + 0.5) * width;
+      for (int n = 0; n < 3; ++n) moment[n] += Kernel::w(q) * std::pow(q, 2 * n + dimensions - 1);
+    }
+    // The mean of the fourth power of a direction's cosine is 3 / (d (d + 2)), of its square 1 / d.
+    const double fourth = 3.0 / (dimensions * (dimensions + 2)) * moment[2] / moment[0];
+    const double second = moment[1] / (dimensions * moment[0]);
+    EXPECT_NEAR(fourth / (second * second), Kernel::kurtosis(dimensions), 1e-5);
+  }
+}
+
 TYPED_TEST(Kernels, SlopeFunctionIsTheDerivativeOverQ) {
   using Kernel = typename TypeParam::Kernel;
   const double h = 1e-4;

@@ -2,7 +2,7 @@
 // Smoothing kernels as compile-time policies. With q = r / h, W = sigma_d / h^d w(q), and
 // F(q) = w'(q) / q, so that grad W = sigma_d / h^(d+2) F(q) r_vec: F is finite at q = 0 and no pair loop
 // divides by the distance. Both functions are zero beyond the support radius without a branch. The variance is that of
-// W along one direction, over h^2.
+// W along one direction, over h^2; the kurtosis its fourth moment over the square of the variance.
 #pragma once
 
 #include <algorithm>
@@ -21,6 +21,7 @@ struct WendlandC2 {
     return dimensions == 2 ? 7 / (4 * std::numbers::pi) : 21 / (16 * std::numbers::pi);
   }
   static constexpr double variance(int dimensions) { return dimensions == 2 ? 5.0 / 18 : 4.0 / 15; }
+  static constexpr double kurtosis(int dimensions) { return dimensions == 2 ? 756.0 / 275 : 30.0 / 11; }
   static double w(double q) {
     const double s = std::max(0.0, 1 - q / 2);
     return s * s * s * s * (2 * q + 1);
@@ -50,6 +51,7 @@ struct QuinticSpline {
     return dimensions == 2 ? 7 / (478 * std::numbers::pi) : 1 / (120 * std::numbers::pi);
   }
   static constexpr double variance(int dimensions) { return dimensions == 2 ? 2771.0 / 5736 : 7.0 / 15; }
+  static constexpr double kurtosis(int dimensions) { return dimensions == 2 ? 236429316.0 / 84462851 : 960.0 / 343; }
   static double w(double q) {
     const double a = std::max(0.0, 3 - q), b = std::max(0.0, 2 - q), c = std::max(0.0, 1 - q);
     return std::pow(a, 5) - 6 * std::pow(b, 5) + 15 * std::pow(c, 5);

@@ -47,7 +47,8 @@ struct SurfaceOptions {
 };
 
 Section pressure_section();
-Section shifting_section();
+// Of a method without free surfaces, which shifts in full, remove_drift is no option.
+Section shifting_section(bool removes_drift = true);
 Section surface_section();
 
 }  // namespace spume

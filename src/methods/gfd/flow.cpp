@@ -69,8 +69,8 @@ Flow::Flow(const LoadedCase& loaded_case)
       features(loaded_case),
       resolution(scene.domain.dimensions, scene.spacing, options.resolution.kernel, options.resolution.smoothing_ratio),
       dimensions(scene.domain.dimensions),
-      largest_shift(largest_stable_shift(dimensions, options.resolution.kernel, options.resolution.smoothing_ratio,
-                                         features.shifting && options.get<ShiftingOptions>().remove_drift)),
+      largest_shift(
+          largest_stable_shift(dimensions, options.resolution.kernel, options.resolution.smoothing_ratio, false)),
       densities(of_phases(scene, &Phase::density)),
       viscosities(of_phases(scene, &Phase::viscosity)),
       particles(dimensions, scene.particles),
@@ -78,6 +78,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       arrangement(scene.domain, resolution, particles.volume, particles.size()),
       moments(particles, {.kernel_sum = true, .concentration_gradient = features.shifting, .fading = {}}),
       colours(make_colours(scene)),
+      first_volume(scene.phases.size()),
       phase_volume(scene.phases.size()),
       solver(boundary, solver_options(options)) {
   FieldSet& fields = particles.fields;
@@ -109,9 +110,27 @@ double Flow::potential_energy() const {
   return parallel_sum(size(), [&](std::size_t i) { return mass(i) * gravity_potential(i); });
 }
 
+// The interface of two phases is that of each of their colours.
+double Flow::interface_area() const {
+  double sum = 0;
+  for (const Colour& colour : colours) sum += colour.area;
+  return colours.size() == 1 ? sum : sum / 2;
+}
+
+double Flow::surface_energy() const {
+  double sum = 0;
+  for (const Colour& colour : colours) sum += colour.tension * colour.area;
+  return sum;
+}
+
+double Flow::roundness() const {
+  const double volume = phase_volume[1], pi = std::numbers::pi;
+  const double least = dimensions == 3 ? std::cbrt(36 * pi * volume * volume) : 2 * std::sqrt(pi * volume);
+  return least / interface_area();
+}
+
 void Flow::start_energy() {
-  energy_supply = kinetic_energy() + potential_energy();
-  for (const Colour& colour : colours) energy_supply += colour.tension * colour.area;
+  energy_supply = kinetic_energy() + potential_energy() + surface_energy();
 }
 
 GfdStencils Flow::stencils() const {

@@ -48,6 +48,7 @@ Gfd::Gfd(const LoadedCase& loaded)
       .add(flow_.speeds.limiting)
       .add(flow_.energy_supply)
       .add(flow_.boundary.wall_speed);
+  for (double& volume : flow_.first_volume) saved_.add(volume);
 }
 
 void Gfd::ensure_arranged() {
@@ -92,15 +93,19 @@ void Gfd::declare_series() {
   if (flow.features.gravity)
     series_.add("potential_energy", "rho g z, integral", [&flow] { return flow.potential_energy(); });
   if (flow.features.interfaces)
-    series_.add("interface_area", flow.dimensions == 3 ? "length^2" : "length", [&flow] {
-      double area = 0;
-      for (const Colour& colour : flow.colours) area += colour.area / (flow.colours.size() == 1 ? 1 : 2);
-      return area;
-    });
+    series_.add("interface_area", flow.dimensions == 3 ? "length^2" : "length",
+                [&flow] { return flow.interface_area(); });
+  if (flow.features.tension)
+    series_.add("surface_energy", "sigma times the area", [&flow] { return flow.surface_energy(); });
+  if (flow.colours.size() == 1)
+    series_.add(flow.dimensions == 3 ? "sphericity" : "circularity",
+                "surface of a ball of the volume of " + flow.scene.phases[1].name + " over the area",
+                [&flow] { return flow.roundness(); });
   series_.add("max_speed", "speed", [&flow] { return flow.speeds.largest; });
   for (std::size_t n = 0; n < phase_sums_.size(); ++n) {
     const std::string& name = flow.scene.phases[n].name;
-    series_.add("volume_" + name, flow.dimensions == 3 ? "length^3, by kernel sums" : "length^2, by kernel sums",
+    series_.add("volume_" + name,
+                flow.dimensions == 3 ? "length^3, share by kernel sums" : "length^2, share by kernel sums",
                 [&flow, n] { return flow.phase_volume[n]; });
     phase_sums_.add_columns(series_, n, name);
   }

@@ -28,6 +28,18 @@ double kernel_width(const Resolution& resolution) {
   return resolution.smoothing_length * std::sqrt(variance);
 }
 
+// Averages over the kernel that flatten a wave of the interface as much as its measurement does, to the square of its
+// number k: an average of the variance s^2 leaves 1 - k^2 s^2 / 2, and so does the colour that tells the height; a
+// derivative of weights W d leaves 1 - k^2 <d^4> / (6 <d^2>), and the curvature takes two.
+double averages_of_colour() {
+  return 1;
+}
+double averages_of_curvature(const Resolution& resolution) {
+  const double kurtosis = resolution.kernel == KernelKind::wendland_c2 ? WendlandC2::kurtosis(resolution.dimensions)
+                                                                       : QuinticSpline::kurtosis(resolution.dimensions);
+  return averages_of_colour() + 2 * kurtosis / 3;
+}
+
 double band_weight(double colour) {
   return 4 * colour * (1 - colour);
 }
@@ -58,10 +70,16 @@ void Flow::measure_stencils() {
   moments.measure(arrangement, particles, spacing());
   particles.scratch().release(moments.laplacian_diagonal);
   const double bulk = resolution.lattice.kernel_sum;
-  for (std::size_t n = 0; n < phase_volume.size(); ++n)
-    phase_volume[n] = particles.volume * parallel_sum(size(), [&](std::size_t i) {
-                        return phase[i] == n && moments.kernel_sum[i] > 0 ? bulk / moments.kernel_sum[i] : 0.0;
-                      });
+  double total = 0;
+  for (std::size_t n = 0; n < phase_volume.size(); ++n) {
+    phase_volume[n] = parallel_sum(size(), [&](std::size_t i) {
+      return phase[i] == n && moments.kernel_sum[i] > 0 ? bulk / moments.kernel_sum[i] : 0.0;
+    });
+    total += phase_volume[n];
+  }
+  // The phases fill the domain: what disorder does to the sums of all of them, 0.1 %, says nothing of their volumes.
+  for (double& volume : phase_volume) volume *= particles.volume * static_cast<double>(size()) / total;
+  if (steps == 0) first_volume = phase_volume;
 }
 
 void Flow::find_bands() {
@@ -126,45 +144,70 @@ void Flow::find_potential(Colour& colour) {
     curvature_sweep(arrangement.context, arrangement.packed, bands, read(normal), boundary.reflection(),
                     curvature.data());
   colour.potential.resize(n);
+  colour.mean_potential = 0;
   parallel_for(n, [&](std::size_t i) {
     weight[i] = static_cast<float>(band_weight(colour.value[i]));
     potential[i] = colour.potential[i] = 0;
   });
   const auto& band = bands.varying();
-  parallel_for(band.size(), [&](std::size_t s) {
-    const auto i = static_cast<std::size_t>(band[s]);
-    const double c = std::clamp<double>(colour.value[i], least_colour, 1 - least_colour);
-    const double distance = width / logistic_width * std::log(c / (1 - c));  // along the normal
-    double value = 0;
-    if (features.tension) {
+  // A potential from value(i, distance of the particle along the normal), measured through `averages` of the kernel.
+  const auto add = [&](double averages, auto&& value) {
+    parallel_for(band.size(), [&](std::size_t s) {
+      const auto i = static_cast<std::size_t>(band[s]);
+      const double c = std::clamp<double>(colour.value[i], least_colour, 1 - least_colour);
+      potential[i] = static_cast<float>(value(i, width / logistic_width * std::log(c / (1 - c))));
+    });
+    continue_across_band(colour, weight, potential, averages);
+  };
+  if (features.tension)
+    add(averages_of_curvature(resolution), [&](std::size_t i, double distance) {
       const double stretch = 1 + curvature[i] * distance / (dimensions - 1);
-      value += colour.tension * curvature[i] / std::clamp(stretch, least_stretch, largest_stretch);
-    }
-    if (features.gravity && colour.density_jump != 0) {
+      return colour.tension * curvature[i] / std::clamp(stretch, least_stretch, largest_stretch);
+    });
+  if (features.gravity && colour.density_jump != 0)
+    add(averages_of_colour(), [&](std::size_t i, double distance) {
       double height = gravity_potential(i);
       for (int axis = 0; axis < dimensions; ++axis)
         if (!scene.domain.periodic(axis)) height += distance * scene.fluid.gravity[axis] * normal[axis][i];
-      value += colour.density_jump * height;
-    }
-    potential[i] = static_cast<float>(value);
-  });
+      return colour.density_jump * height;
+    });
+  colour.area = particles.volume * parallel_sum(band.size(), [&](std::size_t s) {
+                  return std::sqrt(squared_norm(gradient, dimensions, static_cast<std::size_t>(band[s])));
+                });
+  scratch.release(normal);
+  scratch.release(gradient);
+}
+
+// Adds a potential of the interface to that of the colour. Averages over the band continue it and flatten its waves,
+// as measuring it did; the difference that one average more makes, times their number, gives back what they took, to
+// the square of the wave number. Without it a capillary wave of 32 spacings is 3 % too slow.
+void Flow::continue_across_band(Colour& colour, const Array<float>& weight, Array<float>& potential, double averages) {
+  const std::size_t n = size();
+  const auto& band = bands.varying();
   const auto sum_over_band = [&](auto&& value) {
     return parallel_sum(band.size(), [&](std::size_t s) { return value(static_cast<std::size_t>(band[s])); });
   };
   const double total = sum_over_band([&](std::size_t i) { return double{weight[i]}; });
-  colour.mean_potential =
+  const double mean =
       total > 0 ? sum_over_band([&](std::size_t i) { return double{weight[i]} * potential[i]; }) / total : 0;
-  const auto mean = static_cast<float>(colour.mean_potential);
-  parallel_for(band.size(), [&](std::size_t s) { potential[static_cast<std::size_t>(band[s])] -= mean; });
-  for (int pass = 0; pass < options.get<InterfaceOptions>().smoothing; ++pass) {
-    interface_average_sweep(arrangement.context, arrangement.packed, bands, weight.data(), potential.data(),
-                            colour.potential.data());
-    if (pass + 1 < options.get<InterfaceOptions>().smoothing) potential.swap(colour.potential);
+  colour.mean_potential += mean;
+  parallel_for(band.size(), [&](std::size_t s) { potential[static_cast<std::size_t>(band[s])] -= float(mean); });
+  ScratchArray<float> averaged(particles.scratch(), n);
+  const auto average = [&](const Array<float>& from, Array<float>& to) {
+    interface_average_sweep(arrangement.context, arrangement.packed, bands, weight.data(), from.data(), to.data());
+  };
+  averaged.fill(0.0F);
+  const int passes = options.get<InterfaceOptions>().smoothing;
+  for (int pass = 0; pass < passes; ++pass) {
+    average(potential, averaged);
+    potential.swap(averaged);
   }
-  colour.area =
-      particles.volume * sum_over_band([&](std::size_t i) { return std::sqrt(squared_norm(gradient, dimensions, i)); });
-  scratch.release(normal);
-  scratch.release(gradient);
+  average(potential, averaged);
+  const auto lost = static_cast<float>(averages + passes);
+  parallel_for(band.size(), [&](std::size_t s) {
+    const auto i = static_cast<std::size_t>(band[s]);
+    colour.potential[i] += potential[i] + lost * (potential[i] - averaged[i]);
+  });
 }
 
 // (18), of the filtered viscosity itself: the same for two phases, and right for more.

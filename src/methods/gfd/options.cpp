@@ -22,7 +22,7 @@ Section momentum_section() {
 Section interface_band_section() {
   return section<InterfaceOptions>("interface")
       .behind("surface_tension")
-      .option("smoothing", &InterfaceOptions::smoothing, "", between(1, 20),
+      .option("smoothing", &InterfaceOptions::smoothing, "", between(3, 20),
               "averages of the curvature along the interface");
 }
 

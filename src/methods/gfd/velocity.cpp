@@ -81,11 +81,26 @@ void Flow::find_divergence() {
 void Flow::relax_density(double dt) {
   volume_ratio = even_out_density({options.get<PressureOptions>().density_relaxation, displacement, dt}, arrangement,
                                   scene.domain, particles.position, resolution, moments, nullptr, divergence);
+  // What it lets be from particle to particle adds up over a phase: a bubble that rises by its diameter shrinks by 0.5
+  // %. The volume of a whole phase has no such disorder and need not wait as long: it closes its excess while the
+  // particles move by a support, over which their neighbours change.
+  const double steps_to_close = resolution.support_radius / (full_displacement * resolution.smoothing_length);
+  const double rate = displacement / (steps_to_close * dt);
+  for (std::size_t n = 0; n < phase_volume.size() && features.interfaces; ++n) {
+    const double excess = phase_volume[n] / first_volume[n] - 1;
+    parallel_for(size(), [&](std::size_t i) {
+      if (phase[i] == n) divergence[i] += rate * excess;
+    });
+  }
 }
 
+// In full: there is no surface that it could lift. Less what neighbours share of it, it leaves disorder of several
+// spacings at the interface, which lets the pressure gain energy: a drop without viscosity gained 9 % of its amplitude
+// in a radian and a wave with viscosity lost 7 % less than it should.
 void Flow::compute_shift() {
-  shift->compute(arrangement, particles, shift_input(options.get<ShiftingOptions>(), largest_shift, displacement),
-                 sizes, moments, nullptr, boundary.reflection());
+  ShiftInput input = shift_input(options.get<ShiftingOptions>(), largest_shift, displacement);
+  input.remove_drift = false;
+  shift->compute(arrangement, particles, input, sizes, moments, nullptr, boundary.reflection());
 }
 
 void Flow::correct_for_shift() {
@@ -189,17 +204,12 @@ void Flow::accept(double dt) {
   refuse_long_strides(particles, particles.position, next_velocity, arrangement.grid.support_radius(), dt);
   refuse_energy_from_nothing();
   boundary.advance(time, dt);
-  // Beside an interface the velocity gradient jumps, or the liquids slip: extrapolated along the shift again and again
-  // it feeds them. A drop without viscosity gained 3 % of its amplitude in a radian, and with this 0.
-  const auto beside_interface = [varies = bands.varies()](std::size_t i) {
-    return varies != nullptr && varies[i] != 0;
-  };
   parallel_for(size(), [&](std::size_t i) {
     Vec3 u = vector_at(next_velocity, dimensions, i), r = vector_at(particles.position, dimensions, i);
     for (int axis = 0; axis < dimensions; ++axis) {
       r[axis] += dt * u[axis];
       if (features.shifting) r[axis] += (*shift->displacement[axis])[i];
-      if (features.shift_correction && !beside_interface(i)) u[axis] += shift_velocity[axis][i];
+      if (features.shift_correction) u[axis] += shift_velocity[axis][i];
     }
     (*pressure)[i] = reduced_pressure[i] + hydrostatic_part(i);
     boundary.apply_walls(boundary.next_walls, r, &u);

@@ -78,7 +78,8 @@ struct Flow {
   Array<std::int64_t>* phase_number = nullptr;
   Boundary boundary;
   Speeds speeds;
-  double energy_supply = 0;  // mechanical energy at the start and that of the interfaces
+  double energy_supply = 0;          // mechanical energy at the start and that of the interfaces
+  std::vector<double> first_volume;  // of the phases at the start
 
   // --- Results of the last step, at the positions that it started from.
   Arrangement arrangement;
@@ -95,7 +96,7 @@ struct Flow {
   Array<float>* viscosity = nullptr;  // mu~; null without viscosity
   double displacement = 0, volume_ratio = 1;
   double max_divergence = 0;
-  std::vector<double> phase_volume;  // by kernel sums
+  std::vector<double> phase_volume;  // shares of the domain, by kernel sums
   ProjectionSolver solver;
   GfdPressureOperator matrix;
 
@@ -122,6 +123,9 @@ struct Flow {
   double capillary_time() const;
   double kinetic_energy() const;
   double potential_energy() const;  // across axes with sides
+  double interface_area() const;    // integral of |grad C|
+  double surface_energy() const;    // sigma times it
+  double roundness() const;         // of the second of two phases: surface of a ball of its volume over that area
   // What the guard of the energy measures by; after the first interfaces have been found.
   void start_energy();
 
@@ -150,6 +154,7 @@ struct Flow {
  private:
   void refuse_energy_from_nothing() const;
   void find_potential(Colour& colour);
+  void continue_across_band(Colour& colour, const Array<float>& weight, Array<float>& potential, double averages);
   void blend_viscosity(std::span<const float* const> colour);
 };
 

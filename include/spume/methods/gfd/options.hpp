@@ -19,7 +19,9 @@ struct MomentumOptions {
 
 // Of [interface], beside the tension.
 struct InterfaceOptions {
-  int smoothing = 2;  // passes of the average that continues the curvature across the band
+  // Passes of the average that continues the curvature across the band. What they take of long waves is given back,
+  // which amplifies those of 5 spacings: with 2 passes a capillary wave of 64 without viscosity is torn.
+  int smoothing = 4;
 };
 
 // What the scheme adds to [time].
