@@ -21,14 +21,14 @@ def exact(run):
 
 
 def moment(run):
-    """t and the mean of r^n cos(n theta) over the drop about its centre, linear in the amplitude of mode n."""
+    """t and the mean of r^n cos(n theta) over the drop, whose centre is the origin or lies on planes of symmetry through
+    it; linear in the amplitude of mode n."""
     n = int(run.case["constants"]["n"])
     t, values = [], []
     for snapshot in run.snapshots():
         inside = snapshot.position[snapshot.field("phase") == 1, :2]
-        away = inside - inside.mean(axis=0)
         t.append(snapshot.time)
-        values.append(np.mean(((away[:, 0] + 1j * away[:, 1]) ** n).real))
+        values.append(np.mean(((inside[:, 0] + 1j * inside[:, 1]) ** n).real))
     return np.array(t), np.array(values)
 
 
@@ -40,7 +40,7 @@ def measure(runs):
         _, _, rate, found = damped_oscillation(t, a, 0.01 * omega, omega)
         measured[f"{name}_frequency_ratio"] = found / omega
         measured[f"{name}_frequency_error"] = abs(found / omega - 1)
-        measured[f"{name}_damping_over_frequency"] = rate / omega
+        measured[f"{name}_growth_over_frequency"] = -rate / omega
     return measured
 
 

@@ -142,14 +142,18 @@ class Oscillations(CaseTest):
 
     def test_an_oscillating_drop_of_the_exact_frequency_has_no_error(self):
         folder, module = self.run_of("oscillating_drop")
-        at = lattice([-2, -2], [2, 2], 1 / 32)
-        for slower in (1, 0.95):
+        at = lattice([0, 0], [2, 2], 1 / 48)
+        for slower, growth in ((1, 0), (0.95, 0.02)):
             def phase(p, t):
-                size = 1 + 0.05 * np.cos(slower * np.sqrt(3) * t) * np.cos(2 * np.arctan2(p[:, 1], p[:, 0]))
+                omega = np.sqrt(3)
+                size = 1 + 0.1 * np.exp(growth * omega * t) * np.cos(slower * omega * t) * np.cos(
+                    2 * np.arctan2(p[:, 1], p[:, 0]))
                 return np.hypot(p[:, 0], p[:, 1]) < size
             write_snapshots(folder / "fluid.vtkhdf", np.linspace(0, 8, 81), lambda t: at, {"phase": phase})
             measured = module.measure({"equal": Results(folder)})
             self.assertAlmostEqual(measured["equal_frequency_ratio"], slower, delta=0.003)
+            self.assertAlmostEqual(measured["equal_growth_over_frequency"], growth, delta=0.003)
+
 
 
 if __name__ == "__main__":

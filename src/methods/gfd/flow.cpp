@@ -59,6 +59,8 @@ Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.dom
   const ShiftingOptions& shift = loaded.options.get<ShiftingOptions>();
   shifting = shift.on;
   shift_correction = shifting && shift.velocity_correction != ShiftCorrection::none;
+  const std::vector<std::string>& written = loaded.options.output.fields;
+  writes_diffusion = std::find(written.begin(), written.end(), diffusion_field) != written.end();
   density_relaxation = loaded.options.get<PressureOptions>().density_relaxation < never_relaxed;
 }
 
@@ -75,10 +77,10 @@ Flow::Flow(const LoadedCase& loaded_case)
       viscosities(of_phases(scene, &Phase::viscosity)),
       particles(dimensions, scene.particles),
       boundary(scene.domain, scene.spacing),
+      first_volume(scene.phases.size()),
       arrangement(scene.domain, resolution, particles.volume, particles.size()),
       moments(particles, {.kernel_sum = true, .concentration_gradient = features.shifting, .fading = {}}),
       colours(make_colours(scene)),
-      first_volume(scene.phases.size()),
       phase_volume(scene.phases.size()),
       solver(boundary, solver_options(options)) {
   FieldSet& fields = particles.fields;
@@ -91,6 +93,7 @@ Flow::Flow(const LoadedCase& loaded_case)
   laplacian_factor = &fields.add<float>("laplacian_factor", Lifetime::result);
   density = &fields.add<float>("density", Lifetime::result);
   if (features.viscosity) viscosity = &fields.add<float>("viscosity", Lifetime::result);
+  if (features.writes_diffusion) particles.add_vector(diffusion, diffusion_field, Lifetime::result);
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
   parallel_for(size(), [&](std::size_t i) { (*phase_number)[i] = scene.particles.phase[i]; });
   speeds = find_speeds(arrangement, particles);
@@ -139,6 +142,11 @@ GfdStencils Flow::stencils() const {
   all.offset = read(offset);
   all.laplacian_factor = laplacian_factor->data();
   return all;
+}
+
+bool Flow::takes_viscosity_gradient() const {
+  const Diffusion form = options.get<MomentumOptions>().diffusion;
+  return features.viscosity_jump && (form == Diffusion::split || form == Diffusion::printed);
 }
 
 double Flow::gravity_potential(std::size_t i) const {

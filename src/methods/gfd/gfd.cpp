@@ -28,6 +28,7 @@ const std::vector<OutputField<Flow>>& output_fields() {
       {"density", on_request, [](const Flow& f, std::size_t i) { return (*f.density)[i]; }},
       {"viscosity", on_request,
        [](const Flow& f, std::size_t i) { return f.viscosity == nullptr ? 0.0F : (*f.viscosity)[i]; }},
+      {diffusion_field, on_request, [](const Flow& f) { return f.diffusion; }},
       {"colour", on_request,
        [](const Flow& f, std::size_t i) { return f.colours.empty() ? 0.0F : f.colours.back().value[i]; }},
       {"interface_potential", on_request, [](const Flow& f, std::size_t i) {

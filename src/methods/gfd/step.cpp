@@ -34,7 +34,6 @@ Plan make_plan(Flow& f) {
   const Features& has = f.features;
   ParticleStore& p = f.particles;
   const Diffusion diffusion = f.options.get<MomentumOptions>().diffusion;
-  const bool takes_gradient = diffusion == Diffusion::split || diffusion == Diffusion::printed;
   const ArrayUse images([&f] { return f.arrangement.image_traffic(); });
   const ArrayUse lists([&f] { return f.arrangement.list_traffic(f.sizes); });
   const ArrayUse sorted([&f] { return f.arrangement.sort_traffic(f.particles); });
@@ -84,18 +83,23 @@ Plan make_plan(Flow& f) {
         if (f.steps == 0) f.start_energy();
       },
       {p.position, p.velocity}, {});
+  add(
+      start, "initial diffusion", has.writes_diffusion,
+      has.writes_diffusion ? "output.fields names it" : "output.fields does not name it",
+      [&](StageRun&) { f.measure_diffusion(); }, {p.velocity, f.viscosity}, {f.diffusion}, true);
   // (20) u* from momentum diffusion and body forces
   add(
-      step, "viscosity gradient", has.viscosity_jump && takes_gradient,
-      !has.viscosity_jump ? "one viscosity"
-      : takes_gradient    ? "(18)"
-                          : "momentum.diffusion does without",
+      step, "viscosity gradient", f.takes_viscosity_gradient(),
+      !has.viscosity_jump            ? "one viscosity"
+      : f.takes_viscosity_gradient() ? "(18)"
+                                     : "momentum.diffusion does without",
       [&](StageRun&) { f.find_viscosity_gradient(); }, {f.viscosity, *f.density, f.correction}, {f.viscosity_gradient},
       true);
   add(
       step, "diffusion", has.viscosity, has.viscosity ? form_in_words(diffusion) : "inviscid",
       [&](StageRun&) { f.find_viscous_acceleration(); },
-      {p.velocity, f.viscosity, f.viscosity_gradient, f.offset, *f.laplacian_factor}, {f.viscous_acceleration}, true);
+      {p.velocity, f.viscosity, f.viscosity_gradient, f.offset, *f.laplacian_factor},
+      {f.viscous_acceleration, f.diffusion}, true);
   add(step, "prediction", true, "(20): velocity without pressure", [&](StageRun& run) { f.predict_velocity(run.dt); },
       {p.velocity, f.viscous_acceleration}, {f.intermediate_velocity});
   // Shifting of Xu, in the form of King (3.12)

@@ -33,10 +33,10 @@ MomentumDiffusion form_of(Diffusion diffusion) {
 void Flow::find_viscous_acceleration() {
   ScratchPool& scratch = particles.scratch();
   scratch.lease(viscous_acceleration, dimensions, size());
-  const Diffusion diffusion = options.get<MomentumOptions>().diffusion;
+  const Diffusion form = options.get<MomentumOptions>().diffusion;
   DiffusionProperties properties{{viscosity->data(), features.viscosity_jump ? bands.varies() : nullptr},
                                  density->data()};
-  if (diffusion == Diffusion::hu_adams) {
+  if (form == Diffusion::hu_adams) {
     ScratchArray<float> volume(scratch, size());
     volume.fill(static_cast<float>(particles.volume));
     hu_adams_sweep(arrangement.context, arrangement.packed, read(particles.velocity), boundary.velocity_rule(),
@@ -44,9 +44,23 @@ void Flow::find_viscous_acceleration() {
   } else {
     properties.viscosity_gradient = read(viscosity_gradient);
     gfd_stress_sweep(arrangement.context, arrangement.packed, read(particles.velocity), boundary.velocity_rule(),
-                     stencils(), form_of(diffusion), properties, write(viscous_acceleration));
+                     stencils(), form_of(form), properties, write(viscous_acceleration));
   }
   scratch.release(viscosity_gradient);
+  if (!features.writes_diffusion) return;
+  parallel_for(size(), [&](std::size_t i) {
+    for (int axis = 0; axis < dimensions; ++axis) (*diffusion[axis])[i] = viscous_acceleration[axis][i];
+  });
+}
+
+void Flow::measure_diffusion() {
+  if (!features.viscosity) {
+    for (int axis = 0; axis < dimensions; ++axis) diffusion[axis]->fill(0.0);
+    return;
+  }
+  if (takes_viscosity_gradient()) find_viscosity_gradient();
+  find_viscous_acceleration();
+  particles.scratch().release(viscous_acceleration);
 }
 
 void Flow::predict_velocity(double dt) {

@@ -28,6 +28,9 @@
 
 namespace spume::gfd {
 
+// The output field of the viscous acceleration.
+inline constexpr const char* diffusion_field = "diffusion";
+
 // What a scene needs. Stages and arrays exist by these alone.
 struct Features : BoundaryFeatures {
   explicit Features(const LoadedCase& loaded);
@@ -40,6 +43,7 @@ struct Features : BoundaryFeatures {
   bool shifting = false;
   bool shift_correction = false;
   bool density_relaxation = false;
+  bool writes_diffusion = false;  // output.fields
 };
 
 // A colour function C^n whose interface is followed: of every phase but the first in a scene of two, else of all.
@@ -94,6 +98,7 @@ struct Flow {
   std::vector<Colour> colours;
   Array<float>* density = nullptr;    // rho~
   Array<float>* viscosity = nullptr;  // mu~; null without viscosity
+  VectorField diffusion{};            // the viscous acceleration, where the case writes it; null: it does not
   double displacement = 0, volume_ratio = 1;
   double max_divergence = 0;
   std::vector<double> phase_volume;  // shares of the domain, by kernel sums
@@ -116,6 +121,7 @@ struct Flow {
   GfdStencils stencils() const;
   PhaseProperty density_property() const { return {density->data(), bands.varies()}; }
   FloatVectorField displacement_by_shift() const { return shift == nullptr ? FloatVectorField{} : shift->displacement; }
+  bool takes_viscosity_gradient() const;
   double gravity_potential(std::size_t i) const;  // -g . (x - x_0), of gravity across sides
   double hydrostatic_part(std::size_t i) const;   // p - pi
   double largest_kinematic_viscosity() const;
@@ -138,6 +144,7 @@ struct Flow {
   void find_potentials();            // (14) to (17), pairwise
   void find_viscosity_gradient();    // (18)
   void find_viscous_acceleration();  // (9), (12), (13), (19)
+  void measure_diffusion();          // of the initial state
   void predict_velocity(double dt);  // (20)
   void find_divergence();
   void relax_density(double dt);
