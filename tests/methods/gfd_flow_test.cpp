@@ -258,7 +258,8 @@ TEST(GfdFlow, TheDiffusionOfTheInitialStateIsAField) {
     const gfd::Flow& f = run.flow();
     for (std::size_t i = 0; i < f.size(); ++i) {
       const double exact = -0.1 * 4 * pi * pi * std::sin(2 * pi * (*f.particles.position[1])[i]);
-      ASSERT_NEAR(snapshot.fields.front().f64[0][i], exact, (form == "hu-adams" ? 0.05 : 0.011) * 0.1 * 4 * pi * pi) << form;
+      ASSERT_NEAR(snapshot.fields.front().f64[0][i], exact, (form == "hu-adams" ? 0.05 : 0.011) * 0.1 * 4 * pi * pi)
+          << form;
     }
   }
 }

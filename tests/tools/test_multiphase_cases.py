@@ -155,6 +155,36 @@ class Oscillations(CaseTest):
             self.assertAlmostEqual(measured["equal_growth_over_frequency"], growth, delta=0.003)
 
 
+class Franke(CaseTest):
+    def test_the_laplacian_is_that_of_differences(self):
+        module = load_measure(CASES / "franke")
+        x, y, d = np.array([0.1, 0.4, 0.7]), np.array([0.2, 0.8, 0.3]), 1e-4
+
+        def f(x, y):
+            return (0.75 * np.exp(-((9 * x - 2)**2 + (9 * y - 2)**2) / 4)
+                    + 0.75 * np.exp(-(9 * x + 1)**2 / 49 - (9 * y + 1) / 10)
+                    + 0.5 * np.exp(-((9 * x - 7)**2 + (9 * y - 3)**2) / 4)
+                    - 0.2 * np.exp(-(9 * x - 4)**2 - (9 * y - 7)**2))
+        found = (f(x + d, y) + f(x - d, y) + f(x, y + d) + f(x, y - d) - 4 * f(x, y)) / d**2
+        np.testing.assert_allclose(module.laplacian(x, y), found, rtol=1e-4)
+
+    def test_measures_errors_and_their_order(self):
+        runs = {}
+        for name, n, relative in (("gfd_81", 81, 0.04), ("gfd_161", 161, 0.01), ("sph_81", 81, 0.0083435313)):
+            folder, module = self.run_of("franke")
+            text = (folder / "case.toml").read_text(encoding="utf-8")
+            (folder / "case.toml").write_text(text.replace("spacing = 0.025", f"spacing = {1 / (n - 1)}"), encoding="utf-8")
+            at = lattice([-0.1 - 0.5 / (n - 1)] * 2, [1.1 + 0.5 / (n - 1)] * 2, 1 / (n - 1))
+            write_snapshots(folder / "fluid.vtkhdf", [0, 1], lambda t, at=at: at, {
+                "diffusion": lambda p, t, relative=relative, module=module: np.column_stack(
+                    [(1 + relative + t) * module.laplacian(p[:, 0], p[:, 1]), 0 * p[:, 0]])})
+            runs[name] = Results(folder)
+        measured = module.measure(runs)
+        self.assertAlmostEqual(measured["gfd_81_error"], 0.04, delta=1e-4)
+        self.assertAlmostEqual(measured["gfd_order"], 2, delta=0.01)
+        self.assertLess(measured["sph_against_table"], 1e-3)
+        self.assertGreater(measured["gfd_against_table"], 5)
+
 
 if __name__ == "__main__":
     unittest.main()
