@@ -186,5 +186,25 @@ class Franke(CaseTest):
         self.assertGreater(measured["gfd_against_table"], 5)
 
 
+class PoiseuilleOperators(CaseTest):
+    def test_measures_how_far_forms_are_from_the_divergence(self):
+        values, runs = {"gfd": 2.0, "sph": 2.2, "printed": 0.0}, {}
+        at = lattice([0, -1], [3, 1], 0.05)
+        for ratio in (5, 100):
+            for name, value in values.items():
+                folder, module = self.run_of("poiseuille_operators")
+                write_snapshots(folder / "fluid.vtkhdf", [0, 1], lambda t: at, {
+                    "id": lambda p, t: np.arange(len(p)),
+                    "diffusion": lambda p, t, value=value, ratio=ratio: np.column_stack(
+                        [ratio * value * (np.abs(p[:, 1]) < 0.14) + t, 0 * p[:, 0]])})
+                runs[f"{name}_{ratio}"] = Results(folder)
+        measured = module.measure(runs)
+        # Six layers within 3 h, of which those at 0.125 are the last.
+        self.assertAlmostEqual(measured["gfd_5"], 10, delta=1e-5)
+        self.assertAlmostEqual(measured["gfd_5_scatter"], 0, delta=1e-5)
+        self.assertAlmostEqual(measured["forms_apart"], 0.1, delta=1e-5)
+        self.assertAlmostEqual(measured["growth"], 20, delta=1e-4)
+
+
 if __name__ == "__main__":
     unittest.main()
