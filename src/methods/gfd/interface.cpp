@@ -180,7 +180,7 @@ void Flow::find_potential(Colour& colour) {
 
 // Adds a potential of the interface to that of the colour. Averages over the band continue it and flatten its waves,
 // as measuring it did; the difference that one average more makes, times their number, gives back what they took, to
-// the square of the wave number. Without it a capillary wave of 32 spacings is 3 % too slow.
+// the square of the wave number. Without it a capillary wave of 32 spacings is 1.3 % too slow with 2 averages.
 void Flow::continue_across_band(Colour& colour, const Array<float>& weight, Array<float>& potential, double averages) {
   const std::size_t n = size();
   const auto& band = bands.varying();

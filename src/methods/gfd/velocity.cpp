@@ -109,7 +109,7 @@ void Flow::relax_density(double dt) {
 }
 
 // In full: there is no surface that it could lift. Less what neighbours share of it, it leaves disorder of several
-// spacings at the interface, which lets the pressure gain energy: a drop without viscosity gained 9 % of its amplitude
+// spacings at the interface, which lets the pressure gain energy: a drop without viscosity gained 3 % of its amplitude
 // in a radian and a wave with viscosity lost 7 % less than it should.
 void Flow::compute_shift() {
   ShiftInput input = shift_input(options.get<ShiftingOptions>(), largest_shift, displacement);

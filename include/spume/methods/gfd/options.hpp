@@ -20,7 +20,8 @@ struct MomentumOptions {
 // Of [interface], beside the tension.
 struct InterfaceOptions {
   // Passes of the average that continues the curvature across the band. What they take of long waves is given back,
-  // which amplifies those of 5 spacings: with 2 passes a capillary wave of 64 without viscosity is torn.
+  // which makes too much of waves of 10 spacings: 1.11 times with 4 passes, 1.16 with 3, 1.26 with 2. With 3 a
+  // capillary wave of 64 spacings loses 15 % of its damping to such waves, with 4 none.
   int smoothing = 4;
 };
 
