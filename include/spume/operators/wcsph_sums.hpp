@@ -4,10 +4,10 @@
 // at rest, s = rho / rho_0 - 1 its density excess.
 //
 //   rate of density   (d ln rho / dt)_i = - sum_j v_j g (u_j - u_i) . d
+//                     with a shift less the trace of (sum v_j g d (x) (u_j - u_i)) (sum v_j g d (x) d)^-1, exact for
+//                     linear velocities: an arrangement that the flow has stretched shows no divergence of its own
 //   its diffusion     sum_j 2 v_j g (s'_j - s'_i), j of the phase of i, s' the excess less its hydrostatic part
 //   viscous force     V_i (rho du / dt)_i / V_i = sum_j 2 v_j g mu_ij (u_j - u_i), mu_ij the harmonic mean
-//                     with a shift the trace of (sum v_j g d (x) (u_j - u_i)) (sum v_j g d (x) d)^-1, exact for linear
-//                     velocities: an arrangement that the flow has stretched shows no divergence of its own
 //   carried by shift  (delta u . grad s')_i = sum_j v_j g (s'_j - s'_i) delta u_i . d
 //   momentum flux     (div (u (x) delta u))_i = sum_j v_j g (u_i delta u_i . d + u_j delta u_j . d)
 //   concentration     h (grad C)_i = h sum_j v_j g d, C = sum_j V_j W_ij
