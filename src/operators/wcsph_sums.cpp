@@ -25,20 +25,36 @@ void with_wcsph_dimensions(const SweepContext& context, Body&& body) {
   return a == b ? then : f32n{};
 }
 
-// Payload of the continuity records: u, v, s', and then what the scene has: mu, phase, the velocity under friction.
-template <int dimensions, bool several, bool viscous, bool friction>
+// The trace of (sum w d (x) (u_j - u_i)) (sum w d (x) d)^-1, w < 0, exact for linear velocities on any arrangement.
+template <int dimensions>
+float corrected_divergence(const std::array<f32n, dimensions * dimensions>& velocity_sum,
+                           const std::array<f32n, 6>& moment_sum) {
+  std::array<double, 6> m{}, inverse{};
+  for (int k = 0; k < dimensions * (dimensions + 1) / 2; ++k) m[k] = -simd::sum(moment_sum[k]);
+  const InverseScale normalised = normalised_inverse<dimensions>(m, inverse);
+  double trace = 0;
+  for (int a = 0; a < dimensions; ++a)
+    for (int c = 0; c < dimensions; ++c)
+      trace -= inverse[symmetric_index<dimensions>(a, c)] * simd::sum(velocity_sum[a * dimensions + c]);
+  return static_cast<float>(normalised.scale * trace);
+}
+
+// Payload of the continuity records: u, v, s', and then what the scene has: mu, phase, the velocity under friction, the
+// shifting velocity.
+template <int dimensions, bool several, bool viscous, bool friction, bool shifted>
 struct ContinuityLayout {
   static constexpr int velocity = 0, volume = dimensions, excess = dimensions + 1;
   static constexpr int viscosity = excess + 1, phase = viscosity + (viscous ? 1 : 0);
   static constexpr int held = phase + (several ? 1 : 0);
-  static constexpr int payload = held + (friction ? dimensions : 0);
+  static constexpr int shift = held + (friction ? dimensions : 0);
+  static constexpr int payload = shift + (shifted ? dimensions : 0);
   static constexpr int width = record_width(dimensions, payload);
 };
 
-template <int dimensions, bool several, bool viscous, bool friction>
+template <int dimensions, bool several, bool viscous, bool friction, bool shifted>
 void continuity(const SweepContext& context, PackedNeighbours& packed, const ContinuityFields& fields,
                 const ContinuityOut& out) {
-  using At = ContinuityLayout<dimensions, several, viscous, friction>;
+  using At = ContinuityLayout<dimensions, several, viscous, friction, shifted>;
   constexpr int width = At::width;
   float* records = packed.prepare(context, At::payload);
   pack_velocity(context, records, width, At::velocity, fields.velocity, *fields.mirror);
@@ -47,11 +63,14 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
   if constexpr (viscous) pack_scalar(context, records, width, At::viscosity, fields.viscosity);
   if constexpr (several) pack_scalar(context, records, width, At::phase, fields.phase);
   if constexpr (friction) pack_velocity(context, records, width, At::held, fields.velocity, *fields.friction);
+  if constexpr (shifted) pack_vector(context, records, width, At::shift, fields.shift, *fields.reflection);
   const KernelScale<dimensions, Kernel> scale(context);
   sweep(context.list->particles(), [&](std::size_t i) {
     const float* own = records + i * width + dimensions;
-    f32n rate{}, diffusion{};
-    std::array<f32n, dimensions> force{};
+    f32n rate{}, diffusion{}, carried{};
+    std::array<f32n, dimensions> force{}, flux{};
+    std::array<f32n, dimensions * dimensions> velocity_sum{};
+    std::array<f32n, 6> moment_sum{};
     for_each_batch<dimensions, At::payload>(*context.list, records, i, scale.inverse_h, [&](const auto& b) {
       const f32n weight = Kernel::f(b.q) * b.payload[At::volume];
       f32n approach{};
@@ -67,6 +86,26 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
         constexpr int u = friction ? At::held : At::velocity;
         for (int a = 0; a < dimensions; ++a) force[a] = force[a] + drag * (b.payload[u + a] - own[a]);
       }
+      if constexpr (shifted) {
+        f32n own_way{}, other_way{};
+        for (int a = 0; a < dimensions; ++a) {
+          own_way = own_way + own[At::shift + a] * b.d[a];
+          other_way = other_way + b.payload[At::shift + a] * b.d[a];
+          const f32n along = weight * b.d[a];
+          for (int c = 0; c < dimensions; ++c)
+            velocity_sum[a * dimensions + c] =
+                velocity_sum[a * dimensions + c] + along * (b.payload[At::velocity + c] - own[c]);
+          for (int c = a; c < dimensions; ++c) {
+            f32n& sum = moment_sum[symmetric_index<dimensions>(a, c)];
+            sum = sum + along * b.d[c];
+          }
+        }
+        own_way = weight * own_way;
+        other_way = weight * other_way;
+        carried = carried + own_way * (b.payload[At::excess] - own[At::excess]);
+        for (int a = 0; a < dimensions; ++a)
+          flux[a] = flux[a] + own_way * own[a] + other_way * b.payload[At::velocity + a];
+      }
     });
     out.rate[i] = scale.gradient * simd::sum(rate);
     out.diffusion[i] = -2 * scale.gradient * simd::sum(diffusion);
@@ -74,12 +113,17 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
       const float factor = -2 * scale.gradient * (several ? 1 : own[At::viscosity]);
       for (int a = 0; a < dimensions; ++a) out.viscous[a][i] = factor * simd::sum(force[a]);
     }
+    if constexpr (shifted) {
+      out.rate[i] = -corrected_divergence<dimensions>(velocity_sum, moment_sum);
+      out.carried[i] = -scale.gradient * simd::sum(carried);
+      for (int a = 0; a < dimensions; ++a) out.flux[a][i] = -scale.gradient * simd::sum(flux[a]);
+    }
   });
 }
 
-template <int dimensions, bool several>
+template <int dimensions, bool several, bool concentrated>
 void pressure_force(const SweepContext& context, PackedNeighbours& packed, const PressureFields& fields,
-                    const std::array<float*, 3>& out) {
+                    const std::array<float*, 3>& out, const std::array<float*, 3>& concentration) {
   constexpr int payload = several ? 3 : 2, width = record_width(dimensions, payload);
   const std::size_t n = context.list->particles();
   float* records = packed.prepare(context, payload);
@@ -95,10 +139,11 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
         static_cast<float>(fields.pressure[source] + fields.density[source] * head);
   });
   if constexpr (several) pack_scalar(context, records, width, 2, fields.density);
+  const auto h = static_cast<float>(context.smoothing_length);
   const KernelScale<dimensions, Kernel> scale(context);
   sweep(n, [&](std::size_t i) {
     const float* own = records + i * width + dimensions;
-    std::array<f32n, dimensions> force{};
+    std::array<f32n, dimensions> force{}, crowd{};
     for_each_batch<dimensions, payload>(*context.list, records, i, scale.inverse_h, [&](const auto& b) {
       f32n both = b.payload[1] + own[1];
       if constexpr (several) {
@@ -106,10 +151,15 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
         const f32n jump = simd::max(b.payload[2] - own_density, own_density - b.payload[2]);
         both = both + fields.repulsion * (jump / (b.payload[2] + own_density)) * simd::max(both, zero - both);
       }
-      const f32n weight = Kernel::f(b.q) * b.payload[0] * both;
+      const f32n share = Kernel::f(b.q) * b.payload[0];
+      if constexpr (concentrated)
+        for (int a = 0; a < dimensions; ++a) crowd[a] = crowd[a] + share * b.d[a];
+      const f32n weight = share * both;
       for (int a = 0; a < dimensions; ++a) force[a] = force[a] + weight * b.d[a];
     });
     for (int a = 0; a < dimensions; ++a) out[a][i] = scale.gradient * simd::sum(force[a]);
+    if constexpr (concentrated)
+      for (int a = 0; a < dimensions; ++a) concentration[a][i] = -h * scale.gradient * simd::sum(crowd[a]);
   });
 }
 
@@ -118,28 +168,35 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
 void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, const ContinuityFields& fields,
                       const ContinuityOut& out) {
   with_wcsph_dimensions(context, [&]<int dimensions>() {
-    const auto run = [&]<bool several>() {
+    const auto run = [&]<bool several, bool shifted>() {
       if (fields.viscosity == nullptr)
-        continuity<dimensions, several, false, false>(context, packed, fields, out);
+        continuity<dimensions, several, false, false, shifted>(context, packed, fields, out);
       else if (fields.friction == nullptr)
-        continuity<dimensions, several, true, false>(context, packed, fields, out);
+        continuity<dimensions, several, true, false, shifted>(context, packed, fields, out);
       else
-        continuity<dimensions, several, true, true>(context, packed, fields, out);
+        continuity<dimensions, several, true, true, shifted>(context, packed, fields, out);
     };
+    if (fields.phase != nullptr && fields.shift[0] != nullptr)
+      throw std::logic_error("particles of several phases are not shifted");
     if (fields.phase != nullptr)
-      run.template operator()<true>();
+      run.template operator()<true, false>();
+    else if (fields.shift[0] != nullptr)
+      run.template operator()<false, true>();
     else
-      run.template operator()<false>();
+      run.template operator()<false, false>();
   });
 }
 
 void pressure_force_sweep(const SweepContext& context, PackedNeighbours& packed, const PressureFields& fields,
-                          const std::array<float*, 3>& out) {
+                          const std::array<float*, 3>& out, const std::array<float*, 3>& concentration) {
   with_wcsph_dimensions(context, [&]<int dimensions>() {
+    if (fields.several && concentration[0] != nullptr) throw std::logic_error("the concentration is that of one phase");
     if (fields.several)
-      pressure_force<dimensions, true>(context, packed, fields, out);
+      pressure_force<dimensions, true, false>(context, packed, fields, out, concentration);
+    else if (concentration[0] != nullptr)
+      pressure_force<dimensions, false, true>(context, packed, fields, out, concentration);
     else
-      pressure_force<dimensions, false>(context, packed, fields, out);
+      pressure_force<dimensions, false, false>(context, packed, fields, out, concentration);
   });
 }
 

@@ -159,12 +159,14 @@ TEST_P(WcsphState, ARefusedStepLeavesIt) {
   run.steps(1, dt);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, WcsphState, ::testing::Values(column_in_air, ball_in_stream),
-                         [](const auto& info) { return info.index == 0 ? "Column2D" : "Ball3D"; });
+INSTANTIATE_TEST_SUITE_P(Cases, WcsphState, ::testing::Values(column_in_air, ball_in_stream, periodic_vortices),
+                         [](const auto& info) {
+                           return info.index == 0 ? "Column2D" : info.index == 1 ? "Ball3D" : "Vortices2D";
+                         });
 
 TEST(WcsphAllocations, ASteadyRunAllocatesNothing) {
   const OneThread alone;
-  for (const std::string& text : {column_in_air, ball_in_stream}) {
+  for (const std::string& text : {column_in_air, ball_in_stream, periodic_vortices}) {
     WcsphRun run(text);
     const double dt = 0.7 * run.method.step_limit().dt;
     run.steps(40, dt);
@@ -219,13 +221,45 @@ TEST(WcsphAccuracy, AShearWaveDecaysAtTheRateOfTheLattice) {
   EXPECT_NEAR(rate / (2 * k2 * nu), 1, std::pow(k * end, 2));
 }
 
-TEST(WcsphPlan, EveryStageCountsItsTraffic) {
-  for (const Overrides& set :
-       {Overrides{}, Overrides{"compressibility.density_filter=\"shepard\"", "compressibility.filter_interval=2"}}) {
-    WcsphRun run(column_in_air, set);
-    run.steps(4, 0.5 * run.method.step_limit().dt);
-    EXPECT_EQ(uncounted_stages(run.method, run.ledger), "");
+// Vortices stretch the lattice that they begin on, which must not resist: cases/taylor_green_wcsph, whose bound of 2 %
+// with 64 particles per side is 8 % with 32 at second order. Without shifting the rate is three times too high.
+TEST(WcsphAccuracy, VorticesDecayAtTheExactRate) {
+  WcsphRun run(replaced(periodic_vortices, "viscosity = 0.05", "viscosity = 0.01"));
+  double t_sum = 0, log_sum = 0, t2_sum = 0, product = 0;
+  const int samples = 50;
+  for (int n = 0; n < samples; ++n) {
+    const double t = static_cast<double>(n) / samples, energy = std::log(run.series().at("kinetic_energy"));
+    t_sum += t;
+    log_sum += energy;
+    t2_sum += t * t;
+    product += t * energy;
+    until(run, static_cast<double>(n + 1) / samples);
   }
+  const double slope = (samples * product - t_sum * log_sum) / (samples * t2_sum - t_sum * t_sum);
+  EXPECT_NEAR(-slope / (16 * std::numbers::pi * std::numbers::pi * 0.01), 1, 0.08);
+  // The flux that goes with the shift is antisymmetric: what is left is rounding, of the speed 1.
+  EXPECT_LT(std::abs(run.series().at("velocity_liquid_x")), 1e-6);
+  EXPECT_LT(std::abs(run.series().at("velocity_liquid_y")), 1e-6);
+}
+
+TEST(WcsphPlan, ShiftingIsForOnePhaseWithoutASurface) {
+  const auto shifts = [](const std::string& text, const Overrides& set = {}) {
+    return WcsphRun(text, set).method.flow().features.shifting;
+  };
+  EXPECT_TRUE(shifts(periodic_vortices));
+  EXPECT_FALSE(shifts(periodic_vortices, {"compressibility.shifting=\"off\""}));
+  EXPECT_FALSE(shifts(column_in_air));
+  EXPECT_FALSE(shifts(ball_in_stream));
+}
+
+TEST(WcsphPlan, EveryStageCountsItsTraffic) {
+  const Overrides shepard{"compressibility.density_filter=\"shepard\"", "compressibility.filter_interval=2"};
+  for (const std::string& text : {column_in_air, periodic_vortices})
+    for (const Overrides& set : {Overrides{}, shepard}) {
+      WcsphRun run(text, set);
+      run.steps(4, 0.5 * run.method.step_limit().dt);
+      EXPECT_EQ(uncounted_stages(run.method, run.ledger), "");
+    }
 }
 
 // Equal stiffness makes sound 14 times as fast in air as in water.
@@ -256,6 +290,8 @@ TEST(WcsphCases, WhatItCannotDoIsRefusedWithTheFix) {
   EXPECT_THAT(refused(replaced(column_in_air, "\"0.1*sin(t)\", \"0\"", "\"0\", \"1\"")), HasSubstr("along its normal"));
   EXPECT_THAT(refused(replaced(column_in_air, "[time]", "[[solid]]\nlower = [1, 0]\nupper = [1.2, 0.3]\n[time]")),
               HasSubstr("remove it"));
+  EXPECT_THAT(refused(ball_in_stream + "[compressibility]\nshifting = \"on\"\n"),
+              HasSubstr("expected one phase that fills the domain"));
   EXPECT_THAT(refused(replaced(periodic_vortices,
                                "velocity = [\"-cos(2*pi*x)*sin(2*pi*y)\", \"sin(2*pi*x)*cos(2*pi*y)\"]", "")),
               HasSubstr("set compressibility.max_speed"));

@@ -117,6 +117,101 @@ TEST(WcsphSums, PressureAndRepulsionAgreeWithTheSlowTwin) {
   }
 }
 
+TEST(WcsphSums, WhatShiftingCarriesAgreesWithTheSlowTwin) {
+  for (Arrangement* arrangement : wcsph_arrangements()) {
+    Arrangement& a = *arrangement;
+    SCOPED_TRACE(a.setup.name);
+    const Fields f(a);
+    const reference::WcsphSums twin{a.twin};
+    VectorArrays<float> shift(a.size(), a.dimensions());
+    for (int axis = 0; axis < a.dimensions(); ++axis)
+      for (std::size_t i = 0; i < a.size(); ++i) shift[axis][i] = static_cast<float>(a.random(20 + axis)[i]);
+    const auto held = [&](const reference::SphSums::SphPoint& point, int axis) {
+      return a.twin.velocity_at(f.velocity, point, axis);
+    };
+    const auto way = [&](const reference::SphSums::SphPoint& point, int axis) {
+      return point.reflection[axis] * shift[axis][point.source];
+    };
+    const Array<float> viscosity = to_float(a.random(6));
+    const Array<double> pressure(a.size());
+    for (const bool viscous : {false, true}) {
+      Array<float> rate(a.size()), diffusion(a.size()), carried(a.size());
+      VectorArrays<float> force(a.size(), a.dimensions()), flux(a.size(), a.dimensions());
+      continuity_sweep(a.context, a.packed,
+                       {.velocity = f.velocity.read(),
+                        .mirror = &a.rule,
+                        .volume = f.volume.data(),
+                        .excess = f.excess.data(),
+                        .viscosity = viscous ? viscosity.data() : nullptr,
+                        .shift = shift.read(),
+                        .reflection = &a.reflection},
+                       {rate.data(), diffusion.data(), force.write(), carried.data(), flux.write()});
+      Comparison carries("carried"), fluxes("momentum flux");
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        carries.add(carried[i], twin.carried(i, way, f.excess, f.volume), a.twin.tolerance(i), i);
+        for (int axis = 0; axis < a.dimensions(); ++axis)
+          fluxes.add(flux[axis][i], twin.flux(i, axis, held, way, f.volume), a.twin.tolerance(i), i);
+      }
+    }
+    VectorArrays<float> force(a.size(), a.dimensions()), concentration(a.size(), a.dimensions());
+    pressure_force_sweep(a.context, a.packed,
+                         {.pressure = f.pressure.data(), .volume = f.volume.data(), .density = f.density.data()},
+                         force.write(), concentration.write());
+    Comparison gradients("concentration");
+    for (std::size_t i = 0; i < a.size(); ++i)
+      for (int axis = 0; axis < a.dimensions(); ++axis)
+        gradients.add(concentration[axis][i], twin.concentration(i, axis, a.context.smoothing_length, f.volume),
+                      a.twin.tolerance(i), i);
+  }
+}
+
+// The correction amplifies the rounding of float sums of some eighty terms, 80 2^-24 = 5e-6, sixfold at most per axis.
+// Without it the divergence on these arrangements is off by tenths. Scattered particles, some of which have too few
+// neighbours for a correction, are left out.
+TEST(WcsphSums, WithAShiftTheDivergenceOfLinearVelocitiesIsExact) {
+  std::size_t inside = 0;
+  for (Arrangement* arrangement : wcsph_arrangements()) {
+    Arrangement& a = *arrangement;
+    SCOPED_TRACE(a.setup.name);
+    const std::string name = a.setup.name;
+    if (name.starts_with("clustered") || name.starts_with("random")) continue;
+    const Fields f(a);
+    const int d = a.dimensions();
+    VectorArrays<double> velocity(a.size(), d);
+    VectorArrays<float> shift(a.size(), d), flux(a.size(), d), force(a.size(), d);
+    const double gradient[3][3] = {{0.7, -0.4, 0.2}, {0.5, 0.3, -0.6}, {-0.1, 0.8, 0.4}};
+    double divergence = 0;
+    for (int row = 0; row < d; ++row) {
+      divergence += gradient[row][row];
+      shift[row].fill(0.0F);
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        velocity[row][i] = 0;
+        for (int column = 0; column < d; ++column)
+          velocity[row][i] += gradient[row][column] * a.twin.points()[i].position[column];
+      }
+    }
+    Array<float> rate(a.size()), diffusion(a.size()), carried(a.size());
+    continuity_sweep(a.context, a.packed,
+                     {.velocity = velocity.read(),
+                      .mirror = &a.rule,
+                      .volume = f.volume.data(),
+                      .excess = f.excess.data(),
+                      .shift = shift.read(),
+                      .reflection = &a.reflection},
+                     {rate.data(), diffusion.data(), force.write(), carried.data(), flux.write()});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      bool complete = true;
+      a.twin.each(i, [&](const reference::SphSums::Pair& p) {
+        if (p.point != &a.twin.points()[p.point->source]) complete = false;
+      });
+      if (!complete) continue;
+      ++inside;
+      EXPECT_NEAR(rate[i], -divergence, 1e-4) << i;
+    }
+  }
+  EXPECT_GT(inside, 100U);
+}
+
 TEST(WcsphSums, TheDensityFilterAgreesWithTheSlowTwin) {
   for (Arrangement* arrangement : wcsph_arrangements()) {
     Arrangement& a = *arrangement;

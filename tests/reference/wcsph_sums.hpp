@@ -65,6 +65,42 @@ struct WcsphSums {
     });
     return sum;
   }
+  // shift(point, axis), of particles and images.
+  template <class Shift, class Scalar>
+  Sum carried(std::size_t i, const Shift& shift, const Scalar& excess, const Scalar& volume) const {
+    Sum sum;
+    sums.each(i, [&](const SphSums::Pair& p) {
+      const std::size_t j = p.point->source;
+      for (int a = 0; a < sums.dimensions(); ++a) {
+        const double way = shift(sums.points()[i], a) * p.d[a];
+        sum.add(p.g * volume[j], p.largest_g * volume[j], way * (double{excess[j]} - excess[i]),
+                std::abs(way) * (std::abs(excess[j]) + std::abs(excess[i])));
+      }
+    });
+    return sum;
+  }
+  template <class Velocity, class Shift, class Scalar>
+  Sum flux(std::size_t i, int a, const Velocity& velocity, const Shift& shift, const Scalar& volume) const {
+    Sum sum;
+    sums.each(i, [&](const SphSums::Pair& p) {
+      const double v = volume[p.point->source];
+      for (const SphSums::SphPoint* point : {&sums.points()[i], p.point})
+        for (int b = 0; b < sums.dimensions(); ++b) {
+          const double term = velocity(*point, a) * shift(*point, b) * p.d[b];
+          sum.add(p.g * v, p.largest_g * v, term, std::abs(term));
+        }
+    });
+    return sum;
+  }
+  template <class Scalar>
+  Sum concentration(std::size_t i, int a, double h, const Scalar& volume) const {
+    Sum sum;
+    sums.each(i, [&](const SphSums::Pair& p) {
+      const double v = h * volume[p.point->source];
+      sum.add(p.g * v, p.largest_g * v, p.d[a], std::abs(p.d[a]));
+    });
+    return sum;
+  }
   // The two sums of the filter: of 1 - v and of v.
   template <class Scalar, class Phase>
   std::array<double, 2> filter(std::size_t i, const Scalar& volume, const Phase& same_phase) const {

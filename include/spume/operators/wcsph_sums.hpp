@@ -4,14 +4,20 @@
 // at rest, s = rho / rho_0 - 1 its density excess.
 //
 //   rate of density   (d ln rho / dt)_i = - sum_j v_j g (u_j - u_i) . d
+//                     with a shift less the trace of (sum v_j g d (x) (u_j - u_i)) (sum v_j g d (x) d)^-1, exact for
+//                     linear velocities: an arrangement that the flow has stretched shows no divergence of its own
 //   its diffusion     sum_j 2 v_j g (s'_j - s'_i), j of the phase of i, s' the excess less its hydrostatic part
 //   viscous force     V_i (rho du / dt)_i / V_i = sum_j 2 v_j g mu_ij (u_j - u_i), mu_ij the harmonic mean
+//   carried by shift  (delta u . grad s')_i = sum_j v_j g (s'_j - s'_i) delta u_i . d
+//   momentum flux     (div (u (x) delta u))_i = sum_j v_j g (u_i delta u_i . d + u_j delta u_j . d)
+//   concentration     h (grad C)_i = h sum_j v_j g d, C = sum_j V_j W_ij
 //   pressure force    (rho du / dt)_i = - sum_j v_j g (P_i + P_j + R_ij) d,
 //                     R_ij = eps |rho0_i - rho0_j| / (rho0_i + rho0_j) |P_i + P_j|   (Monaghan 2013)
 //
 // The diffusion is that of Molteni and Colagrossi (2009) without the hydrostatic part (Fourtakas et al. 2019); the
-// viscous force that of Morris et al. (1997). Forces times V_i are antisymmetric. Results do not depend on the thread
-// count. Particles are of one size and the kernel is Wendland's C2; throws std::logic_error otherwise.
+// viscous force that of Morris et al. (1997); the momentum flux of a transport velocity u + delta u that of Adami, Hu
+// and Adams (2013). Forces and flux times V_i are antisymmetric. Results do not depend on the thread count. Particles
+// are of one size and the kernel is Wendland's C2; throws std::logic_error otherwise.
 #pragma once
 
 #include <array>
@@ -25,17 +31,21 @@ namespace spume {
 // Per particle. Images have the values of their sources, and velocities by the rules.
 struct ContinuityFields {
   std::array<const double*, 3> velocity{};
-  const VelocityImageRule* mirror = nullptr;    // of rates of volume
-  const VelocityImageRule* friction = nullptr;  // of the viscous force; null: the same
-  const float* volume = nullptr;                // v
-  const float* excess = nullptr;                // s'
-  const float* phase = nullptr;                 // its number; null: one phase
-  const float* viscosity = nullptr;             // mu; null: inviscid
+  const VelocityImageRule* mirror = nullptr;                      // of rates of volume
+  const VelocityImageRule* friction = nullptr;                    // of the viscous force; null: the same
+  const float* volume = nullptr;                                  // v
+  const float* excess = nullptr;                                  // s'
+  const float* phase = nullptr;                                   // its number; null: one phase
+  const float* viscosity = nullptr;                               // mu; null: inviscid
+  std::array<const float*, 3> shift{};                            // delta u; null: none. Of one phase
+  const std::vector<std::array<float, 3>>* reflection = nullptr;  // of delta u
 };
 struct ContinuityOut {
   float* rate = nullptr;            // d ln rho / dt
   float* diffusion = nullptr;       // the sum above
   std::array<float*, 3> viscous{};  // the sum above; null without viscosity
+  float* carried = nullptr;         // the sum above; this and the flux null without shift
+  std::array<float*, 3> flux{};
 };
 void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, const ContinuityFields& fields,
                       const ContinuityOut& out);
@@ -51,9 +61,9 @@ struct PressureFields {
   Vec3 gravity{};
   std::array<const double*, 3> position{};
 };
-// out: (rho du/dt)_i by pressure.
+// out: (rho du/dt)_i by pressure. concentration: h grad C of one phase; null: not wanted.
 void pressure_force_sweep(const SweepContext& context, PackedNeighbours& packed, const PressureFields& fields,
-                          const std::array<float*, 3>& out);
+                          const std::array<float*, 3>& out, const std::array<float*, 3>& concentration = {});
 
 // The Shepard filter of the density over the particles of the same phase, itself included:
 //   out = sum_j m_j W / sum_j V_j W / rho_0 - 1 = sum_j W (1 - v_j) / sum_j v_j W.

@@ -11,6 +11,8 @@ namespace {
 
 // A density that has changed by half is that of no weakly compressible flow.
 constexpr double largest_excess_of_a_flow = 0.5;
+// Sun et al. (2019): delta u = -2 U h grad C, of U / 2 at most, U the largest expected speed.
+constexpr double shifting_strength = 2, largest_shift = 0.5;
 
 }  // namespace
 
@@ -20,7 +22,7 @@ bool Flow::lists_hold(double dt) const {
     double sum = 0;
     for (int axis = 0; axis < dimensions; ++axis) {
       const double u = (*particles.velocity[axis])[i] + dt / 2 * (*acceleration[axis])[i];
-      const double moved = (*particles.position[axis])[i] + dt * u - (*listed[axis])[i];
+      const double moved = (*particles.position[axis])[i] + dt * transport(axis, u, i) - (*listed[axis])[i];
       sum += moved * moved;
     }
     return sum;
@@ -66,7 +68,7 @@ void Flow::drift(double dt) {
   parallel_for(size(), [&](std::size_t i) {
     for (int axis = 0; axis < dimensions; ++axis) {
       half_velocity[axis][i] = (*particles.velocity[axis])[i] + dt / 2 * (*acceleration[axis])[i];
-      place[axis][i] = (*particles.position[axis])[i] + dt / 2 * half_velocity[axis][i];
+      place[axis][i] = (*particles.position[axis])[i] + dt / 2 * transport(axis, half_velocity[axis][i], i);
     }
   });
   move_images(time + dt / 2);
@@ -79,6 +81,7 @@ void Flow::lease_properties() {
   scratch.lease(density, size());
   if (features.several) scratch.lease(phase, size());
   if (features.viscosity) scratch.lease(viscosity, size());
+  if (features.shifting) scratch.lease(way, dimensions, size());
   parallel_for(size(), [&](std::size_t i) {
     const PhaseLaw& own = law(i);
     double head = 0;
@@ -89,6 +92,8 @@ void Flow::lease_properties() {
     density[i] = static_cast<float>(own.density);
     if (features.several) phase[i] = static_cast<float>(phase_of(i));
     if (features.viscosity) viscosity[i] = static_cast<float>(own.viscosity);
+    for (int axis = 0; features.shifting && axis < dimensions; ++axis)
+      way[axis][i] = static_cast<float>((*shift[axis])[i]);
   });
 }
 
@@ -98,6 +103,10 @@ void Flow::find_rates() {
   scratch.lease(rate, size());
   scratch.lease(diffusion, size());
   if (features.viscosity) scratch.lease(viscous_force, dimensions, size());
+  if (features.shifting) {
+    scratch.lease(carried, size());
+    scratch.lease(flux, dimensions, size());
+  }
   continuity_sweep(arrangement.context, arrangement.packed,
                    {.velocity = read(half_velocity),
                     .mirror = &boundary.volume_rule(),
@@ -105,8 +114,14 @@ void Flow::find_rates() {
                     .volume = volume.data(),
                     .excess = reduced_excess.data(),
                     .phase = features.several ? phase.data() : nullptr,
-                    .viscosity = features.viscosity ? viscosity.data() : nullptr},
-                   {.rate = rate.data(), .diffusion = diffusion.data(), .viscous = write(viscous_force)});
+                    .viscosity = features.viscosity ? viscosity.data() : nullptr,
+                    .shift = read(way),
+                    .reflection = &boundary.reflection()},
+                   {.rate = rate.data(),
+                    .diffusion = diffusion.data(),
+                    .viscous = write(viscous_force),
+                    .carried = carried.data(),
+                    .flux = write(flux)});
 }
 
 void Flow::advance_density(double dt) {
@@ -121,13 +136,20 @@ void Flow::advance_density(double dt) {
     const double grown = dt / 2 * rate[i];
     double s = (*excess)[i];
     s += (1 + s) * 2 * grown / (1 - grown) + dt * smoothing * own.sound_speed * diffusion[i];
+    if (features.shifting) {
+      // delta u . grad s, of the reduced excess and of the hydrostatic part.
+      double climbed = carried[i];
+      for (int axis = 0; axis < dimensions; ++axis)
+        climbed += wall_gravity[axis] * way[axis][i] / (own.sound_speed * own.sound_speed);
+      s += dt * climbed;
+    }
     next_excess[i] = s;
     pressure[i] = own.pressure(s) + background;
     volume[i] = static_cast<float>(1 / (1 + s));
     Vec3 r{}, u{};
     for (int axis = 0; axis < dimensions; ++axis) {
       u[axis] = half_velocity[axis][i];
-      r[axis] = place[axis][i] + dt / 2 * u[axis];
+      r[axis] = place[axis][i] + dt / 2 * transport(axis, u[axis], i);
     }
     const Vec3 before = r;
     boundary.apply_walls(boundary.walls, r, &u);
@@ -140,6 +162,8 @@ void Flow::advance_density(double dt) {
   scratch.release(rate);
   scratch.release(diffusion);
   scratch.release(reduced_excess);
+  scratch.release(carried);
+  scratch.release(way);
   move_images(time + dt);
 }
 
@@ -161,6 +185,7 @@ void Flow::filter_density() {
 void Flow::find_pressure_force() {
   ScratchPool& scratch = particles.scratch();
   scratch.lease(pressure_force, dimensions, size());
+  if (features.shifting) scratch.lease(concentration, dimensions, size());
   pressure_force_sweep(arrangement.context, arrangement.packed,
                        {.pressure = pressure.data(),
                         .volume = volume.data(),
@@ -169,7 +194,20 @@ void Flow::find_pressure_force() {
                         .repulsion = static_cast<float>(options.get<CompressibilityOptions>().repulsion),
                         .gravity = wall_gravity,
                         .position = read(place)},
-                       write(pressure_force));
+                       write(pressure_force), write(concentration));
+}
+
+// Towards fewer particles.
+void Flow::find_shift(std::size_t i) {
+  Vec3 velocity{};
+  double speed2 = 0;
+  for (int axis = 0; axis < dimensions; ++axis) {
+    velocity[axis] = -shifting_strength * expected_speed * concentration[axis][i];
+    speed2 += velocity[axis] * velocity[axis];
+  }
+  const double bound = largest_shift * expected_speed;
+  const double factor = speed2 > bound * bound ? bound / std::sqrt(speed2) : 1;
+  for (int axis = 0; axis < dimensions; ++axis) (*shift[axis])[i] = factor * velocity[axis];
 }
 
 void Flow::accept(double dt) {
@@ -206,15 +244,17 @@ void Flow::accept(double dt) {
       for (int axis = 0; axis < dimensions; ++axis) {
         const double viscous = features.viscosity ? viscous_force[axis][i] : 0.0F;
         a[axis] += specific_volume * (double{pressure_force[axis][i]} + viscous);
+        if (features.shifting) a[axis] += double{flux[axis][i]};
         (*acceleration[axis])[i] = a[axis];
         (*particles.position[axis])[i] = place[axis][i];
         (*particles.velocity[axis])[i] = half_velocity[axis][i] + dt / 2 * a[axis];
       }
       (*excess)[i] = next_excess[i];
+      if (features.shifting) find_shift(i);
     }
   });
   for (auto* vector : {&half_velocity, &place}) scratch.release(*vector);
-  for (auto* vector : {&viscous_force, &pressure_force}) scratch.release(*vector);
+  for (auto* vector : {&viscous_force, &pressure_force, &flux, &concentration}) scratch.release(*vector);
   for (auto* array : {&next_excess, &pressure}) scratch.release(*array);
   for (auto* array : {&volume, &density, &phase, &viscosity}) scratch.release(*array);
   boundary.accept();

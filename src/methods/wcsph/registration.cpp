@@ -33,6 +33,11 @@ void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
       problems.add(*draft.node("phase." + std::to_string(n)),
                    "phase '" + scene.phases[n].name +
                        "' fills nothing: no [[region]] of it is left; add a region behind the others, or remove it");
+  if (draft.options.get<CompressibilityOptions>().shifting == Shifting::on &&
+      (scene.phases.size() > 1 || scene.free_surface))
+    problems.add(*draft.node("compressibility.shifting"),
+                 "particles would be shifted across a free surface or between phases; expected one phase that fills "
+                 "the domain: remove the key");
   const auto up = static_cast<std::size_t>(scene.domain.dimensions) - 1;
   for (const auto& [name, velocity] : draft.wall_velocity) {
     const std::size_t axis = name == "left" || name == "right" ? 0 : name == "front" || name == "back" ? 1 : up;

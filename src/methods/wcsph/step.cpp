@@ -40,15 +40,17 @@ Plan make_plan(Flow& f) {
       },
       {p.position, p.velocity, f.acceleration, f.listed}, {});
   add("drift", true, "(5), (6): r and u at the middle of the step", [&](StageRun& run) { f.drift(run.dt); },
-      {p.position, p.velocity, f.acceleration}, {f.half_velocity, f.place});
+      {p.position, p.velocity, f.acceleration, f.shift}, {f.half_velocity, f.place});
   add(
       "continuity", true,
       std::string(has.viscosity ? "(1) and the viscous part of (2)" : "(1), inviscid") +
-          (has.diffusion ? ", with diffusion of density" : ""),
-      [&](StageRun&) { f.find_rates(); }, {f.half_velocity, *f.excess, *f.phase_number},
-      {f.rate, f.diffusion, f.viscous_force, f.volume, f.reduced_excess, f.density, f.phase, f.viscosity}, true);
+          (has.diffusion ? ", with diffusion of density" : "") + (has.shifting ? ", and what shifting carries" : ""),
+      [&](StageRun&) { f.find_rates(); }, {f.half_velocity, *f.excess, *f.phase_number, f.shift},
+      {f.rate, f.diffusion, f.viscous_force, f.carried, f.flux, f.way, f.volume, f.reduced_excess, f.density, f.phase,
+       f.viscosity},
+      true);
   add("density", true, f.laws_in_words(), [&](StageRun& run) { f.advance_density(run.dt); },
-      {f.rate, f.diffusion, f.half_velocity, f.place, *f.excess, *f.phase_number},
+      {f.rate, f.diffusion, f.carried, f.way, f.half_velocity, f.place, *f.excess, *f.phase_number},
       {f.next_excess, f.pressure, f.volume, f.half_velocity, f.place});
   const int interval = f.options.get<CompressibilityOptions>().filter_interval;
   add(
@@ -59,10 +61,11 @@ Plan make_plan(Flow& f) {
       [&f, interval] { return f.steps % interval == interval - 1; });
   add(
       "pressure force", true, std::string("(2)") + (has.several ? ", (4)" : "") + ": " + several,
-      [&](StageRun&) { f.find_pressure_force(); }, {f.pressure, f.volume, f.density}, {f.pressure_force}, true);
+      [&](StageRun&) { f.find_pressure_force(); }, {f.pressure, f.volume, f.density},
+      {f.pressure_force, f.concentration}, true);
   add("acceptance", true, "(6): the new state", [&](StageRun& run) { f.accept(run.dt); },
-      {f.half_velocity, f.place, f.next_excess, f.pressure_force, f.viscous_force},
-      {p.position, p.velocity, f.acceleration, *f.excess});
+      {f.half_velocity, f.place, f.next_excess, f.pressure_force, f.viscous_force, f.flux, f.concentration},
+      {p.position, p.velocity, f.acceleration, f.shift, *f.excess});
   return plan;
 }
 

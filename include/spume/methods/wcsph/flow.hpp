@@ -31,6 +31,7 @@ struct Features : BoundaryFeatures {
   bool viscosity = false;
   bool friction = false;  // at no-slip walls
   bool diffusion = false, shepard = false;
+  bool shifting = false;
 };
 
 struct Flow {
@@ -56,6 +57,7 @@ struct Flow {
   ParticleStore particles;
   VectorField acceleration{};  // at the positions of the state
   VectorField listed{};        // where the lists were made
+  VectorField shift{};         // velocity of shifting, delta u
   Array<double>* excess = nullptr;
   Array<std::int64_t>* phase_number = nullptr;
   Boundary boundary;
@@ -71,12 +73,13 @@ struct Flow {
   // --- Leased within a step.
   VectorScratch half_velocity, place;
   Array<double> next_excess, pressure;
-  Array<float> volume, reduced_excess, rate, diffusion, density, phase, viscosity;
-  FloatVectorScratch viscous_force, pressure_force;
+  Array<float> volume, reduced_excess, rate, diffusion, carried, density, phase, viscosity;
+  FloatVectorScratch viscous_force, pressure_force, way, flux, concentration;
 
   std::size_t size() const { return particles.size(); }
   std::size_t phase_of(std::size_t i) const { return static_cast<std::size_t>((*phase_number)[i]); }
   const PhaseLaw& law(std::size_t i) const { return laws[phase_of(i)]; }
+  double transport(int axis, double u, std::size_t i) const { return features.shifting ? u + (*shift[axis])[i] : u; }
   double mass(std::size_t i) const { return particles.volume * law(i).density; }
   double kinetic_energy() const;
   double potential_energy() const;  // across axes with sides
@@ -102,6 +105,7 @@ struct Flow {
   bool lists_hold(double dt) const;
   void move_images(double t);
   void lease_properties();
+  void find_shift(std::size_t i);
   void find_signal();
 };
 

@@ -9,6 +9,9 @@ namespace spume::wcsph {
 // How the density is smoothed within each phase: operators/wcsph_sums.hpp.
 enum class DensityFilter { delta, shepard, none };
 
+// Whether particles are shifted towards an even spacing.
+enum class Shifting { automatic, on, off };
+
 struct CompressibilityOptions {
   double max_speed = 0;             // that the flow will reach; 0: estimated
   double background_pressure = -1;  // negative: chosen by the scene
@@ -16,6 +19,7 @@ struct CompressibilityOptions {
   DensityFilter density_filter = DensityFilter::delta;
   double diffusion = 0.1;    // delta of Molteni and Colagrossi (2009)
   int filter_interval = 25;  // steps, of the Shepard filter
+  Shifting shifting = Shifting::automatic;
 };
 
 struct ListOptions {
