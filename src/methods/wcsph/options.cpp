@@ -12,10 +12,12 @@ Section compressibility_section() {
       .option("background_pressure", &C::background_pressure, "Pa", any_value,
               "added to every pressure; negative: rho max_speed^2 in scenes without gravity and free surface, else 0")
       .option("repulsion", &C::repulsion, "1", between(0, 0.2), "between phases, of the sum of their pressures")
+      .steerable()
       .word("density_filter", &C::density_filter,
             {{"delta", DensityFilter::delta}, {"shepard", DensityFilter::shepard}, {"none", DensityFilter::none}},
             "smoothing of the density within each phase: diffusion, or the kernel average every so many steps")
       .option("diffusion", &C::diffusion, "1", between(0, 0.5), "coefficient of the diffusion of density")
+      .steerable()
       .option("filter_interval", &C::filter_interval, "", between(1, 10000), "steps between kernel averages");
 }
 
