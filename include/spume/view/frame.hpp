@@ -25,7 +25,7 @@ namespace spume {
 struct FrameWish {
   std::size_t points = 100000;                // of all families together; more are thinned
   int bits = 16;                              // of a value: 8 or 16
-  std::map<std::string, std::string> fields;  // colour of each family: "pressure", "velocity" (its size), "velocity_x"
+  std::map<std::string, std::string> fields = {};  // colour of each family: "pressure", "velocity" (its size), "velocity_x"
   int plane_axis = 2;                         // normal of the plane through fields on a grid
   double plane_at = 0.5;                      // its place, from 0 at the lower side of the grid to 1
 };
