@@ -60,9 +60,12 @@ void Simulation::change_case(const std::string& key, const std::string& value) {
   changes_.clear();
 }
 
+bool Simulation::steerable(const std::string& key) const {
+  return std::find(means_.keys.begin(), means_.keys.end(), steered_option(key)) != means_.keys.end();
+}
+
 void Simulation::steer(const std::string& key, const std::string& value) {
-  if (std::find(means_.keys.begin(), means_.keys.end(), key) == means_.keys.end())
-    throw InputError("'" + key + "' cannot be changed while a run goes on");
+  if (!steerable(key)) throw InputError("'" + key + "' cannot be changed while a run goes on");
   if (value.empty() || value.find_first_of("\r\n") != std::string::npos)
     throw InputError("'" + key + "' needs a value on one line");
   try {
@@ -96,7 +99,7 @@ void Simulation::snapshot_now() {
 
 void Simulation::replay(const std::vector<SteeringRow>& rows) {
   for (const SteeringRow& row : rows)
-    if (row.key != snapshot_key && std::find(means_.keys.begin(), means_.keys.end(), row.key) == means_.keys.end())
+    if (row.key != snapshot_key && !steerable(row.key))
       throw InputError("'" + row.key + "' of the replay cannot be changed while a run goes on");
   due_.insert(due_.end(), rows.begin(), rows.end());
   std::stable_sort(due_.begin(), due_.end(),

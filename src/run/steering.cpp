@@ -48,6 +48,15 @@ bool read_number(const std::string& text, Number& number) {
 
 }  // namespace
 
+std::string steered_option(const std::string& key) {
+  std::string option;
+  std::istringstream parts(key);
+  for (std::string part; std::getline(parts, part, '.');)
+    if (part.empty() || part.find_first_not_of("0123456789") != std::string::npos)
+      option += (option.empty() ? "" : ".") + part;
+  return option;
+}
+
 std::vector<std::string> steering_overrides(const std::vector<SteeringRow>& rows) {
   std::vector<std::string> overrides;
   for (const SteeringRow& row : rows)

@@ -167,6 +167,7 @@ Section phase() {
       .required()
       .option("viscosity", &P::viscosity, "Pa s", not_negative(), "dynamic viscosity; 0: inviscid")
       .required()
+      .steerable()
       .option("sound_speed", &P::sound_speed, "m/s", not_negative(),
               "sound speed; 0: incompressible, or chosen by a weakly compressible method")
       .option(

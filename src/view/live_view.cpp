@@ -34,8 +34,7 @@ std::string dumped(const Json& json) {
 }
 
 Json steerable_options(const std::vector<OptionInfo>& options, const std::string& resolved) {
-  std::map<std::string, std::string> values;
-  for (const ChangedValue& value : changed_values("", resolved)) values[value.name] = value.now;
+  const std::vector<ChangedValue> values = changed_values("", resolved);
   // What the case may have and does not stands in it as a comment below its section.
   const auto may_have = [&](const OptionInfo& option) {
     const std::size_t section = resolved.find("\n[" + option.section + "]");
@@ -46,15 +45,22 @@ Json steerable_options(const std::vector<OptionInfo>& options, const std::string
   Json list = Json::array();
   for (const OptionInfo& option : options) {
     if (!option.steerable) continue;
-    const std::string key = option.section + '.' + option.key;
-    const auto value = values.find(key);
-    if (value == values.end() && !may_have(option)) continue;
-    list.push_back({{"key", key},
-                    {"value", value == values.end() ? "" : value->second},
-                    {"type", option.type},
-                    {"unit", option.unit == "1" ? "" : option.unit},
-                    {"range", option.range},
-                    {"description", option.description}});
+    const std::string name = option.section + '.' + option.key;
+    const auto add = [&](const std::string& key, const std::string& value) {
+      list.push_back({{"key", key},
+                      {"value", value},
+                      {"type", option.type},
+                      {"unit", option.unit == "1" ? "" : option.unit},
+                      {"range", option.range},
+                      {"description", option.description}});
+    };
+    bool any = false;
+    for (const ChangedValue& value : values) {
+      if (steered_option(value.name) != name) continue;
+      add(value.name, value.now);
+      any = true;
+    }
+    if (!any && may_have(option)) add(name, "");
   }
   return list;
 }

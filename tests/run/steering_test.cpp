@@ -86,6 +86,13 @@ TEST_F(Steering, ItsFileKeepsEveryDigitAndAnyText) {
               ElementsAre("forces.body=[\"0.1*x\", \"say \\\"no\\\"\"]", "fluid.gravity=9.81"));
 }
 
+TEST_F(Steering, AnEntryOfAListIsAnOption) {
+  EXPECT_EQ(steered_option("phase.0.viscosity"), "phase.viscosity");
+  EXPECT_EQ(steered_option("domain.wall_velocity.top"), "domain.wall_velocity.top");
+  EXPECT_EQ(steered_option("7"), "");
+  EXPECT_EQ(steered_option("a..b"), "a..b");
+}
+
 TEST_F(Steering, ADamagedFileIsRefusedWithItsLines) {
   const auto refusal = [&](const std::string& text) -> std::vector<std::string> {
     test::write_contents(folder_ / "bad.csv", text);

@@ -141,6 +141,7 @@ class Simulation {
 
   void save_checkpoint();
   void load_checkpoint(const std::filesystem::path& path);
+  bool steerable(const std::string& key) const;
   void change_case(const std::string& key, const std::string& value);
   void make_due_changes(Observer& observer);
   void note_steering(const std::string& key, const std::string& value);

@@ -21,6 +21,9 @@ struct SteeringRow {
   bool operator==(const SteeringRow&) const = default;
 };
 
+// The option that a key means: "phase.viscosity" of "phase.0.viscosity", an entry of [[phase]].
+std::string steered_option(const std::string& key);
+
 // In place of an option: a snapshot beside those of output.every.
 inline constexpr const char* snapshot_key = "snapshot";
 

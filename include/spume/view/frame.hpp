@@ -23,11 +23,12 @@ namespace spume {
 
 // What a viewer wants to see.
 struct FrameWish {
-  std::size_t points = 100000;                // of all families together; more are thinned
-  int bits = 16;                              // of a value: 8 or 16
-  std::map<std::string, std::string> fields = {};  // colour of each family: "pressure", "velocity" (its size), "velocity_x"
-  int plane_axis = 2;                         // normal of the plane through fields on a grid
-  double plane_at = 0.5;                      // its place, from 0 at the lower side of the grid to 1
+  std::size_t points = 100000;  // of all families together; more are thinned
+  int bits = 16;                // of a value: 8 or 16
+  std::map<std::string, std::string> fields =
+      {};                 // colour of each family: "pressure", "velocity" (its size), "velocity_x"
+  int plane_axis = 2;     // normal of the plane through fields on a grid
+  double plane_at = 0.5;  // its place, from 0 at the lower side of the grid to 1
 };
 inline constexpr std::size_t most_frame_points = 2000000;
 inline constexpr std::size_t most_plane_points = 512;  // along each side; more are thinned
