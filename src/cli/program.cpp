@@ -84,7 +84,7 @@ struct CommandLine {
       verb->add_option("--port", run.port, "port of the page (default: a free one)")
           ->check(CLI::Range(1, 65535))
           ->needs(view);
-      verb->add_flag("--paused", run.paused, "wait for the page before the first step")->needs(view);
+      verb->add_flag("--paused", run.paused, "with --view: paused before the first step")->needs(view);
     }
     run_app->add_option("--replay", run.replay, "steering.csv of a run: makes the same changes after the same steps");
     run_app->add_option("-o,--output", run.folder, "new folder for the results (default: runs/<case>-<n>)");

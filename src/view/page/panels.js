@@ -40,7 +40,7 @@ const legends = (() => {
     let axis = null;
     if (block.kind === 'plane') {
       axis = element('select');
-      for (const [k, name] of ['x', 'y', 'z'].entries()) axis.append(new Option('plane across ' + name, k));
+      for (const [k, name] of ['x', 'y', 'z'].entries()) axis.append(new Option('across ' + name, k));
       axis.value = block.axes[2];
       const at = element('input');
       Object.assign(at, {type: 'range', min: 0, max: 1, step: 0.01, value: link.wish.plane.at, title: 'place of the plane'});
