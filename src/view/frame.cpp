@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numeric>
+#include <type_traits>
 
 namespace spume {
 namespace {
@@ -76,140 +76,164 @@ const Colouring* chosen(const std::vector<Colouring>& list, const std::string& f
   return found == list.end() ? &list.front() : &*found;
 }
 
-template <class T>
-double value_of(const std::vector<const T*>& components, int component, std::size_t i) {
-  if (component >= 0) return static_cast<double>(components[static_cast<std::size_t>(component)][i]);
-  double sum = 0;
-  for (const T* one : components) sum += static_cast<double>(one[i]) * static_cast<double>(one[i]);
-  return std::sqrt(sum);
-}
-
+// The finite ones of some values lie from low to high.
 struct CodeRange {
-  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
-  void include(double value) {
-    if (!std::isfinite(value)) return;
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  void close() {  // of nothing: 0 to 0
-    if (!(low <= high)) low = high = 0;
-  }
+  double low = 0, high = 0;
 };
 
-// Codes from 0 to `top` for low to high; top + 1 for what is not finite.
+// Infinities and what is no number give neither true.
+inline bool is_finite(double value) {
+  return value - value == 0;
+}
+
+CodeRange range_of(const double* values, std::size_t count) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+#pragma omp simd reduction(min : low) reduction(max : high)
+  for (std::size_t k = 0; k < count; ++k) {
+    low = is_finite(values[k]) && values[k] < low ? values[k] : low;
+    high = is_finite(values[k]) && values[k] > high ? values[k] : high;
+  }
+  if (!(low <= high)) return {};
+  return {low, high};
+}
+
+// Codes from 0 to `top` for low to high, every `stride` places; `odd` for what is not finite.
 template <class Code>
-Code coded(double value, const CodeRange& bounds, double steps_per_unit, double top) {
-  if (!std::isfinite(value)) return static_cast<Code>(top + 1);
-  return static_cast<Code>(std::clamp((value - bounds.low) * steps_per_unit + 0.5, 0.0, top));
+void write_codes(const double* values, std::size_t count, const CodeRange& range, int top, int odd, Code* codes,
+                 std::size_t stride) {
+  const double steps = top / (range.high - range.low);
+  const double scale = range.high > range.low && is_finite(steps) ? steps : 0, low = range.low, last = top;
+#pragma omp simd
+  for (std::size_t k = 0; k < count; ++k) {
+    const double place = (values[k] - low) * scale + 0.5;
+    // What is not finite stays so, or is 0 times infinity.
+    const double within = place > 0 ? (place < last ? place : last) : 0;
+    codes[k * stride] = static_cast<Code>(is_finite(values[k]) ? static_cast<int>(within) : odd);
+  }
 }
 
-double steps_per_unit(const CodeRange& bounds, double top) {
-  const double width = bounds.high - bounds.low;
-  const double steps = top / width;
-  return width > 0 && std::isfinite(steps) ? steps : 0;
-}
-
+// The frame as it grows.
 class Payload {
  public:
+  explicit Payload(std::string& bytes) : bytes_(bytes) { bytes_.assign(start, '\0'); }
   // The place of an array of `bytes` bytes.
   std::size_t add(std::size_t bytes) {
-    const std::size_t at = (bytes_.size() + 3) / 4 * 4;
-    bytes_.resize(at + bytes);
+    const std::size_t at = (bytes_.size() - start + 3) / 4 * 4;
+    bytes_.resize(start + at + bytes);
     return at;
   }
   template <class Code>
   Code* codes(std::size_t at) {
-    return reinterpret_cast<Code*>(bytes_.data() + at);
+    return reinterpret_cast<Code*>(bytes_.data() + start + at);
   }
-  const std::string& bytes() const { return bytes_; }
+  void finish(const nlohmann::json& header) {
+    const auto length = static_cast<std::uint32_t>(bytes_.size() - start);
+    std::memcpy(bytes_.data(), &length, sizeof length);
+    bytes_ += header.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  }
 
  private:
-  std::string bytes_;
+  static constexpr std::size_t start = sizeof(std::uint32_t);
+  std::string& bytes_;
 };
 
 // Writes values of 8 or 16 bits and says in the block where they are and what they mean.
-template <class Value>
-void add_values(nlohmann::json& block, Payload& payload, std::size_t count, int bits, Value&& value) {
-  CodeRange bounds;
-  for (std::size_t k = 0; k < count; ++k) bounds.include(value(k));
-  bounds.close();
-  const double top = bits == 8 ? 254 : 65534;
-  const double scale = steps_per_unit(bounds, top);
+void add_values(nlohmann::json& block, Payload& payload, const double* values, std::size_t count, int bits) {
+  const CodeRange range = range_of(values, count);
   const std::size_t at = payload.add(count * static_cast<std::size_t>(bits / 8));
   if (bits == 8)
-    for (std::size_t k = 0; k < count; ++k)
-      payload.codes<std::uint8_t>(at)[k] = coded<std::uint8_t>(value(k), bounds, scale, top);
+    write_codes(values, count, range, 254, 255, payload.codes<std::uint8_t>(at), 1);
   else
-    for (std::size_t k = 0; k < count; ++k)
-      payload.codes<std::uint16_t>(at)[k] = coded<std::uint16_t>(value(k), bounds, scale, top);
-  block["values"] = {{"at", at}, {"bits", bits}, {"low", bounds.low}, {"high", bounds.high}};
+    write_codes(values, count, range, 65534, 65535, payload.codes<std::uint16_t>(at), 1);
+  block["values"] = {{"at", at}, {"bits", bits}, {"low", range.low}, {"high", range.high}};
 }
 
-// Those of a family that are sent: the same ones in every frame as long as their identifiers stay.
-std::vector<std::uint32_t> selection(const ParticleSnapshot& family, std::size_t most) {
-  std::vector<std::uint32_t> selected;
-  if (family.size <= most) {
-    selected.resize(family.size);
-    std::iota(selected.begin(), selected.end(), 0U);
-    return selected;
-  }
-  const std::int64_t* id = nullptr;
-  for (const ParticleField& field : family.fields)
-    if (field.name == "id" && !field.i64.empty()) id = field.i64[0];
-  selected.reserve(most);
-  if (id == nullptr) {
-    const double stride = static_cast<double>(family.size) / static_cast<double>(most);
-    for (std::size_t k = 0; k < most; ++k)
-      selected.push_back(static_cast<std::uint32_t>(stride * static_cast<double>(k)));
-    return selected;
-  }
-  // Multiples of 2^32 over the golden ratio spread any run of numbers evenly (Knuth, The Art of Computer Programming 3,
-  // 6.4); a little less than `most` is aimed at, as many come up on the average only.
-  const double share = 0.98 * static_cast<double>(most) / static_cast<double>(family.size);
-  const auto threshold = static_cast<std::uint32_t>(share * 4294967296.0);
-  for (std::size_t i = 0; i < family.size && selected.size() < most; ++i)
-    if (static_cast<std::uint32_t>(id[i]) * 2654435769U < threshold) selected.push_back(static_cast<std::uint32_t>(i));
-  return selected;
-}
-
-void add_positions(nlohmann::json& block, Payload& payload, const ParticleSnapshot& family,
-                   const std::vector<std::uint32_t>& selected) {
-  const std::size_t dimensions = family.position.size();
-  std::array<CodeRange, 3> box;
-  for (std::size_t axis = 0; axis < dimensions; ++axis) {
-    for (const std::uint32_t i : selected) box[axis].include(family.position[axis][i]);
-    box[axis].close();
-    block["lower"].push_back(box[axis].low);
-    block["upper"].push_back(box[axis].high);
-  }
-  const std::size_t at = payload.add(selected.size() * dimensions * 2);
-  auto* const codes = payload.codes<std::uint16_t>(at);
-  for (std::size_t axis = 0; axis < dimensions; ++axis) {
-    const double scale = steps_per_unit(box[axis], 65535);
-    const double* const position = family.position[axis];
-    for (std::size_t k = 0; k < selected.size(); ++k) {
-      const double x = position[selected[k]];
-      const double finite = std::isfinite(x) ? x : box[axis].low;  // which a step with such a result is refused for
-      codes[k * dimensions + axis] = coded<std::uint16_t>(finite, box[axis], scale, 65535);
+// The particles of a family that are sent, and values of theirs.
+class Selection {
+ public:
+  // The same ones in every frame as long as their identifiers stay.
+  Selection(const ParticleSnapshot& family, std::size_t most, FrameScratch& scratch)
+      : size_(std::min(family.size, most)), selected_(scratch.selected), values_(scratch.values) {
+    selected_.clear();
+    if (family.size <= most) return;
+    all_ = false;
+    selected_.reserve(most);
+    const std::int64_t* id = nullptr;
+    for (const ParticleField& field : family.fields)
+      if (field.name == "id" && !field.i64.empty()) id = field.i64[0];
+    if (id == nullptr) {
+      const double stride = static_cast<double>(family.size) / static_cast<double>(most);
+      for (std::size_t k = 0; k < most; ++k)
+        selected_.push_back(static_cast<std::uint32_t>(stride * static_cast<double>(k)));
+      return;
     }
+    // Multiples of 2^32 over the golden ratio spread any run of numbers evenly (Knuth, The Art of Computer Programming
+    // 3, 6.4); a little less than `most` is aimed at, as many come up on the average only.
+    const double share = 0.98 * static_cast<double>(most) / static_cast<double>(family.size);
+    const auto threshold = static_cast<std::uint32_t>(share * 4294967296.0);
+    for (std::size_t i = 0; i < family.size && selected_.size() < most; ++i)
+      if (static_cast<std::uint32_t>(id[i]) * 2654435769U < threshold)
+        selected_.push_back(static_cast<std::uint32_t>(i));
+    size_ = selected_.size();
+  }
+  std::size_t size() const { return size_; }
+
+  // One component; the pointer holds until the next call.
+  template <class T>
+  const double* values(const T* source) {
+    if constexpr (std::is_same_v<T, double>)
+      if (all_) return source;
+    values_.resize(size_);
+    for (std::size_t k = 0; k < size_; ++k) values_[k] = static_cast<double>(source[place(k)]);
+    return values_.data();
+  }
+  // The size of a vector.
+  template <class T>
+  const double* sizes(const std::vector<const T*>& components) {
+    values_.assign(size_, 0.0);
+    for (const T* one : components)
+      for (std::size_t k = 0; k < size_; ++k) {
+        const auto value = static_cast<double>(one[place(k)]);
+        values_[k] += value * value;
+      }
+    for (double& value : values_) value = std::sqrt(value);
+    return values_.data();
+  }
+  template <class T>
+  const double* values(const std::vector<const T*>& components, int component) {
+    return component < 0 ? sizes(components) : values(components[static_cast<std::size_t>(component)]);
+  }
+
+ private:
+  std::size_t place(std::size_t k) const { return all_ ? k : selected_[k]; }
+  std::size_t size_;
+  bool all_ = true;
+  std::vector<std::uint32_t>& selected_;
+  std::vector<double>& values_;
+};
+
+void add_positions(nlohmann::json& block, Payload& payload, const ParticleSnapshot& family, Selection& selected) {
+  const std::size_t dimensions = family.position.size();
+  const std::size_t at = payload.add(selected.size() * dimensions * 2);
+  for (std::size_t axis = 0; axis < dimensions; ++axis) {
+    const double* const place = selected.values(family.position[axis]);
+    const CodeRange box = range_of(place, selected.size());
+    // A step that leaves a particle at no finite place is refused, so that nothing stands for one.
+    write_codes(place, selected.size(), box, 65535, 0, payload.codes<std::uint16_t>(at) + axis, dimensions);
+    block["lower"].push_back(box.low);
+    block["upper"].push_back(box.high);
   }
   block["positions"] = {{"at", at}};
 }
 
-void add_sizes(nlohmann::json& block, Payload& payload, const ParticleSnapshot& family,
-               const std::vector<std::uint32_t>& selected) {
+void add_sizes(nlohmann::json& block, Payload& payload, const ParticleSnapshot& family, Selection& selected) {
   for (const ParticleField& field : family.fields) {
     if ((field.name != "radius" && field.name != "diameter") || field.f64.size() != 1) continue;
-    const double to_diameter = field.name == "radius" ? 2 : 1;
-    CodeRange sizes{0, 0};
-    for (const std::uint32_t i : selected) sizes.include(to_diameter * field.f64[0][i]);
-    sizes.low = 0;
-    const double scale = steps_per_unit(sizes, 65534);
+    const double* const values = selected.values(field.f64[0]);
+    const CodeRange sizes{0, std::max(0.0, range_of(values, selected.size()).high)};
     const std::size_t at = payload.add(selected.size() * 2);
-    for (std::size_t k = 0; k < selected.size(); ++k)
-      payload.codes<std::uint16_t>(at)[k] =
-          coded<std::uint16_t>(to_diameter * field.f64[0][selected[k]], sizes, scale, 65534);
-    block["sizes"] = {{"at", at}, {"largest", sizes.high}};
+    write_codes(values, selected.size(), sizes, 65534, 65535, payload.codes<std::uint16_t>(at), 1);
+    block["sizes"] = {{"at", at}, {"largest", (field.name == "radius" ? 2 : 1) * sizes.high}};
     return;
   }
 }
@@ -226,30 +250,27 @@ nlohmann::json new_block(const char* kind, const Family& family, const std::vect
   return block;
 }
 
-nlohmann::json particle_block(const ParticleSnapshot& family, std::size_t most, const FrameWish& wish,
-                              Payload& payload) {
+nlohmann::json particle_block(const ParticleSnapshot& family, std::size_t most, const FrameWish& wish, Payload& payload,
+                              FrameScratch& scratch) {
   const std::vector<Colouring> list = all_colourings(family);
   const Colouring* const colour = chosen(list, family.name, wish);
   nlohmann::json block = new_block("particles", family, list, colour);
-  const std::vector<std::uint32_t> selected = selection(family, most);
+  Selection selected(family, most, scratch);
   block["dimensions"] = family.position.size();
   block["total"] = family.size;
   block["count"] = selected.size();
   add_positions(block, payload, family, selected);
   if (colour != nullptr) {
     const ParticleField& field = family.fields[colour->field];
-    if (!field.f64.empty())
-      add_values(block, payload, selected.size(), wish.bits,
-                 [&](std::size_t k) { return value_of(field.f64, colour->component, selected[k]); });
-    else
-      add_values(block, payload, selected.size(), wish.bits,
-                 [&](std::size_t k) { return value_of(field.i64, colour->component, selected[k]); });
+    const double* const values = field.f64.empty() ? selected.values(field.i64, colour->component)
+                                                   : selected.values(field.f64, colour->component);
+    add_values(block, payload, values, selected.size(), wish.bits);
   }
   add_sizes(block, payload, family, selected);
   return block;
 }
 
-nlohmann::json plane_block(const GridSnapshot& grid, const FrameWish& wish, Payload& payload) {
+nlohmann::json plane_block(const GridSnapshot& grid, const FrameWish& wish, Payload& payload, FrameScratch& scratch) {
   const std::vector<Colouring> list = all_colourings(grid);
   const Colouring* const colour = chosen(list, grid.name, wish);
   nlohmann::json block = new_block("plane", grid, list, colour);
@@ -272,14 +293,20 @@ nlohmann::json plane_block(const GridSnapshot& grid, const FrameWish& wish, Payl
   }
   if (colour == nullptr) return block;
   const auto& components = grid.fields[colour->field].components;
-  add_values(block, payload, columns * rows, wish.bits, [&](std::size_t k) {
+  std::vector<double>& values = scratch.values;
+  values.resize(columns * rows);
+  for (std::size_t k = 0; k < values.size(); ++k) {
     std::array<std::size_t, 3> point{};
     point[across] = k % columns * skip_across;
     point[along] = k / columns * skip_along;
     point[normal] = layer;
     const std::size_t i = (point[0] * grid.points[1] + point[1]) * grid.points[2] + point[2];
-    return value_of(components, colour->component, i);
-  });
+    double squares = 0;
+    for (const float* one : components) squares += static_cast<double>(one[i]) * static_cast<double>(one[i]);
+    values[k] = colour->component < 0 ? std::sqrt(squares)
+                                      : static_cast<double>(components[static_cast<std::size_t>(colour->component)][i]);
+  }
+  add_values(block, payload, values.data(), values.size(), wish.bits);
   return block;
 }
 
@@ -291,11 +318,23 @@ std::vector<std::string> colourings(const ParticleSnapshot& family) {
   return names;
 }
 
-std::string make_frame(std::int64_t step, double time, const std::vector<ParticleSnapshot>& families,
-                       const std::vector<GridSnapshot>& grids, const FrameWish& wish) {
-  Payload payload;
+// At most this many frames are on their way: one a viewer, and one that is made.
+std::shared_ptr<std::string> FrameMaker::free_buffer() {
+  for (const auto& buffer : buffers_)
+    if (buffer.use_count() == 1) {
+      std::atomic_thread_fence(std::memory_order_acquire);  // what its last reader did comes before
+      return buffer;
+    }
+  return buffers_.emplace_back(std::make_shared<std::string>());
+}
+
+std::shared_ptr<const std::string> FrameMaker::make(std::int64_t step, double time,
+                                                    const std::vector<ParticleSnapshot>& families,
+                                                    const std::vector<GridSnapshot>& grids, const FrameWish& wish) {
+  const std::shared_ptr<std::string> frame = free_buffer();
+  Payload payload(*frame);
   nlohmann::json blocks = nlohmann::json::array();
-  for (const GridSnapshot& grid : grids) blocks.push_back(plane_block(grid, wish, payload));
+  for (const GridSnapshot& grid : grids) blocks.push_back(plane_block(grid, wish, payload, scratch_));
   // A family with less than its share leaves the rest to those that come after it in size.
   std::vector<const ParticleSnapshot*> by_size;
   for (const ParticleSnapshot& family : families) by_size.push_back(&family);
@@ -307,16 +346,9 @@ std::string make_frame(std::int64_t step, double time, const std::vector<Particl
     left -= shares[by_size[k]];
   }
   for (const ParticleSnapshot& family : families)
-    blocks.push_back(particle_block(family, shares[&family], wish, payload));
-
-  std::string header = nlohmann::json{{"step", step}, {"time", time}, {"blocks", std::move(blocks)}}.dump(
-      -1, ' ', false, nlohmann::json::error_handler_t::replace);
-  header.resize((header.size() + 3) / 4 * 4, ' ');
-  const auto length = static_cast<std::uint32_t>(header.size());
-  std::string frame(sizeof length, '\0');
-  std::memcpy(frame.data(), &length, sizeof length);
-  frame.reserve(frame.size() + header.size() + payload.bytes().size());
-  return (frame += header) += payload.bytes();
+    blocks.push_back(particle_block(family, shares[&family], wish, payload, scratch_));
+  payload.finish({{"step", step}, {"time", time}, {"blocks", std::move(blocks)}});
+  return frame;
 }
 
 }  // namespace spume

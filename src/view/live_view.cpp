@@ -213,8 +213,8 @@ std::vector<Packet> LiveView::packets_for(Viewer& viewer, const FrameWish& wish,
     viewer.told.ledger = now;
     add(ledger_text(simulation.ledger()));
   }
-  packets.push_back({true, shared(make_frame(simulation.method().step_count(), simulation.method().time(),
-                                             simulation.particles(), simulation.grids(), wish))});
+  packets.push_back({true, frames_.make(simulation.method().step_count(), simulation.method().time(),
+                                        simulation.particles(), simulation.grids(), wish)});
   return packets;
 }
 

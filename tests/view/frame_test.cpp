@@ -48,8 +48,12 @@ struct Decoded {
 Decoded decoded(const std::string& frame) {
   std::uint32_t length = 0;
   std::memcpy(&length, frame.data(), sizeof length);
-  EXPECT_EQ(length % 4, 0U);
-  return {nlohmann::json::parse(frame.substr(4, length)), frame.substr(4 + length)};
+  return {nlohmann::json::parse(frame.substr(4 + length)), frame.substr(4, length)};
+}
+
+std::string make_frame(std::int64_t step, double time, const std::vector<ParticleSnapshot>& families,
+                       const std::vector<GridSnapshot>& grids, const FrameWish& wish) {
+  return *FrameMaker().make(step, time, families, grids, wish);
 }
 
 // Particles at random places, with a scalar, a vector, identifiers and sizes.
@@ -230,6 +234,22 @@ TEST(Frame, APlaneCutsAGridWhereTheViewerWants) {
     at[along] = 3;
     EXPECT_NEAR(values[3 * points[across] + 2], value(at[0], at[1], at[2]), 0.01);
   }
+}
+
+TEST(Frame, MemoryIsUsedAgainOnceAFrameIsSent) {
+  const Cloud small(100), large(1000);
+  FrameMaker frames;
+  std::shared_ptr<const std::string> first = frames.make(1, 0, {large.snapshot()}, {}, {});
+  const std::string kept = *first;
+  const auto second = frames.make(2, 0, {small.snapshot()}, {}, {});
+  EXPECT_NE(second, first);
+  EXPECT_EQ(*first, kept);
+  const std::string* const place = first.get();
+  first.reset();
+  const auto third = frames.make(3, 0, {small.snapshot()}, {}, {});
+  EXPECT_EQ(third.get(), place);
+  EXPECT_EQ(decoded(*third).header["step"], 3);
+  EXPECT_EQ(third->size(), second->size());
 }
 
 TEST(Frame, AnyTextIsAFrame) {

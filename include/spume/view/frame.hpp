@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A frame of the live view: what is drawn of a state, as one binary message.
 //
-//   uint32   length of the header, a multiple of 4
-//   header   JSON, filled up with blanks: {"step", "time", "blocks": [...]}
-//   payload  the arrays of the blocks, each from a multiple of 4 bytes after the header on ("at", in bytes)
+//   uint32   bytes of arrays
+//   arrays   of the blocks, each from a multiple of 4 bytes after that number on ("at", in bytes)
+//   header   JSON: {"step", "time", "blocks": [...]}
 //
 // A block of kind "particles" has positions, `dimensions` numbers of 16 bits a particle between lower and upper of its
 // box, then values of 8 or 16 bits between low and high, then sizes (diameters, 16 bits from 0 to largest) where its
@@ -14,12 +14,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "spume/io/snapshot.hpp"
 
 namespace spume {
+
+struct FrameScratch {
+  std::vector<std::uint32_t> selected;
+  std::vector<double> values;
+};
 
 // What a viewer wants to see.
 struct FrameWish {
@@ -36,7 +42,17 @@ inline constexpr std::size_t most_plane_points = 512;  // along each side; more 
 // What a family may be coloured by.
 std::vector<std::string> colourings(const ParticleSnapshot& family);
 
-std::string make_frame(std::int64_t step, double time, const std::vector<ParticleSnapshot>& families,
-                       const std::vector<GridSnapshot>& grids, const FrameWish& wish);
+// Makes frames in memory that it keeps: pages that are new to the process cost more than the codes in them (10 ms
+// against 1 ms for 1e5 particles on a virtual machine).
+class FrameMaker {
+ public:
+  std::shared_ptr<const std::string> make(std::int64_t step, double time, const std::vector<ParticleSnapshot>& families,
+                                          const std::vector<GridSnapshot>& grids, const FrameWish& wish);
+
+ private:
+  std::shared_ptr<std::string> free_buffer();
+  std::vector<std::shared_ptr<std::string>> buffers_;  // those that nobody else holds are free
+  FrameScratch scratch_;
+};
 
 }  // namespace spume

@@ -50,6 +50,7 @@ class LiveView final : public Observer {
   bool paused_;
   int steps_wanted_ = 0;            // while paused
   std::int64_t hello_edition_ = 0;  // of plan and options, which a change by hand may alter
+  FrameMaker frames_;
   SeriesHistory history_;
   double last_row_step_ = -1;
   std::deque<std::string> lines_;

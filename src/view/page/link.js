@@ -27,9 +27,8 @@ const link = (() => {
 
   // The arrays of a block are views of the message: nothing is copied.
   function decode(buffer) {
-    const length = new DataView(buffer).getUint32(0, true);
-    const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
-    const start = 4 + length;
+    const start = 4, length = new DataView(buffer).getUint32(0, true);
+    const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, start + length)));
     for (const block of header.blocks) {
       const count = block.kind === 'plane' ? block.columns * block.rows : block.count;
       if (block.positions) block.positions.codes = new Uint16Array(buffer, start + block.positions.at, count * block.dimensions);
