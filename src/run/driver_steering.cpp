@@ -9,6 +9,7 @@
 #include "spume/run/driver.hpp"
 #include "spume/run/probes.hpp"
 #include "spume/run/report.hpp"
+#include "spume/run/signals.hpp"
 
 namespace spume {
 
@@ -122,6 +123,10 @@ void Simulation::make_due_changes(Observer& observer) {
     observer.note("replayed after step " + std::to_string(row.step) + ": " + row.key +
                   (row.value.empty() ? "" : " = " + row.value));
   }
+}
+
+bool Simulation::stop_requested() const {
+  return stop_ || (signals_ != nullptr && signals_->requested());
 }
 
 void Simulation::note_pause(std::chrono::steady_clock::duration length) {

@@ -277,7 +277,7 @@ nlohmann::json plane_block(const GridSnapshot& grid, const FrameWish& wish, Payl
   const auto normal = static_cast<std::size_t>(std::clamp(wish.plane_axis, 0, 2));
   const std::size_t across = normal == 0 ? 1 : 0, along = normal == 2 ? 1 : 2;
   const auto last = static_cast<double>(grid.points[normal] - 1);
-  const auto layer = static_cast<std::size_t>(std::clamp(wish.plane_at, 0.0, 1.0) * last + 0.5);
+  const auto layer = static_cast<std::size_t>(std::lround(std::clamp(wish.plane_at, 0.0, 1.0) * last));
   const auto thinned = [&](std::size_t axis) {
     return (grid.points[axis] + most_plane_points - 1) / most_plane_points;  // points per point that is sent
   };
@@ -337,6 +337,7 @@ std::shared_ptr<const std::string> FrameMaker::make(std::int64_t step, double ti
   for (const GridSnapshot& grid : grids) blocks.push_back(plane_block(grid, wish, payload, scratch_));
   // A family with less than its share leaves the rest to those that come after it in size.
   std::vector<const ParticleSnapshot*> by_size;
+  by_size.reserve(families.size());
   for (const ParticleSnapshot& family : families) by_size.push_back(&family);
   std::sort(by_size.begin(), by_size.end(), [](const auto* a, const auto* b) { return a->size < b->size; });
   std::size_t left = std::min(wish.points, most_frame_points);

@@ -131,7 +131,9 @@ void LiveView::obey(Simulation& simulation) {
     try {
       obey(simulation, message);
     } catch (const InputError& error) {
-      note("refused: " + std::string(error.what()));
+      std::string text;
+      for (const Problem& problem : error.problems()) text += (text.empty() ? "refused: " : "; ") + problem.text;
+      note(text);
     }
     next_frame_ = {};  // the answer is not kept waiting
   }

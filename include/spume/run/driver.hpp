@@ -22,7 +22,6 @@
 #include "spume/run/folder.hpp"
 #include "spume/run/recorder.hpp"
 #include "spume/run/schedule.hpp"
-#include "spume/run/signals.hpp"
 #include "spume/run/steering.hpp"
 #include "spume/run/verdicts.hpp"
 #include "spume/scene/case.hpp"
@@ -47,6 +46,7 @@ struct Progress {
 };
 
 class Simulation;
+class StopSignals;
 
 // Whoever watches a run. Called on the driver's thread after every step, and for every event in words.
 class Observer {
@@ -101,7 +101,7 @@ class Simulation {
   void snapshot_now();
   void checkpoint_now() { save_checkpoint(); }
   void request_stop() { stop_ = true; }  // as SIGINT does
-  bool stop_requested() const { return stop_ || (signals_ != nullptr && signals_->requested()); }
+  bool stop_requested() const;
   bool finished() const { return schedule_.finished(method_->time()); }
   void note_pause(std::chrono::steady_clock::duration length);  // in which the run stood still: no part of its pace
   std::vector<ParticleSnapshot> particles() { return method_->snapshot(); }

@@ -158,7 +158,15 @@ const curves = (() => {
   return {set_columns, take};
 })();
 
+// After a change only the values are others: what is being typed elsewhere stays.
 function show_options(options) {
+  const fields = [...document.querySelectorAll('#options input')];
+  if (fields.length && fields.map((field) => field.dataset.key).join() === options.map((option) => option.key).join()) {
+    options.forEach((option, k) => {
+      if (fields[k].dataset.value !== option.value) fields[k].value = fields[k].dataset.value = option.value;
+    });
+    return;
+  }
   const rows = options.map((option) => {
     const row = element('form', 'option'), key = element('label', 'key', option.key), input = element('input');
     key.append(element('small', '', [option.unit, option.range].filter(Boolean).join(', ')));
@@ -167,11 +175,12 @@ function show_options(options) {
     input.placeholder = 'not set';
     input.setAttribute('aria-label', option.key);
     input.dataset.key = option.key;
+    input.dataset.value = option.value;
     row.append(key, input, element('button', '', 'Set'));
     row.onsubmit = (event) => {
       event.preventDefault();
       // A change is made once: what stands there already changes nothing.
-      if (input.value.trim() !== option.value) link.send({do: 'steer', key: option.key, value: input.value.trim()});
+      if (input.value.trim() !== input.dataset.value) link.send({do: 'steer', key: option.key, value: input.value.trim()});
     };
     return row;
   });
