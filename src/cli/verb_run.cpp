@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <sched.h>
 #include <signal.h>
 
 #include <cmath>
@@ -38,9 +39,9 @@ class Ending {
   Ending(const Ending&) = delete;
   Ending& operator=(const Ending&) = delete;
   ~Ending() {
-    if (view_) view_->finish(words);
+    if (view_) view_->finish(words, reason);
   }
-  std::string words = "ended by an error, which the terminal tells";
+  std::string words = "failed", reason;
 
  private:
   std::optional<LiveView>& view_;
@@ -56,7 +57,15 @@ SteeringMeans steering_means(const Program& program) {
 
 // The server is made before the folder of the run: with a taken port nothing begins.
 std::unique_ptr<Server> make_server(const RunArguments& arguments) {
-  return arguments.view ? std::make_unique<Server>(arguments.port) : nullptr;
+  if (!arguments.view) return nullptr;
+  // Threads begin on the processors of the one that starts them. This one may be bound to a single one, on which it
+  // computes: those of the server go where there is time.
+  cpu_set_t own;
+  const bool known = sched_getaffinity(0, sizeof own, &own) == 0;
+  release_to_all_places();
+  auto server = std::make_unique<Server>(arguments.port);
+  if (known) sched_setaffinity(0, sizeof own, &own);
+  return server;
 }
 
 int execute(Simulation& simulation, const RunArguments& arguments, const Program& program, Server* server) {
@@ -87,10 +96,12 @@ int execute(Simulation& simulation, const RunArguments& arguments, const Program
     return state == RunState::finished ? exit_done : exit_interrupted;
   } catch (const FileError& error) {
     observer.finish();
+    ending.reason = error.what();
     std::fprintf(stderr, "error: %s\n", error.what());
     return simulation.steps_this_run() > 0 ? exit_numerical : exit_input;
   } catch (const NumericalFailure& failure) {
     observer.finish();
+    ending.reason = failure.what();
     std::fprintf(stderr, "error: %s\n", failure.what());
     return exit_numerical;
   } catch (const std::bad_alloc&) {

@@ -122,6 +122,7 @@ void LiveView::between_steps(Simulation& simulation) {
     server_.wait(pause_poll);
     obey(simulation);
   }
+  next_frame_ = {};
   words_ = "running";
   simulation.note_pause(Clock::now() - began);
 }
@@ -184,6 +185,10 @@ void LiveView::serve(Simulation& simulation) {
   for (const auto& viewer : server_.viewers()) {
     const std::optional<FrameWish> wish = viewer->take_wish();
     if (!wish) continue;
+    if (knows_all(*viewer, *wish, simulation)) {
+      viewer->give_back(*wish);
+      continue;
+    }
     any = true;
     const auto scope = simulation.time_stage("live view");
     viewer->send(packets_for(*viewer, *wish, simulation));
@@ -192,6 +197,13 @@ void LiveView::serve(Simulation& simulation) {
   if (!any) return;
   const auto cost = Clock::now() - now;
   next_frame_ = now + std::clamp<Clock::duration>(cost * run_over_frames, shortest_interval, longest_interval);
+}
+
+// A paused run has nothing new.
+bool LiveView::knows_all(const Viewer& viewer, const FrameWish& wish, const Simulation& simulation) const {
+  const Viewer::Told& told = viewer.told;
+  return told.step == simulation.method().step_count() && told.wish == wish && told.words == words_ &&
+         told.hello == hello_edition_ && told.lines == lines_told_ + static_cast<std::int64_t>(lines_.size());
 }
 
 std::vector<Packet> LiveView::packets_for(Viewer& viewer, const FrameWish& wish, Simulation& simulation) {
@@ -215,6 +227,9 @@ std::vector<Packet> LiveView::packets_for(Viewer& viewer, const FrameWish& wish,
     viewer.told.ledger = now;
     add(ledger_text(simulation.ledger()));
   }
+  viewer.told.step = simulation.method().step_count();
+  viewer.told.wish = wish;
+  viewer.told.words = words_;
   packets.push_back({true, frames_.make(simulation.method().step_count(), simulation.method().time(),
                                         simulation.particles(), simulation.grids(), wish)});
   return packets;
@@ -275,8 +290,9 @@ std::string LiveView::lines_for(Viewer& viewer) const {
   return dumped({{"type", "log"}, {"lines", std::move(lines)}});
 }
 
-void LiveView::finish(const std::string& state_in_words) {
+void LiveView::finish(const std::string& state_in_words, const std::string& reason) {
   words_ = state_in_words;
+  if (!reason.empty()) lines_.push_back(reason);
   for (const auto& viewer : server_.viewers()) {
     std::vector<Packet> packets;
     for (std::string text : {series_for(*viewer), lines_for(*viewer), state()})

@@ -44,6 +44,10 @@ class Socket final : public Viewer {
     const std::lock_guard lock(mutex_);
     return std::exchange(wish_, {});
   }
+  void give_back(FrameWish wish) override {
+    const std::lock_guard lock(mutex_);
+    if (!wish_) wish_ = std::move(wish);
+  }
   void send(std::vector<Packet> packets) override {
     const std::lock_guard lock(mutex_);
     if (closed_) return;
@@ -125,6 +129,16 @@ struct Server::Inside {
   void call_attention() {
     attention = true;
     news.notify_all();
+  }
+
+  // What the library calls must not throw: who asked gets `failure`.
+  template <class Work>
+  static int guarded(int failure, Work&& work) {
+    try {
+      return work();
+    } catch (const std::exception&) {
+      return failure;
+    }
   }
 
   bool admitted(const mg_connection* connection) const {
@@ -270,14 +284,24 @@ Server::Server(int port) : inside_(std::make_unique<Inside>()) {
   inside_->port = ports[0].port;
   mg_set_request_handler(
       inside_->context, "/",
-      [](mg_connection* connection, void* inside) { return static_cast<Inside*>(inside)->serve(connection); },
+      [](mg_connection* connection, void* inside) {
+        return Inside::guarded(500, [&] { return static_cast<Inside*>(inside)->serve(connection); });
+      },
       inside_.get());
   mg_set_websocket_handler(
       inside_->context, socket_path,
-      [](const mg_connection* connection, void* inside) { return static_cast<Inside*>(inside)->connect(connection); },
-      [](mg_connection* connection, void* inside) { static_cast<Inside*>(inside)->open(connection); },
+      [](const mg_connection* connection, void* inside) {
+        return Inside::guarded(1, [&] { return static_cast<Inside*>(inside)->connect(connection); });
+      },
+      [](mg_connection* connection, void* inside) {
+        Inside::guarded(0, [&] {
+          static_cast<Inside*>(inside)->open(connection);
+          return 1;
+        });
+      },
       [](mg_connection* connection, int bits, char* data, std::size_t size, void* inside) {
-        return static_cast<Inside*>(inside)->receive(connection, bits, std::string_view(data, size));
+        return Inside::guarded(
+            0, [&] { return static_cast<Inside*>(inside)->receive(connection, bits, std::string_view(data, size)); });
       },
       [](const mg_connection* connection, void* inside) { static_cast<Inside*>(inside)->close(connection); },
       inside_.get());
@@ -316,7 +340,7 @@ std::vector<ViewMessage> Server::take_messages() {
 
 void Server::wait(std::chrono::milliseconds longest) {
   std::unique_lock lock(inside_->mutex);
-  inside_->news.wait_for(lock, longest, [this] { return inside_->attention.load(); });
+  inside_->news.wait_for(lock, longest, [this] { return !inside_->messages.empty(); });
 }
 
 void Server::rest() {

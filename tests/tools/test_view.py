@@ -221,6 +221,9 @@ class LiveView(unittest.TestCase):
         self.wait_step(10)
         self.browser.get("about:blank")
         self.assertEqual(run.finish(), (0, ""))
+        # Looking changes nothing.
+        self.assertEqual(self.start("plain", *CASE, "--until", "0.5").finish(), (0, ""))
+        self.assertEqual(state_of(self.scratch / "plain"), state_of(run.folder))
 
     def test_lets_nobody_in_without_the_token(self):
         run = self.start("closed", *CASE, "--view", "--paused")

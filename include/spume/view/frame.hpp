@@ -35,6 +35,7 @@ struct FrameWish {
       {};                 // colour of each family: "pressure", "velocity" (its size), "velocity_x"
   int plane_axis = 2;     // normal of the plane through fields on a grid
   double plane_at = 0.5;  // its place, from 0 at the lower side of the grid to 1
+  bool operator==(const FrameWish&) const = default;
 };
 inline constexpr std::size_t most_frame_points = 2000000;
 inline constexpr std::size_t most_plane_points = 512;  // along each side; more are thinned

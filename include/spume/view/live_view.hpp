@@ -25,9 +25,9 @@ class LiveView final : public Observer {
   void progress(const Progress& progress) override;
   void note(const std::string& text) override;
   void between_steps(Simulation& simulation) override;
-  // The last state in words: "finished", "interrupted", or why the run failed. Waits a second at most until viewers
-  // have it.
-  void finish(const std::string& state);
+  // The last state, "finished", "interrupted" or "failed", and for the last the reason. Waits a second at most until
+  // viewers have it.
+  void finish(const std::string& state, const std::string& reason = {});
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -36,6 +36,7 @@ class LiveView final : public Observer {
   void obey(Simulation& simulation, const ViewMessage& message);
   void serve(Simulation& simulation);
   void add_row(Simulation& simulation);
+  bool knows_all(const Viewer& viewer, const FrameWish& wish, const Simulation& simulation) const;
   std::vector<Packet> packets_for(Viewer& viewer, const FrameWish& wish, Simulation& simulation);
   std::string hello(const Simulation& simulation) const;
   std::string state() const;

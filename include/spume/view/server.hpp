@@ -31,10 +31,14 @@ class Viewer {
   virtual ~Viewer() = default;
   // The wish of a viewer that waits for a frame, once per acknowledgement.
   virtual std::optional<FrameWish> take_wish() = 0;
+  // Unless another one has come meanwhile.
+  virtual void give_back(FrameWish wish) = 0;
   virtual void send(std::vector<Packet> packets) = 0;
   // Of what the run has told this viewer, kept by the thread of the run.
   struct Told {
-    std::int64_t hello = -1, edition = -1;
+    std::int64_t hello = -1, edition = -1, step = -1;
+    std::optional<FrameWish> wish = {};
+    std::string words = {};
     std::size_t rows = 0;
     std::int64_t lines = 0;
     std::chrono::steady_clock::time_point ledger{};
@@ -60,7 +64,7 @@ class Server {
   void rest();
   // What viewers asked for beside frames, in their order.
   std::vector<ViewMessage> take_messages();
-  // Until attention() or so long.
+  // Until a viewer asks for something beside a frame, or so long.
   void wait(std::chrono::milliseconds longest);
   // Waits until everything is sent, at most so long.
   void drain(std::chrono::milliseconds longest);
