@@ -112,8 +112,7 @@ void LiveView::between_steps(Simulation& simulation) {
   steps_wanted_ = 0;  // the one that was asked for is done
   obey(simulation);
   if (simulation.finished() || simulation.stop_requested()) next_frame_ = {};  // the last picture is the last state
-  serve(simulation);
-  if (!paused_ || steps_wanted_ > 0) return;
+  if (!paused_ || steps_wanted_ > 0 || simulation.finished() || simulation.stop_requested()) return serve(simulation);
   const auto began = Clock::now();
   words_ = "paused";
   next_frame_ = {};

@@ -2,93 +2,27 @@
 // The server, talked to by sockets that say what a browser would not.
 #include "spume/view/server.hpp"
 
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <thread>
 
 #include "spume/core/error.hpp"
 #include "spume/view/page_file.hpp"
+#include "view/socket_client.hpp"
 
 namespace spume {
 namespace {
 
 using namespace std::chrono_literals;
+using test::Connection;
+using test::open_socket;
+using test::ready;
+using test::socket_frame;
+using test::text_frame;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
-
-class Connection {
- public:
-  explicit Connection(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(port));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    EXPECT_EQ(::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
-  }
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
-  ~Connection() { ::close(socket_); }
-
-  // False once the other side has gone.
-  bool send(const std::string& bytes) const {
-    return ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size());
-  }
-  // What comes until `enough` says so, the connection ends or five seconds have passed.
-  template <class Enough>
-  std::string receive(Enough&& enough) {
-    std::string bytes;
-    const auto end = std::chrono::steady_clock::now() + 5s;
-    while (!enough(bytes) && std::chrono::steady_clock::now() < end) {
-      pollfd ready{socket_, POLLIN, 0};
-      if (::poll(&ready, 1, 100) <= 0) continue;
-      char buffer[4096];
-      const ssize_t count = ::recv(socket_, buffer, sizeof buffer, 0);
-      if (count <= 0) {
-        closed_ = true;
-        break;
-      }
-      bytes.append(buffer, static_cast<std::size_t>(count));
-    }
-    return bytes;
-  }
-  bool closed() {
-    receive([this](const std::string&) { return closed_; });
-    return closed_;
-  }
-
- private:
-  int socket_;
-  bool closed_ = false;
-};
-
-// A frame of the WebSocket protocol (RFC 6455, 5.2) with a mask of zeros.
-std::string socket_frame(int opcode, const std::string& text, std::uint64_t said_length) {
-  std::string frame{static_cast<char>(0x80 | opcode)};
-  if (said_length < 126) {
-    frame += static_cast<char>(0x80 | said_length);
-  } else if (said_length < 65536) {
-    frame += static_cast<char>(0x80 | 126);
-    frame += static_cast<char>(said_length >> 8U);
-    frame += static_cast<char>(said_length & 255U);
-  } else {
-    frame += static_cast<char>(0x80 | 127);
-    for (int shift = 56; shift >= 0; shift -= 8)
-      frame += static_cast<char>(said_length >> static_cast<unsigned>(shift));
-  }
-  return frame + std::string(4, '\0') + text;
-}
-std::string text_frame(const std::string& text) {
-  return socket_frame(1, text, text.size());
-}
-
-const std::string ready = R"({"do":"ready","points":1000,"bits":16})";
 
 // One server for all tests, since the library takes two seconds to stop one.
 class LiveServer : public testing::Test {
@@ -115,21 +49,10 @@ class LiveServer : public testing::Test {
   }
   std::string with_token(const std::string& path) const { return path + "?token=" + server_.token(); }
 
-  std::string handshake(const std::string& token, const std::string& origin) const {
-    return "GET /socket?token=" + token + " HTTP/1.1\r\nHost: " + host() +
-           "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
-           "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
-           (origin.empty() ? "" : "Origin: " + origin + "\r\n") + "\r\n";
-  }
-  // Null when the server refuses it.
   std::unique_ptr<Connection> socket(const std::string& token, const std::string& origin) const {
-    auto connection = std::make_unique<Connection>(server_.port());
-    connection->send(handshake(token, origin));
-    const std::string head =
-        connection->receive([](const std::string& bytes) { return bytes.find("\r\n\r\n") != std::string::npos; });
-    return head.starts_with("HTTP/1.1 101") ? std::move(connection) : nullptr;
+    return open_socket(server_, token, origin);
   }
-  std::unique_ptr<Connection> socket() const { return socket(server_.token(), "http://" + host()); }
+  std::unique_ptr<Connection> socket() const { return open_socket(server_); }
 
   template <class Condition>
   bool soon(Condition&& condition) const {
