@@ -78,6 +78,15 @@ struct CommandLine {
           ->expected(1)
           ->allow_extra_args(false);
     }
+    for (CLI::App* verb : {run_app, resume_app}) {
+      CLI::Option* const view =
+          verb->add_flag("--view", run.view, "show the run in a browser: prints the address of the page");
+      verb->add_option("--port", run.port, "port of the page (default: a free one)")
+          ->check(CLI::Range(1, 65535))
+          ->needs(view);
+      verb->add_flag("--paused", run.paused, "with --view: paused before the first step")->needs(view);
+    }
+    run_app->add_option("--replay", run.replay, "steering.csv of a run: makes the same changes after the same steps");
     run_app->add_option("-o,--output", run.folder, "new folder for the results (default: runs/<case>-<n>)");
     resume_app->add_option("dir", run.input, "folder of the run")->required();
     for (CLI::App* verb : {run_app, resume_app}) {

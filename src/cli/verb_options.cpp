@@ -27,6 +27,7 @@ int options_verb(const std::string& section, const Program& program) {
     if (!option.unit.empty() && option.unit != "1") facts += ", " + option.unit;
     if (!option.range.empty()) facts += ", " + option.range;
     if (!option.default_text.empty()) facts += "; default " + option.default_text;
+    if (option.steerable) facts += "; steerable";
     std::printf("  %-24s %s\n  %-24s   %s\n", option.key.c_str(), option.description.c_str(), "", facts.c_str());
   }
   if (section.empty() && !program.methods.empty()) {

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
+#include <sched.h>
 #include <signal.h>
 
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <new>
 
 #include "spume/cli/terminal.hpp"
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/run/report.hpp"
+#include "spume/view/live_view.hpp"
 #include "verbs.hpp"
 
 namespace spume {
@@ -29,7 +32,44 @@ std::string closing_text(const Simulation& simulation, RunState state) {
   return text;
 }
 
-int execute(Simulation& simulation, bool quiet) {
+// Tells viewers how the run ended, however that was.
+class Ending {
+ public:
+  explicit Ending(std::optional<LiveView>& view) : view_(view) {}
+  Ending(const Ending&) = delete;
+  Ending& operator=(const Ending&) = delete;
+  ~Ending() {
+    if (view_) view_->finish(words, reason);
+  }
+  std::string words = "failed", reason;
+
+ private:
+  std::optional<LiveView>& view_;
+};
+
+// What steering the run takes, where it is possible.
+SteeringMeans steering_means(const Program& program) {
+  SteeringMeans means{program.load_case, program.make_method, {}};
+  for (const OptionInfo& option : program.option_table())
+    if (option.steerable) means.keys.push_back(option.section + '.' + option.key);
+  return means;
+}
+
+// The server is made before the folder of the run: with a taken port nothing begins.
+std::unique_ptr<Server> make_server(const RunArguments& arguments) {
+  if (!arguments.view) return nullptr;
+  // Threads begin on the processors of the one that starts them. This one may be bound to a single one, on which it
+  // computes: those of the server go where there is time.
+  cpu_set_t own;
+  const bool known = sched_getaffinity(0, sizeof own, &own) == 0;
+  release_to_all_places();
+  auto server = std::make_unique<Server>(arguments.port);
+  if (known) sched_setaffinity(0, sizeof own, &own);
+  return server;
+}
+
+int execute(Simulation& simulation, const RunArguments& arguments, const Program& program, Server* server) {
+  const bool quiet = arguments.quiet;
   // A closed pipe must not stop the run.
   signal(SIGPIPE, SIG_IGN);
   const std::string start =
@@ -37,9 +77,17 @@ int execute(Simulation& simulation, bool quiet) {
   simulation.log(start);
   if (!quiet) std::printf("%s\n", start.c_str()), std::fflush(stdout);
   TerminalObserver observer(quiet);
+  std::optional<LiveView> view;
+  if (server != nullptr) {
+    view.emplace(*server, observer, program.option_table(), arguments.paused);
+    std::printf("view at %s\n%s", server->address().c_str(), quiet ? "" : "\n");
+    std::fflush(stdout);
+  }
+  Ending ending(view);
   try {
-    const RunState state = simulation.run(observer);
+    const RunState state = simulation.run(view ? static_cast<Observer&>(*view) : observer);
     observer.finish();
+    ending.words = state == RunState::finished ? "finished" : "interrupted";
     const std::string closing = closing_text(simulation, state);
     simulation.log(closing);
     if (!quiet)
@@ -48,10 +96,12 @@ int execute(Simulation& simulation, bool quiet) {
     return state == RunState::finished ? exit_done : exit_interrupted;
   } catch (const FileError& error) {
     observer.finish();
+    ending.reason = error.what();
     std::fprintf(stderr, "error: %s\n", error.what());
     return simulation.steps_this_run() > 0 ? exit_numerical : exit_input;
   } catch (const NumericalFailure& failure) {
     observer.finish();
+    ending.reason = failure.what();
     std::fprintf(stderr, "error: %s\n", failure.what());
     return exit_numerical;
   } catch (const std::bad_alloc&) {
@@ -71,14 +121,21 @@ int run_verb(const RunArguments& arguments, const Program& program) {
   LoadedCase loaded = program.load_case(case_argument(arguments.input), overrides);
   std::optional<std::filesystem::path> folder;
   if (arguments.folder) folder = *arguments.folder;
+  std::vector<SteeringRow> replayed;
+  if (arguments.replay) replayed = read_steering(*arguments.replay);
+  const std::unique_ptr<Server> server = make_server(arguments);
   const auto simulation = Simulation::start(std::move(loaded), program.make_method, folder);
-  return execute(*simulation, arguments.quiet);
+  simulation->allow_steering(steering_means(program));
+  if (arguments.replay) simulation->replay(replayed);
+  return execute(*simulation, arguments, program, server.get());
 }
 
 int resume_verb(const RunArguments& arguments, const Program& program) {
   require_positive(arguments.until);
+  const std::unique_ptr<Server> server = make_server(arguments);
   const auto simulation = Simulation::resume(arguments.input, program.load_case, program.make_method, arguments.until);
-  return execute(*simulation, arguments.quiet);
+  simulation->allow_steering(steering_means(program));
+  return execute(*simulation, arguments, program, server.get());
 }
 
 }  // namespace spume

@@ -16,6 +16,9 @@ struct RunArguments {
   std::vector<std::string> overrides;
   std::optional<double> until;
   bool quiet = false;
+  bool view = false, paused = false;
+  int port = 0;                       // of the view; 0: a free one
+  std::optional<std::string> replay;  // steering.csv of another run
 };
 
 int run_verb(const RunArguments& arguments, const Program& program);

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <tuple>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/io/body_surfaces.hpp"
+#include "spume/io/checkpoint.hpp"
 #include "spume/io/file.hpp"
 #include "spume/run/probes.hpp"
 #include "spume/run/report.hpp"
@@ -19,10 +21,6 @@ namespace {
 
 double seconds_between(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
-}
-
-Schedule::Times times_of(const Case& options) {
-  return {options.time.end, options.output.every, options.output.series_every, options.output.spectrum_every};
 }
 
 // Mean of a step over the step that the method allows, over about so many steps, and the least with which a run goes
@@ -70,19 +68,39 @@ void require_some_time(const Case& options, const Method& method) {
                     short_number(limit.dt) + " (" + limit.limited_by + "); give a later end");
 }
 
-}  // namespace
-
-std::string until_override(double end) {
+std::string end_in_digits(double end) {
   char digits[32];
   const auto written = std::to_chars(digits, digits + sizeof digits, end);
-  return "--until time.end=" + std::string(digits, written.ptr);
+  return {digits, written.ptr};
+}
+
+// The changes by hand that the state of a checkpoint has behind it, and those to come.
+std::pair<std::vector<SteeringRow>, std::vector<SteeringRow>> rows_by_checkpoint(
+    const std::filesystem::path& file, const std::filesystem::path& checkpoint) {
+  if (!std::filesystem::exists(file)) return {};
+  Array<std::int64_t> counters;
+  CheckpointReader(checkpoint).i64("driver/counters", counters);
+  std::pair<std::vector<SteeringRow>, std::vector<SteeringRow>> parts;
+  for (SteeringRow& row : read_steering(file))
+    (counters.empty() || row.step > counters[0] ? parts.second : parts.first).push_back(std::move(row));
+  return parts;
+}
+
+}  // namespace
+
+Schedule::Times schedule_times(const Case& options) {
+  return {options.time.end, options.output.every, options.output.series_every, options.output.spectrum_every};
+}
+
+std::string until_override(double end) {
+  return "--until time.end=" + end_in_digits(end);
 }
 
 Simulation::Simulation(std::unique_ptr<LoadedCase> loaded, std::unique_ptr<Method> method, RunFolder folder)
     : loaded_(std::move(loaded)),
       method_(std::move(method)),
       folder_(std::move(folder)),
-      schedule_(times_of(loaded_->options)),
+      schedule_(schedule_times(loaded_->options)),
       case_file_(std::filesystem::absolute(loaded_->options.path).lexically_normal().string()) {
   loaded_->scene.particles = {};
 }
@@ -107,14 +125,24 @@ std::unique_ptr<Simulation> Simulation::resume(const std::filesystem::path& fold
   RunFolder opened = RunFolder::open(folder);
   std::vector<std::string> overrides;
   if (until) overrides.push_back(until_override(*until));
+  const auto checkpoint = opened / "checkpoint.h5";
+  const auto steered = rows_by_checkpoint(opened / "steering.csv", checkpoint);
+  const auto changes = steering_overrides(steered.first);
+  overrides.insert(overrides.begin(), changes.begin(), changes.end());
   auto loaded = std::make_unique<LoadedCase>(load_case((opened / "case.toml").string(), overrides));
   loaded->resuming = true;
   auto method = make_method(*loaded);
   require_probes(loaded->options, *method);
-  const auto checkpoint = opened / "checkpoint.h5";
   std::unique_ptr<Simulation> simulation(new Simulation(std::move(loaded), std::move(method), std::move(opened)));
   simulation->load_checkpoint(checkpoint);
-  if (until) write_text_atomically(simulation->folder_ / "case.toml", simulation->loaded_->options.resolved);
+  std::tie(simulation->steered_, simulation->due_) = steered;
+  if (until) {
+    write_text_atomically(simulation->folder_ / "case.toml", simulation->loaded_->options.resolved);
+    // Among the changes by hand the last one holds.
+    const bool steers_end = std::any_of(steered.first.begin(), steered.first.end(),
+                                        [](const SteeringRow& row) { return row.key == "time.end"; });
+    if (steers_end) simulation->note_steering("time.end", end_in_digits(*until));
+  }
   return simulation;
 }
 
@@ -124,6 +152,7 @@ double Simulation::wall_seconds() const {
 
 RunState Simulation::run(Observer& observer) {
   const StopSignals signals;
+  signals_ = &signals;
   started_ = checkpointed_ = Clock::now();
   marks_.fill({started_, method_->time(), 0});
   try {
@@ -131,7 +160,14 @@ RunState Simulation::run(Observer& observer) {
     tell_warnings(observer);
     for (const std::string& change : changes_) tell(observer, change);
     pass_on_remarks(observer);
-    while (!schedule_.finished(method_->time()) && !signals.requested()) advance(observer);
+    make_due_changes(observer);
+    observer.between_steps(*this);
+    while (!schedule_.finished(method_->time()) && !stop_requested()) {
+      advance(observer);
+      make_due_changes(observer);
+      observer.between_steps(*this);
+    }
+    signals_ = nullptr;
     if (checkpoint_step_ != method_->step_count()) save_checkpoint();
     const bool finished = schedule_.finished(method_->time());
     if (!finished) {
@@ -155,6 +191,10 @@ RunState Simulation::run(Observer& observer) {
     throw NumericalFailure(text);
   } catch (const NumericalFailure& failure) {
     close_failed("numerical failure", failure.what());
+    throw;
+  } catch (const InputError& failure) {
+    // Of a change by hand that is made again.
+    close_failed("steering refused", failure.what());
     throw;
   } catch (const FileError& failure) {
     const std::string text = failure.what() + ("\n  " + continuation());

@@ -87,7 +87,7 @@ void Simulation::load_checkpoint(const std::filesystem::path& path) {
   control_.set_cap(clock[1]);
   earlier_wall_seconds_ = clock[2];
   retries_ = counters[1];
-  schedule_.set_next({counters[2], counters[3], counters[4]});
+  schedule_.continue_from(clock[0]);
   if (method_->time() != clock[0] || method_->step_count() != counters[0])
     throw FileError("cannot read checkpoint '" + path.string() + "': method and driver disagree about the step");
 

@@ -40,6 +40,16 @@ Schedule::Due Schedule::arrive(double t) {
   return {due[0] || end, due[1] || end || times_.series_every <= 0, due[2] || (end && times_.spectrum_every > 0), end};
 }
 
+void Schedule::continue_from(double t) {
+  for (int event = 0; event < 3; ++event) {
+    const double every = interval(event);
+    auto& next = next_[static_cast<std::size_t>(event)];
+    // Less the two that division and tolerance may be off by; arrive() counts from there.
+    next = every > 0 ? std::max<std::int64_t>(1, static_cast<std::int64_t>(std::min(t / every, 1e15)) - 2) : 1;
+  }
+  arrive(t);
+}
+
 void StepControl::accepted(double limit) {
   cap_ *= 2;
   if (cap_ >= limit) cap_ = std::numeric_limits<double>::infinity();

@@ -31,13 +31,15 @@ OptionInfo info_of(const Section& section, const Option& option) {
           option.unit,
           standard,
           option.words.empty() ? option.range.in_words() : "one of " + words_in_words(option.words),
-          option.description + (names.empty() ? "" : " [" + names + "]")};
+          option.description + (names.empty() ? "" : " [" + names + "]"),
+          option.steerable};
 }
 
 bool declared_alike(const Option& a, const Option& b) {
   return a.type == b.type && a.unit == b.unit && a.default_text == b.default_text && a.absent == b.absent &&
          a.required == b.required && a.range.in_words() == b.range.in_words() && a.words == b.words &&
-         a.description == b.description && a.needs.key == b.needs.key && a.needs.words == b.needs.words;
+         a.description == b.description && a.needs.key == b.needs.key && a.steerable == b.steerable &&
+         a.needs.words == b.needs.words;
 }
 
 }  // namespace

@@ -24,10 +24,13 @@ Section inflow() {
   return section
       .option("velocity", &O::velocity, "length/time", "velocity with which it enters: expressions of x y z t")
       .absent("none; velocity or flow_rate is required")
+      .steerable()
       .option("flow_rate", &O::flow_rate, "volume per time, in 2-D per unit width: expression of t")
       .absent("none; velocity or flow_rate is required")
+      .steerable()
       .option("level", &O::level, "height of the surface, below which liquid enters: expression of t")
       .absent("liquid enters everywhere")
+      .steerable()
       .option("table", &O::table, "CSV file with columns t and velocity_x ..., flow_rate or level, in their place")
       .absent("none")
       .whole_only(passes_openings);
@@ -40,8 +43,10 @@ Section outflow() {
   return section
       .option("pressure", &O::pressure, "pressure on it: expression of x y z t; with level the pressure there")
       .absent("0")
+      .steerable()
       .option("level", &O::level, "height of the surface, from which on the pressure is hydrostatic: expression of t")
       .absent("not hydrostatic")
+      .steerable()
       .option("table", &O::table, "CSV file with columns t and pressure or level, in their place")
       .absent("none")
       .whole_only(passes_openings);

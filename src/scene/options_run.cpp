@@ -10,10 +10,13 @@ Section time(const std::string& default_courant) {
   return section<T>("time", [](Draft& d) -> T& { return d.options.time; })
       .option("end", &T::end, "time", positive(), "time at which the run ends")
       .required()
+      .steerable()
       .option("courant", &T::courant, "1", above_up_to(0, 1), "step limit by speed: Courant number")
       .absent(default_courant)
       .chosen([](const Draft& d) { return shortest(d.options.time.courant); })
+      .steerable()
       .option("max_step", &T::max_step, "time", not_negative(), "largest step; 0: none")
+      .steerable()
       .option("max_retries", &T::max_retries, "", between(0, 30), "halvings of a refused step before the run ends");
 }
 
@@ -21,9 +24,13 @@ Section output() {
   using O = OutputOptions;
   return section<O>("output", [](Draft& d) -> O& { return d.options.output; })
       .option("every", &O::every, "time", not_negative(), "snapshot interval; 0: start and end only")
+      .steerable()
       .option("series_every", &O::series_every, "time", not_negative(), "interval of series.csv; 0: every step")
+      .steerable()
       .option("checkpoint_every", &O::checkpoint_every, "s of wall time", not_negative(), "checkpoint interval")
+      .steerable()
       .option("spectrum_every", &O::spectrum_every, "time", not_negative(), "interval of energy spectra; 0: none")
+      .steerable()
       .option("fields", &O::fields, "fields of a snapshot; empty: the method's standard set")
       .option("h5part_view", &O::h5part_view,
               "add views for ParaView 5.11: <name>.h5part of particles, <name>.hdf.series of fields on a grid");

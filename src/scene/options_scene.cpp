@@ -59,7 +59,8 @@ Section wall_velocity() {
         .option(
             name.c_str(), [name](Draft& d) -> std::vector<ExpressionText>& { return d.wall_velocity[name]; },
             "length/time", ("velocity of the " + name + " wall: expressions of x y z t").c_str())
-        .absent("at rest");
+        .absent("at rest")
+        .steerable();
   return section;
 }
 
@@ -98,9 +99,11 @@ Section fluid() {
   return section<F>("fluid", &Draft::fluid)
       .option("reynolds", &F::reynolds, "1", positive(), "Reynolds number; kinematic viscosity is 1/Re")
       .absent("inviscid")
+      .steerable()
       .only(has_one_fluid)
       .option("froude", &F::froude, "1", positive(), "Froude number; gravity is 1/Fr^2")
       .absent("no gravity")
+      .steerable()
       .only(fills_regions)
       .option("mach", &F::mach, "1", between(0, 1), "Mach number; sound speed is 1/Ma; 0: incompressible")
       .absent("incompressible")
@@ -110,9 +113,11 @@ Section fluid() {
       .only(has_one_fluid)
       .option("viscosity", &F::viscosity, "Pa s", not_negative(), "dynamic viscosity")
       .absent("inviscid")
+      .steerable()
       .only(has_one_fluid)
       .option("gravity", &F::gravity, "m/s2", not_negative(), "gravity, downwards along the last axis")
       .absent("no gravity")
+      .steerable()
       .only(uses_particles)
       .option("sound_speed", &F::sound_speed, "m/s", not_negative(), "sound speed; 0: incompressible")
       .absent("incompressible")
@@ -162,6 +167,7 @@ Section phase() {
       .required()
       .option("viscosity", &P::viscosity, "Pa s", not_negative(), "dynamic viscosity; 0: inviscid")
       .required()
+      .steerable()
       .option("sound_speed", &P::sound_speed, "m/s", not_negative(),
               "sound speed; 0: incompressible, or chosen by a weakly compressible method")
       .option(
@@ -173,6 +179,7 @@ Section phase() {
 Section interface_section() {
   return section<Draft>("interface", whole)
       .option("surface_tension", &Draft::surface_tension, "N/m", not_negative(), "surface tension between the phases")
+      .steerable()
       .whole_optional()
       .whole_only(fills_phases);
 }
@@ -198,6 +205,7 @@ Section forces() {
   return section<Draft>("forces", whole)
       .option("body", &Draft::body_force, "length/time2", "acceleration in addition to gravity: expressions of x y z t")
       .absent("none")
+      .steerable()
       .whole_only(uses_particles);
 }
 

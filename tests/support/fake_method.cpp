@@ -180,8 +180,9 @@ LoadedCase load_fake_case(const std::string& path, const std::vector<std::string
   try {
     table = toml::parse_file(path);
     for (const auto& line : overrides) {
-      const std::string until = "--until time.";
-      const std::string assignment = line.starts_with(until) ? line.substr(until.size()) : line;
+      std::string assignment = line;
+      for (const std::string prefix : {"--until ", "time."})
+        if (assignment.starts_with(prefix)) assignment.erase(0, prefix.size());
       for (const auto& [key, value] : toml::parse(assignment)) table.insert_or_assign(key, value);
     }
   } catch (const toml::parse_error& error) {

@@ -11,7 +11,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "spume/core/error.hpp"
@@ -20,6 +22,7 @@
 #include "spume/run/folder.hpp"
 #include "spume/run/recorder.hpp"
 #include "spume/run/schedule.hpp"
+#include "spume/run/steering.hpp"
 #include "spume/run/verdicts.hpp"
 #include "spume/scene/case.hpp"
 
@@ -31,6 +34,8 @@ using CaseLoader = std::function<LoadedCase(const std::string& path, const std::
 // What a CaseLoader gets for --until: the end as a value of the case, so that a resumed run has the same end.
 std::string until_override(double end);
 
+Schedule::Times schedule_times(const Case& options);
+
 // How a run stands, for the progress line.
 struct Progress {
   std::int64_t step = 0;
@@ -40,12 +45,24 @@ struct Progress {
   double remaining_seconds = 0;          // of wall time; not finite while unknown
 };
 
+class Simulation;
+class StopSignals;
+
 // Whoever watches a run. Called on the driver's thread after every step, and for every event in words.
 class Observer {
  public:
   virtual ~Observer() = default;
   virtual void progress(const Progress& progress) = 0;
   virtual void note(const std::string& text) = 0;
+  // Before every step, and once after the last: may look at the state and steer the run, which waits meanwhile.
+  virtual void between_steps(Simulation& /*simulation*/) {}
+};
+
+// What steering a run takes: how to make a case and its method anew, and the options that may change.
+struct SteeringMeans {
+  CaseLoader load_case;
+  MethodFactory make_method;
+  std::vector<std::string> keys;  // "section.key"
 };
 
 enum class RunState { finished, interrupted };
@@ -69,6 +86,29 @@ class Simulation {
   // of the last good state, FileError when a result cannot be written: the last checkpoint then stays, and a resumed
   // run does the steps since again.
   RunState run(Observer& observer);
+
+  // Before run(): from now on steer() is possible.
+  void allow_steering(SteeringMeans means) { means_ = std::move(means); }
+  // Before run(): the changes that another run noted are made again after the same steps, beside those that this run
+  // has yet to make. Throws InputError for an option that cannot be steered.
+  void replay(const std::vector<SteeringRow>& rows);
+
+  // What follows is for an observer, between two steps.
+
+  // Sets an option to a value, given as TOML. Throws InputError for an option or a value that the run cannot take, and
+  // goes on as before; FileError when the change cannot be saved.
+  void steer(const std::string& key, const std::string& value);
+  void snapshot_now();
+  void checkpoint_now() { save_checkpoint(); }
+  void request_stop() { stop_ = true; }  // as SIGINT does
+  bool stop_requested() const;
+  bool finished() const { return schedule_.finished(method_->time()); }
+  void note_pause(std::chrono::steady_clock::duration length);  // in which the run stood still: no part of its pace
+  std::vector<ParticleSnapshot> particles() { return method_->snapshot(); }
+  std::vector<GridSnapshot> grids() { return method_->grid_snapshot(); }
+  const std::vector<SeriesColumn>& series_columns() const { return recorder_->series_columns(); }
+  std::span<const double> series_row() const { return recorder_->series_row(); }  // the last one; empty before it
+  Ledger::Scope time_stage(std::string_view stage) { return ledger_.time(stage); }
 
   const LoadedCase& loaded() const { return *loaded_; }
   const Method& method() const { return *method_; }
@@ -101,6 +141,11 @@ class Simulation {
 
   void save_checkpoint();
   void load_checkpoint(const std::filesystem::path& path);
+  bool steerable(const std::string& key) const;
+  void change_case(const std::string& key, const std::string& value);
+  void make_due_changes(Observer& observer);
+  void note_steering(const std::string& key, const std::string& value);
+  void write_steering_file() const;
   void compare_with_checkpoint(const std::string& case_text);
 
   std::unique_ptr<LoadedCase> loaded_;
@@ -114,6 +159,10 @@ class Simulation {
   Ledger ledger_;
   bool fresh_ = true;
   std::vector<std::string> changes_;  // of the case since the checkpoint, in words
+  SteeringMeans means_;
+  std::vector<SteeringRow> steered_, due_;  // changes that were made, and those that a replay has yet to make
+  const StopSignals* signals_ = nullptr;    // while it runs
+  bool stop_ = false;
   std::int64_t retries_ = 0;
   double pace_ = 1;  // mean of recent steps over those that the method allows; refused steps lower it
   std::int64_t steps_this_run_ = 0;

@@ -40,7 +40,9 @@ class Schedule {
 
   // Numbers of the next events (output, series, spectrum), for the checkpoint.
   std::array<std::int64_t, 3> next() const { return next_; }
-  void set_next(const std::array<std::int64_t, 3>& next) { next_ = next; }
+  // For a run that continues at time t: the next events are the first ones after it, whatever the intervals were
+  // before.
+  void continue_from(double t);
 
  private:
   // Events closer than this coincide: k1 * a and k2 * b that mean the same time differ by rounding, or by that of a

@@ -114,6 +114,7 @@ struct Option {
   MethodProperty property = nullptr;
   Owners owners = {};        // set by the schema
   Needs needs = {};          // no words: always
+  bool steerable = false;    // may change while a run goes on
   bool beside_case = false;  // a path from the folder of the case; the resolved case, elsewhere, names it in full
 };
 
@@ -302,6 +303,11 @@ class SectionOf : public SectionChain {
   }
   SectionOf& chosen(std::function<std::string(const Draft&)> value) {
     set_chosen(std::move(value));
+    return *this;
+  }
+  // May change between two steps: the state of a run does not depend on it, as it would on the box or the spacing.
+  SectionOf& steerable() {
+    options.back().steerable = true;
     return *this;
   }
   SectionOf& beside_case() {

@@ -15,6 +15,7 @@ struct OptionInfo {
   std::string default_text;  // as TOML, or in parentheses what an absent key means
   std::string range;         // "> 0", "one of ...", or ""
   std::string description;   // one line
+  bool steerable = false;    // may change while a run goes on
 };
 
 }  // namespace spume

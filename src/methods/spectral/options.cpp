@@ -36,8 +36,10 @@ Section forcing() {
       .absent(brief(F{}.width))
       .option("injection", &F::injection, "energy/mass/time", positive(), "shell: energy put in per mass and time")
       .absent("required for shell")
+      .steerable()
       .option("rate", &F::rate, "1/time", positive(), "linear: acceleration over velocity")
       .absent("required for linear")
+      .steerable()
       .behind_output();
 }
 

@@ -13,10 +13,12 @@ Section compressibility_section() {
               "added to every pressure; negative: rho max_speed^2 in scenes without gravity, free surface and "
               "shifting, else 0")
       .option("repulsion", &C::repulsion, "1", between(0, 0.2), "between phases, of the sum of their pressures")
+      .steerable()
       .word("density_filter", &C::density_filter,
             {{"delta", DensityFilter::delta}, {"shepard", DensityFilter::shepard}, {"none", DensityFilter::none}},
             "smoothing of the density within each phase: diffusion, or the kernel average every so many steps")
       .option("diffusion", &C::diffusion, "1", between(0, 0.5), "coefficient of the diffusion of density")
+      .steerable()
       .word("shifting", &C::shifting, {{"auto", Shifting::automatic}, {"on", Shifting::on}, {"off", Shifting::off}},
             "of particles towards an even spacing; auto: in scenes of one phase without free surface")
       .option("filter_interval", &C::filter_interval, "", between(1, 10000), "steps between kernel averages");

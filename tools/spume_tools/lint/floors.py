@@ -12,10 +12,11 @@ FLOOR = {
     "physics": 5,
     "methods": 6,
     "run": 7,
+    "view": 8,
     "cli": 8,
 }
 # Folders of one floor are strangers, save for these one-way acquaintances.
-SAME_FLOOR = {("neighbours", "scene"), ("io", "scene"), ("scene", "geometry"), ("io", "geometry"), ("operators", "fourier"), ("solvers", "operators")}
+SAME_FLOOR = {("neighbours", "scene"), ("io", "scene"), ("scene", "geometry"), ("io", "geometry"), ("operators", "fourier"), ("solvers", "operators"), ("cli", "view")}
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]spume/([a-z0-9_]+)/(?:([a-z0-9_]+)/)?')
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""scene/, run/ and cli/ name no method: neither an identifier nor a text holds the name of a folder in src/methods.
+"""scene/, run/, view/ and cli/ name no method: neither an identifier nor a text holds the name of a folder in src/methods.
 
 Comments may. A name counts in each of its spellings: les_sph, "les-sph", LesSphOptions, make_les_sph.
 """
@@ -7,7 +7,7 @@ import re
 
 from .sources import sources
 
-NAMELESS = ("scene", "run", "cli")
+NAMELESS = ("scene", "run", "view", "cli")
 # What is no comment: texts, raw texts, identifiers. Comments and characters are matched to be passed over.
 TOKEN = re.compile(r"""//[^\n]*|/\*.*?\*/|(?<!\w)'(?:\\.|[^'\\\n])+'"""
                    r"""|(?P<word>R"(?P<end>[^(\s]*)\(.*?\)(?P=end)"|"(?:\\.|[^"\\\n])*"|[A-Za-z_]\w*)""", re.S)
