@@ -49,11 +49,15 @@ def measure(runs):
 
 
 def curves(runs):
-    errors = {name: error(run) for name, run in runs.items()}
-    lines = []
+    """Errors over the spacing by form and arrangement, whatever the runs are called, beside the reference."""
+    points = {}
+    for run in runs.values():
+        form = "sph" if run.case["momentum"]["diffusion"] == "hu-adams" else "gfd"
+        jittered = float(run.case["initial"]["jitter"]) > 0
+        points.setdefault((form, jittered), []).append((float(run.case["resolution"]["spacing"]), error(run)))
+    lines = [(f"{form}, {'jittered' if jittered else 'lattice'}", *map(np.array, zip(*sorted(found))),
+              "o-" if form == "gfd" else "s--") for (form, jittered), found in sorted(points.items())]
+    table = read_reference(REFERENCE, ("n", "rmse_gfd", "rmse_sph"))
     for form in FORMS:
-        for end, word in (("", "lattice"), ("_jittered", "jittered")):
-            points = [(1 / (n - 1), errors[f"{form}_{n}{end}"]) for n in (21, 41, 81, 161) if f"{form}_{n}{end}" in errors]
-            if points:
-                lines.append((f"{form}, {word}", *map(np.array, zip(*points)), "o-" if form == "gfd" else "s--"))
+        lines.append((f"reference, {form}, lattice", 1 / (table["n"] - 1), table[f"rmse_{form}"], "k:" if form == "gfd" else "k-."))
     return [{"file": "errors", "x": "spacing", "y": "normalised RMSE", "curves": lines, "log": "xy"}]

@@ -45,8 +45,11 @@ def measure(runs):
 
 
 def curves(runs):
-    lines = []
+    lines, longest = [], 0
     for name, run in runs.items():
         t, a = moment(run)
         lines.append((f"Spume, {name}", exact(run) * t, a / a[0], "-"))
-    return [{"file": "oscillation", "x": "omega t", "y": "amplitude", "curves": lines}]
+        longest = max(longest, exact(run) * t[-1])
+    phase = np.linspace(0, longest, 500)
+    lines.append(("Lamb, without viscosity", phase, np.cos(phase), "k--"))
+    return [{"file": "oscillation", "x": "omega t", "y": "amplitude over that of the start", "curves": lines}]

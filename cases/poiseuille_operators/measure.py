@@ -46,19 +46,31 @@ def measure(runs):
     return measured
 
 
+def ratio_of(run):
+    below, above = (float(phase["viscosity"]) for phase in run.case["phase"])
+    return below / above
+
+
 def curves(runs):
-    found, lines = differences(runs), []
+    found, lines, drawn = differences(runs), [], []
     for operator in OPERATORS:
         points = sorted((ratio, each[operator][0]) for ratio, each in found.items() if operator in each)
-        lines.append((f"{operator} <mu lap u>", *map(np.array, zip(*points)), "o-" if operator == "gfd" else "s--"))
-    drawn = [{"file": "difference", "x": "viscosity ratio", "y": "rms difference from <div tau>", "curves": lines,
-              "log": "xy"}]
+        if points:
+            lines.append((f"{operator} <mu lap u>", *map(np.array, zip(*points)), "o-" if operator == "gfd" else "s--"))
+    if lines:
+        drawn.append({"file": "difference", "x": "viscosity ratio", "y": "rms difference from <div tau>", "curves": lines,
+                      "log": "xy"})
     lines = []
     for name, run in runs.items():
-        if name.endswith("_5"):
-            _, y, value = response(run)
-            layer = np.floor(y / float(run.case["resolution"]["spacing"]))
-            rows = np.unique(layer)
-            lines.append((name[:-2], np.array([y[layer == row].mean() for row in rows]),
-                          np.array([value[layer == row].mean() for row in rows]), "-"))
-    return drawn + [{"file": "response", "x": "y", "y": "diffusion along x, 5:1", "curves": lines}]
+        if len(runs) > 1 and not name.endswith("_5"):
+            continue
+        _, y, value = response(run)
+        layer = np.floor(y / float(run.case["resolution"]["spacing"]))
+        rows = np.unique(layer)
+        lines.append((run.case["momentum"]["diffusion"], np.array([y[layer == row].mean() for row in rows]),
+                      np.array([value[layer == row].mean() for row in rows]), "-"))
+        ratio = ratio_of(run)
+    if lines:
+        lines.append(("exact", np.array([-1.0, 1.0]), np.array([-1.0, -1.0]), "k:"))
+        drawn.append({"file": "response", "x": "y", "y": f"diffusion along x, {ratio:g}:1", "curves": lines})
+    return drawn

@@ -10,7 +10,7 @@ from matplotlib.colors import LogNorm, Normalize
 from .request import request_of
 
 plt.rcParams.update({"figure.dpi": 130, "savefig.dpi": 130, "font.size": 9, "axes.grid": False, "axes.titlesize": 9,
-                     "figure.titlesize": 10, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False,
+                     "figure.titlesize": 10, "axes.spines.top": False, "axes.spines.right": False, "legend.edgecolor": "none", "legend.framealpha": 0.8,
                      "savefig.format": "png", "svg.fonttype": "none", "pdf.fonttype": 42})
 
 # Fields drawn in planes, in this order, with a perceptual map each.
