@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "run/driver_fixture.hpp"
+#include "view/server_fixture.hpp"
 #include "view/socket_client.hpp"
 
 namespace spume {
@@ -80,22 +81,13 @@ class FakePage {
   std::string bytes_;
 };
 
-class Viewed : public Driver {
+class Viewed : public test::WithServer<Driver> {
  protected:
-  static std::unique_ptr<Server>& shared() {
-    static std::unique_ptr<Server> server;
-    return server;
-  }
-  static void SetUpTestSuite() { shared() = std::make_unique<Server>(0); }
-  static void TearDownTestSuite() { shared().reset(); }
   void TearDown() override {
     // A test that failed has left its run.
     if (runner_.joinable() && !done_) raise(SIGINT);
     if (runner_.joinable()) runner_.join();
-    for (int k = 0; k < 500 && !server_.viewers().empty(); ++k)
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    server_.take_messages();
-    server_.rest();
+    WithServer::TearDown();
   }
 
   void launch(const std::string& name, bool paused) {
@@ -117,7 +109,6 @@ class Viewed : public Driver {
     return state_;
   }
 
-  Server& server_ = *shared();
   std::thread runner_;
   std::atomic<bool> done_ = false;
   RunState state_ = RunState::interrupted;

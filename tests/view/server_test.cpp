@@ -9,6 +9,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/view/page_file.hpp"
+#include "view/server_fixture.hpp"
 #include "view/socket_client.hpp"
 
 namespace spume {
@@ -24,20 +25,8 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-// One server for all tests, since the library takes two seconds to stop one.
-class LiveServer : public testing::Test {
+class LiveServer : public test::WithServer<testing::Test> {
  protected:
-  static std::unique_ptr<Server>& shared() {
-    static std::unique_ptr<Server> server;
-    return server;
-  }
-  static void SetUpTestSuite() { shared() = std::make_unique<Server>(0); }
-  static void TearDownTestSuite() { shared().reset(); }
-  void TearDown() override {
-    EXPECT_TRUE(soon([&] { return server_.viewers().empty(); }));
-    server_.take_messages();
-    server_.rest();
-  }
   std::string host() const { return "127.0.0.1:" + std::to_string(server_.port()); }
   std::string answer(const std::string& request) const {
     Connection connection(server_.port());
@@ -54,14 +43,6 @@ class LiveServer : public testing::Test {
   }
   std::unique_ptr<Connection> socket() const { return open_socket(server_); }
 
-  template <class Condition>
-  bool soon(Condition&& condition) const {
-    for (int k = 0; k < 500; ++k) {
-      if (condition()) return true;
-      std::this_thread::sleep_for(10ms);
-    }
-    return false;
-  }
   std::optional<FrameWish> wish_of_first() {
     std::optional<FrameWish> wish;
     soon([&] {
@@ -71,7 +52,6 @@ class LiveServer : public testing::Test {
     });
     return wish;
   }
-  Server& server_ = *shared();
 };
 
 TEST_F(LiveServer, HandsOutItsPageToWhoHasTheToken) {
