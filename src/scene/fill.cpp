@@ -71,17 +71,17 @@ void Filler::report(const std::vector<std::vector<Chunk>>& chunks) {
 
 // Particles share one volume: that of all regions over their number. Columns that conform each round for themselves, by
 // half a layer at most, which evens out below a wave (6e-4 of the volume of breaking_wave at 1/50) and not where all
-// are of one depth.
+// are of one depth. Phases share the sites of the lattice, whose cells are the volumes.
 void Filler::set_volume(const std::vector<std::vector<Chunk>>& chunks) {
   InitialParticles& particles = scene_.particles;
   particles.volume = lattice_.volume();
-  if (layered()) return;
   double total = 0, count = 0;
   bool conform = false;
-  scene_.fills.resize(regions_.size());
+  scene_.fills.resize(layered() ? scene_.phases.size() : regions_.size());
+  for (std::size_t n = 0; n < scene_.phases.size() && layered(); ++n) scene_.fills[n].name = scene_.phases[n].name;
   for (std::size_t r = 0; r < regions_.size(); ++r) {
-    RegionFill& fill = scene_.fills[r];
-    fill = {.name = regions_[r].name, .flat = is_box(regions_[r])};
+    RegionFill& fill = layered() ? scene_.fills[static_cast<std::size_t>(regions_[r].phase)] : scene_.fills[r];
+    if (!layered()) fill = {.name = regions_[r].name, .flat = is_box(regions_[r])};
     double cells = 0, open_cells = 0;
     for (const Chunk& chunk : chunks[r]) {
       fill.asked += chunk.volume * lattice_.volume();
@@ -95,7 +95,7 @@ void Filler::set_volume(const std::vector<std::vector<Chunk>>& chunks) {
     conform = conform || regions_[r].conform;
   }
   const double ratio = total / (count * lattice_.volume());
-  if (count > 0 && std::abs(ratio - 1) > (conform ? 1e-3 : 1e-9)) particles.volume *= ratio;
+  if (!layered() && count > 0 && std::abs(ratio - 1) > (conform ? 1e-3 : 1e-9)) particles.volume *= ratio;
   for (RegionFill& fill : scene_.fills) fill.got = static_cast<double>(fill.particles) * particles.volume;
 }
 

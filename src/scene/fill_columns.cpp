@@ -206,7 +206,7 @@ void Filler::site_column(ThreadRegions& own, std::size_t r, Vec3 p, double area,
   for (double k = first; k < last; ++k) {
     p[up] = centre(up, k);
     if (contains(own, r, p, chunk)) accept(own, r, p, chunk);
-    if (!layered()) chunk.volume += area * part_of_cell(own, r, p, chunk);
+    chunk.volume += area * part_of_cell(own, r, p, chunk);
   }
 }
 
@@ -227,10 +227,11 @@ double Filler::share_of_cell(const Vec3& p, int parts, double reach, Inside&& in
   return static_cast<double>(count) / (parts * parts * (deep ? parts : 1));
 }
 
-// Of the cell, the share that the region fills: all or nothing where its corners agree, else by samples of an eighth.
+// Of the cell, the share that the region fills and no other replaces: all or nothing where its corners agree, else by
+// samples of an eighth.
 double Filler::part_of_cell(ThreadRegions& own, std::size_t r, const Vec3& p, Chunk& chunk) const {
   const auto inside = [&](const Vec3& q) {
-    return contains(own, r, q, chunk) && !(solids_ != nullptr && solids_->inside(q)) &&
+    return contains(own, r, q, chunk) && !is_replaced(own, r, q) && !(solids_ != nullptr && solids_->inside(q)) &&
            (scene_.walls.empty() || own.walls.at(q) > 0);
   };
   constexpr double to_corners = 2 * (1 - 1e-9);

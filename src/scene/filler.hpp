@@ -174,6 +174,13 @@ class Filler {
     return std::isfinite(value) && value > 0;
   }
 
+  // Whether a later region of a phase lies there.
+  bool is_replaced(ThreadRegions& own, std::size_t r, const Vec3& p) const {
+    for (std::size_t q = r + 1; q < regions_.size() && layered(); ++q)
+      if (covers(own, q, p)) return true;
+    return false;
+  }
+
   bool in_solid(const Vec3& p) const {
     for (const SolidBox& box : scene_.domain.boxes) {
       bool inside = true;
@@ -201,12 +208,9 @@ class Filler {
         return;
       }
     }
-    if (layered()) {
-      for (std::size_t q = r + 1; q < regions_.size(); ++q)
-        if (covers(own, q, p)) {
-          chunk.replaced.add(p);
-          return;
-        }
+    if (is_replaced(own, r, p)) {
+      chunk.replaced.add(p);
+      return;
     }
     for (std::size_t q = 0; q < regions_.size() && !layered(); ++q) {
       // Lattice regions share sites, so one direction suffices; a conforming one has its own places.

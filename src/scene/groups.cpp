@@ -100,8 +100,9 @@ void describe_lattice(const Scene& scene, const Lattice& lattice, std::map<std::
   if (!effective.empty()) groups["effective spacing"] = effective;
   groups["particles"] = std::to_string(scene.particles.size());
   const bool only = scene.fills.size() == 1;
-  for (const RegionFill& fill : scene.fills) {
-    const double density = scene.fluid.density;
+  for (std::size_t n = 0; n < scene.fills.size(); ++n) {
+    const RegionFill& fill = scene.fills[n];
+    const double density = scene.phases.empty() ? scene.fluid.density : scene.phases[n].density;
     groups["mass" + (only ? std::string() : " of " + fill.name)] = brief(density * fill.asked) + " asked, " +
                                                                    brief(density * fill.got) + " got in " +
                                                                    std::to_string(fill.particles) + " particles";

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Phases, the regions that they fill, and what is said of those that cannot be. No method of the program takes them
-// yet: the one of these tests is registered here.
+// Phases, the regions that they fill, and what is said of those that cannot be, by a method that these tests register.
 #include <gmock/gmock.h>
+
+#include <numbers>
 
 #include "helpers.hpp"
 #include "spume/scene/load.hpp"
@@ -82,6 +83,24 @@ TEST(Phases, ALaterRegionReplacesWhatAnEarlierOneFilled) {
   const LoadedCase again = load_phases(loaded.options.resolved);
   EXPECT_EQ(again.scene.phases.size(), 2u);
   EXPECT_EQ(again.scene.surface_tension, 0.072);
+}
+
+// Sites of the lattice are whole or nothing: a column 0.333 wide and 0.47 high gets 3 by 5 of them, less a disc in it.
+// Volumes asked for come from 64 samples a cell, those of cells cut by a disc within a tenth of a cell each.
+TEST(Phases, TheMassThatEachGetsIsSaidBesideWhatWasAsked) {
+  const LoadedCase loaded = load_phases(head + water + air + "[[region]]\nphase = \"air\"\n" +
+                                        "[[region]]\nphase = \"water\"\nupper = [0.333, 0.47]\n" +
+                                        "[[region]]\nphase = \"air\"\ncentre = [0.1, 0.2]\nradius = 0.1\n");
+  const std::vector<RegionFill>& fills = loaded.scene.fills;
+  ASSERT_EQ(fills.size(), 2u);
+  EXPECT_EQ(fills[0].name, "water");
+  const double disc = std::numbers::pi * 0.01, exact = 0.333 * 0.47 - disc;
+  // Faces are known to an eighth of a cell along 8 and 5 cells of them, the disc within a tenth of 12 cells.
+  EXPECT_NEAR(fills[0].asked, exact, (13 * 0.125 + 1.2) * 0.01);
+  EXPECT_NEAR(fills[0].asked + fills[1].asked, 1, 1e-12);
+  EXPECT_NEAR(fills[0].got, (3 * 5 - 4) * 0.01, 1e-12);
+  EXPECT_NEAR(fills[0].got + fills[1].got, 1, 1e-12);
+  EXPECT_THAT(loaded.options.groups.at("mass of water"), HasSubstr("110 got in 11 particles"));
 }
 
 TEST(Phases, WhatIsMissingIsNamed) {

@@ -146,7 +146,7 @@ struct InitialParticles {
 
 // What a region asks for and what its particles hold.
 struct RegionFill {
-  std::string name;           // "liquid.0"
+  std::string name;           // "liquid.0", or that of a phase
   double asked = 0, got = 0;  // volumes
   std::size_t particles = 0;
   bool flat = false;  // a box: its surface is level
@@ -167,7 +167,7 @@ struct Scene {
   std::shared_ptr<const Expression> initial_spectrum;  // E(k) up to a factor; its first argument is k
   std::uint64_t seed = 1;
   InitialParticles particles;
-  std::vector<RegionFill> fills;  // of the [[liquid]] entries
+  std::vector<RegionFill> fills;  // of the [[liquid]] entries, or of the phases
   std::vector<Body> bodies;
   std::vector<BodyMotion> motions;
   Combination walls;  // of the bodies that are walls, in their order, where they stand at the start
