@@ -16,6 +16,7 @@ namespace spume {
 namespace {
 
 using namespace std::chrono_literals;
+using namespace std::string_literals;
 using test::Connection;
 using test::open_socket;
 using test::ready;
@@ -92,7 +93,7 @@ TEST_F(LiveServer, SurvivesRequestsThatAreNone) {
   for (const std::string& request : std::vector<std::string>{
            std::string("\r\n\r\n"), std::string("GET"), std::string(100, '\0'),
            "GET / HTTP/1.1\r\n" + std::string(20000, 'a'), "GET /" + std::string(20000, 'a') + " HTTP/1.1\r\n\r\n",
-           std::string("\xff\xfe\x00\x01 / HTTP/9\r\n\r\n", 20)}) {
+           "\xff\xfe\x00\x01 / HTTP/9\r\n\r\n"s}) {
     Connection connection(server_.port());
     connection.send(request);
   }
