@@ -78,7 +78,8 @@ class SphSums {
     Point position{};
     std::size_t source = 0;
     Vector velocity_sign{1, 1, 1}, velocity_offset{}, reflection{1, 1, 1};
-    Point end{};  // of a ray to it, reflected
+    Point end{};            // of a ray to it, reflected
+    bool in_solid = false;  // reflected in a scene with solid boxes
   };
 
   // h_i / h and V_i / V per particle; empty: all alike.
@@ -95,16 +96,18 @@ class SphSums {
         sizes_(std::move(sizes)),
         rules_(rules),
         boxes_(boundaries.boxes) {
-    for (std::size_t i = 0; i < n_; ++i) points_.push_back({particles[i], i, {1, 1, 1}, {}, {1, 1, 1}, particles[i]});
+    for (std::size_t i = 0; i < n_; ++i)
+      points_.push_back({particles[i], i, {1, 1, 1}, {}, {1, 1, 1}, particles[i], false});
     for (const Image& image : images(rules, particles, boxes_)) {
       points_.push_back(transformed(image, boundaries));
       points_.back().end = end_of_ray(rules, image, particles[static_cast<std::size_t>(image.source)]);
+      points_.back().in_solid = image.path.reflections() > 0;
     }
   }
 
   // What an image carries, from the reflections of its path in their order.
   static SphPoint transformed(const Image& image, const Boundaries& boundaries) {
-    SphPoint point{image.position, static_cast<std::size_t>(image.source), {1, 1, 1}, {}, {1, 1, 1}, {}};
+    SphPoint point{image.position, static_cast<std::size_t>(image.source), {1, 1, 1}, {}, {1, 1, 1}, {}, false};
     for (int axis = 0; axis < 3; ++axis)
       for (const int face : image.path.face[axis]) {
         if (face < 0) continue;

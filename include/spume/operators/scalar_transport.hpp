@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Diffusion of scalars that particles carry, and what a shift of the particles does to them: one sweep over the pairs
+// for up to four scalars.
+//
+// With g_ij of sph_operators.hpp taken at the smoothing length h of the context, whatever that of the particles, and
+// volumes over that of the context, v_i = V_i / V,
+//
+//   dc_i/dt = sum_j 2 g_ij v_i v_j k_ij (c_j - c_i),   k_ij = D + (nu_i + nu_j) / (2 Sc),
+//
+// what a particle gains, V dc_i/dt, another loses: the pairs are antisymmetric but for the rounding of floats. Images
+// of the sides of the domain exchange as the particles that they mirror, so that nothing passes a wall. Wall points of
+// bodies, images in solid boxes and points behind openings exchange nothing.
+//
+// A particle that is shifted by s takes the change s . grad c with the corrected gradient (3.8), bounded by half of the
+// extreme differences c_j - c_i from its neighbours, as the velocity does.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "spume/operators/pair_sweep.hpp"
+
+namespace spume {
+
+struct ScalarSweepInput {
+  std::span<const double* const> values;  // c per scalar and particle
+  // Subtracted before values become floats. The least value keeps what is next to it exact: positive values stay so.
+  std::span<const double> reference;
+  std::span<const float> diffusivity;      // D per scalar
+  const float* eddy_viscosity = nullptr;   // nu per particle; null: none
+  std::span<const float> inverse_schmidt;  // 1 / Sc per scalar; read with an eddy viscosity
+  std::array<const float*, 3> shift{};     // s; null: no shift
+  std::array<const float*, 6> correction{};
+};
+
+struct ScalarSweepOutput {
+  std::span<float* const> rate;    // dc/dt per scalar and particle
+  std::span<float* const> change;  // by the shift; read with one
+  float* exchange = nullptr;       // the largest sum_j 2 g v_i v_j k_ij of all scalars, 1/time
+};
+
+void scalar_transport_sweep(const SweepContext& context, PackedNeighbours& packed, const ScalarSweepInput& in,
+                            const ScalarSweepOutput& out);
+
+}  // namespace spume

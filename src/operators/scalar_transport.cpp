@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+#include "spume/operators/scalar_transport.hpp"
+
+#include <algorithm>
+
+#include "spume/operators/image_values.hpp"
+#include "symmetric_matrix.hpp"
+
+namespace spume {
+namespace {
+
+using simd::f32n;
+
+// The value of an image that exchanges nothing; its products with weights of zero are finite.
+constexpr float exchanges_nothing = 1e30F;
+
+template <int count>
+void pack_scalars(const SweepContext& context, float* records, std::size_t width, const ScalarSweepInput& in,
+                  std::size_t first) {
+  const std::size_t n = context.list->particles();
+  const auto dimensions = static_cast<std::size_t>(context.dimensions);
+  const std::size_t last = std::min(first + count, in.values.size());
+  const auto write = [=, &in](std::size_t record, std::size_t i) {
+    float* out = records + record * width + dimensions;
+    for (std::size_t s = first; s < last; ++s) out[s - first] = static_cast<float>(in.values[s][i] - in.reference[s]);
+    for (std::size_t s = last; s < first + count; ++s) out[s - first] = 0;
+  };
+  parallel_for(n, [&](std::size_t i) { write(i, i); });
+  const Images& images = *context.images;
+  const std::int32_t* point = context.walls == nullptr ? nullptr : images.wall_point();
+  parallel_for(images.size(), [&](std::size_t k) {
+    const bool stands_for_wall = point != nullptr && point[k] >= 0;
+    if (stands_for_wall || images.paths()[static_cast<std::size_t>(images.path()[k])].reflections() > 0)
+      std::fill_n(records + (n + k) * width + dimensions, count, exchanges_nothing);
+    else
+      write(n + k, static_cast<std::size_t>(images.source()[k]));
+  });
+}
+
+template <int dimensions, class Kernel, int count, bool shifted, bool varies>
+struct ScalarRow {
+  static constexpr int payload = count + (varies ? 2 : 0);  // the eddy viscosity and the volume behind the scalars
+  static constexpr int width = record_width(dimensions, payload);
+  const SweepContext& context;
+  const float* records;
+  const ScalarSweepInput& in;
+  const ScalarSweepOutput& out;
+  const std::size_t first;
+  const KernelScale<dimensions, Kernel> scale{context};
+
+  // Of particle i: the factor of its own smoothing length, and the vector along which differences count.
+  struct Shift {
+    float gradient = 0;
+    std::array<float, dimensions> direction{};
+  };
+
+  void operator()(std::size_t i) const {
+    const std::size_t scalars = std::min<std::size_t>(count, in.values.size() - first);
+    const float* own_record = records + i * width + dimensions;
+    const float ratio = varies && context.length_ratio != nullptr ? context.length_ratio[i] : 1;
+    const float own_eddy = varies ? own_record[count] : 0, own_volume = varies ? own_record[count + 1] : 1;
+    std::array<float, count> diffusivity{}, share{};
+    for (std::size_t s = 0; s < scalars; ++s) {
+      diffusivity[s] = in.diffusivity[first + s];
+      if (varies && in.eddy_viscosity != nullptr) share[s] = in.inverse_schmidt[first + s];
+    }
+    [[maybe_unused]] const Shift shift = shift_of(i, ratio);
+    std::array<f32n, count> rate{}, along{}, low{}, high{};
+    f32n exchange{}, eddy_exchange{};
+    for_each_batch<dimensions, payload>(*context.list, records, i, scale.inverse_h / ratio, [&](const auto& b) {
+      const auto exchanging = b.payload[0] < simd::splat<f32n>(exchanges_nothing);
+      f32n weight = (-2 * own_volume * scale.gradient) * Kernel::f(varies ? b.q * ratio : b.q);
+      if constexpr (varies) weight = weight * b.payload[count + 1];
+      weight = exchanging ? weight : f32n{};
+      exchange = exchange + weight;
+      [[maybe_unused]] f32n by_eddies{}, pull{};
+      if constexpr (varies) {
+        by_eddies = weight * (0.5F * (b.payload[count] + own_eddy));
+        eddy_exchange = eddy_exchange + by_eddies;
+      }
+      if constexpr (shifted) {
+        for (int a = 0; a < dimensions; ++a) pull = pull + b.d[a] * shift.direction[a];
+        pull = pull * (-shift.gradient * Kernel::f(b.q));
+        if constexpr (varies) pull = pull * b.payload[count + 1];
+        pull = exchanging ? pull : f32n{};
+      }
+      for (int s = 0; s < count; ++s) {
+        const f32n difference = b.payload[s] - own_record[s];
+        if constexpr (varies)
+          rate[s] = rate[s] + difference * (weight * diffusivity[s] + by_eddies * share[s]);
+        else
+          rate[s] = rate[s] + difference * (weight * diffusivity[s]);
+        if constexpr (shifted) {
+          along[s] = along[s] + pull * difference;
+          f32n within = exchanging ? difference : f32n{};
+          within = b.q < simd::splat<f32n>(static_cast<float>(Kernel::support)) ? within : f32n{};
+          low[s] = simd::min(low[s], within);
+          high[s] = simd::max(high[s], within);
+        }
+      }
+    });
+    const float all = simd::sum(exchange), all_by_eddies = simd::sum(eddy_exchange);
+    float most = first == 0 ? 0 : out.exchange[i];
+    for (std::size_t s = 0; s < scalars; ++s) {
+      out.rate[first + s][i] = simd::sum(rate[s]);
+      most = std::max(most, diffusivity[s] * all + share[s] * all_by_eddies);
+      if constexpr (shifted) {
+        float least = 0, largest = 0;
+        for (int l = 0; l < simd::pair_lanes; ++l) {
+          least = std::min<float>(least, low[s][l]);
+          largest = std::max<float>(largest, high[s][l]);
+        }
+        out.change[first + s][i] = std::clamp(simd::sum(along[s]), 0.5F * least, 0.5F * largest);
+      }
+    }
+    out.exchange[i] = most;
+  }
+
+  // L is symmetric: (L sum g d f) . s = sum g f (d . L s).
+  Shift shift_of([[maybe_unused]] std::size_t i, [[maybe_unused]] float ratio) const {
+    Shift shift;
+    if constexpr (shifted) {
+      std::array<float, dimensions> s;
+      for (int a = 0; a < dimensions; ++a) s[a] = in.shift[a][i];
+      shift.direction = symmetric_product<dimensions>(in.correction, i, s);
+      shift.gradient =
+          scale.gradient / (dimensions == 3 ? ratio * ratio * ratio * ratio * ratio : ratio * ratio * ratio * ratio);
+    }
+    return shift;
+  }
+};
+
+template <int dimensions, class Kernel, int count, bool shifted, bool varies>
+void transport_some(const SweepContext& context, PackedNeighbours& packed, const ScalarSweepInput& in,
+                    const ScalarSweepOutput& out, std::size_t first) {
+  using Row = ScalarRow<dimensions, Kernel, count, shifted, varies>;
+  float* records = packed.prepare(context, Row::payload);
+  pack_scalars<count>(context, records, Row::width, in, first);
+  if constexpr (varies) {
+    const std::size_t n = context.list->particles();
+    const auto w = static_cast<std::size_t>(Row::width);
+    const auto write = [&, w](std::size_t record, std::size_t i) {
+      float* extra = records + record * w + dimensions + count;
+      extra[0] = in.eddy_viscosity == nullptr ? 0 : std::max(in.eddy_viscosity[i], 0.0F);
+      extra[1] = context.volume_ratio == nullptr ? 1 : context.volume_ratio[i];
+    };
+    parallel_for(n, [&](std::size_t i) { write(i, i); });
+    const std::int32_t* source = context.images->source();
+    parallel_for(context.images->size(), [&](std::size_t k) { write(n + k, static_cast<std::size_t>(source[k])); });
+  }
+  const Row row{context, records, in, out, first};
+  sweep(context.list->particles(), [&](std::size_t i) { row(i); });
+}
+
+template <int dimensions, class Kernel, int count>
+void transport(const SweepContext& context, PackedNeighbours& packed, const ScalarSweepInput& in,
+               const ScalarSweepOutput& out, std::size_t first) {
+  const bool shifted = in.shift[0] != nullptr;
+  if (in.eddy_viscosity != nullptr || context.volume_ratio != nullptr) {
+    if (shifted)
+      transport_some<dimensions, Kernel, count, true, true>(context, packed, in, out, first);
+    else
+      transport_some<dimensions, Kernel, count, false, true>(context, packed, in, out, first);
+  } else if (shifted) {
+    transport_some<dimensions, Kernel, count, true, false>(context, packed, in, out, first);
+  } else {
+    transport_some<dimensions, Kernel, count, false, false>(context, packed, in, out, first);
+  }
+}
+
+}  // namespace
+
+void scalar_transport_sweep(const SweepContext& context, PackedNeighbours& packed, const ScalarSweepInput& in,
+                            const ScalarSweepOutput& out) {
+  with_plain_kernel(context.dimensions, context.kernel, [&]<int dimensions, class Kernel>() {
+    std::size_t first = 0;
+    for (; first + 1 < in.values.size(); first += 4) transport<dimensions, Kernel, 4>(context, packed, in, out, first);
+    if (first < in.values.size()) transport<dimensions, Kernel, 1>(context, packed, in, out, first);
+  });
+}
+
+}  // namespace spume
