@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "spume/physics/bubbles/options.hpp"
+#include "spume/physics/scalars/options.hpp"
 
 namespace spume::les_sph {
 namespace {
@@ -39,6 +40,10 @@ bool has_bubbles(const Case& options) {
   return options.get<BubbleOptions>().on;
 }
 
+bool has_scalars(const Case& options) {
+  return !options.get<ScalarOptions>().scalars.empty();
+}
+
 bool needs_velocity_gradient(const Case& options) {
   return has_closure(options) || corrects_shift(options) || options.get<SchemeOptions>().centred ||
          has_bubbles(options);
@@ -62,6 +67,7 @@ Features::Features(const LoadedCase& loaded)
   const bool dynamic = model == TurbulenceModel::dynamic_shepard || model == TurbulenceModel::dynamic_lagrangian;
   eddy_viscosity = has_closure(options);
   bubbles = has_bubbles(options);
+  scalars = has_scalars(options);
   test_filter = (eddy_viscosity && model != TurbulenceModel::smagorinsky) ||
                 (bubbles && options.get<BubbleOptions>().fluctuations);
   velocity_gradient = needs_velocity_gradient(options);

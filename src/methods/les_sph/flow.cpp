@@ -114,6 +114,7 @@ Flow::Flow(const LoadedCase& loaded_case)
     bubbles = std::make_unique<bubbles::BubbleCoupling>(particles, carrier, options.get<BubbleOptions>(),
                                                         options.get<BubbleSources>());
   }
+  if (features.scalars) scalars = std::make_unique<Scalars>(particles, resolution, options.get<ScalarOptions>());
   find_extremes();
   weight = weight_at_start();
 }
@@ -160,7 +161,10 @@ double Flow::mass_in_domain() const {
 void Flow::exchange_with_openings() {
   const EnergyBalance balance = energy_balance(0);
   const double before = energy.held(balance, particles);
+  const std::int64_t next = boundary.openings()->next_identifier(), entered = boundary.openings()->entered();
   if (boundary.openings()->exchange(particles, time)) energy.supply += energy.held(balance, particles) - before;
+  // What enters is numbered before what comes back through outflows.
+  if (scalars != nullptr) scalars->enter(next, next + boundary.openings()->entered() - entered, time);
 }
 
 bool Flow::has_left(std::size_t i) const {

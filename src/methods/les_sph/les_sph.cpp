@@ -57,6 +57,7 @@ LesSph::LesSph(const LoadedCase& loaded)
     : flow_(loaded), plan_(make_plan(flow_)), snapshot_(snapshot_table(output_fields(), loaded.options, flow_)) {
   refuse_high_mach(loaded.options, flow_);
   refuse_stirring_shift(loaded.options, flow_);
+  if (flow_.scalars != nullptr) flow_.scalars->add_fields(snapshot_);
   declare_series();
   declare_saved();
   if (flow_.features.bodies)

@@ -6,6 +6,7 @@
 #include "spume/methods/les_sph/les_sph.hpp"
 #include "spume/methods/les_sph/options.hpp"
 #include "spume/physics/bubbles/options.hpp"
+#include "spume/physics/scalars/options.hpp"
 #include "spume/physics/turbulence/options.hpp"
 #include "spume/scene/document.hpp"
 
@@ -14,8 +15,8 @@ namespace {
 
 std::vector<Section> sections() {
   std::vector<Section> all = bubble_sections();
-  all.insert(all.end(),
-             {turbulence_section(), pressure_section(), shifting_section(), surface_section(), scheme_section()});
+  all.insert(all.end(), {turbulence_section(), pressure_section(), shifting_section(), surface_section(),
+                         scheme_section(), scalar_section()});
   return all;
 }
 
@@ -61,6 +62,9 @@ void check_openings(Draft& draft, Problems& problems) {
 void check(Draft& draft, Problems& problems) {
   check_openings(draft, problems);
   check_bubbles(draft, problems);
+  std::vector<std::string> fields;
+  for (const OutputFieldInfo& field : field_infos(output_fields(), draft.options)) fields.push_back(field.name);
+  check_scalars(draft, fields, problems);
   check_walls_of_bodies(draft, problems);
   if (draft.node("bubbles") && draft.dimensions != 2 && draft.node("pressure.solver") &&
       draft.options.get<PressureOptions>().solver == PressureSolver::cg)
@@ -100,12 +104,19 @@ Registration registration() {
   method.passes_openings = true;
   method.sections = sections();
   method.check = check;
-  method.check_scene = check_bubble_sources;
+  method.check_scene = [](const Draft& draft, const Scene& scene, Problems& problems) {
+    check_bubble_sources(draft, scene, problems);
+    check_initial_scalars(draft, scene, problems);
+  };
   method.bytes_per_particle = bytes_per_particle;
   method.default_courant = default_courant;
   method.default_courant_in_words =
       brief(courant_in_full_domain) + ", with a free surface " + brief(courant_with_surface);
-  method.output_fields = [](const Case& options) { return field_infos(output_fields(), options); };
+  method.output_fields = [](const Case& options) {
+    std::vector<OutputFieldInfo> fields = field_infos(output_fields(), options);
+    add_scalar_fields(options.get<ScalarOptions>(), fields);
+    return fields;
+  };
   method.probe_scalars = [](const Case&) { return std::vector<ProbeScalar>{{"pressure", "pressure"}}; };
   method.make = [](const LoadedCase& loaded) { return std::make_unique<LesSph>(loaded); };
   return method;

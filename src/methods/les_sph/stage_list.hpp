@@ -66,6 +66,12 @@ inline Arrays seen_by_bubbles(const Flow& f, const KeptArrays& kept) {
           f.filtered_velocity, f.strain,           f.eddy_viscosity(),   f.moments.normal,        kept.sizes};
 }
 
+// Values, rates and changes of every scalar.
+inline Arrays living_scalars(const Flow& f) {
+  return {
+      ArrayUse([&f] { return f.scalars == nullptr ? 0.0 : 16.0 * static_cast<double>(f.size() * f.scalars->size()); })};
+}
+
 inline Arrays arrays_of(const MomentFields& m) {
   return {m.correction, m.uncorrected, m.divergence_of_position, m.laplacian_diagonal,
           m.kernel_sum, m.normal,      m.concentration_gradient};

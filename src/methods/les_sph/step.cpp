@@ -130,6 +130,10 @@ Plan make_plan(Flow& f) {
       {f.next_velocity, r, f.displacement_by_shift(), f.shift_velocity, f.reduced_pressure, f.potential, f.strain},
       {p.position, p.velocity, f.acceleration, f.pressure});
   add(
+      step, "scalars", has.scalars, why.scalars,
+      [&](StageRun& run) { run.pairs = f.arrangement.pair_count() * double(f.transport_scalars(run.dt)); },
+      living_scalars(f), living_scalars(f), true);
+  add(
       step, "bubble events", has.bubbles, why.events, [&](StageRun& run) { f.bubbles->accept(run.dt); },
       living({kept.bubbles, f.sizes.volume_fraction}), living({kept.bubbles, f.volume_fraction()}));
   return plan;

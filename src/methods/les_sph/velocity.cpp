@@ -414,4 +414,15 @@ void Flow::accept(double dt) {
                   });
 }
 
+std::int64_t Flow::transport_scalars(double dt) {
+  return scalars->transport(dt, {.arrangement = arrangement,
+                                 .moments = moments,
+                                 .eddy_viscosity = eddy_viscosity(),
+                                 .shift = features.shift_correction ? shift->displacement : FloatVectorField{},
+                                 .interior = [this](std::size_t i) -> double {
+                                   return surface != nullptr ? surface->interior_weight[i]
+                                                             : fading.weight((*moments.divergence_of_position)[i]);
+                                 }});
+}
+
 }  // namespace spume::les_sph

@@ -12,6 +12,7 @@ namespace spume::les_sph {
 // What the options alone tell.
 bool has_closure(const Case& options);
 bool has_bubbles(const Case& options);
+bool has_scalars(const Case& options);
 bool needs_velocity_gradient(const Case& options);  // of a closure, shift correction, centred steps or bubbles
 
 struct Features : BoundaryFeatures {
@@ -36,6 +37,7 @@ struct Features : BoundaryFeatures {
   bool sponges = false;             // layers that damp the velocity
   bool closed = false;              // pressure known up to a constant
   bool bubbles = false;
+  bool scalars = false;
 };
 
 }  // namespace spume::les_sph

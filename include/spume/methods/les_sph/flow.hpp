@@ -20,6 +20,7 @@
 #include "spume/particles/step_limits.hpp"
 #include "spume/particles/surface.hpp"
 #include "spume/physics/bubbles/coupling.hpp"
+#include "spume/physics/scalars/scalars.hpp"
 #include "spume/physics/turbulence/eddy_viscosity.hpp"
 #include "spume/scene/case.hpp"
 
@@ -98,6 +99,7 @@ struct Flow {
   ProjectionSolver solver;
   std::unique_ptr<turbulence::EddyViscosity> closure;  // null: none
   std::unique_ptr<bubbles::BubbleCoupling> bubbles;    // null: none
+  std::unique_ptr<Scalars> scalars;                    // null: none; its fields are state
   std::unique_ptr<FloatingBodies> floating;            // null: none; its places are state
 
   // --- Leased within a step: by the stage that writes one until the stage that reads it last.
@@ -187,6 +189,8 @@ struct Flow {
   void set_first_acceleration();
   void project_velocity(double dt);
   void accept(double dt);  // (xi)
+  // Scalars over the step that was accepted, at the positions of its lists. Returns the number of sweeps.
+  std::int64_t transport_scalars(double dt);
 
   // Of a step dt that starts from the present state; the work of its forces where `dt` is not zero.
   EnergyBalance energy_balance(double dt) const;

@@ -34,6 +34,7 @@ struct Features {
   static constexpr bool uniform_body_force = false;
   static constexpr bool closed = true;
   static constexpr bool bubbles = false;
+  static constexpr bool scalars = false;
 };
 
 }  // namespace spume::les_sph

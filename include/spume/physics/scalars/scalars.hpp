@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// Scalars that particles carry: dc/dt = div((D + nu_t / Sc_t) grad c) along the motion of the liquid.
+//
+// The amount of a scalar is the sum of c V over the particles, V their volume of liquid. It changes by the rounding of
+// doubles alone, where no liquid enters or leaves:
+//   - Diffusion exchanges between pairs (operators/scalar_transport.hpp). What the float sums of a sweep leave of their
+//     total, 1e-7 of what is exchanged, is taken out of the rates in proportion to their size.
+//   - A shift changes values by s . grad c. Where the gains exceed the losses the gains are scaled down to them, and
+//   the
+//     other way round: the factor is at most 1.
+// A step changes no value beyond those of its neighbours: each part is bounded by half of the differences. Explicit
+// diffusion is so up to dt sum_j w_ij = 1/2, beyond which the step is divided.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "spume/particles/moments.hpp"
+#include "spume/particles/reports.hpp"
+#include "spume/particles/resolution.hpp"
+#include "spume/physics/scalars/options.hpp"
+#include "spume/scene/method_declaration.hpp"
+
+namespace spume {
+
+class Scalars {
+ public:
+  // Adds a field of state, "scalar_<name>", per scalar. Both outlive it.
+  Scalars(ParticleStore& particles, const Resolution& resolution, const ScalarOptions& options);
+
+  struct Carrier {
+    Arrangement& arrangement;
+    const MomentFields& moments;
+    const Array<float>* eddy_viscosity = nullptr;      // null: none
+    FloatVectorField shift{};                          // of the step; null: none
+    std::function<double(std::size_t)> interior = {};  // factor of the change by the shift, 0 to 1; read with one
+  };
+  // Diffusion over dt and the change by the shift, at the positions of the lists. Returns the number of sweeps.
+  std::int64_t transport(double dt, const Carrier& carrier);
+
+  // Gives particles of identifiers in [first, last) what inflows bring at time t.
+  void enter(std::int64_t first, std::int64_t last, double t);
+
+  std::size_t size() const { return fields_.size(); }
+  const ScalarOption& option(std::size_t scalar) const { return options_.scalars[scalar]; }
+  const Array<double>& values(std::size_t scalar) const { return *fields_[scalar]; }
+  double amount(std::size_t scalar) const;
+  // Parts into which diffusion divided the last step.
+  std::int64_t substeps() const { return substeps_; }
+
+  // Columns "amount_of_<name>" and "scalar_substeps".
+  void add_columns(SeriesTable& series) const;
+  void add_fields(SnapshotTable& snapshot) const;
+
+ private:
+  void sweep(const Carrier& carrier, bool shifted);
+  void apply_shift(const Carrier& carrier);
+  void apply_rates(double dt);
+  void lease();
+  void release();
+
+  ParticleStore& particles_;
+  const ScalarOptions& options_;
+  const double lattice_factor_;  // that the sums of a lattice lack of the Laplacian
+  std::vector<Array<double>*> fields_;
+  std::vector<Array<float>> rate_, change_;  // leased within transport()
+  Array<float> exchange_;
+  struct {  // of a sweep, per scalar: kept, as a step allocates nothing
+    std::vector<const double*> values;
+    std::vector<double> reference;
+    std::vector<float> diffusivity, inverse_schmidt;
+    std::vector<float*> rate, change;
+  } packed_;
+  std::int64_t substeps_ = 0;
+};
+
+// The output fields of scalars behind those of the method.
+void add_scalar_fields(const ScalarOptions& options, std::vector<OutputFieldInfo>& infos);
+
+}  // namespace spume

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "spume/physics/scalars/scalars.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spume/core/parallel.hpp"
+#include "spume/operators/scalar_transport.hpp"
+
+namespace spume {
+namespace {
+
+// dt sum_j w_ij above which explicit diffusion overshoots half of the differences from the neighbours.
+constexpr double largest_exchange = 0.5;
+
+void set_values(const ParticleStore& particles, const Expression& expression, double t, Array<double>& values,
+                const std::function<bool(std::size_t)>& wanted) {
+  parallel_blocks(particles.size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    const std::unique_ptr<Expression> own = expression.clone();
+    for (std::size_t i = first; i < last; ++i) {
+      if (!wanted(i)) continue;
+      const Vec3 r = vector_at(particles.position, particles.dimensions, i);
+      values[i] = (*own)(r[0], r[1], r[2], t);
+    }
+  });
+}
+
+double least(const Array<double>& values, std::size_t n) {
+  return -parallel_max(n, -values[0], [&](std::size_t i) { return -values[i]; });
+}
+
+}  // namespace
+
+Scalars::Scalars(ParticleStore& particles, const Resolution& resolution, const ScalarOptions& options)
+    : particles_(particles),
+      options_(options),
+      lattice_factor_(particles.dimensions / resolution.lattice.divergence_of_position),
+      rate_(options.scalars.size()),
+      change_(options.scalars.size()) {
+  const std::size_t count = options.scalars.size();
+  packed_ = {std::vector<const double*>(count), std::vector<double>(count), std::vector<float>(count),
+             std::vector<float>(count),         std::vector<float*>(count), std::vector<float*>(count)};
+  for (const ScalarOption& scalar : options.scalars) {
+    fields_.push_back(&particles.fields.add<double>("scalar_" + scalar.name, Lifetime::state));
+    fields_.back()->fill(0);
+    if (scalar.initial != nullptr)
+      set_values(particles, *scalar.initial, 0, *fields_.back(), [](std::size_t) { return true; });
+  }
+}
+
+void Scalars::enter(std::int64_t first, std::int64_t last, double t) {
+  if (first == last) return;
+  for (std::size_t s = 0; s < size(); ++s)
+    if (option(s).inflow != nullptr)
+      set_values(particles_, *option(s).inflow, t, *fields_[s], [&](std::size_t i) {
+        const std::int64_t id = (*particles_.identifier)[i];
+        return id >= first && id < last;
+      });
+}
+
+double Scalars::amount(std::size_t scalar) const {
+  return particles_.volume * parallel_sum(particles_.size(), [&](std::size_t i) { return values(scalar)[i]; });
+}
+
+void Scalars::lease() {
+  for (auto* arrays : {&rate_, &change_})
+    for (Array<float>& array : *arrays) particles_.scratch().lease(array, particles_.size());
+  particles_.scratch().lease(exchange_, particles_.size());
+}
+
+void Scalars::release() {
+  for (auto* arrays : {&rate_, &change_})
+    for (Array<float>& array : *arrays) particles_.scratch().release(array);
+  particles_.scratch().release(exchange_);
+}
+
+void Scalars::sweep(const Carrier& carrier, bool shifted) {
+  for (std::size_t s = 0; s < size(); ++s) {
+    packed_.values[s] = fields_[s]->data();
+    packed_.reference[s] = least(*fields_[s], particles_.size());
+    packed_.diffusivity[s] = static_cast<float>(lattice_factor_ * option(s).diffusivity);
+    packed_.inverse_schmidt[s] = static_cast<float>(lattice_factor_ / option(s).turbulent_schmidt);
+    packed_.rate[s] = rate_[s].data();
+    packed_.change[s] = change_[s].data();
+  }
+  scalar_transport_sweep(
+      carrier.arrangement.context, carrier.arrangement.packed,
+      {.values = packed_.values,
+       .reference = packed_.reference,
+       .diffusivity = packed_.diffusivity,
+       .eddy_viscosity = carrier.eddy_viscosity == nullptr ? nullptr : carrier.eddy_viscosity->data(),
+       .inverse_schmidt = packed_.inverse_schmidt,
+       .shift = shifted ? read(carrier.shift) : std::array<const float*, 3>{},
+       .correction = carrier.moments.read_correction()},
+      {.rate = packed_.rate, .change = packed_.change, .exchange = exchange_.data()});
+}
+
+void Scalars::apply_shift(const Carrier& carrier) {
+  struct Sums {
+    double gains = 0, losses = 0;
+  };
+  const std::size_t n = particles_.size();
+  for (std::size_t s = 0; s < size(); ++s) {
+    const Array<float>& change = change_[s];
+    const auto of = [&](std::size_t i) { return carrier.interior(i) * change[i]; };
+    const Sums sums = parallel_reduce(
+        n, Sums{},
+        [&](std::size_t first, std::size_t last) {
+          Sums part;
+          for (std::size_t i = first; i < last; ++i) {
+            const double by = of(i);
+            (by > 0 ? part.gains : part.losses) += std::abs(by);
+          }
+          return part;
+        },
+        [](const Sums& a, const Sums& b) {
+          return Sums{a.gains + b.gains, a.losses + b.losses};
+        });
+    const double both = std::min(sums.gains, sums.losses);
+    if (both == 0) continue;
+    const double gain = both / sums.gains, loss = both / sums.losses;
+    parallel_for(n, [&](std::size_t i) {
+      const double by = of(i);
+      (*fields_[s])[i] += by * (by > 0 ? gain : loss);
+    });
+  }
+}
+
+void Scalars::apply_rates(double dt) {
+  struct Sums {
+    double net = 0, moved = 0;
+  };
+  const std::size_t n = particles_.size();
+  for (std::size_t s = 0; s < size(); ++s) {
+    const Array<float>& rate = rate_[s];
+    const Sums sums = parallel_reduce(
+        n, Sums{},
+        [&](std::size_t first, std::size_t last) {
+          Sums part;
+          for (std::size_t i = first; i < last; ++i) {
+            part.net += rate[i];
+            part.moved += std::abs(rate[i]);
+          }
+          return part;
+        },
+        [](const Sums& a, const Sums& b) {
+          return Sums{a.net + b.net, a.moved + b.moved};
+        });
+    if (sums.moved == 0) continue;
+    const double excess = sums.net / sums.moved;
+    parallel_for(
+        n, [&](std::size_t i) { (*fields_[s])[i] += dt * (double{rate[i]} - excess * std::abs(double{rate[i]})); });
+  }
+}
+
+std::int64_t Scalars::transport(double dt, const Carrier& carrier) {
+  substeps_ = 0;
+  const bool shifted = carrier.shift[0] != nullptr;
+  const bool diffuses =
+      carrier.eddy_viscosity != nullptr || std::any_of(options_.scalars.begin(), options_.scalars.end(),
+                                                       [](const ScalarOption& one) { return one.diffusivity > 0; });
+  if (particles_.size() == 0 || !(shifted || diffuses)) return 0;
+  lease();
+  sweep(carrier, shifted);
+  const double exchange = parallel_max(particles_.size(), 0.0, [&](std::size_t i) { return double{exchange_[i]}; });
+  substeps_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(dt * exchange / largest_exchange)));
+  const double part = dt / static_cast<double>(substeps_);
+  if (shifted) apply_shift(carrier);
+  apply_rates(part);
+  for (std::int64_t k = 1; k < substeps_; ++k) {
+    sweep(carrier, false);
+    apply_rates(part);
+  }
+  release();
+  return substeps_;
+}
+
+void Scalars::add_columns(SeriesTable& series) const {
+  for (std::size_t s = 0; s < size(); ++s) {
+    const std::string volume = particles_.dimensions == 3 ? "length^3" : "length^2";
+    const std::string& unit = option(s).unit;
+    series.add("amount_of_" + option(s).name, unit.empty() ? volume : unit + " times " + volume,
+               [this, s] { return amount(s); });
+  }
+  series.add("scalar_substeps", "1, into which diffusion divided the last step",
+             [this] { return static_cast<double>(substeps_); });
+}
+
+void Scalars::add_fields(SnapshotTable& snapshot) const {
+  for (std::size_t s = 0; s < size(); ++s) snapshot.add(option(s).name, true, *fields_[s]);
+}
+
+void add_scalar_fields(const ScalarOptions& options, std::vector<OutputFieldInfo>& infos) {
+  for (const ScalarOption& scalar : options.scalars) infos.push_back({scalar.name});
+}
+
+}  // namespace spume
