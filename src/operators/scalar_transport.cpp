@@ -39,7 +39,8 @@ void pack_scalars(const SweepContext& context, float* records, std::size_t width
 
 template <int dimensions, class Kernel, int count, bool shifted, bool varies>
 struct ScalarRow {
-  static constexpr int payload = count + (varies ? 2 : 0);  // the eddy viscosity and the volume behind the scalars
+  static constexpr int payload =
+      count + 1 + (varies ? 2 : 0);  // behind the scalars a, the eddy viscosity and the volume
   static constexpr int width = record_width(dimensions, payload);
   const SweepContext& context;
   const float* records;
@@ -58,7 +59,8 @@ struct ScalarRow {
     const std::size_t scalars = std::min<std::size_t>(count, in.values.size() - first);
     const float* own_record = records + i * width + dimensions;
     const float ratio = varies && context.length_ratio != nullptr ? context.length_ratio[i] : 1;
-    const float own_eddy = varies ? own_record[count] : 0, own_volume = varies ? own_record[count + 1] : 1;
+    const float own_eddy = varies ? own_record[count + 1] : 0, own_volume = varies ? own_record[count + 2] : 1;
+    const float own_normalisation = own_record[count];
     std::array<float, count> diffusivity{}, share{};
     for (std::size_t s = 0; s < scalars; ++s) {
       diffusivity[s] = in.diffusivity[first + s];
@@ -69,19 +71,20 @@ struct ScalarRow {
     f32n exchange{}, eddy_exchange{};
     for_each_batch<dimensions, payload>(*context.list, records, i, scale.inverse_h / ratio, [&](const auto& b) {
       const auto exchanging = b.payload[0] < simd::splat<f32n>(exchanges_nothing);
-      f32n weight = (-2 * own_volume * scale.gradient) * Kernel::f(varies ? b.q * ratio : b.q);
-      if constexpr (varies) weight = weight * b.payload[count + 1];
+      f32n weight = (-own_volume * scale.gradient) * (own_normalisation + b.payload[count]) *
+                    Kernel::f(varies ? b.q * ratio : b.q);
+      if constexpr (varies) weight = weight * b.payload[count + 2];
       weight = exchanging ? weight : f32n{};
       exchange = exchange + weight;
       [[maybe_unused]] f32n by_eddies{}, pull{};
       if constexpr (varies) {
-        by_eddies = weight * (0.5F * (b.payload[count] + own_eddy));
+        by_eddies = weight * (0.5F * (b.payload[count + 1] + own_eddy));
         eddy_exchange = eddy_exchange + by_eddies;
       }
       if constexpr (shifted) {
         for (int a = 0; a < dimensions; ++a) pull = pull + b.d[a] * shift.direction[a];
         pull = pull * (-shift.gradient * Kernel::f(b.q));
-        if constexpr (varies) pull = pull * b.payload[count + 1];
+        if constexpr (varies) pull = pull * b.payload[count + 2];
         pull = exchanging ? pull : f32n{};
       }
       for (int s = 0; s < count; ++s) {
@@ -136,18 +139,19 @@ void transport_some(const SweepContext& context, PackedNeighbours& packed, const
   using Row = ScalarRow<dimensions, Kernel, count, shifted, varies>;
   float* records = packed.prepare(context, Row::payload);
   pack_scalars<count>(context, records, Row::width, in, first);
-  if constexpr (varies) {
-    const std::size_t n = context.list->particles();
-    const auto w = static_cast<std::size_t>(Row::width);
-    const auto write = [&, w](std::size_t record, std::size_t i) {
-      float* extra = records + record * w + dimensions + count;
-      extra[0] = in.eddy_viscosity == nullptr ? 0 : std::max(in.eddy_viscosity[i], 0.0F);
-      extra[1] = context.volume_ratio == nullptr ? 1 : context.volume_ratio[i];
-    };
-    parallel_for(n, [&](std::size_t i) { write(i, i); });
-    const std::int32_t* source = context.images->source();
-    parallel_for(context.images->size(), [&](std::size_t k) { write(n + k, static_cast<std::size_t>(source[k])); });
-  }
+  const std::size_t n = context.list->particles();
+  const auto w = static_cast<std::size_t>(Row::width);
+  const auto write = [&, w](std::size_t record, std::size_t i) {
+    float* behind = records + record * w + dimensions + count;
+    behind[0] = in.normalisation[i];
+    if constexpr (varies) {
+      behind[1] = in.eddy_viscosity == nullptr ? 0 : std::max(in.eddy_viscosity[i], 0.0F);
+      behind[2] = context.volume_ratio == nullptr ? 1 : context.volume_ratio[i];
+    }
+  };
+  parallel_for(n, [&](std::size_t i) { write(i, i); });
+  const std::int32_t* source = context.images->source();
+  parallel_for(context.images->size(), [&](std::size_t k) { write(n + k, static_cast<std::size_t>(source[k])); });
   const Row row{context, records, in, out, first};
   sweep(context.list->particles(), [&](std::size_t i) { row(i); });
 }

@@ -17,7 +17,7 @@ struct SweptScalars {
   std::vector<Array<double>> values;
   std::vector<float> diffusivity, inverse_schmidt;
   std::vector<double> reference;
-  Array<float> eddy;
+  Array<float> eddy, normalisation;
   VectorArrays<float> shift;
   std::vector<Array<float>> rate, change;
   Array<float> exchange;
@@ -42,6 +42,8 @@ struct SweptScalars {
     exchange.resize(n);
     eddy.resize(n);
     for (std::size_t i = 0; i < n; ++i) eddy[i] = eddies ? static_cast<float>(uniform(i, 90)[0]) : 0;
+    normalisation.resize(n);
+    for (std::size_t i = 0; i < n; ++i) normalisation[i] = static_cast<float>(0.5 + uniform(i, 91)[0]);
     if (shifted)
       for (int axis = 0; axis < a.dimensions(); ++axis) {
         auto way = a.random(60 + static_cast<std::uint32_t>(axis));
@@ -52,6 +54,7 @@ struct SweptScalars {
                            {.values = in,
                             .reference = reference,
                             .diffusivity = diffusivity,
+                            .normalisation = normalisation.data(),
                             .eddy_viscosity = eddies ? eddy.data() : nullptr,
                             .inverse_schmidt = inverse_schmidt,
                             .shift = shifted ? shift.read() : std::array<const float*, 3>{},
@@ -71,13 +74,15 @@ TEST(ScalarTransport, RatesChangesAndExchangeAgreeWithTheSlowTwin) {
           const SweptScalars swept(a, moments, count, eddies, shifted);
           Comparison rates("rate"), changes("change"), exchanges("exchange");
           for (std::size_t i = 0; i < a.size(); i += 7) {
-            // Beside that of a sum: the rounding of the value as a float, of the mean viscosity and of three products.
-            const double rounding = a.twin.tolerance(i) + 12 * std::ldexp(1.0, -24);
+            // Beside that of a sum: the rounding of the value as a float, of the means of viscosity and a and of four
+            // products.
+            const double rounding = a.twin.tolerance(i) + 16 * std::ldexp(1.0, -24);
             reference::Sum most;
             for (std::size_t s = 0; s < count; ++s) {
               const double share = eddies ? swept.inverse_schmidt[s] : 0;
-              auto rate = twin.rate(i, swept.values[s], swept.diffusivity[s], swept.eddy, share);
-              const auto weights = twin.rate(i, swept.values[s], swept.diffusivity[s], swept.eddy, share, true);
+              auto rate = twin.rate(i, swept.values[s], swept.diffusivity[s], swept.normalisation, swept.eddy, share);
+              const auto weights =
+                  twin.rate(i, swept.values[s], swept.diffusivity[s], swept.normalisation, swept.eddy, share, true);
               rate.magnitude += 4 * weights.magnitude;  // values are held relative to -1
               rates.add(swept.rate[s][i], rate, rounding, i);
               if (weights.value > most.value) most = weights;
@@ -110,10 +115,10 @@ TEST(ScalarTransport, WhatAParticleGainsAnotherLoses) {
       double sum = 0, bound = 0;
       for (std::size_t i = 0; i < a.size(); ++i) {
         sum += swept.rate[s][i];
-        const auto weights =
-            twin.rate(i, swept.values[s], swept.diffusivity[s], swept.eddy, swept.inverse_schmidt[s], true);
+        const auto weights = twin.rate(i, swept.values[s], swept.diffusivity[s], swept.normalisation, swept.eddy,
+                                       swept.inverse_schmidt[s], true);
         bound += 4 * weights.magnitude *
-                 (a.twin.tolerance(i) + (12 + 8 / a.context.smoothing_length) * std::ldexp(1.0, -24));
+                 (a.twin.tolerance(i) + (16 + 8 / a.context.smoothing_length) * std::ldexp(1.0, -24));
       }
       EXPECT_LE(std::abs(sum), bound);
       EXPECT_GT(swept.exchange[0], 0);
@@ -127,7 +132,8 @@ TEST(ScalarTransport, AUniformValueStays) {
     const Moments moments(a);
     Array<double> uniform_value(a.size());
     uniform_value.fill(0.3);
-    Array<float> rate(a.size()), change(a.size()), exchange(a.size());
+    Array<float> rate(a.size()), change(a.size()), exchange(a.size()), normalisation(a.size());
+    normalisation.fill(1);
     VectorArrays<float> shift;
     for (int axis = 0; axis < a.dimensions(); ++axis) shift[axis] = to_float(a.random(60));
     const double* in[] = {uniform_value.data()};
@@ -139,6 +145,7 @@ TEST(ScalarTransport, AUniformValueStays) {
                            {.values = in,
                             .reference = reference,
                             .diffusivity = diffusivity,
+                            .normalisation = normalisation.data(),
                             .inverse_schmidt = {},
                             .shift = shift.read(),
                             .correction = moments.read_correction()},

@@ -21,14 +21,15 @@ struct ScalarTransport {
   static bool exchanges(const SphSums::Pair& pair) { return !pair.point->in_solid; }
 
   // dc_i/dt; with `exchange` the sum of the weights in its place.
-  template <class Scalar, class Eddy>
-  Sum rate(std::size_t i, const Scalar& c, double diffusivity, const Eddy& eddy, double share,
-           bool exchange = false) const {
+  template <class Scalar, class Field>
+  Sum rate(std::size_t i, const Scalar& c, double diffusivity, const Field& normalisation, const Field& eddy,
+           double share, bool exchange = false) const {
     Sum sum;
     sums.each(i, [&](const SphSums::Pair& p) {
       if (!exchanges(p)) return;
       const std::size_t j = p.point->source;
-      const double k = diffusivity + share * (eddy[i] + eddy[j]) / 2;
+      const double k =
+          (double{normalisation[i]} + normalisation[j]) / 2 * (diffusivity + share * (double{eddy[i]} + eddy[j]) / 2);
       const double factor = 2 * sums.volume_ratio(i) * sums.volume_ratio(j) * k;
       if (exchange)
         sum.add(factor * slope(p.r), factor * slope(0), 1, 1);

@@ -5,11 +5,12 @@
 // With g_ij of sph_operators.hpp taken at the smoothing length h of the context, whatever that of the particles, and
 // volumes over that of the context, v_i = V_i / V,
 //
-//   dc_i/dt = sum_j 2 g_ij v_i v_j k_ij (c_j - c_i),   k_ij = D + (nu_i + nu_j) / (2 Sc),
+//   dc_i/dt = sum_j 2 g_ij v_i v_j k_ij (c_j - c_i),   k_ij = (a_i + a_j) / 2 (D + (nu_i + nu_j) / (2 Sc)),
 //
-// what a particle gains, V dc_i/dt, another loses: the pairs are antisymmetric but for the rounding of floats. Images
-// of the sides of the domain exchange as the particles that they mirror, so that nothing passes a wall. Wall points of
-// bodies, images in solid boxes and points behind openings exchange nothing.
+// with a_i, d / div r_i in the bulk, for what the sums lack of the Laplacian of a quadratic function. What a particle
+// gains, V dc_i/dt, another loses: the pairs are antisymmetric but for the rounding of floats. Images of the sides of
+// the domain exchange as the particles that they mirror, so that nothing passes a wall. Wall points of bodies, images
+// in solid boxes and points behind openings exchange nothing.
 //
 // A particle that is shifted by s takes the change s . grad c with the corrected gradient (3.8), bounded by half of the
 // extreme differences c_j - c_i from its neighbours, as the velocity does.
@@ -27,6 +28,7 @@ struct ScalarSweepInput {
   // Subtracted before values become floats. The least value keeps what is next to it exact: positive values stay so.
   std::span<const double> reference;
   std::span<const float> diffusivity;      // D per scalar
+  const float* normalisation = nullptr;    // a per particle
   const float* eddy_viscosity = nullptr;   // nu per particle; null: none
   std::span<const float> inverse_schmidt;  // 1 / Sc per scalar; read with an eddy viscosity
   std::array<const float*, 3> shift{};     // s; null: no shift

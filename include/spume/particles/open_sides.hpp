@@ -65,7 +65,7 @@ class OpenSides {
 
   std::int64_t entered() const { return entered_; }  // particles, since the start
   std::int64_t next_identifier() const { return next_identifier_; }
-  std::int64_t left() const { return left_; }        // net of those that came back
+  std::int64_t left() const { return left_; }  // net of those that came back
   std::size_t points() const { return points_.size(); }
 
   void save(StateWriter& writer) const;

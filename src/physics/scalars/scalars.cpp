@@ -13,6 +13,9 @@ namespace {
 // dt sum_j w_ij above which explicit diffusion overshoots half of the differences from the neighbours.
 constexpr double largest_exchange = 0.5;
 
+// Of the lattice: below it a surface cuts the kernel, and what is missing there exchanges nothing.
+constexpr double least_divergence_of_position = 0.95;
+
 void set_values(const ParticleStore& particles, const Expression& expression, double t, Array<double>& values,
                 const std::function<bool(std::size_t)>& wanted) {
   parallel_blocks(particles.size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
@@ -34,7 +37,7 @@ double least(const Array<double>& values, std::size_t n) {
 Scalars::Scalars(ParticleStore& particles, const Resolution& resolution, const ScalarOptions& options)
     : particles_(particles),
       options_(options),
-      lattice_factor_(particles.dimensions / resolution.lattice.divergence_of_position),
+      bulk_(resolution.lattice.divergence_of_position),
       rate_(options.scalars.size()),
       change_(options.scalars.size()) {
   const std::size_t count = options.scalars.size();
@@ -65,21 +68,21 @@ double Scalars::amount(std::size_t scalar) const {
 void Scalars::lease() {
   for (auto* arrays : {&rate_, &change_})
     for (Array<float>& array : *arrays) particles_.scratch().lease(array, particles_.size());
-  particles_.scratch().lease(exchange_, particles_.size());
+  for (Array<float>* array : {&exchange_, &normalisation_}) particles_.scratch().lease(*array, particles_.size());
 }
 
 void Scalars::release() {
   for (auto* arrays : {&rate_, &change_})
     for (Array<float>& array : *arrays) particles_.scratch().release(array);
-  particles_.scratch().release(exchange_);
+  for (Array<float>* array : {&exchange_, &normalisation_}) particles_.scratch().release(*array);
 }
 
 void Scalars::sweep(const Carrier& carrier, bool shifted) {
   for (std::size_t s = 0; s < size(); ++s) {
     packed_.values[s] = fields_[s]->data();
     packed_.reference[s] = least(*fields_[s], particles_.size());
-    packed_.diffusivity[s] = static_cast<float>(lattice_factor_ * option(s).diffusivity);
-    packed_.inverse_schmidt[s] = static_cast<float>(lattice_factor_ / option(s).turbulent_schmidt);
+    packed_.diffusivity[s] = static_cast<float>(option(s).diffusivity);
+    packed_.inverse_schmidt[s] = static_cast<float>(1 / option(s).turbulent_schmidt);
     packed_.rate[s] = rate_[s].data();
     packed_.change[s] = change_[s].data();
   }
@@ -88,6 +91,7 @@ void Scalars::sweep(const Carrier& carrier, bool shifted) {
       {.values = packed_.values,
        .reference = packed_.reference,
        .diffusivity = packed_.diffusivity,
+       .normalisation = normalisation_.data(),
        .eddy_viscosity = carrier.eddy_viscosity == nullptr ? nullptr : carrier.eddy_viscosity->data(),
        .inverse_schmidt = packed_.inverse_schmidt,
        .shift = shifted ? read(carrier.shift) : std::array<const float*, 3>{},
@@ -161,6 +165,11 @@ std::int64_t Scalars::transport(double dt, const Carrier& carrier) {
                                                        [](const ScalarOption& one) { return one.diffusivity > 0; });
   if (particles_.size() == 0 || !(shifted || diffuses)) return 0;
   lease();
+  const Array<float>& div_r = *carrier.moments.divergence_of_position;
+  parallel_for(particles_.size(), [&](std::size_t i) {
+    normalisation_[i] =
+        static_cast<float>(particles_.dimensions / std::max<double>(div_r[i], least_divergence_of_position * bulk_));
+  });
   sweep(carrier, shifted);
   const double exchange = parallel_max(particles_.size(), 0.0, [&](std::size_t i) { return double{exchange_[i]}; });
   substeps_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(dt * exchange / largest_exchange)));

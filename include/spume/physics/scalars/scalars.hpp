@@ -63,10 +63,10 @@ class Scalars {
 
   ParticleStore& particles_;
   const ScalarOptions& options_;
-  const double lattice_factor_;  // that the sums of a lattice lack of the Laplacian
+  const double bulk_;  // div r of the lattice
   std::vector<Array<double>*> fields_;
   std::vector<Array<float>> rate_, change_;  // leased within transport()
-  Array<float> exchange_;
+  Array<float> exchange_, normalisation_;
   struct {  // of a sweep, per scalar: kept, as a step allocates nothing
     std::vector<const double*> values;
     std::vector<double> reference;
