@@ -67,14 +67,16 @@ struct ScalarRow {
       if (varies && in.eddy_viscosity != nullptr) share[s] = in.inverse_schmidt[first + s];
     }
     [[maybe_unused]] const Shift shift = shift_of(i, ratio);
-    std::array<f32n, count> rate{}, along{}, low{}, high{};
+    std::array<f32n, count> rate{}, eddy_rate{}, along{}, low{}, high{};
     f32n exchange{}, eddy_exchange{};
     for_each_batch<dimensions, payload>(*context.list, records, i, scale.inverse_h / ratio, [&](const auto& b) {
-      const auto exchanging = b.payload[0] < simd::splat<f32n>(exchanges_nothing);
+      // Differences from what exchanges nothing, and from the sentinel, count as none.
+      const auto counts = (b.payload[0] < simd::splat<f32n>(exchanges_nothing)) &
+                          (b.q < simd::splat<f32n>(static_cast<float>(Kernel::support)));
       f32n weight = (-own_volume * scale.gradient) * (own_normalisation + b.payload[count]) *
                     Kernel::f(varies ? b.q * ratio : b.q);
       if constexpr (varies) weight = weight * b.payload[count + 2];
-      weight = exchanging ? weight : f32n{};
+      weight = counts ? weight : f32n{};
       exchange = exchange + weight;
       [[maybe_unused]] f32n by_eddies{}, pull{};
       if constexpr (varies) {
@@ -83,29 +85,24 @@ struct ScalarRow {
       }
       if constexpr (shifted) {
         for (int a = 0; a < dimensions; ++a) pull = pull + b.d[a] * shift.direction[a];
-        pull = pull * (-shift.gradient * Kernel::f(b.q));
+        pull = pull * Kernel::f(b.q);
         if constexpr (varies) pull = pull * b.payload[count + 2];
-        pull = exchanging ? pull : f32n{};
       }
       for (int s = 0; s < count; ++s) {
-        const f32n difference = b.payload[s] - own_record[s];
-        if constexpr (varies)
-          rate[s] = rate[s] + difference * (weight * diffusivity[s] + by_eddies * share[s]);
-        else
-          rate[s] = rate[s] + difference * (weight * diffusivity[s]);
+        const f32n difference = counts ? b.payload[s] - own_record[s] : f32n{};
+        rate[s] = rate[s] + weight * difference;
+        if constexpr (varies) eddy_rate[s] = eddy_rate[s] + by_eddies * difference;
         if constexpr (shifted) {
           along[s] = along[s] + pull * difference;
-          f32n within = exchanging ? difference : f32n{};
-          within = b.q < simd::splat<f32n>(static_cast<float>(Kernel::support)) ? within : f32n{};
-          low[s] = simd::min(low[s], within);
-          high[s] = simd::max(high[s], within);
+          low[s] = simd::min(low[s], difference);
+          high[s] = simd::max(high[s], difference);
         }
       }
     });
     const float all = simd::sum(exchange), all_by_eddies = simd::sum(eddy_exchange);
     float most = first == 0 ? 0 : out.exchange[i];
     for (std::size_t s = 0; s < scalars; ++s) {
-      out.rate[first + s][i] = simd::sum(rate[s]);
+      out.rate[first + s][i] = diffusivity[s] * simd::sum(rate[s]) + share[s] * simd::sum(eddy_rate[s]);
       most = std::max(most, diffusivity[s] * all + share[s] * all_by_eddies);
       if constexpr (shifted) {
         float least = 0, largest = 0;
@@ -113,7 +110,7 @@ struct ScalarRow {
           least = std::min<float>(least, low[s][l]);
           largest = std::max<float>(largest, high[s][l]);
         }
-        out.change[first + s][i] = std::clamp(simd::sum(along[s]), 0.5F * least, 0.5F * largest);
+        out.change[first + s][i] = std::clamp(-shift.gradient * simd::sum(along[s]), 0.5F * least, 0.5F * largest);
       }
     }
     out.exchange[i] = most;

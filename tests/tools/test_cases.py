@@ -119,6 +119,34 @@ class TaylorGreen(CaseTest):
         self.assertAlmostEqual(measured["decay_rate_error"], 0.02, places=9)
 
 
+class Tracer(CaseTest):
+    def errors(self, factor, layers=1.0):
+        folder, module = self.run_of("tracer")
+        grid = lattice([0, 0], [1, 1], 0.05)
+        t = np.linspace(0, 1, 11)
+        write_table(folder / "series.csv", series_of(t, amount_of_dye=1 + 0 * t, amount_of_slow_dye=1 + 1e-9 * t,
+                                                     amount_of_layers=0.5 + 0 * t))
+
+        def exact(diffusivity):
+            return lambda p, t: 1 + factor * np.exp(-8 * np.pi**2 * diffusivity * t) * module.shape(p)
+        write_snapshots(folder / "fluid.vtkhdf", [0, 1], lambda t: grid,
+                        {"dye": exact(0.01), "slow_dye": exact(0.001), "layers": lambda p, t: layers * (p[:, 1] > 0.5)})
+        return module.measure({"run": Results(folder)})
+
+    def test_exact_solution_has_no_error(self):
+        measured = self.errors(1)
+        self.assertLess(measured["dye_error"], 1e-6)
+        self.assertLess(measured["slow_dye_error"], 1e-6)
+        self.assertEqual(measured["new_extrema"], 0)
+
+    def test_wrong_decay_amounts_and_extrema_are_seen(self):
+        measured = self.errors(1.02, layers=1.01)
+        # The rms of cos cos is 1/2.
+        self.assertAlmostEqual(measured["dye_error"], 0.01 * np.exp(-0.08 * np.pi**2), places=6)
+        self.assertAlmostEqual(measured["amount_change"], 1e-9, places=12)
+        self.assertAlmostEqual(measured["new_extrema"], 0.01, places=6)
+
+
 class Beltrami(CaseTest):
     def test_field_agrees_with_the_published_points(self):
         module = load_measure(CASES / "beltrami")

@@ -68,13 +68,14 @@ double Scalars::amount(std::size_t scalar) const {
 void Scalars::lease() {
   for (auto* arrays : {&rate_, &change_})
     for (Array<float>& array : *arrays) particles_.scratch().lease(array, particles_.size());
-  for (Array<float>* array : {&exchange_, &normalisation_}) particles_.scratch().lease(*array, particles_.size());
+  for (Array<float>* array : {&exchange_, &normalisation_, &interior_})
+    particles_.scratch().lease(*array, particles_.size());
 }
 
 void Scalars::release() {
   for (auto* arrays : {&rate_, &change_})
     for (Array<float>& array : *arrays) particles_.scratch().release(array);
-  for (Array<float>* array : {&exchange_, &normalisation_}) particles_.scratch().release(*array);
+  for (Array<float>* array : {&exchange_, &normalisation_, &interior_}) particles_.scratch().release(*array);
 }
 
 void Scalars::sweep(const Carrier& carrier, bool shifted) {
@@ -99,61 +100,46 @@ void Scalars::sweep(const Carrier& carrier, bool shifted) {
       {.rate = packed_.rate, .change = packed_.change, .exchange = exchange_.data()});
 }
 
-void Scalars::apply_shift(const Carrier& carrier) {
+void Scalars::apply(double dt, bool shifted) {
   struct Sums {
-    double gains = 0, losses = 0;
+    double net = 0, moved = 0;     // of the rates
+    double gains = 0, losses = 0;  // of the changes
   };
   const std::size_t n = particles_.size();
   for (std::size_t s = 0; s < size(); ++s) {
-    const Array<float>& change = change_[s];
-    const auto of = [&](std::size_t i) { return carrier.interior(i) * change[i]; };
+    const float *rate = rate_[s].data(), *change = change_[s].data(), *interior = interior_.data();
     const Sums sums = parallel_reduce(
         n, Sums{},
-        [&](std::size_t first, std::size_t last) {
-          Sums part;
-          for (std::size_t i = first; i < last; ++i) {
-            const double by = of(i);
-            (by > 0 ? part.gains : part.losses) += std::abs(by);
-          }
-          return part;
-        },
-        [](const Sums& a, const Sums& b) {
-          return Sums{a.gains + b.gains, a.losses + b.losses};
-        });
-    const double both = std::min(sums.gains, sums.losses);
-    if (both == 0) continue;
-    const double gain = both / sums.gains, loss = both / sums.losses;
-    parallel_for(n, [&](std::size_t i) {
-      const double by = of(i);
-      (*fields_[s])[i] += by * (by > 0 ? gain : loss);
-    });
-  }
-}
-
-void Scalars::apply_rates(double dt) {
-  struct Sums {
-    double net = 0, moved = 0;
-  };
-  const std::size_t n = particles_.size();
-  for (std::size_t s = 0; s < size(); ++s) {
-    const Array<float>& rate = rate_[s];
-    const Sums sums = parallel_reduce(
-        n, Sums{},
-        [&](std::size_t first, std::size_t last) {
+        [=](std::size_t first, std::size_t last) {
           Sums part;
           for (std::size_t i = first; i < last; ++i) {
             part.net += rate[i];
-            part.moved += std::abs(rate[i]);
+            part.moved += std::abs(double{rate[i]});
           }
+          if (shifted)
+            for (std::size_t i = first; i < last; ++i) {
+              const double by = double{interior[i]} * change[i];
+              part.gains += std::max(by, 0.0);
+              part.losses += std::max(-by, 0.0);
+            }
           return part;
         },
         [](const Sums& a, const Sums& b) {
-          return Sums{a.net + b.net, a.moved + b.moved};
+          return Sums{a.net + b.net, a.moved + b.moved, a.gains + b.gains, a.losses + b.losses};
         });
-    if (sums.moved == 0) continue;
-    const double excess = sums.net / sums.moved;
-    parallel_for(
-        n, [&](std::size_t i) { (*fields_[s])[i] += dt * (double{rate[i]} - excess * std::abs(double{rate[i]})); });
+    const double excess = sums.moved > 0 ? sums.net / sums.moved : 0;
+    const double both = std::min(sums.gains, sums.losses);
+    const double gain = both > 0 ? both / sums.gains : 0, loss = both > 0 ? both / sums.losses : 0;
+    double* values = fields_[s]->data();
+    parallel_blocks(n, default_block, [=](std::size_t, std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i)
+        values[i] += dt * (double{rate[i]} - excess * std::abs(double{rate[i]}));
+      if (both > 0)
+        for (std::size_t i = first; i < last; ++i) {
+          const double by = double{interior[i]} * change[i];
+          values[i] += by * (by > 0 ? gain : loss);
+        }
+    });
   }
 }
 
@@ -169,16 +155,16 @@ std::int64_t Scalars::transport(double dt, const Carrier& carrier) {
   parallel_for(particles_.size(), [&](std::size_t i) {
     normalisation_[i] =
         static_cast<float>(particles_.dimensions / std::max<double>(div_r[i], least_divergence_of_position * bulk_));
+    interior_[i] = shifted ? static_cast<float>(carrier.interior(i)) : 0;
   });
   sweep(carrier, shifted);
   const double exchange = parallel_max(particles_.size(), 0.0, [&](std::size_t i) { return double{exchange_[i]}; });
   substeps_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(dt * exchange / largest_exchange)));
   const double part = dt / static_cast<double>(substeps_);
-  if (shifted) apply_shift(carrier);
-  apply_rates(part);
+  apply(part, shifted);
   for (std::int64_t k = 1; k < substeps_; ++k) {
     sweep(carrier, false);
-    apply_rates(part);
+    apply(part, false);
   }
   release();
   return substeps_;

@@ -4,7 +4,7 @@
 // The amount of a scalar is the sum of c V over the particles, V their volume of liquid. It changes by the rounding of
 // doubles alone, where no liquid enters or leaves:
 //   - Diffusion exchanges between pairs (operators/scalar_transport.hpp). What the float sums of a sweep leave of their
-//     total, 1e-7 of what is exchanged, is taken out of the rates in proportion to their size.
+//     total is taken out of the rates in proportion to their size.
 //   - A shift changes values by s . grad c. Where the gains exceed the losses the gains are scaled down to them, and
 //   the
 //     other way round: the factor is at most 1.
@@ -56,8 +56,7 @@ class Scalars {
 
  private:
   void sweep(const Carrier& carrier, bool shifted);
-  void apply_shift(const Carrier& carrier);
-  void apply_rates(double dt);
+  void apply(double dt, bool shifted);
   void lease();
   void release();
 
@@ -66,7 +65,7 @@ class Scalars {
   const double bulk_;  // div r of the lattice
   std::vector<Array<double>*> fields_;
   std::vector<Array<float>> rate_, change_;  // leased within transport()
-  Array<float> exchange_, normalisation_;
+  Array<float> exchange_, normalisation_, interior_;
   struct {  // of a sweep, per scalar: kept, as a step allocates nothing
     std::vector<const double*> values;
     std::vector<double> reference;
