@@ -299,7 +299,7 @@ void Images::build(const ImageRules& rules, const CellGrid& grid, const double* 
   if (!wall_point_.empty()) reorder(wall_point_, scratch_);
 }
 
-void Images::move(const ImageRules& rules, const std::array<const double*, 3>& position) {
+void Images::move(const ImageRules& rules, const std::array<const double*, 3>& position, const WallPointView* walls) {
   // Along every axis a path is x -> sign x + shift.
   for (int axis = 0; axis < rules.dimensions; ++axis) {
     const double lower = rules.lower[axis], upper = rules.upper[axis];
@@ -307,7 +307,8 @@ void Images::move(const ImageRules& rules, const std::array<const double*, 3>& p
     double* to = position_[axis].data();
     parallel_for(source_.size(), [&, from, to, axis](std::size_t k) {
       const int side = paths_[static_cast<std::size_t>(path_[k])].side[axis];
-      const double x = from[source_[k]];
+      const bool of_point = walls != nullptr && wall_point_[k] >= 0;
+      const double x = of_point ? walls->position[axis][wall_point_[k]] : from[source_[k]];
       if (side < 0)
         to[k] = x;
       else if (rules.sides[axis][side] == ImageKind::mirror)

@@ -21,6 +21,22 @@ void with_wcsph_dimensions(const SweepContext& context, Body&& body) {
     body.template operator()<3>();
 }
 
+// What pairs differ in: nothing; phases; or also walls, which are of the phase of the particle that they meet.
+enum class Phases { one, several, beside_walls };
+
+// In the place of a property, which is never negative.
+constexpr float of_wall = -1;
+
+// Walls have the property of the particle itself.
+void mark_walls(const SweepContext& context, float* records, int width, int slot) {
+  const std::size_t n = context.list->particles();
+  const std::int32_t* point = context.images->wall_point();
+  if (point == nullptr) return;
+  parallel_for(context.images->size(), [&](std::size_t k) {
+    if (point[k] >= 0) records[(n + k) * width + context.dimensions + slot] = of_wall;
+  });
+}
+
 [[gnu::always_inline]] inline f32n equals(f32n a, f32n b, f32n then) {
   return a == b ? then : f32n{};
 }
@@ -51,9 +67,10 @@ struct ContinuityLayout {
   static constexpr int width = record_width(dimensions, payload);
 };
 
-template <int dimensions, bool several, bool viscous, bool friction, bool shifted>
+template <int dimensions, Phases phases, bool viscous, bool friction, bool shifted>
 void continuity(const SweepContext& context, PackedNeighbours& packed, const ContinuityFields& fields,
                 const ContinuityOut& out) {
+  constexpr bool several = phases != Phases::one, walls = phases == Phases::beside_walls;
   using At = ContinuityLayout<dimensions, several, viscous, friction, shifted>;
   constexpr int width = At::width;
   float* records = packed.prepare(context, At::payload);
@@ -62,6 +79,8 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
   pack_scalar(context, records, width, At::excess, fields.excess);
   if constexpr (viscous) pack_scalar(context, records, width, At::viscosity, fields.viscosity);
   if constexpr (several) pack_scalar(context, records, width, At::phase, fields.phase);
+  if constexpr (walls && viscous) mark_walls(context, records, width, At::viscosity);
+  if constexpr (walls) mark_walls(context, records, width, At::phase);
   if constexpr (friction) pack_velocity(context, records, width, At::held, fields.velocity, *fields.friction);
   if constexpr (shifted) pack_vector(context, records, width, At::shift, fields.shift, *fields.reflection);
   const KernelScale<dimensions, Kernel> scale(context);
@@ -81,8 +100,13 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
       diffusion = diffusion + same * (b.payload[At::excess] - own[At::excess]);
       if constexpr (viscous) {
         f32n drag = weight;
-        if constexpr (several)
-          drag = drag * harmonic_mean(simd::splat<f32n>(own[At::viscosity]), b.payload[At::viscosity]);
+        [[maybe_unused]] const f32n own_viscosity = simd::splat<f32n>(own[At::viscosity]),
+                                    other = b.payload[At::viscosity];
+        if constexpr (walls)
+          drag = drag * (harmonic_mean(own_viscosity, simd::max(other, f32n{})) +
+                         equals(other, simd::splat<f32n>(of_wall), own_viscosity));
+        else if constexpr (several)
+          drag = drag * harmonic_mean(own_viscosity, other);
         constexpr int u = friction ? At::held : At::velocity;
         for (int a = 0; a < dimensions; ++a) force[a] = force[a] + drag * (b.payload[u + a] - own[a]);
       }
@@ -121,24 +145,29 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
   });
 }
 
-template <int dimensions, bool several, bool concentrated>
+template <int dimensions, Phases phases, bool concentrated>
 void pressure_force(const SweepContext& context, PackedNeighbours& packed, const PressureFields& fields,
                     const std::array<float*, 3>& out, const std::array<float*, 3>& concentration) {
+  constexpr bool several = phases != Phases::one;
   constexpr int payload = several ? 3 : 2, width = record_width(dimensions, payload);
   const std::size_t n = context.list->particles();
   float* records = packed.prepare(context, payload);
   pack_scalar(context, records, width, 0, fields.volume);
   parallel_for(n, [&](std::size_t i) { records[i * width + dimensions + 1] = static_cast<float>(fields.pressure[i]); });
+  const std::int32_t* point = context.walls == nullptr ? nullptr : context.images->wall_point();
   parallel_for(context.images->size(), [&](std::size_t k) {
-    const auto source = static_cast<std::size_t>(context.images->source()[k]);
+    const bool of_point = point != nullptr && point[k] >= 0;
+    const auto source = static_cast<std::size_t>(of_point ? point[k] : context.images->source()[k]);
+    const auto& from = of_point ? fields.wall_position : fields.position;
     double head = 0;
     for (int a = 0; a < dimensions; ++a)
-      if (fields.gravity[a] != 0)
-        head += fields.gravity[a] * (context.images->position(a)[k] - fields.position[a][source]);
+      if (fields.gravity[a] != 0) head += fields.gravity[a] * (context.images->position(a)[k] - from[a][source]);
     records[(n + k) * width + dimensions + 1] =
-        static_cast<float>(fields.pressure[source] + fields.density[source] * head);
+        of_point ? static_cast<float>(fields.wall_pressure[source] + fields.wall_density[source] * head)
+                 : static_cast<float>(fields.pressure[source] + fields.density[source] * head);
   });
   if constexpr (several) pack_scalar(context, records, width, 2, fields.density);
+  if constexpr (phases == Phases::beside_walls) mark_walls(context, records, width, 2);
   const auto h = static_cast<float>(context.smoothing_length);
   const KernelScale<dimensions, Kernel> scale(context);
   sweep(n, [&](std::size_t i) {
@@ -148,8 +177,11 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
       f32n both = b.payload[1] + own[1];
       if constexpr (several) {
         const f32n zero{}, own_density = simd::splat<f32n>(own[2]);
-        const f32n jump = simd::max(b.payload[2] - own_density, own_density - b.payload[2]);
-        both = both + fields.repulsion * (jump / (b.payload[2] + own_density)) * simd::max(both, zero - both);
+        f32n other = b.payload[2];
+        if constexpr (phases == Phases::beside_walls)
+          other = simd::max(other, zero) + equals(other, simd::splat<f32n>(of_wall), own_density);
+        const f32n jump = simd::max(other - own_density, own_density - other);
+        both = both + fields.repulsion * (jump / (other + own_density)) * simd::max(both, zero - both);
       }
       const f32n share = Kernel::f(b.q) * b.payload[0];
       if constexpr (concentrated)
@@ -168,7 +200,7 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
 void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, const ContinuityFields& fields,
                       const ContinuityOut& out) {
   with_wcsph_dimensions(context, [&]<int dimensions>() {
-    const auto run = [&]<bool several, bool shifted>() {
+    const auto run = [&]<Phases several, bool shifted>() {
       if (fields.viscosity == nullptr)
         continuity<dimensions, several, false, false, shifted>(context, packed, fields, out);
       else if (fields.friction == nullptr)
@@ -178,12 +210,14 @@ void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, con
     };
     if (fields.phase != nullptr && fields.shift[0] != nullptr)
       throw std::logic_error("particles of several phases are not shifted");
-    if (fields.phase != nullptr)
-      run.template operator()<true, false>();
+    if (fields.phase != nullptr && context.walls != nullptr)
+      run.template operator()<Phases::beside_walls, false>();
+    else if (fields.phase != nullptr)
+      run.template operator()<Phases::several, false>();
     else if (fields.shift[0] != nullptr)
-      run.template operator()<false, true>();
+      run.template operator()<Phases::one, true>();
     else
-      run.template operator()<false, false>();
+      run.template operator()<Phases::one, false>();
   });
 }
 
@@ -191,12 +225,14 @@ void pressure_force_sweep(const SweepContext& context, PackedNeighbours& packed,
                           const std::array<float*, 3>& out, const std::array<float*, 3>& concentration) {
   with_wcsph_dimensions(context, [&]<int dimensions>() {
     if (fields.several && concentration[0] != nullptr) throw std::logic_error("the concentration is that of one phase");
-    if (fields.several)
-      pressure_force<dimensions, true, false>(context, packed, fields, out, concentration);
+    if (fields.several && context.walls != nullptr)
+      pressure_force<dimensions, Phases::beside_walls, false>(context, packed, fields, out, concentration);
+    else if (fields.several)
+      pressure_force<dimensions, Phases::several, false>(context, packed, fields, out, concentration);
     else if (concentration[0] != nullptr)
-      pressure_force<dimensions, false, true>(context, packed, fields, out, concentration);
+      pressure_force<dimensions, Phases::one, true>(context, packed, fields, out, concentration);
     else
-      pressure_force<dimensions, false, false>(context, packed, fields, out, concentration);
+      pressure_force<dimensions, Phases::one, false>(context, packed, fields, out, concentration);
   });
 }
 

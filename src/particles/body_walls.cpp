@@ -61,6 +61,7 @@ void BodyWalls::gather_points() {
   if (scene_.motions.empty()) return;
   points_.resize(standing_);
   body_.resize(standing_);
+  origin_.clear();
   for (std::size_t part = 1; part < parts_.size(); ++part) {
     const RigidWalls& walls = *parts_[part];
     const std::size_t count = walls.points().size();
@@ -77,6 +78,7 @@ void BodyWalls::gather_points() {
       if (seen[g] == 0) continue;
       points_.push_back(now[g]);
       body_.push_back(static_cast<std::uint8_t>(walls.body_of(g)));
+      origin_.push_back({static_cast<std::int32_t>(part), static_cast<std::int32_t>(g)});
     }
   }
 }
@@ -256,6 +258,99 @@ void BodyWalls::set_surfaces(double t, double ahead) {
   details.option = scene_.motions.empty() ? "body.velocity" : "body.displacement";
   details.value = largest_speed_;
   throw StepFailure(details);
+}
+
+void BodyWalls::take_all_points(double t) {
+  if (!scene_.motions.empty()) move_to(t);
+  const std::size_t count = points_.size();
+  stencils_.clear();
+  stencils_.first.resize(count + 1);
+  stencils_.first.fill(0);
+  stencils_.nearest.resize(count);
+  stencils_.nearest.fill(0);
+  stencils_.no_slip.resize(count);
+  wet_points_.resize(count);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    stencils_.normal[axis].resize(count);
+    stencils_.wall_velocity[axis].resize(count);
+    wet_position_[axis].resize(count);
+  }
+  for (std::size_t g = 0; g < count; ++g) {
+    wet_points_[g] = static_cast<std::int32_t>(g);
+    stencils_.no_slip[g] = scene_.bodies[body_[g]].wall == BoundaryKind::no_slip ? 1 : 0;
+  }
+  place_wet_points(0);
+  set_surfaces(t, t);
+  set_acceleration(t);
+}
+
+void BodyWalls::follow_points(double t) {
+  if (!surfaces_move_) return;
+  for (std::size_t m = 0; m < scene_.motions.size(); ++m) parts_[m + 1]->place = given_place(scene_.motions[m], t);
+  parallel_for(origin_.size(), [&](std::size_t k) {
+    const auto [part, number] = origin_[k];
+    WallPoint& point = points_[standing_ + k];
+    const Vec3 before = point.position;
+    parts_[static_cast<std::size_t>(part)]->now(static_cast<std::size_t>(number), point);
+    for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
+      if (!scene_.domain.periodic(axis)) continue;
+      // The copy of the body that the point was of.
+      const double period = scene_.domain.upper[axis] - scene_.domain.lower[axis];
+      const double shift = period * std::round((before[axis] - point.position[axis]) / period);
+      for (Vec3* place : {&point.position, &point.foot, &point.mirror}) (*place)[axis] += shift;
+    }
+  });
+  place_wet_points(standing_);
+  set_surfaces(t, t);
+  set_acceleration(t);
+}
+
+double BodyWalls::way_of_points(double from, double to) const {
+  double farthest2 = 0;
+  for (std::size_t m = 0; m < scene_.motions.size(); ++m) {
+    const RigidWalls& walls = *parts_[m + 1];
+    const RigidPlace before = given_place(scene_.motions[m], from), after = given_place(scene_.motions[m], to);
+    farthest2 = std::max(farthest2, parallel_max(walls.points().size(), 0.0, [&](std::size_t g) {
+                           const Vec3& start = walls.points()[g].position;
+                           const Vec3 way = subtract(after.now(start), before.now(start));
+                           return dot(way, way);
+                         }));
+  }
+  return std::sqrt(farthest2);
+}
+
+void BodyWalls::place_wet_points(std::size_t from) {
+  parallel_for(points_.size() - from, [&](std::size_t k) {
+    const std::size_t g = from + k;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      wet_position_[axis][g] = points_[g].position[axis];
+      stencils_.normal[axis][g] = static_cast<float>(points_[g].normal[axis]);
+    }
+  });
+}
+
+// By central differences of the velocities, over a time that is short for the motion and long for their rounding.
+void BodyWalls::set_acceleration(double t) {
+  constexpr double share_of_time_scale = 1e-4;
+  if (scene_.motions.empty()) return;
+  for (auto& component : acceleration_) {
+    component.resize(points_.size());
+    component.fill(0);
+  }
+  for (std::size_t m = 0; m < scene_.motions.size(); ++m) {
+    const BodyMotion& motion = scene_.motions[m];
+    RigidWalls& walls = *parts_[m + 1];
+    const double duration = share_of_time_scale * motion.time_scale;
+    walls.behind = given_place(motion, t - duration);
+    walls.ahead = given_place(motion, t + duration);
+    parallel_for(origin_.size(), [&](std::size_t k) {
+      if (static_cast<std::size_t>(origin_[k][0]) != m + 1) return;
+      const WallPoint& at = points_[standing_ + k];
+      const Vec3 gained = subtract(walls.velocity_ahead(at.foot), walls.velocity_behind(at.foot));
+      for (std::size_t axis = 0; axis < 3; ++axis) acceleration_[axis][standing_ + k] = gained[axis] / (2 * duration);
+    });
+    walls.behind = walls.ahead = walls.place;
+  }
 }
 
 void BodyWalls::set_pressure_behind(double duration) {

@@ -142,7 +142,8 @@ void Boundary::make_images(Arrangement& arrangement, const ParticleStore& partic
 
 void Boundary::move_images(Arrangement& arrangement, const std::array<const double*, 3>& at, const WallTimes& times) {
   const double support_radius = arrangement.grid.support_radius();
-  arrangement.images.move(image_rules(support_radius), at);
+  const WallPointView points = bodies_ == nullptr ? WallPointView{} : bodies_->wet();
+  arrangement.images.move(image_rules(support_radius), at, points.size > 0 ? &points : nullptr);
   arrangement.move(at);
   if (features.moving_walls) find_rules(arrangement.images, support_radius, times);
 }

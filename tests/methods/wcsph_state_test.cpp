@@ -98,6 +98,44 @@ velocity = ["-cos(2*pi*x)*sin(2*pi*y)", "sin(2*pi*x)*cos(2*pi*y)"]
 end = 1
 )toml";
 
+// A no-slip paddle that turns across the surface of water, beside a wedge.
+const std::string paddle = R"toml(method = "wcsph"
+[domain]
+lower = [0, 0]
+upper = [1, 1]
+x = "periodic"
+[resolution]
+spacing = 0.05
+[fluid]
+gravity = 1
+[[phase]]
+name = "water"
+density = 1000
+viscosity = 1
+[[phase]]
+name = "air"
+density = 1
+viscosity = 0.01
+[[body]]
+shape = "box"
+size = [0.16, 0.4]
+position = [0.5, 0.6]
+wall = "no-slip"
+angle = "40*sin(6*t)"
+[[body]]
+shape = "outline"
+points = [[0.1, -0.1], [0.3, 0.2], [0.5, -0.1]]
+[[region]]
+phase = "air"
+[[region]]
+phase = "water"
+upper = [1, 0.6]
+[compressibility]
+max_speed = 1.5
+[time]
+end = 1
+)toml";
+
 void until(WcsphRun& run, double end) {
   while (run.method.time() < end - 1e-12)
     run.method.step(std::min(run.method.step_limit().dt, end - run.method.time()), run.ledger);
@@ -159,10 +197,13 @@ TEST_P(WcsphState, ARefusedStepLeavesIt) {
   run.steps(1, dt);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, WcsphState, ::testing::Values(column_in_air, ball_in_stream, periodic_vortices),
-                         [](const auto& info) {
-                           return info.index == 0 ? "Column2D" : info.index == 1 ? "Ball3D" : "Vortices2D";
-                         });
+std::string name_of_case(const ::testing::TestParamInfo<std::string>& info) {
+  const char* const names[] = {"Column2D", "Ball3D", "Vortices2D", "Paddle2D"};
+  return names[info.index];
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, WcsphState, ::testing::Values(column_in_air, ball_in_stream, periodic_vortices, paddle),
+                         name_of_case);
 
 TEST(WcsphAllocations, ASteadyRunAllocatesNothing) {
   const OneThread alone;
@@ -254,7 +295,7 @@ TEST(WcsphPlan, ShiftingIsForOnePhaseWithoutASurface) {
 
 TEST(WcsphPlan, EveryStageCountsItsTraffic) {
   const Overrides shepard{"compressibility.density_filter=\"shepard\"", "compressibility.filter_interval=2"};
-  for (const std::string& text : {column_in_air, periodic_vortices})
+  for (const std::string& text : {column_in_air, periodic_vortices, paddle})
     for (const Overrides& set : {Overrides{}, shepard}) {
       WcsphRun run(text, set);
       run.steps(4, 0.5 * run.method.step_limit().dt);
@@ -289,7 +330,7 @@ TEST(WcsphCases, WhatItCannotDoIsRefusedWithTheFix) {
   EXPECT_THAT(refused(column_in_air, {"interface.surface_tension=1"}), HasSubstr("use method \"gfd\""));
   EXPECT_THAT(refused(replaced(column_in_air, "\"0.1*sin(t)\", \"0\"", "\"0\", \"1\"")), HasSubstr("along its normal"));
   EXPECT_THAT(refused(replaced(column_in_air, "[time]", "[[solid]]\nlower = [1, 0]\nupper = [1.2, 0.3]\n[time]")),
-              HasSubstr("remove it"));
+              HasSubstr("as [[body]]"));
   EXPECT_THAT(refused(ball_in_stream + "[compressibility]\nshifting = \"on\"\n"),
               HasSubstr("expected one phase that fills the domain"));
   EXPECT_THAT(refused(replaced(periodic_vortices,

@@ -70,9 +70,9 @@ class Images {
   void build(const ImageRules& rules, const CellGrid& grid, const double* x, const double* y, const double* z,
              std::size_t n, const WallPointView* walls = nullptr);
 
-  // The same images where the particles have gone since, and the sides. Precondition: no solid boxes and no wall
-  // points.
-  void move(const ImageRules& rules, const std::array<const double*, 3>& position);
+  // The same images where the particles have gone since, the sides and the wall points. Precondition: no solid boxes.
+  void move(const ImageRules& rules, const std::array<const double*, 3>& position,
+            const WallPointView* walls = nullptr);
 
   std::size_t size() const { return source_.size(); }
   const std::int32_t* source() const { return source_.data(); }

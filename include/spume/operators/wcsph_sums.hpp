@@ -28,6 +28,9 @@
 
 namespace spume {
 
+// Wall points (SweepContext::walls) have the averages of the liquid around them. To each particle they are of its own
+// phase: no repulsion, its viscosity. Density does not diffuse to them where a phase is given.
+//
 // Per particle. Images have the values of their sources, and velocities by the rules.
 struct ContinuityFields {
   std::array<const double*, 3> velocity{};
@@ -60,6 +63,10 @@ struct PressureFields {
   // (2012) do at walls.
   Vec3 gravity{};
   std::array<const double*, 3> position{};
+  // Per wall point; null without.
+  const double* wall_pressure = nullptr;
+  const double* wall_density = nullptr;
+  std::array<const double*, 3> wall_position{};
 };
 // out: (rho du/dt)_i by pressure. concentration: h grad C of one phase; null: not wanted.
 void pressure_force_sweep(const SweepContext& context, PackedNeighbours& packed, const PressureFields& fields,

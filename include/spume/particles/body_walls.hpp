@@ -36,6 +36,19 @@ class BodyWalls {
   // Throws StepFailure for a wall velocity that is not finite.
   void find_stencils(const Arrangement& arrangement, const VectorField& at, double particle_volume, double t,
                      double ahead);
+  // For averages over lists of neighbours (operators/wall_averages.hpp): all points count as wet, with walls as they
+  // are at time t; their stencils have no entries yet.
+  void take_all_points(double t);
+  // The same points where their bodies are at time t.
+  void follow_points(double t);
+  // The farthest that one of them goes between two times.
+  double way_of_points(double from, double to) const;
+  const std::array<Array<double>, 3>& acceleration() const { return acceleration_; }  // of their feet; empty: none
+  std::int32_t body_of_wet(std::size_t wet_point) const {
+    return body_[static_cast<std::size_t>(wet_points_[wet_point])];
+  }
+  WallStencils& stencils() { return stencils_; }
+
   // Of wet points, what the pressure behind an accelerated surface has beside that before it.
   const Array<double>& pressure_behind() const { return pressure_behind_; }
   // The same of a unit acceleration of a motion, along a direction or about it.
@@ -68,22 +81,26 @@ class BodyWalls {
   void fit_block(const Arrangement& arrangement, const VectorField& at, double particle_volume, std::size_t first,
                  std::size_t last, Block& block) const;
   void set_surfaces(double t, double ahead);
+  void place_wet_points(std::size_t from);
+  void set_acceleration(double t);
   void set_pressure_behind(double duration);
   void gather_points();
   const RigidWalls& nearest_part(const Vec3& point) const;
 
   const Scene& scene_;
   const Resolution resolution_;
-  std::vector<std::unique_ptr<RigidWalls>> parts_;  // what stands still, and each motion of the scene
-  std::vector<WallPoint> points_;                   // of all parts, as they are
-  std::vector<std::uint8_t> body_;                  // of each point, among the bodies of the scene
-  std::size_t standing_ = 0;                        // points of what stands still, the first
-  bool surfaces_move_ = false;                      // some surface has a velocity
+  std::vector<std::unique_ptr<RigidWalls>> parts_;   // what stands still, and each motion of the scene
+  std::vector<WallPoint> points_;                    // of all parts, as they are
+  std::vector<std::uint8_t> body_;                   // of each point, among the bodies of the scene
+  std::vector<std::array<std::int32_t, 2>> origin_;  // of the moving ones, those behind: part, and number in it
+  std::size_t standing_ = 0;                         // points of what stands still, the first
+  bool surfaces_move_ = false;                       // some surface has a velocity
 
   std::vector<std::int32_t> wet_points_;
   std::array<Array<double>, 3> wet_position_;
   WallStencils stencils_;
   Array<double> pressure_behind_;
+  std::array<Array<double>, 3> acceleration_;
   double largest_speed_ = 0;
 };
 

@@ -37,6 +37,11 @@ double expected_speed_of(const LoadedCase& loaded) {
   for (int axis = 0; axis < domain.dimensions; ++axis)
     for (const Side& side : domain.sides[axis])
       if (side.velocity) speed2 = std::max(speed2, std::pow(norm((*side.velocity)(centre, 0)), 2));
+  for (const BodyMotion& motion : scene.motions)
+    for (int k = 0; k <= 100; ++k) {
+      const RigidPlace place = given_place(motion, loaded.options.time.end * k / 100);
+      speed2 = std::max(speed2, std::pow(norm(place.velocity) + norm(place.angular_velocity) * length / 2, 2));
+    }
   for (std::size_t i = 0; i < p.size(); ++i) {
     Vec3 u{}, r{};
     for (int axis = 0; axis < domain.dimensions; ++axis) {
@@ -80,6 +85,11 @@ double background_of(const LoadedCase& loaded, const Features& features, double 
   return density * speed * speed;
 }
 
+std::unique_ptr<BodyWalls> make_body_walls(const Scene& scene, const Resolution& resolution, const Features& features) {
+  if (!features.bodies) return nullptr;
+  return std::make_unique<BodyWalls>(scene, resolution, scene.particles.volume);
+}
+
 Vec3 gravity_across_sides(const Scene& scene) {
   Vec3 g{};
   for (int axis = 0; axis < scene.domain.dimensions; ++axis)
@@ -107,7 +117,7 @@ double PhaseLaw::local_sound_speed(double excess) const {
   return sound_speed * std::sqrt(power(1 + excess, exponent) / (1 + excess));
 }
 
-Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.domain) {
+Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies) {
   const Scene& scene = loaded.scene;
   several = scene.phases.size() > 1;
   gravity = norm(gravity_across_sides(scene)) > 0;
@@ -134,7 +144,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       background(background_of(loaded_case, features, expected_speed, laws)),
       wall_gravity(gravity_across_sides(scene)),
       particles(dimensions, scene.particles),
-      boundary(scene.domain, scene.spacing),
+      boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution, features)),
       arrangement(scene.domain, resolution, particles.volume, particles.size(), skin) {
   FieldSet& fields = particles.fields;
   particles.add_vector(acceleration, "acceleration", Lifetime::state);
@@ -150,6 +160,20 @@ Flow::Flow(const LoadedCase& loaded_case)
   });
   if (features.gravity) start_density();
   find_signal();
+}
+
+// Liquid reaches round bodies: cells without particles take the mean of their row.
+void Flow::fill_bodies(std::vector<double>& density, std::size_t rows) const {
+  for (std::size_t row = 0; row < rows; ++row) {
+    double sum = 0, count = 0;
+    for (std::size_t k = row; k < density.size(); k += rows)
+      if (density[k] > 0) {
+        sum += density[k];
+        ++count;
+      }
+    for (std::size_t k = row; k < density.size(); k += rows)
+      if (density[k] == 0 && count > 0) density[k] = sum / count;
+  }
 }
 
 // The first pressure carries the weight of what is above in a column of the width of a spacing.
@@ -172,6 +196,7 @@ void Flow::start_density() {
   };
   std::vector<double> density(rows * cells[0] * (dimensions == 3 ? cells[1] : 1)), above(density.size());
   for (std::size_t i = 0; i < size(); ++i) density[column(i) + index(up, i)] = law(i).density;
+  if (features.bodies) fill_bodies(density, rows);
   for (std::size_t first = 0; first < density.size(); first += rows)
     for (std::size_t k = rows - 1; k-- > 0;)
       above[first + k] = above[first + k + 1] + g * density[first + k + 1] * side;
@@ -242,7 +267,8 @@ double Flow::leased_bytes() const {
     for (const auto& array : *vector) add(array);
   for (const auto* vector : {&viscous_force, &pressure_force, &way, &flux, &concentration})
     for (const auto& array : *vector) add(array);
-  add(next_excess, pressure, volume, reduced_excess, rate, diffusion, carried, density, phase, viscosity);
+  add(next_excess, pressure, wall_pressure, wall_density, volume, reduced_excess, rate, diffusion, carried, density,
+      phase, viscosity);
   return sum;
 }
 

@@ -18,6 +18,7 @@ constexpr double shifting_strength = 2, largest_shift = 0.5;
 
 // Where the particles will be at the end of the step is known: r + dt (u + dt/2 a).
 bool Flow::lists_hold(double dt) const {
+  if (features.displaced_bodies && boundary.bodies()->way_of_points(listed_time, time + dt) > skin / 2) return false;
   const double moved2 = parallel_max(size(), 0.0, [&](std::size_t i) {
     double sum = 0;
     for (int axis = 0; axis < dimensions; ++axis) {
@@ -33,8 +34,11 @@ bool Flow::lists_hold(double dt) const {
 void Flow::build_lists() {
   arrangement.sort(particles, listed);
   boundary.next_walls = boundary.walls;
-  boundary.make_images(arrangement, particles, listed, 1, {time, time, time});
+  if (features.bodies) boundary.bodies()->take_all_points(listed_time);
+  boundary.make_images(arrangement, particles, listed, 1, {time, time, time}, false);
   arrangement.find_neighbours(particles, listed, sizes);
+  if (features.bodies)
+    wall_averages.find_entries(arrangement.context, boundary.reflection(), boundary.bodies()->stencils());
   has_lists = true;
   ++list_builds;
 }
@@ -43,6 +47,8 @@ void Flow::build_lists() {
 void Flow::keep_lists(double dt) {
   if (!has_lists && steps > 0) build_lists();
   if (has_lists && lists_hold(dt)) return;
+  listed_time = time;
+  if (features.displaced_bodies) boundary.bodies()->move_to(time);
   parallel_for(size(), [&](std::size_t i) {
     Vec3 r = vector_at(particles.position, dimensions, i);
     boundary.apply_walls(boundary.walls, r, nullptr);
@@ -57,8 +63,10 @@ void Flow::keep_lists(double dt) {
   throw StepFailure(details);
 }
 
-void Flow::move_images(double t) {
-  boundary.move_images(arrangement, read(place), {t, t, t});
+void Flow::move_images(const std::array<const double*, 3>& at, double t) {
+  if (features.bodies) boundary.bodies()->follow_points(t);
+  boundary.move_images(arrangement, at, {t, t, t});
+  if (features.bodies) wall_averages.weigh(arrangement.context, boundary.bodies()->stencils());
 }
 
 void Flow::drift(double dt) {
@@ -71,7 +79,7 @@ void Flow::drift(double dt) {
       place[axis][i] = (*particles.position[axis])[i] + dt / 2 * transport(axis, half_velocity[axis][i], i);
     }
   });
-  move_images(time + dt / 2);
+  move_images(read(place), time + dt / 2);
 }
 
 void Flow::lease_properties() {
@@ -79,7 +87,7 @@ void Flow::lease_properties() {
   scratch.lease(volume, size());
   scratch.lease(reduced_excess, size());
   scratch.lease(density, size());
-  if (features.several) scratch.lease(phase, size());
+  if (needs_phase()) scratch.lease(phase, size());
   if (features.viscosity) scratch.lease(viscosity, size());
   if (features.shifting) scratch.lease(way, dimensions, size());
   parallel_for(size(), [&](std::size_t i) {
@@ -90,7 +98,7 @@ void Flow::lease_properties() {
     volume[i] = static_cast<float>(1 / (1 + (*excess)[i]));
     reduced_excess[i] = static_cast<float>((*excess)[i] - head / (own.sound_speed * own.sound_speed));
     density[i] = static_cast<float>(own.density);
-    if (features.several) phase[i] = static_cast<float>(phase_of(i));
+    if (needs_phase()) phase[i] = static_cast<float>(phase_of(i));
     if (features.viscosity) viscosity[i] = static_cast<float>(own.viscosity);
     for (int axis = 0; features.shifting && axis < dimensions; ++axis)
       way[axis][i] = static_cast<float>((*shift[axis])[i]);
@@ -113,7 +121,7 @@ void Flow::find_rates() {
                     .friction = features.friction ? &boundary.velocity_rule() : nullptr,
                     .volume = volume.data(),
                     .excess = reduced_excess.data(),
-                    .phase = features.several ? phase.data() : nullptr,
+                    .phase = needs_phase() ? phase.data() : nullptr,
                     .viscosity = features.viscosity ? viscosity.data() : nullptr,
                     .shift = read(way),
                     .reflection = &boundary.reflection()},
@@ -130,6 +138,7 @@ void Flow::advance_density(double dt) {
   scratch.lease(pressure, size());
   const double smoothing =
       features.diffusion ? options.get<CompressibilityOptions>().diffusion * resolution.smoothing_length : 0;
+  if (features.displaced_bodies) boundary.bodies()->follow_points(time + dt);
   parallel_for(size(), [&](std::size_t i) {
     const PhaseLaw& own = law(i);
     // d rho / dt = rho D by the midpoint rule: rho' = rho (1 + dt D / 2) / (1 - dt D / 2).
@@ -164,13 +173,13 @@ void Flow::advance_density(double dt) {
   scratch.release(reduced_excess);
   scratch.release(carried);
   scratch.release(way);
-  move_images(time + dt);
+  move_images(read(place), time + dt);
 }
 
 void Flow::filter_density() {
   ScratchPool& scratch = particles.scratch();
   ScratchArray<float> filtered(scratch, size());
-  if (!features.several) {
+  if (!needs_phase()) {
     scratch.lease(phase, size());
     phase.fill(0.0F);
   }
@@ -182,19 +191,38 @@ void Flow::filter_density() {
   });
 }
 
+// Of every wall point, by the liquid as it is now.
+void Flow::find_wall_pressure() {
+  ScratchPool& scratch = particles.scratch();
+  const BodyWalls& walls = *boundary.bodies();
+  scratch.lease(wall_pressure, walls.stencils().size());
+  scratch.lease(wall_density, walls.stencils().size());
+  wall_averages.extrapolate(arrangement.context, walls.stencils(),
+                            {.pressure = pressure.data(),
+                             .density = density.data(),
+                             .gravity = wall_gravity,
+                             .wall_acceleration = read(walls.acceleration())},
+                            wall_pressure.data(), wall_density.data());
+}
+
 void Flow::find_pressure_force() {
+  if (features.bodies) find_wall_pressure();
   ScratchPool& scratch = particles.scratch();
   scratch.lease(pressure_force, dimensions, size());
   if (features.shifting) scratch.lease(concentration, dimensions, size());
-  pressure_force_sweep(arrangement.context, arrangement.packed,
-                       {.pressure = pressure.data(),
-                        .volume = volume.data(),
-                        .density = density.data(),
-                        .several = features.several,
-                        .repulsion = static_cast<float>(options.get<CompressibilityOptions>().repulsion),
-                        .gravity = wall_gravity,
-                        .position = read(place)},
-                       write(pressure_force), write(concentration));
+  pressure_force_sweep(
+      arrangement.context, arrangement.packed,
+      {.pressure = pressure.data(),
+       .volume = volume.data(),
+       .density = density.data(),
+       .several = features.several,
+       .repulsion = static_cast<float>(options.get<CompressibilityOptions>().repulsion),
+       .gravity = wall_gravity,
+       .position = read(place),
+       .wall_pressure = wall_pressure.data(),
+       .wall_density = wall_density.data(),
+       .wall_position = features.bodies ? boundary.bodies()->wet().position : std::array<const double*, 3>{}},
+      write(pressure_force), write(concentration));
 }
 
 // Towards fewer particles.
@@ -255,12 +283,48 @@ void Flow::accept(double dt) {
   });
   for (auto* vector : {&half_velocity, &place}) scratch.release(*vector);
   for (auto* vector : {&viscous_force, &pressure_force, &flux, &concentration}) scratch.release(*vector);
-  for (auto* array : {&next_excess, &pressure}) scratch.release(*array);
+  for (auto* array : {&next_excess, &pressure, &wall_pressure, &wall_density}) scratch.release(*array);
   for (auto* array : {&volume, &density, &phase, &viscosity}) scratch.release(*array);
   boundary.accept();
   time += dt;
   if (dt > 0) ++steps;
   find_signal();
+}
+
+std::vector<WallForce> Flow::forces_on_bodies() {
+  if (!has_lists && steps == 0) return std::vector<WallForce>(scene.bodies.size());
+  if (!has_lists) build_lists();
+  move_images(read(particles.position), time);
+  ScratchPool& scratch = particles.scratch();
+  for (auto* array : {&volume, &density, &viscosity}) scratch.lease(*array, size());
+  scratch.lease(pressure, size());
+  parallel_for(size(), [&](std::size_t i) {
+    volume[i] = static_cast<float>(1 / (1 + (*excess)[i]));
+    density[i] = static_cast<float>(law(i).density);
+    viscosity[i] = static_cast<float>(law(i).viscosity);
+    pressure[i] = law(i).pressure((*excess)[i]) + background;
+  });
+  find_wall_pressure();
+  const BodyWalls& walls = *boundary.bodies();
+  std::vector<std::int32_t> body(walls.stencils().size());
+  for (std::size_t g = 0; g < body.size(); ++g) body[g] = walls.body_of_wet(g);
+  const std::vector<WallForce> forces = wall_forces(arrangement.context,
+                                                    {.velocity = read(particles.velocity),
+                                                     .pressure = pressure.data(),
+                                                     .volume = volume.data(),
+                                                     .viscosity = features.viscosity ? viscosity.data() : nullptr,
+                                                     .friction = features.friction,
+                                                     .gravity = wall_gravity,
+                                                     .reflection = &boundary.reflection(),
+                                                     .held = &boundary.velocity_rule().sign,
+                                                     .wall_pressure = wall_pressure.data(),
+                                                     .wall_density = wall_density.data(),
+                                                     .wall_position = walls.wet().position,
+                                                     .body = body.data()},
+                                                    scene.bodies.size());
+  for (auto* array : {&volume, &density, &viscosity}) scratch.release(*array);
+  for (auto* array : {&pressure, &wall_pressure, &wall_density}) scratch.release(*array);
+  return forces;
 }
 
 }  // namespace spume::wcsph

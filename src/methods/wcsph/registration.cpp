@@ -20,9 +20,9 @@ void check(Draft& draft, Problems& problems) {
     problems.add(*draft.node("interface.surface_tension"),
                  "method \"wcsph\" has no surface tension; expected 0: remove the key, or use method \"gfd\"");
   if (!draft.solids.empty())
-    problems.add(
-        *draft.node("solid.0"),
-        "method \"wcsph\" knows the sides of the domain as walls, not [[solid]]; remove it, or use \"les-sph\"");
+    problems.add(*draft.node("solid.0"),
+                 "method \"wcsph\" knows walls of [[body]], not [[solid]]; write the box as [[body]] with shape = "
+                 "\"box\"");
 }
 
 void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
@@ -68,6 +68,7 @@ Registration registration() {
   method.name = "wcsph";
   method.description = "flow of several phases by weakly compressible SPH, with repulsion between them";
   method.fills_phases = true;
+  method.honours_bodies = true;
   method.sections = {compressibility_section(), list_section()};
   method.check = check;
   method.check_scene = check_scene;
@@ -75,6 +76,7 @@ Registration registration() {
   method.default_courant = [](const Case&, const Scene&) { return standard_courant; };
   method.default_courant_in_words = "of wcsph " + brief(standard_courant);
   method.output_fields = [](const Case& options) { return field_infos(output_fields(), options); };
+  method.probe_scalars = [](const Case&) { return std::vector<ProbeScalar>{{"pressure", "pressure"}}; };
   method.make = [](const LoadedCase& loaded) { return std::make_unique<Wcsph>(loaded); };
   return method;
 }

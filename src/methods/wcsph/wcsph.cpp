@@ -55,10 +55,18 @@ Wcsph::Wcsph(const LoadedCase& loaded)
                     "nothing tells how fast the flow will be: it starts at rest, without gravity, forces and moving "
                     "walls; set compressibility.max_speed");
   declare_series();
-  saved_.add(flow_.time).add(flow_.steps).add(flow_.signal).add(flow_.largest_speed).add(flow_.boundary.wall_speed);
+  if (flow_.features.bodies)
+    body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
+  saved_.add(flow_.time)
+      .add(flow_.steps)
+
+      .add(flow_.signal)
+      .add(flow_.largest_speed)
+      .add(flow_.boundary.wall_speed);
 }
 
 void Wcsph::step(double dt, Ledger& ledger) {
+  sampled_step_ = -1;  // sorting changes what the bins of the sampler refer to, also when the step is refused
   if (flow_.steps == 0 && !flow_.has_lists) plan_.run_start(static_cast<double>(flow_.size()), ledger);
   plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
 }
@@ -113,13 +121,45 @@ std::vector<Remark> Wcsph::take_remarks() {
 
 std::vector<ArrayInfo> Wcsph::arrays() const {
   std::vector<ArrayInfo> list = particle_arrays(flow_.particles, flow_.arrangement);
+  if (flow_.features.bodies) list.push_back({"wall points", flow_.boundary.bytes() + flow_.wall_averages.bytes()});
   list.push_back({"leased within a step", flow_.leased_bytes()});
   return list;
 }
 
+const PointSampler& Wcsph::sampler() {
+  if (sampled_step_ == flow_.steps) return sampler_;
+  sampled_pressure_.resize(flow_.size());
+  parallel_for(flow_.size(), [&](std::size_t i) { sampled_pressure_[i] = flow_.law(i).pressure((*flow_.excess)[i]); });
+  // With several phases no one density tells the hydrostatic part.
+  sampler_.update({.arrangement = &flow_.arrangement,
+                   .boundary = &flow_.boundary,
+                   .particles = &flow_.particles,
+                   .resolution = &flow_.resolution,
+                   .scalars = {{&sampled_pressure_, flow_.features.several ? 0 : flow_.laws[0].density}},
+                   .uniform_acceleration = flow_.wall_gravity,
+                   .time = flow_.time});
+  sampled_step_ = flow_.steps;
+  return sampler_;
+}
+
+std::vector<RecordTable> Wcsph::tables() const {
+  if (body_forces_ == nullptr) return {};
+  return {body_forces_->table()};
+}
+
+void Wcsph::table_rows(const std::string&, std::vector<double>& rows) {
+  sampled_step_ = -1;
+  std::vector<SurfaceForce> forces;
+  for (const WallForce& force : flow_.forces_on_bodies())
+    forces.push_back({force.pressure, force.viscous, force.pressure_torque, force.viscous_torque});
+  body_forces_->add_rows(flow_.time, forces, rows);
+}
+
 void Wcsph::save(StateWriter& writer) const {
   const std::int64_t count[] = {static_cast<std::int64_t>(flow_.size())};
+  const double listed_time[] = {flow_.listed_time};
   saved_.save(writer);
+  writer.f64("listed_time", listed_time);
   writer.i64("counters", count);
   flow_.boundary.save_walls(writer);
   save_fields(flow_.particles.fields, writer);
@@ -127,12 +167,17 @@ void Wcsph::save(StateWriter& writer) const {
 
 void Wcsph::load(StateReader& reader) {
   Array<std::int64_t> count;
+  Array<double> listed_time;
   saved_.load(reader);
+  reader.f64("listed_time", listed_time);
   reader.i64("counters", count);
   flow_.boundary.load_walls(reader, flow_.time);
-  if (count.size() != 1) throw FileError("the checkpoint was written by another version of the method");
+  if (count.size() != 1 || listed_time.size() != 1)
+    throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(count[0]), "particle", reader);
+  flow_.listed_time = listed_time[0];
   flow_.has_lists = false;
+  sampled_step_ = -1;
 }
 
 }  // namespace spume::wcsph

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "spume/methods/wcsph/options.hpp"
+#include "spume/operators/wall_averages.hpp"
 #include "spume/operators/wcsph_sums.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/boundary.hpp"
@@ -61,7 +62,8 @@ struct Flow {
   Array<double>* excess = nullptr;
   Array<std::int64_t>* phase_number = nullptr;
   Boundary boundary;
-  double signal = 0;  // largest sum of sound speed and speed
+  double listed_time = 0;  // of the places of moving bodies in the lists
+  double signal = 0;       // largest sum of sound speed and speed
   double largest_speed = 0;
 
   // --- Lists of neighbours at `listed`, seen from where the particles are.
@@ -69,10 +71,11 @@ struct Flow {
   ParticleSizes sizes;  // all alike
   bool has_lists = false;
   std::int64_t list_builds = 0;
+  WallAverages wall_averages;  // of the wall points of bodies
 
   // --- Leased within a step.
   VectorScratch half_velocity, place;
-  Array<double> next_excess, pressure;
+  Array<double> next_excess, pressure, wall_pressure, wall_density;
   Array<float> volume, reduced_excess, rate, diffusion, carried, density, phase, viscosity;
   FloatVectorScratch viscous_force, pressure_force, way, flux, concentration;
 
@@ -97,13 +100,20 @@ struct Flow {
   void find_pressure_force();  // (2), (4)
   void accept(double dt);      // (2)
 
+  // What the liquid does to each body, as it is.
+  std::vector<WallForce> forces_on_bodies();
+
   double leased_bytes() const;
 
  private:
   void start_density();
+  void fill_bodies(std::vector<double>& density, std::size_t rows) const;
   void build_lists();
   bool lists_hold(double dt) const;
-  void move_images(double t);
+  void move_images(const std::array<const double*, 3>& at, double t);
+  void find_wall_pressure();
+  // Density does not diffuse to wall points: they have a phase of their own.
+  bool needs_phase() const { return features.several || (features.bodies && !features.shifting); }
   void lease_properties();
   void find_shift(std::size_t i);
   void find_signal();

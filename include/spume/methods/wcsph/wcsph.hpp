@@ -6,8 +6,10 @@
 
 #include "spume/methods/method.hpp"
 #include "spume/methods/wcsph/flow.hpp"
+#include "spume/particles/body_forces.hpp"
 #include "spume/particles/output_fields.hpp"
 #include "spume/particles/phase_sums.hpp"
+#include "spume/particles/point_sampler.hpp"
 #include "spume/particles/reports.hpp"
 
 namespace spume::wcsph {
@@ -17,7 +19,7 @@ Plan make_plan(Flow& flow);
 
 const std::vector<OutputField<Flow>>& output_fields();
 
-class Wcsph final : public Method {
+class Wcsph final : public Method, public FieldProbes {
  public:
   explicit Wcsph(const LoadedCase& loaded);
 
@@ -31,6 +33,14 @@ class Wcsph final : public Method {
   std::vector<SeriesColumn> series_columns() const override { return series_.columns(); }
   void series_values(std::span<double> values) override { series_.values(values); }
   std::vector<ParticleSnapshot> snapshot() override;
+  std::vector<RecordTable> tables() const override;  // bodies.csv
+  void table_rows(const std::string& name, std::vector<double>& rows) override;
+  FieldProbes* field_probes() override { return this; }
+  PointSample sample(const Vec3& position) override { return sampler().sample(position); }
+  PlaneSample plane_average(int axis, double position) override { return sampler().plane_average(axis, position); }
+  Vec3 carried(std::size_t motion, const Vec3& start) const override {
+    return given_place(flow_.scene.motions[motion], flow_.time).now(start);
+  }
   // A phase that leaves the range of its sound speed.
   std::vector<Remark> take_remarks() override;
   void save(StateWriter& writer) const override;
@@ -40,14 +50,19 @@ class Wcsph final : public Method {
 
  private:
   void declare_series();
+  const PointSampler& sampler();
 
   Flow flow_;
   Plan plan_;
   SeriesTable series_;
   SnapshotTable snapshot_;
   SavedNumbers saved_{"scalars"};
-  PhaseSums phase_sums_;        // of the row of the series that is being read
-  std::vector<bool> remarked_;  // of the phases
+  PhaseSums phase_sums_;  // of the row of the series that is being read
+  PointSampler sampler_;
+  Array<double> sampled_pressure_;
+  std::int64_t sampled_step_ = -1;                 // that the sampler has binned
+  std::unique_ptr<const BodyForces> body_forces_;  // its table; null without bodies
+  std::vector<bool> remarked_;                     // of the phases
 };
 
 }  // namespace spume::wcsph

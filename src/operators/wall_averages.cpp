@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "spume/operators/wall_averages.hpp"
+
+#include <cmath>
+
+#include "spume/core/vectors.hpp"
+
+namespace spume {
+namespace {
+
+struct WallEntry {
+  std::int32_t point, particle, image;
+};
+
+Vec3 offset(const SweepContext& context, std::size_t from, std::size_t to) {
+  Vec3 d{};
+  for (int axis = 0; axis < context.dimensions; ++axis)
+    d[axis] = double{context.list->coordinate(axis)[to]} - double{context.list->coordinate(axis)[from]};
+  return d;
+}
+
+double ratio(const SweepContext& context, const Vec3& d) {
+  return std::sqrt(spume::dot(d, d)) / context.smoothing_length;
+}
+
+}  // namespace
+
+void WallAverages::find_entries(const SweepContext& context, const std::vector<std::array<float, 3>>& reflection,
+                                WallStencils& stencils) {
+  const std::size_t n = context.list->particles(), points = stencils.size();
+  const std::int32_t *wall_point = context.images->wall_point(), *path = context.images->path();
+  std::vector<std::vector<WallEntry>> found(block_count(n, default_block));
+  if (wall_point != nullptr)
+    parallel_blocks(n, default_block, [&](std::size_t b, std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i)
+        for (const std::int32_t j : context.list->of(i)) {
+          const std::int64_t k = j - static_cast<std::int64_t>(n);
+          if (k < 0 || wall_point[k] < 0) continue;
+          const auto& sign = reflection[static_cast<std::size_t>(path[k])];
+          if (sign[0] < 0 || sign[1] < 0 || sign[2] < 0) continue;
+          found[b].push_back({wall_point[k], static_cast<std::int32_t>(i), j});
+        }
+    });
+  stencils.first.resize(points + 1);
+  stencils.first.fill(0);
+  for (const auto& block : found)
+    for (const WallEntry& entry : block) ++stencils.first[static_cast<std::size_t>(entry.point) + 1];
+  for (std::size_t g = 0; g < points; ++g) stencils.first[g + 1] += stencils.first[g];
+  const auto entries = static_cast<std::size_t>(stencils.first[points]);
+  stencils.source.resize(entries);
+  stencils.coefficient.resize(entries);
+  image_.resize(entries);
+  std::vector<std::int64_t> next(stencils.first.data(), stencils.first.data() + points);
+  for (const auto& block : found)
+    for (const WallEntry& entry : block) {
+      const std::int64_t slot = next[static_cast<std::size_t>(entry.point)]++;
+      stencils.source[slot] = entry.particle;
+      image_[slot] = entry.image;
+    }
+}
+
+void WallAverages::weigh(const SweepContext& context, WallStencils& stencils) const {
+  parallel_for(stencils.size(), [&](std::size_t g) {
+    double sum = 0;
+    for (std::int64_t k = stencils.first[g]; k < stencils.first[g + 1]; ++k) {
+      const Vec3 d = offset(context, static_cast<std::size_t>(stencils.source[k]), static_cast<std::size_t>(image_[k]));
+      stencils.coefficient[k] = WendlandC2::w(ratio(context, d));
+      sum += stencils.coefficient[k];
+    }
+    if (sum > 0)
+      for (std::int64_t k = stencils.first[g]; k < stencils.first[g + 1]; ++k) stencils.coefficient[k] /= sum;
+  });
+}
+
+void WallAverages::extrapolate(const SweepContext& context, const WallStencils& stencils, const Liquid& liquid,
+                               double* pressure, double* density) const {
+  parallel_for(stencils.size(), [&](std::size_t g) {
+    Vec3 pull = liquid.gravity;
+    for (int axis = 0; axis < context.dimensions; ++axis)
+      if (liquid.wall_acceleration[axis] != nullptr) pull[axis] -= liquid.wall_acceleration[axis][g];
+    double p = 0, rho = 0;
+    for (std::int64_t k = stencils.first[g]; k < stencils.first[g + 1]; ++k) {
+      const auto j = static_cast<std::size_t>(stencils.source[k]);
+      const double head = spume::dot(pull, offset(context, j, static_cast<std::size_t>(image_[k])));
+      p += stencils.coefficient[k] * (liquid.pressure[j] + liquid.density[j] * head);
+      rho += stencils.coefficient[k] * liquid.density[j];
+    }
+    pressure[g] = p;
+    density[g] = rho;
+  });
+}
+
+std::vector<WallForce> wall_forces(const SweepContext& context, const WallForceFields& fields, std::size_t bodies) {
+  const std::size_t n = context.list->particles();
+  const std::int32_t *wall_point = context.images->wall_point(), *path = context.images->path();
+  std::vector<WallForce> sum(bodies);
+  if (wall_point == nullptr) return sum;
+  const int d = context.dimensions;
+  const double h = context.smoothing_length, V = context.volume;
+  const double scale = V * V * WendlandC2::normalisation(d) / std::pow(h, d + 2);
+  std::vector<std::vector<WallForce>> blocks(block_count(n, default_block), std::vector<WallForce>(bodies));
+  parallel_blocks(n, default_block, [&](std::size_t b, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i)
+      for (const std::int32_t j : context.list->of(i)) {
+        const std::int64_t k = j - static_cast<std::int64_t>(n);
+        if (k < 0 || wall_point[k] < 0) continue;
+        const auto g = static_cast<std::size_t>(wall_point[k]);
+        const auto& sign = (*fields.reflection)[static_cast<std::size_t>(path[k])];
+        const auto& held = (*fields.held)[static_cast<std::size_t>(path[k])];
+        const Vec3 way = offset(context, i, static_cast<std::size_t>(j));
+        const double weight =
+            -scale * WendlandC2::f(ratio(context, way)) * fields.volume[i] * context.walls->mirrored(g, fields.volume);
+        double other = fields.wall_pressure[g];
+        Vec3 place{}, pressure{}, viscous{};
+        for (int axis = 0; axis < d; ++axis) {
+          place[axis] = fields.wall_position[axis][g];
+          if (fields.gravity[axis] != 0)
+            other += fields.wall_density[g] * fields.gravity[axis] * (context.images->position(axis)[k] - place[axis]);
+        }
+        const Vec3 u = context.walls->velocity(g, d, fields.velocity, fields.friction, true, false);
+        for (int axis = 0; axis < d; ++axis) {
+          pressure[axis] = sign[axis] * weight * (fields.pressure[i] + other) * way[axis];
+          if (fields.viscosity != nullptr)
+            viscous[axis] = -2 * weight * fields.viscosity[i] * (u[axis] - held[axis] * fields.velocity[axis][i]);
+        }
+        WallForce& own = blocks[b][static_cast<std::size_t>(fields.body[g])];
+        own.pressure = add(own.pressure, pressure);
+        own.viscous = add(own.viscous, viscous);
+        own.pressure_torque = add(own.pressure_torque, cross(place, pressure));
+        own.viscous_torque = add(own.viscous_torque, cross(place, viscous));
+      }
+  });
+  for (const auto& block : blocks)
+    for (std::size_t k = 0; k < bodies; ++k) {
+      sum[k].pressure = add(sum[k].pressure, block[k].pressure);
+      sum[k].viscous = add(sum[k].viscous, block[k].viscous);
+      sum[k].pressure_torque = add(sum[k].pressure_torque, block[k].pressure_torque);
+      sum[k].viscous_torque = add(sum[k].viscous_torque, block[k].viscous_torque);
+    }
+  return sum;
+}
+
+}  // namespace spume

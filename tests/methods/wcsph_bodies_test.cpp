@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// wcsph beside walls of bodies: still water stays still, no particle passes, forces and probes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "methods/method_run.hpp"
+#include "spume/methods/wcsph/wcsph.hpp"
+
+namespace spume::test {
+namespace {
+
+using BodiesRun = MethodRun<wcsph::Wcsph>;
+
+std::string still(const std::string& upper, double spacing, double depth, bool air, const std::string& bodies) {
+  const bool flat = std::count(upper.begin(), upper.end(), ',') == 1;
+  const std::string lower = flat ? "[0, 0]" : "[0, 0, 0]";
+  const std::string top = upper.substr(0, upper.rfind(',') + 1) + std::to_string(depth) + "]";
+  return "method = \"wcsph\"\n[domain]\nlower = " + lower + "\nupper = " + upper +
+         "\nleft = \"free-slip\"\nright = \"free-slip\"\n" +
+         (flat ? "" : "front = \"free-slip\"\nback = \"free-slip\"\n") +
+         "bottom = \"free-slip\"\ntop = \"free-slip\"\n[resolution]\nspacing = " + std::to_string(spacing) +
+         "\n[fluid]\ngravity = 1\n[[phase]]\nname = \"water\"\ndensity = 1000\nviscosity = 1\n" +
+         (air ? "[[phase]]\nname = \"air\"\ndensity = 1\nviscosity = 0.01\n[[region]]\nphase = \"air\"\n" : "") +
+         "[[region]]\nphase = \"water\"\nupper = " + top + "\n" + bodies + "[time]\nend = 2\n";
+}
+
+void run_to(BodiesRun& run, double end) {
+  while (run.method.time() < end - 1e-12)
+    run.method.step(std::min(run.method.step_limit().dt, end - run.method.time()), run.ledger);
+}
+
+std::string body(const std::string& text) {
+  return "[[body]]\n" + text;
+}
+const std::string wedge = body("shape = \"outline\"\npoints = [[0.5, -0.1], [1, 0.5], [1.5, -0.1]]\n");
+
+// The weight of the column of one kernel support above a wall drives what its arrangement does not balance: speeds stay
+// below those of a fall through the support radius, 2.6 spacings, times the tenth of the weight that a step of a
+// staircase of particles along the wall is off by at most.
+TEST(WcsphBodies, StillWaterStaysStillOverThem) {
+  struct Scene {
+    const char* name;
+    std::string text;
+    double spacing;
+  };
+  const double s = 0.05;
+  for (const Scene& scene : {Scene{"a wedge", still("[2, 1.2]", s, 0.8, false, wedge), s},
+                             Scene{"a box off the lattice",
+                                   still("[2, 1.2]", s, 0.8, false,
+                                         body("shape = \"box\"\nsize = [0.513, 0.387]\nposition = [1.013, 0.417]\n"
+                                              "rotation = [17]\n")),
+                                   s},
+                             Scene{"boxes that touch",
+                                   still("[2, 1.2]", s, 0.8, false,
+                                         body("shape = \"box\"\nsize = [0.5, 0.4]\nposition = [0.8, 0.2]\n") +
+                                             body("shape = \"box\"\nsize = [0.4, 0.25]\nposition = [1.25, 0.125]\n"
+                                                  "wall = \"no-slip\"\n")),
+                                   s},
+                             Scene{"air over water with a disc",
+                                   still("[2, 1.2]", s, 0.6, true,
+                                         body("shape = \"ball\"\nradius = 0.3\nposition = [1, 0.6]\n"
+                                              "wall = \"no-slip\"\n")),
+                                   s},
+                             Scene{"a ball, in three dimensions",
+                                   still("[0.8, 0.8, 0.9]", 0.1, 0.6, false,
+                                         body("shape = \"ball\"\nradius = 0.2\nposition = [0.41, 0.4, 0.3]\n")),
+                                   0.1}}) {
+    SCOPED_TRACE(scene.name);
+    BodiesRun run(scene.text);
+    const wcsph::Flow& flow = run.method.flow();
+    run_to(run, 1);
+    double speed = 0;
+    for (std::size_t i = 0; i < flow.size(); ++i) {
+      const Vec3 r = vector_at(flow.particles.position, flow.dimensions, i);
+      EXPECT_GT(run.loaded.scene.walls.distance(r), 0);
+      if (flow.phase_of(i) == 0)
+        speed = std::max(speed, std::sqrt(squared_norm(flow.particles.velocity, flow.dimensions, i)));
+    }
+    EXPECT_LT(speed, std::sqrt(2 * 2.6 * scene.spacing * 0.1));
+    EXPECT_LT(run.series().at("density_change_water"), 0.01);
+  }
+}
+
+// Archimedes: the force on a disc in still water is its weight in water. Sums see the wall as a layer of the width of
+// a spacing; its perimeter times a quarter of that is the share by which the area may be off.
+TEST(WcsphBodies, TheForceOnASubmergedDiscIsItsBuoyancy) {
+  const double spacing = 0.05, radius = 0.3, area = std::numbers::pi * radius * radius;
+  BodiesRun run(still("[2, 1.2]", spacing, 1, false,
+                      body("shape = \"ball\"\nradius = 0.3\nposition = [1, 0.5]\nwall = \"no-slip\"\n")));
+  run_to(run, 1);
+  double sum = 0;
+  const int samples = 20;
+  for (int n = 0; n < samples; ++n) {
+    run_to(run, 1 + 0.05 * (n + 1));
+    std::vector<double> rows;
+    run.method.table_rows("bodies", rows);
+    ASSERT_EQ(rows.size(), 8U);
+    sum += rows[3] / samples;
+  }
+  EXPECT_NEAR(sum / (1000 * area), 1, 2 * std::numbers::pi * radius * spacing / 4 / area);
+}
+
+// The sampler's linear fit with the hydrostatic part apart: what is left is the noise of the pressures, in the range of
+// the waves of the first second, 2 % of the depth.
+TEST(WcsphBodies, ProbesReadTheFieldsAtAPoint) {
+  BodiesRun run(still("[2, 1.2]", 0.05, 1, false, wedge));
+  run_to(run, 1);
+  FieldProbes* probes = run.method.field_probes();
+  ASSERT_NE(probes, nullptr);
+  for (const double y : {0.6, 0.3, 0.12})
+    EXPECT_NEAR(probes->sample({0.2, y, 0}).scalars[0], 1000 * (1 - y), 20 + 0.5 * 0.05 * 1000) << y;
+  EXPECT_TRUE(std::isnan(probes->sample({1, 0.1, 0}).scalars[0])) << "inside the wedge";
+}
+
+// Water that a piston of a body pushes is as fast as it, and none gets past it.
+TEST(WcsphBodies, APistonTakesTheLiquidAlong) {
+  BodiesRun run(still("[1.5, 1]", 0.05, 0.4, false,
+                      body("shape = \"box\"\nsize = [0.4, 2]\nposition = [0.1, 0.5]\ndisplacement = [\"0.2*t*t\", "
+                           "\"0\"]\n")));
+  run_to(run, 0.5);
+  const wcsph::Flow& flow = run.method.flow();
+  double beside = 0, count = 0;
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    const double x = (*flow.particles.position[0])[i];
+    EXPECT_GT(x, 0.35 - 1e-9);
+    if (x > 0.4) continue;
+    beside += (*flow.particles.velocity[0])[i];
+    ++count;
+  }
+  ASSERT_GT(count, 0);
+  EXPECT_NEAR(beside / count, 0.2, 0.02);
+}
+
+}  // namespace
+}  // namespace spume::test

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+// Sums of weakly compressible SPH beside walls of bodies against their slow twin, and what bodies take from the liquid.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "particles/walled.hpp"
+#include "reference/wcsph_wall_sums.hpp"
+#include "spume/operators/wall_averages.hpp"
+#include "spume/operators/wcsph_sums.hpp"
+
+namespace spume::test {
+namespace {
+
+const std::vector<Layout>& wcsph_layouts() {
+  static const std::vector<Layout> layouts{
+      {"a no-slip disc that turns, periodic",
+       scene_text("lower = [0, 0]\nupper = [1, 1]\nx = \"periodic\"\ny = \"periodic\"\n", 1.0 / 16,
+                  "[[body]]\nshape = \"ball\"\nradius = 0.22\nposition = [0.48, 0.93]\nwall = \"no-slip\"\nangle = "
+                  "\"30*sin(3*t)\"\ndisplacement = [\"0.1*sin(2*t)\", \"0\"]\n")},
+      {"a wedge and a box that touch each other and sides of both kinds",
+       scene_text("lower = [0, 0]\nupper = [1, 1]\nleft = \"no-slip\"\nright = \"free-slip\"\nbottom = "
+                  "\"free-slip\"\ntop = \"no-slip\"\n",
+                  1.0 / 16,
+                  "[[body]]\nshape = \"outline\"\npoints = [[0.2, -0.1], [0.47, 0.4], [0.75, -0.1]]\n[[body]]\nshape = "
+                  "\"box\"\nsize = [0.31, 0.4]\nposition = [0.8, 0.1]\nwall = \"no-slip\"\n")},
+      {"a surface in the open",
+       scene_text("lower = [0, 0]\nupper = [1, 1]\nleft = \"open\"\nright = \"open\"\nbottom = \"open\"\ntop = "
+                  "\"open\"\n",
+                  1.0 / 16, "[[body]]\nshape = \"half-space\"\nposition = [0.5, 0.4]\nnormal = [0.2, 1]\n",
+                  "upper = [0.7, 0.8]\n")},
+      {"a ball before a side, in three dimensions",
+       scene_text("lower = [0, 0, 0]\nupper = [1, 1, 1]\nx = \"periodic\"\ny = \"periodic\"\nbottom = "
+                  "\"free-slip\"\ntop = \"no-slip\"\n",
+                  1.0 / 8, "[[body]]\nshape = \"ball\"\nradius = 0.27\nposition = [0.9, 0.5, 0.3]\n")}};
+  return layouts;
+}
+
+// Three phases dispersed among each other, with random fields, beside wall points as wcsph takes them.
+struct WalledLiquid {
+  Walled walled;
+  WallAverages averages;
+  Array<float> volume, excess, phase, density, viscosity;
+  Array<double> pressure, wall_pressure, wall_density;
+  std::array<Array<double>, 3> velocity;
+  std::vector<std::int32_t> body;
+  VelocityImageRule mirror;
+  reference::WcsphWallSums twin;
+
+  WalledLiquid(const Layout& layout, double jitter, const Vec3& gravity)
+      : walled(layout.text, jitter),
+        twin{
+            walled.scene().domain, walled.resolution.smoothing_length, walled.particles.volume, gravity, 0.08, {}, {}} {
+    const std::size_t n = walled.particles.size();
+    for (auto* array : {&volume, &excess, &phase, &density, &viscosity}) array->resize(n);
+    pressure.resize(n);
+    for (auto& component : velocity) component.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto a = uniform(i, 11), b = uniform(i, 12);
+      volume[i] = static_cast<float>(1 + 0.1 * (a[0] - 0.5));
+      excess[i] = static_cast<float>(a[1] - 0.5);
+      pressure[i] = a[2] - 0.3;
+      phase[i] = static_cast<float>(i % 3);
+      density[i] = i % 3 == 0 ? 1000.0F : i % 3 == 1 ? 1.0F : 800.0F;
+      viscosity[i] = i % 3 == 0 ? 1.0F : i % 3 == 1 ? 0.018F : 0.0F;
+      reference::WallSumPoint point{.position = walled.place(i),
+                                    .volume = volume[i],
+                                    .pressure = pressure[i],
+                                    .excess = excess[i],
+                                    .density = density[i],
+                                    .viscosity = viscosity[i],
+                                    .phase = static_cast<int>(i % 3)};
+      for (int axis = 0; axis < walled.particles.dimensions; ++axis)
+        velocity[axis][i] = point.velocity[axis] = b[static_cast<std::size_t>(axis)] - 0.5;
+      twin.particles.push_back(point);
+    }
+    take_points();
+    twin.fill_walls();
+  }
+
+  BodyWalls& walls() { return *walled.boundary.bodies(); }
+  const SweepContext& context() const { return walled.arrangement.context; }
+
+  void take_points() {
+    Arrangement& arrangement = walled.arrangement;
+    walls().take_all_points(0);
+    walled.boundary.make_images(arrangement, walled.particles, walled.particles.position, 1, {}, false);
+    arrangement.find_neighbours(walled.particles, walled.particles.position, {});
+    averages.find_entries(context(), walled.boundary.reflection(), walls().stencils());
+    averages.weigh(context(), walls().stencils());
+    wall_pressure.resize(walls().stencils().size());
+    wall_density.resize(walls().stencils().size());
+    averages.extrapolate(context(), walls().stencils(),
+                         {.pressure = pressure.data(),
+                          .density = density.data(),
+                          .gravity = twin.gravity,
+                          .wall_acceleration = read(walls().acceleration())},
+                         wall_pressure.data(), wall_density.data());
+    for (std::size_t g = 0; g < walls().points(); ++g) {
+      const WallPoint& at = walls().all_points()[g];
+      body.push_back(walls().body_of_wet(g));
+      reference::WallSumPoint point{.position = at.position, .normal = at.normal, .body = body.back()};
+      point.no_slip = walls().bodies()[static_cast<std::size_t>(body.back())].wall == BoundaryKind::no_slip;
+      for (int axis = 0; axis < walled.particles.dimensions; ++axis) {
+        point.velocity[axis] = walls().stencils().wall_velocity[axis][g];
+        if (!walls().acceleration()[axis].empty()) point.acceleration[axis] = walls().acceleration()[axis][g];
+      }
+      twin.walls.push_back(point);
+    }
+    mirror.sign = walled.boundary.reflection();
+    mirror.friction = false;
+  }
+};
+
+// Places are floats relative to the middle of the domain: what the rounding of one side length changes in a kernel
+// gradient over a smoothing length, and that of a sum of `terms`.
+double float_rounding(const WalledLiquid& liquid, double terms) {
+  return std::ldexp(16 / liquid.twin.h + terms + 16, -24);
+}
+
+TEST(WcsphWalls, AveragesAtWallPointsAgreeWithTheSlowTwin) {
+  for (const Layout& layout : wcsph_layouts())
+    for (const double jitter : {0.2, 0.9}) {
+      SCOPED_TRACE(layout.name);
+      WalledLiquid liquid(layout, jitter, {});
+      const WallStencils& stencils = liquid.walls().stencils();
+      ASSERT_GT(stencils.size(), 10);
+      for (std::size_t g = 0; g < stencils.size(); ++g) {
+        const reference::WallSumPoint& wall = liquid.twin.walls[g];
+        std::vector<double> share(liquid.twin.particles.size());
+        double total = 0;
+        for (std::int64_t k = stencils.first[g]; k < stencils.first[g + 1]; ++k) {
+          share[static_cast<std::size_t>(stencils.source[k])] += stencils.coefficient[k];
+          total += stencils.coefficient[k];
+        }
+        // Far kernel values lose digits to the rounding of places before a mean of a few of them.
+        const std::vector<double> wanted = liquid.twin.shares(g);
+        double kernel_sum = 0;
+        for (const auto& particle : liquid.twin.particles)
+          liquid.twin.each_copy(particle, [&](const auto& copy) {
+            if (!copy.mirrored) kernel_sum += WendlandC2::w(liquid.twin.q(wall.position, copy.position));
+          });
+        if (kernel_sum < 1e-3) continue;
+        EXPECT_NEAR(total, 1, 1e-12);
+        const double rounding = float_rounding(liquid, 0) / kernel_sum;
+        double largest = 0;
+        for (std::size_t j = 0; j < share.size(); ++j) {
+          EXPECT_NEAR(share[j], wanted[j], rounding);
+          if (wanted[j] > 0) largest = std::max(largest, double{liquid.density[j]});
+        }
+        const double entries = static_cast<double>(stencils.first[g + 1] - stencils.first[g]);
+        EXPECT_NEAR(liquid.wall_density[g], wall.density, entries * rounding * largest);
+        EXPECT_NEAR(liquid.wall_pressure[g], wall.pressure,
+                    entries * rounding *
+                        (1 + largest * 2 * liquid.walled.resolution.support_radius *
+                                 std::sqrt(dot(wall.acceleration, wall.acceleration))));
+      }
+    }
+}
+
+TEST(WcsphWalls, SumsAndForcesAgreeWithTheSlowTwin) {
+  for (const Layout& layout : wcsph_layouts())
+    for (const double jitter : {0.2, 0.9}) {
+      SCOPED_TRACE(layout.name);
+      const LoadedCase& loaded = Walled(layout.text).loaded;
+      const int d = loaded.scene.domain.dimensions;
+      Vec3 gravity{};
+      if (!loaded.scene.domain.periodic(d - 1)) gravity[static_cast<std::size_t>(d - 1)] = -2e-3;
+      WalledLiquid liquid(layout, jitter, gravity);
+      PackedNeighbours& packed = liquid.walled.arrangement.packed;
+      const Boundary& boundary = liquid.walled.boundary;
+      const std::size_t n = liquid.twin.particles.size();
+      Array<float> rate(n), diffusion(n);
+      std::array<Array<float>, 3> viscous, force;
+      for (auto* vector : {&viscous, &force})
+        for (auto& component : *vector) component.resize(n);
+      const std::array<float*, 3> viscous_out{viscous[0].data(), viscous[1].data(), viscous[2].data()};
+      const std::array<float*, 3> force_out{force[0].data(), force[1].data(), force[2].data()};
+      continuity_sweep(liquid.context(), packed,
+                       {.velocity = read(liquid.velocity),
+                        .mirror = &liquid.mirror,
+                        .friction = &boundary.velocity_rule(),
+                        .volume = liquid.volume.data(),
+                        .excess = liquid.excess.data(),
+                        .phase = liquid.phase.data(),
+                        .viscosity = liquid.viscosity.data()},
+                       {rate.data(), diffusion.data(), viscous_out});
+      pressure_force_sweep(liquid.context(), packed,
+                           {.pressure = liquid.pressure.data(),
+                            .volume = liquid.volume.data(),
+                            .density = liquid.density.data(),
+                            .several = true,
+                            .repulsion = 0.08F,
+                            .gravity = gravity,
+                            .position = read(liquid.walled.particles.position),
+                            .wall_pressure = liquid.wall_pressure.data(),
+                            .wall_density = liquid.wall_density.data(),
+                            .wall_position = liquid.walls().wet().position},
+                           force_out);
+      Vec3 lost{};
+      double modulus = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        const auto s = liquid.twin.sums(i);
+        const double rounding = float_rounding(liquid, s.count);
+        EXPECT_NEAR(rate[i], s.rate, rounding * s.rate_modulus);
+        EXPECT_NEAR(diffusion[i], s.diffusion, rounding * s.diffusion_modulus);
+        for (int axis = 0; axis < d; ++axis) {
+          EXPECT_NEAR(viscous[axis][i], s.viscous[axis], rounding * s.viscous_modulus);
+          EXPECT_NEAR(force[axis][i], s.pressure[axis], rounding * s.pressure_modulus);
+          lost[axis] -= liquid.twin.particle_volume * liquid.volume[i] * (force[axis][i] + viscous[axis][i]);
+        }
+        modulus += rounding * liquid.twin.particle_volume * (s.pressure_modulus + s.viscous_modulus);
+      }
+      const std::vector<WallForce> forces = wall_forces(liquid.context(),
+                                                        {.velocity = read(liquid.velocity),
+                                                         .pressure = liquid.pressure.data(),
+                                                         .volume = liquid.volume.data(),
+                                                         .viscosity = liquid.viscosity.data(),
+                                                         .friction = true,
+                                                         .gravity = gravity,
+                                                         .reflection = &boundary.reflection(),
+                                                         .held = &boundary.velocity_rule().sign,
+                                                         .wall_pressure = liquid.wall_pressure.data(),
+                                                         .wall_density = liquid.wall_density.data(),
+                                                         .wall_position = liquid.walls().wet().position,
+                                                         .body = liquid.body.data()},
+                                                        liquid.walls().bodies().size());
+      Vec3 taken{};
+      for (std::size_t b = 0; b < forces.size(); ++b) {
+        const auto wanted = liquid.twin.force(static_cast<int>(b));
+        const double rounding = float_rounding(liquid, 0);
+        for (int axis = 0; axis < d; ++axis) {
+          EXPECT_NEAR(forces[b].pressure[axis], wanted.pressure[axis], rounding * wanted.modulus);
+          EXPECT_NEAR(forces[b].viscous[axis], wanted.viscous[axis], rounding * wanted.viscous_modulus);
+          taken[axis] += forces[b].pressure[axis] + forces[b].viscous[axis];
+        }
+        EXPECT_NEAR(forces[b].pressure_torque[2], wanted.torque, 2 * rounding * wanted.modulus);
+      }
+      // Without other walls bodies take what the liquid loses.
+      for (int axis = 0; axis < d; ++axis)
+        if (&layout == &wcsph_layouts()[0]) {
+          EXPECT_NEAR(taken[axis], lost[axis], modulus);
+        }
+    }
+}
+
+// Lists outlive small ways of bodies: their points follow, those round a periodic side too.
+TEST(WcsphWalls, PointsFollowTheirBodies) {
+  WalledLiquid liquid(wcsph_layouts()[0], 0.2, {});
+  BodyWalls& walls = liquid.walls();
+  const std::vector<WallPoint> before = walls.all_points();
+  const double t = 0.01;
+  const RigidPlace start = given_place(walls.motions()[0], 0), place = given_place(walls.motions()[0], t);
+  walls.follow_points(t);
+  for (std::size_t g = 0; g < before.size(); ++g) {
+    // Points of the copy beyond the upper side turn about a pivot a period below.
+    double least = INFINITY, way = 0;
+    for (const double shift : {0.0, 1.0}) {
+      const Vec3 wanted = subtract(place.now(start.start(add(before[g].position, {0, shift, 0}))), {0, shift, 0});
+      const Vec3 off = subtract(walls.all_points()[g].position, wanted), moved = subtract(wanted, before[g].position);
+      if (dot(off, off) >= least) continue;
+      least = dot(off, off);
+      way = std::sqrt(dot(moved, moved));
+    }
+    EXPECT_LT(std::sqrt(least), 1e-12);
+    EXPECT_LE(way, walls.way_of_points(0, t) + 1e-12);
+    EXPECT_GT(way, 0);
+    EXPECT_EQ(walls.wet().position[0][g], walls.all_points()[g].position[0]);
+  }
+}
+
+}  // namespace
+}  // namespace spume::test
