@@ -13,6 +13,9 @@ namespace {
 constexpr double largest_excess_of_a_flow = 0.5;
 // Sun et al. (2019): delta u = -2 U h grad C, of U / 2 at most, U the largest expected speed.
 constexpr double shifting_strength = 2, largest_shift = 0.5;
+// Monaghan (2000): R = eps |P| f^n, f = W(r) / W(spacing).
+constexpr double stress_share = 0.2;
+constexpr int stress_exponent = 4;
 
 }  // namespace
 
@@ -223,6 +226,29 @@ void Flow::find_pressure_force() {
        .wall_density = wall_density.data(),
        .wall_position = features.bodies ? boundary.bodies()->wet().position : std::array<const double*, 3>{}},
       write(pressure_force), write(concentration));
+  if (scene.free_surface) part_from_images();
+}
+
+// A particle on a mirror is at rest there: its force towards its image vanishes, and what the others leave of a flat
+// density field cancels it to first order. Closer to its image than the spacing it feels the artificial stress of
+// Monaghan (8) too.
+void Flow::part_from_images() {
+  const double h = resolution.smoothing_length, gap = scene.spacing, at_gap = WendlandC2::w(gap / h);
+  const double scale = particles.volume * WendlandC2::normalisation(dimensions) / std::pow(h, dimensions + 2);
+  for (int axis = 0; axis < dimensions; ++axis)
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (!is_wall(scene.domain.sides[axis][side].kind)) continue;
+      const double plane = boundary.walls[axis][side];
+      parallel_for(size(), [&](std::size_t i) {
+        const double way = 2 * (plane - place[axis][i]);
+        if (std::abs(way) >= gap) return;
+        const double head = density[i] * wall_gravity[axis] * way;
+        const double f = std::pow(WendlandC2::w(std::abs(way) / h) / at_gap, stress_exponent);
+        const double stress = stress_share * std::abs(2 * pressure[i] + head) * (f - 1);
+        pressure_force[axis][i] +=
+            static_cast<float>(scale * WendlandC2::f(std::abs(way) / h) * volume[i] * stress * way);
+      });
+    }
 }
 
 // Towards fewer particles.

@@ -112,6 +112,7 @@ struct Flow {
   bool lists_hold(double dt) const;
   void move_images(const std::array<const double*, 3>& at, double t);
   void find_wall_pressure();
+  void part_from_images();  // (8)
   // Density does not diffuse to wall points: they have a phase of their own.
   bool needs_phase() const { return features.several || (features.bodies && !features.shifting); }
   void lease_properties();
