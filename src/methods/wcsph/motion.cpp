@@ -13,9 +13,8 @@ namespace {
 constexpr double largest_excess_of_a_flow = 0.5;
 // Sun et al. (2019): delta u = -2 U h grad C, of U / 2 at most, U the largest expected speed.
 constexpr double shifting_strength = 2, largest_shift = 0.5;
-// Monaghan (2000): R = eps |P| f^n, f = W(r) / W(spacing).
+// Monaghan (2000): R = eps |P| f^4, f = W(r) / W(spacing).
 constexpr double stress_share = 0.2;
-constexpr int stress_exponent = 4;
 
 }  // namespace
 
@@ -235,20 +234,18 @@ void Flow::find_pressure_force() {
 void Flow::part_from_images() {
   const double h = resolution.smoothing_length, gap = scene.spacing, at_gap = WendlandC2::w(gap / h);
   const double scale = particles.volume * WendlandC2::normalisation(dimensions) / std::pow(h, dimensions + 2);
-  for (int axis = 0; axis < dimensions; ++axis)
-    for (std::size_t side = 0; side < 2; ++side) {
-      if (!is_wall(scene.domain.sides[axis][side].kind)) continue;
-      const double plane = boundary.walls[axis][side];
-      parallel_for(size(), [&](std::size_t i) {
-        const double way = 2 * (plane - place[axis][i]);
-        if (std::abs(way) >= gap) return;
+  parallel_for(size(), [&](std::size_t i) {
+    for (int axis = 0; axis < dimensions; ++axis)
+      for (std::size_t side = 0; side < 2; ++side) {
+        const double way = 2 * (boundary.walls[axis][side] - place[axis][i]);
+        if (std::abs(way) >= gap || !is_wall(scene.domain.sides[axis][side].kind)) continue;
         const double head = density[i] * wall_gravity[axis] * way;
-        const double f = std::pow(WendlandC2::w(std::abs(way) / h) / at_gap, stress_exponent);
-        const double stress = stress_share * std::abs(2 * pressure[i] + head) * (f - 1);
+        const double f = WendlandC2::w(std::abs(way) / h) / at_gap;
+        const double stress = stress_share * std::abs(2 * pressure[i] + head) * (f * f * f * f - 1);
         pressure_force[axis][i] +=
             static_cast<float>(scale * WendlandC2::f(std::abs(way) / h) * volume[i] * stress * way);
-      });
-    }
+      }
+  });
 }
 
 // Towards fewer particles.
