@@ -13,11 +13,11 @@ using simd::f32n;
 
 // The inverse is used while it amplifies by less than this: a plane surface needs 1.5 to 2, an edge about 4;
 // beyond it the neighbours lie nearly in a plane or on a line and the inverse would amplify noise.
-constexpr double largest_correction = 6;
+constexpr double largest_inverse = 6;
 
 // The sums are positive semi-definite, and what passes the bound above has a determinant of 0.014 (2-D) or 9e-4 (3-D)
 // at least: this only keeps zero and what rounding makes of it from being divided by.
-constexpr double singular = 1e-12;
+constexpr double least_determinant = 1e-12;
 
 // Of the tensile term, King (3.11) with W(dr) for W(0).
 constexpr double tensile_factor = 0.25;
@@ -25,8 +25,8 @@ constexpr double tensile_factor = 0.25;
 // Inverse of a symmetric matrix; false when it is singular or amplifies too much.
 bool invert(const std::array<double, 6>& m, int dimensions, std::array<double, 6>& inverse) {
   double squares = 0;
-  return invert_symmetric(m, dimensions, singular, inverse, squares) &&
-         squares < dimensions * largest_correction * largest_correction;
+  return invert_symmetric(m, dimensions, least_determinant, inverse, squares) &&
+         squares < dimensions * largest_inverse * largest_inverse;
 }
 
 template <int dimensions>

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Definitions of MovingLeastSquares, instantiated in one file per dimension: Eigen's factorisations are compiled anew
-// for every size of the moments.
+// Definitions of MovingLeastSquares, instantiated in one file per dimension.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <experimental/simd>
 
-#include "reciprocal_condition.hpp"
+#include "least_reciprocal_condition.hpp"
 #include "spume/operators/moving_least_squares.hpp"
+#include "spume/operators/small_matrix.hpp"
 
 namespace spume {
 
@@ -84,7 +83,6 @@ bool MovingLeastSquares<Dimensions>::factor_order() {
   constexpr std::size_t size = monomial_count(Dimensions, Order);
   order_ = -1;
   measure<2 * Order>();
-  Eigen::Map<Eigen::Matrix<double, size, size>, Eigen::Aligned64> matrix(factor_.data());
   for (std::size_t i = 0; i < size; ++i) {
     const double diagonal = moments_[product_index<Dimensions, Order>[i][i]];
     if (!(diagonal > 0)) return false;
@@ -92,11 +90,10 @@ bool MovingLeastSquares<Dimensions>::factor_order() {
   }
   for (std::size_t j = 0; j < size; ++j)
     for (std::size_t i = j; i < size; ++i)
-      matrix(i, j) = moments_[product_index<Dimensions, Order>[i][j]] * (scale_[i] * scale_[j]);
-  const Eigen::LLT<Eigen::Ref<Eigen::Matrix<double, size, size>>> factor(matrix);
-  if (factor.info() != Eigen::Success) return false;
+      factor_[j * size + i] = moments_[product_index<Dimensions, Order>[i][j]] * (scale_[i] * scale_[j]);
+  if (!factor_cholesky(factor_.data(), static_cast<int>(size))) return false;
   for (std::size_t i = 0; i < size; ++i)
-    if (!(matrix(i, i) * matrix(i, i) > smallest_pivot)) return false;
+    if (!(factor_[i * size + i] * factor_[i * size + i] > smallest_pivot)) return false;
   order_ = Order;
   return true;
 }
@@ -109,7 +106,7 @@ double MovingLeastSquares<Dimensions>::reciprocal_condition() const {
   std::array<double, size * size> matrix;
   for (std::size_t j = 0; j < size; ++j)
     for (std::size_t i = 0; i < size; ++i) matrix[j * size + i] = moments_[product_index<Dimensions, Order>[i][j]];
-  return detail::reciprocal_condition(matrix.data(), static_cast<int>(size));
+  return spume::reciprocal_condition(matrix.data(), static_cast<int>(size));
 }
 
 template <int Dimensions>
@@ -138,13 +135,10 @@ template <int Dimensions>
 template <int Order>
 void MovingLeastSquares<Dimensions>::solve(std::size_t monomial, double factor) {
   constexpr std::size_t size = monomial_count(Dimensions, Order);
-  Eigen::Map<Eigen::Matrix<double, size, size>, Eigen::Aligned64> matrix(factor_.data());
-  Eigen::Matrix<double, size, 1> solution = Eigen::Matrix<double, size, 1>::Zero();
-  solution(monomial) = factor * scale_[monomial];
-  matrix.template triangularView<Eigen::Lower>().solveInPlace(solution);
-  matrix.transpose().template triangularView<Eigen::Upper>().solveInPlace(solution);
-  std::array<double, size> polynomial;
-  for (std::size_t i = 0; i < size; ++i) polynomial[i] = solution(i) * scale_[i];
+  std::array<double, size> polynomial{};
+  polynomial[monomial] = factor * scale_[monomial];
+  solve_cholesky(factor_.data(), static_cast<int>(size), polynomial.data());
+  for (std::size_t i = 0; i < size; ++i) polynomial[i] *= scale_[i];
   Pack sum = 0;
   for (std::size_t n = 0; n < count_; n += Pack::size()) {
     Pack coefficient = 0;

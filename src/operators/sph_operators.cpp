@@ -298,10 +298,10 @@ void gradient_of(const SweepContext& context, PackedNeighbours& packed, const do
   });
 }
 
-// particle_at(s): the s-th of `count` particles to filter.
-template <int dimensions, class Kernel, class ParticleAt>
+// Of the `count` particles that a list names, or of the first where it is null.
+template <int dimensions, class Kernel>
 void filter_listed(const SweepContext& context, PackedNeighbours& packed, const std::array<const float*, 3>& values,
-                   const std::vector<std::array<float, 3>>& reflection, std::size_t count, ParticleAt&& particle_at,
+                   const std::vector<std::array<float, 3>>& reflection, std::size_t count, const std::int32_t* listed,
                    const std::array<float*, 3>& out) {
   const NeighbourList& list = *context.list;
   constexpr int payload = dimensions + volume_slots<Kernel>;
@@ -313,7 +313,7 @@ void filter_listed(const SweepContext& context, PackedNeighbours& packed, const 
   const auto centre_value = static_cast<float>(Kernel::w(0.0));
 
   sweep(count, [&](std::size_t s) {
-    const std::size_t i = particle_at(s);
+    const std::size_t i = listed == nullptr ? s : static_cast<std::size_t>(listed[s]);
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
     const float centre = centre_value * own_volume<Kernel>(context, i);
     std::array<f32n, dimensions> filtered{};
@@ -377,11 +377,10 @@ void velocity_gradient_sweep(const SweepContext& context, PackedNeighbours& pack
       velocity_gradient<dimensions, Kernel, filter, bounded>(context, packed, velocity, rule, correction, out.filtered,
                                                              store);
     };
+    // The bounds cost little beside a filter: one variant less to compile.
     const bool filter = out.filtered[0] != nullptr, bounded = out.change[0] != nullptr;
-    if (filter && bounded)
+    if (filter)
       run.template operator()<true, true>();
-    else if (filter)
-      run.template operator()<true, false>();
     else if (bounded)
       run.template operator()<false, true>();
     else
@@ -439,17 +438,14 @@ void filter_vector_subset(const SweepContext& context, PackedNeighbours& packed,
                           const std::vector<std::array<float, 3>>& reflection, std::span<const std::int32_t> subset,
                           const std::array<float*, 3>& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    filter_listed<dimensions, Kernel>(
-        context, packed, values, reflection, subset.size(),
-        [&](std::size_t s) { return static_cast<std::size_t>(subset[s]); }, out);
+    filter_listed<dimensions, Kernel>(context, packed, values, reflection, subset.size(), subset.data(), out);
   });
 }
 
 void filter_vector(const SweepContext& context, PackedNeighbours& packed, const std::array<const float*, 3>& values,
                    const std::vector<std::array<float, 3>>& reflection, const std::array<float*, 3>& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    filter_listed<dimensions, Kernel>(
-        context, packed, values, reflection, context.list->particles(), [](std::size_t s) { return s; }, out);
+    filter_listed<dimensions, Kernel>(context, packed, values, reflection, context.list->particles(), nullptr, out);
   });
 }
 

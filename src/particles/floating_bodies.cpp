@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "spume/particles/floating_bodies.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/operators/small_matrix.hpp"
 
 namespace spume {
 namespace {
@@ -141,7 +141,7 @@ ProjectionMatrix& FloatingBodies::couple(ProjectionSolver& solver, const Pressur
 
 void FloatingBodies::set_forces(const Liquid& liquid) {
   const std::size_t count = freedoms_.size();
-  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(count));
+  std::vector<double> mass(count * count, 0);
   given_force_.assign(count, 0);
   for (std::size_t k = 0; k < count; ++k) {
     const auto [body, axis] = freedoms_[k];
@@ -149,7 +149,7 @@ void FloatingBodies::set_forces(const Liquid& liquid) {
     const RigidPlace& place = next_[body].place;
     const RotationMatrix inertia = turned(place.rotation, motion.inertia);
     if (axis < 3) {
-      mass(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) = motion.mass;
+      mass[k * count + k] = motion.mass;
       given_force_[k] += motion.mass * scene_.fluid.gravity[axis];
       continue;
     }
@@ -157,14 +157,15 @@ void FloatingBodies::set_forces(const Liquid& liquid) {
     given_force_[k] -= cross(place.angular_velocity, momentum)[axis - 3];
     for (std::size_t j = 0; j < count; ++j)
       if (freedoms_[j].body == body && freedoms_[j].axis >= 3)
-        mass(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(j)) =
-            inertia[static_cast<std::size_t>(axis - 3)][freedoms_[j].axis - 3];
+        mass[k * count + j] = inertia[static_cast<std::size_t>(axis - 3)][freedoms_[j].axis - 3];
   }
-  const Eigen::MatrixXd inverse = mass.inverse();
-  inverse_mass_.resize(count * count);
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t j = 0; j < count; ++j)
-      inverse_mass_[i * count + j] = inverse(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+  factor_cholesky(mass.data(), static_cast<int>(count));
+  inverse_mass_.assign(count * count, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    double* const row = &inverse_mass_[i * count];
+    row[i] = 1;
+    solve_cholesky(mass.data(), static_cast<int>(count), row);
+  }
 
   std::vector<BodyForces::PressureWeight> weights;
   std::vector<SurfaceForce> viscous;

@@ -9,7 +9,4 @@ namespace spume::detail {
 // lattices and surfaces that these stand below.
 constexpr std::array<double, 3> least_reciprocal_condition{0, 1e-3, 2e-4};
 
-// Estimate for a symmetric matrix of at most 10 by 10, all of it given.
-double reciprocal_condition(const double* matrix, int size);
-
 }  // namespace spume::detail
