@@ -155,8 +155,7 @@ TEST(Schema, GroupsThatTheMethodDoesNotDeclareAreAFaultOfTheProgram) {
 TEST(Schema, TheMethodChecksItsCaseAndItsScene) {
   const CaseSchema schema = three_methods();
   EXPECT_THAT(problems(schema, small("cold", "[sink]\nsink = -1\n")), ElementsAre("sink.sink gives heat"));
-  EXPECT_THAT(problems(schema, test::replaced(small("cold", ""), "0.1", "0.05")),
-              ElementsAre("too many to cool"));
+  EXPECT_THAT(problems(schema, test::replaced(small("cold", ""), "0.1", "0.05")), ElementsAre("too many to cool"));
   EXPECT_THAT(problems(schema, small("warm", "[output]\nfields = [\"temperature\", \"heat\"]\n")),
               ElementsAre("output.fields names 'heat', which method \"warm\" does not have; it has temperature"));
   EXPECT_THAT(problems(schema, small("lukewarm", "")),
