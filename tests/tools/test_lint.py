@@ -85,6 +85,10 @@ class Sizes(Tree):
         said = self.check({"src/core/a.cpp": "\n" * 500, "tools/b.py": "\n" * 501, "cases/c/measure.py": "\n" * 900})
         self.assertEqual(said, ["tools/b.py:501: error: 501 lines; a file has at most 500, split it"])
 
+    def test_the_step_of_a_method_is_a_page(self):
+        said = self.check({"src/methods/a/step.cpp": "\n" * 120, "src/methods/b/step.cpp": "\n" * 121, "src/run/step.cpp": "\n" * 300})
+        self.assertEqual(said, ["src/methods/b/step.cpp:121: error: 121 lines; the step of a method is a page of at most 120"])
+
 
 if __name__ == "__main__":
     unittest.main()

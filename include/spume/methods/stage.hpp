@@ -56,6 +56,8 @@ class ArrayUse {
   std::function<double()> bytes_;
 };
 
+using Arrays = std::vector<ArrayUse>;
+
 // One run of a stage: the step it belongs to (0 at the start), and what the stage counted itself.
 struct StageRun {
   double dt = 0;
@@ -73,7 +75,7 @@ struct Stage {
   std::string reason;
   bool on = true;
   std::function<void(StageRun&)> work = {};
-  std::vector<ArrayUse> reads = {}, writes = {};
+  Arrays reads = {}, writes = {};
   StagePart part = StagePart::step;
   std::function<bool()> due = {};  // asked before each run; none: always
 };

@@ -132,7 +132,12 @@ double Flow::roundness() const {
   return least / interface_area();
 }
 
+void Flow::sort_particles() {
+  arrangement.sort(particles, particles.position);
+}
+
 void Flow::start_energy() {
+  if (steps > 0) return;
   energy_supply = kinetic_energy() + potential_energy() + surface_energy();
 }
 

@@ -5,6 +5,22 @@
 
 namespace spume::gfd {
 
+const char* in_words(Diffusion diffusion) {
+  switch (diffusion) {
+    case Diffusion::split:
+      return "(12) and (grad u)^T . grad mu: div(2 mu T)";
+    case Diffusion::printed:
+      return "(19): grad mu . 2 T + mu lap u";
+    case Diffusion::mu_laplacian:
+      return "(12): div(mu grad u)";
+    case Diffusion::laplacian:
+      return "mu lap u";
+    case Diffusion::hu_adams:
+      return "(13): Hu and Adams";
+  }
+  return "";
+}
+
 Section momentum_section() {
   return section<MomentumOptions>("momentum")
       .word("diffusion", &MomentumOptions::diffusion,

@@ -37,7 +37,7 @@ void Flow::set_in_motion() {
       for (int axis = 0; axis < dimensions; ++axis) (*particles.velocity[axis])[i] = next_velocity[axis][i];
     });
     scratch.release(next_velocity);
-    moments.measure(arrangement, particles, resolution.spacing);  // the matrix has used parts of it up
+    measure_moments();  // the matrix has used parts of it up
   }
   find_extremes();
 }

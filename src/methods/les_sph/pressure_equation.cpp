@@ -105,7 +105,11 @@ void Flow::set_weights() {
   });
 }
 
-// Of the next time, as the potential is.
+void Flow::find_matrix(double dt) {
+  give_pressures(time + dt);  // of the next time, as the potential is
+  set_matrix();
+}
+
 void Flow::give_pressures(double t) {
   if (!features.openings) return;
   const auto potential_of_place = [&](const Vec3& r) {

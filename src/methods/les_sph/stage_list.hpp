@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stages of a flow as its plan takes them: with the traffic of their sweeps, and of arrays that other classes keep.
+// Arrays that the plan of a flow names, those of other classes among them.
 #pragma once
 
 #include <string>
@@ -10,31 +10,6 @@
 #include "spume/methods/stage.hpp"
 
 namespace spume::les_sph {
-
-using Arrays = std::vector<ArrayUse>;
-
-class AddStage {
- public:
-  AddStage(Plan& plan, Flow& flow) : plan_(plan), flow_(flow) {}
-
-  // `sweeps`: the stage passes over the pairs; the traffic of its sweeps comes on top of the arrays that it names.
-  template <class Work>
-  void operator()(StagePart part, const char* name, bool on, std::string reason, Work work, Arrays reads, Arrays writes,
-                  bool sweeps = false) const {
-    plan_.add({name, std::move(reason), on,
-               [&f = flow_, work, sweeps](StageRun& run) {
-                 f.arrangement.packed.take_traffic();
-                 work(run);
-                 if (sweeps && run.pairs == 0) run.pairs = f.arrangement.pair_count();
-                 run.bytes += f.arrangement.packed.take_traffic();
-               },
-               std::move(reads), std::move(writes), part});
-  }
-
- private:
-  Plan& plan_;
-  Flow& flow_;
-};
 
 // Arrays that the plan of a flow names and other classes keep.
 struct KeptArrays {
@@ -91,6 +66,13 @@ inline auto solving(Flow& f, void (Flow::*solve)()) {
   return [&f, solve](StageRun& run) {
     (f.*solve)();
     run.pairs = f.arrangement.pair_count() * f.solver.report().applications;
+  };
+}
+
+// Every scalar has its sweep.
+inline auto carrying_scalars(Flow& f) {
+  return [&f](StageRun& run) {
+    run.pairs = f.arrangement.pair_count() * static_cast<double>(f.transport_scalars(run.dt));
   };
 }
 

@@ -7,7 +7,6 @@
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/methods/les_sph/flow.hpp"
-#include "spume/particles/number_density.hpp"
 #include "spume/particles/sponge.hpp"
 
 namespace spume::les_sph {
@@ -98,52 +97,19 @@ void Flow::find_advecting_velocity(double dt) {
   });
 }
 
-void Flow::make_images(double dt) {
-  // u^{n+1/2} becomes u^{n+3/2}; without centring u^n becomes u^{n+1}.
-  const double behind = options.get<SchemeOptions>().centred ? dt / 2 : 0;
-  WallTimes times{.place = time + dt, .velocity = time + behind, .ahead = time + dt + behind};
-  // The start takes the acceleration right after it, over a time that is short beside any motion that a run resolves.
-  if (const double soon = 1e-6 * options.time.end; dt == 0)
-    times = {.place = time, .velocity = time + soon, .ahead = time + 2 * soon};
-  boundary.make_images(arrangement, particles, intermediate_position, sizes.largest_length_ratio, times);
-}
-
-void Flow::find_neighbours(double dt) {
-  arrangement.find_neighbours(particles, intermediate_position, sizes);
-  if (dt > 0 && (features.shifting || features.density_relaxation))
-    displacement = displacement_fraction(arrangement, particles, resolution, dt);
-}
-
-// The volume fraction depends on h, which depends on the volume fraction. A round leaves at most (1 - alpha) / alpha of
-// the error of alpha: after six 2e-6 at 0.9 and 2e-4 at 0.8. Particles of the start that hold more gas settle within
-// the first steps, each of which is such a round.
-void Flow::place_clouds() {
-  constexpr int rounds = 6;
-  bubbles->place_clouds();
-  for (int round = 0; round < rounds && !bubbles->population().empty(); ++round) {
-    move_bubbles(0);
-    make_images(0);
-    share_volume();
-    bubbles->accept_volume_fraction();
-  }
-}
-
-void Flow::move_bubbles(double dt) {
-  bubbles->move(dt, sizes);
-  arrangement.set_sizes(nullptr);  // until they are known
-}
-
-void Flow::share_volume() {
-  bubbles->share_volume(sizes);
-  arrangement.set_sizes(sizes.variable ? &sizes : nullptr);
-}
-
 void Flow::compute_shift() {
   shift->compute(arrangement, particles, shift_input(options.get<ShiftingOptions>(), largest_shift, displacement),
                  sizes, moments, surface.get(), boundary.reflection());
 }
 
-void Flow::differentiate_velocity(bool first) {
+void Flow::differentiate_velocity() {
+  differentiate(read(advecting_velocity), false);
+}
+void Flow::differentiate_first_velocity() {
+  differentiate(read(particles.velocity), true);
+}
+
+void Flow::differentiate(const std::array<const double*, 3>& velocity, bool first) {
   ScratchPool& scratch = particles.scratch();
   VelocityGradientOut out;
   if (features.stored_gradient) {
@@ -164,8 +130,7 @@ void Flow::differentiate_velocity(bool first) {
     out.displacement = read(shift->displacement);
     out.change = write(shift_velocity);
   }
-  velocity_gradient_sweep(arrangement.context, arrangement.packed,
-                          first ? read(particles.velocity) : read(advecting_velocity), boundary.velocity_rule(),
+  velocity_gradient_sweep(arrangement.context, arrangement.packed, velocity, boundary.velocity_rule(),
                           moments.read_correction(), out);
 }
 
@@ -203,7 +168,8 @@ void Flow::find_uniform_acceleration(double t) {
     (scene.domain.periodic(axis) ? periodic_acceleration : uniform_acceleration)[axis] = total[axis];
 }
 
-void Flow::find_potential(double t) {
+void Flow::find_potential(double dt) {
+  const double t = time + dt;
   find_uniform_acceleration(t);
   parallel_for(size(),
                [&](std::size_t i) { (*potential)[i] = potential_at(vector_at(intermediate_position, dimensions, i)); });

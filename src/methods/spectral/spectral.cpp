@@ -49,6 +49,24 @@ void Spectral<T>::start() {
 }
 
 template <class T>
+void Spectral<T>::step(double dt, Ledger& ledger) {
+  ensure_started();
+  const auto run_step = [&](Ledger& timed) {
+    flow_.begin_step(dt);
+    plan_.run_step(dt, static_cast<double>(particle_count()), timed);
+  };
+  // The force of the first step is known once it is made; without it the coupled motion would be of first order in dt.
+  if (suspension_ && suspension_->lacks_force()) {
+    const auto start = suspension_->copy_state();
+    Ledger untimed;
+    run_step(untimed);
+    flow_.take_back_first_step();
+    suspension_->take_back_first_step(start);
+  }
+  run_step(ledger);
+}
+
+template <class T>
 void Spectral<T>::ensure_started() {
   if (!started_) start();
 }

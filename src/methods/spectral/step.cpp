@@ -5,35 +5,9 @@
 #include "spume/methods/spectral/spectral.hpp"
 
 namespace spume::spectral {
-namespace {
-
-// Collisions at the start: random places at volume fractions up to 45 % have no overlap left after fewer.
-constexpr int start_sweeps = 300;
-
-}  // namespace
-
-template <class T>
-void Spectral<T>::step(double dt, Ledger& ledger) {
-  ensure_started();
-  const auto run_step = [&](Ledger& timed) {
-    flow_.begin_step(dt);
-    plan_.run_step(dt, static_cast<double>(particle_count()), timed);
-  };
-  // The force of the first step is known once it is made; without it the coupled motion would be of first order in dt.
-  if (suspension_ && suspension_->lacks_force()) {
-    const auto start = suspension_->copy_state();
-    Ledger untimed;
-    run_step(untimed);
-    flow_.take_back_first_step();
-    suspension_->take_back_first_step(start);
-  }
-  run_step(ledger);
-}
-
 template <class T>
 Plan Spectral<T>::make_plan() {
   Plan plan;
-  using Arrays = std::vector<ArrayUse>;
   using Work = std::function<void(StageRun&)>;
   using Condition = std::function<bool()>;
   const auto both = StagePart::both;
@@ -111,7 +85,7 @@ Plan Spectral<T>::make_plan() {
   const ArrayUse state([&particles] { return particles.fields.bytes(); });
   const ArrayUse records([&system] { return system.record_bytes(); });
   add("particle separation", "random places overlap", system.collides(),
-      per_particle([&system](StageRun&) { system.separate(start_sweeps); }), {particles.position, particles.identifier},
+      per_particle(run(*p, &Suspension<T>::separate_particles)), {particles.position, particles.identifier},
       {particles.position}, StagePart::start);
   const Condition sort_due = [&system] { return system.sort_due(); };
   add("velocity at points", "divided by the prefilter of the splines", true,
@@ -134,8 +108,6 @@ Plan Spectral<T>::make_plan() {
   return plan;
 }
 
-template void Spectral<double>::step(double, Ledger&);
-template void Spectral<float>::step(double, Ledger&);
 template Plan Spectral<double>::make_plan();
 template Plan Spectral<float>::make_plan();
 

@@ -133,9 +133,10 @@ struct Flow {
   double surface_energy() const;    // sigma times it
   double roundness() const;         // of the second of two phases: surface of a ball of its volume over that area
   // What the guard of the energy measures by; after the first interfaces have been found.
-  void start_energy();
+  void start_energy();  // of a run that begins
 
   // The stages.
+  void sort_particles();
   void make_images(double dt);
   void find_neighbours(double dt);
   void measure_stencils();  // (10), (11)

@@ -155,23 +155,30 @@ struct Flow {
 
   // The stages, in the order of step.cpp. Numbers refer to King et al., section 3.3.
   void move_to_intermediate_position(double dt);  // (i)
+  void sort_particles();
+  void pack_beside_bodies();  // of the start
+  void level_surface();       // of the start
   void find_advecting_velocity(double dt);
   void make_images(double dt);  // (ii)
   void find_neighbours(double dt);
-  void level_surface();                     // of the start
-  void compute_shift();                     // (iii)
-  void differentiate_velocity(bool first);  // (v)
+  void measure_moments();
+  void find_surface();
+  void compute_shift();                 // (iii)
+  void differentiate_velocity();        // (v)
+  void differentiate_first_velocity();  // of the start
   void find_shift_curvature();
   void find_eddy_viscosity(double dt);
   // Gravity and a uniform body force at time t, along axes without periodicity and along the others. Throws
   // StepFailure.
   void find_uniform_acceleration(double t);
-  void find_potential(double t);
+  void find_potential(double dt);  // at the end of the step
   void find_viscous_acceleration();
   // Bubbles, and the sizes of the particles that make room for them.
   void place_clouds();
   void move_bubbles(double dt);
   void share_volume();
+  void exchange_with_bubbles(double dt);
+  void accept_bubbles(double dt);    // what becomes of them after the step
   void predict_velocity(double dt);  // (viii)
   void damp_velocity(double dt);     // in sponges
   void find_divergence(double dt);
@@ -181,8 +188,7 @@ struct Flow {
   void set_in_motion();           // of the start, with what enters
   void find_first_forces();
   void set_first_source();
-  void give_pressures(double t);  // behind openings
-  void set_matrix();
+  void find_matrix(double dt);
   void prepare_solver();
   void solve_pressure();        // (x)
   void solve_first_pressure();  // lap p = div F - tr(grad u . grad u)
@@ -197,6 +203,9 @@ struct Flow {
   void find_extremes();  // largest speeds and eddy viscosity of the present state
 
  private:
+  void differentiate(const std::array<const double*, 3>& velocity, bool first);
+  void give_pressures(double t);  // behind openings
+  void set_matrix();
   // u^{n+1/2} = u^n + dt/2 Du/Dt; without centring u^n.
   Vec3 advecting_velocity_of(std::size_t i, double dt) const;
   void add_body_force(double t, double dt);

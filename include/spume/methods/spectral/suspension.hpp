@@ -32,6 +32,7 @@ class Suspension {
   void fill_records();               // of the velocity, for the particles
   void follow_exponents(StageRun& run);
   // After velocity_to_points and fill_records of the flow's initial state.
+  void separate_particles();  // of the start
   void start_particles();
 
   // True before the first step of particles that act on the flow. It is made twice: the second time with the force that
