@@ -2,6 +2,7 @@
 #include "spume/physics/bubbles/breakup.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -21,9 +22,10 @@ double smallest_for(double confinement) {
   return std::max(hard_limit, std::pow(confinement, 4.5));
 }
 
+// Cubic roots: a power takes three times as long.
 double density_for(double v, double confinement) {
-  return std::pow(v * (1 - v), -2.0 / 3) * (std::pow(v, 2.0 / 9) - confinement) *
-         (std::pow(1 - v, 2.0 / 9) - confinement);
+  const double first = std::cbrt(v * v), second = std::cbrt((1 - v) * (1 - v));  // to the 2/3
+  return (std::cbrt(first) - confinement) * (std::cbrt(second) - confinement) / (first * second);
 }
 
 }  // namespace
@@ -58,26 +60,29 @@ ChildSizeTable::ChildSizeTable() {
     // At the very end the range is a point; the shape of the range just before it is the limit.
     confinement = std::min(confinement, soft_end * (1 - 1e-6));
     const double low = smallest_for(confinement), span = 0.5 - low;
-    // Distribution over y = s^2 in [0, 1] by Simpson's rule: fine steps at the foot.
-    constexpr int steps = 4096;
-    std::vector<double> sum(steps + 1, 0.0);
+    // Distribution over y = s^2 in [0, 1] by Simpson's rule: fine steps at the foot. It is off by 3e-10 of itself at
+    // most; the interpolation between columns by 2e-6.
+    constexpr int steps = 512;
+    std::array<double, steps + 1> sum{}, at_node;
     const auto weight = [&](double s) { return 2 * s * std::max(0.0, density_for(low + span * s * s, confinement)); };
-    for (int k = 0; k < steps; ++k) {
-      const double a = static_cast<double>(k) / steps, b = (k + 1.0) / steps;
-      sum[k + 1] = sum[k] + (weight(a) + 4 * weight(0.5 * (a + b)) + weight(b)) / (6.0 * steps);
-    }
+    for (int k = 0; k <= steps; ++k) at_node[k] = weight(static_cast<double>(k) / steps);
+    for (int k = 0; k < steps; ++k)
+      sum[k + 1] = sum[k] + (at_node[k] + 4 * weight((k + 0.5) / steps) + at_node[k + 1]) / (6.0 * steps);
     double* out = values_.data() + row * (columns + 1);
     int k = 0;
     for (int c = 0; c <= columns; ++c) {
       const double t = static_cast<double>(c) / columns, wanted = t * t * sum[steps];
       while (k + 1 < steps && sum[k + 1] < wanted) ++k;
-      // Within a step the density is linear to rounding of the table; two Newton steps on its Simpson integral.
+      // Newton's method on the Simpson integral over part of a step, from where the density is constant in it.
       const double a = static_cast<double>(k) / steps;
       double part = sum[k + 1] > sum[k] ? (wanted - sum[k]) / (sum[k + 1] - sum[k]) : 0;
       for (int iteration = 0; iteration < 4; ++iteration) {
-        const double s = a + part / steps, middle = a + 0.5 * part / steps, slope = weight(s) / steps;
-        const double value = (weight(a) + 4 * weight(middle) + weight(s)) * part / (6.0 * steps);
-        if (slope > 0) part = std::clamp(part - (value - (wanted - sum[k])) / slope, 0.0, 1.0);
+        const double end = weight(a + part / steps), middle = weight(a + 0.5 * part / steps);
+        const double value = (at_node[k] + 4 * middle + end) * part / (6.0 * steps);
+        if (!(end > 0)) break;
+        const double change = (value - (wanted - sum[k])) * steps / end, before = part;
+        part = std::clamp(part - change, 0.0, 1.0);
+        if (std::abs(part - before) < 1e-9) break;
       }
       const double s = a + part / steps;
       out[c] = s * s;
