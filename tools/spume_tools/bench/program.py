@@ -14,7 +14,6 @@ memory    peak memory of the step's run per particle, everything counted
 parts     time and arrays of a step with and without each optional part (see parts.py)
 """
 import os
-import resource
 import subprocess
 import sys
 import tempfile
@@ -34,6 +33,7 @@ WIDE = ["--set", "domain.upper=[1, 0.25, 0.5]", "--set", "output.every=0"]
 class Bench:
     def __init__(self, program, scratch):
         self.program, self.scratch, self.count = program, Path(scratch), 0
+        self.peak_memory = 0  # of the last run, bytes
 
     def start(self, case, *arguments):
         self.count += 1
@@ -45,7 +45,9 @@ class Bench:
         """Results and wall seconds of one run, start-up and output included."""
         begin = time.monotonic()
         process, out = self.start(case, *arguments)
-        if process.wait() != 0:
+        _, status, usage = os.wait4(process.pid, 0)  # the system's own count of this child alone
+        process.returncode, self.peak_memory = os.waitstatus_to_exitcode(status), usage.ru_maxrss * 1024
+        if process.returncode != 0:
             raise MissingResult(f"exit code {process.returncode} from {self.program} run {case}")
         return Results(out), time.monotonic() - begin
 
@@ -61,17 +63,25 @@ def step(bench):
     return f"{rate / 1e6:.3f} M particle-steps/s ({particles} particles, {steps} steps, 2 threads)"
 
 
-def collapse(bench):
+def collapse_seconds(bench):
     run, seconds = bench.run(COLLAPSE, "--threads", "2", "--until", "0.5")
-    return f"{seconds / run.series['t'][-1]:.1f} wall seconds per simulated second to t = 0.5 s, 2 threads"
+    return seconds / run.series["t"][-1]
 
 
-def threads(bench):
+def collapse(bench):
+    return f"{collapse_seconds(bench):.1f} wall seconds per simulated second to t = 0.5 s, 2 threads"
+
+
+def thread_ratio(bench):
     rates = {1: [], 2: []}
     for _ in range(2):  # alternating, the best of each counts: other load on the machine slows, it never speeds up
         for count in (1, 2):
             rates[count].append(bench.particle_steps_per_second(count, 0.05)[0])
-    return f"2 threads are {max(rates[2]) / max(rates[1]):.2f} times as fast as 1"
+    return max(rates[2]) / max(rates[1])
+
+
+def threads(bench):
+    return f"2 threads are {thread_ratio(bench):.2f} times as fast as 1"
 
 
 def shared(bench):
@@ -84,7 +94,8 @@ def shared(bench):
     return f"two runs at once take {(time.monotonic() - begin) / alone:.2f} times as long as one ({os.cpu_count()} cores)"
 
 
-def bubbles(bench):
+def bubble_microseconds(bench):
+    """Per bubble and step; how many bubbles; their share of the step with none alive."""
     def stages(*arguments):
         run, _ = bench.run(BUBBLES, "--threads", "2", *arguments)
         seconds = {entry["stage"]: entry["seconds"] for entry in run.ledger["stages"]}
@@ -96,18 +107,24 @@ def bubbles(bench):
     run, spent, _ = stages()
     work = float(run.series["bubbles"][1:].sum())
     _, idle, whole = stages("--set", "bubble_cloud.0.time=100")
-    return (f"{1e6 * spent / work:.2f} us per bubble and step ({run.series['bubbles'][-1]:.0f} bubbles, 2 threads); "
-            f"without any alive {100 * idle / whole:.2f} % of the step")
+    return 1e6 * spent / work, run.series["bubbles"][-1], idle / whole
+
+
+def bubbles(bench):
+    cost, count, idle = bubble_microseconds(bench)
+    return f"{cost:.2f} us per bubble and step ({count:.0f} bubbles, 2 threads); without any alive {100 * idle:.2f} % of the step"
+
+
+def peak_bytes(bench):
+    """Of the process per particle; how many particles."""
+    run, _ = bench.run(WAVE, *WIDE, "--until", "0.01")
+    particles = len(run.snapshots()[0])
+    return bench.peak_memory / particles, particles
 
 
 def memory(bench):
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
-    run, _ = bench.run(WAVE, *WIDE, "--until", "0.01")
-    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
-    particles = len(run.snapshots()[0])
-    # ru_maxrss is the largest child so far, so a larger one before would hide this run.
-    note = "" if peak > before else " (an earlier run was as large)"
-    return f"{peak * 1024 / particles:.0f} bytes per particle at peak, {particles} particles{note}"
+    each, particles = peak_bytes(bench)
+    return f"{each:.0f} bytes per particle at peak, {particles} particles"
 
 
 MEASUREMENTS = {"memory": memory, "step": step, "collapse": collapse, "threads": threads, "shared": shared,
