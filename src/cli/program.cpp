@@ -56,7 +56,8 @@ struct CommandLine {
   bool animate = false;
   bool quick = false;
   std::string keep;
-  CLI::App *run_app, *check_app, *resume_app, *info_app, *verify_app, *plot_app, *options_app;
+  bool table_only = false;
+  CLI::App *run_app, *check_app, *resume_app, *info_app, *verify_app, *plot_app, *compare_app, *options_app;
 
   CommandLine() {
     app.name("spume");
@@ -69,6 +70,7 @@ struct CommandLine {
     verify_app = app.add_subcommand("verify", "run validation cases and print error against bound");
     plot_app =
         app.add_subcommand("plot", "pictures of a run, of two runs beside each other, or of those that verify kept");
+    compare_app = app.add_subcommand("compare", "two runs side by side: cost, options, verdicts, quantities; pictures");
     options_app = app.add_subcommand("options", "every option of a case: unit, default, range");
 
     for (CLI::App* verb : {run_app, check_app}) {
@@ -112,6 +114,8 @@ struct CommandLine {
     pass_on("--range", "limits of the colours of a field, such as speed=0:2", "FIELD=LOW:HIGH ...");
     pass_on("--format", "of the pictures: png, pdf or svg; default: png", "WORD")->expected(1);
     plot_app->add_flag("--animate", animate, "GIFs of all snapshots in place of pictures of some");
+    compare_app->add_option("dir", pictured, "folders of two runs")->required()->expected(2);
+    compare_app->add_flag("--no-pictures", table_only, "print the table alone");
     options_app->add_option("section", section, "only this section");
   }
 
@@ -144,6 +148,10 @@ struct CommandLine {
     if (info_app->parsed()) return with_output_written(info_verb(file, program));
     if (options_app->parsed()) return with_output_written(options_verb(section, program));
     if (plot_app->parsed()) return module_verb("plots", plot_arguments());
+    if (compare_app->parsed()) {
+      if (table_only) pictured.emplace_back("--no-pictures");
+      return module_verb("compare", pictured);
+    }
     std::vector<std::string> arguments = {own_executable()};
     arguments.insert(arguments.end(), cases.begin(), cases.end());
     if (quick) arguments.push_back("--quick");

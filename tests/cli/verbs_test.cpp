@@ -305,12 +305,13 @@ TEST_F(Verbs, BoundThreadsKeepEveryCoreThroughTheRestart) {
 
 TEST_F(Verbs, ScriptsGetTheirArgumentsAndTheirExitCodeIsPassedOn) {
   const auto package = folder_ / "tools" / "spume_tools";
-  for (const char* name : {"verify", "plots"}) std::filesystem::create_directories(package / name);
+  for (const char* name : {"verify", "plots", "compare"}) std::filesystem::create_directories(package / name);
   test::write_contents(
       package / "verify" / "__main__.py",
       "import sys\nprint(sys.argv[1:])\n"
       "import os\nprint(sorted(k for k in os.environ if 'SPUME_S' in k or 'GOMP' in k))\nsys.exit(1)\n");
   test::write_contents(package / "plots" / "__main__.py", "import sys\nprint('plot', sys.argv[1:])\n");
+  test::write_contents(package / "compare" / "__main__.py", "import sys\nprint('compare', sys.argv[1:])\n");
   test::write_contents(folder_ / "runpy.py", "raise SystemExit('a file of the working folder was imported')\n");
   setenv("SPUME_HOME", folder_.path().c_str(), 1);
   const Outcome verify = spume({"verify", "couette", "--quick"});
@@ -318,6 +319,7 @@ TEST_F(Verbs, ScriptsGetTheirArgumentsAndTheirExitCodeIsPassedOn) {
   EXPECT_THAT(verify.out, HasSubstr("test_cli', 'couette', '--quick']"));
   EXPECT_THAT(verify.out, HasSubstr("\n[]\n")) << "settings for this process are not handed on";
   EXPECT_THAT(spume({"plot", "results"}).out, HasSubstr("plot ['results']"));
+  EXPECT_THAT(spume({"compare", "a", "b", "--no-pictures"}).out, HasSubstr("compare ['a', 'b', '--no-pictures']"));
   EXPECT_THAT(spume({"plot", "a", "b", "--fields", "speed", "pressure", "--plane", "y=0.5", "--animate"}).out,
               HasSubstr("plot ['a', 'b', '--fields', 'speed', 'pressure', '--plane', 'y=0.5', '--animate']"));
   test::write_contents(package / "plots" / "__main__.py", "import os\nprint(len(os.sched_getaffinity(0)), 'cores')\n");

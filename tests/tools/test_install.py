@@ -96,7 +96,7 @@ class Completion(Installation):
     def test_every_shell_knows_every_verb_and_flag(self):
         share = self.prefix / "share"
         zsh, fish = share / "zsh" / "site-functions" / "_spume", share / "fish" / "vendor_completions.d" / "spume.fish"
-        for verb in ("run", "check", "resume", "info", "verify", "plot", "options"):
+        for verb in ("run", "check", "resume", "info", "verify", "plot", "compare", "options"):
             self.assertIn(f"    {verb}) _arguments", zsh.read_text())
             self.assertIn(f"-a {verb} -d", fish.read_text())
             for flag in self.completed("spume", verb, "--"):

@@ -100,6 +100,26 @@ def draw(pictures, drawn, out):
     return files, left_out, damaged
 
 
+def draw_into(folder, pictures, drawn, out):
+    """Writes pictures of a folder to `out`, prints their names and what was left out; returns the exit code."""
+    try:
+        files, left_out, damaged = draw(pictures, drawn, out)
+    except OSError as error:
+        print(f"error: {error.filename}: {error.strerror}", file=sys.stderr)
+        return 2
+    for reason, names in left_out.items():
+        print(f"{'error: ' if reason in damaged else ''}{', '.join(names)} left out: {reason}", file=sys.stderr)
+    for file in files:
+        print(file)
+    if not files:
+        for empty in (out, out.parent):
+            if empty.name == "plots" or empty == out:
+                if empty.is_dir() and not any(empty.iterdir()):
+                    empty.rmdir()
+        print(f"error: {folder}: nothing to draw", file=sys.stderr)
+    return 0 if files and not damaged else 2
+
+
 def main():
     arguments = parse()
     folder, out = arguments.directory, Path(arguments.directory) / "plots"
@@ -117,19 +137,4 @@ def main():
     except MissingResult as error:
         print(f"error: {error}; give the folder that 'spume run' made", file=sys.stderr)
         return 2
-    try:
-        files, left_out, damaged = draw(pictures, drawn, out)
-    except OSError as error:
-        print(f"error: {error.filename}: {error.strerror}", file=sys.stderr)
-        return 2
-    for reason, names in left_out.items():
-        print(f"{'error: ' if reason in damaged else ''}{', '.join(names)} left out: {reason}", file=sys.stderr)
-    for file in files:
-        print(file)
-    if not files:
-        for empty in (out, out.parent):
-            if empty.name == "plots" or empty == out:
-                if empty.is_dir() and not any(empty.iterdir()):
-                    empty.rmdir()
-        print(f"error: {folder}: nothing to draw", file=sys.stderr)
-    return 0 if files and not damaged else 2
+    return draw_into(folder, pictures, drawn, out)
