@@ -67,9 +67,11 @@ void describe_folder(const fs::path& folder) {
       const auto summary = nlohmann::json::parse(read_text(folder / "summary.json"));
       for (const char* key : {"title", "method", "state", "message", "time", "end", "steps", "retries", "particles",
                               "program_version", "commit", "threads", "wall_seconds", "particle_steps_per_second"})
-        if (summary.contains(key) && summary[key] != "")
-          std::printf("  %-26s %s\n", key,
-                      summary[key].is_string() ? summary[key].get<std::string>().c_str() : summary[key].dump().c_str());
+        if (summary.contains(key)) {
+          const nlohmann::json& value = summary[key];
+          const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+          if (!text.empty()) std::printf("  %-26s %s\n", key, text.c_str());
+        }
       for (const auto& one : summary.value("verdicts", nlohmann::json::array())) {
         const std::string value = one.at("value").is_null() ? "not a number" : short_number(one.at("value"));
         std::printf("  %-26s %s, bound %s: %s\n", one.at("quantity").get<std::string>().c_str(), value.c_str(),

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <sched.h>
-#include <signal.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <new>
@@ -71,7 +71,7 @@ std::unique_ptr<Server> make_server(const RunArguments& arguments) {
 int execute(Simulation& simulation, const RunArguments& arguments, const Program& program, Server* server) {
   const bool quiet = arguments.quiet;
   // A closed pipe must not stop the run.
-  signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
   const std::string start =
       start_table(simulation.loaded(), simulation.method(), thread_count(), simulation.folder().string());
   simulation.log(start);

@@ -38,6 +38,7 @@ int module_verb(const std::string& module, const std::vector<std::string>& argum
   std::vector<std::string> words = {python, "-P", "-m", "spume_tools." + module};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
   for (auto& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   std::fflush(nullptr);

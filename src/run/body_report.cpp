@@ -44,8 +44,9 @@ double room(const Scene& scene, bool exact, const std::function<double(const Vec
   // Along a row the next places within the distance lie on the same side, which spares most questions to a mesh.
   // Distances that are interpolated do not promise that.
   const double found = parallel_sum(count[1] * count[2], [&](std::size_t row) {
-    Vec3 p{0, scene.domain.lower[1] + (static_cast<double>(row % count[1]) + 0.5) * width[1],
-           scene.domain.lower[2] + (static_cast<double>(row / count[1]) + 0.5) * width[2]};
+    const std::size_t j = row % count[1], k = row / count[1];
+    Vec3 p{0, scene.domain.lower[1] + (static_cast<double>(j) + 0.5) * width[1],
+           scene.domain.lower[2] + (static_cast<double>(k) + 0.5) * width[2]};
     if (dimensions == 2) p[2] = 0;
     double inside = 0;
     for (std::size_t i = 0; i < count[0];) {

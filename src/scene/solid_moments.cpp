@@ -31,9 +31,10 @@ SolidMoments moments_of(const Combination& solid, const Bounds& bounds, int dime
         Sums sum;
         for (std::size_t row = first; row < last; ++row)
           for (std::size_t i = 0; i < count[0]; ++i) {
+            const std::size_t j = row % count[1], k = row / count[1];
             Vec3 p{bounds.lower[0] + (static_cast<double>(i) + 0.5) * step[0],
-                   bounds.lower[1] + (static_cast<double>(row % count[1]) + 0.5) * step[1],
-                   d == 3 ? bounds.lower[2] + (static_cast<double>(row / count[1]) + 0.5) * step[2] : 0.0};
+                   bounds.lower[1] + (static_cast<double>(j) + 0.5) * step[1],
+                   d == 3 ? bounds.lower[2] + (static_cast<double>(k) + 0.5) * step[2] : 0.0};
             const double share = std::clamp(0.5 - solid.distance(p) / cell_side, 0.0, 1.0);
             p = subtract(p, middle);
             sum.inside += share;

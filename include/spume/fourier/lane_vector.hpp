@@ -22,8 +22,6 @@ template <>
 struct VectorTraits<double> {
   using Type = double __attribute__((vector_size(32)));
   using Element = double __attribute__((vector_size(16)));  // one complex number
-  using Mask = long long __attribute__((vector_size(32)));
-  static constexpr Mask swap{1, 0, 3, 2};
   static constexpr Type imaginary{-1, 1, -1, 1};
   static constexpr Type conjugate{1, -1, 1, -1};
   static constexpr Type real_part{1, 0, 1, 0};
@@ -33,8 +31,6 @@ template <>
 struct VectorTraits<float> {
   using Type = float __attribute__((vector_size(32)));
   using Element = float __attribute__((vector_size(8)));
-  using Mask = int __attribute__((vector_size(32)));
-  static constexpr Mask swap{1, 0, 3, 2, 5, 4, 7, 6};
   static constexpr Type imaginary{-1, 1, -1, 1, -1, 1, -1, 1};
   static constexpr Type conjugate{1, -1, 1, -1, 1, -1, 1, -1};
   static constexpr Type real_part{1, 0, 1, 0, 1, 0, 1, 0};
@@ -96,7 +92,10 @@ inline void release_streams() {
 
 template <class T>
 [[gnu::always_inline]] inline Vector<T> swap(Vector<T> v) {
-  return __builtin_shuffle(v, VectorTraits<T>::swap);
+  if constexpr (sizeof(T) == sizeof(double))
+    return __builtin_shufflevector(v, v, 1, 0, 3, 2);
+  else
+    return __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6);
 }
 template <class T>
 [[gnu::always_inline]] inline Vector<T> times_i(Vector<T> v) {

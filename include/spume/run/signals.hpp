@@ -2,7 +2,7 @@
 // SIGINT and SIGTERM as a wish to stop: the first is noted, the second ends the process at once (exit code 130).
 #pragma once
 
-#include <signal.h>
+#include <signal.h>  // NOLINT: sigaction is of POSIX, not of <csignal>
 
 namespace spume {
 

@@ -143,6 +143,7 @@ void add_velocity(BoxTransform<T>& box, const ModeLayout& layout, const T* value
               });
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a type in parentheses is none
 #define SPUME_INSTANTIATE(T)                                                                                           \
   template void real_velocity(Flow<T>&, const Modes<T>&, const Multiplier<T>&, const std::array<T*, 3>&, std::size_t); \
   template void real_vorticity(Flow<T>&, const Modes<T>&, const Multiplier<T>&, const std::array<T*, 3>&,              \
@@ -151,6 +152,7 @@ void add_velocity(BoxTransform<T>& box, const ModeLayout& layout, const T* value
   template BoxTransform<T>::Source velocity_source(const Flow<T>&, int);                                               \
   template BoxTransform<T>::Source gradient_source(const Flow<T>&, int, int);                                          \
   template void add_velocity(BoxTransform<T>&, const ModeLayout&, const T*, int, Modes<T>&)
+// NOLINTEND(bugprone-macro-parentheses)
 SPUME_INSTANTIATE(double);
 SPUME_INSTANTIATE(float);
 #undef SPUME_INSTANTIATE

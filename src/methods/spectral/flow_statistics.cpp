@@ -72,7 +72,7 @@ ShellSpectrum shell_spectrum(const Flow<T>& flow) {
                           std::pow(layout.wavenumber[2][iz], 2);
         const double square = std::norm(std::complex<double>(b[0][at])) + std::norm(std::complex<double>(b[1][at])) +
                               std::norm(std::complex<double>(b[2][at]));
-        sums[static_cast<std::size_t>(std::sqrt(k2) / spectrum.width + 0.5)] +=
+        sums[static_cast<std::size_t>(std::lround(std::sqrt(k2) / spectrum.width))] +=
             ModeLayout::weight(iz) * k2 * square / 2;
       }
   });
@@ -301,6 +301,7 @@ PlaneSample sample_plane(const Flow<T>& flow, const Array<std::complex<T>>& tota
   return sample;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a type in parentheses is none
 #define SPUME_INSTANTIATE(T)                                                                    \
   template ShellSpectrum shell_spectrum(const Flow<T>&);                                        \
   template Scales flow_scales(const Flow<T>&, const ShellSpectrum&);                            \
@@ -309,6 +310,7 @@ PlaneSample sample_plane(const Flow<T>& flow, const Array<std::complex<T>>& tota
   template GradientDistribution gradient_distribution(Flow<T>&);                                \
   template PointSample sample_flow(const Flow<T>&, const Array<std::complex<T>>&, const Vec3&); \
   template PlaneSample sample_plane(const Flow<T>&, const Array<std::complex<T>>&, std::size_t, double)
+// NOLINTEND(bugprone-macro-parentheses)
 SPUME_INSTANTIATE(double);
 SPUME_INSTANTIATE(float);
 #undef SPUME_INSTANTIATE

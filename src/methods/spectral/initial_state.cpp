@@ -24,7 +24,7 @@ template <class T>
 Modes<T> sampled(Flow<T>& flow,
                  const std::function<void(std::size_t ix, std::size_t iy, int component, T* values)>& line) {
   const ModeLayout& layout = flow.layout();
-  const auto [nx, ny, nz] = layout.points;
+  const std::size_t nx = layout.points[0], ny = layout.points[1], nz = layout.points[2];
   Modes<T> potential = flow.take_potential();
   Array<T> values(nx * ny * nz);
   for (int c = 0; c < 3; ++c) {
@@ -125,7 +125,7 @@ Modes<T> random_field(const LoadedCase& loaded, Flow<T>& flow) {
   const double unit = 2 * std::numbers::pi / *std::max_element(layout.lengths.begin(), layout.lengths.end());
   double largest = layout.largest_wavenumber(0);
   for (std::size_t axis = 1; axis < 3; ++axis) largest = std::min(largest, layout.largest_wavenumber(axis));
-  const auto shells = static_cast<std::size_t>(largest / unit + 0.5) + 1;
+  const auto shells = static_cast<std::size_t>(std::lround(largest / unit)) + 1;
   const auto signed_index = [](std::size_t i, std::size_t n) {
     return i < n / 2 ? static_cast<std::int64_t>(i) : static_cast<std::int64_t>(i) - static_cast<std::int64_t>(n);
   };

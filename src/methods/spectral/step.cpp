@@ -13,7 +13,8 @@ Plan Spectral<T>::make_plan() {
   const auto both = StagePart::both;
   const auto add = [&plan](std::string name, std::string reason, bool on, Work work, Arrays reads = {},
                            Arrays writes = {}, StagePart part = StagePart::step, Condition due = {}) {
-    plan.add({std::move(name), std::move(reason), on, std::move(work), std::move(reads), std::move(writes), part, due});
+    plan.add({std::move(name), std::move(reason), on, std::move(work), std::move(reads), std::move(writes), part,
+              std::move(due)});
   };
   const auto run = [](auto& owner, auto verb) -> Work {
     return [&owner, verb](StageRun& stage) {
@@ -30,12 +31,13 @@ Plan Spectral<T>::make_plan() {
   const bool forced = forcing != ForcingKind::none, in_shell = forcing == ForcingKind::shell;
   const bool viscous = flow_.viscosity() > 0;
   const Modes<T>&b = flow_.potential(), &K = flow_.tendency(), &earlier = flow_.earlier();  // as in (A10)
-  const auto &planes = flow_.planes(), &sums = flow_.tallies();
+  const auto& planes = flow_.planes();
+  const auto& sums = flow_.tallies();
   const ArrayUse factors([this] { return flow_.factor_bytes(); });
   const ArrayUse shell([bytes = in_shell ? flow_.shell_bytes() : 0] { return bytes; });
   const ArrayUse joined([bytes = flow_.joined_bytes()] { return bytes; });
   Suspension<T>* const p = suspension_.get();
-  const auto per_particle = [p](Work work) -> Work {  // the other stages handle points of the grid
+  const auto per_particle = [p](const Work& work) -> Work {  // the other stages handle points of the grid
     return [p, work](StageRun& stage) {
       stage.particles = static_cast<double>(p->system().size());
       work(stage);

@@ -209,8 +209,8 @@ BubbleCoupling::Moved BubbleCoupling::accelerate(std::size_t b, const Surroundin
   moved.velocity = options_.integrator == BubbleIntegrator::stable
                        ? advance_stable(gas_, radius, around, u, dt, braking)
                        : advance_substepped(gas_, radius, around, u, dt, carrier_.resolution.spacing, braking);
-  moved.reaction =
-      bubbles::reaction(gas_, volume, around, difference(moved.velocity, u), dt, /*two_fluid=*/!mixture_pressure());
+  moved.reaction = bubbles::reaction(gas_, volume, around, difference(moved.velocity, u), dt,
+                                     /*pressure_holds_inertia=*/!mixture_pressure());
   if (options_.surface_reaction == SurfaceReaction::surface && braking.share > 0) {
     double slip_normal = 0;
     for (std::size_t a = 0; a < 3; ++a) slip_normal += (around.velocity[a] - u[a]) * braking.normal[a];

@@ -72,10 +72,14 @@ void place_particles(const PlacementOptions& options, const std::array<double, 3
   const double radius = options.cluster_radius * std::min({length[0], length[1], length[2]});
   const auto place = [&](std::size_t i) -> std::array<double, 3> {
     switch (options.kind) {
-      case Placement::lattice:
-        return {lower[0] + length[0] * static_cast<double>(i / counts[2] / counts[1]) / static_cast<double>(counts[0]),
-                lower[1] + length[1] * static_cast<double>(i / counts[2] % counts[1]) / static_cast<double>(counts[1]),
-                lower[2] + length[2] * static_cast<double>(i % counts[2]) / static_cast<double>(counts[2])};
+      case Placement::lattice: {
+        const std::size_t column = i / counts[2];
+        const std::array<std::size_t, 3> site{column / counts[1], column % counts[1], i % counts[2]};
+        std::array<double, 3> r;
+        for (std::size_t a = 0; a < 3; ++a)
+          r[a] = lower[a] + length[a] * static_cast<double>(site[a]) / static_cast<double>(counts[a]);
+        return r;
+      }
       case Placement::file:
         return options.given[i];
       case Placement::clustered: {
