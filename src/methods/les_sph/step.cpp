@@ -132,7 +132,14 @@ Plan make_plan(Flow& f) {
   add(
       step, "scalars", has.scalars, why.scalars,
       [&](StageRun& run) { run.pairs = f.arrangement.pair_count() * double(f.transport_scalars(run.dt)); },
-      living_scalars(f), living_scalars(f), true);
+      living_scalars(f, f.scalar_count()), living_scalars(f, f.scalar_count()), true);
+  add(
+      step, "oxygen", has.oxygen, why.oxygen, [&](StageRun& run) { f.transfer_oxygen(run.dt); },
+      living_scalars(f, has.oxygen ? 1 : 0), living_scalars(f, has.oxygen ? 1 : 0));
+  add(
+      step, "reactions", has.biokinetics, why.reactions, [&](StageRun& run) { f.sludge->react(run.dt); },
+      living_scalars(f, has.biokinetics ? std::size_t{biokinetics::asm1::components} : 0),
+      living_scalars(f, has.biokinetics ? std::size_t{biokinetics::asm1::components} : 0));
   add(
       step, "bubble events", has.bubbles, why.events, [&](StageRun& run) { f.bubbles->accept(run.dt); },
       living({kept.bubbles, f.sizes.volume_fraction}), living({kept.bubbles, f.volume_fraction()}));
