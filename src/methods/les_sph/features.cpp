@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "spume/physics/biokinetics/options.hpp"
 #include "spume/physics/bubbles/options.hpp"
+#include "spume/physics/oxygen/options.hpp"
 #include "spume/physics/scalars/options.hpp"
 
 namespace spume::les_sph {
@@ -44,6 +46,14 @@ bool has_scalars(const Case& options) {
   return !options.get<ScalarOptions>().scalars.empty();
 }
 
+bool has_oxygen(const Case& options) {
+  return options.get<OxygenOptions>().on;
+}
+
+bool has_biokinetics(const Case& options) {
+  return options.get<BiokineticsOptions>().on;
+}
+
 bool needs_velocity_gradient(const Case& options) {
   return has_closure(options) || corrects_shift(options) || options.get<SchemeOptions>().centred ||
          has_bubbles(options);
@@ -68,6 +78,8 @@ Features::Features(const LoadedCase& loaded)
   eddy_viscosity = has_closure(options);
   bubbles = has_bubbles(options);
   scalars = has_scalars(options);
+  oxygen = has_oxygen(options);
+  biokinetics = has_biokinetics(options);
   test_filter = (eddy_viscosity && model != TurbulenceModel::smagorinsky) ||
                 (bubbles && options.get<BubbleOptions>().fluctuations);
   velocity_gradient = needs_velocity_gradient(options);

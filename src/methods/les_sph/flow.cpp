@@ -87,6 +87,9 @@ Flow::Flow(const LoadedCase& loaded_case)
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
   if (features.eddy_viscosity)
     closure = std::make_unique<turbulence::EddyViscosity>(particles, options.get<TurbulenceOptions>());
+  if (features.scalars) scalars = std::make_unique<Scalars>(particles, resolution, options.get<ScalarOptions>());
+  if (features.oxygen) oxygen = std::make_unique<oxygen::Oxygen>(*scalars, particles, resolution, options, scene);
+  if (features.biokinetics) sludge = std::make_unique<biokinetics::Sludge>(*scalars, options.get<BiokineticsOptions>());
   if (features.bubbles) {
     particles.add_vector(material_acceleration, "material_acceleration", Lifetime::state);
     const bubbles::Carrier carrier{.scene = scene,
@@ -110,11 +113,12 @@ Flow::Flow(const LoadedCase& loaded_case)
                                    .shift = constant(displacement_by_shift()),
                                    .time = time,
                                    .steps = steps,
-                                   .speeds = speeds};
+                                   .speeds = speeds,
+                                   .gas = features.oxygen ? &oxygen->gas() : nullptr,
+                                   .dissolved = features.oxygen ? &oxygen->dissolved() : nullptr};
     bubbles = std::make_unique<bubbles::BubbleCoupling>(particles, carrier, options.get<BubbleOptions>(),
                                                         options.get<BubbleSources>());
   }
-  if (features.scalars) scalars = std::make_unique<Scalars>(particles, resolution, options.get<ScalarOptions>());
   find_extremes();
   weight = weight_at_start();
 }

@@ -210,6 +210,9 @@ void LesSph::save(StateWriter& writer) const {
   if (flow_.features.openings) flow_.boundary.openings()->save(writer);
   if (flow_.bubbles != nullptr) flow_.bubbles->save(writer);
   if (flow_.floating != nullptr) flow_.floating->save(writer);
+  if (flow_.scalars != nullptr) flow_.scalars->save(writer);
+  if (flow_.oxygen != nullptr) flow_.oxygen->save(writer);
+  if (flow_.sludge != nullptr) flow_.sludge->save(writer);
 }
 
 void LesSph::load(StateReader& reader) {
@@ -228,6 +231,9 @@ void LesSph::load(StateReader& reader) {
   flow_.find_uniform_acceleration(flow_.time);  // samples before the next step need it
   if (flow_.features.openings) flow_.boundary.openings()->load(reader);
   if (flow_.bubbles != nullptr) flow_.bubbles->load(reader);
+  if (flow_.scalars != nullptr) flow_.scalars->load(reader);
+  if (flow_.oxygen != nullptr) flow_.oxygen->load(reader);
+  if (flow_.sludge != nullptr) flow_.sludge->load(reader);
 }
 
 }  // namespace spume::les_sph

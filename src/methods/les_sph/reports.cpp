@@ -109,6 +109,8 @@ void LesSph::declare_series() {
   });
   if (flow.scalars != nullptr) flow.scalars->add_columns(series_);
   if (flow.bubbles != nullptr) flow.bubbles->add_columns(series_);
+  if (flow.oxygen != nullptr) flow.oxygen->add_columns(series_, flow.bubbles.get());
+  if (flow.sludge != nullptr) flow.sludge->add_columns(series_);
 }
 
 void LesSph::series_values(std::span<double> values) {

@@ -41,10 +41,9 @@ inline Arrays seen_by_bubbles(const Flow& f, const KeptArrays& kept) {
           f.filtered_velocity, f.strain,           f.eddy_viscosity(),   f.moments.normal,        kept.sizes};
 }
 
-// Values, rates and changes of every scalar.
-inline Arrays living_scalars(const Flow& f) {
-  return {
-      ArrayUse([&f] { return f.scalars == nullptr ? 0.0 : 16.0 * static_cast<double>(f.size() * f.scalars->size()); })};
+// Values, rates and changes of so many scalars.
+inline Arrays living_scalars(const Flow& f, std::size_t count) {
+  return {ArrayUse([&f, count] { return 16.0 * static_cast<double>(f.size() * count); })};
 }
 
 inline Arrays arrays_of(const MomentFields& m) {
@@ -67,6 +66,10 @@ inline auto solving(Flow& f, void (Flow::*solve)()) {
     (f.*solve)();
     run.pairs = f.arrangement.pair_count() * f.solver.report().applications;
   };
+}
+
+inline auto reacting(Flow& f) {
+  return [&f](StageRun& run) { f.sludge->react(run.dt); };
 }
 
 // Every scalar has its sweep.

@@ -381,6 +381,7 @@ void Flow::accept(double dt) {
 }
 
 std::int64_t Flow::transport_scalars(double dt) {
+  scalars->add_sources(time - dt, dt, particles.position);
   return scalars->transport(dt, {.arrangement = arrangement,
                                  .moments = moments,
                                  .eddy_viscosity = eddy_viscosity(),
@@ -389,6 +390,12 @@ std::int64_t Flow::transport_scalars(double dt) {
                                    return surface != nullptr ? surface->interior_weight[i]
                                                              : fading.weight((*moments.divergence_of_position)[i]);
                                  }});
+}
+
+void Flow::transfer_oxygen(double dt) {
+  if (bubbles != nullptr && !bubbles->population().empty())
+    oxygen->take_from_bubbles(bubbles->dissolution(), bubbles->dissolved_amount());
+  if (surface != nullptr) oxygen->exchange_with_air(dt, {.surface = *surface, .normal = constant(moments.normal)});
 }
 
 }  // namespace spume::les_sph

@@ -41,7 +41,8 @@ void check(const Asm1Parameters& p) {
   for (const double yield : {p.y_a, p.y_h}) require(yield > 0 && yield < 1, "ASM1: a yield is not between 0 and 1");
   for (const double share : {p.f_p, p.i_xb, p.i_xp, p.eta_g, p.eta_h})
     require(share >= 0 && share <= 1, "ASM1: a share is not between 0 and 1");
-  for (const double number : {p.mu_h, p.k_s, p.k_oh, p.k_no, p.b_h, p.k_h, p.k_x, p.mu_a, p.k_nh, p.k_oa, p.b_a, p.k_a})
+  for (const double number : {p.mu_h, p.k_s, p.k_oh, p.k_no, p.b_h, p.k_h, p.k_x, p.mu_a, p.k_nh, p.k_oa, p.b_a, p.k_a,
+                              p.k_nutrient, p.k_alkalinity})
     require(number >= 0, "ASM1: a rate or a half-saturation is negative or not a number");
 }
 
@@ -73,31 +74,38 @@ Model asm1_model(const Asm1Parameters& p) {
   };
   const double m = nitrogen_molar_mass, held = p.i_xb - p.f_p * p.i_xp;
   const double reduced = (1 - p.y_h) / (nitrate_to_dinitrogen * p.y_h);
-  return {{"S_I", "S_S", "X_I", "X_S", "X_BH", "X_BA", "X_P", "S_O", "S_NO", "S_NH", "S_ND", "X_ND", "S_ALK"},
-          {
-              {"aerobic growth of heterotrophs",
-               {{p.mu_h, {saturation(s_s, p.k_s), oxic, linear(x_bh)}}},
-               row({{s_s, -1 / p.y_h}, {x_bh, 1}, {s_o, -(1 - p.y_h) / p.y_h}, {s_nh, -p.i_xb}, {s_alk, -p.i_xb / m}})},
-              {"anoxic growth of heterotrophs",
-               {{p.eta_g * p.mu_h, {saturation(s_s, p.k_s), anoxic, nitrate, linear(x_bh)}}},
-               row({{s_s, -1 / p.y_h}, {x_bh, 1}, {s_no, -reduced}, {s_nh, -p.i_xb}, {s_alk, (reduced - p.i_xb) / m}})},
-              {"aerobic growth of autotrophs",
-               {{p.mu_a, {saturation(s_nh, p.k_nh), saturation(s_o, p.k_oa), linear(x_ba)}}},
-               row({{x_ba, 1},
-                    {s_o, -(ammonia_to_nitrate - p.y_a) / p.y_a},
-                    {s_no, 1 / p.y_a},
-                    {s_nh, -p.i_xb - 1 / p.y_a},
-                    {s_alk, -(p.i_xb + 2 / p.y_a) / m}})},
-              {"decay of heterotrophs",
-               {{p.b_h, {linear(x_bh)}}},
-               row({{x_s, 1 - p.f_p}, {x_bh, -1}, {x_p, p.f_p}, {x_nd, held}})},
-              {"decay of autotrophs",
-               {{p.b_a, {linear(x_ba)}}},
-               row({{x_s, 1 - p.f_p}, {x_ba, -1}, {x_p, p.f_p}, {x_nd, held}})},
-              {"ammonification", {{p.k_a, {linear(s_nd), linear(x_bh)}}}, row({{s_nh, 1}, {s_nd, -1}, {s_alk, 1 / m}})},
-              {"hydrolysis of organics", hydrolysis(x_s), row({{s_s, 1}, {x_s, -1}})},
-              {"hydrolysis of organic nitrogen", hydrolysis(x_nd), row({{s_nd, 1}, {x_nd, -1}})},
-          }};
+  Model model{
+      {"S_I", "S_S", "X_I", "X_S", "X_BH", "X_BA", "X_P", "S_O", "S_NO", "S_NH", "S_ND", "X_ND", "S_ALK"},
+      {
+          {"aerobic growth of heterotrophs",
+           {{p.mu_h, {saturation(s_s, p.k_s), oxic, linear(x_bh)}}},
+           row({{s_s, -1 / p.y_h}, {x_bh, 1}, {s_o, -(1 - p.y_h) / p.y_h}, {s_nh, -p.i_xb}, {s_alk, -p.i_xb / m}})},
+          {"anoxic growth of heterotrophs",
+           {{p.eta_g * p.mu_h, {saturation(s_s, p.k_s), anoxic, nitrate, linear(x_bh)}}},
+           row({{s_s, -1 / p.y_h}, {x_bh, 1}, {s_no, -reduced}, {s_nh, -p.i_xb}, {s_alk, (reduced - p.i_xb) / m}})},
+          {"aerobic growth of autotrophs",
+           {{p.mu_a, {saturation(s_nh, p.k_nh), saturation(s_o, p.k_oa), linear(x_ba)}}},
+           row({{x_ba, 1},
+                {s_o, -(ammonia_to_nitrate - p.y_a) / p.y_a},
+                {s_no, 1 / p.y_a},
+                {s_nh, -p.i_xb - 1 / p.y_a},
+                {s_alk, -(p.i_xb + 2 / p.y_a) / m}})},
+          {"decay of heterotrophs",
+           {{p.b_h, {linear(x_bh)}}},
+           row({{x_s, 1 - p.f_p}, {x_bh, -1}, {x_p, p.f_p}, {x_nd, held}})},
+          {"decay of autotrophs",
+           {{p.b_a, {linear(x_ba)}}},
+           row({{x_s, 1 - p.f_p}, {x_ba, -1}, {x_p, p.f_p}, {x_nd, held}})},
+          {"ammonification", {{p.k_a, {linear(s_nd), linear(x_bh)}}}, row({{s_nh, 1}, {s_nd, -1}, {s_alk, 1 / m}})},
+          {"hydrolysis of organics", hydrolysis(x_s), row({{s_s, 1}, {x_s, -1}})},
+          {"hydrolysis of organic nitrogen", hydrolysis(x_nd), row({{s_nd, 1}, {x_nd, -1}})},
+      }};
+  // Nitrifiers have a half-saturation of ammonia, and denitrification makes alkalinity.
+  for (const std::size_t growth : {0, 1})
+    if (p.k_nutrient > 0) model.processes[growth].rate[0].factors.push_back(saturation(s_nh, p.k_nutrient));
+  for (const std::size_t growth : {0, 2})
+    if (p.k_alkalinity > 0) model.processes[growth].rate[0].factors.push_back(saturation(s_alk, p.k_alkalinity));
+  return model;
 }
 
 Asm1Content asm1_cod() {

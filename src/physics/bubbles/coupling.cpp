@@ -29,7 +29,8 @@ BubbleCoupling::BubbleCoupling(ParticleStore& particles, const Carrier& carrier,
                                const BubbleSources& sources)
     : carrier_(carrier),
       options_(options),
-      population_({options.fluctuations, options.breakup, options.surface_interaction && has_surface()}),
+      population_({options.fluctuations, options.breakup, options.surface_interaction && has_surface(),
+                   carrier.gas != nullptr}),
       sources_(sources, carrier.scene.seed) {
   particles.add_vector(exchange_, "bubble_exchange", Lifetime::result);
   volume_fraction_ = &particles.fields.add<double>("volume_fraction", Lifetime::state);
@@ -66,6 +67,7 @@ BubbleCoupling::BubbleCoupling(ParticleStore& particles, const Carrier& carrier,
 
 void BubbleCoupling::place_clouds() {
   sources_.place_clouds(population_, carrier_.time);
+  if (exchanges_gas()) fill_new_bubbles(carrier_.gas->fraction);
   history_.injected = static_cast<std::int64_t>(population_.size());
   history_.injected_volume = population_.total_volume();
   history_before_ = history_;
@@ -190,11 +192,11 @@ std::vector<ArrayInfo> BubbleCoupling::arrays() const {
   };
   list.push_back({"bubbles", population_.fields.bytes()});
   list.push_back({"bubble images", images_.bytes()});
-  list.push_back(
-      {"bubble records",
-       bytes(bubble_point_[0], bubble_point_[1], bubble_point_[2], inverse_support_radius_, liquid_records_,
-             bubble_records_, interpolated_, dissipation_, next_merge_time_, reaction_[0], reaction_[1], reaction_[2],
-             dead_, near_, near_particles_, smoothed_normal_[0], smoothed_normal_[1], smoothed_normal_[2])});
+  list.push_back({"bubble records",
+                  bytes(bubble_point_[0], bubble_point_[1], bubble_point_[2], inverse_support_radius_, liquid_records_,
+                        bubble_records_, interpolated_, dissipation_, next_merge_time_, reaction_[0], reaction_[1],
+                        reaction_[2], dead_, near_, near_particles_, dissolved_, dissolution_, dissolved_at_bubble_,
+                        next_gas_, smoothed_normal_[0], smoothed_normal_[1], smoothed_normal_[2])});
   return list;
 }
 

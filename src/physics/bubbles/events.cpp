@@ -49,18 +49,21 @@ void BubbleCoupling::accept(double dt) {
       (*population_.slip)[b] = next_slip_[b];
       if (population_.merge_time != nullptr) (*population_.merge_time)[b] = next_merge_time_[b];
     });
+    if (exchanges_gas()) accept_gas();
     if (population_.deformation != nullptr) break_up(dt);
     remove_dead(t);
   }
   // A liquid that was left by its last bubble.
   if (population_.empty() && nb > 0) parallel_for(n, [&](std::size_t i) { (*volume_fraction_)[i] = 1; });
   if (options_.entrainment && has_surface()) entrain(dt);
+  if (exchanges_gas()) fill_new_bubbles(oxygen::oxygen_of_air);
   Released released = sources_.release(population_, t - dt, dt);
   const Released cloud = sources_.place_clouds(population_, t);
   released.bubbles += cloud.bubbles;
   released.volume += cloud.volume;
   history_.injected += static_cast<std::int64_t>(released.bubbles);
   history_.injected_volume += released.volume;
+  if (exchanges_gas()) fill_new_bubbles(carrier_.gas->fraction);
   max_speed_ = std::sqrt(parallel_max(population_.size(), 0.0, [&](std::size_t b) {
     double speed2 = 0;
     for (std::size_t a = 0; a < 3; ++a) speed2 += (*population_.velocity[a])[b] * (*population_.velocity[a])[b];
@@ -88,38 +91,45 @@ void BubbleCoupling::break_up(double dt) {
   const double t = carrier_.time;
   const auto step = static_cast<std::uint32_t>(carrier_.steps);
   const std::size_t nb = population_.size();
-  history_.breakups +=
-      static_cast<std::int64_t>(population_.give_birth(nb, t, [&](std::size_t b, std::vector<NewBubble>& made) {
-        const double radius = population_.radius(b);
-        double& deformation = (*population_.deformation)[b];
-        double& integral = (*population_.dissipation_integral)[b];
-        deformation = std::max(0.0, deformation + dt * deformation_velocity(breakup_, radius, dissipation_[b]));
-        integral += dt * dissipation_[b];
-        if (dead_[b] != 0 || !(deformation > 2 * radius)) return;
-        const double age = t - (*population_.birth_time)[b];
-        const double ratio = stable_ratio(breakup_, radius, integral / std::max(age, dt));
-        if (!(ratio < critical_ratio())) return;
-        const auto u = random_uniform(carrier_.scene.seed, RandomPurpose::bubble_breakup,
-                                      static_cast<std::uint64_t>((*population_.identifier)[b]), step, 0);
-        const auto children = split((*population_.volume)[b], child_sizes_[0](u[0], ratio), u[1], u[2]);
-        NewBubble second;
-        Vec3 place{}, parent{};
-        for (std::size_t a = 0; a < 3; ++a) {
-          parent[a] = (*population_.position[a])[b];
-          place[a] = parent[a] + children.first_offset[a];
-          second.position[a] = parent[a] + children.second_offset[a];
-          second.velocity[a] = (*population_.velocity[a])[b];
-          if (population_.fluctuation[a] != nullptr) second.fluctuation[a] = (*population_.fluctuation[a])[b];
-        }
-        carrier_.boundary.apply_walls(carrier_.boundary.walls, place, nullptr);
-        carrier_.boundary.apply_walls(carrier_.boundary.walls, second.position, nullptr);
-        second.volume = children.second_volume;
-        made.push_back(second);
-        for (std::size_t a = 0; a < 3; ++a) (*population_.position[a])[b] = place[a];
-        (*population_.volume)[b] = children.first_volume;
-        (*population_.birth_time)[b] = t;
-        deformation = integral = 0;
-      }));
+  history_.breakups += static_cast<
+      std::int64_t>(population_.give_birth(nb, t, [&](std::size_t b, std::vector<NewBubble>& made) {
+    const double radius = population_.radius(b);
+    double& deformation = (*population_.deformation)[b];
+    double& integral = (*population_.dissipation_integral)[b];
+    deformation = std::max(0.0, deformation + dt * deformation_velocity(breakup_, radius, dissipation_[b]));
+    integral += dt * dissipation_[b];
+    if (dead_[b] != 0 || !(deformation > 2 * radius)) return;
+    const double age = t - (*population_.birth_time)[b];
+    const double ratio = stable_ratio(breakup_, radius, integral / std::max(age, dt));
+    if (!(ratio < critical_ratio())) return;
+    const auto u = random_uniform(carrier_.scene.seed, RandomPurpose::bubble_breakup,
+                                  static_cast<std::uint64_t>((*population_.identifier)[b]), step, 0);
+    const auto children = split((*population_.volume)[b], child_sizes_[0](u[0], ratio), u[1], u[2]);
+    NewBubble second;
+    Vec3 place{}, parent{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      parent[a] = (*population_.position[a])[b];
+      place[a] = parent[a] + children.first_offset[a];
+      second.position[a] = parent[a] + children.second_offset[a];
+      second.velocity[a] = (*population_.velocity[a])[b];
+      if (population_.fluctuation[a] != nullptr) second.fluctuation[a] = (*population_.fluctuation[a])[b];
+    }
+    carrier_.boundary.apply_walls(carrier_.boundary.walls, place, nullptr);
+    carrier_.boundary.apply_walls(carrier_.boundary.walls, second.position, nullptr);
+    second.volume = children.second_volume;
+    if (exchanges_gas()) {
+      const double share = children.second_volume / (children.first_volume + children.second_volume);
+      for (auto [child, gas] : {std::pair{&second.oxygen, population_.oxygen}, {&second.inert, population_.inert}}) {
+        *child = share * (*gas)[b];
+        (*gas)[b] -= *child;
+      }
+    }
+    made.push_back(second);
+    for (std::size_t a = 0; a < 3; ++a) (*population_.position[a])[b] = place[a];
+    (*population_.volume)[b] = children.first_volume;
+    (*population_.birth_time)[b] = t;
+    deformation = integral = 0;
+  }));
   if (population_.size() > nb) {
     const std::size_t before = dead_.size();
     dead_.resize(population_.size());
@@ -140,6 +150,9 @@ void BubbleCoupling::remove_dead(double t) {
   history_.bursts += static_cast<std::int64_t>(gone);
   history_.burst_volume +=
       parallel_sum(nb, [&](std::size_t b) { return dead_[b] != 0 ? (*population_.volume)[b] : 0.0; });
+  if (exchanges_gas())
+    oxygen_.left += oxygen::molar_mass *
+                    parallel_sum(nb, [&](std::size_t b) { return dead_[b] != 0 ? (*population_.oxygen)[b] : 0.0; });
   population_.remove(dead_);
 }
 

@@ -130,6 +130,7 @@ void BubbleCoupling::pack_images() {
 void BubbleCoupling::interpolate() {
   const std::size_t nb = population_.size(), n = carrier_.size();
   interpolated_.resize(nb * record);
+  if (exchanges_gas()) dissolved_at_bubble_.resize(nb);
   dead_.resize(nb);
   const CrossSearch::Points sets[] = {{&carrier_.arrangement.table, n}, images_as_points(carrier_.arrangement.images)};
   const CrossSearch search(carrier_.arrangement.grid, carrier_.arrangement.origin,
@@ -156,6 +157,7 @@ void BubbleCoupling::interpolate() {
           dead_[b] = dead ? 1 : 0;
           const float sum = second_half[factor_at - simd::lanes], share = sum > 0 ? 1 / sum : 0;
           float* out = interpolated_.data() + b * record;
+          if (exchanges_gas()) interpolate_dissolved(found, share, b);
           simd::store(out, first_half * share);
           simd::store(out + simd::lanes, second_half * share);
           out[factor_at] = scale * sum;
@@ -235,9 +237,10 @@ void BubbleCoupling::move_bubble(std::size_t b, double dt) {
   Braking braking;
   if (population_.merge_time != nullptr) braking = brake_at_surface(b, difference(around.velocity, u), radius, dt);
   Moved moved{u, {}};
+  if (exchanges_gas()) next_gas_[b] = {{(*population_.oxygen)[b], (*population_.inert)[b]}};
   if (sum > 0) moved = accelerate(b, around, u, radius, braking, dt);
 
-  float* record_of = bubble_records_.data() + b * 8;  // x y z, M / N (3), viscosity, nothing
+  float* record_of = bubble_records_.data() + b * 8;  // x y z, M / N (3), viscosity, oxygen / N
   double slip2 = 0, resolved_slip2 = 0;
   for (std::size_t a = 0; a < 3; ++a) {
     (*population_.next_velocity[a])[b] = moved.velocity[a];
@@ -250,7 +253,7 @@ void BubbleCoupling::move_bubble(std::size_t b, double dt) {
   next_slip_[b] = std::sqrt(resolved_slip2);
   // Sato & Sekoguchi, King (2.23) with the units of nu.
   record_of[6] = static_cast<float>(options_.viscosity_constant * volume * 2 * radius * std::sqrt(slip2));
-  record_of[7] = 0;
+  record_of[7] = exchanges_gas() && sum > 0 ? dissolve(b, std::sqrt(slip2), dt) / static_cast<float>(sum) : 0.0F;
   dissipation_[b] = here[dissipation_at];
 }
 
@@ -260,6 +263,7 @@ void BubbleCoupling::move_bubbles(double dt) {
   next_slip_.resize(nb);
   if (population_.merge_time != nullptr) next_merge_time_.resize(nb);
   for (auto& component : reaction_) component.resize(nb);
+  next_gas_.resize(exchanges_gas() ? nb : 0);
   parallel_blocks_dynamic(nb, 256, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t b = first; b < last; ++b) move_bubble(b, dt);
   });
@@ -271,6 +275,7 @@ void BubbleCoupling::move_bubbles(double dt) {
   });
 }
 
+template <int components>
 void BubbleCoupling::deposit() {
   viscosity_.resize(carrier_.size());
   with_kernel(carrier_.arrangement.context, [&]<int d, class Kernel>() {
@@ -281,15 +286,17 @@ void BubbleCoupling::deposit() {
         if (sums == nullptr) {
           for (auto* component : exchange_) (*component)[i] = 0;
           viscosity_[i] = 0;
+          if (components > 4) dissolution_[i] = 0;
           return;
         }
         const float inverse = 1 / carrier_.sizes.length_ratio[i], scale = peak * inverse * inverse * inverse;
         // Mass times acceleration is V_i times what arrives per volume: V_i / V_l of it.
         for (std::size_t a = 0; a < 3; ++a) (*exchange_[a])[i] = carrier_.sizes.volume_ratio[i] * (scale * sums[a]);
         viscosity_[i] = scale * sums[3];
+        if constexpr (components > 4) dissolution_[i] = carrier_.sizes.volume_ratio[i] * (scale * sums[4]);
       };
-      sum_over_points<4, Kernel>(particle_targets(), bubble_search(), carrier_.arrangement.grid.support_radius(),
-                                 bubble_records_.data(), store);
+      sum_over_points<components, Kernel>(particle_targets(), bubble_search(),
+                                          carrier_.arrangement.grid.support_radius(), bubble_records_.data(), store);
     }
   });
 }
@@ -301,9 +308,13 @@ void BubbleCoupling::exchange_momentum(double dt, PackedNeighbours& packed) {
   }
   smooth_normals(packed);
   pack_liquid();
+  if (exchanges_gas()) pack_dissolved();
   interpolate();
   move_bubbles(dt);
-  deposit();
+  if (!exchanges_gas()) return deposit<4>();
+  dissolution_.resize(carrier_.size());
+  deposit<5>();
+  sum_gas();
 }
 
 Vec3 BubbleCoupling::total_reaction() const {

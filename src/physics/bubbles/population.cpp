@@ -26,6 +26,10 @@ Population::Population(const Models& models) {
     deformation = &fields.add<double>("bubble_deformation", Lifetime::state);
     dissipation_integral = &fields.add<double>("bubble_dissipation_integral", Lifetime::state);
   }
+  if (models.gas) {
+    oxygen = &fields.add<double>("bubble_oxygen", Lifetime::state);
+    inert = &fields.add<double>("bubble_inert_gas", Lifetime::state);
+  }
   if (models.surface) merge_time = &fields.add<double>("bubble_merge_time", Lifetime::state);
   vector(next_position, "next_position", Lifetime::sorted);
   vector(next_velocity, "next_velocity", Lifetime::result);
@@ -58,6 +62,10 @@ std::size_t Population::settle(double t) {
         if (fluctuation[a] != nullptr) (*fluctuation[a])[slot] = bubble.fluctuation[a];
       }
       (*volume)[slot] = bubble.volume;
+      if (oxygen != nullptr) {
+        (*oxygen)[slot] = bubble.oxygen;
+        (*inert)[slot] = bubble.inert;
+      }
       (*birth_time)[slot] = t;
       (*slip)[slot] = 0;
       (*identifier)[slot] = next_identifier++;

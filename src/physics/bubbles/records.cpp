@@ -58,6 +58,7 @@ void BubbleCoupling::add_columns(SeriesTable& table) const {
   table.add("shift_norm", "speed, root mean square of the shift over dt", [this] { return shift_speed(); });
   table.add("smallest_volume_fraction", "1", [this] { return least_volume_fraction_; });
   table.add("overfull_particles", "1, alpha < 1/2", [this, number] { return number(overfull_); });
+  if (exchanges_gas()) add_gas_columns(table);
 }
 
 void BubbleCoupling::add_snapshot_fields() {
@@ -66,6 +67,10 @@ void BubbleCoupling::add_snapshot_fields() {
   snapshot_.add("age", true, [this](std::size_t b) { return carrier_.time - (*population_.birth_time)[b]; });
   snapshot_.add("slip", true, *population_.slip);
   snapshot_.add("id", true, *population_.identifier);
+  if (exchanges_gas())
+    snapshot_.add("oxygen_fraction", true, [this](std::size_t b) {
+      return (*population_.oxygen)[b] / ((*population_.oxygen)[b] + (*population_.inert)[b]);
+    });
 }
 
 ParticleSnapshot BubbleCoupling::snapshot() {
@@ -161,6 +166,10 @@ void BubbleCoupling::save(StateWriter& writer) const {
   writer.i64("sparger_emitted", sources.emitted);
   writer.i64("cloud_out", sources.cloud_out);
   save_fields(population_.fields, writer);
+  if (!exchanges_gas()) return;
+  const double gas[] = {oxygen_.released,        oxygen_.given,        oxygen_.left,    gas_totals_.given,
+                        gas_totals_.conductance, gas_totals_.capacity, gas_totals_.area};
+  writer.f64("bubble_gas", gas);
 }
 
 void BubbleCoupling::load(StateReader& reader) {
@@ -186,6 +195,13 @@ void BubbleCoupling::load(StateReader& reader) {
   max_speed_ = scalars[7];
   least_volume_fraction_ = scalars[8];
   mean_slip_ = scalars[9];
+  if (exchanges_gas()) {
+    Array<double> gas;
+    reader.f64("bubble_gas", gas);
+    if (gas.size() != 7) throw FileError("the checkpoint's gas of bubbles is of another version");
+    oxygen_ = {gas[0], gas[1], gas[2]};
+    gas_totals_ = {gas[3], gas[4], gas[5], gas[6]};
+  }
   std::copy(pending.begin(), pending.end(), sources.pending_volume.begin());
   std::copy(emitted.begin(), emitted.end(), sources.emitted.begin());
   std::copy(cloud_out.begin(), cloud_out.end(), sources.cloud_out.begin());

@@ -15,7 +15,7 @@ namespace {
 
 struct ScalarDraft {
   ScalarOption scalar;
-  std::optional<ExpressionText> initial, inflow;
+  std::optional<ExpressionText> initial, inflow, source;
 };
 struct ScalarDrafts {
   std::vector<ScalarDraft> scalars;
@@ -30,6 +30,7 @@ void compile_scalars(Draft& draft, const CompileExpression& compile) {
   std::vector<ScalarOption>& made = draft.options.get<ScalarOptions>().scalars;
   for (std::size_t k = 0; k < std::min(given.size(), made.size()); ++k) {
     if (given[k].initial) made[k].initial = compile(*given[k].initial, place_of(k) + ".initial", Arguments::place);
+    if (given[k].source) made[k].source = compile(*given[k].source, place_of(k) + ".source", Arguments::place_and_time);
     if (given[k].inflow) made[k].inflow = compile(*given[k].inflow, place_of(k) + ".inflow", Arguments::place_and_time);
   }
 }
@@ -44,7 +45,8 @@ bool is_plain(const std::string& name) {
 void refuse_value(const Draft& draft, std::size_t k, const Vec3& r, double value, Problems& problems) {
   const Node* node = draft.node(place_of(k) + ".initial");
   problems.add(*node, place_of(k) + ".initial is " + brief(value) + " at (" + brief(r[0]) + ", " + brief(r[1]) + ", " +
-                          brief(r[2]) + "); it must be a finite number where there is liquid; change the expression");
+                          brief(r[2]) + "); it must be a finite number" + (value < 0 ? " >= 0" : "") +
+                          " where there is liquid; change the expression");
 }
 
 }  // namespace
@@ -72,6 +74,9 @@ Section scalar_section() {
       .option(
           "turbulent_schmidt", [](S& s) -> double& { return s.scalar.turbulent_schmidt; }, "1", positive(),
           "eddy viscosity over the diffusivity that it adds")
+      .option("source", &S::source, "concentration/time",
+              "what is added per volume of liquid: an expression of x, y, z, t")
+      .absent("none")
       .option("inflow", &S::inflow, "concentration", "concentration of what enters: an expression of x, y, z, t")
       .absent("that of the nearest liquid");
   section.compile = compile_scalars;
@@ -104,6 +109,16 @@ void check_scalars(Draft& draft, const std::vector<std::string>& taken, Problems
   }
 }
 
+std::size_t require_scalar(Draft& draft, const ScalarOption& scalar) {
+  std::vector<ScalarOption>& made = draft.options.get<ScalarOptions>().scalars;
+  const auto same = [&](const ScalarOption& other) { return other.name == scalar.name; };
+  const auto found = std::find_if(made.begin(), made.end(), same);
+  const auto index = static_cast<std::size_t>(found - made.begin());
+  if (found == made.end()) made.push_back(scalar);
+  made[index].not_negative = true;
+  return index;
+}
+
 void check_initial_scalars(const Draft& draft, const Scene& scene, Problems& problems) {
   const std::vector<ScalarOption>& scalars = draft.options.get<ScalarOptions>().scalars;
   for (std::size_t k = 0; k < scalars.size(); ++k) {
@@ -112,7 +127,7 @@ void check_initial_scalars(const Draft& draft, const Scene& scene, Problems& pro
       Vec3 r{};
       for (int axis = 0; axis < scene.domain.dimensions; ++axis) r[axis] = scene.particles.position[axis][i];
       const double value = (*scalars[k].initial)(r[0], r[1], r[2], 0);
-      if (std::isfinite(value)) continue;
+      if (std::isfinite(value) && !(scalars[k].not_negative && value < 0)) continue;
       refuse_value(draft, k, r, value, problems);
       break;
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/operators/scalar_transport.hpp"
 
@@ -39,7 +40,8 @@ Scalars::Scalars(ParticleStore& particles, const Resolution& resolution, const S
       options_(options),
       bulk_(resolution.lattice.divergence_of_position),
       rate_(options.scalars.size()),
-      change_(options.scalars.size()) {
+      change_(options.scalars.size()),
+      added_(options.scalars.size()) {
   const std::size_t count = options.scalars.size();
   packed_ = {std::vector<const double*>(count), std::vector<double>(count), std::vector<float>(count),
              std::vector<float>(count),         std::vector<float*>(count), std::vector<float*>(count)};
@@ -59,6 +61,50 @@ void Scalars::enter(std::int64_t first, std::int64_t last, double t) {
         const std::int64_t id = (*particles_.identifier)[i];
         return id >= first && id < last;
       });
+}
+
+void Scalars::add_sources(double t, double dt, const VectorField& places) {
+  for (std::size_t s = 0; s < size(); ++s) {
+    if (option(s).source == nullptr) continue;
+    double* values = fields_[s]->data();
+    added_[s] += particles_.volume * parallel_reduce(
+                                         particles_.size(), 0.0,
+                                         [&](std::size_t first, std::size_t last) {
+                                           const std::unique_ptr<Expression> own = option(s).source->clone();
+                                           double sum = 0;
+                                           for (std::size_t i = first; i < last; ++i) {
+                                             const Vec3 r = vector_at(places, particles_.dimensions, i);
+                                             const double by = dt * (*own)(r[0], r[1], r[2], t + dt / 2);
+                                             values[i] += by;
+                                             sum += by;
+                                           }
+                                           return sum;
+                                         },
+                                         [](double a, double b) { return a + b; });
+  }
+}
+
+void Scalars::add(std::size_t scalar, const Array<float>& change, double amount) {
+  struct Sums {
+    double net = 0, moved = 0;
+  };
+  const std::size_t n = particles_.size();
+  const Sums sums = parallel_reduce(
+      n, Sums{},
+      [&](std::size_t first, std::size_t last) {
+        Sums part;
+        for (std::size_t i = first; i < last; ++i) {
+          part.net += change[i];
+          part.moved += std::abs(double{change[i]});
+        }
+        return part;
+      },
+      [](const Sums& a, const Sums& b) {
+        return Sums{a.net + b.net, a.moved + b.moved};
+      });
+  const double excess = sums.moved > 0 ? (sums.net - amount / particles_.volume) / sums.moved : 0;
+  double* values = fields_[scalar]->data();
+  parallel_for(n, [&](std::size_t i) { values[i] += double{change[i]} - excess * std::abs(double{change[i]}); });
 }
 
 double Scalars::amount(std::size_t scalar) const {
@@ -177,12 +223,26 @@ void Scalars::add_columns(SeriesTable& series) const {
     series.add("amount_of_" + option(s).name, unit.empty() ? volume : unit + " times " + volume,
                [this, s] { return amount(s); });
   }
+  for (std::size_t s = 0; s < size(); ++s)
+    if (option(s).source != nullptr)
+      series.add("source_of_" + option(s).name, "amount, added since the start", [this, s] { return added_[s]; });
   series.add("scalar_substeps", "1, into which diffusion divided the last step",
              [this] { return static_cast<double>(substeps_); });
 }
 
 void Scalars::add_fields(SnapshotTable& snapshot) const {
   for (std::size_t s = 0; s < size(); ++s) snapshot.add(option(s).name, true, *fields_[s]);
+}
+
+void Scalars::save(StateWriter& writer) const {
+  writer.f64("scalar_sources", added_);
+}
+
+void Scalars::load(StateReader& reader) {
+  Array<double> added;
+  reader.f64("scalar_sources", added);
+  if (added.size() != added_.size()) throw FileError("the checkpoint holds other scalars than the case");
+  std::copy(added.begin(), added.end(), added_.begin());
 }
 
 void add_scalar_fields(const ScalarOptions& options, std::vector<OutputFieldInfo>& infos) {

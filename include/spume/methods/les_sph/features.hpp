@@ -13,6 +13,8 @@ namespace spume::les_sph {
 bool has_closure(const Case& options);
 bool has_bubbles(const Case& options);
 bool has_scalars(const Case& options);
+bool has_oxygen(const Case& options);
+bool has_biokinetics(const Case& options);
 bool needs_velocity_gradient(const Case& options);  // of a closure, shift correction, centred steps or bubbles
 
 struct Features : BoundaryFeatures {
@@ -38,6 +40,8 @@ struct Features : BoundaryFeatures {
   bool closed = false;              // pressure known up to a constant
   bool bubbles = false;
   bool scalars = false;
+  bool oxygen = false;
+  bool biokinetics = false;
 };
 
 }  // namespace spume::les_sph

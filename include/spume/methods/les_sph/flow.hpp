@@ -19,7 +19,9 @@
 #include "spume/particles/shift.hpp"
 #include "spume/particles/step_limits.hpp"
 #include "spume/particles/surface.hpp"
+#include "spume/physics/biokinetics/sludge.hpp"
 #include "spume/physics/bubbles/coupling.hpp"
+#include "spume/physics/oxygen/oxygen.hpp"
 #include "spume/physics/scalars/scalars.hpp"
 #include "spume/physics/turbulence/eddy_viscosity.hpp"
 #include "spume/scene/case.hpp"
@@ -100,6 +102,8 @@ struct Flow {
   std::unique_ptr<turbulence::EddyViscosity> closure;  // null: none
   std::unique_ptr<bubbles::BubbleCoupling> bubbles;    // null: none
   std::unique_ptr<Scalars> scalars;                    // null: none; its fields are state
+  std::unique_ptr<oxygen::Oxygen> oxygen;              // null: none
+  std::unique_ptr<biokinetics::Sludge> sludge;         // null: none
   std::unique_ptr<FloatingBodies> floating;            // null: none; its places are state
 
   // --- Leased within a step: by the stage that writes one until the stage that reads it last.
@@ -124,6 +128,7 @@ struct Flow {
   } equation;
 
   std::size_t size() const { return particles.size(); }
+  std::size_t scalar_count() const { return scalars == nullptr ? 0 : scalars->size(); }
   double density() const { return scene.fluid.density; }
   double viscosity() const { return scene.fluid.kinematic_viscosity; }
   double particle_mass() const { return density() * particles.volume; }
@@ -197,6 +202,7 @@ struct Flow {
   void accept(double dt);  // (xi)
   // Scalars over the step that was accepted, at the positions of its lists. Returns the number of sweeps.
   std::int64_t transport_scalars(double dt);
+  void transfer_oxygen(double dt);  // from bubbles and through the surface, of the same step
 
   // Of a step dt that starts from the present state; the work of its forces where `dt` is not zero.
   EnergyBalance energy_balance(double dt) const;

@@ -35,6 +35,10 @@ struct Asm1Parameters {
   double k_oa = 0.4;   // g O2/m^3
   double b_a = 0.05;   // 1/d
   double k_a = 0.05;   // m^3/(g COD d)
+  // Half-saturations of ammonia as a nutrient and of alkalinity, which the published model does not have: without them
+  // growth goes on where they are used up, and makes them negative. 0: as published.
+  double k_nutrient = 0;    // g N/m^3
+  double k_alkalinity = 0;  // mol/m^3
 
   // The defaults with the six rates that depend on temperature (degrees C) set by (4). The two sets of values are of
   // 10 and 15 degrees; beyond them (4) extrapolates.

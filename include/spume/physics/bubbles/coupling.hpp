@@ -41,6 +41,7 @@
 #include "spume/physics/bubbles/sources.hpp"
 #include "spume/physics/bubbles/statistics.hpp"
 #include "spume/physics/bubbles/surface_interaction.hpp"
+#include "spume/physics/oxygen/transfer.hpp"
 
 namespace spume::bubbles {
 
@@ -68,6 +69,8 @@ struct Carrier {
   const double& time;                           // of the state
   const std::int64_t& steps;
   const Speeds& speeds;
+  const oxygen::Gas* gas = nullptr;          // exchanged with the liquid; null: none
+  const Array<double>* dissolved = nullptr;  // concentration of the particles, with `gas`
 
   std::size_t size() const { return identifier.size(); }
 };
@@ -104,6 +107,15 @@ class BubbleCoupling {
   const Array<double>& volume_fraction() const { return *volume_fraction_; }
   ConstFloatVectorField exchange() const { return constant(exchange_); }
   const Array<float>& viscosity() const { return viscosity_; }
+  // Of the last exchange, with a gas: what bubbles changed of the concentrations, by float sums, and the amount
+  // exactly.
+  const Array<float>& dissolution() const { return dissolution_; }
+  double dissolved_amount() const { return next_gas_totals_.given; }
+  double conductance() const { return population_.empty() ? 0 : gas_totals_.conductance; }  // sum of k_L A
+  // What spargers feed of oxygen at the time of the state, g per time.
+  double oxygen_feed() const;
+  // What bubbles would give to a liquid without oxygen, g per time.
+  double transfer_capacity() const { return population_.empty() ? 0 : gas_totals_.capacity; }
   bool mixture_pressure() const { return options_.momentum_form == MomentumForm::mixture_pressure; }
 
   void add_columns(SeriesTable& table) const;
@@ -135,9 +147,19 @@ class BubbleCoupling {
   Moved accelerate(std::size_t b, const Surroundings& around, const Vec3& u, double radius, const Braking& braking,
                    double dt) const;
   void interpolate();
+  template <int components>
   void deposit();
   void remove_dead(double t);
   void break_up(double dt);
+  // Gas that bubbles exchange with the liquid (gas.cpp).
+  bool exchanges_gas() const { return carrier_.gas != nullptr; }
+  void pack_dissolved();
+  void interpolate_dissolved(const CrossSearch::Found& found, float share, std::size_t b);
+  float dissolve(std::size_t b, double slip, double dt);
+  void sum_gas();
+  void accept_gas();
+  void fill_new_bubbles(double fraction);
+  void add_gas_columns(SeriesTable& table) const;
   void entrain(double dt);
   double smoothed_dissipation(std::size_t i) const;
   void remark(const std::string& text);  // for the next note()
@@ -189,6 +211,21 @@ class BubbleCoupling {
   Array<float> interpolated_;  // per bubble the liquid at it and the kernel sum
   Array<double> dissipation_, next_merge_time_, next_slip_;
   std::array<Array<double>, 3> reaction_;  // M_b
+  Array<float> dissolved_;                 // of particles and images, times the factor of their records
+  Array<float> dissolution_;
+  Array<double> dissolved_at_bubble_;  // over the sum of the weights
+  struct GasState {
+    oxygen::Contents contents;
+    double given = 0, conductance = 0, capacity = 0;
+  };
+  std::vector<GasState> next_gas_;  // per bubble
+  struct GasTotals {
+    double given = 0, conductance = 0, capacity = 0, area = 0;
+  };
+  GasTotals gas_totals_, next_gas_totals_;  // of the last step, and of this one until it is accepted
+  struct {
+    double released = 0, given = 0, left = 0;  // g of oxygen since the start
+  } oxygen_;
   Array<std::uint8_t> dead_;
   Array<std::uint8_t> near_;            // particles with bubbles in their reach
   Array<std::int32_t> near_particles_;  // those whose normals are seen

@@ -27,10 +27,14 @@ inline double radius_of(double volume) {
   return std::cbrt(volume * (3 / (4 * std::numbers::pi)));
 }
 
+// Of the oxygen of a bubble: its contents follow from its volume and its place.
+inline constexpr double no_gas_yet = -1;
+
 struct NewBubble {
   Vec3 position{}, velocity{}, fluctuation{};
   double volume = 0;
-  bool at_rest_in_liquid = false;  // takes the velocity of the liquid at its first step
+  double oxygen = no_gas_yet, inert = 0;  // mol
+  bool at_rest_in_liquid = false;         // takes the velocity of the liquid at its first step
 };
 
 inline constexpr double not_merging = std::numeric_limits<double>::infinity();
@@ -39,7 +43,7 @@ class Population {
  public:
   // Arrays of a model exist only when it is on.
   struct Models {
-    bool fluctuations = false, breakup = false, surface = false;
+    bool fluctuations = false, breakup = false, surface = false, gas = false;
   };
   explicit Population(const Models& models);
 
@@ -79,7 +83,9 @@ class Population {
   Array<double>* birth_time = nullptr;
   Array<double>* deformation = nullptr;           // L_def, King (3.26)
   Array<double>* dissipation_integral = nullptr;  // of epsilon over the age, King (3.29)
-  Array<double>* merge_time = nullptr;            // t_m, King section 3.4.3; not_merging: moves freely
+  Array<double>* oxygen = nullptr;                // moles of oxygen and of other dry gas
+  Array<double>* inert = nullptr;
+  Array<double>* merge_time = nullptr;  // t_m, King section 3.4.3; not_merging: moves freely
   Array<std::int64_t>* identifier = nullptr;
   Array<std::int64_t>* at_rest_in_liquid = nullptr;  // 1 until the first step
   Array<double>* slip = nullptr;                     // |u_l - u_b| at the last step, u_l resolved

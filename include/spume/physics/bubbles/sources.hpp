@@ -2,10 +2,12 @@
 // Bubbles that enter by spargers and as clouds.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "spume/physics/bubbles/options.hpp"
 #include "spume/physics/bubbles/population.hpp"
+#include "spume/scene/expression.hpp"
 
 namespace spume::bubbles {
 
@@ -34,6 +36,11 @@ class Sources {
   // What enters in (t, t + dt]: the rate at the middle of the step, in whole bubbles; the rest waits. A bubble bigger
   // than what is pending waits too, so that the volume never runs ahead of the rate.
   Released release(Population& population, double t, double dt);
+  // Calls add(place, rate) for every sparger with its gas volume per time.
+  template <class Add>
+  void for_rates(double t, Add&& add) const {
+    for (const Sparger& sparger : given_.spargers) add(sparger.position, std::max(0.0, (*sparger.rate)(0, 0, 0, t)));
+  }
   // Clouds due at time t.
   Released place_clouds(Population& population, double t);
 

@@ -3,6 +3,7 @@
 // method that carries scalars names the section in its registration and calls the checks in its own.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,10 +21,12 @@ inline constexpr double usual_turbulent_schmidt = 0.7;
 
 struct ScalarOption {
   std::string name;
-  std::string unit;                           // of the concentration; empty: none
-  std::shared_ptr<const Expression> initial;  // of the place; null: zero
-  std::shared_ptr<const Expression> inflow;   // of what enters; null: that of the nearest liquid
-  double diffusivity = 0;                     // length^2 / time
+  std::string unit = {};                           // of the concentration; empty: none
+  std::shared_ptr<const Expression> initial = {};  // of the place; null: zero
+  std::shared_ptr<const Expression> source = {};   // per volume of liquid and time; null: none
+  std::shared_ptr<const Expression> inflow = {};   // of what enters; null: that of the nearest liquid
+  double diffusivity = 0;                          // length^2 / time
+  bool not_negative = false;                       // of a substance that another section uses
   double turbulent_schmidt = usual_turbulent_schmidt;
 };
 
@@ -35,6 +38,8 @@ Section scalar_section();
 
 // Names; completes ScalarOptions but for the expressions. `taken` are the output fields that the method has beside.
 void check_scalars(Draft& draft, const std::vector<std::string>& taken, Problems& problems);
+// Index of the scalar of that name; one that no [[scalar]] gives is added as described. It may not be negative.
+std::size_t require_scalar(Draft& draft, const ScalarOption& scalar);
 // Values where the particles start.
 void check_initial_scalars(const Draft& draft, const Scene& scene, Problems& problems);
 

@@ -40,6 +40,15 @@ class Scalars {
   // Diffusion over dt and the change by the shift, at the positions of the lists. Returns the number of sweeps.
   std::int64_t transport(double dt, const Carrier& carrier);
 
+  // Sources over dt from time t on, at the places of the particles: what they add counts to added().
+  void add_sources(double t, double dt, const VectorField& places);
+  // Adds `change` to the values of a scalar; what its float sum differs from `amount` is taken out in proportion to the
+  // size of the changes, so that the amount of the scalar changes by `amount`.
+  void add(std::size_t scalar, const Array<float>& change, double amount);
+  Array<double>& values(std::size_t scalar) { return *fields_[scalar]; }
+  std::size_t particles() const { return particles_.size(); }
+  double liquid_volume() const { return particles_.volume * static_cast<double>(particles_.size()); }
+
   // Gives particles of identifiers in [first, last) what inflows bring at time t.
   void enter(std::int64_t first, std::int64_t last, double t);
 
@@ -50,9 +59,11 @@ class Scalars {
   // Parts into which diffusion divided the last step.
   std::int64_t substeps() const { return substeps_; }
 
-  // Columns "amount_of_<name>" and "scalar_substeps".
+  // Columns "amount_of_<name>", "source_of_<name>" with a source, and "scalar_substeps".
   void add_columns(SeriesTable& series) const;
   void add_fields(SnapshotTable& snapshot) const;
+  void save(StateWriter& writer) const;
+  void load(StateReader& reader);
 
  private:
   void sweep(const Carrier& carrier, bool shifted);
@@ -73,6 +84,7 @@ class Scalars {
     std::vector<float*> rate, change;
   } packed_;
   std::int64_t substeps_ = 0;
+  std::vector<double> added_;  // per scalar: by its source since the start
 };
 
 // The output fields of scalars behind those of the method.

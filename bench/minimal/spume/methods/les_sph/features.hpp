@@ -35,6 +35,8 @@ struct Features {
   static constexpr bool closed = true;
   static constexpr bool bubbles = false;
   static constexpr bool scalars = false;
+  static constexpr bool oxygen = false;
+  static constexpr bool biokinetics = false;
 };
 
 }  // namespace spume::les_sph

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Scalars that react: the components of a model in every particle, split from their transport. Within a step of the
+// flow, some milliseconds, a reaction is a small change; with [biokinetics] interval reactions are made up for at once.
+#pragma once
+
+#include "spume/physics/biokinetics/integrator.hpp"
+#include "spume/physics/biokinetics/options.hpp"
+#include "spume/physics/scalars/scalars.hpp"
+
+namespace spume::biokinetics {
+
+class Sludge {
+ public:
+  Sludge(Scalars& scalars, const BiokineticsOptions& options);
+
+  // A step of dt seconds; the particles react when an interval is full.
+  void react(double dt);
+
+  // Columns: uptake of oxygen, steps of the reactions.
+  void add_columns(SeriesTable& series) const;
+  void save(StateWriter& writer) const;
+  void load(StateReader& reader);
+
+ private:
+  Scalars& scalars_;
+  const BiokineticsOptions& options_;
+  const Integrator integrator_;
+  std::vector<double*> values_;   // per component
+  double pending_ = 0;            // seconds that have not reacted
+  double uptake_ = 0, rate_ = 0;  // g of oxygen since the start; g/m^3/h of the last reaction
+  double steps_ = 0;              // per particle, of the last reaction
+};
+
+}  // namespace spume::biokinetics

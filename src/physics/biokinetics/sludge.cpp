@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "spume/physics/biokinetics/sludge.hpp"
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+
+namespace spume::biokinetics {
+namespace {
+
+constexpr double day = 86400, hour = 3600;  // s
+// Of rounding in a sum of steps that shall fill an interval.
+constexpr double full = 1 - 1e-9;
+// Particles of a block: 16 lanes full.
+constexpr std::size_t block = 16 * Integrator::lanes;
+
+}  // namespace
+
+Sludge::Sludge(Scalars& scalars, const BiokineticsOptions& options)
+    : scalars_(scalars),
+      options_(options),
+      integrator_(asm1_model(options.parameters), options.tolerance),
+      values_(options.scalars.size()) {}
+
+void Sludge::react(double dt) {
+  pending_ += dt;
+  if (pending_ < options_.interval * full) return;
+  const std::size_t n = scalars_.particles();
+  for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = scalars_.values(options_.scalars[i]).data();
+  const std::size_t oxygen = options_.scalars[asm1::s_o];
+  const double before = scalars_.amount(oxygen);
+  const double steps = parallel_reduce(
+      n, 0.0,
+      [&](std::size_t first, std::size_t last) {
+        double sum = 0;
+        for (std::size_t i = first; i < last; i += block)
+          sum += static_cast<double>(integrator_.advance(values_, i, std::min(i + block, last), pending_ / day).steps);
+        return sum;
+      },
+      [](double a, double b) { return a + b; });
+  const double taken = before - scalars_.amount(oxygen), volume = scalars_.liquid_volume();
+  uptake_ += taken;
+  rate_ = volume > 0 ? taken / volume / pending_ * hour : 0;
+  steps_ = n > 0 ? steps / static_cast<double>(n) : 0;
+  pending_ = 0;
+}
+
+void Sludge::add_columns(SeriesTable& series) const {
+  series.add("oxygen_uptake", "g, by the reactions since the start", [this] { return uptake_; });
+  series.add("oxygen_uptake_rate", "g/m3/h, mean over the liquid", [this] { return rate_; });
+  series.add("reaction_steps", "1, per particle in the last reaction", [this] { return steps_; });
+}
+
+void Sludge::save(StateWriter& writer) const {
+  const double numbers[] = {pending_, uptake_, rate_, steps_};
+  writer.f64("biokinetics", numbers);
+}
+
+void Sludge::load(StateReader& reader) {
+  Array<double> numbers;
+  reader.f64("biokinetics", numbers);
+  if (numbers.size() != 4) throw FileError("the checkpoint's reactions are of another version");
+  pending_ = numbers[0];
+  uptake_ = numbers[1];
+  rate_ = numbers[2];
+  steps_ = numbers[3];
+}
+
+}  // namespace spume::biokinetics

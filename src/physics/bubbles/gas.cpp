@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// Oxygen that bubbles exchange with the liquid (physics/oxygen): what they see of its concentration, what they give,
+// and what they hold. It rides on the passes of the momentum exchange, with the same weights.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "spume/physics/bubbles/coupling.hpp"
+
+namespace spume::bubbles {
+
+// The concentrations times what multiplies the values of liquid_records_.
+void BubbleCoupling::pack_dissolved() {
+  const std::size_t n = carrier_.size(), m = carrier_.arrangement.images.size();
+  dissolved_.resize(n + m);
+  parallel_for(n, [&](std::size_t i) {
+    const float inverse = 1 / carrier_.sizes.length_ratio[i];
+    dissolved_[i] =
+        carrier_.sizes.volume_ratio[i] * inverse * inverse * inverse * static_cast<float>((*carrier_.dissolved)[i]);
+  });
+  const std::int32_t* source = carrier_.arrangement.images.source();
+  parallel_for(m, [&](std::size_t k) { dissolved_[n + k] = dissolved_[static_cast<std::size_t>(source[k])]; });
+}
+
+void BubbleCoupling::interpolate_dissolved(const CrossSearch::Found& found, float share, std::size_t b) {
+  const float* weight = found.share2.data();  // set by sum_of_lines
+  float even = 0, odd = 0;
+  for (std::size_t k = 0; k + 1 < found.size; k += 2) {
+    even += weight[k] * dissolved_[static_cast<std::size_t>(found.index[k])];
+    odd += weight[k + 1] * dissolved_[static_cast<std::size_t>(found.index[k + 1])];
+  }
+  if (found.size % 2 == 1)
+    even += weight[found.size - 1] * dissolved_[static_cast<std::size_t>(found.index[found.size - 1])];
+  dissolved_at_bubble_[b] = share * (even + odd);
+}
+
+// What bubble b gives over dt; it is taken over with the step.
+float BubbleCoupling::dissolve(std::size_t b, double slip, double dt) {
+  const oxygen::Exchange result =
+      oxygen::exchange(*carrier_.gas, next_gas_[b].contents, (*population_.volume)[b],
+                       (*population_.next_position[2])[b], slip, dissolved_at_bubble_[b], dt);
+  next_gas_[b] = {result.after, result.given, result.conductance, result.capacity};
+  return static_cast<float>(result.given);
+}
+
+void BubbleCoupling::sum_gas() {
+  const std::size_t nb = population_.size();
+  const auto sum = [&](double GasState::*member) {
+    return parallel_sum(nb, [&](std::size_t b) { return next_gas_[b].*member; });
+  };
+  next_gas_totals_ = {
+      .given = sum(&GasState::given), .conductance = sum(&GasState::conductance), .capacity = sum(&GasState::capacity)};
+  next_gas_totals_.area = parallel_sum(nb, [&](std::size_t b) {
+    const double radius = population_.radius(b);
+    return 4 * std::numbers::pi * radius * radius;
+  });
+}
+
+void BubbleCoupling::accept_gas() {
+  parallel_for(population_.size(), [&](std::size_t b) {
+    const oxygen::Contents& contents = next_gas_[b].contents;
+    (*population_.oxygen)[b] = contents.oxygen;
+    (*population_.inert)[b] = contents.inert;
+    if (carrier_.gas->shrinks)
+      (*population_.volume)[b] = carrier_.gas->volume(contents.oxygen + contents.inert, (*population_.position[2])[b]);
+  });
+  gas_totals_ = next_gas_totals_;
+  oxygen_.given += gas_totals_.given;
+}
+
+// Gas of this mole fraction in bubbles without contents.
+void BubbleCoupling::fill_new_bubbles(double fraction) {
+  const auto filled = [&](std::size_t b) {
+    double& oxygen = (*population_.oxygen)[b];
+    if (oxygen != no_gas_yet) return 0.0;
+    const double total = carrier_.gas->moles((*population_.volume)[b], (*population_.position[2])[b]);
+    oxygen = fraction * total;
+    (*population_.inert)[b] = total - oxygen;
+    return oxygen;
+  };
+  oxygen_.released += oxygen::molar_mass * parallel_sum(population_.size(), filled);
+}
+
+double BubbleCoupling::oxygen_feed() const {
+  double feed = 0;
+  sources_.for_rates(carrier_.time, [&](const Vec3& place, double rate) {
+    feed += oxygen::molar_mass * carrier_.gas->fraction * carrier_.gas->moles(rate, place[2]);
+  });
+  return feed;
+}
+
+void BubbleCoupling::add_gas_columns(SeriesTable& table) const {
+  table.add("bubble_area", "length^2", [this] { return population_.empty() ? 0.0 : gas_totals_.area; });
+  table.add("oxygen_released", "g, with the gas, since the start", [this] { return oxygen_.released; });
+  table.add("oxygen_from_bubbles", "g, given to the liquid since the start", [this] { return oxygen_.given; });
+  table.add("oxygen_left", "g, with bubbles that burst, since the start", [this] { return oxygen_.left; });
+  table.add("oxygen_in_bubbles", "g", [this] {
+    return oxygen::molar_mass *
+           parallel_sum(population_.size(), [&](std::size_t b) { return (*population_.oxygen)[b]; });
+  });
+}
+
+}  // namespace spume::bubbles

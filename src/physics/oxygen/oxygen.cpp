@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "spume/physics/oxygen/oxygen.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+
+namespace spume::oxygen {
+namespace {
+
+double highest(const Scene& scene) {
+  const auto up = static_cast<std::size_t>(scene.domain.dimensions - 1);
+  const auto& heights = scene.particles.position[up];
+  const auto top = std::max_element(heights.begin(), heights.end());
+  return top == heights.end() ? scene.domain.upper[up] : *top + scene.spacing / 2;
+}
+
+}  // namespace
+
+Oxygen::Oxygen(Scalars& scalars, const ParticleStore& particles, const Resolution& resolution, const Case& options,
+               const Scene& scene)
+    : scalars_(scalars),
+      particles_(particles),
+      options_(options.get<OxygenOptions>()),
+      gas_(gas_of(options, scene.fluid.density, scene.fluid.kinematic_viscosity,
+                  std::max(0.0, -scene.fluid.gravity[static_cast<std::size_t>(scene.domain.dimensions - 1)]),
+                  highest(scene))) {
+  if (options_.surface_k_l > 0)
+    layer_area_ = resolution.spacing * resolution.spacing /
+                  lattice_surface(3, resolution.kernel, resolution.smoothing_ratio)[0].normal;
+}
+
+void Oxygen::exchange_with_air(double dt, const Surface& surface) {
+  if (!(options_.surface_k_l > 0)) return;
+  struct Sums {
+    double gained = 0, area = 0;
+  };
+  double* values = scalars_.values(options_.index).data();
+  const double saturation = gas_.saturation_below_air(), k = gas_.factor * options_.surface_k_l, v = particles_.volume;
+  const Sums sums = parallel_reduce(
+      particles_.size(), Sums{},
+      [&](std::size_t first, std::size_t last) {
+        Sums part;
+        for (std::size_t i = first; i < last; ++i) {
+          const double share = 1 - surface.surface.interior_weight[i];
+          if (!(share > 0)) continue;
+          double normal2 = 0;
+          for (const auto* component : surface.normal) normal2 += double{(*component)[i]} * (*component)[i];
+          const double area = share * layer_area_ * std::sqrt(normal2), before = values[i];
+          values[i] -= (saturation - before) * std::expm1(-k * area / v * dt);
+          part.area += area;
+          part.gained += values[i] - before;
+        }
+        return part;
+      },
+      [](const Sums& a, const Sums& b) {
+        return Sums{a.gained + b.gained, a.area + b.area};
+      });
+  from_surface_ += v * sums.gained;
+  surface_area_ = sums.area;
+}
+
+// What bubbles would give per time to clean water without oxygen at 20 C under one atmosphere, ASCE 2-06.
+double Oxygen::standard_capacity(double capacity) const {
+  return capacity * std::pow(transfer_temperature, standard_temperature - gas_.temperature) / gas_.factor *
+         saturation_concentration(standard_temperature, 0) / gas_.saturation * atmosphere / gas_.air_pressure;
+}
+
+void Oxygen::add_columns(SeriesTable& series, const bubbles::BubbleCoupling* bubbles) const {
+  series.add("mean_oxygen", "g/m3", [this] {
+    const double volume = scalars_.liquid_volume();
+    return volume > 0 ? scalars_.amount(options_.index) / volume : 0;
+  });
+  if (options_.surface_k_l > 0) {
+    series.add("surface_area", "length^2, last step", [this] { return surface_area_; });
+    series.add("oxygen_from_surface", "g, since the start", [this] { return from_surface_; });
+  }
+  series.add("kla", "1/time: k_L A of bubbles and surface over the volume of liquid", [this, bubbles] {
+    const double sum =
+        (bubbles == nullptr ? 0 : bubbles->conductance()) + gas_.factor * options_.surface_k_l * surface_area_;
+    const double volume = scalars_.liquid_volume();
+    return volume > 0 ? sum / volume : 0;
+  });
+  if (bubbles == nullptr) return;
+  series.add("sotr", "g/time: standard transfer rate of the bubbles",
+             [this, bubbles] { return standard_capacity(bubbles->transfer_capacity()); });
+  series.add("sote", "1: sotr over the oxygen that spargers feed", [this, bubbles] {
+    const double feed = bubbles->oxygen_feed();
+    return feed > 0 ? standard_capacity(bubbles->transfer_capacity()) / feed : 0;
+  });
+}
+
+void Oxygen::save(StateWriter& writer) const {
+  const double numbers[] = {from_surface_, surface_area_};
+  writer.f64("oxygen", numbers);
+}
+
+void Oxygen::load(StateReader& reader) {
+  Array<double> numbers;
+  reader.f64("oxygen", numbers);
+  if (numbers.size() != 2) throw FileError("the checkpoint's oxygen is of another version");
+  from_surface_ = numbers[0];
+  surface_area_ = numbers[1];
+}
+
+}  // namespace spume::oxygen

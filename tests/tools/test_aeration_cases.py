@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: MIT
+"""Measures of the aerated tanks, on run folders written from known answers."""
+import numpy as np
+from case_test import CaseTest
+from spume_tools.results import Results
+from synthetic import series_of, write_table
+
+
+class CleanWater(CaseTest):
+    def measured(self, factor=1.0, lost=0.0):
+        folder, module = self.run_of("clean_water")
+        limit, kla = module.saturation_at_mid_depth(Results(folder)), 2e-3
+        t = np.linspace(0, 200, 401)
+        oxygen = limit * (1 - np.exp(-factor * kla * t))
+        write_table(folder / "series.csv", series_of(
+            t, mean_oxygen=oxygen, kla=kla, sotr=3e-4, sote=0.03, amount_of_oxygen=0.016 * oxygen,
+            oxygen_in_bubbles=0.01, oxygen_left=t - 0.016 * oxygen, oxygen_released=t + 0.01 + lost))
+        return module.measure({"run": Results(folder)})
+
+    def test_the_saturation_is_that_of_the_tables(self):
+        folder, module = self.run_of("clean_water")
+        self.assertAlmostEqual(module.saturation(20), 9.0924, places=3)
+        # 1.958 kPa of the depth over 98.99 kPa of dry air.
+        self.assertAlmostEqual(module.saturation_at_mid_depth(Results(folder)) / module.saturation(20), 1.01979, places=4)
+
+    def test_exact_curve_has_no_error(self):
+        measured = self.measured()
+        self.assertLess(measured["kla_error"], 1e-9)
+        self.assertLess(measured["oxygen_balance"], 1e-12)
+        self.assertAlmostEqual(measured["sote_percent_per_metre"], 7.5)
+
+    def test_another_rate_and_lost_oxygen_are_seen(self):
+        measured = self.measured(1.05, lost=0.1)
+        self.assertAlmostEqual(measured["kla_error"], 0.05, places=6)
+        self.assertAlmostEqual(measured["oxygen_balance"], 0.1 / 200.11, places=6)
+
+
+class AeratedTank(CaseTest):
+    def measured(self, leak=0.0, uptake_error=0.0, sote=0.03):
+        """Biomass that grows on substrate and nitrate that is reduced, written out: Y = 0.67."""
+        folder, module = self.run_of("aerated_tank")
+        t = np.linspace(0, 100, 101)
+        fed, growth, reduced = 0.02 * t, 0.004 * t, 0.001 * t
+        uptake = growth * 0.33 / 0.67
+        dinitrogen = reduced
+        anoxic = 2.86 * 0.67 / 0.33 * reduced
+        columns = {name: 0.0 for name in ("S_I", "X_I", "X_S", "X_BA", "X_P", "S_ND", "X_ND")}
+        columns |= {"S_S": 5 + fed - (growth + anoxic) / 0.67 + leak * t, "X_BH": 80 + growth + anoxic,
+                    "S_NH": 9 - 0.08 * (growth + anoxic), "S_NO": 9 - dinitrogen, "S_O": 1 + 0.001 * t}
+        supply = 0.001 * t + uptake + uptake_error * t
+        write_table(folder / "series.csv", series_of(
+            t, **{f"amount_of_{name}": value for name, value in columns.items()}, source_of_S_S=fed,
+            oxygen_from_bubbles=0.9 * supply, oxygen_from_surface=0.1 * supply, oxygen_uptake=uptake,
+            oxygen_uptake_rate=20, sote=sote, kla=8e-4, kinetic_energy=0.3, mass=60, mean_oxygen=1))
+        return module.measure({"run": Results(folder)})
+
+    def test_growth_by_the_stoichiometry_closes(self):
+        measured = self.measured()
+        self.assertLess(measured["oxygen_balance"], 1e-9)
+        self.assertLess(measured["cod_balance"], 1e-9)
+        self.assertEqual(measured["sote_off_range"], 0)
+        self.assertAlmostEqual(measured["mean_speed"], 0.1)
+
+    def test_leaks_and_efficiencies_out_of_range_are_seen(self):
+        # Uptake at the end: 0.4 * 0.33 / 0.67.
+        self.assertAlmostEqual(self.measured(leak=1e-4)["cod_balance"], 1e-2 / 0.19701, places=3)
+        self.assertAlmostEqual(self.measured(uptake_error=1e-4)["oxygen_balance"], 1e-2 / 0.19701, places=3)
+        self.assertAlmostEqual(self.measured(sote=0.05)["sote_off_range"], 2.7)
