@@ -57,7 +57,8 @@ struct CommandLine {
   bool quick = false;
   std::string keep;
   bool table_only = false;
-  CLI::App *run_app, *check_app, *resume_app, *info_app, *verify_app, *plot_app, *compare_app, *options_app;
+  ViewArguments view;
+  CLI::App *run_app, *check_app, *resume_app, *info_app, *verify_app, *plot_app, *compare_app, *view_app, *options_app;
 
   CommandLine() {
     app.name("spume");
@@ -71,6 +72,7 @@ struct CommandLine {
     plot_app =
         app.add_subcommand("plot", "pictures of a run, of two runs beside each other, or of those that verify kept");
     compare_app = app.add_subcommand("compare", "two runs side by side: cost, options, verdicts, quantities; pictures");
+    view_app = app.add_subcommand("view", "results in a browser: of a run, of two beside each other, or of a file");
     options_app = app.add_subcommand("options", "every option of a case: unit, default, range");
 
     for (CLI::App* verb : {run_app, check_app}) {
@@ -113,9 +115,16 @@ struct CommandLine {
     pass_on("--plane", "plane of the fields in 3-D, such as y=0.5; default: the middle y", "AXIS=VALUE")->expected(1);
     pass_on("--range", "limits of the colours of a field, such as speed=0:2", "FIELD=LOW:HIGH ...");
     pass_on("--format", "of the pictures: png, pdf or svg; default: png", "WORD")->expected(1);
-    plot_app->add_flag("--animate", animate, "GIFs of all snapshots in place of pictures of some");
     compare_app->add_option("dir", pictured, "folders of two runs")->required()->expected(2);
     compare_app->add_flag("--no-pictures", table_only, "print the table alone");
+    plot_app->add_flag("--animate", animate,
+                       "GIFs of all snapshots, with ffmpeg MP4s too, in place of pictures of some");
+    view_app
+        ->add_option("dir", view.paths,
+                     "folder of a run, of two runs, or VTKHDF or H5Part files; a run may still go on")
+        ->required()
+        ->expected(1, 2);
+    view_app->add_option("--port", view.port, "port of the page (default: a free one)")->check(CLI::Range(1, 65535));
     options_app->add_option("section", section, "only this section");
   }
 
@@ -147,6 +156,7 @@ struct CommandLine {
     if (resume_app->parsed()) return resume_verb(run, program);
     if (info_app->parsed()) return with_output_written(info_verb(file, program));
     if (options_app->parsed()) return with_output_written(options_verb(section, program));
+    if (view_app->parsed()) return view_verb(view);
     if (plot_app->parsed()) return module_verb("plots", plot_arguments());
     if (compare_app->parsed()) {
       if (table_only) pictured.emplace_back("--no-pictures");

@@ -80,7 +80,8 @@ int execute(Simulation& simulation, const RunArguments& arguments, const Program
   std::optional<LiveView> view;
   if (server != nullptr) {
     view.emplace(*server, observer, program.option_table(), arguments.paused);
-    std::printf("view at %s\n%s", server->address().c_str(), quiet ? "" : "\n");
+    std::printf("view at %s\nto look only: %s\n%s", server->address().c_str(), server->looking_address().c_str(),
+                quiet ? "" : "\n");
     std::fflush(stdout);
   }
   Ending ending(view);

@@ -25,6 +25,11 @@ int run_verb(const RunArguments& arguments, const Program& program);
 int resume_verb(const RunArguments& arguments, const Program& program);
 int check_verb(const RunArguments& arguments, const Program& program);
 int info_verb(const std::string& file, const Program& program);
+struct ViewArguments {
+  std::vector<std::string> paths;  // one or two
+  int port = 0;                    // 0: a free one
+};
+int view_verb(const ViewArguments& arguments);
 int options_verb(const std::string& section, const Program& program);
 
 // Replaces this process by /usr/bin/python3 with a module of tools/spume_tools and the arguments.

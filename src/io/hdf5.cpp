@@ -57,6 +57,15 @@ void throw_error(const std::filesystem::path& path, std::string_view action) {
   throw FileError("cannot " + std::string(action) + " '" + path.string() + "': " + reason);
 }
 
+std::vector<hsize_t> extent_of(const File& file, hid_t data) {
+  const Id space = file.take(H5Dget_space(data), H5Sclose, "read");
+  const int rank = H5Sget_simple_extent_ndims(space);
+  if (rank < 0) throw_error(file.path(), "read");
+  std::vector<hsize_t> size(static_cast<std::size_t>(rank));
+  if (rank > 0) file.check(H5Sget_simple_extent_dims(space, size.data(), nullptr), "read");
+  return size;
+}
+
 Id dataset_creation() {
   Id creation = property_list(H5P_DATASET_CREATE);
   H5Pset_obj_track_times(creation, false);

@@ -52,13 +52,6 @@ void create_layout(const File& file, const GridSnapshot& snapshot, const vtkhdf:
   hdf5::write_attribute(file, root, "Direction", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 9, direction);
 }
 
-std::vector<hsize_t> extent_of(const File& file, hid_t data) {
-  const Id space = file.take(H5Dget_space(data), H5Sclose, "read");
-  std::vector<hsize_t> size(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space)));
-  file.check(H5Sget_simple_extent_dims(space, size.data(), nullptr), "read");
-  return size;
-}
-
 void set_steps(const File& file, const std::string& name, std::int64_t steps) {
   const Id data = file.dataset(name);
   std::vector<hsize_t> size = extent_of(file, data);

@@ -59,8 +59,10 @@ ParticleSnapshot SnapshotTable::take(std::string name, std::size_t size, const V
     if (entry.value) {
       Array<double>& values = computed_[entry.name];
       values.resize(size);
-      parallel_for(size, [&](std::size_t i) { values[i] = entry.value(i); });
       field.f64.push_back(values.data());
+      field.compute = [&values, &entry, size] {
+        parallel_for(size, [&](std::size_t i) { values[i] = entry.value(i); });
+      };
     }
     snapshot.fields.push_back(std::move(field));
   }

@@ -10,75 +10,22 @@
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
+#include "colouring.hpp"
+#include "places.hpp"
+#include "spume/core/parallel.hpp"
+
 namespace spume {
 namespace {
 
-// Units of the fields that methods write, in the words of the case.
-const std::map<std::string, std::string>& field_units() {
-  static const std::map<std::string, std::string> units{{"velocity", "length/time"},
-                                                        {"pressure", "mass/(length time2)"},
-                                                        {"dissipation", "mass/(length time3)"},
-                                                        {"unresolved_dissipation", "mass/(length time3)"},
-                                                        {"eddy_viscosity", "length2/time"},
-                                                        {"vorticity", "1/time"},
-                                                        {"acceleration", "length/time2"},
-                                                        {"density", "mass/length3"},
-                                                        {"viscosity", "mass/(length time)"},
-                                                        {"radius", "length"},
-                                                        {"diameter", "length"},
-                                                        {"age", "time"},
-                                                        {"slip", "length/time"}};
-  return units;
-}
-
-// A colouring: one component of a field, or the size of the vector.
-struct Colouring {
-  std::string name, unit;
-  std::size_t field = 0;
-  int component = -1;  // -1: the size
-};
-
-std::vector<Colouring> colourings_of(const std::string& name, std::size_t field, std::size_t components) {
-  const auto unit = field_units().find(name);
-  const std::string words = unit == field_units().end() ? "" : unit->second;
-  if (components == 1) return {{name, words, field, 0}};
-  std::vector<Colouring> list{{name, words, field, -1}};
-  for (std::size_t axis = 0; axis < std::min<std::size_t>(components, 3); ++axis)
-    list.push_back({name + '_' + "xyz"[axis], words, field, static_cast<int>(axis)});
-  return list;
-}
-
-std::vector<Colouring> all_colourings(const ParticleSnapshot& family) {
-  std::vector<Colouring> list;
-  for (std::size_t k = 0; k < family.fields.size(); ++k) {
-    const ParticleField& field = family.fields[k];
-    for (Colouring& one : colourings_of(field.name, k, std::max(field.f64.size(), field.i64.size())))
-      list.push_back(std::move(one));
-  }
-  return list;
-}
-
-std::vector<Colouring> all_colourings(const GridSnapshot& grid) {
-  std::vector<Colouring> list;
-  for (std::size_t k = 0; k < grid.fields.size(); ++k)
-    for (Colouring& one : colourings_of(grid.fields[k].name, k, grid.fields[k].components.size()))
-      list.push_back(std::move(one));
-  return list;
-}
-
-// The wanted one, or the first; null without any.
-const Colouring* chosen(const std::vector<Colouring>& list, const std::string& family, const FrameWish& wish) {
-  if (list.empty()) return nullptr;
-  const auto wanted = wish.fields.find(family);
-  if (wanted == wish.fields.end()) return &list.front();
-  const auto found =
-      std::find_if(list.begin(), list.end(), [&](const Colouring& one) { return one.name == wanted->second; });
-  return found == list.end() ? &list.front() : &*found;
-}
-
 // The finite ones of some values lie from low to high.
 struct CodeRange {
-  double low = 0, high = 0;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  void join(const CodeRange& other) {
+    low = std::min(low, other.low);
+    high = std::max(high, other.high);
+  }
+  // From 0 to 0 without any.
+  CodeRange known() const { return low <= high ? *this : CodeRange{0, 0}; }
 };
 
 // Infinities and what is no number give neither true.
@@ -87,13 +34,13 @@ inline bool is_finite(double value) {
 }
 
 CodeRange range_of(const double* values, std::size_t count) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+  CodeRange range;
+  double low = range.low, high = range.high;
 #pragma omp simd reduction(min : low) reduction(max : high)
   for (std::size_t k = 0; k < count; ++k) {
     low = is_finite(values[k]) && values[k] < low ? values[k] : low;
     high = is_finite(values[k]) && values[k] > high ? values[k] : high;
   }
-  if (!(low <= high)) return {};
   return {low, high};
 }
 
@@ -139,7 +86,7 @@ class Payload {
 
 // Writes values of 8 or 16 bits and says in the block where they are and what they mean.
 void add_values(nlohmann::json& block, Payload& payload, const double* values, std::size_t count, int bits) {
-  const CodeRange range = range_of(values, count);
+  const CodeRange range = range_of(values, count).known();
   const std::size_t at = payload.add(count * static_cast<std::size_t>(bits / 8));
   if (bits == 8)
     write_codes(values, count, range, 254, 255, payload.codes<std::uint8_t>(at), 1);
@@ -148,19 +95,20 @@ void add_values(nlohmann::json& block, Payload& payload, const double* values, s
   block["values"] = {{"at", at}, {"bits", bits}, {"low", range.low}, {"high", range.high}};
 }
 
-// The particles of a family that are sent, and values of theirs.
+// Particles that are coded at a time: 16 kB of doubles stay in the nearest cache.
+constexpr std::size_t coded_at_a_time = 2048;
+
+// The particles of a family that are sent.
 class Selection {
  public:
   // The same ones in every frame as long as their identifiers stay.
   Selection(const ParticleSnapshot& family, std::size_t most, FrameScratch& scratch)
-      : size_(std::min(family.size, most)), selected_(scratch.selected), values_(scratch.values) {
+      : size_(std::min(family.size, most)), selected_(scratch.selected) {
     selected_.clear();
     if (family.size <= most) return;
     all_ = false;
     selected_.reserve(most);
-    const std::int64_t* id = nullptr;
-    for (const ParticleField& field : family.fields)
-      if (field.name == "id" && !field.i64.empty()) id = field.i64[0];
+    const std::int64_t* const id = identifiers(family);
     if (id == nullptr) {
       const double stride = static_cast<double>(family.size) / static_cast<double>(most);
       for (std::size_t k = 0; k < most; ++k)
@@ -178,30 +126,27 @@ class Selection {
   }
   std::size_t size() const { return size_; }
 
-  // One component; the pointer holds until the next call.
+  // One component from `first` to `last`, where they are or in the buffer.
   template <class T>
-  const double* values(const T* source) {
+  const double* read(const T* source, std::size_t first, std::size_t last, double* buffer) const {
     if constexpr (std::is_same_v<T, double>)
-      if (all_) return source;
-    values_.resize(size_);
-    for (std::size_t k = 0; k < size_; ++k) values_[k] = static_cast<double>(source[place(k)]);
-    return values_.data();
+      if (all_) return source + first;
+    for (std::size_t k = first; k < last; ++k) buffer[k - first] = static_cast<double>(source[place(k)]);
+    return buffer;
   }
-  // The size of a vector.
+  // One component or the size of a vector.
   template <class T>
-  const double* sizes(const std::vector<const T*>& components) {
-    values_.assign(size_, 0.0);
+  const double* read(const std::vector<const T*>& components, int component, std::size_t first, std::size_t last,
+                     double* buffer) const {
+    if (component >= 0) return read(components[static_cast<std::size_t>(component)], first, last, buffer);
+    std::fill_n(buffer, last - first, 0.0);
     for (const T* one : components)
-      for (std::size_t k = 0; k < size_; ++k) {
+      for (std::size_t k = first; k < last; ++k) {
         const auto value = static_cast<double>(one[place(k)]);
-        values_[k] += value * value;
+        buffer[k - first] += value * value;
       }
-    for (double& value : values_) value = std::sqrt(value);
-    return values_.data();
-  }
-  template <class T>
-  const double* values(const std::vector<const T*>& components, int component) {
-    return component < 0 ? sizes(components) : values(components[static_cast<std::size_t>(component)]);
+    for (std::size_t k = 0; k < last - first; ++k) buffer[k] = std::sqrt(buffer[k]);
+    return buffer;
   }
 
  private:
@@ -209,34 +154,68 @@ class Selection {
   std::size_t size_;
   bool all_ = true;
   std::vector<std::uint32_t>& selected_;
-  std::vector<double>& values_;
 };
 
-void add_positions(nlohmann::json& block, Payload& payload, const ParticleSnapshot& family, Selection& selected) {
-  const std::size_t dimensions = family.position.size();
-  const std::size_t at = payload.add(selected.size() * dimensions * 2);
-  for (std::size_t axis = 0; axis < dimensions; ++axis) {
-    const double* const place = selected.values(family.position[axis]);
-    const CodeRange box = range_of(place, selected.size());
-    // A step that leaves a particle at no finite place is refused, so that nothing stands for one.
-    write_codes(place, selected.size(), box, 65535, 0, payload.codes<std::uint16_t>(at) + axis, dimensions);
-    block["lower"].push_back(box.low);
-    block["upper"].push_back(box.high);
-  }
-  block["positions"] = {{"at", at}};
-}
+// Numbers of every particle that become codes: places, a value, a size, a phase.
+class CodeColumns {
+ public:
+  CodeColumns(const Selection& selected, Payload& payload) : selected_(selected), payload_(payload) {}
 
-void add_sizes(nlohmann::json& block, Payload& payload, const ParticleSnapshot& family, Selection& selected) {
-  for (const ParticleField& field : family.fields) {
-    if ((field.name != "radius" && field.name != "diameter") || field.f64.size() != 1) continue;
-    const double* const values = selected.values(field.f64[0]);
-    const CodeRange sizes{0, std::max(0.0, range_of(values, selected.size()).high)};
-    const std::size_t at = payload.add(selected.size() * 2);
-    write_codes(values, selected.size(), sizes, 65534, 65535, payload.codes<std::uint16_t>(at), 1);
-    block["sizes"] = {{"at", at}, {"largest", (field.name == "radius" ? 2 : 1) * sizes.high}};
-    return;
+  // `bits` 8 or 16; codes from 0 to `top` stand for the range, `odd` for what is not finite.
+  void add(const ParticleField& field, int component, std::size_t at, std::size_t offset, std::size_t stride, int bits,
+           int top, int odd) {
+    columns_.push_back({&field, component, at, offset, stride, bits, top, odd, {}, {}});
   }
-}
+  // The range that the codes of a column will span, before they are written.
+  CodeRange& range(std::size_t column) { return columns_[column].range; }
+  std::size_t size() const { return columns_.size(); }
+
+  // Both go through the particles once, by blocks that all threads of the run share.
+  void measure() {
+    const std::size_t blocks = block_count(selected_.size(), coded_at_a_time);
+    for (Column& column : columns_) column.ranges.assign(blocks, {});
+    parallel_blocks(selected_.size(), coded_at_a_time, [&](std::size_t block, std::size_t first, std::size_t last) {
+      double buffer[coded_at_a_time];
+      for (Column& column : columns_) column.ranges[block] = range_of(read(column, first, last, buffer), last - first);
+    });
+    for (Column& column : columns_) {
+      for (const CodeRange& range : column.ranges) column.range.join(range);
+      column.range = column.range.known();
+    }
+  }
+  void write() {
+    parallel_blocks(selected_.size(), coded_at_a_time, [&](std::size_t, std::size_t first, std::size_t last) {
+      double buffer[coded_at_a_time];
+      for (const Column& column : columns_) {
+        const std::size_t place = first * column.stride + column.offset;
+        const double* const values = read(column, first, last, buffer);
+        if (column.bits == 8)
+          write_codes(values, last - first, column.range, column.top, column.odd,
+                      payload_.codes<std::uint8_t>(column.at) + place, column.stride);
+        else
+          write_codes(values, last - first, column.range, column.top, column.odd,
+                      payload_.codes<std::uint16_t>(column.at) + place, column.stride);
+      }
+    });
+  }
+
+ private:
+  struct Column {
+    const ParticleField* field;
+    int component;
+    std::size_t at, offset, stride;
+    int bits, top, odd;
+    CodeRange range;
+    std::vector<CodeRange> ranges;
+  };
+  const double* read(const Column& column, std::size_t first, std::size_t last, double* buffer) const {
+    return column.field->f64.empty() ? selected_.read(column.field->i64, column.component, first, last, buffer)
+                                     : selected_.read(column.field->f64, column.component, first, last, buffer);
+  }
+  const Selection& selected_;
+  Payload& payload_;
+  std::vector<Column> columns_;
+};
 
 template <class Family>
 nlohmann::json new_block(const char* kind, const Family& family, const std::vector<Colouring>& list,
@@ -250,24 +229,92 @@ nlohmann::json new_block(const char* kind, const Family& family, const std::vect
   return block;
 }
 
+const ParticleField& filled(const ParticleField& field) {
+  if (field.compute) field.compute();
+  return field;
+}
+
+// Diameters of the particles, where the family has them; or their radii.
+const ParticleField* size_field(const ParticleSnapshot& family) {
+  for (const ParticleField& field : family.fields)
+    if ((field.name == "radius" || field.name == "diameter") && field.f64.size() == 1) return &field;
+  return nullptr;
+}
+
+const ParticleField* phase_field(const ParticleSnapshot& family) {
+  for (const ParticleField& field : family.fields)
+    if (field.name == "phase" && field.i64.size() == 1) return &field;
+  return nullptr;
+}
+
 nlohmann::json particle_block(const ParticleSnapshot& family, std::size_t most, const FrameWish& wish, Payload& payload,
                               FrameScratch& scratch) {
   const std::vector<Colouring> list = all_colourings(family);
   const Colouring* const colour = chosen(list, family.name, wish);
   nlohmann::json block = new_block("particles", family, list, colour);
-  Selection selected(family, most, scratch);
-  block["dimensions"] = family.position.size();
+  const Selection selected(family, most, scratch);
+  const std::size_t count = selected.size(), dimensions = family.position.size();
+  block["dimensions"] = dimensions;
   block["total"] = family.size;
-  block["count"] = selected.size();
-  add_positions(block, payload, family, selected);
+  block["count"] = count;
+  CodeColumns columns(selected, payload);
+
+  // A step that leaves a particle at no finite place is refused, so that nothing stands for one.
+  const ParticleField position{"position", family.position, {}};
+  const std::size_t places = payload.add(count * dimensions * 2);
+  for (std::size_t axis = 0; axis < dimensions; ++axis)
+    columns.add(position, static_cast<int>(axis), places, axis, dimensions, 16, 65535, 0);
+  block["positions"] = {{"at", places}};
+  const std::size_t coloured = columns.size();
   if (colour != nullptr) {
-    const ParticleField& field = family.fields[colour->field];
-    const double* const values = field.f64.empty() ? selected.values(field.i64, colour->component)
-                                                   : selected.values(field.f64, colour->component);
-    add_values(block, payload, values, selected.size(), wish.bits);
+    const std::size_t at = payload.add(count * static_cast<std::size_t>(wish.bits / 8));
+    const int top = wish.bits == 8 ? 254 : 65534;
+    columns.add(filled(family.fields[colour->field]), colour->component, at, 0, 1, wish.bits, top, top + 1);
+    block["values"] = {{"at", at}, {"bits", wish.bits}};
   }
-  add_sizes(block, payload, family, selected);
+  const std::size_t sized = columns.size();
+  const ParticleField* const size = size_field(family);
+  if (size != nullptr) {
+    const std::size_t at = payload.add(count * 2);
+    columns.add(filled(*size), 0, at, 0, 1, 16, 65534, 65535);
+    block["sizes"] = {{"at", at}};
+  }
+  const std::size_t phased = columns.size();
+  const ParticleField* const phase = wish.phases ? phase_field(family) : nullptr;
+  if (phase != nullptr) {
+    const std::size_t at = payload.add(count);
+    columns.add(*phase, 0, at, 0, 1, 8, 255, 255);
+    block["phases"] = {{"at", at}};
+  }
+
+  columns.measure();
+  for (std::size_t axis = 0; axis < dimensions; ++axis) {
+    block["lower"].push_back(columns.range(axis).low);
+    block["upper"].push_back(columns.range(axis).high);
+  }
+  if (colour != nullptr) {
+    block["values"]["low"] = columns.range(coloured).low;
+    block["values"]["high"] = columns.range(coloured).high;
+  }
+  if (size != nullptr) {
+    CodeRange& sizes = columns.range(sized);
+    sizes = {0, std::max(0.0, sizes.high)};
+    block["sizes"]["largest"] = (size->name == "radius" ? 2 : 1) * sizes.high;
+  }
+  if (phase != nullptr) columns.range(phased) = {0, 255};  // the codes are the numbers
+  columns.write();
   return block;
+}
+
+std::size_t number_of(const GridSnapshot& grid, const std::array<std::size_t, 3>& point) {
+  return (point[0] * grid.points[1] + point[1]) * grid.points[2] + point[2];
+}
+
+double value_at(const std::vector<const float*>& components, int component, std::size_t i) {
+  if (component >= 0) return static_cast<double>(components[static_cast<std::size_t>(component)][i]);
+  double squares = 0;
+  for (const float* one : components) squares += static_cast<double>(one[i]) * static_cast<double>(one[i]);
+  return std::sqrt(squares);
 }
 
 nlohmann::json plane_block(const GridSnapshot& grid, const FrameWish& wish, Payload& payload, FrameScratch& scratch) {
@@ -295,28 +342,47 @@ nlohmann::json plane_block(const GridSnapshot& grid, const FrameWish& wish, Payl
   const auto& components = grid.fields[colour->field].components;
   std::vector<double>& values = scratch.values;
   values.resize(columns * rows);
-  for (std::size_t k = 0; k < values.size(); ++k) {
+  parallel_for(values.size(), [&](std::size_t k) {
     std::array<std::size_t, 3> point{};
     point[across] = k % columns * skip_across;
     point[along] = k / columns * skip_along;
     point[normal] = layer;
-    const std::size_t i = (point[0] * grid.points[1] + point[1]) * grid.points[2] + point[2];
-    double squares = 0;
-    for (const float* one : components) squares += static_cast<double>(one[i]) * static_cast<double>(one[i]);
-    values[k] = colour->component < 0 ? std::sqrt(squares)
-                                      : static_cast<double>(components[static_cast<std::size_t>(colour->component)][i]);
+    values[k] = value_at(components, colour->component, number_of(grid, point));
+  });
+  add_values(block, payload, values.data(), values.size(), wish.bits);
+  return block;
+}
+
+// The field as a whole, thinned alike along all axes: the page finds surfaces of equal value in it.
+nlohmann::json volume_block(const GridSnapshot& grid, const FrameWish& wish, Payload& payload, FrameScratch& scratch) {
+  const std::vector<Colouring> list = all_colourings(grid);
+  const Colouring* const colour = chosen(list, grid.name, wish);
+  nlohmann::json block = new_block("volume", grid, list, colour);
+  const std::size_t longest = *std::max_element(grid.points.begin(), grid.points.end());
+  const std::size_t skip = (longest + wish.volume - 1) / wish.volume;
+  std::array<std::size_t, 3> points{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    points[axis] = (grid.points[axis] + skip - 1) / skip;
+    block["spacing"].push_back(grid.spacing[axis] * static_cast<double>(skip));
+    // The last of every so many points is followed by the first one at the same distance, or by nothing.
+    block["wraps"].push_back(grid.periodic && grid.points[axis] % skip == 0);
   }
+  block["lower"] = grid.origin;
+  block["points"] = points;
+  if (colour == nullptr) return block;
+  const auto& components = grid.fields[colour->field].components;
+  std::vector<double>& values = scratch.values;
+  values.resize(points[0] * points[1] * points[2]);
+  parallel_for(values.size(), [&](std::size_t k) {
+    const std::array<std::size_t, 3> point{k / points[2] / points[1] * skip, k / points[2] % points[1] * skip,
+                                           k % points[2] * skip};
+    values[k] = value_at(components, colour->component, number_of(grid, point));
+  });
   add_values(block, payload, values.data(), values.size(), wish.bits);
   return block;
 }
 
 }  // namespace
-
-std::vector<std::string> colourings(const ParticleSnapshot& family) {
-  std::vector<std::string> names;
-  for (const Colouring& one : all_colourings(family)) names.push_back(one.name);
-  return names;
-}
 
 // At most this many frames are on their way: one a viewer, and one that is made.
 std::shared_ptr<std::string> FrameMaker::free_buffer() {
@@ -330,25 +396,47 @@ std::shared_ptr<std::string> FrameMaker::free_buffer() {
 
 std::shared_ptr<const std::string> FrameMaker::make(std::int64_t step, double time,
                                                     const std::vector<ParticleSnapshot>& families,
-                                                    const std::vector<GridSnapshot>& grids, const FrameWish& wish) {
+                                                    const std::vector<GridSnapshot>& grids, const FrameWish& wish,
+                                                    double spacing) {
+  return make(step, {{time, families, grids, spacing}}, wish);
+}
+
+std::shared_ptr<const std::string> FrameMaker::make(std::int64_t step, const std::vector<FrameSide>& sides,
+                                                    const FrameWish& wish) {
   const std::shared_ptr<std::string> frame = free_buffer();
   Payload payload(*frame);
-  nlohmann::json blocks = nlohmann::json::array();
-  for (const GridSnapshot& grid : grids) blocks.push_back(plane_block(grid, wish, payload, scratch_));
-  // A family with less than its share leaves the rest to those that come after it in size.
-  std::vector<const ParticleSnapshot*> by_size;
-  by_size.reserve(families.size());
-  for (const ParticleSnapshot& family : families) by_size.push_back(&family);
-  std::sort(by_size.begin(), by_size.end(), [](const auto* a, const auto* b) { return a->size < b->size; });
-  std::size_t left = std::min(wish.points, most_frame_points);
-  std::map<const ParticleSnapshot*, std::size_t> shares;
-  for (std::size_t k = 0; k < by_size.size(); ++k) {
-    shares[by_size[k]] = std::min(by_size[k]->size, left / (by_size.size() - k));
-    left -= shares[by_size[k]];
+  nlohmann::json header{{"step", step}, {"time", sides.front().time}, {"blocks", nlohmann::json::array()}};
+  for (std::size_t side = 0; side < sides.size(); ++side) {
+    const FrameSide& shown = sides[side];
+    const auto add = [&](nlohmann::json block) {
+      if (sides.size() > 1) block["side"] = side;
+      header["blocks"].push_back(std::move(block));
+    };
+    for (const GridSnapshot& grid : shown.grids) {
+      add(plane_block(grid, wish, payload, scratch_));
+      if (wish.volume > 0) add(volume_block(grid, wish, payload, scratch_));
+    }
+    // A family with less than its share leaves the rest to those that come after it in size.
+    std::vector<const ParticleSnapshot*> by_size;
+    by_size.reserve(shown.families.size());
+    for (const ParticleSnapshot& family : shown.families) by_size.push_back(&family);
+    std::sort(by_size.begin(), by_size.end(), [](const auto* a, const auto* b) { return a->size < b->size; });
+    std::size_t left = std::min(wish.points, most_frame_points) / sides.size();
+    std::map<const ParticleSnapshot*, std::size_t> shares;
+    for (std::size_t k = 0; k < by_size.size(); ++k) {
+      shares[by_size[k]] = std::min(by_size[k]->size, left / (by_size.size() - k));
+      left -= shares[by_size[k]];
+    }
+    for (const ParticleSnapshot& family : shown.families)
+      add(particle_block(family, shares[&family], wish, payload, scratch_));
+    if (side > 0) {
+      header["beside"] = {{"time", shown.time}};
+      continue;
+    }
+    if (wish.picked) header["picked"] = picked_particle(shown.families, *wish.picked);
+    if (wish.point) header["point"] = values_at(shown, *wish.point);
   }
-  for (const ParticleSnapshot& family : families)
-    blocks.push_back(particle_block(family, shares[&family], wish, payload, scratch_));
-  payload.finish({{"step", step}, {"time", time}, {"blocks", std::move(blocks)}});
+  payload.finish(header);
   return frame;
 }
 

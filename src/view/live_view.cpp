@@ -8,30 +8,26 @@
 #include "spume/core/error.hpp"
 #include "spume/run/version.hpp"
 #include "spume/scene/resolved_case.hpp"
+#include "texts.hpp"
 
 namespace spume {
 namespace {
 
 using namespace std::chrono_literals;
 using Json = nlohmann::json;
+using view::dumped;
+using view::most_lines;
+using view::shared;
+using view::words_of_fields;
 
 constexpr auto shortest_interval = 100ms;  // between two frames
-// Where making a frame takes long, as transforms of a large grid do, frames take a twentieth of the run at most.
-constexpr int run_over_frames = 20;
-constexpr auto longest_interval = 5s;
+// Frames take a hundredth of the run at most. Where one a second would be more, as with transforms of a large grid,
+// they take up to a twentieth.
+constexpr int run_over_frames = 100, run_over_slow_frames = 20;
+constexpr auto slow_interval = 1s, longest_interval = 5s;
 constexpr auto ledger_interval = 1s;
 constexpr auto pause_poll = 50ms;  // after which a paused run looks for SIGINT
-constexpr std::size_t most_lines = 200;
 constexpr std::size_t longest_line = 2000;
-
-std::shared_ptr<const std::string> shared(std::string text) {
-  return std::make_shared<const std::string>(std::move(text));
-}
-
-// Texts of the case may hold any bytes.
-std::string dumped(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 Json steerable_options(const std::vector<OptionInfo>& options, const std::string& resolved) {
   const std::vector<ChangedValue> values = changed_values("", resolved);
@@ -195,7 +191,8 @@ void LiveView::serve(Simulation& simulation) {
   server_.rest();
   if (!any) return;
   const auto cost = Clock::now() - now;
-  next_frame_ = now + std::clamp<Clock::duration>(cost * run_over_frames, shortest_interval, longest_interval);
+  const auto within = std::clamp<Clock::duration>(cost * run_over_frames, shortest_interval, slow_interval);
+  next_frame_ = now + std::clamp<Clock::duration>(cost * run_over_slow_frames, within, longest_interval);
 }
 
 // A paused run has nothing new.
@@ -210,7 +207,7 @@ std::vector<Packet> LiveView::packets_for(Viewer& viewer, const FrameWish& wish,
   const auto add = [&](std::string text) { packets.push_back({false, shared(std::move(text))}); };
   if (viewer.told.hello != hello_edition_) {
     viewer.told.hello = hello_edition_;
-    add(hello(simulation));
+    add(hello(simulation, viewer.may_steer()));
   }
   add(state());
   if (viewer.told.edition != history_.edition() || viewer.told.rows < history_.rows()) {
@@ -229,12 +226,13 @@ std::vector<Packet> LiveView::packets_for(Viewer& viewer, const FrameWish& wish,
   viewer.told.step = simulation.method().step_count();
   viewer.told.wish = wish;
   viewer.told.words = words_;
-  packets.push_back({true, frames_.make(simulation.method().step_count(), simulation.method().time(),
-                                        simulation.particles(), simulation.grids(), wish)});
+  packets.push_back(
+      {true, frames_.make(simulation.method().step_count(), simulation.method().time(), simulation.particles(),
+                          simulation.grids(), wish, simulation.loaded().options.spacing)});
   return packets;
 }
 
-std::string LiveView::hello(const Simulation& simulation) const {
+std::string LiveView::hello(const Simulation& simulation, bool may_steer) const {
   const Case& options = simulation.loaded().options;
   const Domain& domain = simulation.loaded().scene.domain;
   Json lower = Json::array(), upper = Json::array(), columns = Json::array();
@@ -255,6 +253,8 @@ std::string LiveView::hello(const Simulation& simulation) const {
                  {"spacing", options.spacing},
                  {"particles", simulation.method().particle_count()},
                  {"columns", std::move(columns)},
+                 {"may_steer", may_steer},
+                 {"fields", words_of_fields()},
                  {"options", steerable_options(options_, options.resolved)},
                  {"plan", plan_list(simulation.method().plan())}});
 }
@@ -274,12 +274,7 @@ std::string LiveView::state() const {
 
 std::string LiveView::series_for(Viewer& viewer) const {
   const bool anew = viewer.told.edition != history_.edition();
-  Json rows = Json::array();
-  for (std::size_t k = anew ? 0 : viewer.told.rows; k < history_.rows(); ++k) {
-    const std::span<const double> row = history_.row(k);
-    rows.push_back(std::vector<double>(row.begin(), row.end()));
-  }
-  return dumped({{"type", "series"}, {"anew", anew}, {"rows", std::move(rows)}});
+  return dumped(view::series_message(history_, anew, anew ? 0 : viewer.told.rows));
 }
 
 std::string LiveView::lines_for(Viewer& viewer) const {

@@ -17,6 +17,7 @@ namespace {
 using Json = nlohmann::json;
 constexpr std::size_t most_families = 32;
 constexpr int deepest_json = 4;
+constexpr double most_snapshots = 1e9;  // that a number in a message may mean
 
 const std::map<std::string, ViewMessage::Action>& actions() {
   using A = ViewMessage::Action;
@@ -33,6 +34,32 @@ std::optional<double> number_of(const Json& object, const char* name, double low
   const double value = found->get<double>();
   if (!(value >= low && value <= high)) return {};
   return value;
+}
+
+// A place: up to three finite numbers, a missing one is 0.
+std::optional<std::array<double, 3>> place_of(const Json& object, const char* name) {
+  const auto found = object.find(name);
+  if (found == object.end() || !found->is_array() || found->size() > 3) return {};
+  std::array<double, 3> place{};
+  for (std::size_t axis = 0; axis < found->size(); ++axis) {
+    const Json& number = (*found)[axis];
+    if (!number.is_number() || !std::isfinite(number.get<double>())) return {};
+    place[axis] = number.get<double>();
+  }
+  return place;
+}
+
+bool read_pick(const Json& object, FrameWish& wish) {
+  if (!object.is_object()) return false;
+  const auto family = object.find("family");
+  const auto place = place_of(object, "at");
+  if (family == object.end() || !family->is_string() || !place) return false;
+  wish.picked = PickWish{family->get<std::string>(), *place, {}};
+  if (const auto id = object.find("id"); id != object.end()) {
+    if (!id->is_number_integer()) return false;
+    wish.picked->id = id->get<std::int64_t>();
+  }
+  return true;
 }
 
 bool read_wish(const Json& object, FrameWish& wish) {
@@ -54,6 +81,25 @@ bool read_wish(const Json& object, FrameWish& wish) {
     if (!axis || !at || *axis != std::floor(*axis)) return false;
     wish.plane_axis = static_cast<int>(*axis);
     wish.plane_at = *at;
+  }
+  if (object.contains("volume")) {
+    const auto points = number_of(object, "volume", 0, static_cast<double>(most_volume_points));
+    if (!points) return false;
+    wish.volume = static_cast<std::size_t>(*points);
+  }
+  if (const auto phases = object.find("phases"); phases != object.end()) {
+    if (!phases->is_boolean()) return false;
+    wish.phases = phases->get<bool>();
+  }
+  if (const auto pick = object.find("pick"); pick != object.end() && !read_pick(*pick, wish)) return false;
+  if (object.contains("point")) {
+    wish.point = place_of(object, "point");
+    if (!wish.point) return false;
+  }
+  if (object.contains("snapshot")) {
+    const auto snapshot = number_of(object, "snapshot", 0, most_snapshots);
+    if (!snapshot) return false;
+    wish.snapshot = static_cast<std::size_t>(*snapshot);
   }
   return true;
 }

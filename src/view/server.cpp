@@ -35,7 +35,8 @@ std::string_view text_or_empty(const char* text) {
 
 class Socket final : public Viewer {
  public:
-  Socket(mg_connection* connection) : connection_(connection), sender_([this] { empty_mailbox(); }) {}  // NOLINT
+  Socket(mg_connection* connection, bool may_steer)
+      : connection_(connection), may_steer_(may_steer), sender_([this] { empty_mailbox(); }) {}
   Socket(const Socket&) = delete;
   Socket& operator=(const Socket&) = delete;
   ~Socket() override { close(); }
@@ -58,6 +59,8 @@ class Socket final : public Viewer {
     }
     changed_.notify_one();
   }
+
+  bool may_steer() const override { return may_steer_; }
 
   void set_wish(FrameWish wish) {
     const std::lock_guard lock(mutex_);
@@ -105,6 +108,7 @@ class Socket final : public Viewer {
   }
 
   mg_connection* connection_;
+  bool may_steer_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Packet> packets_;
@@ -119,7 +123,7 @@ class Socket final : public Viewer {
 struct Server::Inside {
   mg_context* context = nullptr;
   int port = 0;
-  std::string token = random_token();
+  std::string token = random_token(), looking_token = random_token();
   mutable std::mutex mutex;
   std::condition_variable news;
   std::list<std::shared_ptr<Socket>> sockets;
@@ -127,7 +131,10 @@ struct Server::Inside {
   std::atomic<bool> attention = false;
 
   void call_attention() {
-    attention = true;
+    {
+      const std::lock_guard lock(mutex);  // who waits sees it now or is told below
+      attention = true;
+    }
     news.notify_all();
   }
 
@@ -141,10 +148,12 @@ struct Server::Inside {
     }
   }
 
-  bool admitted(const mg_connection* connection) const {
-    const mg_request_info* const request = mg_get_request_info(connection);
-    return is_own_host(text_or_empty(mg_get_header(connection, "Host")), port) &&
-           same_token(query_value(text_or_empty(request->query_string), "token"), token);
+  enum class Right { none, look, steer };
+  Right right_of(const mg_connection* connection) const {
+    if (!is_own_host(text_or_empty(mg_get_header(connection, "Host")), port)) return Right::none;
+    const std::string given = query_value(text_or_empty(mg_get_request_info(connection)->query_string), "token");
+    if (same_token(given, token)) return Right::steer;
+    return same_token(given, looking_token) ? Right::look : Right::none;
   }
 
   static void answer(mg_connection* connection, const char* status, std::string_view type, std::string_view body,
@@ -160,7 +169,8 @@ struct Server::Inside {
 
   int serve(mg_connection* connection) const {
     const mg_request_info* const request = mg_get_request_info(connection);
-    if (!admitted(connection)) {
+    const Right right = right_of(connection);
+    if (right == Right::none) {
       answer(connection, "403 Forbidden", "text/plain; charset=utf-8",
              "The address needs the token that the program printed.\n");
       return 403;
@@ -177,11 +187,11 @@ struct Server::Inside {
         answer(connection, "200 OK", file.type, file.contents);
         return 200;
       }
-      // The page asks for its parts with the token.
+      // The page asks for its parts with the token that it was asked for with.
       std::string text(file.contents);
       const std::string_view place = "@TOKEN@";
       for (std::size_t at = text.find(place); at != std::string::npos; at = text.find(place, at))
-        text.replace(at, place.size(), token);
+        text.replace(at, place.size(), right == Right::steer ? token : looking_token);
       answer(connection, "200 OK", "text/html; charset=utf-8", text, policy());
       return 200;
     }
@@ -199,13 +209,14 @@ struct Server::Inside {
 
   // A non-zero result refuses the connection.
   int connect(const mg_connection* connection) const {
-    if (!admitted(connection) || !is_own_origin(text_or_empty(mg_get_header(connection, "Origin")), port)) return 1;
+    if (right_of(connection) == Right::none) return 1;
+    if (!is_own_origin(text_or_empty(mg_get_header(connection, "Origin")), port)) return 1;
     const std::lock_guard lock(mutex);
     return sockets.size() >= most_viewers ? 1 : 0;
   }
 
   void open(mg_connection* connection) {
-    auto socket = std::make_shared<Socket>(connection);
+    auto socket = std::make_shared<Socket>(connection, right_of(connection) == Right::steer);
     const std::lock_guard lock(mutex);
     mg_set_user_connection_data(connection, socket.get());
     sockets.push_back(std::move(socket));
@@ -223,6 +234,8 @@ struct Server::Inside {
     if (!message) return 0;
     if (message->action == ViewMessage::Action::ready) {
       socket->set_wish(std::move(message->wish));
+    } else if (!socket->may_steer()) {
+      return 0;
     } else {
       const std::lock_guard lock(mutex);
       if (messages.size() >= most_commands) return 0;
@@ -320,8 +333,16 @@ const std::string& Server::token() const {
   return inside_->token;
 }
 
+const std::string& Server::looking_token() const {
+  return inside_->looking_token;
+}
+
 std::string Server::address() const {
   return "http://127.0.0.1:" + std::to_string(port()) + "/?token=" + token();
+}
+
+std::string Server::looking_address() const {
+  return "http://127.0.0.1:" + std::to_string(port()) + "/?token=" + looking_token();
 }
 
 bool Server::attention() const {
@@ -341,6 +362,15 @@ std::vector<ViewMessage> Server::take_messages() {
 void Server::wait(std::chrono::milliseconds longest) {
   std::unique_lock lock(inside_->mutex);
   inside_->news.wait_for(lock, longest, [this] { return !inside_->messages.empty(); });
+}
+
+bool Server::take_attention() {
+  return inside_->attention.exchange(false);
+}
+
+void Server::wait_for_attention(std::chrono::milliseconds longest) {
+  std::unique_lock lock(inside_->mutex);
+  inside_->news.wait_for(lock, longest, [this] { return inside_->attention.load(); });
 }
 
 void Server::rest() {

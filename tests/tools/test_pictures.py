@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Fields in planes, the rendered liquid, and the options of `spume plot`."""
 import json
+import shutil
 import subprocess
 import unittest
 from pathlib import Path
@@ -188,9 +189,12 @@ class Options(Scratch):
                          [f"plots/beside_second/{name}.png" for name in ("series", "speed", "pressure")])
 
     def test_an_animation_has_a_frame_per_snapshot(self):
-        file, = self.pictures(self.run_folder(), "--animate")
+        file, *films = self.pictures(self.run_folder(), "--animate")
         with Image.open(file) as image:
             self.assertEqual((file.name, image.n_frames), ("speed.gif", 3))
+        self.assertEqual([film.name for film in films], ["speed.mp4"] if shutil.which("ffmpeg") else [])
+        for film in films:  # the box that every MP4 begins with
+            self.assertEqual(film.read_bytes()[4:8], b"ftyp")
 
     def test_bad_options_are_said(self):
         folder = self.run_folder()

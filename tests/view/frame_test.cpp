@@ -252,6 +252,131 @@ TEST(Frame, MemoryIsUsedAgainOnceAFrameIsSent) {
   EXPECT_EQ(third->size(), second->size());
 }
 
+TEST(Frame, AFieldIsComputedOnlyForWhoLooksAtIt) {
+  const Cloud cloud(10);
+  std::vector<double> late(10, 0.0);
+  int computed = 0;
+  ParticleSnapshot family = cloud.snapshot();
+  family.fields.push_back({"dissipation", {late.data()}, {}, [&] {
+                             ++computed;
+                             std::fill(late.begin(), late.end(), 7.0);
+                           }});
+  make_frame(0, 0, {family}, {}, {});
+  EXPECT_EQ(computed, 0);
+  const Decoded frame = decoded(make_frame(0, 0, {family}, {}, {.fields = {{"fluid", "dissipation"}}}));
+  EXPECT_EQ(computed, 1);
+  EXPECT_EQ(frame.values(0, 10)[3], 7.0);
+}
+
+TEST(Frame, PhasesComeWhereTheyAreAskedFor) {
+  const Cloud cloud(300);
+  std::vector<std::int64_t> phase(300);
+  for (std::size_t i = 0; i < 300; ++i) phase[i] = static_cast<std::int64_t>(i % 3);
+  ParticleSnapshot family = cloud.snapshot();
+  family.fields.push_back({"phase", {}, {phase.data()}});
+  EXPECT_FALSE(decoded(make_frame(0, 0, {family}, {}, {})).header["blocks"][0].contains("phases"));
+  const Decoded frame = decoded(make_frame(0, 0, {family}, {}, {.phases = true}));
+  const std::vector<std::uint8_t> codes = frame.codes<std::uint8_t>(frame.header["blocks"][0]["phases"]["at"], 300);
+  for (std::size_t i = 0; i < 300; ++i) EXPECT_EQ(codes[i], phase[i]);
+}
+
+TEST(Frame, AGridIsSentAsAWholeWhereItIsAskedFor) {
+  std::vector<float> field(8 * 5 * 4);
+  for (std::size_t k = 0; k < field.size(); ++k) field[k] = static_cast<float>(k);
+  const GridSnapshot grid{"fluid", {8, 5, 4}, {1, 0, 0}, {0.25, 0.5, 1}, {{"pressure", {field.data()}}}};
+  EXPECT_EQ(decoded(make_frame(0, 0, {}, {grid}, {})).header["blocks"].size(), 1U);
+  const Decoded frame = decoded(make_frame(0, 0, {}, {grid}, {.volume = 4}));  // every second point of the longest side
+  const nlohmann::json& block = frame.header["blocks"][1];
+  EXPECT_EQ(block["kind"], "volume");
+  EXPECT_THAT(block["points"], ElementsAre(4, 3, 2));
+  EXPECT_THAT(block["spacing"], ElementsAre(0.5, 1.0, 2.0));
+  EXPECT_THAT(block["wraps"], ElementsAre(true, false, true));  // of five points every second is no period
+  const std::vector<double> values = frame.values(1, 24);
+  for (std::size_t x = 0; x < 4; ++x)
+    for (std::size_t y = 0; y < 3; ++y)
+      for (std::size_t z = 0; z < 2; ++z)
+        EXPECT_NEAR(values[(x * 3 + y) * 2 + z], field[(2 * x * 5 + 2 * y) * 4 + 2 * z], 0.01);
+}
+
+TEST(Frame, APickedParticleIsTheNearestAndThenFollowed) {
+  Cloud cloud(500);
+  FrameWish wish;
+  wish.picked = PickWish{"fluid", {cloud.position[0][77] + 1e-9, cloud.position[1][77], cloud.position[2][77]}, {}};
+  const nlohmann::json first = decoded(make_frame(0, 0, {cloud.snapshot()}, {}, wish)).header["picked"];
+  EXPECT_EQ(first["index"], 77);
+  EXPECT_EQ(first["id"], 500 - 77);
+  EXPECT_EQ(first["values"][0]["name"], "pressure");
+  EXPECT_EQ(first["values"][0]["values"][0], cloud.pressure[77]);
+  EXPECT_EQ(first["values"][1]["values"][2], cloud.velocity[2][77]);
+  wish.picked->id = 500 - 77;
+  std::swap(cloud.id[77], cloud.id[3]);  // sorted elsewhere
+  EXPECT_EQ(decoded(make_frame(0, 0, {cloud.snapshot()}, {}, wish)).header["picked"]["index"], 3);
+  wish.picked->id = 1234;
+  EXPECT_TRUE(decoded(make_frame(0, 0, {cloud.snapshot()}, {}, wish)).header["picked"].is_null());
+  wish.picked->family = "none";
+  EXPECT_TRUE(decoded(make_frame(0, 0, {cloud.snapshot()}, {}, wish)).header["picked"].is_null());
+}
+
+double value_of(const nlohmann::json& point, const std::string& name) {
+  for (const nlohmann::json& one : point["values"])
+    if (one["name"] == name) return one["value"].is_null() ? std::nan("") : one["value"].get<double>();
+  ADD_FAILURE() << name;
+  return 0;
+}
+
+// A mean with symmetric weights gives a linear field exactly where the particles lie symmetrically about the place.
+TEST(Frame, ThePointOfALatticeHasTheValueOfALinearField) {
+  std::vector<double> x, y, pressure;
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j) {
+      x.push_back(0.1 * i), y.push_back(0.1 * j);
+      pressure.push_back(3 * x.back() - 2 * y.back());
+    }
+  const ParticleSnapshot family{"fluid", x.size(), {x.data(), y.data()}, {{"pressure", {pressure.data()}, {}}}};
+  FrameWish wish;
+  wish.point = {0.75, 0.5, 0};
+  const auto point = [&](double spacing) {
+    return decoded(*FrameMaker().make(0, 0, {family}, {}, wish, spacing)).header["point"];
+  };
+  EXPECT_NEAR(value_of(point(0.1), "pressure"), 3 * 0.75 - 2 * 0.5, 1e-12);
+  wish.point = {5, 5, 0};
+  EXPECT_TRUE(std::isnan(value_of(point(0.1), "pressure")));
+  wish.point = {0.31, 0.69, 0};
+  EXPECT_NEAR(value_of(point(0), "pressure"), 3 * 0.3 - 2 * 0.7, 1e-12);  // the nearest
+}
+
+TEST(Frame, ThePointOfAGridIsInterpolatedAcrossItsPeriod) {
+  std::vector<float> field(4 * 4 * 4);
+  for (std::size_t x = 0; x < 4; ++x)
+    for (std::size_t k = 0; k < 16; ++k) field[x * 16 + k] = static_cast<float>(x);
+  GridSnapshot grid{"fluid", {4, 4, 4}, {0, 0, 0}, {1, 1, 1}, {{"pressure", {field.data()}}}};
+  FrameWish wish;
+  const auto at = [&](double x) {
+    wish.point = {x, 0.5, 2.25};
+    return value_of(decoded(make_frame(0, 0, {}, {grid}, wish)).header["point"], "pressure");
+  };
+  EXPECT_NEAR(at(1.25), 1.25, 1e-12);
+  EXPECT_NEAR(at(3.5), 1.5, 1e-12);  // between the last, 3, and the first, 0
+  EXPECT_NEAR(at(-0.5), 1.5, 1e-12);
+  grid.periodic = false;
+  EXPECT_NEAR(at(2.5), 2.5, 1e-12);
+  EXPECT_TRUE(std::isnan(at(3.5)));
+}
+
+TEST(Frame, TwoRunsShareTheBoundOfTheViewer) {
+  const Cloud one(3000), other(3000);
+  const std::vector<ParticleSnapshot> left{one.snapshot()}, right{other.snapshot()};
+  const std::vector<GridSnapshot> none;
+  const Decoded frame = decoded(*FrameMaker().make(4, {{0.5, left, none, 0}, {0.6, right, none, 0}}, {.points = 2000}));
+  ASSERT_EQ(frame.header["blocks"].size(), 2U);
+  for (std::size_t side = 0; side < 2; ++side) {
+    EXPECT_EQ(frame.header["blocks"][side]["side"], side);
+    EXPECT_THAT(frame.header["blocks"][side]["count"].get<int>(), Le(1000));
+  }
+  EXPECT_EQ(frame.header["time"], 0.5);
+  EXPECT_EQ(frame.header["beside"]["time"], 0.6);
+}
+
 TEST(Frame, AnyTextIsAFrame) {
   Cloud cloud(3);
   ParticleSnapshot family = cloud.snapshot("liquid \xff\"\\");

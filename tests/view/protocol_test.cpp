@@ -43,6 +43,24 @@ TEST(Protocol, MessagesOfAPageAreRead) {
   EXPECT_EQ(ready->wish.plane_at, 0.25);
 }
 
+TEST(Protocol, AViewerPointsAtThings) {
+  const auto ready = parse_message(
+      R"({"do":"ready","points":10,"bits":8,"volume":64,"phases":true,"pick":{"family":"bubbles","at":[1,-2.5],"id":17},)"
+      R"("point":[0.5,0,3],"snapshot":12})");
+  ASSERT_TRUE(ready);
+  EXPECT_EQ(ready->wish.volume, 64U);
+  EXPECT_TRUE(ready->wish.phases);
+  EXPECT_EQ(ready->wish.picked, (PickWish{"bubbles", {1, -2.5, 0}, 17}));
+  EXPECT_EQ(ready->wish.point, (std::array<double, 3>{0.5, 0, 3}));
+  EXPECT_EQ(ready->wish.snapshot, 12U);
+  for (const char* part :
+       {R"("volume":129)", R"("volume":-1)", R"("phases":1)", R"("pick":3)", R"("pick":{"at":[0,0,0]})",
+        R"("pick":{"family":"a"})", R"("pick":{"family":3,"at":[0]})", R"("pick":{"family":"a","at":[0,0,0,0]})",
+        R"("pick":{"family":"a","at":[0],"id":0.5})", R"("point":[0,"1"])", R"("point":[1e999])", R"("point":{})",
+        R"("snapshot":-1)", R"("snapshot":1e300)"})
+    EXPECT_FALSE(parse_message(R"({"do":"ready","points":10,"bits":8,)" + std::string(part) + "}")) << part;
+}
+
 TEST(Protocol, WhatIsNoMessageIsRefused) {
   std::string long_value = R"({"do": "steer", "key": "a", "value": ")" + std::string(largest_message, '1') + "\"}";
   for (const std::string& text :

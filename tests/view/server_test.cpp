@@ -188,6 +188,25 @@ TEST_F(LiveServer, NeverWaitsForAViewerThatDoesNotRead) {
   EXPECT_FALSE(viewer->take_wish());
 }
 
+TEST_F(LiveServer, WhoMayOnlyLookIsDroppedWhenItSteers) {
+  EXPECT_NE(server_.looking_token(), server_.token());
+  // The page of a viewer that looks knows nothing of the token that steers.
+  const std::string page = get("/?token=" + server_.looking_token());
+  EXPECT_THAT(page, StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(page, HasSubstr("view.js?token=" + server_.looking_token()));
+  EXPECT_THAT(page, Not(HasSubstr(server_.token())));
+  const auto looking = socket(server_.looking_token(), "http://" + host());
+  ASSERT_NE(looking, nullptr);
+  looking->send(text_frame(ready));
+  EXPECT_TRUE(wish_of_first());
+  EXPECT_FALSE(server_.viewers().front()->may_steer());
+  looking->send(text_frame(R"({"do":"stop"})"));
+  EXPECT_TRUE(looking->closed());
+  EXPECT_TRUE(server_.take_messages().empty());
+  const auto steering = socket();
+  EXPECT_TRUE(soon([&] { return server_.viewers().size() == 1 && server_.viewers().front()->may_steer(); }));
+}
+
 TEST_F(LiveServer, SaysThatItsPortIsTaken) {
   EXPECT_THROW(Server second(server_.port()), InputError);
 }

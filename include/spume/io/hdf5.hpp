@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace spume::hdf5 {
 
@@ -69,6 +70,9 @@ class File {
   std::filesystem::path path_;
   Id id_;
 };
+
+// Of an array, along its axes; none of a single number.
+std::vector<hsize_t> extent_of(const File& file, hid_t data);
 
 // Makes or overwrites an attribute; without a count it is a scalar.
 void write_attribute(const File& file, hid_t object, const char* name, hid_t file_type, hid_t memory_type,

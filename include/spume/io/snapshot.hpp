@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct ParticleField {
   std::string name;
   std::vector<const double*> f64;
   std::vector<const std::int64_t*> i64;
+  // Fills f64, where that has yet to be done.
+  std::function<void()> compute = {};
 };
 
 // Particles of one kind: "fluid", "bubbles".
@@ -26,7 +29,16 @@ struct ParticleSnapshot {
   std::vector<ParticleField> fields;
 };
 
-// Fields on the points of a periodic grid: value (ix, iy, iz) of a component lies at (ix * ny + iy) * nz + iz.
+// Families with all fields filled.
+inline std::vector<ParticleSnapshot> completed(std::vector<ParticleSnapshot> families) {
+  for (ParticleSnapshot& family : families)
+    for (ParticleField& field : family.fields)
+      if (field.compute) field.compute();
+  return families;
+}
+
+// Fields on the points of a grid, which goes on periodically unless it is said not to: value (ix, iy, iz) of a
+// component lies at (ix * ny + iy) * nz + iz.
 struct GridSnapshot {
   struct Field {
     std::string name;                      // holds no '/' and no '.'
@@ -36,6 +48,7 @@ struct GridSnapshot {
   std::array<std::size_t, 3> points{};
   std::array<double, 3> origin{}, spacing{};
   std::vector<Field> fields;
+  bool periodic = true;
 };
 
 }  // namespace spume

@@ -41,7 +41,9 @@ class Method {
   virtual std::vector<SeriesColumn> series_columns() const = 0;  // without step, t, dt: the driver adds those
   virtual void series_values(std::span<double> values) = 0;
 
-  virtual std::vector<ParticleSnapshot> snapshot() = 0;             // pointers stay valid until the next step
+  virtual std::vector<ParticleSnapshot> snapshot() = 0;  // pointers stay valid until the next step
+  // The same, where fields that are computed for it may wait until they are asked for.
+  virtual std::vector<ParticleSnapshot> snapshot_on_demand() { return snapshot(); }
   virtual std::vector<GridSnapshot> grid_snapshot() { return {}; }  // likewise
 
   // Null where the method has no such probes: a case that wants them is refused.

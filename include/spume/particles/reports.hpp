@@ -47,7 +47,8 @@ class SnapshotTable {
   // One that is computed for every snapshot.
   void add(std::string name, bool standard, std::function<double(std::size_t)> value);
 
-  // The snapshot with the wanted fields (none wanted: the standard ones); its arrays live until the next one.
+  // The snapshot with the wanted fields (none wanted: the standard ones); its arrays live until the next one. Fields
+  // that are computed for it are not filled yet.
   ParticleSnapshot take(std::string name, std::size_t size, const VectorField& position,
                         const std::vector<std::string>& wanted);
 

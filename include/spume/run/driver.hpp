@@ -104,7 +104,7 @@ class Simulation {
   bool stop_requested() const;
   bool finished() const { return schedule_.finished(method_->time()); }
   void note_pause(std::chrono::steady_clock::duration length);  // in which the run stood still: no part of its pace
-  std::vector<ParticleSnapshot> particles() { return method_->snapshot(); }
+  std::vector<ParticleSnapshot> particles() { return method_->snapshot_on_demand(); }
   std::vector<GridSnapshot> grids() { return method_->grid_snapshot(); }
   const std::vector<SeriesColumn>& series_columns() const { return recorder_->series_columns(); }
   std::span<const double> series_row() const { return recorder_->series_row(); }  // the last one; empty before it

@@ -38,7 +38,7 @@ class LiveView final : public Observer {
   void add_row(Simulation& simulation);
   bool knows_all(const Viewer& viewer, const FrameWish& wish, const Simulation& simulation) const;
   std::vector<Packet> packets_for(Viewer& viewer, const FrameWish& wish, Simulation& simulation);
-  std::string hello(const Simulation& simulation) const;
+  std::string hello(const Simulation& simulation, bool may_steer) const;
   std::string state() const;
   std::string series_for(Viewer& viewer) const;
   std::string lines_for(Viewer& viewer) const;

@@ -2,11 +2,14 @@
 // What a page may say to the program, and who is listened to. Text messages are JSON objects of at most
 // largest_message bytes:
 //
-//   {"do": "ready", "points": 100000, "bits": 16, "fields": {"fluid": "pressure"}, "plane": {"axis": 2, "at": 0.5}}
+//   {"do": "ready", "points": 100000, "bits": 16, "fields": {"fluid": "pressure"}, "plane": {"axis": 2, "at": 0.5},
+//    "volume": 64, "phases": true, "pick": {"family": "fluid", "at": [0, 0, 1], "id": 17}, "point": [0, 0, 1],
+//    "snapshot": 3}
 //   {"do": "pause"}  go  step  checkpoint  snapshot  stop
 //   {"do": "steer", "key": "fluid.gravity", "value": "3.7"}
 //
-// "ready" acknowledges the last frame and asks for another.
+// "ready" acknowledges the last frame and asks for another; all but points and bits may be missing. A viewer that may
+// only look says nothing else.
 #pragma once
 
 #include <chrono>

@@ -120,7 +120,7 @@ void Gfd::series_values(std::span<double> values) {
   series_.values(values);
 }
 
-std::vector<ParticleSnapshot> Gfd::snapshot() {
+std::vector<ParticleSnapshot> Gfd::snapshot_on_demand() {
   ensure_arranged();
   return {snapshot_.take("fluid", flow_.size(), flow_.particles.position, flow_.options.output.fields)};
 }

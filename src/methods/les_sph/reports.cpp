@@ -118,7 +118,7 @@ void LesSph::series_values(std::span<double> values) {
   series_.values(values);
 }
 
-std::vector<ParticleSnapshot> LesSph::snapshot() {
+std::vector<ParticleSnapshot> LesSph::snapshot_on_demand() {
   ensure_started();
   std::vector<ParticleSnapshot> families{
       snapshot_.take("fluid", flow_.size(), flow_.particles.position, flow_.options.output.fields)};

@@ -100,7 +100,7 @@ void Wcsph::declare_series() {
   }
 }
 
-std::vector<ParticleSnapshot> Wcsph::snapshot() {
+std::vector<ParticleSnapshot> Wcsph::snapshot_on_demand() {
   return {snapshot_.take("fluid", flow_.size(), flow_.particles.position, flow_.options.output.fields)};
 }
 

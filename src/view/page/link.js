@@ -30,9 +30,10 @@ const link = (() => {
     const start = 4, length = new DataView(buffer).getUint32(0, true);
     const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, start + length)));
     for (const block of header.blocks) {
-      const count = block.kind === 'plane' ? block.columns * block.rows : block.count;
+      const count = {plane: block.columns * block.rows, particles: block.count, volume: block.points && block.points.reduce((a, b) => a * b)}[block.kind];
       if (block.positions) block.positions.codes = new Uint16Array(buffer, start + block.positions.at, count * block.dimensions);
       if (block.sizes) block.sizes.codes = new Uint16Array(buffer, start + block.sizes.at, count);
+      if (block.phases) block.phases.codes = new Uint8Array(buffer, start + block.phases.at, count);
       if (block.values) block.values.codes = new (block.values.bits === 8 ? Uint8Array : Uint16Array)(buffer, start + block.values.at, count);
     }
     return header;
@@ -45,11 +46,11 @@ const link = (() => {
     socket.onmessage = (event) => {
       if (typeof event.data === 'string') {
         const message = JSON.parse(event.data);
-        if (message.type === 'state') ended = !['running', 'paused'].includes(message.words);
+        if (message.type === 'state') ended = !['running', 'paused', 'results'].includes(message.words);
         handlers[message.type](message);
       } else {
         handlers.frame(decode(event.data));
-        ready();
+        ready();  // where nothing has changed nothing comes
       }
     };
     socket.onclose = () => {
@@ -58,5 +59,5 @@ const link = (() => {
       setTimeout(open, retry);
     };
   }
-  return {open, send, wish, ready: ready_soon, on: (type, handler) => { handlers[type] = handler; }};
+  return {open, send, wish, ready: ready_soon, now: ready, on: (type, handler) => { handlers[type] = handler; }};
 })();

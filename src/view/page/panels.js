@@ -24,7 +24,25 @@ function duration(seconds) {
   return whole >= 3600 ? `${Math.floor(whole / 3600)}:${clock}` : clock;
 }
 
+// Units and formulas of the fields, which the program tells.
+const words = (() => {
+  let known = {};
+  // Of "velocity", "velocity_x".
+  function of(name) {
+    const found = known[name] || known[name.replace(/_[xyz]$/, '')];
+    if (!found) return {unit: '', formula: 'a field of the case or of the file'};
+    const part = known[name] ? '' : `${name.slice(-1)} component of `;
+    return {unit: found.unit, formula: part + found.formula};
+  }
+  function title(name) {
+    const {unit, formula} = of(name);
+    return `${name}: ${formula}\nunit: ${unit || 'none'}`;
+  }
+  return {of, title, set: (fields) => { known = fields || {}; }};
+})();
+
 // One legend a family: what colours it, and from where to where. A bound that was typed stays; an empty one follows.
+// Two runs beside each other share it, and the bounds are those of both.
 const legends = (() => {
   const made = new Map();
   function make(block) {
@@ -33,27 +51,31 @@ const legends = (() => {
     choice.title = 'what colours ' + block.family;
     low.title = high.title = 'bound of the colours; empty: that of the frame';
     scale.style.background = picture.css;
-    const head = element('div', 'head');
+    const head = element('div', 'head'), formula = element('div', 'formula');
     head.append(element('span', '', block.family), unit);
+    head.onclick = () => box.classList.toggle('open');  // where nothing hovers
     ends.append(low, high);
-    box.append(head, choice, scale, ends);
+    box.append(head, formula, choice, scale, ends);
     let axis = null;
     if (block.kind === 'plane') {
       axis = element('select');
+      axis.title = 'the plane through the field';
+      axis.append(new Option('no plane', -1));
       for (const [k, name] of ['x', 'y', 'z'].entries()) axis.append(new Option('across ' + name, k));
       axis.value = block.axes[2];
       const at = element('input');
       Object.assign(at, {type: 'range', min: 0, max: 1, step: 0.01, value: link.wish.plane.at, title: 'place of the plane'});
       axis.onchange = at.oninput = () => {
-        link.wish.plane = {axis: Number(axis.value), at: Number(at.value)};
+        picture.set_planes(axis.value !== '-1');
+        if (axis.value !== '-1') link.wish.plane = {axis: Number(axis.value), at: Number(at.value)};
         link.ready();
       };
       const both = element('label');
       both.append(axis, at);
-      box.append(both);
+      box.append(both, surface_choice());
     }
     by_id('legends').append(box);
-    const one = {choice, low, high, unit, names: '', wanted: {}};
+    const one = {box, head, formula, choice, low, high, unit, names: '', wanted: {}};
     choice.onchange = () => {
       link.wish.fields[block.family] = choice.value;
       one.wanted = {};
@@ -64,36 +86,80 @@ const legends = (() => {
         const value = input.value.trim() === '' ? NaN : Number(input.value);
         if (Number.isFinite(value)) one.wanted[name] = value;
         else delete one.wanted[name];
-        link.ready();
+        picture.show_again();
       };
-    made.set(block.kind + block.family, one);
+    made.set(block.family, one);
     return one;
+  }
+  // A surface where the field that colours the plane has one value, from the left end of the colours to the right.
+  function surface_choice() {
+    const row = element('label'), on = element('input'), at = element('input');
+    Object.assign(on, {type: 'checkbox', className: 'surface'});
+    Object.assign(at, {type: 'range', min: 0, max: 1, step: 0.01, value: 0.5, className: 'level'});
+    row.title = 'the surface on which the field has one value: its place between both ends of the colours';
+    on.onchange = at.oninput = () => {
+      picture.set_isovalue(on.checked ? Number(at.value) : null);
+      const volume = on.checked ? 64 : 0;
+      if (link.wish.volume !== volume) link.ready();
+      link.wish.volume = volume;
+    };
+    row.append(on, document.createTextNode('surface'), at);
+    return row;
   }
   // Values at both ends of the colours.
   function limits(block) {
-    const one = made.get(block.kind + block.family) || make(block);
+    const one = made.get(block.family) || make(block);
     const names = block.colourings.join();
     if (one.names !== names) {
       one.choice.replaceChildren(...block.colourings.map((name) => new Option(name, name)));
+      for (const option of one.choice.options) option.title = words.title(option.value);
       one.names = names;
     }
     if (document.activeElement !== one.choice) one.choice.value = block.field || '';
     one.unit.textContent = block.unit || '';
+    one.box.title = block.field ? words.title(block.field) : '';
+    one.formula.textContent = block.field ? words.of(block.field).formula : '';
     if (!block.values) return [0, 1];
-    const ends = ['low', 'high'].map((name) => one.wanted[name] ?? block.values[name]);
+    const bounds = one.bounds || [block.values.low, block.values.high];
+    const ends = ['low', 'high'].map((name, k) => one.wanted[name] ?? bounds[k]);
     for (const [k, input] of [one.low, one.high].entries())
       if (document.activeElement !== input) input.value = short(ends[k], 4);
+    one.ends = ends;
     return ends;
   }
-  return {limits};
+  // Before a frame is shown: the bounds of each family over all of it.
+  function measure(frame) {
+    for (const one of made.values()) one.bounds = null;
+    for (const block of frame.blocks) {
+      if (!block.values || block.count === 0) continue;
+      if (!made.has(block.family)) make(block);
+      const one = made.get(block.family), {low, high} = block.values;
+      one.bounds = one.bounds ? [Math.min(one.bounds[0], low), Math.max(one.bounds[1], high)] : [low, high];
+    }
+  }
+  // What stands in the legends, for a picture that is saved.
+  const texts = () => [...made].filter(([, one]) => one.ends && one.box.offsetParent)
+    .map(([family, one]) => ({family, field: one.choice.value, unit: one.unit.textContent, ends: one.ends.map((end) => short(end, 4))}));
+  // Families that are not there any more have no legend.
+  function keep(families) {
+    for (const [family, one] of made) one.box.hidden = !families.has(family);
+  }
+  return {limits, measure, texts, keep};
 })();
 
+// Of a second run that is shown beside the first, columns of the same name are drawn as well.
 const curves = (() => {
-  let columns = [], values = [], names = '';
+  let columns = [], values = [], names = '', beside = null, besideValues = [];
   const plots = new Map();  // by the number of the column
   const choice = by_id('columns');
 
-  function data(column) { return [values[1] || [], values[column] || []]; }
+  function data(column) {
+    const own = [values[1] || [], values[column] || []];
+    if (!beside) return own;
+    const time = beside.findIndex((one) => one.name === columns[1].name);
+    const other = beside.findIndex((one) => one.name === columns[column].name);
+    return uPlot.join([own, [besideValues[time] || [], besideValues[other] || []]]);
+  }
   function remove(column) {
     plots.get(column).plot.destroy();
     plots.get(column).box.remove();
@@ -114,7 +180,8 @@ const curves = (() => {
     const plot = new uPlot({
       width: Math.max(200, by_id('curves').clientWidth), height: 120, scales: {x: {time: false}},
       axes: [{...axis, size: 22, values: numbers}, {...axis, size: 58, values: numbers}], cursor: {y: false},
-      series: [{}, {stroke: '#4fb3d9', width: 1.5, points: {show: false}}]}, data(column), box);
+      series: [{}, {stroke: '#4fb3d9', width: 1.5, points: {show: false}, spanGaps: true},
+        ...(beside ? [{stroke: '#e8a15a', width: 1.5, points: {show: false}, spanGaps: true}] : [])]}, data(column), box);
     plots.set(column, {box, plot, last});
     update(column);
   }
@@ -133,8 +200,9 @@ const curves = (() => {
     if (width > 0) for (const {plot} of plots.values()) if (plot.width !== width) plot.setSize({width, height: 120});
   }).observe(by_id('curves'));
 
-  function set_columns(list) {
+  function set_columns(list, other) {
     const now = list.map((one) => one.name).join();
+    beside = other && other.length ? other : null;
     if (now === names) return;
     names = now;
     for (const column of [...plots.keys()]) remove(column);
@@ -145,14 +213,18 @@ const curves = (() => {
       if (k !== 1) choice.append(new Option(one.name, k));
       choice.lastChild.title = one.unit;
     });
+    if (list.length < 4) return;
     // What every method tells of first, and the fastest particle.
     add(3);
     const fastest = columns.findIndex((one) => one.name === 'max_speed');
     if (fastest > 3) add(fastest);
   }
   function take(message) {
-    if (message.anew) values = columns.map(() => []);
-    for (const row of message.rows) row.forEach((value, k) => values[k].push(value));
+    const other = message.side === 1;
+    if (message.anew && other) besideValues = (beside || []).map(() => []);
+    if (message.anew && !other) values = columns.map(() => []);
+    const kept = other ? besideValues : values;
+    for (const row of message.rows) row.forEach((value, k) => kept[k].push(value));
     for (const column of plots.keys()) update(column);
   }
   return {set_columns, take};
@@ -211,6 +283,7 @@ function show_ledger(message) {
 
 function show_lines(message) {
   const log = by_id('log'), most = 400;
+  if (message.anew) log.textContent = '';
   const below = log.scrollHeight - log.scrollTop - log.clientHeight < 20;
   log.textContent = (log.textContent + message.lines.map((line) => line + '\n').join('')).split('\n').slice(-most).join('\n');
   if (below) log.scrollTop = log.scrollHeight;

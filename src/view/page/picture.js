@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The picture: particles as points of their own size, fields on a grid as a plane, drawn by three.js (revision 111).
-// Codes of 16 bits go to the graphics card as they came; the shader makes positions and colours of them.
+// The picture: particles as points of their own size, fields on a grid as a plane, surfaces; of one run, or of two beside
+// each other that are looked at alike. Drawn by three.js (revision 111). Codes of 16 bits go to the graphics card as they
+// came; the shader makes positions and colours of them.
 'use strict';
 
 const picture = (() => {
@@ -47,30 +48,51 @@ const picture = (() => {
   const place = document.getElementById('picture');
   const renderer = new THREE.WebGLRenderer({canvas, antialias: true});
   renderer.setClearColor(0x10151b);
-  const scene = new THREE.Scene();
-  let camera = null, controls = null, domain = null, spacing = 0, enlarged = 1, dirty = false, cutAxis = -1, cutShare = 0.5;
-  const drawn = new Map();  // by kind and family
+  renderer.localClippingEnabled = true;
+  renderer.autoClear = false;
+  let camera = null, controls = null, domain = null, enlarged = 1, dirty = false, cutAxis = -1, cutShare = 0.5;
+  const cutPlane = new THREE.Plane(), sun = new THREE.DirectionalLight(0xffffff, 0.75);
+  // One a run: what is drawn by kind and family, the blocks as they came, and the spacing of the particles.
+  const sides = [];
+  const listeners = [];  // told after each picture
 
+  // Where a side is drawn, from the lower left corner: beside each other, or above each other on a narrow screen.
+  function part(side) {
+    const width = place.clientWidth, height = place.clientHeight;
+    if (sides.length < 2) return {x: 0, y: 0, width, height};
+    return width >= height ? {x: side * width / 2, y: 0, width: width / 2, height}
+      : {x: 0, y: (1 - side) * height / 2, width, height: height / 2};
+  }
   function draw() {
     dirty = false;
     if (!camera) return;
-    const pixels = renderer.getPixelRatio() * place.clientHeight;
-    for (const one of drawn.values()) {
-      if (!one.uniforms) continue;
-      one.uniforms.pixels.value = domain.flat ? pixels * camera.zoom / (camera.top - camera.bottom)
-        : pixels / (2 * Math.tan(camera.fov * Math.PI / 360));
-    }
-    renderer.render(scene, camera);
+    const began = performance.now();
+    sun.position.copy(camera.position).sub(controls.target);
+    renderer.setScissorTest(true);
+    renderer.clear();
+    sides.forEach((side, k) => {
+      const {x, y, width, height} = part(k), pixels = renderer.getPixelRatio() * height;
+      renderer.setViewport(x, y, width, height);
+      renderer.setScissor(x, y, width, height);
+      for (const one of side.drawn.values()) {
+        if (!one.uniforms) continue;
+        one.uniforms.pixels.value = domain.flat ? pixels * camera.zoom / (camera.top - camera.bottom)
+          : pixels / (2 * Math.tan(camera.fov * Math.PI / 360));
+      }
+      side.scene.add(sun);
+      renderer.render(side.scene, camera);
+    });
+    for (const listener of listeners) listener(began);
   }
   function redraw() {
     if (!dirty) requestAnimationFrame(draw);
     dirty = true;
   }
   function resize() {
-    const width = place.clientWidth, height = place.clientHeight;
     renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    renderer.setSize(width, height, false);
+    renderer.setSize(place.clientWidth, place.clientHeight, false);
     if (!camera) return;
+    const {width, height} = part(0);
     if (domain.flat) {
       // The whole domain, with a margin.
       const tall = 1.1 * Math.max(domain.extent[1], domain.extent[0] * height / width);
@@ -92,7 +114,8 @@ const picture = (() => {
       camera.zoom = 1;
     } else {
       const radius = Math.hypot(...domain.extent) / 2;
-      const angle = Math.min(camera.fov, 2 * Math.atan(Math.tan(camera.fov * Math.PI / 360) * place.clientWidth / place.clientHeight) * 180 / Math.PI);
+      const {width, height} = part(0);
+      const angle = Math.min(camera.fov, 2 * Math.atan(Math.tan(camera.fov * Math.PI / 360) * width / height) * 180 / Math.PI);
       const far = radius / Math.sin(angle * Math.PI / 360);
       camera.position.set(x + 0.45 * far, y - 0.8 * far, z + 0.4 * far);
     }
@@ -102,11 +125,16 @@ const picture = (() => {
 
   // The box of the case, once per page: what is changed by hand does not change it.
   function set_domain(message) {
-    spacing = message.spacing;
-    if (domain) return;
-    const flat = message.dimensions === 2;
+    const runs = [message, message.beside].filter(Boolean);
+    if (domain) {
+      runs.forEach((run, k) => { sides[k].spacing = run.spacing; });
+      return;
+    }
+    const flat = runs.every((run) => run.dimensions === 2);
     document.body.classList.toggle('flat', flat);
-    const lower = [...message.lower, 0].slice(0, 3), upper = [...message.upper, 0].slice(0, 3);
+    // The box that holds those of both.
+    const all = (corner, choose) => [0, 1, 2].map((axis) => choose(...runs.map((run) => run[corner][axis] || 0)));
+    const lower = all('lower', Math.min), upper = all('upper', Math.max);
     const extent = lower.map((low, axis) => upper[axis] - low);
     domain = {flat, lower, upper, extent, centre: lower.map((low, axis) => low + extent[axis] / 2)};
     const size = Math.max(...extent);
@@ -121,31 +149,34 @@ const picture = (() => {
       controls.touches.ONE = THREE.TOUCH.PAN;
     }
     controls.addEventListener('change', redraw);
-    controls.addEventListener('start', () => { document.getElementById('hint').hidden = true; });
     canvas.addEventListener('dblclick', see_all);
-    const box = new THREE.EdgesGeometry(new THREE.BoxBufferGeometry(...extent));
-    const edges = new THREE.LineSegments(box, new THREE.LineBasicMaterial({color: 0x4a5866}));
-    edges.position.set(...domain.centre);
-    scene.add(edges);
+    for (const run of runs) {
+      const scene = new THREE.Scene(), low = [...run.lower, 0].slice(0, 3), high = [...run.upper, 0].slice(0, 3);
+      const box = new THREE.EdgesGeometry(new THREE.BoxBufferGeometry(...low.map((from, axis) => high[axis] - from)));
+      const edges = new THREE.LineSegments(box, new THREE.LineBasicMaterial({color: 0x4a5866}));
+      edges.position.set(...low.map((from, axis) => (from + high[axis]) / 2));
+      scene.add(edges, new THREE.AmbientLight(0xffffff, 0.45));
+      sides.push({scene, drawn: new Map(), blocks: [], spacing: run.spacing});
+    }
     see_all();
   }
 
-  function points_of(family) {
+  function points_of(side, family) {
     const key = 'particles ' + family;
-    if (drawn.has(key)) return drawn.get(key);
+    if (side.drawn.has(key)) return side.drawn.get(key);
     const uniforms = {lower: {value: new THREE.Vector3()}, extent: {value: new THREE.Vector3()}, palette: {value: palette},
       range: {value: new THREE.Vector2()}, limits: {value: new THREE.Vector2()}, full: {value: 1}, diameter: {value: 0},
       largest: {value: 0}, pixels: {value: 1}, flatness: {value: 0}, cut: {value: new THREE.Vector3()}, cutAt: {value: 0}};
     const object = new THREE.Points(new THREE.BufferGeometry(), new THREE.ShaderMaterial({uniforms, vertexShader, fragmentShader}));
     object.frustumCulled = false;  // the box of its codes is not that of its places
-    scene.add(object);
+    side.scene.add(object);
     const one = {object, uniforms};
-    drawn.set(key, one);
+    side.drawn.set(key, one);
     return one;
   }
 
-  function show_particles(block, limits) {
-    const one = points_of(block.family);
+  function show_particles(side, block, limits) {
+    const one = points_of(side, block.family);
     one.object.geometry.dispose();
     const geometry = one.object.geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(block.positions.codes, block.dimensions, true));
@@ -162,12 +193,12 @@ const picture = (() => {
     u.largest.value = block.sizes ? block.sizes.largest * 65535 / 65534 * enlarged : 0;
     // Fewer particles than there are stand for more room each; without a spacing, a two-hundredth of the box.
     const share = Math.pow(block.total / Math.max(block.count, 1), 1 / block.dimensions);
-    u.diameter.value = enlarged * (spacing > 0 ? spacing * share : Math.max(...domain.extent) / 200);
+    u.diameter.value = enlarged * (side.spacing > 0 ? side.spacing * share : Math.max(...domain.extent) / 200);
     u.flatness.value = domain.flat ? 1 : 0;
     // Bubbles in front of the liquid that they are in.
     one.object.renderOrder = block.sizes ? 1 : 0;
     one.object.material.depthTest = !(domain.flat && block.sizes);
-    one.object.visible = block.count > 0;
+    one.object.visible = block.count > 0 && !(interfaceWish === 'alone' && !block.sizes);
     set_cut(one);
   }
   function set_cut(one) {
@@ -188,16 +219,17 @@ const picture = (() => {
   }
   const table = colour_table();
 
-  function show_plane(block, limits) {
+  function show_plane(side, block, limits) {
     if (!block.values) return;
     const key = 'plane ' + block.family;
-    if (!drawn.has(key)) {
+    if (!side.drawn.has(key)) {
       const object = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial({side: THREE.DoubleSide}));
       object.frustumCulled = false;
-      scene.add(object);
-      drawn.set(key, {object});
+      side.scene.add(object);
+      side.drawn.set(key, {object});
     }
-    const object = drawn.get(key).object;
+    const object = side.drawn.get(key).object;
+    object.visible = planes;
     const corners = [[0, 0], [1, 0], [1, 1], [0, 1]].map(([a, b]) => {
       const at = [0, 0, 0];
       at[block.axes[0]] = a ? block.upper[0] : block.lower[0];
@@ -228,24 +260,144 @@ const picture = (() => {
     object.material.needsUpdate = true;
   }
 
+  // A surface, or in two dimensions a line: what surface.js makes.
+  let planes = true, interfaceWish = 'none', isovalue = null;
+  function show_surface(side, key, shapes) {
+    const old = side.drawn.get(key);
+    if (old) {
+      old.object.children.forEach((child) => child.geometry.dispose());
+      side.scene.remove(old.object);
+    }
+    const object = new THREE.Group();
+    shapes.forEach((shape, k) => {
+      const geometry = new THREE.BufferGeometry(), colour = [0x9fd3ee, 0xf2b36b, 0xb5de8b][k % 3];
+      geometry.setAttribute('position', new THREE.BufferAttribute(shape.places, 3));
+      const clippingPlanes = cutAxis < 0 ? [] : [cutPlane];
+      let one;
+      if (shape.triangles) {
+        geometry.setIndex(new THREE.BufferAttribute(shape.triangles, 1));
+        geometry.computeVertexNormals();
+        one = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({color: colour, side: THREE.DoubleSide, clippingPlanes}));
+      } else {
+        one = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({color: 0xffffff, depthTest: false}));
+        one.renderOrder = 2;
+      }
+      one.frustumCulled = false;
+      object.add(one);
+    });
+    side.scene.add(object);
+    side.drawn.set(key, {object});
+  }
+  function show_interface(side, block) {
+    if (block.sizes) return;  // bubbles are drawn as such
+    const key = 'interface ' + block.family;
+    const wanted = interfaceWish !== 'none';
+    if (wanted || side.drawn.has(key)) show_surface(side, key, wanted ? surface.interfaces(block, domain, side.spacing) : []);
+  }
+  // `limits`: the share of their range at which the surface lies is that of the colours.
+  function show_volume(side, block, limits) {
+    if (!block.values) return;
+    const level = isovalue === null ? null : limits[0] + isovalue * (limits[1] - limits[0]);
+    show_surface(side, 'volume ' + block.family, level === null ? [] : [surface.in_space(surface.field_of(block), level)]);
+  }
+
+  const showing = {plane: show_plane, particles: show_particles, volume: show_volume};
+  let shown = null;
   // `limits_of(block)`: values at both ends of the colours.
   function show(frame, limits_of) {
     if (!domain) return;
-    const there = new Set();
-    for (const block of frame.blocks) {
-      there.add(block.kind + ' ' + block.family);
-      (block.kind === 'plane' ? show_plane : show_particles)(block, limits_of(block));
-    }
-    for (const [key, one] of drawn) if (!there.has(key)) one.object.visible = false;
+    shown = {frame, limits_of};
+    sides.forEach((side, k) => {
+      const there = new Set();
+      side.blocks = frame.blocks.filter((block) => (block.side || 0) === k);
+      for (const block of side.blocks) {
+        there.add(block.kind + ' ' + block.family);
+        showing[block.kind](side, block, limits_of(block));
+        if (block.kind !== 'particles') continue;
+        show_interface(side, block);
+        there.add('interface ' + block.family);
+      }
+      for (const [key, one] of side.drawn) if (!there.has(key)) one.object.visible = false;
+    });
     redraw();
   }
+  function show_again() { if (shown) show(shown.frame, shown.limits_of); }
+
+  // From the left and from above, in pixels of the picture; null behind the eye.
+  function on_screen(at, side = 0) {
+    const seen = new THREE.Vector3(...at).project(camera), {x, y, width, height} = part(side);
+    if (seen.z > 1) return null;
+    return [x + (seen.x + 1) / 2 * width, place.clientHeight - y - height + (1 - seen.y) / 2 * height];
+  }
+  // What lies there: a particle, a place on a plane, or in two dimensions any place; {side, family, at}.
+  function pick(left, top) {
+    if (!domain) return null;
+    let k = 0;
+    sides.forEach((_, n) => {
+      const {x, y, width, height} = part(n), above = place.clientHeight - y - height;
+      if (left >= x && left < x + width && top >= above && top < above + height) k = n;
+    });
+    const side = sides[k], {x, y, width, height} = part(k);
+    const to = [(left - x) / width * 2 - 1, 1 - (top - (place.clientHeight - y - height)) / height * 2];
+    const near = 10;  // pixels
+    camera.updateMatrixWorld();
+    const m = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
+    let best = null;
+    for (const block of side.blocks) {
+      if (block.kind !== 'particles' || !side.drawn.get('particles ' + block.family).object.visible) continue;
+      const {codes} = block.positions, d = block.dimensions;
+      const scale = block.lower.map((low, axis) => (block.upper[axis] - low) / 65535);
+      const at = [0, 0, 0];
+      for (let n = 0; n < block.count; ++n) {
+        for (let axis = 0; axis < d; ++axis) at[axis] = block.lower[axis] + codes[n * d + axis] * scale[axis];
+        if (cutAxis >= 0 && at[cutAxis] > -cutPlane.constant * cutPlane.normal.getComponent(cutAxis)) continue;
+        const w = m[3] * at[0] + m[7] * at[1] + m[11] * at[2] + m[15];
+        const right = ((m[0] * at[0] + m[4] * at[1] + m[8] * at[2] + m[12]) / w - to[0]) * width / 2;
+        const up = ((m[1] * at[0] + m[5] * at[1] + m[9] * at[2] + m[13]) / w - to[1]) * height / 2;
+        const off = Math.hypot(right, up);
+        if (!(off <= near)) continue;
+        const deep = (m[2] * at[0] + m[6] * at[1] + m[10] * at[2] + m[14]) / w;
+        // Bubbles before liquid; in space what is in front, in a plane what is nearest.
+        const rank = [block.sizes ? 0 : 1, domain.flat ? off : deep];
+        if (!best || rank[0] < best.rank[0] || (rank[0] === best.rank[0] && rank[1] < best.rank[1]))
+          best = {rank, side: k, family: block.family, at: at.slice(0, 3)};
+      }
+    }
+    if (best) return best;
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(new THREE.Vector2(...to), camera);
+    const meshes = [...side.drawn].filter(([key, one]) => key.startsWith('plane') && one.object.visible).map(([, one]) => one.object);
+    const hits = ray.intersectObjects(meshes);
+    if (hits.length) return {side: k, family: null, at: hits[0].point.toArray()};
+    if (!domain.flat) return null;
+    return {side: k, family: null, at: [ray.ray.origin.x, ray.ray.origin.y, 0]};
+  }
+
   new ResizeObserver(resize).observe(place);
-  return {set_domain, show, css, redraw,
+  return {set_domain, show, show_again, css, viridis, redraw, pick, on_screen, canvas,
+    draw_now: draw,
+    after_drawing: (listener) => listeners.push(listener),
+    // For who turns the picture without a hand, such as the tests.
+    turn: (angle) => {
+      const from = camera.position.clone().sub(controls.target);
+      camera.position.copy(controls.target).add(from.applyAxisAngle(camera.up, angle));
+      controls.update();
+    },
+    finish_drawing: () => {
+      const gl = renderer.getContext();
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    },
     set_size: (factor) => { enlarged = factor; },
+    set_planes: (on) => { planes = on; show_again(); },
+    set_interface: (wish) => { interfaceWish = wish; show_again(); },
+    set_isovalue: (share) => { isovalue = share; show_again(); },
     set_cut: (axis, share) => {
       cutAxis = axis;
       cutShare = share;
-      for (const one of drawn.values()) if (one.uniforms) set_cut(one);
-      redraw();
+      if (axis >= 0 && domain) {
+        cutPlane.normal.set(0, 0, 0).setComponent(axis, -1);
+        cutPlane.constant = domain.lower[axis] + share * domain.extent[axis];
+      }
+      show_again();
     }};
 })();

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""GIFs of all snapshots: the liquid from the side, with its bubbles, or fields in a plane."""
+"""GIFs of all snapshots: the liquid from the side, with its bubbles, or fields in a plane. Where ffmpeg is installed it
+makes an MP4 of each as well."""
 import io
+import shutil
+import subprocess
+import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -17,8 +21,8 @@ PAUSE = 1000        # that the last one is
 DOTS_PER_INCH = 100
 
 
-def write_gif(figures, path):
-    """Writes figures of one size as the frames of a GIF."""
+def write_film(figures, path):
+    """Writes figures of one size as the frames of a GIF, and of an MP4 where ffmpeg is there. Returns the files."""
     from PIL import Image
 
     frames = []
@@ -30,7 +34,25 @@ def write_gif(figures, path):
     path = path.with_suffix(".gif")
     frames[0].save(path, save_all=True, append_images=frames[1:], loop=0,
                    duration=[MILLISECONDS] * (len(frames) - 1) + [PAUSE])
-    return path
+    return [path, *write_mp4(frames, path.with_suffix(".mp4"))]
+
+
+def write_mp4(frames, path):
+    """The frames as H.264, which every browser and player shows; no file without ffmpeg."""
+    program = shutil.which("ffmpeg")
+    if program is None:
+        return []
+    # Colours are stored for four pixels together: width and height are even.
+    width, height = (size - size % 2 for size in frames[0].size)
+    pixels = b"".join(frame.convert("RGB").crop((0, 0, width, height)).tobytes() for frame in frames)
+    done = subprocess.run([program, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}",
+                           "-r", str(1000 / MILLISECONDS), "-i", "-", "-pix_fmt", "yuv420p", str(path)],
+                          input=pixels, capture_output=True)
+    if done.returncode:
+        print(f"{path} left out: {program} says {done.stderr.decode(errors='replace').strip()}", file=sys.stderr)
+        path.unlink(missing_ok=True)
+        return []
+    return [path]
 
 
 def steps_of(run, snapshots):
@@ -45,8 +67,8 @@ def plot_side_views(run, out):
     steps = steps_of(run, snapshots)
     if run.has("bubbles.vtkhdf"):
         bubbles = run.snapshots("bubbles")
-        return [write_gif((draw_bubble_views(run, snapshots, bubbles, [k], steps) for k in steps), out / "bubble_views")]
-    return [write_gif((draw_side_view(run, snapshots, [k], steps) for k in steps), out / "side_view")]
+        return write_film((draw_bubble_views(run, snapshots, bubbles, [k], steps) for k in steps), out / "bubble_views")
+    return write_film((draw_side_view(run, snapshots, [k], steps) for k in steps), out / "side_view")
 
 
 def plot_planes(run, out):
@@ -62,8 +84,7 @@ def plot_planes(run, out):
         samples = [panel.values[np.isfinite(panel.values)] for panel in panels]
         norm = field_norm(name, samples, request_of(run).ranges.get(name))
         ends = extension(norm, samples)
-        files.append(write_gif((plane_figure(run, name, plane, [panel], norm, ends, panels) for panel in panels),
-                               out / name))
+        files += write_film((plane_figure(run, name, plane, [panel], norm, ends, panels) for panel in panels), out / name)
     return files
 
 

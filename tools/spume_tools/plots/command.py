@@ -80,7 +80,7 @@ def parse():
     parser.add_argument("--plane", metavar="AXIS=VALUE", type=plane, help="plane of the fields in 3-D; default: the middle y")
     parser.add_argument("--range", metavar="FIELD=LOW:HIGH", nargs="+", type=colour_range, default=(), help="limits of the colours")
     parser.add_argument("--format", choices=("png", "pdf", "svg"), default="png", help="of the pictures; default: png")
-    parser.add_argument("--animate", action="store_true", help="GIFs of all snapshots in place of pictures of some")
+    parser.add_argument("--animate", action="store_true", help="GIFs of all snapshots, with ffmpeg MP4s too, in place of pictures of some")
     return parser.parse_args()
 
 

@@ -32,7 +32,8 @@ class Gfd final : public Method, public FieldProbes {
   void step(double dt, Ledger& ledger) override;
   std::vector<SeriesColumn> series_columns() const override { return series_.columns(); }
   void series_values(std::span<double> values) override;
-  std::vector<ParticleSnapshot> snapshot() override;
+  std::vector<ParticleSnapshot> snapshot() override { return completed(snapshot_on_demand()); }
+  std::vector<ParticleSnapshot> snapshot_on_demand() override;
   FieldProbes* field_probes() override { return this; }
   PointSample sample(const Vec3& position) override { return sampler().sample(position); }
   PlaneSample plane_average(int axis, double position) override { return sampler().plane_average(axis, position); }

@@ -32,7 +32,8 @@ class Wcsph final : public Method, public FieldProbes {
   void step(double dt, Ledger& ledger) override;
   std::vector<SeriesColumn> series_columns() const override { return series_.columns(); }
   void series_values(std::span<double> values) override { series_.values(values); }
-  std::vector<ParticleSnapshot> snapshot() override;
+  std::vector<ParticleSnapshot> snapshot() override { return completed(snapshot_on_demand()); }
+  std::vector<ParticleSnapshot> snapshot_on_demand() override;
   std::vector<RecordTable> tables() const override;  // bodies.csv
   void table_rows(const std::string& name, std::vector<double>& rows) override;
   FieldProbes* field_probes() override { return this; }
