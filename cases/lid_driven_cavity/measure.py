@@ -9,7 +9,7 @@ from spume_tools.results import read_reference
 PROFILES = {"profile": ("u", "v")}
 FOLDER = Path(__file__).parent / "reference"
 REFERENCE = read_reference(FOLDER / "ghia1982.csv", ("coordinate", "re100", "re400", "re1000", "re3200"), PROFILES)
-CHECK = read_reference(FOLDER / "streamfunction.csv", ("coordinate", "re100", "re400"), PROFILES)
+EXACT = read_reference(FOLDER / "spectral.csv", ("coordinate", "re100", "re400", "re1000", "re3200"), PROFILES)
 # profile -> line probe, its coordinate, its velocity component
 LINES = {"u": ("vertical", "y", "velocity_x"), "v": ("horizontal", "x", "velocity_y")}
 
@@ -35,16 +35,16 @@ def reference(kind, re, table=REFERENCE):
 
 
 def errors(run):
-    """Largest difference from the published table over the lid speed, per profile; from the independent solution;
-    and how much the flow still changes from output to output."""
+    """Largest difference from the published table over the lid speed, per profile; the same and rms from the spectral
+    solution; and how much the flow still changes from output to output."""
     measured = {}
     for kind in LINES:
         coordinate, velocity = profile(run, kind)
-        for quantity, table in (("error", REFERENCE), ("difference_streamfunction", CHECK)):
-            if column(run) not in table:
-                continue
+        for quantity, table in (("error", REFERENCE), ("difference_spectral", EXACT)):
             x, expected = reference(kind, column(run), table)
-            measured[f"{kind}_{quantity}"] = float(np.max(np.abs(np.interp(x, coordinate, velocity) - expected)))
+            difference = np.interp(x, coordinate, velocity) - expected
+            measured[f"{kind}_{quantity}"] = float(np.max(np.abs(difference)))
+        measured[f"{kind}_rms_spectral"] = float(np.sqrt(np.mean(difference**2)))
         name, _, component = LINES[kind]
         if len(run.line_times(name)) > 1:
             change = run.line(name, -1)[component] - run.line(name, -2)[component]
@@ -53,14 +53,25 @@ def errors(run):
 
 
 def measure(runs):
-    return {f"{quantity}_{column(run)}": value for run in runs.values() for quantity, value in errors(run).items()}
+    measured = {f"{quantity}_{name}": value for name, run in runs.items() for quantity, value in errors(run).items()}
+    if {"re3200", "re3200_coarse"} <= runs.keys():
+        spacings = np.log(runs["re3200_coarse"].spacing / runs["re3200"].spacing)
+        for kind in LINES:
+            ratio = measured[f"{kind}_rms_spectral_re3200_coarse"] / measured[f"{kind}_rms_spectral_re3200"]
+            measured[f"{kind}_order_re3200"] = float(np.log(ratio) / spacings)
+    return measured
 
 
 def curves(runs):
     figures = []
     for kind, (_, coordinate_name, _) in LINES.items():
         lines = []
-        for run, colour in zip(runs.values(), ("C0", "C1")):
+        finest = {}
+        for run in runs.values():
+            if column(run) not in finest or run.spacing < finest[column(run)].spacing:
+                finest[column(run)] = run
+        for k, run in enumerate(finest.values()):
+            colour = f"C{k}"
             coordinate, velocity = profile(run, kind)
             lines.append((f"Spume, {column(run)}", coordinate, velocity, f"{colour}-"))
             lines.append((f"Ghia et al., {column(run)}", *reference(kind, column(run)), f"{colour}o"))

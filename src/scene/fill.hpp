@@ -47,4 +47,9 @@ Lattice make_lattice(const Domain& domain, double spacing);
 void fill_scene(Scene& scene, const Lattice& lattice, const std::vector<LiquidRegion>& regions, double jitter,
                 double most, Problems& problems);
 
+// Of a filled scene with gravity and a surface: where cells beside solid boxes differ from the lattice by more than
+// still water bears, and a spacing near the one asked for with which none do.
+std::vector<Problem> cell_warnings(Scene& scene, const Lattice& lattice, const std::vector<LiquidRegion>& regions,
+                                   const std::string& file);
+
 }  // namespace spume

@@ -90,6 +90,15 @@ struct Chunk {
   Finding not_finite, beyond_top, in_solid, replaced;
 };
 
+// Cells that differ from the lattice: those between two faces in width, or the few layers above a solid in volume.
+struct CellMisfit {
+  double excess = 0;  // over what still water bears (cell_warnings.cpp)
+  std::size_t region = 0, axis = 0;
+  double lower = 0, upper = 0;  // the faces, or the ends of the liquid
+  double fits = 0, cells = 0;   // cells of the lattice between them, and those that were made
+  Vec3 place{};                 // in their middle
+};
+
 class Filler {
  public:
   Filler(Scene& scene, const Lattice& lattice, const std::vector<LiquidRegion>& regions, double most,
@@ -115,6 +124,19 @@ class Filler {
     report(chunks);
     gather(chunks);
     return true;
+  }
+
+  // Without any particle: the cells beside solid boxes that differ most, in volume or also in width; and the columns
+  // that there are.
+  CellMisfit largest_misfit(bool widths) {
+    compares_widths_ = widths;
+    find_columns();
+    return misfit_;
+  }
+  std::size_t columns() const {
+    std::size_t sum = 0;
+    for (const auto& of_region : columns_) sum += of_region.size();
+    return sum;
   }
 
   void jitter(double fraction);
@@ -247,7 +269,9 @@ class Filler {
     return std::min(regions_[r].upper[up], scene_.domain.upper[up]);
   }
   // Cells that the columns of a region stand on, those of the lattice's order.
-  void add_columns(std::size_t r, double bottom, double top, std::vector<ColumnCell>& columns) const;
+  void add_columns(std::size_t r, double bottom, double top, std::vector<ColumnCell>& columns);
+  void compare_width(std::size_t r, const CellRun& run, std::size_t axis, const Vec3& middle);
+  void compare_depth(std::size_t r, const ColumnCell& cell);
   std::vector<CellRun> runs_of(std::size_t r, std::size_t axis, const Vec3& lower, const Vec3& upper,
                                const Vec3& row_lower, const Vec3& row_upper) const;
   void find_columns();
@@ -275,7 +299,9 @@ class Filler {
   std::vector<std::unique_ptr<ThreadRegions>> threads_;
   std::unique_ptr<const SolidUnion> solids_;      // null without boxes
   std::vector<std::vector<ColumnCell>> columns_;  // of each region
-  std::vector<double> layer_volume_;              // below the surface of each, in cells of the lattice
+  bool compares_widths_ = false;
+  CellMisfit misfit_;
+  std::vector<double> layer_volume_;  // below the surface of each, in cells of the lattice
 };
 
 }  // namespace spume

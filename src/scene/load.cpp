@@ -365,9 +365,12 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   draft.options.resolved = resolved_text(document, schema, draft);
   draft.options.warnings = unused_options(draft, schema, file);
   for (Problem& warning : body_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
-  if (uses_particles(*method))
+  if (uses_particles(*method)) {
     for (Problem& warning : open_side_warnings(draft, scene, file))
       draft.options.warnings.push_back(std::move(warning));
+    for (Problem& warning : cell_warnings(scene, lattice, regions, file))
+      draft.options.warnings.push_back(std::move(warning));
+  }
   for (Problem& warning : wave_warnings(draft, scene, wavemakers, file))
     draft.options.warnings.push_back(std::move(warning));
   loaded.options = std::move(draft.options);

@@ -85,6 +85,31 @@ TEST(StillWater, StaysStillBesidePlatesAndInGaps) {
       << "no slip";
 }
 
+// Gaps of 2.9, 2.8, 3.5 and 3.2 cells, each over the whole depth. Cut in two below the four upper layers their columns
+// moved at 0.01 sqrt(g H).
+TEST(StillWater, StaysStillBetweenPillarsOfBrokenCells) {
+  const std::string pillars = box(0.1156, 0, 0.2878, 0.5) + box(0.4008, 0, 0.5837, 0.5) + box(0.7235, 0, 0.8727, 0.5);
+  EXPECT_LT(largest_speed(tank_with(pillars)), bound);
+}
+
+// Two and a half layers over a box, and columns of broken width beside it: up to 0.2 sqrt(g H). The warning names the
+// place, and with the spacing that it names the water is still.
+TEST(StillWater, CellsThatDoNotFitAreWarnedOfWithASpacingThatDoes) {
+  const std::string text =
+      tank_with(box(0.1203, 0, 0.2971, 0.5) + box(0.4642, 0.1461, 0.5741, 0.5) + box(0.6727, 0, 0.8661, 0.2996));
+  const Simulation run(text);
+  ASSERT_EQ(run.loaded.options.warnings.size(), 1U);
+  const std::string warning = run.loaded.options.warnings[0].text;
+  EXPECT_THAT(warning, HasSubstr("between y = 0.2996 and 0.4 at x = 0.7694 there is room for 2.43 layers"));
+  const std::string with = "With resolution.spacing = ";
+  ASSERT_THAT(warning, HasSubstr(with));
+  const std::string fitting =
+      "resolution.spacing=" + std::to_string(std::stod(warning.substr(warning.find(with) + with.size())));
+  EXPECT_TRUE(Simulation(text, {fitting}).loaded.options.warnings.empty());
+  EXPECT_LT(largest_speed(text, {fitting}), bound);
+  EXPECT_GT(largest_speed(text), bound) << "it need not be warned of";
+}
+
 // A wall half a spacing thick between liquids of different heights: each has its own pressure, and none gets through.
 TEST(StillWater, APlateSeparatesTwoLevels) {
   std::string text = tank_with(box(0.5, 0, 0.52, 0.6) + "[[liquid]]\nlower = [0.52, 0]\nupper = [1, 0.2]\n");
