@@ -68,8 +68,9 @@ const picture = (() => {
     if (!camera) return;
     const began = performance.now();
     sun.position.copy(camera.position).sub(controls.target);
-    renderer.setScissorTest(true);
+    renderer.setScissorTest(false);
     renderer.clear();
+    renderer.setScissorTest(true);
     sides.forEach((side, k) => {
       const {x, y, width, height} = part(k), pixels = renderer.getPixelRatio() * height;
       renderer.setViewport(x, y, width, height);
@@ -339,7 +340,7 @@ const picture = (() => {
     });
     const side = sides[k], {x, y, width, height} = part(k);
     const to = [(left - x) / width * 2 - 1, 1 - (top - (place.clientHeight - y - height)) / height * 2];
-    const near = 10;  // pixels
+    const near = 10;  // pixels; what is drawn larger is hit within its own size
     camera.updateMatrixWorld();
     const m = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
     let best = null;
@@ -347,6 +348,8 @@ const picture = (() => {
       if (block.kind !== 'particles' || !side.drawn.get('particles ' + block.family).object.visible) continue;
       const {codes} = block.positions, d = block.dimensions;
       const scale = block.lower.map((low, axis) => (block.upper[axis] - low) / 65535);
+      const {diameter, pixels} = side.drawn.get('particles ' + block.family).uniforms;
+      const wide = block.sizes ? 0 : diameter.value * pixels.value / renderer.getPixelRatio() / 2;
       const at = [0, 0, 0];
       for (let n = 0; n < block.count; ++n) {
         for (let axis = 0; axis < d; ++axis) at[axis] = block.lower[axis] + codes[n * d + axis] * scale[axis];
@@ -355,7 +358,7 @@ const picture = (() => {
         const right = ((m[0] * at[0] + m[4] * at[1] + m[8] * at[2] + m[12]) / w - to[0]) * width / 2;
         const up = ((m[1] * at[0] + m[5] * at[1] + m[9] * at[2] + m[13]) / w - to[1]) * height / 2;
         const off = Math.hypot(right, up);
-        if (!(off <= near)) continue;
+        if (!(off <= Math.max(near, domain.flat ? wide : wide / w))) continue;
         const deep = (m[2] * at[0] + m[6] * at[1] + m[10] * at[2] + m[14]) / w;
         // Bubbles before liquid; in space what is in front, in a plane what is nearest.
         const rank = [block.sizes ? 0 : 1, domain.flat ? off : deep];
