@@ -46,7 +46,13 @@ const picture = (() => {
 
   const canvas = document.getElementById('canvas');
   const place = document.getElementById('picture');
-  const renderer = new THREE.WebGLRenderer({canvas, antialias: true});
+  // Where the processor draws, smooth edges cost it four times the points in each pixel.
+  const software = (() => {
+    const gl = document.createElement('canvas').getContext('webgl'), told = gl && gl.getExtension('WEBGL_debug_renderer_info');
+    return Boolean(told) && /swiftshader|llvmpipe|software/i.test(gl.getParameter(told.UNMASKED_RENDERER_WEBGL));
+  })();
+  const renderer = new THREE.WebGLRenderer({canvas, antialias: !software});
+  let sharpness = 1;  // pixels that are drawn along a side of a pixel of the screen; fewer where that takes too long
   renderer.setClearColor(0x10151b);
   renderer.localClippingEnabled = true;
   renderer.autoClear = false;
@@ -90,7 +96,7 @@ const picture = (() => {
     dirty = true;
   }
   function resize() {
-    renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    renderer.setPixelRatio(sharpness * Math.min(window.devicePixelRatio, 2));
     renderer.setSize(place.clientWidth, place.clientHeight, false);
     if (!camera) return;
     const {width, height} = part(0);
@@ -389,6 +395,11 @@ const picture = (() => {
     finish_drawing: () => {
       const gl = renderer.getContext();
       gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    },
+    sharpness: () => sharpness,
+    set_sharpness: (share) => {
+      sharpness = share;
+      resize();
     },
     set_size: (factor) => { enlarged = factor; },
     set_planes: (on) => { planes = on; show_again(); },
