@@ -95,7 +95,7 @@ void add_values(nlohmann::json& block, Payload& payload, const double* values, s
   block["values"] = {{"at", at}, {"bits", bits}, {"low", range.low}, {"high", range.high}};
 }
 
-// Particles that are coded at a time: 16 kB of doubles stay in the nearest cache.
+// Particles that are coded at a time.
 constexpr std::size_t coded_at_a_time = 2048;
 
 // The particles of a family that are sent.
@@ -159,12 +159,13 @@ class Selection {
 // Numbers of every particle that become codes: places, a value, a size, a phase.
 class CodeColumns {
  public:
-  CodeColumns(const Selection& selected, Payload& payload) : selected_(selected), payload_(payload) {}
+  CodeColumns(const Selection& selected, Payload& payload, FrameScratch& scratch)
+      : selected_(selected), payload_(payload), gathered_(scratch.gathered) {}
 
   // `bits` 8 or 16; codes from 0 to `top` stand for the range, `odd` for what is not finite.
   void add(const ParticleField& field, int component, std::size_t at, std::size_t offset, std::size_t stride, int bits,
            int top, int odd) {
-    columns_.push_back({&field, component, at, offset, stride, bits, top, odd, {}, {}});
+    columns_.push_back({&field, component, at, offset, stride, bits, top, odd, {}, {}, nullptr});
   }
   // The range that the codes of a column will span, before they are written.
   CodeRange& range(std::size_t column) { return columns_[column].range; }
@@ -173,10 +174,18 @@ class CodeColumns {
   // Both go through the particles once, by blocks that all threads of the run share.
   void measure() {
     const std::size_t blocks = block_count(selected_.size(), coded_at_a_time);
-    for (Column& column : columns_) column.ranges.assign(blocks, {});
+    gathered_.resize(std::max(gathered_.size(), columns_.size()));
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      columns_[c].ranges.assign(blocks, {});
+      gathered_[c].resize(selected_.size());
+    }
     parallel_blocks(selected_.size(), coded_at_a_time, [&](std::size_t block, std::size_t first, std::size_t last) {
-      double buffer[coded_at_a_time];
-      for (Column& column : columns_) column.ranges[block] = range_of(read(column, first, last, buffer), last - first);
+      for (std::size_t c = 0; c < columns_.size(); ++c) {
+        Column& column = columns_[c];
+        const double* const values = read(column, first, last, gathered_[c].data() + first);
+        column.ranges[block] = range_of(values, last - first);
+        if (first == 0) column.values = values;  // the source, or what was gathered of it
+      }
     });
     for (Column& column : columns_) {
       for (const CodeRange& range : column.ranges) column.range.join(range);
@@ -185,10 +194,9 @@ class CodeColumns {
   }
   void write() {
     parallel_blocks(selected_.size(), coded_at_a_time, [&](std::size_t, std::size_t first, std::size_t last) {
-      double buffer[coded_at_a_time];
       for (const Column& column : columns_) {
         const std::size_t place = first * column.stride + column.offset;
-        const double* const values = read(column, first, last, buffer);
+        const double* const values = column.values + first;
         if (column.bits == 8)
           write_codes(values, last - first, column.range, column.top, column.odd,
                       payload_.codes<std::uint8_t>(column.at) + place, column.stride);
@@ -207,6 +215,7 @@ class CodeColumns {
     int bits, top, odd;
     CodeRange range;
     std::vector<CodeRange> ranges;
+    const double* values;
   };
   const double* read(const Column& column, std::size_t first, std::size_t last, double* buffer) const {
     return column.field->f64.empty() ? selected_.read(column.field->i64, column.component, first, last, buffer)
@@ -214,6 +223,7 @@ class CodeColumns {
   }
   const Selection& selected_;
   Payload& payload_;
+  std::vector<std::vector<double>>& gathered_;
   std::vector<Column> columns_;
 };
 
@@ -257,7 +267,7 @@ nlohmann::json particle_block(const ParticleSnapshot& family, std::size_t most, 
   block["dimensions"] = dimensions;
   block["total"] = family.size;
   block["count"] = count;
-  CodeColumns columns(selected, payload);
+  CodeColumns columns(selected, payload, scratch);
 
   // A step that leaves a particle at no finite place is refused, so that nothing stands for one.
   const ParticleField position{"position", family.position, {}};

@@ -31,6 +31,7 @@ namespace spume {
 struct FrameScratch {
   std::vector<std::uint32_t> selected;
   std::vector<double> values;
+  std::vector<std::vector<double>> gathered;  // numbers of particles that do not stand one behind the other, by column
 };
 
 // A particle: the nearest to a place, and from then on that with its identifier.

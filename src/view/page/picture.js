@@ -46,7 +46,13 @@ const picture = (() => {
 
   const canvas = document.getElementById('canvas');
   const place = document.getElementById('picture');
-  const renderer = new THREE.WebGLRenderer({canvas, antialias: true});
+  // Where the processor draws, smooth edges cost it four times the points in each pixel.
+  const software = (() => {
+    const gl = document.createElement('canvas').getContext('webgl'), told = gl && gl.getExtension('WEBGL_debug_renderer_info');
+    return Boolean(told) && /swiftshader|llvmpipe|software/i.test(gl.getParameter(told.UNMASKED_RENDERER_WEBGL));
+  })();
+  const renderer = new THREE.WebGLRenderer({canvas, antialias: !software});
+  let sharpness = 1;  // pixels that are drawn along a side of a pixel of the screen; fewer where that takes too long
   renderer.setClearColor(0x10151b);
   renderer.localClippingEnabled = true;
   renderer.autoClear = false;
@@ -68,8 +74,9 @@ const picture = (() => {
     if (!camera) return;
     const began = performance.now();
     sun.position.copy(camera.position).sub(controls.target);
-    renderer.setScissorTest(true);
+    renderer.setScissorTest(false);
     renderer.clear();
+    renderer.setScissorTest(true);
     sides.forEach((side, k) => {
       const {x, y, width, height} = part(k), pixels = renderer.getPixelRatio() * height;
       renderer.setViewport(x, y, width, height);
@@ -89,7 +96,7 @@ const picture = (() => {
     dirty = true;
   }
   function resize() {
-    renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    renderer.setPixelRatio(sharpness * Math.min(window.devicePixelRatio, 2));
     renderer.setSize(place.clientWidth, place.clientHeight, false);
     if (!camera) return;
     const {width, height} = part(0);
@@ -339,7 +346,7 @@ const picture = (() => {
     });
     const side = sides[k], {x, y, width, height} = part(k);
     const to = [(left - x) / width * 2 - 1, 1 - (top - (place.clientHeight - y - height)) / height * 2];
-    const near = 10;  // pixels
+    const near = 10;  // pixels; what is drawn larger is hit within its own size
     camera.updateMatrixWorld();
     const m = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
     let best = null;
@@ -347,6 +354,8 @@ const picture = (() => {
       if (block.kind !== 'particles' || !side.drawn.get('particles ' + block.family).object.visible) continue;
       const {codes} = block.positions, d = block.dimensions;
       const scale = block.lower.map((low, axis) => (block.upper[axis] - low) / 65535);
+      const {diameter, pixels} = side.drawn.get('particles ' + block.family).uniforms;
+      const wide = block.sizes ? 0 : diameter.value * pixels.value / renderer.getPixelRatio() / 2;
       const at = [0, 0, 0];
       for (let n = 0; n < block.count; ++n) {
         for (let axis = 0; axis < d; ++axis) at[axis] = block.lower[axis] + codes[n * d + axis] * scale[axis];
@@ -355,7 +364,7 @@ const picture = (() => {
         const right = ((m[0] * at[0] + m[4] * at[1] + m[8] * at[2] + m[12]) / w - to[0]) * width / 2;
         const up = ((m[1] * at[0] + m[5] * at[1] + m[9] * at[2] + m[13]) / w - to[1]) * height / 2;
         const off = Math.hypot(right, up);
-        if (!(off <= near)) continue;
+        if (!(off <= Math.max(near, domain.flat ? wide : wide / w))) continue;
         const deep = (m[2] * at[0] + m[6] * at[1] + m[10] * at[2] + m[14]) / w;
         // Bubbles before liquid; in space what is in front, in a plane what is nearest.
         const rank = [block.sizes ? 0 : 1, domain.flat ? off : deep];
@@ -386,6 +395,11 @@ const picture = (() => {
     finish_drawing: () => {
       const gl = renderer.getContext();
       gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    },
+    sharpness: () => sharpness,
+    set_sharpness: (share) => {
+      sharpness = share;
+      resize();
     },
     set_size: (factor) => { enlarged = factor; },
     set_planes: (on) => { planes = on; show_again(); },

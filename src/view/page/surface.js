@@ -142,7 +142,10 @@ const surface = (() => {
     if (!(spacing > 0) || !block.count) return [];
     const phases = block.phases ? 1 + block.phases.codes.reduce((most, phase) => Math.max(most, phase), 0) : 0;
     const wanted = phases > 1 ? [...Array(phases - 1).keys()] : [-1];
-    return wanted.map((phase) => (domain.flat ? in_plane : in_space)(share_of(block, phase, domain, spacing), 0.5));
+    const shapes = wanted.map((phase) => (domain.flat ? in_plane : in_space)(share_of(block, phase, domain, spacing), 0.5));
+    for (const {places} of shapes)
+      for (let n = 0; n < places.length; ++n) places[n] = Math.max(domain.lower[n % 3], Math.min(domain.upper[n % 3], places[n]));
+    return shapes;
   }
   return {field_of, in_space, in_plane, interfaces};
 })();

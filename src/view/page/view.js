@@ -57,7 +57,8 @@ link.on('frame', (frame) => {
   look.frame(frame, played);
   film.frame(frame);
   by_id('shown').replaceChildren(...frame.blocks.filter((block) => block.kind === 'particles').map((block) => {
-    const why = density.automatic() ? `, as many as this browser draws ${density.per_second} times a second` : '';
+    const blunt = picture.sharpness() < 1 ? `, at ${Math.round(100 * picture.sharpness())} % of the resolution` : '';
+    const why = density.automatic() ? `, as many as this browser draws ${density.per_second} times a second${blunt}` : '';
     const thinned = block.count < block.total ? `, ${block.count.toLocaleString('en')} shown${why}` : '';
     return element('div', '', `${block.family}: ${block.total.toLocaleString('en')}${thinned}`);
   }));
@@ -80,15 +81,22 @@ by_id('interface').onchange = set_interface;
 // As many particles as can be drawn thirty times a second; what a picture takes is measured every few pictures, since
 // waiting for its end costs some of the time.
 const density = (() => {
-  const per_second = 30, least = 10000, most = 2000000, between = 5, own = by_id('points');
+  const per_second = 30, least = 10000, few = 100000, bluntest = 0.4, most = 2000000, between = 5, own = by_id('points');
   let pictures = 0, seconds = null;
   picture.after_drawing((began) => {
     if (!automatic() || ++pictures % between) return;
     picture.finish_drawing();
     const took = (performance.now() - began) / 1000;
     seconds = seconds === null ? took : 0.7 * seconds + 0.3 * took;
-    // A third of the time is left to the page.
-    const wanted = Math.max(least, Math.min(most, link.wish.points * (2 / 3) / per_second / seconds));
+    // A third of the time is left to the page. Points that stand for more each are larger, so that most of the time goes
+    // into their pixels: where few points still take too long, fewer pixels are drawn.
+    const share = (2 / 3) / per_second / seconds, sharpness = picture.sharpness();
+    if ((share < 0.75 && link.wish.points <= few && sharpness > bluntest) || (share > 1.5 && sharpness < 1)) {
+      picture.set_sharpness(Math.max(bluntest, Math.min(1, sharpness * Math.sqrt(Math.min(share, 2)))));
+      seconds = null;
+      return;
+    }
+    const wanted = Math.max(least, Math.min(most, link.wish.points * share));
     if (wanted > 0.75 * link.wish.points && wanted < 1.33 * link.wish.points) return;
     // Not in one leap: what was measured was for another number.
     link.wish.points = Math.round(Math.max(link.wish.points / 2, Math.min(link.wish.points * 2, wanted)));
