@@ -88,7 +88,8 @@ void check_scalar_walls(Draft& draft, Problems& problems) {
         problems.add(*node,
                      "there is no scalar '" + given[k].scalar + "'; add a [[scalar]] of that name, or correct it");
     }
-    if (const Node* node = draft.node(place_of(k) + ".side"); node != nullptr && draft.dimensions > 0) {
+    if (const Node* node = draft.node(place_of(k) + ".side");
+        node != nullptr && draft.dimensions > 0 && draft.usable(place_of(k) + ".side")) {
       const auto side = draft.sides.find(given[k].side);
       wall.axis = axis_of(given[k].side, draft.dimensions);
       wall.end = given[k].side == "right" || given[k].side == "back" || given[k].side == "top" ? 1 : 0;
