@@ -296,6 +296,7 @@ TEST(LesSphOxygen, BadInputIsRefusedWithItsPlaceAndAFix) {
   refused(cube + "[biokinetics]\n[[scalar]]\nname = \"S_NX\"\n", "is no component of biokinetics.model");
   refused(cube + "[biokinetics]\ny_h = 1.5\n", "a yield lies between 0 and 1");
   refused(cube + "[biokinetics]\nmu_h = -1\n", "mu_h");
+  refused(cube + "[biokinetics]\n[[scalar]]\nname = \"S_NH\"\ninitial = \"5\"\n", "without S_ALK nothing grows");
   refused(replaced(cube, "[oxygen]", "[oxygen]\nscalar = \"dye\"") + "[biokinetics]\n", "remove the key");
 }
 

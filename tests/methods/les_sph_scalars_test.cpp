@@ -123,5 +123,90 @@ TEST(LesSphScalars, ARestoredRunAndAnyNumberOfThreadsGiveTheSameBits) {
   EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end()));
 }
 
+// Still water between walls left and right, periodic along the others.
+std::string slab(int dimensions) {
+  std::string text = replaced(dimensions == 2 ? still : taylor_green_3d, "x = \"periodic\"",
+                              "left = \"no-slip\"\nright = \"no-slip\"");
+  if (dimensions == 3) text = text.replace(text.find("velocity"), text.find("[time]") - text.find("velocity"), "");
+  return text;
+}
+
+// Conduction between walls of values 0 and 1 from 0 on: x + sum 2 / (n pi) (-1)^n exp(-n^2 pi^2 D t) sin(n pi x), of
+// which the first mode is left. Its rate is off by (pi h)^2 / 8, as in the test of a sine, and by pi^2 D dt / 2 of
+// explicit steps.
+TEST(LesSphScalars, ValuesAtWallsDiffuseIntoTheLiquid) {
+  for (const int dimensions : {2, 3}) {
+    const double diffusivity = 0.02, dt = 0.02, h = 1.3 * (dimensions == 2 ? 0.025 : 0.1);
+    Simulation run(with_scalar(slab(dimensions), "0", "diffusivity = 0.02\n") +
+                   "[[scalar_wall]]\nscalar = \"dye\"\nside = \"left\"\nvalue = \"0\"\n"
+                   "[[scalar_wall]]\nscalar = \"dye\"\nside = \"right\"\nvalue = \"1\"\n");
+    run.steps(300, dt);
+    const les_sph::Flow& flow = run.method.flow();
+    const double t = 300 * dt;
+    double error = 0;
+    for (std::size_t i = 0; i < flow.size(); ++i) {
+      const double x = (*flow.particles.position[0])[i];
+      double exact = x;
+      for (int n = 1; n < 40; ++n)
+        exact +=
+            2 / (n * pi) * (n % 2 == 0 ? 1 : -1) * std::exp(-n * n * pi * pi * diffusivity * t) * std::sin(n * pi * x);
+      error = std::max(error, std::abs(flow.scalars->values(0)[i] - exact));
+    }
+    const double decay = pi * pi * diffusivity;
+    const double first_mode = 2 / pi * std::exp(-decay * t) * decay * t;
+    EXPECT_LT(error, (std::pow(pi * h, 2) / 8 + decay * dt / 2) * first_mode) << dimensions;
+    const Range after = range(*flow.scalars);
+    EXPECT_GE(after.least, 0);
+    EXPECT_LE(after.largest, 1);
+    EXPECT_NEAR(run.series()["walls_gave_dye"], run.series()["amount_of_dye"], 1e-12);
+  }
+}
+
+// A flux brings its amount: on a lattice exactly, of rounding in the positions. What it brings keeps a parabola.
+TEST(LesSphScalars, AFluxThroughAWallBringsItsAmount) {
+  Simulation run(with_scalar(slab(2), "0", "diffusivity = 0.5\n") +
+                 "[[scalar_wall]]\nscalar = \"dye\"\nside = \"right\"\nflux = \"0.3*t\"\n");
+  run.steps(50, 0.02);
+  EXPECT_NEAR(run.series()["amount_of_dye"], 0.3 / 2, 1e-6);
+  EXPECT_NEAR(run.series()["walls_gave_dye"], run.series()["amount_of_dye"], 1e-12);
+}
+
+TEST(LesSphScalars, WallsThatAreNoneAreRefused) {
+  const auto refused = [](const std::string& wall, const std::string& message) {
+    const auto problems = problems_of(with_scalar(slab(2), "0") + "[[scalar_wall]]\n" + wall);
+    EXPECT_TRUE(std::any_of(problems.begin(), problems.end(), [&](const std::string& text) {
+      return text.find(message) != std::string::npos;
+    })) << message;
+  };
+  refused("scalar = \"dye\"\nside = \"left\"\n", "neither of flux and value");
+  refused("scalar = \"dye\"\nside = \"left\"\nflux = \"1\"\nvalue = \"1\"\n", "both of flux and value");
+  refused("scalar = \"die\"\nside = \"left\"\nflux = \"1\"\n", "no scalar 'die'");
+  refused("scalar = \"dye\"\nside = \"top\"\nflux = \"1\"\n", "is no wall");
+  refused("scalar = \"dye\"\nside = \"front\"\nflux = \"1\"\n", "is no wall");
+}
+
+// A Gaussian blob in a fluid that turns as a rigid body spreads as it does at rest: sigma^2 + 2 D t, its centre turns.
+TEST(LesSphScalars, AGaussianTurnsAndSpreads) {
+  Simulation run(with_scalar(square_patch, "exp(-((x - 0.15)^2 + y^2)/(2*0.1^2))", "diffusivity = 0.004\n"));
+  while (run.method.time() < 0.5) run.steps(1, std::min(run.method.step_limit().dt, 0.5 - run.method.time() + 1e-12));
+  const les_sph::Flow& flow = run.method.flow();
+  double amount = 0, spread = 0;
+  std::array<double, 2> centre{};
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    const double c = flow.scalars->values(0)[i];
+    amount += c;
+    for (std::size_t a = 0; a < 2; ++a) centre[a] += c * (*flow.particles.position[a])[i];
+  }
+  for (double& x : centre) x /= amount;
+  for (std::size_t i = 0; i < flow.size(); ++i)
+    for (std::size_t a = 0; a < 2; ++a)
+      spread += flow.scalars->values(0)[i] * std::pow((*flow.particles.position[a])[i] - centre[a], 2) / amount / 2;
+  const double t = flow.time, exact = 0.1 * 0.1 + 2 * 0.004 * t;
+  // Two spacings resolve the radius: 20 across the patch, whose velocity is held to some per cent.
+  EXPECT_NEAR(spread / exact, 1, 0.05);
+  EXPECT_NEAR(std::hypot(centre[0], centre[1]), 0.15, 0.01);
+  EXPECT_NEAR(std::atan2(-centre[1], centre[0]), t, 0.05);
+}
+
 }  // namespace
 }  // namespace spume::test

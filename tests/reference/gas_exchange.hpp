@@ -39,7 +39,7 @@ inline GasExchange gas_exchange(const les_sph::Flow& flow, double length, double
       concentration += weight[i] * flow.oxygen->dissolved()[i];
     }
     const oxygen::Exchange exchange =
-        oxygen::exchange(gas, {(*bubbles.oxygen)[b], (*bubbles.inert)[b]}, (*bubbles.volume)[b],
+        oxygen::exchange(gas, {(*bubbles.oxygen)[b], (*bubbles.inert)[b]}, bubbles.radius(b),
                          (*bubbles.next_position[2])[b], 0, concentration / sum, dt);
     result.given += exchange.given;
     for (std::size_t i = 0; i < flow.size(); ++i)

@@ -147,6 +147,8 @@ TEST(BubbleSections, RefuseNegativeAndAbsurdRates) {
   EXPECT_THAT(texts(plain, sparger, {"sparger.0.rate=\"1 - 2*t\""}),
               ElementsAre(HasSubstr("rate must be a number >= 0 at all times")));
   EXPECT_THAT(texts(plain, sparger, {"sparger.0.rate=\"1\""}), ElementsAre(HasSubstr("more than the liquid holds")));
+  // What rises leaves: a tank may be aerated for long.
+  EXPECT_THAT(texts(plain, sparger, {"sparger.0.rate=\"0.002\"", "time.end=2000"}), ElementsAre());
   EXPECT_THAT(texts(plain, sparger, {"sparger.0.rate=\"0.1\"", "sparger.0.bubble_radius=1e-5"}),
               ElementsAre(HasSubstr("lower the rate or enlarge bubble_radius")));
   EXPECT_THAT(texts(plain, "[[bubble_cloud]]\nupper = [1, 1, 0.5]\nnumber = 10000\nbubble_radius = 0.05\n"),

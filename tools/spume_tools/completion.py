@@ -13,8 +13,8 @@ from pathlib import Path
 from .places import CASES
 
 # Sections that may stand several times in a case: --set names one of them by its number.
-REPEATED = ("solid", "scalar", "body", "liquid", "phase", "region", "wavemaker", "sponge", "inflow", "outflow", "sparger", "bubble_cloud",
-            "probe")
+REPEATED = ("solid", "scalar", "scalar_wall", "body", "liquid", "phase", "region", "wavemaker", "sponge", "inflow", "outflow", "sparger",
+            "bubble_cloud", "probe")
 # What an argument is, by its name in the help: a case, a section of `spume options`, a folder, a file, a key of --set.
 KINDS = {"case": "case", "cases": "case", "section": "section", "dir": "folder", "file": "file", "--set": "key",
          "--output": "folder", "--keep": "folder"}

@@ -87,7 +87,9 @@ Flow::Flow(const LoadedCase& loaded_case)
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
   if (features.eddy_viscosity)
     closure = std::make_unique<turbulence::EddyViscosity>(particles, options.get<TurbulenceOptions>());
-  if (features.scalars) scalars = std::make_unique<Scalars>(particles, resolution, options.get<ScalarOptions>());
+  if (features.scalars)
+    scalars =
+        std::make_unique<Scalars>(particles, resolution, options.get<ScalarOptions>(), options.get<ScalarWalls>());
   if (features.oxygen) oxygen = std::make_unique<oxygen::Oxygen>(*scalars, particles, resolution, options, scene);
   if (features.biokinetics) sludge = std::make_unique<biokinetics::Sludge>(*scalars, options.get<BiokineticsOptions>());
   if (features.bubbles) {

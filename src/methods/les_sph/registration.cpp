@@ -9,6 +9,7 @@
 #include "spume/physics/bubbles/options.hpp"
 #include "spume/physics/oxygen/options.hpp"
 #include "spume/physics/scalars/options.hpp"
+#include "spume/physics/scalars/walls.hpp"
 #include "spume/physics/turbulence/options.hpp"
 #include "spume/scene/document.hpp"
 
@@ -17,8 +18,9 @@ namespace {
 
 std::vector<Section> sections() {
   std::vector<Section> all = bubble_sections();
-  all.insert(all.end(), {turbulence_section(), pressure_section(), shifting_section(), surface_section(),
-                         scheme_section(), scalar_section(), oxygen_section(), biokinetics_section()});
+  all.insert(all.end(),
+             {turbulence_section(), pressure_section(), shifting_section(), surface_section(), scheme_section(),
+              scalar_section(), scalar_wall_section(), oxygen_section(), biokinetics_section()});
   return all;
 }
 
@@ -69,6 +71,7 @@ void check(Draft& draft, Problems& problems) {
   check_scalars(draft, fields, problems);
   check_oxygen(draft, problems);
   check_biokinetics(draft, problems);
+  check_scalar_walls(draft, problems);
   check_walls_of_bodies(draft, problems);
   if (draft.node("bubbles") && draft.dimensions != 2 && draft.node("pressure.solver") &&
       draft.options.get<PressureOptions>().solver == PressureSolver::cg)

@@ -385,6 +385,9 @@ std::int64_t Flow::transport_scalars(double dt) {
   return scalars->transport(dt, {.arrangement = arrangement,
                                  .moments = moments,
                                  .eddy_viscosity = eddy_viscosity(),
+                                 .places = particles.position,
+                                 .walls = boundary.walls,
+                                 .time = time - dt,
                                  .shift = features.shift_correction ? shift->displacement : FloatVectorField{},
                                  .interior = [this](std::size_t i) -> double {
                                    return surface != nullptr ? surface->interior_weight[i]

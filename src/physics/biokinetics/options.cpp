@@ -2,6 +2,7 @@
 #include "spume/physics/biokinetics/options.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "spume/physics/oxygen/options.hpp"
 #include "spume/physics/scalars/options.hpp"
@@ -29,6 +30,15 @@ void refuse_unknown_components(const Draft& draft, const std::vector<std::string
     problems.add(*node, "'" + scalars[k].name + "' is no component of biokinetics.model = \"asm1\", which has " + list +
                             "; rename it, a tracer begins with other letters");
   }
+}
+
+// Both have half-saturations here: left out, sludge would rest without a word.
+void refuse_missing_nutrients(const Draft& draft, const Node& section, Problems& problems) {
+  const std::vector<ScalarOption>& scalars = draft.options.get<ScalarOptions>().scalars;
+  for (const auto& [name, usual] : {std::pair{"S_NH", "2 to 30 g/m3"}, {"S_ALK", "4 to 7 mol/m3"}})
+    if (std::none_of(scalars.begin(), scalars.end(), [&](const ScalarOption& one) { return one.name == name; }))
+      problems.add(section, std::string("without ") + name + " nothing grows; add  [[scalar]]  with  name = \"" + name +
+                                "\"  and its value at the start, " + usual);
 }
 
 void complete_parameters(const Draft& draft, BiokineticsOptions& options, Problems& problems) {
@@ -112,6 +122,7 @@ void check_biokinetics(Draft& draft, Problems& problems) {
   complete_parameters(draft, options, problems);
   const std::vector<std::string> components = biokinetics::asm1_model({}).components;
   refuse_unknown_components(draft, components, problems);
+  refuse_missing_nutrients(draft, *section, problems);
   options.scalars.clear();
   for (const std::string& name : components) {
     ScalarOption component;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "spume/physics/biokinetics/sludge.hpp"
 
-#include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 
 namespace spume::biokinetics {
@@ -19,7 +18,9 @@ Sludge::Sludge(Scalars& scalars, const BiokineticsOptions& options)
     : scalars_(scalars),
       options_(options),
       integrator_(asm1_model(options.parameters), options.tolerance),
-      values_(options.scalars.size()) {}
+      values_(options.scalars.size()) {
+  saved_.add(pending_).add(uptake_).add(rate_).add(steps_);
+}
 
 void Sludge::react(double dt) {
   pending_ += dt;
@@ -48,21 +49,6 @@ void Sludge::add_columns(SeriesTable& series) const {
   series.add("oxygen_uptake", "g, by the reactions since the start", [this] { return uptake_; });
   series.add("oxygen_uptake_rate", "g/m3/h, mean over the liquid", [this] { return rate_; });
   series.add("reaction_steps", "1, per particle in the last reaction", [this] { return steps_; });
-}
-
-void Sludge::save(StateWriter& writer) const {
-  const double numbers[] = {pending_, uptake_, rate_, steps_};
-  writer.f64("biokinetics", numbers);
-}
-
-void Sludge::load(StateReader& reader) {
-  Array<double> numbers;
-  reader.f64("biokinetics", numbers);
-  if (numbers.size() != 4) throw FileError("the checkpoint's reactions are of another version");
-  pending_ = numbers[0];
-  uptake_ = numbers[1];
-  rate_ = numbers[2];
-  steps_ = numbers[3];
 }
 
 }  // namespace spume::biokinetics

@@ -58,6 +58,23 @@ bool three_entries(const Draft& draft, const std::string& name, const std::vecto
   return false;
 }
 
+// Of the gas that a source releases by the end, the least that is in the liquid at once: below a free surface that of
+// the time in which its bubbles rise by themselves from the bottom to the top of the liquid.
+double share_in_liquid(const Draft& draft, const Scene& scene, const Sparger& sparger) {
+  const double end = draft.options.time.end;
+  const bubbles::Gas gas{.density_ratio = draft.options.get<BubbleOptions>().density_ratio,
+                         .viscosity = scene.fluid.kinematic_viscosity,
+                         .gravity = scene.fluid.gravity};
+  double gravity2 = 0;
+  for (const double g : gas.gravity) gravity2 += g * g;
+  if (!scene.free_surface || !(gravity2 > 0) || !(gas.viscosity > 0) || !(gas.density_ratio > 1)) return 1;
+  const auto [lowest, highest] =
+      std::minmax_element(scene.particles.position[2].begin(), scene.particles.position[2].end());
+  if (lowest == scene.particles.position[2].end()) return 1;
+  const double rise = (*highest - *lowest + scene.spacing) / bubbles::terminal_speed(gas, sparger.sizes.mean);
+  return std::min(1.0, rise / end);
+}
+
 bool inside(const Draft& draft, const std::string& name, const std::vector<double>& values, Problems& problems) {
   if (!three_entries(draft, name, values, problems) || draft.dimensions != 3) return false;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -292,9 +309,10 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
     }
     if (!good) continue;
     const double smallest = bubbles::volume_of(sparger.sizes.mean);
-    if (gas > volume)
-      problems.add(*node, name + ".rate releases " + brief(gas) + " of gas by the end, more than the liquid holds, " +
-                              brief(volume) + ": check its unit, length3/time");
+    if (const double held = gas * share_in_liquid(draft, scene, sparger); held > volume)
+      problems.add(*node, name + ".rate brings " + brief(held) +
+                              " of gas into the liquid at once, more than the liquid holds, " + brief(volume) +
+                              ": check its unit, length3/time");
     else if (gas / smallest > most_bubbles)
       problems.add(*node, name + ".rate releases " + brief(gas / smallest) + " bubbles by the end; at most " +
                               brief(most_bubbles) + " are possible: lower the rate or enlarge bubble_radius");

@@ -253,7 +253,8 @@ void BubbleCoupling::move_bubble(std::size_t b, double dt) {
   next_slip_[b] = std::sqrt(resolved_slip2);
   // Sato & Sekoguchi, King (2.23) with the units of nu.
   record_of[6] = static_cast<float>(options_.viscosity_constant * volume * 2 * radius * std::sqrt(slip2));
-  record_of[7] = exchanges_gas() && sum > 0 ? dissolve(b, std::sqrt(slip2), dt) / static_cast<float>(sum) : 0.0F;
+  record_of[7] =
+      exchanges_gas() && sum > 0 ? dissolve(b, radius, std::sqrt(slip2), dt) / static_cast<float>(sum) : 0.0F;
   dissipation_[b] = here[dissipation_at];
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 
 namespace spume::oxygen {
@@ -27,6 +26,7 @@ Oxygen::Oxygen(Scalars& scalars, const ParticleStore& particles, const Resolutio
       gas_(gas_of(options, scene.fluid.density, scene.fluid.kinematic_viscosity,
                   std::max(0.0, -scene.fluid.gravity[static_cast<std::size_t>(scene.domain.dimensions - 1)]),
                   highest(scene))) {
+  saved_.add(from_surface_).add(surface_area_);
   if (options_.surface_k_l > 0)
     layer_area_ = resolution.spacing * resolution.spacing /
                   lattice_surface(3, resolution.kernel, resolution.smoothing_ratio)[0].normal;
@@ -90,19 +90,6 @@ void Oxygen::add_columns(SeriesTable& series, const bubbles::BubbleCoupling* bub
     const double feed = bubbles->oxygen_feed();
     return feed > 0 ? standard_capacity(bubbles->transfer_capacity()) / feed : 0;
   });
-}
-
-void Oxygen::save(StateWriter& writer) const {
-  const double numbers[] = {from_surface_, surface_area_};
-  writer.f64("oxygen", numbers);
-}
-
-void Oxygen::load(StateReader& reader) {
-  Array<double> numbers;
-  reader.f64("oxygen", numbers);
-  if (numbers.size() != 2) throw FileError("the checkpoint's oxygen is of another version");
-  from_surface_ = numbers[0];
-  surface_area_ = numbers[1];
 }
 
 }  // namespace spume::oxygen

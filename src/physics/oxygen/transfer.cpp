@@ -54,24 +54,23 @@ double Gas::pressure(double height) const {
 }
 
 double Gas::solubility(double pressure) const {
-  const double vapour = vapour_pressure(temperature);
   return saturation * (pressure - vapour) / ((atmosphere - vapour) * oxygen_of_air);
 }
 
 double Gas::moles(double volume, double height) const {
-  return volume * (pressure(height) - vapour_pressure(temperature)) / (gas_constant * (temperature + melting_point));
+  return volume * (pressure(height) - vapour) / (gas_constant * (temperature + melting_point));
 }
 
 double Gas::volume(double moles, double height) const {
-  return moles * gas_constant * (temperature + melting_point) / (pressure(height) - vapour_pressure(temperature));
+  return moles * gas_constant * (temperature + melting_point) / (pressure(height) - vapour);
 }
 
-Exchange exchange(const Gas& gas, const Contents& before, double volume, double height, double slip,
+Exchange exchange(const Gas& gas, const Contents& before, double radius, double height, double slip,
                   double concentration, double dt) {
   Exchange result{.after = before};
   const double total = before.oxygen + before.inert;
   if (!(total > 0)) return result;
-  const double diameter = std::cbrt(6 * volume / std::numbers::pi), area = std::numbers::pi * diameter * diameter;
+  const double diameter = 2 * radius, area = std::numbers::pi * diameter * diameter;
   const double k =
       gas.factor * transfer_coefficient(
                        gas.coefficient,

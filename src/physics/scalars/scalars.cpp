@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
@@ -35,13 +36,19 @@ double least(const Array<double>& values, std::size_t n) {
 
 }  // namespace
 
-Scalars::Scalars(ParticleStore& particles, const Resolution& resolution, const ScalarOptions& options)
+Scalars::Scalars(ParticleStore& particles, const Resolution& resolution, const ScalarOptions& options,
+                 const ScalarWalls& walls)
     : particles_(particles),
       options_(options),
       bulk_(resolution.lattice.divergence_of_position),
       rate_(options.scalars.size()),
       change_(options.scalars.size()),
-      added_(options.scalars.size()) {
+      added_(options.scalars.size()),
+      walls_(walls),
+      wall_profile_(walls.walls.empty() ? nullptr : std::make_unique<const WallProfile>(resolution)),
+      wall_change_(walls.walls.size()),
+      nearest_to_wall_(resolution.spacing / 4),
+      from_walls_(options.scalars.size()) {
   const std::size_t count = options.scalars.size();
   packed_ = {std::vector<const double*>(count), std::vector<double>(count), std::vector<float>(count),
              std::vector<float>(count),         std::vector<float*>(count), std::vector<float*>(count)};
@@ -81,6 +88,53 @@ void Scalars::add_sources(double t, double dt, const VectorField& places) {
                                            return sum;
                                          },
                                          [](double a, double b) { return a + b; });
+  }
+}
+
+// Of particle i beside a wall with a value: what it takes of the difference per time. Nearer than a quarter of a
+// spacing it is that at a quarter.
+double Scalars::wall_rate(const ScalarWall& wall, const Carrier& carrier, std::size_t i) const {
+  const double distance = distance_from(wall, carrier, i), share = (*wall_profile_)(distance);
+  if (!(share > 0)) return 0;
+  const ScalarOption& scalar = option(wall.scalar);
+  const double eddy = carrier.eddy_viscosity == nullptr ? 0 : (*carrier.eddy_viscosity)[i];
+  return share * (scalar.diffusivity + eddy / scalar.turbulent_schmidt) / std::max(distance, nearest_to_wall_);
+}
+
+double Scalars::distance_from(const ScalarWall& wall, const Carrier& carrier, std::size_t i) const {
+  const auto axis = static_cast<std::size_t>(wall.axis);
+  return std::abs((*carrier.places[axis])[i] - carrier.walls[axis][static_cast<std::size_t>(wall.end)]);
+}
+
+// From the values before diffusion: together they balance where both do.
+void Scalars::find_wall_changes(double t, double dt, const Carrier& carrier) {
+  for (std::size_t k = 0; k < walls_.walls.size(); ++k) {
+    const ScalarWall& wall = walls_.walls[k];
+    const double* values = fields_[wall.scalar]->data();
+    wall_change_[k].resize(particles_.size());
+    double* change = wall_change_[k].data();
+    const Expression& given = wall.flux != nullptr ? *wall.flux : *wall.value;
+    parallel_blocks(particles_.size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+      const std::unique_ptr<Expression> own = given.clone();
+      for (std::size_t i = first; i < last; ++i) {
+        const double share = (*wall_profile_)(distance_from(wall, carrier, i));
+        change[i] = 0;
+        if (!(share > 0)) continue;
+        const Vec3 r = vector_at(carrier.places, particles_.dimensions, i);
+        const double here = (*own)(r[0], r[1], r[2], t + dt / 2);
+        change[i] = wall.flux != nullptr ? dt * share * here : dt * wall_rate(wall, carrier, i) * (here - values[i]);
+      }
+    });
+  }
+}
+
+void Scalars::apply_wall_changes() {
+  for (std::size_t k = 0; k < walls_.walls.size(); ++k) {
+    double* values = fields_[walls_.walls[k].scalar]->data();
+    const double* change = wall_change_[k].data();
+    parallel_for(particles_.size(), [=](std::size_t i) { values[i] += change[i]; });
+    from_walls_[walls_.walls[k].scalar] +=
+        particles_.volume * parallel_sum(particles_.size(), [=](std::size_t i) { return change[i]; });
   }
 }
 
@@ -192,9 +246,9 @@ void Scalars::apply(double dt, bool shifted) {
 std::int64_t Scalars::transport(double dt, const Carrier& carrier) {
   substeps_ = 0;
   const bool shifted = carrier.shift[0] != nullptr;
-  const bool diffuses =
-      carrier.eddy_viscosity != nullptr || std::any_of(options_.scalars.begin(), options_.scalars.end(),
-                                                       [](const ScalarOption& one) { return one.diffusivity > 0; });
+  const bool diffuses = carrier.eddy_viscosity != nullptr || !walls_.walls.empty() ||
+                        std::any_of(options_.scalars.begin(), options_.scalars.end(),
+                                    [](const ScalarOption& one) { return one.diffusivity > 0; });
   if (particles_.size() == 0 || !(shifted || diffuses)) return 0;
   lease();
   const Array<float>& div_r = *carrier.moments.divergence_of_position;
@@ -204,13 +258,19 @@ std::int64_t Scalars::transport(double dt, const Carrier& carrier) {
     interior_[i] = shifted ? static_cast<float>(carrier.interior(i)) : 0;
   });
   sweep(carrier, shifted);
-  const double exchange = parallel_max(particles_.size(), 0.0, [&](std::size_t i) { return double{exchange_[i]}; });
+  const double exchange = parallel_max(particles_.size(), 0.0, [&](std::size_t i) {
+    double most = 0;
+    for (const ScalarWall& wall : walls_.walls)
+      if (wall.value != nullptr) most = std::max(most, wall_rate(wall, carrier, i));
+    return exchange_[i] + most;
+  });
   substeps_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(dt * exchange / largest_exchange)));
   const double part = dt / static_cast<double>(substeps_);
-  apply(part, shifted);
-  for (std::int64_t k = 1; k < substeps_; ++k) {
-    sweep(carrier, false);
-    apply(part, false);
+  for (std::int64_t k = 0; k < substeps_; ++k) {
+    if (k > 0) sweep(carrier, false);
+    find_wall_changes(carrier.time + static_cast<double>(k) * part, part, carrier);
+    apply(part, k == 0 && shifted);
+    apply_wall_changes();
   }
   release();
   return substeps_;
@@ -226,6 +286,9 @@ void Scalars::add_columns(SeriesTable& series) const {
   for (std::size_t s = 0; s < size(); ++s)
     if (option(s).source != nullptr)
       series.add("source_of_" + option(s).name, "amount, added since the start", [this, s] { return added_[s]; });
+  for (std::size_t s = 0; s < size(); ++s)
+    if (std::any_of(walls_.walls.begin(), walls_.walls.end(), [s](const ScalarWall& w) { return w.scalar == s; }))
+      series.add("walls_gave_" + option(s).name, "amount, since the start", [this, s] { return from_walls_[s]; });
   series.add("scalar_substeps", "1, into which diffusion divided the last step",
              [this] { return static_cast<double>(substeps_); });
 }
@@ -236,13 +299,16 @@ void Scalars::add_fields(SnapshotTable& snapshot) const {
 
 void Scalars::save(StateWriter& writer) const {
   writer.f64("scalar_sources", added_);
+  writer.f64("scalar_walls", from_walls_);
 }
 
 void Scalars::load(StateReader& reader) {
-  Array<double> added;
-  reader.f64("scalar_sources", added);
-  if (added.size() != added_.size()) throw FileError("the checkpoint holds other scalars than the case");
-  std::copy(added.begin(), added.end(), added_.begin());
+  Array<double> saved;
+  for (auto [name, values] : {std::pair{"scalar_sources", &added_}, {"scalar_walls", &from_walls_}}) {
+    reader.f64(name, saved);
+    if (saved.size() != values->size()) throw FileError("the checkpoint holds other scalars than the case");
+    std::copy(saved.begin(), saved.end(), values->begin());
+  }
 }
 
 void add_scalar_fields(const ScalarOptions& options, std::vector<OutputFieldInfo>& infos) {

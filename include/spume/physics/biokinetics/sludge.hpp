@@ -18,8 +18,8 @@ class Sludge {
 
   // Columns: uptake of oxygen, steps of the reactions.
   void add_columns(SeriesTable& series) const;
-  void save(StateWriter& writer) const;
-  void load(StateReader& reader);
+  void save(StateWriter& writer) const { saved_.save(writer); }
+  void load(StateReader& reader) { saved_.load(reader); }
 
  private:
   Scalars& scalars_;
@@ -29,6 +29,7 @@ class Sludge {
   double pending_ = 0;            // seconds that have not reacted
   double uptake_ = 0, rate_ = 0;  // g of oxygen since the start; g/m^3/h of the last reaction
   double steps_ = 0;              // per particle, of the last reaction
+  SavedNumbers saved_{"biokinetics"};
 };
 
 }  // namespace spume::biokinetics

@@ -155,7 +155,7 @@ class BubbleCoupling {
   bool exchanges_gas() const { return carrier_.gas != nullptr; }
   void pack_dissolved();
   void interpolate_dissolved(const CrossSearch::Found& found, float share, std::size_t b);
-  float dissolve(std::size_t b, double slip, double dt);
+  float dissolve(std::size_t b, double radius, double slip, double dt);
   void sum_gas();
   void accept_gas();
   void fill_new_bubbles(double fraction);

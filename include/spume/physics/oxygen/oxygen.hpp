@@ -34,8 +34,8 @@ class Oxygen {
 
   // Columns; `bubbles`: null without.
   void add_columns(SeriesTable& series, const bubbles::BubbleCoupling* bubbles) const;
-  void save(StateWriter& writer) const;
-  void load(StateReader& reader);
+  void save(StateWriter& writer) const { saved_.save(writer); }
+  void load(StateReader& reader) { saved_.load(reader); }
 
  private:
   double standard_capacity(double capacity) const;
@@ -46,6 +46,7 @@ class Oxygen {
   const Gas gas_;
   double layer_area_ = 0;                       // dr^2 / |m_0|
   double from_surface_ = 0, surface_area_ = 0;  // g since the start; of the last step
+  SavedNumbers saved_{"oxygen"};
 };
 
 }  // namespace spume::oxygen

@@ -41,7 +41,8 @@ struct Gas {
   double fraction = oxygen_of_air;  // of oxygen in dry gas that enters
   double weight = 0;                // rho g
   double level = 0;                 // height of the surface
-  bool shrinks = false;             // volumes follow from the amounts of gas
+  double vapour = vapour_pressure(temperature);
+  bool shrinks = false;  // volumes follow from the amounts of gas
 
   double pressure(double height) const;
   // Saturation per mole fraction of oxygen in dry gas, (3).
@@ -67,7 +68,7 @@ struct Exchange {
   double conductance = 0;  // k_L A
   double capacity = 0;     // k_L A c*: what water without oxygen would be given, g/s
 };
-Exchange exchange(const Gas& gas, const Contents& before, double volume, double height, double slip,
+Exchange exchange(const Gas& gas, const Contents& before, double radius, double height, double slip,
                   double concentration, double dt);
 
 }  // namespace spume::oxygen

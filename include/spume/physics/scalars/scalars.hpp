@@ -21,6 +21,7 @@
 #include "spume/particles/reports.hpp"
 #include "spume/particles/resolution.hpp"
 #include "spume/physics/scalars/options.hpp"
+#include "spume/physics/scalars/walls.hpp"
 #include "spume/scene/method_declaration.hpp"
 
 namespace spume {
@@ -28,16 +29,21 @@ namespace spume {
 class Scalars {
  public:
   // Adds a field of state, "scalar_<name>", per scalar. Both outlive it.
-  Scalars(ParticleStore& particles, const Resolution& resolution, const ScalarOptions& options);
+  Scalars(ParticleStore& particles, const Resolution& resolution, const ScalarOptions& options,
+          const ScalarWalls& walls);
 
   struct Carrier {
     Arrangement& arrangement;
     const MomentFields& moments;
-    const Array<float>* eddy_viscosity = nullptr;      // null: none
-    FloatVectorField shift{};                          // of the step; null: none
-    std::function<double(std::size_t)> interior = {};  // factor of the change by the shift, 0 to 1; read with one
+    const Array<float>* eddy_viscosity = nullptr;       // null: none
+    const VectorField& places;                          // of the particles
+    const std::array<std::array<double, 2>, 3>& walls;  // sides at [axis][end]
+    double time = 0;                                    // at the start of the step
+    FloatVectorField shift{};                           // of the step; null: none
+    std::function<double(std::size_t)> interior = {};   // factor of the change by the shift, 0 to 1; read with one
   };
-  // Diffusion over dt and the change by the shift, at the positions of the lists. Returns the number of sweeps.
+  // Diffusion over dt, what walls give and the change by the shift, at the positions of the lists. Returns the number
+  // of sweeps.
   std::int64_t transport(double dt, const Carrier& carrier);
 
   // Sources over dt from time t on, at the places of the particles: what they add counts to added().
@@ -59,7 +65,8 @@ class Scalars {
   // Parts into which diffusion divided the last step.
   std::int64_t substeps() const { return substeps_; }
 
-  // Columns "amount_of_<name>", "source_of_<name>" with a source, and "scalar_substeps".
+  // Columns "amount_of_<name>", "source_of_<name>" and "walls_gave_<name>" with a source and walls, and
+  // "scalar_substeps".
   void add_columns(SeriesTable& series) const;
   void add_fields(SnapshotTable& snapshot) const;
   void save(StateWriter& writer) const;
@@ -68,6 +75,10 @@ class Scalars {
  private:
   void sweep(const Carrier& carrier, bool shifted);
   void apply(double dt, bool shifted);
+  double distance_from(const ScalarWall& wall, const Carrier& carrier, std::size_t i) const;
+  double wall_rate(const ScalarWall& wall, const Carrier& carrier, std::size_t i) const;
+  void find_wall_changes(double t, double dt, const Carrier& carrier);
+  void apply_wall_changes();
   void lease();
   void release();
 
@@ -85,6 +96,11 @@ class Scalars {
   } packed_;
   std::int64_t substeps_ = 0;
   std::vector<double> added_;  // per scalar: by its source since the start
+  const ScalarWalls& walls_;
+  std::unique_ptr<const WallProfile> wall_profile_;  // null without walls
+  std::vector<Array<double>> wall_change_;           // per wall, of a part of a step
+  double nearest_to_wall_;
+  std::vector<double> from_walls_;  // per scalar, since the start
 };
 
 // The output fields of scalars behind those of the method.
