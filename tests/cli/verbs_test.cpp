@@ -351,5 +351,16 @@ TEST_F(Verbs, CasesThatCameWithTheProgramAreFoundByName) {
   unsetenv("SPUME_HOME");
 }
 
+TEST_F(Verbs, ViewSaysWhatItCannotShow) {
+  const auto none = spume({"view", (folder_ / "none").string()});
+  EXPECT_EQ(none.code, exit_input);
+  EXPECT_THAT(none.err, HasSubstr("is not there"));
+  const auto empty = spume({"view", folder_.path().string()});
+  EXPECT_EQ(empty.code, exit_input);
+  EXPECT_THAT(empty.err, HasSubstr("holds no states"));
+  EXPECT_EQ(spume({"view"}).code, exit_input);
+  EXPECT_EQ(spume({"view", "a", "b", "c"}).code, exit_input);
+}
+
 }  // namespace
 }  // namespace spume

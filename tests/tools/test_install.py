@@ -4,6 +4,7 @@ import os
 import subprocess
 import tempfile
 import unittest
+import urllib.request
 from pathlib import Path
 
 import paths
@@ -55,6 +56,15 @@ class Program(Installation):
                                "print(results.Results('vortices').spacing, results.__file__)"], cwd=self.work, check=True, text=True,
                               capture_output=True, env=os.environ | {"PYTHONPATH": str(self.share / "tools")})
         self.assertEqual(read.stdout.split(), ["0.1", str(self.share / "tools" / "spume_tools" / "results" / "__init__.py")])
+
+    def test_shows_results_in_a_browser(self):
+        self.spume("run", "taylor_green_2d", "--quiet", "--until", "0.01", "--set", "resolution.spacing=0.1", "-o", "seen")
+        with subprocess.Popen([self.prefix / "bin" / "spume", "view", "seen"], cwd=self.work, stdout=subprocess.PIPE, text=True) as program:
+            address = program.stdout.readline().split()[-1]
+            with urllib.request.urlopen(address) as page:
+                self.assertIn(b"<!doctype html>", page.read())
+            program.terminate()
+            self.assertEqual(program.wait(), 0)
 
     def test_scales_of_bubbles_are_those_of_the_case(self):
         self.spume("run", "surface_approach", "--quiet", "--until", "0.001", "-o", "approach")
