@@ -42,9 +42,8 @@ Section oxygen_section() {
   using O = OxygenOptions;
   using oxygen::Coefficient;
   return section<O>("oxygen")
-      .option("scalar", &O::scalar,
-              "name of the [[scalar]] that is dissolved oxygen, in g/m3, added if there is none; with "
-              "[biokinetics] it is S_O")
+      .option("scalar", &O::scalar, "name of the [[scalar]] that is dissolved oxygen, in g/m3, added if there is none")
+      .absent("oxygen, with [biokinetics] S_O")
       .option("temperature", &O::temperature, "degrees C", between(0, 40), "temperature of the water")
       .option("salinity", &O::salinity, "g/kg", between(0, 40), "salinity of the water")
       .option("air_pressure", &O::air_pressure, "Pa", between(3e4, 1.2e5), "pressure of the air above the surface")
