@@ -11,6 +11,7 @@
 #include "spume/core/vectors.hpp"
 #include "spume/operators/moving_least_squares.hpp"
 #include "spume/particles/near_particles.hpp"
+#include "spume/particles/surface_pieces.hpp"
 
 namespace spume {
 namespace {
@@ -19,27 +20,6 @@ namespace {
 constexpr double on_surface = 0.25;
 // Of the sum of all weights: what pins the fit of a velocity to that of a no-slip surface.
 constexpr double pinned = 10;
-
-using Corners = std::array<Vec3, 3>;
-
-void split(const Corners& c, double longest, std::vector<Corners>& out) {
-  std::size_t edge = 0;
-  double size = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double own = length(subtract(c[(k + 1) % 3], c[k]));
-    if (own > size) {
-      size = own;
-      edge = k;
-    }
-  }
-  if (size <= longest) {
-    out.push_back(c);
-    return;
-  }
-  const Vec3 a = c[edge], b = c[(edge + 1) % 3], far = c[(edge + 2) % 3], middle = multiply(0.5, add(a, b));
-  split({a, middle, far}, longest, out);
-  split({middle, b, far}, longest, out);
-}
 
 // Elements of a body in one cell of a spacing that face one way, as one: facets of a shape are often slivers, 61
 // for a square of a spacing around a cylinder, and each would take a fit. Their areas add up; their middle is the mean.
@@ -82,43 +62,10 @@ BodyForces::BodyForces(const Scene& scene, const Resolution& resolution, const B
 void BodyForces::add_elements(std::int32_t b) {
   const Body& body = scene_.bodies[static_cast<std::size_t>(b)];
   const double spacing = resolution_.spacing, sign = body.inside != body.subtract ? 1 : -1;
-  Bounds window{scene_.domain.lower, scene_.domain.upper};
-  if (body.motion) {
-    // What is outside the domain now may come in.
-    const double diagonal = length(subtract(window.upper, window.lower));
-    for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
-      window.lower[axis] -= diagonal;
-      window.upper[axis] += diagonal;
-    }
-  }
   const RigidWalls& walls = walls_.part_of(static_cast<std::size_t>(b));
-  const TriangleSurface surface = body.shape->surface(window, 0.5 * spacing);
   std::vector<Element> found;
-  if (scene_.domain.dimensions == 3) {
-    std::vector<Corners> pieces;
-    for (const auto& triangle : surface.triangles) {
-      Corners corners{};
-      for (std::size_t k = 0; k < 3; ++k) corners[k] = surface.points[static_cast<std::size_t>(triangle[k])];
-      split(corners, spacing, pieces);
-    }
-    for (const Corners& c : pieces)
-      found.push_back({multiply(1.0 / 3, add(c[0], add(c[1], c[2]))),
-                       multiply(0.5 * sign, cross(subtract(c[1], c[0]), subtract(c[2], c[0]))), b});
-  } else {
-    // The edges that belong to one triangle alone go around the shape, counter-clockwise.
-    std::map<std::pair<std::int32_t, std::int32_t>, int> edges;
-    for (const auto& triangle : surface.triangles)
-      for (std::size_t k = 0; k < 3; ++k) ++edges[{triangle[k], triangle[(k + 1) % 3]}];
-    for (const auto& [edge, count] : edges) {
-      if (edges.contains({edge.second, edge.first})) continue;
-      const Vec3 from = surface.points[static_cast<std::size_t>(edge.first)],
-                 way = subtract(surface.points[static_cast<std::size_t>(edge.second)], from);
-      const double pieces = std::max(1.0, std::ceil(length(way) / spacing));
-      for (double k = 0; k < pieces; ++k)
-        found.push_back(
-            {add(from, multiply((k + 0.5) / pieces, way)), {sign * way[1] / pieces, -sign * way[0] / pieces}, b});
-    }
-  }
+  for (const SurfacePiece& piece : surface_pieces(scene_.domain, body, spacing))
+    found.push_back({piece.middle, multiply(sign, piece.area), b});
   // Facets lie within a curved surface: their areas are made those of the volume of the shape, and their middles lie on
   // it. The half of a spacing that facets have is off by 0.6 % of the volume of a ball of four spacings radius.
   double volume = 0;

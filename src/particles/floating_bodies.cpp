@@ -25,6 +25,13 @@ RigidPlace turned_on(RigidPlace place, double dt) {
   return place;
 }
 
+std::vector<double> multiply_square(const std::vector<double>& matrix, const std::vector<double>& x) {
+  std::vector<double> result(x.size(), 0);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (std::size_t j = 0; j < x.size(); ++j) result[i] += matrix[i * x.size() + j] * x[j];
+  return result;
+}
+
 Vec3 along(int axis) {
   Vec3 direction{};
   direction[axis] = 1;
@@ -87,7 +94,11 @@ class FloatingBodies::Coupled final : public ProjectionMatrix {
 };
 
 FloatingBodies::FloatingBodies(const Scene& scene, const Resolution& resolution, BodyWalls& walls, bool centred)
-    : scene_(scene), walls_(walls), forces_(scene, resolution, walls), centred_(centred) {
+    : scene_(scene),
+      walls_(walls),
+      forces_(scene, resolution, walls),
+      centred_(centred),
+      contacts_at_(scene, resolution, walls) {
   for (std::size_t m = 0; m < scene.motions.size(); ++m) {
     const BodyMotion& motion = scene.motions[m];
     if (!motion.floats) continue;
@@ -108,13 +119,15 @@ FloatingBodies::FloatingBodies(const Scene& scene, const Resolution& resolution,
 FloatingBodies::~FloatingBodies() = default;
 
 void FloatingBodies::advance(double dt) {
+  // An impact gives its speed whole, however long the step after it: a fifth of a step would give it by 60 %.
+  const double half = (step_of_impact_ > 0 ? step_of_impact_ : dt) / 2;
   step_ = dt;
   next_ = now_;
   for (State& state : next_) {
     RigidPlace& place = state.place;
     if (centred_) {
-      place.velocity = add(place.velocity, multiply(dt / 2, state.acceleration));
-      place.angular_velocity = add(place.angular_velocity, multiply(dt / 2, state.angular_acceleration));
+      place.velocity = add(place.velocity, multiply(half, state.acceleration));
+      place.angular_velocity = add(place.angular_velocity, multiply(half, state.angular_acceleration));
     }
     place.position = add(place.position, multiply(dt, place.velocity));
     place = turned_on(place, dt);
@@ -132,8 +145,10 @@ void FloatingBodies::place_walls() {
 }
 
 ProjectionMatrix& FloatingBodies::couple(ProjectionSolver& solver, const PressureRows& rows, Arrangement& arrangement,
-                                         ParticleStore& particles, const Liquid& liquid) {
+                                         ParticleStore& particles, const Liquid& liquid,
+                                         const BodyContacts::Surroundings& surroundings) {
   set_forces(liquid);
+  set_contacts(surroundings);
   set_columns(solver, rows, arrangement, particles);
   coupled_ = std::make_unique<Coupled>(*this, solver.bind(rows, arrangement.context, arrangement.packed));
   return *coupled_;
@@ -232,17 +247,86 @@ void FloatingBodies::set_columns(ProjectionSolver& solver, const PressureRows& r
   }
 }
 
-template <class T>
-std::vector<double> FloatingBodies::accelerations(std::span<const T> q, bool given) const {
+void FloatingBodies::add_row(const BodyContact& contact, std::size_t motion, double sign, std::span<double> row,
+                             double& speed) const {
+  for (std::size_t k = 0; k < freedoms_.size(); ++k) {
+    const auto [body, axis] = freedoms_[k];
+    if (motions_[body] != motion) continue;
+    const Vec3 arm = nearest_arm(scene_.domain, subtract(contact.point, next_[body].place.position));
+    row[k] += sign * (axis < 3 ? contact.normal[axis] : cross(arm, contact.normal)[axis - 3]);
+  }
+  for (std::size_t body = 0; body < motions_.size(); ++body) {
+    if (motions_[body] != motion) continue;
+    const RigidPlace& place = next_[body].place;
+    const Vec3 arm = nearest_arm(scene_.domain, subtract(contact.point, place.position));
+    speed += sign * dot(contact.normal, add(place.velocity, cross(place.angular_velocity, arm)));
+  }
+}
+
+// The velocity u + dt a of the next step is held to n . u >= -room / dt. What lies too near is set apart no faster than
+// gravity takes back within a step.
+void FloatingBodies::set_contacts(const BodyContacts::Surroundings& surroundings) {
   const std::size_t count = freedoms_.size();
-  std::vector<double> force(count, 0), result(count, 0);
+  const double weight = length(scene_.fluid.gravity);
+  contacts_ = contacts_at_.find(surroundings, step_);
+  limits_ = {count, {}, {}};
+  closing_.clear();
+  limits_.row.resize(contacts_.size() * count, 0);
+  held_.clear();
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const BodyContact& contact = contacts_[c];
+    const std::span<double> row(&limits_.row[c * count], count);
+    double speed = contact.given_speed;
+    if (contact.of_point) add_row(contact, *contact.of_point, 1, row, speed);
+    if (contact.of_other) add_row(contact, *contact.of_other, -1, row, speed);
+    double limit = 0;
+    if (step_ > 0) {
+      double slowest = contact.room >= 0 ? -contact.room / step_ : std::min(-contact.room / step_, weight * step_);
+      if (speed < 0 && contact.room + step_ * speed < 0) slowest = std::max(slowest, -contact.restitution * speed);
+      limit = (slowest - speed) / step_;
+    } else if (contact.room > 0) {
+      limit = -infinite;  // at the start bodies are at rest
+    }
+    limits_.limit.push_back(limit);
+    closing_.push_back(speed);
+    if (std::find(touching_.begin(), touching_.end(), contact.key) == touching_.end()) continue;
+    held_.push_back(c);
+    if (!independent(inverse_mass_, limits_, held_)) held_.pop_back();
+  }
+  held_change_ = holding(inverse_mass_, limits_, held_);
+  rounds_ = 0;
+}
+
+bool FloatingBodies::contacts_change(std::span<const double> q) {
+  constexpr int most_rounds = 10;
+  if (contacts_.empty()) return false;
+  const std::vector<double> force = forces(q, true);
+  if (is_nearest(inverse_mass_, force, limits_, held_, accelerations(q, true))) return false;
+  std::vector<std::size_t> held = nearest_within(inverse_mass_, multiply_square(inverse_mass_, force), limits_).held;
+  std::sort(held.begin(), held.end());
+  if (held == held_) return false;
+  held_ = std::move(held);
+  held_change_ = holding(inverse_mass_, limits_, held_);
+  return ++rounds_ < most_rounds;
+}
+
+template <class T>
+std::vector<double> FloatingBodies::forces(std::span<const T> q, bool given) const {
+  const std::size_t count = freedoms_.size();
+  std::vector<double> force(count, 0);
   if (given) force = given_force_;
   for (std::size_t e = 0; e < particle_.size(); ++e) {
     const double value = q[static_cast<std::size_t>(particle_[e])];
     for (std::size_t k = 0; k < count; ++k) force[k] += force_[e * count + k] * value;
   }
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t j = 0; j < count; ++j) result[i] += inverse_mass_[i * count + j] * force[j];
+  return force;
+}
+
+template <class T>
+std::vector<double> FloatingBodies::accelerations(std::span<const T> q, bool given) const {
+  std::vector<double> result = multiply_square(held_change_.change, forces(q, given));
+  if (given)
+    for (std::size_t k = 0; k < result.size(); ++k) result[k] += held_change_.given[k];
   return result;
 }
 
@@ -273,7 +357,20 @@ void FloatingBodies::accept(double dt) {
   }
   now_ = next_;
   step_ = 0;
+  touching_.clear();
+  step_of_impact_ = 0;
+  for (const std::size_t c : held_) {
+    touching_.push_back(contacts_[c].key);
+    // Faster than what gravity adds while a body lies there.
+    if (closing_[c] < -2 * length(scene_.fluid.gravity) * dt) step_of_impact_ = dt;
+  }
   place_walls();
+}
+
+double FloatingBodies::largest_speed() const {
+  double largest = 0;
+  for (const std::size_t motion : motions_) largest = std::max(largest, contacts_at_.largest_speed(motion));
+  return largest;
 }
 
 void FloatingBodies::save(StateWriter& writer) const {
@@ -286,6 +383,10 @@ void FloatingBodies::save(StateWriter& writer) const {
       values.insert(values.end(), vector->begin(), vector->end());
   }
   writer.f64("floating_bodies", values);
+  std::vector<std::int64_t> touching;
+  for (const BodyContact::Key& key : touching_) touching.insert(touching.end(), {key.point, key.other});
+  writer.i64("touching_bodies", touching);
+  writer.f64("step_of_impact", std::span(&step_of_impact_, 1));
 }
 
 void FloatingBodies::load(StateReader& reader) {
@@ -300,6 +401,13 @@ void FloatingBodies::load(StateReader& reader) {
                          &place.angular_velocity, &state.acceleration, &state.angular_acceleration})
       for (double& value : *vector) value = values[at++];
   }
+  Array<std::int64_t> touching;
+  reader.i64("touching_bodies", touching);
+  touching_.clear();
+  for (std::size_t k = 0; k + 1 < touching.size(); k += 2) touching_.push_back({touching[k], touching[k + 1]});
+  reader.f64("step_of_impact", values);
+  if (values.size() != 1) throw FileError("the checkpoint has no length of a step with an impact");
+  step_of_impact_ = values[0];
   next_ = now_;
   step_ = 0;
   place_walls();

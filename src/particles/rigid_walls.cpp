@@ -159,6 +159,18 @@ NearestPoint RigidWalls::nearest(const Vec3& point) const {
   return found;
 }
 
+std::optional<Vec3> RigidWalls::foremost(const Vec3& point, const Vec3& direction, double size, double about) const {
+  const Vec3 at = place.start(point), way = rotated_back(place.rotation, direction);
+  // What is nearest to a place far away reaches farthest to it: of a ball of radius r the share r / (r + far) of the
+  // way to there is missed.
+  const Vec3 found = walls_.nearest(add(at, multiply(100 * size, way))).point;
+  if (length(subtract(found, at)) < about) return place.now(found);
+  // Something else reaches farther; the point may still do so beside its neighbours.
+  const Vec3 beside = walls_.nearest(add(at, multiply(about, way))).point;
+  if (length(subtract(beside, at)) < 1e-6 * about) return point;
+  return std::nullopt;
+}
+
 bool RigidWalls::now(std::size_t point, WallPoint& found) const {
   found = points_[point];
   if (motion_ == nullptr) return true;

@@ -103,7 +103,8 @@ class CheckMotion {
                               to_toml_string(body_.moves_with) +
                               (best.empty() ? "" : "; did you mean \"" + best + "\"?"));
     }
-    for (const char* key : {"displacement", "angle", "motion", "axis", "pivot", "mass", "density", "inertia", "free"})
+    for (const char* key :
+         {"displacement", "angle", "motion", "axis", "pivot", "mass", "density", "inertia", "free", "restitution"})
       if (const Node* own = given(key))
         problems_.add_key(*own, name_ + "." + key + " is that of the body it moves with; remove it here");
   }
@@ -128,7 +129,7 @@ class CheckMotion {
       if (body_.axis.size() == 3 && std::all_of(body_.axis.begin(), body_.axis.end(), [](double x) { return x == 0; }))
         problems_.add(*axis, name_ + ".axis must not be zero");
     }
-    for (const char* key : {"inertia", "free"})
+    for (const char* key : {"inertia", "free", "restitution"})
       if (const Node* node = given(key))
         problems_.add_key(*node, name_ + "." + key + " is for bodies that float; remove it, or give mass or density");
   }
@@ -280,6 +281,7 @@ class MakeMotion {
       solid.volume = exact;
     }
     if (given_.pivot.empty()) motion_.pivot = solid.centroid;
+    motion_.restitution = given_.restitution.value_or(0);
     motion_.mass = given_.mass ? *given_.mass : *given_.density * solid.volume;
     if (given_.inertia.empty()) {
       const double density = motion_.mass / solid.volume;

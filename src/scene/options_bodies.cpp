@@ -84,6 +84,9 @@ Section body_section() {
               "\"turn_y\", "
               "\"turn_z\" in 3-D")
       .absent("all")
+      .option("restitution", &B::restitution, "1", between(0, 1),
+              "of a floating body that hits a wall or another body: speed apart over speed of approach")
+      .absent("0: it does not bounce")
       .whole_only(uses_particles);
 }
 

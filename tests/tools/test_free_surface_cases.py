@@ -42,6 +42,28 @@ class StillWater(CaseTest):
         self.assertAlmostEqual(measured["mass_error"], 4e-6)
 
 
+class Weir(CaseTest):
+    def errors(self, head=0.1, q=0.060091):
+        folder, module = self.run_of("weir")
+        t = np.linspace(0, 3, 151)
+        write_table(folder / "probes.csv", {"t": t, "level": np.where(t < 2, 0.35, 0.2 + head)})
+        write_table(folder / "series.csv", series_of(t, volume_out=np.where(t < 2, 0.0, q * t)))
+        return module.measure({"run": Results(folder)})
+
+    def test_the_formula_has_no_error_and_another_head_has_one(self):
+        measured = self.errors()
+        self.assertLess(measured["run_discharge_error"], 1e-4)
+        self.assertLess(measured["run_outflow_error"], 1e-9)
+        # H^1.5, and 0.0415 of 0.6435 in C_d.
+        self.assertAlmostEqual(self.errors(head=0.102)["run_discharge_error"], 0.02 * (1.5 + 0.0415 / 0.6435), places=3)
+        self.assertAlmostEqual(self.errors(q=0.0606919)["run_outflow_error"], 0.01, places=5)
+
+    def test_the_table_is_the_formula(self):
+        _, module = self.run_of("weir")
+        for head, height, q in zip(*(module.TABLE[name] for name in ("H", "P", "q"))):
+            self.assertAlmostEqual(module.discharge(head, height), q, places=6)
+
+
 class CentralForceDrop(CaseTest):
     def errors(self, stretch=0.0, gain=0.0, strain=0.5):
         folder, module = self.run_of("central_force_drop")

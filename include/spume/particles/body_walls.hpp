@@ -26,6 +26,9 @@ class BodyWalls {
   void set_place(std::size_t motion, const RigidPlace& place, const RigidPlace& behind, const RigidPlace& ahead);
   // Of bodies that move as one.
   const RigidWalls& moving(std::size_t motion) const { return *parts_[motion + 1]; }
+  // What stands still, and each motion of the scene.
+  std::size_t parts() const { return parts_.size(); }
+  const RigidWalls& part(std::size_t k) const { return *parts_[k]; }
   // What the surface of a body is part of.
   const RigidWalls& part_of(std::size_t body) const {
     const auto& motion = scene_.bodies[body].motion;

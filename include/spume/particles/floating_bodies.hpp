@@ -17,14 +17,26 @@
 // Comput. Methods Appl. Mech. Engrg. 194 (2005)).
 //
 // Bodies are stepped as particles are: with centring, velocities half a step apart from places.
+//
+// Contacts (particles/body_contacts.hpp) are limits J a >= l of the accelerations, met by forces J^T lambda, lambda >=
+// 0, without friction. Those held as equalities change m^-1 and add what is given, so that the liquid feels an impact
+// in the pressure of the step in which it happens:
+//
+//   a = W (F_0 + C q) + a_c,   W = m^-1 - m^-1 N^T (N m^-1 N^T)^-1 N m^-1,   a_c = m^-1 N^T (N m^-1 N^T)^-1 l.
+//
+// Which are held is what the bodies alone would do under the forces of the solution (Gauss's principle of least
+// constraint); the pressure is solved for again until both agree, a primal-dual active set (Hintermueller, Ito and
+// Kunisch, SIAM J. Optim. 13 (2002)).
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "spume/core/saved_state.hpp"
+#include "spume/particles/body_contacts.hpp"
 #include "spume/particles/body_forces.hpp"
 #include "spume/particles/projection_solver.hpp"
+#include "spume/solvers/limited_change.hpp"
 
 namespace spume {
 
@@ -46,10 +58,17 @@ class FloatingBodies {
   };
   // The matrix with the bodies in it, for a right-hand side without them. Binds that of the solver to the rows.
   ProjectionMatrix& couple(ProjectionSolver& solver, const PressureRows& rows, Arrangement& arrangement,
-                           ParticleStore& particles, const Liquid& liquid);
+                           ParticleStore& particles, const Liquid& liquid,
+                           const BodyContacts::Surroundings& surroundings);
+  // Whether under the pressure found other contacts hold than the matrix has; it then has those.
+  bool contacts_change(std::span<const double> q);
   // Of the solution; adds to the pressures behind walls what they bring.
   void find_accelerations(std::span<const double> q, std::span<double> image_pressure);
   void accept(double dt);
+  double largest_speed() const;  // a bound of those of their surfaces
+  // Of the last step, if bodies met in it, else 0. A longer one after it would add to the impact, as accelerations last
+  // until the middle of the next step.
+  double step_of_impact() const { return step_of_impact_; }
 
   void save(StateWriter& writer) const;
   void load(StateReader& reader);
@@ -68,7 +87,13 @@ class FloatingBodies {
   void set_forces(const Liquid& liquid);
   void set_columns(ProjectionSolver& solver, const PressureRows& rows, Arrangement& arrangement,
                    ParticleStore& particles);
-  // m^-1 (F_0 + C q), or without F_0.
+  void set_contacts(const BodyContacts::Surroundings& surroundings);
+  // n . u of the relative velocity of a contact, as a row over the freedoms and as it is.
+  void add_row(const BodyContact& contact, std::size_t motion, double sign, std::span<double> row, double& speed) const;
+  // F_0 + C q, or without F_0.
+  template <class T>
+  std::vector<double> forces(std::span<const T> q, bool given) const;
+  // W times them, with a_c where what is given counts.
   template <class T>
   std::vector<double> accelerations(std::span<const T> q, bool given) const;
 
@@ -81,7 +106,16 @@ class FloatingBodies {
   double step_ = 0;
   std::vector<Freedom> freedoms_;
   std::vector<double> inverse_mass_;  // square, over freedoms
-  std::vector<double> given_force_;   // F_0
+  BodyContacts contacts_at_;
+  std::vector<BodyContact> contacts_;  // of the step
+  Limits limits_;                      // of them
+  std::vector<double> closing_;        // their n . u before the step
+  std::vector<std::size_t> held_;      // in the matrix
+  HeldChange held_change_;             // W, a_c
+  int rounds_ = 0;
+  std::vector<BodyContact::Key> touching_;  // those held at the end of the last step
+  double step_of_impact_ = 0;
+  std::vector<double> given_force_;  // F_0
   // C: the force per unit q, by particle.
   std::vector<std::int32_t> particle_;
   std::vector<double> force_;                  // an entry for each freedom

@@ -31,6 +31,9 @@ class RigidWalls {
   double exact_distance(const Vec3& point) const { return walls_.distance(start(point)); }
   bool surely_farther(const Vec3& point, double gap) const;
   NearestPoint nearest(const Vec3& point) const;
+  // Of the surface within `about` of one of its points, which moves as the walls do, the place that reaches farthest
+  // along a direction, if there is one. `size`: of the walls.
+  std::optional<Vec3> foremost(const Vec3& point, const Vec3& direction, double size, double about) const;
   // Of the point of the body that is now there.
   Vec3 velocity_behind(const Vec3& point) const { return behind.velocity_at(behind.now(start(point))); }
   Vec3 velocity_ahead(const Vec3& point) const { return ahead.velocity_at(ahead.now(start(point))); }

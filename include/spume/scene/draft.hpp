@@ -60,7 +60,7 @@ struct BodyDraft {
   std::optional<ExpressionText> angle;
   std::string motion, moves_with;
   std::vector<double> axis, pivot, inertia;
-  std::optional<double> mass, density;
+  std::optional<double> mass, density, restitution;
   std::vector<std::string> free;
 };
 

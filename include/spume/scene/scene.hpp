@@ -92,6 +92,7 @@ struct BodyMotion {
   double mass = 0;
   RotationMatrix inertia{};         // about the pivot, at the start
   Vec3 free_along{}, free_about{};  // 1 or 0 per axis
+  double restitution = 0;           // of an impact: speed apart over speed of approach
   bool turns() const { return floats ? free_about != Vec3{} : angle != nullptr; }
 };
 

@@ -19,11 +19,11 @@ void Flow::pack_beside_bodies() {
 void Flow::make_images(double dt) {
   // u^{n+1/2} becomes u^{n+3/2}; without centring u^n becomes u^{n+1}.
   const double behind = options.get<SchemeOptions>().centred ? dt / 2 : 0;
-  WallTimes times{.place = time + dt, .velocity = time + behind, .ahead = time + dt + behind};
+  wall_times = {.place = time + dt, .velocity = time + behind, .ahead = time + dt + behind};
   // The start takes the acceleration right after it, over a time that is short beside any motion that a run resolves.
   if (const double soon = 1e-6 * options.time.end; dt == 0)
-    times = {.place = time, .velocity = time + soon, .ahead = time + 2 * soon};
-  boundary.make_images(arrangement, particles, intermediate_position, sizes.largest_length_ratio, times);
+    wall_times = {.place = time, .velocity = time + soon, .ahead = time + 2 * soon};
+  boundary.make_images(arrangement, particles, intermediate_position, sizes.largest_length_ratio, wall_times);
 }
 
 void Flow::find_neighbours(double dt) {

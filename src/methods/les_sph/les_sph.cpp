@@ -90,8 +90,8 @@ void LesSph::remark_bodies_that_collide() {
   collided_ = true;
   char text[240];
   std::snprintf(text, sizeof text,
-                "the body '%s' goes through a wall or another body at t = %.4g: floating bodies do not collide; make "
-                "room for it, or hold it with free",
+                "the body '%s' goes through a wall or another body at t = %.4g: bodies that overlap at the start do "
+                "not touch; move them apart, or hold it with free",
                 flow_.scene.bodies[*body].name.c_str(), flow_.time);
   remarks_.push_back({text, false});
 }
@@ -147,10 +147,13 @@ StepLimit LesSph::step_limit() const {
   acceleration2 = std::max(acceleration2, flow_.largest_body_force * flow_.largest_body_force);
   // From rest the speed that the force gives over one smoothing length stands in for the largest speed, and beside a
   // moving wall that of the wall.
-  const double speed =
-      std::max({flow_.speeds.limiting, flow_.boundary.wall_speed, std::sqrt(std::sqrt(acceleration2) * h)});
+  const double speed = std::max({flow_.speeds.limiting, flow_.boundary.wall_speed,
+                                 flow_.floating == nullptr ? 0.0 : flow_.floating->largest_speed(),
+                                 std::sqrt(std::sqrt(acceleration2) * h)});
   SmallestStep step;
   if (speed > 0) step.bound(options.courant * h / speed, "courant");
+  if (flow_.floating != nullptr && flow_.floating->step_of_impact() > 0)
+    step.bound(flow_.floating->step_of_impact(), "impact");
   // Spray does not count to that speed, but a step that takes any particle across half its support is refused.
   if (flow_.speeds.largest > 0)
     step.bound(spray_stride * flow_.arrangement.grid.support_radius() / flow_.speeds.largest, "spray");

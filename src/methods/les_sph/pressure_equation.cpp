@@ -210,9 +210,13 @@ void Flow::solve(const char* name) {
                                     .pressure = pressure->data(),
                                     .particle_volume = particles.volume,
                                     .dynamic_viscosity = density() * viscosity()};
-    ProjectionMatrix& matrix = floating->couple(solver, rows, arrangement, particles, {fields, density(), potential});
-    rows.reference_norm = std::hypot(rows.reference_norm, given_norm(matrix, particles));
-    solver.solve(rows, matrix, particles, *reduced_pressure);
+    ProjectionMatrix& matrix = floating->couple(solver, rows, arrangement, particles, {fields, density(), potential},
+                                                {boundary.next_walls, wall_times.ahead});
+    const double norm = rows.reference_norm;
+    do {
+      rows.reference_norm = std::hypot(norm, given_norm(matrix, particles));
+      solver.solve(rows, matrix, particles, *reduced_pressure);
+    } while (floating->contacts_change(*reduced_pressure));
     floating->find_accelerations(*reduced_pressure, boundary.image_pressure());
   } else {
     PressureOperator& matrix = solver.bind(rows, arrangement.context, arrangement.packed);

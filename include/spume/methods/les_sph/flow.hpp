@@ -105,6 +105,7 @@ struct Flow {
   std::unique_ptr<oxygen::Oxygen> oxygen;              // null: none
   std::unique_ptr<biokinetics::Sludge> sludge;         // null: none
   std::unique_ptr<FloatingBodies> floating;            // null: none; its places are state
+  WallTimes wall_times;                                // of the step
 
   // --- Leased within a step: by the stage that writes one until the stage that reads it last.
   std::array<Array<float>, 9> velocity_gradient;

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// Where bodies that float may touch walls of the domain, other bodies or each other within a step.
+//
+// Points of the surface of one body are asked for their distance from another. A distance g with the normal n, out of
+// the other, holds the relative velocity u of the point to
+//
+//   n . u >= -(g - clearance) / dt.
+//
+// The clearance is a spacing: no fewer than one layer of particles stands for the liquid between two bodies, and what a
+// layer thinner than that would do to its particles is no flow. Bodies that start nearer to each other keep that
+// distance; those that overlap at the start, as hinged ones, pass through each other.
+#pragma once
+
+#include <compare>
+#include <vector>
+
+#include "spume/particles/body_walls.hpp"
+
+namespace spume {
+
+struct BodyContact {
+  // A point of the surface of a part of the walls (BodyWalls), and another part or, from `parts` on, a side.
+  struct Key {
+    std::int64_t point = 0, other = 0;
+    auto operator<=>(const Key&) const = default;
+  };
+  Key key;
+  // Motions of both; none: given.
+  std::optional<std::size_t> of_point, of_other;
+  Vec3 point{}, normal{};  // now
+  double room = 0;         // distance less the clearance
+  double given_speed = 0;  // n . u of those that are given, as they move on
+  double restitution = 0;  // of both
+};
+
+class BodyContacts {
+ public:
+  // The walls stand where they do at the start, and outlive this.
+  BodyContacts(const Scene& scene, const Resolution& resolution, const BodyWalls& walls);
+
+  using Sides = std::array<std::array<double, 2>, 3>;  // of the domain, by axis and side
+  struct Surroundings {
+    Sides walls{};
+    double ahead = 0;  // time of the velocities that bodies are to have
+  };
+  // Of all points that may come as near as the clearance within `dt`, where accelerations take them no farther than a
+  // spacing.
+  std::vector<BodyContact> find(const Surroundings& surroundings, double dt) const;
+
+  // A bound of the speeds of the surface of a motion.
+  double largest_speed(std::size_t motion) const { return largest_speed_of(motion + 1); }
+
+ private:
+  struct Point {
+    Vec3 start{};
+    std::size_t part = 0;
+  };
+  bool floats(std::size_t part) const { return part > 0 && scene_.motions[part - 1].floats; }
+  const RigidWalls& walls_of(std::size_t part) const { return walls_.part(part); }
+  void gather_points();
+  void set_clearances();
+  Vec3 now(const Point& point) const;
+  double restitution(std::size_t part) const;
+  double largest_speed_of(std::size_t part) const;
+  double& clearance(std::size_t part, std::size_t other) { return clearance_[part * others_ + other]; }
+  double clearance(std::size_t part, std::size_t other) const { return clearance_[part * others_ + other]; }
+  bool may_touch(std::size_t part, std::size_t other) const;
+  // Of a point from another part or side; beyond `reach` it may be infinite.
+  double distance(std::size_t other, const Sides& sides, const Vec3& at, double reach) const;
+  Vec3 normal(std::size_t other, const Vec3& at) const;
+  Vec3 in_domain(std::size_t other, Vec3 at) const;
+
+  const Scene& scene_;
+  const Resolution& resolution_;
+  const BodyWalls& walls_;
+  std::size_t parts_ = 0, others_ = 0;
+  std::vector<Point> points_;
+  std::vector<double> radius_;     // of each part about its pivot
+  std::vector<double> clearance_;  // of each part from each other and from sides; negative: they do not touch
+};
+
+}  // namespace spume

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/body_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "spume/core/parallel.hpp"
+#include "spume/core/periodic_grid.hpp"
+#include "spume/core/vectors.hpp"
+#include "spume/particles/boundary.hpp"
+#include "spume/particles/surface_pieces.hpp"
+
+namespace spume {
+namespace {
+
+// Spacings: what lies deeper in the walls, or farther from them, is no part of their surface.
+constexpr double touching = 1e-3;
+
+}  // namespace
+
+BodyContacts::BodyContacts(const Scene& scene, const Resolution& resolution, const BodyWalls& walls)
+    : scene_(scene),
+      resolution_(resolution),
+      walls_(walls),
+      parts_(walls.parts()),
+      others_(parts_ + 6),
+      radius_(parts_, 0) {
+  gather_points();
+  set_clearances();
+}
+
+void BodyContacts::gather_points() {
+  for (const Body& body : scene_.bodies) {
+    if (body.wall == BoundaryKind::open) continue;
+    const std::size_t part = body.motion ? *body.motion + 1 : 0;
+    std::set<Vec3> known;
+    for (const SurfacePiece& piece : surface_pieces(scene_.domain, body, resolution_.spacing))
+      for (std::size_t k = 0; k < static_cast<std::size_t>(scene_.domain.dimensions); ++k) {
+        const Vec3& corner = piece.corner[k];
+        if (!known.insert(corner).second) continue;
+        if (std::abs(walls_of(part).exact_distance(corner)) > touching * resolution_.spacing) continue;
+        points_.push_back({corner, part});
+        if (part > 0) radius_[part] = std::max(radius_[part], length(subtract(corner, scene_.motions[part - 1].pivot)));
+      }
+  }
+}
+
+// Of those that start nearer to each other than a spacing what they start with.
+void BodyContacts::set_clearances() {
+  const double spacing = resolution_.spacing;
+  clearance_.assign(parts_ * others_, spacing);
+  Sides sides{};
+  for (int axis = 0; axis < 3; ++axis) sides[axis] = {scene_.domain.lower[axis], scene_.domain.upper[axis]};
+  for (const Point& point : points_)
+    for (std::size_t other = 0; other < others_; ++other) {
+      if (!may_touch(point.part, other)) continue;
+      const double start = distance(other, sides, point.start, spacing);
+      double& own = clearance(point.part, other);
+      if (start < -touching * spacing) own = -1;
+      if (own >= 0) own = std::min(own, std::max(0.0, start));
+    }
+  for (std::size_t a = 0; a < parts_; ++a)
+    for (std::size_t b = 0; b < a; ++b) clearance(a, b) = clearance(b, a) = std::min(clearance(a, b), clearance(b, a));
+}
+
+Vec3 BodyContacts::now(const Point& point) const {
+  return point.part == 0 ? point.start : walls_of(point.part).place.now(point.start);
+}
+
+double BodyContacts::restitution(std::size_t part) const {
+  return floats(part) ? scene_.motions[part - 1].restitution : 1;
+}
+
+double BodyContacts::largest_speed_of(std::size_t part) const {
+  if (part == 0 || part >= parts_) return 0;
+  const RigidPlace& place = floats(part) ? walls_of(part).place : walls_of(part).ahead;
+  return length(place.velocity) + length(place.angular_velocity) * radius_[part];
+}
+
+double BodyContacts::distance(std::size_t other, const Sides& sides, const Vec3& at, double reach) const {
+  if (other >= parts_) {
+    const std::size_t axis = (other - parts_) / 2, side = (other - parts_) % 2;
+    return side == 0 ? at[axis] - sides[axis][0] : sides[axis][1] - at[axis];
+  }
+  const Vec3 seen = in_domain(other, at);
+  return walls_of(other).surely_farther(seen, reach) ? infinite : walls_of(other).distance(seen);
+}
+
+Vec3 BodyContacts::normal(std::size_t other, const Vec3& at) const {
+  if (other < parts_) return walls_of(other).nearest(in_domain(other, at)).normal;
+  Vec3 normal{};
+  normal[(other - parts_) / 2] = (other - parts_) % 2 == 0 ? 1 : -1;
+  return normal;
+}
+
+// What stands still is known in the domain.
+Vec3 BodyContacts::in_domain(std::size_t other, Vec3 at) const {
+  const Domain& domain = scene_.domain;
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    if (other == 0 && domain.periodic(axis))
+      at[axis] = wrap_periodic(at[axis], domain.lower[axis], domain.upper[axis] - domain.lower[axis]);
+  return at;
+}
+
+bool BodyContacts::may_touch(std::size_t part, std::size_t other) const {
+  if (other >= parts_) {
+    const auto axis = static_cast<int>((other - parts_) / 2), side = static_cast<int>((other - parts_) % 2);
+    return floats(part) && axis < scene_.domain.dimensions && is_wall(scene_.domain.sides[axis][side].kind);
+  }
+  return other != part && !walls_of(other).empty() && (floats(part) || floats(other));
+}
+
+std::vector<BodyContact> BodyContacts::find(const Surroundings& surroundings, double dt) const {
+  constexpr std::size_t block = 1024;
+  const Domain& domain = scene_.domain;
+  std::array<Vec3, 6> side_velocity{};
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    for (int side = 0; side < 2; ++side) {
+      const auto& velocity = domain.sides[axis][side].velocity;
+      if (!velocity || velocity->component[static_cast<std::size_t>(axis)] == nullptr) continue;
+      Vec3 centre = multiply(0.5, add(domain.lower, domain.upper));
+      centre[axis] = surroundings.walls[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)];
+      side_velocity[static_cast<std::size_t>(2 * axis + side)] = (*velocity)(centre, surroundings.ahead);
+    }
+  std::vector<double> speed(parts_);
+  for (std::size_t part = 0; part < parts_; ++part) speed[part] = largest_speed_of(part);
+  std::vector<std::vector<BodyContact>> of(block_count(points_.size(), block));
+  parallel_blocks(points_.size(), block, [&](std::size_t b, std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) {
+      const std::size_t part = points_[p].part;
+      for (std::size_t other = 0; other < others_; ++other) {
+        const double kept = clearance(part, other);
+        if (kept < 0 || !may_touch(part, other)) continue;
+        const double other_speed = other < parts_ ? speed[other] : length(side_velocity[other - parts_]);
+        const double reach = kept + resolution_.spacing + dt * (speed[part] + other_speed);
+        BodyContact contact;
+        contact.point = now(points_[p]);
+        double away = distance(other, surroundings.walls, contact.point, reach);
+        if (away >= reach) continue;
+        contact.normal = normal(other, contact.point);
+        // Of a round body the point is one of a polygon: off the place that touches, its force would turn the body.
+        if (part > 0) {
+          const std::optional<Vec3> foremost =
+              walls_of(part).foremost(contact.point, multiply(-1, contact.normal), radius_[part], resolution_.spacing);
+          if (!foremost) continue;
+          contact.point = *foremost;
+          away = distance(other, surroundings.walls, contact.point, infinite);
+          contact.normal = normal(other, contact.point);
+        }
+        contact.key = {static_cast<std::int64_t>(p), static_cast<std::int64_t>(other)};
+        contact.room = away - kept;
+        contact.restitution = restitution(part);
+        const auto given = [&](std::size_t of_part) {
+          return of_part == 0 ? 0.0 : dot(contact.normal, walls_of(of_part).velocity_ahead(contact.point));
+        };
+        if (floats(part))
+          contact.of_point = part - 1;
+        else
+          contact.given_speed += given(part);
+        if (other >= parts_) {
+          contact.given_speed -= dot(contact.normal, side_velocity[other - parts_]);
+        } else if (floats(other)) {
+          contact.of_other = other - 1;
+          contact.restitution = std::min(contact.restitution, restitution(other));
+        } else {
+          contact.given_speed -= given(other);
+        }
+        of[b].push_back(contact);
+      }
+    }
+  });
+  std::vector<BodyContact> found;
+  for (const auto& own : of) found.insert(found.end(), own.begin(), own.end());
+  return found;
+}
+
+}  // namespace spume

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/surface_pieces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "spume/core/vectors.hpp"
+
+namespace spume {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+void split(const Corners& c, double longest, std::vector<Corners>& out) {
+  std::size_t edge = 0;
+  double size = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double own = length(subtract(c[(k + 1) % 3], c[k]));
+    if (own > size) {
+      size = own;
+      edge = k;
+    }
+  }
+  if (size <= longest) {
+    out.push_back(c);
+    return;
+  }
+  const Vec3 a = c[edge], b = c[(edge + 1) % 3], far = c[(edge + 2) % 3], middle = multiply(0.5, add(a, b));
+  split({a, middle, far}, longest, out);
+  split({middle, b, far}, longest, out);
+}
+
+}  // namespace
+
+std::vector<SurfacePiece> surface_pieces(const Domain& domain, const Body& body, double spacing) {
+  Bounds window{domain.lower, domain.upper};
+  if (body.motion) {
+    // What is outside the domain now may come in.
+    const double diagonal = length(subtract(window.upper, window.lower));
+    for (int axis = 0; axis < domain.dimensions; ++axis) {
+      window.lower[axis] -= diagonal;
+      window.upper[axis] += diagonal;
+    }
+  }
+  const TriangleSurface surface = body.shape->surface(window, 0.5 * spacing);
+  std::vector<SurfacePiece> found;
+  if (domain.dimensions == 3) {
+    std::vector<Corners> pieces;
+    for (const auto& triangle : surface.triangles) {
+      Corners corners{};
+      for (std::size_t k = 0; k < 3; ++k) corners[k] = surface.points[static_cast<std::size_t>(triangle[k])];
+      split(corners, spacing, pieces);
+    }
+    for (const Corners& c : pieces)
+      found.push_back({c, multiply(1.0 / 3, add(c[0], add(c[1], c[2]))),
+                       multiply(0.5, cross(subtract(c[1], c[0]), subtract(c[2], c[0])))});
+    return found;
+  }
+  // The edges that belong to one triangle alone go around the shape, counter-clockwise.
+  std::map<std::pair<std::int32_t, std::int32_t>, int> edges;
+  for (const auto& triangle : surface.triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++edges[{triangle[k], triangle[(k + 1) % 3]}];
+  for (const auto& [edge, count] : edges) {
+    if (edges.contains({edge.second, edge.first})) continue;
+    const Vec3 from = surface.points[static_cast<std::size_t>(edge.first)],
+               way = subtract(surface.points[static_cast<std::size_t>(edge.second)], from);
+    const double pieces = std::max(1.0, std::ceil(length(way) / spacing));
+    for (double k = 0; k < pieces; ++k)
+      found.push_back({{add(from, multiply(k / pieces, way)), add(from, multiply((k + 1) / pieces, way))},
+                       add(from, multiply((k + 0.5) / pieces, way)),
+                       {way[1] / pieces, -way[0] / pieces}});
+  }
+  return found;
+}
+
+}  // namespace spume
