@@ -65,7 +65,7 @@ void stress(const SweepContext& context, PackedNeighbours& packed, const std::ar
   constexpr int width = record_width(dimensions, payload);
   float* records = packed.prepare(context, payload);
   pack_velocity(context, records, width, 0, velocity, rule);
-  if constexpr (payload > dimensions) pack_scalar(context, records, width, dimensions, properties.viscosity.value);
+  if constexpr (payload > dimensions) pack_coefficient(context, records, width, dimensions, properties.viscosity.value);
   sweep(context.list->particles(), [&](std::size_t i) {
     if constexpr (varies)
       if (properties.viscosity.varies[i] != 0)

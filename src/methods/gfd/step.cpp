@@ -59,8 +59,11 @@ Plan make_plan(Flow& f) {
   // The arrangement at r^k
   add(both, "sort", true, "particles in cell order", [&](StageRun&) { f.arrangement.sort(p, p.position); }, {},
       {sorted});
-  add(both, "images", has.images, "periodic sides, walls or solids", [&](StageRun& run) { f.make_images(run.dt); },
-      {p.position}, {images, f.boundary.velocity_rule().offset});
+  add(
+      start, "packing", has.bodies, has.bodies ? "particles beside bodies evened out" : "no walls of bodies",
+      [&](StageRun&) { f.pack(); }, {}, {p.position}, true);
+  add(both, "images", has.images, "periodic sides, walls, solids or bodies",
+      [&](StageRun& run) { f.make_images(run.dt); }, {p.position}, {images, f.boundary.velocity_rule().offset});
   add(both, "neighbours", true, "lists within the kernel support", [&](StageRun& run) { f.find_neighbours(run.dt); },
       {*f.phase_number}, {lists, f.phase});
   add(
