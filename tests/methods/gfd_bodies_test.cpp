@@ -51,8 +51,9 @@ double deviation(const GfdRun& run, const std::function<Vec3(const Vec3&)>& velo
 }  // namespace
 
 // Pushed evenly a liquid moves as a whole: its pressure is linear in each phase. Mirrored without the acceleration of
-// the wall, the pressure leaves the rows beside the walls with half of its gradient. Where the interface meets the wall,
-// which has the density of one particle and not their mean, single particles are off by 4 %; the phases by less than 1.
+// the wall, the pressure leaves the rows beside the walls with half of its gradient. Where the interface meets the
+// wall, which has the density of one particle and not their mean, single particles are off by 4 %; the phases by less
+// than 1.
 TEST(GfdBodies, LiquidMovesWithATankThatIsPushed) {
   GfdRun run(pushed +
              "[domain]\nlower = [-1.1, -0.8]\nupper = [1.1, 0.8]\n[[body]]\nshape = \"box\"\nsize = [1, 0.8]\n"

@@ -7,13 +7,16 @@ namespace spume::gfd {
 
 Section momentum_section() {
   return section<MomentumOptions>("momentum")
-      .word("diffusion", &MomentumOptions::diffusion,
-            {{"split", Diffusion::split},
-             {"printed", Diffusion::printed},
-             {"mu-laplacian", Diffusion::mu_laplacian},
-             {"laplacian", Diffusion::laplacian},
-             {"hu-adams", Diffusion::hu_adams}},
-            "diffusion of momentum where the viscosity varies; split alone converges to div(2 mu T) at an interface")
+      .word(
+          "diffusion", &MomentumOptions::diffusion,
+          {{"split", Diffusion::split},
+           {"printed", Diffusion::printed},
+           {"mu-laplacian", Diffusion::mu_laplacian},
+           {"laplacian", Diffusion::laplacian},
+           {"hu-adams", Diffusion::hu_adams},
+           {"rotation-free", Diffusion::rotation_free}},
+          "diffusion of momentum where the viscosity varies; split and rotation-free alone converge to div(2 mu T) at "
+          "an interface")
       .word("viscosity_mean", &MomentumOptions::viscosity_mean,
             {{"harmonic", ViscosityMean::harmonic}, {"arithmetic", ViscosityMean::arithmetic}},
             "filter of the viscosity across interfaces; arithmetic as in the paper's (7)");

@@ -20,6 +20,8 @@ const char* form_in_words(Diffusion diffusion) {
       return "(12): div(mu grad u)";
     case Diffusion::laplacian:
       return "mu lap u";
+    case Diffusion::rotation_free:
+      return "(12) and (grad u)^T . grad mu of its weights: div(2 mu T)";
     case Diffusion::hu_adams:
       return "(13): Hu and Adams";
   }

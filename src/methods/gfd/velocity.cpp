@@ -23,6 +23,8 @@ MomentumDiffusion form_of(Diffusion diffusion) {
       return MomentumDiffusion::mu_laplacian;
     case Diffusion::laplacian:
       return MomentumDiffusion::laplacian;
+    case Diffusion::rotation_free:
+      return MomentumDiffusion::rotation_free;
     default:
       return MomentumDiffusion::split;
   }
