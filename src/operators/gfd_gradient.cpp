@@ -30,7 +30,7 @@ void gradient(const SweepContext& context, PackedNeighbours& packed, const doubl
               const float* density, const std::array<const float*, 6>& correction, const std::array<float*, 3>& out) {
   constexpr int width = record_width(dimensions, 1);
   float* records = packed.prepare(context, 1);
-  pack_from_reference<width>(context, records + dimensions, values, reference);
+  pack_from_reference<width>(context, records + dimensions, values, reference, density != nullptr);
   sweep(context.list->particles(), [&](std::size_t i) {
     const float factor = density != nullptr ? 1 / density[i] : 1;
     gradient_row<dimensions, Kernel, 1, false>(context, records, i, correction, factor, out);
@@ -43,8 +43,8 @@ void gradient_over_density(const SweepContext& context, PackedNeighbours& packed
                            const std::array<const float*, 6>& correction, const std::array<float*, 3>& out) {
   constexpr int width = record_width(dimensions, 2);
   float* records = packed.prepare(context, 2);
-  pack_from_reference<width>(context, records + dimensions, values, reference);
-  pack_scalar(context, records, width, 1, density.value);
+  pack_from_reference<width>(context, records + dimensions, values, reference, true);
+  pack_coefficient(context, records, width, 1, density.value);
   sweep(context.list->particles(), [&](std::size_t i) {
     if (density.varies[i] != 0)
       gradient_row<dimensions, Kernel, 2, true>(context, records, i, correction, 1, out);
@@ -115,7 +115,7 @@ void gfd_gradient_over_density_subset(const SweepContext& context, PackedNeighbo
     constexpr int width = record_width(dimensions, 2);
     float* records = packed.prepare(context, 2);
     pack_scalar(context, records, width, 0, values);
-    pack_scalar(context, records, width, 1, density);
+    pack_coefficient(context, records, width, 1, density);
     sweep(subset.size(), [&](std::size_t s) {
       gradient_row<dimensions, Kernel, 2, true>(context, records, static_cast<std::size_t>(subset[s]), correction, 1,
                                                 out);

@@ -191,18 +191,18 @@ void GfdPressureOperator::diagonal(std::span<float> out) {
 }
 
 void GfdPressureOperator::residual(std::span<const double> q, std::span<const double> b, std::span<double> r,
-                                   bool /*given*/) {
+                                   bool given) {
   float* records = packed_->prepare(context_, 2);
   const auto width = static_cast<std::size_t>(record_width(context_.dimensions, 2));
   const std::size_t n = size();
-  const std::int32_t* source = context_.images->source();
   float* out = records + context_.dimensions;
   const auto split = [=](float* record, double value) {
     record[0] = static_cast<float>(value);
     record[1] = static_cast<float>(value - double{record[0]});
   };
   parallel_for(n, [&](std::size_t i) { split(out + i * width, q[i]); });
-  parallel_for(context_.images->size(), [&](std::size_t k) { split(out + (n + k) * width, q[source[k]]); });
+  for_each_image_pressure(context_, q.data(), given,
+                          [&](std::size_t k, double value) { split(out + (n + k) * width, value); });
   packed_->count(static_cast<double>(n) * (40 + 4 * context_.dimensions));
   with_gfd_kernel(context_, [&]<int dimensions, class Kernel>() {
     const Rows<dimensions, Kernel> rows{context_, matrix_, first_weight_.data(), weight_.data()};

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "spume/operators/gfd_moments.hpp"
+#include "spume/operators/image_values.hpp"
 #include "symmetric_matrix.hpp"
 
 namespace spume {
@@ -22,14 +23,16 @@ inline float inverse_width(const SweepContext& context) {
   return static_cast<float>(1 / context.smoothing_length);
 }
 
-// Scalars less a reference into the payload that starts at `out`.
+// Scalars less a reference into the payload that starts at `out`; with `pressure` what accelerated walls add to their
+// images.
 template <int width>
-void pack_from_reference(const SweepContext& context, float* out, const double* values, double reference) {
+void pack_from_reference(const SweepContext& context, float* out, const double* values, double reference,
+                         bool pressure = false) {
   const std::size_t n = context.list->particles();
-  const std::int32_t* source = context.images->source();
   parallel_for(n, [=](std::size_t i) { out[i * width] = static_cast<float>(values[i] - reference); });
-  parallel_for(context.images->size(),
-               [=](std::size_t k) { out[(n + k) * width] = static_cast<float>(values[source[k]] - reference); });
+  for_each_image_pressure(context, values, pressure, [=](std::size_t k, double value) {
+    out[(n + k) * width] = static_cast<float>(value - reference);
+  });
 }
 
 template <int dimensions>

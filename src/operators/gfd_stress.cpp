@@ -10,9 +10,13 @@ using simd::f32n;
 
 // What a row computes where the viscosity varies.
 template <MomentumDiffusion form>
-inline constexpr bool takes_means = form == MomentumDiffusion::split || form == MomentumDiffusion::mu_laplacian;
+inline constexpr bool pairwise_gradient = form == MomentumDiffusion::rotation_free;
 template <MomentumDiffusion form>
-inline constexpr bool takes_gradient = form == MomentumDiffusion::split || form == MomentumDiffusion::printed;
+inline constexpr bool takes_means =
+    form == MomentumDiffusion::split || form == MomentumDiffusion::mu_laplacian || pairwise_gradient<form>;
+template <MomentumDiffusion form>
+inline constexpr bool takes_gradient =
+    form == MomentumDiffusion::split || form == MomentumDiffusion::printed || pairwise_gradient<form>;
 
 // Particle i, whose records hold u and, where a form takes means, mu after it.
 template <int dimensions, class Kernel, int payload, MomentumDiffusion form>
@@ -22,6 +26,7 @@ void stress_row(const SweepContext& context, const float* records, std::size_t i
   const auto o = own_vector<dimensions>(stencils.offset, i);
   [[maybe_unused]] const f32n own_viscosity = simd::splat<f32n>(properties.viscosity.value[i]);
   std::array<f32n, dimensions> sum{};
+  [[maybe_unused]] std::array<f32n, dimensions> means{};  // sum mu_ij d W (1 + d . o)
   std::array<std::array<f32n, dimensions>, dimensions> m{};
   for_each_batch<dimensions, payload>(*context.list, records, i, inverse_width(context), [&](const auto& b) {
     const f32n w = Kernel::w(b.q);
@@ -30,6 +35,8 @@ void stress_row(const SweepContext& context, const float* records, std::size_t i
     std::array<f32n, dimensions> wd;
     if constexpr (takes_gradient<form>)
       for (int c = 0; c < dimensions; ++c) wd[c] = w * b.d[c];
+    if constexpr (pairwise_gradient<form>)
+      for (int c = 0; c < dimensions; ++c) means[c] = means[c] + weight * b.d[c];
     for (int a = 0; a < dimensions; ++a) {
       const f32n difference = b.payload[a] - own[a];
       sum[a] = sum[a] + weight * difference;
@@ -43,7 +50,11 @@ void stress_row(const SweepContext& context, const float* records, std::size_t i
   std::array<float, dimensions> result;
   for (int a = 0; a < dimensions; ++a) result[a] = factor * simd::sum(sum[a]);
   if constexpr (takes_gradient<form>) {
-    const auto slope = own_vector<dimensions>(properties.viscosity_gradient, i);
+    std::array<float, dimensions> slope;
+    if constexpr (pairwise_gradient<form>)
+      for (int b = 0; b < dimensions; ++b) slope[b] = factor * simd::sum(means[b]);
+    else
+      slope = own_vector<dimensions>(properties.viscosity_gradient, i);
     for (int b = 0; b < dimensions; ++b) {
       std::array<float, dimensions> gradient;  // of u_b
       for (int c = 0; c < dimensions; ++c) gradient[c] = simd::sum(m[b][c]);
@@ -65,7 +76,7 @@ void stress(const SweepContext& context, PackedNeighbours& packed, const std::ar
   constexpr int width = record_width(dimensions, payload);
   float* records = packed.prepare(context, payload);
   pack_velocity(context, records, width, 0, velocity, rule);
-  if constexpr (payload > dimensions) pack_scalar(context, records, width, dimensions, properties.viscosity.value);
+  if constexpr (payload > dimensions) pack_coefficient(context, records, width, dimensions, properties.viscosity.value);
   sweep(context.list->particles(), [&](std::size_t i) {
     if constexpr (varies)
       if (properties.viscosity.varies[i] != 0)
@@ -90,6 +101,8 @@ void gfd_stress_sweep(const SweepContext& context, PackedNeighbours& packed,
       run.template operator()<laplacian, false>();
     else if (form == split)
       run.template operator()<split, true>();
+    else if (form == rotation_free)
+      run.template operator()<rotation_free, true>();
     else if (form == printed)
       run.template operator()<printed, true>();
     else

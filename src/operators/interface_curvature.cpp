@@ -34,6 +34,26 @@ float divergence(const std::array<std::array<f32n, dimensions>, dimensions>& slo
   return static_cast<float>(sum);
 }
 
+// Normals at wall points of bodies are fits to those of the band and to the zeros beyond it: they become as long as
+// that of the particle nearest to the place that they mirror.
+template <int dimensions>
+void restore_length(const SweepContext& context, float* records, const std::array<const float*, 3>& normal) {
+  constexpr int width = record_width(dimensions, dimensions);
+  if (context.walls == nullptr) return;
+  const std::int32_t* point = context.images->wall_point();
+  const std::int32_t* source = context.images->source();
+  parallel_for(context.images->size(), [&](std::size_t k) {
+    if (point[k] < 0) return;
+    float* v = records + (context.list->particles() + k) * width + dimensions;
+    float square = 0;
+    for (int a = 0; a < dimensions; ++a) square += v[a] * v[a];
+    const float nearest =
+        squared_length<dimensions>(own_vector<dimensions>(normal, static_cast<std::size_t>(source[k])));
+    const float factor = square > 0 ? std::sqrt(nearest / square) : 0;
+    for (int a = 0; a < dimensions; ++a) v[a] *= factor;
+  });
+}
+
 template <int dimensions, class Kernel>
 void curvature_of(const SweepContext& context, PackedNeighbours& packed, const InterfaceBands& bands,
                   const std::array<const float*, 3>& normal, const std::vector<std::array<float, 3>>& reflection,
@@ -41,6 +61,7 @@ void curvature_of(const SweepContext& context, PackedNeighbours& packed, const I
   constexpr int width = record_width(dimensions, dimensions);
   float* records = packed.prepare(context, dimensions);
   pack_vector(context, records, width, 0, normal, reflection);
+  restore_length<dimensions>(context, records, normal);
   const float inverse_h = inverse_width(context);
   sweep(bands.varying().size(), [&](std::size_t s) {
     const auto i = static_cast<std::size_t>(bands.varying()[s]);

@@ -40,9 +40,9 @@ void interface_jump_sweep(const SweepContext& context, PackedNeighbours& packed,
   with_gfd_kernel(context, [&]<int dimensions, class Kernel>() {
     constexpr int width = record_width(dimensions, 3);
     float* records = packed.prepare(context, 3);
-    pack_scalar(context, records, width, 0, jump.colour);
-    pack_scalar(context, records, width, 1, jump.potential);
-    pack_scalar(context, records, width, 2, jump.density);
+    pack_coefficient(context, records, width, 0, jump.colour);
+    pack_coefficient(context, records, width, 1, jump.potential);
+    pack_coefficient(context, records, width, 2, jump.density);
     sweep(bands.varying().size(), [&](std::size_t s) {
       jump_row<dimensions, Kernel>(context, records, static_cast<std::size_t>(bands.varying()[s]), stencils, out);
     });
@@ -55,8 +55,8 @@ void interface_average_sweep(const SweepContext& context, PackedNeighbours& pack
   with_gfd_kernel(context, [&]<int dimensions, class Kernel>() {
     constexpr int width = record_width(dimensions, 2);
     float* records = packed.prepare(context, 2);
-    pack_scalar(context, records, width, 0, weight);
-    pack_scalar(context, records, width, 1, value);
+    pack_coefficient(context, records, width, 0, weight);
+    pack_coefficient(context, records, width, 1, value);
     const auto centre = static_cast<float>(Kernel::w(0.0));
     sweep(bands.varying().size(), [&](std::size_t s) {
       const auto i = static_cast<std::size_t>(bands.varying()[s]);

@@ -38,8 +38,8 @@ void hu_adams_sweep(const SweepContext& context, PackedNeighbours& packed, const
     constexpr int width = record_width(dimensions, dimensions + 2);
     float* records = packed.prepare(context, dimensions + 2);
     pack_velocity(context, records, width, 0, velocity, rule);
-    pack_scalar(context, records, width, dimensions, volume);
-    pack_scalar(context, records, width, dimensions + 1, properties.viscosity.value);
+    pack_coefficient(context, records, width, dimensions, volume);
+    pack_coefficient(context, records, width, dimensions + 1, properties.viscosity.value);
     // sigma / h^(d+2), the factor of F in r . grad W / r^2.
     const double h = context.smoothing_length;
     const auto scale = static_cast<float>(Kernel::normalisation(dimensions) / std::pow(h, dimensions + 2));

@@ -133,7 +133,12 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const CellOrder&
   }
   found.pressure = multiply(-p, element.area);
   const bool holds = scene_.bodies[static_cast<std::size_t>(element.body)].wall == BoundaryKind::no_slip;
-  if (!(fields.dynamic_viscosity > 0) || !holds) return found;
+  double viscosity = fields.dynamic_viscosity;
+  if (fields.viscosity != nullptr) {
+    viscosity = 0;
+    for (const Near& one : near) viscosity += one.weight / sum * fields.viscosity[one.particle];
+  }
+  if (!(viscosity > 0) || !holds) return found;
   fill(true);
   if (!fit.factor(2) && !fit.factor(1)) return found;
   std::array<Vec3, 3> gradient{};  // [a][b] = d u_a / d x_b
@@ -147,7 +152,7 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const CellOrder&
   }
   for (int a = 0; a < dimensions; ++a)
     for (int b = 0; b < dimensions; ++b)
-      found.viscous[a] += fields.dynamic_viscosity * (gradient[a][b] + gradient[b][a]) * element.area[b];
+      found.viscous[a] += viscosity * (gradient[a][b] + gradient[b][a]) * element.area[b];
   return found;
 }
 

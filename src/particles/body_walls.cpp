@@ -42,6 +42,12 @@ BodyWalls::BodyWalls(const Scene& scene, const Resolution& resolution, double pa
   gather_points();
 }
 
+std::unique_ptr<BodyWalls> make_body_walls(const Scene& scene, const Resolution& resolution) {
+  const bool walls = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                 [](const Body& body) { return body.wall != BoundaryKind::open; });
+  return walls ? std::make_unique<BodyWalls>(scene, resolution, scene.particles.volume) : nullptr;
+}
+
 void BodyWalls::move_to(double t) {
   for (std::size_t m = 0; m < scene_.motions.size(); ++m)
     if (!scene_.motions[m].floats) parts_[m + 1]->place = given_place(scene_.motions[m], t);

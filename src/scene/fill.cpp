@@ -302,16 +302,17 @@ bool Filler::fills_domain() const {
   // Solids are counted site by site, which pays only where they could make up for what is missing.
   if (missing > most_particles) return false;
   double in_solids = 0;
-  if (missing > 0 && !scene_.domain.boxes.empty()) {
+  if (missing > 0 && (!scene_.domain.boxes.empty() || !scene_.walls.empty())) {
     const std::size_t planes = static_cast<std::size_t>(lattice_.count[0]);
     std::vector<double> per_plane(planes);
     parallel_blocks(planes, 1, [&](std::size_t i, std::size_t, std::size_t) {
+      ThreadRegions own(regions_, wall_distance());
       Vec3 p{centre(0, static_cast<double>(i)), 0, 0};
       for (double j = 0; j < lattice_.count[1]; ++j) {
         p[1] = centre(1, j);
         for (double k = 0; k < lattice_.count[2]; ++k) {
           p[2] = lattice_.dimensions == 3 ? centre(2, k) : 0;
-          per_plane[i] += in_solid(p);
+          per_plane[i] += in_solid(p) || (!scene_.walls.empty() && own.walls.at(p) <= 0);
         }
       }
     });

@@ -129,4 +129,37 @@ where = "0.5 - y"
 end = 1
 )toml";
 
+// A drop in a round tank that turns.
+inline const std::string drop_in_a_turning_tank = R"toml(method = "gfd"
+[domain]
+lower = [-0.6, -0.6]
+upper = [0.6, 0.6]
+[resolution]
+spacing = 0.05
+[[phase]]
+name = "outside"
+density = 1
+viscosity = 0.01
+[[phase]]
+name = "drop"
+density = 10
+viscosity = 0.1
+[interface]
+surface_tension = 1
+[[region]]
+phase = "outside"
+[[region]]
+phase = "drop"
+centre = [0.15, 0]
+radius = 0.2
+[[body]]
+shape = "cylinder"
+radius = 0.5
+inside = false
+wall = "no-slip"
+angle = "90*t*t"
+[time]
+end = 1
+)toml";
+
 }  // namespace spume::test

@@ -51,10 +51,11 @@ TEST_P(GfdState, ARefusedStepLeavesIt) {
   EXPECT_EQ(changed_by_a_refused_step<gfd::Gfd>(GetParam(), {}, 0.002), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, GfdState, ::testing::Values(drop_in_a_box, ball_in_a_box, three_layers),
-                         [](const auto& info) {
-                           return info.index == 0 ? "Drop2D" : info.index == 1 ? "Ball3D" : "ThreeLayers";
-                         });
+const char* const state_names[] = {"Drop2D", "Ball3D", "ThreeLayers", "TurningTank"};
+
+INSTANTIATE_TEST_SUITE_P(Cases, GfdState,
+                         ::testing::Values(drop_in_a_box, ball_in_a_box, three_layers, drop_in_a_turning_tank),
+                         [](const auto& info) { return state_names[info.index]; });
 
 TEST(GfdAllocations, ASteadyRunAllocatesNothing) {
   const OneThread alone;

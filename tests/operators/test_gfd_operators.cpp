@@ -146,7 +146,7 @@ TEST(GfdOperators, EveryMomentumDiffusionAgreesWithTheSlowTwin) {
     VectorArrays<float> slope;
     for (int axis = 0; axis < d; ++axis) slope[axis] = to_float(a.random(126 + static_cast<std::uint32_t>(axis)));
     for (const auto form : {MomentumDiffusion::split, MomentumDiffusion::printed, MomentumDiffusion::mu_laplacian,
-                            MomentumDiffusion::laplacian})
+                            MomentumDiffusion::laplacian, MomentumDiffusion::rotation_free})
       for (const bool somewhere : {true, false})
         for (const bool over_density : {true, false}) {
           DiffusionProperties properties{viscosity.read(), over_density ? density.value.data() : nullptr, slope.read()};

@@ -12,36 +12,6 @@
 #include "spume/operators/sph_operators.hpp"
 
 namespace spume::test {
-namespace {
-
-const std::string square = "lower = [-1, -1]\nupper = [1, 1]\nleft = \"open\"\nright = \"open\"\nbottom = \"open\"\n";
-const std::string disc = "[[body]]\nshape = \"cylinder\"\nradius = 0.4\nposition = [0.03, -0.02]\n";
-const std::string pipe =
-    "[[body]]\nshape = \"cylinder\"\nradius = 0.8\ninside = false\nwall = \"no-slip\"\nvelocity = [\"-y\", \"x\"]\n";
-const std::string turned = "[[body]]\nshape = \"box\"\nsize = [0.9, 0.7]\nrotation = [30]\nwall = \"no-slip\"\n";
-const std::string channel =
-    "lower = [-1, -1]\nupper = [1, 1]\nx = \"periodic\"\nbottom = \"no-slip\"\ntop = \"free-slip\"\n";
-const std::string cube =
-    "lower = [-0.6, -0.6, -0.6]\nupper = [0.6, 0.6, 0.6]\nx = \"periodic\"\ny = \"periodic\"\nbottom = \"no-slip\"\n";
-const std::string ball = "[[body]]\nshape = \"ball\"\nradius = 0.3\nposition = [0.4, 0.05, 0.02]\nwall = \"no-slip\"\n";
-
-reference::Carried smooth(const Vec3& r) {
-  return {std::sin(3 * r[0]) + r[1] * r[1] + r[2],
-          {std::cos(2 * r[1]) + r[2], r[0] * r[1] - 0.3, r[0] * r[0] + 0.4 * r[2]}};
-}
-
-std::vector<Layout> wall_layouts() {
-  return {{"disc", scene_text(square, 0.05, disc)},
-          {"pipe", scene_text(square, 0.05, pipe)},
-          {"ring", scene_text(square, 0.05, disc + pipe)},
-          {"box, turned, in a periodic channel", scene_text(channel, 0.05, turned)},
-          {"disc through the floor of a channel",
-           scene_text(channel, 0.05, "[[body]]\nshape = \"cylinder\"\nradius = 0.5\nposition = [0.92, -1]\n")},
-          {"ball across a periodic side", scene_text(cube, 0.1, ball)}};
-}
-
-}  // namespace
-
 TEST(WallPoints, StandInLayersOfAsManyAsTheyHaveVolumeFor) {
   const double spacing = 0.02, radius = 0.4;
   for (const bool inside : {true, false}) {
@@ -107,22 +77,7 @@ TEST(BodyWalls, SweepsSeeWallPointsAndTheirImages) {
     const int d = walled.particles.dimensions;
     const std::size_t n = walled.particles.size();
     const reference::WallSums twin = walled.twin(smooth);
-    const WallPointView wet = walled.boundary.bodies()->wet();
-    const std::vector<WallPoint> all =
-        make_wall_points(walled.scene().walls, walled.scene().domain, walled.resolution, walled.particles.volume);
-    std::vector<WallPoint> points;
-    std::array<std::vector<reference::Carried>, 2> carried;  // by friction
-    for (std::size_t g = 0; g < wet.size; ++g) {
-      Vec3 place{};
-      for (int axis = 0; axis < d; ++axis) place[axis] = wet.position[axis][g];
-      points.push_back(*std::find_if(all.begin(), all.end(), [&](const WallPoint& p) { return p.position == place; }));
-      const Body* nearest = nullptr;
-      for (const Body& body : walled.scene().bodies)
-        if (nearest == nullptr ||
-            std::abs(body.solid->distance(points.back().foot)) < std::abs(nearest->solid->distance(points.back().foot)))
-          nearest = &body;
-      for (const bool friction : {false, true}) carried[friction].push_back(twin.at(points.back(), *nearest, friction));
-    }
+    const auto [points, carried] = walled.wet_points(twin);
     Array<double> scalar(n);
     std::array<Array<double>, 3> velocity;
     for (auto& component : velocity) component.resize(n);

@@ -165,8 +165,11 @@ class GfdSums {
   std::array<Sum, 3> stress(std::size_t i, MomentumDiffusion form, const Velocity& u, const Scalar& mu, double density,
                             bool varies, const Vector& viscosity_gradient, const Stencil& stencil) const {
     std::array<Sum, 3> result{};
-    const bool means = varies && (form == MomentumDiffusion::split || form == MomentumDiffusion::mu_laplacian);
-    const bool gradients = varies && (form == MomentumDiffusion::split || form == MomentumDiffusion::printed);
+    const bool pairwise = form == MomentumDiffusion::rotation_free;
+    const bool means =
+        varies && (form == MomentumDiffusion::split || form == MomentumDiffusion::mu_laplacian || pairwise);
+    const bool gradients =
+        varies && (form == MomentumDiffusion::split || form == MomentumDiffusion::printed || pairwise);
     std::array<std::array<Sum, 3>, 3> slope{};  // [a][b] = d u_a / d x_b
     for (int a = 0; a < d_; ++a) {
       const AtPoint velocity = [&](const SphPoint& p) { return sums_.velocity_at(u, p, a); };
@@ -176,7 +179,21 @@ class GfdSums {
       result[a] = laplacian(i, velocity, viscosity, stencil);
       slope[a] = gradient(i, velocity, one, stencil.correction);
     }
-    for (int a = 0; a < d_ && gradients; ++a)
+    std::array<Sum, 3> mu_slope{};
+    for (int b = 0; b < d_ && gradients && pairwise; ++b) {
+      each(i, [&](const SphPoint& p, const Vector& r, double w, double largest) {
+        const double c = harmonic(double(mu[i]), double(mu[p.source])) / density * stencil.laplacian_factor;
+        double along = 0;
+        for (int a = 0; a < d_; ++a) along += std::abs(r[a] * stencil.offset[a]);
+        mu_slope[b].add(c * w, c * largest * (1 + along), -r[b] * (1 - dot(r, stencil.offset)), std::abs(r[b]));
+      });
+    }
+    for (int a = 0; a < d_ && gradients && pairwise; ++a)
+      for (int b = 0; b < d_; ++b) {
+        result[a].value += slope[b][a].value * mu_slope[b].value;
+        result[a].magnitude += slope[b][a].magnitude * mu_slope[b].magnitude;
+      }
+    for (int a = 0; a < d_ && gradients && !pairwise; ++a)
       for (int b = 0; b < d_; ++b) {
         // (grad u)^T . grad mu: d u_b / d x_a; of 2 T both.
         result[a].value += slope[b][a].value * viscosity_gradient[b];

@@ -19,6 +19,7 @@ const CaseSchema& phase_schema() {
     MethodDeclaration method;
     method.name = "mixed";
     method.fills_phases = true;
+    method.honours_bodies = true;
     method.bytes_per_particle = [](const Case&, int) { return 100.0; };
     method.default_courant = [](const Case&, const Scene&) { return 0.2; };
     method.default_courant_in_words = "0.2";
@@ -83,6 +84,20 @@ TEST(Phases, ALaterRegionReplacesWhatAnEarlierOneFilled) {
   const LoadedCase again = load_phases(loaded.options.resolved);
   EXPECT_EQ(again.scene.phases.size(), 2u);
   EXPECT_EQ(again.scene.surface_tension, 0.072);
+}
+
+// Sites of the lattice that bodies take are not missing.
+TEST(Phases, FillATankThatIsABody) {
+  const std::string tank =
+      "method = \"mixed\"\n[domain]\nlower = [-1.1, -1.1]\nupper = [1.1, 1.1]\n[resolution]\nspacing = "
+      "0.1\n[time]\nend "
+      "= 1\n" +
+      water + everywhere + "[[body]]\nshape = \"cylinder\"\nradius = 1\ninside = false\n";
+  EXPECT_FALSE(load_phases(tank).scene.free_surface);
+  EXPECT_FALSE(load_phases(tank + "[[body]]\nshape = \"cylinder\"\nradius = 0.4\n").scene.free_surface);
+  std::string half = tank;
+  half.replace(half.find(everywhere), everywhere.size(), everywhere + "where = \"0.5 - y\"\n");
+  EXPECT_TRUE(load_phases(half).scene.free_surface);
 }
 
 // Sites of the lattice are whole or nothing: a column 0.333 wide and 0.47 high gets 3 by 5 of them, less a disc in it.

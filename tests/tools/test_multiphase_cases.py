@@ -206,5 +206,58 @@ class PoiseuilleOperators(CaseTest):
         self.assertAlmostEqual(measured["growth"], 20, delta=1e-4)
 
 
+class TaylorCouetteTwoPhase(CaseTest):
+    def test_the_exact_flow_meets_the_walls_and_has_one_torque(self):
+        module = load_measure(CASES / "taylor_couette_two_phase")
+        for inner, outer in ((5.0, 1.0), (0.2, 1.0), (100.0, 1.0)):
+            a, b, c, d = module.coefficients(inner, outer)
+            self.assertAlmostEqual(a + b, 1)
+            self.assertAlmostEqual(2 * c + d / 2, 0)
+            self.assertAlmostEqual(1.5 * a + b / 1.5, 1.5 * c + d / 1.5)
+            self.assertAlmostEqual(inner * b, outer * d)
+        one = module.coefficients(1.0, 1.0)
+        np.testing.assert_allclose(one, [-1 / 3, 4 / 3, -1 / 3, 4 / 3])
+
+    def test_measures_a_constant_error_its_order_and_the_torques(self):
+        runs, torque = {}, None
+        at = lattice([-2, -2], [2, 2], 0.05)
+        radius = np.hypot(at[:, 0], at[:, 1])
+        at = at[(radius > 1) & (radius < 2)]
+        for name, offset in (("ratio_5_coarse", 0.04), ("ratio_5", 0.02)):
+            folder, module = self.run_of("taylor_couette_two_phase")
+            torque = 4 * np.pi * 5 * module.coefficients(5.0, 1.0)[1]
+            write_table(folder / "bodies.csv", {"t": np.array([0.1, 0.1, 0.4, 0.4]), "body": np.array([0, 1, 0, 1]),
+                                                "viscous_torque_z": torque * np.array([0, 0, 1.01, -0.98])})
+
+            def velocity(p, t, offset=offset):
+                r = np.hypot(p[:, 0], p[:, 1])
+                u = module.exact(r, 5.0, 1.0) + offset
+                return np.column_stack([-u * p[:, 1] / r, u * p[:, 0] / r])
+            write_snapshots(folder / "fluid.vtkhdf", [0, 0.4], lambda t: at, {"velocity": velocity})
+            runs[name] = Results(folder)
+        measured = module.measure(runs)
+        self.assertAlmostEqual(measured["ratio_5_error"], 0.02, places=5)
+        self.assertAlmostEqual(measured["ratio_5_order"], 1, places=4)
+        self.assertAlmostEqual(measured["ratio_5_outer_torque_error"], 0.01, places=5)
+        self.assertAlmostEqual(measured["ratio_5_inner_torque_error"], 0.02, places=5)
+
+
+class DropInShear(CaseTest):
+    def test_the_deformation_of_an_ellipsoid(self):
+        folder, module = self.run_of("drop_in_shear")
+        at = lattice([-1.5, 0, -1.5], [1.5, 1.5, 1.5], 0.0625)
+        a, b, turn = 1.1, 0.95, np.radians(40)
+        along = at[:, 0] * np.cos(turn) + at[:, 2] * np.sin(turn)
+        across = at[:, 2] * np.cos(turn) - at[:, 0] * np.sin(turn)
+        inside = (along / a) ** 2 + (across / b) ** 2 + at[:, 1] ** 2 * a * b < 1
+        write_snapshots(folder / "fluid.vtkhdf", [0, 0.6], lambda t: at, {"phase": lambda p, t: inside})
+        deformation, angle = module.shape(Results(folder).snapshots()[-1])
+        self.assertAlmostEqual(deformation, (a - b) / (a + b), delta=0.004)
+        self.assertAlmostEqual(angle, 40, delta=2)
+        taylor = 0.05 * 35 / 32 * (1 + 5.6996 * 1.75 / 8**3)
+        measured = module.measure({"ratio_1": Results(folder)})
+        self.assertAlmostEqual(measured["ratio_1_deformation_error"], abs(deformation / taylor - 1), places=5)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -10,13 +10,16 @@
 // on a curved interface:
 //
 //   split         <mu lap u> + (grad u)^T . <grad mu>,  component a: sum_b d u_b / d x_a  d mu / d x_b
+//   rotation_free <mu lap u> + (grad u)^T . f sum_j mu_ij d W (1 + d . o)
 //   printed       <grad mu> . 2 T + mu <lap u>                                                         (19)
 //   mu_laplacian  <mu lap u>
 //   laplacian     mu <lap u>
 //
 // At a sharp interface grad mu is a delta and the normal derivative of u jumps: (19) multiplies them, and flows
 // computed with it do not converge. The split multiplies the delta by derivatives of the normal velocity alone, which
-// are continuous.
+// are continuous. In a liquid that turns as a rigid body its two terms cancel as far as <grad mu> and the means mu_ij
+// agree; what is left grows with the jump. The rotation-free form takes grad mu from the weights of its first term: its
+// two terms cancel to rounding.
 //
 // All of them are divided by the density rho_i of the particle: the result is an acceleration. Without a density it is
 // a force per volume. Viscosities (not negative) and densities (positive) are filtered.
@@ -27,7 +30,7 @@
 
 namespace spume {
 
-enum class MomentumDiffusion { split, printed, mu_laplacian, laplacian };
+enum class MomentumDiffusion { split, printed, mu_laplacian, laplacian, rotation_free };
 
 struct DiffusionProperties {
   PhaseProperty viscosity;

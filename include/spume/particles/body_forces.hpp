@@ -34,6 +34,7 @@ class BodyForces {
     const double* pressure;
     double particle_volume = 0;
     double dynamic_viscosity = 0;
+    const float* viscosity = nullptr;  // of each particle; null: dynamic_viscosity of all
   };
   // Per [[body]] entry; zero for those that are no walls.
   std::vector<SurfaceForce> measure(const Fields& fields, double t) const;

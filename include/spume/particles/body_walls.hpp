@@ -107,4 +107,7 @@ class BodyWalls {
   double largest_speed_ = 0;
 };
 
+// Null where no body is a wall.
+std::unique_ptr<BodyWalls> make_body_walls(const Scene& scene, const Resolution& resolution);
+
 }  // namespace spume

@@ -45,7 +45,7 @@ std::vector<Colour> make_colours(const Scene& scene) {
 
 }  // namespace
 
-Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.domain) {
+Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies) {
   const Scene& scene = loaded.scene;
   const Vec3& g = scene.fluid.gravity;
   interfaces = scene.phases.size() > 1;
@@ -76,7 +76,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       densities(of_phases(scene, &Phase::density)),
       viscosities(of_phases(scene, &Phase::viscosity)),
       particles(dimensions, scene.particles),
-      boundary(scene.domain, scene.spacing),
+      boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution)),
       first_volume(scene.phases.size()),
       arrangement(scene.domain, resolution, particles.volume, particles.size()),
       moments(particles, {.kernel_sum = true, .concentration_gradient = features.shifting, .fading = {}}),

@@ -50,6 +50,9 @@ Gfd::Gfd(const LoadedCase& loaded)
       .add(flow_.energy_supply)
       .add(flow_.boundary.wall_speed);
   for (double& volume : flow_.first_volume) saved_.add(volume);
+  if (!flow_.features.bodies) return;
+  saved_.add(flow_.packed);
+  body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
 }
 
 void Gfd::ensure_arranged() {
@@ -139,6 +142,25 @@ const PointSampler& Gfd::sampler() {
   return sampler_;
 }
 
+std::vector<RecordTable> Gfd::tables() const {
+  if (body_forces_ == nullptr) return {};
+  return {body_forces_->table()};
+}
+
+void Gfd::table_rows(const std::string&, std::vector<double>& rows) {
+  ensure_arranged();
+  const std::vector<SurfaceForce> forces =
+      body_forces_->measure({.grid = flow_.arrangement.grid,
+                             .particles = flow_.size(),
+                             .position = read(flow_.particles.position),
+                             .velocity = read(flow_.particles.velocity),
+                             .pressure = flow_.pressure->data(),
+                             .particle_volume = flow_.particles.volume,
+                             .viscosity = flow_.viscosity == nullptr ? nullptr : flow_.viscosity->data()},
+                            flow_.time);
+  body_forces_->add_rows(flow_.time, forces, rows);
+}
+
 std::vector<Invariant> Gfd::invariants() const {
   std::vector<Invariant> list;
   for (const Phase& phase : flow_.scene.phases)
@@ -160,6 +182,7 @@ std::vector<ArrayInfo> Gfd::arrays() const {
   double interfaces = flow_.bands.bytes() + flow_.phase.bytes();
   for (const Colour& colour : flow_.colours) interfaces += colour.value.bytes() + colour.potential.bytes();
   list.push_back({"interfaces", interfaces});
+  if (flow_.features.bodies) list.push_back({"wall points", flow_.boundary.bytes()});
   return list;
 }
 

@@ -10,6 +10,7 @@
 #include "spume/operators/interface_filters.hpp"
 #include "spume/operators/interface_jump.hpp"
 #include "spume/particles/number_density.hpp"
+#include "spume/particles/packing.hpp"
 
 namespace spume::gfd {
 namespace {
@@ -46,12 +47,18 @@ double band_weight(double colour) {
 
 }  // namespace
 
+void Flow::pack() {
+  if (packed != 0) return;
+  pack_beside_bodies(arrangement, particles, boundary, resolution, particles.position, false, time);
+  packed = 1;
+}
+
 // At the positions of the start of the step: walls with a normal velocity stand there too, and have the velocity of its
-// end, which the new velocities must meet.
+// end, which the new velocities must meet. Bodies have that of the start: what they gain is a pressure behind them.
 void Flow::make_images(double dt) {
   boundary.next_walls = boundary.walls;
-  const double end = time + dt;
-  boundary.make_images(arrangement, particles, particles.position, sizes.largest_length_ratio, {end, end, end});
+  const double end = time + dt, before = features.displaced_bodies ? time : end;
+  boundary.make_images(arrangement, particles, particles.position, sizes.largest_length_ratio, {time, before, end});
 }
 
 void Flow::find_neighbours(double dt) {

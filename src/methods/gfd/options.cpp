@@ -15,6 +15,8 @@ const char* in_words(Diffusion diffusion) {
       return "(12): div(mu grad u)";
     case Diffusion::laplacian:
       return "mu lap u";
+    case Diffusion::rotation_free:
+      return "(12) and (grad u)^T . grad mu of its weights: div(2 mu T)";
     case Diffusion::hu_adams:
       return "(13): Hu and Adams";
   }
@@ -23,13 +25,16 @@ const char* in_words(Diffusion diffusion) {
 
 Section momentum_section() {
   return section<MomentumOptions>("momentum")
-      .word("diffusion", &MomentumOptions::diffusion,
-            {{"split", Diffusion::split},
-             {"printed", Diffusion::printed},
-             {"mu-laplacian", Diffusion::mu_laplacian},
-             {"laplacian", Diffusion::laplacian},
-             {"hu-adams", Diffusion::hu_adams}},
-            "diffusion of momentum where the viscosity varies; split alone converges to div(2 mu T) at an interface")
+      .word(
+          "diffusion", &MomentumOptions::diffusion,
+          {{"split", Diffusion::split},
+           {"printed", Diffusion::printed},
+           {"mu-laplacian", Diffusion::mu_laplacian},
+           {"laplacian", Diffusion::laplacian},
+           {"hu-adams", Diffusion::hu_adams},
+           {"rotation-free", Diffusion::rotation_free}},
+          "diffusion of momentum where the viscosity varies; split and rotation-free alone converge to div(2 mu T) at "
+          "an interface")
       .word("viscosity_mean", &MomentumOptions::viscosity_mean,
             {{"harmonic", ViscosityMean::harmonic}, {"arithmetic", ViscosityMean::arithmetic}},
             "filter of the viscosity across interfaces; arithmetic as in the paper's (7)");

@@ -66,6 +66,7 @@ Registration registration() {
   method.description =
       "incompressible flow of several phases by generalised finite differences, with tension and the full stress";
   method.fills_phases = true;
+  method.honours_bodies = true;
   method.sections = {pressure_section(), shifting_section(false), momentum_section(), interface_band_section(),
                      limits_section()};
   method.check = check;

@@ -46,7 +46,9 @@ Plan make_plan(Flow& f) {
 
   // The arrangement at r^k
   stages.add(both, "sort", true, "particles in cell order", &Flow::sort_particles, {}, {sorted});
-  stages.add(both, "images", has.images, "periodic sides, walls or solids", &Flow::make_images, {p.position},
+  stages.sweep(start, "packing", has.bodies, has.bodies ? "particles beside bodies evened out" : "no walls of bodies",
+               &Flow::pack, {}, {p.position});
+  stages.add(both, "images", has.images, "periodic sides, walls, solids or bodies", &Flow::make_images, {p.position},
              {images, f.boundary.velocity_rule().offset});
   stages.add(both, "neighbours", true, "lists within the kernel support", &Flow::find_neighbours, {*f.phase_number},
              {lists, f.phase});

@@ -23,6 +23,8 @@ MomentumDiffusion form_of(Diffusion diffusion) {
       return MomentumDiffusion::mu_laplacian;
     case Diffusion::laplacian:
       return MomentumDiffusion::laplacian;
+    case Diffusion::rotation_free:
+      return MomentumDiffusion::rotation_free;
     default:
       return MomentumDiffusion::split;
   }
@@ -130,6 +132,10 @@ void Flow::correct_for_shift() {
 void Flow::set_matrix(double dt) {
   const std::size_t n = size();
   ScratchPool& scratch = particles.scratch();
+  const std::span<double> behind = boundary.image_pressure();  // of unit density
+  parallel_for(arrangement.context.image_pressure != nullptr ? behind.size() : 0, [&](std::size_t k) {
+    behind[k] *= (*density)[static_cast<std::size_t>(arrangement.images.source()[k])];
+  });
   scratch.release(moments.kernel_sum);
   scratch.lease(source, n);
   source.fill(0.0);
@@ -171,6 +177,8 @@ void Flow::solve_pressure() {
   const bool warm_start = options.get<PressureOptions>().warm_start && steps > 0;
   parallel_for(size(),
                [&](std::size_t i) { reduced_pressure[i] = warm_start ? (*pressure)[i] - hydrostatic_part(i) : 0.0; });
+  if (arrangement.context.image_pressure != nullptr)
+    rows.reference_norm = std::hypot(rows.reference_norm, given_norm(matrix, particles));
   solver.solve(rows, matrix, particles, reduced_pressure);
   rows.release(scratch);
   scratch.release(reciprocal_density);
@@ -202,7 +210,7 @@ void Flow::project_velocity(double dt) {
 // flow may hold is its mechanical energy at the start and that of the interfaces, and what rearranged particles lift, a
 // tenth of the weight over a spacing. An instability passes twice of it soon.
 void Flow::refuse_energy_from_nothing() const {
-  if (features.forces || features.moving_walls) return;  // their work is not followed
+  if (features.forces || features.moving_walls || features.moving_bodies) return;  // their work is not followed
   const double kinetic =
       parallel_sum(size(), [&](std::size_t i) { return mass(i) * squared_norm(next_velocity, dimensions, i) / 2; });
   if (kinetic <= 2 * std::max(0.0, energy_supply - potential_energy()) + 0.1 * weight * spacing()) return;

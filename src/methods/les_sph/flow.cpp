@@ -31,11 +31,6 @@ CorrectionFading fading_beside_voids(const Case& options, const Scene& scene, co
                            interior_weight(dimensions, options.get<SurfaceOptions>()));
 }
 
-std::unique_ptr<BodyWalls> make_body_walls(const Scene& scene, const Resolution& resolution, const Features& features) {
-  if (!features.bodies) return nullptr;
-  return std::make_unique<BodyWalls>(scene, resolution, scene.particles.volume);
-}
-
 std::unique_ptr<OpenSides> make_openings(const Scene& scene, const Resolution& resolution) {
   if (scene.openings.empty()) return nullptr;
   return std::make_unique<OpenSides>(scene, resolution, scene.particles.volume);
@@ -58,8 +53,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       dimensions(scene.domain.dimensions),
       fading(fading_beside_voids(options, scene, features)),
       particles(dimensions, scene.particles),
-      boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution, features),
-               make_openings(scene, resolution)),
+      boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution), make_openings(scene, resolution)),
       energy(scene.domain, resolution),
       arrangement(scene.domain, resolution, particles.volume, particles.size()),
       moments(particles, {.kernel_sum = features.density_relaxation,

@@ -85,11 +85,6 @@ double background_of(const LoadedCase& loaded, const Features& features, double 
   return density * speed * speed;
 }
 
-std::unique_ptr<BodyWalls> make_body_walls(const Scene& scene, const Resolution& resolution, const Features& features) {
-  if (!features.bodies) return nullptr;
-  return std::make_unique<BodyWalls>(scene, resolution, scene.particles.volume);
-}
-
 Vec3 gravity_across_sides(const Scene& scene) {
   Vec3 g{};
   for (int axis = 0; axis < scene.domain.dimensions; ++axis)
@@ -144,7 +139,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       background(background_of(loaded_case, features, expected_speed, laws)),
       wall_gravity(gravity_across_sides(scene)),
       particles(dimensions, scene.particles),
-      boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution, features)),
+      boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution)),
       arrangement(scene.domain, resolution, particles.volume, particles.size(), skin) {
   FieldSet& fields = particles.fields;
   particles.add_vector(acceleration, "acceleration", Lifetime::state);

@@ -84,6 +84,7 @@ struct Flow {
   Speeds speeds;
   double energy_supply = 0;          // mechanical energy at the start and that of the interfaces
   std::vector<double> first_volume;  // of the phases at the start
+  std::int64_t packed = 0;           // beside bodies: done once
 
   // --- Results of the last step, at the positions that it started from.
   Arrangement arrangement;
@@ -137,6 +138,7 @@ struct Flow {
 
   // The stages.
   void sort_particles();
+  void pack();  // at the start, beside bodies
   void make_images(double dt);
   void find_neighbours(double dt);
   void measure_stencils();  // (10), (11)

@@ -8,6 +8,7 @@
 
 #include "spume/methods/gfd/flow.hpp"
 #include "spume/methods/method.hpp"
+#include "spume/particles/body_forces.hpp"
 #include "spume/particles/output_fields.hpp"
 #include "spume/particles/phase_sums.hpp"
 #include "spume/particles/point_sampler.hpp"
@@ -34,7 +35,12 @@ class Gfd final : public Method, public FieldProbes {
   void series_values(std::span<double> values) override;
   std::vector<ParticleSnapshot> snapshot() override { return completed(snapshot_on_demand()); }
   std::vector<ParticleSnapshot> snapshot_on_demand() override;
+  std::vector<RecordTable> tables() const override;  // forces on bodies
+  void table_rows(const std::string& name, std::vector<double>& rows) override;
   FieldProbes* field_probes() override { return this; }
+  Vec3 carried(std::size_t motion, const Vec3& start) const override {
+    return flow_.boundary.bodies()->moving(motion).place.now(start);
+  }
   PointSample sample(const Vec3& position) override { return sampler().sample(position); }
   PlaneSample plane_average(int axis, double position) override { return sampler().plane_average(axis, position); }
   // The volume of each phase; the residual of the pressure.
@@ -58,6 +64,7 @@ class Gfd final : public Method, public FieldProbes {
   SavedNumbers saved_{"scalars"};
   PhaseSums phase_sums_;  // of the row of the series that is being read
   PointSampler sampler_;
+  std::unique_ptr<const BodyForces> body_forces_;  // null without walls of bodies
   bool arranged_ = false;
   std::int64_t sampled_step_ = -1;
 };

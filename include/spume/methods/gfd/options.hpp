@@ -7,7 +7,7 @@
 namespace spume::gfd {
 
 // Joubert et al. and operators/gfd_stress.hpp; hu_adams: operators/sph_diffusion.hpp.
-enum class Diffusion { split, printed, mu_laplacian, laplacian, hu_adams };
+enum class Diffusion { split, printed, mu_laplacian, laplacian, hu_adams, rotation_free };
 
 // What the plan says of it.
 const char* in_words(Diffusion diffusion);
