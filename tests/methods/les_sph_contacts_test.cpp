@@ -11,31 +11,8 @@ namespace {
 
 using std::numbers::pi;
 
-// A plank on water, tilted and four times as heavy.
-const std::string sinking_plank = R"toml(method = "les-sph"
-[time]
-end = 2
-[domain]
-lower = [-1, -0.5]
-upper = [1, 0.5]
-left = "free-slip"
-right = "free-slip"
-bottom = "free-slip"
-[resolution]
-spacing = 0.05
-[fluid]
-density = 1000
-viscosity = 1e-3
-gravity = 10
-[[liquid]]
-where = "-y"
-[[body]]
-shape = "box"
-size = [0.8, 0.3]
-rotation = [10]
-density = 4000
-wall = "no-slip"
-)toml";
+// Four times as heavy as water.
+const std::string sinking_plank = plank_on_water(4000, 2);
 
 // Beside a puddle, far from it: discs in the air.
 const std::string dry_tank = R"toml(method = "les-sph"

@@ -34,31 +34,7 @@ shape = "ball"
 radius = 0.4
 )toml";
 
-// A plank on water, tilted.
-const std::string plank = R"toml(method = "les-sph"
-[time]
-end = 1
-[domain]
-lower = [-1, -0.5]
-upper = [1, 0.5]
-left = "free-slip"
-right = "free-slip"
-bottom = "free-slip"
-[resolution]
-spacing = 0.05
-[fluid]
-density = 1000
-viscosity = 1e-3
-gravity = 10
-[[liquid]]
-where = "-y"
-[[body]]
-shape = "box"
-size = [0.8, 0.3]
-rotation = [10]
-density = 400
-wall = "no-slip"
-)toml";
+const std::string plank = plank_on_water(400);
 
 // Columns of bodies.csv.
 struct Row {
@@ -112,7 +88,7 @@ TEST(LesSphFloating, APlankTurnsToTheLevelAndFloats) {
 }
 
 TEST(LesSphFloating, ABodyThatSinksThroughTheFloorIsRemarkedOn) {
-  Simulation run(replaced(plank, "density = 400", "density = 4000\nposition = [0, -0.3]"));
+  Simulation run(replaced(plank_on_water(4000), "rotation = [10]", "rotation = [10]\nposition = [0, -0.3]"));
   bool remarked = false;
   for (int step = 0; step < 60 && !remarked; ++step) {
     run.steps(1, std::min(0.01, run.method.step_limit().dt));

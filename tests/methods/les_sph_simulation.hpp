@@ -274,4 +274,34 @@ velocity = ["y", "-x"]
 end = 1
 )toml";
 
+// A plank on water, tilted.
+inline std::string plank_on_water(double density, double end = 1) {
+  return R"toml(method = "les-sph"
+[time]
+end = )toml" +
+         std::to_string(end) + R"toml(
+[domain]
+lower = [-1, -0.5]
+upper = [1, 0.5]
+left = "free-slip"
+right = "free-slip"
+bottom = "free-slip"
+[resolution]
+spacing = 0.05
+[fluid]
+density = 1000
+viscosity = 1e-3
+gravity = 10
+[[liquid]]
+where = "-y"
+[[body]]
+shape = "box"
+size = [0.8, 0.3]
+rotation = [10]
+density = )toml" +
+         std::to_string(density) + R"toml(
+wall = "no-slip"
+)toml";
+}
+
 }  // namespace spume::test

@@ -10,6 +10,7 @@ import numpy as np
 from spume_tools import results
 from spume_tools.results import (DamagedResult, GridSnapshots, MissingResult, Results, Snapshots, observed_order, read_csv,
                                  relative_rms)
+from spume_tools.results.units import field_label
 from synthetic import lattice, new_folder, series_of, write_case, write_grid_snapshots, write_snapshots, write_table
 
 
@@ -146,6 +147,12 @@ class ReadingResults(unittest.TestCase):
         write_table(self.folder / "probes.csv", {"t": [0.0], "west wall_pressure": [2.0]}, {"t": "time", "west wall_pressure": "Pa"})
         probes = Results(self.folder).probes
         self.assertEqual((probes["west wall_pressure"][0], probes.label("west wall_pressure")), (2, "west wall pressure [Pa]"))
+
+    def test_components_of_sludge_keep_their_names(self):
+        self.assertEqual(field_label("S_O", si=True), "S_O [g/m³]")
+        self.assertEqual(field_label("S_ALK", si=True), "S_ALK [mol/m³]")
+        self.assertEqual(field_label("velocity_x", si=True), "velocity x [m/s]")
+        self.assertEqual(field_label("dye_of_paint", si=True), "dye of paint")
 
     def test_brackets_hold_units_and_nothing_else(self):
         notes = {"t": "time", "kinetic_energy": "rho u^2 / 2, integral", "retries": "steps refused so far", "mass": "mass, of the particles",

@@ -193,7 +193,7 @@ def plane_figure(run, name, plane, panels, norm, ends, most=None):
     figure.colorbar(image, ax=[a for a in axes.flat if a.figure], label=field_label(name, run.si), shrink=0.9, extend=ends,
                     aspect=30)
     where = "" if plane.normal is None else f", {'xyz'[plane.normal]} = {plane.coordinate:.4g}" + (" m" if run.si else "")
-    figure.suptitle(f"{title_of(run)}: {name.replace('_', ' ')}{where}")
+    figure.suptitle(f"{title_of(run)}: {field_label(name)}{where}")
     return figure
 
 

@@ -13,6 +13,8 @@ OF_NAME = {"kinetic_energy": "J", "potential_energy": "J", "total_energy": "J", 
            "mean_enstrophy": "1/s²", "volume": "m³", "radius": "m", "wavenumber": "1/m", "wall_seconds": "s"}
 OF_FIELD = {"speed": "m/s", "velocity": "m/s", "pressure": "Pa", "vorticity": "1/s", "enstrophy": "1/s²",
             "dissipation": "W/kg", "radius": "m"}
+# Components of activated sludge, by the names of its model: [biokinetics] demands SI units.
+OF_COMPONENT = dict.fromkeys("S_I S_S X_I X_S X_BH X_BA X_P S_O S_NO S_NH S_ND X_ND".split(), "g/m³") | {"S_ALK": "mol/m³"}
 # Two-dimensional runs give extensive quantities per metre of depth.
 PER_METRE = {"J": "J/m", "W": "W/m", "kg": "kg/m", "kg m/s": "kg/s", "m³": "m²"}
 SYMBOL = re.compile(r"(?:[kMGmcµn]?(?:m|s|g|Pa|J|W|N|Hz|K|rad)|1|°C|%)(?:[²³]|\^-?\d)?"
@@ -42,6 +44,8 @@ def unit_of(name, note, si=False, dimensions=3):
 
 def field_label(name, si=False):
     """Name and unit of a field of a snapshot, for an axis."""
+    if name in OF_COMPONENT:
+        return name + (f" [{OF_COMPONENT[name]}]" if si else "")
     whole = name[:-2] if name[-2:] in ("_x", "_y", "_z") else name
     unit = OF_FIELD.get(whole) if si else None
     return name.replace("_", " ") + (f" [{unit}]" if unit else "")
