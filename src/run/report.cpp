@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "spume/core/machine.hpp"
@@ -85,7 +86,11 @@ std::string human_duration(double seconds) {
   return format("%02lld:%02lld", whole / 60, whole % 60);
 }
 
+// VmHWM is of this program alone; what getrusage counts begins with the memory of the program that started it.
 std::int64_t peak_resident_bytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (long long kilobytes = 0; std::sscanf(line.c_str(), "VmHWM: %lld kB", &kilobytes) == 1) return kilobytes * 1024;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;

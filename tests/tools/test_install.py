@@ -48,7 +48,7 @@ class Program(Installation):
 
     def test_verifies_a_case_by_name(self):
         self.assertIn("every bound holds", self.spume("verify", "couette_poiseuille", "--quick").stdout)
-        self.assertIn("the cases are beltrami,", self.spume("verify", "no_such_case", code=2).stderr)
+        self.assertIn("the cases are aerated_tank, beltrami,", self.spume("verify", "no_such_case", code=2).stderr)
 
     def test_its_package_reads_the_results(self):
         self.spume("run", "taylor_green_2d", "--quiet", "--until", "0.01", "--set", "resolution.spacing=0.1", "-o", "vortices")

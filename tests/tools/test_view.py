@@ -29,6 +29,7 @@ except ImportError:
 SPUME = paths.ROOT / "build" / "release" / "spume"
 PATIENCE = 60  # seconds, for a machine with other work
 CASE = ("breaking_wave", "--set", "resolution.spacing=0.03", "--set", "output.every=0.02")
+ENDLESS = (*CASE, "--until", "1000")  # outlives a browser that takes its time to start
 
 
 class Run:
@@ -238,7 +239,7 @@ class LiveView(unittest.TestCase):
         return self.browser.execute_script(text, *arguments)
 
     def test_a_run_without_the_view_has_no_thread_of_it(self):
-        plain, viewed = self.start("plain", *CASE), self.start("viewed", *CASE, "--view", "--paused")
+        plain, viewed = self.start("plain", *ENDLESS), self.start("viewed", *ENDLESS, "--view", "--paused")
         wait_for(lambda: (plain.folder / "series.csv").exists(), "the run")
         self.assertEqual(plain.threads(), 1)
         self.assertGreater(viewed.threads(), 1)
@@ -352,7 +353,7 @@ class LiveView(unittest.TestCase):
         self.script("clearInterval(turning)")
 
     def test_ten_thousand_messages_a_second_end_a_viewer_and_not_the_run(self):
-        run = self.start("flooded", *CASE, "--view")
+        run = self.start("flooded", *ENDLESS, "--view")
         self.open(run, "running")
         answer = self.browser.execute_async_script("""
             const done = arguments[arguments.length - 1], socket = new WebSocket(arguments[0]);
@@ -363,7 +364,7 @@ class LiveView(unittest.TestCase):
         self.wait_step(step + 3)  # the page beside it is not touched
 
     def test_a_viewer_killed_in_the_middle_is_not_missed(self):
-        run = self.start("survivor", *CASE, "--view")
+        run = self.start("survivor", *ENDLESS, "--view")
         other = webdriver.Chrome(options=self.options, service=webdriver.chrome.service.Service("/usr/bin/chromedriver"))
         other.get(run.address)
         wait_for(lambda: int(other.find_element(By.ID, "step").text) > 2, "steps")

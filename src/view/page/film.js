@@ -49,7 +49,7 @@ const film = (() => {
   }
   by_id('photo').onclick = () => compose().toBlob((blob) => save(blob, 'png'), 'image/png');
 
-  const kinds = ['video/mp4;codecs=avc1', 'video/webm;codecs=vp9', 'video/webm;codecs=vp8', 'video/webm'];
+  const kinds = ['video/mp4;codecs=avc3', 'video/webm;codecs=vp9', 'video/webm;codecs=vp8', 'video/webm'];
   const kind = window.MediaRecorder && kinds.find((one) => MediaRecorder.isTypeSupported(one));
   if (!kind) {
     record.disabled = true;

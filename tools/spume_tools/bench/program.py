@@ -33,7 +33,6 @@ WIDE = ["--set", "domain.upper=[1, 0.25, 0.5]", "--set", "output.every=0"]
 class Bench:
     def __init__(self, program, scratch):
         self.program, self.scratch, self.count = program, Path(scratch), 0
-        self.peak_memory = 0  # of the last run, bytes
 
     def start(self, case, *arguments):
         self.count += 1
@@ -45,9 +44,7 @@ class Bench:
         """Results and wall seconds of one run, start-up and output included."""
         begin = time.monotonic()
         process, out = self.start(case, *arguments)
-        _, status, usage = os.wait4(process.pid, 0)  # the system's own count of this child alone
-        process.returncode, self.peak_memory = os.waitstatus_to_exitcode(status), usage.ru_maxrss * 1024
-        if process.returncode != 0:
+        if process.wait() != 0:
             raise MissingResult(f"exit code {process.returncode} from {self.program} run {case}")
         return Results(out), time.monotonic() - begin
 
@@ -119,7 +116,7 @@ def peak_bytes(bench):
     """Of the process per particle; how many particles."""
     run, _ = bench.run(WAVE, *WIDE, "--until", "0.01")
     particles = len(run.snapshots()[0])
-    return bench.peak_memory / particles, particles
+    return run.summary["peak_resident_bytes"] / particles, particles
 
 
 def memory(bench):
