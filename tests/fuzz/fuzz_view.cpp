@@ -9,10 +9,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "spume/view/server.hpp"
@@ -33,7 +36,11 @@ class Client {
     address.sin_family = AF_INET;
     address.sin_port = htons(static_cast<std::uint16_t>(server().port()));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    if (::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) __builtin_trap();
+    while (::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
+      // Of connections that the server closed first the ports rest for a minute: 28,000 are used up in seconds.
+      if (errno != EADDRNOTAVAIL) __builtin_trap();
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+    }
     // Closed at once and with no state left behind: thousands a second would use up the ports.
     const linger none{1, 0};
     setsockopt(socket_, SOL_SOCKET, SO_LINGER, &none, sizeof none);
