@@ -27,9 +27,11 @@ double surface_layer_share(int dimensions) {
   return dimensions == 3 ? 2.03 / surface_threshold_3d : 1.25 / surface_threshold_2d;
 }
 
-// Spacings around the place that a normal points to. Beside the edge of a solid it points past the solid; a wall that
-// stands half a spacing beside a surface particle is not meant.
+// Spacings around the place that a normal points to: beside the edge of a body it points past the body.
 constexpr double beside = 0.4;
+// Cosine of the angle between a normal and the face that it points to. A wall beside the surface is not meant: a
+// particle 0.38 spacings beside a pillar, taken for liquid inside, left still water at 4 sqrt(g H).
+constexpr double in_front = 0.5;
 
 }  // namespace
 
@@ -118,12 +120,24 @@ void FreeSurface::continue_into_bodies(const Arrangement& arrangement, MomentFie
 
 bool FreeSurface::faces_solid(const Boundary& boundary, const MomentFields& moments, const VectorField& at,
                               std::size_t i) const {
-  Vec3 place = vector_at(at, resolution_.dimensions, i), normal{};
+  const Vec3 place = vector_at(at, resolution_.dimensions, i);
+  Vec3 normal{};
   for (int axis = 0; axis < resolution_.dimensions; ++axis) normal[axis] = (*moments.normal[axis])[i];
   const double size = std::sqrt(dot(normal, normal)), reach = 0.5 * resolution_.support_radius;
   if (!(size > 0) || !boundary.obstacle_near(place, reach)) return false;
-  for (int axis = 0; axis < resolution_.dimensions; ++axis) place[axis] += reach * normal[axis] / size;
-  return boundary.obstacle_near(place, beside * resolution_.spacing);
+  normal = multiply(1 / size, normal);
+  if (const BodyWalls* bodies = boundary.bodies(); bodies != nullptr) {
+    const Vec3 ahead = add(place, multiply(reach, normal));
+    const auto towards = [&](const Vec3& p) { return dot(bodies->normal(p), normal) < -in_front; };
+    if (bodies->distance(ahead) < beside * resolution_.spacing && (towards(place) || towards(ahead))) return true;
+  }
+  if (boundary.solids() == nullptr) return false;
+  const auto [lower, upper] = boundary.solids()->free_box(place, reach);
+  for (int axis = 0; axis < resolution_.dimensions; ++axis) {
+    const double face = normal[axis] > 0 ? upper[axis] : lower[axis];
+    if (std::abs(normal[axis]) > in_front && (face - place[axis]) / normal[axis] < reach) return true;
+  }
+  return false;
 }
 
 void FreeSurface::pass_over_gaps(const Arrangement& arrangement, const VectorField& at, const Boundary& boundary) {

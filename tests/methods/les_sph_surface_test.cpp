@@ -130,6 +130,30 @@ TEST(LesSphSurface, SprayBesideSolidsIsAllSurface) {
   EXPECT_EQ(inside, 0u);
 }
 
+// Water around a pillar, every particle displaced by up to a tenth of a spacing and the rows before the pillar moved
+// towards it, to 0.35 spacings: whatever of the uppermost layer lacks the neighbours of liquid inside is of the surface.
+TEST(LesSphSurface, AWallBesideTheSurfaceIsNotFaced) {
+  StagedFlow staged(still_water + "[[solid]]\nlower = [0.25, 0.25, 0]\nupper = [0.35, 0.35, 0.5]\n",
+                    {"domain.upper=[0.6, 0.6, 0.5]", "liquid.0.upper=[0.6, 0.6, 0.3]"});
+  les_sph::Flow& flow = staged.flow;
+  const double d = flow.resolution.spacing;
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    const auto r = random_uniform(5, RandomPurpose::test, i, 0, 0);
+    for (int axis = 0; axis < 3; ++axis) (*flow.particles.position[axis])[i] += 0.1 * d * (2 * r[axis] - 1);
+    double& x = (*flow.particles.position[0])[i];
+    if (x < 0.25 && x > 0.25 - 3 * d) x = std::min(x + 0.15 * d, 0.25 - 0.3 * d);
+  }
+  staged.run_before("shift", 0);
+  int lacking = 0, inside = 0;
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    if ((*flow.intermediate_position[2])[i] < 0.26 || (*flow.moments.divergence_of_position)[i] > 2.2) continue;
+    ++lacking;
+    inside += flow.surface->at_surface[i] == 0 ? 1 : 0;
+  }
+  EXPECT_GT(lacking, 100);
+  EXPECT_EQ(inside, 0);
+}
+
 // On the undisturbed lattice the uppermost layer lies half a spacing below the surface and nothing else does.
 TEST(LesSphSurface, LatticeUnderAFlatSurfaceHasOneEdgeLayerHalfASpacingDeep) {
   StagedFlow staged(wave, {"liquid.0.where=\"-y\""});
