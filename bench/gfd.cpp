@@ -157,7 +157,7 @@ void gfd_velocity_divergence(benchmark::State& state) {
 
 void gfd_diffusion(benchmark::State& state, MomentumDiffusion form) {
   GfdCube cube(state);
-  const bool gradients = form == MomentumDiffusion::split || form == MomentumDiffusion::printed;
+  const bool gradients = form != MomentumDiffusion::mu_laplacian;
   cube.run_all(state, 10 + 8 + 6 + 1 + 5 + 9 + (gradients ? 3 + 18 : 0), 2, 24 + 40 + 12 + 20, [&] {
     gfd_stress_sweep(cube.context, cube.packed, cube.velocities(), cube.rule, cube.stencils(), form,
                      {cube.property(cube.viscosity), cube.density.data(), GfdCube::read(cube.gradient)},
@@ -166,6 +166,9 @@ void gfd_diffusion(benchmark::State& state, MomentumDiffusion form) {
 }
 void gfd_stress_split(benchmark::State& state) {
   gfd_diffusion(state, MomentumDiffusion::split);
+}
+void gfd_stress_rotation_free(benchmark::State& state) {
+  gfd_diffusion(state, MomentumDiffusion::rotation_free);
 }
 void gfd_stress_printed(benchmark::State& state) {
   gfd_diffusion(state, MomentumDiffusion::printed);
@@ -286,6 +289,7 @@ BENCHMARK(gfd_moments)->Apply(one_phase);
 BENCHMARK(gfd_gradient_and_laplacian)->Apply(one_phase);
 BENCHMARK(gfd_velocity_divergence)->Apply(one_phase);
 BENCHMARK(gfd_stress_split)->Apply(all_fluids);
+BENCHMARK(gfd_stress_rotation_free)->Apply(all_fluids);
 BENCHMARK(gfd_stress_printed)->Apply(all_fluids);
 BENCHMARK(gfd_mu_laplacian)->Apply(all_fluids);
 BENCHMARK(hu_adams_diffusion)->Apply(all_fluids);

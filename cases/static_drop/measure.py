@@ -1,16 +1,22 @@
 # SPDX-License-Identifier: MIT
 """The pressure jump of a drop at rest, sigma / R in two dimensions and 2 sigma / R in three (Young and Laplace), and the
-speed of the parasitic currents. R is that of the volume of the drop, which its particles tell exactly."""
+speed of the parasitic currents. R is that of the volume of the drop, which its particles tell exactly. A drop that touches
+lower sides is cut by them: they are planes of symmetry through its centre."""
 import numpy as np
 
 # In spacings from the interface: beyond the supports in which properties vary.
 AWAY = 5.0
 
 
-def radius(run, count, total):
+def distances(run, position, inside):
+    """From the centre of the drop, and its radius."""
     lower, upper = (np.array(run.case["domain"][key], dtype=float) for key in ("lower", "upper"))
-    volume = float(np.prod(upper - lower)) * count / total
-    return np.sqrt(volume / np.pi) if len(lower) == 2 else np.cbrt(3 * volume / (4 * np.pi))
+    position = position[:, : len(lower)]
+    drop = position[inside]
+    cut = drop.min(axis=0) < lower + float(run.case["resolution"]["spacing"])
+    volume = float(np.prod(upper - lower)) * inside.mean() * 2 ** cut.sum()
+    radius = np.sqrt(volume / np.pi) if len(lower) == 2 else np.cbrt(3 * volume / (4 * np.pi))
+    return np.linalg.norm(position - np.where(cut, lower, drop.mean(axis=0)), axis=1), radius
 
 
 def tension(run):
@@ -21,8 +27,8 @@ def jump(run):
     snapshot = run.snapshots()[-1]
     inside = snapshot.field("phase") == 1
     position, pressure = snapshot.position, snapshot.field("pressure")
-    size = radius(run, int(inside.sum()), len(inside))
-    distance = np.linalg.norm(position - position[inside].mean(axis=0), axis=1) - size
+    r, size = distances(run, position, inside)
+    distance = r - size
     away = AWAY * float(run.case["resolution"]["spacing"])
     difference = pressure[distance < -away].mean() - pressure[distance > away].mean()
     dimensions = len(run.case["domain"]["lower"])
@@ -53,6 +59,6 @@ def curves(runs):
     for name, run in runs.items():
         snapshot = run.snapshots()[-1]
         inside = snapshot.field("phase") == 1
-        r = np.linalg.norm(snapshot.position - snapshot.position[inside].mean(axis=0), axis=1)
+        r, _ = distances(run, snapshot.position, inside)
         lines.append((name, r, snapshot.field("pressure"), "."))
     return [{"file": "pressure", "x": "distance from the centre", "y": "pressure", "curves": lines}]

@@ -110,13 +110,15 @@ TEST(GfdPlan, OnePhaseHasNoInterface) {
   EXPECT_EQ(run.max_speed(), 0) << "still liquid";
 }
 
-TEST(GfdPlan, EveryStageCountsItsTraffic) {
-  GfdRun run(drop_in_a_box);
-  run.steps(3, 0.002);
-  EXPECT_EQ(uncounted_stages(run.method, run.ledger), "");
-  EXPECT_THAT(running(run), testing::Contains("viscosity gradient"));
-  GfdRun plain(drop_in_a_box, {"momentum.diffusion=\"mu-laplacian\""});
-  EXPECT_THAT(running(plain), testing::Not(testing::Contains("viscosity gradient")));
+TEST(GfdPlan, EveryStageCountsItsTrafficAndTheViscosityHasAGradientWhereOneIsRead) {
+  for (const std::string form : {"split", "printed", "rotation-free", "mu-laplacian"}) {
+    GfdRun run(drop_in_a_box, {"momentum.diffusion=\"" + form + "\""});
+    run.steps(3, 0.002);
+    EXPECT_EQ(uncounted_stages(run.method, run.ledger), "") << form;
+    const auto names = running(run);
+    EXPECT_EQ(std::count(names.begin(), names.end(), "viscosity gradient"), form == "split" || form == "printed")
+        << form;
+  }
 }
 
 std::string refused(const std::string& text, const Overrides& overrides = {}) {
@@ -137,6 +139,38 @@ TEST(GfdCases, WhatItCannotDoIsRefusedWithTheFix) {
               HasSubstr("phase 'drop' fills nothing"));
   EXPECT_THAT(refused(drop_in_a_box, {"interface.surface_tension=-1"}), HasSubstr(">= 0"));
   EXPECT_THAT(refused(drop_in_a_box, {"momentum.diffusion=\"full\""}), HasSubstr("split"));
+}
+
+// Each is told where it stands. A region that a later one covers, or of which nothing is left beside bodies; one that
+// lies elsewhere; supports that do not fit.
+TEST(GfdCases, RegionsThatCannotBeFilledAreRefusedAtTheirPlace) {
+  const std::string covered = "[[region]]\nphase = \"outside\"\ncentre = [0.5, 0.5]\nradius = 0.3\n";
+  EXPECT_THAT(refused(drop_in_a_box + covered), HasSubstr(":25:1: error: region.1 is empty: later regions replace"));
+  EXPECT_THAT(refused(drop_in_a_box, {"region.1.centre=[1.5, 0.5]"}),
+              HasSubstr("region.1 reaches outside the domain: x from 1.25 to 1.75, the domain's x from 0 to 1"));
+  EXPECT_THAT(refused(replaced(drop_in_a_box, "viscosity = 0.1\n", "")),
+              HasSubstr("missing key 'viscosity' in [[phase]]; add  viscosity ="));
+  EXPECT_THAT(refused(drop_in_a_box, {"domain.upper=[0.2, 1]"}),
+              HasSubstr("is shorter than two kernel supports and a spacing, 0.31; set spacing <="));
+  EXPECT_THAT(refused(drop_in_a_box, {"resolution.smoothing_ratio=0.5"}), HasSubstr("must be >= 0.8"));
+}
+
+// The support is 0.13: a disc of 4 particles is 0.05 wide, layers of 2 rows are, those of 3 are 0.15.
+TEST(GfdCases, RegionsThinnerThanTheSupportAreRefusedAtTheirPlace) {
+  EXPECT_THAT(
+      refused(drop_in_a_box, {"region.1.radius=0.06"}),
+      HasSubstr(":25:1: error: region.1 is 0.05 wide; its interfaces need the kernel support, 0.13: widen it, or "
+                "set resolution.spacing <= 0.0192"));
+  const auto layer = [](const std::string& lower, const std::string& upper) {
+    return Overrides{"region.1={phase=\"drop\", lower=[0, " + lower + "], upper=[1, " + upper + "]}"};
+  };
+  EXPECT_THAT(refused(drop_in_a_box, layer("0.5", "0.6")), HasSubstr("region.1 is 0.05 wide"));
+  EXPECT_EQ(refused(drop_in_a_box, layer("0.5", "0.65")), "accepted");
+  // At a wall it goes on behind: 2 rows are 4.
+  EXPECT_EQ(refused(drop_in_a_box, layer("0", "0.1")), "accepted");
+  EXPECT_THAT(refused(drop_in_a_box, layer("0", "0.05")), HasSubstr("region.1 is 0.05 wide"));
+  // What is left of the surroundings counts as well.
+  EXPECT_THAT(refused(drop_in_a_box, layer("0.05", "1")), HasSubstr("region.0 is 0.05 wide"));
 }
 
 }  // namespace

@@ -58,6 +58,20 @@ class StaticDrop(CaseTest):
         self.assertAlmostEqual(measured["ratio_1_jump"], 1.01, places=5)
         self.assertAlmostEqual(measured["ratio_1_capillary_number"], 0.1 * 0.004, places=8)
 
+    def test_an_eighth_of_a_ball_has_the_jump_of_the_whole(self):
+        folder, module = self.run_of("static_drop")
+        text = (folder / "case.toml").read_text(encoding="utf-8")
+        text = text.replace("lower = [0, 0]", "lower = [0, 0, 0]").replace("upper = [1, 1]", "upper = [0.5, 0.5, 0.5]")
+        (folder / "case.toml").write_text(text, encoding="utf-8")
+        at = lattice([0, 0, 0], [0.5, 0.5, 0.5], 1 / 32)
+        inside = np.linalg.norm(at, axis=1) < 0.25
+        radius = np.cbrt(6 * inside.sum() / 32**3 / np.pi)
+        self.assertAlmostEqual(radius, 0.25, delta=0.002)
+        write_snapshots(folder / "fluid.vtkhdf", [0, 1], lambda t: at, {
+            "pressure": lambda p, t: np.where(inside, 2 * 1.01 / radius, 0), "phase": lambda p, t: inside,
+            "velocity": lambda p, t: 0 * p})
+        self.assertAlmostEqual(module.measure({"ball": Results(folder)})["ball_jump"], 1.01, places=5)
+
 
 class HydrostaticLayers(CaseTest):
     def test_the_exact_pressure_has_no_error_and_a_linear_one_has(self):

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "spume/methods/gfd/gfd.hpp"
+#include "spume/particles/thin_regions.hpp"
 #include "spume/scene/document.hpp"
 #include "spume/scene/option.hpp"
 
@@ -41,6 +42,14 @@ void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
       problems.add(*draft.node("phase." + std::to_string(n)),
                    "phase '" + scene.phases[n].name +
                        "' fills nothing: no [[region]] of it is left; add a region behind the others, or remove it");
+  const double support = support_ratio(draft.options.resolution) * scene.spacing;
+  for (const ThinRegion& thin : thin_regions(scene, support)) {
+    const std::string name = "region." + std::to_string(thin.region);
+    problems.add(*draft.node(name),
+                 name + " is " + brief(thin.width) + " wide; its interfaces need the kernel support, " +
+                     brief(support) +
+                     ": widen it, or set resolution.spacing <= " + brief(scene.spacing * thin.width / support));
+  }
   if (scene.free_surface)
     problems.add(
         *draft.node("region.0"),
