@@ -12,13 +12,16 @@ using simd::f32n;
 // planes, 0 at corners of a lattice (its edges in 2-D), where the second derivatives of one-sided differences cancel.
 constexpr double least_denominator = 0.1;
 
+// Of all particles, or of a subset.
 template <int dimensions, class Kernel>
-void moments(const SweepContext& context, PackedNeighbours& packed, const GfdMoments& out) {
+void moments(const SweepContext& context, PackedNeighbours& packed, const std::span<const std::int32_t>* subset,
+             const GfdMoments& out) {
   constexpr int entries = symmetric_entries<dimensions>;
   const NeighbourList& list = *context.list;
   const float* records = packed.prepare(context, 0);
   const float inverse_h = inverse_width(context);
-  sweep(list.particles(), [&](std::size_t i) {
+  sweep(subset == nullptr ? list.particles() : subset->size(), [&](std::size_t s) {
+    const std::size_t i = subset == nullptr ? s : static_cast<std::size_t>((*subset)[s]);
     std::array<f32n, entries> second{};
     std::array<f32n, dimensions> first{}, third{};
     for_each_batch<dimensions, 0>(list, records, i, inverse_h, [&](const auto& b) {
@@ -63,7 +66,14 @@ void moments(const SweepContext& context, PackedNeighbours& packed, const GfdMom
 }  // namespace
 
 void gfd_moment_sweep(const SweepContext& context, PackedNeighbours& packed, const GfdMoments& out) {
-  with_gfd_kernel(context, [&]<int dimensions, class Kernel>() { moments<dimensions, Kernel>(context, packed, out); });
+  with_gfd_kernel(context,
+                  [&]<int dimensions, class Kernel>() { moments<dimensions, Kernel>(context, packed, nullptr, out); });
+}
+
+void gfd_moment_subset(const SweepContext& context, PackedNeighbours& packed, std::span<const std::int32_t> subset,
+                       const GfdMoments& out) {
+  with_gfd_kernel(context,
+                  [&]<int dimensions, class Kernel>() { moments<dimensions, Kernel>(context, packed, &subset, out); });
 }
 
 }  // namespace spume

@@ -41,19 +41,39 @@ void mark_walls(const SweepContext& context, float* records, int width, int slot
   return a == b ? then : f32n{};
 }
 
-// The trace of (sum w d (x) (u_j - u_i)) (sum w d (x) d)^-1, w < 0, exact for linear velocities on any arrangement.
+// The gradient (sum w d (x) (u_j - u_i)) (sum w d (x) d)^-1, w < 0, exact for linear velocities on any arrangement: its
+// trace, and its product with a vector.
 template <int dimensions>
-float corrected_divergence(const std::array<f32n, dimensions * dimensions>& velocity_sum,
-                           const std::array<f32n, 6>& moment_sum) {
-  std::array<double, 6> m{}, inverse{};
-  for (int k = 0; k < dimensions * (dimensions + 1) / 2; ++k) m[k] = -simd::sum(moment_sum[k]);
-  const InverseScale normalised = normalised_inverse<dimensions>(m, inverse);
-  double trace = 0;
-  for (int a = 0; a < dimensions; ++a)
-    for (int c = 0; c < dimensions; ++c)
-      trace -= inverse[symmetric_index<dimensions>(a, c)] * simd::sum(velocity_sum[a * dimensions + c]);
-  return static_cast<float>(normalised.scale * trace);
-}
+class CorrectedGradient {
+ public:
+  CorrectedGradient(const std::array<f32n, dimensions * dimensions>& velocity_sum,
+                    const std::array<f32n, 6>& moment_sum) {
+    std::array<double, 6> m{};
+    for (int k = 0; k < dimensions * (dimensions + 1) / 2; ++k) m[k] = -simd::sum(moment_sum[k]);
+    scale_ = normalised_inverse<dimensions>(m, inverse_).scale;
+    for (int k = 0; k < dimensions * dimensions; ++k) sum_[k] = simd::sum(velocity_sum[k]);
+  }
+  float divergence() const {
+    double trace = 0;
+    for (int a = 0; a < dimensions; ++a)
+      for (int c = 0; c < dimensions; ++c)
+        trace -= inverse_[symmetric_index<dimensions>(a, c)] * sum_[a * dimensions + c];
+    return static_cast<float>(scale_ * trace);
+  }
+  // (v . grad) u_c.
+  float along(const float* v, int c) const {
+    double result = 0;
+    for (int a = 0; a < dimensions; ++a)
+      for (int b = 0; b < dimensions; ++b)
+        result -= v[a] * inverse_[symmetric_index<dimensions>(a, b)] * sum_[b * dimensions + c];
+    return static_cast<float>(scale_ * result);
+  }
+
+ private:
+  std::array<double, 6> inverse_{};
+  std::array<double, dimensions * dimensions> sum_{};
+  double scale_ = 0;
+};
 
 // Payload of the continuity records: u, v, s', and then what the scene has: mu, phase, the velocity under friction, the
 // shifting velocity.
@@ -126,9 +146,12 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
         }
         own_way = weight * own_way;
         other_way = weight * other_way;
-        carried = carried + own_way * (b.payload[At::excess] - own[At::excess]);
-        for (int a = 0; a < dimensions; ++a)
-          flux[a] = flux[a] + own_way * own[a] + other_way * b.payload[At::velocity + a];
+        f32n within = own_way;
+        if constexpr (several) within = equals(b.payload[At::phase], simd::splat<f32n>(own[At::phase]), own_way);
+        carried = carried + within * (b.payload[At::excess] - own[At::excess]);
+        if constexpr (!several)
+          for (int a = 0; a < dimensions; ++a)
+            flux[a] = flux[a] + own_way * own[a] + other_way * b.payload[At::velocity + a];
       }
     });
     out.rate[i] = scale.gradient * simd::sum(rate);
@@ -138,9 +161,11 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
       for (int a = 0; a < dimensions; ++a) out.viscous[a][i] = factor * simd::sum(force[a]);
     }
     if constexpr (shifted) {
-      out.rate[i] = -corrected_divergence<dimensions>(velocity_sum, moment_sum);
+      const CorrectedGradient<dimensions> gradient(velocity_sum, moment_sum);
+      out.rate[i] = -gradient.divergence();
       out.carried[i] = -scale.gradient * simd::sum(carried);
-      for (int a = 0; a < dimensions; ++a) out.flux[a][i] = -scale.gradient * simd::sum(flux[a]);
+      for (int a = 0; a < dimensions; ++a)
+        out.flux[a][i] = several ? gradient.along(own + At::shift, a) : -scale.gradient * simd::sum(flux[a]);
     }
   });
 }
@@ -208,10 +233,12 @@ void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, con
       else
         continuity<dimensions, several, true, true, shifted>(context, packed, fields, out);
     };
-    if (fields.phase != nullptr && fields.shift[0] != nullptr)
-      throw std::logic_error("particles of several phases are not shifted");
-    if (fields.phase != nullptr && context.walls != nullptr)
+    if (fields.phase != nullptr && context.walls != nullptr && fields.shift[0] != nullptr)
+      run.template operator()<Phases::beside_walls, true>();
+    else if (fields.phase != nullptr && context.walls != nullptr)
       run.template operator()<Phases::beside_walls, false>();
+    else if (fields.phase != nullptr && fields.shift[0] != nullptr)
+      run.template operator()<Phases::several, true>();
     else if (fields.phase != nullptr)
       run.template operator()<Phases::several, false>();
     else if (fields.shift[0] != nullptr)
@@ -224,8 +251,11 @@ void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, con
 void pressure_force_sweep(const SweepContext& context, PackedNeighbours& packed, const PressureFields& fields,
                           const std::array<float*, 3>& out, const std::array<float*, 3>& concentration) {
   with_wcsph_dimensions(context, [&]<int dimensions>() {
-    if (fields.several && concentration[0] != nullptr) throw std::logic_error("the concentration is that of one phase");
-    if (fields.several && context.walls != nullptr)
+    if (fields.several && context.walls != nullptr && concentration[0] != nullptr)
+      pressure_force<dimensions, Phases::beside_walls, true>(context, packed, fields, out, concentration);
+    else if (fields.several && concentration[0] != nullptr)
+      pressure_force<dimensions, Phases::several, true>(context, packed, fields, out, concentration);
+    else if (fields.several && context.walls != nullptr)
       pressure_force<dimensions, Phases::beside_walls, false>(context, packed, fields, out, concentration);
     else if (fields.several)
       pressure_force<dimensions, Phases::several, false>(context, packed, fields, out, concentration);
@@ -233,6 +263,31 @@ void pressure_force_sweep(const SweepContext& context, PackedNeighbours& packed,
       pressure_force<dimensions, Phases::one, true>(context, packed, fields, out, concentration);
     else
       pressure_force<dimensions, Phases::one, false>(context, packed, fields, out, concentration);
+  });
+}
+
+void tension_force_sweep(const SweepContext& context, PackedNeighbours& packed, const InterfaceBands& bands,
+                         const TensionFields& fields, const std::array<float*, 3>& out) {
+  if (bands.mixed().empty()) return;
+  if (context.walls != nullptr) throw std::logic_error("tension has no values at wall points");
+  with_wcsph_dimensions(context, [&]<int dimensions>() {
+    constexpr int width = record_width(dimensions, 3);
+    float* records = packed.prepare(context, 3);
+    pack_scalar(context, records, width, 0, fields.volume);
+    pack_scalar(context, records, width, 1, fields.colour);
+    pack_scalar(context, records, width, 2, fields.potential);
+    const KernelScale<dimensions, Kernel> scale(context);
+    sweep(bands.mixed().size(), [&](std::size_t s) {
+      const auto i = static_cast<std::size_t>(bands.mixed()[s]);
+      const float* own = records + i * width + dimensions;
+      std::array<f32n, dimensions> force{};
+      for_each_batch<dimensions, 3>(*context.list, records, i, scale.inverse_h, [&](const auto& b) {
+        const f32n weight = Kernel::f(b.q) * b.payload[0] * (b.payload[2] + own[2]) * (b.payload[1] - own[1]);
+        for (int a = 0; a < dimensions; ++a) force[a] = force[a] + weight * b.d[a];
+      });
+      // The mean of the potentials has a factor 1/2.
+      for (int a = 0; a < dimensions; ++a) out[a][i] -= scale.gradient / 2 * simd::sum(force[a]);
+    });
   });
 }
 

@@ -63,4 +63,11 @@ Section surface_section() {
       .option("blend_width", &S::blend_width, "1", between(0, 1), "span of div r over which pressure rows blend");
 }
 
+Section interface_section() {
+  return section<InterfaceOptions>("interface")
+      .behind("surface_tension")
+      .option("smoothing", &InterfaceOptions::smoothing, "", between(3, 20),
+              "averages of the curvature along the interface");
+}
+
 }  // namespace spume

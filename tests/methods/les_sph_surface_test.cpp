@@ -131,7 +131,8 @@ TEST(LesSphSurface, SprayBesideSolidsIsAllSurface) {
 }
 
 // Water around a pillar, every particle displaced by up to a tenth of a spacing and the rows before the pillar moved
-// towards it, to 0.35 spacings: whatever of the uppermost layer lacks the neighbours of liquid inside is of the surface.
+// towards it, to 0.35 spacings: whatever of the uppermost layer lacks the neighbours of liquid inside is of the
+// surface.
 TEST(LesSphSurface, AWallBesideTheSurfaceIsNotFaced) {
   StagedFlow staged(still_water + "[[solid]]\nlower = [0.25, 0.25, 0]\nupper = [0.35, 0.35, 0.5]\n",
                     {"domain.upper=[0.6, 0.6, 0.5]", "liquid.0.upper=[0.6, 0.6, 0.3]"});

@@ -7,16 +7,13 @@
 
 #include <numbers>
 
-#include "methods/method_run.hpp"
 #include "methods/uncounted_stages.hpp"
-#include "spume/methods/wcsph/wcsph.hpp"
+#include "methods/wcsph_run.hpp"
 
 namespace spume::test {
 namespace {
 
 using testing::HasSubstr;
-using WcsphRun = MethodRun<wcsph::Wcsph>;
-
 // Water that falls in a tank of air, with walls of both kinds, one of which slides.
 const std::string column_in_air = R"toml(method = "wcsph"
 [domain]
@@ -136,10 +133,35 @@ max_speed = 1.5
 end = 1
 )toml";
 
-void until(WcsphRun& run, double end) {
-  while (run.method.time() < end - 1e-12)
-    run.method.step(std::min(run.method.step_limit().dt, end - run.method.time()), run.ledger);
-}
+// A drop between a wall and a mirror, four times as dense as what surrounds it.
+const std::string drop = R"toml(method = "wcsph"
+[domain]
+lower = [0, 0]
+upper = [1, 1]
+left = "free-slip"
+right = "free-slip"
+y = "periodic"
+[resolution]
+spacing = 0.05
+[[phase]]
+name = "outside"
+density = 1
+viscosity = 0.05
+[[phase]]
+name = "drop"
+density = 4
+viscosity = 0.1
+[interface]
+surface_tension = 1
+[[region]]
+phase = "outside"
+[[region]]
+phase = "drop"
+centre = [0.4, 0.5]
+radius = 0.3
+[time]
+end = 1
+)toml";
 
 class WcsphState : public ::testing::TestWithParam<std::string> {};
 
@@ -198,16 +220,17 @@ TEST_P(WcsphState, ARefusedStepLeavesIt) {
 }
 
 std::string name_of_case(const ::testing::TestParamInfo<std::string>& info) {
-  const char* const names[] = {"Column2D", "Ball3D", "Vortices2D", "Paddle2D"};
+  const char* const names[] = {"Column2D", "Ball3D", "Vortices2D", "Paddle2D", "Drop2D"};
   return names[info.index];
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, WcsphState, ::testing::Values(column_in_air, ball_in_stream, periodic_vortices, paddle),
+INSTANTIATE_TEST_SUITE_P(Cases, WcsphState,
+                         ::testing::Values(column_in_air, ball_in_stream, periodic_vortices, paddle, drop),
                          name_of_case);
 
 TEST(WcsphAllocations, ASteadyRunAllocatesNothing) {
   const OneThread alone;
-  for (const std::string& text : {column_in_air, ball_in_stream, periodic_vortices}) {
+  for (const std::string& text : {column_in_air, ball_in_stream, periodic_vortices, drop}) {
     WcsphRun run(text);
     const double dt = 0.7 * run.method.step_limit().dt;
     run.steps(40, dt);
@@ -283,7 +306,7 @@ TEST(WcsphAccuracy, VorticesDecayAtTheExactRate) {
   EXPECT_LT(std::abs(run.series().at("velocity_liquid_y")), 1e-6);
 }
 
-TEST(WcsphPlan, ShiftingIsForOnePhaseWithoutASurface) {
+TEST(WcsphPlan, ShiftingIsForOnePhaseOrTensionWithoutASurface) {
   const auto shifts = [](const std::string& text, const Overrides& set = {}) {
     return WcsphRun(text, set).method.flow().features.shifting;
   };
@@ -291,11 +314,13 @@ TEST(WcsphPlan, ShiftingIsForOnePhaseWithoutASurface) {
   EXPECT_FALSE(shifts(periodic_vortices, {"compressibility.shifting=\"off\""}));
   EXPECT_FALSE(shifts(column_in_air));
   EXPECT_FALSE(shifts(ball_in_stream));
+  EXPECT_TRUE(shifts(drop));
+  EXPECT_TRUE(shifts(ball_in_stream, {"compressibility.shifting=\"on\""}));
 }
 
 TEST(WcsphPlan, EveryStageCountsItsTraffic) {
   const Overrides shepard{"compressibility.density_filter=\"shepard\"", "compressibility.filter_interval=2"};
-  for (const std::string& text : {column_in_air, periodic_vortices, paddle})
+  for (const std::string& text : {column_in_air, periodic_vortices, paddle, drop})
     for (const Overrides& set : {Overrides{}, shepard}) {
       WcsphRun run(text, set);
       run.steps(4, 0.5 * run.method.step_limit().dt);
@@ -327,12 +352,13 @@ std::string refused(const std::string& text, const Overrides& overrides = {}) {
 
 TEST(WcsphCases, WhatItCannotDoIsRefusedWithTheFix) {
   EXPECT_THAT(refused(column_in_air, {"resolution.kernel=\"quintic-spline\""}), HasSubstr("wendland-c2"));
-  EXPECT_THAT(refused(column_in_air, {"interface.surface_tension=1"}), HasSubstr("use method \"gfd\""));
+  EXPECT_THAT(refused(paddle, {"interface.surface_tension=1"}), HasSubstr("beside walls of [[body]]"));
   EXPECT_THAT(refused(replaced(column_in_air, "\"0.1*sin(t)\", \"0\"", "\"0\", \"1\"")), HasSubstr("along its normal"));
   EXPECT_THAT(refused(replaced(column_in_air, "[time]", "[[solid]]\nlower = [1, 0]\nupper = [1.2, 0.3]\n[time]")),
               HasSubstr("as [[body]]"));
-  EXPECT_THAT(refused(ball_in_stream + "[compressibility]\nshifting = \"on\"\n"),
-              HasSubstr("expected one phase that fills the domain"));
+  EXPECT_THAT(
+      refused(replaced(column_in_air, "[[region]]\nphase = \"air\"\n", ""), {"compressibility.shifting=\"on\""}),
+      HasSubstr("expected phases that fill the domain"));
   EXPECT_THAT(refused(replaced(periodic_vortices,
                                "velocity = [\"-cos(2*pi*x)*sin(2*pi*y)\", \"sin(2*pi*x)*cos(2*pi*y)\"]", "")),
               HasSubstr("set compressibility.max_speed"));

@@ -50,6 +50,26 @@ TEST(GfdOperators, StencilsAgreeWithTheSlowTwin) {
   EXPECT_GT(isotropic, 20U);
 }
 
+TEST(GfdOperators, StencilsOfASubsetAreThoseOfAll) {
+  for_every_equal_arrangement([&](Arrangement& a) {
+    const Stencils all(a);
+    std::vector<std::int32_t> subset;
+    for (std::size_t i = 1; i < a.size(); i += 3) subset.push_back(static_cast<std::int32_t>(i));
+    std::array<Array<float>, 6> correction;
+    GfdMoments out;
+    const std::size_t entries = a.dimensions() == 3 ? 6 : 3;
+    for (std::size_t k = 0; k < entries; ++k) {
+      correction[k].resize(a.size());
+      correction[k].fill(-7.0F);
+      out.correction[k] = correction[k].data();
+    }
+    gfd_moment_subset(a.context, a.packed, subset, out);
+    for (std::size_t k = 0; k < entries; ++k)
+      for (std::size_t i = 0; i < a.size(); ++i)
+        ASSERT_EQ(correction[k][i], i % 3 == 1 ? all.correction[k][i] : -7.0F) << i;
+  });
+}
+
 TEST(GfdOperators, GradientsAndLaplacianOfAScalarAgreeWithTheSlowTwin) {
   for_every_equal_arrangement([&](Arrangement& a) {
     const Stencils stencils(a);

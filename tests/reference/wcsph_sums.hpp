@@ -65,12 +65,25 @@ struct WcsphSums {
     });
     return sum;
   }
-  // shift(point, axis), of particles and images.
-  template <class Shift, class Scalar>
-  Sum carried(std::size_t i, const Shift& shift, const Scalar& excess, const Scalar& volume) const {
+  template <class Scalar>
+  Sum tension(std::size_t i, int a, const Scalar& colour, const Scalar& potential, const Scalar& volume) const {
     Sum sum;
     sums.each(i, [&](const SphSums::Pair& p) {
       const std::size_t j = p.point->source;
+      const double mean = (double{potential[i]} + potential[j]) / 2, jump = double{colour[j]} - colour[i];
+      sum.add(p.g * volume[j], p.largest_g * volume[j], mean * jump * p.d[a],
+              (std::abs(potential[i]) + std::abs(potential[j])) / 2 * std::abs(jump * p.d[a]));
+    });
+    return sum;
+  }
+  // shift(point, axis), of particles and images.
+  template <class Shift, class Scalar, class Phase>
+  Sum carried(std::size_t i, const Shift& shift, const Scalar& excess, const Scalar& volume,
+              const Phase& same_phase) const {
+    Sum sum;
+    sums.each(i, [&](const SphSums::Pair& p) {
+      const std::size_t j = p.point->source;
+      if (!same_phase(i, j)) return;
       for (int a = 0; a < sums.dimensions(); ++a) {
         const double way = shift(sums.points()[i], a) * p.d[a];
         sum.add(p.g * volume[j], p.largest_g * volume[j], way * (double{excess[j]} - excess[i]),

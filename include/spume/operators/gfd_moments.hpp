@@ -20,6 +20,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "spume/operators/pair_sweep.hpp"
 
@@ -48,6 +49,9 @@ struct GfdStencils {
 };
 
 void gfd_moment_sweep(const SweepContext& context, PackedNeighbours& packed, const GfdMoments& out);
+// The same for the listed particles alone. Others are not written.
+void gfd_moment_subset(const SweepContext& context, PackedNeighbours& packed, std::span<const std::int32_t> subset,
+                       const GfdMoments& out);
 
 // A property of the fluids that jumps where they meet: its filtered value at each particle, and whether it varies
 // within the support of the particle, as InterfaceBands finds. `varies` null: it does not, anywhere.

@@ -8,22 +8,31 @@
 //                     linear velocities: an arrangement that the flow has stretched shows no divergence of its own
 //   its diffusion     sum_j 2 v_j g (s'_j - s'_i), j of the phase of i, s' the excess less its hydrostatic part
 //   viscous force     V_i (rho du / dt)_i / V_i = sum_j 2 v_j g mu_ij (u_j - u_i), mu_ij the harmonic mean
-//   carried by shift  (delta u . grad s')_i = sum_j v_j g (s'_j - s'_i) delta u_i . d
-//   momentum flux     (div (u (x) delta u))_i = sum_j v_j g (u_i delta u_i . d + u_j delta u_j . d)
-//   concentration     h (grad C)_i = h sum_j v_j g d, C = sum_j V_j W_ij
+//   carried by shift  (delta u . grad s')_i = sum_j v_j g (s'_j - s'_i) delta u_i . d, j of the phase of i
+//   momentum flux     of one phase (div (u (x) delta u))_i = sum_j v_j g (u_i delta u_i . d + u_j delta u_j . d);
+//                     of several (delta u . grad) u by the gradient of the rate, exact for linear velocities: particles
+//                     carry no momentum across an interface
+//   concentration     h (grad C)_i = h sum_j v_j g d, C = sum_j V_j W_ij over all phases
 //   pressure force    (rho du / dt)_i = - sum_j v_j g (P_i + P_j + R_ij) d,
 //                     R_ij = eps |rho0_i - rho0_j| / (rho0_i + rho0_j) |P_i + P_j|   (Monaghan 2013)
+//   tension           (rho du / dt)_i = sum_j v_j g (phi_i + phi_j) / 2 (c_j - c_i) d, c_i 1 in one phase and 0
+//                     elsewhere, phi = sigma kappa (particles/interface_potential.hpp)
+//
+// Where phi is uniform the tension is what the pressure phi c does to the neighbours of the other phase, term by term:
+// with the pressure phi c the forces of a drop are -2 phi c_i sum_j v_j g d, those of a liquid under the pressure phi,
+// whatever the densities. It is a force on the interface: to pairs it is not antisymmetric.
 //
 // The diffusion is that of Molteni and Colagrossi (2009) without the hydrostatic part (Fourtakas et al. 2019); the
 // viscous force that of Morris et al. (1997); the momentum flux of a transport velocity u + delta u that of Adami, Hu
-// and Adams (2013). Forces and flux times V_i are antisymmetric. Results do not depend on the thread count. Particles
-// are of one size and the kernel is Wendland's C2; throws std::logic_error otherwise.
+// and Adams (2013). Forces and the flux of one phase times V_i are antisymmetric. Results do not depend on the thread
+// count. Particles are of one size and the kernel is Wendland's C2; throws std::logic_error otherwise.
 #pragma once
 
 #include <array>
 
 #include "spume/core/vec3.hpp"
 #include "spume/operators/image_values.hpp"
+#include "spume/operators/interface_bands.hpp"
 #include "spume/operators/pair_sweep.hpp"
 
 namespace spume {
@@ -40,7 +49,7 @@ struct ContinuityFields {
   const float* excess = nullptr;                                  // s'
   const float* phase = nullptr;                                   // its number; null: one phase
   const float* viscosity = nullptr;                               // mu; null: inviscid
-  std::array<const float*, 3> shift{};                            // delta u; null: none. Of one phase
+  std::array<const float*, 3> shift{};                            // delta u; null: none
   const std::vector<std::array<float, 3>>* reflection = nullptr;  // of delta u
 };
 struct ContinuityOut {
@@ -68,9 +77,18 @@ struct PressureFields {
   const double* wall_density = nullptr;
   std::array<const double*, 3> wall_position{};
 };
-// out: (rho du/dt)_i by pressure. concentration: h grad C of one phase; null: not wanted.
+// out: (rho du/dt)_i by pressure. concentration: h grad C; null: not wanted.
 void pressure_force_sweep(const SweepContext& context, PackedNeighbours& packed, const PressureFields& fields,
                           const std::array<float*, 3>& out, const std::array<float*, 3>& concentration = {});
+
+struct TensionFields {
+  const float* volume = nullptr;     // v
+  const float* colour = nullptr;     // c
+  const float* potential = nullptr;  // phi; read at the varying particles of the bands
+};
+// Adds the tension to out at the mixed particles of the bands. No wall points.
+void tension_force_sweep(const SweepContext& context, PackedNeighbours& packed, const InterfaceBands& bands,
+                         const TensionFields& fields, const std::array<float*, 3>& out);
 
 // The Shepard filter of the density over the particles of the same phase, itself included:
 //   out = sum_j m_j W / sum_j V_j W / rho_0 - 1 = sum_j W (1 - v_j) / sum_j v_j W.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "spume/core/parallel.hpp"
@@ -30,17 +29,6 @@ std::vector<double> of_phases(const Scene& scene, double Phase::*property) {
 
 bool differ(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [&](double value) { return value != values.front(); });
-}
-
-std::vector<Colour> make_colours(const Scene& scene) {
-  std::vector<Colour> colours;
-  const std::size_t count = scene.phases.size();
-  if (count < 2) return colours;
-  for (std::size_t n = count == 2 ? 1 : 0; n < count; ++n)
-    colours.push_back({.phase = n,
-                       .tension = scene.surface_tension / (count == 2 ? 1 : 2),
-                       .density_jump = scene.phases[n].density - scene.phases[0].density});
-  return colours;
 }
 
 }  // namespace
@@ -80,7 +68,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       first_volume(scene.phases.size()),
       arrangement(scene.domain, resolution, particles.volume, particles.size()),
       moments(particles, {.kernel_sum = true, .concentration_gradient = features.shifting, .fading = {}}),
-      colours(make_colours(scene)),
+      colours(colours_of(scene)),
       phase_volume(scene.phases.size()),
       solver(boundary, solver_options(options)) {
   FieldSet& fields = particles.fields;
@@ -113,23 +101,10 @@ double Flow::potential_energy() const {
   return parallel_sum(size(), [&](std::size_t i) { return mass(i) * gravity_potential(i); });
 }
 
-// The interface of two phases is that of each of their colours.
-double Flow::interface_area() const {
-  double sum = 0;
-  for (const Colour& colour : colours) sum += colour.area;
-  return colours.size() == 1 ? sum : sum / 2;
-}
-
-double Flow::surface_energy() const {
-  double sum = 0;
-  for (const Colour& colour : colours) sum += colour.tension * colour.area;
-  return sum;
-}
-
 double Flow::roundness() const {
   const double volume = phase_volume[1], pi = std::numbers::pi;
   const double least = dimensions == 3 ? std::cbrt(36 * pi * volume * volume) : 2 * std::sqrt(pi * volume);
-  return least / interface_area();
+  return least / interface_area(colours);
 }
 
 void Flow::sort_particles() {
@@ -138,7 +113,7 @@ void Flow::sort_particles() {
 
 void Flow::start_energy() {
   if (steps > 0) return;
-  energy_supply = kinetic_energy() + potential_energy() + surface_energy();
+  energy_supply = kinetic_energy() + potential_energy() + surface_energy(colours);
 }
 
 GfdStencils Flow::stencils() const {
@@ -174,13 +149,6 @@ double Flow::largest_kinematic_viscosity() const {
   double largest = 0;
   for (std::size_t n = 0; n < densities.size(); ++n) largest = std::max(largest, viscosities[n] / densities[n]);
   return largest;
-}
-
-double Flow::capillary_time() const {
-  if (!features.tension) return std::numeric_limits<double>::infinity();
-  std::vector<double> sorted = densities;
-  std::sort(sorted.begin(), sorted.end());
-  return std::sqrt((sorted[0] + sorted[1]) * std::pow(spacing(), 3) / (4 * std::numbers::pi * scene.surface_tension));
 }
 
 double Flow::leased_bytes() const {

@@ -84,7 +84,7 @@ StepLimit Gfd::step_limit() const {
   if (speed > 0) step.bound(options.courant * h / speed, "courant");
   const double nu = flow_.largest_kinematic_viscosity();
   if (nu > 0) step.bound(limits.diffusive * spacing * spacing / nu, "viscous");
-  if (flow_.features.tension) step.bound(limits.capillary * flow_.capillary_time(), "capillary");
+  if (flow_.features.tension) step.bound(limits.capillary * capillary_time(flow_.scene), "capillary");
   if (options.max_step > 0) step.bound(options.max_step, "max_step");
   if (speed == 0 && options.max_step == 0) step.bound(options.end / steps_of_run_at_rest, "end of run");
   return step.limit();
@@ -98,9 +98,9 @@ void Gfd::declare_series() {
     series_.add("potential_energy", "rho g z, integral", [&flow] { return flow.potential_energy(); });
   if (flow.features.interfaces)
     series_.add("interface_area", flow.dimensions == 3 ? "length^2" : "length",
-                [&flow] { return flow.interface_area(); });
+                [&flow] { return interface_area(flow.colours); });
   if (flow.features.tension)
-    series_.add("surface_energy", "sigma times the area", [&flow] { return flow.surface_energy(); });
+    series_.add("surface_energy", "sigma times the area", [&flow] { return surface_energy(flow.colours); });
   if (flow.colours.size() == 1)
     series_.add(flow.dimensions == 3 ? "sphericity" : "circularity",
                 "surface of a ball of the volume of " + flow.scene.phases[1].name + " over the area",

@@ -1,51 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The arrangement of a step and its interfaces: colours, filtered properties, potentials.
 #include <algorithm>
-#include <cmath>
 
-#include "spume/core/kernel.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/methods/gfd/flow.hpp"
-#include "spume/operators/interface_curvature.hpp"
+#include "spume/operators/gfd_gradient.hpp"
 #include "spume/operators/interface_filters.hpp"
-#include "spume/operators/interface_jump.hpp"
 #include "spume/particles/number_density.hpp"
 #include "spume/particles/packing.hpp"
 
 namespace spume::gfd {
-namespace {
-
-// The colour across a flat interface is nearly a normal distribution of the width of the kernel, and that within 0.0095
-// a logistic one of 1 / 1.702 of its width (Camilli 1994): the distance follows from the colour in closed form.
-constexpr double logistic_width = 1.702;
-// Colours beyond tell hardly anything of the distance.
-constexpr double least_colour = 0.01;
-// Bounds of R / r of two level sets: within the band of a drop of less than a support a curvature says nothing.
-constexpr double least_stretch = 0.5, largest_stretch = 2;
-
-double kernel_width(const Resolution& resolution) {
-  const double variance = resolution.kernel == KernelKind::wendland_c2 ? WendlandC2::variance(resolution.dimensions)
-                                                                       : QuinticSpline::variance(resolution.dimensions);
-  return resolution.smoothing_length * std::sqrt(variance);
-}
-
-// Averages over the kernel that flatten a wave of the interface as much as its measurement does, to the square of its
-// number k: an average of the variance s^2 leaves 1 - k^2 s^2 / 2, and so does the colour that tells the height; a
-// derivative of weights W d leaves 1 - k^2 <d^4> / (6 <d^2>), and the curvature takes two.
-double averages_of_colour() {
-  return 1;
-}
-double averages_of_curvature(const Resolution& resolution) {
-  const double kurtosis = resolution.kernel == KernelKind::wendland_c2 ? WendlandC2::kurtosis(resolution.dimensions)
-                                                                       : QuinticSpline::kurtosis(resolution.dimensions);
-  return averages_of_colour() + 2 * kurtosis / 3;
-}
-
-double band_weight(double colour) {
-  return 4 * colour * (1 - colour);
-}
-
-}  // namespace
 
 void Flow::pack() {
   if (packed != 0) return;
@@ -135,86 +99,22 @@ void Flow::find_potentials() {
   for (Colour& colour : colours) find_potential(colour);
 }
 
-// Normals are those of C alone: divided by the mean densities as (14) is, they see the lighter side.
 void Flow::find_potential(Colour& colour) {
-  const std::size_t n = size();
-  ScratchPool& scratch = particles.scratch();
-  const double width = kernel_width(resolution);
-  FloatVectorScratch normal, gradient;
-  scratch.lease(normal, dimensions, n);
-  scratch.lease(gradient, dimensions, n);
-  ScratchArray<float> curvature(scratch, n), weight(scratch, n), potential(scratch, n), ones(scratch, n);
-  ones.fill(1.0F);
-  interface_normal_sweep(arrangement.context, arrangement.packed, bands, colour.value.data(), ones.data(),
-                         stencils().correction, band_threshold, {write(gradient), write(normal)});
-  if (features.tension)
-    curvature_sweep(arrangement.context, arrangement.packed, bands, read(normal), boundary.reflection(),
-                    curvature.data());
-  colour.potential.resize(n);
-  colour.mean_potential = 0;
-  parallel_for(n, [&](std::size_t i) {
-    weight[i] = static_cast<float>(band_weight(colour.value[i]));
-    potential[i] = colour.potential[i] = 0;
-  });
-  const auto& band = bands.varying();
-  // A potential from value(i, distance of the particle along the normal), measured through `averages` of the kernel.
-  const auto add = [&](double averages, auto&& value) {
-    parallel_for(band.size(), [&](std::size_t s) {
-      const auto i = static_cast<std::size_t>(band[s]);
-      const double c = std::clamp<double>(colour.value[i], least_colour, 1 - least_colour);
-      potential[i] = static_cast<float>(value(i, width / logistic_width * std::log(c / (1 - c))));
-    });
-    continue_across_band(colour, weight, potential, averages);
-  };
-  if (features.tension)
-    add(averages_of_curvature(resolution), [&](std::size_t i, double distance) {
-      const double stretch = 1 + curvature[i] * distance / (dimensions - 1);
-      return colour.tension * curvature[i] / std::clamp(stretch, least_stretch, largest_stretch);
-    });
-  if (features.gravity && colour.density_jump != 0)
-    add(averages_of_colour(), [&](std::size_t i, double distance) {
-      double height = gravity_potential(i);
-      for (int axis = 0; axis < dimensions; ++axis)
-        if (!scene.domain.periodic(axis)) height += distance * scene.fluid.gravity[axis] * normal[axis][i];
-      return colour.density_jump * height;
-    });
-  colour.area = particles.volume * parallel_sum(band.size(), [&](std::size_t s) {
-                  return std::sqrt(squared_norm(gradient, dimensions, static_cast<std::size_t>(band[s])));
-                });
-  scratch.release(normal);
-  scratch.release(gradient);
-}
-
-// Adds a potential of the interface to that of the colour. Averages over the band continue it and flatten its waves,
-// as measuring it did; the difference that one average more makes, times their number, gives back what they took, to
-// the square of the wave number. Without it a capillary wave of 32 spacings is 1.3 % too slow with 2 averages.
-void Flow::continue_across_band(Colour& colour, const Array<float>& weight, Array<float>& potential, double averages) {
-  const std::size_t n = size();
-  const auto& band = bands.varying();
-  const auto sum_over_band = [&](auto&& value) {
-    return parallel_sum(band.size(), [&](std::size_t s) { return value(static_cast<std::size_t>(band[s])); });
-  };
-  const double total = sum_over_band([&](std::size_t i) { return double{weight[i]}; });
-  const double mean =
-      total > 0 ? sum_over_band([&](std::size_t i) { return double{weight[i]} * potential[i]; }) / total : 0;
-  colour.mean_potential += mean;
-  parallel_for(band.size(), [&](std::size_t s) { potential[static_cast<std::size_t>(band[s])] -= float(mean); });
-  ScratchArray<float> averaged(particles.scratch(), n);
-  const auto average = [&](const Array<float>& from, Array<float>& to) {
-    interface_average_sweep(arrangement.context, arrangement.packed, bands, weight.data(), from.data(), to.data());
-  };
-  averaged.fill(0.0F);
-  const int passes = options.get<InterfaceOptions>().smoothing;
-  for (int pass = 0; pass < passes; ++pass) {
-    average(potential, averaged);
-    potential.swap(averaged);
-  }
-  average(potential, averaged);
-  const auto lost = static_cast<float>(averages + passes);
-  parallel_for(band.size(), [&](std::size_t s) {
-    const auto i = static_cast<std::size_t>(band[s]);
-    colour.potential[i] += potential[i] + lost * (potential[i] - averaged[i]);
-  });
+  InterfaceMeasure measure({.arrangement = arrangement,
+                            .bands = bands,
+                            .resolution = resolution,
+                            .particle_volume = particles.volume,
+                            .reflection = boundary.reflection(),
+                            .correction = stencils().correction,
+                            .scratch = particles.scratch(),
+                            .smoothing = options.get<InterfaceOptions>().smoothing},
+                           colour, features.tension);
+  if (features.tension) measure.add_tension();
+  if (!features.gravity || colour.density_jump == 0) return;
+  Vec3 across_sides{};
+  for (int axis = 0; axis < dimensions; ++axis)
+    if (!scene.domain.periodic(axis)) across_sides[axis] = scene.fluid.gravity[axis];
+  measure.add_weight(across_sides, [&](std::size_t i) { return gravity_potential(i); });
 }
 
 // (18), of the filtered viscosity itself: the same for two phases, and right for more.

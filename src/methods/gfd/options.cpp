@@ -40,13 +40,6 @@ Section momentum_section() {
             "filter of the viscosity across interfaces; arithmetic as in the paper's (7)");
 }
 
-Section interface_band_section() {
-  return section<InterfaceOptions>("interface")
-      .behind("surface_tension")
-      .option("smoothing", &InterfaceOptions::smoothing, "", between(3, 20),
-              "averages of the curvature along the interface");
-}
-
 Section limits_section() {
   using L = LimitOptions;
   return section<L>("time")

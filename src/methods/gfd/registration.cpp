@@ -76,7 +76,7 @@ Registration registration() {
       "incompressible flow of several phases by generalised finite differences, with tension and the full stress";
   method.fills_phases = true;
   method.honours_bodies = true;
-  method.sections = {pressure_section(), shifting_section(false), momentum_section(), interface_band_section(),
+  method.sections = {pressure_section(), shifting_section(false), momentum_section(), interface_section(),
                      limits_section()};
   method.check = check;
   method.check_scene = check_scene;

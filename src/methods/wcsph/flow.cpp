@@ -6,6 +6,9 @@
 #include <cmath>
 
 #include "spume/core/parallel.hpp"
+#include "spume/particles/column_pressure.hpp"
+#include "spume/particles/expected_speed.hpp"
+#include "spume/particles/options.hpp"
 
 namespace spume::wcsph {
 namespace {
@@ -14,44 +17,11 @@ namespace {
 constexpr double sound_over_speed = 10;
 // Exponents of the equation of state (Monaghan 1994; Colagrossi and Landrini 2003). A phase is a gas where its density
 // is below a fiftieth of the largest: the lightest liquids have half of that of water, the heaviest gases a hundredth.
-constexpr double liquid_exponent = 7, gas_exponent = 1.4, gas_density_ratio = 0.02;
+constexpr double gas_exponent = 1.4, gas_density_ratio = 0.02;
 
-double norm(const Vec3& v) {
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-// Free fall through the domain, the work of the forces along its longest side, the walls and the first velocities.
-double expected_speed_of(const LoadedCase& loaded) {
+double speed_of(const LoadedCase& loaded) {
   const double given = loaded.options.get<CompressibilityOptions>().max_speed;
-  if (given > 0) return given;
-  const Scene& scene = loaded.scene;
-  const Domain& domain = scene.domain;
-  const InitialParticles& p = scene.particles;
-  double speed2 = 0, length = 0;
-  Vec3 centre{};
-  for (int axis = 0; axis < domain.dimensions; ++axis) {
-    length = std::max(length, domain.upper[axis] - domain.lower[axis]);
-    centre[axis] = (domain.lower[axis] + domain.upper[axis]) / 2;
-    speed2 = std::max(speed2, 2 * std::abs(scene.fluid.gravity[axis]) * (domain.upper[axis] - domain.lower[axis]));
-  }
-  for (int axis = 0; axis < domain.dimensions; ++axis)
-    for (const Side& side : domain.sides[axis])
-      if (side.velocity) speed2 = std::max(speed2, std::pow(norm((*side.velocity)(centre, 0)), 2));
-  for (const BodyMotion& motion : scene.motions)
-    for (int k = 0; k <= 100; ++k) {
-      const RigidPlace place = given_place(motion, loaded.options.time.end * k / 100);
-      speed2 = std::max(speed2, std::pow(norm(place.velocity) + norm(place.angular_velocity) * length / 2, 2));
-    }
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    Vec3 u{}, r{};
-    for (int axis = 0; axis < domain.dimensions; ++axis) {
-      u[axis] = p.velocity[axis][i];
-      r[axis] = p.position[axis][i];
-    }
-    speed2 = std::max(speed2, std::pow(norm(u), 2));
-    if (scene.body_force) speed2 = std::max(speed2, 2 * length * norm((*scene.body_force)(r, 0)));
-  }
-  return std::sqrt(speed2);
+  return given > 0 ? given : spume::expected_speed(loaded.scene, loaded.options.time.end);
 }
 
 std::vector<PhaseLaw> laws_of(const Scene& scene, double expected_speed) {
@@ -85,37 +55,13 @@ double background_of(const LoadedCase& loaded, const Features& features, double 
   return density * speed * speed;
 }
 
-Vec3 gravity_across_sides(const Scene& scene) {
-  Vec3 g{};
-  for (int axis = 0; axis < scene.domain.dimensions; ++axis)
-    if (!scene.domain.periodic(axis)) g[axis] = scene.fluid.gravity[axis];
-  return g;
-}
-
-// x^7 without a logarithm: water is most of most scenes.
-double power(double x, double exponent) {
-  if (exponent != liquid_exponent) return std::pow(x, exponent);
-  const double x3 = x * x * x;
-  return x3 * x3 * x;
-}
-
 }  // namespace
-
-double PhaseLaw::pressure(double excess) const {
-  return stiffness() * (power(1 + excess, exponent) - 1);
-}
-double PhaseLaw::excess(double pressure) const {
-  return std::pow(1 + pressure / stiffness(), 1 / exponent) - 1;
-}
-// c^2 = dp / d rho = c_0^2 (1 + s)^(gamma - 1).
-double PhaseLaw::local_sound_speed(double excess) const {
-  return sound_speed * std::sqrt(power(1 + excess, exponent) / (1 + excess));
-}
 
 Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies) {
   const Scene& scene = loaded.scene;
   several = scene.phases.size() > 1;
-  gravity = norm(gravity_across_sides(scene)) > 0;
+  gravity = gravity_across_sides(scene) != Vec3{};
+  tension = several && scene.surface_tension > 0;
   viscosity =
       std::any_of(scene.phases.begin(), scene.phases.end(), [](const Phase& phase) { return phase.viscosity > 0; });
   friction = viscosity && no_slip;
@@ -123,7 +69,7 @@ Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.dom
   diffusion = smoothing.density_filter == DensityFilter::delta && smoothing.diffusion > 0;
   shepard = smoothing.density_filter == DensityFilter::shepard;
   shifting = smoothing.shifting == Shifting::on ||
-             (smoothing.shifting == Shifting::automatic && !several && !scene.free_surface);
+             (smoothing.shifting == Shifting::automatic && (!several || tension) && !scene.free_surface);
 }
 
 Flow::Flow(const LoadedCase& loaded_case)
@@ -134,7 +80,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       resolution(scene.domain.dimensions, scene.spacing, options.resolution.kernel, options.resolution.smoothing_ratio),
       dimensions(scene.domain.dimensions),
       skin(options.get<ListOptions>().skin * scene.spacing),
-      expected_speed(expected_speed_of(loaded_case)),
+      expected_speed(speed_of(loaded_case)),
       laws(laws_of(scene, expected_speed)),
       background(background_of(loaded_case, features, expected_speed, laws)),
       wall_gravity(gravity_across_sides(scene)),
@@ -153,52 +99,20 @@ Flow::Flow(const LoadedCase& loaded_case)
     for (int axis = 0; axis < dimensions; ++axis) (*acceleration[axis])[i] = (*listed[axis])[i] = 0;
     for (int axis = 0; features.shifting && axis < dimensions; ++axis) (*shift[axis])[i] = 0;
   });
+  if (features.tension) tension = std::make_unique<SurfaceTension>(scene, options.get<InterfaceOptions>().smoothing);
   if (features.gravity) start_density();
   find_signal();
 }
 
-// Liquid reaches round bodies: cells without particles take the mean of their row.
-void Flow::fill_bodies(std::vector<double>& density, std::size_t rows) const {
-  for (std::size_t row = 0; row < rows; ++row) {
-    double sum = 0, count = 0;
-    for (std::size_t k = row; k < density.size(); k += rows)
-      if (density[k] > 0) {
-        sum += density[k];
-        ++count;
-      }
-    for (std::size_t k = row; k < density.size(); k += rows)
-      if (density[k] == 0 && count > 0) density[k] = sum / count;
-  }
+void Flow::start_density() {
+  const Array<double> weight = column_pressure(scene, particles, *phase_number);
+  parallel_for(size(), [&](std::size_t i) { (*excess)[i] = law(i).excess(weight[i]); });
 }
 
-// The first pressure carries the weight of what is above in a column of the width of a spacing.
-void Flow::start_density() {
-  const Domain& domain = scene.domain;
-  const int up = dimensions - 1;
-  const double g = -wall_gravity[up], side = scene.spacing;
-  std::array<std::size_t, 3> cells{1, 1, 1};
-  for (int axis = 0; axis < dimensions; ++axis)
-    cells[axis] = static_cast<std::size_t>(std::ceil((domain.upper[axis] - domain.lower[axis]) / side)) + 1;
-  const auto index = [&](int axis, std::size_t i) {
-    const double k = ((*particles.position[axis])[i] - domain.lower[axis]) / side;
-    return std::min(static_cast<std::size_t>(std::max(k, 0.0)), cells[axis] - 1);
-  };
-  const std::size_t rows = cells[up];
-  const auto column = [&](std::size_t i) {
-    std::size_t k = index(0, i);
-    if (dimensions == 3) k = k * cells[1] + index(1, i);
-    return k * rows;
-  };
-  std::vector<double> density(rows * cells[0] * (dimensions == 3 ? cells[1] : 1)), above(density.size());
-  for (std::size_t i = 0; i < size(); ++i) density[column(i) + index(up, i)] = law(i).density;
-  if (features.bodies) fill_bodies(density, rows);
-  for (std::size_t first = 0; first < density.size(); first += rows)
-    for (std::size_t k = rows - 1; k-- > 0;)
-      above[first + k] = above[first + k + 1] + g * density[first + k + 1] * side;
+void Flow::start_tension() {
+  tension->find_potentials(tension_now());
   parallel_for(size(), [&](std::size_t i) {
-    const std::size_t row = index(up, i);
-    const double top = domain.lower[up] + side * static_cast<double>(row + 1);
-    (*excess)[i] = law(i).excess(above[column(i) + row] + g * law(i).density * (top - (*particles.position[up])[i]));
+    (*excess)[i] = law(i).excess(law(i).pressure((*excess)[i]) + tension->mean_jump(phase_of(i)));
   });
 }
 
@@ -216,13 +130,9 @@ double Flow::potential_energy() const {
   });
 }
 
-// The integral of p / rho^2 d rho from rho_0 on, times the mass.
 double Flow::compression_energy() const {
   return parallel_sum(size(), [&](std::size_t i) {
-    const PhaseLaw& own = law(i);
-    const double x = 1 + (*excess)[i], gamma = own.exponent;
-    const double of_state = gamma == 1 ? std::log(x) : (std::pow(x, gamma - 1) - 1) / (gamma - 1);
-    return particles.volume * own.stiffness() * (of_state + 1 / x - 1);
+    return particles.volume * law(i).stiffness() * law(i).energy_over_stiffness((*excess)[i]);
   });
 }
 

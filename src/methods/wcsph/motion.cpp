@@ -39,6 +39,7 @@ void Flow::build_lists() {
   if (features.bodies) boundary.bodies()->take_all_points(listed_time);
   boundary.make_images(arrangement, particles, listed, 1, {time, time, time}, false);
   arrangement.find_neighbours(particles, listed, sizes);
+  if (features.tension) tension->find_bands(arrangement, *phase_number);
   if (features.bodies)
     wall_averages.find_entries(arrangement.context, boundary.reflection(), boundary.bodies()->stencils());
   has_lists = true;
@@ -228,6 +229,15 @@ void Flow::find_pressure_force() {
   if (scene.free_surface) part_from_images();
 }
 
+SurfaceTension::Now Flow::tension_now() {
+  return {arrangement, resolution, boundary.reflection(), particles, volume.data()};
+}
+
+void Flow::add_tension() {
+  tension->find_potentials(tension_now());
+  tension->add_force(tension_now(), write(pressure_force));
+}
+
 // A particle on a mirror is at rest there: its force towards its image vanishes, and what the others leave of a flat
 // density field cancels it to first order. Closer to its image than the spacing it feels the artificial stress of
 // Monaghan (8) too.
@@ -309,6 +319,7 @@ void Flow::accept(double dt) {
   for (auto* array : {&next_excess, &pressure, &wall_pressure, &wall_density}) scratch.release(*array);
   for (auto* array : {&volume, &density, &phase, &viscosity}) scratch.release(*array);
   boundary.accept();
+  if (features.tension) surface_energy = tension->energy();
   time += dt;
   if (dt > 0) ++steps;
   find_signal();

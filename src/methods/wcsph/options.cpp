@@ -20,7 +20,8 @@ Section compressibility_section() {
       .option("diffusion", &C::diffusion, "1", between(0, 0.5), "coefficient of the diffusion of density")
       .steerable()
       .word("shifting", &C::shifting, {{"auto", Shifting::automatic}, {"on", Shifting::on}, {"off", Shifting::off}},
-            "of particles towards an even spacing; auto: in scenes of one phase without free surface")
+            "of particles towards an even spacing; auto: in scenes without free surface, of one phase or with surface "
+            "tension")
       .option("filter_interval", &C::filter_interval, "", between(1, 10000), "steps between kernel averages");
 }
 

@@ -4,11 +4,15 @@
 #include <numbers>
 
 #include "spume/methods/wcsph/wcsph.hpp"
+#include "spume/particles/options.hpp"
 #include "spume/scene/document.hpp"
 #include "spume/scene/option.hpp"
 
 namespace spume::wcsph {
 namespace {
+
+// Numbers of phases are bytes where interfaces are looked for.
+constexpr std::size_t most_phases = 200;
 
 void check(Draft& draft, Problems& problems) {
   if (draft.options.resolution.kernel != KernelKind::wendland_c2)
@@ -16,9 +20,14 @@ void check(Draft& draft, Problems& problems) {
         *draft.node("resolution.kernel"),
         "method \"wcsph\" takes resolution.kernel = \"wendland-c2\" alone, under which particles do not pair up; "
         "remove the key");
-  if (draft.surface_tension > 0)
+  if (draft.surface_tension > 0 && !draft.bodies.empty())
     problems.add(*draft.node("interface.surface_tension"),
-                 "method \"wcsph\" has no surface tension; expected 0: remove the key, or use method \"gfd\"");
+                 "method \"wcsph\" has no surface tension beside walls of [[body]]; expected 0: remove the key, or use "
+                 "method \"gfd\"");
+  if (draft.surface_tension > 0 && draft.phases.size() > most_phases)
+    problems.add(*draft.node("phase.0"), "the case has " + std::to_string(draft.phases.size()) +
+                                             " phases; with surface tension at most " + std::to_string(most_phases) +
+                                             " are possible");
   if (!draft.solids.empty())
     problems.add(*draft.node("solid.0"),
                  "method \"wcsph\" knows walls of [[body]], not [[solid]]; write the box as [[body]] with shape = "
@@ -33,11 +42,10 @@ void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
       problems.add(*draft.node("phase." + std::to_string(n)),
                    "phase '" + scene.phases[n].name +
                        "' fills nothing: no [[region]] of it is left; add a region behind the others, or remove it");
-  if (draft.options.get<CompressibilityOptions>().shifting == Shifting::on &&
-      (scene.phases.size() > 1 || scene.free_surface))
-    problems.add(*draft.node("compressibility.shifting"),
-                 "particles would be shifted across a free surface or between phases; expected one phase that fills "
-                 "the domain: remove the key");
+  if (draft.options.get<CompressibilityOptions>().shifting == Shifting::on && scene.free_surface)
+    problems.add(
+        *draft.node("compressibility.shifting"),
+        "particles would be shifted across a free surface; expected phases that fill the domain: remove the key");
   const auto up = static_cast<std::size_t>(scene.domain.dimensions) - 1;
   for (const auto& [name, velocity] : draft.wall_velocity) {
     const std::size_t axis = name == "left" || name == "right" ? 0 : name == "front" || name == "back" ? 1 : up;
@@ -69,7 +77,7 @@ Registration registration() {
   method.description = "flow of several phases by weakly compressible SPH, with repulsion between them";
   method.fills_phases = true;
   method.honours_bodies = true;
-  method.sections = {compressibility_section(), list_section()};
+  method.sections = {compressibility_section(), interface_section(), list_section()};
   method.check = check;
   method.check_scene = check_scene;
   method.bytes_per_particle = bytes_per_particle;

@@ -15,6 +15,7 @@ Plan make_plan(Flow& f) {
   const ParticleStages stages(plan, f);
   const char* const several = has.several ? "several phases" : "one phase";
 
+  const ArrayUse interfaces([&f] { return f.tension == nullptr ? 0 : f.tension->bytes(); });
   const auto keep_lists = [&f](StageRun& run) {
     const std::int64_t builds = f.list_builds;
     f.keep_lists(run.dt);
@@ -24,6 +25,9 @@ Plan make_plan(Flow& f) {
   };
   stages.add(both, "lists", true, "made anew when a particle has moved by half of lists.skin", keep_lists,
              {p.position, p.velocity, f.acceleration, f.listed}, {});
+  const std::string no_tension = has.several ? "no interface.surface_tension" : several;
+  stages.sweep(start, "first tension", has.tension, has.tension ? "pressures of whole phases" : no_tension,
+               &Flow::start_tension, {*f.phase_number}, {*f.excess, interfaces});
   stages.add(both, "drift", true, "(5), (6): r and u at the middle of the step", &Flow::drift,
              {p.position, p.velocity, f.acceleration, f.shift}, {f.half_velocity, f.place});
   stages.sweep(both, "continuity", true,
@@ -44,6 +48,9 @@ Plan make_plan(Flow& f) {
                [&f, interval] { return f.steps % interval == interval - 1; });
   stages.sweep(both, "pressure force", true, std::string("(2)") + (has.several ? ", (4)" : "") + ": " + several,
                &Flow::find_pressure_force, {f.pressure, f.volume, f.density}, {f.pressure_force, f.concentration});
+  stages.sweep(both, "surface tension", has.tension,
+               has.tension ? "(11): curvature of the interfaces, force of pairs across them" : no_tension,
+               &Flow::add_tension, {f.volume, interfaces}, {f.pressure_force, interfaces});
   stages.add(both, "acceptance", true, "(6): the new state", &Flow::accept,
              {f.half_velocity, f.place, f.next_excess, f.pressure_force, f.viscous_force, f.flux, f.concentration},
              {p.position, p.velocity, f.acceleration, f.shift, *f.excess});

@@ -57,12 +57,8 @@ Wcsph::Wcsph(const LoadedCase& loaded)
   declare_series();
   if (flow_.features.bodies)
     body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
-  saved_.add(flow_.time)
-      .add(flow_.steps)
-
-      .add(flow_.signal)
-      .add(flow_.largest_speed)
-      .add(flow_.boundary.wall_speed);
+  saved_.add(flow_.time).add(flow_.steps).add(flow_.signal).add(flow_.largest_speed).add(flow_.boundary.wall_speed);
+  if (flow_.features.tension) saved_.add(flow_.surface_energy);
 }
 
 void Wcsph::step(double dt, Ledger& ledger) {
@@ -81,6 +77,7 @@ StepLimit Wcsph::step_limit() const {
   double gravity2 = 0;
   for (const double g : flow_.scene.fluid.gravity) gravity2 += g * g;
   if (gravity2 > 0) step.bound(force_limit * std::sqrt(h / std::sqrt(gravity2)), "body force");
+  if (flow_.features.tension) step.bound(capillary_time(flow_.scene), "capillary");
   if (options.max_step > 0) step.bound(options.max_step, "max_step");
   return step.limit();
 }
@@ -92,6 +89,8 @@ void Wcsph::declare_series() {
   if (flow.features.gravity)
     series_.add("potential_energy", "rho g z, integral", [&flow] { return flow.potential_energy(); });
   series_.add("compression_energy", "rho e, integral", [&flow] { return flow.compression_energy(); });
+  if (flow.features.tension)
+    series_.add("surface_energy", "sigma times the area", [&flow] { return flow.surface_energy; });
   series_.add("max_speed", "speed", [&flow] { return flow.largest_speed; });
   for (std::size_t n = 0; n < phase_sums_.size(); ++n) {
     const std::string& name = flow.scene.phases[n].name;
@@ -122,6 +121,7 @@ std::vector<Remark> Wcsph::take_remarks() {
 std::vector<ArrayInfo> Wcsph::arrays() const {
   std::vector<ArrayInfo> list = particle_arrays(flow_.particles, flow_.arrangement);
   if (flow_.features.bodies) list.push_back({"wall points", flow_.boundary.bytes() + flow_.wall_averages.bytes()});
+  if (flow_.features.tension) list.push_back({"interfaces", flow_.tension->bytes()});
   list.push_back({"leased within a step", flow_.leased_bytes()});
   return list;
 }

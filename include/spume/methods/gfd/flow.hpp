@@ -17,9 +17,9 @@
 
 #include "spume/methods/gfd/options.hpp"
 #include "spume/operators/gfd_pressure.hpp"
-#include "spume/operators/interface_bands.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/boundary.hpp"
+#include "spume/particles/interface_potential.hpp"
 #include "spume/particles/moments.hpp"
 #include "spume/particles/projection_solver.hpp"
 #include "spume/particles/shift.hpp"
@@ -44,18 +44,6 @@ struct Features : BoundaryFeatures {
   bool shift_correction = false;
   bool density_relaxation = false;
   bool writes_diffusion = false;  // output.fields
-};
-
-// A colour function C^n whose interface is followed: of every phase but the first in a scene of two, else of all.
-struct Colour {
-  std::size_t phase = 0;
-  double tension = 0;         // share of sigma: sigma_ab = sigma_a + sigma_b
-  double density_jump = 0;    // rho_n - rho_0
-  Array<float> value{};       // C
-  Array<float> potential{};   // phi - <phi>, at the varying particles
-  double mean_potential = 0;  // <phi>
-  double area = 0;            // of the interface: integral of |grad C|
-  double is(std::uint8_t number) const { return number == phase ? 1 : 0; }  // c
 };
 
 struct Flow {
@@ -126,12 +114,8 @@ struct Flow {
   double gravity_potential(std::size_t i) const;  // -g . (x - x_0), of gravity across sides
   double hydrostatic_part(std::size_t i) const;   // p - pi
   double largest_kinematic_viscosity() const;
-  // Least sqrt((rho_a + rho_b) spacing^3 / (4 pi sigma)) of two phases; infinite without tension.
-  double capillary_time() const;
   double kinetic_energy() const;
   double potential_energy() const;  // across axes with sides
-  double interface_area() const;    // integral of |grad C|
-  double surface_energy() const;    // sigma times it
   double roundness() const;         // of the second of two phases: surface of a ball of its volume over that area
   // What the guard of the energy measures by; after the first interfaces have been found.
   void start_energy();  // of a run that begins
@@ -164,7 +148,6 @@ struct Flow {
  private:
   void refuse_energy_from_nothing() const;
   void find_potential(Colour& colour);
-  void continue_across_band(Colour& colour, const Array<float>& weight, Array<float>& potential, double averages);
   void blend_viscosity(std::span<const float* const> colour);
 };
 

@@ -20,14 +20,6 @@ struct MomentumOptions {
   ViscosityMean viscosity_mean = ViscosityMean::harmonic;
 };
 
-// Of [interface], beside the tension.
-struct InterfaceOptions {
-  // Passes of the average that continues the curvature across the band. What they take of long waves is given back,
-  // which makes too much of waves of 10 spacings: 1.11 times with 4 passes, 1.16 with 3, 1.26 with 2. With 3 a
-  // capillary wave of 64 spacings loses 15 % of its damping to such waves, with 4 none.
-  int smoothing = 4;
-};
-
 // What the scheme adds to [time].
 struct LimitOptions {
   double diffusive = 0.2;
@@ -35,7 +27,6 @@ struct LimitOptions {
 };
 
 Section momentum_section();
-Section interface_band_section();
 Section limits_section();
 
 }  // namespace spume::gfd

@@ -3,6 +3,7 @@
 // README of the method.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,18 +12,11 @@
 #include "spume/operators/wcsph_sums.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/boundary.hpp"
+#include "spume/particles/phase_law.hpp"
+#include "spume/particles/surface_tension.hpp"
 #include "spume/scene/case.hpp"
 
 namespace spume::wcsph {
-
-// The equation of state (3) of a phase, p = B ((1 + s)^gamma - 1) with s = rho / rho_0 - 1 and B = rho_0 c^2 / gamma.
-struct PhaseLaw {
-  double density = 0, viscosity = 0, sound_speed = 0, exponent = 7;
-  double stiffness() const { return density * sound_speed * sound_speed / exponent; }
-  double pressure(double excess) const;
-  double excess(double pressure) const;
-  double local_sound_speed(double excess) const;
-};
 
 // What a scene needs. Stages and arrays exist by these alone.
 struct Features : BoundaryFeatures {
@@ -31,6 +25,7 @@ struct Features : BoundaryFeatures {
   bool gravity = false;  // across sides
   bool viscosity = false;
   bool friction = false;  // at no-slip walls
+  bool tension = false;
   bool diffusion = false, shepard = false;
   bool shifting = false;
 };
@@ -65,13 +60,15 @@ struct Flow {
   double listed_time = 0;  // of the places of moving bodies in the lists
   double signal = 0;       // largest sum of sound speed and speed
   double largest_speed = 0;
+  double surface_energy = 0;  // of the interfaces where the last forces were found
 
   // --- Lists of neighbours at `listed`, seen from where the particles are.
   Arrangement arrangement;
   ParticleSizes sizes;  // all alike
   bool has_lists = false;
   std::int64_t list_builds = 0;
-  WallAverages wall_averages;  // of the wall points of bodies
+  WallAverages wall_averages;               // of the wall points of bodies
+  std::unique_ptr<SurfaceTension> tension;  // null: none
 
   // --- Leased within a step.
   VectorScratch half_velocity, place;
@@ -97,7 +94,9 @@ struct Flow {
   void find_rates();                // (1), and the viscous part of (2)
   void advance_density(double dt);  // (1), (3), and (5) to the end of the step
   void filter_density();
+  void start_tension();        // the first pressures of whole phases jump by the mean tension
   void find_pressure_force();  // (2), (4)
+  void add_tension();          // (11)
   void accept(double dt);      // (2)
 
   // What the liquid does to each body, as it is.
@@ -107,7 +106,7 @@ struct Flow {
 
  private:
   void start_density();
-  void fill_bodies(std::vector<double>& density, std::size_t rows) const;
+  SurfaceTension::Now tension_now();
   void build_lists();
   bool lists_hold(double dt) const;
   void move_images(const std::array<const double*, 3>& at, double t);

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// Runs of wcsph with its own steps.
+#pragma once
+
+#include "methods/method_run.hpp"
+#include "spume/methods/wcsph/wcsph.hpp"
+
+namespace spume::test {
+
+using WcsphRun = MethodRun<wcsph::Wcsph>;
+
+inline void until(WcsphRun& run, double end) {
+  while (run.method.time() < end - 1e-12)
+    run.method.step(std::min(run.method.step_limit().dt, end - run.method.time()), run.ledger);
+}
+
+}  // namespace spume::test
