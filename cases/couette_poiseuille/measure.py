@@ -27,6 +27,9 @@ def exact(run):
 
 
 def viscosity(run):
+    """Of a fluid of groups, or of the phase of another method."""
+    if "phase" in run.case:
+        return float(run.case["phase"][0]["viscosity"]) / float(run.case["phase"][0]["density"])
     return 1 / float(run.case["fluid"]["reynolds"])
 
 
@@ -59,5 +62,6 @@ def curves(runs):
             label = f"t = {snapshot.time:.2g}"
             lines.append((f"Spume, {label}", snapshot.field("velocity")[:, 0], snapshot.position[:, 1], "."))
             lines.append((f"exact, {label}", exact(run)(y, snapshot.time, viscosity(run)), y, "k--"))
-        figures.append({"file": f"profiles_{exact(run).__name__}", "x": "velocity", "y": "y", "curves": lines})
+        method = "_wcsph" if "phase" in run.case else ""
+        figures.append({"file": f"profiles_{exact(run).__name__}{method}", "x": "velocity", "y": "y", "curves": lines})
     return figures

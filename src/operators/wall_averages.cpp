@@ -97,7 +97,7 @@ std::vector<WallForce> wall_forces(const SweepContext& context, const WallForceF
   if (wall_point == nullptr) return sum;
   const int d = context.dimensions;
   const double h = context.smoothing_length, V = context.volume;
-  const double scale = V * V * WendlandC2::normalisation(d) / std::pow(h, d + 2);
+  const double scale = context.gradient_scale * V * V * WendlandC2::normalisation(d) / std::pow(h, d + 2);
   std::vector<std::vector<WallForce>> blocks(block_count(n, default_block), std::vector<WallForce>(bodies));
   parallel_blocks(n, default_block, [&](std::size_t b, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i)

@@ -179,7 +179,9 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
   const auto particles = static_cast<std::int32_t>(list.particles());
   const std::int32_t* const wall_point = arrangement.images.wall_point();
   const double h = resolution_.smoothing_length, reach = resolution_.support_radius, dr = resolution_.spacing;
-  const double gradient = arrangement.context.volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions + 2);
+  const SweepContext& context = arrangement.context;
+  const double gradient =
+      context.gradient_scale * context.volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions + 2);
   // What a particle sees: others and images of them, and wall points by their share.
   const auto visit_liquid = [&](std::size_t i, auto&& visit) {
     for (const std::int32_t j : list.of(i)) {

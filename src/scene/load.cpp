@@ -21,6 +21,7 @@
 #include "spume/scene/expression.hpp"
 #include "spume/scene/find_case.hpp"
 #include "spume/scene/solid_union.hpp"
+#include "translate.hpp"
 #include "unused_options.hpp"
 #include "wavemakers.hpp"
 
@@ -298,8 +299,10 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
     if (section.repeated) repeated.push_back(section.name);
   }
   for (const std::string& assignment : overrides) apply_override(document, assignment, repeated, problems);
+  const Translation translation = translate(document, schema, file);
 
   Draft draft;
+  draft.groups = translation.groups;
   draft.options.path = file;
   draft.options.title = name_of_case(file);
   read_document(document, schema, draft, problems);
@@ -363,7 +366,8 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   describe_waves(draft, scene, wavemakers, draft.options.groups);
   note_places(document, "", file, draft.options.places);
   draft.options.resolved = resolved_text(document, schema, draft);
-  draft.options.warnings = unused_options(draft, schema, file);
+  draft.options.warnings = translation.warnings;
+  for (Problem& warning : unused_options(draft, schema, file)) draft.options.warnings.push_back(std::move(warning));
   for (Problem& warning : body_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
   if (uses_particles(*method)) {
     for (Problem& warning : open_side_warnings(draft, scene, file))

@@ -146,6 +146,7 @@ struct Draft {
   std::vector<ExpressionText> initial_velocity;
   std::optional<ExpressionText> initial_spectrum;
 
+  bool groups = false;                       // phases stand for groups: no SI values
   int dimensions = 0;                        // 0 while the domain is not understood
   std::map<std::string, const Node*> given;  // "section.key" or "section.0.key" -> value, sections included
   std::map<std::string, bool> bad;           // keys whose value was refused
@@ -157,9 +158,9 @@ struct Draft {
   bool usable(const std::string& name) const { return bad.count(name) == 0; }
 };
 
-// True when the case is in SI units: by its fluid, or because it has phases, which are always.
+// True when the case is in SI units: by its fluid, or because it has phases, which are unless they stand for groups.
 inline bool uses_si(const Draft& draft) {
-  return uses_si(draft.fluid) || !draft.phases.empty();
+  return !draft.groups && (uses_si(draft.fluid) || !draft.phases.empty());
 }
 
 }  // namespace spume

@@ -29,6 +29,8 @@ struct MethodDeclaration {
   bool honours_bodies =
       false;  // liquid does not pass the walls of [[body]]; a case with such walls is refused otherwise
 
+  bool honours_solids = true;  // the same of [[solid]]
+
   bool honours_floating_bodies = false;  // whose motion follows from the pressure
 
   bool damps_sponges = false;    // [[sponge]]

@@ -87,6 +87,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       particles(dimensions, scene.particles),
       boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution)),
       arrangement(scene.domain, resolution, particles.volume, particles.size(), skin) {
+  arrangement.context.gradient_scale = dimensions / resolution.lattice.divergence_of_position;
   FieldSet& fields = particles.fields;
   particles.add_vector(acceleration, "acceleration", Lifetime::state);
   particles.add_vector(listed, "listed_position", Lifetime::state);

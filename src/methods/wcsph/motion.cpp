@@ -243,7 +243,8 @@ void Flow::add_tension() {
 // Monaghan (8) too.
 void Flow::part_from_images() {
   const double h = resolution.smoothing_length, gap = scene.spacing, at_gap = WendlandC2::w(gap / h);
-  const double scale = particles.volume * WendlandC2::normalisation(dimensions) / std::pow(h, dimensions + 2);
+  const double scale = arrangement.context.gradient_scale * particles.volume * WendlandC2::normalisation(dimensions) /
+                       std::pow(h, dimensions + 2);
   parallel_for(size(), [&](std::size_t i) {
     for (int axis = 0; axis < dimensions; ++axis)
       for (std::size_t side = 0; side < 2; ++side) {

@@ -77,6 +77,7 @@ Registration registration() {
   method.description = "flow of several phases by weakly compressible SPH, with repulsion between them";
   method.fills_phases = true;
   method.honours_bodies = true;
+  method.honours_solids = false;
   method.sections = {compressibility_section(), interface_section(), list_section()};
   method.check = check;
   method.check_scene = check_scene;

@@ -19,7 +19,7 @@ Plan make_plan(Flow& flow);
 
 const std::vector<OutputField<Flow>>& output_fields();
 
-class Wcsph final : public Method, public FieldProbes {
+class Wcsph final : public Method, public FieldProbes, public SurfaceProbes {
  public:
   explicit Wcsph(const LoadedCase& loaded);
 
@@ -39,6 +39,10 @@ class Wcsph final : public Method, public FieldProbes {
   FieldProbes* field_probes() override { return this; }
   PointSample sample(const Vec3& position) override { return sampler().sample(position); }
   PlaneSample plane_average(int axis, double position) override { return sampler().plane_average(axis, position); }
+  SurfaceProbes* surface_probes() override { return flow_.scene.free_surface ? this : nullptr; }
+  double elevation(const Vec3& position) override { return sampler().elevation(position); }
+  double wetted_length(const Vec3& position) override { return sampler().wetted_length(position); }
+  double front(int axis, double height) override { return sampler().front(axis, height); }
   Vec3 carried(std::size_t motion, const Vec3& start) const override {
     return given_place(flow_.scene.motions[motion], flow_.time).now(start);
   }
