@@ -38,8 +38,9 @@ def errors(run):
     early = probes["t"] < 0.6
     measured["P1_peak"] = float(np.nanmax(probes["P1_pressure"][early]))
     measured["P1_peak_time"] = float(probes["t"][early][np.nanargmax(probes["P1_pressure"][early])])
-    mass = run.series["mass"]
-    measured["mass_drift"] = float(np.max(np.abs(mass / mass[0] - 1)))
+    if "mass" in run.series:  # not of methods whose particles stay
+        mass = run.series["mass"]
+        measured["mass_drift"] = float(np.max(np.abs(mass / mass[0] - 1)))
     return measured
 
 
