@@ -329,5 +329,39 @@ class ViscousDrop(CaseTest):
             self.assertAlmostEqual(module.other_stress(ratio), drags[0] / drags[1] - 1)
 
 
+class RisingBubbleInATube(CaseTest):
+    def test_velocity_range_of_pressure_and_size(self):
+        runs = {}
+        at = lattice([0, 0, -2], [1, 1, 4], 1 / 16)
+        inside = np.hypot(at[:, 0], at[:, 1]) ** 2 / 0.6**2 + (at[:, 2] - 1) ** 2 / 0.4**2 < 1
+        centre = at[inside][:, 2].mean()
+        near = at[:, 0] ** 2 + at[:, 1] ** 2 + (at[:, 2] - centre) ** 2 < 1
+        for diffusion, faster in (("split", 1), ("printed", 0.9), ("mu-laplacian", 1.5)):
+            folder, module = self.run_of("rising_bubble_3d")
+            text = (folder / "case.toml").read_text(encoding="utf-8")
+            text = text.replace("spacing = 0.125 ", "spacing = 0.0625 ")
+            (folder / "case.toml").write_text(text.replace("[momentum]", f'[momentum]\ndiffusion = "{diffusion}"'),
+                                              encoding="utf-8")
+            t = np.linspace(0, 7, 71)
+            write_table(folder / "series.csv", series_of(t, velocity_bubble_z=np.where(t < 5, 9, 0.2 * faster)))
+            high = np.hypot(at[:, 0], at[:, 1]) < 0.5
+            write_snapshots(folder / "fluid.vtkhdf", [0, 7], lambda t: at, {
+                "phase": lambda p, t: inside,
+                "pressure": lambda p, t: 3 - 2 * p[:, 2] + np.where(high & (p[:, 2] > 1), 0.782, 0) + ~near * p[:, 2]})
+            runs["fine_" + diffusion.replace("-", "_")] = Results(folder)
+        measured = module.measure(runs)
+        self.assertAlmostEqual(measured["fine_split_velocity"], 0.2)
+        self.assertAlmostEqual(measured["fine_split_growth"], 0)
+        self.assertAlmostEqual(measured["fine_excess_over_split"], 0.5)
+        self.assertAlmostEqual(measured["fine_excess_over_printed"], 1.5 / 0.9 - 1)
+        self.assertLess(measured["fine_printed_pressure_error"], 1e-5)
+        self.assertAlmostEqual(measured["fine_mu_laplacian_pressure_error"], 0.782 / 0.759 - 1, places=5)
+        self.assertAlmostEqual(measured["fine_split_width"], 1.2, delta=0.02)
+        self.assertAlmostEqual(measured["fine_split_height"], 0.8, delta=0.02)
+        self.assertEqual(measured["fine_split_left_behind"], 0)
+        across, height = module.outline(runs["fine_split"], runs["fine_split"].snapshots()[-1])
+        np.testing.assert_allclose(across**2 / 0.6**2 + height**2 / 0.4**2, 1, atol=0.15)
+
+
 if __name__ == "__main__":
     unittest.main()
