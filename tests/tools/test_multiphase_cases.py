@@ -273,5 +273,95 @@ class DropInShear(CaseTest):
         self.assertAlmostEqual(measured["ratio_1_deformation_error"], abs(deformation / taylor - 1), places=5)
 
 
+class ViscousDrop(CaseTest):
+    def written(self, ratio, faster, stretch):
+        """The measures of a drop of radius 1 in a tube of radius 2.5 that has `faster` times the exact velocity at its end."""
+        folder, module = self.run_of("viscous_drop")
+        text = (folder / "case.toml").read_text(encoding="utf-8")
+        drop = text.rindex("viscosity = 1\n")
+        (folder / "case.toml").write_text(text[:drop] + f"viscosity = {ratio}\n" + text[drop + 14:], encoding="utf-8")
+        at = lattice([0, 0, -3.5], [2.5, 2.5, 3.5], 1 / 12)
+        at = at[at[:, 0] ** 2 + at[:, 1] ** 2 < 2.5**2]
+        inside = at[:, 0] ** 2 + at[:, 1] ** 2 + ((at[:, 2] - 0.5) / stretch) ** 2 < 1
+        known = {0.01: 0.657370, 1: 0.434048, 100: 0.281041}[ratio]
+        t = np.linspace(0, 1, 101)
+        speed = -faster * known * np.minimum(t / 0.8, 1)
+        tube = np.pi / 4 * 2.5**2 * 7
+        write_table(folder / "series.csv", series_of(t, velocity_drop_z=speed, centre_drop_z=0.5 - 0.9 * faster * known * t,
+                                                     volume_drop=1.01 * np.pi / 3,
+                                                     volume_outside=1.01 * (tube - np.pi / 3)))
+        write_snapshots(folder / "fluid.vtkhdf", [0, 1], lambda t: at, {"phase": lambda p, t: inside})
+        return module.measure({"drop": Results(folder)})
+
+    def test_the_velocity_of_the_table_has_no_error_and_a_faster_one_has(self):
+        for ratio in (0.01, 1, 100):
+            measured = self.written(ratio, 1, 1)
+            self.assertLess(measured["drop_error"], 1e-6)
+            self.assertLess(measured["drop_out_of_round"], 0.01)
+            self.assertAlmostEqual(measured["drop_way_excess"], -0.1, places=5)
+            self.assertAlmostEqual(self.written(ratio, 1.04, 1)["drop_excess"], 0.04, places=6)
+
+    def test_a_spheroid_is_out_of_round(self):
+        self.assertAlmostEqual(self.written(1, 1, 1.1)["drop_out_of_round"], 0.1, delta=0.01)
+
+    def test_the_radius_between_two_of_the_table(self):
+        folder, module = self.run_of("viscous_drop")
+        text = (folder / "case.toml").read_text(encoding="utf-8")
+        (folder / "case.toml").write_text(text.replace("radius = 2.5", "radius = 4"), encoding="utf-8")
+        tube = np.pi / 4 * 4**2 * 7
+        write_table(folder / "series.csv", series_of([0, 1], volume_drop=np.pi / 3, volume_outside=tube - np.pi / 3))
+        self.assertAlmostEqual(module.exact(Results(folder)), 0.693053, places=6)
+
+    def test_the_other_stress_is_the_same_for_one_viscosity_and_for_a_rigid_drop(self):
+        module = load_measure(CASES / "viscous_drop")
+        self.assertAlmostEqual(module.other_stress(0), 1 / 3)
+        self.assertAlmostEqual(module.other_stress(1), 0)
+        self.assertAlmostEqual(module.other_stress(1e9), 0)
+        # The drag 4 pi mu A of the flow that meets the four conditions at the sphere, solved for.
+        for ratio in (0.01, 0.3, 100):
+            drags = []
+            for true_stress in (1, 0):
+                # Unknowns A, B, c, d of u_r / cos and -u_theta / sin: A / (2 r) - B / (2 r^3), c + 2 d r^2.
+                outside = np.array([-0.5, 1.5]) + true_stress * (np.array([1, 1]) - np.array([0.5, -0.5]))
+                within = np.array([0, 4]) + true_stress * (np.array([1, 1]) - np.array([1, 2]))
+                matrix = [[1, 1, 0, 0], [0, 0, 1, 1], [0.5, -0.5, -1, -2], [*outside, *(-ratio * within)]]
+                drags.append(np.linalg.solve(matrix, [1, 1, 0, 0])[0])
+            self.assertAlmostEqual(module.other_stress(ratio), drags[0] / drags[1] - 1)
+
+
+class RisingBubbleInATube(CaseTest):
+    def test_velocity_range_of_pressure_and_size(self):
+        runs = {}
+        at = lattice([0, 0, -2], [1, 1, 4], 1 / 16)
+        inside = np.hypot(at[:, 0], at[:, 1]) ** 2 / 0.6**2 + (at[:, 2] - 1) ** 2 / 0.4**2 < 1
+        centre = at[inside][:, 2].mean()
+        near = at[:, 0] ** 2 + at[:, 1] ** 2 + (at[:, 2] - centre) ** 2 < 1
+        for diffusion, faster in (("split", 1), ("printed", 0.9), ("mu-laplacian", 1.5)):
+            folder, module = self.run_of("rising_bubble_3d")
+            text = (folder / "case.toml").read_text(encoding="utf-8")
+            text = text.replace("spacing = 0.125 ", "spacing = 0.0625 ")
+            (folder / "case.toml").write_text(text.replace("[momentum]", f'[momentum]\ndiffusion = "{diffusion}"'),
+                                              encoding="utf-8")
+            t = np.linspace(0, 7, 71)
+            write_table(folder / "series.csv", series_of(t, velocity_bubble_z=np.where(t < 5, 9, 0.2 * faster)))
+            high = np.hypot(at[:, 0], at[:, 1]) < 0.5
+            write_snapshots(folder / "fluid.vtkhdf", [0, 7], lambda t: at, {
+                "phase": lambda p, t: inside,
+                "pressure": lambda p, t: 3 - 2 * p[:, 2] + np.where(high & (p[:, 2] > 1), 0.782, 0) + ~near * p[:, 2]})
+            runs["fine_" + diffusion.replace("-", "_")] = Results(folder)
+        measured = module.measure(runs)
+        self.assertAlmostEqual(measured["fine_split_velocity"], 0.2)
+        self.assertAlmostEqual(measured["fine_split_growth"], 0)
+        self.assertAlmostEqual(measured["fine_excess_over_split"], 0.5)
+        self.assertAlmostEqual(measured["fine_excess_over_printed"], 1.5 / 0.9 - 1)
+        self.assertLess(measured["fine_printed_pressure_error"], 1e-5)
+        self.assertAlmostEqual(measured["fine_mu_laplacian_pressure_error"], 0.782 / 0.759 - 1, places=5)
+        self.assertAlmostEqual(measured["fine_split_width"], 1.2, delta=0.02)
+        self.assertAlmostEqual(measured["fine_split_height"], 0.8, delta=0.02)
+        self.assertEqual(measured["fine_split_left_behind"], 0)
+        across, height = module.outline(runs["fine_split"], runs["fine_split"].snapshots()[-1])
+        np.testing.assert_allclose(across**2 / 0.6**2 + height**2 / 0.4**2, 1, atol=0.15)
+
+
 if __name__ == "__main__":
     unittest.main()
