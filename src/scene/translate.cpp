@@ -11,29 +11,25 @@ namespace {
 
 const char* const phase_name = "liquid";
 
-Node text_node(const std::string& text, const Node& at) {
+// An empty node where another stands, given by whom that was.
+Node node_at(const Node& at, Node::Kind kind = Node::Kind::table) {
   Node node;
-  node.kind = Node::Kind::string;
-  node.text = text;
+  node.kind = kind;
   node.place = at.place;
   node.key_place = at.key_place;
+  node.override_text = at.override_text;
+  return node;
+}
+
+Node text_node(const std::string& text, const Node& at) {
+  Node node = node_at(at, Node::Kind::string);
+  node.text = text;
   return node;
 }
 
 Node number_node(double number, const Node& at) {
-  Node node;
-  node.kind = Node::Kind::number;
+  Node node = node_at(at, Node::Kind::number);
   node.number = number;
-  node.place = at.place;
-  node.key_place = at.key_place;
-  return node;
-}
-
-Node table_at(const Node& at) {
-  Node node;
-  node.place = at.place;
-  node.key_place = at.key_place;
-  node.override_text = at.override_text;
   return node;
 }
 
@@ -104,12 +100,11 @@ class Translator {
     const auto density = number_of(given, "density", 1), viscosity = number_of(given, "viscosity", 0);
     const auto reynolds = number_of(given, "reynolds", 0), froude = number_of(given, "froude", 0);
     if (!density || !viscosity || !reynolds || !froude) return;
-    Node phase = table_at(fluid != nullptr ? *fluid : liquids->children.front());
+    Node phase = node_at(fluid != nullptr ? *fluid : liquids->children.front());
     phase.insert("name", text_node(phase_name, phase));
     phase.insert("density", number_node(*density, phase));
     phase.insert("viscosity", number_node(*reynolds > 0 ? 1 / *reynolds : *viscosity, phase));
-    Node list = table_at(phase);
-    list.kind = Node::Kind::array;
+    Node list = node_at(phase, Node::Kind::array);
     list.children.push_back(std::move(phase));
     if (fluid != nullptr) {
       for (const char* key : {"sound_speed", "mach"})
@@ -136,7 +131,7 @@ class Translator {
     Node phase = phases->children.front();
     for (const char* key : {"sound_speed", "exponent"}) drop(phase, key, "phase.0", "");
     Node* present = document_.find("fluid");
-    if (present == nullptr) present = &document_.insert("fluid", table_at(phase));
+    if (present == nullptr) present = &document_.insert("fluid", node_at(phase));
     if (present->kind != Node::Kind::table) return;
     for (const char* key : {"density", "viscosity"})
       if (const Node* value = phase.find(key)) present->insert(key, *value);
@@ -161,8 +156,7 @@ class Translator {
       std::vector<double> low = numbers_of(solid.find("lower")), high = numbers_of(solid.find("upper"));
       if (low.size() != lower.size() || high.size() != lower.size()) return;
       made.push_back(body_of(solid, k));
-      Node size = table_at(solid), position = table_at(solid);
-      size.kind = position.kind = Node::Kind::array;
+      Node size = node_at(solid, Node::Kind::array), position = size;
       for (std::size_t a = 0; a < low.size(); ++a) {
         // Methods look for walls as far as the kernel support, three spacings at most.
         const double slack = 1e-9 * (upper[a] - lower[a]), behind = 4 * *spacing;
@@ -176,17 +170,14 @@ class Translator {
       made.back().insert("position", std::move(position));
     }
     Node* bodies = document_.find("body");
-    if (bodies == nullptr) {
-      bodies = &document_.insert("body", table_at(*document_.find("solid")));
-      bodies->kind = Node::Kind::array;
-    }
+    if (bodies == nullptr) bodies = &document_.insert("body", node_at(*document_.find("solid"), Node::Kind::array));
     if (bodies->kind != Node::Kind::array) return;
     bodies->children.insert(bodies->children.end(), made.begin(), made.end());
     erase(document_, "solid");
   }
 
   static Node body_of(const Node& solid, std::size_t k) {
-    Node body = table_at(solid);
+    Node body = node_at(solid);
     body.insert("name", text_node("solid." + std::to_string(k), solid));
     body.insert("shape", text_node("box", solid));
     if (const Node* wall = solid.find("wall")) body.insert("wall", *wall);
