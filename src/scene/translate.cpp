@@ -2,6 +2,7 @@
 #include "translate.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 #include <optional>
 
 #include "reader.hpp"
@@ -40,11 +41,15 @@ void erase(Node& table, const std::string& key) {
   table.keys.erase(found);
 }
 
-// A number that may be absent; nothing for anything else.
-std::optional<double> number_of(const Node& table, const char* key, double absent) {
+// A number above zero or, of a key that is absent, `absent`; nothing for anything else.
+std::optional<double> positive_of(const Node& table, const char* key, double absent) {
   const Node* node = table.find(key);
   if (node == nullptr) return absent;
-  return node->is_number() ? std::optional(node->number) : std::nullopt;
+  return node->is_number() && node->number > 0 ? std::optional(node->number) : std::nullopt;
+}
+
+bool has_any(const Node& table, std::initializer_list<const char*> keys) {
+  return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return table.find(key) != nullptr; });
 }
 
 std::vector<double> numbers_of(const Node* list) {
@@ -96,14 +101,20 @@ class Translator {
     if (!holds_tables(liquids) || (fluid != nullptr && fluid->kind != Node::Kind::table)) return;
     const Node none;
     const Node& given = fluid != nullptr ? *fluid : none;
-    const bool si = given.find("density") != nullptr;
-    const auto density = number_of(given, "density", 1), viscosity = number_of(given, "viscosity", 0);
-    const auto reynolds = number_of(given, "reynolds", 0), froude = number_of(given, "froude", 0);
-    if (!density || !viscosity || !reynolds || !froude) return;
+    // What [fluid] itself would be refused for is left for the reader: a mixture of values and groups, values without a
+    // density, groups that are not above zero.
+    const bool groups = has_any(given, {"reynolds", "froude", "mach"});
+    const bool si = has_any(given, {"density", "viscosity", "gravity", "sound_speed"});
+    const auto reynolds = positive_of(given, "reynolds", 0), froude = positive_of(given, "froude", 0);
+    if ((groups && si) || (si && given.find("density") == nullptr) || !reynolds || !froude) return;
     Node phase = node_at(fluid != nullptr ? *fluid : liquids->children.front());
     phase.insert("name", text_node(phase_name, phase));
-    phase.insert("density", number_node(*density, phase));
-    phase.insert("viscosity", number_node(*reynolds > 0 ? 1 / *reynolds : *viscosity, phase));
+    const auto copied = [&](const char* key, double absent) {
+      const Node* value = given.find(key);
+      return value != nullptr ? *value : number_node(absent, phase);
+    };
+    phase.insert("density", copied("density", 1));
+    phase.insert("viscosity", copied("viscosity", *reynolds > 0 ? 1 / *reynolds : 0));
     Node list = node_at(phase, Node::Kind::array);
     list.children.push_back(std::move(phase));
     if (fluid != nullptr) {

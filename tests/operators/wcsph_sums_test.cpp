@@ -88,44 +88,44 @@ TEST(WcsphSums, ContinuityDiffusionAndViscosityAgreeWithTheSlowTwin) {
   }
 }
 
+// The sums of three viscous phases.
+struct BothSums {
+  Array<float> rate, diffusion;
+  VectorArrays<float> viscous, pressure;
+
+  BothSums(Arrangement& a, const SweepContext& context, const Fields& f)
+      : rate(a.size()), diffusion(a.size()), viscous(a.size(), a.dimensions()), pressure(a.size(), a.dimensions()) {
+    continuity_sweep(context, a.packed,
+                     {.velocity = f.velocity.read(),
+                      .mirror = &a.rule,
+                      .volume = f.volume.data(),
+                      .excess = f.excess.data(),
+                      .phase = f.phase.data(),
+                      .viscosity = f.viscosity.data()},
+                     {rate.data(), diffusion.data(), viscous.write()});
+    pressure_force_sweep(context, a.packed,
+                         {.pressure = f.pressure.data(),
+                          .volume = f.volume.data(),
+                          .density = f.density.data(),
+                          .several = true,
+                          .repulsion = 0.04F,
+                          .position = {}},
+                         pressure.write());
+  }
+};
+
 // A factor of 5/4 is exact; that of the kernel is rounded to float once with it and once without.
 TEST(WcsphSums, TheGradientScaleMultipliesEverySum) {
   for (Arrangement* arrangement : wcsph_arrangements()) {
     Arrangement& a = *arrangement;
     SCOPED_TRACE(a.setup.name);
     const Fields f(a);
-    struct Sums {
-      Array<float> rate, diffusion;
-      VectorArrays<float> viscous, pressure;
-      explicit Sums(const Arrangement& of)
-          : rate(of.size()),
-            diffusion(of.size()),
-            viscous(of.size(), of.dimensions()),
-            pressure(of.size(), of.dimensions()) {}
-    };
     const auto sums = [&](double gradient_scale) {
-      Sums s(a);
       SweepContext context = a.context;
       context.gradient_scale = gradient_scale;
-      continuity_sweep(context, a.packed,
-                       {.velocity = f.velocity.read(),
-                        .mirror = &a.rule,
-                        .volume = f.volume.data(),
-                        .excess = f.excess.data(),
-                        .phase = f.phase.data(),
-                        .viscosity = f.viscosity.data()},
-                       {s.rate.data(), s.diffusion.data(), s.viscous.write()});
-      pressure_force_sweep(context, a.packed,
-                           {.pressure = f.pressure.data(),
-                            .volume = f.volume.data(),
-                            .density = f.density.data(),
-                            .several = true,
-                            .repulsion = 0.08F,
-                            .position = {a.hood.x.data(), a.hood.y.data(), a.hood.z.data()}},
-                           s.pressure.write());
-      return s;
+      return BothSums(a, context, f);
     };
-    const Sums plain = sums(1), scaled = sums(1.25);
+    const BothSums plain = sums(1), scaled = sums(1.25);
     const auto expect_scaled = [](float value, float before) {
       EXPECT_NEAR(value, 1.25 * before, 4e-7 * std::abs(before));
     };
@@ -352,26 +352,9 @@ TEST(WcsphSums, ForcesInAPeriodicBoxAddUpToNothing) {
     if (a.setup.name.find("jittered, periodic") == std::string::npos) continue;
     SCOPED_TRACE(a.setup.name);
     const Fields f(a);
-    VectorArrays<float> pressure(a.size(), a.dimensions()), viscous(a.size(), a.dimensions());
-    Array<float> rate(a.size()), diffusion(a.size());
-    continuity_sweep(a.context, a.packed,
-                     {.velocity = f.velocity.read(),
-                      .mirror = &a.rule,
-                      .volume = f.volume.data(),
-                      .excess = f.excess.data(),
-                      .phase = f.phase.data(),
-                      .viscosity = f.viscosity.data()},
-                     {rate.data(), diffusion.data(), viscous.write()});
-    pressure_force_sweep(a.context, a.packed,
-                         {.pressure = f.pressure.data(),
-                          .volume = f.volume.data(),
-                          .density = f.density.data(),
-                          .several = true,
-                          .repulsion = 0.04F,
-                          .position = {}},
-                         pressure.write());
+    const BothSums sums(a, a.context, f);
     for (int axis = 0; axis < a.dimensions(); ++axis)
-      for (const auto* force : {&pressure[axis], &viscous[axis]}) {
+      for (const auto* force : {&sums.pressure[axis], &sums.viscous[axis]}) {
         double sum = 0, moduli = 0, rounding = 0;
         for (std::size_t i = 0; i < a.size(); ++i) {
           sum += double{f.volume[i]} * (*force)[i];

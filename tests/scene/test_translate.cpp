@@ -65,6 +65,13 @@ TEST(Translate, GroupsAreTheViscosityAndTheGravityOfAPhaseOfDensityOne) {
   EXPECT_THAT(loaded.options.resolved, HasSubstr("case, length/time"));  // not m/s
 }
 
+TEST(Translate, AFluidThatWouldBeRefusedIsNotTaken) {
+  for (const std::string fluid : {"density = 1000\nreynolds = 100", "viscosity = 1e-3\ngravity = 9.81", "reynolds = -5",
+                                  "reynolds = 10\nfroude = 0", "density = -1", "density = 1000\nviscosity = \"x\"",
+                                  "reynolds = 10\ngravity = 9.81"})
+    EXPECT_THROW(test::load_text(of_liquid + "[fluid]\n" + fluid + "\n" + pool, {"method=wcsph"}), InputError) << fluid;
+}
+
 TEST(Translate, OnePhaseIsALiquidForAMethodOfOneLiquid) {
   const std::string gravity = "[fluid]\ngravity = 9.81\n";
   const LoadedCase original = test::load_text(of_phase + gravity + phase_of_water + lower_half);
