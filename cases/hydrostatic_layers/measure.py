@@ -7,7 +7,7 @@ import numpy as np
 def layers(run):
     density = [float(phase["density"]) for phase in run.case["phase"]]
     depth = float(run.case["region"][1]["upper"][1])
-    return density[0], density[1], float(run.case["fluid"]["gravity"]), depth, float(run.case["domain"]["upper"][1])
+    return density[0], density[1], 1 / float(run.case["fluid"]["froude"]) ** 2, depth, float(run.case["domain"]["upper"][1])
 
 
 def exact_pressure(run, y):

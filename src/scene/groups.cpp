@@ -59,13 +59,15 @@ void groups_as_given(const Draft& draft, const Scene& scene, std::map<std::strin
                        (compressible ? ", sound speed " + brief(velocity / *fluid.mach) + " m/s" : "");
 }
 
-void groups_of_phases(const Scene& scene, std::map<std::string, std::string>& groups) {
+void groups_of_phases(const Draft& draft, const Scene& scene, std::map<std::string, std::string>& groups) {
+  const auto value = [si = uses_si(draft)](double number, const char* unit) { return brief(number) + (si ? unit : ""); };
   for (const Phase& phase : scene.phases)
-    groups["phase " + phase.name] = brief(phase.density) + " kg/m3, " + brief(phase.viscosity) + " Pa s" +
-                                    (phase.sound_speed > 0 ? ", sound speed " + brief(phase.sound_speed) + " m/s" : "");
-  groups["surface tension"] = brief(scene.surface_tension) + " N/m";
+    groups["phase " + phase.name] =
+        "density " + value(phase.density, " kg/m3") + ", viscosity " + value(phase.viscosity, " Pa s") +
+        (phase.sound_speed > 0 ? ", sound speed " + value(phase.sound_speed, " m/s") : "");
+  groups["surface tension"] = value(scene.surface_tension, " N/m");
   const double gravity = -scene.fluid.gravity[static_cast<std::size_t>(scene.domain.dimensions) - 1];
-  groups["gravity"] = gravity > 0 ? brief(gravity) + " m/s2" : "none";
+  groups["gravity"] = gravity > 0 ? value(gravity, " m/s2") : "none";
 }
 
 }  // namespace
@@ -74,7 +76,7 @@ std::map<std::string, std::string> describe_groups(const Draft& draft, const Sce
                                                    const ExpressionScope& scope) {
   std::map<std::string, std::string> groups;
   if (!scene.phases.empty())
-    groups_of_phases(scene, groups);
+    groups_of_phases(draft, scene, groups);
   else if (uses_si(draft.fluid))
     groups_of_si(draft, scene, groups);
   else

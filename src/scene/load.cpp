@@ -156,7 +156,7 @@ Fluid make_fluid(const Draft& draft) {
     fluid.density = first.density;
     fluid.kinematic_viscosity = first.viscosity / first.density;
     fluid.sound_speed = first.sound_speed;
-    gravity = given.gravity.value_or(0);
+    gravity = given.froude ? 1 / (*given.froude * *given.froude) : given.gravity.value_or(0);
   } else if (uses_si(given)) {
     fluid.density = given.density.value_or(1);
     fluid.kinematic_viscosity = given.viscosity.value_or(0) / fluid.density;

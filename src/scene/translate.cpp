@@ -120,8 +120,7 @@ class Translator {
     if (fluid != nullptr) {
       for (const char* key : {"sound_speed", "mach"})
         drop(*fluid, key, "fluid", ", which has its own sound speed or none");
-      if (*froude > 0) fluid->insert("gravity", number_node(1 / (*froude * *froude), *fluid->find("froude")));
-      for (const char* key : {"density", "viscosity", "reynolds", "froude"}) erase(*fluid, key);
+      for (const char* key : {"density", "viscosity", "reynolds"}) erase(*fluid, key);
     }
     made_.groups = !si;
     Node regions = *liquids;
@@ -144,12 +143,28 @@ class Translator {
     Node* present = document_.find("fluid");
     if (present == nullptr) present = &document_.insert("fluid", node_at(phase));
     if (present->kind != Node::Kind::table) return;
-    for (const char* key : {"density", "viscosity"})
-      if (const Node* value = phase.find(key)) present->insert(key, *value);
+    fluid_of(phase, *present);
     Node liquids = *document_.find("region");
     for (Node& liquid : liquids.children) erase(liquid, "phase");
     for (const char* key : {"phase", "region"}) erase(document_, key);
     document_.insert("liquid", std::move(liquids));
+  }
+
+  // A Froude number stays where the density is the unit of the groups, and becomes gravity elsewhere.
+  static void fluid_of(const Node& phase, Node& fluid) {
+    const auto froude = positive_of(fluid, "froude", 0), density = positive_of(phase, "density", 0);
+    const bool in_groups = froude && *froude > 0 && fluid.find("gravity") == nullptr;
+    const Node* viscosity = phase.find("viscosity");
+    if (in_groups && density == 1 && viscosity != nullptr && viscosity->is_number() && viscosity->number >= 0) {
+      if (viscosity->number > 0) fluid.insert("reynolds", number_node(1 / viscosity->number, *viscosity));
+      return;
+    }
+    if (in_groups) {
+      fluid.insert("gravity", number_node(1 / (*froude * *froude), *fluid.find("froude")));
+      erase(fluid, "froude");
+    }
+    for (const char* key : {"density", "viscosity"})
+      if (const Node* value = phase.find(key)) fluid.insert(key, *value);
   }
 
   void solids_to_bodies() {

@@ -17,8 +17,9 @@ struct Translation {
 // Rewrites the document of a case whose method is an override, where it differs in words alone:
 //
 //   [fluid] and [[liquid]]      as [[phase]] "liquid" and [[region]], for a method that fills phases;
-//                               reynolds: viscosity 1/Re at density 1, froude: gravity 1/Fr^2
-//   one [[phase]], [[region]]   as [fluid] and [[liquid]], for a method of one liquid
+//                               reynolds: viscosity 1/Re at density 1
+//   one [[phase]], [[region]]   as [fluid] and [[liquid]], for a method of one liquid; beside a Froude number
+//                               reynolds is 1/viscosity at density 1, and gravity 1/Fr^2 at any other
 //   [[solid]]                   as [[body]], for a method that has no boxes; faces on a side of the domain go on behind
 //   it
 //

@@ -65,6 +65,45 @@ TEST(Translate, GroupsAreTheViscosityAndTheGravityOfAPhaseOfDensityOne) {
   EXPECT_THAT(loaded.options.resolved, HasSubstr("case, length/time"));  // not m/s
 }
 
+// What a run writes and is resumed from holds no override of the method.
+TEST(Translate, ACaseWrittenFromGroupsStaysInGroups) {
+  const std::string groups = "[fluid]\nreynolds = 100\nfroude = 0.5\n";
+  const LoadedCase translated = test::load_text(of_liquid + groups + pool, {"method=wcsph"});
+  const LoadedCase again = test::load_text(translated.options.resolved);
+  EXPECT_EQ(again.scene.phases.at(0).viscosity, 0.01);
+  EXPECT_EQ(again.scene.fluid.gravity[1], -4);
+  EXPECT_THAT(again.options.resolved, HasSubstr("froude = 0.5"));
+  EXPECT_THAT(again.options.resolved, HasSubstr("case, length/time"));
+}
+
+TEST(Translate, GroupsOfAPhaseAreGroupsOfALiquidWhereItsDensityIsTheUnit) {
+  const std::string froude = "[fluid]\nfroude = 0.5\n";
+  const auto phase = [](const std::string& values) { return "[[phase]]\nname = \"water\"\n" + values + "\n"; };
+  const auto fluid_of = [&](const std::string& values) {
+    return test::load_text(of_phase + froude + phase(values) + lower_half, {"method=les-sph"});
+  };
+  const LoadedCase unit = fluid_of("density = 1\nviscosity = 0.01");
+  EXPECT_NEAR(unit.scene.fluid.kinematic_viscosity, 0.01, 1e-17);
+  EXPECT_EQ(unit.scene.fluid.gravity[1], -4);
+  EXPECT_THAT(unit.options.resolved, HasSubstr("froude = 0.5"));
+  const LoadedCase inviscid = fluid_of("density = 1\nviscosity = 0");
+  EXPECT_EQ(inviscid.scene.fluid.kinematic_viscosity, 0);
+  EXPECT_EQ(inviscid.scene.fluid.gravity[1], -4);
+  const LoadedCase heavy = fluid_of("density = 10\nviscosity = 0.1");
+  EXPECT_EQ(heavy.scene.fluid.density, 10);
+  EXPECT_NEAR(heavy.scene.fluid.kinematic_viscosity, 0.01, 1e-17);
+  EXPECT_EQ(heavy.scene.fluid.gravity[1], -4);
+}
+
+TEST(Translate, PhasesHaveOneGravity) {
+  try {
+    test::load_text(of_phase + "[fluid]\ngravity = 9.81\nfroude = 1\n" + phase_of_water + lower_half);
+    FAIL() << "gravity and froude were taken";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("give one of them"));
+  }
+}
+
 TEST(Translate, AFluidThatWouldBeRefusedIsNotTaken) {
   for (const std::string fluid : {"density = 1000\nreynolds = 100", "viscosity = 1e-3\ngravity = 9.81", "reynolds = -5",
                                   "reynolds = 10\nfroude = 0", "density = -1", "density = 1000\nviscosity = \"x\"",

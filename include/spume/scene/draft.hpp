@@ -160,7 +160,7 @@ struct Draft {
 
 // True when the case is in SI units: by its fluid, or because it has phases, which are unless they stand for groups.
 inline bool uses_si(const Draft& draft) {
-  return !draft.groups && (uses_si(draft.fluid) || !draft.phases.empty());
+  return !draft.groups && !draft.fluid.froude && (uses_si(draft.fluid) || !draft.phases.empty());
 }
 
 }  // namespace spume
