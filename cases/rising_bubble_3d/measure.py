@@ -35,7 +35,7 @@ def pressure_range(run, snapshot):
     cells of about CELL particles, without which the range is that of the noise and grows with the number of particles."""
     position, pressure = snapshot.position, snapshot.field("pressure")
     liquid = run.case["phase"][0]
-    reduced = pressure + float(liquid["density"]) * 1 / float(run.case["fluid"]["froude"]) ** 2 * position[:, 2]
+    reduced = pressure + float(liquid["density"]) / float(run.case["fluid"]["froude"]) ** 2 * position[:, 2]
     from_centre = position - [0, 0, position[snapshot.field("phase") == 1][:, 2].mean()]
     near = np.sum(from_centre**2, axis=1) < 1
     edge = np.cbrt(CELL) * float(run.case["resolution"]["spacing"])

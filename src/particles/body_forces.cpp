@@ -51,6 +51,12 @@ std::vector<Element> join(const std::vector<Element>& elements, double spacing) 
   return joined;
 }
 
+// Bodies that are not always there, or not of their full size.
+bool any_grows(const Scene& scene) {
+  return std::any_of(scene.motions.begin(), scene.motions.end(),
+                     [](const BodyMotion& motion) { return motion.release.has_value(); });
+}
+
 }  // namespace
 
 BodyForces::BodyForces(const Scene& scene, const Resolution& resolution, const BodyWalls& walls)
@@ -266,6 +272,7 @@ RecordTable BodyForces::table() const {
   add("turn", about, 3, "degree");
   add("velocity", 0, dimensions, "length / time");
   add("spin", about, 3, "degree / time");
+  if (any_grows(scene_)) table.columns.push_back({"scale", "1"});
   return table;
 }
 
@@ -287,6 +294,7 @@ void BodyForces::add_rows(double t, const std::vector<SurfaceForce>& forces, std
     add(rotation_vector(place.rotation), about, 3, degree);
     add(place.velocity, 0, dimensions);
     add(place.angular_velocity, about, 3, degree);
+    if (any_grows(scene_)) rows.push_back(place.scale);
   }
 }
 

@@ -13,6 +13,10 @@ namespace {
 
 // In support radii: farther from a surface nobody asks for more than a bound.
 constexpr double far_away = 4;
+// In spacings: by how much the half widths of the sizes of a growing body differ that have wall points of their own,
+// and how many sizes there are at most.
+constexpr double size_step = 0.5;
+constexpr double most_sizes = 100;
 
 bool is_along(const Vec3& direction, int axis) {
   return std::abs(direction[axis]) > 1 - 1e-12;
@@ -42,12 +46,51 @@ RigidWalls::RigidWalls(const Scene& scene, std::optional<std::size_t> motion, co
   walls_ = Combination(std::move(parts));
   if (bodies_.empty()) return;
   if (motion_ != nullptr) place.pivot = place.position = motion_->pivot;
+  if (motion_ != nullptr && motion_->release) place = given_place(*motion_, 0);
   const Bounds cells = motion_ == nullptr ? Bounds{scene.domain.lower, scene.domain.upper} : window(reach_);
   cells_.emplace(walls_, d, cells.lower, cells.upper, resolution.spacing, resolution.support_radius, error());
-  points_ = make_wall_points(walls_, motion_ == nullptr ? scene.domain : domain_at_start(resolution.support_radius),
-                             resolution, particle_volume);
-  body_.resize(points_.size());
-  parallel_for(points_.size(), [&](std::size_t g) { body_[g] = static_cast<std::uint8_t>(body_at(points_[g].foot)); });
+  std::size_t sizes = 1;
+  if (grows()) {
+    double half = 0;
+    for (int axis = 0; axis < d; ++axis) half = std::max(half, (bounds_.upper[axis] - bounds_.lower[axis]) / 2);
+    sizes = static_cast<std::size_t>(std::clamp(std::ceil(half / (size_step * resolution.spacing)), 1.0, most_sizes));
+  }
+  levels_.resize(sizes + 1);
+  for (std::size_t level = 1; level <= sizes; ++level)
+    levels_[level] = make_level(static_cast<double>(level) / static_cast<double>(sizes), resolution, particle_volume);
+  choose_points();
+}
+
+RigidWalls::Level RigidWalls::make_level(double scale, const Resolution& resolution, double particle_volume) const {
+  const int d = scene_.domain.dimensions;
+  Level level;
+  Combination scaled;
+  if (scale < 1) {
+    // A body that is released is alone.
+    Pose pose;
+    pose.scale = scale;
+    pose.position = multiply(1 - scale, motion_->pivot);
+    scaled = Combination({{spume::place(scene_.bodies[bodies_[0]].alone, pose, true, d), false}});
+  }
+  level.points = make_wall_points(scale < 1 ? scaled : walls_,
+                                  motion_ == nullptr ? scene_.domain : domain_at_start(resolution.support_radius),
+                                  resolution, particle_volume);
+  if (scale < 1)
+    for (WallPoint& point : level.points)
+      for (Vec3* at : {&point.position, &point.foot, &point.mirror})
+        *at = add(motion_->pivot, multiply(1 / scale, subtract(*at, motion_->pivot)));
+  level.body.resize(level.points.size());
+  parallel_for(level.points.size(),
+               [&](std::size_t g) { level.body[g] = static_cast<std::uint16_t>(body_at(level.points[g].foot)); });
+  return level;
+}
+
+std::size_t RigidWalls::level_of(double scale) const {
+  return static_cast<std::size_t>(std::round(scale * static_cast<double>(levels_.size() - 1)));
+}
+
+void RigidWalls::choose_points() {
+  level_ = level_of(place.scale);
 }
 
 double RigidWalls::error() const {
@@ -57,6 +100,7 @@ double RigidWalls::error() const {
 }
 
 bool RigidWalls::keeps(int axis) const {
+  if (grows()) return false;
   if (motion_->floats) {
     bool turns_away = false;
     for (int other = 0; other < 3; ++other)
@@ -138,14 +182,42 @@ double RigidWalls::distance_from_bounds(const Vec3& start) const {
   return std::sqrt(sum);
 }
 
+Bounds RigidWalls::bounds_now() const {
+  Bounds found = bounds_;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene_.domain.dimensions); ++axis)
+    if (!std::isfinite(bounds_.upper[axis] - bounds_.lower[axis])) {
+      found.lower.fill(-infinite);
+      found.upper.fill(infinite);
+      return found;
+    }
+  const Vec3 middle = place.now(multiply(0.5, add(bounds_.lower, bounds_.upper))),
+             half = multiply(0.5 * place.scale, subtract(bounds_.upper, bounds_.lower));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double reach = 0;
+    for (std::size_t own = 0; own < static_cast<std::size_t>(scene_.domain.dimensions); ++own)
+      reach += std::abs(place.rotation[axis][own]) * half[own];
+    found.lower[axis] = middle[axis] - reach;
+    found.upper[axis] = middle[axis] + reach;
+  }
+  return found;
+}
+
 double RigidWalls::distance(const Vec3& point) const {
-  const Vec3 at = start(point);
+  if (place.scale == 1) return distance_at_start(start(point));
+  return absent() ? infinite : place.scale * distance_at_start(start(point));
+}
+
+double RigidWalls::distance_at_start(const Vec3& at) const {
   if (motion_ != nullptr)
     if (const double away = distance_from_bounds(at); away > reach_) return away;
   return cells_->distance(at);
 }
 
 bool RigidWalls::surely_farther(const Vec3& point, double gap) const {
+  if (place.scale != 1) {
+    if (absent()) return true;
+    gap /= place.scale;
+  }
   const Vec3 at = start(point);
   if (motion_ != nullptr && distance_from_bounds(at) > gap) return true;
   return cells_->surely_farther(at, gap);
@@ -154,6 +226,7 @@ bool RigidWalls::surely_farther(const Vec3& point, double gap) const {
 NearestPoint RigidWalls::nearest(const Vec3& point) const {
   if (motion_ == nullptr) return walls_.nearest(point);
   NearestPoint found = walls_.nearest(start(point));
+  found.distance *= place.scale;
   found.normal = place.direction_now(found.normal);
   found.point = subtract(point, multiply(found.distance, found.normal));
   return found;
@@ -172,7 +245,7 @@ std::optional<Vec3> RigidWalls::foremost(const Vec3& point, const Vec3& directio
 }
 
 bool RigidWalls::now(std::size_t point, WallPoint& found) const {
-  found = points_[point];
+  found = points()[point];
   if (motion_ == nullptr) return true;
   found.position = place.now(found.position);
   found.foot = place.now(found.foot);
@@ -198,8 +271,10 @@ bool RigidWalls::now(std::size_t point, WallPoint& found) const {
 }
 
 double RigidWalls::bytes() const {
-  return (cells_ ? cells_->bytes() : 0) +
-         static_cast<double>(points_.capacity() * sizeof(WallPoint) + body_.capacity());
+  double sum = cells_ ? cells_->bytes() : 0;
+  for (const Level& level : levels_)
+    sum += static_cast<double>(level.points.capacity() * sizeof(WallPoint) + 2 * level.body.capacity());
+  return sum;
 }
 
 }  // namespace spume

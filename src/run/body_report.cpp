@@ -64,6 +64,14 @@ double room(const Scene& scene, bool exact, const std::function<double(const Vec
   return found * cell / std::pow(scene.spacing, static_cast<double>(dimensions));
 }
 
+std::string released(const Release& release) {
+  const auto copies = static_cast<double>(release.copies);
+  return "\n    released from t = " + short_number(release.first) + " on every " +
+         short_number(release.cycle / copies) + ", on its way for " + short_number(release.duration) + ": " +
+         std::to_string(release.copies) + " copies" +
+         (release.growth > 0 ? ", which grow for " + short_number(release.growth) : "");
+}
+
 }  // namespace
 
 std::string body_table(const Scene& scene) {
@@ -71,6 +79,9 @@ std::string body_table(const Scene& scene) {
   const std::string measure = dimensions == 3 ? "volume " : "area ";
   std::string text;
   for (const Body& body : scene.bodies) {
+    const Release* release =
+        body.motion && scene.motions[*body.motion].release ? &*scene.motions[*body.motion].release : nullptr;
+    if (release != nullptr && release->copy > 0) continue;
     text += "  " + body.name + "  " + body.kind;
     text += body.inside ? "" : " with the solid outside";
     text += body.wall == BoundaryKind::open        ? ", a shape to fill"
@@ -79,6 +90,10 @@ std::string body_table(const Scene& scene) {
     if (body.subtract) text += ", subtracted";
     text += "\n    bounds " + bounds_text(body.shape->bounds(), dimensions) + ", " + measure +
             short_number(body.shape->volume());
+    if (release != nullptr) {
+      text += released(*release) + "\n";
+      continue;
+    }
     if (body.shape->error() > 0) text += ", distances within " + short_number(body.shape->error());
     text +=
         "\n    room in the domain for about " +

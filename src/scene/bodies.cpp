@@ -337,10 +337,11 @@ std::vector<Body> make_bodies(const Draft& draft, const CompileExpression& compi
   return bodies;
 }
 
-Combination make_walls(const std::vector<Body>& bodies) {
+Combination make_walls(const std::vector<Body>& bodies, const std::vector<BodyMotion>& motions) {
   std::vector<CombinedPart> parts;
   for (const Body& body : bodies)
-    if (body.wall != BoundaryKind::open) parts.push_back({body.solid, body.subtract});
+    if (body.wall != BoundaryKind::open && !(body.motion && motions[*body.motion].release))
+      parts.push_back({body.solid, body.subtract});
   return Combination(std::move(parts));
 }
 

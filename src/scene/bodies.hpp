@@ -16,8 +16,8 @@ void check_bodies(Draft& draft, const MethodDeclaration* method, Problems& probl
 // are those that are known to be wrong.
 std::vector<Body> make_bodies(const Draft& draft, const CompileExpression& compile, Problems& problems);
 
-// The walls of bodies, in their order.
-Combination make_walls(const std::vector<Body>& bodies);
+// The walls of bodies at the start, in their order; those that are released then or later are not there yet.
+Combination make_walls(const std::vector<Body>& bodies, const std::vector<BodyMotion>& motions);
 
 // Bodies that lie outside the domain, that are much larger, or thinner than a spacing.
 std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const std::string& file);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "checks.hpp"
+#include "releases.hpp"
 #include "solid_moments.hpp"
 #include "spume/scene/expression.hpp"
 #include "spume/scene/option.hpp"
@@ -44,7 +45,8 @@ class CheckMotion {
 
   void check() {
     if (!moves_itself(body_) && body_.moves_with.empty()) {
-      for (const char* key : {"axis", "pivot", "inertia", "free"})
+      for (const char* key : {"axis", "pivot", "inertia", "free", "release_interval", "release_duration",
+                              "release_delay", "release_growth"})
         if (const Node* node = given(key))
           problems_.add_key(*node, name_ + "." + key +
                                        " is for bodies that move, and this one does not; add displacement, angle, "
@@ -76,6 +78,7 @@ class CheckMotion {
                                             ".subtract takes away from the bodies that move as one with it: give "
                                             "the one that it cuts in moves_with");
     list("pivot", body_.pivot, dimensions());
+    check_release(draft_, k_, floats(body_), problems_);
   }
 
  private:
@@ -103,8 +106,8 @@ class CheckMotion {
                               to_toml_string(body_.moves_with) +
                               (best.empty() ? "" : "; did you mean \"" + best + "\"?"));
     }
-    for (const char* key :
-         {"displacement", "angle", "motion", "axis", "pivot", "mass", "density", "inertia", "free", "restitution"})
+    for (const char* key : {"displacement", "angle", "motion", "axis", "pivot", "mass", "density", "inertia", "free",
+                            "restitution", "release_interval", "release_duration", "release_delay", "release_growth"})
       if (const Node* own = given(key))
         problems_.add_key(*own, name_ + "." + key + " is that of the body it moves with; remove it here");
   }
@@ -363,33 +366,6 @@ void carry_probes(const Draft& draft, const std::vector<Body>& bodies, std::vect
                                         ", found " + to_toml_string(probe.moves_with) +
                                         (best.empty() ? "" : "; did you mean \"" + best + "\"?"));
   }
-}
-
-RigidPlace given_place(const BodyMotion& motion, double t) {
-  const auto way = [&](double at) {
-    Vec3 sum{};
-    for (std::size_t a = 0; a < 3; ++a)
-      if (const auto& part = motion.displacement.component[a]) sum[a] = (*part)(0, 0, 0, at) - (*part)(0, 0, 0, 0);
-    return sum;
-  };
-  const auto angle = [&](double at) {
-    return motion.angle ? ((*motion.angle)(0, 0, 0, at) - (*motion.angle)(0, 0, 0, 0)) * std::numbers::pi / 180 : 0;
-  };
-  const double e = 1e-7 * motion.time_scale;
-  const auto rate = [&](const auto& of, auto&& combine) {
-    return combine(of(t - 2 * e), of(t - e), of(t + e), of(t + 2 * e));
-  };
-  RigidPlace place;
-  place.pivot = motion.pivot;
-  place.position = add(motion.pivot, way(t));
-  place.rotation = rotation_by_vector(multiply(angle(t), motion.axis));
-  place.velocity = rate(way, [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    return multiply(1 / (12 * e), add(subtract(a, d), multiply(8, subtract(c, b))));
-  });
-  const double spin =
-      rate(angle, [&](double a, double b, double c, double d) { return (a - d + 8 * (c - b)) / (12 * e); });
-  place.angular_velocity = multiply(spin, motion.axis);
-  return place;
 }
 
 }  // namespace spume

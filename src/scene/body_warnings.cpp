@@ -101,7 +101,8 @@ std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const
   std::vector<Problem> warnings;
   const int dimensions = scene.domain.dimensions;
   const Bounds domain{scene.domain.lower, scene.domain.upper};
-  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+  // Copies that are released stand behind those of the case.
+  for (std::size_t k = 0; k < draft.bodies.size(); ++k) {
     const Body& body = scene.bodies[k];
     const Node* node = draft.node("body." + std::to_string(k));
     const auto warn = [&](const std::string& text) {
@@ -116,6 +117,8 @@ std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const
            "; if its lengths are in another unit, set scale, 0.001 from mm to m");
       continue;
     }
+    const bool released = body.motion && scene.motions[*body.motion].release;
+    if (released) continue;  // it waits outside
     if (apart(bounds, domain, dimensions)) {
       warn("lies outside the domain: " + sides_of(bounds, dimensions) + ", the domain's " +
            sides_of(domain, dimensions) + "; move it with position, or remove it");

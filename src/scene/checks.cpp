@@ -301,7 +301,8 @@ void check_liquids(const Draft& draft, Problems& problems) {
 void check_phases(const Draft& draft, Problems& problems) {
   const Node *gravity = draft.node("fluid.gravity"), *froude = draft.node("fluid.froude");
   if (gravity != nullptr && froude != nullptr)
-    problems.add_key(*gravity, "fluid.gravity is an SI value and fluid.froude a group, gravity 1/Fr^2; give one of them");
+    problems.add_key(*gravity,
+                     "fluid.gravity is an SI value and fluid.froude a group, gravity 1/Fr^2; give one of them");
   if (draft.phases.empty() && draft.usable("phase"))
     problems.add(Place{1, 1}, "no phase: add a fluid,  [[phase]]  with  name, density, viscosity");
   std::vector<std::string> names;

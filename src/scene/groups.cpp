@@ -60,11 +60,13 @@ void groups_as_given(const Draft& draft, const Scene& scene, std::map<std::strin
 }
 
 void groups_of_phases(const Draft& draft, const Scene& scene, std::map<std::string, std::string>& groups) {
-  const auto value = [si = uses_si(draft)](double number, const char* unit) { return brief(number) + (si ? unit : ""); };
+  const auto value = [si = uses_si(draft)](double number, const char* unit) {
+    return brief(number) + (si ? unit : "");
+  };
   for (const Phase& phase : scene.phases)
-    groups["phase " + phase.name] =
-        "density " + value(phase.density, " kg/m3") + ", viscosity " + value(phase.viscosity, " Pa s") +
-        (phase.sound_speed > 0 ? ", sound speed " + value(phase.sound_speed, " m/s") : "");
+    groups["phase " + phase.name] = "density " + value(phase.density, " kg/m3") + ", viscosity " +
+                                    value(phase.viscosity, " Pa s") +
+                                    (phase.sound_speed > 0 ? ", sound speed " + value(phase.sound_speed, " m/s") : "");
   groups["surface tension"] = value(scene.surface_tension, " N/m");
   const double gravity = -scene.fluid.gravity[static_cast<std::size_t>(scene.domain.dimensions) - 1];
   groups["gravity"] = gravity > 0 ? value(gravity, " m/s2") : "none";

@@ -16,6 +16,7 @@
 #include "open_sides.hpp"
 #include "openings.hpp"
 #include "reader.hpp"
+#include "releases.hpp"
 #include "resolved.hpp"
 #include "spume/core/machine.hpp"
 #include "spume/scene/expression.hpp"
@@ -323,6 +324,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
                                              " are possible: use fewer boxes, or align their faces");
   scene.bodies = make_bodies(draft, compile_with(compiler), problems);
   scene.motions = make_body_motions(draft, compile_with(compiler), draft.options.time.end, scene.bodies, problems);
+  add_released(draft, scene.bodies, scene.motions, problems);
   carry_probes(draft, scene.bodies, draft.options.probes, problems);
   scene.openings = make_openings(draft, compile_with(compiler), problems);
   open_sides_at(scene.openings, scene.domain);
@@ -333,7 +335,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   compile_sections(schema, draft, compiler);
   problems.throw_if_any();
 
-  scene.walls = make_walls(scene.bodies);
+  scene.walls = make_walls(scene.bodies, scene.motions);
   if (any(body_force)) scene.body_force = std::move(body_force);
   if (!draft.initial_velocity.empty()) scene.initial_velocity = std::move(initial_velocity);
   scene.title = draft.options.title;
@@ -369,6 +371,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   draft.options.warnings = translation.warnings;
   for (Problem& warning : unused_options(draft, schema, file)) draft.options.warnings.push_back(std::move(warning));
   for (Problem& warning : body_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
+  for (Problem& warning : release_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
   if (uses_particles(*method)) {
     for (Problem& warning : open_side_warnings(draft, scene, file))
       draft.options.warnings.push_back(std::move(warning));

@@ -70,6 +70,19 @@ Section body_section() {
               "CSV file with columns t and x, y, z (displacement) or angle, smooth between its rows")
       .beside_case()
       .absent("given by displacement and angle")
+      .option(
+          "release_interval", &B::release_interval, "time", positive(),
+          "copies of it set out one after another, a time apart, each with displacement and angle of the time since "
+          "then, as bubbles from an orifice")
+      .absent("it is one body")
+      .option("release_duration", &B::release_duration, "time", positive(),
+              "how long each of them is on its way before it is taken away")
+      .absent("required with release_interval")
+      .option("release_delay", &B::release_delay, "time", not_negative(), "when the first of them sets out")
+      .absent("0")
+      .option("release_growth", &B::release_growth, "time", not_negative(),
+              "how long each of them grows to its size, fast at first; 0: it is whole where it appears")
+      .absent("0")
       .option("moves_with", &B::moves_with, "name of a body before it with which it moves as one")
       .absent("it moves alone")
       .option("mass", &B::mass, "mass", positive(), "makes it float: mass, in 2-D per length")

@@ -101,7 +101,8 @@ Section fluid() {
       .absent("inviscid")
       .steerable()
       .only(has_one_fluid)
-      .option("froude", &F::froude, "1", positive(), "Froude number; gravity is 1/Fr^2, lengths and phases in its units")
+      .option("froude", &F::froude, "1", positive(),
+              "Froude number; gravity is 1/Fr^2, lengths and phases in its units")
       .absent("no gravity")
       .steerable()
       .only(uses_particles)

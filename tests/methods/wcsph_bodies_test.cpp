@@ -133,6 +133,63 @@ TEST(WcsphBodies, APistonTakesTheLiquidAlong) {
   EXPECT_NEAR(beside / count, 0.2, 0.02);
 }
 
+std::string growing_disc(const std::string& way) {
+  return still("[2, 2]", 0.05, 0.8, false,
+               body("shape = \"ball\"\nradius = 0.15\nposition = [1.01, 0.3]\ndisplacement = [\"0\", \"" + way +
+                    "\"]\nrelease_interval = 6\nrelease_duration = 2.4\nrelease_growth = 0.4\n"));
+}
+
+double mean_height(const wcsph::Flow& flow) {
+  double sum = 0;
+  for (std::size_t i = 0; i < flow.size(); ++i) sum += (*flow.particles.position[1])[i];
+  return sum / static_cast<double>(flow.size());
+}
+
+// A disc that has grown in water lifts the water's centre of mass by its area times how deep it is, over the area of
+// the water. Its surface is as good as half a spacing. The lift is averaged over the sloshing, of period 2 (width 2,
+// depth 0.8, second mode).
+TEST(WcsphBodies, AGrowingBodyDisplacesItsVolume) {
+  BodiesRun run(growing_disc("0"));
+  const wcsph::Flow& flow = run.method.flow();
+  EXPECT_EQ(std::lround(2 * 0.8 / (0.05 * 0.05)), flow.size());
+  const double before = mean_height(flow);
+  double lift = 0;
+  for (int n = 0; n < 20; ++n) {
+    run_to(run, 0.4 + 0.1 * n);
+    lift += (mean_height(flow) - before) / 20;
+  }
+  const double area = std::numbers::pi * 0.15 * 0.15, expected = area * (0.8 - 0.3) / (2 * 0.8);
+  EXPECT_NEAR(lift, expected, expected * 0.05 / 0.15);
+}
+
+// It rises through the surface and is taken away, twice; nothing is left in it, and nothing where it waits.
+TEST(WcsphBodies, AReleasedBodyLeavesThroughTheSurfaceAndComesBack) {
+  BodiesRun run(growing_disc("0.5*(t - 0.2*(1 - exp(-5*t)))"));
+  const wcsph::Flow& flow = run.method.flow();
+  ASSERT_EQ(flow.scene.bodies.size(), 1U);
+  const std::size_t particles = flow.size();
+  for (const double start : {0.0, 6.0}) {
+    for (const double t : {0.02, 0.3, 0.6, 1.2, 1.8, 2.3}) {
+      run_to(run, start + t);
+      for (std::size_t i = 0; i < particles; ++i) {
+        const Vec3 r = vector_at(flow.particles.position, 2, i);
+        EXPECT_GT(flow.boundary.bodies()->distance(r), 0) << t;
+        EXPECT_TRUE(r[0] > 0 && r[0] < 2 && r[1] > 0 && r[1] < 2) << t;
+      }
+    }
+    run_to(run, start + 5.9);
+    EXPECT_EQ(flow.boundary.bodies()->distance({1.01, 0.3, 0}), infinite);
+    double there = 0;
+    for (std::size_t i = 0; i < particles; ++i) {
+      const Vec3 r = vector_at(flow.particles.position, 2, i);
+      if (std::hypot(r[0] - 1.01, r[1] - 0.3) < 0.15) ++there;
+    }
+    // Water again: the disc has room for 28 particles.
+    EXPECT_NEAR(there * 0.05 * 0.05, std::numbers::pi * 0.15 * 0.15, std::numbers::pi * 0.15 * 0.05);
+  }
+  EXPECT_EQ(flow.size(), particles);
+}
+
 // Mirrors hold none of the particles that an impact presses against them: without the stress (8) seven in a hundred
 // rest within a fiftieth of a spacing of a side at t = 6, and every fiftieth at t = 2.
 TEST(WcsphBodies, ParticlesLeaveTheSidesAfterAnImpact) {

@@ -133,6 +133,36 @@ max_speed = 1.5
 end = 1
 )toml";
 
+// Discs that grow in water with a free surface, one after another, rise and are taken away.
+const std::string bubbles = R"toml(method = "wcsph"
+[domain]
+lower = [0, 0]
+upper = [1, 1]
+x = "periodic"
+bottom = "no-slip"
+[resolution]
+spacing = 0.05
+[fluid]
+froude = 1
+[[phase]]
+name = "water"
+density = 1
+viscosity = 0.001
+[[region]]
+phase = "water"
+upper = [1, 0.6]
+[[body]]
+shape = "ball"
+radius = 0.1
+position = [0.93, 0.25]
+displacement = ["0.1*t", "0.5*t"]
+release_interval = 0.3
+release_duration = 0.7
+release_growth = 0.5
+[time]
+end = 1
+)toml";
+
 // A drop between a wall and a mirror, four times as dense as what surrounds it.
 const std::string drop = R"toml(method = "wcsph"
 [domain]
@@ -220,12 +250,12 @@ TEST_P(WcsphState, ARefusedStepLeavesIt) {
 }
 
 std::string name_of_case(const ::testing::TestParamInfo<std::string>& info) {
-  const char* const names[] = {"Column2D", "Ball3D", "Vortices2D", "Paddle2D", "Drop2D"};
+  const char* const names[] = {"Column2D", "Ball3D", "Vortices2D", "Paddle2D", "Bubbles2D", "Drop2D"};
   return names[info.index];
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, WcsphState,
-                         ::testing::Values(column_in_air, ball_in_stream, periodic_vortices, paddle, drop),
+                         ::testing::Values(column_in_air, ball_in_stream, periodic_vortices, paddle, bubbles, drop),
                          name_of_case);
 
 TEST(WcsphAllocations, ASteadyRunAllocatesNothing) {
@@ -326,7 +356,7 @@ TEST(WcsphPlan, ShiftingIsForOnePhaseOrTensionWithoutASurface) {
 
 TEST(WcsphPlan, EveryStageCountsItsTraffic) {
   const Overrides shepard{"compressibility.density_filter=\"shepard\"", "compressibility.filter_interval=2"};
-  for (const std::string& text : {column_in_air, periodic_vortices, paddle, drop})
+  for (const std::string& text : {column_in_air, periodic_vortices, paddle, bubbles, drop})
     for (const Overrides& set : {Overrides{}, shepard}) {
       WcsphRun run(text, set);
       run.steps(4, 0.5 * run.method.step_limit().dt);

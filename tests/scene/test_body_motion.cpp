@@ -133,6 +133,104 @@ TEST(BodyMotion, AProbeIsCarriedByABody) {
   EXPECT_THAT(complaints(plane + slab + probe), Contains(HasSubstr("must be the name of a moving [[body]]")));
 }
 
+const std::string bubbles =
+    "[[body]]\nname = \"bubble\"\nshape = \"ball\"\nradius = 0.1\nposition = [0.2, -1.4]\n"
+    "displacement = [\"0\", \"0.5*t + t^2\"]\n";
+const std::string every_second = "release_interval = 0.6\nrelease_duration = 1.5\nrelease_delay = 0.25\n";
+
+// Three are on their way at a time: the first sets out at 0.25, 2.05, ..., the others 0.6 and 1.2 later.
+TEST(BodyMotion, ReleasedBodiesSetOutOneAfterAnother) {
+  const LoadedCase loaded = test::load_text(plane + bubbles + every_second);
+  const Scene& scene = loaded.scene;
+  ASSERT_EQ(scene.bodies.size(), 3u);
+  EXPECT_EQ(scene.bodies[2].name, "bubble.2");
+  const Vec3 start{0.2, -1.4, 0};
+  for (std::size_t copy = 0; copy < 3; ++copy) {
+    ASSERT_EQ(scene.bodies[copy].motion, copy);
+    const BodyMotion& motion = scene.motions[copy];
+    EXPECT_THAT(motion.bodies, testing::ElementsAre(copy));
+    const double first = 0.25 + 0.6 * static_cast<double>(copy);
+    for (const double released : {first, first + 1.8, first + 18}) {
+      const RigidPlace before = given_place(motion, released - 0.2), at = given_place(motion, released + 0.4),
+                       end = given_place(motion, released + 1.4), after = given_place(motion, released + 1.6);
+      expect_near(before.now(start), start, 0);
+      expect_near(before.velocity, {}, 0);
+      expect_near(at.now(start), {0.2, -1.4 + 0.2 + 0.16, 0}, 1e-13);
+      expect_near(at.velocity, {0, 0.5 + 0.8, 0}, 1e-8);
+      expect_near(end.velocity, {0, 0.5 + 2.8, 0}, 1e-8);
+      expect_near(after.now(start), start, 0);
+      expect_near(after.velocity, {}, 0);
+    }
+    EXPECT_EQ(given_place(motion, first + 0.4).scale, 1);
+    EXPECT_EQ(given_place(motion, first - 0.1).scale, 0);
+    EXPECT_EQ(given_place(motion, first + 1.6).scale, 0);
+    // Nothing is as fast as what takes a body back.
+    expect_near(given_place(motion, first + 1e-9).velocity, {0, 0.5, 0}, 1e-7);
+    expect_near(given_place(motion, first + 1.5 - 1e-9).velocity, {0, 3.5, 0}, 1e-7);
+  }
+  EXPECT_NEAR(scene.bodies[1].solid->distance({0.2, -1.2, 0}), 0.1, 1e-15);
+}
+
+// A surface place grows apart from the middle as s (2 - s), s the share of the time of growth.
+TEST(BodyMotion, ReleasedBodiesGrow) {
+  const LoadedCase loaded = test::load_text(plane + bubbles + every_second + "release_growth = 0.8\n");
+  const BodyMotion& motion = loaded.scene.motions[0];
+  const Vec3 start{0.3, -1.4, 0};
+  const double s = 0.25, size = s * (2 - s), e = 1e-5;
+  const RigidPlace place = given_place(motion, 0.25 + 0.2);
+  EXPECT_NEAR(place.scale, size, 1e-14);
+  expect_near(place.now(start), {0.2 + 0.1 * size, -1.4 + 0.1 + 0.04, 0}, 1e-14);
+  expect_near(place.start(place.now({0.25, -1.33, 0})), {0.25, -1.33, 0}, 1e-14);
+  const Vec3 before = given_place(motion, 0.45 - e).now(start), after = given_place(motion, 0.45 + e).now(start);
+  expect_near(place.velocity_at(place.now(start)), multiply(1 / (2 * e), subtract(after, before)), 1e-8);
+  EXPECT_EQ(given_place(motion, 0.25 + 0.8).scale, 1);
+  EXPECT_EQ(given_place(motion, 0.25 + 0.8).growth, 0);
+}
+
+TEST(BodyMotion, TheWayBackIsNoPartOfTheWayBetweenTwoTimes) {
+  const LoadedCase loaded = test::load_text(plane + bubbles + every_second);
+  const BodyMotion& motion = loaded.scene.motions[0];
+  const auto way = [&](double from, double to) {
+    double sum = 0;
+    for (const auto& [a, b] : ways_between(motion, from, to)) sum += length(subtract(b.position, a.position));
+    return sum;
+  };
+  EXPECT_NEAR(way(0, 0.2), 0, 0);
+  EXPECT_NEAR(way(0.1, 0.25 + 0.4), 0.36, 1e-13);         // it waits, then goes
+  EXPECT_NEAR(way(0.25 + 0.4, 0.25 + 0.8), 0.68, 1e-13);  // 1.04 less 0.36
+  EXPECT_NEAR(way(0.25 + 1.4, 1.8), 3.0 - 2.66, 1e-10);   // to the end, and back
+  EXPECT_NEAR(way(0.25 + 1.4, 2.05 + 0.4), 0.34 + 0.36, 1e-10);
+}
+
+TEST(BodyMotion, AReleaseInTheLiquidIsWarnedOf) {
+  const auto warnings = [](const std::string& text) {
+    std::vector<std::string> found;
+    for (const Problem& warning : test::load_text(text).options.warnings) found.push_back(warning.text);
+    return found;
+  };
+  using testing::Not;
+  const auto said = [](const char* text) { return Contains(HasSubstr(text)); };
+  EXPECT_THAT(warnings(plane + bubbles + every_second), Not(said("the body 'bubble'")));
+  const std::string inside = test::replaced(bubbles, "-1.4", "-0.9");
+  EXPECT_THAT(warnings(plane + inside + every_second), said("the body 'bubble' appears"));
+  EXPECT_THAT(warnings(plane + inside + every_second + "release_growth = 0.1\n"), Not(said("appears")));
+  const std::string shorter = test::replaced(every_second, "1.5", "0.5");
+  EXPECT_THAT(warnings(plane + bubbles + shorter), said("the body 'bubble' is taken away"));
+}
+
+TEST(BodyMotion, AReleaseThatCannotBeIsRefused) {
+  const auto expect = [](const std::string& text, const std::string& said) {
+    EXPECT_THAT(complaints(plane + text), Contains(HasSubstr(said))) << text;
+  };
+  expect(bubbles + "release_interval = 0.6\n", "one key is missing");
+  expect(bubbles + "release_interval = 1e-9\nrelease_duration = 1\n", "copies on their way at a time");
+  expect(bubbles + "release_interval = 0\nrelease_duration = 1\n", "must be > 0");
+  expect(bubbles + every_second + "release_growth = 1\ninside = false\n", "cannot grow");
+  expect(slab + every_second, "this one does not");
+  expect(slab + "mass = 1\n" + every_second, "floats, and bodies are released on a given way alone");
+  expect(bubbles + every_second + test::replaced(slab, "size", "moves_with = \"bubble\"\nsize"), "moves with it");
+}
+
 TEST(BodyMotion, WhatCannotMoveIsRefused) {
   const auto expect = [](const std::string& keys, const std::string& said) {
     EXPECT_THAT(complaints(plane + slab + keys), Contains(HasSubstr(said))) << keys;

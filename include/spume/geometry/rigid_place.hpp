@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Where a rigid body stands and how it moves: the point x of the start is now at
 //
-//   position + rotation (x - pivot),
+//   position + rotation (scale (x - pivot)),
 //
-// and the body's velocity there is velocity + angular_velocity x (its distance from position). In two dimensions
-// rotations are about z.
+// and the body's velocity there is velocity + angular_velocity x arm + growth arm, arm = its distance from position. In
+// two dimensions rotations are about z.
 #pragma once
 
 #include <array>
@@ -72,11 +72,21 @@ struct RigidPlace {
   Vec3 pivot{}, position{};
   RotationMatrix rotation = no_rotation;
   Vec3 velocity{}, angular_velocity{};  // radians per time
+  // Of a body that grows: its lengths over those at the start, and their rate of change over them. A body of no size is
+  // not there.
+  double scale = 1, growth = 0;
 
-  Vec3 now(const Vec3& start) const { return add(position, rotated(rotation, subtract(start, pivot))); }
-  Vec3 start(const Vec3& now) const { return add(pivot, rotated_back(rotation, subtract(now, position))); }
+  Vec3 now(const Vec3& start) const {
+    return add(position, rotated(rotation, multiply(scale, subtract(start, pivot))));
+  }
+  Vec3 start(const Vec3& now) const {
+    return add(pivot, multiply(scale > 0 ? 1 / scale : 0, rotated_back(rotation, subtract(now, position))));
+  }
   Vec3 direction_now(const Vec3& direction) const { return rotated(rotation, direction); }
-  Vec3 velocity_at(const Vec3& now) const { return add(velocity, cross(angular_velocity, subtract(now, position))); }
+  Vec3 velocity_at(const Vec3& now) const {
+    const Vec3 arm = subtract(now, position);
+    return add(add(velocity, cross(angular_velocity, arm)), multiply(growth, arm));
+  }
 };
 
 }  // namespace spume

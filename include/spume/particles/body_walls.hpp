@@ -12,6 +12,7 @@
 
 #include "spume/operators/wall_stencils.hpp"
 #include "spume/particles/arrangement.hpp"
+#include "spume/particles/moving_bounds.hpp"
 #include "spume/particles/rigid_walls.hpp"
 
 namespace spume {
@@ -68,6 +69,10 @@ class BodyWalls {
   // Distance from the walls, negative inside them; farther than four support radii from a surface a bound of it.
   double distance(const Vec3& point) const;
   Vec3 normal(const Vec3& point) const { return nearest_part(point).nearest(point).normal; }
+  struct NearestWall : NearestPoint {
+    std::size_t body = 0;  // among those of the scene
+  };
+  NearestWall nearest_wall(const Vec3& point) const;
   bool nearer_than(const Vec3& point, double gap) const { return !surely_farther(point, gap) && distance(point) < gap; }
   bool surely_farther(const Vec3& point, double gap) const;  // false where the cells do not tell
   // A point nearer than `gap` to a wall, or inside it, is reflected back; of its velocity what goes into the wall, as
@@ -88,13 +93,15 @@ class BodyWalls {
   void set_acceleration(double t);
   void set_pressure_behind(double duration);
   void gather_points();
+  void mark_bounds();
   const RigidWalls& nearest_part(const Vec3& point) const;
 
   const Scene& scene_;
   const Resolution resolution_;
   std::vector<std::unique_ptr<RigidWalls>> parts_;   // what stands still, and each motion of the scene
+  std::optional<MovingBounds> bounds_;               // of many moving parts
   std::vector<WallPoint> points_;                    // of all parts, as they are
-  std::vector<std::uint8_t> body_;                   // of each point, among the bodies of the scene
+  std::vector<std::uint16_t> body_;                  // of each point, among the bodies of the scene
   std::vector<std::array<std::int32_t, 2>> origin_;  // of the moving ones, those behind: part, and number in it
   std::size_t standing_ = 0;                         // points of what stands still, the first
   bool surfaces_move_ = false;                       // some surface has a velocity

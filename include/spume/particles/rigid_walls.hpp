@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The walls of bodies that move as one, or of all that stand still: distances from them and the points behind them, in
-// the coordinates of the start, asked for where the bodies are now.
+// the coordinates of the start, asked for where the bodies are now. Bodies that grow have wall points for several of
+// their sizes, so that these lie a spacing apart in all of them.
 #pragma once
 
 #include <optional>
@@ -21,16 +22,25 @@ class RigidWalls {
 
   const BodyMotion* motion() const { return motion_; }  // null: they stand still
   bool empty() const { return bodies_.empty(); }
+  // Not there now, or with less than half a spacing from its middle to its farthest face.
+  bool absent() const { return level_of(place.scale) == 0; }
   const std::vector<std::size_t>& bodies() const { return bodies_; }
 
   RigidPlace place;          // in use; without a motion it stays
   RigidPlace behind, ahead;  // at the times of the velocities that the liquid has, and that it is to have
 
+  // A box that the solid is in now; of endless solids it is endless.
+  Bounds bounds_now() const;
+
   // Negative inside; farther than four support radii from a surface a bound of it.
   double distance(const Vec3& point) const;
-  double exact_distance(const Vec3& point) const { return walls_.distance(start(point)); }
+  double exact_distance(const Vec3& point) const {
+    return absent() ? infinite : place.scale * walls_.distance(start(point));
+  }
   bool surely_farther(const Vec3& point, double gap) const;
   NearestPoint nearest(const Vec3& point) const;
+  // Whose surface the point lies on.
+  std::size_t body_near(const Vec3& point) const { return bodies_.size() == 1 ? bodies_[0] : body_at(start(point)); }
   // Of the surface within `about` of one of its points, which moves as the walls do, the place that reaches farthest
   // along a direction, if there is one. `size`: of the walls.
   std::optional<Vec3> foremost(const Vec3& point, const Vec3& direction, double size, double about) const;
@@ -42,8 +52,11 @@ class RigidWalls {
   Vec3 velocity_at(const Vec3& point) const { return motion_ == nullptr ? Vec3{} : place.velocity_at(point); }
 
   // At the start, and the bodies that they belong to.
-  const std::vector<WallPoint>& points() const { return points_; }
-  std::size_t body_of(std::size_t point) const { return body_[point]; }
+  const std::vector<WallPoint>& points() const { return levels_[level_].points; }
+  std::size_t body_of(std::size_t point) const { return levels_[level_].body[point]; }
+  const std::vector<WallPoint>& whole() const { return levels_.back().points; }  // those of the full size
+  // Takes the points of the size that is nearest to that of now; none of a body that is absent.
+  void choose_points();
   // The point as it is now, with the period that brings it into the domain; false where it is beyond a wall of the
   // domain.
   bool now(std::size_t point, WallPoint& found) const;
@@ -53,12 +66,21 @@ class RigidWalls {
  private:
   Vec3 start(const Vec3& now) const;
   double distance_from_bounds(const Vec3& start) const;
+  double distance_at_start(const Vec3& start) const;
   // Where surfaces of moving bodies are at the start, as far as they may come into the domain.
   Bounds window(double margin) const;
   Domain domain_at_start(double reach) const;
   bool keeps(int axis) const;  // the motion does not lead along it
   double error() const;
   std::size_t body_at(const Vec3& foot) const;
+  std::size_t level_of(double scale) const;
+  bool grows() const { return motion_ != nullptr && motion_->release && motion_->release->growth > 0; }
+  // Wall points of one size, in the coordinates of the start and the full size. Level 0 is empty.
+  struct Level {
+    std::vector<WallPoint> points;
+    std::vector<std::uint16_t> body;  // of each point, among the bodies of the scene
+  };
+  Level make_level(double scale, const Resolution& resolution, double particle_volume) const;
 
   const Scene& scene_;
   const BodyMotion* motion_ = nullptr;
@@ -67,8 +89,8 @@ class RigidWalls {
   Bounds bounds_{};  // of the solid
   double reach_ = 0;
   std::optional<DistanceCells> cells_;
-  std::vector<WallPoint> points_;
-  std::vector<std::uint8_t> body_;  // of each point, among the bodies of the scene
+  std::vector<Level> levels_{1};
+  std::size_t level_ = 0;
 };
 
 }  // namespace spume

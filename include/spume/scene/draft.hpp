@@ -62,6 +62,7 @@ struct BodyDraft {
   std::vector<double> axis, pivot, inertia;
   std::optional<double> mass, density, restitution;
   std::vector<std::string> free;
+  std::optional<double> release_interval, release_duration, release_delay, release_growth;
 };
 
 enum class WavemakerKind { piston };

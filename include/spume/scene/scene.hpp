@@ -78,6 +78,14 @@ struct Body {
   ShapePointer alone = {};  // of a moving body: its solid at the start without copies beyond periodic sides
 };
 
+// A body that comes back: it sets out at `first` and every `cycle` after it, and is taken away after `duration`; in
+// between it is not there. The copies of an entry of the case set out one after another.
+struct Release {
+  double first = 0, cycle = 0, duration = 0;  // cycle >= duration
+  double growth = 0;                          // its lengths are s (2 - s) of their last in this time, s the share of it
+  std::size_t copy = 0, copies = 1;
+};
+
 // Bodies that move as one: as is given, or floating.
 struct BodyMotion {
   std::vector<std::size_t> bodies;  // in their order
@@ -86,7 +94,8 @@ struct BodyMotion {
   VectorExpression displacement;
   std::shared_ptr<const Expression> angle;
   Vec3 axis{0, 0, 1};
-  double time_scale = 1;  // that differences in time are short against
+  double time_scale = 1;                // that differences in time are short against
+  std::optional<Release> release = {};  // displacement and angle are then of the time since the body set out
   // Floating about its centre of mass, the pivot.
   bool floats = false;
   double mass = 0;
@@ -97,8 +106,11 @@ struct BodyMotion {
 };
 
 // Where bodies with a given motion are at time t, with the start as reference. Their velocities are differences over
-// 1e-7 time scales of fourth order.
+// 1e-7 time scales of fourth order. A body that waits for its release has none, and no size.
 RigidPlace given_place(const BodyMotion& motion, double t);
+
+// The parts of the way between two times, from one place to another; where a released body is not there it has none.
+std::vector<std::array<RigidPlace, 2>> ways_between(const BodyMotion& motion, double from, double to);
 
 // A layer beside a side of the domain in which the velocity is damped, d being the distance from that side:
 // du/dt = -strength (1 - d / length)^2 (u - velocity).

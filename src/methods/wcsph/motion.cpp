@@ -13,8 +13,6 @@ namespace {
 constexpr double largest_excess_of_a_flow = 0.5;
 // Sun et al. (2019): delta u = -2 U h grad C, of U / 2 at most, U the largest expected speed.
 constexpr double shifting_strength = 2, largest_shift = 0.5;
-// Monaghan (2000): R = eps |P| f^4, f = W(r) / W(spacing).
-constexpr double stress_share = 0.2;
 
 }  // namespace
 
@@ -226,7 +224,7 @@ void Flow::find_pressure_force() {
        .wall_density = wall_density.data(),
        .wall_position = features.bodies ? boundary.bodies()->wet().position : std::array<const double*, 3>{}},
       write(pressure_force), write(concentration));
-  if (scene.free_surface) part_from_images();
+  if (scene.free_surface) part_from_walls();
 }
 
 SurfaceTension::Now Flow::tension_now() {
@@ -236,27 +234,6 @@ SurfaceTension::Now Flow::tension_now() {
 void Flow::add_tension() {
   tension->find_potentials(tension_now());
   tension->add_force(tension_now(), write(pressure_force));
-}
-
-// A particle on a mirror is at rest there: its force towards its image vanishes, and what the others leave of a flat
-// density field cancels it to first order. Closer to its image than the spacing it feels the artificial stress of
-// Monaghan (8) too.
-void Flow::part_from_images() {
-  const double h = resolution.smoothing_length, gap = scene.spacing, at_gap = WendlandC2::w(gap / h);
-  const double scale = arrangement.context.gradient_scale * particles.volume * WendlandC2::normalisation(dimensions) /
-                       std::pow(h, dimensions + 2);
-  parallel_for(size(), [&](std::size_t i) {
-    for (int axis = 0; axis < dimensions; ++axis)
-      for (std::size_t side = 0; side < 2; ++side) {
-        const double way = 2 * (boundary.walls[axis][side] - place[axis][i]);
-        if (std::abs(way) >= gap || !is_wall(scene.domain.sides[axis][side].kind)) continue;
-        const double head = density[i] * wall_gravity[axis] * way;
-        const double f = WendlandC2::w(std::abs(way) / h) / at_gap;
-        const double stress = stress_share * std::abs(2 * pressure[i] + head) * (f * f * f * f - 1);
-        pressure_force[axis][i] +=
-            static_cast<float>(scale * WendlandC2::f(std::abs(way) / h) * volume[i] * stress * way);
-      }
-  });
 }
 
 // Towards fewer particles.
@@ -343,20 +320,21 @@ std::vector<WallForce> Flow::forces_on_bodies() {
   const BodyWalls& walls = *boundary.bodies();
   std::vector<std::int32_t> body(walls.stencils().size());
   for (std::size_t g = 0; g < body.size(); ++g) body[g] = walls.body_of_wet(g);
-  const std::vector<WallForce> forces = wall_forces(arrangement.context,
-                                                    {.velocity = read(particles.velocity),
-                                                     .pressure = pressure.data(),
-                                                     .volume = volume.data(),
-                                                     .viscosity = features.viscosity ? viscosity.data() : nullptr,
-                                                     .friction = features.friction,
-                                                     .gravity = wall_gravity,
-                                                     .reflection = &boundary.reflection(),
-                                                     .held = &boundary.velocity_rule().sign,
-                                                     .wall_pressure = wall_pressure.data(),
-                                                     .wall_density = wall_density.data(),
-                                                     .wall_position = walls.wet().position,
-                                                     .body = body.data()},
-                                                    scene.bodies.size());
+  std::vector<WallForce> forces = wall_forces(arrangement.context,
+                                              {.velocity = read(particles.velocity),
+                                               .pressure = pressure.data(),
+                                               .volume = volume.data(),
+                                               .viscosity = features.viscosity ? viscosity.data() : nullptr,
+                                               .friction = features.friction,
+                                               .gravity = wall_gravity,
+                                               .reflection = &boundary.reflection(),
+                                               .held = &boundary.velocity_rule().sign,
+                                               .wall_pressure = wall_pressure.data(),
+                                               .wall_density = wall_density.data(),
+                                               .wall_position = walls.wet().position,
+                                               .body = body.data()},
+                                              scene.bodies.size());
+  if (scene.free_surface) add_parting_forces(forces);
   for (auto* array : {&volume, &density, &viscosity}) scratch.release(*array);
   for (auto* array : {&pressure, &wall_pressure, &wall_density}) scratch.release(*array);
   return forces;

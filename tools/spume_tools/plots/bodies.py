@@ -56,12 +56,15 @@ def places(run, body):
     rows = np.flatnonzero(table["body"] == body.number)
     axes = range(run.dimensions)
 
+    def size(row):
+        return table["scale"][row] if "scale" in table else 1.0
+
     def at(t):
         row = rows[np.argmin(np.abs(table["t"][rows] - t))]
         vector = [table[f"turn_{a}"][row] if f"turn_{a}" in table else 0.0 for a in "xyz"]
         position, start = (np.array([table["position_" + "xyz"[a]][r] for a in axes] + [0.0] * (3 - len(axes)))
                            for r in (row, rows[0]))
-        return position + turned(vector, body.corners - start)
+        return position + turned(vector, size(row) * (body.corners - start))
 
     return at
 
@@ -93,6 +96,8 @@ def draw_bodies(axis, run, plane, time):
     """Solids are filled in two dimensions, where they lie inside their shape, and cut by the plane in three."""
     for body in bodies_of(run):
         corners = places(run, body)(time)
+        if np.ptp(corners) == 0:
+            continue  # released later, or gone
         if plane.normal is not None:
             axis.add_collection(LineCollection(cut(corners, plane.normal, plane.coordinate, plane.axes), colors=EDGE,
                                                linewidths=1.2, zorder=3), autolim=False)
@@ -111,6 +116,8 @@ def extent_with_bodies(run, plane, times, frame):
             continue
         for time in times:
             points = places(run, body)(time)[:, :, list(plane.axes)].reshape(-1, 2)
+            if np.ptp(points) == 0:
+                continue
             own_low, own_high = points.min(axis=0), points.max(axis=0)
             if np.any(own_high - own_low > 0.9 * (plane.high - plane.low)):
                 continue

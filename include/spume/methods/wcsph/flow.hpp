@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -111,7 +112,15 @@ struct Flow {
   bool lists_hold(double dt) const;
   void move_images(const std::array<const double*, 3>& at, double t);
   void find_wall_pressure();
-  void part_from_images();  // (8)
+  // (8)
+  struct Parting {
+    std::size_t body = 0;
+    Vec3 foot{}, force{};
+  };
+  double parting_force(std::size_t i, double distance, double head) const;
+  std::optional<Parting> parting_from_bodies(std::size_t i, const Vec3& r) const;
+  void part_from_walls();
+  void add_parting_forces(std::vector<WallForce>& forces) const;
   // Density does not diffuse to wall points: they have a phase of their own.
   bool needs_phase() const { return features.several || (features.bodies && !features.shifting); }
   void lease_properties();

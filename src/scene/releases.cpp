@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "releases.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "checks.hpp"
+#include "spume/core/vectors.hpp"
+#include "spume/scene/option.hpp"
+
+namespace spume {
+namespace {
+
+constexpr std::size_t most_copies = 10000;
+
+// Every copy is back when its turn comes again.
+std::size_t copies_of(const BodyDraft& body) {
+  return static_cast<std::size_t>(std::max(1.0, std::ceil(*body.release_duration / *body.release_interval - 1e-9)));
+}
+
+bool is_released(const BodyDraft& body) {
+  return body.release_interval && body.release_duration;
+}
+
+// The least distance of the liquid at the start from a solid that stands beside its own place by `way`.
+double nearest_liquid(const Scene& scene, const Shape& solid, const Vec3& way) {
+  const InitialParticles& particles = scene.particles;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    Vec3 place{};
+    for (std::size_t a = 0; a < static_cast<std::size_t>(scene.domain.dimensions); ++a)
+      place[a] = particles.position[a][i] - way[a];
+    least = std::min(least, solid.distance(place));
+  }
+  return least;
+}
+
+}  // namespace
+
+void check_release(const Draft& draft, std::size_t k, bool floats, Problems& problems) {
+  const std::string name = "body." + std::to_string(k);
+  const BodyDraft& body = draft.bodies[k];
+  const Node* first = nullptr;
+  for (const char* key : {"release_interval", "release_duration", "release_delay", "release_growth"})
+    if (const Node* node = draft.node(name + "." + key); node != nullptr && first == nullptr) first = node;
+  if (first == nullptr) return;
+  if (floats) {
+    problems.add_key(*first, name +
+                                 " floats, and bodies are released on a given way alone; give displacement in place "
+                                 "of mass or density, or remove the release");
+    return;
+  }
+  if (!draft.node(name + ".release_interval") || !draft.node(name + ".release_duration"))
+    problems.add_key(*first, name +
+                                 " is released and one key is missing; give  release_interval = <number>  and  "
+                                 "release_duration = <number>  # time, > 0");
+  for (const BodyDraft& other : draft.bodies)
+    if (!body.name.empty() && other.moves_with == body.name) {
+      problems.add_key(*first, name + " is released again and again, and '" + other.name +
+                                   "' moves with it; bodies are released one by one: remove moves_with");
+      return;
+    }
+  if (const Node* growth = draft.node(name + ".release_growth");
+      growth != nullptr && !body.inside && body.release_growth.value_or(0) > 0)
+    problems.add_key(*growth, name +
+                                  " is all that lies outside its shape, which cannot grow; remove release_growth, or "
+                                  "inside = false");
+  if (!is_released(body) || !draft.usable(name + ".release_interval") || !draft.usable(name + ".release_duration"))
+    return;
+  if (const double copies = *body.release_duration / *body.release_interval; copies > most_copies)
+    problems.add_key(*first, name + " has " + brief(copies) + " copies on their way at a time; at most " +
+                                 std::to_string(most_copies) +
+                                 " are possible: shorten release_duration or lengthen "
+                                 "release_interval");
+}
+
+void add_released(const Draft& draft, std::vector<Body>& bodies, std::vector<BodyMotion>& motions, Problems& problems) {
+  for (std::size_t k = 0; k < draft.bodies.size(); ++k) {
+    const BodyDraft& given = draft.bodies[k];
+    if (!bodies[k].motion || !is_released(given)) continue;
+    const std::size_t copies = copies_of(given), own = *bodies[k].motion;
+    if (copies > most_copies) return;
+    const double delay = given.release_delay.value_or(0), cycle = static_cast<double>(copies) * *given.release_interval;
+    motions[own].time_scale = *given.release_duration;
+    motions[own].release = Release{delay, cycle, *given.release_duration, given.release_growth.value_or(0), 0, copies};
+    for (std::size_t copy = 1; copy < copies; ++copy) {
+      BodyMotion motion = motions[own];
+      motion.bodies = {bodies.size()};
+      motion.release->copy = copy;
+      motion.release->first = delay + static_cast<double>(copy) * *given.release_interval;
+      motions.push_back(std::move(motion));
+      bodies.push_back({.name = bodies[k].name + "." + std::to_string(copy),
+                        .kind = bodies[k].kind,
+                        .shape = bodies[k].shape,
+                        .solid = bodies[k].solid,
+                        .inside = bodies[k].inside,
+                        .subtract = false,
+                        .wall = bodies[k].wall,
+                        .velocity = std::nullopt,
+                        .motion = motions.size() - 1,
+                        .alone = bodies[k].alone});
+    }
+  }
+  if (constexpr std::size_t most_bodies = 65535; bodies.size() > most_bodies)
+    problems.add(*draft.node("body.0"), "the case has " + std::to_string(bodies.size()) +
+                                            " bodies with the copies that are released; at most " +
+                                            std::to_string(most_bodies) + " are possible");
+}
+
+std::vector<Problem> release_warnings(const Draft& draft, const Scene& scene, const std::string& file) {
+  std::vector<Problem> warnings;
+  const double reach = support_ratio(draft.options.resolution) * scene.spacing;
+  for (std::size_t k = 0; k < draft.bodies.size(); ++k) {
+    const Body& body = scene.bodies[k];
+    if (!body.motion || !scene.motions[*body.motion].release) continue;
+    const BodyMotion& motion = scene.motions[*body.motion];
+    const Node& node = *draft.node("body." + std::to_string(k) + ".release_interval");
+    const auto warn = [&](const std::string& text) {
+      warnings.push_back({file, node.key_place.line, node.key_place.column, "the body '" + body.name + "' " + text});
+    };
+    const double start = motion.release->growth > 0 ? reach : nearest_liquid(scene, *body.alone, Vec3{});
+    if (start < reach)
+      warn("appears " + (start < 0 ? "in the liquid" : brief(start) + " from the liquid") +
+           ", which it then pushes away at once; let it grow, by release_growth, or start farther away than the kernel "
+           "support " +
+           brief(reach) + ", as behind a wall");
+    const RigidPlace end = given_place(motion, motion.release->first + (1 - 1e-9) * motion.release->duration);
+    const double last = nearest_liquid(scene, *body.alone, subtract(end.position, end.pivot));
+    if (last < reach)
+      warn("is taken away " + (last < 0 ? "in the liquid" : brief(last) + " from the liquid") +
+           " as that stands at t = 0, "
+           "and leaves a hole; let its way end farther away than the kernel support " +
+           brief(reach) + ", as above the surface, by release_duration");
+  }
+  return warnings;
+}
+
+}  // namespace spume
