@@ -264,7 +264,8 @@ class LiveView(unittest.TestCase):
         webdriver.ActionChains(self.browser).move_to_element_with_offset(canvas, 0, 60).click().perform()
         wait_for(lambda: "velocity" in self.text("picked"), "the values of a particle")
         self.assertIn("length/time", self.text("picked"))
-        self.assertEqual(self.browser.find_element(By.CSS_SELECTOR, "#picked tr:nth-child(2)").get_attribute("title"),
+        # Rows are made anew with every frame: one script reads what two commands would find stale.
+        self.assertEqual(self.script("return document.querySelector('#picked tr:nth-child(2)').title"),
                          "velocity: u = dx/dt\nunit: length/time")
         title = self.script("return document.querySelector('.legend').title")
         self.assertIn("u = dx/dt", title)
