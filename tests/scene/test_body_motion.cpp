@@ -214,6 +214,20 @@ TEST(BodyMotion, AReleaseInTheLiquidIsWarnedOf) {
   const std::string inside = test::replaced(bubbles, "-1.4", "-0.9");
   EXPECT_THAT(warnings(plane + inside + every_second), said("the body 'bubble' appears"));
   EXPECT_THAT(warnings(plane + inside + every_second + "release_growth = 0.1\n"), Not(said("appears")));
+  // Five spacings from the middle to the face is little; the tank has a free surface.
+  const auto growing = warnings(plane + bubbles + every_second + "release_growth = 0.1\n");
+  EXPECT_THAT(growing, said("displaces up to a third less"));
+  EXPECT_THAT(growing, Not(said("nothing takes what it displaces")));
+  const std::string closed = test::replaced(test::replaced(plane, "upper = [1, -0.8]", "upper = [1, 1]"),
+                                            "[resolution]", "x = \"periodic\"\ny = \"periodic\"\n[resolution]");
+  EXPECT_THAT(warnings(closed + bubbles + every_second + "release_growth = 0.1\n"),
+              said("nothing takes what it displaces"));
+  // Liquid beyond a periodic side is beside the body too.
+  const std::string around =
+      test::replaced(test::replaced(plane, "[resolution]", "x = \"periodic\"\n[resolution]"),
+                     "lower = [-1, -1]\nupper = [1, -0.8]", "lower = [-1, -1]\nupper = [-0.9, 1]");
+  const std::string aside = test::replaced(bubbles, "[0.2, -1.4]", "[0.95, 0]");
+  EXPECT_THAT(warnings(around + aside + every_second), said("the body 'bubble' appears"));
   const std::string shorter = test::replaced(every_second, "1.5", "0.5");
   EXPECT_THAT(warnings(plane + bubbles + shorter), said("the body 'bubble' is taken away"));
 }
