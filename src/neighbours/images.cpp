@@ -186,10 +186,11 @@ bool Images::sees(const Vec3& place, std::size_t k, const Vec3& source) const {
 
 void Images::add_axis_images(const ImageRules& rules, int axis, std::size_t n) {
   const double length = rules.upper[axis] - rules.lower[axis];
-  std::array<ImageKind, 2> kind = rules.sides[axis];
+  std::array<ImageKind, 2> made_here = rules.sides[axis];
   if (rules.solids != nullptr)
-    for (ImageKind& one : kind)
+    for (ImageKind& one : made_here)
       if (one == ImageKind::mirror) one = ImageKind::none;  // made with the solids
+  const std::array<ImageKind, 2> kind = made_here;
   if (kind[0] == ImageKind::none && kind[1] == ImageKind::none) return;
 
   // Paths of this stage for every path made so far: [old path + 1][side]; row 0 is the particle itself.
@@ -203,37 +204,48 @@ void Images::add_axis_images(const ImageRules& rules, int axis, std::size_t n) {
     }
 
   const std::size_t made = source_.size();
-  append_stage(n + made, [&](std::size_t k, auto& sink) {
-    const bool particle = k < n;
-    const double x = particle ? particle_[axis][k] : position_[axis][k - n];
-    for (int side = 0; side < 2; ++side) {
-      if (kind[side] == ImageKind::none) continue;
-      const double plane = side == 0 ? rules.lower[axis] : rules.upper[axis];
-      const double depth = side == 0 ? x - plane : plane - x;
-      // A particle a little outside a wall still gets its image: the pair then pushes it back.
-      if (kind[side] == ImageKind::mirror ? depth >= rules.support_radius : false) continue;
-      double image = 0;
-      if (kind[side] == ImageKind::mirror) {
-        image = 2 * plane - x;
-      } else {
-        // A copy beyond `side` comes from particles near the opposite side.
-        const double to_opposite = length - depth;
-        if (to_opposite >= rules.support_radius) continue;
-        image = side == 0 ? x - length : x + length;
+  const std::array<double, 2> planes{rules.lower[axis], rules.upper[axis]};
+  const double reach = rules.support_radius;
+  // Without openings no call of `open_at` is in the loop, across which the compiler would keep nothing in registers.
+  const auto stage = [&](auto openings) {
+    append_stage(n + made, [&, axis, length, kind, planes, reach, n](std::size_t k, auto& sink) {
+      const bool particle = k < n;
+      const double x = particle ? particle_[axis][k] : position_[axis][k - n];
+      for (int side = 0; side < 2; ++side) {
+        if (kind[side] == ImageKind::none) continue;
+        const double plane = planes[side];
+        const double depth = side == 0 ? x - plane : plane - x;
+        double image = 0;
+        if (kind[side] == ImageKind::mirror) {
+          // A particle a little outside a wall still gets its image: the pair then pushes it back.
+          if (depth >= reach) continue;
+          image = 2 * plane - x;
+        } else {
+          // A copy beyond `side` comes from particles near the opposite side.
+          const double to_opposite = length - depth;
+          if (to_opposite >= reach) continue;
+          image = side == 0 ? x - length : x + length;
+        }
+        std::array<double, 3> r{};
+        for (int a = 0; a < rules.dimensions; ++a) r[a] = particle ? particle_[a][k] : position_[a][k - n];
+        if constexpr (openings) {
+          if (kind[side] == ImageKind::mirror) {
+            std::array<double, 3> foot = r;
+            foot[axis] = plane;
+            if (rules.open_at(axis, side, foot)) continue;
+          }
+        }
+        r[axis] = image;
+        const std::int32_t source = particle ? static_cast<std::int32_t>(k) : source_[k - n];
+        const std::size_t row = particle ? 0 : static_cast<std::size_t>(path_[k - n]) + 1;
+        sink(r, source, next[row][side], particle || wall_point_.empty() ? -1 : wall_point_[k - n]);
       }
-      std::array<double, 3> r{};
-      for (int a = 0; a < rules.dimensions; ++a) r[a] = particle ? particle_[a][k] : position_[a][k - n];
-      if (kind[side] == ImageKind::mirror && rules.open_at) {
-        std::array<double, 3> foot = r;
-        foot[axis] = plane;
-        if (rules.open_at(axis, side, foot)) continue;
-      }
-      r[axis] = image;
-      const std::int32_t source = particle ? static_cast<std::int32_t>(k) : source_[k - n];
-      const std::size_t row = particle ? 0 : static_cast<std::size_t>(path_[k - n]) + 1;
-      sink(r, source, next[row][side], particle || wall_point_.empty() ? -1 : wall_point_[k - n]);
-    }
-  });
+    });
+  };
+  if (rules.open_at)
+    stage(std::true_type{});
+  else
+    stage(std::false_type{});
 }
 
 void Images::add_wall_points(const WallPointView& walls) {
