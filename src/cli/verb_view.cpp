@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <signal.h>
-
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 

@@ -41,7 +41,7 @@ double BoxTransform<T>::bytes() const {
 
 template <class T>
 void BoxTransform<T>::inverse(const Source& modes, const Visitor& visit) {
-  const auto [nx, ny, nz] = layout_.points;
+  const std::size_t nx = layout_.points[0], ny = layout_.points[1], nz = layout_.points[2];
   const std::size_t row = layout_.row;
   const int threads = std::min(static_cast<int>(scratch_.size()), thread_count());
 #pragma omp parallel num_threads(threads)
@@ -82,7 +82,7 @@ void BoxTransform<T>::inverse(const Source& modes, T* values, std::size_t z_stri
 
 template <class T>
 void BoxTransform<T>::forward(const T* values, std::size_t z_stride, const Sink& sink) {
-  const auto [nx, ny, nz] = layout_.points;
+  const std::size_t nx = layout_.points[0], ny = layout_.points[1], nz = layout_.points[2];
   const std::size_t row = layout_.row;
   const T scale = static_cast<T>(1 / layout_.point_count());
   const int threads = std::min(static_cast<int>(scratch_.size()), thread_count());

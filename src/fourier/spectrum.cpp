@@ -46,7 +46,7 @@ EnergySpectrum energy_spectrum(const UniformGrid& grid, std::span<const double* 
   for (int axis = 1; axis < grid.dimensions; ++axis)
     result.complete_to = std::min(result.complete_to, std::numbers::pi / grid.spacing(axis));
 
-  const auto [nx, ny, nz] = grid.points;
+  const std::size_t nx = grid.points[0], ny = grid.points[1], nz = grid.points[2];
   const std::size_t modes = nx / 2 + 1;
   const auto unit = [&](int axis) { return axis < grid.dimensions ? longest / grid.length(axis) : 0.0; };
   const std::vector<double> kx = axis_wavenumbers(nx, modes, unit(0));

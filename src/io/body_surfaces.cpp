@@ -15,7 +15,7 @@ class Appendix {
   // Gives the attribute that refers to the array.
   template <class T>
   std::string add(const std::vector<T>& values) {
-    const std::string reference = "format=\"appended\" offset=\"" + std::to_string(data_.size()) + "\"";
+    std::string reference = "format=\"appended\" offset=\"" + std::to_string(data_.size()) + "\"";
     const std::uint64_t bytes = values.size() * sizeof(T);
     append(&bytes, sizeof bytes);
     append(values.data(), bytes);

@@ -22,7 +22,7 @@ namespace spume::hdf5 {
 namespace {
 
 constexpr haddr_t page_bytes = 4096;
-constexpr std::string_view mark("SPUME JOURNAL 1", 16);  // with the zero at its end
+constexpr std::string_view mark("SPUME JOURNAL 1\0", 16);
 
 // Functions that return int give 0, or the error number of the system.
 

@@ -13,7 +13,7 @@ int Images::sign(const ImagePath& path, const ImageRules& rules, int axis) {
   int sign = 1;
   for (const std::int16_t face : path.face[axis])
     if (face >= 0) sign = -sign;
-  const int side = path.side[axis];
+  const std::int8_t side = path.side[axis];
   if (side >= 0 && rules.sides[axis][side] == ImageKind::mirror) sign = -sign;
   return sign;
 }
@@ -318,7 +318,7 @@ void Images::move(const ImageRules& rules, const std::array<const double*, 3>& p
     const double* from = position[axis];
     double* to = position_[axis].data();
     parallel_for(source_.size(), [&, from, to, axis](std::size_t k) {
-      const int side = paths_[static_cast<std::size_t>(path_[k])].side[axis];
+      const std::int8_t side = paths_[static_cast<std::size_t>(path_[k])].side[axis];
       const bool of_point = walls != nullptr && wall_point_[k] >= 0;
       const double x = of_point ? walls->position[axis][wall_point_[k]] : from[source_[k]];
       if (side < 0)

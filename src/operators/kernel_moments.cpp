@@ -74,25 +74,27 @@ void moments(const SweepContext& context, PackedNeighbours& packed, const Kernel
     std::array<double, 6> sum{}, inverse{};
     for (int k = 0; k < matrix; ++k) sum[k] = simd::sum(m[k]);
     const double trace = dimensions == 2 ? sum[0] + sum[2] : sum[0] + sum[3] + sum[5];
-    const bool corrected = invert(sum, dimensions, inverse);
-    if (!corrected)
-      inverse = dimensions == 2 ? std::array<double, 6>{1, 0, 1} : std::array<double, 6>{1, 0, 0, 1, 0, 1};
+    std::array<float, dimensions> outward;
     auto h = static_cast<float>(context.smoothing_length);
     if constexpr (is_variable_h<Kernel>) h *= context.length_ratio[i];
-    std::array<float, dimensions> outward;
     for (int a = 0; a < dimensions; ++a) outward[a] = -h * simd::sum(normal[a]);
-    if constexpr (fading) {
-      double squares = 0;
-      for (const float component : outward) squares += double{component} * component;
-      const double of_plane = options.fading.bulk - options.fading.missing * std::sqrt(squares);
-      fade<dimensions>(options.fading.weight(std::max(trace, of_plane)), inverse);
+    if (out.uncorrected != nullptr) {
+      const bool corrected = invert(sum, dimensions, inverse);
+      if (!corrected)
+        inverse = dimensions == 2 ? std::array<double, 6>{1, 0, 1} : std::array<double, 6>{1, 0, 0, 1, 0, 1};
+      if constexpr (fading) {
+        double squares = 0;
+        for (const float component : outward) squares += double{component} * component;
+        const double of_plane = options.fading.bulk - options.fading.missing * std::sqrt(squares);
+        fade<dimensions>(options.fading.weight(std::max(trace, of_plane)), inverse);
+      }
+      for (int k = 0; k < matrix; ++k) out.correction[k][i] = static_cast<float>(inverse[k]);
+      out.uncorrected[i] = corrected ? 0 : 1;
     }
-    for (int k = 0; k < matrix; ++k) out.correction[k][i] = static_cast<float>(inverse[k]);
-    out.uncorrected[i] = corrected ? 0 : 1;
     out.divergence_of_position[i] = static_cast<float>(trace);
     const float centre = scale.value * centre_value * own_volume<Kernel>(context, i);
     if (out.kernel_sum != nullptr) out.kernel_sum[i] = centre + scale.value * simd::sum(kernel_sum);
-    out.laplacian_diagonal[i] = 2 * simd::sum(laplacian_diagonal);
+    if (out.laplacian_diagonal != nullptr) out.laplacian_diagonal[i] = 2 * simd::sum(laplacian_diagonal);
     for (int a = 0; a < dimensions; ++a) {
       if (options.normals) out.normal[a][i] = outward[a];
       if constexpr (shifting) out.concentration_gradient[a][i] = simd::sum(concentration[a]);

@@ -136,6 +136,7 @@ BodyWalls::NearestWall BodyWalls::nearest_wall(const Vec3& point) const {
   NearestWall found;
   static_cast<NearestPoint&>(found) = walls.nearest(point);
   found.body = walls.body_near(found.point);
+  found.half_width = walls.half_width();
   return found;
 }
 

@@ -51,9 +51,11 @@ RigidWalls::RigidWalls(const Scene& scene, std::optional<std::size_t> motion, co
   cells_.emplace(walls_, d, cells.lower, cells.upper, resolution.spacing, resolution.support_radius, error());
   std::size_t sizes = 1;
   if (grows()) {
-    double half = 0;
-    for (int axis = 0; axis < d; ++axis) half = std::max(half, (bounds_.upper[axis] - bounds_.lower[axis]) / 2);
-    sizes = static_cast<std::size_t>(std::clamp(std::ceil(half / (size_step * resolution.spacing)), 1.0, most_sizes));
+    half_width_ = 0;
+    for (int axis = 0; axis < d; ++axis)
+      half_width_ = std::max(half_width_, (bounds_.upper[axis] - bounds_.lower[axis]) / 2);
+    sizes = static_cast<std::size_t>(
+        std::clamp(std::ceil(half_width_ / (size_step * resolution.spacing)), 1.0, most_sizes));
   }
   levels_.resize(sizes + 1);
   for (std::size_t level = 1; level <= sizes; ++level)

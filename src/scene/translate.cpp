@@ -192,8 +192,8 @@ class Translator {
         size.children.push_back(number_node(high[a] - low[a], solid));
         position.children.push_back(number_node((low[a] + high[a]) / 2, solid));
       }
-      made.back().insert("size", std::move(size));
-      made.back().insert("position", std::move(position));
+      made.back().insert("size", size);
+      made.back().insert("position", position);
     }
     Node* bodies = document_.find("body");
     if (bodies == nullptr) bodies = &document_.insert("body", node_at(*document_.find("solid"), Node::Kind::array));

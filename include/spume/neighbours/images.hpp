@@ -43,9 +43,9 @@ struct ImagePath {
   // In a scene with solid boxes, per axis: codes of up to two faces (SolidUnion::face_near), walls included; -1 none.
   using Faces = std::array<std::array<std::int16_t, 2>, 3>;
   Faces face{{{-1, -1}, {-1, -1}, {-1, -1}}};
-  std::array<std::int8_t, 3> side{-1, -1, -1};  // then, per axis: -1 none, 0 lower, 1 upper
-  bool nearest = true;                          // false is found on demand: ImageRules::find_nearest
-  auto operator<=>(const ImagePath&) const = default;
+  std::array<std::int8_t, 3> side{-1, -1, -1};         // then, per axis: -1 none, 0 lower, 1 upper
+  bool nearest = true;                                 // false is found on demand: ImageRules::find_nearest
+  auto operator<=>(const ImagePath&) const = default;  // NOLINT(modernize-use-nullptr): of the comparison with 0 inside
   // In faces.
   int reflections() const {
     int count = 0;

@@ -20,7 +20,8 @@
 
 namespace spume {
 
-// Shape of the particle arrangement around each particle. Null pointers are not computed.
+// Shape of the particle arrangement around each particle. Null pointers are not computed; L and `uncorrected` go
+// together, div r is always wanted.
 struct KernelMoments {
   float* kernel_sum = nullptr;                     // sum_j V W, itself included
   float* divergence_of_position = nullptr;         // tr(sum g d (x) d): d in the bulk, less at a surface

@@ -70,7 +70,8 @@ class BodyWalls {
   double distance(const Vec3& point) const;
   Vec3 normal(const Vec3& point) const { return nearest_part(point).nearest(point).normal; }
   struct NearestWall : NearestPoint {
-    std::size_t body = 0;  // among those of the scene
+    std::size_t body = 0;          // among those of the scene
+    double half_width = infinite;  // of a body that grows, from its middle to its farthest face, now
   };
   NearestWall nearest_wall(const Vec3& point) const;
   bool nearer_than(const Vec3& point, double gap) const { return !surely_farther(point, gap) && distance(point) < gap; }

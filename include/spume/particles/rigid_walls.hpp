@@ -25,6 +25,8 @@ class RigidWalls {
   // Not there now, or with less than half a spacing from its middle to its farthest face.
   bool absent() const { return level_of(place.scale) == 0; }
   const std::vector<std::size_t>& bodies() const { return bodies_; }
+  // From the middle to the farthest face, now, of a body that grows; of others endless.
+  double half_width() const { return place.scale * half_width_; }
 
   RigidPlace place;          // in use; without a motion it stays
   RigidPlace behind, ahead;  // at the times of the velocities that the liquid has, and that it is to have
@@ -89,6 +91,7 @@ class RigidWalls {
   Bounds bounds_{};  // of the solid
   double reach_ = 0;
   std::optional<DistanceCells> cells_;
+  double half_width_ = infinite;
   std::vector<Level> levels_{1};
   std::size_t level_ = 0;
 };

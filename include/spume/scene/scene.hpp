@@ -149,8 +149,8 @@ struct Phase {
 
 // Liquid particles at the start, one array per component (z arrays are empty in two dimensions).
 struct InitialParticles {
-  Array<double> position[3];
-  Array<double> velocity[3];
+  std::array<Array<double>, 3> position;
+  std::array<Array<double>, 3> velocity;
   Array<std::int32_t> region;  // index of the [[liquid]] or [[region]] entry
   Array<std::int32_t> phase;   // index into Scene::phases; empty in a scene of one fluid
   double volume = 0;           // of every particle

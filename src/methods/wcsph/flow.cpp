@@ -68,6 +68,7 @@ Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.dom
   const CompressibilityOptions& smoothing = loaded.options.get<CompressibilityOptions>();
   diffusion = smoothing.density_filter == DensityFilter::delta && smoothing.diffusion > 0;
   shepard = smoothing.density_filter == DensityFilter::shepard;
+  density_relaxation = scene.free_surface && smoothing.density_relaxation > 0;
   shifting = smoothing.shifting == Shifting::on ||
              (smoothing.shifting == Shifting::automatic && (!several || tension) && !scene.free_surface);
 }
@@ -94,7 +95,9 @@ Flow::Flow(const LoadedCase& loaded_case)
   if (features.shifting) particles.add_vector(shift, "shifting_velocity", Lifetime::state);
   excess = &fields.add<double>("density_excess", Lifetime::state);
   phase_number = &fields.add<std::int64_t>("phase", Lifetime::state);
+  if (features.density_relaxation) lack = &fields.add<double>("density_lack", Lifetime::state);
   parallel_for(size(), [&](std::size_t i) {
+    if (features.density_relaxation) (*lack)[i] = 0;
     (*phase_number)[i] = scene.particles.phase[i];
     (*excess)[i] = 0;
     for (int axis = 0; axis < dimensions; ++axis) (*acceleration[axis])[i] = (*listed[axis])[i] = 0;
@@ -102,6 +105,7 @@ Flow::Flow(const LoadedCase& loaded_case)
   });
   if (features.tension) tension = std::make_unique<SurfaceTension>(scene, options.get<InterfaceOptions>().smoothing);
   if (features.gravity) start_density();
+  if (features.density_relaxation) start_volume();
   find_signal();
 }
 

@@ -47,6 +47,7 @@ void Flow::build_lists() {
 // A restored state has the places of its lists: the same lists follow, with their neighbours in the same order.
 void Flow::keep_lists(double dt) {
   if (!has_lists && steps > 0) build_lists();
+  has_moved = false;
   if (has_lists && lists_hold(dt)) return;
   listed_time = time;
   if (features.displaced_bodies) boundary.bodies()->move_to(time);
@@ -55,6 +56,7 @@ void Flow::keep_lists(double dt) {
     boundary.apply_walls(boundary.walls, r, nullptr);
     for (int axis = 0; axis < dimensions; ++axis) (*listed[axis])[i] = (*particles.position[axis])[i] = r[axis];
   });
+  has_moved = steps > 0;
   build_lists();
   if (lists_hold(dt)) return;
   StepFailure::Details details;
@@ -139,6 +141,7 @@ void Flow::advance_density(double dt) {
   scratch.lease(pressure, size());
   const double smoothing =
       features.diffusion ? options.get<CompressibilityOptions>().diffusion * resolution.smoothing_length : 0;
+  const double share = features.density_relaxation ? share_of_way(dt * largest_speed) : 0;
   if (features.displaced_bodies) boundary.bodies()->follow_points(time + dt);
   parallel_for(size(), [&](std::size_t i) {
     const PhaseLaw& own = law(i);
@@ -146,6 +149,7 @@ void Flow::advance_density(double dt) {
     const double grown = dt / 2 * rate[i];
     double s = (*excess)[i];
     s += (1 + s) * 2 * grown / (1 - grown) + dt * smoothing * own.sound_speed * diffusion[i];
+    if (features.density_relaxation) s += share * (*lack)[i];
     if (features.shifting) {
       // delta u . grad s, of the reduced excess and of the hydrostatic part.
       double climbed = carried[i];

@@ -19,6 +19,9 @@ Section compressibility_section() {
             "smoothing of the density within each phase: diffusion, or the kernel average every so many steps")
       .option("diffusion", &C::diffusion, "1", between(0, 0.5), "coefficient of the diffusion of density")
       .steerable()
+      .option("density_relaxation", &C::density_relaxation, "spacing", not_negative(),
+              "way of the fastest particle over which densities follow the arrangement, below a free surface; 0: they "
+              "do not")
       .word("shifting", &C::shifting, {{"auto", Shifting::automatic}, {"on", Shifting::on}, {"off", Shifting::off}},
             "of particles towards an even spacing; auto: in scenes without free surface, of one phase or with surface "
             "tension")

@@ -19,25 +19,26 @@ constexpr double stress_share = 0.2;
 }  // namespace
 
 // Away from the wall, per volume; `head`: what the image has of pressure beside the particle.
-double Flow::parting_force(std::size_t i, double distance, double head) const {
+double Flow::parting_force(std::size_t i, double distance, double gap, double head) const {
   const double h = resolution.smoothing_length, way = 2 * distance;
   const double scale = arrangement.context.gradient_scale * particles.volume * WendlandC2::normalisation(dimensions) /
                        std::pow(h, dimensions + 2);
-  const double f = WendlandC2::w(way / h) / WendlandC2::w(scene.spacing / h);
+  const double f = WendlandC2::w(way / h) / WendlandC2::w(2 * gap / h);
   const double stress = stress_share * std::abs(2 * pressure[i] + head) * (f * f * f * f - 1);
   return -scale * WendlandC2::f(way / h) * volume[i] * stress * way;
 }
 
-// The wall of a body that is nearer than half a spacing, and the force.
+// The wall of a body that is nearer than half a spacing, and the force. A bubble that begins to grow appears beside
+// particles, or under one: it claims no more than half of its half width around it.
 std::optional<Flow::Parting> Flow::parting_from_bodies(std::size_t i, const Vec3& r) const {
   const BodyWalls& walls = *boundary.bodies();
   const double gap = scene.spacing / 2;
   if (walls.surely_farther(r, gap) || !(walls.distance(r) < gap)) return std::nullopt;
   const BodyWalls::NearestWall near = walls.nearest_wall(r);
-  const double distance = std::max(near.distance, 0.0);
-  if (distance >= gap || !scene.bodies[near.body].motion) return std::nullopt;
+  const double distance = std::max(near.distance, 0.0), own_gap = std::min(gap, near.half_width / 2);
+  if (distance >= own_gap || !scene.bodies[near.body].motion) return std::nullopt;
   const double head = -2 * distance * density[i] * dot(wall_gravity, near.normal);
-  return Parting{near.body, near.point, multiply(parting_force(i, distance, head), near.normal)};
+  return Parting{near.body, near.point, multiply(parting_force(i, distance, own_gap, head), near.normal)};
 }
 
 void Flow::part_from_walls() {
@@ -46,7 +47,8 @@ void Flow::part_from_walls() {
       for (std::size_t side = 0; side < 2; ++side) {
         const double way = boundary.walls[axis][side] - place[axis][i];
         if (std::abs(way) >= scene.spacing / 2 || !is_wall(scene.domain.sides[axis][side].kind)) continue;
-        const double force = parting_force(i, std::abs(way), 2 * density[i] * wall_gravity[axis] * way);
+        const double force =
+            parting_force(i, std::abs(way), scene.spacing / 2, 2 * density[i] * wall_gravity[axis] * way);
         pressure_force[axis][i] += static_cast<float>(way > 0 ? -force : force);
       }
     if (!features.displaced_bodies) return;

@@ -17,6 +17,8 @@ constexpr double viscous_limit = 0.125, force_limit = 0.25;
 // Three times the change of density that the sound speeds are chosen for, 1 % in liquids and, with equal stiffness, 5 %
 // in air: impacts of a dam break reach 4 % in water.
 constexpr double liquid_range = 0.03, gas_range = 0.15;
+// Of a liquid with a free surface: twice the change of density that its sound speed is chosen for.
+constexpr double largest_volume_drift = 0.02;
 // The exponents of liquids are 4 to 7, those of gases 1 to 1.7.
 constexpr double least_liquid_exponent = 2;
 
@@ -59,6 +61,7 @@ Wcsph::Wcsph(const LoadedCase& loaded)
     body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
   saved_.add(flow_.time).add(flow_.steps).add(flow_.signal).add(flow_.largest_speed).add(flow_.boundary.wall_speed);
   if (flow_.features.tension) saved_.add(flow_.surface_energy);
+  if (flow_.features.density_relaxation) saved_.add(flow_.liquid_volume);
 }
 
 void Wcsph::step(double dt, Ledger& ledger) {
@@ -91,6 +94,9 @@ void Wcsph::declare_series() {
   series_.add("compression_energy", "rho e, integral", [&flow] { return flow.compression_energy(); });
   if (flow.features.tension)
     series_.add("surface_energy", "sigma times the area", [&flow] { return flow.surface_energy; });
+  if (flow.features.density_relaxation)
+    series_.add("volume", flow.dimensions == 3 ? "length^3, by kernel sums" : "length^2, by kernel sums",
+                [&flow] { return flow.liquid_volume; });
   series_.add("max_speed", "speed", [&flow] { return flow.largest_speed; });
   for (std::size_t n = 0; n < phase_sums_.size(); ++n) {
     const std::string& name = flow.scene.phases[n].name;
@@ -116,6 +122,12 @@ std::vector<Remark> Wcsph::take_remarks() {
                        brief(flow_.expected_speed) + " m/s"});
   }
   return remarks;
+}
+
+std::vector<Invariant> Wcsph::invariants() const {
+  if (!flow_.features.density_relaxation) return {};
+  return {
+      {.quantity = "volume_drift", .kind = Invariant::Kind::drift, .column = "volume", .bound = largest_volume_drift}};
 }
 
 std::vector<ArrayInfo> Wcsph::arrays() const {

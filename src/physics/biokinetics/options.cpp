@@ -36,7 +36,8 @@ void refuse_unknown_components(const Draft& draft, const std::vector<std::string
 void refuse_missing_nutrients(const Draft& draft, const Node& section, Problems& problems) {
   const std::vector<ScalarOption>& scalars = draft.options.get<ScalarOptions>().scalars;
   for (const auto& [name, usual] : {std::pair{"S_NH", "2 to 30 g/m3"}, {"S_ALK", "4 to 7 mol/m3"}})
-    if (std::none_of(scalars.begin(), scalars.end(), [&](const ScalarOption& one) { return one.name == name; }))
+    if (std::none_of(scalars.begin(), scalars.end(),
+                     [&, name = name](const ScalarOption& one) { return one.name == name; }))
       problems.add(section, std::string("without ") + name + " nothing grows; add  [[scalar]]  with  name = \"" + name +
                                 "\"  and its value at the start, " + usual);
 }

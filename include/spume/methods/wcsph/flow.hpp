@@ -29,6 +29,7 @@ struct Features : BoundaryFeatures {
   bool tension = false;
   bool diffusion = false, shepard = false;
   bool shifting = false;
+  bool density_relaxation = false;
 };
 
 struct Flow {
@@ -47,6 +48,7 @@ struct Flow {
   const std::vector<PhaseLaw> laws;
   const double background;
   const Vec3 wall_gravity;  // across sides: the pressure at walls follows it
+  double start_excess = 0;  // mean of s' of the scene
 
   // --- State between steps: saved.
   double time = 0;
@@ -57,17 +59,20 @@ struct Flow {
   VectorField shift{};         // velocity of shifting, delta u
   Array<double>* excess = nullptr;
   Array<std::int64_t>* phase_number = nullptr;
+  Array<double>* lack = nullptr;  // of s, by the kernel sums, for the density relaxation
   Boundary boundary;
   double listed_time = 0;  // of the places of moving bodies in the lists
   double signal = 0;       // largest sum of sound speed and speed
   double largest_speed = 0;
   double surface_energy = 0;  // of the interfaces where the last forces were found
+  double liquid_volume = 0;   // by the kernel sums that the density relaxation saw last
 
   // --- Lists of neighbours at `listed`, seen from where the particles are.
   Arrangement arrangement;
   ParticleSizes sizes;  // all alike
   bool has_lists = false;
   std::int64_t list_builds = 0;
+  bool has_moved = false;                   // the lists are new in this step, since particles have moved
   WallAverages wall_averages;               // of the wall points of bodies
   std::unique_ptr<SurfaceTension> tension;  // null: none
 
@@ -91,6 +96,7 @@ struct Flow {
 
   // The stages.
   void keep_lists(double dt);
+  void relax_density();             // (12)
   void drift(double dt);            // (5), to the middle of the step
   void find_rates();                // (1), and the viscous part of (2)
   void advance_density(double dt);  // (1), (3), and (5) to the end of the step
@@ -107,6 +113,9 @@ struct Flow {
 
  private:
   void start_density();
+  double reduced(std::size_t i) const;
+  void start_volume();
+  double share_of_way(double way) const;
   SurfaceTension::Now tension_now();
   void build_lists();
   bool lists_hold(double dt) const;
@@ -117,7 +126,7 @@ struct Flow {
     std::size_t body = 0;
     Vec3 foot{}, force{};
   };
-  double parting_force(std::size_t i, double distance, double head) const;
+  double parting_force(std::size_t i, double distance, double gap, double head) const;
   std::optional<Parting> parting_from_bodies(std::size_t i, const Vec3& r) const;
   void part_from_walls();
   void add_parting_forces(std::vector<WallForce>& forces) const;

@@ -17,8 +17,9 @@ struct CompressibilityOptions {
   double background_pressure = -1;  // negative: chosen by the scene
   double repulsion = 0.04;          // of Monaghan (2013), who takes 0.08
   DensityFilter density_filter = DensityFilter::delta;
-  double diffusion = 0.1;    // delta of Molteni and Colagrossi (2009)
-  int filter_interval = 25;  // steps, of the Shepard filter
+  double diffusion = 0.1;         // delta of Molteni and Colagrossi (2009)
+  double density_relaxation = 2;  // spacings that the fastest particle moves
+  int filter_interval = 25;       // steps, of the Shepard filter
   Shifting shifting = Shifting::automatic;
 };
 

@@ -48,6 +48,7 @@ class Wcsph final : public Method, public FieldProbes, public SurfaceProbes {
   }
   // A phase that leaves the range of its sound speed.
   std::vector<Remark> take_remarks() override;
+  std::vector<Invariant> invariants() const override;
   void save(StateWriter& writer) const override;
   void load(StateReader& reader) override;
 
