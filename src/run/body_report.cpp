@@ -69,7 +69,8 @@ std::string released(const Release& release) {
   return "\n    released from t = " + short_number(release.first) + " on every " +
          short_number(release.cycle / copies) + ", on its way for " + short_number(release.duration) + ": " +
          std::to_string(release.copies) + " copies" +
-         (release.growth > 0 ? ", which grow for " + short_number(release.growth) : "");
+         (release.growth > 0 ? ", which grow for " + short_number(release.growth) : "") +
+         (release.shrinkage > 0 ? ", which shrink for " + short_number(release.shrinkage) + " at last" : "");
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ class CheckMotion {
   void check() {
     if (!moves_itself(body_) && body_.moves_with.empty()) {
       for (const char* key : {"axis", "pivot", "inertia", "free", "release_interval", "release_duration",
-                              "release_delay", "release_growth"})
+                              "release_delay", "release_growth", "release_shrinkage"})
         if (const Node* node = given(key))
           problems_.add_key(*node, name_ + "." + key +
                                        " is for bodies that move, and this one does not; add displacement, angle, "
@@ -106,8 +106,9 @@ class CheckMotion {
                               to_toml_string(body_.moves_with) +
                               (best.empty() ? "" : "; did you mean \"" + best + "\"?"));
     }
-    for (const char* key : {"displacement", "angle", "motion", "axis", "pivot", "mass", "density", "inertia", "free",
-                            "restitution", "release_interval", "release_duration", "release_delay", "release_growth"})
+    for (const char* key :
+         {"displacement", "angle", "motion", "axis", "pivot", "mass", "density", "inertia", "free", "restitution",
+          "release_interval", "release_duration", "release_delay", "release_growth", "release_shrinkage"})
       if (const Node* own = given(key))
         problems_.add_key(*own, name_ + "." + key + " is that of the body it moves with; remove it here");
   }

@@ -26,6 +26,12 @@ Turn turn_at(const BodyMotion& motion, double t) {
   return {.number = number, .age = age};
 }
 
+// To s (2 - s) of its size; `rate`: of the share s.
+void grow(RigidPlace& place, double s, double rate) {
+  place.scale = s * (2 - s);
+  place.growth = s > 0 ? 2 * (1 - s) * rate / place.scale : 0;
+}
+
 }  // namespace
 
 RigidPlace given_place(const BodyMotion& motion, double t) {
@@ -51,10 +57,12 @@ RigidPlace given_place(const BodyMotion& motion, double t) {
     place.scale = 0;
     return place;
   }
-  if (motion.release && age < motion.release->growth) {
-    const double s = age / motion.release->growth;
-    place.scale = s * (2 - s);
-    place.growth = s > 0 ? 2 * (1 - s) / (motion.release->growth * place.scale) : 0;
+  if (motion.release) {
+    const double left = motion.release->duration - age;
+    if (age < motion.release->growth)
+      grow(place, age / motion.release->growth, 1 / motion.release->growth);
+    else if (left < motion.release->shrinkage)
+      grow(place, left / motion.release->shrinkage, -1 / motion.release->shrinkage);
   }
   place.velocity = rate(way, [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return multiply(1 / (12 * e), add(subtract(a, d), multiply(8, subtract(c, b))));

@@ -83,6 +83,10 @@ Section body_section() {
       .option("release_growth", &B::release_growth, "time", not_negative(),
               "how long each of them grows to its size, fast at first; 0: it is whole where it appears")
       .absent("0")
+      .option("release_shrinkage", &B::release_shrinkage, "time", not_negative(),
+              "how long each of them shrinks before it is taken away, as a bubble that bursts at the surface; 0: it is "
+              "whole until then")
+      .absent("0")
       .option("moves_with", &B::moves_with, "name of a body before it with which it moves as one")
       .absent("it moves alone")
       .option("mass", &B::mass, "mass", positive(), "makes it float: mass, in 2-D per length")

@@ -60,7 +60,8 @@ void check_release(const Draft& draft, std::size_t k, bool floats, Problems& pro
   const std::string name = "body." + std::to_string(k);
   const BodyDraft& body = draft.bodies[k];
   const Node* first = nullptr;
-  for (const char* key : {"release_interval", "release_duration", "release_delay", "release_growth"})
+  for (const char* key :
+       {"release_interval", "release_duration", "release_delay", "release_growth", "release_shrinkage"})
     if (const Node* node = draft.node(name + "." + key); node != nullptr && first == nullptr) first = node;
   if (first == nullptr) return;
   if (floats) {
@@ -79,13 +80,16 @@ void check_release(const Draft& draft, std::size_t k, bool floats, Problems& pro
                                    "' moves with it; bodies are released one by one: remove moves_with");
       return;
     }
-  if (const Node* growth = draft.node(name + ".release_growth");
-      growth != nullptr && !body.inside && body.release_growth.value_or(0) > 0)
-    problems.add_key(*growth, name +
-                                  " is all that lies outside its shape, which cannot grow; remove release_growth, or "
-                                  "inside = false");
+  const double growth = body.release_growth.value_or(0), shrinkage = body.release_shrinkage.value_or(0);
+  if (!body.inside && growth + shrinkage > 0)
+    problems.add_key(*first, name + " is all that lies outside its shape, which cannot grow; remove " +
+                                 (growth > 0 ? "release_growth" : "release_shrinkage") + ", or inside = false");
   if (!is_released(body) || !draft.usable(name + ".release_interval") || !draft.usable(name + ".release_duration"))
     return;
+  if (growth + shrinkage > *body.release_duration)
+    problems.add_key(*first, name + " grows for " + brief(growth) + " and shrinks for " + brief(shrinkage) +
+                                 ", and is on its way for " + brief(*body.release_duration) +
+                                 "; lengthen release_duration to their sum at least");
   if (const double copies = *body.release_duration / *body.release_interval; copies > most_copies)
     problems.add_key(*first, name + " has " + brief(copies) + " copies on their way at a time; at most " +
                                  std::to_string(most_copies) +
@@ -101,7 +105,12 @@ void add_released(const Draft& draft, std::vector<Body>& bodies, std::vector<Bod
     if (copies > most_copies) return;
     const double delay = given.release_delay.value_or(0), cycle = static_cast<double>(copies) * *given.release_interval;
     motions[own].time_scale = *given.release_duration;
-    motions[own].release = Release{delay, cycle, *given.release_duration, given.release_growth.value_or(0), 0, copies};
+    motions[own].release = Release{.first = delay,
+                                   .cycle = cycle,
+                                   .duration = *given.release_duration,
+                                   .growth = given.release_growth.value_or(0),
+                                   .shrinkage = given.release_shrinkage.value_or(0),
+                                   .copies = copies};
     for (std::size_t copy = 1; copy < copies; ++copy) {
       BodyMotion motion = motions[own];
       motion.bodies = {bodies.size()};
@@ -137,20 +146,18 @@ std::vector<Problem> release_warnings(const Draft& draft, const Scene& scene, co
     const auto warn = [&](const std::string& text) {
       warnings.push_back({file, node.key_place.line, node.key_place.column, "the body '" + body.name + "' " + text});
     };
-    if (motion.release->growth > 0 && !scene.free_surface && scene.openings.empty())
+    if (motion.release->grows() && !scene.free_surface && scene.openings.empty())
       warn(
           "grows, and nothing takes what it displaces: the domain is full and closed; leave a free surface, or remove "
           "release_growth");
-    // The least half widths that were measured, 2 to 5 spacings, missed 1 to 38 % of what the body displaces.
-    constexpr double few = 6;
+    // Ellipses of 1.5 spacings lift a column by 97 % or more of what they displace.
+    constexpr double few = 1.5;
     if (const double half = least_half_width(*body.alone, scene.domain.dimensions) / scene.spacing;
-        motion.release->growth > 0 && half < few)
+        motion.release->grows() && half < few)
       warn("is " + brief(half) +
-           " spacings from its middle to its nearest face: one that grows displaces up to a third "
-           "less than its volume below " +
-           brief(few) +
-           ", and the liquid loses volume with each; lower "
-           "resolution.spacing, or watch the level of the liquid");
+           " spacings from its middle to its nearest face, and particles cannot tell the shape of one that grows "
+           "below " +
+           brief(few) + ": lower resolution.spacing, or watch the level of the liquid");
     const double start = motion.release->growth > 0 ? reach : nearest_liquid(scene, *body.alone, Vec3{}, reach);
     if (start < reach)
       warn("appears " + (start < 0 ? "in the liquid" : brief(start) + " from the liquid") +
@@ -159,10 +166,11 @@ std::vector<Problem> release_warnings(const Draft& draft, const Scene& scene, co
            brief(reach) + ", as behind a wall");
     const RigidPlace end = given_place(motion, motion.release->first + (1 - 1e-9) * motion.release->duration);
     const double last = nearest_liquid(scene, *body.alone, subtract(end.position, end.pivot), reach);
-    if (last < reach)
+    if (last < reach && motion.release->shrinkage == 0)
       warn("is taken away " + (last < 0 ? "in the liquid" : brief(last) + " from the liquid") +
            " as that stands at t = 0, "
-           "and leaves a hole; let its way end farther away than the kernel support " +
+           "and leaves a hole; let it shrink, by release_shrinkage, or its way end farther away than the kernel "
+           "support " +
            brief(reach) + ", as above the surface, by release_duration");
   }
   return warnings;

@@ -187,6 +187,22 @@ TEST(BodyMotion, ReleasedBodiesGrow) {
   EXPECT_EQ(given_place(motion, 0.25 + 0.8).growth, 0);
 }
 
+TEST(BodyMotion, ReleasedBodiesShrinkBeforeTheyAreTakenAway) {
+  const LoadedCase loaded =
+      test::load_text(plane + bubbles + every_second + "release_growth = 0.8\nrelease_shrinkage = 0.4\n");
+  const BodyMotion& motion = loaded.scene.motions[0];
+  const Vec3 start{0.3, -1.4, 0};
+  const double end = 0.25 + 1.5, s = 0.25, e = 1e-5;
+  const RigidPlace place = given_place(motion, end - 0.1);
+  EXPECT_NEAR(place.scale, s * (2 - s), 1e-12);
+  const Vec3 before = given_place(motion, end - 0.1 - e).now(start),
+             after = given_place(motion, end - 0.1 + e).now(start);
+  expect_near(place.velocity_at(place.now(start)), multiply(1 / (2 * e), subtract(after, before)), 1e-8);
+  EXPECT_EQ(given_place(motion, end - 0.5).scale, 1);
+  EXPECT_EQ(given_place(motion, end - 0.5).growth, 0);
+  EXPECT_NEAR(given_place(motion, end - 1e-9).scale, 0, 1e-8);
+}
+
 TEST(BodyMotion, TheWayBackIsNoPartOfTheWayBetweenTwoTimes) {
   const LoadedCase loaded = test::load_text(plane + bubbles + every_second);
   const BodyMotion& motion = loaded.scene.motions[0];
@@ -214,9 +230,11 @@ TEST(BodyMotion, AReleaseInTheLiquidIsWarnedOf) {
   const std::string inside = test::replaced(bubbles, "-1.4", "-0.9");
   EXPECT_THAT(warnings(plane + inside + every_second), said("the body 'bubble' appears"));
   EXPECT_THAT(warnings(plane + inside + every_second + "release_growth = 0.1\n"), Not(said("appears")));
-  // Five spacings from the middle to the face is little; the tank has a free surface.
   const auto growing = warnings(plane + bubbles + every_second + "release_growth = 0.1\n");
-  EXPECT_THAT(growing, said("displaces up to a third less"));
+  EXPECT_THAT(growing, Not(said("particles cannot tell")));
+  EXPECT_THAT(warnings(test::replaced(plane + bubbles, "radius = 0.1", "radius = 0.025") + every_second +
+                       "release_growth = 0.1\n"),
+              said("particles cannot tell the shape"));
   EXPECT_THAT(growing, Not(said("nothing takes what it displaces")));
   const std::string closed = test::replaced(test::replaced(plane, "upper = [1, -0.8]", "upper = [1, 1]"),
                                             "[resolution]", "x = \"periodic\"\ny = \"periodic\"\n[resolution]");
@@ -230,6 +248,7 @@ TEST(BodyMotion, AReleaseInTheLiquidIsWarnedOf) {
   EXPECT_THAT(warnings(around + aside + every_second), said("the body 'bubble' appears"));
   const std::string shorter = test::replaced(every_second, "1.5", "0.5");
   EXPECT_THAT(warnings(plane + bubbles + shorter), said("the body 'bubble' is taken away"));
+  EXPECT_THAT(warnings(plane + bubbles + shorter + "release_shrinkage = 0.1\n"), Not(said("taken away")));
 }
 
 TEST(BodyMotion, AReleaseThatCannotBeIsRefused) {
@@ -240,6 +259,7 @@ TEST(BodyMotion, AReleaseThatCannotBeIsRefused) {
   expect(bubbles + "release_interval = 1e-9\nrelease_duration = 1\n", "copies on their way at a time");
   expect(bubbles + "release_interval = 0\nrelease_duration = 1\n", "must be > 0");
   expect(bubbles + every_second + "release_growth = 1\ninside = false\n", "cannot grow");
+  expect(bubbles + every_second + "release_growth = 1\nrelease_shrinkage = 0.6\n", "grows for 1 and shrinks for 0.6");
   expect(slab + every_second, "this one does not");
   expect(slab + "mass = 1\n" + every_second, "floats, and bodies are released on a given way alone");
   expect(bubbles + every_second + test::replaced(slab, "size", "moves_with = \"bubble\"\nsize"), "moves with it");

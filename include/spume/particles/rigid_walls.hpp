@@ -76,7 +76,7 @@ class RigidWalls {
   double error() const;
   std::size_t body_at(const Vec3& foot) const;
   std::size_t level_of(double scale) const;
-  bool grows() const { return motion_ != nullptr && motion_->release && motion_->release->growth > 0; }
+  bool grows() const { return motion_ != nullptr && motion_->release && motion_->release->grows(); }
   // Wall points of one size, in the coordinates of the start and the full size. Level 0 is empty.
   struct Level {
     std::vector<WallPoint> points;

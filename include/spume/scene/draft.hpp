@@ -62,7 +62,7 @@ struct BodyDraft {
   std::vector<double> axis, pivot, inertia;
   std::optional<double> mass, density, restitution;
   std::vector<std::string> free;
-  std::optional<double> release_interval, release_duration, release_delay, release_growth;
+  std::optional<double> release_interval, release_duration, release_delay, release_growth, release_shrinkage;
 };
 
 enum class WavemakerKind { piston };

@@ -83,6 +83,8 @@ struct Body {
 struct Release {
   double first = 0, cycle = 0, duration = 0;  // cycle >= duration
   double growth = 0;                          // its lengths are s (2 - s) of their last in this time, s the share of it
+  double shrinkage = 0;                       // the same backwards, before it is taken away
+  bool grows() const { return growth > 0 || shrinkage > 0; }
   std::size_t copy = 0, copies = 1;
 };
 

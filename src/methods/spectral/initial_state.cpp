@@ -77,6 +77,7 @@ Modes<T> evaluated(const LoadedCase& loaded, Flow<T>& flow) {
   const ModeLayout& layout = flow.layout();
   const VectorExpression& given = *scene.initial_velocity;
   std::vector<VectorExpression> own;  // one per thread: an expression is not thread-safe
+  own.reserve(static_cast<std::size_t>(thread_count()));
   for (int thread = 0; thread < thread_count(); ++thread) own.push_back(given.clone());
   Modes<T> potential = sampled<T>(flow, [&](std::size_t ix, std::size_t iy, int component, T* values) {
     const auto& expression = own[static_cast<std::size_t>(omp_get_thread_num())].component[component];
