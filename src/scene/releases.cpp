@@ -150,14 +150,16 @@ std::vector<Problem> release_warnings(const Draft& draft, const Scene& scene, co
       warn(
           "grows, and nothing takes what it displaces: the domain is full and closed; leave a free surface, or remove "
           "release_growth");
-    // Ellipses of 1.5 spacings lift a column by 97 % or more of what they displace.
-    constexpr double few = 1.5;
+    // With less than 6 spacings from the middle to the nearest face, liquids lost between 2 % of what a body displaces
+    // (ellipses, 2-D, wcsph) and half of it with each release (an egg of 2 spacings, 3-D, les-sph).
+    constexpr double few = 6;
     if (const double half = least_half_width(*body.alone, scene.domain.dimensions) / scene.spacing;
         motion.release->grows() && half < few)
       warn("is " + brief(half) +
-           " spacings from its middle to its nearest face, and particles cannot tell the shape of one that grows "
+           " spacings from its middle to its nearest face: one that grows displaces up to a half less than its volume "
            "below " +
-           brief(few) + ": lower resolution.spacing, or watch the level of the liquid");
+           brief(few) +
+           ", and the liquid may lose volume with each; lower resolution.spacing, or watch the level of the liquid");
     const double start = motion.release->growth > 0 ? reach : nearest_liquid(scene, *body.alone, Vec3{}, reach);
     if (start < reach)
       warn("appears " + (start < 0 ? "in the liquid" : brief(start) + " from the liquid") +

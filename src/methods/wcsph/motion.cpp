@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The stages of a step.
+#include <algorithm>
 #include <cmath>
 
 #include "spume/core/error.hpp"
@@ -141,7 +142,7 @@ void Flow::advance_density(double dt) {
   scratch.lease(pressure, size());
   const double smoothing =
       features.diffusion ? options.get<CompressibilityOptions>().diffusion * resolution.smoothing_length : 0;
-  const double share = features.density_relaxation ? share_of_way(dt * largest_speed) : 0;
+  const double share = features.density_relaxation ? share_of_way(dt * std::min(largest_speed, expected_speed)) : 0;
   if (features.displaced_bodies) boundary.bodies()->follow_points(time + dt);
   parallel_for(size(), [&](std::size_t i) {
     const PhaseLaw& own = law(i);
