@@ -151,7 +151,7 @@ std::vector<Problem> release_warnings(const Draft& draft, const Scene& scene, co
           "grows, and nothing takes what it displaces: the domain is full and closed; leave a free surface, or remove "
           "release_growth");
     // With less than 6 spacings from the middle to the nearest face, liquids lost between 2 % of what a body displaces
-    // (ellipses, 2-D, wcsph) and half of it with each release (an egg of 2 spacings, 3-D, les-sph).
+    // (ellipses, 2-D, explicit) and half of it with each release (an egg of 2 spacings, 3-D, projection).
     constexpr double few = 6;
     if (const double half = least_half_width(*body.alone, scene.domain.dimensions) / scene.spacing;
         motion.release->grows() && half < few)
