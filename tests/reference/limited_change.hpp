@@ -3,11 +3,11 @@
 // nearest.
 #pragma once
 
-#include <Eigen/Dense>
 #include <limits>
 #include <optional>
 
 #include "spume/solvers/limited_change.hpp"
+#include "support/direct_solution.hpp"
 
 namespace spume::reference {
 
@@ -28,8 +28,8 @@ inline std::optional<Eigen::VectorXd> nearest_within(const Eigen::MatrixXd& mass
     }
     Eigen::VectorXd x = x0;
     if (rows.rows() > 0) {
-      const Eigen::MatrixXd shares = mass.ldlt().solve(rows.transpose());
-      x += shares * (rows * shares).completeOrthogonalDecomposition().solve(values - rows * x0);
+      const Eigen::MatrixXd shares = test::least_squares(mass, rows.transpose());
+      x += shares * test::least_squares(rows.lazyProduct(shares), values - rows * x0).col(0);
     }
     bool meets = true;
     for (std::size_t k = 0; k < limits.size(); ++k) {

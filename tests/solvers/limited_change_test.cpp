@@ -6,6 +6,7 @@
 #include <random>
 
 #include "reference/limited_change.hpp"
+#include "support/direct_solution.hpp"
 
 namespace spume::test {
 namespace {
@@ -15,7 +16,7 @@ struct Program {
   Eigen::VectorXd start;
   Limits limits;
   std::vector<double> inverse() const {
-    const Eigen::MatrixXd m = mass.inverse();
+    const Eigen::MatrixXd m = least_squares(mass, Eigen::MatrixXd::Identity(mass.rows(), mass.rows()));
     return {m.data(), m.data() + m.size()};
   }
 };
@@ -25,7 +26,7 @@ Program random_program(std::mt19937& random, std::size_t unknowns, std::size_t l
   std::uniform_real_distribution<double> value(-1, 1);
   const auto n = static_cast<Eigen::Index>(unknowns);
   const Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(n, n, [&] { return value(random); });
-  Program found{root * root.transpose() + 0.1 * Eigen::MatrixXd::Identity(n, n),
+  Program found{root.lazyProduct(root.transpose()) + 0.1 * Eigen::MatrixXd::Identity(n, n),
                 Eigen::VectorXd::NullaryExpr(n, [&] { return 3 * value(random); }),
                 {unknowns, {}, {}}};
   for (std::size_t k = 0; k < limits; ++k) {
