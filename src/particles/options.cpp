@@ -21,7 +21,8 @@ Section pressure_section() {
             "multigrid: Jacobi plus one V-cycle on cells")
       .word("precision", &P::precision, {{"mixed", Precision::mixed}, {"double", Precision::f64}},
             "mixed: residuals in double, corrections in float")
-      .option("tolerance", &P::tolerance, "1", above_up_to(0, 0.1), "residual relative to the right-hand side")
+      .option("tolerance", &P::tolerance, "1", above_up_to(0, 0.1),
+              "residual relative to the right-hand side; relative to the divergence removed 1000 times as much will do")
       .option("max_iterations", &P::max_iterations, "", between(1, 1e6), "largest number of iterations per solve")
       .option("cell_ratio", &P::cell_ratio, "spacing", between(1, 8), "side of the multigrid cells")
       .when("preconditioner", {"multigrid"})

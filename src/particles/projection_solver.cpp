@@ -153,6 +153,10 @@ Preconditioner<Real>& ProjectionSolver::preconditioner(JacobiPreconditioner<Real
   return jacobi;
 }
 
+double divergence_tolerance(double tolerance) {
+  return std::max(tolerance, std::min(1000 * tolerance, 0.01));
+}
+
 ProjectionSolver::ProjectionSolver(const Boundary& boundary, const Options& options) : options_(options) {
   if (options.multigrid) multigrid_ = std::make_unique<CellMultigrid>(cell_geometry(boundary, options.cell_size));
 }
@@ -201,7 +205,11 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
   const std::size_t n = particles.size();
   matrix_ = &matrix;
   ScratchArray<double> residual(particles.scratch(), n);
-  const RefinementOptions refinement{options_.tolerance, rows.reference_norm, options_.max_iterations, rows.singular};
+  // At most the share itself: where sources cancel, the right-hand side is smaller than each of them.
+  const double of_divergence = rows.reference_norm > 0 ? std::min(1.0, rows.source_norm / rows.reference_norm) : 0;
+  const RefinementOptions refinement{
+      std::max(options_.tolerance, of_divergence * divergence_tolerance(options_.tolerance)), rows.reference_norm,
+      options_.max_iterations, rows.singular};
   if (options_.mixed) {
     MixedSystem system(*this, rows, particles.scratch(), q);
     report_ = solve_refined(system, refinement, residual);

@@ -71,6 +71,8 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, Momen
   parallel_select(n, surface_particles, [&](std::size_t i) { return at_surface[i] != 0; });
   parallel_select(n, near_surface, [&](std::size_t i) { return is_near(moments, i); });
   depth.resize(near_surface.size());
+  rise.resize(near_surface.size());
+  rise.fill(0.0F);
   ScratchArray<float> of_particle(particles.scratch(), n);
   surface_depths(arrangement.context, arrangement.packed,
                  {resolution_.spacing, near_surface, read(moments.normal), solids, boxes_, continued_.depths()},
@@ -173,6 +175,47 @@ Vec3 FreeSurface::moment_of(const MomentFields& moments, const ParticleSizes& si
   return m;
 }
 
+void FreeSurface::find_rise(const Arrangement& arrangement, const MomentFields& moments, const VectorField& velocity,
+                            const std::vector<std::array<float, 3>>& reflection, double dt) {
+  const NeighbourList& list = arrangement.list;
+  const Images& images = arrangement.images;
+  const auto n = static_cast<std::int32_t>(list.particles());
+  const int d = resolution_.dimensions;
+  const double inverse2 = 1 / (resolution_.support_radius * resolution_.support_radius);
+  parallel_for(near_surface.size(), [&](std::size_t k) {
+    const auto i = static_cast<std::size_t>(near_surface[k]);
+    Vec3 normal{};
+    for (int axis = 0; axis < d; ++axis) normal[axis] = (*moments.normal[axis])[i];
+    const double size = std::sqrt(dot(normal, normal));
+    if (!(size > 0)) return;
+    const double own = dot(vector_at(velocity, d, i), normal) / size;
+    double weights = 1 - double{interior_weight[i]}, sum = weights * own;
+    for (const std::int32_t point : list.of(i)) {
+      const std::size_t j = arrangement.particle_of(point);
+      if (!is_near(moments, j)) continue;
+      const bool image = point >= n;
+      if (image && images.wall_point() != nullptr && images.wall_point()[point - n] >= 0) continue;
+      double distance2 = 0, speed = 0;
+      for (int axis = 0; axis < d; ++axis) {
+        const double away = double{list.coordinate(axis)[point]} - list.coordinate(axis)[i];
+        distance2 += away * away;
+        const float sign = image ? reflection[static_cast<std::size_t>(images.path()[point - n])][axis] : 1.0F;
+        speed += sign * (*velocity[axis])[j] * normal[axis];
+      }
+      const double inside = std::max(0.0, 1 - distance2 * inverse2);
+      const double weight = (1 - double{interior_weight[j]}) * inside * inside;
+      weights += weight;
+      sum += weight * speed / size;
+    }
+    rise[k] = static_cast<float>(ripples_ahead * dt * (own - sum / weights));
+  });
+}
+
+// Of liquid that the acceleration `inwards` presses against what lies below.
+double FreeSurface::pressure_of_depth(std::size_t k, double inwards) const {
+  return depth[k] * inwards + rise[k] * std::abs(inwards);
+}
+
 SurfaceRow FreeSurface::row(const MomentFields& moments, const ParticleSizes& sizes,
                             const LocalAcceleration& acceleration, std::size_t k) const {
   const auto i = static_cast<std::size_t>(near_surface[k]);
@@ -186,7 +229,7 @@ SurfaceRow FreeSurface::row(const MomentFields& moments, const ParticleSizes& si
   const double missing = std::max(0.0, full - double{moments.laplacian_diagonal[i]});
   SurfaceRow row;
   row.laplacian_diagonal = outside * std::max(2 * size / s, missing);
-  if (size > 0) row.hydrostatic_pressure = s * dot(acceleration.at(i), m) / size;
+  if (size > 0) row.hydrostatic_pressure = pressure_of_depth(k, dot(acceleration.at(i), m) / size);
   return row;
 }
 
@@ -202,7 +245,7 @@ void FreeSurface::complete_gradient(const MomentFields& moments, const ParticleS
     const double outside = 1 - double{interior_weight[i]};
     const double s = depth[k];
     const double height = potential == nullptr ? 0.0 : (*potential)[i];
-    const double excess = reduced_pressure[i] - height - s * dot(acceleration.at(i), m) / size;
+    const double excess = reduced_pressure[i] - height - pressure_of_depth(k, dot(acceleration.at(i), m) / size);
     // L' by Sherman-Morrison: with v = L m and c = 2 s / |m|, L' x = L x - c v (v . x) / (1 + c m . v).
     Vec3 v{}, gradient{};
     int slot = 0;

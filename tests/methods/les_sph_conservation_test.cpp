@@ -90,7 +90,7 @@ TEST(LesSphConservation, MomentumOfAnAsymmetricFlowDriftsLittle) {
 // velocities, 2^-24 (u + U) over a spacing in a derivative, taken up by the projection within a factor of some tens.
 TEST(LesSphConservation, AMovingFrameSeesTheSameFlow) {
   const double dt = 0.005, frame = 1;
-  const Overrides tight{"pressure.tolerance=1e-7"};
+  const Overrides tight{"pressure.tolerance=1e-10"};
   Simulation rest(taylor_green, tight);
   Overrides moving_frame = tight;
   moving_frame.push_back("liquid.0.velocity=[\"1-cos(2*pi*x)*sin(2*pi*y)\", \"sin(2*pi*x)*cos(2*pi*y)\"]");

@@ -178,13 +178,61 @@ void PrintTo(const PressureCase& value, std::ostream* out) {
   *out << value.name;
 }
 
+TEST(PressureTolerance, IsAThousandthOfTheDivergenceByDefaultAndNeverAboveAHundredth) {
+  EXPECT_DOUBLE_EQ(divergence_tolerance(1e-6), 1e-3);
+  EXPECT_DOUBLE_EQ(divergence_tolerance(1e-4), 0.01);
+  EXPECT_DOUBLE_EQ(divergence_tolerance(0.05), 0.05);
+}
+
+TEST(PressureTolerance, LiquidInMotionIsHeldToItsDivergenceAndLiquidAtRestToItsWeight) {
+  for (const std::string& text : {taylor_green, taylor_green_3d, tank}) {
+    StagedFlow step(text);
+    step.run_before("pressure", 0.002);
+    const double of_divergence = 1e-3 * step.flow.rows.source_norm / step.flow.rows.reference_norm;
+    step.flow.solve_pressure();
+    const RefinementResult& report = step.flow.solver.report();
+    EXPECT_TRUE(report.converged);
+    EXPECT_LE(report.relative_residual, std::max(1e-6, of_divergence)) << text;
+    if (text == tank) {
+      EXPECT_LT(of_divergence, 1e-6);
+    } else {
+      EXPECT_GT(of_divergence, 1e-5) << text;
+    }
+  }
+}
+
+// What a step leaves is at most a thousandth of its divergence, and moves the velocity by as much over the wave number
+// of the longest wave, 2 pi here; were every step to leave it with the same sign, that many times as much.
+TEST(PressureTolerance, WhatIsLeftDoesNotAddUp) {
+  const int steps = 20;
+  const double dt = 0.005;
+  Simulation loose(taylor_green), tight(taylor_green, {"pressure.tolerance=1e-10"});
+  double largest = 0, iterations[2] = {0, 0};
+  for (int k = 0; k < steps; ++k) {
+    loose.steps(1, dt);
+    tight.steps(1, dt);
+    largest = std::max(largest, tight.method.flow().next_max_divergence);
+    iterations[0] += loose.method.flow().solver.report().iterations;
+    iterations[1] += tight.method.flow().solver.report().iterations;
+  }
+  const State a = loose.state(), b = tight.state();
+  double squares = 0;
+  for (std::size_t i = 0; i < a.velocity.size(); ++i)
+    for (int axis = 0; axis < 2; ++axis) squares += std::pow(a.velocity[i][axis] - b.velocity[i][axis], 2);
+  const double difference = std::sqrt(squares / static_cast<double>(a.velocity.size()));
+  RecordProperty("difference", std::to_string(difference * 1e6) + "e-6");
+  EXPECT_LT(difference, 1e-3 * largest / (2 * M_PI));
+  EXPECT_GT(difference, 0);
+  EXPECT_LT(iterations[0], 0.5 * iterations[1]);
+}
+
 class DirectPressure : public ::testing::TestWithParam<PressureCase> {};
 
-// The residual is reduced to 1e-7 and coefficients are floats: differences of 1e-7 times the spread of the couplings
-// over the smallest eigenvalue kept by smooth fields.
+// The residual is reduced to 1e-7 of the divergence and coefficients are floats: differences of 1e-7 times the spread
+// of the couplings over the smallest eigenvalue kept by smooth fields.
 TEST_P(DirectPressure, AgreesWithTheIterativeOne) {
   Overrides overrides = GetParam().overrides;
-  overrides.push_back("pressure.tolerance=1e-7");
+  overrides.push_back("pressure.tolerance=1e-10");
   PreparedStep step(GetParam().text, overrides);
   auto direct = step.direct_pressure();
   step.solve();

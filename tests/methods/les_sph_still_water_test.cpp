@@ -111,6 +111,15 @@ TEST(StillWater, CellsThatDoNotFitAreWarnedOfWithASpacingThatDoes) {
 }
 
 // A wall half a spacing thick between liquids of different heights: each has its own pressure, and none gets through.
+// Without the pressure of the ripples the speed grows by e in 36 sqrt(dr/g), to 0.05 sqrt(gH) after 700.
+TEST(StillWater, RipplesDoNotGrowHoweverLongItStands) {
+  for (const Overrides& overrides : {Overrides{}, Overrides{"fluid.sound_speed=40"}, Overrides{"time.centred=false"}}) {
+    Simulation run(tank_with(""), overrides);
+    while (run.method.time() < 800 * std::sqrt(0.04 / 9.81)) run.steps(1, run.method.step_limit().dt);
+    EXPECT_LT(run.series().at("max_speed"), 1e-5 * std::sqrt(9.81 * 0.4));
+  }
+}
+
 TEST(StillWater, APlateSeparatesTwoLevels) {
   std::string text = tank_with(box(0.5, 0, 0.52, 0.6) + "[[liquid]]\nlower = [0.52, 0]\nupper = [1, 0.2]\n");
   text.replace(text.find("upper = [1, 0.4]"), 16, "upper = [0.5, 0.4]");

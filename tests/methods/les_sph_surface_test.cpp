@@ -304,5 +304,60 @@ end = 1
   EXPECT_LT(growth / first, 0.005);
 }
 
+// The formula over all pairs of particles and images.
+TEST(SurfaceRipples, RiseIsThatOfTheFormula) {
+  for (const std::string& text : {tank, wave, still_water, dam_break_3d}) {
+    StagedFlow step(text);
+    les_sph::Flow& flow = step.flow;
+    const int d = flow.dimensions;
+    for (std::size_t i = 0; i < flow.size(); ++i) {
+      const auto r = random_uniform(9, RandomPurpose::test, i, 0, 0);
+      for (int axis = 0; axis < d; ++axis) (*flow.particles.velocity[axis])[i] = r[axis] - 0.3;
+    }
+    const double dt = 0.001;
+    step.run_before("shift", dt);
+    const FreeSurface& surface = *flow.surface;
+    const Images& images = flow.arrangement.images;
+    const double radius2 = std::pow(flow.resolution.support_radius, 2);
+    std::size_t seen = 0;
+    for (std::size_t k = 0; k < surface.near_surface.size(); ++k) {
+      const auto i = static_cast<std::size_t>(surface.near_surface[k]);
+      const Vec3 at = vector_at(flow.intermediate_position, d, i), n = vector_at(flow.moments.normal, d, i);
+      const double size = std::hypot(n[0], n[1], n[2]);
+      double weights = 0, sum = 0;
+      const auto add = [&](const Vec3& place, const Vec3& velocity, std::size_t j) {
+        if (!surface.is_near(flow.moments, j)) return;
+        double distance2 = 0, speed = 0;
+        for (int axis = 0; axis < d; ++axis) {
+          distance2 += std::pow(place[axis] - at[axis], 2);
+          speed += velocity[axis] * n[axis] / size;
+        }
+        if (distance2 >= radius2) return;
+        const double weight = (1 - double{surface.interior_weight[j]}) * std::pow(1 - distance2 / radius2, 2);
+        weights += weight;
+        sum += weight * speed;
+      };
+      for (std::size_t j = 0; j < flow.size(); ++j)
+        add(vector_at(flow.intermediate_position, d, j), vector_at(flow.particles.velocity, d, j), j);
+      const ImageRules rules = flow.boundary.image_rules(flow.resolution.support_radius);
+      for (std::size_t m = 0; m < images.size(); ++m) {
+        const auto j = static_cast<std::size_t>(images.source()[m]);
+        Vec3 place{}, velocity = vector_at(flow.particles.velocity, d, j);
+        for (int axis = 0; axis < d; ++axis) {
+          place[axis] = images.position(axis)[m];
+          velocity[axis] *= Images::sign(images.paths()[static_cast<std::size_t>(images.path()[m])], rules, axis);
+        }
+        add(place, velocity, j);
+      }
+      double own = 0;
+      for (int axis = 0; axis < d; ++axis) own += (*flow.particles.velocity[axis])[i] * n[axis] / size;
+      const double exact = size > 0 ? ripples_ahead * dt * (own - sum / weights) : 0;
+      ASSERT_NEAR(surface.rise[k], exact, 1e-5 * dt) << text << i;
+      seen += std::abs(exact) > 0.1 * dt ? 1 : 0;
+    }
+    EXPECT_GT(seen, surface.near_surface.size() / 4);
+  }
+}
+
 }  // namespace
 }  // namespace spume::test

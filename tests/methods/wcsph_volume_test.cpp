@@ -90,7 +90,9 @@ TEST(WcsphVolume, AStirredTankKeepsItsVolume) {
     until(run, end);
     const double column = run.series().contains("volume") ? run.series()["volume"] : 0;
     const double volume = run.method.flow().particles.volume * static_cast<double>(run.method.flow().size());
-    if (overrides.empty()) EXPECT_NEAR(column / volume, 1, 0.01);
+    if (overrides.empty()) {
+      EXPECT_NEAR(column / volume, 1, 0.01);
+    }
     return covered(run, disc, 0.0375) / before - 1;
   };
   EXPECT_NEAR(change({}), 0, 0.01);

@@ -27,8 +27,10 @@ struct PressureRows {
   Array<float> weight, row;                             // of a variable coefficient; empty: constant
   Array<double> right_hand_side;
   double reference_norm = 0;  // of the right-hand side, to which residuals are relative
-  double helmholtz = 0;       // diagonal shift of a full row over V, for the preconditioner
-  bool singular = false;      // constants are in the null space: the mean is taken out of residuals
+  // Of what it has of the divergence that the projection removes; 0: a residual is held against the whole side alone.
+  double source_norm = 0;
+  double helmholtz = 0;   // diagonal shift of a full row over V, for the preconditioner
+  bool singular = false;  // constants are in the null space: the mean is taken out of residuals
   // The matrix is not symmetric: its residuals sum to anything. The mean is taken out of products as well, which makes
   // a singular system solvable: what is left over is a uniform source.
   bool unsymmetric = false;
@@ -38,6 +40,12 @@ struct PressureRows {
 
   void release(ScratchPool& scratch);
 };
+
+// The residual relative to PressureRows::source_norm that is small enough beside one of the tolerance relative to the
+// reference norm: a thousand times the tolerance, at most a hundredth. So liquid at rest is held to a millionth of its
+// weight, while of the divergence that a step has to remove a thousandth is left to the next step, which finds it in
+// its own source. The errors with 1e-4, 1e-3 and 1e-2 of the divergence: methods/les_sph/README.md.
+double divergence_tolerance(double tolerance);
 
 class ProjectionSolver {
  public:

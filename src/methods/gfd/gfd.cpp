@@ -171,7 +171,7 @@ std::vector<Invariant> Gfd::invariants() const {
   list.push_back({.quantity = "pressure_residual",
                   .kind = Invariant::Kind::largest,
                   .column = "pressure_residual",
-                  .bound = flow_.options.get<PressureOptions>().tolerance});
+                  .bound = divergence_tolerance(flow_.options.get<PressureOptions>().tolerance)});
   return list;
 }
 

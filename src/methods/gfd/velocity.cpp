@@ -157,12 +157,14 @@ void Flow::set_matrix(double dt) {
   rows.singular = rows.unsymmetric = true;
   parallel_for(n, [&](std::size_t i) { reciprocal_density[i] = 1 / (*density)[i]; });
   rows.coefficient = reciprocal_density.data();
+  const auto of_divergence = [&](std::size_t i) { return -particles.volume * divergence[i] / dt; };
   const double squares = parallel_sum(n, [&](std::size_t i) {
-    const double value = -particles.volume * (divergence[i] / dt + source[i]);
+    const double value = of_divergence(i) - particles.volume * source[i];
     rows.right_hand_side[i] = value;
     return value * value;
   });
   rows.reference_norm = std::sqrt(squares);
+  rows.source_norm = std::sqrt(parallel_sum(n, [&](std::size_t i) { return std::pow(of_divergence(i), 2); }));
   scratch.release(divergence);
   scratch.release(source);
 }

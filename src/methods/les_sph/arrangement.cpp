@@ -40,6 +40,12 @@ void Flow::find_surface() {
   surface->find(arrangement, particles, moments, boundary, intermediate_position);
 }
 
+// Ripples of a few spacings grow in steps of the size that still liquid takes: what the projection leaves of their
+// divergence is pressed back a step later, when the surface has moved on. Their pressure is that of where they will be.
+void Flow::find_ripples(double dt) {
+  surface->find_rise(arrangement, moments, particles.velocity, boundary.reflection(), dt);
+}
+
 // The volume fraction depends on h, which depends on the volume fraction. A round leaves at most (1 - alpha) / alpha of
 // the error of alpha: after six 2e-6 at 0.9 and 2e-4 at 0.8. Particles of the start that hold more gas settle within
 // the first steps, each of which is such a round.

@@ -53,6 +53,9 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_p
   images = has.images ? has.openings ? "sides, solids, points behind openings" : "periodic sides, walls or solids"
                       : "every side is open";
   surface = has.free_surface ? "the liquid has a free surface" : "the liquid fills the domain";
+  ripples = !has.free_surface ? "the liquid fills the domain"
+            : has.potential   ? "the surface is pressed where it will be"
+                              : "no gravity, no body force";
   openings = has.openings ? "particles enter and leave" : "no inflow, no outflow";
   impulse = has.openings ? "the liquid moves with what enters" : "no inflow, no outflow";
   const bool lattice = loaded.scene.domain.boxes.empty() && !has.bodies;

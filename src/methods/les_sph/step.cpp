@@ -47,6 +47,8 @@ Plan make_plan(Flow& f) {
                arrays_of(moments));
   stages.add(both, "surface", has.free_surface, why.surface, &Flow::find_surface,
              {moments.divergence_of_position, moments.uncorrected, moments.normal}, {kept.surface});
+  stages.add(step, "ripples", has.free_surface && has.potential, why.ripples, &Flow::find_ripples,
+             {p.velocity, moments.normal}, {kept.surface});
   // (iii) the shift to r^{n+1}, taken with the last stage
   stages.add(step, "shift", has.shifting, why.shift, &Flow::compute_shift, {moments.concentration_gradient},
              {f.displacement_by_shift()});

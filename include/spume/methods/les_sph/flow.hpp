@@ -169,6 +169,7 @@ struct Flow {
   void find_neighbours(double dt);
   void measure_moments();
   void find_surface();
+  void find_ripples(double dt);
   void compute_shift();                 // (iii)
   void differentiate_velocity();        // (v)
   void differentiate_first_velocity();  // of the start
