@@ -84,6 +84,24 @@ TEST(SpectralFlow, SinglePrecisionLosesNoEnergyWithTheNumberOfSteps) {
   }
 }
 
+// A steady vortex that viscosity alone changes, in a step by a sixth of a last place: rounded to the nearest it would
+// not decay at all. 800 sums of half a last place scatter by 800^(1/2) 2^-24 / 3^(1/2) = 1e-6 of each of its modes.
+TEST(SpectralFlow, SinglePrecisionDecaysWhereAStepChangesLessThanALastPlace) {
+  const double dt = 0.001, decay = 1e-8;  // nu k^2 dt
+  const int steps = 800;
+  for (const char* integrator : {"ab2", "rk3"}) {
+    const std::string vortex = "[fluid]\nreynolds = " + std::to_string(dt * pi * pi / decay) +
+                               "\n[initial]\nkind = \"expressions\"\nvelocity = [\"cos(pi*z)\", \"-sin(pi*z)\", "
+                               "\"0\"]\n[spectral]\nintegrator = \"" +
+                               integrator + "\"\nprecision = \"single\"\n";
+    SpectralRun<float> run(spectral_text("[8, 4, 12]", vortex));
+    run.start();
+    const double before = run.method.flow().measure_budget().energy;
+    run.steps(steps, dt);
+    EXPECT_NEAR(1 - run.method.flow().measure_budget().energy / before, 2 * steps * decay, 4e-6) << integrator;
+  }
+}
+
 TEST(SpectralFlow, VelocityIsSolenoidalAndRealToRounding) {
   SpectralRun<> run(spectral_text("[12, 18, 20]", random_start));
   run.start().steps(5, 0.01);

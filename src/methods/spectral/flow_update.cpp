@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "fair_rounding.hpp"
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/fourier/lane_vector.hpp"
@@ -275,6 +276,7 @@ void Flow<T>::adams_bashforth() {
   using fourier::load;
   const double dt = step_.dt, ratio = dt / earlier_dt_;
   const T now = static_cast<T>(dt * (1 + ratio / 2)), before = static_cast<T>(-dt * ratio / 2);
+  const FairRounding<T> rounded(steps_, 0);
   forward_x_with([&](std::size_t ix, std::size_t iy, std::size_t at, std::size_t iz, const V k2, const V k[3]) {
     const V lost = decayed(decay_.x[ix], decay_.y[iy], load(decay_.z.data() + iz)), decay = T(1) + lost;
     const V earlier =
@@ -282,7 +284,7 @@ void Flow<T>::adams_bashforth() {
     V b[3];
     for (std::size_t c = 0; c < 3; ++c) {
       const V old = load(&potential_[c][at]);
-      b[c] = old + (lost * old + decay * (now * k[c] + earlier * load(&earlier_[c][at])));
+      b[c] = rounded.sum(old, lost * old + decay * (now * k[c] + earlier * load(&earlier_[c][at])), at, c);
       fourier::store<T>(&earlier_[c][at], b[c]);
       fourier::store<T>(&tendency_[c][at], k[c]);
     }
@@ -329,6 +331,7 @@ void Flow<T>::runge_kutta() {
   const auto s = static_cast<std::size_t>(step_.tendency);
   const Stage2N& stage = runge_kutta_stages(options_.integrator)[s];
   const T a = static_cast<T>(stage.a), weight = static_cast<T>(stage.b), step = static_cast<T>(step_.dt);
+  const FairRounding<T> rounded(steps_, s);
   forward_x_with([&](std::size_t ix, std::size_t iy, std::size_t at, std::size_t iz, const V k2, const V k[3]) {
     const V lost = decayed(decay_.x[ix], decay_.y[iy], load(decay_.z.data() + iz)), decay = T(1) + lost;
     V b[3];
@@ -336,7 +339,7 @@ void Flow<T>::runge_kutta() {
       const V old = load(&potential_[c][at]);
       V q = step * k[c];
       if (s > 0) q += a * load(&earlier_[c][at]);
-      b[c] = old + (lost * old + decay * (weight * q));
+      b[c] = rounded.sum(old, lost * old + decay * (weight * q), at, c);
       fourier::store<T>(&earlier_[c][at], decay * q);
       fourier::store<T>(&potential_[c][at], b[c]);
     }
