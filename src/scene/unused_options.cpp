@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "checks.hpp"
+
 namespace spume {
 namespace {
 
@@ -38,6 +40,24 @@ void examine(const Draft& draft, const Section& section, const std::string& pref
   }
 }
 
+// A wall that lets liquid slip is felt by its motion along its normal alone.
+void examine_walls(const Draft& draft, const std::string& file, std::vector<Problem>& remarks) {
+  for (const auto& [side, velocity] : draft.wall_velocity) {
+    const auto kind = draft.sides.find(side);
+    if (kind == draft.sides.end() || kind->second != BoundaryKind::free_slip) continue;
+    for (std::size_t axis = 0; axis < velocity.size(); ++axis) {
+      const auto names = side_names(static_cast<int>(axis), draft.dimensions);
+      if ((side != names[0] && side != names[1]) || velocity[axis].text != "0") continue;
+      const std::string key = "domain.wall_velocity." + side;
+      const Node& given = *draft.node(key);
+      const std::string text = key + " moves a free-slip wall along itself, which no liquid feels; set domain." + side +
+                               " = \"no-slip\", or give a velocity along " + "xyz"[axis];
+      remarks.push_back(given.override_text.empty() ? Problem{file, given.key_place.line, given.key_place.column, text}
+                                                    : Problem{given.override_text, 0, 0, text});
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Problem> unused_options(const Draft& draft, const CaseSchema& schema, const std::string& file) {
@@ -48,6 +68,7 @@ std::vector<Problem> unused_options(const Draft& draft, const CaseSchema& schema
     for (std::size_t i = 0; section.repeated && draft.node(section.name + "." + std::to_string(i)); ++i)
       examine(draft, section, section.name + "." + std::to_string(i), file, remarks);
   }
+  examine_walls(draft, file, remarks);
   std::stable_sort(remarks.begin(), remarks.end(), [](const Problem& a, const Problem& b) {
     return (a.line == 0) != (b.line == 0) ? b.line == 0 : a.line < b.line;
   });

@@ -81,6 +81,8 @@ TEST(BubbleSections, InSiUnits) {
   EXPECT_DOUBLE_EQ(options.tension, 7.2e-5);
   EXPECT_DOUBLE_EQ(options.density_ratio, 800);
   EXPECT_THAT(problems_of(text, {"bubbles.weber=100"}), ElementsAre(HasSubstr("belongs to the other set of units")));
+  EXPECT_THAT(problems_of(text, {"bubbles.gas_density=1250"}),
+              ElementsAre(HasSubstr("1.25 times as dense as the liquid")));
 }
 
 TEST(BubbleSections, WithoutWeberNumberAreRefused) {

@@ -95,6 +95,22 @@ TEST(LoadOutput, KeysThatAnotherKeyMakesUselessAreRemarked) {
   EXPECT_THAT(unused_of(""), IsEmpty());
 }
 
+TEST(LoadOutput, SlippingWallsThatMoveAlongThemselvesAreRemarked) {
+  const auto moved = [](const std::string& wall, const std::string& velocity) {
+    std::string text = small_case("[domain.wall_velocity]\nbottom = " + velocity + "\n");
+    const std::string whole = "y = \"periodic\"";
+    text.replace(text.find(whole), whole.size(), "bottom = \"" + wall + "\"");
+    std::vector<std::string> texts;
+    for (const Problem& one : load_text(text).options.warnings) texts.push_back(one.text);
+    return texts;
+  };
+  EXPECT_THAT(moved("free-slip", "[\"1\", \"0\"]"),
+              ElementsAre(HasSubstr("domain.wall_velocity.bottom moves a free-slip wall along itself, which no liquid "
+                                    "feels; set domain.bottom = \"no-slip\", or give a velocity along y")));
+  EXPECT_THAT(moved("free-slip", "[\"1\", \"0.1\"]"), IsEmpty());
+  EXPECT_THAT(moved("no-slip", "[\"1\", \"0\"]"), IsEmpty());
+}
+
 // The resolved case gives every default: none of them is a choice.
 TEST(LoadOutput, DefaultsAreNotRemarked) {
   const LoadedCase loaded = load_text(small_case("[shifting]\non = false\n"));

@@ -111,6 +111,11 @@ void check_gas(Draft& draft, Problems& problems) {
   if (si && given.surface_tension) options.tension = *given.surface_tension / density;
   options.density_ratio =
       given.density_ratio.value_or(si ? density / given.gas_density.value_or(air_density) : options.density_ratio);
+  const Node* ratio = draft.node(given.density_ratio ? "bubbles.density_ratio" : "bubbles.gas_density");
+  if (ratio != nullptr && options.density_ratio < 1)
+    problems.add(*ratio, "the gas is " + brief(1 / options.density_ratio) +
+                             " times as dense as the liquid; bubbles.density_ratio is the density of the liquid over "
+                             "that of the gas, bubbles.gas_density that of the gas");
   options.hinze_radius = given.hinze_radius.value_or(std::pow(options.tension, 0.6) / 2);
   options.smallest_entrained_radius = given.smallest_entrained_radius.value_or(options.hinze_radius / 20);
 
