@@ -206,8 +206,15 @@ class Options(Scratch):
             done = call("plots", folder, *arguments)
             self.assertEqual(done.returncode, 2)
             self.assertIn(words, done.stderr)
-        done = call("plots", folder, "--fields", "entropy")
-        self.assertRegex(done.stderr, "slices left out: snapshot at t = 0: no field 'entropy'; it has")
+
+    def test_what_the_run_does_not_have_is_refused(self):
+        folder = self.run_folder()
+        for arguments, words in ((("--fields", "speed", "entropy"), "snapshot at t = 0: no field 'entropy'; it has"),
+                                 (("--range", "entropy=0:1"), "snapshot at t = 0: no field 'entropy'; it has"),
+                                 (("--times", "0", "7"), "no snapshot near t = 7; the run has them from 0 to")):
+            done = call("plots", folder, *arguments)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertRegex(done.stderr, "^error: " + words)
 
 
 class OlderReaders(Scratch):

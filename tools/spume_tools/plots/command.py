@@ -137,4 +137,10 @@ def main():
     except MissingResult as error:
         print(f"error: {error}; give the folder that 'spume run' made", file=sys.stderr)
         return 2
+    try:
+        for run in () if runs else drawn:
+            planes.refuse_what_is_not_there(run)
+    except MissingResult as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
     return draw_into(folder, pictures, drawn, out)

@@ -9,7 +9,7 @@ from matplotlib.patches import Rectangle
 from ..results import MissingResult
 from ..results.units import field_label
 from .bodies import draw_bodies, extent_with_bodies
-from .request import request_of
+from .request import Request, request_of
 from .style import (EDGE, FIELDS, SIGNED, SOLID, chosen_steps, extension, field_norm, finish, length_label, panel_grid,
                     panel_size, time_title, title_of)
 from .sums import SUPPORT, boxes_of, kernel_sums, sides_of, with_images
@@ -214,6 +214,22 @@ def drawn_fields(run, snapshots):
     if run.on_grid and "vorticity" in names:
         names = names - {"vorticity"} | {"enstrophy"}
     return [name for name in FIELDS if name in names]
+
+
+def refuse_what_is_not_there(run):
+    """Raises MissingResult for fields, ranges, times and a plane that are asked for and that the run does not have."""
+    request = request_of(run)
+    snapshots = run.snapshots() if request != Request() else ()
+    if not len(snapshots):
+        return
+    plane_of(run)
+    for name in (*request.fields, *request.ranges):
+        field_of(snapshots[0], name, run.dimensions)
+    first, last = snapshots.times[0], snapshots.times[-1]
+    late = 0.5 * (last - first) / max(len(snapshots) - 1, 1)  # half of what lies between two
+    for time in request.times:
+        if not first - late - 1e-9 <= time <= last + late + 1e-9:
+            raise MissingResult(f"no snapshot near t = {time:g}; the run has them from {first:g} to {last:g}")
 
 
 def plot_slices(run, out):
