@@ -25,7 +25,9 @@ def measure(runs):
         late = probes["t"] > 2 / 3 * probes["t"][-1]
         level = probes["level"][late]
         head = float(np.mean(level)) - height
-        rows = series["t"] > 2 / 3 * series["t"][-1]
+        # The channel sloshes: over the last third of the run this rate scattered by 2 % between nine runs that differed in
+        # their steps by a few per cent, over the last two thirds by 0.6 %.
+        rows = series["t"] > 1 / 3 * series["t"][-1]
         t, leaves = series["t"][rows], series["volume_out"][rows]
         values |= {f"{name}_head": head,
                    f"{name}_head_scatter": float(np.std(level)) / head,
