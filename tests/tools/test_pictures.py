@@ -10,7 +10,7 @@ from unittest import mock
 import paths
 import numpy as np
 from PIL import Image
-from spume_tools.plots import bubble_views, planes, views
+from spume_tools.plots import bubble_views, planes, style, views
 from spume_tools.plots.liquid import liquid_surface
 from spume_tools.plots.renderer import Scene, View
 from spume_tools.plots.request import DrawnRun, Request
@@ -149,6 +149,21 @@ class Rendering(Scratch):
         self.assertLess(max(image.shape), 2000)
         # The bubbles are purple to yellow, which water and tank are not.
         self.assertGreater(np.sum(image[..., 0] > image[..., 1] + 40), 50)
+
+
+class Titles(Scratch):
+    def test_a_title_is_no_wider_than_its_picture(self):
+        for title, cut in (("Short", False), ("A title of forty-four letters in two inches", False),
+                           ("A title that is much too long for two inches even in the smallest of letters", True)):
+            figure = style.plt.figure(figsize=(2.4, 2))
+            figure.exact = True  # as the pictures of planes are laid out
+            with mock.patch.object(style.plt, "close"):
+                style.finish(figure, self.path / "titled.png", title)
+            drawn = figure._suptitle
+            self.assertLessEqual(drawn.get_window_extent(figure.canvas.get_renderer()).width, figure.bbox.width)
+            self.assertEqual(drawn.get_text() != title, cut)
+            self.assertEqual(drawn.get_text().endswith(" ..."), cut)
+            style.plt.close(figure)
 
 
 class Options(Scratch):

@@ -18,8 +18,24 @@ FIELDS = {"speed": "viridis", "pressure": "cividis", "dissipation": "inferno", "
           "enstrophy": "inferno"}
 SIGNED = {"vorticity", "velocity_x", "velocity_y", "velocity_z", "vorticity_x", "vorticity_y", "vorticity_z"}
 TITLE_ROOM = 0.28  # inches
+SMALLEST_TITLE = 6  # points
 SOLID = "#b9b4ab"
 EDGE = "#55524d"
+
+
+def fit_title(figure):
+    """A title that is wider than its figure is set smaller, and cut at a word where that is not enough."""
+    title = figure._suptitle
+    if title is None:
+        return
+    room = 0.98 * figure.bbox.width
+    width = lambda: title.get_window_extent(figure.canvas.get_renderer()).width
+    if width() > room:
+        title.set_fontsize(max(SMALLEST_TITLE, 0.95 * title.get_fontsize() * room / width()))  # steps of a letter are whole pixels
+    words = title.get_text().split(" ")
+    while width() > room and len(words) > 1:
+        words.pop()
+        title.set_text(" ".join(words) + " ...")
 
 
 def finish(figure, path, title=None):
@@ -30,6 +46,7 @@ def finish(figure, path, title=None):
         figure.suptitle(title, **({} if fixed else {"y": 1 - 0.3 * room, "va": "top"}))
     if not fixed:
         figure.tight_layout()
+    fit_title(figure)
     path = path.with_suffix("." + plt.rcParams["savefig.format"])
     figure.savefig(path)
     plt.close(figure)
