@@ -47,7 +47,7 @@ class Weir(CaseTest):
         folder, module = self.run_of("weir")
         t = np.linspace(0, 3, 151)
         write_table(folder / "probes.csv", {"t": t, "level": np.where(t < 2, 0.35, 0.2 + head)})
-        write_table(folder / "series.csv", series_of(t, volume_out=np.where(t < 2, 0.0, q * t)))
+        write_table(folder / "series.csv", series_of(t, volume_out=np.where(t <= 1, 0.0, q * t)))
         return module.measure({"run": Results(folder)})
 
     def test_the_formula_has_no_error_and_another_head_has_one(self):
