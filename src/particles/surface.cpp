@@ -266,15 +266,16 @@ void FreeSurface::complete_gradient(const MomentFields& moments, const ParticleS
 double FreeSurface::bytes() const {
   double sum = 0;
   for (const auto* flags : {&at_surface, &pressure_fixed}) sum += flags->bytes();
-  for (const auto* values : {&interior_weight, &depth}) sum += values->bytes();
+  for (const auto* values : {&interior_weight, &depth, &rise}) sum += values->bytes();
   for (const auto* numbers : {&surface_particles, &near_surface}) sum += numbers->bytes();
   return sum + continued_.bytes();
 }
 
 double FreeSurface::traffic() const {
   double sum = static_cast<double>(at_surface.size() + pressure_fixed.size());
-  for (const std::size_t size : {interior_weight.size(), depth.size(), surface_particles.size(), near_surface.size(),
-                                 smoothed_normal[0].size(), smoothed_normal[1].size(), smoothed_normal[2].size()})
+  for (const std::size_t size :
+       {interior_weight.size(), depth.size(), rise.size(), surface_particles.size(), near_surface.size(),
+        smoothed_normal[0].size(), smoothed_normal[1].size(), smoothed_normal[2].size()})
     sum += 4 * static_cast<double>(size);
   return sum;
 }
