@@ -171,8 +171,8 @@ TEST(LesSphOxygen, VolumesFollowTheGas) {
   const bubbles::Population& bubbles = flow.bubbles->population();
   ASSERT_GT(bubbles.size(), 20U);
   for (std::size_t b = 0; b < bubbles.size(); ++b)
-    EXPECT_NEAR((*bubbles.volume)[b] /
-                    flow.oxygen->gas().volume((*bubbles.oxygen)[b] + (*bubbles.inert)[b], (*bubbles.position[2])[b]),
+    EXPECT_NEAR((*bubbles.volume)[b] / flow.solutes.oxygen->gas().volume((*bubbles.oxygen)[b] + (*bubbles.inert)[b],
+                                                                         (*bubbles.position[2])[b]),
                 1, 1e-12);
 }
 
@@ -271,9 +271,9 @@ TEST(LesSphOxygen, SludgeInStillWaterReactsAsInOneTank) {
   const biokinetics::Integrator integrator(biokinetics::asm1_model(options.parameters), 1e-9);
   for (int k = 0; k < 10; ++k) integrator.advance(one, 0, 1, 0.01 / 86400);
   for (std::size_t i = 0; i < tank.size(); ++i)
-    EXPECT_NEAR(flow.scalars->values(options.scalars[i])[7], tank[i], 1e-12 * std::max(tank[i], 1.0)) << i;
+    EXPECT_NEAR(flow.solutes.scalars->values(options.scalars[i])[7], tank[i], 1e-12 * std::max(tank[i], 1.0)) << i;
   auto after = run.series();
-  const double volume = flow.scalars->liquid_volume();
+  const double volume = flow.solutes.scalars->liquid_volume();
   EXPECT_NEAR(after["oxygen_uptake"], volume * (6 - tank[biokinetics::asm1::s_o]), 1e-11 * volume);
   EXPECT_GT(after["oxygen_uptake_rate"], 10);
   EXPECT_LT(after["oxygen_uptake_rate"], 300);

@@ -50,9 +50,10 @@ TEST(LesSphScalars, ASineModeDecaysAtItsRate) {
   Simulation run(with_scalar(still, "1 + sin(2*pi*x)", "diffusivity = 0.02\n"));
   const double dt = 0.01, rate = 0.02 * 4 * pi * pi, h = 1.3 * 0.025;
   run.steps(50, dt);
-  const Range after = range(*run.method.flow().scalars);
+  const Range after = range(*run.method.flow().solutes.scalars);
   const double amplitude = (after.largest - after.least) / 2;
-  const double first = range(*Simulation(with_scalar(still, "1 + sin(2*pi*x)")).method.flow().scalars).largest - 1;
+  const double first =
+      range(*Simulation(with_scalar(still, "1 + sin(2*pi*x)")).method.flow().solutes.scalars).largest - 1;
   const double measured = -std::log(amplitude / first) / (50 * dt);
   EXPECT_NEAR(measured / rate, 1, std::pow(2 * pi * h, 2) / 8 + rate * dt);
 }
@@ -67,7 +68,7 @@ TEST(LesSphScalars, AScalarOnTheStreamlinesOfVorticesDecaysByDiffusionAlone) {
   for (std::size_t i = 0; i < flow.size(); ++i) {
     const Vec3 r = vector_at(flow.particles.position, 2, i);
     const double exact = std::exp(-8 * pi * pi * 0.01 * flow.time) * std::cos(2 * pi * r[0]) * std::cos(2 * pi * r[1]);
-    error += std::pow(flow.scalars->values(0)[i] - exact, 2) / static_cast<double>(flow.size());
+    error += std::pow(flow.solutes.scalars->values(0)[i] - exact, 2) / static_cast<double>(flow.size());
   }
   EXPECT_LT(std::sqrt(error), 0.04);
 }
@@ -77,7 +78,7 @@ TEST(LesSphScalars, AmountsStayToTheRoundingOfDoublesAndNoValuePassesTheOthers) 
   for (const std::string& text : {taylor_green, taylor_green_3d, closed_box, dam_break, dam_break_3d}) {
     Simulation run(with_scalar(text, "x < 0.3 ? 1 : 0", "diffusivity = 0.01\nturbulent_schmidt = 0.5\n"),
                    {"turbulence.model=\"smagorinsky\""});
-    const Scalars& scalars = *run.method.flow().scalars;
+    const Scalars& scalars = *run.method.flow().solutes.scalars;
     const double before = run.series()["amount_of_dye"];
     EXPECT_GT(before, 0);
     constexpr int steps = 10;
@@ -95,7 +96,7 @@ TEST(LesSphScalars, DiffusionDividesTheStepInsteadOfLimitingIt) {
   EXPECT_EQ(run.method.step_limit().dt, plain.method.step_limit().dt);
   run.steps(1, 0.01);
   EXPECT_GT(run.series()["scalar_substeps"], 10);
-  const Range after = range(*run.method.flow().scalars);
+  const Range after = range(*run.method.flow().solutes.scalars);
   EXPECT_GE(after.least, 0);
   EXPECT_LE(after.largest, 1 + 1e-6);
 }
@@ -105,7 +106,7 @@ TEST(LesSphScalars, FlowsAreTheSameBitsWithAndWithoutThem) {
   plain.steps(5, 0.004);
   run.steps(5, 0.004);
   EXPECT_TRUE(plain.state() == run.state());
-  EXPECT_EQ(plain.method.flow().scalars, nullptr);
+  EXPECT_EQ(plain.method.flow().solutes.scalars, nullptr);
 }
 
 TEST(LesSphScalars, ARestoredRunAndAnyNumberOfThreadsGiveTheSameBits) {
@@ -119,7 +120,8 @@ TEST(LesSphScalars, ARestoredRunAndAnyNumberOfThreadsGiveTheSameBits) {
   Simulation restored(text);
   restored.method.load(saved);
   restored.steps(2, 0.004);
-  const Array<double>&a = straight.method.flow().scalars->values(0), &b = restored.method.flow().scalars->values(0);
+  const Array<double>&a = straight.method.flow().solutes.scalars->values(0),
+        &b = restored.method.flow().solutes.scalars->values(0);
   EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end()));
 }
 
@@ -150,12 +152,12 @@ TEST(LesSphScalars, ValuesAtWallsDiffuseIntoTheLiquid) {
       for (int n = 1; n < 40; ++n)
         exact +=
             2 / (n * pi) * (n % 2 == 0 ? 1 : -1) * std::exp(-n * n * pi * pi * diffusivity * t) * std::sin(n * pi * x);
-      error = std::max(error, std::abs(flow.scalars->values(0)[i] - exact));
+      error = std::max(error, std::abs(flow.solutes.scalars->values(0)[i] - exact));
     }
     const double decay = pi * pi * diffusivity;
     const double first_mode = 2 / pi * std::exp(-decay * t) * decay * t;
     EXPECT_LT(error, (std::pow(pi * h, 2) / 8 + decay * dt / 2) * first_mode) << dimensions;
-    const Range after = range(*flow.scalars);
+    const Range after = range(*flow.solutes.scalars);
     EXPECT_GE(after.least, 0);
     EXPECT_LE(after.largest, 1);
     EXPECT_NEAR(run.series()["walls_gave_dye"], run.series()["amount_of_dye"], 1e-12);
@@ -193,14 +195,15 @@ TEST(LesSphScalars, AGaussianTurnsAndSpreads) {
   double amount = 0, spread = 0;
   std::array<double, 2> centre{};
   for (std::size_t i = 0; i < flow.size(); ++i) {
-    const double c = flow.scalars->values(0)[i];
+    const double c = flow.solutes.scalars->values(0)[i];
     amount += c;
     for (std::size_t a = 0; a < 2; ++a) centre[a] += c * (*flow.particles.position[a])[i];
   }
   for (double& x : centre) x /= amount;
   for (std::size_t i = 0; i < flow.size(); ++i)
     for (std::size_t a = 0; a < 2; ++a)
-      spread += flow.scalars->values(0)[i] * std::pow((*flow.particles.position[a])[i] - centre[a], 2) / amount / 2;
+      spread +=
+          flow.solutes.scalars->values(0)[i] * std::pow((*flow.particles.position[a])[i] - centre[a], 2) / amount / 2;
   const double t = flow.time, exact = 0.1 * 0.1 + 2 * 0.004 * t;
   // Two spacings resolve the radius: 20 across the patch, whose velocity is held to some per cent.
   EXPECT_NEAR(spread / exact, 1, 0.05);

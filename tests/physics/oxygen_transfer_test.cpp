@@ -80,7 +80,7 @@ TEST(Oxygen, ABubbleGivesWhatSmallStepsGive) {
   for (const double c : {0.0, 5.0, 30.0}) {
     const double total = gas.moles(volume, 1);
     const Contents before{oxygen_of_air * total, (1 - oxygen_of_air) * total};
-    const Exchange exact = exchange(gas, before, radius, 1, 0.2, c, dt);
+    const Exchange exact = exchange(gas, before, sphere(radius), 1, 0.2, c, dt);
     EXPECT_NEAR(mass(exact.after) + exact.given, mass(before), 4e-16 * mass(before));
     EXPECT_EQ(exact.after.inert, before.inert);
     double oxygen = before.oxygen;
@@ -99,13 +99,13 @@ TEST(Oxygen, ALongStepEndsInBalance) {
   const Gas gas = air_in_water();
   const double radius = 1e-3, total = gas.moles(4e-9, 1);
   const Contents before{oxygen_of_air * total, (1 - oxygen_of_air) * total};
-  const Exchange empty = exchange(gas, before, radius, 1, 0.2, 0, 1e6);
+  const Exchange empty = exchange(gas, before, sphere(radius), 1, 0.2, 0, 1e6);
   EXPECT_GE(empty.after.oxygen, 0);
   EXPECT_LT(empty.after.oxygen, 1e-12 * before.oxygen);
-  const Exchange full = exchange(gas, before, radius, 1, 0.2, 20, 1e6);
+  const Exchange full = exchange(gas, before, sphere(radius), 1, 0.2, 20, 1e6);
   EXPECT_NEAR(gas.solubility(gas.pressure(1)) * full.after.oxygen / total, 20, 1e-9);
   EXPECT_LT(full.given, 0);
-  EXPECT_EQ(exchange(gas, {}, radius, 1, 0.2, 5, 1).given, 0);
+  EXPECT_EQ(exchange(gas, {}, sphere(radius), 1, 0.2, 5, 1).given, 0);
 }
 
 }  // namespace

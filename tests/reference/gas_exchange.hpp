@@ -19,7 +19,7 @@ struct GasExchange {
 // After the bubble forces of a step dt of a cube of side `length`, for a coefficient that does not depend on the slip.
 inline GasExchange gas_exchange(const les_sph::Flow& flow, double length, double dt) {
   const bubbles::Population& bubbles = flow.bubbles->population();
-  const oxygen::Gas& gas = flow.oxygen->gas();
+  const oxygen::Gas& gas = flow.solutes.oxygen->gas();
   GasExchange result{.change = std::vector<double>(flow.size(), 0.0)};
   for (std::size_t b = 0; b < bubbles.size(); ++b) {
     std::vector<double> weight(flow.size());
@@ -36,10 +36,10 @@ inline GasExchange gas_exchange(const les_sph::Flow& flow, double length, double
       const double q = std::sqrt(r2) / h;
       weight[i] = q < WendlandC2::support ? volume * WendlandC2::w(q) / (h * h * h) : 0;
       sum += weight[i];
-      concentration += weight[i] * flow.oxygen->dissolved()[i];
+      concentration += weight[i] * flow.solutes.oxygen->dissolved()[i];
     }
     const oxygen::Exchange exchange =
-        oxygen::exchange(gas, {(*bubbles.oxygen)[b], (*bubbles.inert)[b]}, bubbles.radius(b),
+        oxygen::exchange(gas, {(*bubbles.oxygen)[b], (*bubbles.inert)[b]}, oxygen::sphere(bubbles.radius(b)),
                          (*bubbles.next_position[2])[b], 0, concentration / sum, dt);
     result.given += exchange.given;
     for (std::size_t i = 0; i < flow.size(); ++i)

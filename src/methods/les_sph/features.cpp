@@ -3,10 +3,7 @@
 
 #include <algorithm>
 
-#include "spume/physics/biokinetics/options.hpp"
 #include "spume/physics/bubbles/options.hpp"
-#include "spume/physics/oxygen/options.hpp"
-#include "spume/physics/scalars/options.hpp"
 
 namespace spume::les_sph {
 namespace {
@@ -42,25 +39,14 @@ bool has_bubbles(const Case& options) {
   return options.get<BubbleOptions>().on;
 }
 
-bool has_scalars(const Case& options) {
-  return !options.get<ScalarOptions>().scalars.empty();
-}
-
-bool has_oxygen(const Case& options) {
-  return options.get<OxygenOptions>().on;
-}
-
-bool has_biokinetics(const Case& options) {
-  return options.get<BiokineticsOptions>().on;
-}
-
 bool needs_velocity_gradient(const Case& options) {
   return has_closure(options) || corrects_shift(options) || options.get<SchemeOptions>().centred ||
          has_bubbles(options);
 }
 
 Features::Features(const LoadedCase& loaded)
-    : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies, loaded.scene.openings) {
+    : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies, loaded.scene.openings),
+      SoluteFeatures(loaded.options) {
   const Scene& scene = loaded.scene;
   const Case& options = loaded.options;
   for (int axis = 0; axis < scene.domain.dimensions; ++axis)
@@ -77,9 +63,6 @@ Features::Features(const LoadedCase& loaded)
   const bool dynamic = model == TurbulenceModel::dynamic_shepard || model == TurbulenceModel::dynamic_lagrangian;
   eddy_viscosity = has_closure(options);
   bubbles = has_bubbles(options);
-  scalars = has_scalars(options);
-  oxygen = has_oxygen(options);
-  biokinetics = has_biokinetics(options);
   test_filter = (eddy_viscosity && model != TurbulenceModel::smagorinsky) ||
                 (bubbles && options.get<BubbleOptions>().fluctuations);
   velocity_gradient = needs_velocity_gradient(options);

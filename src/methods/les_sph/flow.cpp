@@ -60,7 +60,8 @@ Flow::Flow(const LoadedCase& loaded_case)
                           .concentration_gradient = features.shifting,
                           .normal = features.free_surface,
                           .fading = fading}),
-      solver(boundary, solver_options(options)) {
+      solver(boundary, solver_options(options)),
+      solutes(particles, resolution, options, scene) {
   FieldSet& fields = particles.fields;
   pressure = &fields.add<double>("pressure", Lifetime::state);
   if (options.get<SchemeOptions>().centred) particles.add_vector(acceleration, "acceleration", Lifetime::state);
@@ -81,11 +82,6 @@ Flow::Flow(const LoadedCase& loaded_case)
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
   if (features.eddy_viscosity)
     closure = std::make_unique<turbulence::EddyViscosity>(particles, options.get<TurbulenceOptions>());
-  if (features.scalars)
-    scalars =
-        std::make_unique<Scalars>(particles, resolution, options.get<ScalarOptions>(), options.get<ScalarWalls>());
-  if (features.oxygen) oxygen = std::make_unique<oxygen::Oxygen>(*scalars, particles, resolution, options, scene);
-  if (features.biokinetics) sludge = std::make_unique<biokinetics::Sludge>(*scalars, options.get<BiokineticsOptions>());
   if (features.bubbles) {
     particles.add_vector(material_acceleration, "material_acceleration", Lifetime::state);
     const bubbles::Carrier carrier{.scene = scene,
@@ -110,8 +106,8 @@ Flow::Flow(const LoadedCase& loaded_case)
                                    .time = time,
                                    .steps = steps,
                                    .speeds = speeds,
-                                   .gas = features.oxygen ? &oxygen->gas() : nullptr,
-                                   .dissolved = features.oxygen ? &oxygen->dissolved() : nullptr};
+                                   .gas = features.oxygen ? &solutes.oxygen->gas() : nullptr,
+                                   .dissolved = features.oxygen ? &solutes.oxygen->dissolved() : nullptr};
     bubbles = std::make_unique<bubbles::BubbleCoupling>(particles, carrier, options.get<BubbleOptions>(),
                                                         options.get<BubbleSources>());
   }
@@ -164,7 +160,7 @@ void Flow::exchange_with_openings() {
   const std::int64_t next = boundary.openings()->next_identifier(), entered = boundary.openings()->entered();
   if (boundary.openings()->exchange(particles, time)) energy.supply += energy.held(balance, particles) - before;
   // What enters is numbered before what comes back through outflows.
-  if (scalars != nullptr) scalars->enter(next, next + boundary.openings()->entered() - entered, time);
+  if (solutes.scalars != nullptr) solutes.scalars->enter(next, next + boundary.openings()->entered() - entered, time);
 }
 
 bool Flow::has_left(std::size_t i) const {

@@ -57,7 +57,7 @@ LesSph::LesSph(const LoadedCase& loaded)
     : flow_(loaded), plan_(make_plan(flow_)), snapshot_(snapshot_table(output_fields(), loaded.options, flow_)) {
   refuse_high_mach(loaded.options, flow_);
   refuse_stirring_shift(loaded.options, flow_);
-  if (flow_.scalars != nullptr) flow_.scalars->add_fields(snapshot_);
+  if (flow_.features.scalars) flow_.solutes.scalars->add_fields(snapshot_);
   declare_series();
   declare_saved();
   if (flow_.features.bodies)
@@ -213,9 +213,7 @@ void LesSph::save(StateWriter& writer) const {
   if (flow_.features.openings) flow_.boundary.openings()->save(writer);
   if (flow_.bubbles != nullptr) flow_.bubbles->save(writer);
   if (flow_.floating != nullptr) flow_.floating->save(writer);
-  if (flow_.scalars != nullptr) flow_.scalars->save(writer);
-  if (flow_.oxygen != nullptr) flow_.oxygen->save(writer);
-  if (flow_.sludge != nullptr) flow_.sludge->save(writer);
+  flow_.solutes.save(writer);
 }
 
 void LesSph::load(StateReader& reader) {
@@ -234,9 +232,7 @@ void LesSph::load(StateReader& reader) {
   flow_.find_uniform_acceleration(flow_.time);  // samples before the next step need it
   if (flow_.features.openings) flow_.boundary.openings()->load(reader);
   if (flow_.bubbles != nullptr) flow_.bubbles->load(reader);
-  if (flow_.scalars != nullptr) flow_.scalars->load(reader);
-  if (flow_.oxygen != nullptr) flow_.oxygen->load(reader);
-  if (flow_.sludge != nullptr) flow_.sludge->load(reader);
+  flow_.solutes.load(reader);
 }
 
 }  // namespace spume::les_sph

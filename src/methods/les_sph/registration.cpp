@@ -5,11 +5,8 @@
 
 #include "spume/methods/les_sph/les_sph.hpp"
 #include "spume/methods/les_sph/options.hpp"
-#include "spume/physics/biokinetics/options.hpp"
 #include "spume/physics/bubbles/options.hpp"
-#include "spume/physics/oxygen/options.hpp"
-#include "spume/physics/scalars/options.hpp"
-#include "spume/physics/scalars/walls.hpp"
+#include "spume/physics/solutes/solutes.hpp"
 #include "spume/physics/turbulence/options.hpp"
 #include "spume/scene/document.hpp"
 
@@ -19,8 +16,8 @@ namespace {
 std::vector<Section> sections() {
   std::vector<Section> all = bubble_sections();
   all.insert(all.end(),
-             {turbulence_section(), pressure_section(), shifting_section(), surface_section(), scheme_section(),
-              scalar_section(), scalar_wall_section(), oxygen_section(), biokinetics_section()});
+             {turbulence_section(), pressure_section(), shifting_section(), surface_section(), scheme_section()});
+  for (Section& section : solute_sections()) all.push_back(std::move(section));
   return all;
 }
 
@@ -68,10 +65,7 @@ void check(Draft& draft, Problems& problems) {
   check_bubbles(draft, problems);
   std::vector<std::string> fields;
   for (const OutputFieldInfo& field : field_infos(output_fields(), draft.options)) fields.push_back(field.name);
-  check_scalars(draft, fields, problems);
-  check_oxygen(draft, problems);
-  check_biokinetics(draft, problems);
-  check_scalar_walls(draft, problems);
+  check_solutes(draft, fields, problems);
   check_walls_of_bodies(draft, problems);
   if (draft.node("bubbles") && draft.dimensions != 2 && draft.node("pressure.solver") &&
       draft.options.get<PressureOptions>().solver == PressureSolver::cg)

@@ -109,10 +109,8 @@ void LesSph::declare_series() {
   series_.add("surface_particles", "1", [&flow] {
     return flow.surface == nullptr ? 0.0 : static_cast<double>(flow.surface->surface_particles.size());
   });
-  if (flow.scalars != nullptr) flow.scalars->add_columns(series_);
   if (flow.bubbles != nullptr) flow.bubbles->add_columns(series_);
-  if (flow.oxygen != nullptr) flow.oxygen->add_columns(series_, flow.bubbles.get());
-  if (flow.sludge != nullptr) flow.sludge->add_columns(series_);
+  flow.solutes.add_columns(series_, flow.bubbles.get());
 }
 
 void LesSph::series_values(std::span<double> values) {

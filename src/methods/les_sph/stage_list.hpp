@@ -69,7 +69,7 @@ inline auto solving(Flow& f, void (Flow::*solve)()) {
 }
 
 inline auto reacting(Flow& f) {
-  return [&f](StageRun& run) { f.sludge->react(run.dt); };
+  return [&f](StageRun& run) { f.solutes.sludge->react(run.dt); };
 }
 
 // Every scalar has its sweep.

@@ -103,8 +103,8 @@ Plan make_plan(Flow& f) {
       step, "acceptance", true, "limits, energy, final positions", &Flow::accept,
       {f.next_velocity, r, f.displacement_by_shift(), f.shift_velocity, f.reduced_pressure, f.potential, f.strain},
       {p.position, p.velocity, f.acceleration, f.pressure});
-  stages.add(step, "scalars", has.scalars, why.scalars, carrying_scalars(f), living_scalars(f, f.scalar_count()),
-             living_scalars(f, f.scalar_count()));
+  stages.add(step, "scalars", has.scalars, why.scalars, carrying_scalars(f), living_scalars(f, f.solutes.count()),
+             living_scalars(f, f.solutes.count()));
   const Arrays dissolved = living_scalars(f, has.oxygen ? 1 : 0);
   stages.add(step, "oxygen", has.oxygen, why.oxygen, &Flow::transfer_oxygen, dissolved, dissolved);
   const Arrays sludge = living_scalars(f, has.biokinetics ? std::size_t{biokinetics::asm1::components} : 0);

@@ -381,24 +381,29 @@ void Flow::accept(double dt) {
 }
 
 std::int64_t Flow::transport_scalars(double dt) {
-  scalars->add_sources(time - dt, dt, particles.position);
-  return scalars->transport(dt, {.arrangement = arrangement,
-                                 .moments = moments,
-                                 .eddy_viscosity = eddy_viscosity(),
-                                 .places = particles.position,
-                                 .walls = boundary.walls,
-                                 .time = time - dt,
-                                 .shift = features.shift_correction ? shift->displacement : FloatVectorField{},
-                                 .interior = [this](std::size_t i) -> double {
-                                   return surface != nullptr ? surface->interior_weight[i]
-                                                             : fading.weight((*moments.divergence_of_position)[i]);
-                                 }});
+  solutes.scalars->add_sources(time - dt, dt, particles.position);
+  return solutes.scalars->transport(dt, {.arrangement = arrangement,
+                                         .divergence_of_position = moments.divergence_of_position->data(),
+                                         .correction = moments.read_correction(),
+                                         .eddy_viscosity = eddy_viscosity(),
+                                         .places = particles.position,
+                                         .walls = boundary.walls,
+                                         .time = time - dt,
+                                         .shift = features.shift_correction ? shift->displacement : FloatVectorField{},
+                                         .interior = [this](std::size_t i) -> double {
+                                           return surface != nullptr
+                                                      ? surface->interior_weight[i]
+                                                      : fading.weight((*moments.divergence_of_position)[i]);
+                                         }});
 }
 
 void Flow::transfer_oxygen(double dt) {
   if (bubbles != nullptr && !bubbles->population().empty())
-    oxygen->take_from_bubbles(bubbles->dissolution(), bubbles->dissolved_amount());
-  if (surface != nullptr) oxygen->exchange_with_air(dt, {.surface = *surface, .normal = constant(moments.normal)});
+    solutes.oxygen->take_from_bubbles(bubbles->dissolution(), bubbles->dissolved_amount());
+  if (solutes.rigid_bubbles != nullptr) solutes.take_from_rigid_bubbles(particles, time, dt);
+  if (surface != nullptr)
+    solutes.oxygen->exchange_with_air(
+        dt, {.interior_weight = surface->interior_weight.data(), .normal = read(moments.normal)});
 }
 
 }  // namespace spume::les_sph

@@ -57,7 +57,8 @@ double background_of(const LoadedCase& loaded, const Features& features, double 
 
 }  // namespace
 
-Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies) {
+Features::Features(const LoadedCase& loaded)
+    : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies), SoluteFeatures(loaded.options) {
   const Scene& scene = loaded.scene;
   several = scene.phases.size() > 1;
   gravity = gravity_across_sides(scene) != Vec3{};
@@ -87,7 +88,8 @@ Flow::Flow(const LoadedCase& loaded_case)
       wall_gravity(gravity_across_sides(scene)),
       particles(dimensions, scene.particles),
       boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution)),
-      arrangement(scene.domain, resolution, particles.volume, particles.size(), skin) {
+      arrangement(scene.domain, resolution, particles.volume, particles.size(), skin),
+      solutes(particles, resolution, options, scene) {
   arrangement.context.gradient_scale = dimensions / resolution.lattice.divergence_of_position;
   FieldSet& fields = particles.fields;
   particles.add_vector(acceleration, "acceleration", Lifetime::state);

@@ -276,6 +276,7 @@ void Flow::accept(double dt) {
     }
     throw StepFailure(details);
   }
+  keep_shift(dt);
   parallel_blocks(size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
     const VectorExpression force = scene.body_force ? scene.body_force->clone() : VectorExpression();
     for (std::size_t i = first; i < last; ++i) {

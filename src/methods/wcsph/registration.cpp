@@ -5,6 +5,7 @@
 
 #include "spume/methods/wcsph/wcsph.hpp"
 #include "spume/particles/options.hpp"
+#include "spume/physics/solutes/solutes.hpp"
 #include "spume/scene/document.hpp"
 #include "spume/scene/option.hpp"
 
@@ -28,6 +29,16 @@ void check(Draft& draft, Problems& problems) {
     problems.add(*draft.node("phase.0"), "the case has " + std::to_string(draft.phases.size()) +
                                              " phases; with surface tension at most " + std::to_string(most_phases) +
                                              " are possible");
+  std::vector<std::string> fields;
+  for (const OutputFieldInfo& field : field_infos(output_fields(), draft.options)) fields.push_back(field.name);
+  check_solutes(draft, fields, problems);
+  if (draft.phases.size() > 1 && SoluteFeatures(draft.options).scalars)
+    for (const char* section : {"scalar.0", "oxygen", "biokinetics"})
+      if (const Node* node = draft.node(section)) {
+        problems.add(*node, "method \"wcsph\" carries scalars in a liquid that is the only phase, and the case has " +
+                                std::to_string(draft.phases.size()) + "; leave the gas out, or remove the scalars");
+        break;
+      }
   if (!draft.solids.empty())
     problems.add(*draft.node("solid.0"),
                  "method \"wcsph\" knows walls of [[body]], not [[solid]]; write the box as [[body]] with shape = "
@@ -35,6 +46,7 @@ void check(Draft& draft, Problems& problems) {
 }
 
 void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
+  check_initial_scalars(draft, scene, problems);
   std::vector<std::size_t> count(scene.phases.size());
   for (const std::int32_t phase : scene.particles.phase) ++count[static_cast<std::size_t>(phase)];
   for (std::size_t n = 0; n < count.size(); ++n)
@@ -78,13 +90,19 @@ Registration registration() {
   method.fills_phases = true;
   method.honours_bodies = true;
   method.honours_solids = false;
-  method.sections = {compressibility_section(), interface_section(), list_section()};
+  method.sections = solute_sections();
+  for (const auto& section : {compressibility_section, interface_section, list_section})
+    method.sections.push_back(section());
   method.check = check;
   method.check_scene = check_scene;
   method.bytes_per_particle = bytes_per_particle;
   method.default_courant = [](const Case&, const Scene&) { return standard_courant; };
   method.default_courant_in_words = "of wcsph " + brief(standard_courant);
-  method.output_fields = [](const Case& options) { return field_infos(output_fields(), options); };
+  method.output_fields = [](const Case& options) {
+    std::vector<OutputFieldInfo> fields = field_infos(output_fields(), options);
+    add_scalar_fields(options.get<ScalarOptions>(), fields);
+    return fields;
+  };
   method.probe_scalars = [](const Case&) { return std::vector<ProbeScalar>{{"pressure", "pressure"}}; };
   method.make = [](const LoadedCase& loaded) { return std::make_unique<Wcsph>(loaded); };
   return method;

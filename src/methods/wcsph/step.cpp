@@ -60,6 +60,22 @@ Plan make_plan(Flow& f) {
   stages.add(both, "acceptance", true, "(6): the new state", &Flow::accept,
              {f.half_velocity, f.place, f.next_excess, f.pressure_force, f.viscous_force, f.flux, f.concentration},
              {p.position, p.velocity, f.acceleration, f.shift, *f.excess});
+  const auto solutes = [&f](std::size_t count) {
+    return Arrays{ArrayUse([&f, count] { return 16.0 * static_cast<double>(f.size() * count); })};
+  };
+  const Arrays scalars = solutes(f.solutes.count()), oxygen = solutes(has.oxygen ? 1 : 0),
+               sludge = solutes(has.biokinetics ? biokinetics::asm1::components : 0);
+  const auto carry = [&f](StageRun& run) {
+    run.pairs = f.arrangement.pair_count() * static_cast<double>(f.carry_scalars(run.dt));
+  };
+  stages.add(step, "scalars", has.scalars,
+             has.scalars ? "sources, diffusion, and their change by the shift" : "no [[scalar]]", carry, scalars,
+             scalars);
+  stages.add(step, "oxygen", has.oxygen, has.oxygen ? oxygen::in_words(f.scene) : "no section [oxygen]",
+             &Flow::transfer_oxygen, oxygen, oxygen);
+  stages.add(
+      step, "reactions", has.biokinetics, has.biokinetics ? "Activated Sludge Model No. 1" : "no section [biokinetics]",
+      [&f](StageRun& run) { f.solutes.sludge->react(run.dt); }, sludge, sludge);
   return plan;
 }
 

@@ -57,6 +57,7 @@ Wcsph::Wcsph(const LoadedCase& loaded)
                     "nothing tells how fast the flow will be: it starts at rest, without gravity, forces and moving "
                     "walls; set compressibility.max_speed");
   declare_series();
+  if (flow_.features.scalars) flow_.solutes.scalars->add_fields(snapshot_);
   if (flow_.features.bodies)
     body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
   saved_.add(flow_.time).add(flow_.steps).add(flow_.signal).add(flow_.largest_speed).add(flow_.boundary.wall_speed);
@@ -103,6 +104,7 @@ void Wcsph::declare_series() {
     series_.add("density_change_" + name, "1, largest", [&flow, n] { return flow.largest_excess(n); });
     phase_sums_.add_columns(series_, n, name);
   }
+  flow.solutes.add_columns(series_, nullptr);
 }
 
 std::vector<ParticleSnapshot> Wcsph::snapshot_on_demand() {
@@ -175,6 +177,7 @@ void Wcsph::save(StateWriter& writer) const {
   writer.i64("counters", count);
   flow_.boundary.save_walls(writer);
   save_fields(flow_.particles.fields, writer);
+  flow_.solutes.save(writer);
 }
 
 void Wcsph::load(StateReader& reader) {
@@ -187,6 +190,7 @@ void Wcsph::load(StateReader& reader) {
   if (count.size() != 1 || listed_time.size() != 1)
     throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(count[0]), "particle", reader);
+  flow_.solutes.load(reader);
   flow_.listed_time = listed_time[0];
   flow_.has_lists = false;
   sampled_step_ = -1;

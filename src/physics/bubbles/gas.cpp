@@ -40,8 +40,8 @@ void BubbleCoupling::interpolate_dissolved(const CrossSearch::Found& found, floa
 // What bubble b gives over dt; it is taken over with the step.
 float BubbleCoupling::dissolve(std::size_t b, double radius, double slip, double dt) {
   const oxygen::Exchange result =
-      oxygen::exchange(*carrier_.gas, next_gas_[b].contents, radius, (*population_.next_position[2])[b], slip,
-                       dissolved_at_bubble_[b], dt);
+      oxygen::exchange(*carrier_.gas, next_gas_[b].contents, oxygen::sphere(radius), (*population_.next_position[2])[b],
+                       slip, dissolved_at_bubble_[b], dt);
   next_gas_[b] = {result.after, result.given, result.conductance, result.capacity};
   return static_cast<float>(result.given);
 }

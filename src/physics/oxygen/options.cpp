@@ -17,13 +17,23 @@ bool needs_diffusivity(oxygen::Coefficient model) {
   return model != oxygen::Coefficient::none && model != oxygen::Coefficient::given;
 }
 
+bool releases_bodies(const Draft& draft) {
+  return std::any_of(draft.bodies.begin(), draft.bodies.end(),
+                     [](const BodyDraft& body) { return body.release_interval.has_value(); });
+}
+
 void check_coefficients(const Draft& draft, const OxygenOptions& options, Problems& problems) {
   const bool given = options.bubble_coefficient == oxygen::Coefficient::given;
   if (given && !options.bubble_k_l && draft.usable("oxygen.bubble_k_l"))
     problems.add(*draft.node("oxygen.bubble_coefficient"),
                  "oxygen.bubble_coefficient = \"given\" needs a value; add  oxygen.bubble_k_l = <number>  # m/s, about "
                  "4e-4 for bubbles of 3 mm");
-  if (!needs_diffusivity(options.bubble_coefficient) || draft.node("bubbles") == nullptr) return;
+  if (options.bubbles_shrink && releases_bodies(draft))
+    problems.add(*draft.node("oxygen.bubbles_shrink"),
+                 "oxygen.bubbles_shrink is true, and bodies that are released keep their size whatever they give; "
+                 "remove the key, or use [bubbles]");
+  if (!needs_diffusivity(options.bubble_coefficient) || (draft.node("bubbles") == nullptr && !releases_bodies(draft)))
+    return;
   const ScalarOption& scalar = draft.options.get<ScalarOptions>().scalars[options.index];
   if (!(scalar.diffusivity > 0))
     problems.add(*draft.node("oxygen"), "the scalar '" + options.scalar +
@@ -77,14 +87,10 @@ void check_oxygen(Draft& draft, Problems& problems) {
   const Node* section = draft.node("oxygen");
   options.on = section != nullptr;
   if (!options.on) return;
-  if (!uses_si(draft.fluid))
+  if (!uses_si(draft))
     problems.add(*section,
-                 "[oxygen] holds values in SI units, and [fluid] is given by groups; give fluid.density, "
-                 "fluid.viscosity and fluid.gravity");
-  if (options.surface_k_l > 0 && draft.dimensions == 2)
-    problems.add(*draft.node("oxygen.surface_k_l"),
-                 "oxygen.surface_k_l needs the area of a surface, and the domain has two dimensions; give it three, or "
-                 "remove the key");
+                 "[oxygen] holds values in SI units, and the liquid is given by groups; give density, viscosity and "
+                 "fluid.gravity");
   if (draft.node("oxygen.scalar") == nullptr && draft.node("biokinetics") != nullptr) options.scalar = "S_O";
   ScalarOption dissolved;
   dissolved.name = options.scalar;

@@ -27,28 +27,31 @@ Oxygen::Oxygen(Scalars& scalars, const ParticleStore& particles, const Resolutio
                   std::max(0.0, -scene.fluid.gravity[static_cast<std::size_t>(scene.domain.dimensions - 1)]),
                   highest(scene))) {
   saved_.add(from_surface_).add(surface_area_);
-  if (options_.surface_k_l > 0)
-    layer_area_ = resolution.spacing * resolution.spacing /
-                  lattice_surface(3, resolution.kernel, resolution.smoothing_ratio)[0].normal;
+  const int d = resolution.dimensions;
+  if (has_surface())
+    layer_area_ = (d == 3 ? resolution.spacing : 1) * resolution.spacing /
+                  lattice_surface(d, resolution.kernel, resolution.smoothing_ratio)[0].normal;
 }
 
 void Oxygen::exchange_with_air(double dt, const Surface& surface) {
-  if (!(options_.surface_k_l > 0)) return;
+  if (!has_surface()) return;
   struct Sums {
     double gained = 0, area = 0;
   };
   double* values = scalars_.values(options_.index).data();
+  const double layer_area = layer_area_ / surface.gradient_scale;
   const double saturation = gas_.saturation_below_air(), k = gas_.factor * options_.surface_k_l, v = particles_.volume;
   const Sums sums = parallel_reduce(
       particles_.size(), Sums{},
       [&](std::size_t first, std::size_t last) {
         Sums part;
         for (std::size_t i = first; i < last; ++i) {
-          const double share = 1 - surface.surface.interior_weight[i];
+          const double share = 1 - surface.interior_weight[i];
           if (!(share > 0)) continue;
           double normal2 = 0;
-          for (const auto* component : surface.normal) normal2 += double{(*component)[i]} * (*component)[i];
-          const double area = share * layer_area_ * std::sqrt(normal2), before = values[i];
+          for (const float* component : surface.normal)
+            if (component != nullptr) normal2 += double{component[i]} * component[i];
+          const double area = share * layer_area * std::sqrt(normal2), before = values[i];
           values[i] -= (saturation - before) * std::expm1(-k * area / v * dt);
           part.area += area;
           part.gained += values[i] - before;
@@ -68,13 +71,14 @@ double Oxygen::standard_capacity(double capacity) const {
          saturation_concentration(standard_temperature, 0) / gas_.saturation * atmosphere / gas_.air_pressure;
 }
 
-void Oxygen::add_columns(SeriesTable& series, const bubbles::BubbleCoupling* bubbles) const {
+void Oxygen::add_columns(SeriesTable& series, const Supply* bubbles) const {
   series.add("mean_oxygen", "g/m3", [this] {
     const double volume = scalars_.liquid_volume();
     return volume > 0 ? scalars_.amount(options_.index) / volume : 0;
   });
-  if (options_.surface_k_l > 0) {
-    series.add("surface_area", "length^2, last step", [this] { return surface_area_; });
+  if (has_surface()) {
+    series.add("surface_area", particles_.dimensions == 3 ? "length^2, last step" : "length, per depth, last step",
+               [this] { return surface_area_; });
     series.add("oxygen_from_surface", "g, since the start", [this] { return from_surface_; });
   }
   series.add("kla", "1/time: k_L A of bubbles and surface over the volume of liquid", [this, bubbles] {

@@ -65,19 +65,24 @@ double Gas::volume(double moles, double height) const {
   return moles * gas_constant * (temperature + melting_point) / (pressure(height) - vapour);
 }
 
-Exchange exchange(const Gas& gas, const Contents& before, double radius, double height, double slip,
+Interface sphere(double radius) {
+  const double diameter = 2 * radius;
+  return {diameter, std::numbers::pi * diameter * diameter};
+}
+
+Exchange exchange(const Gas& gas, const Contents& before, const Interface& interface, double height, double slip,
                   double concentration, double dt) {
   Exchange result{.after = before};
   const double total = before.oxygen + before.inert;
   if (!(total > 0)) return result;
-  const double diameter = 2 * radius, area = std::numbers::pi * diameter * diameter;
   const double k =
-      gas.factor * transfer_coefficient(
-                       gas.coefficient,
-                       {.diameter = diameter, .slip = slip, .viscosity = gas.viscosity, .diffusivity = gas.diffusivity},
-                       gas.given);
+      gas.factor *
+      transfer_coefficient(
+          gas.coefficient,
+          {.diameter = interface.diameter, .slip = slip, .viscosity = gas.viscosity, .diffusivity = gas.diffusivity},
+          gas.given);
   const double per_mole = gas.solubility(gas.pressure(height)) / total;  // c* over the moles of oxygen
-  result.conductance = k * area;
+  result.conductance = k * interface.area;
   result.capacity = result.conductance * per_mole * before.oxygen;
   const double balance = concentration / per_mole, rate = result.conductance * per_mole / molar_mass;
   const double given = (balance - before.oxygen) * std::expm1(-rate * dt);

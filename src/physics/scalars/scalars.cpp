@@ -196,7 +196,7 @@ void Scalars::sweep(const Carrier& carrier, bool shifted) {
        .eddy_viscosity = carrier.eddy_viscosity == nullptr ? nullptr : carrier.eddy_viscosity->data(),
        .inverse_schmidt = packed_.inverse_schmidt,
        .shift = shifted ? read(carrier.shift) : std::array<const float*, 3>{},
-       .correction = carrier.moments.read_correction()},
+       .correction = carrier.correction},
       {.rate = packed_.rate, .change = packed_.change, .exchange = exchange_.data()});
 }
 
@@ -251,7 +251,7 @@ std::int64_t Scalars::transport(double dt, const Carrier& carrier) {
                                     [](const ScalarOption& one) { return one.diffusivity > 0; });
   if (particles_.size() == 0 || !(shifted || diffuses)) return 0;
   lease();
-  const Array<float>& div_r = *carrier.moments.divergence_of_position;
+  const float* div_r = carrier.divergence_of_position;
   parallel_for(particles_.size(), [&](std::size_t i) {
     normalisation_[i] =
         static_cast<float>(particles_.dimensions / std::max<double>(div_r[i], least_divergence_of_position * bulk_));

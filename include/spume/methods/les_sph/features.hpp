@@ -4,6 +4,7 @@
 
 #include "spume/methods/les_sph/options.hpp"
 #include "spume/particles/boundary.hpp"
+#include "spume/physics/solutes/solutes.hpp"
 #include "spume/physics/turbulence/options.hpp"
 #include "spume/scene/case.hpp"
 
@@ -12,12 +13,9 @@ namespace spume::les_sph {
 // What the options alone tell.
 bool has_closure(const Case& options);
 bool has_bubbles(const Case& options);
-bool has_scalars(const Case& options);
-bool has_oxygen(const Case& options);
-bool has_biokinetics(const Case& options);
 bool needs_velocity_gradient(const Case& options);  // of a closure, shift correction, centred steps or bubbles
 
-struct Features : BoundaryFeatures {
+struct Features : BoundaryFeatures, SoluteFeatures {
   explicit Features(const LoadedCase& loaded);
 
   bool open_sides = false;  // beside the top: liquid may leave for good
@@ -39,9 +37,6 @@ struct Features : BoundaryFeatures {
   bool sponges = false;             // layers that damp the velocity
   bool closed = false;              // pressure known up to a constant
   bool bubbles = false;
-  bool scalars = false;
-  bool oxygen = false;
-  bool biokinetics = false;
 };
 
 }  // namespace spume::les_sph

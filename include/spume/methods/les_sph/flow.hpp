@@ -19,10 +19,8 @@
 #include "spume/particles/shift.hpp"
 #include "spume/particles/step_limits.hpp"
 #include "spume/particles/surface.hpp"
-#include "spume/physics/biokinetics/sludge.hpp"
 #include "spume/physics/bubbles/coupling.hpp"
-#include "spume/physics/oxygen/oxygen.hpp"
-#include "spume/physics/scalars/scalars.hpp"
+#include "spume/physics/solutes/solutes.hpp"
 #include "spume/physics/turbulence/eddy_viscosity.hpp"
 #include "spume/scene/case.hpp"
 
@@ -101,9 +99,7 @@ struct Flow {
   ProjectionSolver solver;
   std::unique_ptr<turbulence::EddyViscosity> closure;  // null: none
   std::unique_ptr<bubbles::BubbleCoupling> bubbles;    // null: none
-  std::unique_ptr<Scalars> scalars;                    // null: none; its fields are state
-  std::unique_ptr<oxygen::Oxygen> oxygen;              // null: none
-  std::unique_ptr<biokinetics::Sludge> sludge;         // null: none
+  Solutes solutes;                                     // their fields are state
   std::unique_ptr<FloatingBodies> floating;            // null: none; its places are state
   WallTimes wall_times;                                // of the step
 
@@ -129,7 +125,6 @@ struct Flow {
   } equation;
 
   std::size_t size() const { return particles.size(); }
-  std::size_t scalar_count() const { return scalars == nullptr ? 0 : scalars->size(); }
   double density() const { return scene.fluid.density; }
   double viscosity() const { return scene.fluid.kinematic_viscosity; }
   double particle_mass() const { return density() * particles.volume; }

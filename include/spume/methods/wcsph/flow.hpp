@@ -15,12 +15,13 @@
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/phase_law.hpp"
 #include "spume/particles/surface_tension.hpp"
+#include "spume/physics/solutes/solutes.hpp"
 #include "spume/scene/case.hpp"
 
 namespace spume::wcsph {
 
 // What a scene needs. Stages and arrays exist by these alone.
-struct Features : BoundaryFeatures {
+struct Features : BoundaryFeatures, SoluteFeatures {
   explicit Features(const LoadedCase& loaded);
   bool several = false;  // phases
   bool gravity = false;  // across sides
@@ -75,12 +76,18 @@ struct Flow {
   bool has_moved = false;                   // the lists are new in this step, since particles have moved
   WallAverages wall_averages;               // of the wall points of bodies
   std::unique_ptr<SurfaceTension> tension;  // null: none
+  Solutes solutes;                          // their fields are state
 
   // --- Leased within a step.
   VectorScratch half_velocity, place;
   Array<double> next_excess, pressure, wall_pressure, wall_density;
   Array<float> volume, reduced_excess, rate, diffusion, carried, density, phase, viscosity;
   FloatVectorScratch viscous_force, pressure_force, way, flux, concentration;
+  // From the acceptance of a step until the last stage that carries what is dissolved.
+  struct {
+    FloatVectorScratch shift, normal;  // by which the shift moved; outward, times h
+    Array<float> interior;             // weight
+  } carried_solutes;
 
   std::size_t size() const { return particles.size(); }
   std::size_t phase_of(std::size_t i) const { return static_cast<std::size_t>((*phase_number)[i]); }
@@ -101,10 +108,12 @@ struct Flow {
   void find_rates();                // (1), and the viscous part of (2)
   void advance_density(double dt);  // (1), (3), and (5) to the end of the step
   void filter_density();
-  void start_tension();        // the first pressures of whole phases jump by the mean tension
-  void find_pressure_force();  // (2), (4)
-  void add_tension();          // (11)
-  void accept(double dt);      // (2)
+  void start_tension();                   // the first pressures of whole phases jump by the mean tension
+  void find_pressure_force();             // (2), (4)
+  void add_tension();                     // (11)
+  void accept(double dt);                 // (2)
+  std::int64_t carry_scalars(double dt);  // returns the number of sweeps
+  void transfer_oxygen(double dt);
 
   // What the liquid does to each body, as it is.
   std::vector<WallForce> forces_on_bodies();
@@ -135,6 +144,7 @@ struct Flow {
   void lease_properties();
   void find_shift(std::size_t i);
   void find_signal();
+  void keep_shift(double dt);
 };
 
 }  // namespace spume::wcsph

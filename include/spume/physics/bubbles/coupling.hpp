@@ -41,6 +41,7 @@
 #include "spume/physics/bubbles/sources.hpp"
 #include "spume/physics/bubbles/statistics.hpp"
 #include "spume/physics/bubbles/surface_interaction.hpp"
+#include "spume/physics/oxygen/supply.hpp"
 #include "spume/physics/oxygen/transfer.hpp"
 
 namespace spume::bubbles {
@@ -75,7 +76,7 @@ struct Carrier {
   std::size_t size() const { return identifier.size(); }
 };
 
-class BubbleCoupling {
+class BubbleCoupling final : public oxygen::Supply {
  public:
   // Adds the volume fraction to the state of the particles, and the exchange to their fields.
   BubbleCoupling(ParticleStore& particles, const Carrier& carrier, const BubbleOptions& options,
@@ -111,11 +112,11 @@ class BubbleCoupling {
   // exactly.
   const Array<float>& dissolution() const { return dissolution_; }
   double dissolved_amount() const { return next_gas_totals_.given; }
-  double conductance() const { return population_.empty() ? 0 : gas_totals_.conductance; }  // sum of k_L A
+  double conductance() const override { return population_.empty() ? 0 : gas_totals_.conductance; }  // sum of k_L A
   // What spargers feed of oxygen at the time of the state, g per time.
-  double oxygen_feed() const;
+  double oxygen_feed() const override;
   // What bubbles would give to a liquid without oxygen, g per time.
-  double transfer_capacity() const { return population_.empty() ? 0 : gas_totals_.capacity; }
+  double transfer_capacity() const override { return population_.empty() ? 0 : gas_totals_.capacity; }
   bool mixture_pressure() const { return options_.momentum_form == MomentumForm::mixture_pressure; }
 
   void add_columns(SeriesTable& table) const;

@@ -4,12 +4,12 @@
 // The amount of the scalar changes by what bubbles lose and by what the surface gives, to the rounding of doubles.
 //
 // The surface of a particle near it is (1 - b) |m| / |m_0| dr^2, with the interior weight b, the moment m that points
-// out of the liquid, and m_0 that of the outermost layer below a plane surface: a plane of a lattice has its area.
+// out of the liquid, and m_0 that of the outermost layer below a plane surface: a plane of a lattice has its area. In
+// two dimensions dr in place of dr^2, and amounts are those of a unit of depth.
 #pragma once
 
-#include "spume/particles/surface.hpp"
-#include "spume/physics/bubbles/coupling.hpp"
 #include "spume/physics/oxygen/options.hpp"
+#include "spume/physics/oxygen/supply.hpp"
 #include "spume/physics/scalars/scalars.hpp"
 
 namespace spume::oxygen {
@@ -26,14 +26,17 @@ class Oxygen {
   void take_from_bubbles(const Array<float>& change, double amount) { scalars_.add(options_.index, change, amount); }
 
   struct Surface {
-    const FreeSurface& surface;
-    ConstFloatVectorField normal;
+    const float* interior_weight;
+    std::array<const float*, 3> normal;  // times h; null beyond the dimensions
+    double gradient_scale = 1;           // SweepContext::gradient_scale of the moments
   };
   // Each particle towards saturation with k_L A / V: exact while its area stays, for any dt.
   void exchange_with_air(double dt, const Surface& surface);
 
+  bool has_surface() const { return options_.surface_k_l > 0; }
+
   // Columns; `bubbles`: null without.
-  void add_columns(SeriesTable& series, const bubbles::BubbleCoupling* bubbles) const;
+  void add_columns(SeriesTable& series, const Supply* bubbles) const;
   void save(StateWriter& writer) const { saved_.save(writer); }
   void load(StateReader& reader) { saved_.load(reader); }
 

@@ -60,6 +60,13 @@ inline double mass(const Contents& contents) {
   return molar_mass * contents.oxygen;
 }
 
+// What a bubble and water share: the area, and the diameter of the sphere of its volume, or in two dimensions of the
+// circle of its area and the area per depth.
+struct Interface {
+  double diameter = 0, area = 0;
+};
+Interface sphere(double radius);
+
 // A bubble over dt, in water of the concentration c at its surface: (7), exact while c and the total amount stay, so
 // that it holds for any dt.
 struct Exchange {
@@ -68,7 +75,7 @@ struct Exchange {
   double conductance = 0;  // k_L A
   double capacity = 0;     // k_L A c*: what water without oxygen would be given, g/s
 };
-Exchange exchange(const Gas& gas, const Contents& before, double radius, double height, double slip,
+Exchange exchange(const Gas& gas, const Contents& before, const Interface& interface, double height, double slip,
                   double concentration, double dt);
 
 }  // namespace spume::oxygen

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "spume/particles/moments.hpp"
+#include "spume/particles/arrangement.hpp"
 #include "spume/particles/reports.hpp"
 #include "spume/particles/resolution.hpp"
 #include "spume/physics/scalars/options.hpp"
@@ -34,7 +34,8 @@ class Scalars {
 
   struct Carrier {
     Arrangement& arrangement;
-    const MomentFields& moments;
+    const float* divergence_of_position;
+    std::array<const float*, 6> correction;             // L; read with a shift
     const Array<float>* eddy_viscosity = nullptr;       // null: none
     const VectorField& places;                          // of the particles
     const std::array<std::array<double, 2>, 3>& walls;  // sides at [axis][end]
