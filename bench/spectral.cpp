@@ -77,7 +77,7 @@ struct Floor {
   RealLineTransform<T> real_line;
   std::array<Array<Complex>, 6> work;
   struct Scratch {
-    Array<Complex> buffer, modes;
+    Array<Complex> buffer, modes, passes;
     Array<T> values;
     std::array<Array<Complex>, 6> page;
   };
@@ -88,12 +88,13 @@ struct Floor {
         m(3 * points / 2),
         row((points / 2 + lanes<T> - 1) / lanes<T> * lanes<T> + lanes<T>),
         plane(points * row + lanes<T>),
-        line(m, Planning::measure),
+        line(m, Planning::measure, LineKernels::fftw),
         real_line(m, Planning::measure),
         scratch(static_cast<std::size_t>(thread_count())) {
     for (auto& field : work) field.resize(m * plane);
     for (Scratch& s : scratch) {
       s.buffer.resize(m * lanes<T>);
+      s.passes.resize(line.work_size());
       s.modes.resize(m / 2 + 1);
       s.values.resize(m);
       for (auto& page : s.page) page.resize(m * row);
@@ -111,7 +112,7 @@ struct Floor {
   void inverse_page(Scratch& s, std::size_t f, const Complex* from) const {
     for (std::size_t first = 0; first + lanes<T> < row; first += lanes<T>) {
       pad(from + first, row, s.buffer.data());
-      line.inverse(s.buffer.data());
+      line.inverse(s.buffer.data(), s.passes.data());
       for (std::size_t j = 0; j < m; ++j) copy_block(&s.buffer[j * lanes<T>], &s.page[f][j * row + first]);
     }
     for (std::size_t j = 0; j < m; ++j) {
@@ -128,7 +129,7 @@ struct Floor {
     }
     for (std::size_t first = 0; first + lanes<T> < row; first += lanes<T>) {
       for (std::size_t j = 0; j < m; ++j) copy_block(&s.page[f][j * row + first], &s.buffer[j * lanes<T>]);
-      line.forward(s.buffer.data());
+      line.forward(s.buffer.data(), s.passes.data());
       cut(s.buffer.data(), to + first, row);
     }
   }
@@ -141,7 +142,7 @@ struct Floor {
         for (auto& field : work)
           for (std::size_t first = 0; first + lanes<T> < row; first += lanes<T>) {
             pad(field.data() + iy * row + first, plane, s.buffer.data());
-            line.inverse(s.buffer.data());
+            line.inverse(s.buffer.data(), s.passes.data());
             for (std::size_t j = 0; j < m; ++j)
               copy_block(&s.buffer[j * lanes<T>], field.data() + j * plane + iy * row + first);
           }
@@ -156,7 +157,7 @@ struct Floor {
           for (std::size_t first = 0; first + lanes<T> < row; first += lanes<T>) {
             for (std::size_t j = 0; j < m; ++j)
               copy_block(work[f].data() + j * plane + iy * row + first, &s.buffer[j * lanes<T>]);
-            line.forward(s.buffer.data());
+            line.forward(s.buffer.data(), s.passes.data());
             cut(s.buffer.data(), work[f].data() + iy * row + first, plane);
           }
     }

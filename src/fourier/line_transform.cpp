@@ -1,19 +1,26 @@
 // SPDX-License-Identifier: MIT
 #include "spume/fourier/line_transform.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <numbers>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "fftw.hpp"
+#include "lane_passes.hpp"
+#include "lane_plan.hpp"
 #include "spume/core/array.hpp"
-#include "spume/fourier/mode_layout.hpp"
 
 namespace spume {
 namespace {
 
 namespace fs = std::filesystem;
+using fourier::LanePass;
+using fourier::PlanPair;
 
 // Where wisdom is kept; empty when the user has no home.
 fs::path cache_folder() {
@@ -73,50 +80,122 @@ std::mutex& fftw::planner_mutex() {
 
 namespace {
 
-template <class T>
-struct PlanPair {
-  typename fftw::Api<T>::Plan forward = nullptr, inverse = nullptr;
-  PlanPair() = default;
-  PlanPair(const PlanPair&) = delete;
-  PlanPair& operator=(const PlanPair&) = delete;
-  ~PlanPair() {
-    const std::lock_guard lock(fftw::planner_mutex());
-    fftw::Api<T>::destroy(forward);
-    fftw::Api<T>::destroy(inverse);
+// Radices of a length, smallest first; empty where a prime above 5 divides it. As few passes as there can be, as
+// passes through the first cache cost as much as the arithmetic: three twos make an 8, a two and a three a 6. At least
+// two passes, the first of which may only load.
+std::vector<int> radices(std::size_t n) {
+  std::array<int, 3> power{};
+  constexpr std::array<std::size_t, 3> prime{2, 3, 5};
+  for (std::size_t f = 0; f < 3; ++f)
+    for (; n % prime[f] == 0 && n > 0; n /= prime[f]) ++power[f];
+  if (n != 1) return {};
+  const auto passes_of_twos = [](int twos) { return (twos + 2) / 3; };
+  int sixes = 0;
+  for (int k = 1; k <= std::min(power[0], power[1]); ++k)
+    if (passes_of_twos(power[0] - k) <= passes_of_twos(power[0] - sixes)) sixes = k;
+  std::vector<int> result(static_cast<std::size_t>(sixes), 6);
+  result.insert(result.end(), static_cast<std::size_t>(power[1] - sixes), 3);
+  result.insert(result.end(), static_cast<std::size_t>(power[2]), 5);
+  for (int twos = power[0] - sixes; twos > 0;) {
+    const int taken = (twos + passes_of_twos(twos) - 1) / passes_of_twos(twos);
+    result.push_back(1 << taken);
+    twos -= taken;
   }
-};
+  std::sort(result.begin(), result.end());
+  while (result.size() < 2) result.insert(result.begin(), 1);
+  return result;
+}
+
+template <class T>
+std::vector<LanePass<T>> own_passes(std::size_t n) {
+  std::vector<LanePass<T>> passes;
+  std::size_t rest = n, apart = 1;
+  for (const int radix : radices(n)) {
+    const std::size_t whole = rest, r = static_cast<std::size_t>(radix);
+    rest /= r;
+    LanePass<T>& pass = passes.emplace_back(LanePass<T>{radix, rest, apart, {}});
+    pass.turns.resize(2 * (r - 1) * rest);
+    std::size_t at = 0;
+    for (std::size_t p = 0; p < rest; ++p)
+      for (std::size_t k = 1; k < r; ++k) {
+        const double angle = 2 * std::numbers::pi * static_cast<double>(p * k) / static_cast<double>(whole);
+        pass.turns[at++] = static_cast<T>(std::cos(angle));
+        pass.turns[at++] = static_cast<T>(std::sin(angle));
+      }
+    apart *= r;
+  }
+  return passes;
+}
 
 }  // namespace
 
 template <class T>
-struct LaneTransform<T>::Plans : PlanPair<T> {
-  using PlanPair<T>::forward, PlanPair<T>::inverse;
-  Plans(std::size_t n, Planning planning) {
-    Array<std::complex<T>> buffer(n * lanes<T>);
-    auto* const line = fftw::pointer(buffer.data());
-    const int size = static_cast<int>(n), count = static_cast<int>(lanes<T>);
-    make_plans<T>(planning, forward, inverse, [&](unsigned flags) {
-      const auto make = [&](int sign) {
-        return fftw::Api<T>::many(1, &size, count, line, nullptr, count, 1, line, nullptr, count, 1, sign, flags);
-      };
-      forward = make(FFTW_FORWARD);
-      inverse = make(FFTW_BACKWARD);
-    });
-  }
-};
-
-template <class T>
-LaneTransform<T>::LaneTransform(std::size_t n, Planning planning)
-    : n_(n), plans_(std::make_shared<const Plans>(n, planning)) {}
-
-template <class T>
-void LaneTransform<T>::inverse(std::complex<T>* buffer) const {
-  fftw::Api<T>::execute(plans_->inverse, fftw::pointer(buffer), fftw::pointer(buffer));
+fourier::LanePlan<T>::LanePlan(std::size_t lines, Planning planning, LineKernels kernels) : n(lines) {
+  if (kernels == LineKernels::own) passes = own_passes<T>(n);
+  if (!passes.empty()) return;
+  Array<std::complex<T>> buffer(n * lanes<T>);
+  auto* const line = fftw::pointer(buffer.data());
+  const int size = static_cast<int>(n), count = static_cast<int>(lanes<T>);
+  make_plans<T>(planning, fftw_plans.forward, fftw_plans.inverse, [&](unsigned flags) {
+    const auto make = [&](int sign) {
+      return fftw::Api<T>::many(1, &size, count, line, nullptr, count, 1, line, nullptr, count, 1, sign, flags);
+    };
+    fftw_plans.forward = make(FFTW_FORWARD);
+    fftw_plans.inverse = make(FFTW_BACKWARD);
+  });
 }
 
 template <class T>
-void LaneTransform<T>::forward(std::complex<T>* buffer) const {
-  fftw::Api<T>::execute(plans_->forward, fftw::pointer(buffer), fftw::pointer(buffer));
+LaneTransform<T>::LaneTransform(std::size_t n, Planning planning, LineKernels kernels)
+    : n_(n), plan_(std::make_shared<const fourier::LanePlan<T>>(n, planning, kernels)) {}
+
+template <class T>
+bool LaneTransform<T>::uses_fftw() const {
+  return plan_->passes.empty();
+}
+
+template <class T>
+std::size_t LaneTransform<T>::work_size() const {
+  return plan_->work_size();
+}
+
+template <class T>
+template <bool inverse>
+void LaneTransform<T>::execute(const Complex* from, std::size_t from_stride, Complex* to, std::size_t to_stride,
+                               Complex* work) const {
+  using Lanes = fourier::Lanes<T>;
+  using V = typename Lanes::V;
+  const auto* const in = reinterpret_cast<const T*>(from);
+  auto* const out = reinterpret_cast<T*>(to);
+  fourier::transform<inverse>(
+      *plan_,
+      [=](std::size_t j, std::size_t at, V & real, V & imaginary)
+          __attribute__((always_inline)) { Lanes::get_numbers(in + 2 * j * from_stride + at, real, imaginary); },
+      [=](std::size_t j, std::size_t at, V real, V imaginary)
+          __attribute__((always_inline)) { Lanes::put_numbers(out + 2 * j * to_stride + at, real, imaginary); },
+      work);
+}
+
+template <class T>
+void LaneTransform<T>::inverse(const Complex* from, std::size_t from_stride, Complex* to, std::size_t to_stride,
+                               Complex* work) const {
+  execute<true>(from, from_stride, to, to_stride, work);
+}
+
+template <class T>
+void LaneTransform<T>::forward(const Complex* from, std::size_t from_stride, Complex* to, std::size_t to_stride,
+                               Complex* work) const {
+  execute<false>(from, from_stride, to, to_stride, work);
+}
+
+template <class T>
+void LaneTransform<T>::inverse(Complex* buffer, Complex* work) const {
+  execute<true>(buffer, lanes<T>, buffer, lanes<T>, work);
+}
+
+template <class T>
+void LaneTransform<T>::forward(Complex* buffer, Complex* work) const {
+  execute<false>(buffer, lanes<T>, buffer, lanes<T>, work);
 }
 
 template <class T>

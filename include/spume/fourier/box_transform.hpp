@@ -40,12 +40,15 @@ class BoxTransform {
 
  private:
   struct Scratch {  // of a thread
-    Array<Complex> line, column, modes;
-    Array<T> values;
+    Array<Complex> line, passes;
+    std::array<Array<Complex>, 2> turned;  // modes of two groups of rows, one row per lane
+    Array<Complex> pair;                   // their values, or modes: two real rows as one complex
+    Array<T> values;                       // both groups, by rows
   };
+  void inverse_rows(Scratch& scratch, std::size_t ix, std::size_t top, const Visitor& visit);
+  void forward_rows(Scratch& scratch, std::size_t ix, std::size_t top, const T* values, std::size_t z_stride);
   ModeLayout layout_;
-  std::vector<LaneTransform<T>> transform_;  // x, y
-  RealLineTransform<T> real_transform_;
+  std::vector<LaneTransform<T>> transform_;
   Complex* page(std::size_t ix) const {
     const std::size_t half = layout_.points[0] / 2;
     return ix < half ? work_[0] + ix * layout_.plane : work_[1] + (ix - half) * layout_.plane;

@@ -77,8 +77,7 @@ class CrossProduct {
   void rows(Scratch& scratch, VelocityPeak& peak) const;
   void rows_to_lanes(std::size_t top, Scratch& scratch) const;
   void inverse_z(std::size_t remainder, Scratch& scratch) const;
-  void multiply(Scratch& scratch, PeakLanes& peak) const;
-  void forward_z(std::size_t remainder, Scratch& scratch) const;
+  void forward_z(std::size_t remainder, Scratch& scratch, PeakLanes& peak) const;
   void lanes_to_rows(std::size_t top, Scratch& scratch) const;
   void forward_y(std::size_t remainder, std::size_t j, Scratch& scratch);
 
@@ -87,7 +86,7 @@ class CrossProduct {
   std::array<std::size_t, 3> half_;  // n per axis
   std::array<Twists, 3> twists_;
   std::array<std::vector<T>, 3> wavenumber_;
-  Array<Complex> lane_wavenumber_;  // k_z per stored mode in both parts, as vectors take it
+  Array<Complex> lane_wavenumber_;  // k_z per stored mode in both parts, as registers take it
   std::vector<LaneTransform<T>> transform_;
   // A block longer than the rows of the layout: columns of a plane would meet in a few sets of the cache otherwise.
   std::size_t work_row_, work_plane_;
