@@ -8,7 +8,7 @@ from pathlib import Path
 from unittest import mock
 
 import paths  # noqa: F401
-from spume_tools.bench import program, report
+from spume_tools.bench import program, report, roofline, stages
 
 MACHINE = {"memory_bytes_per_second": 74e9, "cache_bytes_per_second": 357e9, "flops_per_second": 489e9, "gathers_per_second": 6.4e9}
 
@@ -40,7 +40,7 @@ class Report(unittest.TestCase):
             report.Row("a run", 0.6, "M/s", "tools/bench program step", whole_run=whole_run, more_is_better=True)]
         said = io.StringIO()
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(report, "ROWS", rows), \
-                mock.patch("sys.argv", ["report", "spume", str(stand_in(folder, times)), "--rounds", str(len(times))]), \
+                mock.patch("sys.argv", ["report", "spume", str(stand_in(folder, times)), "--rounds", str(len(times)), "--only", "speeds"]), \
                 contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             code = report.main()
         return code, said.getvalue()
@@ -70,6 +70,42 @@ class Report(unittest.TestCase):
         code, said = self.table([1e-9], fails)
         self.assertEqual(code, 1)
         self.assertIn("exit code 1", said)
+
+    def test_stages_of_a_method_are_counted_against_the_limit_that_binds(self):
+        ledger = {"stages": [
+            {"stage": "start", "calls": 1, "seconds": 5.0, "particles": 10, "pairs": 0, "bytes": 1e9},
+            {"stage": "pressure", "calls": 20, "seconds": 3.0, "particles": 2e6, "pairs": 6.4e9, "bytes": 74e9},
+            {"stage": "move", "calls": 20, "seconds": 0.5, "particles": 2e6, "pairs": 0, "bytes": 18.5e9},
+            {"stage": "bodies", "calls": 20, "seconds": 0.5, "particles": 0, "pairs": 0, "bytes": 0}]}
+        run = mock.Mock(ledger=ledger, summary={"particles": 100_000, "steps_this_process": 20})
+        pressure, move, bodies = stages.entries(run, MACHINE, 2)  # the start is no part of a step
+        # 74e9 bytes at 74e9 a second and 6.4e9 pairs at 6.4e9 a second are a second each of the three.
+        self.assertAlmostEqual(pressure["of_limit"], 1 / 3)
+        self.assertAlmostEqual(pressure["share"], 0.75)
+        self.assertAlmostEqual(pressure["ns_per_particle"], 1500)
+        self.assertEqual((move["bound_by"], move["of_limit"]), ("memory", 0.5))
+        self.assertNotIn("of_limit", bodies)
+        self.assertIn("| move | 250 | 12.5 % | 50 % | memory |", stages.table("gfd", run, MACHINE, 2))
+        ledger["stages"][1]["seconds"] = 4.0
+        self.assertIn("**25 %**", stages.table("gfd", run, MACHINE, 2))
+        drawn = Path(tempfile.gettempdir()) / "roofline-of-stages.png"
+        entries = [entry for threads in (1, 2) for entry in stages.entries(run, MACHINE, threads) if "of_limit" in entry]
+        self.assertIn("pressure, 2 threads", roofline.table({1: MACHINE, 2: MACHINE}, entries))
+        roofline.draw({1: MACHINE, 2: MACHINE}, entries, drawn)
+        self.assertGreater(drawn.stat().st_size, 10_000)
+        drawn.unlink()
+
+    def test_a_run_of_every_method_ends_and_counts_its_stages(self):
+        with tempfile.TemporaryDirectory() as folder:
+            bench = program.Bench(paths.ROOT / "build" / "release" / "spume", folder)
+            coarse = {"les-sph": "resolution.spacing=0.025", "gfd": "resolution.spacing=0.05",
+                      "wcsph": "resolution.spacing=0.05", "spectral": "resolution.grid=16"}
+            for method in stages.RUNS:
+                run = stages.measure(bench, method, 1, ("--set", coarse[method]))
+                self.assertEqual(run.summary["method"], method)
+                found = stages.entries(run, MACHINE, 1)
+                self.assertAlmostEqual(sum(entry["share"] for entry in found), 1)
+                self.assertTrue(any("of_limit" in entry for entry in found), method)
 
     def test_memory_of_a_run_is_not_that_of_what_started_it(self):
         ballast = bytearray(300_000_000)

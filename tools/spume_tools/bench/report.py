@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The table of speeds of the first page: tools/bench report [--rounds N].
+"""The table of speeds of the first page: tools/bench report [--rounds N] [--only speeds|stages].
 
 Runs the routines and whole runs of the table, and prints it as Markdown: the machine and how busy it was, its own limits
 measured in the same process as the routines, and of every line the median and the range of the rounds. Missed targets
-are in bold type. About ten minutes on two idle cores.
+are in bold type. Then one run of each method: nanoseconds per particle and step, share and share of its limit of every
+stage. About twelve minutes on two idle cores.
 """
 import argparse
 import os
@@ -18,7 +19,7 @@ from typing import Callable
 
 from ..places import HOME
 from ..results import MissingResult
-from . import program
+from . import program, stages
 from .roofline import results
 
 BUSY = 0.3  # of a core: another program's share that a step on every core feels
@@ -145,29 +146,49 @@ def values_of(row, found):
     return [row.figure(entry) for entry in entries]
 
 
+def machine_limits(source):
+    """On two threads."""
+    found = [entry for entry in results(source, "^machine/threads:2/")["benchmarks"] if entry["run_name"].startswith("machine/")]
+    if not found:
+        raise MissingResult(f"{source} has no benchmark machine/threads:2")
+    return found[0]
+
+
+def print_speeds(arguments, bench, load):
+    found, limits = routine_rounds(arguments.routines, arguments.rounds)
+    print(conditions(limits, load) + f" Median of {arguments.rounds} rounds and their range.\n\n"
+          "| what | target | measured | share of its limit | command |\n|---|---|---|---|---|", flush=True)
+    for row in ROWS:
+        if row.whole_run is not None:
+            print(line(row, [row.whole_run(bench) for _ in range(arguments.rounds)], None), flush=True)
+        else:
+            shares = [entry["of_limit"] for entry in found[row.routine] if "of_limit" in entry]
+            print(line(row, values_of(row, found), statistics.median(shares) if shares else None), flush=True)
+    return limits
+
+
 def main():
     parser = argparse.ArgumentParser(prog="tools/bench report", description=__doc__.split("\n\n")[1],
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("routines", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--only", choices=("speeds", "stages"))
     arguments = parser.parse_args()
     if arguments.rounds < 1:
         parser.error("--rounds must be at least 1")
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     load = os.getloadavg()[0]
     try:
-        found, limits = routine_rounds(arguments.routines, arguments.rounds)
-        print(conditions(limits, load) + f" Median of {arguments.rounds} rounds and their range.\n\n"
-              "| what | target | measured | share of its limit | command |\n|---|---|---|---|---|", flush=True)
         with tempfile.TemporaryDirectory(prefix="spume-bench-") as scratch:
             bench = program.Bench(arguments.program.resolve(), scratch)
-            for row in ROWS:
-                if row.whole_run is not None:
-                    print(line(row, [row.whole_run(bench) for _ in range(arguments.rounds)], None), flush=True)
-                else:
-                    shares = [entry["of_limit"] for entry in found[row.routine] if "of_limit" in entry]
-                    print(line(row, values_of(row, found), statistics.median(shares) if shares else None), flush=True)
+            if arguments.only == "stages":
+                limits = machine_limits(arguments.routines)
+                print(conditions(limits, load), flush=True)
+            else:
+                limits = print_speeds(arguments, bench, load)
+            for method in stages.RUNS if arguments.only != "speeds" else ():
+                print("\n" + stages.table(method, stages.measure(bench, method), limits, 2), flush=True)
     except MissingResult as error:
         print(f"error: {error}", file=sys.stderr)
         return 1

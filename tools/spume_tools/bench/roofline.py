@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""Routines against the ceilings of this machine: tools/roofline [--out FILE.png] [--filter REGEX].
+"""Routines against the ceilings of this machine: tools/roofline [--out FILE.png] [--filter REGEX | --method NAME].
 
 The program spume_bench, or the results that it wrote before, is the first argument of this module: it is run, machine limits first, all in one process. The left picture is operations per
 second over operations per byte with the ceilings of memory, cache and arithmetic; the right one the share of the limit that
-binds (memory, arithmetic or gathers), counted by hand in bench/*.cpp.
+binds (memory, arithmetic or gathers), counted by hand in bench/*.cpp. With --method the stages of a step of that method
+(stages.py), by the counts of its ledger, on one and on two threads.
 """
 import argparse
 import json
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
+from ..places import HOME
+from . import program, stages
 from .ratios import WAITING
 
 # One size of each: jittered or sorted particles, and the flow on 128^3 points.
@@ -107,13 +111,24 @@ def draw(limits, routines, path):
     figure.savefig(path, dpi=110)
 
 
+def stages_of(method, limits):
+    with tempfile.TemporaryDirectory(prefix="spume-bench-") as scratch:
+        bench = program.Bench(HOME / "build" / "release" / "spume", scratch)
+        return [entry for threads, limit in sorted(limits.items())
+                for entry in stages.entries(stages.measure(bench, method, threads), limit, threads) if "of_limit" in entry]
+
+
 def main():
     parser = argparse.ArgumentParser(prog="tools/roofline", description=__doc__.split("\n")[0])
     parser.add_argument("source", type=Path, metavar="BENCH|RESULTS.json")
     parser.add_argument("--out", type=Path, default=Path("roofline.png"))
-    parser.add_argument("--filter", default=ROUTINES)
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--filter", default=ROUTINES)
+    which.add_argument("--method", choices=tuple(stages.RUNS))
     arguments = parser.parse_args()
-    limits, routines = split(results(arguments.source, arguments.filter))
+    limits, routines = split(results(arguments.source, "^machine/" if arguments.method else arguments.filter))
+    if arguments.method:
+        routines = stages_of(arguments.method, limits)
     if not limits or not routines:
         print("error: the results hold no machine limits or no routine counted against them", file=sys.stderr)
         return 2
