@@ -20,7 +20,9 @@ from spume_tools.case_file import toml_text
 from spume_tools.stress import long
 from spume_tools.stress.checks import judge
 from spume_tools.stress.faults import BASE, damage, mutated_case
-from spume_tools.stress.scenes import PARTICLE_SCENES, SCENES, Scene
+from spume_tools.stress.command import SCENES
+from spume_tools.stress.phase_scenes import PHASE_SCENES
+from spume_tools.stress.scenes import PARTICLE_SCENES, Scene
 
 
 class Scenes(unittest.TestCase):
@@ -39,6 +41,17 @@ class Scenes(unittest.TestCase):
                 self.assertEqual(case["title"], kind)
                 if kind not in ("cluster", "drop_free", "colliding_drops"):
                     self.assertLessEqual(volume / case["resolution"]["spacing"] ** len(case["domain"]["upper"]), 2000)
+
+    def test_every_kind_of_phases_is_a_case_whose_regions_are_of_its_phases(self):
+        for kind in PHASE_SCENES:
+            for seed in range(4):
+                scene = SCENES["wcsph"](np.random.default_rng(seed), [kind])
+                case = tomllib.loads(toml_text(scene.case))
+                names = [phase["name"] for phase in case["phase"]]
+                densities = [phase["density"] for phase in case["phase"]]
+                self.assertTrue(all(region["phase"] in names for region in case["region"]))
+                self.assertLessEqual(max(densities) / min(densities), 1.0001e4)
+                self.assertGreater(case["time"]["end"], 0)
 
     def test_fixed_values_hold(self):
         scene = SCENES["les-sph"](np.random.default_rng(1), ["vortices"], {"courant": 0.3, "mach": 0.1}, True)
@@ -140,6 +153,47 @@ class Checks(unittest.TestCase):
         self.assertEqual(self.outcome(code=3, said="error: at step 3, t = 0.1: energy", kinetic_energy=0.1 + t)[0], "stopped")
 
 
+class PhaseChecks(unittest.TestCase):
+    """Of runs of wcsph: two phases of densities 10 and 1, half of the box each."""
+
+    def outcome(self, scene_changes=None, facts=None, **columns):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        folder = Path(scratch.name)
+        case = {"method": "wcsph", "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.0], "x": "periodic", "y": "periodic"},
+                "resolution": {"spacing": 0.1}, "phase": [{"name": "water", "density": 10.0}, {"name": "air", "density": 1.0}],
+                "time": {"end": 1.0}} | (scene_changes or {})
+        t, still = np.linspace(0, 1, 11), np.zeros(11)
+        values = {"kinetic_energy": 0.1 - 0.05 * t, "compression_energy": 0.01 + still, "max_speed": 1 + still} | {
+            f"velocity_{name}_{axis}": still for name in ("water", "air") for axis in "xy"} | columns
+        (folder / "case.toml").write_text(toml_text(case))
+        (folder / "summary.json").write_text('{"retries": 0}')
+        write_table(folder / "series.csv", series_of(t, **values))
+        grid = lattice([0, 0], [1, 1], 0.1)
+        grid[0, 0] = -0.015  # within half a skin of a periodic side
+        write_snapshots(folder / "fluid.vtkhdf", [0, 1], lambda time: grid, {
+            "phase": lambda p, time: p[:, 1] > 0.5, "id": lambda p, time: np.arange(len(p)).astype(float)})
+        return judge("wcsph", Scene("stripes", case, {}, **({"free_axes": [0, 1]} | (facts or {}))), folder, 0, "", False)[:2]
+
+    def test_a_quiet_run_passes_and_what_is_wrong_is_named(self):
+        t = np.linspace(0, 1, 11)
+        self.assertEqual(self.outcome(), ("ok", []))
+        # What the air gains the water loses, by its mass.
+        exchanged = {"velocity_air_x": 0.1 * t, "velocity_water_x": -0.01 * t}
+        self.assertEqual(self.outcome(**exchanged), ("ok", []))
+        self.assertRegex(self.outcome(velocity_air_x=0.1 * t)[1][0], "momentum")
+        self.assertRegex(self.outcome(compression_energy=0.01 + 0.2 * t)[1][0], "energy")
+        self.assertRegex(self.outcome(max_speed=np.where(t == 1, np.nan, 1))[1][0], "finite")
+        self.assertRegex(self.outcome({"lists": {"skin": 0.1}})[1][0], "beyond the left side")
+
+    def test_the_first_row_of_a_scene_with_tension_knows_no_surface_energy(self):
+        t = np.linspace(0, 1, 11)
+        surface = np.where(t == 0, 0, 1.0)
+        tension = {"interface": {"surface_tension": 1.0}}
+        self.assertEqual(self.outcome(tension, surface_energy=surface), ("ok", []))
+        self.assertRegex(self.outcome(tension, surface_energy=surface + t)[1][0], "energy")
+
+
 class Faults(unittest.TestCase):
     def test_damage_damages(self):
         data = bytes(range(256)) * 20
@@ -167,6 +221,9 @@ class LongRuns(unittest.TestCase):
         losing = 1 - 1e-9 * np.arange(400)
         self.assertRegex(long.check_series("sustained_flow", steady | {"mass": losing})[0], "mass")
         self.assertRegex(long.check_series("pool", steady)[0], "rest")
+        fast = self.series(max_speed=0.02 - 0.01 * np.linspace(0, 1, 400))
+        self.assertEqual(long.check_series("layers", fast), [])
+        self.assertRegex(long.check_series("layers", fast | {"max_speed": fast["max_speed"][::-1]})[0], "rest")
 
     def test_growing_memory_and_slowing_steps_are_seen(self):
         step = np.linspace(0, 1e5, 200)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Random and worst-case scenes, each run for a few seconds and checked: tools/stress METHOD [options].
 
-METHOD is les-sph, spectral, faults (kills, full disks, damaged checkpoints and cases; see faults.py) or long
+METHOD is les-sph, spectral, wcsph, faults (kills, full disks, damaged checkpoints and cases; see faults.py) or long
 (1e5 steps of small scenes; see long.py).
 Writes DIR/stress.csv, DIR/stress.png and, for every run that failed, its case and output in DIR/failures. Exit code 1
 if a run failed or crashed. A scene depends on seed and number only: --first N --runs 1 repeats one.
@@ -19,7 +19,10 @@ import numpy as np
 from ..case_file import toml_text
 from . import faults, long
 from .checks import judge
-from .scenes import SCENES
+from .phase_scenes import wcsph_scene
+from .scenes import SCENES as DRAWN
+
+SCENES = DRAWN | {"wcsph": wcsph_scene}
 
 OUTCOMES = {"ok": "tab:green", "slow": "tab:olive", "refused": "tab:gray", "stopped": "tab:orange", "failed": "tab:red",
             "crashed": "black"}
@@ -61,8 +64,8 @@ def save_picture(rows, path):
     import matplotlib.pyplot as plt
 
     planes = [("courant", "mach"), ("courant", "reynolds"), ("courant", "jitter"), ("bubble_radius", "alpha"),
-              ("courant", "grid"), ("response_time", "diameter"), ("volume_fraction", "diameter")]
-    logarithmic = {"reynolds", "bubble_radius", "response_time", "diameter"}
+              ("courant", "grid"), ("courant", "ratio"), ("response_time", "diameter"), ("volume_fraction", "diameter")]
+    logarithmic = {"reynolds", "ratio", "bubble_radius", "response_time", "diameter"}
     planes = [p for p in planes if sum(all(isinstance(r.get(k), (int, float)) for k in p) for r in rows) > 1]
     columns = len(planes) + 1
     figure, axes = plt.subplots(1, columns, figsize=(4.2 * columns, 4.2), layout="constrained", squeeze=False)

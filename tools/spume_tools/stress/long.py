@@ -2,7 +2,7 @@
 """Long runs of small scenes: conserved quantities, statistics, memory and speed must not drift.
 
 Each scene has a state that it keeps: a flow that its force sustains, liquid at rest, a plume whose bubbles come and go,
-stirred turbulence without and with particles. Memory and processor time of the program are read while it runs.
+stirred turbulence without and with particles, a sustained flow and layers at rest of weakly compressible phases. Memory and processor time of the program are read while it runs.
 """
 import math
 import os
@@ -65,8 +65,29 @@ def particles(step):
         "particles": {"volume_fraction": 0.02, "diameter": 0.2, "stokes": 1.0, "beta": 3.0, "coupling": "four-way"}}
 
 
+def sustained_phase(step):
+    """The sustained flow by wcsph: lists are made anew and particles shifted some ten thousand times."""
+    return {"title": "sustained phase", "method": "wcsph",
+            "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.0], "x": "periodic", "y": "periodic"},
+            "resolution": {"spacing": 1 / 16}, "phase": [{"name": "water", "density": 1.0, "viscosity": 1 / 50}],
+            "region": [{"phase": "water", "velocity": ["sin(2*pi*y)", "0"]}],
+            "forces": {"body": [f"{4 * math.pi**2 / 50!r}*sin(2*pi*y)", "0"]},
+            "compressibility": {"max_speed": 1.2}, "time": {"max_step": step}}
+
+
+def layers(step):
+    """Air over water at rest, with the viscosities of cases/hydrostatic_layers."""
+    return {"title": "layers", "method": "wcsph",
+            "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.0], "left": "free-slip", "right": "free-slip",
+                       "bottom": "free-slip", "top": "free-slip"},
+            "resolution": {"spacing": 1 / 16}, "fluid": {"froude": 1.0},
+            "phase": [{"name": "water", "density": 1000.0, "viscosity": 0.5}, {"name": "air", "density": 1.0, "viscosity": 0.01}],
+            "region": [{"phase": "air"}, {"phase": "water", "upper": [1.0, 0.5]}], "time": {"max_step": step}}
+
+
 SCENES = {"sustained_flow": (sustained_flow, 0.004), "pool": (pool, 0.01), "plume": (plume, 0.02),
-          "turbulence": (turbulence, 0.02), "particles": (particles, 0.02)}
+          "turbulence": (turbulence, 0.02), "particles": (particles, 0.02), "sustained_phase": (sustained_phase, 0.0025),
+          "layers": (layers, 2e-4)}
 
 
 def usage(pid):
@@ -116,6 +137,14 @@ def check_series(kind, series):
     late = {name: values[settled] for name, values in series.items()}
     if "mass" in series and np.ptp(series["mass"]) > 1e-12 * series["mass"][0]:
         complaints.append(f"mass: changes by {np.ptp(series['mass']) / series['mass'][0]:.3g}")
+    if kind == "layers":
+        # They leave the lattice that they begin on, and come to rest again.
+        _, spread = drift(late["max_speed"])
+        quarter = len(late["max_speed"]) // 4
+        first, last = (np.mean(part) for part in (late["max_speed"][:quarter], late["max_speed"][-quarter:]))
+        if last > first + 0.5 * spread:
+            complaints.append(f"rest: speed {last:.3g}, and it grows")
+        return complaints
     if kind == "pool":
         # Liquid at rest: nothing but the tolerance of the solves moves it.
         if np.max(late["max_speed"]) > 1e-2:

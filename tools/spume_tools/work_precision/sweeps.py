@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..case_file import toml_text, toml_value
+from ..results import relative_rms
 from ..verify.cases import case_folder, load_measure
 
 
@@ -48,6 +49,18 @@ PARTICLE_OPTIONS = {
 # Only the step errs, and the case's own integrator is not the default.
 BELTRAMI_STEPS = {f"dt {dt:g}": [f"time.max_step={dt!r}", 'spectral.integrator="ab2"']
                   for dt in (0.008, 0.004, 0.002, 0.001)}
+
+
+POISEUILLE = ['domain.wall_velocity.top=["0", "0"]', 'forces.body=["0.8", "0"]']
+
+
+def vortex_error(run):
+    """Velocity at the end, for a fluid of groups and for a phase."""
+    module = load_measure(case_folder("taylor_green_2d"))
+    last, given = run.snapshots()[-1], run.case.get("fluid", {}).get("reynolds")
+    reynolds = float(given) if given else run.case["phase"][0]["density"] / run.case["phase"][0]["viscosity"]
+    exact = module.exact_velocity(last.position, last.time, reynolds)
+    return relative_rms(last.field("velocity")[:, :2], exact, 1.0)
 
 
 def early_energy_error(run):
@@ -112,6 +125,12 @@ RISING = {"method": "les-sph",
 SWEEPS = {
     "taylor_green_2d": Sweep("taylor_green_2d", "velocity error at t = 1",
                              of_case("taylor_green_2d", "velocity_error"), spacings(20, 40, 80), PARTICLE_OPTIONS, 1.0),
+    # Methods on the same flow; the default of the picture is les-sph.
+    "methods_taylor_green": Sweep("taylor_green_2d", "velocity error at t = 1", vortex_error, spacings(20, 40, 80),
+                                  {"method": ["wcsph"]}, 1.0),
+    "methods_poiseuille": Sweep("couette_poiseuille", "velocity error, rms over the peak", of_case("couette_poiseuille", "error"),
+                                {label: settings + POISEUILLE for label, settings in spacings(10, 20, 40).items()},
+                                {"method": ["wcsph"]}, 1.0),
     # Without the case's own step, which is shorter than what the options allow; from where the wave is higher than half
     # a spacing on: below, its columns hold one particle more or not, and the amplitude errs by 6 to 8 %.
     "standing_wave": Sweep("standing_wave", "amplitude over a period, largest difference from the exact",
