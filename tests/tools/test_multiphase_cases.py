@@ -10,6 +10,75 @@ from spume_tools.verify.cases import load_measure
 from synthetic import lattice, series_of, write_snapshots, write_table
 
 
+class RisingBubbleAir(CaseTest):
+    def bubble(self, shape, spacing=0.0625):
+        """A run whose bubble is where shape(x, y, t) is positive."""
+        folder, module = self.run_of("rising_bubble_air")
+        at = lattice([-3, 0], [3, 10], spacing)
+        write_snapshots(folder / "fluid.vtkhdf", (0, 1.6, 3.2, 4.8), lambda t: at,
+                        {"phase": lambda p, t: shape(p[:, 0], p[:, 1], t) > 0})
+        heights = [at[shape(at[:, 0], at[:, 1], t) > 0, 1].mean() for t in (0, 1.6, 3.2, 4.8)]
+        write_table(folder / "series.csv", series_of(np.array([0, 1.6, 3.2, 4.8]), centre_air_y=np.array(heights)))
+        return Results(folder), module
+
+    def test_shapes_and_heights_against_those_of_the_reference(self):
+        def ring(x, y, t, offset=0.0):
+            """A disc, then the upper half of a ring, then three discs."""
+            y = y - offset
+            if t < 2:
+                return 1 - x**2 - (y - 3) ** 2
+            if t < 4:
+                return np.where((y > 3) & (x**2 + (y - 3) ** 2 > 0.5), 1.5 - x**2 - (y - 3) ** 2, -1)
+            return np.max([r**2 - (x - c) ** 2 - (y - 4) ** 2 for c, r in ((-1.8, 0.5), (0, 1), (1.8, 0.6))], axis=0)
+
+        reference, module = self.bubble(ring)
+        same, _ = self.bubble(ring)
+        higher, _ = self.bubble(lambda x, y, t: ring(x, y, t, 0.125))
+        measured = module.measure({"gfd": reference, "wcsph": same, "higher": higher})
+        self.assertAlmostEqual(measured["wcsph_split_off"], 0.25 / 1.61, delta=0.01)
+        self.assertEqual(measured["wcsph_shape_difference_1_6"], 0)
+        self.assertAlmostEqual(measured["wcsph_height_error_3_2"], 0)
+        # The inner radius is 0.71, the foot of the ring at 3.
+        self.assertAlmostEqual(measured["gfd_horseshoe_depth"], 0.71, delta=0.0625)
+        self.assertAlmostEqual(measured["higher_height_error_1_6"], 0.125 / 3, delta=0.002)
+        # Two discs of radius 1 whose centres are d apart have 4 d / pi of their area for themselves alone, to first order.
+        self.assertAlmostEqual(measured["higher_shape_difference_1_6"], 4 * 0.125 / np.pi, delta=0.02)
+
+    def test_a_bubble_whole_has_one_piece_and_no_depth(self):
+        run, module = self.bubble(lambda x, y, t: 1 - x**2 - (y - 3) ** 2)
+        measured = module.measure({"gfd": run})
+        self.assertEqual(measured["gfd_split_off"], 0)
+        self.assertAlmostEqual(measured["gfd_horseshoe_depth"], 0, delta=0.01)
+
+
+class BubbleReachesSurface(CaseTest):
+    def test_joining_strays_and_volumes(self):
+        folder, module = self.run_of("bubble_reaches_surface")
+        at = lattice([-3, 0], [3, 7], 0.0625)
+
+        bubble = at[:, 0] ** 2 + (at[:, 1] - 2) ** 2 < 1
+        air = bubble | (at[:, 1] > 4.5)
+        lone = np.argmin(np.hypot(at[:, 0], at[:, 1] - 6))
+
+        def position(t):
+            """The bubble rises by 1 in a time; a single particle of the air is in the water at the end."""
+            moved = at + np.outer(bubble, [0, t])
+            if t == 4:
+                moved[lone] = [2.03, 1.03]
+            return moved
+
+        write_snapshots(folder / "fluid.vtkhdf", np.arange(5.0), position, {
+            "phase": lambda p, t: air, "id": lambda p, t: np.arange(len(p)),
+            "density": lambda p, t: np.where(air, 1.0, 1000 / (1 + 0.001 * t))})
+        measured = module.measure({"bubble": Results(folder)})
+        self.assertEqual(measured["bubble_joined_at"], 2)  # at 1 its top is at 4
+        self.assertEqual(measured["bubble_joined_share_end"], 1)
+        self.assertAlmostEqual(measured["bubble_strays"], 1 / len(at))
+        self.assertAlmostEqual(measured["bubble_volume_water"], 0.004, delta=1e-6)
+        self.assertEqual(measured["bubble_volume_air"], 0)
+        self.assertEqual(measured["bubble_lost"], 0)
+
+
 class PoiseuilleTwoPhase(CaseTest):
     def test_the_steady_profile_is_that_of_the_reference(self):
         module = load_measure(CASES / "poiseuille_two_phase")
