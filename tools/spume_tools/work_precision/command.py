@@ -124,9 +124,12 @@ def draw(rows, name, path):
     colours = plt.cm.tab20.colors
     for number, option in enumerate(dict.fromkeys(row["option"] for row in mine)):
         here = [row for row in mine if row["option"] == option]
+        values = {row["value"] for row in here}
+        label = (SWEEPS[name].default if name in SWEEPS else option) if option == "default" else \
+            f"{option} = {here[0]['value']}" if len(values) == 1 else option
         axis.plot([r["seconds"] for r in here], [r["error"] for r in here], "s" if option == "default" else "o",
                   color="k" if option == "default" else colours[number % len(colours)],
-                  markersize=8 if option == "default" else 5, label=option, zorder=3 if option == "default" else 2)
+                  markersize=8 if option == "default" else 5, label=label, zorder=3 if option == "default" else 2)
     best = front(mine)
     axis.step([r["seconds"] for r in best], [r["error"] for r in best], "k-", where="post", linewidth=1, label="front")
     for row in best:
