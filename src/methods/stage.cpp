@@ -40,7 +40,8 @@ void Plan::run_range(const Run& run, std::size_t first, std::size_t last, std::s
 }
 
 void Plan::run_stage(const Run& run, const Stage& stage) const {
-  if (!stage.on || (stage.part != StagePart::both && stage.part != run.part)) return;
+  const bool belongs = stage.part == run.part || (stage.part == StagePart::both && run.part != StagePart::recorded);
+  if (!stage.on || !belongs) return;
   if (stage.due && !stage.due()) return;
   auto scope = run.ledger.time(stage.name);
   StageRun counted{.dt = run.dt, .particles = run.particles};

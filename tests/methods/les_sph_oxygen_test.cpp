@@ -237,6 +237,23 @@ TEST(LesSphOxygen, ARefusedStepLeavesTheState) {
   EXPECT_EQ(changed_by_a_refused_step(sludge, {}, 0.003), "");
 }
 
+// Small bubbles of pure oxygen in water without any dissolve whole: they are gone, and what they held is in the water.
+TEST(LesSphOxygen, BubblesThatDissolveWholeAreGone) {
+  Simulation run(replaced(cube, "[oxygen]",
+                          "[oxygen]\nbubbles_shrink = true\ngas_fraction = 1\nbubble_coefficient = "
+                          "\"given\"\nbubble_k_l = 4e-3"),
+                 {"bubble_cloud.0.bubble_radius=1e-4", "bubble_cloud.0.deviation=0.1"});
+  run.steps(4, 0.005);
+  EXPECT_GT(run.method.flow().bubbles->population().size(), 0U);
+  while (run.method.time() < 2 && !run.method.flow().bubbles->population().empty()) run.steps(1, 0.005);
+  auto after = run.series();
+  EXPECT_TRUE(run.method.flow().bubbles->population().empty());
+  EXPECT_EQ(after["bubbles_dissolved"], 60);
+  EXPECT_EQ(after["bursts"], 0);
+  EXPECT_NEAR(after["oxygen_from_bubbles"] / after["oxygen_released"], 1, 1e-13);
+  EXPECT_NEAR(after["amount_of_oxygen"] / after["oxygen_released"], 1, 1e-12);
+}
+
 // A source of a + b t adds its integral: the midpoint rule is exact for it.
 TEST(LesSphOxygen, SourcesAddTheirIntegral) {
   Simulation run(cube + "[[scalar]]\nname = \"feed\"\nsource = \"2 + 3*t\"\n[[scalar]]\nname = \"dye\"\n");

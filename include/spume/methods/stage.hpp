@@ -66,7 +66,8 @@ struct StageRun {
   double bytes = 0;      // traffic beside the arrays that the stage names, such as that of its sweeps
 };
 
-enum class StagePart { step, start, both };
+// Steps, the start, both of these; or the steps in which a recorded flow carries what is dissolved.
+enum class StagePart { step, start, both, recorded };
 
 // One stage: what it is called, why it runs or not, and what it does. Off stages have no work. A stage that is on and
 // not wanted in every step, such as a sort every so many steps, says when it is due.
@@ -95,6 +96,9 @@ class Plan {
   // ledger divides the time by. What a stage throws passes through.
   void run_step(double dt, double particles, Ledger& ledger) const { run({StagePart::step, dt, particles, ledger}); }
   void run_start(double particles, Ledger& ledger) const { run({StagePart::start, 0, particles, ledger}); }
+  void run_recorded(double dt, double particles, Ledger& ledger) const {
+    run({StagePart::recorded, dt, particles, ledger});
+  }
 
  private:
   struct Run {

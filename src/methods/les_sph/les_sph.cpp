@@ -70,6 +70,10 @@ void LesSph::step(double dt, Ledger& ledger) {
   for (const Ledger::Entry& entry : start_ledger_.entries())
     ledger.count(entry.stage, entry.calls, entry.seconds, entry.particles, entry.pairs, entry.bytes);
   start_ledger_.clear();
+  if (flow_.solutes.record_carries()) {
+    plan_.run_recorded(dt, static_cast<double>(flow_.size()), ledger);
+    return;
+  }
   const bool first = flow_.left == 0;
   if (flow_.remove_left() > 0 && first) {
     char text[160];
@@ -133,6 +137,7 @@ void LesSph::ensure_started() {
 }
 
 StepLimit LesSph::step_limit() const {
+  if (flow_.solutes.record_carries()) return {flow_.solutes.recorded->step(flow_.time, 0), "outputs"};
   const double h = flow_.resolution.smoothing_length;
   const TimeOptions& options = flow_.options.time;
   const double most_diffusion = flow_.options.get<SchemeOptions>().viscous;
@@ -169,6 +174,8 @@ StepLimit LesSph::step_limit() const {
   if (varying_force && flow_.steps > 0)
     step.bound(2 * std::max(flow_.last_steps[0], flow_.last_steps[1]), "growth of the step");
   if (speed == 0 && options.max_step == 0) step.bound(options.end / steps_of_run_at_rest, "end of run");
+  if (flow_.solutes.recorded != nullptr)
+    step.bound(flow_.solutes.recorded->step(flow_.time, step.limit().dt), "recorded_flow.lag");
   return step.limit();
 }
 

@@ -109,6 +109,14 @@ Plan make_plan(Flow& f) {
   stages.add(step, "oxygen", has.oxygen, why.oxygen, &Flow::transfer_oxygen, dissolved, dissolved);
   const Arrays sludge = living_scalars(f, has.biokinetics ? std::size_t{biokinetics::asm1::components} : 0);
   stages.add(step, "reactions", has.biokinetics, why.reactions, reacting(f), sludge, sludge);
+  const bool records = has.recorded_flow;
+  const ArrayUse record([&f, records] { return records ? f.solutes.recorded->bytes() : 0.0; });
+  const std::string recorded = records ? f.solutes.recorded->in_words() : "no section [recorded_flow]";
+  stages.add(step, "record of the flow", records, recorded, &Flow::record_flow, {p.position}, {record},
+             [&f] { return f.solutes.recorded->records(f.time); });
+  stages.add(StagePart::recorded, "recorded flow", records,
+             records ? "in place of all others behind the record" : recorded, &Flow::go_on_recorded, {record},
+             living_scalars(f, f.solutes.count()));
   stages.add(step, "bubble events", has.bubbles, why.events, &Flow::accept_bubbles,
              living({kept.bubbles, f.sizes.volume_fraction}), living({kept.bubbles, f.volume_fraction()}));
   return plan;

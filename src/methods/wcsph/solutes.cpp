@@ -72,4 +72,14 @@ void Flow::transfer_oxygen(double dt) {
   particles.scratch().release(carried_solutes.normal);
 }
 
+void Flow::record_flow(double dt) {
+  solutes.record(time, dt, nullptr);
+}
+
+void Flow::go_on_recorded(double dt) {
+  solutes.recorded->advance(time, dt);
+  time += dt;
+  ++steps;
+}
+
 }  // namespace spume::wcsph

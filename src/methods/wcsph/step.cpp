@@ -76,6 +76,13 @@ Plan make_plan(Flow& f) {
   stages.add(
       step, "reactions", has.biokinetics, has.biokinetics ? "Activated Sludge Model No. 1" : "no section [biokinetics]",
       [&f](StageRun& run) { f.solutes.sludge->react(run.dt); }, sludge, sludge);
+  const bool records = has.recorded_flow;
+  const ArrayUse record([&f, records] { return records ? f.solutes.recorded->bytes() : 0.0; });
+  const std::string recorded = records ? f.solutes.recorded->in_words() : "no section [recorded_flow]";
+  stages.add(step, "record of the flow", records, recorded, &Flow::record_flow, {p.position}, {record},
+             [&f] { return f.solutes.recorded->records(f.time); });
+  stages.add(StagePart::recorded, "recorded flow", records,
+             records ? "in place of all others behind the record" : recorded, &Flow::go_on_recorded, {record}, scalars);
   return plan;
 }
 

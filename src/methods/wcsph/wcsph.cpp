@@ -67,11 +67,16 @@ Wcsph::Wcsph(const LoadedCase& loaded)
 
 void Wcsph::step(double dt, Ledger& ledger) {
   sampled_step_ = -1;  // sorting changes what the bins of the sampler refer to, also when the step is refused
+  if (flow_.solutes.record_carries()) {
+    plan_.run_recorded(dt, static_cast<double>(flow_.size()), ledger);
+    return;
+  }
   if (flow_.steps == 0 && !flow_.has_lists) plan_.run_start(static_cast<double>(flow_.size()), ledger);
   plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
 }
 
 StepLimit Wcsph::step_limit() const {
+  if (flow_.solutes.record_carries()) return {flow_.solutes.recorded->step(flow_.time, 0), "outputs"};
   const TimeOptions& options = flow_.options.time;
   const double h = flow_.resolution.smoothing_length;
   SmallestStep step;
@@ -83,6 +88,8 @@ StepLimit Wcsph::step_limit() const {
   if (gravity2 > 0) step.bound(force_limit * std::sqrt(h / std::sqrt(gravity2)), "body force");
   if (flow_.features.tension) step.bound(capillary_time(flow_.scene), "capillary");
   if (options.max_step > 0) step.bound(options.max_step, "max_step");
+  if (flow_.solutes.recorded != nullptr)
+    step.bound(flow_.solutes.recorded->step(flow_.time, step.limit().dt), "recorded_flow.lag");
   return step.limit();
 }
 
@@ -162,6 +169,7 @@ std::vector<RecordTable> Wcsph::tables() const {
 }
 
 void Wcsph::table_rows(const std::string&, std::vector<double>& rows) {
+  if (flow_.solutes.record_carries()) return;  // bodies and liquid stand where the record ended
   sampled_step_ = -1;
   std::vector<SurfaceForce> forces;
   for (const WallForce& force : flow_.forces_on_bodies())

@@ -45,6 +45,23 @@ void Sludge::react(double dt) {
   pending_ = 0;
 }
 
+void Sludge::react_in_cells(double dt, std::vector<std::vector<double>>& values, const std::vector<double>& volumes) {
+  const std::size_t n = volumes.size();
+  for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = values[options_.scalars[i]].data();
+  const double* oxygen = values_[asm1::s_o];
+  double all = 0, before = 0, after = 0, steps = 0;
+  for (std::size_t a = 0; a < n; ++a) {
+    all += volumes[a];
+    before += volumes[a] * oxygen[a];
+  }
+  for (std::size_t a = 0; a < n; a += block)
+    steps += static_cast<double>(integrator_.advance(values_, a, std::min(a + block, n), dt / day).steps);
+  for (std::size_t a = 0; a < n; ++a) after += volumes[a] * oxygen[a];
+  uptake_ += before - after;
+  rate_ = all > 0 ? (before - after) / all / dt * hour : 0;
+  steps_ = n > 0 ? steps / static_cast<double>(n) : 0;
+}
+
 void Sludge::add_columns(SeriesTable& series) const {
   series.add("oxygen_uptake", "g, by the reactions since the start", [this] { return uptake_; });
   series.add("oxygen_uptake_rate", "g/m3/h, mean over the liquid", [this] { return rate_; });

@@ -147,7 +147,11 @@ void BubbleCoupling::remove_dead(double t) {
     remark(std::to_string(static_cast<std::int64_t>(gone)) + " of " + std::to_string(nb) +
            " bubbles burst in the step to t = " + std::to_string(t));
   }
-  history_.bursts += static_cast<std::int64_t>(gone);
+  const double dissolved =
+      exchanges_gas() && carrier_.gas->shrinks
+          ? parallel_sum(nb, [&](std::size_t i) { return (*population_.volume)[i] == 0 ? 1.0 : 0.0; })
+          : 0;
+  history_.bursts += static_cast<std::int64_t>(gone - dissolved);
   history_.burst_volume +=
       parallel_sum(nb, [&](std::size_t b) { return dead_[b] != 0 ? (*population_.volume)[b] : 0.0; });
   if (exchanges_gas())

@@ -8,6 +8,13 @@
 #include "spume/physics/bubbles/coupling.hpp"
 
 namespace spume::bubbles {
+namespace {
+
+// m. Surface tension, which the pressure of a bubble leaves out, is as much as a quarter of an atmosphere then, and a
+// bubble of air in saturated water lives for seconds (Epstein and Plesset 1950).
+constexpr double least_radius = 5e-6;
+
+}  // namespace
 
 // The concentrations times what multiplies the values of liquid_records_.
 void BubbleCoupling::pack_dissolved() {
@@ -43,7 +50,17 @@ float BubbleCoupling::dissolve(std::size_t b, double radius, double slip, double
       oxygen::exchange(*carrier_.gas, next_gas_[b].contents, oxygen::sphere(radius), (*population_.next_position[2])[b],
                        slip, dissolved_at_bubble_[b], dt);
   next_gas_[b] = {result.after, result.given, result.conductance, result.capacity};
-  return static_cast<float>(result.given);
+  if (dissolves_whole(result.after, (*population_.next_position[2])[b])) {
+    next_gas_[b].contents = {};
+    next_gas_[b].given += oxygen::mass(result.after);
+  }
+  return static_cast<float>(next_gas_[b].given);
+}
+
+// One whose volume follows from its gas, and that has next to none: the liquid takes the rest.
+bool BubbleCoupling::dissolves_whole(const oxygen::Contents& contents, double height) const {
+  constexpr double least_volume = 4 * std::numbers::pi / 3 * least_radius * least_radius * least_radius;
+  return carrier_.gas->shrinks && carrier_.gas->volume(contents.oxygen + contents.inert, height) < least_volume;
 }
 
 void BubbleCoupling::sum_gas() {
@@ -66,7 +83,13 @@ void BubbleCoupling::accept_gas() {
     (*population_.inert)[b] = contents.inert;
     if (carrier_.gas->shrinks)
       (*population_.volume)[b] = carrier_.gas->volume(contents.oxygen + contents.inert, (*population_.position[2])[b]);
+    // A radius of zero is none that forces or breakup know: it goes in this step.
+    if (carrier_.gas->shrinks && contents.oxygen + contents.inert == 0) dead_[b] = 1;
   });
+  if (carrier_.gas->shrinks)
+    oxygen_.dissolved += parallel_sum(population_.size(), [&](std::size_t b) {
+      return next_gas_[b].contents.oxygen + next_gas_[b].contents.inert == 0 ? 1.0 : 0.0;
+    });
   gas_totals_ = next_gas_totals_;
   oxygen_.given += gas_totals_.given;
 }
@@ -92,11 +115,18 @@ double BubbleCoupling::oxygen_feed() const {
   return feed;
 }
 
+void BubbleCoupling::each(const Each& see) const {
+  for (std::size_t b = 0; b < population_.size(); ++b)
+    see(vector_at(population_.next_position, 3, b), next_gas_[b].conductance, next_gas_[b].capacity);
+}
+
 void BubbleCoupling::add_gas_columns(SeriesTable& table) const {
   table.add("bubble_area", "length^2", [this] { return population_.empty() ? 0.0 : gas_totals_.area; });
   table.add("oxygen_released", "g, with the gas, since the start", [this] { return oxygen_.released; });
   table.add("oxygen_from_bubbles", "g, given to the liquid since the start", [this] { return oxygen_.given; });
   table.add("oxygen_left", "g, with bubbles that burst, since the start", [this] { return oxygen_.left; });
+  if (carrier_.gas->shrinks)
+    table.add("bubbles_dissolved", "1, whole, since the start", [this] { return oxygen_.dissolved; });
   table.add("oxygen_in_bubbles", "g", [this] {
     return oxygen::molar_mass *
            parallel_sum(population_.size(), [&](std::size_t b) { return (*population_.oxygen)[b]; });

@@ -167,8 +167,8 @@ void BubbleCoupling::save(StateWriter& writer) const {
   writer.i64("cloud_out", sources.cloud_out);
   save_fields(population_.fields, writer);
   if (!exchanges_gas()) return;
-  const double gas[] = {oxygen_.released,        oxygen_.given,        oxygen_.left,    gas_totals_.given,
-                        gas_totals_.conductance, gas_totals_.capacity, gas_totals_.area};
+  const double gas[] = {oxygen_.released,        oxygen_.given,        oxygen_.left,     gas_totals_.given,
+                        gas_totals_.conductance, gas_totals_.capacity, gas_totals_.area, oxygen_.dissolved};
   writer.f64("bubble_gas", gas);
 }
 
@@ -198,8 +198,8 @@ void BubbleCoupling::load(StateReader& reader) {
   if (exchanges_gas()) {
     Array<double> gas;
     reader.f64("bubble_gas", gas);
-    if (gas.size() != 7) throw FileError("the checkpoint's gas of bubbles is of another version");
-    oxygen_ = {gas[0], gas[1], gas[2]};
+    if (gas.size() != 8) throw FileError("the checkpoint's gas of bubbles is of another version");
+    oxygen_ = {gas[0], gas[1], gas[2], gas[7]};
     gas_totals_ = {gas[3], gas[4], gas[5], gas[6]};
   }
   std::copy(pending.begin(), pending.end(), sources.pending_volume.begin());

@@ -39,6 +39,7 @@ void Oxygen::exchange_with_air(double dt, const Surface& surface) {
     double gained = 0, area = 0;
   };
   double* values = scalars_.values(options_.index).data();
+  if (keeps_conductance_) surface_conductance_ = Array<float>(particles_.size(), 0.0F);
   const double layer_area = layer_area_ / surface.gradient_scale;
   const double saturation = gas_.saturation_below_air(), k = gas_.factor * options_.surface_k_l, v = particles_.volume;
   const Sums sums = parallel_reduce(
@@ -53,6 +54,7 @@ void Oxygen::exchange_with_air(double dt, const Surface& surface) {
             if (component != nullptr) normal2 += double{component[i]} * component[i];
           const double area = share * layer_area * std::sqrt(normal2), before = values[i];
           values[i] -= (saturation - before) * std::expm1(-k * area / v * dt);
+          if (keeps_conductance_) surface_conductance_[i] = static_cast<float>(k * area);
           part.area += area;
           part.gained += values[i] - before;
         }

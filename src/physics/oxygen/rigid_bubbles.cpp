@@ -125,6 +125,14 @@ double RigidBubbles::oxygen_feed() const {
   return feed;
 }
 
+void RigidBubbles::each(const Each& see) const {
+  const Domain& domain = scene_.domain;
+  const Vec3 middle = multiply(0.5, add(domain.lower, domain.upper));
+  for (const Turn& turn : turns_)
+    if (turn.conductance > 0)
+      see(copy_nearest_to(domain, middle, turn.place.position), turn.conductance, turn.capacity);
+}
+
 void RigidBubbles::set_out(double t) {
   for (std::size_t b = 0; b < bubbles_.size(); ++b) {
     Bubble& bubble = bubbles_[b];
@@ -199,6 +207,8 @@ double RigidBubbles::exchange(double t, double dt, const Liquid& liquid, Array<f
                                              length(slip), turn.concentration / turn.weight, dt);
     bubble.contents = result.after;
     turn.given = result.given;
+    turn.conductance = result.conductance;
+    turn.capacity = result.capacity;
     sum += result.given;
     conductance_ += result.conductance;
     capacity_ += result.capacity;

@@ -300,6 +300,7 @@ void Scalars::add_fields(SnapshotTable& snapshot) const {
 void Scalars::save(StateWriter& writer) const {
   writer.f64("scalar_sources", added_);
   writer.f64("scalar_walls", from_walls_);
+  writer.i64("scalar_substeps", {&substeps_, 1});
 }
 
 void Scalars::load(StateReader& reader) {
@@ -309,6 +310,9 @@ void Scalars::load(StateReader& reader) {
     if (saved.size() != values->size()) throw FileError("the checkpoint holds other scalars than the case");
     std::copy(saved.begin(), saved.end(), values->begin());
   }
+  Array<std::int64_t> substeps;
+  reader.i64("scalar_substeps", substeps);
+  if (substeps.size() == 1) substeps_ = substeps[0];
 }
 
 void add_scalar_fields(const ScalarOptions& options, std::vector<OutputFieldInfo>& infos) {

@@ -8,7 +8,8 @@ namespace spume {
 SoluteFeatures::SoluteFeatures(const Case& options)
     : scalars(!options.get<ScalarOptions>().scalars.empty()),
       oxygen(options.get<OxygenOptions>().on),
-      biokinetics(options.get<BiokineticsOptions>().on) {}
+      biokinetics(options.get<BiokineticsOptions>().on),
+      recorded_flow(options.get<RecordedFlowOptions>().on) {}
 
 Solutes::Solutes(ParticleStore& particles, const Resolution& resolution, const Case& options, const Scene& scene) {
   const SoluteFeatures has(options);
@@ -21,6 +22,9 @@ Solutes::Solutes(ParticleStore& particles, const Resolution& resolution, const C
       rigid_bubbles = std::make_unique<oxygen::RigidBubbles>(scene, resolution, oxygen->gas());
   }
   if (has.biokinetics) sludge = std::make_unique<biokinetics::Sludge>(*scalars, options.get<BiokineticsOptions>());
+  if (has.recorded_flow)
+    recorded = std::make_unique<RecordedFlow>(particles, scene, options.get<RecordedFlowOptions>(), *scalars,
+                                              oxygen.get(), sludge.get());
 }
 
 void Solutes::take_from_rigid_bubbles(ParticleStore& particles, double t, double dt) {
@@ -38,8 +42,9 @@ void Solutes::take_from_rigid_bubbles(ParticleStore& particles, double t, double
 void Solutes::add_columns(SeriesTable& series, const oxygen::Supply* bubbles) const {
   if (scalars != nullptr) scalars->add_columns(series);
   if (rigid_bubbles != nullptr) rigid_bubbles->add_columns(series);
-  if (oxygen != nullptr) oxygen->add_columns(series, bubbles != nullptr ? bubbles : rigid_bubbles.get());
+  if (oxygen != nullptr) oxygen->add_columns(series, supply(bubbles));
   if (sludge != nullptr) sludge->add_columns(series);
+  if (recorded != nullptr) recorded->add_columns(series);
 }
 
 void Solutes::save(StateWriter& writer) const {
@@ -47,6 +52,7 @@ void Solutes::save(StateWriter& writer) const {
   if (oxygen != nullptr) oxygen->save(writer);
   if (rigid_bubbles != nullptr) rigid_bubbles->save(writer);
   if (sludge != nullptr) sludge->save(writer);
+  if (recorded != nullptr) recorded->save(writer);
 }
 
 void Solutes::load(StateReader& reader) {
@@ -54,10 +60,11 @@ void Solutes::load(StateReader& reader) {
   if (oxygen != nullptr) oxygen->load(reader);
   if (rigid_bubbles != nullptr) rigid_bubbles->load(reader);
   if (sludge != nullptr) sludge->load(reader);
+  if (recorded != nullptr) recorded->load(reader);
 }
 
 std::vector<Section> solute_sections() {
-  return {scalar_section(), scalar_wall_section(), oxygen_section(), biokinetics_section()};
+  return {scalar_section(), scalar_wall_section(), oxygen_section(), biokinetics_section(), recorded_flow_section()};
 }
 
 void check_solutes(Draft& draft, const std::vector<std::string>& taken, Problems& problems) {
@@ -65,6 +72,7 @@ void check_solutes(Draft& draft, const std::vector<std::string>& taken, Problems
   check_oxygen(draft, problems);
   check_biokinetics(draft, problems);
   check_scalar_walls(draft, problems);
+  check_recorded_flow(draft, problems);
 }
 
 }  // namespace spume

@@ -114,6 +114,8 @@ struct Flow {
   void accept(double dt);                 // (2)
   std::int64_t carry_scalars(double dt);  // returns the number of sweeps
   void transfer_oxygen(double dt);
+  void record_flow(double dt);
+  void go_on_recorded(double dt);  // in place of a step
 
   // What the liquid does to each body, as it is.
   std::vector<WallForce> forces_on_bodies();

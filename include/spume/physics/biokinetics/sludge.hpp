@@ -16,6 +16,9 @@ class Sludge {
   // A step of dt seconds; the particles react when an interval is full.
   void react(double dt);
 
+  // The same over dt, whatever the interval, of cells with these volumes: values by the index of the scalar.
+  void react_in_cells(double dt, std::vector<std::vector<double>>& values, const std::vector<double>& volumes);
+
   // Columns: uptake of oxygen, steps of the reactions.
   void add_columns(SeriesTable& series) const;
   void save(StateWriter& writer) const { saved_.save(writer); }

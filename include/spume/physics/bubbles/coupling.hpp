@@ -115,6 +115,7 @@ class BubbleCoupling final : public oxygen::Supply {
   double conductance() const override { return population_.empty() ? 0 : gas_totals_.conductance; }  // sum of k_L A
   // What spargers feed of oxygen at the time of the state, g per time.
   double oxygen_feed() const override;
+  void each(const Each& see) const override;
   // What bubbles would give to a liquid without oxygen, g per time.
   double transfer_capacity() const override { return population_.empty() ? 0 : gas_totals_.capacity; }
   bool mixture_pressure() const { return options_.momentum_form == MomentumForm::mixture_pressure; }
@@ -157,6 +158,7 @@ class BubbleCoupling final : public oxygen::Supply {
   void pack_dissolved();
   void interpolate_dissolved(const CrossSearch::Found& found, float share, std::size_t b);
   float dissolve(std::size_t b, double radius, double slip, double dt);
+  bool dissolves_whole(const oxygen::Contents& contents, double height) const;
   void sum_gas();
   void accept_gas();
   void fill_new_bubbles(double fraction);
@@ -226,6 +228,7 @@ class BubbleCoupling final : public oxygen::Supply {
   GasTotals gas_totals_, next_gas_totals_;  // of the last step, and of this one until it is accepted
   struct {
     double released = 0, given = 0, left = 0;  // g of oxygen since the start
+    double dissolved = 0;                      // bubbles that dissolved whole
   } oxygen_;
   Array<std::uint8_t> dead_;
   Array<std::uint8_t> near_;            // particles with bubbles in their reach

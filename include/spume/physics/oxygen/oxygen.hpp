@@ -34,6 +34,10 @@ class Oxygen {
   void exchange_with_air(double dt, const Surface& surface);
 
   bool has_surface() const { return options_.surface_k_l > 0; }
+  std::size_t scalar() const { return options_.index; }
+  // Of the particles in the last step, alpha k_L A of the surface, from this call on; empty without a surface.
+  void keep_surface_conductance() { keeps_conductance_ = true; }
+  const Array<float>& surface_conductance() const { return surface_conductance_; }
 
   // Columns; `bubbles`: null without.
   void add_columns(SeriesTable& series, const Supply* bubbles) const;
@@ -49,6 +53,8 @@ class Oxygen {
   const Gas gas_;
   double layer_area_ = 0;                       // dr^2 / |m_0|
   double from_surface_ = 0, surface_area_ = 0;  // g since the start; of the last step
+  bool keeps_conductance_ = false;
+  Array<float> surface_conductance_;
   SavedNumbers saved_{"oxygen"};
 };
 

@@ -47,6 +47,7 @@ class RigidBubbles final : public Supply {
   double conductance() const override { return conductance_; }
   double transfer_capacity() const override { return capacity_; }
   double oxygen_feed() const override;
+  void each(const Each& see) const override;
 
   void add_columns(SeriesTable& series) const;
   void save(StateWriter& writer) const;
@@ -72,7 +73,7 @@ class RigidBubbles final : public Supply {
     RigidPlace place;
     double weight = 0, concentration = 0;
     Vec3 velocity{};  // of the liquid
-    double given = 0;
+    double given = 0, conductance = 0, capacity = 0;
   };
   void set_out(double t);
   void find_particles(const Liquid& liquid);

@@ -49,6 +49,8 @@ class Scalars {
 
   // Sources over dt from time t on, at the places of the particles: what they add counts to added().
   void add_sources(double t, double dt, const VectorField& places);
+  // What a source added to the amount by another way.
+  void count_source(std::size_t scalar, double amount) { added_[scalar] += amount; }
   // Adds `change` to the values of a scalar; what its float sum differs from `amount` is taken out in proportion to the
   // size of the changes, so that the amount of the scalar changes by `amount`.
   void add(std::size_t scalar, const Array<float>& change, double amount);
