@@ -45,11 +45,7 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_p
                : options.get<BubbleOptions>().integrator == BubbleIntegrator::stable ? "stable integrator"
                                                                                      : "explicit sub-steps";
   events = has.bubbles ? events_of(loaded) : no_bubbles;
-  scalars = has.scalars ? "sources, diffusion, and their change by the shift" : "no [[scalar]]";
-  oxygen = !has.oxygen   ? "no section [oxygen]"
-           : has.bubbles ? "transfer from bubbles and through the surface"
-                         : oxygen::in_words(loaded.scene);
-  reactions = has.biokinetics ? "Activated Sludge Model No. 1" : "no section [biokinetics]";
+  oxygen = has.bubbles ? "transfer from bubbles and through the surface" : oxygen::in_words(loaded.scene);
   images = has.images ? has.openings ? "sides, solids, points behind openings" : "periodic sides, walls or solids"
                       : "every side is open";
   surface = has.free_surface ? "the liquid has a free surface" : "the liquid fills the domain";

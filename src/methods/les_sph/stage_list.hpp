@@ -41,11 +41,6 @@ inline Arrays seen_by_bubbles(const Flow& f, const KeptArrays& kept) {
           f.filtered_velocity, f.strain,           f.eddy_viscosity(),   f.moments.normal,        kept.sizes};
 }
 
-// Values, rates and changes of so many scalars.
-inline Arrays living_scalars(const Flow& f, std::size_t count) {
-  return {ArrayUse([&f, count] { return 16.0 * static_cast<double>(f.size() * count); })};
-}
-
 inline Arrays arrays_of(const MomentFields& m) {
   return {m.correction, m.uncorrected, m.divergence_of_position, m.laplacian_diagonal,
           m.kernel_sum, m.normal,      m.concentration_gradient};
@@ -65,17 +60,6 @@ inline auto solving(Flow& f, void (Flow::*solve)()) {
   return [&f, solve](StageRun& run) {
     (f.*solve)();
     run.pairs = f.arrangement.pair_count() * f.solver.report().applications;
-  };
-}
-
-inline auto reacting(Flow& f) {
-  return [&f](StageRun& run) { f.solutes.sludge->react(run.dt); };
-}
-
-// Every scalar has its sweep.
-inline auto carrying_scalars(Flow& f) {
-  return [&f](StageRun& run) {
-    run.pairs = f.arrangement.pair_count() * static_cast<double>(f.transport_scalars(run.dt));
   };
 }
 

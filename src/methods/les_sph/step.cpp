@@ -3,7 +3,7 @@
 // same list is the start, what `spume check` prints and what the ledger times.
 #include "spume/methods/les_sph/step.hpp"
 
-#include "spume/methods/particle_stages.hpp"
+#include "spume/methods/solute_stages.hpp"
 #include "stage_list.hpp"
 
 namespace spume::les_sph {
@@ -103,20 +103,7 @@ Plan make_plan(Flow& f) {
       step, "acceptance", true, "limits, energy, final positions", &Flow::accept,
       {f.next_velocity, r, f.displacement_by_shift(), f.shift_velocity, f.reduced_pressure, f.potential, f.strain},
       {p.position, p.velocity, f.acceleration, f.pressure});
-  stages.add(step, "scalars", has.scalars, why.scalars, carrying_scalars(f), living_scalars(f, f.solutes.count()),
-             living_scalars(f, f.solutes.count()));
-  const Arrays dissolved = living_scalars(f, has.oxygen ? 1 : 0);
-  stages.add(step, "oxygen", has.oxygen, why.oxygen, &Flow::transfer_oxygen, dissolved, dissolved);
-  const Arrays sludge = living_scalars(f, has.biokinetics ? std::size_t{biokinetics::asm1::components} : 0);
-  stages.add(step, "reactions", has.biokinetics, why.reactions, reacting(f), sludge, sludge);
-  const bool records = has.recorded_flow;
-  const ArrayUse record([&f, records] { return records ? f.solutes.recorded->bytes() : 0.0; });
-  const std::string recorded = records ? f.solutes.recorded->in_words() : "no section [recorded_flow]";
-  stages.add(step, "record of the flow", records, recorded, &Flow::record_flow, {p.position}, {record},
-             [&f] { return f.solutes.recorded->records(f.time); });
-  stages.add(StagePart::recorded, "recorded flow", records,
-             records ? "in place of all others behind the record" : recorded, &Flow::go_on_recorded, {record},
-             living_scalars(f, f.solutes.count()));
+  add_solute_stages(stages, f, has, why.oxygen, [&f]() -> const oxygen::Supply* { return f.bubbles.get(); });
   stages.add(step, "bubble events", has.bubbles, why.events, &Flow::accept_bubbles,
              living({kept.bubbles, f.sizes.volume_fraction}), living({kept.bubbles, f.volume_fraction()}));
   return plan;

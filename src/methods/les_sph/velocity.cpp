@@ -406,14 +406,4 @@ void Flow::transfer_oxygen(double dt) {
         dt, {.interior_weight = surface->interior_weight.data(), .normal = read(moments.normal)});
 }
 
-void Flow::record_flow(double dt) {
-  solutes.record(time, dt, bubbles.get());
-}
-
-void Flow::go_on_recorded(double dt) {
-  solutes.recorded->advance(time, dt);
-  time += dt;
-  ++steps;
-}
-
 }  // namespace spume::les_sph

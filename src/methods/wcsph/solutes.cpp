@@ -16,7 +16,7 @@ void Flow::keep_shift(double dt) {
   });
 }
 
-std::int64_t Flow::carry_scalars(double dt) {
+std::int64_t Flow::transport_scalars(double dt) {
   ScratchPool& scratch = particles.scratch();
   const bool surface = features.oxygen && solutes.oxygen->has_surface() && scene.free_surface;
   ScratchArray<float> divergence_of_position(scratch, size());
@@ -70,16 +70,6 @@ void Flow::transfer_oxygen(double dt) {
                                          .gradient_scale = arrangement.context.gradient_scale});
   particles.scratch().release(carried_solutes.interior);
   particles.scratch().release(carried_solutes.normal);
-}
-
-void Flow::record_flow(double dt) {
-  solutes.record(time, dt, nullptr);
-}
-
-void Flow::go_on_recorded(double dt) {
-  solutes.recorded->advance(time, dt);
-  time += dt;
-  ++steps;
 }
 
 }  // namespace spume::wcsph

@@ -2,7 +2,7 @@
 // The step, as the list of its stages: velocity Verlet with the density at the middle of the step (Adami et al. 2012),
 // one evaluation of the forces. Numbers are those of the README of the method. The first accelerations are those of a
 // step of length zero. The same list is what `spume check` prints and what the ledger times.
-#include "spume/methods/particle_stages.hpp"
+#include "spume/methods/solute_stages.hpp"
 #include "spume/methods/wcsph/wcsph.hpp"
 
 namespace spume::wcsph {
@@ -60,29 +60,7 @@ Plan make_plan(Flow& f) {
   stages.add(both, "acceptance", true, "(6): the new state", &Flow::accept,
              {f.half_velocity, f.place, f.next_excess, f.pressure_force, f.viscous_force, f.flux, f.concentration},
              {p.position, p.velocity, f.acceleration, f.shift, *f.excess});
-  const auto solutes = [&f](std::size_t count) {
-    return Arrays{ArrayUse([&f, count] { return 16.0 * static_cast<double>(f.size() * count); })};
-  };
-  const Arrays scalars = solutes(f.solutes.count()), oxygen = solutes(has.oxygen ? 1 : 0),
-               sludge = solutes(has.biokinetics ? biokinetics::asm1::components : 0);
-  const auto carry = [&f](StageRun& run) {
-    run.pairs = f.arrangement.pair_count() * static_cast<double>(f.carry_scalars(run.dt));
-  };
-  stages.add(step, "scalars", has.scalars,
-             has.scalars ? "sources, diffusion, and their change by the shift" : "no [[scalar]]", carry, scalars,
-             scalars);
-  stages.add(step, "oxygen", has.oxygen, has.oxygen ? oxygen::in_words(f.scene) : "no section [oxygen]",
-             &Flow::transfer_oxygen, oxygen, oxygen);
-  stages.add(
-      step, "reactions", has.biokinetics, has.biokinetics ? "Activated Sludge Model No. 1" : "no section [biokinetics]",
-      [&f](StageRun& run) { f.solutes.sludge->react(run.dt); }, sludge, sludge);
-  const bool records = has.recorded_flow;
-  const ArrayUse record([&f, records] { return records ? f.solutes.recorded->bytes() : 0.0; });
-  const std::string recorded = records ? f.solutes.recorded->in_words() : "no section [recorded_flow]";
-  stages.add(step, "record of the flow", records, recorded, &Flow::record_flow, {p.position}, {record},
-             [&f] { return f.solutes.recorded->records(f.time); });
-  stages.add(StagePart::recorded, "recorded flow", records,
-             records ? "in place of all others behind the record" : recorded, &Flow::go_on_recorded, {record}, scalars);
+  add_solute_stages(stages, f, has, oxygen::in_words(f.scene), []() -> const oxygen::Supply* { return nullptr; });
   return plan;
 }
 

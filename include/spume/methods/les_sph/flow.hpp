@@ -200,8 +200,6 @@ struct Flow {
   // Scalars over the step that was accepted, at the positions of its lists. Returns the number of sweeps.
   std::int64_t transport_scalars(double dt);
   void transfer_oxygen(double dt);  // from bubbles and through the surface, of the same step
-  void record_flow(double dt);
-  void go_on_recorded(double dt);  // in place of a step
 
   // Of a step dt that starts from the present state; the work of its forces where `dt` is not zero.
   EnergyBalance energy_balance(double dt) const;

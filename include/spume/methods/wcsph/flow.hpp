@@ -108,14 +108,12 @@ struct Flow {
   void find_rates();                // (1), and the viscous part of (2)
   void advance_density(double dt);  // (1), (3), and (5) to the end of the step
   void filter_density();
-  void start_tension();                   // the first pressures of whole phases jump by the mean tension
-  void find_pressure_force();             // (2), (4)
-  void add_tension();                     // (11)
-  void accept(double dt);                 // (2)
-  std::int64_t carry_scalars(double dt);  // returns the number of sweeps
+  void start_tension();                       // the first pressures of whole phases jump by the mean tension
+  void find_pressure_force();                 // (2), (4)
+  void add_tension();                         // (11)
+  void accept(double dt);                     // (2)
+  std::int64_t transport_scalars(double dt);  // returns the number of sweeps
   void transfer_oxygen(double dt);
-  void record_flow(double dt);
-  void go_on_recorded(double dt);  // in place of a step
 
   // What the liquid does to each body, as it is.
   std::vector<WallForce> forces_on_bodies();
