@@ -3,7 +3,7 @@
 import numpy as np
 from case_test import CaseTest
 from spume_tools.results import Results
-from synthetic import series_of, write_table
+from synthetic import lattice, series_of, write_snapshots, write_table
 
 
 class CleanWater(CaseTest):
@@ -66,3 +66,41 @@ class AeratedTank(CaseTest):
         self.assertAlmostEqual(self.measured(leak=1e-4)["cod_balance"], 1e-2 / 0.19701, places=3)
         self.assertAlmostEqual(self.measured(uptake_error=1e-4)["oxygen_balance"], 1e-2 / 0.19701, places=3)
         self.assertAlmostEqual(self.measured(sote=0.05)["sote_off_range"], 2.7)
+
+
+class RecordedFlow(CaseTest):
+    """Two runs that agree but for what is put into the recorded one."""
+
+    def run_with(self, factor=1.0, leak=0.0, tilt=0.0):
+        folder, module = self.run_of("recorded_flow")
+        case = (folder / "case.toml").read_text(encoding="utf-8")
+        section = "[recorded_flow]\nfrom = 15\nuntil = 45\nlag = 0.5\ncell = 0.05\n\n[biokinetics]"
+        (folder / "case.toml").write_text(case.replace("[biokinetics]", section), encoding="utf-8")
+        t = np.linspace(0, 300, 301)
+        late = np.maximum(t - 45, 0) / 255
+        amount = 5e-3 * (1 + (factor - 1) * late)
+        uptake = 1e-4 * t
+        write_table(folder / "series.csv", series_of(
+            t, amount_of_S_O=amount, amount_of_S_S=0.01 + 1e-5 * t, amount_of_S_NH=0.02, amount_of_S_NO=0.1, amount_of_X_BH=10.0,
+            oxygen_uptake=uptake, oxygen_from_bubbles=0.9 * np.minimum(uptake, 4.5e-3), oxygen_from_surface=0.1 * np.minimum(uptake, 4.5e-3),
+            oxygen_from_record=np.maximum(uptake - 4.5e-3, 0) + amount - amount[0] + leak * late))
+        points = lattice((0, 0, 0), (0.3, 0.175, 0.2), 0.025)
+        write_snapshots(folder / "fluid.vtkhdf", (0, 60, 120), lambda t: points,
+                        {"S_O": lambda r, t: 0.5 * (1 + 0.2 * (r[:, 2] > 0.1) + tilt * np.sign(r[:, 0] - 0.15))})
+        return Results(folder), module
+
+    def measured(self, **change):
+        full, module = self.run_with()
+        return module.measure({"full": full, "recorded": self.run_with(**change)[0]})
+
+    def test_runs_that_agree_have_no_error(self):
+        measured = self.measured()
+        self.assertLess(measured["recorded_error"], 1e-9)
+        self.assertLess(measured["pattern_error"], 1e-6)
+        self.assertLess(measured["oxygen_balance"], 1e-9)
+        self.assertAlmostEqual(measured["pattern_deviation"], 0.1 / 1.1, places=4)
+
+    def test_drift_leak_and_another_pattern_are_seen(self):
+        self.assertAlmostEqual(self.measured(factor=1.03)["recorded_error"], 0.03, places=6)
+        self.assertAlmostEqual(self.measured(leak=3e-3)["oxygen_balance"], 0.1, places=6)
+        self.assertAlmostEqual(self.measured(tilt=0.04)["pattern_error"], 0.04 / 1.1, places=4)
