@@ -36,8 +36,10 @@ InvariantWatch::InvariantWatch(std::vector<Invariant> invariants, const std::vec
 
 void InvariantWatch::observe(std::span<const double> row) {
   for (Watched& w : watched_) {
-    const double value = row[w.column] + (w.invariant.beside ? w.invariant.beside() : 0.0);
     const double scale = std::abs(row[w.scale]);
+    const double column = row[w.column] + (w.invariant.beside ? w.invariant.beside() : 0.0);
+    const bool row_by_row = w.invariant.kind == Invariant::Kind::largest && w.scale != w.column;
+    const double value = row_by_row ? relative(column, scale) : column;
     if (!started_) w.first = w.least = w.most = value, w.largest_scale = scale;
     w.most = larger_or_nan(w.most, value);
     w.least = -larger_or_nan(-w.least, -value);

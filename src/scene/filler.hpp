@@ -283,7 +283,7 @@ class Filler {
   double part_of_cell(ThreadRegions& own, std::size_t r, const Vec3& p, Chunk& chunk) const;
   double open_part(ThreadRegions& own, const Vec3& p) const;
   template <class Inside>
-  double share_of_cell(const Vec3& p, int parts, double reach, Inside&& inside) const;
+  double share_of_cell(const Vec3& p, Inside&& inside) const;
   void report(const std::vector<std::vector<Chunk>>& chunks);
   void set_volume(const std::vector<std::vector<Chunk>>& chunks);
   bool stands_alone(std::size_t r, const std::vector<std::vector<Chunk>>& chunks) const;

@@ -43,6 +43,7 @@ void subtract_mean(std::span<double> r) {
 
 RefinementResult solve_refined(RefinedSystem& system, const RefinementOptions& options, std::span<double> r) {
   RefinementResult result;
+  result.tolerance = options.tolerance;
   const double target = options.tolerance * options.reference_norm;
   system.residual(r);
   ++result.applications;

@@ -63,6 +63,15 @@ TEST(Verdicts, LargestTakesEitherSign) {
   EXPECT_TRUE(verdict.pass());
 }
 
+TEST(Verdicts, LargestIsBesideTheScaleOfItsRow) {
+  const Invariant residual{
+      .quantity = "r", .kind = Kind::largest, .column = "energy", .bound = 1, .scale_column = "kinetic"};
+  // The largest value, 6, is half of what its row allows; 0 where nothing is allowed is nothing.
+  const auto verdict = watched(residual, {{0, 0, 0, 0}, {1, 0, 6, 12}, {2, 0, -3, 4}}).verdicts().at(0);
+  EXPECT_EQ(verdict.value, 0.75);
+  EXPECT_FALSE(watched(residual, {{0, 0, 0, 0}, {1, 0, 1e-9, 0}}).verdicts().at(0).pass());
+}
+
 TEST(Verdicts, WhatIsNotANumberPassesNothing) {
   for (const Kind kind : {Kind::drift, Kind::growth, Kind::change, Kind::largest}) {
     const Invariant any{.quantity = "x", .kind = kind, .column = "mass", .bound = 1e300};

@@ -101,7 +101,7 @@ TEST(Phases, FillATankThatIsABody) {
 }
 
 // Sites of the lattice are whole or nothing: a column 0.333 wide and 0.47 high gets 3 by 5 of them, less a disc in it.
-// Volumes asked for come from 64 samples a cell, those of cells cut by a disc within a tenth of a cell each.
+// Volumes asked for come from 256 samples a cell.
 TEST(Phases, TheMassThatEachGetsIsSaidBesideWhatWasAsked) {
   const LoadedCase loaded = load_phases(head + water + air + "[[region]]\nphase = \"air\"\n" +
                                         "[[region]]\nphase = \"water\"\nupper = [0.333, 0.47]\n" +
@@ -110,8 +110,8 @@ TEST(Phases, TheMassThatEachGetsIsSaidBesideWhatWasAsked) {
   ASSERT_EQ(fills.size(), 2u);
   EXPECT_EQ(fills[0].name, "water");
   const double disc = std::numbers::pi * 0.01, exact = 0.333 * 0.47 - disc;
-  // Faces are known to an eighth of a cell along 8 and 5 cells of them, the disc within a tenth of 12 cells.
-  EXPECT_NEAR(fills[0].asked, exact, (13 * 0.125 + 1.2) * 0.01);
+  // Faces and the disc are known to 3 samples in 256 along 13 and 12 cells.
+  EXPECT_NEAR(fills[0].asked, exact, 25 * 3 / 256.0 * 0.01);
   EXPECT_NEAR(fills[0].asked + fills[1].asked, 1, 1e-12);
   EXPECT_NEAR(fills[0].got, (3 * 5 - 4) * 0.01, 1e-12);
   EXPECT_NEAR(fills[0].got + fills[1].got, 1, 1e-12);

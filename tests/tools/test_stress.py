@@ -78,7 +78,8 @@ class Checks(unittest.TestCase):
     def outcome(self, code=0, said="", timed_out=False, last=None, ids=None, **columns):
         t = np.linspace(0, 1, 11)
         values = {"kinetic_energy": 0.1 - 0.05 * t, "potential_energy": 0.2 + 0 * t, "max_speed": 1.0 + 0 * t, "mass": 1.0 + 0 * t,
-                  "momentum_x": 0.3 + 0 * t, "momentum_y": 0 * t, "pressure_residual": 1e-7 + 0 * t} | columns
+                  "momentum_x": 0.3 + 0 * t, "momentum_y": 0 * t,
+                  "pressure_residual": 1e-7 + 0 * t, "pressure_tolerance": 2e-7 + 0 * t} | columns
         values["total_energy"] = values["kinetic_energy"] + values["potential_energy"]
         (self.folder / "case.toml").write_text(toml_text(self.scene.case))
         (self.folder / "summary.json").write_text('{"retries": 0}')
@@ -105,6 +106,7 @@ class Checks(unittest.TestCase):
         self.assertEqual(self.complaint(momentum_x=0.3 + 0.1 * t), "momentum")
         self.assertEqual(self.complaint(mass=1 + 1e-9 * t), "mass")
         self.assertEqual(self.complaint(pressure_residual=1e-7 + 1e-3 * (t == 0)), "convergence")
+        self.assertEqual(self.complaint(pressure_tolerance=2e-7 + 0.02 * (t == 1)), "convergence")
         self.assertEqual(self.complaint(max_speed=np.where(t == 1, np.nan, 1)), "finite")
 
     def test_energy_that_coupled_particles_cannot_have_supplied_is_seen(self):

@@ -30,14 +30,14 @@ struct Remark {
 //   drift:   max |x(t) - x(0)| / |x(0)|
 //   growth:  max (x(t) - x(0), 0) / s
 //   change:  max |x(t) - x(0)| / s
-//   largest: max |x(t)|
+//   largest: max |x(t)|, with a scale column max |x(t)| / |scale column(t)|
 struct Invariant {
   enum class Kind { drift, growth, change, largest };
   std::string quantity;  // its name in summary.json
   Kind kind = Kind::largest;
   std::string column;
   double bound = 0;
-  std::string scale_column = {};  // of growth and change
+  std::string scale_column = {};  // of growth, change and largest
   double scale_factor = 1, scale_floor = 0;
   std::function<double()> beside = {};  // of the present state, added to the column; lives as long as the method
 };

@@ -46,6 +46,7 @@ struct RefinementOptions {
 struct RefinementResult {
   int iterations = 0;            // of the Krylov solver, at least one a correction
   int applications = 0;          // of A, in either precision
+  double tolerance = 0;          // that was asked for
   double relative_residual = 0;  // that of the last correction's recurrence where that may be trusted, else measured
   bool converged = false;
 };

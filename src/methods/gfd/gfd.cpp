@@ -116,6 +116,7 @@ void Gfd::declare_series() {
   series_.add("max_divergence", "of the predicted velocity, 1 / time", [&flow] { return flow.max_divergence; });
   series_.add("pressure_iterations", "1", [&flow] { return double(flow.solver.report().iterations); });
   series_.add("pressure_residual", "relative", [&flow] { return flow.solver.report().relative_residual; });
+  series_.add("pressure_tolerance", "relative, asked of the step", [&flow] { return flow.solver.report().tolerance; });
 }
 
 void Gfd::series_values(std::span<double> values) {
@@ -171,7 +172,8 @@ std::vector<Invariant> Gfd::invariants() const {
   list.push_back({.quantity = "pressure_residual",
                   .kind = Invariant::Kind::largest,
                   .column = "pressure_residual",
-                  .bound = divergence_tolerance(flow_.options.get<PressureOptions>().tolerance)});
+                  .bound = 1,
+                  .scale_column = "pressure_tolerance"});
   return list;
 }
 

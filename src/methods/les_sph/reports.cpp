@@ -106,6 +106,7 @@ void LesSph::declare_series() {
   series_.add("max_divergence", "of the predicted velocity, 1 / time", [&flow] { return flow.max_divergence; });
   series_.add("pressure_iterations", "1", [&flow] { return double(flow.solver.report().iterations); });
   series_.add("pressure_residual", "relative", [&flow] { return flow.solver.report().relative_residual; });
+  series_.add("pressure_tolerance", "relative, asked of the step", [&flow] { return flow.solver.report().tolerance; });
   series_.add("surface_particles", "1", [&flow] {
     return flow.surface == nullptr ? 0.0 : static_cast<double>(flow.surface->surface_particles.size());
   });
@@ -182,7 +183,8 @@ std::vector<Invariant> LesSph::invariants() const {
   list.push_back({.quantity = "pressure_residual",
                   .kind = Invariant::Kind::largest,
                   .column = "pressure_residual",
-                  .bound = divergence_tolerance(flow_.options.get<PressureOptions>().tolerance)});
+                  .bound = 1,
+                  .scale_column = "pressure_tolerance"});
   return list;
 }
 
