@@ -25,8 +25,6 @@ constexpr double thin_as_void = 0.05;
 // whose standard deviation is 0.009 in taylor_green_2d. Evening out the latter stirs the liquid: at 1/200 the error of
 // that case's velocity is 0.037 %, 0.024 % when twice the deviation is let be, 0.023 % without any relaxation.
 constexpr double mean_disorder = 0.002, local_disorder = 0.02;
-// Of what div r lacks; see tells_density() for what surfaces and foam have.
-constexpr double largest_isotropic_normal = 1.0 / 3;
 // Of the full displacement: less is below what positions, of 1e-16 of the domain, can tell.
 constexpr double least_displacement = 1e-12;
 

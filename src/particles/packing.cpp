@@ -8,6 +8,7 @@
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
+#include "spume/particles/number_density.hpp"
 
 namespace spume {
 namespace {
@@ -21,36 +22,72 @@ constexpr double still_enough = 0.005;  // spacings: rounds end when nothing mov
 constexpr int most_rounds = 200;
 constexpr int wet_rounds =
     10;  // which wall points are wet is found once in so many: particles move by a spacing at most
-// Of the kernel sum of a lattice: half a layer less than full beside a surface. Less is a free surface, and what stands
-// within a support radius and a spacing of it stays: there the surface counts the liquid below it.
-constexpr double full_share = 0.9;
-constexpr double beyond_support = 1.1;
+// Of the kernel sum of a lattice, what is missing beside a surface at least: half a layer. What stands within a
+// support radius and a spacing of it stays: there the surface counts the liquid below it.
+constexpr double surface_lack = 0.1;
+constexpr double beyond_support = 1.6;
+// Of the kernel sum of a lattice. Thinner liquid is closed as a void (number_density.cpp). At the edge of a box that
+// fits the lattice 4.5 % are missing: of the site across it, which the edge hides.
+constexpr double even_enough = 0.05;
+// Spacings: no surface is looked for below a ceiling this high, where the one layer that fits may be as thin as one.
+constexpr double flat_channel = 2;
+// Spacings: what is narrower is filled with nothing, and stays so.
+constexpr double least_room = 0.5;
 // Of the squared horizontal part of a normal: below it, a wall at 6 degrees, images along the horizontal are far away.
 constexpr double least_aside = 0.01;
 
+Vec3 way_to(const NeighbourList& list, int dimensions, std::size_t i, std::int32_t j) {
+  Vec3 way{};
+  for (int axis = 0; axis < dimensions; ++axis)
+    way[axis] = double{list.coordinate(axis)[j]} - double{list.coordinate(axis)[i]};
+  return way;
+}
+
+// Share of a lattice's kernel sum that a particle lacks, and whether it lacks it all around, as in a gap between walls
+// that is too wide for its particles (number_density.hpp).
+struct Lack {
+  double share = 0;
+  bool all_around = false;
+};
+
+void find_lacks(const Arrangement& arrangement, const ParticleStore& particles, const Resolution& resolution,
+                std::vector<Lack>& lacks) {
+  const NeighbourList& list = arrangement.list;
+  const int d = particles.dimensions;
+  lacks.resize(particles.size());
+  with_plain_kernel(d, resolution.kernel, [&]<int dimensions, class Kernel>() {
+    const double h = resolution.smoothing_length;
+    const double value = particles.volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions);
+    parallel_for(particles.size(), [&](std::size_t i) {
+      double sum = value * Kernel::w(0.0), divergence = 0;
+      Vec3 m{};
+      for (const std::int32_t j : list.of(i)) {
+        const Vec3 dr = way_to(list, d, i, j);
+        const double r = length(dr), g = -value * Kernel::f(r / h) / (h * h);
+        sum += value * Kernel::w(r / h);
+        divergence += g * r * r;
+        m = add(m, multiply(g, dr));
+      }
+      lacks[i].share = 1 - sum / resolution.lattice.kernel_sum;
+      const double missing = resolution.lattice.divergence_of_position - divergence;
+      lacks[i].all_around = h * length(m) < largest_isotropic_normal * missing;
+    });
+  });
+}
+
 // 1 for particles that the height of a free surface depends on.
 void find_surface(const Arrangement& arrangement, const ParticleStore& particles, const Resolution& resolution,
-                  std::vector<std::uint8_t>& sees_surface) {
+                  const std::vector<Lack>& lacks, std::vector<std::uint8_t>& sees_surface) {
   const NeighbourList& list = arrangement.list;
   const std::size_t n = particles.size();
   const auto identifier = [&](std::size_t i) { return static_cast<std::size_t>((*particles.identifier)[i]); };
   const double near2 = std::pow(beyond_support * resolution.spacing, 2);
   const auto distance2 = [&](std::size_t i, std::int32_t j) {
-    double r2 = 0;
-    for (int axis = 0; axis < particles.dimensions; ++axis)
-      r2 += std::pow(double{list.coordinate(axis)[j]} - double{list.coordinate(axis)[i]}, 2);
-    return r2;
+    const Vec3 way = way_to(list, particles.dimensions, i, j);
+    return dot(way, way);
   };
   std::vector<std::uint8_t> surface(n), seen(n);
-  with_plain_kernel(particles.dimensions, resolution.kernel, [&]<int dimensions, class Kernel>() {
-    const double h = resolution.smoothing_length;
-    const double value = particles.volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions);
-    parallel_for(n, [&](std::size_t i) {
-      double sum = value * Kernel::w(0.0);
-      for (const std::int32_t j : list.of(i)) sum += value * Kernel::w(std::sqrt(distance2(i, j)) / h);
-      surface[i] = sum < full_share * resolution.lattice.kernel_sum ? 1 : 0;
-    });
-  });
+  parallel_for(n, [&](std::size_t i) { surface[i] = lacks[i].share > surface_lack && !lacks[i].all_around ? 1 : 0; });
   parallel_for(n, [&](std::size_t i) {
     seen[i] = surface[i];
     for (const std::int32_t j : list.of(i)) seen[i] = seen[i] != 0 || surface[arrangement.particle_of(j)] != 0 ? 1 : 0;
@@ -63,69 +100,34 @@ void find_surface(const Arrangement& arrangement, const ParticleStore& particles
   });
 }
 
-}  // namespace
+Vec3 limited(const Vec3& way, double longest) {
+  const double size = length(way);
+  return size > longest ? multiply(longest / size, way) : way;
+}
 
-void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boundary& boundary,
-                        const Resolution& resolution, const VectorField& at, bool free_surface, double t) {
+// Rounds of moves at `at` until none is longer than `still_enough`. start(): with the first lists; whether to move at
+// all. move(i, f): what particle i moves by, with f(dr) = V h^2 W'(r) / r of a neighbour.
+template <class Start, class Move>
+void move_in_rounds(Arrangement& arrangement, ParticleStore& particles, Boundary& boundary,
+                    const Resolution& resolution, const VectorField& at, double t, Start&& start, Move&& move) {
   const int d = particles.dimensions;
   const std::size_t n = particles.size();
-  const BodyWalls& bodies = *boundary.bodies();
   const double longest = longest_move * resolution.spacing;
-  std::vector<std::uint8_t> sees_surface(n);  // by identifier: the order changes
   VectorScratch way;
   particles.scratch().lease(way, d, n);
   for (int round = 0; round < most_rounds; ++round) {
     arrangement.sort(particles, at);
     boundary.make_images(arrangement, particles, at, 1, {t, t, t}, round % wet_rounds == 0);
     arrangement.find_neighbours(particles, at, {});
-    const NeighbourList& list = arrangement.list;
-    const auto particle_count = static_cast<std::int32_t>(n);
+    if (round == 0 && !start()) break;
     double farthest = 0;
-    if (round == 0 && free_surface) find_surface(arrangement, particles, resolution, sees_surface);
     with_plain_kernel(d, resolution.kernel, [&]<int dimensions, class Kernel>() {
       const double h = resolution.smoothing_length;
       const double value = particles.volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions);
       farthest = parallel_max(n, 0.0, [&](std::size_t i) {
-        for (int axis = 0; axis < d; ++axis) way[axis][i] = 0;
-        const double distance = bodies.distance(vector_at(at, d, i));
-        // Wall points beside the surface are there or not as a whole: those that move horizontally see their neighbours
-        // mirrored at the wall instead, which spaces the first row evenly.
-        const bool horizontally = sees_surface[static_cast<std::size_t>((*particles.identifier)[i])] != 0;
-        const double reach = (horizontally ? level_layers : packed_layers) * resolution.spacing;
-        if (distance >= reach) return 0.0;
-        Vec3 gradient{};
-        const auto add_neighbour = [&](const Vec3& dr) {
-          const double f = value * Kernel::f(length(dr) / h);
-          for (int axis = 0; axis < d; ++axis) gradient[axis] -= f * dr[axis];
-        };
-        // The liquid continues at its level, mirrored along the horizontal: what lies behind the tangent plane moves by
-        // `across` for every length that its mirror image lies before it.
-        Vec3 normal{}, across{};
-        if (horizontally) {
-          normal = bodies.normal(vector_at(at, d, i));
-          Vec3 aside = normal;
-          aside[d - 1] = 0;
-          across = multiply(-2 / std::max(dot(aside, aside), least_aside), aside);
-          add_neighbour(multiply(distance, across));
-        }
-        for (const std::int32_t j : list.of(i)) {
-          const bool wall_point = j >= particle_count && arrangement.images.wall_point() != nullptr &&
-                                  arrangement.images.wall_point()[j - particle_count] >= 0;
-          if (horizontally && wall_point) continue;
-          Vec3 dr{};
-          for (int axis = 0; axis < d; ++axis)
-            dr[axis] = double{list.coordinate(axis)[j]} - double{list.coordinate(axis)[i]};
-          add_neighbour(dr);
-          const double before = distance + dot(dr, normal);
-          if (horizontally && before > 0) add_neighbour(add(dr, multiply(before, across)));
-        }
-        if (horizontally) gradient[d - 1] = 0;
-        // Less and less towards the lattice, which stays.
-        Vec3 move = multiply(-coefficient * std::min(1.0, 2 * (1 - distance / reach)), gradient);
-        const double size = length(move);
-        if (size > longest) move = multiply(longest / size, move);
-        for (int axis = 0; axis < d; ++axis) way[axis][i] = move[axis];
-        return std::min(size, longest);
+        const Vec3 moved = limited(move(i, [&](const Vec3& dr) { return value * Kernel::f(length(dr) / h); }), longest);
+        for (int axis = 0; axis < d; ++axis) way[axis][i] = moved[axis];
+        return length(moved);
       });
     });
     parallel_for(n, [&](std::size_t i) {
@@ -140,6 +142,100 @@ void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boun
   }
   particles.scratch().release(way);
   arrangement.sort(particles, at);
+}
+
+}  // namespace
+
+void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boundary& boundary,
+                        const Resolution& resolution, const VectorField& at, bool free_surface, double t) {
+  const int d = particles.dimensions;
+  const BodyWalls& bodies = *boundary.bodies();
+  const NeighbourList& list = arrangement.list;
+  const auto particle_count = static_cast<std::int32_t>(particles.size());
+  std::vector<std::uint8_t> sees_surface(particles.size());  // by identifier: the order changes
+  const auto start = [&] {
+    std::vector<Lack> lacks;
+    if (free_surface) {
+      find_lacks(arrangement, particles, resolution, lacks);
+      find_surface(arrangement, particles, resolution, lacks, sees_surface);
+    }
+    return true;
+  };
+  move_in_rounds(arrangement, particles, boundary, resolution, at, t, start, [&](std::size_t i, auto&& f) {
+    const double distance = bodies.distance(vector_at(at, d, i));
+    // Wall points beside the surface are there or not as a whole: those that move horizontally see their neighbours
+    // mirrored at the wall instead, which spaces the first row evenly.
+    const bool horizontally = sees_surface[static_cast<std::size_t>((*particles.identifier)[i])] != 0;
+    const double reach = (horizontally ? level_layers : packed_layers) * resolution.spacing;
+    if (distance >= reach) return Vec3{};
+    Vec3 gradient{};
+    const auto add_neighbour = [&](const Vec3& dr) {
+      const double weight = f(dr);
+      for (int axis = 0; axis < d; ++axis) gradient[axis] -= weight * dr[axis];
+    };
+    // The liquid continues at its level, mirrored along the horizontal: what lies behind the tangent plane moves by
+    // `across` for every length that its mirror image lies before it.
+    Vec3 normal{}, across{};
+    if (horizontally) {
+      normal = bodies.normal(vector_at(at, d, i));
+      Vec3 aside = normal;
+      aside[d - 1] = 0;
+      across = multiply(-2 / std::max(dot(aside, aside), least_aside), aside);
+      add_neighbour(multiply(distance, across));
+    }
+    for (const std::int32_t j : list.of(i)) {
+      const bool wall_point = j >= particle_count && arrangement.images.wall_point() != nullptr &&
+                              arrangement.images.wall_point()[j - particle_count] >= 0;
+      if (horizontally && wall_point) continue;
+      const Vec3 dr = way_to(list, d, i, j);
+      add_neighbour(dr);
+      const double before = distance + dot(dr, normal);
+      if (horizontally && before > 0) add_neighbour(add(dr, multiply(before, across)));
+    }
+    if (horizontally) gradient[d - 1] = 0;
+    // Less and less towards the lattice, which stays.
+    return multiply(-coefficient * std::min(1.0, 2 * (1 - distance / reach)), gradient);
+  });
+}
+
+void pack_beside_solids(Arrangement& arrangement, ParticleStore& particles, Boundary& boundary,
+                        const Resolution& resolution, const VectorField& at, bool free_surface, double t) {
+  const int d = particles.dimensions;
+  const NeighbourList& list = arrangement.list;
+  const double support_radius = resolution.support_radius;
+  // Between faces on either side, the nearest.
+  const auto room_at = [&](const Vec3& place) {
+    const auto [lower, upper] = boundary.solids()->free_box(place, support_radius);
+    double room = upper[0] - lower[0];
+    for (int axis = 1; axis < d; ++axis) room = std::min(room, upper[axis] - lower[axis]);
+    return room;
+  };
+  std::vector<std::uint8_t> stays(particles.size());  // by identifier: the order changes
+  const auto uneven = [&] {
+    std::vector<Lack> lacks;
+    find_lacks(arrangement, particles, resolution, lacks);
+    parallel_for(particles.size(), [&](std::size_t i) {
+      if (!(lacks[i].share > surface_lack)) return;
+      const auto [lower, upper] = boundary.solids()->free_box(vector_at(at, d, i), support_radius);
+      if (upper[d - 1] - lower[d - 1] < flat_channel * resolution.spacing) lacks[i].all_around = true;
+    });
+    if (free_surface) find_surface(arrangement, particles, resolution, lacks, stays);
+    return parallel_max(particles.size(), 0.0, [&](std::size_t i) {
+             const bool moves = stays[static_cast<std::size_t>((*particles.identifier)[i])] == 0;
+             return moves ? std::abs(lacks[i].share) : 0.0;
+           }) > even_enough;
+  };
+  move_in_rounds(arrangement, particles, boundary, resolution, at, t, uneven, [&](std::size_t i, auto&& f) {
+    Vec3 gradient{};
+    if (stays[static_cast<std::size_t>((*particles.identifier)[i])] != 0) return gradient;
+    for (const std::int32_t j : list.of(i)) {
+      const Vec3 dr = way_to(list, d, i, j);
+      const double weight = f(dr);
+      for (int axis = 0; axis < d; ++axis) gradient[axis] -= weight * dr[axis];
+    }
+    const Vec3 way = limited(multiply(-coefficient, gradient), longest_move * resolution.spacing);
+    return room_at(add(vector_at(at, d, i), way)) < least_room * resolution.spacing ? Vec3{} : way;
+  });
 }
 
 }  // namespace spume

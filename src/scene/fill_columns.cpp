@@ -77,7 +77,7 @@ void Filler::add_columns(std::size_t r, double bottom, double top, std::vector<C
       if (is_box(regions_[r]) && runs.size() > 1) fit.fit_parts(run, 0, width, fit.parts(middle, lower[up], upper[up]));
       if (is_box(regions_[r]) && solids_ != nullptr) {
         compare_width(r, run, 0, middle);
-        compare_depth(r, {middle[0], middle[1], run.width / lattice_.spacing[0] * width, bottom, top});
+        compare_depths(r, run, from[1], to[1], run.width / lattice_.spacing[0] * width, bottom, top);
       }
       for (double k = 0; k < run.cells; ++k) line.emplace_back(fit.centre(run, 0, k), run.width);
     }
@@ -325,11 +325,13 @@ void Filler::conform_column(ThreadRegions& own, std::size_t r, Vec3 p, double ar
     }
   }
   const double depth = surface - floor;
-  if (found) chunk.volume += area * depth / spacing;
+  const ColumnFit fit(lattice_, solids_.get());
+  const std::vector<ColumnPart> parts = fit.parts(p, floor, surface);
+  for (const ColumnPart& part : parts)
+    if (found) chunk.volume += fit.depth(part, area);
   if (!found || depth < least_depth * spacing) return;
   if (solids_ != nullptr) {
-    const ColumnFit fit(lattice_, solids_.get());
-    for (const ColumnPart& part : fit.parts(p, floor, surface)) {
+    for (const ColumnPart& part : parts) {
       std::vector<double> heights;
       fit.heights(part, area, 1, heights);
       for (auto height = heights.rbegin(); height != heights.rend(); ++height) {

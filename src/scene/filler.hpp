@@ -271,6 +271,8 @@ class Filler {
   // Cells that the columns of a region stand on, those of the lattice's order.
   void add_columns(std::size_t r, double bottom, double top, std::vector<ColumnCell>& columns);
   void compare_width(std::size_t r, const CellRun& run, std::size_t axis, const Vec3& middle);
+  void compare_depths(std::size_t r, const CellRun& run, double row_lower, double row_upper, double area, double bottom,
+                      double top);
   void compare_depth(std::size_t r, const ColumnCell& cell);
   std::vector<CellRun> runs_of(std::size_t r, std::size_t axis, const Vec3& lower, const Vec3& upper,
                                const Vec3& row_lower, const Vec3& row_upper) const;

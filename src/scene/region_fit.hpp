@@ -50,7 +50,7 @@ class ColumnFit {
   template <class Solid>
   std::vector<CellRun> runs(std::size_t axis, double lower, double upper, const std::vector<double>& faces,
                             Solid&& solid) const;
-  // The number of cells of a run, within a sixth of those of the lattice, over which thin parts hold nearly whole
+  // The number of cells of a run, within a quarter of those of the lattice, over which thin parts hold nearly whole
   // numbers of layers. `width`: of the run across, over the lattice.
   void fit_parts(CellRun& run, std::size_t axis, double width, const std::vector<ColumnPart>& parts) const;
   double centre(const CellRun& run, std::size_t axis, double k) const {
@@ -94,6 +94,7 @@ std::vector<CellRun> ColumnFit::runs(std::size_t axis, double lower, double uppe
     start = face;
   }
   result.push_back(run_between(axis, start, upper));
+  if (result.size() > 1) std::erase_if(result, [&](const CellRun& run) { return run.width * run.cells < half; });
   return result;
 }
 

@@ -57,6 +57,69 @@ TEST(StillWater, StaysStillBesideFacesOffTheLattice) {
   EXPECT_LT(largest_speed(tank_with(box(0.31, 0, 0.55, 0.5))), bound) << "through the surface";
 }
 
+// Layers and columns between the faces hold no whole number of particles: rows 5 % too thin drew particles in at rest,
+// and those of a gap of 1.3 spacings took themselves for a surface. Speeds over sqrt(g H) without evening them out.
+TEST(StillWater, StaysStillWhereCellsBetweenFacesAreOfOtherSizes) {
+  const auto at = [](const char* spacing) { return Overrides{std::string("resolution.spacing=") + spacing}; };
+  EXPECT_LT(largest_speed(tank_with(box(0.1553, 0.1713, 0.3707, 0.2882)), at("0.025")), bound) << "0.23";
+  EXPECT_LT(largest_speed(tank_with(box(0.5, 0, 0.7906, 0.0753) + box(0.4494, 0.1607, 0.7492, 0.2526)), at("0.025")),
+            bound)
+      << "0.014";
+  EXPECT_LT(largest_speed(tank_with(box(0.3836, 0, 0.5543, 0.053) + box(0.3663, 0.0266, 0.6189, 0.0835)), at("0.02")),
+            bound)
+      << "0.95";
+  EXPECT_LT(largest_speed(tank_with(box(0.8067, 0, 0.9948, 0.0992) + box(0.3399, 0.2436, 0.6067, 0.4032) +
+                                    box(0.3343, 0.0972, 0.4699, 0.2793)),
+                          at("0.025")),
+            bound)
+      << "a gap of a fifth of a spacing, 2.5";
+}
+
+// Where all cells are those of the lattice, nothing is moved at the start; where they are not, the liquid below what
+// the surface sees is even, and no particle is drawn into a gap that is too narrow for one.
+TEST(StillWater, ParticlesBelowTheSurfaceStartEvenlyBesideSolids) {
+  const std::string step_in_a_tank =
+      "method = \"les-sph\"\n[domain]\nlower = [0, 0, 0]\nupper = [0.64, 0.64, 0.6]\nleft = \"free-slip\"\n"
+      "right = \"free-slip\"\nfront = \"free-slip\"\nback = \"free-slip\"\nbottom = \"free-slip\"\n[resolution]\n"
+      "spacing = 0.04\n[fluid]\ndensity = 1000\nviscosity = 1e-3\ngravity = 9.81\n[[liquid]]\nlower = [0, 0, 0]\n"
+      "upper = [0.64, 0.64, 0.4]\n[time]\nend = 4\n[[solid]]\nlower = [0.32, 0.2, 0]\nupper = [0.64, 0.48, 0.16]\n";
+  for (const std::string& text : {tank_with(box(0.4, 0, 0.6, 0.2)), step_in_a_tank}) {
+    StagedFlow fitted(text);
+    fitted.start_before("level");
+    const InitialParticles& filled = fitted.loaded.scene.particles;
+    const auto& identifier = *fitted.flow.particles.identifier;
+    for (std::size_t i = 0; i < filled.size(); ++i)
+      for (int axis = 0; axis < fitted.flow.dimensions; ++axis)
+        ASSERT_EQ((*fitted.flow.particles.position[axis])[i],
+                  filled.position[axis][static_cast<std::size_t>(identifier[i])]);
+  }
+
+  StagedFlow uneven(tank_with(box(0.5, 0, 0.7906, 0.0753) + box(0.4494, 0.1607, 0.7492, 0.2526)),
+                    {"resolution.spacing=0.025"});
+  uneven.start_before("surface");
+  const les_sph::Flow& flow = uneven.flow;
+  double sum = 0, squares = 0, count = 0;
+  for (std::size_t i = 0; i < flow.particles.size(); ++i) {
+    const double x = (*flow.particles.position[0])[i], y = (*flow.particles.position[1])[i];
+    // Past an edge particles do not see all of the lattice, and a gap takes particles in at its ends alone.
+    if (y > 0.4 - 5 * 0.025 || !flow.boundary.solids()->clear_around({x, y, 0}, flow.resolution.support_radius))
+      continue;
+    const double excess = flow.moments.kernel_sum[i] / flow.resolution.lattice.kernel_sum - 1;
+    sum += excess;
+    squares += excess * excess;
+    count += 1;
+  }
+  // The standard deviation of columns is 0.05, of liquid that has been in motion 0.01 (number_density.cpp).
+  EXPECT_LT(std::sqrt(squares / count - std::pow(sum / count, 2)), 0.02);
+
+  StagedFlow raised(tank_with(box(0.05, 0.0099, 0.25, 0.15)), {"resolution.spacing=0.025"});
+  raised.start_before("surface");
+  for (std::size_t i = 0; i < raised.flow.particles.size(); ++i) {
+    const Vec3 place = vector_at(raised.flow.particles.position, 2, i);
+    EXPECT_FALSE(place[0] > 0.05 && place[0] < 0.25 && place[1] < 0.0099);
+  }
+}
+
 // 8 x 8 x 5 spacings, with a box through the surface; sqrt(g H) = 1.98, sqrt(H/g) = 0.202. What a particle sees past a
 // vertical edge, counted by whole particles, made a surface there that was 2 % of a spacing too high or too low.
 TEST(StillWater, StaysStillAroundPillarsThatPierceTheSurface) {
@@ -92,22 +155,21 @@ TEST(StillWater, StaysStillBetweenPillarsOfBrokenCells) {
   EXPECT_LT(largest_speed(tank_with(pillars)), bound);
 }
 
-// Two and a half layers over a box, and columns of broken width beside it: up to 0.2 sqrt(g H). The warning names the
-// place, and with the spacing that it names the water is still.
+// Not quite two layers over a box: 0.017 sqrt(g H). The warning names the place, and with the spacing that it
+// names the water is still.
 TEST(StillWater, CellsThatDoNotFitAreWarnedOfWithASpacingThatDoes) {
-  const std::string text =
-      tank_with(box(0.1203, 0, 0.2971, 0.5) + box(0.4642, 0.1461, 0.5741, 0.5) + box(0.6727, 0, 0.8661, 0.2996));
-  const Simulation run(text);
+  const std::string text = tank_with(box(0.6431, 0.1769, 0.8323, 0.3338));
+  const Simulation run(text, {"resolution.spacing=0.0333"});
   ASSERT_EQ(run.loaded.options.warnings.size(), 1U);
   const std::string warning = run.loaded.options.warnings[0].text;
-  EXPECT_THAT(warning, HasSubstr("between y = 0.2996 and 0.4 at x = 0.7694 there is room for 2.43 layers"));
+  EXPECT_THAT(warning, HasSubstr("between y = 0.3338 and 0.4 at x = 0.7377 there is room for 1.88 layers"));
   const std::string with = "With resolution.spacing = ";
   ASSERT_THAT(warning, HasSubstr(with));
   const std::string fitting =
       "resolution.spacing=" + std::to_string(std::stod(warning.substr(warning.find(with) + with.size())));
   EXPECT_TRUE(Simulation(text, {fitting}).loaded.options.warnings.empty());
   EXPECT_LT(largest_speed(text, {fitting}), bound);
-  EXPECT_GT(largest_speed(text), bound) << "it need not be warned of";
+  EXPECT_GT(largest_speed(text, {"resolution.spacing=0.0333"}), bound) << "it need not be warned of";
 }
 
 // A wall half a spacing thick between liquids of different heights: each has its own pressure, and none gets through.

@@ -103,7 +103,10 @@ TEST(Fill, MassIsThatOfTheRegion) {
     if (cells == std::round(cells))
       EXPECT_NEAR(volume_of(load_text(open + spacing + "\n[[liquid]]\nwhere = \"-x - y\"\n")), 2, 1e-12);
   }
-  // Around a solid, which takes its share.
+  // Around a solid, which takes its share, from a surface given by an expression too.
+  EXPECT_NEAR(volume_of(load_text(tank("[[solid]]\nlower = [0.3, 0]\nupper = [0.8, 0.3]\n"
+                                       "[[liquid]]\nwhere = \"0.7 - y\"\nconform = true\n"))),
+              1.4 - 0.5 * 0.3, 1e-12);
   EXPECT_NEAR(volume_of(load_text(tank("[[solid]]\nlower = [0.31, 0.13]\nupper = [0.77, 0.31]\n"
                                        "[[liquid]]\nlower = [0, 0]\nupper = [2, 0.7]\n"))),
               1.4 - 0.46 * 0.18, 1e-12);

@@ -19,6 +19,9 @@ inline constexpr double full_displacement = 0.2;
 // may do so at once: the wave's gain is the same 1.3 %.
 inline constexpr double more_steps_below_surface = 10;
 
+// Of what div r lacks, h |m| where liquid is as thin on all sides; tells_density() has what surfaces and foam have.
+inline constexpr double largest_isotropic_normal = 1.0 / 3;
+
 // How far the liquid moves over dt, relative to its mean velocity and without spray, over 0.2 h; at most 2, and the
 // same in every frame. A liquid at rest needs no care for its arrangement, and over the same distance small steps no
 // more of it than large ones.

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Evens out particles beside walls of bodies, where the lattice that fills a scene is cut by the surface: some stand
-// closer to it than half a spacing, some leave a gap.
+// Evens out particles at the start: they move by -C h^2 grad C of their concentration, images and wall points included,
+// until the largest move is short.
 //
-// Particles nearer than four spacings to a body move by -C h^2 grad C of their concentration, wall points included,
-// until the largest move is short. Those that see a free surface keep its height: they move horizontally.
+// Beside walls of bodies the lattice that fills a scene is cut by the surface: some particles stand closer to it than
+// half a spacing, some leave a gap. Those nearer than four spacings to a body move; those that see a free surface keep
+// its height: they move horizontally.
+//
+// Between faces of solids off the lattice, columns have cells and layers of other sizes, whole numbers of which make up
+// the volume to half a particle only. Thin ones draw particles in as soon as the liquid moves, and take themselves for
+// a free surface: still water is thrown out of a gap of 1.3 spacings with 0.9 sqrt(g H). Where kernel sums below what a
+// free surface sees are more than 5 % off, all particles there move. Those that see it stay in their columns, which end
+// on it.
 #pragma once
 
 #include "spume/particles/arrangement.hpp"
@@ -13,6 +20,8 @@ namespace spume {
 
 // Moves particles, in both `particles.position` and `at`, and leaves them in cell order of `at`.
 void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boundary& boundary,
+                        const Resolution& resolution, const VectorField& at, bool free_surface, double t);
+void pack_beside_solids(Arrangement& arrangement, ParticleStore& particles, Boundary& boundary,
                         const Resolution& resolution, const VectorField& at, bool free_surface, double t);
 
 }  // namespace spume

@@ -11,9 +11,9 @@ void Flow::sort_particles() {
   arrangement.sort(particles, intermediate_position);
 }
 
-void Flow::pack_beside_bodies() {
-  spume::pack_beside_bodies(arrangement, particles, boundary, resolution, intermediate_position, features.free_surface,
-                            time);
+void Flow::pack() {
+  const auto even_out = features.bodies ? pack_beside_bodies : pack_beside_solids;
+  even_out(arrangement, particles, boundary, resolution, intermediate_position, features.free_surface, time);
 }
 
 void Flow::make_images(double dt) {

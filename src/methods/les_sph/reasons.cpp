@@ -58,7 +58,9 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_p
   level = !has.free_surface ? "the liquid fills the domain"
           : lattice         ? "no solids: columns are those of the lattice"
                             : "columns beside solids and bodies end on the surface";
-  packing = has.bodies ? "particles beside bodies evened out" : "no walls of bodies";
+  packing = has.bodies ? "particles beside bodies evened out"
+            : lattice  ? "no solids, no walls of bodies"
+                       : "where cells between solids are of other sizes";
   shift = has.shifting ? "Fickian shifting" : "shifting.on = false";
   gradients = has.eddy_viscosity      ? "strain of the closure"
               : has.bubbles           ? "vorticity at the bubbles"

@@ -26,7 +26,7 @@ Plan make_plan(Flow& f) {
   stages.add(both, "move", true, "particles to their intermediate positions", &Flow::move_to_intermediate_position,
              {p.position, p.velocity}, {r});
   stages.add(both, "sort", true, "particles in cell order", &Flow::sort_particles, {}, {kept.sorted});
-  stages.sweep(start, "packing", has.bodies, why.packing, &Flow::pack_beside_bodies, {r}, {p.position, r});
+  stages.sweep(start, "packing", f.boundary.has_obstacles(), why.packing, &Flow::pack, {r}, {p.position, r});
   stages.sweep(start, "level", has.free_surface && f.boundary.has_obstacles(), why.level, &Flow::level_surface, {r},
                {p.position, r});
   stages.add(step, "advecting velocity", true, why.advection, &Flow::find_advecting_velocity,

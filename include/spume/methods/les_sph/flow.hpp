@@ -157,8 +157,8 @@ struct Flow {
   // The stages, in the order of step.cpp. Numbers refer to King et al., section 3.3.
   void move_to_intermediate_position(double dt);  // (i)
   void sort_particles();
-  void pack_beside_bodies();  // of the start
-  void level_surface();       // of the start
+  void pack();           // of the start
+  void level_surface();  // of the start
   void find_advecting_velocity(double dt);
   void make_images(double dt);  // (ii)
   void find_neighbours(double dt);
