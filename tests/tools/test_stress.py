@@ -158,7 +158,7 @@ class Checks(unittest.TestCase):
 class PhaseChecks(unittest.TestCase):
     """Of runs of wcsph: two phases of densities 10 and 1, half of the box each."""
 
-    def outcome(self, scene_changes=None, facts=None, **columns):
+    def outcome(self, scene_changes=None, facts=None, log="", **columns):
         scratch = tempfile.TemporaryDirectory()
         self.addCleanup(scratch.cleanup)
         folder = Path(scratch.name)
@@ -170,6 +170,7 @@ class PhaseChecks(unittest.TestCase):
             f"velocity_{name}_{axis}": still for name in ("water", "air") for axis in "xy"} | columns
         (folder / "case.toml").write_text(toml_text(case))
         (folder / "summary.json").write_text('{"retries": 0}')
+        (folder / "log.txt").write_text(log)
         write_table(folder / "series.csv", series_of(t, **values))
         grid = lattice([0, 0], [1, 1], 0.1)
         grid[0, 0] = -0.015  # within half a skin of a periodic side
@@ -184,7 +185,9 @@ class PhaseChecks(unittest.TestCase):
         exchanged = {"velocity_air_x": 0.1 * t, "velocity_water_x": -0.01 * t}
         self.assertEqual(self.outcome(**exchanged), ("ok", []))
         self.assertRegex(self.outcome(velocity_air_x=0.1 * t)[1][0], "momentum")
-        self.assertRegex(self.outcome(compression_energy=0.01 + 0.2 * t)[1][0], "energy")
+        growing = {"compression_energy": 0.01 + 0.2 * t}
+        self.assertRegex(self.outcome(**growing)[1][0], "energy")
+        self.assertEqual(self.outcome(log="the density of water has changed by 4 %", **growing), ("ok", []))
         self.assertRegex(self.outcome(max_speed=np.where(t == 1, np.nan, 1))[1][0], "finite")
         self.assertRegex(self.outcome({"lists": {"skin": 0.1}})[1][0], "beyond the left side")
 
