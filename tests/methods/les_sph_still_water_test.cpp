@@ -182,6 +182,21 @@ TEST(StillWater, RipplesDoNotGrowHoweverLongItStands) {
   }
 }
 
+TEST(StillWater, AKernelThatIsTooWideBelowASurfaceIsToldOf) {
+  using testing::Contains, testing::Field, testing::IsEmpty;
+  const auto remarks = [](const Overrides& overrides) {
+    Simulation run(tank_with(""), overrides);
+    run.steps(1, run.method.step_limit().dt);
+    return run.method.take_remarks();
+  };
+  const std::string quintic = "resolution.kernel=\"quintic-spline\"";
+  EXPECT_THAT(remarks({}), IsEmpty());
+  EXPECT_THAT(remarks({quintic, "resolution.smoothing_ratio=1.2"}), IsEmpty());
+  EXPECT_THAT(remarks({quintic}), Contains(Field(&Remark::text, HasSubstr("take 1.2 at most"))));
+  EXPECT_THAT(remarks({"resolution.smoothing_ratio=1.6"}),
+              Contains(Field(&Remark::text, HasSubstr("take 1.5 at most"))));
+}
+
 TEST(StillWater, APlateSeparatesTwoLevels) {
   std::string text = tank_with(box(0.5, 0, 0.52, 0.6) + "[[liquid]]\nlower = [0.52, 0]\nupper = [1, 0.2]\n");
   text.replace(text.find("upper = [1, 0.4]"), 16, "upper = [0.5, 0.4]");

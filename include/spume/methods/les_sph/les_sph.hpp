@@ -60,6 +60,7 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   void ensure_started();
   // Says where walls of bodies are less accurate than elsewhere.
   void remark_surface_at_bodies();
+  void remark_wide_kernel();
   void remark_bodies_that_collide();
   void declare_series();
   void declare_saved();
