@@ -223,10 +223,6 @@ void CrossProduct<T>::inverse_y(std::size_t remainder, std::size_t j, Scratch& s
       const Turn<T> low(twist[jy]), high(twist[n + jy]);
       const T k = wavenumber_[1][jy], l = wavenumber_[1][n + jy];
       const std::size_t at = jy * work_row_, above = at + n * work_row_;
-      for (const Complex* const f : from) {
-        prefetch_block(f + at + lanes<T>);
-        prefetch_block(f + above + lanes<T>);
-      }
       for (std::size_t q = 0; q < Lanes::block; q += Lanes::piece_step) {
         const V kz = Lanes::get(values(lane_wavenumber_) + 2 * first + q);
         V r[5], i[5], yr[2], yi[2];  // of u, v, w, dv/dx, dw/dx; of u and w times i k_y

@@ -101,6 +101,10 @@ void force_modes(Flow<T>& flow, const std::array<const T*, 3>& values, std::size
     flow.box().forward(values[c], z_stride,
                        [&](std::size_t ix, std::size_t iy, std::size_t first, const std::complex<T>* block) {
                          std::complex<T>* const to = &modes[c][ix * layout.plane + iy * layout.row + first];
+                         // Wavenumbers grow along the stored modes; what follows them is zero in the block.
+                         const std::size_t last = std::min(first + lanes<T>, layout.modes_z) - 1;
+                         if (flow.keeps(ix, iy, first) && flow.keeps(ix, iy, last))
+                           return fourier::copy_block(block, to);
                          for (std::size_t l = 0; l < lanes<T>; ++l)
                            to[l] = flow.keeps(ix, iy, first + l) ? block[l] : 0;
                        });
