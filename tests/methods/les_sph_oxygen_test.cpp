@@ -265,6 +265,17 @@ TEST(LesSphOxygen, SourcesAddTheirIntegral) {
   EXPECT_EQ(after["amount_of_dye"], 0);
 }
 
+// It takes no more than is there: a step of 1 g/m^3/s would leave the 0.5 g/m^3 of oxygen below zero at once.
+TEST(LesSphOxygen, ASinkTakesNoMoreThanThereIs) {
+  Simulation run(
+      cube + "[[scalar]]\nname = \"oxygen\"\ninitial = \"5e-3 + 0.01*x\"\ndiffusivity = 2e-9\nsource = \"0-1\"\n",
+      {"oxygen.bubble_coefficient=\"none\""});
+  const double first = run.series()["amount_of_oxygen"];
+  run.steps(4, 0.005);
+  EXPECT_EQ(run.series()["amount_of_oxygen"], 0);
+  EXPECT_NEAR(run.series()["source_of_oxygen"] / first, -1, 1e-12);
+}
+
 // Uniform sludge in still water is one tank: the same as the reactions alone.
 TEST(LesSphOxygen, SludgeInStillWaterReactsAsInOneTank) {
   const std::string text =

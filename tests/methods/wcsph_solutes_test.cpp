@@ -295,6 +295,7 @@ TEST(WcsphSolutes, WhatItCannotCarryIsRefusedWithTheFix) {
   refused(replaced(discs, "[[phase]]", air + "[[phase]]"), "leave the gas out, or remove the scalars");
   refused(replaced(discs, "gravity = 9.81", "froude = 1"), "holds values in SI units");
   refused(replaced(discs, "initial = \"2 + 10*x\"", "initial = \"10*x - 1\""), "finite number >= 0");
+  refused(replaced(discs, "position = [0.18, 0.06]", "position = [0.18, 0.27]"), "nowhere on its way is liquid");
   refused(replaced(discs, "surface_k_l", "bubbles_shrink = true\nsurface_k_l"), "keep their size");
 }
 

@@ -6,6 +6,7 @@
 #include "spume/methods/les_sph/les_sph.hpp"
 #include "spume/methods/les_sph/options.hpp"
 #include "spume/physics/bubbles/options.hpp"
+#include "spume/physics/oxygen/checks.hpp"
 #include "spume/physics/solutes/solutes.hpp"
 #include "spume/physics/turbulence/options.hpp"
 #include "spume/scene/document.hpp"
@@ -108,6 +109,7 @@ Registration registration() {
   method.check_scene = [](const Draft& draft, const Scene& scene, Problems& problems) {
     check_bubble_sources(draft, scene, problems);
     check_initial_scalars(draft, scene, problems);
+    check_released_gas(draft, scene, problems);
   };
   method.bytes_per_particle = bytes_per_particle;
   method.default_courant = default_courant;

@@ -5,6 +5,7 @@
 
 #include "spume/methods/wcsph/wcsph.hpp"
 #include "spume/particles/options.hpp"
+#include "spume/physics/oxygen/checks.hpp"
 #include "spume/physics/solutes/solutes.hpp"
 #include "spume/scene/document.hpp"
 #include "spume/scene/option.hpp"
@@ -47,6 +48,7 @@ void check(Draft& draft, Problems& problems) {
 
 void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
   check_initial_scalars(draft, scene, problems);
+  check_released_gas(draft, scene, problems);
   std::vector<std::size_t> count(scene.phases.size());
   for (const std::int32_t phase : scene.particles.phase) ++count[static_cast<std::size_t>(phase)];
   for (std::size_t n = 0; n < count.size(); ++n)

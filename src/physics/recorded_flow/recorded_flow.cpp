@@ -294,8 +294,10 @@ void RecordedFlow::add_sources(double t) {
     double amount = 0;
     for (std::size_t a = 0; a < cells(); ++a) {
       const double mean = particles_in_[a] > 0 ? next_[a] / particles_in_[a] : all / static_cast<double>(place_.size());
-      values_[s][a] += lag_ * mean;
-      amount += lag_ * mean * volume_[a];
+      const double least = option.not_negative ? -values_[s][a] : -std::numeric_limits<double>::infinity();
+      const double by = std::max(lag_ * mean, std::min(0.0, least));
+      values_[s][a] += by;
+      amount += by * volume_[a];
     }
     scalars_.count_source(s, amount);
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "spume/core/error.hpp"
@@ -74,6 +75,8 @@ void Scalars::add_sources(double t, double dt, const VectorField& places) {
   for (std::size_t s = 0; s < size(); ++s) {
     if (option(s).source == nullptr) continue;
     double* values = fields_[s]->data();
+    // A sink takes no more of a substance than is there.
+    const double least = option(s).not_negative ? 0 : -std::numeric_limits<double>::infinity();
     added_[s] += particles_.volume * parallel_reduce(
                                          particles_.size(), 0.0,
                                          [&](std::size_t first, std::size_t last) {
@@ -81,7 +84,8 @@ void Scalars::add_sources(double t, double dt, const VectorField& places) {
                                            double sum = 0;
                                            for (std::size_t i = first; i < last; ++i) {
                                              const Vec3 r = vector_at(places, particles_.dimensions, i);
-                                             const double by = dt * (*own)(r[0], r[1], r[2], t + dt / 2);
+                                             const double given = dt * (*own)(r[0], r[1], r[2], t + dt / 2);
+                                             const double by = std::max(given, std::min(0.0, least - values[i]));
                                              values[i] += by;
                                              sum += by;
                                            }
