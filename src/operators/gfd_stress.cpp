@@ -86,7 +86,50 @@ void stress(const SweepContext& context, PackedNeighbours& packed, const std::ar
   });
 }
 
+// sum W (1 + d . o) of particle i, of pairs times their mean viscosity where records hold it.
+template <int dimensions, class Kernel, int payload, bool means>
+float weight_sum(const SweepContext& context, const float* records, std::size_t i, const GfdStencils& stencils,
+                 const float* viscosity) {
+  const auto o = own_vector<dimensions>(stencils.offset, i);
+  [[maybe_unused]] const f32n own = simd::splat<f32n>(viscosity[i]);
+  f32n sum{};
+  for_each_batch<dimensions, payload>(*context.list, records, i, inverse_width(context), [&](const auto& b) {
+    f32n weight = Kernel::w(b.q) * offset_factor(b, o);
+    if constexpr (means) weight = weight * harmonic_mean(own, b.payload[0]);
+    sum = sum + weight;
+  });
+  return means ? simd::sum(sum) : viscosity[i] * simd::sum(sum);
+}
+
+template <int dimensions, class Kernel, bool varies>
+void diagonal(const SweepContext& context, PackedNeighbours& packed, const GfdStencils& stencils,
+              const DiffusionProperties& properties, float* out) {
+  constexpr int payload = varies ? 1 : 0;
+  float* records = packed.prepare(context, payload);
+  const float* viscosity = properties.viscosity.value;
+  if constexpr (varies) pack_coefficient(context, records, record_width(dimensions, payload), 0, viscosity);
+  sweep(context.list->particles(), [&](std::size_t i) {
+    float sum = 0;
+    if (varies && properties.viscosity.varies[i] != 0)
+      sum = weight_sum<dimensions, Kernel, payload, varies>(context, records, i, stencils, viscosity);
+    else
+      sum = weight_sum<dimensions, Kernel, payload, false>(context, records, i, stencils, viscosity);
+    const float factor = stencils.laplacian_factor[i] * sum;
+    out[i] = properties.density == nullptr ? factor : factor / properties.density[i];
+  });
+}
+
 }  // namespace
+
+void gfd_diffusion_diagonal(const SweepContext& context, PackedNeighbours& packed, const GfdStencils& stencils,
+                            const DiffusionProperties& properties, float* out) {
+  with_gfd_kernel(context, [&]<int dimensions, class Kernel>() {
+    if (properties.viscosity.varies != nullptr)
+      diagonal<dimensions, Kernel, true>(context, packed, stencils, properties, out);
+    else
+      diagonal<dimensions, Kernel, false>(context, packed, stencils, properties, out);
+  });
+}
 
 void gfd_stress_sweep(const SweepContext& context, PackedNeighbours& packed,
                       const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,

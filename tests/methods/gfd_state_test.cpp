@@ -15,7 +15,8 @@ using testing::HasSubstr;
 class GfdState : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(GfdState, ARestoredRunContinuesToTheSameBits) {
-  for (const Overrides& set : {Overrides{}, Overrides{"momentum.diffusion=\"printed\"", "interface.smoothing=3"}}) {
+  for (const Overrides& set : {Overrides{}, Overrides{"momentum.diffusion=\"printed\"", "interface.smoothing=3"},
+                               Overrides{"time.viscosity=\"implicit\""}}) {
     GfdRun straight(GetParam(), set);
     straight.steps(3, 0.002);
     MemoryState saved;
@@ -35,20 +36,23 @@ TEST_P(GfdState, ARestoredRunContinuesToTheSameBits) {
 
 TEST_P(GfdState, DoesNotDependOnTheNumberOfThreads) {
   const int before = omp_get_max_threads();
-  std::vector<std::map<std::string, std::vector<double>>> states;
-  for (const int threads : {1, 2, 3}) {
-    omp_set_num_threads(threads);
-    GfdRun run(GetParam());
-    run.steps(4, 0.002);
-    states.push_back(run.saved_state());
+  for (const std::string viscosity : {"explicit", "implicit"}) {
+    std::vector<std::map<std::string, std::vector<double>>> states;
+    for (const int threads : {1, 2, 3}) {
+      omp_set_num_threads(threads);
+      GfdRun run(GetParam(), {"time.viscosity=\"" + viscosity + "\""});
+      run.steps(4, 0.002);
+      states.push_back(run.saved_state());
+    }
+    EXPECT_EQ(states[0], states[1]) << viscosity;
+    EXPECT_EQ(states[0], states[2]) << viscosity;
   }
   omp_set_num_threads(before);
-  EXPECT_EQ(states[0], states[1]);
-  EXPECT_EQ(states[0], states[2]);
 }
 
 TEST_P(GfdState, ARefusedStepLeavesIt) {
   EXPECT_EQ(changed_by_a_refused_step<gfd::Gfd>(GetParam(), {}, 0.002), "");
+  EXPECT_EQ(changed_by_a_refused_step<gfd::Gfd>(GetParam(), {"time.viscosity=\"implicit\""}, 0.002), "");
 }
 
 const char* const state_names[] = {"Drop2D", "Ball3D", "ThreeLayers", "TurningTank"};
@@ -59,8 +63,9 @@ INSTANTIATE_TEST_SUITE_P(Cases, GfdState,
 
 TEST(GfdAllocations, ASteadyRunAllocatesNothing) {
   const OneThread alone;
-  for (const std::string& text : {drop_in_a_box, ball_in_a_box}) {
-    GfdRun run(text);
+  for (const auto& [text, set] : {std::pair(drop_in_a_box, Overrides{}), std::pair(ball_in_a_box, Overrides{}),
+                                  std::pair(ball_in_a_box, Overrides{"time.viscosity=\"implicit\""})}) {
+    GfdRun run(text, set);
     run.steps(10, 0.002);
     const auto before = array_statistics();
     run.steps(5, 0.002);
@@ -112,7 +117,7 @@ TEST(GfdPlan, OnePhaseHasNoInterface) {
 
 TEST(GfdPlan, EveryStageCountsItsTrafficAndTheViscosityHasAGradientWhereOneIsRead) {
   for (const std::string form : {"split", "printed", "rotation-free", "mu-laplacian"}) {
-    GfdRun run(drop_in_a_box, {"momentum.diffusion=\"" + form + "\""});
+    GfdRun run(drop_in_a_box, {"momentum.diffusion=\"" + form + "\"", "time.viscosity=\"implicit\""});
     run.steps(3, 0.002);
     EXPECT_EQ(uncounted_stages(run.method, run.ledger), "") << form;
     const auto names = running(run);

@@ -45,4 +45,8 @@ void gfd_stress_sweep(const SweepContext& context, PackedNeighbours& packed,
                       const GfdStencils& stencils, MomentumDiffusion form, const DiffusionProperties& properties,
                       const std::array<float*, 3>& out);
 
+// f / rho sum_j mu_ij W (1 + d . o): what multiplies -u_i in (12), images counted as particles of their own.
+void gfd_diffusion_diagonal(const SweepContext& context, PackedNeighbours& packed, const GfdStencils& stencils,
+                            const DiffusionProperties& properties, float* out);
+
 }  // namespace spume

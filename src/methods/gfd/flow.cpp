@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "spume/core/parallel.hpp"
+#include "spume/particles/expected_speed.hpp"
+#include "spume/scene/document.hpp"
 
 namespace spume::gfd {
 namespace {
@@ -52,6 +54,38 @@ Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.dom
   density_relaxation = loaded.options.get<PressureOptions>().density_relaxation < never_relaxed;
 }
 
+// Where the properties vary the filtered ones lie between those of the phases: so does their ratio, up to the ratio of
+// the largest viscosity to the least density of the mixture, which no particle reaches.
+ViscousChoice::ViscousChoice(const LoadedCase& loaded, const Resolution& resolution) {
+  constexpr double far_below = 5;
+  const Scene& scene = loaded.scene;
+  const TimeOptions& time = loaded.options.time;
+  const LimitOptions& limits = loaded.options.get<LimitOptions>();
+  double largest = 0;
+  for (const Phase& phase : scene.phases) largest = std::max(largest, phase.viscosity / phase.density);
+  if (!(largest > 0)) {
+    reason = "inviscid";
+    return;
+  }
+  limit = limits.diffusive * resolution.spacing * resolution.spacing / largest;
+  speed = expected_speed(scene, time.end);
+  implicit = limits.viscosity == ViscousSteps::implicit;
+  reason = std::string("time.viscosity = \"") + (implicit ? "implicit" : "explicit") + '"';
+  if (limits.viscosity != ViscousSteps::automatic) return;
+  SmallestStep other;
+  if (speed > 0) other.bound(time.courant * resolution.smoothing_length / speed, "courant, at the expected speed");
+  if (scene.phases.size() > 1 && scene.surface_tension > 0)
+    other.bound(limits.capillary * capillary_time(scene), "capillary");
+  if (time.max_step > 0) other.bound(time.max_step, "max_step");
+  if (time.end < other.limit().dt) {
+    reason = "explicit: nothing in the scene tells a speed";
+    return;
+  }
+  implicit = other.limit().dt > far_below * limit;
+  reason = (implicit ? "(12) implicit" : "explicit") + std::string(": the viscous limit is ") + brief(limit) + ", " +
+           (implicit ? "far below " : "beside ") + brief(other.limit().dt) + " of " + other.limit().limited_by;
+}
+
 Flow::Flow(const LoadedCase& loaded_case)
     : loaded(loaded_case),
       options(loaded_case.options),
@@ -63,6 +97,7 @@ Flow::Flow(const LoadedCase& loaded_case)
           largest_stable_shift(dimensions, options.resolution.kernel, options.resolution.smoothing_ratio, false)),
       densities(of_phases(scene, &Phase::density)),
       viscosities(of_phases(scene, &Phase::viscosity)),
+      viscous(loaded_case, resolution),
       particles(dimensions, scene.particles),
       boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution)),
       first_volume(scene.phases.size()),
@@ -141,14 +176,6 @@ double Flow::hydrostatic_part(std::size_t i) const {
   double sum = features.gravity ? -densities[phase[i]] * gravity_potential(i) : 0;
   for (const Colour& colour : colours) sum += colour.mean_potential * colour.is(phase[i]);
   return sum;
-}
-
-// Where the properties vary the filtered ones lie between those of the phases: so does their ratio, up to the ratio of
-// the largest viscosity to the least density of the mixture, which no particle reaches.
-double Flow::largest_kinematic_viscosity() const {
-  double largest = 0;
-  for (std::size_t n = 0; n < densities.size(); ++n) largest = std::max(largest, viscosities[n] / densities[n]);
-  return largest;
 }
 
 double Flow::leased_bytes() const {

@@ -75,15 +75,16 @@ void Gfd::step(double dt, Ledger& ledger) {
 StepLimit Gfd::step_limit() const {
   const TimeOptions& options = flow_.options.time;
   const LimitOptions& limits = flow_.options.get<LimitOptions>();
-  const double h = flow_.resolution.smoothing_length, spacing = flow_.spacing();
+  const double h = flow_.resolution.smoothing_length;
   double gravity2 = 0;
   for (const double g : flow_.scene.fluid.gravity) gravity2 += g * g;
-  // From rest the speed that gravity gives over one smoothing length stands in for the largest speed.
-  const double speed = std::max({flow_.speeds.limiting, flow_.boundary.wall_speed, std::sqrt(std::sqrt(gravity2) * h)});
+  // From rest the speed that gravity gives over one smoothing length stands in for the largest speed; of implicit
+  // steps, which follow transients no closer than they are long, the speed that the scene lets expect.
+  const double speed = std::max({flow_.speeds.limiting, flow_.boundary.wall_speed, std::sqrt(std::sqrt(gravity2) * h),
+                                 flow_.viscous.implicit ? flow_.viscous.speed : 0.0});
   SmallestStep step;
   if (speed > 0) step.bound(options.courant * h / speed, "courant");
-  const double nu = flow_.largest_kinematic_viscosity();
-  if (nu > 0) step.bound(limits.diffusive * spacing * spacing / nu, "viscous");
+  if (flow_.features.viscosity && !flow_.viscous.implicit) step.bound(flow_.viscous.limit, "viscous");
   if (flow_.features.tension) step.bound(limits.capillary * capillary_time(flow_.scene), "capillary");
   if (options.max_step > 0) step.bound(options.max_step, "max_step");
   if (speed == 0 && options.max_step == 0) step.bound(options.end / steps_of_run_at_rest, "end of run");
@@ -180,6 +181,7 @@ std::vector<Invariant> Gfd::invariants() const {
 std::vector<ArrayInfo> Gfd::arrays() const {
   std::vector<ArrayInfo> list = particle_arrays(flow_.particles, flow_.arrangement);
   list.push_back({"pressure solver", flow_.solver.bytes() + flow_.matrix.bytes()});
+  if (const double bytes = flow_.implicit_diffusion.bytes(); bytes > 0) list.push_back({"implicit viscosity", bytes});
   list.push_back({"leased within a step", flow_.leased_bytes()});
   double interfaces = flow_.bands.bytes() + flow_.phase.bytes();
   for (const Colour& colour : flow_.colours) interfaces += colour.value.bytes() + colour.potential.bytes();

@@ -58,6 +58,15 @@ void Flow::find_bands() {
 }
 
 void Flow::blend_properties() {
+  filter_properties();
+  if (arrangement.context.image_pressure == nullptr) return;
+  const std::span<double> behind = boundary.image_pressure();  // of unit density
+  parallel_for(behind.size(), [&](std::size_t k) {
+    behind[k] *= (*density)[static_cast<std::size_t>(arrangement.images.source()[k])];
+  });
+}
+
+void Flow::filter_properties() {
   const std::size_t n = size();
   if (!features.interfaces) {
     parallel_for(n, [&](std::size_t i) {

@@ -44,6 +44,11 @@ Section limits_section() {
   using L = LimitOptions;
   return section<L>("time")
       .behind("courant")
+      .word("viscosity", &L::viscosity,
+            {{"automatic", ViscousSteps::automatic},
+             {"explicit", ViscousSteps::explicit_alone},
+             {"implicit", ViscousSteps::implicit}},
+            "diffusion of momentum; implicit: steps pass the limit by viscosity")
       .option("diffusive", &L::diffusive, "1", above_up_to(0, 0.4), "step limit by viscosity, of spacing^2 / nu")
       .option("capillary", &L::capillary, "1", above_up_to(0, 1),
               "step limit by tension, of sqrt((rho_1 + rho_2) spacing^3 / (4 pi sigma))");

@@ -24,6 +24,13 @@ auto solving(Flow& f) {
   };
 }
 
+auto implicitly(Flow& f) {
+  return [&f](StageRun& run) {
+    f.diffuse_implicitly(run.dt);
+    run.pairs = f.arrangement.pair_count() * (f.implicit_diffusion.report().applications + 2);
+  };
+}
+
 }  // namespace
 
 using enum StagePart;
@@ -78,6 +85,9 @@ Plan make_plan(Flow& f) {
                {f.viscous_acceleration, f.diffusion});
   stages.add(step, "prediction", true, "(20): velocity without pressure", &Flow::predict_velocity,
              {p.velocity, f.viscous_acceleration}, {f.intermediate_velocity});
+  stages.add(step, "implicit viscosity", f.viscous.implicit, f.viscous.reason, implicitly(f),
+             {f.intermediate_velocity, *f.pressure, f.viscosity, f.offset, *f.laplacian_factor},
+             {f.intermediate_velocity});
   // Shifting of Xu, in the form of King (3.12)
   stages.add(step, "shift", has.shifting, has.shifting ? "Fickian shifting" : "shifting.on = false",
              &Flow::compute_shift, {f.moments.concentration_gradient}, {f.displacement_by_shift()});

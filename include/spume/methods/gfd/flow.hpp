@@ -17,6 +17,7 @@
 
 #include "spume/methods/gfd/options.hpp"
 #include "spume/operators/gfd_pressure.hpp"
+#include "spume/operators/interface_jump.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/interface_potential.hpp"
@@ -25,6 +26,7 @@
 #include "spume/particles/shift.hpp"
 #include "spume/particles/step_limits.hpp"
 #include "spume/scene/case.hpp"
+#include "spume/solvers/implicit_diffusion.hpp"
 
 namespace spume::gfd {
 
@@ -46,6 +48,16 @@ struct Features : BoundaryFeatures {
   bool writes_diffusion = false;  // output.fields
 };
 
+// Whether steps are implicit in the viscosity. By itself where the viscous limit of explicit steps is less than a fifth
+// of the others, that of the speed taken at the one that the scene lets expect.
+struct ViscousChoice {
+  ViscousChoice(const LoadedCase& loaded, const Resolution& resolution);
+  double limit = 0;  // of an explicit step; 0: without viscosity
+  double speed = 0;  // that the scene lets expect; 0: nothing tells
+  bool implicit = false;
+  std::string reason;
+};
+
 struct Flow {
   explicit Flow(const LoadedCase& loaded_case);
   Flow(const Flow&) = delete;
@@ -59,6 +71,8 @@ struct Flow {
   const int dimensions;
   const double largest_shift;  // coefficient of the shift at which it stirs a lattice instead of evening it out
   const std::vector<double> densities, viscosities;  // of the phases; dynamic
+
+  const ViscousChoice viscous;
 
   double weight = 0;  // sum of m |g|, of gravity across sides
 
@@ -93,6 +107,8 @@ struct Flow {
   std::vector<double> phase_volume;  // shares of the domain, by kernel sums
   ProjectionSolver solver;
   GfdPressureOperator matrix;
+  ImplicitDiffusion implicit_diffusion;
+  bool incremental = false;  // the pressure of the present step is that of the last one and a change
 
   // --- Leased within a step.
   FloatVectorScratch viscosity_gradient;  // <grad mu / rho>
@@ -113,7 +129,7 @@ struct Flow {
   bool takes_viscosity_gradient() const;
   double gravity_potential(std::size_t i) const;  // -g . (x - x_0), of gravity across sides
   double hydrostatic_part(std::size_t i) const;   // p - pi
-  double largest_kinematic_viscosity() const;
+  double last_reduced(std::size_t i) const { return (*pressure)[i] - hydrostatic_part(i); }  // pi of the last step
   double kinetic_energy() const;
   double potential_energy() const;  // across axes with sides
   double roundness() const;         // of the second of two phases: surface of a ball of its volume over that area
@@ -133,6 +149,7 @@ struct Flow {
   void find_viscous_acceleration();  // (9), (12), (13), (19)
   void measure_diffusion();          // of the initial state
   void predict_velocity(double dt);  // (20)
+  void diffuse_implicitly(double dt);
   void find_divergence();
   void relax_density(double dt);
   void compute_shift();
@@ -147,7 +164,12 @@ struct Flow {
 
  private:
   void refuse_energy_from_nothing() const;
+  void refuse_unconverged_diffusion() const;
+  double last_norm();
   void find_potential(Colour& colour);
+  void filter_properties();
+  void add_interface_forces(const InterfaceForce& out);
+  DiffusionProperties diffusion_properties() const;
   void blend_viscosity(std::span<const float* const> colour);
 };
 

@@ -20,8 +20,12 @@ struct MomentumOptions {
   ViscosityMean viscosity_mean = ViscosityMean::harmonic;
 };
 
+// Whether diffusion is implicit and steps pass the viscous limit. automatic: as ViscousChoice finds.
+enum class ViscousSteps { automatic, explicit_alone, implicit };
+
 // What the scheme adds to [time].
 struct LimitOptions {
+  ViscousSteps viscosity = ViscousSteps::automatic;
   double diffusive = 0.2;
   double capillary = 0.5;
 };
