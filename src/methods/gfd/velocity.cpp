@@ -88,7 +88,7 @@ void Flow::predict_velocity(double dt) {
 // Backward Euler. The pressure and the forces of the last step are among what the velocity is predicted by, and the
 // projection finds the change of that pressure: what diffuses has then no dt grad p to lose. A projection of the whole
 // pressure leaves a divergence of dt (<lap p / rho> - div <grad p / rho>) in each step, which slows a drop of 100 times
-// the viscosity by 30 % at 30 times the explicit limit (viscous_drop).
+// the viscosity by 38 % at 30 times the explicit limit (viscous_drop).
 void Flow::diffuse_implicitly(double dt) {
   const std::size_t n = size();
   ScratchPool& scratch = particles.scratch();
