@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Every measure is compared with run folders written from exact solutions (small error) and from wrong ones (large):
-cases of liquid at rest, of drops, waves and breaking dams."""
+cases of liquid at rest, of drops, waves, breaking dams and bodies."""
 import tomllib
 import unittest
 
@@ -270,6 +270,35 @@ class Sloshing(CaseTest):
             self.assertAlmostEqual(measured[f"{liquid}_impact_time_error"], 0.01, places=6)
             self.assertAlmostEqual(measured[f"{liquid}_peak"], measured[f"{liquid}_measured_peak"])
             self.assertAlmostEqual(module.impact(t, p)[0], expected)
+
+
+class Cylinder(CaseTest):
+    def test_forces_of_the_reference_have_no_error_and_noise_does_not_raise_the_largest_drag(self):
+        folder, module = self.run_of("cylinder_2d")
+        steady, shed = module.REFERENCE["2D-1"], module.REFERENCE["2D-2"]
+        t = np.linspace(0, 3, 301)
+        write_table(folder / "probes.csv", {"t": t, "front_pressure": 1.02 * steady["dp"] + 0 * t, "back_pressure": 0 * t})
+        scale = module.MEAN_SPEED["2D-1"]**2 * module.DIAMETER / 2
+        forces = {f"{kind}_force_{axis}": 0 * t for kind in ("pressure", "viscous") for axis in "xy"}
+        write_table(folder / "bodies.csv", {"t": t, "body": 0 * t} | forces | {
+            "pressure_force_x": 0.7 * steady["C_D"] * scale + 0 * t, "viscous_force_x": 0.3 * steady["C_D"] * scale + 0 * t})
+        measured = module.measure({"across_20": Results(folder)})
+        self.assertAlmostEqual(measured["across_20_drag_error"], 0)
+        self.assertAlmostEqual(measured["across_20_pressure_error"], 0.02)
+
+        folder, module = self.run_of("cylinder_2d")
+        t = np.linspace(0, 4, 4001)
+        phase, scale = 2 * np.pi * 1.01 * shed["St"] * 10 * t, module.MEAN_SPEED["2D-2"]**2 * module.DIAMETER / 2
+        noise = np.random.default_rng(1).uniform(-0.3, 0.3, len(t))
+        forces = {f"{kind}_force_{axis}": 0 * t for kind in ("pressure", "viscous") for axis in "xy"}
+        write_table(folder / "bodies.csv", {"t": t, "body": 0 * t} | forces | {
+            "pressure_force_x": scale * (shed["C_D max"] - 0.03 + 0.03 * np.cos(2 * phase) + noise),
+            "pressure_force_y": scale * (np.cos(phase) + noise)})
+        measured = module.measure({"vortices_20": Results(folder)})
+        self.assertAlmostEqual(measured["vortices_20_strouhal_error"], 0.01, places=4)
+        # The mean of 2000 values has a standard error of 0.3 / sqrt(3 * 2000) = 0.004, as have its harmonics.
+        self.assertAlmostEqual(measured["vortices_20_largest_drag"], shed["C_D max"], delta=0.03)
+        self.assertAlmostEqual(measured["vortices_20_largest_lift"], 1, delta=0.03)
 
 
 class BreakingWave(CaseTest):
