@@ -20,7 +20,7 @@ void add_solute_stages(const ParticleStages<Flow>& stages, Flow& f, const Solute
     return Arrays{ArrayUse([&f, count] { return 16.0 * static_cast<double>(f.particles.size() * count); })};
   };
   const Arrays scalars = values(f.solutes.count()), oxygen = values(has.oxygen ? 1 : 0),
-               sludge = values(has.biokinetics ? biokinetics::asm1::components : 0);
+               sludge = values(has.biokinetics ? std::size_t{biokinetics::asm1::components} : 0);
   stages.add(
       step, "scalars", has.scalars, has.scalars ? "sources, diffusion, and their change by the shift" : "no [[scalar]]",
       [&f](StageRun& run) {

@@ -122,7 +122,7 @@ std::array<std::complex<double>, 3> random_mode(std::uint64_t seed, const std::a
 template <class T>
 Modes<T> random_field(const LoadedCase& loaded, Flow<T>& flow) {
   const ModeLayout& layout = flow.layout();
-  const std::size_t nx = layout.points[0], ny = layout.points[1], nz = layout.points[2];
+  const std::size_t nx = layout.points[0], ny = layout.points[1];
   const double unit = 2 * std::numbers::pi / *std::max_element(layout.lengths.begin(), layout.lengths.end());
   double largest = layout.largest_wavenumber(0);
   for (std::size_t axis = 1; axis < 3; ++axis) largest = std::min(largest, layout.largest_wavenumber(axis));
