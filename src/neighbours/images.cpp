@@ -305,7 +305,7 @@ void Images::build(const ImageRules& rules, const CellGrid& grid, const double* 
     parallel_for(m, [=](std::size_t k) { to[k] = from[order[k]]; });
     values.swap(scratch);
   };
-  for (int axis = 0; axis < 3; ++axis) reorder(position_[axis], scratch_position_[axis]);
+  for (int axis = 0; axis < 3; ++axis) reorder(position_[axis], scratch_position_);
   reorder(source_, scratch_);
   reorder(path_, scratch_);
   if (!wall_point_.empty()) reorder(wall_point_, scratch_);
@@ -334,8 +334,8 @@ void Images::move(const ImageRules& rules, const std::array<const double*, 3>& p
 double Images::bytes() const {
   double total = table_.bytes() + 4.0 * static_cast<double>(source_.capacity() + path_.capacity() +
                                                             scratch_.capacity() + wall_point_.capacity());
-  for (int axis = 0; axis < 3; ++axis)
-    total += 8.0 * static_cast<double>(position_[axis].capacity() + scratch_position_[axis].capacity());
+  total += scratch_position_.bytes();
+  for (const auto& axis : position_) total += axis.bytes();
   for (const auto& block : reflected_) total += static_cast<double>(sizeof(Reflected) * block.capacity());
   return total;
 }

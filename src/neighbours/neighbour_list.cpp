@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "narrow_lists.hpp"
 #include "packed_store.hpp"
 #include "spume/core/parallel.hpp"
 
@@ -185,10 +186,10 @@ inline std::size_t slot_of(const Candidates& candidates, std::size_t i, std::siz
   return static_cast<std::size_t>(std::find(begin, end, wanted) - begin);
 }
 
-// Writes the candidates within the support radius of a point; returns the end of what was written.
-template <int dimensions>
-[[gnu::noinline]] std::int32_t* select(const Candidates& candidates, const std::array<float, 3>& centre,
-                                       float support_radius2, std::int32_t* out) {
+// put()s the candidates within the support radius of a point; returns the end of what was written.
+template <int dimensions, class Number, class Put>
+[[gnu::noinline]] Number* select(const Candidates& candidates, const std::array<float, 3>& centre,
+                                 float support_radius2, Number* out, Put put) {
   const Candidates from = candidates;
   const std::array<float, 3> r = centre;
   for (std::size_t j = 0; j < from.size; j += pair_lanes) {
@@ -198,7 +199,7 @@ template <int dimensions>
       distance2 = axis == 0 ? d * d : distance2 + d * d;
     }
     const unsigned mask = simd::less_bits(distance2, simd::splat<f32n>(support_radius2));
-    store_packed(load_int<i32n>(from.entry + j), packing_of(mask), out);
+    put(load_int<i32n>(from.entry + j), packing_of(mask), out);
     out += std::popcount(mask);
   }
   return out;
@@ -311,7 +312,10 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles,
 
   std::atomic<std::int64_t> used{0};
   std::atomic<std::int64_t> found{0};
-  const auto capacity = static_cast<std::int64_t>(index_.capacity());
+  const auto capacity = static_cast<std::int64_t>(narrow_ ? base_.capacity() : index_.capacity());
+  const bool narrow = narrow_;
+  std::uint16_t* const codes = code_.data();
+  std::int32_t* const bases = base_.data();
   std::int32_t* const counts = count_.data();
   std::int64_t* const firsts = first_.data();
   std::int32_t* const indices = index_.data();
@@ -322,9 +326,12 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles,
     thread_local Array<Block> thread_blocks;
     thread_local Array<float> thread_candidates;
     thread_local Array<std::int32_t> thread_collected;
+    thread_local NarrowBlock thread_encoded;
     Array<Block>& block_memory = thread_blocks;
     Array<float>& candidate_memory = thread_candidates;
     Array<std::int32_t>& collected = thread_collected;
+    NarrowBlock& encoded = thread_encoded;
+    encoded.clear();
     Runs runs;
     std::size_t filled = 0;
     std::int64_t pairs = 0;
@@ -344,6 +351,14 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles,
 
       const std::size_t wanted = filled + (group.last - i) * (candidates.size + 2 * pair_lanes);
       if (wanted > collected.size()) collected.resize(2 * wanted);
+      std::int32_t low = 0;
+      const auto put_entries = [](i32n entry, Packing packing, std::int32_t* to) { store_packed(entry, packing, to); };
+      const auto put_codes = [&low](i32n entry, Packing packing, std::uint16_t* to) {
+        const Codes code = codes_of(packed(entry, packing), low);
+        std::memcpy(to, &code, sizeof code);
+      };
+      const bool one_base =
+          narrow && images.solids() == nullptr && NarrowBlock::within_reach(candidates.entry, candidates.size, low);
       std::size_t slot = 0;
       for (; i < group.last; ++i) {
         std::int32_t* const start = collected.data() + filled;
@@ -354,37 +369,61 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles,
         float& own = candidates.coordinate[0][slot];
         const float kept = std::exchange(own, far);
         if (own_support_radius != nullptr) support_radius2 = own_support_radius[i] * own_support_radius[i];
-        std::int32_t* stop = select<dimensions>(candidates, centre, support_radius2, start);
+        if (one_base) {
+          std::uint16_t* const codes_of_list = encoded.begin_list(candidates.size + pair_lanes);
+          const auto count = static_cast<std::size_t>(
+              select<dimensions>(candidates, centre, support_radius2, codes_of_list, put_codes) - codes_of_list);
+          own = kept;
+          counts[i] = encoded.end_list(count, low);
+          pairs += static_cast<std::int64_t>(count);
+          continue;
+        }
+        std::int32_t* stop = select<dimensions>(candidates, centre, support_radius2, start, put_entries);
         own = kept;
         if (images.solids() != nullptr)
           stop = keep_seen(position, dimensions, i, images, support_radius, n, start, stop);
-        store_int(stop, i32x8{} + nobody);
         const auto count = static_cast<std::int32_t>(stop - start);
-        counts[i] = count;
         pairs += count;
+        if (narrow) {
+          counts[i] = encoded.add(start, stop);
+          continue;
+        }
+        store_int(stop, i32x8{} + nobody);
+        counts[i] = count;
         filled += static_cast<std::size_t>(padded(count));
       }
     }
     found += pairs;
-    const std::int64_t target = used.fetch_add(static_cast<std::int64_t>(filled));
-    if (target + static_cast<std::int64_t>(filled) > capacity) return;
-    stream(collected.data(), filled, indices + target);
+    const std::size_t room = narrow ? encoded.size() : filled;
+    const std::int64_t target = used.fetch_add(static_cast<std::int64_t>(room));
+    if (target + static_cast<std::int64_t>(room) > capacity) return;
+    if (narrow)
+      encoded.copy_to(codes + target * pair_lanes, bases + target);
+    else
+      stream(collected.data(), filled, indices + target);
     std::int64_t running = target;
     for (std::size_t i = begin; i < end; ++i) {
       firsts[i] = running;
-      running += padded(counts[i]);
+      running += narrow ? counts[i] : padded(counts[i]);
     }
   });
   pairs_ = found;
   const std::int64_t wanted = used;
-  if (wanted <= capacity) {
-    index_.resize(static_cast<std::size_t>(wanted));
-    return true;
-  }
+  const bool found_room = wanted <= capacity;
   // A little more than this step needs, so that a flow that compresses slowly does not search twice again.
-  index_.release();
-  index_.reserve(static_cast<std::size_t>(wanted + wanted / 32));
-  return false;
+  const auto room = static_cast<std::size_t>(found_room ? wanted : wanted + wanted / 32);
+  const auto size = [found_room, room](auto& array, std::size_t per_entry) {
+    if (!found_room) array.release();
+    found_room ? array.resize(room * per_entry) : array.reserve(room * per_entry);
+  };
+  if (narrow_) {
+    index_.release();
+    size(code_, pair_lanes);
+    size(base_, 1);
+  } else {
+    size(index_, 1);
+  }
+  return found_room;
 }
 
 void NeighbourList::build(const CellGrid& grid, const CellOrder& particles, const double* x, const double* y,
@@ -406,7 +445,7 @@ void NeighbourList::build(const CellGrid& grid, const CellOrder& particles, cons
   first_.resize(n);
   for (int axis = 0; axis < dimensions; ++axis) {
     // A vector more: loads may read past the last point.
-    coordinate_[axis].resize(points_ + 1 + pair_lanes);
+    coordinate_[axis].fit(points_ + 1 + pair_lanes);
     for (int k = 0; k <= pair_lanes; ++k)
       coordinate_[axis][points_ + k] = sentinel_coordinate(static_cast<float>(grid.support_radius()));
   }
@@ -443,8 +482,7 @@ void NeighbourList::move(const std::array<const double*, 3>& position, const Ima
 }
 
 double NeighbourList::bytes() const {
-  double total =
-      4.0 * static_cast<double>(index_.capacity() + count_.capacity()) + 8.0 * static_cast<double>(first_.capacity());
+  double total = index_.bytes() + count_.bytes() + first_.bytes() + code_.bytes() + base_.bytes();
   for (const auto& axis : coordinate_) total += 4.0 * static_cast<double>(axis.capacity());
   return total;
 }

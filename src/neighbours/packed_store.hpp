@@ -36,8 +36,11 @@ using i32n = std::int32_t __attribute__((vector_size(64)));
 [[gnu::always_inline]] inline Packing packing_of(unsigned mask) {
   return static_cast<__mmask16>(mask);
 }
+[[gnu::always_inline]] inline i32n packed(i32n v, Packing packing) {
+  return i32n(_mm512_maskz_compress_epi32(packing, __m512i(v)));
+}
 [[gnu::always_inline]] inline void store_packed(i32n v, Packing packing, std::int32_t* out) {
-  _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(packing, __m512i(v)));
+  _mm512_storeu_si512(out, __m512i(packed(v, packing)));
 }
 [[gnu::always_inline]] inline void store_packed(f32n v, Packing packing, float* out) {
   _mm512_storeu_ps(out, _mm512_maskz_compress_ps(packing, __m512(v)));
@@ -55,8 +58,11 @@ using i32n = i32x8;
 [[gnu::always_inline]] inline Packing packing_of(unsigned mask) {
   return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(lane_table[mask])));
 }
+[[gnu::always_inline]] inline i32n packed(i32n v, Packing packing) {
+  return i32n(_mm256_permutevar8x32_epi32(__m256i(v), packing));
+}
 [[gnu::always_inline]] inline void store_packed(i32x8 v, Packing packing, std::int32_t* out) {
-  _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm256_permutevar8x32_epi32(__m256i(v), packing));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), __m256i(packed(v, packing)));
 }
 [[gnu::always_inline]] inline void store_packed(f32x8 v, Packing packing, float* out) {
   _mm256_storeu_ps(out, _mm256_permutevar8x32_ps(__m256(v), packing));
@@ -66,6 +72,11 @@ using Packing = std::uint64_t;
 using i32n = i32x8;
 [[gnu::always_inline]] inline Packing packing_of(unsigned mask) {
   return lane_table[mask];
+}
+[[gnu::always_inline]] inline i32n packed(i32n v, Packing packing) {
+  i32n out{};
+  for (int k = 0; k < 8; ++k, packing >>= 8) out[k] = v[packing & 7U];
+  return out;
 }
 template <class V, class T>
 [[gnu::always_inline]] inline void store_packed(V v, Packing packing, T* out) {

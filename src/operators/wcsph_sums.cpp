@@ -75,17 +75,21 @@ class CorrectedGradient {
   double scale_ = 0;
 };
 
-// Payload of the continuity records: u, v, s', and then what the scene has: mu, phase, the velocity under friction, the
-// shifting velocity.
+// Payload of the continuity records: u, v, s', and then what the scene has: mu and the number of phases that differ,
+// the velocity under friction, the shifting velocity.
 template <int dimensions, bool several, bool viscous, bool friction, bool shifted>
 struct ContinuityLayout {
   static constexpr int velocity = 0, volume = dimensions, excess = dimensions + 1;
-  static constexpr int viscosity = excess + 1, phase = viscosity + (viscous ? 1 : 0);
+  static constexpr int viscosity = excess + 1, phase = viscosity + (viscous && several ? 1 : 0);
   static constexpr int held = phase + (several ? 1 : 0);
   static constexpr int shift = held + (friction ? dimensions : 0);
   static constexpr int payload = shift + (shifted ? dimensions : 0);
   static constexpr int width = record_width(dimensions, payload);
 };
+
+float own_viscosity(const ContinuityFields& fields, std::size_t i) {
+  return fields.viscosity == nullptr ? fields.common_viscosity : fields.viscosity[i];
+}
 
 template <int dimensions, Phases phases, bool viscous, bool friction, bool shifted>
 void continuity(const SweepContext& context, PackedNeighbours& packed, const ContinuityFields& fields,
@@ -97,7 +101,7 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
   pack_velocity(context, records, width, At::velocity, fields.velocity, *fields.mirror);
   pack_scalar(context, records, width, At::volume, fields.volume);
   pack_scalar(context, records, width, At::excess, fields.excess);
-  if constexpr (viscous) pack_scalar(context, records, width, At::viscosity, fields.viscosity);
+  if constexpr (viscous && several) pack_scalar(context, records, width, At::viscosity, fields.viscosity);
   if constexpr (several) pack_scalar(context, records, width, At::phase, fields.phase);
   if constexpr (walls && viscous) mark_walls(context, records, width, At::viscosity);
   if constexpr (walls) mark_walls(context, records, width, At::phase);
@@ -120,13 +124,14 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
       diffusion = diffusion + same * (b.payload[At::excess] - own[At::excess]);
       if constexpr (viscous) {
         f32n drag = weight;
-        [[maybe_unused]] const f32n own_viscosity = simd::splat<f32n>(own[At::viscosity]),
-                                    other = b.payload[At::viscosity];
-        if constexpr (walls)
-          drag = drag * (harmonic_mean(own_viscosity, simd::max(other, f32n{})) +
-                         equals(other, simd::splat<f32n>(of_wall), own_viscosity));
-        else if constexpr (several)
-          drag = drag * harmonic_mean(own_viscosity, other);
+        if constexpr (several) {
+          const f32n own_viscosity = simd::splat<f32n>(own[At::viscosity]), other = b.payload[At::viscosity];
+          if constexpr (walls)
+            drag = drag * (harmonic_mean(own_viscosity, simd::max(other, f32n{})) +
+                           equals(other, simd::splat<f32n>(of_wall), own_viscosity));
+          else
+            drag = drag * harmonic_mean(own_viscosity, other);
+        }
         constexpr int u = friction ? At::held : At::velocity;
         for (int a = 0; a < dimensions; ++a) force[a] = force[a] + drag * (b.payload[u + a] - own[a]);
       }
@@ -157,7 +162,7 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
     out.rate[i] = scale.gradient * simd::sum(rate);
     out.diffusion[i] = -2 * scale.gradient * simd::sum(diffusion);
     if constexpr (viscous) {
-      const float factor = -2 * scale.gradient * (several ? 1 : own[At::viscosity]);
+      const float factor = -2 * scale.gradient * (several ? 1 : own_viscosity(fields, i));
       for (int a = 0; a < dimensions; ++a) out.viscous[a][i] = factor * simd::sum(force[a]);
     }
     if constexpr (shifted) {
@@ -189,7 +194,7 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
       if (fields.gravity[a] != 0) head += fields.gravity[a] * (context.images->position(a)[k] - from[a][source]);
     records[(n + k) * width + dimensions + 1] =
         of_point ? static_cast<float>(fields.wall_pressure[source] + fields.wall_density[source] * head)
-                 : static_cast<float>(fields.pressure[source] + fields.density[source] * head);
+                 : static_cast<float>(fields.pressure[source] + (head == 0 ? 0 : fields.density[source] * head));
   });
   if constexpr (several) pack_scalar(context, records, width, 2, fields.density);
   if constexpr (phases == Phases::beside_walls) mark_walls(context, records, width, 2);
@@ -226,7 +231,7 @@ void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, con
                       const ContinuityOut& out) {
   with_wcsph_dimensions(context, [&]<int dimensions>() {
     const auto run = [&]<Phases several, bool shifted>() {
-      if (fields.viscosity == nullptr)
+      if (fields.viscosity == nullptr && fields.common_viscosity == 0)
         continuity<dimensions, several, false, false, shifted>(context, packed, fields, out);
       else if (fields.friction == nullptr)
         continuity<dimensions, several, true, false, shifted>(context, packed, fields, out);

@@ -73,7 +73,7 @@ double Arrangement::list_traffic(const ParticleSizes& sizes) const {
   const double d = context.dimensions;
   const auto points = static_cast<double>(list.points());
   const auto cells = static_cast<double>(grid.cell_count()) * (images.size() > 0 ? 2 : 1);
-  return points * (8 * d + 2 * 4 * d) + 4 * cells + 4 * static_cast<double>(list.entries()) +
+  return points * (8 * d + 2 * 4 * d) + 4 * cells + list.list_bytes() +
          static_cast<double>(list.particles()) * (12 + (sizes.variable ? 4 : 0));
 }
 

@@ -19,7 +19,7 @@ struct Counts {
   explicit Counts(const les_sph::Flow& flow)
       : n(static_cast<double>(flow.size())),
         points(static_cast<double>(flow.arrangement.list.points() + 1)),
-        lists(4 * static_cast<double>(flow.arrangement.list.entries()) + (4 + 8) * n) {}
+        lists(flow.arrangement.list.list_bytes() + (4 + 8) * n) {}
   double n, points;
   double lists;  // bytes: entries of 4, a size of 4 and a beginning of 8 per particle
 };

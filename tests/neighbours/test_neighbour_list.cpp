@@ -85,6 +85,50 @@ std::vector<std::vector<std::int32_t>> lists_of(const NeighbourList& list) {
   return lists;
 }
 
+// The entries of a narrow list, as its batches say them.
+std::vector<std::int32_t> decoded(const NeighbourList& list, std::size_t i) {
+  std::vector<std::int32_t> entries;
+  const NarrowBatches batches = list.batches(i);
+  for (std::size_t b = 0; b < batches.size; ++b)
+    for (std::size_t l = 0; l < simd::pair_lanes; ++l) {
+      const std::uint16_t code = batches.code[b * simd::pair_lanes + l];
+      if (code != no_neighbour) entries.push_back(batches.base[b] + entry_scale * code);
+    }
+  return entries;
+}
+
+std::size_t batches_of(const NeighbourList& list) {
+  std::size_t sum = 0;
+  for (std::size_t i = 0; i < list.particles(); ++i) sum += list.batches(i).size;
+  return sum;
+}
+
+// Points are numbered beyond what 16 bits reach, and images far from the particles that see them.
+TEST(NarrowLists, HoldWhatTheOthersHoldInTheSameOrder) {
+  for (const int points_across : {40, 280}) {
+    Neighbourhood hood(unit_box_rules(2, 3.0 / points_across, periodic, mirror, none),
+                       lattice_points(points_across, 2, 0.5));
+    std::vector<std::vector<std::int32_t>> wide(hood.n);
+    std::size_t whole = 0;
+    for (std::size_t i = 0; i < hood.n; ++i) {
+      wide[i].assign(hood.list.begin(i), hood.list.begin(i) + hood.list.count(i));
+      whole += (wide[i].size() + simd::pair_lanes - 1) / simd::pair_lanes;
+    }
+    const double bytes = hood.list.list_bytes();
+    hood.list.keep_narrow();
+    for (const int threads : {1, 3}) {
+      omp_set_num_threads(threads);
+      hood.build();
+      for (std::size_t i = 0; i < hood.n; ++i) ASSERT_EQ(decoded(hood.list, i), wide[i]) << i;
+    }
+    // One batch more than there must be where images are too far for the base of the particles, and nowhere else.
+    EXPECT_GE(batches_of(hood.list), whole);
+    EXPECT_EQ(batches_of(hood.list) > whole, hood.list.points() > no_neighbour);
+    EXPECT_LT(hood.list.list_bytes(), 0.8 * bytes);
+    EXPECT_THROW(hood.list.of(0), std::logic_error);
+  }
+}
+
 struct SceneCase {
   const char* name;
   int dimensions;

@@ -73,7 +73,8 @@ TEST(WcsphSums, ContinuityDiffusionAndViscosityAgreeWithTheSlowTwin) {
                             .volume = f.volume.data(),
                             .excess = f.excess.data(),
                             .phase = several ? f.phase.data() : nullptr,
-                            .viscosity = viscous ? mu.data() : nullptr},
+                            .viscosity = viscous && (several || friction) ? mu.data() : nullptr,
+                            .common_viscosity = viscous && !several ? 0.3F : 0.0F},
                            {rate.data(), diffusion.data(), force.write()});
           Comparison rates("rate of density"), diffusions("diffusion"), forces("viscous force");
           const auto same = [&](std::size_t i, std::size_t j) { return !several || f.phase[i] == f.phase[j]; };
@@ -113,6 +114,31 @@ struct BothSums {
                          pressure.write());
   }
 };
+
+// The batches are the same, so that every sum has its order.
+TEST(WcsphSums, NarrowListsGiveTheSameBits) {
+  for (Arrangement* arrangement : wcsph_arrangements()) {
+    Arrangement& a = *arrangement;
+    SCOPED_TRACE(a.setup.name);
+    const Fields f(a);
+    const Neighbourhood& hood = a.hood;
+    ASSERT_LT(hood.list.points(), no_neighbour);
+    NeighbourList narrow;
+    narrow.keep_narrow();
+    narrow.build(hood.grid, hood.table, hood.x.data(), hood.y.data(), hood.z.data(), hood.n, hood.images, hood.origin);
+    SweepContext context = a.context;
+    context.list = &narrow;
+    const BothSums wide(a, a.context, f), sums(a, context, f);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      ASSERT_EQ(sums.rate[i], wide.rate[i]);
+      ASSERT_EQ(sums.diffusion[i], wide.diffusion[i]);
+      for (int axis = 0; axis < a.dimensions(); ++axis) {
+        ASSERT_EQ(sums.viscous[axis][i], wide.viscous[axis][i]);
+        ASSERT_EQ(sums.pressure[axis][i], wide.pressure[axis][i]);
+      }
+    }
+  }
+}
 
 // A factor of 5/4 is exact; that of the kernel is rounded to float once with it and once without.
 TEST(WcsphSums, TheGradientScaleMultipliesEverySum) {

@@ -72,6 +72,15 @@ class Array {
     data_ = fresh;
     capacity_ = capacity;
   }
+  // Room for `size` elements and a 32nd more, without the contents: for large arrays that are written anew, of which
+  // the quarter that reserve() grows by would stay unused.
+  void fit(std::size_t size) {
+    if (size > capacity_) {
+      release();
+      reserve(size + size / 32);
+    }
+    size_ = size;
+  }
   void release() { Array().swap(*this); }
   double bytes() const { return static_cast<double>(capacity_ * sizeof(T)); }
   void fill(T value) {

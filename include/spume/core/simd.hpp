@@ -166,12 +166,21 @@ inline constexpr __mmask16 all_lanes = 0xffff;
   return sum(__builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7));
 }
 
-// As below, of sixteen records.
+// Where a record of `width` floats begins: an entry is four times its number, one of 16 bits its number.
 template <int width>
-[[gnu::always_inline]] inline void load_records(const float* records, const std::int32_t* entry, int block,
-                                                f32x16 out[4]) {
+[[gnu::always_inline]] inline std::int64_t record_offset(std::int32_t entry) {
+  return static_cast<std::int64_t>(entry) * (width / 4);
+}
+template <int width>
+[[gnu::always_inline]] inline std::int64_t record_offset(std::uint16_t number) {
+  return static_cast<std::int64_t>(number) * width;
+}
+
+// As below, of sixteen records.
+template <int width, class Entry>
+[[gnu::always_inline]] inline void load_records(const float* records, const Entry* entry, int block, f32x16 out[4]) {
   const float* base = records + 4 * block;
-  const auto at = [&](int l) { return load4(base + static_cast<std::int64_t>(entry[l]) * (width / 4)); };
+  const auto at = [&](int l) { return load4(base + record_offset<width>(entry[l])); };
   // Records l, l + 4, l + 8 and l + 12 side by side; what follows stays within these quarters.
   const auto four = [&](int l) {
     const f32x8 low = side_by_side(at(l), at(l + 4)), high = side_by_side(at(l + 8), at(l + 12));
@@ -192,12 +201,11 @@ template <int width>
 #endif
 
 // Fetches floats [4 block, 4 block + 4) of eight records of `width` floats each, transposed: out[c] holds component c
-// of all eight. entry[l] is four times the number of record l.
-template <int width>
-[[gnu::always_inline]] inline void load_records(const float* records, const std::int32_t* entry, int block,
-                                                f32x8 out[4]) {
+// of all eight. entry[l] tells record l.
+template <int width, class Entry>
+[[gnu::always_inline]] inline void load_records(const float* records, const Entry* entry, int block, f32x8 out[4]) {
   const float* base = records + 4 * block;
-  const auto at = [&](int l) { return load4(base + static_cast<std::int64_t>(entry[l]) * (width / 4)); };
+  const auto at = [&](int l) { return load4(base + record_offset<width>(entry[l])); };
   const f32x8 a = side_by_side(at(0), at(4));
   const f32x8 b = side_by_side(at(1), at(5));
   const f32x8 c = side_by_side(at(2), at(6));

@@ -110,7 +110,8 @@ class Images {
   };
   std::array<const double*, 3> particle_{};
   std::vector<std::vector<Reflected>> reflected_;  // of blocks of particles, while images at solids are made
-  std::array<Array<double>, 3> position_, scratch_position_;
+  std::array<Array<double>, 3> position_;
+  Array<double> scratch_position_;
   Array<std::int32_t> source_, path_, scratch_;
   Array<std::int32_t> wall_point_;  // empty without wall points
   std::vector<ImagePath> paths_;

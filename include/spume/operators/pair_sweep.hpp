@@ -119,6 +119,12 @@ struct Batch {
   std::array<simd::f32n, payload_floats> payload;
 };
 
+// The entries of a batch of a narrow list that is filled up.
+inline void decode(const std::uint16_t* code, std::int32_t base, std::int32_t sentinel, std::int32_t* entry) {
+  for (int l = 0; l < simd::pair_lanes; ++l)
+    entry[l] = entry_scale * (code[l] == no_neighbour ? sentinel : code[l]) + (code[l] == no_neighbour ? 0 : base);
+}
+
 // Calls body(batch) for the padded list of particle i. Where a batch holds two of the eights that lists are padded to,
 // a last one alone is filled up with the sentinel.
 template <int dimensions, int payload, class Body>
@@ -128,19 +134,32 @@ template <int dimensions, int payload, class Body>
   constexpr int width = record_width(dimensions, payload);
   std::array<f32n, dimensions> centre;
   for (int axis = 0; axis < dimensions; ++axis) centre[axis] = simd::splat<f32n>(records[i * width + axis]);
-  const std::int32_t* const end = list.padded_end(i);
-  [[maybe_unused]] alignas(64) std::int32_t filled[pair_lanes];
-  for (const std::int32_t* next = list.begin(i); next < end; next += pair_lanes) {
-    const std::int32_t* entry = next;
-    if constexpr (pair_lanes > simd::lanes)
-      if (end - next < pair_lanes) {
-        std::copy_n(next, simd::lanes, filled);
-        std::fill_n(filled + simd::lanes, pair_lanes - simd::lanes, entry_scale * list.sentinel());
-        entry = filled;
-      }
+  const bool narrow = list.narrow();
+  const NarrowBatches batches = narrow ? list.batches(i) : NarrowBatches{};
+  const std::int32_t* const begin = narrow ? nullptr : list.begin(i);
+  const std::size_t end = narrow ? batches.size * pair_lanes : static_cast<std::size_t>(list.padded_end(i) - begin);
+  alignas(64) std::int32_t filled[pair_lanes];
+  for (std::size_t next = 0; next < end; next += pair_lanes) {
     std::array<f32n, width> value;
-    for (int block = 0; block < width / 4; ++block)
-      simd::load_records<width>(records, entry, block, value.data() + 4 * block);
+    const std::uint16_t* const code = narrow ? batches.code + next : nullptr;
+    if (narrow && code[pair_lanes - 1] != no_neighbour) {
+      const float* from = records + simd::record_offset<width>(batches.base[next / pair_lanes]);
+      for (int block = 0; block < width / 4; ++block)
+        simd::load_records<width>(from, code, block, value.data() + 4 * block);
+    } else {
+      const std::int32_t* entry = narrow ? filled : begin + next;
+      if (narrow) {
+        decode(code, batches.base[next / pair_lanes], list.sentinel(), filled);
+      } else if constexpr (pair_lanes > simd::lanes) {
+        if (end - next < pair_lanes) {
+          std::copy_n(entry, simd::lanes, filled);
+          std::fill_n(filled + simd::lanes, pair_lanes - simd::lanes, entry_scale * list.sentinel());
+          entry = filled;
+        }
+      }
+      for (int block = 0; block < width / 4; ++block)
+        simd::load_records<width>(records, entry, block, value.data() + 4 * block);
+    }
     Batch<dimensions, payload> batch;
     f32n r2{};
     for (int axis = 0; axis < dimensions; ++axis) {

@@ -48,7 +48,8 @@ struct ContinuityFields {
   const float* volume = nullptr;                                  // v
   const float* excess = nullptr;                                  // s'
   const float* phase = nullptr;                                   // its number; null: one phase
-  const float* viscosity = nullptr;                               // mu; null: inviscid
+  const float* viscosity = nullptr;                               // mu; null: that of all
+  float common_viscosity = 0;                                     // of one phase; 0: inviscid
   std::array<const float*, 3> shift{};                            // delta u; null: none
   const std::vector<std::array<float, 3>>* reflection = nullptr;  // of delta u
 };
@@ -65,7 +66,7 @@ void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, con
 struct PressureFields {
   const double* pressure = nullptr;
   const float* volume = nullptr;   // v
-  const float* density = nullptr;  // rho_0
+  const float* density = nullptr;  // rho_0; null: of one phase without gravity and walls of bodies
   bool several = false;            // phases: repulsion between them
   float repulsion = 0;             // eps
   // Images at mirrors continue the pressure of their source by density gravity . (r_image - r_source), as Adami et al.

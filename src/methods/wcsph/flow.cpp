@@ -90,6 +90,8 @@ Flow::Flow(const LoadedCase& loaded_case)
       boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution)),
       arrangement(scene.domain, resolution, particles.volume, particles.size(), skin),
       solutes(particles, resolution, options, scene) {
+  // Bands of interfaces and averages at wall points read lists one neighbour at a time.
+  if (!features.tension && !features.bodies) arrangement.list.keep_narrow();
   arrangement.context.gradient_scale = dimensions / resolution.lattice.divergence_of_position;
   FieldSet& fields = particles.fields;
   particles.add_vector(acceleration, "acceleration", Lifetime::state);

@@ -73,14 +73,39 @@ void Flow::move_images(const std::array<const double*, 3>& at, double t) {
   if (features.bodies) wall_averages.weigh(arrangement.context, boundary.bodies()->stencils());
 }
 
+// (5), (6) along one axis.
+Flow::HalfStep Flow::half_step(int axis, std::size_t i, double dt) const {
+  const double u = (*particles.velocity[axis])[i] + dt / 2 * (*acceleration[axis])[i];
+  const double way = dt / 2 * transport(axis, u, i);
+  return {u, (*particles.position[axis])[i] + way, way};
+}
+
+// r' of particle i held by the walls of the end of the step, and u* there. Velocities are found anew where they are
+// wanted instead of being kept for half of a step.
+Vec3 Flow::held_velocity(std::size_t i, double dt, Vec3& r) const {
+  Vec3 u{};
+  for (int axis = 0; axis < dimensions; ++axis) {
+    const HalfStep half = half_step(axis, i, dt);
+    u[axis] = half.velocity;
+    r[axis] = half.place + half.way;
+  }
+  const Vec3 before = r;
+  boundary.apply_walls(boundary.walls, r, &u);
+  // Particles go round periodic sides when lists are made.
+  for (int axis = 0; axis < dimensions; ++axis)
+    if (scene.domain.periodic(axis)) r[axis] = before[axis];
+  return u;
+}
+
 void Flow::drift(double dt) {
   ScratchPool& scratch = particles.scratch();
   scratch.lease(half_velocity, dimensions, size());
   scratch.lease(place, dimensions, size());
   parallel_for(size(), [&](std::size_t i) {
     for (int axis = 0; axis < dimensions; ++axis) {
-      half_velocity[axis][i] = (*particles.velocity[axis])[i] + dt / 2 * (*acceleration[axis])[i];
-      place[axis][i] = (*particles.position[axis])[i] + dt / 2 * transport(axis, half_velocity[axis][i], i);
+      const HalfStep half = half_step(axis, i, dt);
+      half_velocity[axis][i] = half.velocity;
+      place[axis][i] = half.place;
     }
   });
   move_images(read(place), time + dt / 2);
@@ -90,9 +115,9 @@ void Flow::lease_properties() {
   ScratchPool& scratch = particles.scratch();
   scratch.lease(volume, size());
   scratch.lease(reduced_excess, size());
-  scratch.lease(density, size());
+  if (needs_density()) scratch.lease(density, size());
   if (needs_phase()) scratch.lease(phase, size());
-  if (features.viscosity) scratch.lease(viscosity, size());
+  if (needs_viscosity()) scratch.lease(viscosity, size());
   if (features.shifting) scratch.lease(way, dimensions, size());
   parallel_for(size(), [&](std::size_t i) {
     const PhaseLaw& own = law(i);
@@ -101,9 +126,9 @@ void Flow::lease_properties() {
       head += wall_gravity[axis] * (place[axis][i] - arrangement.origin[axis]);
     volume[i] = static_cast<float>(1 / (1 + (*excess)[i]));
     reduced_excess[i] = static_cast<float>((*excess)[i] - head / (own.sound_speed * own.sound_speed));
-    density[i] = static_cast<float>(own.density);
+    if (needs_density()) density[i] = static_cast<float>(own.density);
     if (needs_phase()) phase[i] = static_cast<float>(phase_of(i));
-    if (features.viscosity) viscosity[i] = static_cast<float>(own.viscosity);
+    if (needs_viscosity()) viscosity[i] = static_cast<float>(own.viscosity);
     for (int axis = 0; features.shifting && axis < dimensions; ++axis)
       way[axis][i] = static_cast<float>((*shift[axis])[i]);
   });
@@ -126,7 +151,8 @@ void Flow::find_rates() {
                     .volume = volume.data(),
                     .excess = reduced_excess.data(),
                     .phase = needs_phase() ? phase.data() : nullptr,
-                    .viscosity = features.viscosity ? viscosity.data() : nullptr,
+                    .viscosity = needs_viscosity() ? viscosity.data() : nullptr,
+                    .common_viscosity = needs_phase() ? 0 : static_cast<float>(laws[0].viscosity),
                     .shift = read(way),
                     .reflection = &boundary.reflection()},
                    {.rate = rate.data(),
@@ -134,6 +160,8 @@ void Flow::find_rates() {
                     .viscous = write(viscous_force),
                     .carried = carried.data(),
                     .flux = write(flux)});
+  scratch.release(half_velocity);
+  scratch.release(viscosity);
 }
 
 void Flow::advance_density(double dt) {
@@ -161,18 +189,9 @@ void Flow::advance_density(double dt) {
     next_excess[i] = s;
     pressure[i] = own.pressure(s) + background;
     volume[i] = static_cast<float>(1 / (1 + s));
-    Vec3 r{}, u{};
-    for (int axis = 0; axis < dimensions; ++axis) {
-      u[axis] = half_velocity[axis][i];
-      r[axis] = place[axis][i] + dt / 2 * transport(axis, u[axis], i);
-    }
-    const Vec3 before = r;
-    boundary.apply_walls(boundary.walls, r, &u);
-    for (int axis = 0; axis < dimensions; ++axis) {
-      // Particles go round periodic sides when lists are made.
-      place[axis][i] = scene.domain.periodic(axis) ? before[axis] : r[axis];
-      half_velocity[axis][i] = u[axis];
-    }
+    Vec3 r{};
+    held_velocity(i, dt, r);
+    for (int axis = 0; axis < dimensions; ++axis) place[axis][i] = r[axis];
   });
   scratch.release(rate);
   scratch.release(diffusion);
@@ -285,6 +304,15 @@ void Flow::accept(double dt) {
         const Vec3 f = force(vector_at(place, dimensions, i), time + dt);
         for (std::size_t axis = 0; axis < 3; ++axis) a[axis] += f[axis];
       }
+      // Where no wall has moved the particle none has held it.
+      Vec3 u{}, r{};
+      bool free = true;
+      for (int axis = 0; axis < dimensions; ++axis) {
+        const HalfStep half = half_step(axis, i, dt);
+        u[axis] = half.velocity;
+        free = free && half.place + half.way == place[axis][i];
+      }
+      if (!free) u = held_velocity(i, dt, r);
       const double specific_volume = 1 / (law(i).density * (1 + next_excess[i]));
       for (int axis = 0; axis < dimensions; ++axis) {
         const double viscous = features.viscosity ? viscous_force[axis][i] : 0.0F;
@@ -292,16 +320,16 @@ void Flow::accept(double dt) {
         if (features.shifting) a[axis] += double{flux[axis][i]};
         (*acceleration[axis])[i] = a[axis];
         (*particles.position[axis])[i] = place[axis][i];
-        (*particles.velocity[axis])[i] = half_velocity[axis][i] + dt / 2 * a[axis];
+        (*particles.velocity[axis])[i] = u[axis] + dt / 2 * a[axis];
       }
       (*excess)[i] = next_excess[i];
       if (features.shifting) find_shift(i);
     }
   });
-  for (auto* vector : {&half_velocity, &place}) scratch.release(*vector);
+  scratch.release(place);
   for (auto* vector : {&viscous_force, &pressure_force, &flux, &concentration}) scratch.release(*vector);
   for (auto* array : {&next_excess, &pressure, &wall_pressure, &wall_density}) scratch.release(*array);
-  for (auto* array : {&volume, &density, &phase, &viscosity}) scratch.release(*array);
+  for (auto* array : {&volume, &density, &phase}) scratch.release(*array);
   boundary.accept();
   if (features.tension) surface_energy = tension->energy();
   time += dt;

@@ -37,7 +37,7 @@ std::optional<Flow::Parting> Flow::parting_from_bodies(std::size_t i, const Vec3
   const BodyWalls::NearestWall near = walls.nearest_wall(r);
   const double distance = std::max(near.distance, 0.0), own_gap = std::min(gap, near.half_width / 2);
   if (distance >= own_gap || !scene.bodies[near.body].motion) return std::nullopt;
-  const double head = -2 * distance * density[i] * dot(wall_gravity, near.normal);
+  const double head = -2 * distance * law(i).density * dot(wall_gravity, near.normal);
   return Parting{near.body, near.point, multiply(parting_force(i, distance, own_gap, head), near.normal)};
 }
 
@@ -48,7 +48,7 @@ void Flow::part_from_walls() {
         const double way = boundary.walls[axis][side] - place[axis][i];
         if (std::abs(way) >= scene.spacing / 2 || !is_wall(scene.domain.sides[axis][side].kind)) continue;
         const double force =
-            parting_force(i, std::abs(way), scene.spacing / 2, 2 * density[i] * wall_gravity[axis] * way);
+            parting_force(i, std::abs(way), scene.spacing / 2, 2 * law(i).density * wall_gravity[axis] * way);
         pressure_force[axis][i] += static_cast<float>(way > 0 ? -force : force);
       }
     if (!features.displaced_bodies) return;

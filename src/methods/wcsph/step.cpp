@@ -44,8 +44,9 @@ Plan make_plan(Flow& f) {
                {f.rate, f.diffusion, f.viscous_force, f.carried, f.flux, f.way, f.volume, f.reduced_excess, f.density,
                 f.phase, f.viscosity});
   stages.add(both, "density", true, f.laws_in_words(), &Flow::advance_density,
-             {f.rate, f.diffusion, f.carried, f.way, f.half_velocity, f.place, *f.excess, *f.phase_number},
-             {f.next_excess, f.pressure, f.volume, f.half_velocity, f.place});
+             {f.rate, f.diffusion, f.carried, f.way, p.position, p.velocity, f.acceleration, f.shift, *f.excess,
+              *f.phase_number},
+             {f.next_excess, f.pressure, f.volume, f.place});
   const int interval = f.options.get<CompressibilityOptions>().filter_interval;
   stages.sweep(both, "density filter", has.shepard,
                has.shepard ? "average of the phase, every " + std::to_string(interval) + " steps"
@@ -58,7 +59,8 @@ Plan make_plan(Flow& f) {
                has.tension ? "(11): curvature of the interfaces, force of pairs across them" : no_tension,
                &Flow::add_tension, {f.volume, interfaces}, {f.pressure_force, interfaces});
   stages.add(both, "acceptance", true, "(6): the new state", &Flow::accept,
-             {f.half_velocity, f.place, f.next_excess, f.pressure_force, f.viscous_force, f.flux, f.concentration},
+             {p.position, p.velocity, f.acceleration, f.place, f.next_excess, f.pressure_force, f.viscous_force, f.flux,
+              f.concentration},
              {p.position, p.velocity, f.acceleration, f.shift, *f.excess});
   add_solute_stages(stages, f, has, oxygen::in_words(f.scene), []() -> const oxygen::Supply* { return nullptr; });
   return plan;

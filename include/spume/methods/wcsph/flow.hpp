@@ -125,6 +125,11 @@ struct Flow {
   double reduced(std::size_t i) const;
   void start_volume();
   double share_of_way(double way) const;
+  struct HalfStep {
+    double velocity, place, way;
+  };
+  HalfStep half_step(int axis, std::size_t i, double dt) const;
+  Vec3 held_velocity(std::size_t i, double dt, Vec3& r) const;
   SurfaceTension::Now tension_now();
   void build_lists();
   bool lists_hold(double dt) const;
@@ -141,6 +146,9 @@ struct Flow {
   void add_parting_forces(std::vector<WallForce>& forces) const;
   // Density does not diffuse to wall points: they have a phase of their own.
   bool needs_phase() const { return features.several || (features.bodies && !features.shifting); }
+  bool needs_viscosity() const { return features.viscosity && needs_phase(); }
+  // Pressures of images have the weight of what is between them and their sources.
+  bool needs_density() const { return features.several || features.bodies || features.gravity; }
   void lease_properties();
   void find_shift(std::size_t i);
   void find_signal();
