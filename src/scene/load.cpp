@@ -13,6 +13,7 @@
 #include "body_motion.hpp"
 #include "checks.hpp"
 #include "fill.hpp"
+#include "motion_checks.hpp"
 #include "open_sides.hpp"
 #include "openings.hpp"
 #include "reader.hpp"
@@ -335,7 +336,6 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   compile_sections(schema, draft, compiler);
   problems.throw_if_any();
 
-  scene.walls = make_walls(scene.bodies, scene.motions);
   if (any(body_force)) scene.body_force = std::move(body_force);
   if (!draft.initial_velocity.empty()) scene.initial_velocity = std::move(initial_velocity);
   scene.title = draft.options.title;
@@ -345,6 +345,9 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   scene.surface_tension = draft.surface_tension;
   scene.spacing = draft.options.spacing;
   scene.seed = draft.options.seed;
+  add_flaps(draft, scene, problems);
+  problems.throw_if_any();
+  scene.walls = make_walls(scene.bodies, scene.motions);
   loaded.bytes_per_particle = method->bytes_per_particle(draft.options, draft.dimensions);
   const double most = machine_memory_bytes() / loaded.bytes_per_particle;
   if (method->uses_grid) set_grid(draft, most, scene, problems);
@@ -357,6 +360,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   const std::vector<Wavemaker> wavemakers = make_wavemakers(draft, scene, problems);
   scene.sponges = make_sponges(draft, wavemakers);
   check_openings_of(draft, scene, lattice.volume(), problems);
+  check_motions(draft, scene, method->fills_regions, problems);
   double& courant = draft.options.time.courant;
   if (courant == 0) courant = method->default_courant(draft.options, scene);
   if (method->check_scene) method->check_scene(draft, scene, problems);
@@ -372,6 +376,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   for (Problem& warning : unused_options(draft, schema, file)) draft.options.warnings.push_back(std::move(warning));
   for (Problem& warning : body_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
   for (Problem& warning : release_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
+  for (Problem& warning : collision_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
   if (uses_particles(*method)) {
     for (Problem& warning : open_side_warnings(draft, scene, file))
       draft.options.warnings.push_back(std::move(warning));

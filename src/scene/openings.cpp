@@ -135,7 +135,9 @@ class CheckOpening {
 
 bool share_a_place(const Draft& draft, const OpeningDraft& one, const OpeningDraft& other) {
   if (one.side != other.side || one.where || other.where) return false;
+  const int along = side_place(one.side, draft.dimensions).first;
   for (std::size_t a = 0; a < static_cast<std::size_t>(draft.dimensions); ++a) {
+    if (static_cast<int>(a) == along) continue;  // their boxes may be flat there
     const auto first = extent(draft, one, a), second = extent(draft, other, a);
     const double slack = 1e-9 * (draft.upper[a] - draft.lower[a]);
     if (first[1] <= second[0] + slack || second[1] <= first[0] + slack) return false;
@@ -228,15 +230,28 @@ void sample(const Opening& opening, const Domain& domain, double end, Look&& loo
       }
 }
 
+bool holds_liquid(const Scene& scene, const Vec3& place) {
+  const Domain& domain = scene.domain;
+  const auto holds = [&](const SolidBox& box) {
+    for (int axis = 0; axis < domain.dimensions; ++axis)
+      if (place[axis] < box.lower[axis] || place[axis] > box.upper[axis]) return false;
+    return true;
+  };
+  if (std::any_of(domain.boxes.begin(), domain.boxes.end(), holds)) return false;
+  return scene.walls.empty() || scene.walls.distance(place) > 0;
+}
+
 void check_velocity(const Draft& draft, const Scene& scene, const Opening& opening, Problems& problems) {
   const std::string key = opening.name + (opening.velocity ? ".velocity" : ".flow_rate");
   const Node& node = draft.node(key) != nullptr ? *draft.node(key) : *draft.node(opening.name);
   const double inwards = opening.side == 0 ? 1 : -1;
-  bool covered = false;
+  bool covered = false, passes = false, refused = false;
   sample(opening, scene.domain, draft.options.time.end, [&](const Vec3& place, double t) {
     covered = true;
+    passes = passes || holds_liquid(scene, place);
     const double speed = opening.velocity ? inwards * (*opening.velocity)(place, t)[opening.axis]
                                           : (*opening.flow_rate)(place[0], place[1], place[2], t);
+    refused = !(speed >= 0);
     if (!std::isfinite(speed)) {
       problems.add(node, key + " is not a finite number at t = " + brief(t));
       return false;
@@ -251,17 +266,9 @@ void check_velocity(const Draft& draft, const Scene& scene, const Opening& openi
   if (!covered)
     problems.add(draft.node(opening.name + ".where") != nullptr ? *draft.node(opening.name + ".where") : node,
                  opening.name + ".where is nowhere positive on its side; the expression is that of a place on it");
-}
-
-bool holds_liquid(const Scene& scene, const Vec3& place) {
-  const Domain& domain = scene.domain;
-  const auto holds = [&](const SolidBox& box) {
-    for (int axis = 0; axis < domain.dimensions; ++axis)
-      if (place[axis] < box.lower[axis] || place[axis] > box.upper[axis]) return false;
-    return true;
-  };
-  if (std::any_of(domain.boxes.begin(), domain.boxes.end(), holds)) return false;
-  return scene.walls.empty() || scene.walls.distance(place) > 0;
+  else if (!passes && !refused)
+    problems.add(*draft.node(opening.name),
+                 opening.name + " lets nothing enter: solids cover all of it; move it or the solids");
 }
 
 // Rate at which liquid enters, at the 33 times of sample().

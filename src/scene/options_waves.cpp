@@ -10,7 +10,8 @@ Section wavemaker() {
   return repeated_section<W>("wavemaker", &Draft::wavemakers)
       .word("side", &W::side, {{"left", "left"}, {"right", "right"}}, "wall of the domain that moves")
       .required()
-      .word("kind", &W::kind, {{"piston", WavemakerKind::piston}}, "how it moves: a flat wall along its normal")
+      .word("kind", &W::kind, {{"piston", WavemakerKind::piston}, {"flap", WavemakerKind::flap}},
+            "how it moves: piston: along its normal; flap: a wall of its own that turns about a hinge at the bed")
       .word("waves", &W::waves,
             {{"regular", WaveKind::regular},
              {"jonswap", WaveKind::jonswap},
@@ -42,7 +43,10 @@ Section wavemaker() {
       .when("waves", {"focused"})
       .absent("none; required for focused waves")
       .option("depth", &W::depth, "length", positive(), "depth of still water")
-      .absent("that of the liquid beside the wall")
+      .absent("that of the liquid beside the wall; required for a flap")
+      .option("hinge", &W::hinge, "length", "x of the hinge, and of the flap at rest")
+      .when("kind", {"flap"})
+      .absent("as near to the side as it can swing")
       .option("ramp", &W::ramp, "time", not_negative(), "time over which the motion grows from rest")
       .when("waves", {"regular", "jonswap", "focused"})
       .absent("two periods")

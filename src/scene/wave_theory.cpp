@@ -40,6 +40,12 @@ double piston_transfer(double kh) {
   return 2 * less * less / (-std::expm1(-4 * kh) + 4 * kh * e);
 }
 
+double flap_transfer(double kh) {
+  // Both sides times 2 exp(-2kh).
+  const double e = std::exp(-2 * kh), less = -std::expm1(-2 * kh);
+  return 2 * less / kh * (kh * less - 1 - e + 2 * std::exp(-kh)) / (-std::expm1(-4 * kh) + 4 * kh * e);
+}
+
 double piston_second_amplitude(double height, double kh, double depth) {
   const double s = std::sinh(kh), bound = std::isfinite(s * s * s) ? 3 * std::cosh(kh) / (s * s * s) : 0;
   return height * height / (32 * depth) * (bound - 2 / piston_transfer(kh));
@@ -84,11 +90,12 @@ std::vector<WaveComponent> focused_waves(double amplitude, double peak_period, d
   return waves;
 }
 
-std::vector<Oscillation> piston_motion(const std::vector<WaveComponent>& waves, double depth, double gravity) {
+std::vector<Oscillation> piston_motion(const std::vector<WaveComponent>& waves, double depth, double gravity,
+                                       double (*transfer)(double)) {
   std::vector<Oscillation> motion;
   motion.reserve(waves.size());
   for (const auto& [amplitude, w, phase] : waves)
-    motion.push_back({amplitude / piston_transfer(wavenumber(w, depth, gravity) * depth), w, phase});
+    motion.push_back({amplitude / transfer(wavenumber(w, depth, gravity) * depth), w, phase});
   return motion;
 }
 

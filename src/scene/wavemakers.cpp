@@ -83,6 +83,7 @@ class CheckWavemaker {
     need("period", kind != WaveKind::solitary && !maker_.period, "time");
     need("focus_place", focused && !maker_.focus_place, "length");
     need("focus_time", focused && !maker_.focus_time, "time");
+    if (maker_.kind == WavemakerKind::flap) flap();
     if (maker_.order == 2 && (kind == WaveKind::jonswap || focused))
       problems_.add(*draft_.node(name_ + ".order"),
                     name_ + ".order is 2, and for sums of waves there is the theory of first order only; remove it");
@@ -94,6 +95,20 @@ class CheckWavemaker {
   }
 
  private:
+  // The stroke of a flap must be known before there is liquid beside it.
+  void flap() {
+    need("depth", !maker_.depth, "length");
+    if (maker_.waves == WaveKind::solitary)
+      problems_.add(*draft_.node(name_ + ".waves"),
+                    name_ + ".waves is \"solitary\", which need a piston; set  kind = \"piston\"");
+    if (maker_.order == 2)
+      problems_.add(*draft_.node(name_ + ".order"),
+                    name_ + ".order is 2, and for flaps there is the theory of first order only; remove it");
+    if (draft_.dimensions > 0 && maker_.depth &&
+        !(*maker_.depth < draft_.upper[static_cast<std::size_t>(draft_.dimensions) - 1] -
+                              draft_.lower[static_cast<std::size_t>(draft_.dimensions) - 1]))
+      problems_.add(*draft_.node(name_ + ".depth"), name_ + ".depth must be less than the height of the domain");
+  }
   void need(const char* key, bool missing, const char* unit) {
     if (missing && !draft_.node(name_ + "." + key))
       problems_.add(node_,
@@ -109,10 +124,9 @@ class CheckWavemaker {
 
 // Depth of the liquid within five spacings of a wall, from its bed to its surface: exact for columns that are evenly
 // filled. 0: there is none.
-double still_depth_beside(const Scene& scene, int end) {
+double still_depth_beside(const Scene& scene, double wall) {
   const InitialParticles& particles = scene.particles;
   const auto up = static_cast<std::size_t>(scene.domain.dimensions) - 1;
-  const double wall = end == 0 ? scene.domain.lower[0] : scene.domain.upper[0];
   constexpr double none = -std::numeric_limits<double>::infinity();
   const auto highest = [&](double sign) {
     return parallel_max(particles.size(), none, [&](std::size_t i) {
@@ -124,52 +138,6 @@ double still_depth_beside(const Scene& scene, int end) {
   if (!(way >= 0)) return 0;
   const double layers = std::round(way / scene.spacing) + 1;
   return layers > 1 ? way * layers / (layers - 1) : scene.spacing;
-}
-
-std::shared_ptr<const PistonMotion> motion_of(const WavemakerDraft& draft, Wavemaker& maker, const Scene& scene) {
-  const double gravity = gravity_of(scene), depth = maker.depth;
-  if (draft.waves == WaveKind::solitary) {
-    const SolitaryWave wave(*draft.height, depth, gravity);
-    maker.wavenumber = wave.decay;
-    maker.angular_frequency = wave.decay * wave.speed;
-    return std::make_shared<SolitaryPiston>(wave);
-  }
-  const double period = *draft.period, w = 2 * pi / period;
-  maker.angular_frequency = w;
-  maker.wavenumber = wavenumber(w, depth, gravity);
-  const auto count = static_cast<std::size_t>(draft.components);
-  std::vector<Oscillation> motion;
-  if (draft.waves == WaveKind::regular) {
-    const double kh = maker.wavenumber * depth;
-    motion = piston_motion({{maker.height / 2, w, 0}}, depth, gravity);
-    if (draft.order != 1) motion.push_back({piston_second_amplitude(maker.height, kh, depth), 2 * w, 0});
-  } else if (draft.waves == WaveKind::jonswap) {
-    motion = piston_motion(
-        jonswap_waves(maker.height, period, draft.gamma, count, scene.seed, static_cast<std::uint32_t>(draft.seed)),
-        depth, gravity);
-  } else {
-    const double way =
-        maker.side == "left" ? *draft.focus_place - scene.domain.lower[0] : scene.domain.upper[0] - *draft.focus_place;
-    motion = piston_motion(
-        focused_waves(*draft.amplitude, period, draft.gamma, count, way, *draft.focus_time, depth, gravity), depth,
-        gravity);
-  }
-  return std::make_shared<OscillatingPiston>(std::move(motion), draft.ramp.value_or(2 * period));
-}
-
-// Sampled at least forty times in a period, of a spectrum that of its peak: extremes are 1 % off at most.
-void find_extremes(const PistonMotion& motion, double end, Wavemaker& maker) {
-  const double wanted = end * maker.angular_frequency / (2 * pi) * 40;
-  const auto samples = static_cast<std::size_t>(std::clamp(wanted, 1000.0, 100000.0));
-  double lowest = 0, highest = 0;
-  for (std::size_t i = 0; i <= samples; ++i) {
-    const double t = end * static_cast<double>(i) / static_cast<double>(samples), x = motion.displacement(t);
-    lowest = std::min(lowest, x);
-    highest = std::max(highest, x);
-    maker.largest_speed = std::max(maker.largest_speed, std::abs(motion.velocity(t)));
-  }
-  maker.stroke = highest - lowest;
-  maker.largest_displacement = highest;
 }
 
 void check_motion(const Draft& draft, const Scene& scene, const Wavemaker& maker, Problems& problems) {
@@ -223,7 +191,7 @@ class WarnOfWaves {
       warn(*height, what + brief(maker.height) + " is " + brief(steepness) +
                         " of the wavelength; waves break above 0.14 tanh kh = " + brief(steepest * std::tanh(kh)) +
                         ": lower it, or make the period longer");
-    if (draft.waves == WaveKind::regular && draft.order != 1 &&
+    if (draft.waves == WaveKind::regular && draft.order != 1 && draft.kind == WavemakerKind::piston &&
         madsen_number(maker.height, maker.wavenumber, maker.depth) > 1)
       warn(*height, "waves of height " + brief(maker.height) +
                         " are too long for second-order theory: H L^2 / h^3 is " +
@@ -262,6 +230,58 @@ class WarnOfWaves {
 };
 
 }  // namespace
+
+std::shared_ptr<const PistonMotion> wavemaker_motion(const WavemakerDraft& draft, Wavemaker& maker,
+                                                     const Scene& scene) {
+  const double gravity = gravity_of(scene), depth = maker.depth;
+  if (draft.waves == WaveKind::solitary) {
+    const SolitaryWave wave(*draft.height, depth, gravity);
+    maker.wavenumber = wave.decay;
+    maker.angular_frequency = wave.decay * wave.speed;
+    return std::make_shared<SolitaryPiston>(wave);
+  }
+  const double period = *draft.period, w = 2 * pi / period;
+  maker.angular_frequency = w;
+  maker.wavenumber = wavenumber(w, depth, gravity);
+  const auto count = static_cast<std::size_t>(draft.components);
+  const auto transfer = draft.kind == WavemakerKind::flap ? flap_transfer : piston_transfer;
+  std::vector<Oscillation> motion;
+  if (draft.waves == WaveKind::regular) {
+    const double kh = maker.wavenumber * depth;
+    motion = piston_motion({{maker.height / 2, w, 0}}, depth, gravity, transfer);
+    if (draft.order != 1 && draft.kind == WavemakerKind::piston)
+      motion.push_back({piston_second_amplitude(maker.height, kh, depth), 2 * w, 0});
+  } else if (draft.waves == WaveKind::jonswap) {
+    motion = piston_motion(
+        jonswap_waves(maker.height, period, draft.gamma, count, scene.seed, static_cast<std::uint32_t>(draft.seed)),
+        depth, gravity, transfer);
+  } else {
+    const double wall = draft.kind == WavemakerKind::flap ? maker.hinge
+                        : maker.side == "left"            ? scene.domain.lower[0]
+                                                          : scene.domain.upper[0];
+    const double way = std::abs(*draft.focus_place - wall);
+    motion = piston_motion(
+        focused_waves(*draft.amplitude, period, draft.gamma, count, way, *draft.focus_time, depth, gravity), depth,
+        gravity, transfer);
+  }
+  return std::make_shared<OscillatingPiston>(std::move(motion), draft.ramp.value_or(2 * period));
+}
+
+// Sampled at least forty times in a period, of a spectrum that of its peak: extremes are 1 % off at most.
+void find_wavemaker_extremes(const PistonMotion& motion, double end, Wavemaker& maker) {
+  const double wanted = end * maker.angular_frequency / (2 * pi) * 40;
+  const auto samples = static_cast<std::size_t>(std::clamp(wanted, 1000.0, 100000.0));
+  double lowest = 0, highest = 0;
+  for (std::size_t i = 0; i <= samples; ++i) {
+    const double t = end * static_cast<double>(i) / static_cast<double>(samples), x = motion.displacement(t);
+    lowest = std::min(lowest, x);
+    highest = std::max(highest, x);
+    maker.largest_speed = std::max(maker.largest_speed, std::abs(motion.velocity(t)));
+  }
+  maker.stroke = highest - lowest;
+  maker.largest_displacement = highest;
+  maker.smallest_displacement = lowest;
+}
 
 void check_wavemakers(const Draft& draft, Problems& problems) {
   if (!draft.usable("wavemaker")) return;
@@ -318,7 +338,15 @@ std::vector<Wavemaker> make_wavemakers(const Draft& draft, Scene& scene, Problem
     maker.name = entry("wavemaker", k);
     maker.side = one.side;
     const int end = one.side == "left" ? 0 : 1;
-    maker.still_depth = still_depth_beside(scene, end);
+    double wall = (end == 0 ? scene.domain.lower : scene.domain.upper)[0];
+    if (one.kind == WavemakerKind::flap) {
+      // The last bodies are those of the flaps, in their order.
+      const auto flaps =
+          std::count_if(draft.wavemakers.begin() + static_cast<std::ptrdiff_t>(k), draft.wavemakers.end(),
+                        [](const WavemakerDraft& other) { return other.kind == WavemakerKind::flap; });
+      wall = maker.hinge = scene.motions[scene.motions.size() - static_cast<std::size_t>(flaps)].pivot[0];
+    }
+    maker.still_depth = still_depth_beside(scene, wall);
     if (!(maker.still_depth > 0)) {
       problems.add(*draft.node(maker.name), maker.name +
                                                 " has no liquid beside its wall; fill the domain there, or "
@@ -327,9 +355,13 @@ std::vector<Wavemaker> make_wavemakers(const Draft& draft, Scene& scene, Problem
     }
     maker.depth = one.depth.value_or(maker.still_depth);
     maker.height = one.waves == WaveKind::focused ? 2 * *one.amplitude : *one.height;
-    const auto motion = motion_of(one, maker, scene);
-    find_extremes(*motion, draft.options.time.end, maker);
+    const auto motion = wavemaker_motion(one, maker, scene);
+    find_wavemaker_extremes(*motion, draft.options.time.end, maker);
     check_motion(draft, scene, maker, problems);
+    if (one.kind == WavemakerKind::flap) {
+      made.push_back(maker);
+      continue;
+    }
     VectorExpression velocity;
     velocity.component[0] = std::make_shared<PistonVelocity>(motion, end == 0 ? 1 : -1);
     scene.domain.sides[0][static_cast<std::size_t>(end)].velocity = std::move(velocity);
@@ -365,6 +397,9 @@ void describe_waves(const Draft& draft, const Scene& scene, const std::vector<Wa
             : "wavelength " + brief(length) + ", kh " + brief(kh) + ", steepness H/L " + brief(maker.height / length);
     text += ", " + brief(maker.height / scene.spacing) + " spacings high; stroke " + brief(maker.stroke) +
             ", largest speed " + brief(maker.largest_speed) + ", depth " + brief(maker.depth);
+    if (draft.wavemakers[k].kind == WavemakerKind::flap)
+      text += "; flap with its hinge at x = " + brief(maker.hinge) + ", turns by up to " +
+              brief(std::atan(maker.stroke / 2 / maker.depth) * 180 / pi) + " degrees";
     groups["wavemaker " + maker.side] = text;
   }
   for (std::size_t k = 0; k < scene.sponges.size(); ++k) {

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "spume/scene/draft.hpp"
+#include "spume/scene/wave_theory.hpp"
 
 namespace spume {
 
@@ -18,12 +20,23 @@ struct Wavemaker {
   double height = 0;                  // of the waves; of jonswap significant, of focused twice the crest
   double angular_frequency = 0;       // of jonswap and focused waves at the peak, of a solitary wave kappa c
   double wavenumber = 0;              // at that frequency; of a solitary wave kappa
-  double stroke = 0, largest_displacement = 0, largest_speed = 0;
+  double stroke = 0, largest_displacement = 0, largest_speed = 0;  // of a flap at the still surface
+  double smallest_displacement = 0;                                // out of the liquid, below zero
+  double hinge = 0;                                                // x of a flap
 };
 
 // A wavemaker needs a wall that nothing else moves, gravity, and what its waves are described by; a sponge a side.
 void check_wavemakers(const Draft& draft, Problems& problems);
 void check_sponges(const Draft& draft, Problems& problems);
+
+// The motion that makes the waves on the depth of `maker`, of a flap at the still surface. Sets frequency and
+// wavenumber.
+std::shared_ptr<const PistonMotion> wavemaker_motion(const WavemakerDraft& draft, Wavemaker& maker, const Scene& scene);
+void find_wavemaker_extremes(const PistonMotion& motion, double end, Wavemaker& maker);
+
+// Adds the walls of flaps to the bodies, behind all others: solids from the flap to its side, which turn about the
+// hinge. The scene has its domain, its fluid and its other bodies.
+void add_flaps(const Draft& draft, Scene& scene, Problems& problems);
 
 // Sets the velocities of the sides. The scene has its particles: the still water is measured beside the wall.
 std::vector<Wavemaker> make_wavemakers(const Draft& draft, Scene& scene, Problems& problems);

@@ -287,5 +287,62 @@ TEST(BodyMotion, WhatCannotMoveIsRefused) {
   EXPECT_THAT(complaints(plane + "[[body]]\nshape = \"half-space\"\nmass = 1\n"), Contains(HasSubstr("has no end")));
 }
 
+TEST(BodyMotion, IsNoFasterThanSoundAllows) {
+  const auto with_sound = [](double mach, const std::string& keys) {
+    return complaints(test::replaced(plane, "reynolds = 100", "reynolds = 100\nmach = " + std::to_string(mach)) + slab +
+                      keys);
+  };
+  // Half of the sound speed 1 / mach is allowed; the corners are 0.2236 from the middle.
+  const std::string slides = "displacement = [\"3*t\", \"0\"]\n", turns = "angle = \"180/3.14159265*t\"\n";
+  EXPECT_THAT(with_sound(0.16, slides), IsEmpty());
+  EXPECT_THAT(with_sound(0.17, slides),
+              Contains(HasSubstr("the surface of the body 'slab' moves with 3 at t = 0, more than half the sound speed "
+                                 "5.88")));
+  EXPECT_THAT(with_sound(1, turns), IsEmpty());
+  EXPECT_THAT(with_sound(1, "angle = \"2.3*180/3.14159265*t\"\n"), Contains(HasSubstr("moves with 0.514")));
+  EXPECT_THAT(with_sound(0.3, "wall = \"no-slip\"\nvelocity = [\"2\", \"0\"]\n"), Contains(HasSubstr("moves with 2")));
+  EXPECT_THAT(with_sound(0.3, "velocity = [\"2\", \"0\"]\n"), IsEmpty());  // the liquid slips along it
+  EXPECT_THAT(with_sound(0, slides), IsEmpty());
+}
+
+TEST(BodyMotion, OfWallsKeepsTheVolumeOfAFullTank) {
+  const std::string tank =
+      "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [1, 1]\nleft = \"free-slip\"\nright = \"free-slip\"\n"
+      "bottom = \"free-slip\"\ntop = \"free-slip\"\nwall_velocity.left = [\"0.1*t\", \"0\"]\n[resolution]\n"
+      "spacing = 0.05\n[time]\nend = 2\n[fluid]\nreynolds = 100\n[[liquid]]\n";
+  EXPECT_THAT(complaints(tank),
+              Contains(HasSubstr("the left wall changes the volume of a tank that is full and closed")));
+  EXPECT_THAT(complaints(tank + "upper = [1, 0.5]\n"), IsEmpty());
+  EXPECT_THAT(complaints(test::replaced(tank, "reynolds = 100", "reynolds = 100\nmach = 0.1")), IsEmpty());
+  EXPECT_THAT(
+      complaints(test::replaced(tank, "[resolution]", "wall_velocity.right = [\"0.1*t\", \"0\"]\n[resolution]")),
+      IsEmpty());
+}
+
+TEST(BodyMotion, IntoABodyOrAWallIsWarnedOf) {
+  const auto warnings = [](const std::string& keys, const std::string& more) {
+    std::vector<std::string> found;
+    for (const Problem& problem : test::load_text(plane + slab + keys + more).options.warnings)
+      found.push_back(problem.text);
+    return found;
+  };
+  const std::string post = "[[body]]\nname = \"post\"\nshape = \"box\"\nsize = [0.3, 0.5]\nposition = [0.8, 0.2]\n";
+  // The faces are 0.35 apart.
+  EXPECT_THAT(warnings("displacement = [\"0.15*t\", \"0\"]\n", post), testing::Not(Contains(HasSubstr("moves into"))));
+  EXPECT_THAT(warnings("displacement = [\"0.3*t\", \"0\"]\n", post),
+              Contains(HasSubstr("the body 'slab' moves into the body 'post' before t = 1.3")));
+  EXPECT_THAT(warnings("displacement = [\"0\", \"-0.8*t\"]\n", ""), testing::Not(Contains(HasSubstr("moves through"))));
+  const std::string floored =
+      test::replaced(plane, "upper = [1, 1]\n[res", "upper = [1, 1]\nbottom = \"free-slip\"\n[res");
+  std::vector<std::string> found;
+  for (const Problem& problem :
+       test::load_text(floored + slab + "displacement = [\"0\", \"-0.8*t\"]\n").options.warnings)
+    found.push_back(problem.text);
+  EXPECT_THAT(found, Contains(HasSubstr("the body 'slab' moves through the bottom wall before t = ")));
+  // Bodies that share a place from the start are meant to.
+  EXPECT_THAT(warnings("displacement = [\"0.3*t\", \"0\"]\n", test::replaced(post, "[0.8, 0.2]", "[0.4, 0.2]")),
+              testing::Not(Contains(HasSubstr("moves into"))));
+}
+
 }  // namespace
 }  // namespace spume

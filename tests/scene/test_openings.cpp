@@ -107,6 +107,18 @@ TEST(Openings, AreRefusedWhereNothingCanPass) {
   EXPECT_THAT(of("side = \"right\"", "side = \"left\""),
               ElementsAre("19:8 outflow.0 and inflow.0 share a part of the left side; give them parts of their own by "
                           "lower and upper"));
+  // Boxes that are flat on the side share a part of it too.
+  EXPECT_THAT(of("side = \"right\"", "side = \"left\"\nlower = [0, 0.4]\nupper = [0, 1]").size(), 1U);
+  EXPECT_THAT(
+      problems_of(replaced(replaced(stream, "side = \"right\"", "side = \"left\"\nlower = [0, 0.4]\nupper = [0, 1]"),
+                           "side = \"left\"\nvel", "side = \"left\"\nlower = [0, 0]\nupper = [0, 0.6]\nvel")),
+      ElementsAre(HasSubstr("outflow.0 and inflow.0 share a part of the left side")));
+  EXPECT_TRUE(
+      problems_of(replaced(replaced(stream, "side = \"right\"", "side = \"left\"\nlower = [0, 0.6]\nupper = [0, 1]"),
+                           "side = \"left\"\nvel", "side = \"left\"\nlower = [0, 0]\nupper = [0, 0.6]\nvel"))
+          .empty());
+  EXPECT_THAT(problems_of(stream + "[[body]]\nshape = \"box\"\nsize = [0.6, 3]\nposition = [0, 0.5]\n"),
+              ElementsAre("15:1 inflow.0 lets nothing enter: solids cover all of it; move it or the solids"));
   EXPECT_THAT(of("side = \"left\"", "side = \"left\"\nwhere = \"y - 3\""),
               ElementsAre(HasSubstr("inflow.0.where is nowhere positive on its side")));
 }
@@ -128,6 +140,13 @@ TEST(Openings, AreRefusedWhenTheFlowMakesNoSense) {
       of("[[outflow]]\nside = \"right\"\npressure = \"1 + t\"\n", "[[inflow]]\nside = \"right\"\nvelocity = [-1, 0]\n"),
       ElementsAre("15:1 inflow.0 fills a tank that is full and closed; add an [[outflow]], or leave room above "
                   "the liquid"));
+}
+
+TEST(Openings, AreRefusedWhereLiquidEntersFasterThanSoundAllows) {
+  // y t reaches 1 in the middle of the side at the end: half of the sound speed 2 is allowed.
+  EXPECT_TRUE(of("reynolds = 100", "reynolds = 100\nmach = 0.45").empty());
+  EXPECT_THAT(of("reynolds = 100", "reynolds = 100\nmach = 0.55"),
+              ElementsAre(HasSubstr("18:12 inflow.0 lets liquid enter with 0.9")));
 }
 
 // Half of a tank 2 x 1 is room for 1; half a side lets 0.5 t enter by t^2 / 4.

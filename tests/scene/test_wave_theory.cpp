@@ -45,18 +45,27 @@ TEST(WaveTheory, TransferOfThePistonIsThatOfTheReference) {
   EXPECT_DOUBLE_EQ(piston_transfer(2000), 2);
 }
 
-// A uniform motion of the wall, projected on the mode cosh k(z + h) of the travelling wave.
-TEST(WaveTheory, TransferOfThePistonIsItsProjectionOnTheTravellingMode) {
+TEST(WaveTheory, TransferOfTheFlapIsThatOfTheReference) {
+  for (const auto& row : reference("flap.csv")) EXPECT_NEAR(flap_transfer(row[0]), row[1], 1e-8) << row[0];
+  EXPECT_NEAR(flap_transfer(1e-3) / 1e-3, 0.5, 1e-6);
+  EXPECT_NEAR(flap_transfer(2000), 2 - 2.0 / 2000, 1e-12);
+}
+
+// A motion of the wall, uniform or in proportion to the height above the hinge, projected on the mode cosh k(z + h) of
+// the travelling wave.
+TEST(WaveTheory, TransferIsTheProjectionOnTheTravellingMode) {
   for (const double k : {0.2, 1.0, 3.0}) {
-    double uniform = 0, mode = 0;
+    double uniform = 0, turning = 0, mode = 0;
     constexpr int n = 20000;
     for (int i = 0; i < n; ++i) {
       const double c = std::cosh(k * (i + 0.5) / n);
       uniform += c / n;
+      turning += (i + 0.5) / n * c / n;
       mode += c * c / n;
     }
     // w X cos wt = k A mode amplitude at the wall, and g a = w A cosh kh at the surface.
     EXPECT_NEAR(piston_transfer(k), std::tanh(k) * uniform / mode * std::cosh(k), 1e-7);
+    EXPECT_NEAR(flap_transfer(k), std::tanh(k) * turning / mode * std::cosh(k), 1e-7);
   }
 }
 

@@ -74,6 +74,53 @@ TEST(Wavemakers, ARegularWaveMovesTheSideByTheoryOfSecondOrder) {
   EXPECT_THAT(loaded.options.warnings, IsEmpty());
 }
 
+TEST(Wavemakers, AFlapTurnsAboutItsHingeByTheoryOfFirstOrder) {
+  const double w = 2 * pi / 5, kh = wavenumber(w, 1, 1);
+  const OscillatingPiston way({{0.05 / flap_transfer(kh), w, 0}}, 10);
+  for (const bool left : {true, false}) {
+    const LoadedCase loaded = left ? load_text(flume, {"wavemaker.0.kind=flap", "wavemaker.0.depth=1"})
+                                   : load_text(flume, {"wavemaker.0.kind=flap", "wavemaker.0.depth=1",
+                                                       "wavemaker.0.side=right", "sponge.0.side=left"});
+    const Scene& scene = loaded.scene;
+    EXPECT_FALSE(scene.domain.sides[0][left ? 0 : 1].velocity.has_value());
+    ASSERT_EQ(scene.motions.size(), 1U);
+    ASSERT_EQ(scene.bodies.size(), 1U);
+    const double inwards = left ? 1 : -1, hinge = scene.motions[0].pivot[0];
+    // Where it stands, at rest, liquid ends; a place that it holds at the still surface goes as theory says.
+    EXPECT_NEAR(scene.bodies[0].solid->distance({hinge + inwards * 0.2, 0.7, 0}), 0.2, 1e-12);
+    const double side = left ? 0 : 10;
+    EXPECT_GT(inwards * (hinge - side), 0.26 + 1.5 * 0.05 / flap_transfer(kh));
+    EXPECT_LT(inwards * (hinge - side), 0.26 + 1.5 * 0.05 / flap_transfer(kh) + 0.1);
+    for (const double t : {0.0, 0.3, 4.0, 12.0, 12.7}) {
+      const RigidPlace place = given_place(scene.motions[0], t);
+      const Vec3 top = place.now({hinge, 1, 0});
+      EXPECT_NEAR((top[0] - hinge) / top[1], inwards * way.displacement(t), 1e-12) << t;
+      // Of the angle atan x: x' / (1 + x^2), about z.
+      EXPECT_NEAR(place.angular_velocity[2], -inwards * way.velocity(t) / (1 + std::pow(way.displacement(t), 2)), 1e-8);
+    }
+    EXPECT_THAT(loaded.options.groups.at(left ? "wavemaker left" : "wavemaker right"),
+                HasSubstr("flap with its hinge at x = "));
+    EXPECT_THAT(loaded.options.warnings, IsEmpty());
+  }
+}
+
+TEST(Wavemakers, AFlapThatCannotBeIsRefused) {
+  const auto with = [](const std::string& keys) {
+    return problems_of(
+        replaced(flume, "side = \"left\"\nwaves", "side = \"left\"\nkind = \"flap\"\n" + keys + "waves"));
+  };
+  EXPECT_THAT(with(""), ElementsAre(HasSubstr("missing key 'depth' in [[wavemaker]]")));
+  EXPECT_THAT(with("depth = 2\n"), ElementsAre(HasSubstr("wavemaker.0.depth must be less than the height")));
+  EXPECT_THAT(with("depth = 1\norder = 2\n"),
+              ElementsAre(HasSubstr("for flaps there is the theory of first order only")));
+  EXPECT_THAT(with("depth = 1\nhinge = 0.2\n"), ElementsAre(HasSubstr("wavemaker.0.hinge is 0.2 from the left side")));
+  EXPECT_TRUE(with("depth = 1\nhinge = 0.5\n").empty());
+  EXPECT_THAT(problems_of(replaced(replaced(flume, "waves = \"regular\"\nheight = 0.1\nperiod = 5\n",
+                                            "kind = \"flap\"\nwaves = \"solitary\"\nheight = 0.1\ndepth = 1\n"),
+                                   "length = 4", "length = 4\nstrength = 1")),
+              ElementsAre(HasSubstr("need a piston")));
+}
+
 TEST(Wavemakers, OtherWavesMoveTheSideByTheirTheory) {
   const Scene solitary =
       load_text(flume, {"wavemaker.0.waves=solitary", "wavemaker.0.height=0.2", "wavemaker.0.depth=1.02"}).scene;

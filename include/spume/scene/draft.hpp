@@ -65,10 +65,10 @@ struct BodyDraft {
   std::optional<double> release_interval, release_duration, release_delay, release_growth, release_shrinkage;
 };
 
-enum class WavemakerKind { piston };
+enum class WavemakerKind { piston, flap };
 enum class WaveKind { regular, jonswap, focused, solitary };
 
-// A [[wavemaker]]: a side of the domain that moves as a piston. `side` is "left" or "right".
+// A [[wavemaker]]: a side of the domain that moves as a piston, or a flap before it. `side` is "left" or "right".
 struct WavemakerDraft {
   std::string side;
   WavemakerKind kind = WavemakerKind::piston;
@@ -80,6 +80,7 @@ struct WavemakerDraft {
   std::int64_t seed = 0;
   std::optional<double> focus_place, focus_time;
   std::optional<double> depth;
+  std::optional<double> hinge;  // x, of a flap
   std::optional<double> ramp;
   std::int64_t order = 0;  // 0: the highest that there is for the waves
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Water waves on a horizontal bed, as wavemakers need them: dispersion, what a piston makes of its stroke, spectra and
-// solitary waves. Depth h, wavenumber k, angular frequency w, wave height H, gravity g.
+// Water waves on a horizontal bed, as wavemakers need them: dispersion, what a piston or a flap makes of its stroke,
+// spectra and solitary waves. Depth h, wavenumber k, angular frequency w, wave height H, gravity g.
 //
 // - Biesel, F. and Suquet, F. (1951), Les appareils generateurs de houle en laboratoire, La Houille Blanche 6.
 // - Madsen, O. S. (1971), On the generation of long waves, J. Geophys. Res. 76:8672.
@@ -26,6 +26,10 @@ double wavenumber(double angular_frequency, double depth, double gravity);
 
 // Height of the waves far from a piston over its stroke, first order: 2 (cosh 2kh - 1) / (sinh 2kh + 2kh) (Biesel).
 double piston_transfer(double kh);
+
+// The same of a flap hinged at the bed, over its stroke at the still surface:
+// 4 (sinh kh / kh) (kh sinh kh - cosh kh + 1) / (sinh 2kh + 2kh).
+double flap_transfer(double kh);
 
 // Amplitude of the motion e2 sin 2wt that a piston S/2 sin wt needs beside it, so that no free second harmonic leaves
 // it (Madsen): H^2 / (32 h) (3 cosh kh / sinh^3 kh - 2 S / H). Holds while madsen_number() is below 1.
@@ -57,8 +61,10 @@ std::vector<WaveComponent> jonswap_waves(double significant_height, double peak_
 std::vector<WaveComponent> focused_waves(double amplitude, double peak_period, double gamma, std::size_t count,
                                          double place, double time, double depth, double gravity);
 
-// The first-order motion of a piston at x = 0 that makes the waves.
-std::vector<Oscillation> piston_motion(const std::vector<WaveComponent>& waves, double depth, double gravity);
+// The first-order motion of a piston at x = 0, or at the still surface of a flap by flap_transfer, that makes the
+// waves.
+std::vector<Oscillation> piston_motion(const std::vector<WaveComponent>& waves, double depth, double gravity,
+                                       double (*transfer)(double) = piston_transfer);
 
 // How a piston moves into the liquid from its place at t = 0.
 class PistonMotion {

@@ -24,19 +24,20 @@ std::vector<Section> sections() {
 
 // Wall points of bodies have images in the sides of the domain alone, and bubbles know nothing of them.
 void check_walls_of_bodies(Draft& draft, Problems& problems) {
-  for (std::size_t k = 0; k < draft.bodies.size(); ++k) {
-    if (draft.bodies[k].wall == BoundaryKind::open) continue;
-    const std::string place = "body." + std::to_string(k);
-    if (draft.node("solid.0"))
-      problems.add(*draft.node("solid.0"),
-                   "a scene with walls of [[body]] takes no [[solid]] box; write it as  "
-                   "[[body]]  with  shape = \"box\"");
-    if (draft.node("bubbles"))
-      problems.add(*draft.node("bubbles"), "[bubbles] needs walls along the axes, and " + place +
-                                               " is a wall of another shape; remove one of them, or write a box as "
-                                               "[[solid]]");
-    return;
-  }
+  std::vector<std::string> walls;
+  for (std::size_t k = 0; k < draft.bodies.size(); ++k)
+    if (draft.bodies[k].wall != BoundaryKind::open) walls.push_back("body." + std::to_string(k));
+  for (std::size_t k = 0; k < draft.wavemakers.size(); ++k)
+    if (draft.wavemakers[k].kind == WavemakerKind::flap) walls.push_back("wavemaker." + std::to_string(k));
+  if (walls.empty()) return;
+  if (draft.node("solid.0"))
+    problems.add(*draft.node("solid.0"),
+                 "a scene with walls of [[body]] or a flap takes no [[solid]] box; write it as  "
+                 "[[body]]  with  shape = \"box\"");
+  if (draft.node("bubbles"))
+    problems.add(*draft.node("bubbles"), "[bubbles] needs walls along the axes, and " + walls.front() +
+                                             " is a wall of another shape; remove one of them, or write a box as "
+                                             "[[solid]]");
 }
 
 // Points behind openings have images in the sides of the domain alone, bubbles know nothing of them, and their pressure

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// What can be told of moving walls, bodies and inflows only beside the filled scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "spume/scene/draft.hpp"
+
+namespace spume {
+
+// Surfaces and inflows that are too fast for the sound speed of the liquid, and walls that press a tank which is full,
+// closed and incompressible.
+void check_motions(const Draft& draft, const Scene& scene, bool one_liquid, Problems& problems);
+
+// Bodies whose given motion leads into another body or through a wall of the domain.
+std::vector<Problem> collision_warnings(const Draft& draft, const Scene& scene, const std::string& file);
+
+}  // namespace spume
