@@ -132,6 +132,16 @@ template <FloatVector V = f32x8>
 #endif
 }
 
+// Where a record of `width` floats begins: an entry is four times its number, one of 16 bits its number.
+template <int width>
+[[gnu::always_inline]] inline std::int64_t record_offset(std::int32_t entry) {
+  return static_cast<std::int64_t>(entry) * (width / 4);
+}
+template <int width>
+[[gnu::always_inline]] inline std::int64_t record_offset(std::uint16_t number) {
+  return static_cast<std::int64_t>(number) * width;
+}
+
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 // With a mask of all lanes: the forms without one read a register that the compiler thinks undefined (GCC 12).
 inline constexpr __mmask16 all_lanes = 0xffff;
@@ -164,16 +174,6 @@ inline constexpr __mmask16 all_lanes = 0xffff;
 }
 [[gnu::always_inline]] inline double sum(f64x8 v) {
   return sum(__builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7));
-}
-
-// Where a record of `width` floats begins: an entry is four times its number, one of 16 bits its number.
-template <int width>
-[[gnu::always_inline]] inline std::int64_t record_offset(std::int32_t entry) {
-  return static_cast<std::int64_t>(entry) * (width / 4);
-}
-template <int width>
-[[gnu::always_inline]] inline std::int64_t record_offset(std::uint16_t number) {
-  return static_cast<std::int64_t>(number) * width;
 }
 
 // As below, of sixteen records.
