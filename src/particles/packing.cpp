@@ -25,7 +25,7 @@ constexpr int wet_rounds =
 // Of the kernel sum of a lattice, what is missing beside a surface at least: half a layer. What stands within a
 // support radius and a spacing of it stays: there the surface counts the liquid below it.
 constexpr double surface_lack = 0.1;
-constexpr double beyond_support = 1.6;
+constexpr double beyond_support = 1.1, beyond_support_over_solids = 1.6;  // there the fourth layer may lie 1.5 apart
 // Of the kernel sum of a lattice. Thinner liquid is closed as a void (number_density.cpp). At the edge of a box that
 // fits the lattice 4.5 % are missing: of the site across it, which the edge hides.
 constexpr double even_enough = 0.05;
@@ -77,11 +77,11 @@ void find_lacks(const Arrangement& arrangement, const ParticleStore& particles, 
 
 // 1 for particles that the height of a free surface depends on.
 void find_surface(const Arrangement& arrangement, const ParticleStore& particles, const Resolution& resolution,
-                  const std::vector<Lack>& lacks, std::vector<std::uint8_t>& sees_surface) {
+                  const std::vector<Lack>& lacks, double beyond, std::vector<std::uint8_t>& sees_surface) {
   const NeighbourList& list = arrangement.list;
   const std::size_t n = particles.size();
   const auto identifier = [&](std::size_t i) { return static_cast<std::size_t>((*particles.identifier)[i]); };
-  const double near2 = std::pow(beyond_support * resolution.spacing, 2);
+  const double near2 = std::pow(beyond * resolution.spacing, 2);
   const auto distance2 = [&](std::size_t i, std::int32_t j) {
     const Vec3 way = way_to(list, particles.dimensions, i, j);
     return dot(way, way);
@@ -157,7 +157,8 @@ void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boun
     std::vector<Lack> lacks;
     if (free_surface) {
       find_lacks(arrangement, particles, resolution, lacks);
-      find_surface(arrangement, particles, resolution, lacks, sees_surface);
+      for (Lack& lack : lacks) lack.all_around = false;  // bodies leave no gaps of whole rows
+      find_surface(arrangement, particles, resolution, lacks, beyond_support, sees_surface);
     }
     return true;
   };
@@ -219,7 +220,7 @@ void pack_beside_solids(Arrangement& arrangement, ParticleStore& particles, Boun
       const auto [lower, upper] = boundary.solids()->free_box(vector_at(at, d, i), support_radius);
       if (upper[d - 1] - lower[d - 1] < flat_channel * resolution.spacing) lacks[i].all_around = true;
     });
-    if (free_surface) find_surface(arrangement, particles, resolution, lacks, stays);
+    if (free_surface) find_surface(arrangement, particles, resolution, lacks, beyond_support_over_solids, stays);
     return parallel_max(particles.size(), 0.0, [&](std::size_t i) {
              const bool moves = stays[static_cast<std::size_t>((*particles.identifier)[i])] == 0;
              return moves ? std::abs(lacks[i].share) : 0.0;
