@@ -42,6 +42,7 @@ BodyWalls::BodyWalls(const Scene& scene, const Resolution& resolution, double pa
   standing_ = points_.size();
   body_.resize(standing_);
   for (std::size_t g = 0; g < standing_; ++g) body_[g] = static_cast<std::uint16_t>(still.body_of(g));
+  mark_bounds();
   gather_points();
 }
 
@@ -61,8 +62,9 @@ void BodyWalls::move_to(double t) {
 void BodyWalls::mark_bounds() {
   if (!bounds_) return;
   bounds_->clear();
-  for (std::size_t part = 1; part < parts_.size(); ++part)
-    if (!parts_[part]->empty() && !parts_[part]->absent()) bounds_->mark(parts_[part]->bounds_now());
+  // From the last, so that questions come to the first part first.
+  for (std::size_t part = parts_.size() - 1; part > 0; --part)
+    if (!parts_[part]->empty() && !parts_[part]->absent()) bounds_->mark(parts_[part]->bounds_now(), part);
 }
 
 void BodyWalls::set_place(std::size_t motion, const RigidPlace& place, const RigidPlace& behind,
@@ -88,9 +90,11 @@ void BodyWalls::gather_points() {
     std::vector<std::uint8_t> seen(count);
     parallel_for(count, [&](std::size_t g) {
       bool is_first = walls.now(g, now[g]);
-      for (std::size_t before = 0; before < part && is_first; ++before)
+      ask_near(now[g].position, [&](std::size_t before) {
+        if (!is_first || before >= part) return;
         is_first = parts_[before]->empty() || parts_[before]->surely_farther(now[g].position, 0) ||
                    !(parts_[before]->distance(now[g].position) < 0);
+      });
       seen[g] = is_first ? 1 : 0;
     });
     for (std::size_t g = 0; g < count; ++g) {
@@ -102,37 +106,42 @@ void BodyWalls::gather_points() {
   }
 }
 
+template <class Visit>
+bool BodyWalls::ask_near(const Vec3& point, Visit&& visit) const {
+  if (!parts_[0]->empty()) visit(std::size_t{0});
+  if (bounds_ && bounds_->visit(point, visit)) return true;
+  for (std::size_t part = 1; part < parts_.size(); ++part)
+    if (!parts_[part]->empty()) visit(part);
+  return false;
+}
+
+BodyWalls::Nearest BodyWalls::nearest_part(const Vec3& point) const {
+  Nearest best;
+  const auto ask = [&](std::size_t part) {
+    const double own = parts_[part]->distance(point);
+    if (best.part == nullptr || own < best.distance) best = {parts_[part].get(), own};
+  };
+  if (ask_near(point, ask) && !(best.distance <= bounds_->margin()))
+    for (std::size_t part = 1; part < parts_.size(); ++part)
+      if (!parts_[part]->empty()) ask(part);
+  return best;
+}
+
 double BodyWalls::distance(const Vec3& point) const {
-  double least = infinite;
-  for (const auto& part : parts_)
-    if (!part->empty()) least = std::min(least, part->distance(point));
-  return least;
+  return nearest_part(point).distance;
 }
 
 bool BodyWalls::surely_farther(const Vec3& point, double gap) const {
-  if (bounds_ && gap <= bounds_->margin() && !bounds_->near(point))
-    return parts_[0]->empty() || parts_[0]->surely_farther(point, gap);
-  for (const auto& part : parts_)
-    if (!part->empty() && !part->surely_farther(point, gap)) return false;
-  return true;
-}
-
-const RigidWalls& BodyWalls::nearest_part(const Vec3& point) const {
-  if (parts_.size() == 1) return *parts_[0];
-  const RigidWalls* best = nullptr;
-  double least = infinite;
-  for (const auto& part : parts_) {
-    if (part->empty()) continue;
-    const double own = part->distance(point);
-    if (best != nullptr && own >= least) continue;
-    least = own;
-    best = part.get();
-  }
-  return *best;
+  bool farther = true;
+  const auto ask = [&](std::size_t part) { farther = farther && parts_[part]->surely_farther(point, gap); };
+  if (ask_near(point, ask) && gap > bounds_->margin())
+    for (std::size_t part = 1; part < parts_.size(); ++part)
+      if (!parts_[part]->empty()) ask(part);
+  return farther;
 }
 
 BodyWalls::NearestWall BodyWalls::nearest_wall(const Vec3& point) const {
-  const RigidWalls& walls = nearest_part(point);
+  const RigidWalls& walls = *nearest_part(point).part;
   NearestWall found;
   static_cast<NearestPoint&>(found) = walls.nearest(point);
   found.body = walls.body_near(found.point);
@@ -141,16 +150,18 @@ BodyWalls::NearestWall BodyWalls::nearest_wall(const Vec3& point) const {
 }
 
 void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
-  if (surely_farther(position, gap) || distance(position) >= gap) return;
-  const RigidWalls& walls = nearest_part(position);
+  if (surely_farther(position, gap)) return;
+  const Nearest nearest = nearest_part(position);
+  if (nearest.distance >= gap) return;
+  const RigidWalls& walls = *nearest.part;
   NearestPoint near = walls.nearest(position);
   const NearestPoint first = near;
   position = add(near.point, multiply(std::max(gap, std::abs(near.distance)), near.normal));
-  if (!(nearest_part(position).exact_distance(position) >= 0.5 * gap)) {
+  if (!(nearest_part(position).part->exact_distance(position) >= 0.5 * gap)) {
     // Another wall is there: before the nearest face.
     for (int round = 0; round < 3 && near.distance < gap; ++round) {
       position = add(near.point, multiply(gap, near.normal));
-      near = nearest_part(position).nearest(position);
+      near = nearest_part(position).part->nearest(position);
     }
   }
   if (velocity == nullptr) return;
@@ -160,8 +171,10 @@ void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
 
 void BodyWalls::limit_approach(const Vec3& position, double gap, double speed, const Vec3& before,
                                Vec3& velocity) const {
-  if (surely_farther(position, gap) || distance(position) >= gap) return;
-  const RigidWalls& walls = nearest_part(position);
+  if (surely_farther(position, gap)) return;
+  const Nearest nearest = nearest_part(position);
+  if (nearest.distance >= gap) return;
+  const RigidWalls& walls = *nearest.part;
   const NearestPoint near = walls.nearest(position);
   const Vec3 surface = walls.velocity_at(near.point);
   const double approach = dot(subtract(velocity, surface), near.normal),

@@ -22,14 +22,15 @@ MovingBounds::MovingBounds(const Domain& domain, double spacing, double margin)
     periodic_[axis] = domain.periodic(axis);
     cells *= count_[axis];
   }
-  marked_.resize(cells);
+  first_.resize(cells, -1);
 }
 
 void MovingBounds::clear() {
-  std::fill(marked_.begin(), marked_.end(), std::uint8_t{0});
+  std::fill(first_.begin(), first_.end(), -1);
+  marks_.clear();
 }
 
-void MovingBounds::mark(const Bounds& box) {
+void MovingBounds::mark(const Bounds& box, std::size_t body) {
   std::array<std::ptrdiff_t, 3> first{}, last{};
   for (int axis = 0; axis < dimensions_; ++axis) {
     const auto count = static_cast<std::ptrdiff_t>(count_[axis]);
@@ -59,8 +60,13 @@ void MovingBounds::mark(const Bounds& box) {
   };
   for (std::ptrdiff_t k = first[2]; k <= last[2]; ++k)
     for (std::ptrdiff_t j = first[1]; j <= last[1]; ++j)
-      for (std::ptrdiff_t i = first[0]; i <= last[0]; ++i)
-        marked_[(wrapped(k, 2) * count_[1] + wrapped(j, 1)) * count_[0] + wrapped(i, 0)] = 1;
+      for (std::ptrdiff_t i = first[0]; i <= last[0]; ++i) {
+        std::int32_t& top = first_[(wrapped(k, 2) * count_[1] + wrapped(j, 1)) * count_[0] + wrapped(i, 0)];
+        // A box longer than a period comes to the same cell twice.
+        if (top >= 0 && marks_[static_cast<std::size_t>(top)].body == static_cast<std::int32_t>(body)) continue;
+        marks_.push_back({static_cast<std::int32_t>(body), top});
+        top = static_cast<std::int32_t>(marks_.size()) - 1;
+      }
 }
 
 }  // namespace spume

@@ -185,19 +185,22 @@ double RigidWalls::distance_from_bounds(const Vec3& start) const {
 }
 
 Bounds RigidWalls::bounds_now() const {
-  Bounds found = bounds_;
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(scene_.domain.dimensions); ++axis)
+  Bounds found{};
+  const auto d = static_cast<std::size_t>(scene_.domain.dimensions);
+  Vec3 middle{}, half{};
+  for (std::size_t axis = 0; axis < d; ++axis) {
     if (!std::isfinite(bounds_.upper[axis] - bounds_.lower[axis])) {
       found.lower.fill(-infinite);
       found.upper.fill(infinite);
       return found;
     }
-  const Vec3 middle = place.now(multiply(0.5, add(bounds_.lower, bounds_.upper))),
-             half = multiply(0.5 * place.scale, subtract(bounds_.upper, bounds_.lower));
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+    middle[axis] = 0.5 * (bounds_.lower[axis] + bounds_.upper[axis]);
+    half[axis] = 0.5 * place.scale * (bounds_.upper[axis] - bounds_.lower[axis]);
+  }
+  middle = place.now(middle);
+  for (std::size_t axis = 0; axis < d; ++axis) {
     double reach = 0;
-    for (std::size_t own = 0; own < static_cast<std::size_t>(scene_.domain.dimensions); ++own)
-      reach += std::abs(place.rotation[axis][own]) * half[own];
+    for (std::size_t own = 0; own < d; ++own) reach += std::abs(place.rotation[axis][own]) * half[own];
     found.lower[axis] = middle[axis] - reach;
     found.upper[axis] = middle[axis] + reach;
   }

@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <set>
+#include <string>
 
 #include "particles/walled.hpp"
 #include "spume/operators/pressure_operator.hpp"
@@ -163,6 +165,61 @@ TEST(BodyWalls, KeepLiquidOutside) {
     }
     // The cells that say how far the walls are at least know the side.
     EXPECT_GT(bodies.distance(place), 0);
+  }
+}
+
+// Cells tell which of many moving bodies a place asks: answers are those of all bodies asked in turn.
+TEST(BodyWalls, OfManyAnswerAsAllAskedInTurn) {
+  for (const bool space : {false, true}) {
+    SCOPED_TRACE(space ? "3-D" : "2-D");
+    std::string bodies = space ? ball : disc;
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const auto vector = [&](double scale) {
+      std::string text = "[";
+      for (int axis = 0; axis < (space ? 3 : 2); ++axis)
+        text += (axis > 0 ? ", " : "") + std::to_string(scale * uniform(random));
+      return text + "]";
+    };
+    for (int body = 0; body < 9; ++body)
+      bodies += std::string("[[body]]\nshape = \"ellipsoid\"\nsemi_axes = ") +
+                (space ? "[0.06, 0.09, 0.04]" : "[0.06, 0.09]") + "\nposition = " + vector(space ? 0.5 : 0.9) +
+                "\ndisplacement = [\"0.1*t\", \"-0.2*t\"" +
+                (space ? ", \"0\"]\naxis = [1, 2, 3]\nangle = \"40*t\"\n" : "]\nangle = \"40*t\"\n");
+    const LoadedCase loaded = load_text(scene_text(space ? cube : square, 0.05, bodies));
+    const Resolution resolution(space ? 3 : 2, 0.05, KernelKind::wendland_c2, 1.3);
+    BodyWalls walls(loaded.scene, resolution, loaded.scene.particles.volume);
+    walls.move_to(0.7);
+    ASSERT_EQ(walls.parts(), 10U);
+    int named_by_cells = 0;
+    for (std::size_t k = 1; k < walls.parts(); ++k) {
+      const Bounds bounds = walls.part(k).bounds_now();
+      for (int axis = 0; axis < (space ? 3 : 2); ++axis) {
+        EXPECT_GE(bounds.upper[axis] - bounds.lower[axis], 0.08);
+        EXPECT_LE(bounds.upper[axis] - bounds.lower[axis], 0.3);
+      }
+    }
+    for (int n = 0; n < 3000; ++n) {
+      Vec3 point{};
+      for (int axis = 0; axis < (space ? 3 : 2); ++axis) point[axis] = 1.1 * uniform(random);
+      double least = infinite;
+      bool farther = true;
+      std::size_t best = 0;
+      const double gap = (n % 3 + 0.5) * 0.05;
+      for (std::size_t k = 0; k < walls.parts(); ++k) {
+        const double own = walls.part(k).distance(point);
+        if (own < least) {
+          least = own;
+          best = k;
+        }
+        farther = farther && walls.part(k).surely_farther(point, gap);
+      }
+      EXPECT_EQ(walls.distance(point), least);
+      EXPECT_EQ(walls.surely_farther(point, gap), farther);
+      if (least < 0.1) EXPECT_EQ(walls.nearest_wall(point).body, best);
+      named_by_cells += farther ? 0 : 1;
+    }
+    EXPECT_GT(named_by_cells, 100);
   }
 }
 

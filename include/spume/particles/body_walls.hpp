@@ -68,7 +68,7 @@ class BodyWalls {
   bool is_wet(std::size_t point) const;
   // Distance from the walls, negative inside them; farther than four support radii from a surface a bound of it.
   double distance(const Vec3& point) const;
-  Vec3 normal(const Vec3& point) const { return nearest_part(point).nearest(point).normal; }
+  Vec3 normal(const Vec3& point) const { return nearest_part(point).part->nearest(point).normal; }
   struct NearestWall : NearestPoint {
     std::size_t body = 0;          // among those of the scene
     double half_width = infinite;  // of a body that grows, from its middle to its farthest face, now
@@ -95,7 +95,14 @@ class BodyWalls {
   void set_pressure_behind(double duration);
   void gather_points();
   void mark_bounds();
-  const RigidWalls& nearest_part(const Vec3& point) const;
+  // Calls visit(part) for all parts that may be within the margin of the cells and are not empty; false: for all.
+  template <class Visit>
+  bool ask_near(const Vec3& point, Visit&& visit) const;
+  struct Nearest {
+    const RigidWalls* part = nullptr;
+    double distance = infinite;
+  };
+  Nearest nearest_part(const Vec3& point) const;
 
   const Scene& scene_;
   const Resolution resolution_;

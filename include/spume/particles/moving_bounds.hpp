@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Cells of the domain that a moving body may reach into: what tells most particles, of which no body is near, by one
-// byte in place of a question to each body.
+// Cells of the domain with the moving bodies that may reach into them: a particle asks those that are near, in place of
+// all of them. Of 40 bodies in a column a question to each took two thirds of a step.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -18,18 +19,22 @@ class MovingBounds {
 
   void clear();
   // A box that a body is in, anywhere: copies beyond periodic sides included.
-  void mark(const Bounds& box);
+  void mark(const Bounds& box, std::size_t body);
 
   double margin() const { return margin_; }
-  // False where no body is within the margin; true outside the domain.
-  bool near(const Vec3& point) const {
+  // Calls visit(body) for every body that may be within the margin, that which was marked last first. False outside the
+  // domain, where the cells do not tell.
+  template <class Visit>
+  bool visit(const Vec3& point, Visit&& visit) const {
     std::size_t cell = 0;
     for (int axis = dimensions_ - 1; axis >= 0; --axis) {
       const double place = (point[axis] - lower_[axis]) * inverse_width_[axis];
-      if (!(place >= 0 && place < static_cast<double>(count_[axis]))) return true;
+      if (!(place >= 0 && place < static_cast<double>(count_[axis]))) return false;
       cell = cell * count_[axis] + static_cast<std::size_t>(place);
     }
-    return marked_[cell] != 0;
+    for (std::int32_t at = first_[cell]; at >= 0; at = marks_[static_cast<std::size_t>(at)].next)
+      visit(static_cast<std::size_t>(marks_[static_cast<std::size_t>(at)].body));
+    return true;
   }
 
  private:
@@ -38,7 +43,11 @@ class MovingBounds {
   Vec3 lower_{}, inverse_width_{};
   std::array<std::size_t, 3> count_{1, 1, 1};
   std::array<bool, 3> periodic_{};
-  std::vector<std::uint8_t> marked_;
+  struct Mark {
+    std::int32_t body = 0, next = -1;  // of the same cell
+  };
+  std::vector<std::int32_t> first_;  // mark of each cell; -1: none
+  std::vector<Mark> marks_;
 };
 
 }  // namespace spume

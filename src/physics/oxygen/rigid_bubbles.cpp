@@ -149,11 +149,11 @@ void RigidBubbles::set_out(double t) {
 
 void RigidBubbles::find_particles(const Liquid& liquid) {
   near_.clear();
-  for (std::size_t b = 0; b < bubbles_.size(); ++b) {
+  for (std::size_t b = bubbles_.size(); b-- > 0;) {
     if (bubbles_[b].turn < 0) continue;
     const double reach = turns_[b].place.scale * bubbles_[b].reach + support_;
     const Vec3& centre = turns_[b].place.position;
-    near_.mark({subtract(centre, {reach, reach, reach}), add(centre, {reach, reach, reach})});
+    near_.mark({subtract(centre, {reach, reach, reach}), add(centre, {reach, reach, reach})}, b);
   }
   seen_.resize(block_count(liquid.size, default_block));
   parallel_blocks(liquid.size, default_block, [&](std::size_t block, std::size_t first, std::size_t last) {
@@ -161,19 +161,20 @@ void RigidBubbles::find_particles(const Liquid& liquid) {
     found.clear();
     for (std::size_t i = first; i < last; ++i) {
       const Vec3 r = vector_at(liquid.places, dimensions_, i);
-      if (!near_.near(r)) continue;
-      for (std::size_t b = 0; b < bubbles_.size(); ++b) {
-        if (bubbles_[b].turn < 0) continue;
+      const auto see = [&](std::size_t b) {
+        if (bubbles_[b].turn < 0) return;
         const RigidPlace& place = turns_[b].place;
         const Vec3 own = copy_nearest_to(scene_.domain, place.position, r);
         const double reach = place.scale * bubbles_[b].reach + support_;
         const Vec3 way = subtract(own, place.position);
-        if (dot(way, way) > reach * reach) continue;
+        if (dot(way, way) > reach * reach) return;
         const double distance = place.scale * bubbles_[b].shape->distance(place.start(own));
         const double weight = WendlandC2::w(std::max(distance, 0.0) / h_);
         if (distance < support_ && weight > 0)
           found.push_back({static_cast<std::int32_t>(b), static_cast<std::int32_t>(i), weight});
-      }
+      };
+      if (near_.visit(r, see)) continue;
+      for (std::size_t b = 0; b < bubbles_.size(); ++b) see(b);
     }
   });
 }
