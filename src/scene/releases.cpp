@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
+#include <utility>
 
 #include "checks.hpp"
 #include "spume/core/vectors.hpp"
@@ -137,6 +140,8 @@ void add_released(const Draft& draft, std::vector<Body>& bodies, std::vector<Bod
 
 std::vector<Problem> release_warnings(const Draft& draft, const Scene& scene, const std::string& file) {
   std::vector<Problem> warnings;
+  // What is said of several bodies is said once: an array of orifices has many that are alike.
+  std::map<std::string, std::pair<std::size_t, std::string>> said;
   const double reach = support_ratio(draft.options.resolution) * scene.spacing;
   for (std::size_t k = 0; k < draft.bodies.size(); ++k) {
     const Body& body = scene.bodies[k];
@@ -144,7 +149,11 @@ std::vector<Problem> release_warnings(const Draft& draft, const Scene& scene, co
     const BodyMotion& motion = scene.motions[*body.motion];
     const Node& node = *draft.node("body." + std::to_string(k) + ".release_interval");
     const auto warn = [&](const std::string& text) {
-      warnings.push_back({file, node.key_place.line, node.key_place.column, "the body '" + body.name + "' " + text});
+      const auto [before, is_new] = said.try_emplace(text, warnings.size(), "");
+      if (is_new)
+        warnings.push_back({file, node.key_place.line, node.key_place.column, "the body '" + body.name + "' " + text});
+      else
+        before->second.second += ", '" + body.name + "'";
     };
     if (motion.release->grows() && !scene.free_surface && scene.openings.empty())
       warn(
@@ -175,6 +184,8 @@ std::vector<Problem> release_warnings(const Draft& draft, const Scene& scene, co
            "support " +
            brief(reach) + ", as above the surface, by release_duration");
   }
+  for (const auto& [text, others] : said)
+    if (!others.second.empty()) warnings[others.first].text += "; the same holds for " + others.second.substr(2);
   return warnings;
 }
 

@@ -249,6 +249,13 @@ TEST(BodyMotion, AReleaseInTheLiquidIsWarnedOf) {
   const std::string shorter = test::replaced(every_second, "1.5", "0.5");
   EXPECT_THAT(warnings(plane + bubbles + shorter), said("the body 'bubble' is taken away"));
   EXPECT_THAT(warnings(plane + bubbles + shorter + "release_shrinkage = 0.1\n"), Not(said("taken away")));
+  // Of several orifices it is said once.
+  const std::string grows = bubbles + every_second + "release_growth = 0.1\n",
+                    second = test::replaced(grows, "name = \"bubble\"", "name = \"second\""),
+                    third = test::replaced(grows, "name = \"bubble\"", "name = \"third\"");
+  const auto of_three = warnings(plane + grows + second + third);
+  EXPECT_EQ(of_three.size(), growing.size());
+  EXPECT_THAT(of_three, said("the same holds for 'second', 'third'"));
 }
 
 TEST(BodyMotion, AReleaseThatCannotBeIsRefused) {
