@@ -84,6 +84,8 @@ def measure(runs):
                    f"{name}_lift": float(np.mean(lift[steady])),
                    f"{name}_pressure_difference": float(difference),
                    f"{name}_pressure_error": float(abs(difference / reference["dp"] - 1))}
+    if {"across_10", "across_40"} <= runs.keys():
+        values["pressure_error_ratio"] = values["across_40_pressure_error"] / values["across_10_pressure_error"]
     return values
 
 

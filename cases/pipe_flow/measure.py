@@ -49,8 +49,8 @@ def errors(run):
 def measure(runs):
     found = {name: errors(run) for name, run in runs.items()}
     values = {f"{name}_{quantity}": value for name, of in found.items() for quantity, value in of.items()}
-    if "across_40" in found:
-        values["error_ratio"] = found["across_40"]["error"] / found["across_10"]["error"]
+    if {"across_10", "across_20"} <= found.keys():
+        values["error_ratio"] = found["across_20"]["error"] / found["across_10"]["error"]
     return values
 
 

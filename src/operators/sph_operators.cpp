@@ -184,51 +184,6 @@ void shift_curvature(const SweepContext& context, PackedNeighbours& packed, cons
   });
 }
 
-// Squared distance over h^2 below which two particles coincide and have no direction: 1e-4 h is far below the distance
-// of any two particles.
-constexpr double coincident = 1e-8;
-// Least divisor of the harmonic mean, a float far below any diffusivity: 0 / 0 becomes 0.
-constexpr float no_diffusivity = 1e-30F;
-
-template <int dimensions, class Kernel, bool stress>
-void viscous(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
-             const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out) {
-  const NeighbourList& list = *context.list;
-  constexpr int payload = dimensions + 1 + volume_slots<Kernel>;
-  float* records = packed.prepare(context, payload);
-  constexpr int width = record_width(dimensions, payload);
-  pack_velocity(context, records, width, 0, velocity, rule);
-  pack_coefficient(context, records, width, dimensions, kappa);
-  pack_volumes<Kernel>(context, records, width, dimensions + 1);
-  const KernelScale<dimensions, Kernel> common(context);
-  const auto tiny = static_cast<float>(coincident * context.smoothing_length * context.smoothing_length);
-
-  sweep(list.particles(), [&](std::size_t i) {
-    const KernelScale<dimensions, Kernel> scale = common.at(context, i);
-    std::array<f32n, dimensions> own{}, sum{};
-    for (int a = 0; a < dimensions; ++a) own[a] = simd::splat<f32n>(records[i * width + dimensions + a]);
-    const f32n own_kappa = simd::splat<f32n>(kappa[i]);
-    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      // Harmonic mean 2 k_i k_j / (k_i + k_j), zero when both vanish (also at the sentinel).
-      const f32n kappa_j = b.payload[dimensions];
-      const f32n mean = own_kappa * kappa_j / simd::max(own_kappa + kappa_j, simd::splat<f32n>(no_diffusivity));
-      f32n weight = times_volume<Kernel>((-4.0F * scale.gradient) * Kernel::f(b.q) * mean, b);
-      if constexpr (stress) {
-        f32n along{}, r2{};
-        for (int a = 0; a < dimensions; ++a) {
-          along = along + (b.payload[a] - own[a]) * b.d[a];
-          r2 = r2 + b.d[a] * b.d[a];
-        }
-        weight = weight * static_cast<float>(dimensions + 2) * along / simd::max(r2, simd::splat<f32n>(tiny));
-        for (int a = 0; a < dimensions; ++a) sum[a] = sum[a] + weight * b.d[a];
-      } else {
-        for (int a = 0; a < dimensions; ++a) sum[a] = sum[a] + weight * (b.payload[a] - own[a]);
-      }
-    });
-    for (int a = 0; a < dimensions; ++a) out[a][i] = simd::sum(sum[a]);
-  });
-}
-
 template <int dimensions, class Kernel>
 void divergence_of(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
                    const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
@@ -403,16 +358,6 @@ void shift_curvature_sweep(const SweepContext& context, PackedNeighbours& packed
                            const std::array<float*, 3>& out) {
   with_kernel(context, [&]<int dimensions, class Kernel>() {
     shift_curvature<dimensions, Kernel>(context, packed, gradient, rule, reflection, shift, correction, out);
-  });
-}
-
-void viscous_sweep(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
-                   const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out, bool stress) {
-  with_kernel(context, [&]<int dimensions, class Kernel>() {
-    if (stress)
-      viscous<dimensions, Kernel, true>(context, packed, velocity, rule, kappa, out);
-    else
-      viscous<dimensions, Kernel, false>(context, packed, velocity, rule, kappa, out);
   });
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "spume/operators/wall_stencils.hpp"
 
+#include <cmath>
+
 namespace spume {
 
 std::array<double, 3> WallStencils::velocity(std::size_t g, int dimensions,
@@ -19,9 +21,27 @@ std::array<double, 3> WallStencils::velocity(std::size_t g, int dimensions,
     across += (u[axis] - wall[axis]) * normal[axis][g];
   }
   if (!is_wall(g)) return u;
-  const bool holds = friction && no_slip[g] != 0;
-  for (int axis = 0; axis < dimensions; ++axis)
-    u[axis] = holds ? 2 * wall[axis] - u[axis] : u[axis] - 2 * across * normal[axis][g];
+  if (!friction || no_slip[g] == 0) {
+    for (int axis = 0; axis < dimensions; ++axis) u[axis] -= 2 * across * normal[axis][g];
+    return u;
+  }
+  if (bend.empty()) {
+    for (int axis = 0; axis < dimensions; ++axis) u[axis] = 2 * wall[axis] - u[axis];
+    return u;
+  }
+  // At most as large as the difference from the wall, as of a profile that turns round half as far before it: slopes of
+  // disordered particles may be anything.
+  std::array<double, 3> bent{};
+  double bent2 = 0, slip2 = 0;
+  for (int axis = 0; axis < dimensions; ++axis) {
+    const double slip = u[axis] - wall[axis];
+    for (std::int64_t k = first[g]; k < first[g + 1]; ++k)
+      bent[axis] += bend[k] * (velocity[axis][source[k]] - wall[axis]);
+    bent2 += bent[axis] * bent[axis];
+    slip2 += slip * slip;
+  }
+  const double share = bent2 > slip2 ? std::sqrt(slip2 / bent2) : 1;
+  for (int axis = 0; axis < dimensions; ++axis) u[axis] = 2 * wall[axis] - u[axis] + share * bent[axis];
   return u;
 }
 
@@ -47,13 +67,14 @@ void WallStencils::clear() {
   given_pressure.resize(0);
   source.resize(0);
   coefficient.resize(0);
+  bend.resize(0);
   for (auto* vector : {&normal, &wall_velocity, &predicted})
     for (auto& component : *vector) component.resize(0);
 }
 
 double WallStencils::bytes() const {
   double sum = kind.bytes() + pressure_sign.bytes() + given_pressure.bytes() + first.bytes() + no_slip.bytes() +
-               nearest.bytes() + source.bytes() + coefficient.bytes();
+               nearest.bytes() + source.bytes() + coefficient.bytes() + bend.bytes();
   for (const auto* vector : {&normal, &wall_velocity, &predicted})
     for (const auto& component : *vector) sum += component.bytes();
   return sum;

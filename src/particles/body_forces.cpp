@@ -20,6 +20,10 @@ namespace {
 constexpr double on_surface = 0.25;
 // Of the sum of all weights: what pins the fit of a velocity to that of a no-slip surface.
 constexpr double pinned = 10;
+// Of a cubic through the surface, the sum of the moduli of a slope times h: 8.8 with liquid all around, on jittered
+// lattices in two and three dimensions, up to 300 where the liquid ends beside the element. In a boundary layer of four
+// spacings parabolas have slopes 4 % too low and cubics 0.7 %.
+constexpr double steepest = 12;
 
 // Elements of a body in one cell of a spacing that face one way, as one: facets of a shape are often slivers, 61
 // for a square of a spacing around a cylinder, and each would take a fit. Their areas add up; their middle is the mean.
@@ -146,19 +150,29 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const CellOrder&
   }
   if (!(viscosity > 0) || !holds) return found;
   fill(true);
-  if (!fit.factor(2) && !fit.factor(1)) return found;
   std::array<Vec3, 3> gradient{};  // [a][b] = d u_a / d x_b
-  for (int b = 0; b < dimensions; ++b) {
-    const auto slope = fit.gradient(b, h);
-    for (int a = 0; a < dimensions; ++a) {
-      double total = slope[near.size()] * wall_velocity[a];
-      for (std::size_t k = 0; k < near.size(); ++k) total += slope[k] * fields.velocity[a][near[k].particle];
-      gradient[a][b] = total;
+  const auto differentiate = [&](int order) {
+    if (!fit.factor(order)) return false;
+    for (int b = 0; b < dimensions; ++b) {
+      const auto slope = fit.gradient(b, h);
+      double moduli = 0;
+      for (std::size_t k = 0; k < near.size(); ++k) moduli += std::abs(slope[k]);
+      if (order > 2 && moduli * h > steepest) return false;
+      for (int a = 0; a < dimensions; ++a) {
+        double total = slope[near.size()] * wall_velocity[a];
+        for (std::size_t k = 0; k < near.size(); ++k) total += slope[k] * fields.velocity[a][near[k].particle];
+        gradient[a][b] = total;
+      }
     }
-  }
+    return true;
+  };
+  if (!differentiate(3) && !differentiate(2) && !differentiate(1)) return found;
   for (int a = 0; a < dimensions; ++a)
     for (int b = 0; b < dimensions; ++b)
       found.viscous[a] += viscosity * (gradient[a][b] + gradient[b][a]) * element.area[b];
+  // Beside a surface that holds the liquid the rate of stretching along the normal is that of the density: none. What
+  // the velocities have of it is an error of the projection, 5 % of the friction on a cylinder.
+  found.viscous = subtract(found.viscous, multiply(dot(found.viscous, normal), normal));
   return found;
 }
 

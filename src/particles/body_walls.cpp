@@ -229,6 +229,8 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
     if (kernel_sum < wet_wall_share || !seen || fit.fit() < least_order) continue;
     block.point.push_back(static_cast<std::int32_t>(g));
     fit.append(block.fits);
+    if (scene_.bodies[body_[g]].wall == BoundaryKind::no_slip)
+      fit.append_bend(subtract(point.position, point.mirror), block.fits);
   }
 }
 

@@ -68,6 +68,8 @@ void OpenSides::append_corners(WallStencils& stencils, std::array<Array<double>,
       fits.source.insert(fits.source.end(), stencils.source.data() + from, stencils.source.data() + to);
       fits.coefficient.insert(fits.coefficient.end(), stencils.coefficient.data() + from,
                               stencils.coefficient.data() + to);
+      if (!stencils.bend.empty())
+        fits.bend.insert(fits.bend.end(), stencils.bend.data() + from, stencils.bend.data() + to);
     }
   });
   first_corner_ = append_points(blocks, d, stencils);

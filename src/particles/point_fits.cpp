@@ -5,11 +5,21 @@
 #include <cmath>
 
 #include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
 
 namespace spume {
 namespace {
 
 constexpr int highest_order = 2;
+// Of velocities through the surface: the curvature of a boundary layer of four spacings changes by a fifth a spacing.
+// Of the flow around a cylinder of 20 spacings the friction on the first row is 14 % too low with parabolas, 3 % with
+// cubics.
+constexpr int highest_pinned_order = 3;
+// Of the sum of all weights, that of the velocity of a no-slip surface in a fit through it.
+constexpr double pinned = 10;
+// Of a cubic, the sum of |e_j| per spacing of depth: 7 to 14.5 with liquid all around, on jittered lattices in two and
+// three dimensions, up to 120 where the liquid ends beside the foot.
+constexpr double most_bend = 16;
 
 }  // namespace
 
@@ -20,7 +30,8 @@ int PointFit<dimensions>::fit() {
     for (int axis = 0; axis < dimensions; ++axis) fit_.offset(axis)[k] = near_[k].offset[axis] / smoothing_length_;
     fit_.weight()[k] = WendlandC2::w(WendlandC2::support * std::sqrt(near_[k].r2) / reach_);
   }
-  return fit_.fit(highest_order);
+  order_ = fit_.fit(highest_order);
+  return order_;
 }
 
 template <int dimensions>
@@ -33,6 +44,34 @@ void PointFit<dimensions>::append(PointFits& fits) {
   for (std::size_t k = 0; k < near_.size(); ++k) {
     fits.source.push_back(near_[k].particle);
     fits.coefficient.push_back(coefficient[k] / sum);
+  }
+}
+
+template <int dimensions>
+void PointFit<dimensions>::append_bend(const Vec3& behind, PointFits& fits) {
+  const std::size_t count = near_.size(), begin = fits.source.size() - count;
+  fits.bend.resize(fits.source.size(), 0.0);
+  if (order_ < highest_order) return;
+  // About the wall point, so that the value of the fit is that of the parabola there.
+  fit_.resize(count + 1);
+  double sum = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    for (int axis = 0; axis < dimensions; ++axis)
+      fit_.offset(axis)[k] = (near_[k].offset[axis] - behind[axis]) / smoothing_length_;
+    fit_.weight()[k] = WendlandC2::w(WendlandC2::support * std::sqrt(near_[k].r2) / reach_);
+    sum += fit_.weight()[k];
+  }
+  for (int axis = 0; axis < dimensions; ++axis) fit_.offset(axis)[count] = -behind[axis] / 2 / smoothing_length_;
+  fit_.weight()[count] = pinned * sum;
+  const double most = most_bend * length(behind) / 2 / spacing_;
+  for (const int order : {highest_pinned_order, highest_order}) {
+    if (!fit_.factor(order)) continue;
+    const auto behind_it = fit_.value();
+    double moduli = 0;
+    for (std::size_t k = 0; k < count; ++k) moduli += std::abs(behind_it[k] + fits.coefficient[begin + k]);
+    if (order > highest_order && moduli > most) continue;
+    for (std::size_t k = 0; k < count; ++k) fits.bend[begin + k] = behind_it[k] + fits.coefficient[begin + k];
+    return;
   }
 }
 
@@ -55,12 +94,21 @@ std::size_t append_points(const std::vector<PointFits>& blocks, int dimensions, 
   }
   stencils.source.resize(entry.back());
   stencils.coefficient.resize(entry.back());
+  const bool bends = !stencils.bend.empty() || std::any_of(blocks.begin(), blocks.end(),
+                                                           [](const PointFits& fits) { return !fits.bend.empty(); });
+  if (bends) {
+    // Points without a bend, of openings and of walls that let liquid slip, have zeros.
+    const std::size_t before = stencils.bend.size();
+    stencils.bend.resize(entry.back());
+    std::fill(stencils.bend.begin() + before, stencils.bend.end(), 0.0);
+  }
   stencils.first[all] = static_cast<std::int64_t>(entry.back());
   parallel_blocks(blocks.size(), 1, [&](std::size_t b, std::size_t, std::size_t) {
     const PointFits& fits = blocks[b];
     auto next = static_cast<std::int64_t>(entry[b]);
     std::copy(fits.source.begin(), fits.source.end(), stencils.source.data() + next);
     std::copy(fits.coefficient.begin(), fits.coefficient.end(), stencils.coefficient.data() + next);
+    if (bends) std::copy(fits.bend.begin(), fits.bend.end(), stencils.bend.data() + next);
     for (std::size_t k = 0; k < fits.nearest.size(); ++k) {
       const std::size_t g = point[b] + k;
       stencils.first[g] = next;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/random.hpp"
@@ -25,9 +26,12 @@ struct ShellPoint {
   double distance = 0;  // from the surface, of the middle of its shell; negative inside the solid
 };
 
-// Sites of the lattice per point, along each axis: counts are those of finer cells, which a ring of ten spacings has 2
-// % off, in place of 10 % for one site a point.
+// Sites of the lattice per point, along each axis.
 constexpr std::size_t finer_2d = 3, finer_3d = 2;
+// A site counts in a shell with the part of its cell that lies in it, by the mean width of a square or a cube. Shells
+// of a ring of ten spacings then have their volume to 0.2 %, in place of 1 to 6 % with sites as points, of which a pipe
+// on a symmetry of the lattice has 5.7 % too many in the first shell: its liquid was held back by that much.
+constexpr double mean_width_2d = 4 / std::numbers::pi, mean_width_3d = 1.5;
 
 // Bits of a, b and c in turns: numbers along a curve whose pieces are compact.
 std::uint64_t interleave(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
@@ -79,8 +83,11 @@ std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domai
   const std::size_t finer = d == 3 ? finer_3d : finer_2d;
   const ShellLattice lattice(domain, spacing / static_cast<double>(finer), reach);
   const double layers = std::ceil(reach / spacing);
+  const double cell = lattice.step[0] * lattice.step[1] * (d == 3 ? lattice.step[2] : 1.0);
+  const double width = (d == 3 ? mean_width_3d : mean_width_2d) * std::pow(cell, 1.0 / d);
   struct Site {
     int shell = 0;  // from -layers to layers - 1
+    double share = 0;
     std::uint64_t code = 0;
     Vec3 place{};
   };
@@ -90,13 +97,17 @@ std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domai
       const std::size_t j = row % lattice.count[1], k = row / lattice.count[1];
       const Vec3 place = lattice.place(i, j, k);
       const double distance = walls.distance(place);
-      const double layer = std::floor(std::abs(distance) / spacing);
-      if (layer >= layers) {
+      const double beyond = std::abs(distance) - width / 2 - layers * spacing;
+      if (beyond >= 0) {
         // Along the row distances change by no more than the way.
-        i += 1 + static_cast<std::size_t>(std::min(1e6, std::max(0.0, (layer - layers) * spacing / lattice.step[0])));
+        i += 1 + static_cast<std::size_t>(std::min(1e6, beyond / lattice.step[0]));
         continue;
       }
-      rows[row].push_back({static_cast<int>(std::floor(distance / spacing)), interleave(i, j, k), place});
+      const auto below = [&](double bound) { return std::clamp(0.5 + (bound - distance) / width, 0.0, 1.0); };
+      const double first = std::max(-layers, std::floor((distance - width / 2) / spacing));
+      for (double shell = first; shell < layers && shell * spacing < distance + width / 2; ++shell)
+        if (const double share = below((shell + 1) * spacing) - below(shell * spacing); share > 0)
+          rows[row].push_back({static_cast<int>(shell), share, interleave(i, j, k), place});
       ++i;
     }
   });
@@ -105,12 +116,12 @@ std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domai
   std::sort(sites.begin(), sites.end(),
             [](const Site& a, const Site& b) { return a.shell == b.shell ? a.code < b.code : a.shell < b.shell; });
   // Of each shell one of as many sites as a point has volume of.
-  const double share = lattice.step[0] * lattice.step[1] * (d == 3 ? lattice.step[2] : 1.0) / std::pow(spacing, d);
+  const double of_point = cell / std::pow(spacing, d);
   std::vector<ShellPoint> points;
   double counted = 0.5;
   for (std::size_t s = 0; s < sites.size(); ++s) {
     if (s > 0 && sites[s].shell != sites[s - 1].shell) counted = 0.5;
-    counted += share;
+    counted += of_point * sites[s].share;
     if (counted < 1) continue;
     counted -= 1;
     points.push_back({sites[s].place, (sites[s].shell + 0.5) * spacing});

@@ -14,6 +14,14 @@
 #include "spume/operators/sph_operators.hpp"
 
 namespace spume::test {
+namespace {
+
+std::size_t axis_of(int a) {
+  return static_cast<std::size_t>(a);
+}
+
+}  // namespace
+
 TEST(WallPoints, StandInLayersOfAsManyAsTheyHaveVolumeFor) {
   const double spacing = 0.02, radius = 0.4;
   for (const bool inside : {true, false}) {
@@ -34,8 +42,8 @@ TEST(WallPoints, StandInLayersOfAsManyAsTheyHaveVolumeFor) {
     for (int layer = 0; layer < 3; ++layer) {
       const double middle = radius + (inside ? -1 : 1) * (layer + 0.5) * step;
       const double wanted = 2 * std::numbers::pi * middle * step / volume;
-      // A lattice counts the points of a ring of one spacing to about the square root of those on its edges.
-      EXPECT_NEAR(count[static_cast<std::size_t>(layer)], wanted, 0.06 * wanted) << "layer " << layer;
+      // Shares of cells count a shell to the square of a cell over the radius, and then to half a point at either end.
+      EXPECT_NEAR(count[static_cast<std::size_t>(layer)], wanted, 0.005 * wanted + 1) << "layer " << layer;
     }
     // Evened out: none near another.
     for (const WallPoint& a : points)
@@ -68,6 +76,28 @@ TEST(BodyWalls, MirrorValuesAsFitsOverAllParticlesDo) {
       EXPECT_NEAR(sum, 1, 1e-14);
       // Normal equations square the condition number, at most 5e3 for a fit of this order.
       EXPECT_NEAR(stencils.mirrored(g, scalar.data()), twin.fit(*point).scalar, 1e-8);
+    }
+  }
+}
+
+// Velocities that are a cubic through that of the surface go on behind it, as far as the liquid bears cubics.
+TEST(BodyWalls, ContinueCubicsThroughSurfacesThatHoldTheLiquid) {
+  for (const double bend : {0.0, -1.2}) {
+    const Walled walled(scene_text("lower = [0, 0]\nupper = [1, 1]\nx = \"periodic\"\n", 0.05,
+                                   "[[body]]\nshape = \"half-space\"\nposition = [0, 0.3]\nnormal = [0, 1]\nwall = "
+                                   "\"no-slip\"\nvelocity = [\"0.7\", \"0\"]\n"));
+    const auto profile = [&](double s) { return 0.7 + s + bend * s * s + 0.5 * s * s * s; };
+    std::array<Array<double>, 3> velocity;
+    for (auto& component : velocity) component = Array<double>(walled.particles.size(), 0.0);
+    for (std::size_t i = 0; i < walled.particles.size(); ++i) velocity[0][i] = profile(walled.place(i)[1] - 0.3);
+    const WallPointView wet = walled.boundary.bodies()->wet();
+    ASSERT_GT(wet.size, 30U);
+    for (std::size_t g = 0; g < wet.size; ++g) {
+      const auto u = walled.boundary.bodies()->stencils().velocity(
+          g, 2, {velocity[0].data(), velocity[1].data(), nullptr}, true, true, false);
+      // Velocities of surfaces are kept in single precision.
+      EXPECT_NEAR(u[0], profile(wet.position[1][g] - 0.3), 2e-7);
+      EXPECT_NEAR(u[1], 0, 1e-12);
     }
   }
 }
@@ -143,6 +173,76 @@ TEST(BodyWalls, SweepsSeeWallPointsAndTheirImages) {
       }
       EXPECT_NEAR(y[i] / walled.particles.volume, of_laplacian, tolerance / (h * h) * 10);
       EXPECT_NEAR(-residual[i] / walled.particles.volume, of_laplacian, tolerance / (h * h) * 10);
+    }
+  }
+}
+
+// The sums, less their share of what they make of the linear velocity that the corrected gradient has.
+TEST(BodyWalls, ViscosityTakesOffWhatItMakesOfLinearVelocities) {
+  for (const Layout& layout : wall_layouts()) {
+    SCOPED_TRACE(layout.name);
+    Walled walled(layout.text);
+    const int d = walled.particles.dimensions;
+    const std::size_t n = walled.particles.size();
+    const reference::WallSums twin = walled.twin(smooth);
+    const auto [points, carried] = walled.wet_points(twin);
+    std::array<Array<double>, 3> velocity;
+    std::array<Array<float>, 3> viscous;
+    std::array<const double*, 3> u{};
+    std::array<float*, 3> out{};
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(d); ++axis) {
+      velocity[axis].resize(n);
+      viscous[axis].resize(n);
+      for (std::size_t i = 0; i < n; ++i) velocity[axis][i] = twin.value[i].velocity[axis];
+      u[axis] = velocity[axis].data();
+      out[axis] = viscous[axis].data();
+    }
+    Array<float> share(n), kappa(n);
+    std::array<Array<float>, 6> correction;
+    for (auto& entry : correction) entry.resize(n);
+    std::vector<std::array<Vec3, 3>> inverse(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      share[i] = i % 12 == 0 ? 0.0F : static_cast<float>(uniform(i, 11)[0]);
+      kappa[i] = 1;
+      // Any symmetric matrix will do.
+      for (int a = 0; a < d; ++a)
+        for (int b = a; b < d; ++b) {
+          const auto entry = static_cast<float>((a == b ? 1 : 0.1) + 0.1 * uniform(i, 12)[static_cast<std::size_t>(a)]);
+          inverse[i][a][b] = inverse[i][b][a] = entry;
+          correction[static_cast<std::size_t>(d == 2 ? a + b : (a == 0 ? b : a + b + 1))][i] = entry;
+        }
+    }
+    std::array<const float*, 6> read{};
+    for (std::size_t k = 0; k < 6; ++k) read[k] = correction[k].data();
+    for (const bool stress : {false, true}) {
+      SCOPED_TRACE(stress ? "stress" : "Laplacian");
+      viscous_sweep(walled.arrangement.context, walled.arrangement.packed, u, walled.boundary.velocity_rule(),
+                    kappa.data(), out, stress, {share.data(), read});
+      const double h = walled.resolution.smoothing_length, tolerance = (d == 2 ? 4e-6 : 8e-6) * (stress ? d + 2 : 1);
+      for (std::size_t i = 0; i < n; i += 4) {
+        std::array<Vec3, 3> sums{}, gradient{};
+        twin.sum(i, points, carried[1], true, [&](const Vec3& way, double r, const reference::Carried& other) {
+          for (int a = 0; a < d; ++a)
+            for (int b = 0; b < d; ++b)
+              sums[a][b] += twin.g(r) * (other.velocity[axis_of(a)] - twin.value[i].velocity[axis_of(a)]) * way[b];
+        });
+        for (int a = 0; a < d; ++a)
+          for (int b = 0; b < d; ++b)
+            for (int c = 0; c < d; ++c) gradient[a][b] += share[i] * inverse[i][b][c] * sums[a][c];
+        Vec3 wanted{};
+        twin.sum(i, points, carried[1], true, [&](const Vec3& way, double r, const reference::Carried& other) {
+          Vec3 difference{};
+          for (int a = 0; a < d; ++a) {
+            difference[a] = other.velocity[axis_of(a)] - twin.value[i].velocity[axis_of(a)];
+            for (int b = 0; b < d; ++b) difference[a] -= gradient[a][b] * way[b];
+          }
+          for (int a = 0; a < d; ++a)
+            wanted[a] +=
+                2 * twin.g(r) *
+                (stress ? (d + 2) * dot(difference, way) / std::max(r * r, 1e-8 * h * h) * way[a] : difference[a]);
+        });
+        for (int a = 0; a < d; ++a) EXPECT_NEAR(viscous[axis_of(a)][i], wanted[a], tolerance / (h * h) * 20);
+      }
     }
   }
 }

@@ -57,37 +57,94 @@ struct WallSums {
     return all;
   }
 
-  // Quadratic fit at the mirror of a wall point, over the particles before its tangent plane and their periodic copies.
-  Carried fit(const WallPoint& point) const {
-    const int d = scene.domain.dimensions;
-    const double reach = 1.25 * support_radius;
+  // The particles before the tangent plane of a wall point within reach of its mirror, and their periodic copies:
+  // offsets from there over h, weights, values.
+  struct Near {
     std::vector<Vec3> offset;
-    std::vector<Carried> values;
+    std::vector<double> weight;
+    std::vector<Carried> value;
+  };
+  Near near(const WallPoint& point) const {
+    const double reach = 1.25 * support_radius;
+    Near found;
     for (std::size_t j = 0; j < particle.size(); ++j)
       for (const Vec3& place : periodic_copies(particle[j])) {
         const Vec3 xi = multiply(1 / smoothing_length, subtract(place, point.mirror));
         if (length(xi) * smoothing_length >= reach || dot(subtract(place, point.foot), point.normal) < 0) continue;
-        offset.push_back(xi);
-        values.push_back(value[j]);
+        found.offset.push_back(xi);
+        found.weight.push_back(WendlandC2::w(2 * length(xi) * smoothing_length / reach));
+        found.value.push_back(value[j]);
       }
-    const int columns = d == 2 ? 6 : 10;
-    const auto rows = static_cast<Eigen::Index>(offset.size());
-    Eigen::MatrixXd basis(rows, columns), right(rows, 4);
-    for (Eigen::Index k = 0; k < rows; ++k) {
-      const auto [x, y, z] = offset[static_cast<std::size_t>(k)];
-      Eigen::VectorXd row(columns);
-      if (d == 2)
-        row << 1, x, y, x * x, x * y, y * y;
-      else
-        row << 1, x, y, z, x * x, x * y, x * z, y * y, y * z, z * z;
-      const double weight =
-          std::sqrt(WendlandC2::w(2 * length(offset[static_cast<std::size_t>(k)]) * smoothing_length / reach));
-      const Carried& v = values[static_cast<std::size_t>(k)];
-      basis.row(k) = weight * row;
-      right.row(k) << weight * v.scalar, weight * v.velocity[0], weight * v.velocity[1], weight * v.velocity[2];
+    return found;
+  }
+
+  // The monomials up to an order.
+  std::vector<double> monomials(const Vec3& r, int order) const {
+    std::vector<double> all;
+    const int high = scene.domain.dimensions == 3 ? order : 0;
+    for (int k = 0; k <= high; ++k)
+      for (int j = 0; j + k <= order; ++j)
+        for (int i = 0; i + j + k <= order; ++i)
+          all.push_back(std::pow(r[0], i) * std::pow(r[1], j) * std::pow(r[2], k));
+    return all;
+  }
+
+  // Coefficients of the weighted fit at the place `at`, an offset as those of the particles. `through`: another place,
+  // with ten times the weight of all, whose value is zero.
+  std::vector<double> coefficients(const Near& around, int order, const Vec3& at, const Vec3* through) const {
+    const std::size_t rows = around.offset.size() + (through == nullptr ? 0 : 1);
+    const auto columns = static_cast<Eigen::Index>(monomials({}, order).size());
+    Eigen::MatrixXd basis(static_cast<Eigen::Index>(rows), columns);
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(basis.rows(), basis.rows());
+    double sum = 0;
+    for (const double weight : around.weight) sum += weight;
+    for (std::size_t k = 0; k < rows; ++k) {
+      const bool particle_row = k < around.offset.size();
+      const double root = std::sqrt(particle_row ? around.weight[k] : 10 * sum);
+      const std::vector<double> row = monomials(subtract(particle_row ? around.offset[k] : *through, at), order);
+      const auto r = static_cast<Eigen::Index>(k);
+      for (Eigen::Index c = 0; c < columns; ++c) basis(r, c) = root * row[static_cast<std::size_t>(c)];
+      right(r, r) = root;
     }
     const Eigen::MatrixXd c = test::least_squares(basis, right);
-    return {c(0, 0), {c(0, 1), c(0, 2), c(0, 3)}};
+    std::vector<double> of(around.offset.size());
+    for (std::size_t k = 0; k < of.size(); ++k) of[k] = c(0, static_cast<Eigen::Index>(k));
+    return of;
+  }
+
+  // Quadratic fit at the mirror of a wall point.
+  Carried fit(const WallPoint& point) const {
+    const Near around = near(point);
+    const std::vector<double> c = coefficients(around, 2, {}, nullptr);
+    Carried sum;
+    for (std::size_t k = 0; k < c.size(); ++k) {
+      sum.scalar += c[k] * around.value[k].scalar;
+      sum.velocity = add(sum.velocity, multiply(c[k], around.value[k].velocity));
+    }
+    return sum;
+  }
+
+  // What the polynomial through the velocity of the surface at the foot has at the wall point beside the velocity
+  // turned round: a cubic, or a parabola where the cubic would take more than 16 times the velocities per spacing of
+  // depth; at most as long as the velocity relative to the surface.
+  Vec3 bend(const WallPoint& point, const Vec3& wall, const Vec3& relative) const {
+    const Near around = near(point);
+    const std::vector<double> c = coefficients(around, 2, {}, nullptr);
+    const Vec3 foot = multiply(1 / smoothing_length, subtract(point.foot, point.mirror));
+    const double depth = length(subtract(point.position, point.foot));
+    Vec3 bent{};
+    for (const int order : {3, 2}) {
+      const std::vector<double> behind = coefficients(around, order, multiply(2, foot), &foot);
+      double moduli = 0;
+      bent = {};
+      for (std::size_t k = 0; k < c.size(); ++k) {
+        moduli += std::abs(behind[k] + c[k]);
+        bent = add(bent, multiply(behind[k] + c[k], subtract(around.value[k].velocity, wall)));
+      }
+      if (moduli <= 16 * depth / scene.spacing) break;
+    }
+    const auto size = [&](const Vec3& v) { return std::hypot(v[0], v[1], scene.domain.dimensions == 3 ? v[2] : 0); };
+    return size(bent) > size(relative) ? multiply(size(relative) / size(bent), bent) : bent;
   }
 
   // What a wall point carries.
@@ -96,7 +153,7 @@ struct WallSums {
     const Vec3 wall = body.velocity ? (*body.velocity)(point.foot, 0) : Vec3{};
     const Vec3 relative = subtract(carried.velocity, wall);
     carried.velocity = friction && body.wall == BoundaryKind::no_slip
-                           ? subtract(wall, relative)
+                           ? add(subtract(wall, relative), bend(point, wall, relative))
                            : subtract(carried.velocity, multiply(2 * dot(relative, point.normal), point.normal));
     return carried;
   }

@@ -89,6 +89,13 @@ void shift_curvature_sweep(const SweepContext& context, PackedNeighbours& packed
                            const std::array<const float*, 3>& shift, const std::array<const float*, 6>& correction,
                            const std::array<float*, 3>& out);
 
+// What (3.10) makes of a linear velocity, to be taken off where it should be zero: kappa times the gradient of u, by
+// sums corrected with L, times sum_j 2 g d, which is zero only where neighbours are spread evenly. Beside a wall they
+// stand in rows.
+struct LinearPart {
+  const float* share = nullptr;              // of it, per particle; null: none is taken off
+  std::array<const float*, 6> correction{};  // L
+};
 // (3.10) on each velocity component with coefficient kappa per particle; out: acceleration.
 // With `stress` set, div(2 kappa S) in the pair form of Monaghan & Gingold (1983) and Cleary (1998),
 //   sum_j 2 (d + 2) g k_ij ((u_j - u_i) . d) d / |d|^2 = k (lap u + 2 grad div u)
@@ -97,7 +104,7 @@ void shift_curvature_sweep(const SweepContext& context, PackedNeighbours& packed
 // out too small: by 19 % in 2-D and 13 % in 3-D with the Wendland kernel at h = 1.3 spacings, 4 % and 2 % at h = 2.
 void viscous_sweep(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
                    const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out,
-                   bool stress = false);
+                   bool stress = false, const LinearPart& taken_off = {});
 
 // Corrected divergence of u, and -lap of a scalar potential in the same pass (potential may be null).
 void divergence_sweep(const SweepContext& context, PackedNeighbours& packed,

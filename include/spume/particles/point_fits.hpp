@@ -21,6 +21,7 @@ struct PointFits {
   std::vector<std::int32_t> nearest, entries;  // per point
   std::vector<std::int32_t> source;            // per entry
   std::vector<double> coefficient;
+  std::vector<double> bend;  // per entry of the points that have one, zero of those between
 };
 
 // The particles around one place after another. One per thread.
@@ -28,7 +29,9 @@ template <int dimensions>
 class PointFit {
  public:
   explicit PointFit(const Resolution& resolution)
-      : smoothing_length_(resolution.smoothing_length), reach_(fit_reach * resolution.support_radius) {}
+      : spacing_(resolution.spacing),
+        smoothing_length_(resolution.smoothing_length),
+        reach_(fit_reach * resolution.support_radius) {}
 
   double reach() const { return reach_; }
   void clear() {
@@ -47,6 +50,9 @@ class PointFit {
   int fit();
   // Adds the point of the last fit.
   void append(PointFits& fits);
+  // The bend e_j of WallStencils of the point added last, which lies at `behind` from the place of its fit; zero where
+  // that is not quadratic. Ends the fit.
+  void append_bend(const Vec3& behind, PointFits& fits);
   // Adds a point without entries.
   void append_none(PointFits& fits) const {
     fits.nearest.push_back(nearest_);
@@ -59,11 +65,12 @@ class PointFit {
     Vec3 offset;
     double r2;
   };
-  const double smoothing_length_, reach_;
+  const double spacing_, smoothing_length_, reach_;
   MovingLeastSquares<dimensions> fit_;
   std::vector<Near> near_;
   std::int32_t nearest_ = 0;
   double nearest2_ = 0;
+  int order_ = -1;
 };
 
 // Makes room for the points of the blocks behind those that the stencils have, and sets their entries and the nearest

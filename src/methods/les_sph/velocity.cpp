@@ -70,6 +70,10 @@ void refuse_unstable_diffusion(const Flow& flow, double dt) {
 
 }  // namespace
 
+double Flow::inside(std::size_t i) const {
+  return surface != nullptr ? surface->interior_weight[i] : fading.weight((*moments.divergence_of_position)[i]);
+}
+
 Vec3 Flow::advecting_velocity_of(std::size_t i, double dt) const {
   Vec3 u = vector_at(particles.velocity, dimensions, i);
   if (acceleration[0] != nullptr)
@@ -200,9 +204,27 @@ void Flow::find_viscous_acceleration() {
     const double total = std::max(nu + eddy, 0.0);
     diffusivity[i] = static_cast<float>(alpha * total * dimensions / div_r);
   });
+  ScratchArray<float> share(particles.scratch(), features.held_by_bodies ? size() : 0);
+  if (features.held_by_bodies) find_held_by_bodies(share.data());
   particles.scratch().lease(viscous_acceleration, dimensions, size());
   viscous_sweep(arrangement.context, arrangement.packed, started ? read(advecting_velocity) : read(particles.velocity),
-                boundary.velocity_rule(), diffusivity.data(), write(viscous_acceleration), features.viscous_stress);
+                boundary.velocity_rule(), diffusivity.data(), write(viscous_acceleration), features.viscous_stress,
+                {features.held_by_bodies ? share.data() : nullptr, moments.read_correction()});
+}
+
+void Flow::find_held_by_bodies(float* share) const {
+  const WallStencils* walls = arrangement.context.walls;
+  const std::int32_t* point = arrangement.images.wall_point();
+  parallel_for(size(), [&](std::size_t i) {
+    share[i] = 0;
+    if (walls == nullptr || point == nullptr || moments.uncorrected[i] != 0) return;
+    const ListedPoints seen = arrangement.list.of(i);
+    const bool held = std::any_of(seen.begin(), seen.end(), [&](std::int32_t j) {
+      const std::int32_t image = j - static_cast<std::int32_t>(size());
+      return image >= 0 && point[image] >= 0 && walls->no_slip[static_cast<std::size_t>(point[image])] != 0;
+    });
+    if (held) share[i] = static_cast<float>(inside(i));
+  });
 }
 
 void Flow::add_body_force(double t, double dt) {
@@ -341,11 +363,10 @@ void Flow::accept(double dt) {
         // A one-sided gradient, at the surface or beside a void of a closed liquid, extrapolates: fed back through the
         // shift it accelerates particles without any force (0.5 sqrt(g lambda) in a tenth of a period at 1/50). The
         // change fades out with the interior weight.
-        const double inside =
-            surface != nullptr ? surface->interior_weight[i] : fading.weight((*moments.divergence_of_position)[i]);
+        const double weight = inside(i);
         for (int axis = 0; axis < dimensions; ++axis) {
-          u[axis] += inside * shift_velocity[axis][i];
-          ahead[axis] += inside * shift_velocity[axis][i];
+          u[axis] += weight * shift_velocity[axis][i];
+          ahead[axis] += weight * shift_velocity[axis][i];
         }
       }
     }
@@ -390,11 +411,7 @@ std::int64_t Flow::transport_scalars(double dt) {
                                          .walls = boundary.walls,
                                          .time = time - dt,
                                          .shift = features.shift_correction ? shift->displacement : FloatVectorField{},
-                                         .interior = [this](std::size_t i) -> double {
-                                           return surface != nullptr
-                                                      ? surface->interior_weight[i]
-                                                      : fading.weight((*moments.divergence_of_position)[i]);
-                                         }});
+                                         .interior = [this](std::size_t i) { return inside(i); }});
 }
 
 void Flow::transfer_oxygen(double dt) {

@@ -30,6 +30,8 @@ struct Features : BoundaryFeatures, SoluteFeatures {
   bool density_relaxation = false;  // of the number density, by the pressure
   bool viscosity = false;
   bool viscous_stress = false;  // div(2 nu S) in place of div(nu grad u)
+  bool no_slip_bodies = false;
+  bool held_by_bodies = false;  // no-slip bodies, and a viscosity that is the same everywhere
   bool potential = false;       // gravity or a body force
   bool body_force = false;
   bool uniform_body_force = false;  // the same everywhere: part of the uniform acceleration

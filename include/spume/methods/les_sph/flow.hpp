@@ -175,6 +175,10 @@ struct Flow {
   void find_uniform_acceleration(double t);
   void find_potential(double dt);  // at the end of the step
   void find_viscous_acceleration();
+  // Of the particles that see a no-slip body, how far inside the liquid they are: of them the viscous term takes off
+  // what it makes of linear velocities. A constant viscosity only: one that varies makes something of them.
+  void find_held_by_bodies(float* share) const;
+  double inside(std::size_t i) const;  // the interior weight: 0 at a surface and beside voids, 1 in the bulk
   // Bubbles, and the sizes of the particles that make room for them.
   void place_clouds();
   void move_bubbles(double dt);
