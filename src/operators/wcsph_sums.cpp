@@ -37,6 +37,11 @@ void mark_walls(const SweepContext& context, float* records, int width, int slot
   });
 }
 
+// kappa_ij of the densities of two phases.
+[[gnu::always_inline]] inline f32n contrast(f32n own, f32n other) {
+  return (other - own) / (other + own);
+}
+
 [[gnu::always_inline]] inline f32n equals(f32n a, f32n b, f32n then) {
   return a == b ? then : f32n{};
 }
@@ -91,7 +96,7 @@ float own_viscosity(const ContinuityFields& fields, std::size_t i) {
   return fields.viscosity == nullptr ? fields.common_viscosity : fields.viscosity[i];
 }
 
-template <int dimensions, Phases phases, bool viscous, bool friction, bool shifted>
+template <int dimensions, Phases phases, bool weighted, bool viscous, bool friction, bool shifted>
 void continuity(const SweepContext& context, PackedNeighbours& packed, const ContinuityFields& fields,
                 const ContinuityOut& out) {
   constexpr bool several = phases != Phases::one, walls = phases == Phases::beside_walls;
@@ -118,6 +123,12 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
       const f32n weight = Kernel::f(b.q) * b.payload[At::volume];
       f32n approach{};
       for (int a = 0; a < dimensions; ++a) approach = approach + (b.payload[At::velocity + a] - own[a]) * b.d[a];
+      if constexpr (weighted) {
+        const f32n own_density = simd::splat<f32n>(own[At::phase]);
+        f32n other = b.payload[At::phase];
+        if constexpr (walls) other = simd::max(other, f32n{}) + equals(other, simd::splat<f32n>(of_wall), own_density);
+        approach = approach + contrast(own_density, other) * approach;
+      }
       rate = rate + weight * approach;
       f32n same = weight;
       if constexpr (several) same = equals(b.payload[At::phase], simd::splat<f32n>(own[At::phase]), weight);
@@ -175,7 +186,7 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
   });
 }
 
-template <int dimensions, Phases phases, bool concentrated>
+template <int dimensions, Phases phases, bool weighted, bool concentrated>
 void pressure_force(const SweepContext& context, PackedNeighbours& packed, const PressureFields& fields,
                     const std::array<float*, 3>& out, const std::array<float*, 3>& concentration) {
   constexpr bool several = phases != Phases::one;
@@ -210,8 +221,14 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
         f32n other = b.payload[2];
         if constexpr (phases == Phases::beside_walls)
           other = simd::max(other, zero) + equals(other, simd::splat<f32n>(of_wall), own_density);
-        const f32n jump = simd::max(other - own_density, own_density - other);
-        both = both + fields.repulsion * (jump / (other + own_density)) * simd::max(both, zero - both);
+        if constexpr (weighted) {
+          const f32n kappa = contrast(own_density, other);
+          both = both + kappa * (own[1] - b.payload[1]);
+          both = both + fields.repulsion * simd::max(kappa, zero - kappa) * simd::max(both, zero - both);
+        } else {
+          const f32n jump = simd::max(other - own_density, own_density - other);
+          both = both + fields.repulsion * (jump / (other + own_density)) * simd::max(both, zero - both);
+        }
       }
       const f32n share = Kernel::f(b.q) * b.payload[0];
       if constexpr (concentrated)
@@ -230,44 +247,48 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
 void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, const ContinuityFields& fields,
                       const ContinuityOut& out) {
   with_wcsph_dimensions(context, [&]<int dimensions>() {
-    const auto run = [&]<Phases several, bool shifted>() {
+    const auto run = [&]<Phases phases, bool weighted, bool shifted>() {
       if (fields.viscosity == nullptr && fields.common_viscosity == 0)
-        continuity<dimensions, several, false, false, shifted>(context, packed, fields, out);
+        continuity<dimensions, phases, weighted, false, false, shifted>(context, packed, fields, out);
       else if (fields.friction == nullptr)
-        continuity<dimensions, several, true, false, shifted>(context, packed, fields, out);
+        continuity<dimensions, phases, weighted, true, false, shifted>(context, packed, fields, out);
       else
-        continuity<dimensions, several, true, true, shifted>(context, packed, fields, out);
+        continuity<dimensions, phases, weighted, true, true, shifted>(context, packed, fields, out);
     };
-    if (fields.phase != nullptr && context.walls != nullptr && fields.shift[0] != nullptr)
-      run.template operator()<Phases::beside_walls, true>();
-    else if (fields.phase != nullptr && context.walls != nullptr)
-      run.template operator()<Phases::beside_walls, false>();
-    else if (fields.phase != nullptr && fields.shift[0] != nullptr)
-      run.template operator()<Phases::several, true>();
-    else if (fields.phase != nullptr)
-      run.template operator()<Phases::several, false>();
-    else if (fields.shift[0] != nullptr)
-      run.template operator()<Phases::one, true>();
+    const auto of = [&]<Phases phases>() {
+      if (fields.shift[0] != nullptr)
+        run.template operator()<phases, false, true>();
+      else if (phases != Phases::one && fields.weighted)
+        run.template operator()<phases, phases != Phases::one, false>();
+      else
+        run.template operator()<phases, false, false>();
+    };
+    if (fields.phase == nullptr)
+      of.template operator()<Phases::one>();
+    else if (context.walls != nullptr)
+      of.template operator()<Phases::beside_walls>();
     else
-      run.template operator()<Phases::one, false>();
+      of.template operator()<Phases::several>();
   });
 }
 
 void pressure_force_sweep(const SweepContext& context, PackedNeighbours& packed, const PressureFields& fields,
                           const std::array<float*, 3>& out, const std::array<float*, 3>& concentration) {
   with_wcsph_dimensions(context, [&]<int dimensions>() {
-    if (fields.several && context.walls != nullptr && concentration[0] != nullptr)
-      pressure_force<dimensions, Phases::beside_walls, true>(context, packed, fields, out, concentration);
-    else if (fields.several && concentration[0] != nullptr)
-      pressure_force<dimensions, Phases::several, true>(context, packed, fields, out, concentration);
-    else if (fields.several && context.walls != nullptr)
-      pressure_force<dimensions, Phases::beside_walls, false>(context, packed, fields, out, concentration);
-    else if (fields.several)
-      pressure_force<dimensions, Phases::several, false>(context, packed, fields, out, concentration);
-    else if (concentration[0] != nullptr)
-      pressure_force<dimensions, Phases::one, true>(context, packed, fields, out, concentration);
+    const auto of = [&]<Phases phases>() {
+      if (concentration[0] != nullptr)
+        pressure_force<dimensions, phases, false, true>(context, packed, fields, out, concentration);
+      else if (phases != Phases::one && fields.weighted)
+        pressure_force<dimensions, phases, phases != Phases::one, false>(context, packed, fields, out, concentration);
+      else
+        pressure_force<dimensions, phases, false, false>(context, packed, fields, out, concentration);
+    };
+    if (!fields.several)
+      of.template operator()<Phases::one>();
+    else if (context.walls != nullptr)
+      of.template operator()<Phases::beside_walls>();
     else
-      pressure_force<dimensions, Phases::one, false>(context, packed, fields, out, concentration);
+      of.template operator()<Phases::several>();
   });
 }
 

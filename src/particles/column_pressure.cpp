@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "spume/core/parallel.hpp"
@@ -31,6 +32,27 @@ Vec3 gravity_across_sides(const Scene& scene) {
   for (int axis = 0; axis < scene.domain.dimensions; ++axis)
     if (!scene.domain.periodic(axis)) g[axis] = scene.fluid.gravity[axis];
   return g;
+}
+
+bool lie_in_layers(const Scene& scene) {
+  const auto up = static_cast<std::size_t>(scene.domain.dimensions) - 1;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (axis == up ? !(gravity_across_sides(scene)[axis] < 0) : scene.fluid.gravity[axis] != 0) return false;
+  struct Layer {
+    double density = 0, lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  };
+  std::vector<Layer> layers(scene.phases.size());
+  for (std::size_t n = 0; n < layers.size(); ++n) layers[n].density = scene.phases[n].density;
+  const InitialParticles& particles = scene.particles;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    Layer& layer = layers[static_cast<std::size_t>(particles.phase[i])];
+    layer.lowest = std::min(layer.lowest, particles.position[up][i]);
+    layer.highest = std::max(layer.highest, particles.position[up][i]);
+  }
+  std::sort(layers.begin(), layers.end(), [](const Layer& a, const Layer& b) { return a.lowest < b.lowest; });
+  for (std::size_t n = 1; n < layers.size(); ++n)
+    if (layers[n].lowest < layers[n - 1].highest || layers[n].density > layers[n - 1].density) return false;
+  return true;
 }
 
 Array<double> column_pressure(const Scene& scene, const ParticleStore& particles, const Array<std::int64_t>& phase) {

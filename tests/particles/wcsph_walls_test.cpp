@@ -160,13 +160,14 @@ TEST(WcsphWalls, AveragesAtWallPointsAgreeWithTheSlowTwin) {
 
 TEST(WcsphWalls, SumsAndForcesAgreeWithTheSlowTwin) {
   for (const Layout& layout : wcsph_layouts())
-    for (const double jitter : {0.2, 0.9}) {
+    for (const auto& [jitter, weighted] : {std::pair{0.2, false}, {0.2, true}, {0.9, false}, {0.9, true}}) {
       SCOPED_TRACE(layout.name);
       const LoadedCase& loaded = Walled(layout.text).loaded;
       const int d = loaded.scene.domain.dimensions;
       Vec3 gravity{};
       if (!loaded.scene.domain.periodic(d - 1)) gravity[static_cast<std::size_t>(d - 1)] = -2e-3;
       WalledLiquid liquid(layout, jitter, gravity);
+      liquid.twin.weighted = weighted;
       PackedNeighbours& packed = liquid.walled.arrangement.packed;
       const Boundary& boundary = liquid.walled.boundary;
       const std::size_t n = liquid.twin.particles.size();
@@ -182,7 +183,8 @@ TEST(WcsphWalls, SumsAndForcesAgreeWithTheSlowTwin) {
                         .friction = &boundary.velocity_rule(),
                         .volume = liquid.volume.data(),
                         .excess = liquid.excess.data(),
-                        .phase = liquid.phase.data(),
+                        .phase = weighted ? liquid.density.data() : liquid.phase.data(),
+                        .weighted = weighted,
                         .viscosity = liquid.viscosity.data()},
                        {rate.data(), diffusion.data(), viscous_out});
       pressure_force_sweep(liquid.context(), packed,
@@ -190,6 +192,7 @@ TEST(WcsphWalls, SumsAndForcesAgreeWithTheSlowTwin) {
                             .volume = liquid.volume.data(),
                             .density = liquid.density.data(),
                             .several = true,
+                            .weighted = weighted,
                             .repulsion = 0.08F,
                             .gravity = gravity,
                             .position = read(liquid.walled.particles.position),

@@ -10,16 +10,19 @@ namespace spume::reference {
 struct WcsphSums {
   const SphSums& sums;
 
-  // velocity(point, axis), of particles and images.
+  static double kappa(double own, double other) { return (other - own) / (own + other); }
+
+  // velocity(point, axis), of particles and images. `density`: of the phases, where the rate is weighted.
   template <class Velocity, class Scalar>
-  Sum rate(std::size_t i, const Velocity& velocity, const Scalar& volume) const {
+  Sum rate(std::size_t i, const Velocity& velocity, const Scalar& volume, const Scalar* density = nullptr) const {
     Sum sum;
     sums.each(i, [&](const SphSums::Pair& p) {
+      const double share = density == nullptr ? 1 : 1 + kappa((*density)[i], (*density)[p.point->source]);
       for (int a = 0; a < sums.dimensions(); ++a) {
         const double other = velocity(*p.point, a), own = velocity(sums.points()[i], a);
         const double v = volume[p.point->source];
-        sum.add(-p.g * v, p.largest_g * v, (other - own) * p.d[a],
-                (std::abs(other) + std::abs(own)) * std::abs(p.d[a]));
+        sum.add(-p.g * v, p.largest_g * v, share * (other - own) * p.d[a],
+                2 * (std::abs(other) + std::abs(own)) * std::abs(p.d[a]));
       }
     });
     return sum;
@@ -50,16 +53,16 @@ struct WcsphSums {
   }
   template <class Pressure, class Scalar>
   Sum pressure_force(std::size_t i, int a, const Pressure& pressure, const Scalar& volume, const Scalar& density,
-                     double repulsion, const Vec3& gravity) const {
+                     double repulsion, const Vec3& gravity, bool weighted = false) const {
     Sum sum;
     sums.each(i, [&](const SphSums::Pair& p) {
       const std::size_t j = p.point->source;
       double other = pressure[j];
       for (int b = 0; b < sums.dimensions(); ++b)
         other += density[j] * gravity[b] * (p.point->position[b] - sums.points()[j].position[b]);
-      const double both = pressure[i] + other;
-      const double jump = std::abs(double{density[i]} - density[j]) / (double{density[i]} + density[j]);
-      const double modulus = (std::abs(pressure[i]) + std::abs(other)) * (1 + repulsion * jump);
+      const double k = kappa(density[i], density[j]), jump = std::abs(k);
+      const double both = pressure[i] + other + (weighted ? k * (pressure[i] - other) : 0);
+      const double modulus = (weighted ? 2 : 1) * (std::abs(pressure[i]) + std::abs(other)) * (1 + repulsion * jump);
       sum.add(-p.g * volume[j], p.largest_g * volume[j], (both + repulsion * jump * std::abs(both)) * p.d[a],
               modulus * std::abs(p.d[a]));
     });

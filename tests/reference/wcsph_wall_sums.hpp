@@ -29,6 +29,7 @@ struct WcsphWallSums {
   Vec3 gravity;
   double repulsion;
   std::vector<WallSumPoint> particles, walls;
+  bool weighted = false;
 
   // A copy of a point: itself, or what sides make of it.
   struct Copy {
@@ -138,18 +139,21 @@ struct WcsphWallSums {
       distance += std::abs(d);
       p += other.density * gravity[axis] * (copy.position[axis] - other.position[axis]);
     }
+    const double kappa = wall ? 0 : (other.density - own.density) / (own.density + other.density);
+    const double share = weighted ? kappa : 0;
     ++s.count;
-    s.rate -= g * approach;
-    s.rate_modulus += most * modulus;
+    s.rate -= g * (1 + share) * approach;
+    s.rate_modulus += most * (1 + std::abs(share)) * modulus;
     if (!wall && own.phase == other.phase) {
       s.diffusion += 2 * g * (other.excess - own.excess);
       s.diffusion_modulus += 2 * most * (std::abs(other.excess) + std::abs(own.excess));
     }
     const double both = own.viscosity + other.viscosity;
     const double mu = wall ? own.viscosity : both > 0 ? 2 * own.viscosity * other.viscosity / both : 0;
-    const double jump = wall ? 0 : std::abs(own.density - other.density) / (own.density + other.density);
-    const double total = own.pressure + p + repulsion * jump * std::abs(own.pressure + p);
-    s.pressure_modulus += most * (std::abs(own.pressure) + std::abs(p)) * (1 + repulsion) * distance;
+    const double of_both = own.pressure + p + share * (own.pressure - p);
+    const double total = of_both + repulsion * std::abs(kappa) * std::abs(of_both);
+    s.pressure_modulus +=
+        most * (1 + std::abs(share)) * (std::abs(own.pressure) + std::abs(p)) * (1 + repulsion) * distance;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double u = copy.held[axis] * (wall ? other.held : other.velocity)[axis];
       viscous[axis] = 2 * g * mu * (u - own.velocity[axis]);

@@ -14,13 +14,20 @@
 //                     carry no momentum across an interface
 //   concentration     h (grad C)_i = h sum_j v_j g d, C = sum_j V_j W_ij over all phases
 //   pressure force    (rho du / dt)_i = - sum_j v_j g (P_i + P_j + R_ij) d,
-//                     R_ij = eps |rho0_i - rho0_j| / (rho0_i + rho0_j) |P_i + P_j|   (Monaghan 2013)
+//                     R_ij = eps |kappa_ij| |P_i + P_j|   (Monaghan 2013)
+//   weighted          of the densities of two phases, kappa_ij = (rho0_j - rho0_i) / (rho0_i + rho0_j):
+//                     P_i + P_j + kappa_ij (P_i - P_j) in the force and in R_ij, (1 + kappa_ij) (u_j - u_i) in the
+//                     rate, without shift
 //   tension           (rho du / dt)_i = sum_j v_j g (phi_i + phi_j) / 2 (c_j - c_i) d, c_i 1 in one phase and 0
 //                     elsewhere, phi = sigma kappa (particles/interface_potential.hpp)
 //
 // Where phi is uniform the tension is what the pressure phi c does to the neighbours of the other phase, term by term:
 // with the pressure phi c the forces of a drop are -2 phi c_i sum_j v_j g d, those of a liquid under the pressure phi,
 // whatever the densities. It is a force on the interface: to pairs it is not antisymmetric.
+//
+// Weighted, the pressure of a pair is that where the phases meet if the acceleration grad P / rho is continuous there
+// (Hu and Adams 2007), and its velocity the mean by mass: force and rate are adjoint, as without. Unweighted, liquid at
+// rest presses the gas beside it with an acceleration of some g times the ratio of densities.
 //
 // The diffusion is that of Molteni and Colagrossi (2009) without the hydrostatic part (Fourtakas et al. 2019); the
 // viscous force that of Morris et al. (1997); the momentum flux of a transport velocity u + delta u that of Adami, Hu
@@ -47,7 +54,8 @@ struct ContinuityFields {
   const VelocityImageRule* friction = nullptr;                    // of the viscous force; null: the same
   const float* volume = nullptr;                                  // v
   const float* excess = nullptr;                                  // s'
-  const float* phase = nullptr;                                   // its number; null: one phase
+  const float* phase = nullptr;                                   // what tells phases apart; null: one phase
+  bool weighted = false;                                          // `phase` is rho_0, of no two phases alike
   const float* viscosity = nullptr;                               // mu; null: that of all
   float common_viscosity = 0;                                     // of one phase; 0: inviscid
   std::array<const float*, 3> shift{};                            // delta u; null: none
@@ -68,6 +76,7 @@ struct PressureFields {
   const float* volume = nullptr;   // v
   const float* density = nullptr;  // rho_0; null: of one phase without gravity and walls of bodies
   bool several = false;            // phases: repulsion between them
+  bool weighted = false;           // between phases
   float repulsion = 0;             // eps
   // Images at mirrors continue the pressure of their source by density gravity . (r_image - r_source), as Adami et al.
   // (2012) do at walls.

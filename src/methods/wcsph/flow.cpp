@@ -42,6 +42,17 @@ std::vector<PhaseLaw> laws_of(const Scene& scene, double expected_speed) {
   return laws;
 }
 
+std::vector<float> distinct_densities(const std::vector<PhaseLaw>& laws) {
+  std::vector<float> densities;
+  for (const PhaseLaw& law : laws) {
+    auto density = static_cast<float>(law.density);
+    while (std::find(densities.begin(), densities.end(), density) != densities.end())
+      density = std::nextafter(density, 2 * density);
+    densities.push_back(density);
+  }
+  return densities;
+}
+
 // Particles under tension clump, and pressures below zero would let them: where no hydrostatic pressure keeps them
 // above it, the dynamic one does. Shifting keeps the particles apart by itself, and a background pressure would only
 // drive its noise: the vortices of cases/taylor_green_wcsph decay too fast by 16 % with it and by 1.4 % without.
@@ -72,6 +83,10 @@ Features::Features(const LoadedCase& loaded)
   density_relaxation = scene.free_surface && smoothing.density_relaxation > 0;
   shifting = smoothing.shifting == Shifting::on ||
              (smoothing.shifting == Shifting::automatic && (!several || tension) && !scene.free_surface);
+  const InterfacePressure meeting = smoothing.interface_pressure;
+  weighted = several && !shifting && !tension && meeting != InterfacePressure::mean;
+  layers = weighted && !scene.free_surface && !moving_bodies && !scene.body_force && lie_in_layers(scene);
+  weighted = layers || (weighted && meeting == InterfacePressure::weighted);
 }
 
 Flow::Flow(const LoadedCase& loaded_case)
@@ -84,6 +99,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       skin(options.get<ListOptions>().skin * scene.spacing),
       expected_speed(speed_of(loaded_case)),
       laws(laws_of(scene, expected_speed)),
+      phase_density(distinct_densities(laws)),
       background(background_of(loaded_case, features, expected_speed, laws)),
       wall_gravity(gravity_across_sides(scene)),
       particles(dimensions, scene.particles),
@@ -182,7 +198,7 @@ double Flow::leased_bytes() const {
   for (const auto* vector : {&viscous_force, &pressure_force, &way, &flux, &concentration})
     for (const auto& array : *vector) add(array);
   add(next_excess, pressure, wall_pressure, wall_density, volume, reduced_excess, rate, diffusion, carried, density,
-      phase, viscosity);
+      viscosity);
   return sum;
 }
 

@@ -116,7 +116,6 @@ void Flow::lease_properties() {
   scratch.lease(volume, size());
   scratch.lease(reduced_excess, size());
   if (needs_density()) scratch.lease(density, size());
-  if (needs_phase()) scratch.lease(phase, size());
   if (needs_viscosity()) scratch.lease(viscosity, size());
   if (features.shifting) scratch.lease(way, dimensions, size());
   parallel_for(size(), [&](std::size_t i) {
@@ -126,8 +125,7 @@ void Flow::lease_properties() {
       head += wall_gravity[axis] * (place[axis][i] - arrangement.origin[axis]);
     volume[i] = static_cast<float>(1 / (1 + (*excess)[i]));
     reduced_excess[i] = static_cast<float>((*excess)[i] - head / (own.sound_speed * own.sound_speed));
-    if (needs_density()) density[i] = static_cast<float>(own.density);
-    if (needs_phase()) phase[i] = static_cast<float>(phase_of(i));
+    if (needs_density()) density[i] = phase_density[phase_of(i)];
     if (needs_viscosity()) viscosity[i] = static_cast<float>(own.viscosity);
     for (int axis = 0; features.shifting && axis < dimensions; ++axis)
       way[axis][i] = static_cast<float>((*shift[axis])[i]);
@@ -150,7 +148,8 @@ void Flow::find_rates() {
                     .friction = features.friction ? &boundary.velocity_rule() : nullptr,
                     .volume = volume.data(),
                     .excess = reduced_excess.data(),
-                    .phase = needs_phase() ? phase.data() : nullptr,
+                    .phase = needs_phase() ? density.data() : nullptr,
+                    .weighted = features.weighted,
                     .viscosity = needs_viscosity() ? viscosity.data() : nullptr,
                     .common_viscosity = needs_phase() ? 0 : static_cast<float>(laws[0].viscosity),
                     .shift = read(way),
@@ -204,11 +203,11 @@ void Flow::advance_density(double dt) {
 void Flow::filter_density() {
   ScratchPool& scratch = particles.scratch();
   ScratchArray<float> filtered(scratch, size());
-  if (!needs_phase()) {
-    scratch.lease(phase, size());
-    phase.fill(0.0F);
+  if (!needs_density()) {
+    scratch.lease(density, size());
+    density.fill(phase_density[0]);
   }
-  density_filter_sweep(arrangement.context, arrangement.packed, volume.data(), phase.data(), filtered.data());
+  density_filter_sweep(arrangement.context, arrangement.packed, volume.data(), density.data(), filtered.data());
   parallel_for(size(), [&](std::size_t i) {
     next_excess[i] = filtered[i];
     pressure[i] = law(i).pressure(filtered[i]) + background;
@@ -241,6 +240,7 @@ void Flow::find_pressure_force() {
        .volume = volume.data(),
        .density = density.data(),
        .several = features.several,
+       .weighted = features.weighted,
        .repulsion = static_cast<float>(options.get<CompressibilityOptions>().repulsion),
        .gravity = wall_gravity,
        .position = read(place),
@@ -274,7 +274,6 @@ void Flow::find_shift(std::size_t i) {
 }
 
 void Flow::accept(double dt) {
-  ScratchPool& scratch = particles.scratch();
   const double worst = parallel_max(size(), 0.0, [&](std::size_t i) {
     double sum = std::abs(next_excess[i]) / largest_excess_of_a_flow;
     for (int axis = 0; axis < dimensions; ++axis)
@@ -326,15 +325,20 @@ void Flow::accept(double dt) {
       if (features.shifting) find_shift(i);
     }
   });
-  scratch.release(place);
-  for (auto* vector : {&viscous_force, &pressure_force, &flux, &concentration}) scratch.release(*vector);
-  for (auto* array : {&next_excess, &pressure, &wall_pressure, &wall_density}) scratch.release(*array);
-  for (auto* array : {&volume, &density, &phase}) scratch.release(*array);
+  release_leased();
   boundary.accept();
   if (features.tension) surface_energy = tension->energy();
   time += dt;
   if (dt > 0) ++steps;
   find_signal();
+}
+
+void Flow::release_leased() {
+  ScratchPool& scratch = particles.scratch();
+  for (auto* vector : {&half_velocity, &place}) scratch.release(*vector);
+  for (auto* vector : {&viscous_force, &pressure_force, &flux, &concentration}) scratch.release(*vector);
+  for (auto* array : {&next_excess, &pressure, &wall_pressure, &wall_density}) scratch.release(*array);
+  for (auto* array : {&volume, &density, &viscosity, &reduced_excess}) scratch.release(*array);
 }
 
 std::vector<WallForce> Flow::forces_on_bodies() {
@@ -369,8 +373,7 @@ std::vector<WallForce> Flow::forces_on_bodies() {
                                                .body = body.data()},
                                               scene.bodies.size());
   if (scene.free_surface) add_parting_forces(forces);
-  for (auto* array : {&volume, &density, &viscosity}) scratch.release(*array);
-  for (auto* array : {&pressure, &wall_pressure, &wall_density}) scratch.release(*array);
+  release_leased();
   return forces;
 }
 

@@ -25,6 +25,13 @@ Section compressibility_section() {
       .word("shifting", &C::shifting, {{"auto", Shifting::automatic}, {"on", Shifting::on}, {"off", Shifting::off}},
             "of particles towards an even spacing; auto: in scenes without free surface, of one phase or with surface "
             "tension")
+      .word("interface_pressure", &C::interface_pressure,
+            {{"auto", InterfacePressure::automatic},
+             {"mean", InterfacePressure::mean},
+             {"weighted", InterfacePressure::weighted}},
+            "what phases meet at: the mean of their pressures, or that weighted with densities, under which "
+            "accelerations "
+            "are continuous; auto: weighted where phases lie in layers; shifting and tension take the mean")
       .option("filter_interval", &C::filter_interval, "", between(1, 10000), "steps between kernel averages");
 }
 

@@ -15,6 +15,11 @@ Plan make_plan(Flow& f) {
   const ParticleStages stages(plan, f);
   const char* const several = has.several ? "several phases" : "one phase";
 
+  stages.sweep(start, "settling", has.layers,
+               has.layers    ? "phases in layers, to where they are at rest"
+               : has.several ? "for phases that lie in layers in a closed tank"
+                             : several,
+               &Flow::settle, {p.position, *f.excess}, {p.position, *f.excess});
   const ArrayUse interfaces([&f] { return f.tension == nullptr ? 0 : f.tension->bytes(); });
   const auto keep_lists = [&f](StageRun& run) {
     const std::int64_t builds = f.list_builds;
@@ -42,7 +47,7 @@ Plan make_plan(Flow& f) {
                    (has.shifting ? ", and what shifting carries" : ""),
                &Flow::find_rates, {f.half_velocity, *f.excess, *f.phase_number, f.shift},
                {f.rate, f.diffusion, f.viscous_force, f.carried, f.flux, f.way, f.volume, f.reduced_excess, f.density,
-                f.phase, f.viscosity});
+                f.viscosity});
   stages.add(both, "density", true, f.laws_in_words(), &Flow::advance_density,
              {f.rate, f.diffusion, f.carried, f.way, p.position, p.velocity, f.acceleration, f.shift, *f.excess,
               *f.phase_number},
@@ -51,7 +56,7 @@ Plan make_plan(Flow& f) {
   stages.sweep(both, "density filter", has.shepard,
                has.shepard ? "average of the phase, every " + std::to_string(interval) + " steps"
                            : "compressibility.density_filter is not \"shepard\"",
-               &Flow::filter_density, {f.volume, f.phase}, {f.next_excess, f.pressure, f.volume},
+               &Flow::filter_density, {f.volume, f.density}, {f.next_excess, f.pressure, f.volume},
                [&f, interval] { return f.steps % interval == interval - 1; });
   stages.sweep(both, "pressure force", true, std::string("(2)") + (has.several ? ", (4)" : "") + ": " + several,
                &Flow::find_pressure_force, {f.pressure, f.volume, f.density}, {f.pressure_force, f.concentration});

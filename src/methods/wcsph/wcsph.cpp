@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
@@ -61,6 +62,7 @@ Wcsph::Wcsph(const LoadedCase& loaded)
   if (flow_.features.bodies)
     body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
   saved_.add(flow_.time).add(flow_.steps).add(flow_.signal).add(flow_.largest_speed).add(flow_.boundary.wall_speed);
+  if (flow_.features.layers) saved_.add(flow_.settled).add(flow_.arrangement.context.gradient_scale);
   if (flow_.features.tension) saved_.add(flow_.surface_energy);
   if (flow_.features.density_relaxation) saved_.add(flow_.liquid_volume);
 }
@@ -120,6 +122,9 @@ std::vector<ParticleSnapshot> Wcsph::snapshot_on_demand() {
 
 std::vector<Remark> Wcsph::take_remarks() {
   std::vector<Remark> remarks;
+  if (flow_.unsettled > layers_at_rest)
+    remarks.push_back({"the layers are not at rest at the start: a particle is accelerated by " +
+                       brief(100 * std::exchange(flow_.unsettled, 0)) + " % of gravity"});
   for (std::size_t n = 0; n < flow_.laws.size(); ++n) {
     if (remarked_[n]) continue;
     const double change = flow_.largest_excess(n), range = range_of(flow_.laws[n]);

@@ -23,8 +23,10 @@ namespace spume::wcsph {
 // What a scene needs. Stages and arrays exist by these alone.
 struct Features : BoundaryFeatures, SoluteFeatures {
   explicit Features(const LoadedCase& loaded);
-  bool several = false;  // phases
-  bool gravity = false;  // across sides
+  bool several = false;   // phases
+  bool weighted = false;  // sums of pairs of different phases, by their densities
+  bool layers = false;    // of phases, each heavier than what is above it, in a closed tank
+  bool gravity = false;   // across sides
   bool viscosity = false;
   bool friction = false;  // at no-slip walls
   bool tension = false;
@@ -32,6 +34,9 @@ struct Features : BoundaryFeatures, SoluteFeatures {
   bool shifting = false;
   bool density_relaxation = false;
 };
+
+// Of gravity: what the start of layers leaves of accelerations.
+inline constexpr double layers_at_rest = 0.005;
 
 struct Flow {
   explicit Flow(const LoadedCase& loaded_case);
@@ -47,6 +52,7 @@ struct Flow {
   const double skin;
   const double expected_speed;
   const std::vector<PhaseLaw> laws;
+  const std::vector<float> phase_density;  // no two alike: it tells phases apart too
   const double background;
   const Vec3 wall_gravity;  // across sides: the pressure at walls follows it
   double start_excess = 0;  // mean of s' of the scene
@@ -63,6 +69,8 @@ struct Flow {
   Array<double>* lack = nullptr;  // of s, by the kernel sums, for the density relaxation
   Boundary boundary;
   double listed_time = 0;  // of the places of moving bodies in the lists
+  double settled = 0;      // 1: settle() has been
+  double unsettled = 0;    // the largest acceleration that it has left, over that of gravity
   double signal = 0;       // largest sum of sound speed and speed
   double largest_speed = 0;
   double surface_energy = 0;  // of the interfaces where the last forces were found
@@ -81,7 +89,7 @@ struct Flow {
   // --- Leased within a step.
   VectorScratch half_velocity, place;
   Array<double> next_excess, pressure, wall_pressure, wall_density;
-  Array<float> volume, reduced_excess, rate, diffusion, carried, density, phase, viscosity;
+  Array<float> volume, reduced_excess, rate, diffusion, carried, density, viscosity;
   FloatVectorScratch viscous_force, pressure_force, way, flux, concentration;
   // From the acceptance of a step until the last stage that carries what is dissolved.
   struct {
@@ -102,6 +110,7 @@ struct Flow {
   std::string laws_in_words() const;
 
   // The stages.
+  void settle();  // of layers, to where they are at rest
   void keep_lists(double dt);
   void relax_density();             // (12)
   void drift(double dt);            // (5), to the middle of the step
@@ -150,6 +159,11 @@ struct Flow {
   // Pressures of images have the weight of what is between them and their sources.
   bool needs_density() const { return features.several || features.bodies || features.gravity; }
   void lease_properties();
+  void release_leased();
+  void move_at_rest(std::size_t i, const Vec3& way);
+  void raise_datum();
+  void fit_gradient_scale();
+  double step_towards_rest(VectorScratch& way);
   void find_shift(std::size_t i);
   void find_signal();
   void keep_shift(double dt);

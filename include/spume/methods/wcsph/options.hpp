@@ -12,6 +12,9 @@ enum class DensityFilter { delta, shepard, none };
 // Whether particles are shifted towards an even spacing.
 enum class Shifting { automatic, on, off };
 
+// What phases meet at: the mean of their pressures, or the one weighted with densities (operators/wcsph_sums.hpp).
+enum class InterfacePressure { automatic, mean, weighted };
+
 struct CompressibilityOptions {
   double max_speed = 0;             // that the flow will reach; 0: estimated
   double background_pressure = -1;  // negative: chosen by the scene
@@ -21,6 +24,7 @@ struct CompressibilityOptions {
   double density_relaxation = 2;  // spacings that the fastest particle moves
   int filter_interval = 25;       // steps, of the Shepard filter
   Shifting shifting = Shifting::automatic;
+  InterfacePressure interface_pressure = InterfacePressure::automatic;
 };
 
 struct ListOptions {
