@@ -19,7 +19,10 @@ double Schedule::next_event() const {
 
 double Schedule::step(double t, double limit) const {
   const double remaining = next_event() - t;
-  if (remaining <= limit) return remaining;
+  // A limit may aim at the same time as the event and differ from it by rounding: half of what remains, and half of
+  // that again, would make hundreds of steps of it.
+  constexpr double rounding = 1e-9;
+  if (remaining <= limit * (1 + rounding)) return remaining;
   if (remaining < 2 * limit) return remaining / 2;
   return limit;
 }

@@ -360,7 +360,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   const std::vector<Wavemaker> wavemakers = make_wavemakers(draft, scene, problems);
   scene.sponges = make_sponges(draft, wavemakers);
   check_openings_of(draft, scene, lattice.volume(), problems);
-  check_motions(draft, scene, method->fills_regions, problems);
+  check_motions(draft, scene, method->incompressible, problems);
   double& courant = draft.options.time.courant;
   if (courant == 0) courant = method->default_courant(draft.options, scene);
   if (method->check_scene) method->check_scene(draft, scene, problems);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "checks.hpp"
 #include "spume/core/vectors.hpp"
@@ -164,23 +166,35 @@ bool full_and_closed(const Scene& scene) {
 
 }  // namespace
 
-void check_motions(const Draft& draft, const Scene& scene, bool one_liquid, Problems& problems) {
-  if (scene.fluid.sound_speed > 0)
+void check_motions(const Draft& draft, const Scene& scene, bool incompressible, Problems& problems) {
+  if (scene.fluid.sound_speed > 0) {
     Speeds(draft, scene, problems).check();
-  else if (one_liquid && full_and_closed(scene))
-    check_pressing(draft, scene, problems);
+    return;
+  }
+  if (!incompressible || !full_and_closed(scene)) return;
+  check_pressing(draft, scene, problems);
+  for (std::size_t k = 0; k < draft.wavemakers.size(); ++k)
+    if (draft.wavemakers[k].kind == WavemakerKind::flap)
+      problems.add(*draft.node("wavemaker." + std::to_string(k)),
+                   "the flap would press a tank that is full and closed, and its liquid is incompressible; leave room "
+                   "above the liquid, or open a side");
 }
 
 std::vector<Problem> collision_warnings(const Draft& draft, const Scene& scene, const std::string& file) {
   std::vector<Problem> warnings;
   const double deep = scene.spacing / 2;
   const Domain& domain = scene.domain;
+  std::vector<std::optional<std::vector<Vec3>>> found_places(draft.bodies.size());
+  const auto places_of = [&](std::size_t k) -> const std::vector<Vec3>& {
+    if (!found_places[k]) found_places[k] = places_on(scene.bodies[k], scene);
+    return *found_places[k];
+  };
   for (std::size_t k = 0; k < draft.bodies.size(); ++k) {
     const Body& body = scene.bodies[k];
     if (!body.motion || body.wall == BoundaryKind::open) continue;
     const BodyMotion& motion = scene.motions[*body.motion];
     if (motion.floats || motion.release || !body.inside) continue;
-    const std::vector<Vec3> places = places_on(body, scene);
+    const std::vector<Vec3>& places = places_of(k);
     // What it goes into at time t: 2 axis + end of a side, 6 + j of body j. What it is in at the start is meant.
     const auto in_at = [&](double t) {
       std::vector<std::size_t> found;
@@ -202,8 +216,13 @@ std::vector<Problem> collision_warnings(const Draft& draft, const Scene& scene, 
         if (j == k || other.wall == BoundaryKind::open || other.subtract || other.motion == body.motion) continue;
         if (other.motion && (scene.motions[*other.motion].floats || scene.motions[*other.motion].release)) continue;
         const RigidPlace theirs = other.motion ? given_place(scene.motions[*other.motion], t) : RigidPlace{};
+        // A small body may go into the middle of a face: places of both are looked at.
+        const Shape& own = *(body.alone ? body.alone : body.solid);
+        const std::vector<Vec3>& their_places = places_of(j);
         if (std::any_of(places.begin(), places.end(),
-                        [&](const Vec3& at) { return other.solid->distance(theirs.start(place.now(at))) < -deep; }))
+                        [&](const Vec3& at) { return other.solid->distance(theirs.start(place.now(at))) < -deep; }) ||
+            std::any_of(their_places.begin(), their_places.end(),
+                        [&](const Vec3& at) { return own.distance(place.start(theirs.now(at))) < -deep; }))
           found.push_back(6 + j);
       }
       return found;

@@ -241,14 +241,37 @@ bool holds_liquid(const Scene& scene, const Vec3& place) {
   return scene.walls.empty() || scene.walls.distance(place) > 0;
 }
 
+// Whether some place of it, a spacing from the next, is clear of boxes and of walls that stand still: what moves may
+// let liquid in later.
+bool lets_liquid_in(const Scene& scene, const Opening& opening) {
+  const Domain& domain = scene.domain;
+  std::array<std::size_t, 3> count{1, 1, 1};
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    if (axis != opening.axis)
+      count[axis] = static_cast<std::size_t>(
+          std::clamp(std::ceil((opening.upper[axis] - opening.lower[axis]) / scene.spacing), 1.0, 1000.0));
+  for (std::size_t n = 0; n < count[0] * count[1] * count[2]; ++n) {
+    const std::array<std::size_t, 3> at{n % count[0], n / count[0] % count[1], n / (count[0] * count[1])};
+    Vec3 place = opening.lower;
+    for (int axis = 0; axis < domain.dimensions; ++axis)
+      place[axis] += (static_cast<double>(at[axis]) + 0.5) / static_cast<double>(count[axis]) *
+                     (opening.upper[axis] - opening.lower[axis]);
+    place[opening.axis] = opening.side == 0 ? domain.lower[opening.axis] : domain.upper[opening.axis];
+    if (opening.where && !((*opening.where)(place[0], place[1], place[2], 0) > 0)) continue;
+    if (holds_liquid(scene, place)) return true;
+    for (const Body& body : scene.bodies)
+      if (body.motion && body.solid->distance(place) <= 0) return true;
+  }
+  return false;
+}
+
 void check_velocity(const Draft& draft, const Scene& scene, const Opening& opening, Problems& problems) {
   const std::string key = opening.name + (opening.velocity ? ".velocity" : ".flow_rate");
   const Node& node = draft.node(key) != nullptr ? *draft.node(key) : *draft.node(opening.name);
   const double inwards = opening.side == 0 ? 1 : -1;
-  bool covered = false, passes = false, refused = false;
+  bool covered = false, refused = false;
   sample(opening, scene.domain, draft.options.time.end, [&](const Vec3& place, double t) {
     covered = true;
-    passes = passes || holds_liquid(scene, place);
     const double speed = opening.velocity ? inwards * (*opening.velocity)(place, t)[opening.axis]
                                           : (*opening.flow_rate)(place[0], place[1], place[2], t);
     refused = !(speed >= 0);
@@ -266,7 +289,7 @@ void check_velocity(const Draft& draft, const Scene& scene, const Opening& openi
   if (!covered)
     problems.add(draft.node(opening.name + ".where") != nullptr ? *draft.node(opening.name + ".where") : node,
                  opening.name + ".where is nowhere positive on its side; the expression is that of a place on it");
-  else if (!passes && !refused)
+  else if (!refused && !lets_liquid_in(scene, opening))
     problems.add(*draft.node(opening.name),
                  opening.name + " lets nothing enter: solids cover all of it; move it or the solids");
 }

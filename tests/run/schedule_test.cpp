@@ -39,6 +39,14 @@ TEST(Schedule, LeavesNoSliverBeforeAnEvent) {
   EXPECT_GE(smallest, 0.0099 / 2);
 }
 
+// Half of what remains, and half of that again, would be a step for every digit.
+TEST(Schedule, ALimitThatAimsAtAnEventMayMissItByRounding) {
+  const Schedule schedule({1, 0.2, 0, 0});
+  const double remaining = 0.2 - 0.15;
+  for (const double limit : {std::nextafter(remaining, 0), std::nextafter(remaining, 1)})
+    EXPECT_EQ(schedule.step(0.15, limit), remaining);
+}
+
 TEST(Schedule, EventsThatDifferByRoundingCoincide) {
   Schedule schedule({1, 0.3, 0.1, 0});  // 3 * 0.1 is not 0.3 in binary
   double t = 0;

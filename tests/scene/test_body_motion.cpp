@@ -324,6 +324,16 @@ TEST(BodyMotion, OfWallsKeepsTheVolumeOfAFullTank) {
   EXPECT_THAT(
       complaints(test::replaced(tank, "[resolution]", "wall_velocity.right = [\"0.1*t\", \"0\"]\n[resolution]")),
       IsEmpty());
+  // Phases that fill a tank are pressed too, and by a flap.
+  const std::string phases =
+      test::replaced(test::replaced(tank, "[fluid]\nreynolds = 100\n[[liquid]]\n", ""), "les-sph", "gfd") +
+      "[[phase]]\nname = \"water\"\ndensity = 1\nviscosity = 0.1\n[[region]]\nphase = \"water\"\n";
+  EXPECT_THAT(complaints(phases), Contains(HasSubstr("the left wall changes the volume of a tank that is full")));
+  const std::string flap =
+      "[[wavemaker]]\nside = \"left\"\nkind = \"flap\"\nwaves = \"regular\"\nheight = 0.1\nperiod = 2\ndepth = 0.9\n";
+  const std::string still = test::replaced(test::replaced(tank, "wall_velocity.left = [\"0.1*t\", \"0\"]\n", ""),
+                                           "reynolds = 100", "reynolds = 100\nfroude = 1");
+  EXPECT_THAT(complaints(still + flap), Contains(HasSubstr("the flap would press a tank that is full and closed")));
 }
 
 TEST(BodyMotion, IntoABodyOrAWallIsWarnedOf) {
@@ -346,6 +356,10 @@ TEST(BodyMotion, IntoABodyOrAWallIsWarnedOf) {
        test::load_text(floored + slab + "displacement = [\"0\", \"-0.8*t\"]\n").options.warnings)
     found.push_back(problem.text);
   EXPECT_THAT(found, Contains(HasSubstr("the body 'slab' moves through the bottom wall before t = ")));
+  // A small body may meet the middle of a face, away from its corners.
+  EXPECT_THAT(warnings("displacement = [\"0.3*t\", \"0\"]\n",
+                       "[[body]]\nname = \"post\"\nshape = \"ball\"\nradius = 0.06\nposition = [0.7, 0.2]\n"),
+              Contains(HasSubstr("the body 'slab' moves into the body 'post'")));
   // Bodies that share a place from the start are meant to.
   EXPECT_THAT(warnings("displacement = [\"0.3*t\", \"0\"]\n", test::replaced(post, "[0.8, 0.2]", "[0.4, 0.2]")),
               testing::Not(Contains(HasSubstr("moves into"))));

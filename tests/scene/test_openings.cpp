@@ -119,6 +119,14 @@ TEST(Openings, AreRefusedWhereNothingCanPass) {
           .empty());
   EXPECT_THAT(problems_of(stream + "[[body]]\nshape = \"box\"\nsize = [0.6, 3]\nposition = [0, 0.5]\n"),
               ElementsAre("15:1 inflow.0 lets nothing enter: solids cover all of it; move it or the solids"));
+  // A slot between two lips, wherever it is, and a gate that may open.
+  const auto lip = [](const std::string& size, const std::string& height, const std::string& more = "") {
+    return "[[body]]\nshape = \"box\"\nsize = [0.6, " + size + "]\nposition = [0, " + height + "]\n" + more;
+  };
+  EXPECT_THAT(
+      problems_of(replaced(stream, "spacing = 0.1", "spacing = 0.02") + lip("0.514", "0.257") + lip("0.444", "0.778")),
+      testing::IsEmpty());
+  EXPECT_THAT(problems_of(stream + lip("3", "0.5", "displacement = [\"0\", \"t\"]\n")), testing::IsEmpty());
   EXPECT_THAT(of("side = \"left\"", "side = \"left\"\nwhere = \"y - 3\""),
               ElementsAre(HasSubstr("inflow.0.where is nowhere positive on its side")));
 }

@@ -33,6 +33,8 @@ struct MethodDeclaration {
 
   bool honours_floating_bodies = false;  // whose motion follows from the pressure
 
+  bool incompressible = false;  // without a sound speed in [fluid]: liquid that fills a closed tank cannot be pressed
+
   bool damps_sponges = false;    // [[sponge]]
   bool passes_openings = false;  // [[inflow]], [[outflow]]
 

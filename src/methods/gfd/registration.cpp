@@ -75,6 +75,7 @@ Registration registration() {
   method.description =
       "incompressible flow of several phases by generalised finite differences, with tension and the full stress";
   method.fills_phases = true;
+  method.incompressible = true;
   method.honours_bodies = true;
   method.sections = {pressure_section(), shifting_section(false), momentum_section(), interface_section(),
                      limits_section()};

@@ -90,6 +90,7 @@ void LesSph::step(double dt, Ledger& ledger) {
   sampled_step_ = -1;  // sorting changes what the bins of the sampler refer to, also when the step is refused
   plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
   remark_bodies_that_collide();
+  if (flow_.solutes.record_carries()) keep_last_flow();
 }
 
 void LesSph::remark_bodies_that_collide() {
@@ -242,6 +243,7 @@ void LesSph::save(StateWriter& writer) const {
   if (flow_.bubbles != nullptr) flow_.bubbles->save(writer);
   if (flow_.floating != nullptr) flow_.floating->save(writer);
   flow_.solutes.save(writer);
+  if (flow_.solutes.record_carries()) writer.f64("last_flow", last_flow_);
 }
 
 void LesSph::load(StateReader& reader) {
@@ -261,6 +263,11 @@ void LesSph::load(StateReader& reader) {
   if (flow_.features.openings) flow_.boundary.openings()->load(reader);
   if (flow_.bubbles != nullptr) flow_.bubbles->load(reader);
   flow_.solutes.load(reader);
+  if (!flow_.solutes.record_carries()) return;
+  Array<double> last;
+  reader.f64("last_flow", last);
+  if (last.size() != flow_columns_) throw FileError("the checkpoint was written by another version of the method");
+  last_flow_.assign(last.data(), last.data() + last.size());
 }
 
 }  // namespace spume::les_sph

@@ -101,6 +101,7 @@ Registration registration() {
   method.description =
       "semi-implicit, weakly compressible SPH for a liquid with a free surface, with turbulence closures and bubbles";
   method.fills_regions = true;
+  method.incompressible = true;
   method.damps_sponges = true;
   method.honours_bodies = true;
   method.honours_floating_bodies = true;

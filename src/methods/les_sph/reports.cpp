@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a run records of the method: one entry per column, field and invariant.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -111,12 +112,21 @@ void LesSph::declare_series() {
     return flow.surface == nullptr ? 0.0 : static_cast<double>(flow.surface->surface_particles.size());
   });
   if (flow.bubbles != nullptr) flow.bubbles->add_columns(series_);
+  flow_columns_ = series_.columns().size();
   flow.solutes.add_columns(series_, flow.bubbles.get());
+}
+
+// What its columns tell is not saved, nor found again by a run that is resumed: the flow stands still.
+void LesSph::keep_last_flow() {
+  std::vector<double> row(series_.columns().size());
+  series_.values(row);
+  last_flow_.assign(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(flow_columns_));
 }
 
 void LesSph::series_values(std::span<double> values) {
   ensure_started();
   series_.values(values);
+  std::copy(last_flow_.begin(), last_flow_.end(), values.begin());
 }
 
 std::vector<ParticleSnapshot> LesSph::snapshot_on_demand() {

@@ -71,6 +71,11 @@ void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
         break;
       }
   }
+  for (std::size_t k = 0; k < draft.wavemakers.size(); ++k)
+    if (draft.wavemakers[k].kind == WavemakerKind::piston)
+      problems.add(*draft.node("wavemaker." + std::to_string(k)),
+                   "a piston is a wall that moves along its normal; method \"wcsph\" takes walls that slide along "
+                   "themselves: write it as a [[body]] that moves, or use method \"les-sph\"");
 }
 
 // Fields, lists of neighbours (18 bytes a batch of eight, the last half empty) and sweep records: the arrays of runs of

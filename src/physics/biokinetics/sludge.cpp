@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "spume/physics/biokinetics/sludge.hpp"
 
+#include <utility>
+
 #include "spume/core/parallel.hpp"
 
 namespace spume::biokinetics {
@@ -47,6 +49,7 @@ void Sludge::react(double dt) {
 
 void Sludge::react_in_cells(double dt, std::vector<std::vector<double>>& values, const std::vector<double>& volumes) {
   const std::size_t n = volumes.size();
+  dt += std::exchange(pending_, 0.0);  // of the last interval between reactions, before the record
   for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = values[options_.scalars[i]].data();
   const double* oxygen = values_[asm1::s_o];
   double all = 0, before = 0, after = 0, steps = 0;

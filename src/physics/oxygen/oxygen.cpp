@@ -39,7 +39,10 @@ void Oxygen::exchange_with_air(double dt, const Surface& surface) {
     double gained = 0, area = 0;
   };
   double* values = scalars_.values(options_.index).data();
-  if (keeps_conductance_) surface_conductance_ = Array<float>(particles_.size(), 0.0F);
+  if (keeps_conductance_) {
+    surface_conductance_.resize(particles_.size());
+    surface_conductance_.fill(0.0F);
+  }
   const double layer_area = layer_area_ / surface.gradient_scale;
   const double saturation = gas_.saturation_below_air(), k = gas_.factor * options_.surface_k_l, v = particles_.volume;
   const Sums sums = parallel_reduce(

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "spume/physics/recorded_flow/options.hpp"
 
+#include <cmath>
+
 #include "spume/physics/recorded_flow/recorded_flow.hpp"
 #include "spume/scene/document.hpp"
 #include "spume/scene/option.hpp"
@@ -18,7 +20,7 @@ constexpr const char* to_give = "has to be given with the section";
 Section recorded_flow_section() {
   using R = RecordedFlowOptions;
   return section<R>("recorded_flow")
-      .option("from", &R::from, "time", not_negative(), "recording begins: the flow is statistically steady")
+      .option("from", &R::from, "time", positive(), "recording begins: the flow is statistically steady")
       .absent(to_give)
       .option("until", &R::until, "time", positive(),
               "recording ends: from here on the recorded exchange carries the scalars, and the flow stands still")
@@ -54,6 +56,11 @@ void check_recorded_flow(Draft& draft, Problems& problems) {
     problems.add(until, "recorded_flow.until is " + brief(end) + ", which leaves " + brief((end - from) / lag) +
                             " times the lag for the record; expected at least " + brief(fewest_windows) +
                             ": raise it to " + brief(from + fewest_windows * lag) + ", or shorten the lag");
+  // The record ends with a lag.
+  if (const double lags = (end - from) / lag; std::abs(lags - std::round(lags)) > 1e-6 * lags)
+    problems.add(until, "recorded_flow.until is " + brief(end) + ", which is " + brief(lags) +
+                            " times the lag behind recorded_flow.from; expected a whole number: set it to " +
+                            brief(from + std::ceil(lags) * lag));
   if (draft.options.time.end > 0 && end >= draft.options.time.end)
     problems.add(until, "recorded_flow.until is " + brief(end) + ", and the run ends at " +
                             brief(draft.options.time.end) +

@@ -8,6 +8,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/core/periodic_grid.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/scene/expression.hpp"
 #include "spume/scene/option.hpp"
@@ -21,6 +22,22 @@ constexpr double stationary = 1e-14;
 constexpr int most_steps_of_chain = 200000;
 // Of the mean volume: a cell with less is left and not entered again.
 constexpr double least_volume = 1e-6;
+
+// Makes sum(weight * value) that amount: by a factor, which keeps the sign of values that have one sign, else by a sum,
+// as parts of both signs may cancel. Values that are all the same stay so.
+void match(std::vector<double>& values, const std::vector<double>& weights, double amount) {
+  double held = 0, all = 0, least = 0, largest = 0;
+  for (std::size_t a = 0; a < values.size(); ++a) {
+    held += weights[a] * values[a];
+    all += weights[a];
+    least = std::min(least, values[a]);
+    largest = std::max(largest, values[a]);
+  }
+  if (least < 0 && largest > 0)
+    for (double& value : values) value += (amount - held) / all;
+  else if (held != 0)
+    for (double& value : values) value *= amount / held;
+}
 
 }  // namespace
 
@@ -62,15 +79,21 @@ double RecordedFlow::step(double t, double dt) const {
   return left <= dt ? left : left / 2;
 }
 
-std::size_t RecordedFlow::cell_of(std::size_t i) const {
+std::size_t RecordedFlow::cell_at(const Vec3& place) const {
   std::size_t cell = 0;
   for (int axis = dimensions_ - 1; axis >= 0; --axis) {
     const auto a = static_cast<std::size_t>(axis);
-    const double place = ((*particles_.position[a])[i] - scene_.domain.lower[a]) / side_[a];
+    const double lower = scene_.domain.lower[a];
+    const double x =
+        scene_.domain.periodic(axis) ? wrap_periodic(place[a], lower, scene_.domain.upper[a] - lower) : place[a];
     const auto last = static_cast<double>(count_[a] - 1);
-    cell = cell * count_[a] + static_cast<std::size_t>(std::clamp(std::floor(place), 0.0, last));
+    cell = cell * count_[a] + static_cast<std::size_t>(std::clamp(std::floor((x - lower) / side_[a]), 0.0, last));
   }
   return cell;
+}
+
+std::size_t RecordedFlow::cell_of(std::size_t i) const {
+  return cell_at(vector_at(particles_.position, dimensions_, i));
 }
 
 Vec3 RecordedFlow::centre(std::size_t cell) const {
@@ -80,6 +103,16 @@ Vec3 RecordedFlow::centre(std::size_t cell) const {
     cell /= count_[a];
   }
   return r;
+}
+
+// Around periodic sides too.
+double RecordedFlow::distance_between(const Vec3& a, const Vec3& b) const {
+  Vec3 way = subtract(a, b);
+  for (int axis = 0; axis < dimensions_; ++axis) {
+    const double period = scene_.domain.upper[axis] - scene_.domain.lower[axis];
+    if (scene_.domain.periodic(axis)) way[axis] -= period * std::round(way[axis] / period);
+  }
+  return length(way);
 }
 
 void RecordedFlow::mark() {
@@ -95,26 +128,34 @@ void RecordedFlow::count() {
 }
 
 void RecordedFlow::record_supply(double dt, const oxygen::Supply* bubbles) {
+  if (oxygen_ == nullptr) return;
   elapsed_ += dt;
   if (bubbles != nullptr)
     bubbles->each([&](const Vec3& place, double conductance, double capacity) {
-      std::size_t cell = 0;
-      for (int axis = dimensions_ - 1; axis >= 0; --axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        const double at = std::floor((place[a] - scene_.domain.lower[a]) / side_[a]);
-        cell = cell * count_[a] + static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(count_[a] - 1)));
-      }
+      const std::size_t cell = cell_at(place);
       conductance_[cell] += conductance * dt;
       capacity_[cell] += capacity * dt;
     });
-  if (oxygen_ == nullptr || oxygen_->surface_conductance().empty()) return;
+  const Array<float>& surface = oxygen_->surface_conductance();
+  if (surface.empty()) return;
   const double saturation = oxygen_->gas().saturation_below_air();
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const double conductance = oxygen_->surface_conductance()[i];
-    if (!(conductance > 0)) continue;
-    const std::size_t cell = cell_of(i);
-    conductance_[cell] += conductance * dt;
-    capacity_[cell] += conductance * saturation * dt;
+  const auto add = [&](std::vector<double> sums, const std::vector<double>& part) {
+    for (std::size_t cell = 0; cell < sums.size(); ++cell) sums[cell] += part[cell];
+    return sums;
+  };
+  const std::size_t cells = conductance_.size();
+  const std::vector<double> sums = parallel_reduce(
+      particles_.size(), std::vector<double>(cells, 0.0),
+      [&](std::size_t first, std::size_t last) {
+        std::vector<double> part(cells, 0.0);
+        for (std::size_t i = first; i < last; ++i)
+          if (const double conductance = surface[i]; conductance > 0) part[cell_of(i)] += conductance;
+        return part;
+      },
+      add);
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    conductance_[cell] += sums[cell] * dt;
+    capacity_[cell] += sums[cell] * saturation * dt;
   }
 }
 
@@ -228,8 +269,9 @@ void RecordedFlow::complete() {
   for (std::size_t cell = 0; cell < number.size(); ++cell) {
     if (number[cell] == none) {
       double least = std::numeric_limits<double>::infinity();
+      const Vec3 here = centre(cell);
       for (std::size_t a = 0; a < n; ++a)
-        if (const double way = length(subtract(centre(kept[a]), centre(cell))); way < least) {
+        if (const double way = distance_between(centre(kept[a]), here); way < least) {
           least = way;
           number[cell] = a;
         }
@@ -247,34 +289,30 @@ void RecordedFlow::complete() {
   complete_ = true;
 }
 
-// Means of the particles in each cell, times what makes their amount that of the particles.
+// Means of the particles in each cell, of the amount that the particles have.
 void RecordedFlow::read_particles() {
   for (std::size_t s = 0; s < scalars_.size(); ++s) {
     const double amount = scalars_.amount(s);
     std::vector<double>& values = values_[s];
     values.assign(cells(), 0.0);
     for (std::size_t i = 0; i < place_.size(); ++i) values[place_[i]] += scalars_.values(s)[i];
-    double held = 0;
-    for (std::size_t a = 0; a < cells(); ++a) {
+    for (std::size_t a = 0; a < cells(); ++a)
       values[a] = particles_in_[a] > 0 ? values[a] / particles_in_[a] : amount / scalars_.liquid_volume();
-      held += volume_[a] * values[a];
-    }
-    if (held != 0)
-      for (double& c : values) c *= amount / held;
+    match(values, volume_, amount);
   }
 }
 
-// Those of their cells, times what makes their amount that of the cells.
+double RecordedFlow::amount(std::size_t scalar) const {
+  return std::inner_product(volume_.begin(), volume_.end(), values_[scalar].begin(), 0.0);
+}
+
+// Those of their cells, of the amount that the cells have.
 void RecordedFlow::write_particles() {
   for (std::size_t s = 0; s < scalars_.size(); ++s) {
-    double amount = 0, held = 0;
-    for (std::size_t a = 0; a < cells(); ++a) {
-      amount += volume_[a] * values_[s][a];
-      held += particles_in_[a] * values_[s][a];
-    }
-    const double factor = held != 0 ? amount / (held * particles_.volume) : 1;
+    std::vector<double> values = values_[s];
+    match(values, particles_in_, amount(s) / particles_.volume);
     double* out = scalars_.values(s).data();
-    parallel_for(place_.size(), [&](std::size_t i) { out[i] = factor * values_[s][place_[i]]; });
+    parallel_for(place_.size(), [&](std::size_t i) { out[i] = values[place_[i]]; });
   }
 }
 
@@ -303,14 +341,19 @@ void RecordedFlow::add_sources(double t) {
   }
 }
 
+// Amounts are kept by the stationary volumes, to what their iteration leaves: of tanks that exchange little that may be
+// more than rounding.
 void RecordedFlow::mix() {
-  for (std::vector<double>& values : values_) {
+  for (std::size_t s = 0; s < values_.size(); ++s) {
+    std::vector<double>& values = values_[s];
+    const double before = amount(s);
     for (std::size_t b = 0; b < cells(); ++b) {
       double sum = 0;
       for (std::size_t k = first_[b]; k < first_[b + 1]; ++k) sum += share_[k] * values[from_[k]];
       next_[b] = sum;
     }
     values.swap(next_);
+    match(values, volume_, before);
   }
 }
 

@@ -63,6 +63,7 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   void remark_wide_kernel();
   void remark_bodies_that_collide();
   void declare_series();
+  void keep_last_flow();
   void declare_saved();
   bool periodic() const;  // in all directions: the flow has an energy spectrum
   void add_spectrum_rows(std::vector<double>& rows) const;
@@ -75,6 +76,8 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   Flow flow_;
   Plan plan_;
   SeriesTable series_;
+  std::size_t flow_columns_ = 0;   // of them, the first, those of the flow
+  std::vector<double> last_flow_;  // their values at the last step of the flow, while a record carries
   SnapshotTable snapshot_;
   SavedNumbers saved_{"scalars"};
   struct {

@@ -59,8 +59,11 @@ class RecordedFlow {
  private:
   static constexpr double slack = 1e-9;  // of sums of steps that shall fill a lag
 
+  std::size_t cell_at(const Vec3& place) const;
   std::size_t cell_of(std::size_t particle) const;
+  double amount(std::size_t scalar) const;
   Vec3 centre(std::size_t cell) const;
+  double distance_between(const Vec3& a, const Vec3& b) const;
   void mark();
   void count();
   void record_supply(double dt, const oxygen::Supply* bubbles);
