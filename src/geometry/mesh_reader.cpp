@@ -58,7 +58,10 @@ std::string printable(const std::string& text) {
   return text.size() > longest ? line + "..." : line;
 }
 
-// What says that a file was cut off: the reader of assimp takes what is there.
+constexpr const char* save_again = "; save or copy it again";
+
+// What says that a file was cut off, or holds more than it says: the reader of assimp takes what is there, or tells
+// neither what it found nor what it expected.
 void check_binary_stl(const std::string& path, std::uintmax_t size) {
   std::ifstream in(path, std::ios::binary);
   char head[84] = {};
@@ -67,9 +70,10 @@ void check_binary_stl(const std::string& path, std::uintmax_t size) {
   std::uint32_t count = 0;
   std::memcpy(&count, head + 80, sizeof count);
   const std::uintmax_t wanted = 84 + 50 * static_cast<std::uintmax_t>(count);
-  if (size < wanted)
-    throw InputError("the mesh '" + path + "' is damaged: " + std::to_string(count) + " triangles need " +
-                     std::to_string(wanted) + " bytes, found " + std::to_string(size));
+  if (size != wanted)
+    throw InputError("the mesh '" + path + "' is damaged: the " + std::to_string(count) +
+                     " triangles that it counts need " + std::to_string(wanted) + " bytes, found " +
+                     std::to_string(size) + save_again);
 }
 
 // A polygon in space is cut as seen along its normal, so that hollow corners stay hollow. One that cannot be cut, for
@@ -98,7 +102,7 @@ void append(const PolygonMesh& mesh, const std::string& path, TriangleSurface& s
     for (const double x : p)
       if (!std::isfinite(x))
         throw InputError("the mesh '" + path + "' is damaged: point " + std::to_string(surface.points.size()) +
-                         " is not finite");
+                         " is not finite" + save_again);
   }
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
     const std::vector<std::uint32_t>& face = mesh.faces[i];
@@ -143,7 +147,7 @@ std::vector<PolygonMesh> read_with_assimp(const std::string& path, const std::st
   keep_only(importer, extension);
   const aiScene* scene = importer.ReadFile(path, 0);
   if (scene == nullptr)
-    throw InputError("the mesh '" + path + "' cannot be read: " + printable(importer.GetErrorString()));
+    throw InputError("the mesh '" + path + "' cannot be read: " + printable(importer.GetErrorString()) + save_again);
   std::vector<PolygonMesh> meshes;
   std::size_t points = 0, faces = 0;
   for (unsigned i = 0; i < scene->mNumMeshes; ++i) {

@@ -12,7 +12,16 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-void split(const Corners& c, double longest, std::vector<Corners>& out) {
+bool apart(const Corners& c, const Bounds& window) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto [low, high] = std::minmax({c[0][axis], c[1][axis], c[2][axis]});
+    if (low > window.upper[axis] || high < window.lower[axis]) return true;
+  }
+  return false;
+}
+
+// What lies apart from the window stays whole: a hull in mm around a tank in m would be cut into 1e9 pieces.
+void split(const Corners& c, double longest, const Bounds& window, std::vector<Corners>& out) {
   std::size_t edge = 0;
   double size = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -22,13 +31,13 @@ void split(const Corners& c, double longest, std::vector<Corners>& out) {
       edge = k;
     }
   }
-  if (size <= longest) {
+  if (size <= longest || apart(c, window)) {
     out.push_back(c);
     return;
   }
   const Vec3 a = c[edge], b = c[(edge + 1) % 3], far = c[(edge + 2) % 3], middle = multiply(0.5, add(a, b));
-  split({a, middle, far}, longest, out);
-  split({middle, b, far}, longest, out);
+  split({a, middle, far}, longest, window, out);
+  split({middle, b, far}, longest, window, out);
 }
 
 }  // namespace
@@ -46,11 +55,18 @@ std::vector<SurfacePiece> surface_pieces(const Domain& domain, const Body& body,
   const TriangleSurface surface = body.shape->surface(window, 0.5 * spacing);
   std::vector<SurfacePiece> found;
   if (domain.dimensions == 3) {
+    // Beyond the domain by its own size nothing is ever wet. Nearer pieces make up the volume of a body half outside.
+    Bounds near = window;
+    const double beyond = length(subtract(window.upper, window.lower));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      near.lower[axis] -= beyond;
+      near.upper[axis] += beyond;
+    }
     std::vector<Corners> pieces;
     for (const auto& triangle : surface.triangles) {
       Corners corners{};
       for (std::size_t k = 0; k < 3; ++k) corners[k] = surface.points[static_cast<std::size_t>(triangle[k])];
-      split(corners, spacing, pieces);
+      split(corners, spacing, near, pieces);
     }
     for (const Corners& c : pieces)
       found.push_back({c, multiply(1.0 / 3, add(c[0], add(c[1], c[2]))),

@@ -28,9 +28,9 @@ struct ShellPoint {
 
 // Sites of the lattice per point, along each axis.
 constexpr std::size_t finer_2d = 3, finer_3d = 2;
-// A site counts in a shell with the part of its cell that lies in it, by the mean width of a square or a cube. Shells
-// of a ring of ten spacings then have their volume to 0.2 %, in place of 1 to 6 % with sites as points, of which a pipe
-// on a symmetry of the lattice has 5.7 % too many in the first shell: its liquid was held back by that much.
+// The volume of a shell is that of the parts of cells that lie in it, by the mean width of a square or a cube: of a
+// ring of ten spacings to 0.2 %, in place of 1 to 6 % by the number of its sites, of which a pipe on a symmetry of the
+// lattice has 5.7 % too many in the first shell: its liquid was held back by that much.
 constexpr double mean_width_2d = 4 / std::numbers::pi, mean_width_3d = 1.5;
 
 // Bits of a, b and c in turns: numbers along a curve whose pieces are compact.
@@ -87,11 +87,12 @@ std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domai
   const double width = (d == 3 ? mean_width_3d : mean_width_2d) * std::pow(cell, 1.0 / d);
   struct Site {
     int shell = 0;  // from -layers to layers - 1
-    double share = 0;
     std::uint64_t code = 0;
     Vec3 place{};
   };
+  const auto shells = static_cast<std::size_t>(2 * layers);
   std::vector<std::vector<Site>> rows(lattice.count[1] * lattice.count[2]);
+  std::vector<std::vector<double>> parts(rows.size(), std::vector<double>(shells, 0.0));  // of cells, by row and shell
   parallel_blocks_dynamic(rows.size(), 1, [&](std::size_t row, std::size_t, std::size_t) {
     for (std::size_t i = 0; i < lattice.count[0];) {
       const std::size_t j = row % lattice.count[1], k = row / lattice.count[1];
@@ -106,8 +107,9 @@ std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domai
       const auto below = [&](double bound) { return std::clamp(0.5 + (bound - distance) / width, 0.0, 1.0); };
       const double first = std::max(-layers, std::floor((distance - width / 2) / spacing));
       for (double shell = first; shell < layers && shell * spacing < distance + width / 2; ++shell)
-        if (const double share = below((shell + 1) * spacing) - below(shell * spacing); share > 0)
-          rows[row].push_back({static_cast<int>(shell), share, interleave(i, j, k), place});
+        parts[row][static_cast<std::size_t>(shell + layers)] += below((shell + 1) * spacing) - below(shell * spacing);
+      const double own = std::floor(distance / spacing);
+      if (own >= -layers && own < layers) rows[row].push_back({static_cast<int>(own), interleave(i, j, k), place});
       ++i;
     }
   });
@@ -115,13 +117,22 @@ std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domai
   for (const auto& row : rows) sites.insert(sites.end(), row.begin(), row.end());
   std::sort(sites.begin(), sites.end(),
             [](const Site& a, const Site& b) { return a.shell == b.shell ? a.code < b.code : a.shell < b.shell; });
+  std::vector<double> cells(shells, 0.0), of_site(shells, 0.0);
+  for (const auto& row : parts)
+    for (std::size_t k = 0; k < shells; ++k) cells[k] += row[k];
+  for (const Site& site : sites) ++of_site[static_cast<std::size_t>(site.shell + static_cast<int>(layers))];
+  // Points per site. A shell that its sites count to a point, as those of a box do, keeps what they count: lattices
+  // then stay lattices.
+  const double of_cell = cell / std::pow(spacing, d);
+  for (std::size_t k = 0; k < shells; ++k)
+    of_site[k] =
+        of_site[k] > 0 && std::abs(cells[k] - of_site[k]) * of_cell >= 1 ? of_cell * cells[k] / of_site[k] : of_cell;
   // Of each shell one of as many sites as a point has volume of.
-  const double of_point = cell / std::pow(spacing, d);
   std::vector<ShellPoint> points;
   double counted = 0.5;
   for (std::size_t s = 0; s < sites.size(); ++s) {
     if (s > 0 && sites[s].shell != sites[s - 1].shell) counted = 0.5;
-    counted += of_point * sites[s].share;
+    counted += of_site[static_cast<std::size_t>(sites[s].shell + static_cast<int>(layers))];
     if (counted < 1) continue;
     counted -= 1;
     points.push_back({sites[s].place, (sites[s].shell + 0.5) * spacing});

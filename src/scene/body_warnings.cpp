@@ -117,6 +117,12 @@ std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const
            "; if its lengths are in another unit, set scale, 0.001 from mm to m");
       continue;
     }
+    if (size < scene.spacing && body.wall != BoundaryKind::open) {
+      warn("is " + brief(size) + " long, less than a spacing, " + brief(scene.spacing) +
+           ": the liquid does not feel it; if its lengths are in another unit, set scale, 1000 from km to m, or lower "
+           "resolution.spacing");
+      continue;
+    }
     const bool released = body.motion && scene.motions[*body.motion].release;
     if (released) continue;  // it waits outside
     if (apart(bounds, domain, dimensions)) {

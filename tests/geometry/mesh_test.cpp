@@ -275,7 +275,10 @@ TEST(Mesh, FilesThatAreNoMeshAreRefusedWithTheReason) {
   write_contents(folder / "hull.step", "ISO");
   EXPECT_THAT(refusal_of(folder / "hull.step"), HasSubstr("must be a .stl, .obj or .ply file"));
   write_contents(folder / "cut.stl", binary_stl(box).substr(0, 300));
-  EXPECT_THAT(refusal_of(folder / "cut.stl"), HasSubstr("12 triangles need 684 bytes, found 300"));
+  EXPECT_THAT(refusal_of(folder / "cut.stl"),
+              HasSubstr("12 triangles that it counts need 684 bytes, found 300; save or copy it again"));
+  write_contents(folder / "longer.stl", binary_stl(box) + std::string(50, ' '));
+  EXPECT_THAT(refusal_of(folder / "longer.stl"), HasSubstr("12 triangles that it counts need 684 bytes, found 734"));
   write_contents(folder / "ply.stl", ply(box));
   EXPECT_NE(refusal_of(folder / "ply.stl"), "");
   write_contents(folder / "points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");

@@ -12,6 +12,7 @@
 #include "particles/walled.hpp"
 #include "spume/operators/pressure_operator.hpp"
 #include "spume/operators/sph_operators.hpp"
+#include "spume/particles/surface_pieces.hpp"
 
 namespace spume::test {
 namespace {
@@ -52,6 +53,27 @@ TEST(WallPoints, StandInLayersOfAsManyAsTheyHaveVolumeFor) {
           EXPECT_GT(length(subtract(a.position, b.position)), 0.6 * step);
         }
   }
+}
+
+// A hull in mm around a tank in m: facets a thousand times the domain are cut where they are near it alone.
+TEST(SurfacePieces, FarFromTheDomainStayWhole) {
+  const double spacing = 0.1;
+  const LoadedCase loaded =
+      load_text(scene_text(cube, spacing,
+                           "[[body]]\nshape = \"box\"\nsize = [2000, 2000, 2000]\nposition = [0, 0, -1000.4]\n"
+                           "wall = \"no-slip\"\n"));
+  const std::vector<SurfacePiece> pieces = surface_pieces(loaded.scene.domain, loaded.scene.bodies[0], spacing);
+  // The domain and its diagonal on either side: 5.4 wide, in pieces of at least an eighth of spacing^2 each, and those
+  // that the cuts on the way to it leave.
+  EXPECT_LT(pieces.size(), 30000U);
+  double area = 0, above = 0;
+  for (const SurfacePiece& piece : pieces) {
+    area += length(piece.area);
+    above +=
+        piece.area[2] > 0 && std::abs(piece.middle[0]) < 0.6 && std::abs(piece.middle[1]) < 0.6 ? piece.area[2] : 0;
+  }
+  EXPECT_NEAR(above, 1.44, 0.15);
+  EXPECT_NEAR(area, 6 * 2000.0 * 2000, 1e-6 * 6 * 2000 * 2000);
 }
 
 TEST(BodyWalls, MirrorValuesAsFitsOverAllParticlesDo) {

@@ -236,6 +236,8 @@ TEST(Bodies, SuspiciousBodiesAreWarnedOf) {
   EXPECT_THAT(
       warnings(start + "shape = \"ball\"\nradius = 2000\nposition = [0, -2000.5]\n"),
       Contains(AllOf(HasSubstr("the body 'it' is 4000 long, 2000 times the domain of 2"), HasSubstr("set scale"))));
+  EXPECT_THAT(warnings(start + "shape = \"ball\"\nradius = 0.002\n"),
+              Contains(AllOf(HasSubstr("the body 'it' is 0.004 long, less than a spacing, "), HasSubstr("set scale"))));
   EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.04, 1]\n"),
               Contains(HasSubstr("the body 'it' is thinner than a spacing, 0.05, behind 96 % of its surface")));
   EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.05, 1]\n"),
