@@ -213,6 +213,27 @@ TEST(LesSphOpenings, APatchOfAWallFillsATank) {
   EXPECT_LT(series["max_speed"], 0.8);
 }
 
+// Liquid on its way out of a part of a side is neither lost nor out yet.
+TEST(LesSphOpenings, ASlotInAWallDrainsATank) {
+  Simulation run(
+      "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [0.53, 0.5]\nleft = \"free-slip\"\nright = "
+      "\"free-slip\"\nbottom = \"free-slip\"\n[resolution]\nspacing = 0.02\n[fluid]\ndensity = 1\nviscosity = "
+      "1e-3\ngravity = 9.81\n[[liquid]]\nwhere = \"0.4 - y\"\n[[outflow]]\nside = \"right\"\nlower = [0.53, "
+      "0]\nupper = [0.53, 0.1]\n[time]\nend = 2\n");
+  const double start = run.series()["mass"];
+  double farthest = 0;
+  while (run.method.time() < 0.3) {
+    run.steps(1, run.method.step_limit().dt);
+    auto series = run.series();
+    ASSERT_NEAR(series["mass"], start - series["volume_out"], 1e-12) << run.method.time();
+    const les_sph::Flow& flow = run.method.flow();
+    for (std::size_t i = 0; i < flow.size(); ++i)
+      farthest = std::max(farthest, (*flow.particles.position[0])[i] - 0.53);
+  }
+  EXPECT_GT(farthest, 0);
+  EXPECT_GT(run.series()["volume_out"], 0.01);
+}
+
 TEST(LesSphOpenings, ARiverKeepsItsLevel) {
   Simulation run(river, {"fluid.mach=0.05"});
   run_until(run, 1.5);

@@ -156,7 +156,9 @@ class ReadingResults(unittest.TestCase):
 
     def test_brackets_hold_units_and_nothing_else(self):
         notes = {"t": "time", "kinetic_energy": "rho u^2 / 2, integral", "retries": "steps refused so far", "mass": "mass, of the particles",
-                 "momentum_x": "mass times speed", "max_divergence": "of the predicted velocity, 1 / time", "step": "1"}
+                 "momentum_x": "mass times speed", "max_divergence": "of the predicted velocity, 1 / time", "step": "1",
+                 "kla": "1/time: k_L A of bubbles and surface over the volume", "oxygen_left": "g, with bubbles that burst, since the start",
+                 "sotr": "g/time: standard transfer rate", "amount_of_dye": "g/m3 times length^2", "sweeps": "1, into which"}
         write_table(self.folder / "series.csv", {"t": [0.0], **{name: [0.0] for name in notes if name != "t"}}, notes)
         write_case(self.folder, "A title", [0, 0], [1, 1], 0.5)
         labels = {name: Results(self.folder).series.label(name) for name in notes}
@@ -166,7 +168,7 @@ class ReadingResults(unittest.TestCase):
         series = Results(self.folder).series
         self.assertEqual([series.label(name) for name in notes],
                          ["t [s]", "kinetic energy [J/m]", "retries", "mass [kg/m]", "momentum x [kg/s]",
-                          "max divergence [1/s]", "step"])
+                          "max divergence [1/s]", "step", "kla [1/s]", "oxygen left [g]", "sotr [g/s]", "amount of dye [g/m]", "sweeps"])
 
     def test_line_of_a_time(self):
         write_table(self.folder / "lines.csv", {"t": [0, 0, 1, 1], "name": ["a", "a", "a", "b"], "s": [0, 1, 0, 9.0]})

@@ -139,15 +139,26 @@ double Flow::weight_at_start() const {
   return particle_mass() * weight;
 }
 
+// A wall holds particles back; what stands a hair beyond one, as it moves, has not left. Behind openings liquid goes
+// on.
 double Flow::mass_in_domain() const {
   const int up = dimensions - 1;
+  std::array<std::array<double, 2>, 3> bounds = boundary.walls;
+  for (int axis = 0; axis < dimensions; ++axis)
+    for (int end = 0; end < 2; ++end) {
+      const bool opens = std::any_of(scene.openings.begin(), scene.openings.end(),
+                                     [&](const Opening& o) { return o.axis == axis && o.side == end; });
+      if (opens)
+        bounds[axis][end] = end == 0 ? -infinite : infinite;
+      else if (scene.domain.sides[axis][end].bounds_liquid())
+        bounds[axis][end] += (end == 0 ? -1 : 1) * scene.spacing;
+    }
   const bool falls_back = scene.fluid.gravity[up] < 0 && scene.domain.sides[up][1].kind == BoundaryKind::open;
   const double inside = parallel_sum(size(), [&](std::size_t i) {
     for (int axis = 0; axis < dimensions; ++axis) {
-      if (scene.domain.sides[axis][0].opening || scene.domain.sides[axis][1].opening) continue;
       const double x = (*particles.position[axis])[i];
-      const double upper = axis == up && falls_back ? std::numeric_limits<double>::max() : boundary.walls[axis][1];
-      if (!(x >= boundary.walls[axis][0] && x <= upper)) return 0.0;
+      const double upper = axis == up && falls_back ? infinite : bounds[axis][1];
+      if (!(x >= bounds[axis][0] && x <= upper)) return 0.0;
     }
     return 1.0;
   });

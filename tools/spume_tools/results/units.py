@@ -4,7 +4,9 @@ import re
 
 # By the dimension that a table names above its header, or that begins its note.
 OF_DIMENSION = {"time": "s", "length": "m", "speed": "m/s", "velocity": "m/s", "pressure": "Pa", "area": "m²",
-                "length^3": "m³", "mass": "kg", "mass times speed": "kg m/s", "1/length": "1/m", "u'": "m/s",
+                "length^2": "m²", "length^3": "m³", "1/time": "1/s", "g/time": "g/s", "g/m3": "g/m³", "g/m3/h": "g/m³/h",
+                "g/m3 times length^3": "g", "g/m3 times length^2": "g/m",
+                "mass": "kg", "mass times speed": "kg m/s", "1/length": "1/m", "u'": "m/s",
                 "of the predicted velocity": "1/s", "velocity^2 length": "m³/s²", "speed at the start of the step": "m/s",
                 "speed relative to the resolved liquid": "m/s"}
 # By the name of a column, where the note is a formula; and of the fields of snapshots.
@@ -38,7 +40,10 @@ def unit_of(name, note, si=False, dimensions=3):
         return None if note == "1" else note
     if not si:
         return None
-    symbol = OF_DIMENSION.get(note) or OF_NAME.get(name) or OF_DIMENSION.get(note.split(",")[0])
+    head = re.split("[,:]", note)[0]  # what follows says what is counted
+    symbol = OF_DIMENSION.get(note) or OF_NAME.get(name) or OF_DIMENSION.get(head)
+    if symbol is None and head != note and SYMBOL.fullmatch(head) and head != "1":
+        symbol = head
     return PER_METRE.get(symbol, symbol) if dimensions == 2 else symbol
 
 
