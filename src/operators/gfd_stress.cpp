@@ -18,6 +18,24 @@ template <MomentumDiffusion form>
 inline constexpr bool takes_gradient =
     form == MomentumDiffusion::split || form == MomentumDiffusion::printed || pairwise_gradient<form>;
 
+// The inverse of sum mu_ij W d (x) d is the result times `inverse`.
+template <int dimensions>
+float weighted_correction(const std::array<f32n, symmetric_entries<dimensions>>& sums, std::array<double, 6>& inverse) {
+  std::array<double, 6> moment{};
+  for (std::size_t k = 0; k < sums.size(); ++k) moment[k] = simd::sum(sums[k]);
+  return static_cast<float>(normalised_inverse<dimensions>(moment, inverse).scale);
+}
+
+template <int dimensions>
+std::array<float, dimensions> weighted_product(const std::array<double, 6>& inverse, float scale,
+                                               const std::array<float, dimensions>& v) {
+  std::array<float, dimensions> result{};
+  for (int a = 0; a < dimensions; ++a)
+    for (int c = 0; c < dimensions; ++c)
+      result[a] += scale * static_cast<float>(inverse[symmetric_index<dimensions>(a, c)]) * v[c];
+  return result;
+}
+
 // Particle i, whose records hold u and, where a form takes means, mu after it.
 template <int dimensions, class Kernel, int payload, MomentumDiffusion form>
 void stress_row(const SweepContext& context, const float* records, std::size_t i, const GfdStencils& stencils,
@@ -28,13 +46,22 @@ void stress_row(const SweepContext& context, const float* records, std::size_t i
   std::array<f32n, dimensions> sum{};
   [[maybe_unused]] std::array<f32n, dimensions> means{};  // sum mu_ij d W (1 + d . o)
   std::array<std::array<f32n, dimensions>, dimensions> m{};
+  [[maybe_unused]] std::array<f32n, symmetric_entries<dimensions>> moment{};  // sum mu_ij W d (x) d
   for_each_batch<dimensions, payload>(*context.list, records, i, inverse_width(context), [&](const auto& b) {
-    const f32n w = Kernel::w(b.q);
+    f32n w = Kernel::w(b.q);
     f32n weight = w * offset_factor(b, o);
-    if constexpr (takes_means<form>) weight = weight * harmonic_mean(own_viscosity, b.payload[dimensions]);
+    if constexpr (takes_means<form>) {
+      const f32n mean = harmonic_mean(own_viscosity, b.payload[dimensions]);
+      weight = weight * mean;
+      if constexpr (pairwise_gradient<form>) w = w * mean;
+    }
     std::array<f32n, dimensions> wd;
     if constexpr (takes_gradient<form>)
       for (int c = 0; c < dimensions; ++c) wd[c] = w * b.d[c];
+    if constexpr (pairwise_gradient<form>)
+      for (int c = 0; c < dimensions; ++c)
+        for (int e = c; e < dimensions; ++e)
+          moment[symmetric_index<dimensions>(c, e)] = moment[symmetric_index<dimensions>(c, e)] + wd[c] * b.d[e];
     if constexpr (pairwise_gradient<form>)
       for (int c = 0; c < dimensions; ++c) means[c] = means[c] + weight * b.d[c];
     for (int a = 0; a < dimensions; ++a) {
@@ -50,6 +77,9 @@ void stress_row(const SweepContext& context, const float* records, std::size_t i
   std::array<float, dimensions> result;
   for (int a = 0; a < dimensions; ++a) result[a] = factor * simd::sum(sum[a]);
   if constexpr (takes_gradient<form>) {
+    [[maybe_unused]] std::array<double, 6> b_weighted{};  // of the gradient, over its scale
+    [[maybe_unused]] float scale = 1;
+    if constexpr (pairwise_gradient<form>) scale = weighted_correction<dimensions>(moment, b_weighted);
     std::array<float, dimensions> slope;
     if constexpr (pairwise_gradient<form>)
       for (int b = 0; b < dimensions; ++b) slope[b] = factor * simd::sum(means[b]);
@@ -58,7 +88,10 @@ void stress_row(const SweepContext& context, const float* records, std::size_t i
     for (int b = 0; b < dimensions; ++b) {
       std::array<float, dimensions> gradient;  // of u_b
       for (int c = 0; c < dimensions; ++c) gradient[c] = simd::sum(m[b][c]);
-      gradient = symmetric_product<dimensions>(stencils.correction, i, gradient);
+      if constexpr (pairwise_gradient<form>)
+        gradient = weighted_product<dimensions>(b_weighted, scale, gradient);
+      else
+        gradient = symmetric_product<dimensions>(stencils.correction, i, gradient);
       for (int a = 0; a < dimensions; ++a) {
         result[a] += gradient[a] * slope[b];
         if constexpr (form == MomentumDiffusion::printed) result[b] += gradient[a] * slope[a];

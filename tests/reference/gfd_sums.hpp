@@ -177,7 +177,7 @@ class GfdSums {
         return means ? harmonic(double(mu[i]), double(mu[p.source])) / density : double(mu[i]) / density;
       };
       result[a] = laplacian(i, velocity, viscosity, stencil);
-      slope[a] = gradient(i, velocity, one, stencil.correction);
+      slope[a] = varies && pairwise ? weighted_slope(i, velocity, mu) : gradient(i, velocity, one, stencil.correction);
     }
     std::array<Sum, 3> mu_slope{};
     for (int b = 0; b < d_ && gradients && pairwise; ++b) {
@@ -203,6 +203,25 @@ class GfdSums {
         result[a].magnitude += slope[a][b].magnitude * std::abs(viscosity_gradient[b]);
       }
     return result;
+  }
+  // (sum mu_ij W r (x) r)^-1 sum mu_ij (f_i - f_j) W r, and a bound of its rounding: dB = -B dM B on the slope.
+  template <class Scalar>
+  std::array<Sum, 3> weighted_slope(std::size_t i, const AtPoint& value, const Scalar& mu) const {
+    const AtPoint mean = [&](const SphPoint& p) { return harmonic(double(mu[i]), double(mu[p.source])); };
+    const Moments m = moments(i, mean);
+    double trace = 0;
+    for (int a = 0; a < d_; ++a) trace += m.second[a][a].value;
+    if (trace == 0) return {};
+    Matrix b{};
+    if (!inverse(m.second, trace, 6, b))  // that of the operators
+      for (int a = 0; a < d_; ++a) b[a][a] = d_ / trace;
+    auto slope = gradient(i, value, mean, b);
+    const auto exact = slope;
+    for (int a = 0; a < d_; ++a)
+      for (int e = 0; e < d_; ++e)
+        for (int f = 0; f < d_; ++f)
+          slope[a].magnitude += std::abs(b[a][e]) * m.second[e][f].magnitude * std::abs(exact[f].value);
+    return slope;
   }
   // (13), over the density
   template <class Velocity, class Scalar>
