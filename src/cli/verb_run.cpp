@@ -91,6 +91,11 @@ int execute(Simulation& simulation, const RunArguments& arguments, const Program
     ending.words = state == RunState::finished ? "finished" : "interrupted";
     const std::string closing = closing_text(simulation, state);
     simulation.log(closing);
+    // Without the notes of the run, what went wrong in it is told all the same.
+    for (const Verdict& one : simulation.verdicts())
+      if (quiet && !one.pass())
+        std::fprintf(stderr, "verdict failed: %s = %s, bound %s\n", one.quantity.c_str(),
+                     short_number(one.value).c_str(), short_number(one.bound).c_str());
     if (!quiet)
       std::printf("\n%s\n%sresults in %s\n", ledger_table(simulation.ledger(), simulation.wall_seconds()).c_str(),
                   closing.c_str(), simulation.folder().c_str());

@@ -84,6 +84,14 @@ TEST_F(Verbs, RunPrintsTablesAndNumbersItsFolders) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "runs" / (name + "-2") / "summary.json"));
 }
 
+TEST_F(Verbs, AQuietRunTellsFailedVerdictsAllTheSame) {
+  write_case("end = 1.0\nlargest_dt = 0.004\ndt = 0.01\n");
+  const Outcome run = spume({"run", "case.toml", "--quiet"});
+  EXPECT_EQ(run.code, 0);
+  EXPECT_EQ(run.out, "");
+  EXPECT_THAT(run.err, HasSubstr("verdict failed: refused_steps = "));
+}
+
 TEST_F(Verbs, BadCommandLinesAndCasesExitWith2AndCreateNothing) {
   write_case("end = 0.2\n");
   test::write_contents(folder_ / "bad.toml", "title = \"no end\"\n");

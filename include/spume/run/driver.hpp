@@ -119,13 +119,13 @@ class Simulation {
   double wall_seconds() const;       // since run() began
   std::string continuation() const;  // from where the run can be continued, in words
   double particle_steps() const { return particle_steps_; }
+  std::vector<Verdict> verdicts() const;
 
  private:
   using Clock = std::chrono::steady_clock;
   Simulation(std::unique_ptr<LoadedCase> loaded, std::unique_ptr<Method> method, RunFolder folder);
 
   void tell_warnings(Observer& observer);
-  std::vector<Verdict> verdicts() const;
   void tell_failed_verdicts(Observer& observer);
   void record_start();
   void advance(Observer& observer);                        // one step, and what is due after it
