@@ -64,6 +64,29 @@ class Weir(CaseTest):
             self.assertAlmostEqual(module.discharge(head, height), q, places=6)
 
 
+class DamBreakWedge(CaseTest):
+    def errors(self, late=0.0, higher=0.0):
+        folder, module = self.run_of("dam_break_wedge")
+        t = np.linspace(0, 17, 1701)
+        depth = np.interp(t - late, module.REFERENCE["t"], module.REFERENCE["depth"], left=0.0) * (1 + higher)
+        write_table(folder / "probes.csv", {"t": t, "gauge": np.where(t < 1.2, np.nan, depth)})
+        return module.measure({"standard": Results(folder)}), module
+
+    def test_the_experiment_has_no_error_and_a_later_or_deeper_one_has_it(self):
+        measured, module = self.errors()
+        # Rows are 0.01 s apart, and the bore stands upright.
+        self.assertAlmostEqual(measured["bore_time_error"], 0, delta=0.01 / 13.9)
+        # Means over 0.4 s of points of 0.01 m.
+        self.assertAlmostEqual(measured["stream_depth_error"], 0, places=2)
+        self.assertAlmostEqual(measured["largest_depth_error"], 0, places=2)
+        measured, _ = self.errors(late=0.5)
+        own = module.passes(module.REFERENCE["t"], module.REFERENCE["depth"])
+        self.assertAlmostEqual(measured["bore_time_error"], 0.5 / own, delta=0.01 / 13.9)
+        measured, _ = self.errors(higher=0.1)
+        self.assertAlmostEqual(measured["stream_depth_error"], 0.1, places=2)
+        self.assertAlmostEqual(measured["largest_depth_error"], 0.1, places=2)
+
+
 class CentralForceDrop(CaseTest):
     def errors(self, stretch=0.0, gain=0.0, strain=0.5):
         folder, module = self.run_of("central_force_drop")
