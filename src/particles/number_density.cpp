@@ -130,7 +130,9 @@ double even_out_density(const DensityRelaxation& relaxation, const Arrangement& 
     if (!read.tells_density(i)) return;
     const double own = read.excess(i);
     const double rate = own < 0 ? closing * std::max(1.0, -own / thin_as_void) : expanding;
-    divergence[i] -= expanding * of_all + std::min(rate, 1 / relaxation.dt) * (own - within(own, local_disorder));
+    const double taken = relaxation.still == nullptr ? 1.0 : 1.0 - double{(*relaxation.still)[i]};
+    divergence[i] -=
+        taken * (expanding * of_all + std::min(rate, 1 / relaxation.dt) * (own - within(own, local_disorder)));
   });
   return total.volume;
 }

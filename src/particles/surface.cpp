@@ -59,6 +59,11 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, Momen
     const bool sparse = boundary.bodies() != nullptr && continued_.is_sparse(i);
     pressure_fixed[i] = at_surface[i] != 0 && (moments.uncorrected[i] != 0 || sparse) ? 1 : 0;
     interior_weight[i] = options_.interior(divergence_of_position[i]);
+    if (is_covered(i)) {
+      at_surface[i] = pressure_fixed[i] = 0;
+      interior_weight[i] = 1;
+      return;
+    }
     // Where the liquid continues into a body, what a surface particle lacks is no gap before it.
     const bool continued = at_surface[i] != 0 && boundary.bodies() != nullptr && continues_into_body(i);
     if (!obstacles || !is_near(moments, i) || divergence_of_position[i] < least || continued ||
@@ -211,9 +216,11 @@ void FreeSurface::find_rise(const Arrangement& arrangement, const MomentFields& 
   });
 }
 
-// Of liquid that the acceleration `inwards` presses against what lies below.
-double FreeSurface::pressure_of_depth(std::size_t k, double inwards) const {
-  return depth[k] * inwards + rise[k] * std::abs(inwards);
+// Of liquid that the acceleration presses along `inwards`, of any length, against what lies below.
+double FreeSurface::pressure_of_depth(std::size_t k, const Vec3& acceleration, const Vec3& inwards) const {
+  const double pressing = dot(acceleration, inwards) / length(inwards);
+  const double lifted = lift_of(static_cast<std::size_t>(near_surface[k]));
+  return depth[k] * pressing + rise[k] * std::abs(pressing) + lifted * length(acceleration);
 }
 
 SurfaceRow FreeSurface::row(const MomentFields& moments, const ParticleSizes& sizes,
@@ -229,7 +236,7 @@ SurfaceRow FreeSurface::row(const MomentFields& moments, const ParticleSizes& si
   const double missing = std::max(0.0, full - double{moments.laplacian_diagonal[i]});
   SurfaceRow row;
   row.laplacian_diagonal = outside * std::max(2 * size / s, missing);
-  if (size > 0) row.hydrostatic_pressure = pressure_of_depth(k, dot(acceleration.at(i), m) / size);
+  if (size > 0) row.hydrostatic_pressure = pressure_of_depth(k, acceleration.at(i), m);
   return row;
 }
 
@@ -245,7 +252,7 @@ void FreeSurface::complete_gradient(const MomentFields& moments, const ParticleS
     const double outside = 1 - double{interior_weight[i]};
     const double s = depth[k];
     const double height = potential == nullptr ? 0.0 : (*potential)[i];
-    const double excess = reduced_pressure[i] - height - pressure_of_depth(k, dot(acceleration.at(i), m) / size);
+    const double excess = reduced_pressure[i] - height - pressure_of_depth(k, acceleration.at(i), m);
     // L' by Sherman-Morrison: with v = L m and c = 2 s / |m|, L' x = L x - c v (v . x) / (1 + c m . v).
     Vec3 v{}, gradient{};
     int slot = 0;

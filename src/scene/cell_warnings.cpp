@@ -8,10 +8,10 @@ namespace spume {
 namespace {
 
 // What still water bears, as shares. Of 60 scenes in two dimensions, boxes of random size and place, 14 passed 1e-3
-// sqrt(g H) within 20 sqrt(H / g). All of these have a part of up to `film_layers` layers below a free surface that is
-// more than `most_depth` off, or columns over five layers at most that are stretched by more than `most_stretch`; so
-// have 11 of the others. In three dimensions pillars with cells 5 % off leave 7e-5, 10 % off 0.009, 19 to 48 % off 0.01
-// to 0.5.
+// sqrt(g H) within 20 sqrt(H / g) before liquid at rest was balanced, two since. All of these have a part of up to
+// `film_layers` layers below a free surface that is more than `most_depth` off, or columns over five layers at most
+// that are stretched by more than `most_stretch`; so have 11 of the others. In three dimensions pillars with cells 5 %
+// off leave 7e-5, 10 % off 0.009, 19 to 48 % off 0.01 to 0.5.
 constexpr double most_depth = 0.05, most_width = 0.075, most_stretch = 0.15, film_layers = 4;
 // A spacing with which all cells keep to both is looked for among numbers of three digits, from the one asked for to
 // these shares of it, and among so many columns in all, which take half a second.

@@ -88,7 +88,8 @@ bool ColumnFit::on_lattice(const ColumnPart& part, double area) const {
 }
 
 double ColumnFit::layers(const ColumnPart& part, double area) const {
-  return std::round(depth(part, area));
+  const double exact = depth(part, area);
+  return part.free_above && exact < least_film ? 0 : std::round(exact);
 }
 
 void ColumnFit::heights(const ColumnPart& part, double area, double particle_volume, std::vector<double>& out) const {

@@ -42,6 +42,10 @@ class ColumnFit {
   // Layers that a surface row of the pressure equation sees: those within a support radius of 2.6 spacings, and one.
   static constexpr double upper_layers = 4;
 
+  // Of a layer, of a film over a solid: of half a layer one row of particles, twice as thick as the film, runs off the
+  // solid or lifts from it within a second.
+  static constexpr double least_film = 0.75;
+
   // `solids`: null without.
   ColumnFit(const Lattice& lattice, const SolidUnion* solids) : lattice_(lattice), solids_(solids) {}
 

@@ -75,6 +75,84 @@ TEST(StillWater, StaysStillWhereCellsBetweenFacesAreOfOtherSizes) {
       << "a gap of a fifth of a spacing, 2.5";
 }
 
+// Films over solids of 2.7, 1.6, half a layer, gaps below solids: what the surface rule finds there is off the level by
+// up to six spacings. Speeds over sqrt(g H) with that.
+struct Scattered {
+  const char* boxes;
+  std::string text, spacing;
+};
+std::vector<Scattered> scattered() {
+  return {{"1.0",
+           tank_with(box(0.2063, 0.3366, 0.4758, 0.393) + box(0.8075, 0, 0.8896, 0.1197) +
+                     box(0.4655, 0.2169, 0.7396, 0.2928)),
+           "0.04"},
+          {"0.15",
+           tank_with(box(0.1755, 0, 0.2712, 0.2497) + box(0.5374, 0.2536, 0.7768, 0.3338) +
+                     box(0.8295, 0.0405, 0.9898, 0.2636)),
+           "0.04"},
+          {"1.0, a film of half a layer",
+           tank_with(box(0.3325, 0, 0.5967, 0.2062) + box(0.4599, 0.0652, 0.7108, 0.2103) +
+                     box(0.8143, 0.2221, 0.8997, 0.3798)),
+           "0.04"},
+          {"0.10",
+           tank_with(box(0.1979, 0.09, 0.2554, 0.2708) + box(0.3644, 0.3477, 0.5748, 0.5955) +
+                     box(0.1422, 0.2947, 0.2529, 0.3592)),
+           "0.0333"}};
+}
+
+TEST(StillWater, StaysStillInFilmsAndGapsThatHoldNoWholeNumberOfLayers) {
+  for (const auto& [before, text, spacing] : scattered())
+    EXPECT_LT(largest_speed(text, {"resolution.spacing=" + spacing}), bound) << before;
+}
+
+// An acceleration of 1e-4 g over half of the time would pass the bound of the speed.
+TEST(StillWater, StartsInEquilibriumHoweverItStands) {
+  for (const auto& [before, text, spacing] : scattered())
+    for (const char* sound_speed : {"0", "40"}) {
+      StagedFlow start(text, {"resolution.spacing=" + spacing, std::string("fluid.sound_speed=") + sound_speed});
+      start.start_before("acceptance");
+      double largest = 0;
+      for (std::size_t i = 0; i < start.flow.size(); ++i)
+        largest = std::max(largest, std::sqrt(squared_norm(start.flow.acceleration, 2, i)));
+      EXPECT_LT(largest, 1e-4 * 9.81) << before;
+    }
+}
+
+// A column whose free side stands before a box, and one in motion: neither is at rest, and nothing holds them.
+TEST(StillWater, LiquidThatIsToMoveIsNotHeld) {
+  std::string column = tank_with(box(0.6, 0, 0.8, 0.2));
+  column.replace(column.find("upper = [1, 0.4]"), 16, "upper = [0.52, 0.4]");
+  std::string moving = tank_with(box(0.6, 0, 0.8, 0.23));
+  moving.replace(moving.find("upper = [1, 0.4]"), 16, "upper = [1, 0.4]\nvelocity = [\"0\", \"-0.1\"]");
+  for (const std::string& text : {column, moving}) {
+    StagedFlow start(text);
+    start.start_before("acceptance");
+    for (std::size_t i = 0; i < start.flow.size(); ++i) {
+      ASSERT_EQ((*start.flow.rest.share)[i], 0);
+      ASSERT_EQ((*start.flow.rest.lift)[i], 0);
+    }
+  }
+}
+
+TEST(StillWater, ThatItStartedAtRestIsForgottenOverASpacing) {
+  StagedFlow start(scattered()[1].text);
+  start.start_before("acceptance");
+  les_sph::RestMemory& rest = start.flow.rest;
+  const auto most = std::max_element(rest.lift->begin(), rest.lift->end()) - rest.lift->begin();
+  const auto i = static_cast<std::size_t>(most);
+  const float lift = (*rest.lift)[i];
+  EXPECT_GT(lift, 0.5 * 0.04);
+  EXPECT_TRUE(start.flow.surface->is_covered(i));
+  start.flow.forget_rest(i, 0.01);
+  EXPECT_NEAR((*rest.share)[i], 0.75, 1e-6);
+  start.flow.forget_rest(i, 0.02);
+  EXPECT_NEAR((*rest.share)[i], 0.25, 1e-6);
+  EXPECT_NEAR((*rest.lift)[i], 0.25 * lift, 1e-6 * lift);
+  start.flow.forget_rest(i, 0.02);
+  EXPECT_EQ((*rest.share)[i], 0);
+  EXPECT_EQ((*rest.lift)[i], 0);
+}
+
 // Where all cells are those of the lattice, nothing is moved at the start; where they are not, the liquid below what
 // the surface sees is even, and no particle is drawn into a gap that is too narrow for one.
 TEST(StillWater, ParticlesBelowTheSurfaceStartEvenlyBesideSolids) {

@@ -32,6 +32,7 @@ struct DensityRelaxation {
   double steps = 0;         // pressure.density_relaxation
   double displacement = 0;  // displacement_fraction() of the step
   double dt = 0;
+  const Array<float>* still = nullptr;  // shares of particles that are left alone as they stand; null: 0
 };
 
 // Subtracts from `divergence` that which evens out the number density over N = `pressure.density_relaxation` steps of

@@ -26,6 +26,8 @@
 // continues (particles/continued_liquid.hpp) are those of the surface: taken for others, one beside a round wall sank.
 #pragma once
 
+#include <cmath>
+
 #include "spume/operators/free_box.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/boundary.hpp"
@@ -81,7 +83,13 @@ class FreeSurface {
   Array<std::int32_t> surface_particles;
   Array<std::int32_t> near_surface;  // b < 1 and not of fixed pressure
   Array<float> depth;                // s, of the latter
-  Array<float> rise;                 // of the surface above where depth says, of the latter: find_rise()
+  // How much higher than `depth` says the surface lies over each particle; null: nowhere. A particle that would lie
+  // off it by more than half a spacing has none, whatever it lacks of neighbours. Where the pressure is fixed it is
+  // that of this depth.
+  const Array<float>* lift = nullptr;
+  double lift_of(std::size_t i) const { return lift == nullptr ? 0.0 : double{(*lift)[i]}; }
+  bool is_covered(std::size_t i) const { return std::abs(lift_of(i)) > 0.5 * resolution_.spacing; }
+  Array<float> rise;  // of the surface above where depth says, of the latter: find_rise()
   // Shepard-filtered normals of surface particles. Leased by find() and released by the shift.
   FloatVectorScratch smoothed_normal;
   void release_smoothed_normals(ParticleStore& particles);
@@ -117,7 +125,7 @@ class FreeSurface {
   void continue_into_bodies(const Arrangement& arrangement, MomentFields& moments, const Boundary& boundary,
                             const VectorField& at);
   void pass_over_gaps(const Arrangement& arrangement, const VectorField& at, const Boundary& boundary);
-  double pressure_of_depth(std::size_t k, double inwards) const;
+  double pressure_of_depth(std::size_t k, const Vec3& acceleration, const Vec3& inwards) const;
   Vec3 moment_of(const MomentFields& moments, const ParticleSizes& sizes, std::size_t i) const;
   const Resolution& resolution_;
   Options options_;

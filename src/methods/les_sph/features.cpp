@@ -82,6 +82,10 @@ Features::Features(const LoadedCase& loaded)
   for (int axis = 0; axis < scene.domain.dimensions; ++axis)
     working_forces = working_forces || (scene.domain.periodic(axis) && gravity[axis] != 0);
   potential = body_force || std::any_of(gravity.begin(), gravity.end(), [](double g) { return g != 0; });
+  // Bubbles rearrange the liquid without moving it far.
+  const auto up = static_cast<std::size_t>(scene.domain.dimensions) - 1;
+  starts_at_rest = free_surface && !scene.domain.boxes.empty() && !body_force && !bubbles && gravity[up] < 0 &&
+                   std::count(gravity.begin(), gravity.end(), 0.0) == 2;
 }
 
 }  // namespace spume::les_sph

@@ -72,10 +72,15 @@ Flow::Flow(const LoadedCase& loaded_case)
   strain = &fields.add<float>("strain", Lifetime::result);
   boundary.find_nearest_images = features.bubbles;
   if (features.free_surface && boundary.has_obstacles()) start_columns = std::make_unique<StartColumns>(scene);
+  if (features.starts_at_rest) {
+    rest.share = &fields.add<float>("rest_share", Lifetime::state);
+    rest.lift = &fields.add<float>("rest_lift", Lifetime::state);
+  }
   if (features.free_surface)
     surface = std::make_unique<FreeSurface>(
         resolution, FreeSurface::Options{.interior = interior_weight(dimensions, options.get<SurfaceOptions>()),
                                          .smooth_normals = features.shifting});
+  if (surface != nullptr) surface->lift = rest.lift;
   if (std::any_of(scene.motions.begin(), scene.motions.end(), [](const BodyMotion& motion) { return motion.floats; }))
     floating =
         std::make_unique<FloatingBodies>(scene, resolution, *boundary.bodies(), options.get<SchemeOptions>().centred);

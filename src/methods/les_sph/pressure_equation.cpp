@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
 #include "spume/methods/les_sph/flow.hpp"
 #include "spume/particles/number_density.hpp"
 
@@ -64,9 +65,12 @@ void Flow::centre_divergence(double dt) {
 }
 
 void Flow::relax_density(double dt) {
-  const double taken = even_out_density(
-      {.steps = options.get<PressureOptions>().density_relaxation, .displacement = displacement, .dt = dt}, arrangement,
-      scene.domain, intermediate_position, resolution, moments, surface.get(), divergence);
+  const double taken = even_out_density({.steps = options.get<PressureOptions>().density_relaxation,
+                                         .displacement = displacement,
+                                         .dt = dt,
+                                         .still = rest.share},
+                                        arrangement, scene.domain, intermediate_position, resolution, moments,
+                                        surface.get(), divergence);
   volume = particles.volume * taken;
   particles.scratch().release(moments.kernel_sum);
 }
@@ -241,20 +245,26 @@ void Flow::solve(const char* name) {
 }
 
 void Flow::solve_pressure() {
-  // Starts from the pressure that the particle carries; fixed ones are p = 0.
+  // Starts from the pressure that the particle carries, where it is not fixed.
   const bool warm_start = options.get<PressureOptions>().warm_start;
   parallel_for(size(), [&](std::size_t i) {
     const bool fixed = surface != nullptr && surface->pressure_fixed[i] != 0;
-    const double carried = fixed || !warm_start ? 0.0 : (*pressure)[i] / density();
+    const double carried = fixed ? fixed_pressure(i) : !warm_start ? 0.0 : (*pressure)[i] / density();
     (*reduced_pressure)[i] = carried + potential_of(i);
   });
   solve("the pressure solve");
 }
 
+// 0 but where liquid that started at rest has another depth.
+double Flow::fixed_pressure(std::size_t i) const {
+  if (rest.lift == nullptr || surface->pressure_fixed[i] == 0) return 0;
+  return (*rest.lift)[i] * length(acceleration_in_potential().at(i));
+}
+
 // As exact as `tolerance` asks: no later step makes up for what its residual leaves.
 void Flow::solve_first_pressure() {
   rows.source_norm = 0;
-  parallel_for(size(), [&](std::size_t i) { (*reduced_pressure)[i] = potential_of(i); });
+  parallel_for(size(), [&](std::size_t i) { (*reduced_pressure)[i] = potential_of(i) + fixed_pressure(i); });
   solve("the first pressure solve");
   parallel_for(size(), [&](std::size_t i) { (*pressure)[i] = density() * ((*reduced_pressure)[i] - potential_of(i)); });
   if (acceleration[0] != nullptr) return;  // else the first acceleration reads these

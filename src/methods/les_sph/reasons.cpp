@@ -58,6 +58,8 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_p
   level = !has.free_surface ? "the liquid fills the domain"
           : lattice         ? "no solids: columns are those of the lattice"
                             : "columns beside solids and bodies end on the surface";
+  balance = has.starts_at_rest ? "liquid at rest beside solids is in equilibrium as it stands"
+                               : "no liquid at rest beside solid boxes, or bubbles";
   packing = has.bodies ? "particles beside bodies evened out"
             : lattice  ? "no solids, no walls of bodies"
                        : "where cells between solids are of other sizes";

@@ -47,6 +47,8 @@ Plan make_plan(Flow& f) {
                arrays_of(moments));
   stages.add(both, "surface", has.free_surface, why.surface, &Flow::find_surface,
              {moments.divergence_of_position, moments.uncorrected, moments.normal}, {kept.surface});
+  stages.add(start, "balance", has.starts_at_rest, why.balance, &Flow::balance_rest, {r, p.velocity, kept.surface},
+             {f.rest.share, f.rest.lift});
   stages.add(step, "ripples", has.free_surface && has.potential, why.ripples, &Flow::find_ripples,
              {p.velocity, moments.normal}, {kept.surface});
   // (iii) the shift to r^{n+1}, taken with the last stage

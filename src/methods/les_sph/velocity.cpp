@@ -104,6 +104,12 @@ void Flow::find_advecting_velocity(double dt) {
 void Flow::compute_shift() {
   shift->compute(arrangement, particles, shift_input(options.get<ShiftingOptions>(), largest_shift, displacement),
                  sizes, moments, surface.get(), boundary.reflection());
+  if (rest.share == nullptr) return;
+  // In proportion to the speed the shift would drive what stands unevenly, and so feed any motion: a film of 1.88
+  // layers gained e in 0.07 s from rounding.
+  parallel_for(size(), [&](std::size_t i) {
+    for (int axis = 0; axis < dimensions; ++axis) (*shift->displacement[axis])[i] *= 1 - (*rest.share)[i];
+  });
 }
 
 void Flow::differentiate_velocity() {
@@ -294,7 +300,7 @@ void Flow::project_velocity(double dt) {
   const float* coordinate[3] = {list.coordinate(0), list.coordinate(1), list.coordinate(2)};
   parallel_for(n, [&](std::size_t i) {
     Vec3 gradient = vector_at(gradient_of_q, dimensions, i);
-    if (moments.uncorrected[i] != 0) {
+    if (moments.uncorrected[i] != 0 && !(surface != nullptr && surface->is_covered(i))) {
       // The plain gradient does not reproduce the linear potential: what it misses of it is put back, so that an
       // isolated particle falls with the full acceleration.
       Vec3 seen{};
@@ -370,6 +376,7 @@ void Flow::accept(double dt) {
         }
       }
     }
+    if (rest.share != nullptr) forget_rest(i, dt * length(before));
     Vec3 place = r;
     boundary.apply_walls(boundary.next_walls, place, &ahead);
     boundary.apply_walls(boundary.next_walls, r, &u);

@@ -39,6 +39,7 @@ struct Features : BoundaryFeatures, SoluteFeatures {
   bool sponges = false;             // layers that damp the velocity
   bool closed = false;              // pressure known up to a constant
   bool bubbles = false;
+  bool starts_at_rest = false;  // liquid with a level surface beside solid boxes may
 };
 
 }  // namespace spume::les_sph

@@ -37,6 +37,14 @@ struct StartColumns {
   std::vector<std::int32_t> order;  // identifiers
   std::vector<Column> columns;
   std::size_t regions = 0;
+  std::vector<double> level;         // of the surface of each region, once found
+  std::vector<std::int32_t> region;  // by identifier
+};
+
+// Of liquid that starts at rest beside solids (rest.cpp); null elsewhere.
+struct RestMemory {
+  Array<float>* share = nullptr;  // 1 where a particle still stands as at the start, 0 a spacing of its way later
+  Array<float>* lift = nullptr;   // FreeSurface::lift, times the share
 };
 
 struct Flow {
@@ -57,8 +65,8 @@ struct Flow {
 
   double weight = 0;  // of the liquid where it starts: sizes of gravity and of the body force, integral
 
-  // Until the start has levelled them; null without solids and bodies, and where no surface is free.
-  std::unique_ptr<const StartColumns> start_columns;
+  // Until the start has levelled and balanced them; null without solids and bodies, and where no surface is free.
+  std::unique_ptr<StartColumns> start_columns;
 
   // --- State between steps: saved.
   double time = 0;
@@ -66,6 +74,7 @@ struct Flow {
   bool started = false;     // the first pressure has been found
   ParticleStore particles;  // and the fields of lifetime `state` of closures and bubbles
   Array<double>* pressure = nullptr;
+  RestMemory rest;
   FloatVectorField acceleration{};      // Du/Dt at the end of the last step; null without centring
   VectorField material_acceleration{};  // Du/Dt over the last step, for bubbles: null without
   Boundary boundary;                    // positions and speed of the walls
@@ -164,6 +173,7 @@ struct Flow {
   void find_neighbours(double dt);
   void measure_moments();
   void find_surface();
+  void balance_rest();  // of the start
   void find_ripples(double dt);
   void compute_shift();                 // (iii)
   void differentiate_velocity();        // (v)
@@ -205,6 +215,8 @@ struct Flow {
   std::int64_t transport_scalars(double dt);
   void transfer_oxygen(double dt);  // from bubbles and through the surface, of the same step
 
+  void forget_rest(std::size_t i, double way);  // that particle i has gone in a step
+
   // Of a step dt that starts from the present state; the work of its forces where `dt` is not zero.
   EnergyBalance energy_balance(double dt) const;
   void find_extremes();  // largest speeds and eddy viscosity of the present state
@@ -221,6 +233,7 @@ struct Flow {
   double weight_at_start() const;
   void add_gradient_trace(const std::array<const double*, 3>& velocity, double factor, Array<double>& sum);
   double row_scale(std::size_t i) const;
+  double fixed_pressure(std::size_t i) const;
   void set_weights();
   void set_right_hand_side();
   void solve(const char* name);
