@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Dam break over a triangular sill against the depth at a gauge before it, reference/hiver_gauge4.csv: when the bore that
-the sill sends back passes, how deep the stream is before it and behind it."""
+"""Dam break over a triangular sill: depth at a gauge before it. How deep the stream is before and behind the bore that the
+sill sends back, against reference/hiver_gauge4.csv; when the bore passes, against the shallow-water equations without
+friction, reference/shallow_water.csv: the floor of the flume has some, of the scene none."""
 from pathlib import Path
 
 import numpy as np
 from spume_tools.results import read_reference, standard
 
 REFERENCE = read_reference(Path(__file__).parent / "reference" / "hiver_gauge4.csv", ("t", "depth"))
+LIMIT = read_reference(Path(__file__).parent / "reference" / "shallow_water.csv", ("t", "depth"))
 STREAM = (5.0, 13.0)  # s: the front has passed, the bore has not come
 BORE = (13.0, 15.0)
 LEVEL = 0.38  # m: half way between the depths before the bore and behind it, 0.27 and 0.49
@@ -36,7 +38,8 @@ def measure(runs):
     smooth = np.array([np.mean(depth[np.abs(t - at) < 0.2]) for at in own[stream]])
     behind = depth[(t > BORE[0]) & (t < BORE[1] + 2)]
     return {"bore_time": passes(t, depth),
-            "bore_time_error": passes(t, depth) / passes(own, theirs) - 1,
+            "bore_time_error": passes(t, depth) / passes(LIMIT["t"], LIMIT["depth"]) - 1,
+            "bore_time_from_experiment": passes(t, depth) / passes(own, theirs) - 1,
             "stream_depth_error": float(np.mean(smooth) / np.mean(theirs[stream]) - 1),
             "stream_depth_rms": float(np.sqrt(np.mean((smooth - theirs[stream]) ** 2))),
             "largest_depth_error": float(np.max(np.convolve(behind, np.ones(9) / 9, "valid")) / np.max(theirs) - 1),
@@ -47,4 +50,5 @@ def curves(runs):
     run = standard(runs)
     return [{"file": "gauge", "x": "t [s]", "y": "depth [m]",
              "curves": [(f"Spume, spacing {run.spacing:g}", *measured(run), "-"),
+                        ("shallow water, no friction", LIMIT["t"], LIMIT["depth"], "k--"),
                         ("Hiver (2000)", REFERENCE["t"], REFERENCE["depth"], "ko")]}]
