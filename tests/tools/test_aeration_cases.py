@@ -104,3 +104,37 @@ class RecordedFlow(CaseTest):
         self.assertAlmostEqual(self.measured(factor=1.03)["recorded_error"], 0.03, places=6)
         self.assertAlmostEqual(self.measured(leak=3e-3)["oxygen_balance"], 0.1, places=6)
         self.assertAlmostEqual(self.measured(tilt=0.04)["pattern_error"], 0.04 / 1.1, places=4)
+
+
+class BubbleColumnIn3D(CaseTest):
+    """Gas whose power goes to slip by nine tenths and to dissipation by one; a tracer whose halves even out exponentially."""
+
+    def measured(self, slip=0.9, lost=0.0, until=14.0):
+        folder, module = self.run_of("bubble_column_3d")
+        t = np.linspace(0, until, int(10 * until) + 1)
+        points = lattice((0, 0, 0), (0.18, 0.06, 0.35), 0.01)
+        mass, gas, rate, area = 998 * 0.18 * 0.06 * 0.35, 1e-4, 1.5e-4, 0.18 * 0.06
+        gradient = 998 * 9.81 * 0.35 / (0.35 + gas / area)
+        power = rate * gradient * (0.35 + gas / area - module.INLET)
+        write_table(folder / "series.csv", series_of(
+            t, mass=mass, bubble_volume=gas, bubble_slip=slip * power / gradient / gas, dissipation=0.1 * power,
+            injected_volume=rate * t, burst_volume=rate * t - gas - lost))
+        write_snapshots(folder / "fluid.vtkhdf", [time for time in t if time >= 2], lambda time: points, {
+            "velocity": lambda r, time: np.column_stack([0 * r[:, 0], 0 * r[:, 0], 0.1 * np.cos(2 * np.pi * (r[:, 0] / 0.18 - 0.5))]),
+            "tracer": lambda r, time: 1 + np.exp(-0.3 * (time - 2.1)) * np.sign(r[:, 0] - 0.09)})
+        return module.measure({"standard": Results(folder)})
+
+    def test_known_answers_are_found(self):
+        measured = self.measured()
+        self.assertLess(measured["gas_balance"], 1e-9)
+        self.assertLess(measured["power_error"], 1e-6)
+        self.assertAlmostEqual(measured["share_of_slip"], 0.9, places=6)
+        # The middle one of the nine cells across holds both halves and is even from the start.
+        self.assertAlmostEqual(measured["mixing_time"], np.log(20 * np.sqrt(8 / 9)) / 0.3, delta=0.1)
+        self.assertAlmostEqual(measured["upflow"], 0.1, delta=0.002)
+        self.assertAlmostEqual(measured["downflow"], 0.1, delta=0.005)
+
+    def test_lost_power_and_gas_and_a_tracer_that_is_not_mixed_are_seen(self):
+        self.assertAlmostEqual(self.measured(slip=0.7)["power_error"], 0.2, places=6)
+        self.assertAlmostEqual(self.measured(lost=1e-6)["gas_balance"], 1e-6 / 2.1e-3, places=9)
+        self.assertTrue(np.isnan(self.measured(until=8.0)["mixing_time"]))
