@@ -69,7 +69,7 @@ void pack_velocity(const SweepContext& context, float* records, int width, int s
     const auto& sign = rule.sign[path[k]];
     if (point != nullptr && point[k] >= 0) {
       const auto u = context.walls->velocity(static_cast<std::size_t>(point[k]), dimensions, velocity, rule.friction,
-                                             rule.moving, rule.before_pressure);
+                                             rule.moving, rule.before_pressure, rule.bends);
       for (int axis = 0; axis < dimensions; ++axis) {
         const float value = sign[axis] * static_cast<float>(u[axis]);
         out[(n + k) * w + axis] = moving ? value + rule.offset[axis][k] : value;

@@ -7,7 +7,7 @@ namespace spume {
 
 std::array<double, 3> WallStencils::velocity(std::size_t g, int dimensions,
                                              const std::array<const double*, 3>& velocity, bool friction, bool moving,
-                                             bool before) const {
+                                             bool before, bool bends) const {
   std::array<double, 3> u{}, wall{};
   double across = 0;
   if (!is_wall(g) && moving && kind[g] == PointKind::inflow) {
@@ -25,7 +25,7 @@ std::array<double, 3> WallStencils::velocity(std::size_t g, int dimensions,
     for (int axis = 0; axis < dimensions; ++axis) u[axis] -= 2 * across * normal[axis][g];
     return u;
   }
-  if (bend.empty()) {
+  if (bend.empty() || !bends) {
     for (int axis = 0; axis < dimensions; ++axis) u[axis] = 2 * wall[axis] - u[axis];
     return u;
   }

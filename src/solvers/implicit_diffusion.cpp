@@ -64,6 +64,7 @@ void ImplicitDiffusion::solve(const DiffusionStep& step, ScratchPool& scratch) {
   homogeneous_.sign = step.rule.sign;
   homogeneous_.friction = step.rule.friction;
   homogeneous_.moving = false;
+  homogeneous_.bends = false;
   diagonal_.resize(size);
   gfd_diffusion_diagonal(step.context, step.packed, step.stencils, step.properties, diagonal_.data());
   const auto dt = static_cast<float>(step.dt);

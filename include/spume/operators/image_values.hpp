@@ -20,6 +20,7 @@ struct VelocityImageRule {
   std::array<Array<float>, 3> offset;
   // At wall points of bodies: whether no-slip surfaces hold the liquid, and whether their motion counts.
   bool friction = true, moving = true;
+  bool bends = true;             // velocities go on behind no-slip surfaces as cubics, else odd about them: linear
   bool before_pressure = false;  // the velocities are those that the pressure of the step is to correct
 };
 

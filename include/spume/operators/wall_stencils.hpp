@@ -82,9 +82,9 @@ struct WallStencils {
     return pressure_sign[g] * mirrored(g, values) + (given ? given_pressure[g] : 0.0);
   }
   // u_g; `moving` false leaves the velocity of the surface out, as for accelerations beside a steady wall; `before`
-  // adds what the pressure of the step is to take away.
+  // adds what the pressure of the step is to take away; `bends` false leaves e out, whose bound is not linear.
   std::array<double, 3> velocity(std::size_t g, int dimensions, const std::array<const double*, 3>& velocity,
-                                 bool friction, bool moving, bool before) const;
+                                 bool friction, bool moving, bool before, bool bends = true) const;
   // v_g.
   std::array<double, 3> vector(std::size_t g, int dimensions, const std::array<const float*, 3>& values) const;
 };
