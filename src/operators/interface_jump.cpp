@@ -40,7 +40,8 @@ void interface_jump_sweep(const SweepContext& context, PackedNeighbours& packed,
   with_gfd_kernel(context, [&]<int dimensions, class Kernel>() {
     constexpr int width = record_width(dimensions, 3);
     float* records = packed.prepare(context, 3);
-    pack_coefficient(context, records, width, 0, jump.colour);
+    // At wall points as a pressure is, whose jump it balances.
+    pack_scalar(context, records, width, 0, jump.colour);
     pack_coefficient(context, records, width, 1, jump.potential);
     pack_coefficient(context, records, width, 2, jump.density);
     sweep(bands.varying().size(), [&](std::size_t s) {

@@ -7,6 +7,8 @@
 #include "spume/operators/gfd_gradient.hpp"
 #include "spume/operators/gfd_pressure.hpp"
 #include "spume/operators/gfd_stress.hpp"
+#include "spume/operators/interface_bands.hpp"
+#include "spume/operators/interface_jump.hpp"
 
 namespace spume::test {
 namespace {
@@ -205,6 +207,57 @@ TEST(GfdWalls, SweepsSeeWallPointsAndTheirImages) {
         EXPECT_NEAR(viscous.component[a][i], of_stress[a], rounding * stress_size[a]);
       }
     }
+  }
+}
+
+// Three layers at rest beside a wall of a body moved with 0.1 m/s where wall points had the colour of the nearest
+// particle and the pressure of a fit.
+TEST(GfdWalls, AUniformJumpIsBalancedByThePressureOfTheColour) {
+  for (const Layout& layout : wall_layouts()) {
+    SCOPED_TRACE(layout.name);
+    Walled walled(layout.text);
+    Arrangement& a = walled.arrangement;
+    const int d = walled.particles.dimensions;
+    const std::size_t n = walled.particles.size();
+    std::vector<std::uint8_t> phase(n);
+    Array<float> colour(n), density(n), potential(n);
+    Array<double> pressure(n);
+    potential.fill(3);
+    for (std::size_t i = 0; i < n; ++i) {
+      phase[i] = walled.place(i)[0] + 0.3 * walled.place(i)[1] > 0.02 ? 1 : 0;
+      colour[i] = phase[i];
+      density[i] = static_cast<float>(property(walled.place(i), 90));
+      pressure[i] = 3 * double{colour[i]};
+    }
+    InterfaceBands bands;
+    bands.build(a.context, a.grid, a.table, phase);
+    std::array<Array<float>, 6> correction;
+    Array<float> laplacian_factor(n);
+    Vectors offset(n, d), force(n, d), gradient(n, d);
+    GfdMoments moments;
+    GfdStencils stencils;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(d * (d + 1) / 2); ++k) {
+      correction[k].resize(n);
+      stencils.correction[k] = moments.correction[k] = correction[k].data();
+    }
+    moments.offset = offset.out;
+    stencils.offset = offset.in();
+    stencils.laplacian_factor = moments.laplacian_factor = laplacian_factor.data();
+    gfd_moment_sweep(a.context, a.packed, moments);
+    for (auto& component : force.component) component.fill(0);
+    interface_jump_sweep(a.context, a.packed, bands, {colour.data(), potential.data(), density.data()}, stencils,
+                         {force.out, nullptr});
+    gfd_gradient_over_density_sweep(a.context, a.packed, pressure.data(), 0, {density.data(), bands.varies()},
+                                    stencils.correction, gradient.out);
+    double largest = 0, worst = 0;
+    for (int axis = 0; axis < d; ++axis)
+      for (std::size_t i = 0; i < n; ++i) {
+        largest = std::max<double>(largest, std::abs(gradient.component[axis][i]));
+        worst = std::max<double>(worst, std::abs(force.component[axis][i] - gradient.component[axis][i]));
+      }
+    // Sums of some hundred terms in single precision, which cancel to a tenth of the largest.
+    EXPECT_LT(worst, 1e-4 * largest);
+    EXPECT_GT(largest, 0);
   }
 }
 
