@@ -88,6 +88,28 @@ void Filler::compare_depth(std::size_t r, const ColumnCell& cell) {
   }
 }
 
+// Particles on a lattice share the mass of the region: where layers are no whole number, their sum is off.
+std::vector<Problem> level_warnings(const Scene& scene, const Lattice& lattice,
+                                    const std::vector<LiquidRegion>& regions, const std::string& file) {
+  const std::size_t up = static_cast<std::size_t>(scene.domain.dimensions) - 1;
+  if (!scene.free_surface || !scene.phases.empty() || !(scene.fluid.gravity[up] < 0)) return {};
+  // 0.5 % is the bound of the pressure of still water (cases/hydrostatic); what is lost below is that of curved
+  // surfaces.
+  constexpr double most_off = 0.01;
+  const double off = lattice.volume() / scene.particles.volume - 1;
+  if (std::abs(off) <= most_off) return {};
+  for (const LiquidRegion& region : regions) {
+    if (region.conform || !region.where || region.node == nullptr) continue;
+    return {
+        {file, region.node->place.line, region.node->place.column,
+         region.name + " is no whole number of layers of particles deep: they stand in cells with " +
+             brief(std::round(1000 * std::abs(off)) / 10) + " % " + (off > 0 ? "more" : "less") +
+             " volume than their own, and the level of the liquid and the pressure at its floor are off by about as "
+             "much; add  conform = true,  or choose a spacing that divides its depth"}};
+  }
+  return {};
+}
+
 std::vector<Problem> cell_warnings(Scene& scene, const Lattice& lattice, const std::vector<LiquidRegion>& regions,
                                    const std::string& file) {
   const std::size_t up = static_cast<std::size_t>(scene.domain.dimensions) - 1;

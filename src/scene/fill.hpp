@@ -51,5 +51,8 @@ void fill_scene(Scene& scene, const Lattice& lattice, const std::vector<LiquidRe
 // still water bears, and a spacing near the one asked for with which none do.
 std::vector<Problem> cell_warnings(Scene& scene, const Lattice& lattice, const std::vector<LiquidRegion>& regions,
                                    const std::string& file);
+// The same without solids too: where a region that does not conform is no whole number of layers deep.
+std::vector<Problem> level_warnings(const Scene& scene, const Lattice& lattice,
+                                    const std::vector<LiquidRegion>& regions, const std::string& file);
 
 }  // namespace spume

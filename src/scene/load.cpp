@@ -382,6 +382,8 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
       draft.options.warnings.push_back(std::move(warning));
     for (Problem& warning : cell_warnings(scene, lattice, regions, file))
       draft.options.warnings.push_back(std::move(warning));
+    for (Problem& warning : level_warnings(scene, lattice, regions, file))
+      draft.options.warnings.push_back(std::move(warning));
   }
   for (Problem& warning : wave_warnings(draft, scene, wavemakers, file))
     draft.options.warnings.push_back(std::move(warning));

@@ -353,5 +353,25 @@ TEST(Fill, MoreThanTheMemoryHoldsIsRefusedBeforeAllocation) {
   EXPECT_THAT(grid, ElementsAre(HasSubstr("the grid has 1.34218e+08 points; this machine has memory for")));
 }
 
+// Nine and a half layers under an expression, on ten rows; a level of a whole number, a surface that conforms, and no
+// gravity say nothing.
+TEST(Fill, ALevelBetweenLayersIsTold) {
+  const auto told = [](const std::string& level, const std::string& more = "",
+                       const std::string& group = "froude = 1") {
+    const LoadedCase loaded = test::load_text(
+        "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [2, 2]\nleft = \"free-slip\"\nright = "
+        "\"free-slip\"\nbottom = \"free-slip\"\n[resolution]\nspacing = 0.1\n[time]\nend = 1\n[fluid]\nreynolds = "
+        "100\n" +
+        group + "\n[[liquid]]\nwhere = \"" + level + " - y\"\n" + more);
+    std::string text;
+    for (const Problem& one : loaded.options.warnings) text += one.message("warning");
+    return text;
+  };
+  EXPECT_THAT(told("0.97"), testing::HasSubstr("no whole number of layers of particles deep"));
+  EXPECT_THAT(told("0.97"), testing::HasSubstr("3.1 % more volume"));
+  for (const std::string& text : {told("1"), told("0.97", "conform = true\n"), told("0.97", "", "")})
+    EXPECT_THAT(text, testing::Not(testing::HasSubstr("whole number of layers")));
+}
+
 }  // namespace
 }  // namespace spume
