@@ -30,6 +30,26 @@ struct Vectors {
   std::array<const float*, 3> in() const { return {out[0], out[1], out[2]}; }
 };
 
+// Moments of all particles, as the sweeps read them.
+struct WalledStencils {
+  std::array<Array<float>, 6> correction;
+  Array<float> laplacian_factor;
+  Vectors offset;
+  GfdStencils read;
+  WalledStencils(const SweepContext& context, PackedNeighbours& packed, std::size_t n, int d)
+      : laplacian_factor(n), offset(n, d) {
+    GfdMoments moments;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(d * (d + 1) / 2); ++k) {
+      correction[k].resize(n);
+      read.correction[k] = moments.correction[k] = correction[k].data();
+    }
+    moments.offset = offset.out;
+    read.offset = offset.in();
+    read.laplacian_factor = moments.laplacian_factor = laplacian_factor.data();
+    gfd_moment_sweep(context, packed, moments);
+  }
+};
+
 // The particle nearest to the mirrored place of a wall point, over all particles before its tangent plane and their
 // periodic copies.
 std::size_t nearest_particle(const Walled& walled, const WallPoint& point) {
@@ -83,7 +103,7 @@ TEST(GfdWalls, SweepsSeeWallPointsAndTheirImages) {
     const reference::WallSums densities = of_property(density), viscosities = of_property(viscosity);
 
     Array<double> q(n), zero(n, 0.0), residual(n), divergence(n);
-    Array<float> rho(n), mu(n), laplacian_factor(n), x(n), y(n);
+    Array<float> rho(n), mu(n), x(n), y(n);
     Array<std::uint8_t> varies(n, std::uint8_t{1});
     std::array<Array<double>, 3> velocity;
     for (auto& component : velocity) component.resize(n);
@@ -95,18 +115,9 @@ TEST(GfdWalls, SweepsSeeWallPointsAndTheirImages) {
       for (std::size_t axis = 0; axis < 3; ++axis) velocity[axis][i] = twin.value[i].velocity[axis];
     }
     const std::array<const double*, 3> u{velocity[0].data(), velocity[1].data(), d == 3 ? velocity[2].data() : nullptr};
-    std::array<Array<float>, 6> correction;
-    Vectors offset(n, d), gradient(n, d), viscous(n, d), slope(n, d);
-    GfdMoments moments;
-    GfdStencils stencils;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(d * (d + 1) / 2); ++k) {
-      correction[k].resize(n);
-      stencils.correction[k] = moments.correction[k] = correction[k].data();
-    }
-    moments.offset = offset.out;
-    stencils.offset = offset.in();
-    stencils.laplacian_factor = moments.laplacian_factor = laplacian_factor.data();
-    gfd_moment_sweep(context, packed, moments);
+    Vectors gradient(n, d), viscous(n, d), slope(n, d);
+    const WalledStencils of_all(context, packed, n, d);
+    const GfdStencils& stencils = of_all.read;
     for (int axis = 0; axis < d; ++axis)
       for (std::size_t i = 0; i < n; ++i) slope.component[axis][i] = static_cast<float>(property(walled.place(i), 50));
 
@@ -135,7 +146,7 @@ TEST(GfdWalls, SweepsSeeWallPointsAndTheirImages) {
       });
       const auto b = [&](std::size_t row, std::size_t column) {
         const std::size_t low = std::min(row, column), high = std::max(row, column);
-        return double{correction[low * dims - low * (low + 1) / 2 + high][i]};
+        return double{of_all.correction[low * dims - low * (low + 1) / 2 + high][i]};
       };
       std::array<Vec3, 3> second{}, strain{}, strain_size{};
       Vec3 of_gradient{}, gradient_size{};
@@ -145,7 +156,7 @@ TEST(GfdWalls, SweepsSeeWallPointsAndTheirImages) {
       twin.sum(i, points, carried[0], false, [&](const Vec3& way, double r, const reference::Carried& other) {
         const double w = WendlandC2::w(r / twin.smoothing_length), difference = other.scalar - twin.value[i].scalar;
         double factor = 1;
-        for (std::size_t a = 0; a < dims; ++a) factor += way[a] * offset.component[a][i];
+        for (std::size_t a = 0; a < dims; ++a) factor += way[a] * of_all.offset.component[a][i];
         const double row = w * factor * difference / rho_ij[pair];
         of_laplacian += row;
         laplacian_size +=
@@ -171,7 +182,7 @@ TEST(GfdWalls, SweepsSeeWallPointsAndTheirImages) {
           divergence_size += std::abs(b(a, c)) * strain_size[a][c];
         }
       EXPECT_NEAR(divergence[i], of_divergence, rounding * divergence_size);
-      const double f = laplacian_factor[i];
+      const double f = of_all.laplacian_factor[i];
       EXPECT_NEAR(-residual[i] / context.volume, -f * of_laplacian, rounding * f * laplacian_size);
       EXPECT_NEAR(y[i] / context.volume, -f * of_laplacian, rounding * f * laplacian_size);
       for (std::size_t a = 0; a < dims; ++a) {
@@ -188,7 +199,7 @@ TEST(GfdWalls, SweepsSeeWallPointsAndTheirImages) {
       twin.sum(i, points, carried[1], true, [&](const Vec3& way, double r, const reference::Carried& other) {
         const double w = WendlandC2::w(r / twin.smoothing_length);
         double factor = 1;
-        for (std::size_t a = 0; a < dims; ++a) factor += way[a] * offset.component[a][i];
+        for (std::size_t a = 0; a < dims; ++a) factor += way[a] * of_all.offset.component[a][i];
         for (std::size_t a = 0; a < dims; ++a) {
           const double difference = other.velocity[a] - twin.value[i].velocity[a];
           const double size = std::abs(other.velocity[a]) + std::abs(twin.value[i].velocity[a]);
@@ -231,19 +242,9 @@ TEST(GfdWalls, AUniformJumpIsBalancedByThePressureOfTheColour) {
     }
     InterfaceBands bands;
     bands.build(a.context, a.grid, a.table, phase);
-    std::array<Array<float>, 6> correction;
-    Array<float> laplacian_factor(n);
-    Vectors offset(n, d), force(n, d), gradient(n, d);
-    GfdMoments moments;
-    GfdStencils stencils;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(d * (d + 1) / 2); ++k) {
-      correction[k].resize(n);
-      stencils.correction[k] = moments.correction[k] = correction[k].data();
-    }
-    moments.offset = offset.out;
-    stencils.offset = offset.in();
-    stencils.laplacian_factor = moments.laplacian_factor = laplacian_factor.data();
-    gfd_moment_sweep(a.context, a.packed, moments);
+    Vectors force(n, d), gradient(n, d);
+    const WalledStencils of_all(a.context, a.packed, n, d);
+    const GfdStencils& stencils = of_all.read;
     for (auto& component : force.component) component.fill(0);
     interface_jump_sweep(a.context, a.packed, bands, {colour.data(), potential.data(), density.data()}, stencils,
                          {force.out, nullptr});
