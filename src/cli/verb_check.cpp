@@ -50,8 +50,7 @@ int check_verb(const RunArguments& arguments, const Program& program) {
   const std::string time = time_estimate(loaded, *method);
   // Neighbour lists and scratch arrays have their size only after a step.
   const auto arrays = method->arrays();
-  double bytes = 0;
-  for (const auto& array : arrays) bytes += array.bytes;
+  const double bytes = needed_bytes(loaded, *method, static_cast<double>(peak_resident_bytes()));
   const double memory = machine_memory_bytes();
   std::printf("arrays\n%s\nneeds %s and %s; machine has %s\n",
               array_table(arrays, method->particle_count(), loaded.scene.grid[0] > 0).c_str(),

@@ -45,14 +45,6 @@ std::string boundary_text(const Domain& domain) {
   return text;
 }
 
-// Before the first step a method has not made all of its arrays.
-double needed_bytes(const LoadedCase& loaded, const Method& method) {
-  double bytes = 0;
-  for (const auto& array : method.arrays()) bytes += array.bytes;
-  const auto count = static_cast<double>(method.particle_count());
-  return std::max(bytes, count * loaded.bytes_per_particle);
-}
-
 double finite(double value) {
   return std::isfinite(value) ? value : 0;
 }
@@ -96,6 +88,14 @@ std::int64_t peak_resident_bytes() {
   return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
 }
 
+// Before the first step a method has not made all of its arrays.
+double needed_bytes(const LoadedCase& loaded, const Method& method, double resident) {
+  double made = 0;
+  for (const auto& array : method.arrays()) made += array.bytes;
+  const auto count = static_cast<double>(method.particle_count());
+  return resident + std::max(0.0, count * loaded.bytes_per_particle - made) + method.snapshot_bytes();
+}
+
 std::string start_table(const LoadedCase& loaded, const Method& method, int threads, const std::string& folder) {
   const Case& options = loaded.options;
   const Scene& scene = loaded.scene;
@@ -127,8 +127,9 @@ std::string start_table(const LoadedCase& loaded, const Method& method, int thre
   text += line("on", on.empty() ? "nothing" : on);
   if (!off.empty()) text += line("off", off);
   text += line("threads", std::to_string(threads) + ", " + vector_instructions());
-  text += line("memory",
-               "about " + human_bytes(needed_bytes(loaded, method)) + " of " + human_bytes(machine_memory_bytes()));
+  text +=
+      line("memory", "about " + human_bytes(needed_bytes(loaded, method, static_cast<double>(peak_resident_bytes()))) +
+                         " of " + human_bytes(machine_memory_bytes()));
   text += line("seed", std::to_string(options.seed));
   if (!folder.empty()) text += line("results", folder);
   return text;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "spume/core/machine.hpp"
 #include "spume/methods/registry.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -23,8 +24,8 @@ double estimate_over_need(const std::string& text) {
   const double estimate = loaded.bytes_per_particle * static_cast<double>(method->particle_count());
   double early = 0, late = 0;
   for (const auto& array : method->arrays()) early += array.bytes;
-  EXPECT_THAT(start_table(loaded, *method, 1),
-              testing::HasSubstr("about " + human_bytes(std::max(early, estimate)) + " of "));
+  EXPECT_EQ(needed_bytes(loaded, *method, early), std::max(early, estimate) + method->snapshot_bytes());
+  EXPECT_THAT(start_table(loaded, *method, 1), testing::HasSubstr(" of " + human_bytes(machine_memory_bytes())));
   Ledger ledger;
   for (int step = 0; step < 2; ++step) method->step(method->step_limit().dt, ledger);
   for (const auto& array : method->arrays()) late += array.bytes;
@@ -53,6 +54,28 @@ TEST(Report, MemoryIsEstimatedBeforeTheFirstStep) {
     EXPECT_GT(ratio, least) << text;
     EXPECT_LT(ratio, 1) << text;
   }
+}
+
+// The field that is computed, in the precision of the flow, beside all that are written, which are float.
+TEST(Report, SnapshotsOfAGridAreCounted) {
+  const std::string text =
+      "method = \"spectral\"\n[domain]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\nx = \"periodic\"\ny = \"periodic\"\n"
+      "z = \"periodic\"\n[resolution]\ngrid = 16\n[time]\nend = 1\n[fluid]\nreynolds = 100\n[initial]\n"
+      "kind = \"taylor-green\"\n[output]\nfields = [\"velocity\", \"pressure\"]\n";
+  const test::TemporaryFolder folder;
+  test::write_contents(folder / "case.toml", text);
+  const LoadedCase loaded = load_case((folder / "case.toml").string());
+  const auto method = make_method(loaded);
+  method->start();
+  double before = 0, after = 0;
+  for (const auto& array : method->arrays()) before += array.bytes;
+  const double points = 16 * 16 * 16, computed = 3 * 8 * points, written = (3 + 1) * 4 * points;
+  EXPECT_EQ(method->snapshot_bytes(), computed + written);
+  method->grid_snapshot();
+  for (const auto& array : method->arrays()) after += array.bytes;
+  EXPECT_GE(after - before, written);
+  EXPECT_LE(after - before, written + computed);
+  EXPECT_EQ(method->snapshot_bytes(), 0);
 }
 
 TEST(Report, SizesAndTimesAreShort) {

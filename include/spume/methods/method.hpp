@@ -45,6 +45,8 @@ class Method {
   // The same, where fields that are computed for it may wait until they are asked for.
   virtual std::vector<ParticleSnapshot> snapshot_on_demand() { return snapshot(); }
   virtual std::vector<GridSnapshot> grid_snapshot() { return {}; }  // likewise
+  // Of memory that a snapshot is yet to make, beside arrays().
+  virtual double snapshot_bytes() const { return 0; }
 
   // Null where the method has no such probes: a case that wants them is refused.
   virtual FieldProbes* field_probes() { return nullptr; }

@@ -21,6 +21,9 @@ std::string exact_number(double value);      // "%.10g"
 
 std::int64_t peak_resident_bytes();  // of this process
 
+// Of memory that a run needs at its peak, where the process has taken `resident` for what the method has made so far.
+double needed_bytes(const LoadedCase& loaded, const Method& method, double resident);
+
 // Case, box, particles, spacing, groups, step limit and what binds, stages, threads, estimated memory, seed, commit,
 // and the folder of the results when there is one.
 std::string start_table(const LoadedCase& loaded, const Method& method, int threads, const std::string& folder = {});

@@ -94,9 +94,9 @@ void Spectral<T>::series_values(std::span<double> values) {
 
 template <class T>
 std::span<const typename Spectral<T>::OutputField> Spectral<T>::output_fields() {
-  static constexpr OutputField fields[] = {{"velocity", true, &Spectral::compute_velocity},
-                                           {"vorticity", false, &Spectral::compute_vorticity},
-                                           {"pressure", false, &Spectral::compute_pressure}};
+  static constexpr OutputField fields[] = {{"velocity", 3, true, &Spectral::compute_velocity},
+                                           {"vorticity", 3, false, &Spectral::compute_vorticity},
+                                           {"pressure", 1, false, &Spectral::compute_pressure}};
   return fields;
 }
 
@@ -130,6 +130,18 @@ std::vector<GridSnapshot> Spectral<T>::grid_snapshot() {
     family.fields.push_back(std::move(entry));
   }
   return {family};
+}
+
+// Every field as it is written, and the one that is being computed.
+template <class T>
+double Spectral<T>::snapshot_bytes() const {
+  std::size_t drawn = 0, computed = 0;
+  for (const OutputField& field : output_fields()) {
+    if (!wants(field) || drawn_.contains(field.name)) continue;
+    drawn += field.components * sizeof(float);
+    computed = std::max(computed, field.components * sizeof(T));
+  }
+  return static_cast<double>((drawn + computed) * particle_count());
 }
 
 template <class T>
@@ -259,6 +271,8 @@ template std::vector<ParticleSnapshot> Spectral<double>::snapshot();
 template std::vector<ParticleSnapshot> Spectral<float>::snapshot();
 template std::vector<GridSnapshot> Spectral<double>::grid_snapshot();
 template std::vector<GridSnapshot> Spectral<float>::grid_snapshot();
+template double Spectral<double>::snapshot_bytes() const;
+template double Spectral<float>::snapshot_bytes() const;
 template PointSample Spectral<double>::sample(const Vec3&);
 template PointSample Spectral<float>::sample(const Vec3&);
 template PlaneSample Spectral<double>::plane_average(int, double);

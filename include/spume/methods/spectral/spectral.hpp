@@ -24,6 +24,7 @@ class Spectral final : public Method, public FieldProbes {
   // other.
   struct OutputField {
     const char* name;
+    std::size_t components;
     bool standard;  // written although the case lists none
     void (Spectral::*compute)(Array<T>& values);
   };
@@ -44,6 +45,7 @@ class Spectral final : public Method, public FieldProbes {
   void series_values(std::span<double> values) override;
   std::vector<ParticleSnapshot> snapshot() override;
   std::vector<GridSnapshot> grid_snapshot() override;
+  double snapshot_bytes() const override;
   FieldProbes* field_probes() override { return this; }
   PointSample sample(const Vec3& position) override;
   PlaneSample plane_average(int axis, double position) override;
