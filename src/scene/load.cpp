@@ -363,6 +363,8 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   check_motions(draft, scene, method->incompressible, problems);
   double& courant = draft.options.time.courant;
   if (courant == 0) courant = method->default_courant(draft.options, scene);
+  if (method->fills_phases) check_phases_filled(draft, scene, problems);
+  if (!method->honours_displaced_walls) check_sliding_walls(draft, scene, method->name, problems);
   if (method->check_scene) method->check_scene(draft, scene, problems);
   problems.throw_if_any();
 

@@ -180,6 +180,22 @@ void check_motions(const Draft& draft, const Scene& scene, bool incompressible, 
                    "above the liquid, or open a side");
 }
 
+void check_sliding_walls(const Draft& draft, const Scene& scene, const std::string& method, Problems& problems) {
+  const std::string takes = "; method \"" + method + "\" takes walls that slide along themselves: ";
+  const Domain& domain = scene.domain;
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    for (std::size_t end = 0; end < 2; ++end) {
+      const auto& velocity = domain.sides[axis][end].velocity;
+      const Node* node = draft.node("domain.wall_velocity." + side_names(axis, domain.dimensions)[end]);
+      if (node != nullptr && velocity && velocity->component[static_cast<std::size_t>(axis)] != nullptr)
+        problems.add(*node, "the wall moves along its normal" + takes + "set that component to \"0\"");
+    }
+  for (std::size_t k = 0; k < draft.wavemakers.size(); ++k)
+    if (draft.wavemakers[k].kind == WavemakerKind::piston)
+      problems.add(*draft.node("wavemaker." + std::to_string(k)),
+                   "a piston is a wall that moves along its normal" + takes + "write it as a [[body]] that moves");
+}
+
 std::vector<Problem> collision_warnings(const Draft& draft, const Scene& scene, const std::string& file) {
   std::vector<Problem> warnings;
   const double deep = scene.spacing / 2;

@@ -13,6 +13,9 @@ namespace spume {
 // closed and incompressible.
 void check_motions(const Draft& draft, const Scene& scene, bool one_liquid, Problems& problems);
 
+// Sides that move along their normal, which the method takes to slide along themselves alone.
+void check_sliding_walls(const Draft& draft, const Scene& scene, const std::string& method, Problems& problems);
+
 // Bodies whose given motion leads into another body or through a wall of the domain.
 std::vector<Problem> collision_warnings(const Draft& draft, const Scene& scene, const std::string& file);
 

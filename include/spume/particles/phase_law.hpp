@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Weakly compressible phases.
+// Weakly compressible phases: their equations of state, and which particle is of which.
 #pragma once
 
 #include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "spume/core/array.hpp"
+#include "spume/scene/scene.hpp"
 
 namespace spume {
 
@@ -32,6 +37,24 @@ struct PhaseLaw {
     const double of_state = gamma == 1 ? std::log(x) : (std::pow(x, gamma - 1) - 1) / (gamma - 1);
     return of_state + 1 / x - 1;
   }
+};
+
+// Of the phases of a scene whose flow reaches `speed`, as far as it does not give them: the heaviest has ten times that
+// speed of sound, the others the same stiffness. All zero where the speed is and nothing is given.
+std::vector<PhaseLaw> phase_laws(const Scene& scene, double speed);
+
+// Densities at rest, of which no two are alike: they tell phases apart too.
+std::vector<float> distinct_densities(const std::vector<PhaseLaw>& laws);
+
+// The laws of particles. Both outlive it.
+class ParticleLaws {
+ public:
+  ParticleLaws(const std::vector<PhaseLaw>& laws, const Array<std::int64_t>& phase) : laws_(laws), phase_(phase) {}
+  const PhaseLaw& operator()(std::size_t i) const { return laws_[static_cast<std::size_t>(phase_[i])]; }
+
+ private:
+  const std::vector<PhaseLaw>& laws_;
+  const Array<std::int64_t>& phase_;
 };
 
 }  // namespace spume

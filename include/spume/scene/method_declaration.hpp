@@ -33,6 +33,8 @@ struct MethodDeclaration {
 
   bool honours_floating_bodies = false;  // whose motion follows from the pressure
 
+  bool honours_displaced_walls = true;  // sides that move along their normal, pistons among them
+
   bool incompressible = false;  // without a sound speed in [fluid]: liquid that fills a closed tank cannot be pressed
 
   bool damps_sponges = false;    // [[sponge]]

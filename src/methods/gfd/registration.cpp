@@ -33,15 +33,7 @@ void check(Draft& draft, Problems& problems) {
   }
 }
 
-// Regions may lie below others or be cut away by solids: only the particles tell.
 void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
-  std::vector<std::size_t> count(scene.phases.size());
-  for (const std::int32_t phase : scene.particles.phase) ++count[static_cast<std::size_t>(phase)];
-  for (std::size_t n = 0; n < count.size(); ++n)
-    if (count[n] == 0)
-      problems.add(*draft.node("phase." + std::to_string(n)),
-                   "phase '" + scene.phases[n].name +
-                       "' fills nothing: no [[region]] of it is left; add a region behind the others, or remove it");
   const double support = support_ratio(draft.options.resolution) * scene.spacing;
   for (const ThinRegion& thin : thin_regions(scene, support)) {
     const std::string name = "region." + std::to_string(thin.region);

@@ -13,44 +13,9 @@
 namespace spume::wcsph {
 namespace {
 
-// Sound is ten times as fast as the flow: the density changes by Ma^2 = 1 % (Monaghan 1994, Morris et al. 1997).
-constexpr double sound_over_speed = 10;
-// Exponents of the equation of state (Monaghan 1994; Colagrossi and Landrini 2003). A phase is a gas where its density
-// is below a fiftieth of the largest: the lightest liquids have half of that of water, the heaviest gases a hundredth.
-constexpr double gas_exponent = 1.4, gas_density_ratio = 0.02;
-
 double speed_of(const LoadedCase& loaded) {
   const double given = loaded.options.get<CompressibilityOptions>().max_speed;
   return given > 0 ? given : spume::expected_speed(loaded.scene, loaded.options.time.end);
-}
-
-std::vector<PhaseLaw> laws_of(const Scene& scene, double expected_speed) {
-  std::vector<PhaseLaw> laws;
-  double largest = 0;
-  for (const Phase& phase : scene.phases) largest = std::max(largest, phase.density);
-  for (const Phase& phase : scene.phases)
-    laws.push_back({phase.density, phase.viscosity, phase.sound_speed,
-                    phase.exponent > 0                            ? phase.exponent
-                    : phase.density < gas_density_ratio * largest ? gas_exponent
-                                                                  : liquid_exponent});
-  PhaseLaw& heaviest = *std::max_element(laws.begin(), laws.end(),
-                                         [](const PhaseLaw& a, const PhaseLaw& b) { return a.density < b.density; });
-  if (heaviest.sound_speed == 0) heaviest.sound_speed = sound_over_speed * expected_speed;
-  // The others have the stiffness B of the heaviest: sound is 14 times as fast in air as in water.
-  for (PhaseLaw& law : laws)
-    if (law.sound_speed == 0) law.sound_speed = std::sqrt(law.exponent * heaviest.stiffness() / law.density);
-  return laws;
-}
-
-std::vector<float> distinct_densities(const std::vector<PhaseLaw>& laws) {
-  std::vector<float> densities;
-  for (const PhaseLaw& law : laws) {
-    auto density = static_cast<float>(law.density);
-    while (std::find(densities.begin(), densities.end(), density) != densities.end())
-      density = std::nextafter(density, 2 * density);
-    densities.push_back(density);
-  }
-  return densities;
 }
 
 // Particles under tension clump, and pressures below zero would let them: where no hydrostatic pressure keeps them
@@ -98,14 +63,18 @@ Flow::Flow(const LoadedCase& loaded_case)
       dimensions(scene.domain.dimensions),
       skin(options.get<ListOptions>().skin * scene.spacing),
       expected_speed(speed_of(loaded_case)),
-      laws(laws_of(scene, expected_speed)),
+      laws(phase_laws(scene, expected_speed)),
       phase_density(distinct_densities(laws)),
       background(background_of(loaded_case, features, expected_speed, laws)),
       wall_gravity(gravity_across_sides(scene)),
       particles(dimensions, scene.particles),
       boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution)),
       arrangement(scene.domain, resolution, particles.volume, particles.size(), skin),
-      solutes(particles, resolution, options, scene) {
+      walls(boundary, wall_gravity, particles.scratch()),
+      parting(scene, boundary, resolution, particles.volume, wall_gravity),
+      solutes(particles, resolution, options, scene),
+      solute_transport(
+          {solutes, particles, arrangement, boundary, scene.spacing, features.shifting, scene.free_surface}) {
   // Bands of interfaces and averages at wall points read lists one neighbour at a time.
   if (!features.tension && !features.bodies) arrangement.list.keep_narrow();
   arrangement.context.gradient_scale = dimensions / resolution.lattice.divergence_of_position;
@@ -115,9 +84,7 @@ Flow::Flow(const LoadedCase& loaded_case)
   if (features.shifting) particles.add_vector(shift, "shifting_velocity", Lifetime::state);
   excess = &fields.add<double>("density_excess", Lifetime::state);
   phase_number = &fields.add<std::int64_t>("phase", Lifetime::state);
-  if (features.density_relaxation) lack = &fields.add<double>("density_lack", Lifetime::state);
   parallel_for(size(), [&](std::size_t i) {
-    if (features.density_relaxation) (*lack)[i] = 0;
     (*phase_number)[i] = scene.particles.phase[i];
     (*excess)[i] = 0;
     for (int axis = 0; axis < dimensions; ++axis) (*acceleration[axis])[i] = (*listed[axis])[i] = 0;
@@ -125,7 +92,10 @@ Flow::Flow(const LoadedCase& loaded_case)
   });
   if (features.tension) tension = std::make_unique<SurfaceTension>(scene, options.get<InterfaceOptions>().smoothing);
   if (features.gravity) start_density();
-  if (features.density_relaxation) start_volume();
+  if (features.density_relaxation)
+    relaxation = std::make_unique<ExcessRelaxation>(
+        ExcessRelaxation::Liquid{particles, arrangement, resolution, law_of_particles(), *excess, wall_gravity},
+        options.get<CompressibilityOptions>().density_relaxation);
   find_signal();
 }
 
@@ -197,9 +167,8 @@ double Flow::leased_bytes() const {
     for (const auto& array : *vector) add(array);
   for (const auto* vector : {&viscous_force, &pressure_force, &way, &flux, &concentration})
     for (const auto& array : *vector) add(array);
-  add(next_excess, pressure, wall_pressure, wall_density, volume, reduced_excess, rate, diffusion, carried, density,
-      viscosity);
-  return sum;
+  add(next_excess, pressure, volume, reduced_excess, rate, diffusion, carried, density, viscosity);
+  return sum + walls.leased_bytes();
 }
 
 }  // namespace spume::wcsph

@@ -6,6 +6,7 @@
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/methods/wcsph/flow.hpp"
+#include "spume/particles/layer_settling.hpp"
 
 namespace spume::wcsph {
 namespace {
@@ -35,12 +36,11 @@ bool Flow::lists_hold(double dt) const {
 void Flow::build_lists() {
   arrangement.sort(particles, listed);
   boundary.next_walls = boundary.walls;
-  if (features.bodies) boundary.bodies()->take_all_points(listed_time);
+  walls.take_points(listed_time);
   boundary.make_images(arrangement, particles, listed, 1, {time, time, time}, false);
   arrangement.find_neighbours(particles, listed, sizes);
   if (features.tension) tension->find_bands(arrangement, *phase_number);
-  if (features.bodies)
-    wall_averages.find_entries(arrangement.context, boundary.reflection(), boundary.bodies()->stencils());
+  walls.find_entries(arrangement);
   has_lists = true;
   ++list_builds;
 }
@@ -68,9 +68,9 @@ void Flow::keep_lists(double dt) {
 }
 
 void Flow::move_images(const std::array<const double*, 3>& at, double t) {
-  if (features.bodies) boundary.bodies()->follow_points(t);
+  walls.follow(t);
   boundary.move_images(arrangement, at, {t, t, t});
-  if (features.bodies) wall_averages.weigh(arrangement.context, boundary.bodies()->stencils());
+  walls.weigh(arrangement);
 }
 
 // (5), (6) along one axis.
@@ -169,7 +169,8 @@ void Flow::advance_density(double dt) {
   scratch.lease(pressure, size());
   const double smoothing =
       features.diffusion ? options.get<CompressibilityOptions>().diffusion * resolution.smoothing_length : 0;
-  const double share = features.density_relaxation ? share_of_way(dt * std::min(largest_speed, expected_speed)) : 0;
+  const double share =
+      features.density_relaxation ? relaxation->share_of(dt * std::min(largest_speed, expected_speed)) : 0;
   if (features.displaced_bodies) boundary.bodies()->follow_points(time + dt);
   parallel_for(size(), [&](std::size_t i) {
     const PhaseLaw& own = law(i);
@@ -177,7 +178,7 @@ void Flow::advance_density(double dt) {
     const double grown = dt / 2 * rate[i];
     double s = (*excess)[i];
     s += (1 + s) * 2 * grown / (1 - grown) + dt * smoothing * own.sound_speed * diffusion[i];
-    if (features.density_relaxation) s += share * (*lack)[i];
+    if (features.density_relaxation) s += share * relaxation->lack(i);
     if (features.shifting) {
       // delta u . grad s, of the reduced excess and of the hydrostatic part.
       double climbed = carried[i];
@@ -186,7 +187,7 @@ void Flow::advance_density(double dt) {
       s += dt * climbed;
     }
     next_excess[i] = s;
-    pressure[i] = own.pressure(s) + background;
+    pressure[i] = pressure_at(s, i);
     volume[i] = static_cast<float>(1 / (1 + s));
     Vec3 r{};
     held_velocity(i, dt, r);
@@ -210,45 +211,64 @@ void Flow::filter_density() {
   density_filter_sweep(arrangement.context, arrangement.packed, volume.data(), density.data(), filtered.data());
   parallel_for(size(), [&](std::size_t i) {
     next_excess[i] = filtered[i];
-    pressure[i] = law(i).pressure(filtered[i]) + background;
+    pressure[i] = pressure_at(filtered[i], i);
     volume[i] = 1 / (1 + filtered[i]);
   });
 }
 
-// Of every wall point, by the liquid as it is now.
-void Flow::find_wall_pressure() {
-  ScratchPool& scratch = particles.scratch();
-  const BodyWalls& walls = *boundary.bodies();
-  scratch.lease(wall_pressure, walls.stencils().size());
-  scratch.lease(wall_density, walls.stencils().size());
-  wall_averages.extrapolate(arrangement.context, walls.stencils(),
-                            {.pressure = pressure.data(),
-                             .density = density.data(),
-                             .gravity = wall_gravity,
-                             .wall_acceleration = read(walls.acceleration())},
-                            wall_pressure.data(), wall_density.data());
-}
-
 void Flow::find_pressure_force() {
-  if (features.bodies) find_wall_pressure();
+  walls.find_pressure(arrangement, pressure.data(), density.data());
   ScratchPool& scratch = particles.scratch();
   scratch.lease(pressure_force, dimensions, size());
   if (features.shifting) scratch.lease(concentration, dimensions, size());
-  pressure_force_sweep(
-      arrangement.context, arrangement.packed,
-      {.pressure = pressure.data(),
-       .volume = volume.data(),
-       .density = density.data(),
-       .several = features.several,
-       .weighted = features.weighted,
-       .repulsion = static_cast<float>(options.get<CompressibilityOptions>().repulsion),
-       .gravity = wall_gravity,
-       .position = read(place),
-       .wall_pressure = wall_pressure.data(),
-       .wall_density = wall_density.data(),
-       .wall_position = features.bodies ? boundary.bodies()->wet().position : std::array<const double*, 3>{}},
-      write(pressure_force), write(concentration));
-  if (scene.free_surface) part_from_walls();
+  pressure_force_sweep(arrangement.context, arrangement.packed,
+                       {.pressure = pressure.data(),
+                        .volume = volume.data(),
+                        .density = density.data(),
+                        .several = features.several,
+                        .weighted = features.weighted,
+                        .repulsion = static_cast<float>(options.get<CompressibilityOptions>().repulsion),
+                        .gravity = wall_gravity,
+                        .position = read(place),
+                        .wall_pressure = walls.pressure(),
+                        .wall_density = walls.density(),
+                        .wall_position = walls.place()},
+                       write(pressure_force), write(concentration));
+  if (scene.free_surface) parting.add_forces(size(), parted(read(place)), write(pressure_force));
+}
+
+WallParting::Liquid Flow::parted(const std::array<const double*, 3>& at) const {
+  return {.law = law_of_particles(),
+          .place = at,
+          .pressure = pressure.data(),
+          .volume = volume.data(),
+          .gradient_scale = arrangement.context.gradient_scale};
+}
+
+// The layers are at rest under the forces that a step finds.
+void Flow::settle() {
+  if (settled != 0) return;
+  settled = 1;
+  const auto with_forces = [this](const LayerSettling::UseForces& use) {
+    keep_lists(0);
+    drift(0);
+    lease_properties();
+    particles.scratch().lease(pressure, size());
+    parallel_for(size(), [&](std::size_t i) { pressure[i] = pressure_at((*excess)[i], i); });
+    find_pressure_force();
+    use({pressure.data(), pressure_force});
+    release_leased();
+  };
+  unsettled = LayerSettling{.scene = scene,
+                            .boundary = boundary,
+                            .resolution = resolution,
+                            .particles = particles,
+                            .arrangement = arrangement,
+                            .law = law_of_particles(),
+                            .excess = *excess,
+                            .gravity = wall_gravity,
+                            .with_forces = with_forces}
+                  .settle();
 }
 
 SurfaceTension::Now Flow::tension_now() {
@@ -294,7 +314,7 @@ void Flow::accept(double dt) {
     }
     throw StepFailure(details);
   }
-  keep_shift(dt);
+  solute_transport.keep_shift(shift, dt);
   parallel_blocks(size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
     const VectorExpression force = scene.body_force ? scene.body_force->clone() : VectorExpression();
     for (std::size_t i = first; i < last; ++i) {
@@ -337,7 +357,8 @@ void Flow::release_leased() {
   ScratchPool& scratch = particles.scratch();
   for (auto* vector : {&half_velocity, &place}) scratch.release(*vector);
   for (auto* vector : {&viscous_force, &pressure_force, &flux, &concentration}) scratch.release(*vector);
-  for (auto* array : {&next_excess, &pressure, &wall_pressure, &wall_density}) scratch.release(*array);
+  for (auto* array : {&next_excess, &pressure}) scratch.release(*array);
+  walls.release();
   for (auto* array : {&volume, &density, &viscosity, &reduced_excess}) scratch.release(*array);
 }
 
@@ -352,27 +373,16 @@ std::vector<WallForce> Flow::forces_on_bodies() {
     volume[i] = static_cast<float>(1 / (1 + (*excess)[i]));
     density[i] = static_cast<float>(law(i).density);
     viscosity[i] = static_cast<float>(law(i).viscosity);
-    pressure[i] = law(i).pressure((*excess)[i]) + background;
+    pressure[i] = pressure_at((*excess)[i], i);
   });
-  find_wall_pressure();
-  const BodyWalls& walls = *boundary.bodies();
-  std::vector<std::int32_t> body(walls.stencils().size());
-  for (std::size_t g = 0; g < body.size(); ++g) body[g] = walls.body_of_wet(g);
-  std::vector<WallForce> forces = wall_forces(arrangement.context,
-                                              {.velocity = read(particles.velocity),
-                                               .pressure = pressure.data(),
-                                               .volume = volume.data(),
-                                               .viscosity = features.viscosity ? viscosity.data() : nullptr,
-                                               .friction = features.friction,
-                                               .gravity = wall_gravity,
-                                               .reflection = &boundary.reflection(),
-                                               .held = &boundary.velocity_rule().sign,
-                                               .wall_pressure = wall_pressure.data(),
-                                               .wall_density = wall_density.data(),
-                                               .wall_position = walls.wet().position,
-                                               .body = body.data()},
-                                              scene.bodies.size());
-  if (scene.free_surface) add_parting_forces(forces);
+  walls.find_pressure(arrangement, pressure.data(), density.data());
+  std::vector<WallForce> forces =
+      walls.forces(arrangement, {.velocity = read(particles.velocity),
+                                 .pressure = pressure.data(),
+                                 .volume = volume.data(),
+                                 .viscosity = features.viscosity ? viscosity.data() : nullptr,
+                                 .friction = features.friction});
+  if (scene.free_surface) parting.add_to_bodies(size(), parted(read(particles.position)), forces);
   release_leased();
   return forces;
 }

@@ -49,33 +49,10 @@ void check(Draft& draft, Problems& problems) {
 void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
   check_initial_scalars(draft, scene, problems);
   check_released_gas(draft, scene, problems);
-  std::vector<std::size_t> count(scene.phases.size());
-  for (const std::int32_t phase : scene.particles.phase) ++count[static_cast<std::size_t>(phase)];
-  for (std::size_t n = 0; n < count.size(); ++n)
-    if (count[n] == 0)
-      problems.add(*draft.node("phase." + std::to_string(n)),
-                   "phase '" + scene.phases[n].name +
-                       "' fills nothing: no [[region]] of it is left; add a region behind the others, or remove it");
   if (draft.options.get<CompressibilityOptions>().shifting == Shifting::on && scene.free_surface)
     problems.add(
         *draft.node("compressibility.shifting"),
         "particles would be shifted across a free surface; expected phases that fill the domain: remove the key");
-  const auto up = static_cast<std::size_t>(scene.domain.dimensions) - 1;
-  for (const auto& [name, velocity] : draft.wall_velocity) {
-    const std::size_t axis = name == "left" || name == "right" ? 0 : name == "front" || name == "back" ? 1 : up;
-    for (const Side& side : scene.domain.sides[axis])
-      if (side.velocity && side.velocity->component[axis] != nullptr) {
-        problems.add(*draft.node("domain.wall_velocity." + name),
-                     "the wall moves along its normal; method \"wcsph\" takes walls that slide along themselves: set "
-                     "that component to \"0\"");
-        break;
-      }
-  }
-  for (std::size_t k = 0; k < draft.wavemakers.size(); ++k)
-    if (draft.wavemakers[k].kind == WavemakerKind::piston)
-      problems.add(*draft.node("wavemaker." + std::to_string(k)),
-                   "a piston is a wall that moves along its normal; method \"wcsph\" takes walls that slide along "
-                   "themselves: write it as a [[body]] that moves, or use method \"les-sph\"");
 }
 
 // Fields, lists of neighbours (18 bytes a batch of eight, the last half empty) and sweep records: the arrays of runs of
@@ -98,6 +75,7 @@ Registration registration() {
   method.fills_phases = true;
   method.honours_bodies = true;
   method.honours_solids = false;
+  method.honours_displaced_walls = false;
   method.sections = solute_sections();
   for (const auto& section : {compressibility_section, interface_section, list_section})
     method.sections.push_back(section());

@@ -7,6 +7,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/particles/layer_settling.hpp"
 #include "spume/particles/step_limits.hpp"
 #include "spume/scene/refusal.hpp"
 
@@ -64,7 +65,7 @@ Wcsph::Wcsph(const LoadedCase& loaded)
   saved_.add(flow_.time).add(flow_.steps).add(flow_.signal).add(flow_.largest_speed).add(flow_.boundary.wall_speed);
   if (flow_.features.layers) saved_.add(flow_.settled).add(flow_.arrangement.context.gradient_scale);
   if (flow_.features.tension) saved_.add(flow_.surface_energy);
-  if (flow_.features.density_relaxation) saved_.add(flow_.liquid_volume);
+  if (flow_.features.density_relaxation) saved_.add(flow_.relaxation->volume);
 }
 
 void Wcsph::step(double dt, Ledger& ledger) {
@@ -106,7 +107,7 @@ void Wcsph::declare_series() {
     series_.add("surface_energy", "sigma times the area", [&flow] { return flow.surface_energy; });
   if (flow.features.density_relaxation)
     series_.add("volume", flow.dimensions == 3 ? "length^3, by kernel sums" : "length^2, by kernel sums",
-                [&flow] { return flow.liquid_volume; });
+                [&flow] { return flow.relaxation->volume; });
   series_.add("max_speed", "speed", [&flow] { return flow.largest_speed; });
   for (std::size_t n = 0; n < phase_sums_.size(); ++n) {
     const std::string& name = flow.scene.phases[n].name;
@@ -122,7 +123,7 @@ std::vector<ParticleSnapshot> Wcsph::snapshot_on_demand() {
 
 std::vector<Remark> Wcsph::take_remarks() {
   std::vector<Remark> remarks;
-  if (flow_.unsettled > layers_at_rest)
+  if (flow_.unsettled > LayerSettling::at_rest)
     remarks.push_back({"the layers are not at rest at the start: a particle is accelerated by " +
                        brief(100 * std::exchange(flow_.unsettled, 0)) + " % of gravity"});
   for (std::size_t n = 0; n < flow_.laws.size(); ++n) {
@@ -146,7 +147,7 @@ std::vector<Invariant> Wcsph::invariants() const {
 
 std::vector<ArrayInfo> Wcsph::arrays() const {
   std::vector<ArrayInfo> list = particle_arrays(flow_.particles, flow_.arrangement);
-  if (flow_.features.bodies) list.push_back({"wall points", flow_.boundary.bytes() + flow_.wall_averages.bytes()});
+  if (flow_.features.bodies) list.push_back({"wall points", flow_.boundary.bytes() + flow_.walls.bytes()});
   if (flow_.features.tension) list.push_back({"interfaces", flow_.tension->bytes()});
   list.push_back({"leased within a step", flow_.leased_bytes()});
   return list;

@@ -247,13 +247,15 @@ void Scalars::apply(double dt, bool shifted) {
   }
 }
 
+bool Scalars::diffuse() const {
+  return !walls_.walls.empty() || std::any_of(options_.scalars.begin(), options_.scalars.end(),
+                                              [](const ScalarOption& one) { return one.diffusivity > 0; });
+}
+
 std::int64_t Scalars::transport(double dt, const Carrier& carrier) {
   substeps_ = 0;
   const bool shifted = carrier.shift[0] != nullptr;
-  const bool diffuses = carrier.eddy_viscosity != nullptr || !walls_.walls.empty() ||
-                        std::any_of(options_.scalars.begin(), options_.scalars.end(),
-                                    [](const ScalarOption& one) { return one.diffusivity > 0; });
-  if (particles_.size() == 0 || !(shifted || diffuses)) return 0;
+  if (particles_.size() == 0 || !(shifted || carrier.eddy_viscosity != nullptr || diffuse())) return 0;
   lease();
   const float* div_r = carrier.divergence_of_position;
   parallel_for(particles_.size(), [&](std::size_t i) {

@@ -43,6 +43,8 @@ class Scalars {
     FloatVectorField shift{};                           // of the step; null: none
     std::function<double(std::size_t)> interior = {};   // factor of the change by the shift, 0 to 1; read with one
   };
+  // Whether some scalar diffuses in a liquid without eddies, or a wall gives some.
+  bool diffuse() const;
   // Diffusion over dt, what walls give and the change by the shift, at the positions of the lists. Returns the number
   // of sweeps.
   std::int64_t transport(double dt, const Carrier& carrier);

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What keeps the volume of a liquid with a free surface.
-//
-// The first term of (1) is the rate of the kernel sums of the arrangement; where liquid meets and leaves walls, bodies
-// and itself it is not that of the volume, and nothing takes back what it errs by. A tank 16 spacings deep that a disc
-// stirred lost 6.9 % of its volume in 47 sqrt(H/g): its kernel sums rose by 6.5 %, its densities did not change.
+#include "spume/particles/excess_relaxation.hpp"
+
 #include <algorithm>
 
 #include "spume/core/parallel.hpp"
-#include "spume/methods/wcsph/flow.hpp"
 #include "spume/operators/sph_operators.hpp"
 #include "spume/particles/surface.hpp"
 
-namespace spume::wcsph {
+namespace spume {
 namespace {
 
 // Of the kernel sums, what the relaxation believes at most. A particle in a gap between walls has half of its sum too
@@ -26,39 +22,45 @@ constexpr double local_disorder = 0.01;
 
 }  // namespace
 
-// s', which in a liquid at rest is the same everywhere.
-double Flow::reduced(std::size_t i) const {
+ExcessRelaxation::ExcessRelaxation(const Liquid& liquid, double way)
+    : volume(liquid.particles.volume * static_cast<double>(liquid.particles.size())),
+      liquid_(liquid),
+      way_(way * liquid.resolution.spacing),
+      start_(parallel_sum(liquid.particles.size(), [&](std::size_t i) { return reduced(i); }) /
+             static_cast<double>(std::max<std::size_t>(liquid.particles.size(), 1))),
+      lack_(&liquid.particles.fields.add<double>("density_lack", Lifetime::state)) {
+  parallel_for(lack_->size(), [&](std::size_t i) { (*lack_)[i] = 0; });
+}
+
+double ExcessRelaxation::reduced(std::size_t i) const {
   double head = 0;
-  for (int axis = 0; axis < dimensions; ++axis)
-    head += wall_gravity[axis] * ((*particles.position[axis])[i] - arrangement.origin[axis]);
-  const double c = law(i).sound_speed;
-  return (*excess)[i] - head / (c * c);
+  for (int axis = 0; axis < liquid_.particles.dimensions; ++axis)
+    head += liquid_.gravity[axis] * ((*liquid_.particles.position[axis])[i] - liquid_.arrangement.origin[axis]);
+  const double c = liquid_.law(i).sound_speed;
+  return liquid_.excess[i] - head / (c * c);
 }
 
-void Flow::start_volume() {
-  start_excess = parallel_sum(size(), [&](std::size_t i) { return reduced(i); }) /
-                 static_cast<double>(std::max<std::size_t>(size(), 1));
-  liquid_volume = particles.volume * static_cast<double>(size());
-}
-
-void Flow::relax_density() {
+void ExcessRelaxation::measure() {
+  ParticleStore& particles = liquid_.particles;
+  const std::size_t n = particles.size();
   ScratchPool& scratch = particles.scratch();
-  ScratchArray<float> kernel_sum(scratch, size()), divergence_of_position(scratch, size());
+  ScratchArray<float> kernel_sum(scratch, n), divergence_of_position(scratch, n);
   KernelMoments moments;
   moments.kernel_sum = kernel_sum.data();
   moments.divergence_of_position = divergence_of_position.data();
-  kernel_moment_sweep(arrangement.context, arrangement.packed,
-                      {.shifting = false, .normals = false, .spacing = scene.spacing, .fading = {}}, moments);
-  const InteriorWeight interior = interior_weight(dimensions, SurfaceOptions{});
-  const auto geometric = [&](std::size_t i) { return kernel_sum[i] / resolution.lattice.kernel_sum - 1; };
+  kernel_moment_sweep(liquid_.arrangement.context, liquid_.arrangement.packed,
+                      {.shifting = false, .normals = false, .spacing = liquid_.resolution.spacing, .fading = {}},
+                      moments);
+  const InteriorWeight interior = interior_weight(particles.dimensions, SurfaceOptions{});
+  const auto geometric = [&](std::size_t i) { return kernel_sum[i] / liquid_.resolution.lattice.kernel_sum - 1; };
   const auto difference = [&](std::size_t i) {
-    return std::clamp(geometric(i), -believed_excess, believed_excess) - (reduced(i) - start_excess);
+    return std::clamp(geometric(i), -believed_excess, believed_excess) - (reduced(i) - start_);
   };
   struct Sum {
     double weight = 0, difference = 0, volume = 0;
   };
   const Sum total = parallel_reduce(
-      size(), Sum{},
+      n, Sum{},
       [&](std::size_t first, std::size_t last) {
         Sum sum;
         for (std::size_t i = first; i < last; ++i) {
@@ -72,17 +74,17 @@ void Flow::relax_density() {
       [](const Sum& a, const Sum& b) {
         return Sum{a.weight + b.weight, a.difference + b.difference, a.volume + b.volume};
       });
-  liquid_volume = particles.volume * total.volume;
+  volume = particles.volume * total.volume;
   const double mean = total.difference / std::max(total.weight, 1.0);
-  parallel_for(size(), [&](std::size_t i) {
+  parallel_for(n, [&](std::size_t i) {
     const double local = difference(i) - mean;
     const double uneven = local - std::clamp(local, -local_disorder, local_disorder);
-    (*lack)[i] = mean + interior(divergence_of_position[i]) * uneven;
+    (*lack_)[i] = mean + interior(divergence_of_position[i]) * uneven;
   });
 }
 
-double Flow::share_of_way(double way) const {
-  return std::min(1.0, way / (options.get<CompressibilityOptions>().density_relaxation * scene.spacing));
+double ExcessRelaxation::share_of(double way) const {
+  return std::min(1.0, way / way_);
 }
 
-}  // namespace spume::wcsph
+}  // namespace spume

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Walls of bodies for weakly compressible SPH: every wall point has averages of the liquid around it
+// (operators/wall_averages.hpp), and what the points add to the sums of pressure and viscosity is what the liquid does
+// to the bodies.
+#pragma once
+
+#include <vector>
+
+#include "spume/operators/wall_averages.hpp"
+#include "spume/particles/boundary.hpp"
+
+namespace spume {
+
+class AveragedWalls {
+ public:
+  // Boundary and scratch memory outlive it. Without walls of bodies it does nothing. Gravity: across sides, which the
+  // pressure at walls follows.
+  AveragedWalls(Boundary& boundary, const Vec3& gravity, ScratchPool& scratch)
+      : boundary_(boundary), gravity_(gravity), scratch_(scratch) {}
+
+  // Around new lists: take_points() before their images are made, find_entries() behind them.
+  void take_points(double t);
+  void find_entries(const Arrangement& arrangement);
+  // Points where their bodies are at time t, for images that move after them; then weigh().
+  void follow(double t);
+  void weigh(const Arrangement& arrangement);
+
+  // Pressure and density of every point, by those of the liquid as it is now; leased until release().
+  void find_pressure(const Arrangement& arrangement, const double* pressure, const float* density);
+  void release();
+  const double* pressure() const { return pressure_.data(); }
+  const double* density() const { return density_.data(); }
+  std::array<const double*, 3> place() const;
+
+  // On each body of the scene, by the pressures found last.
+  struct Liquid {
+    std::array<const double*, 3> velocity{};
+    const double* pressure = nullptr;
+    const float* volume = nullptr;     // over that at rest
+    const float* viscosity = nullptr;  // null: inviscid
+    bool friction = false;             // at no-slip walls
+  };
+  std::vector<WallForce> forces(const Arrangement& arrangement, const Liquid& liquid) const;
+
+  double bytes() const { return averages_.bytes(); }
+  double leased_bytes() const { return pressure_.bytes() + density_.bytes(); }
+
+ private:
+  Boundary& boundary_;
+  const Vec3 gravity_;
+  ScratchPool& scratch_;
+  WallAverages averages_;
+  Array<double> pressure_, density_;
+};
+
+}  // namespace spume

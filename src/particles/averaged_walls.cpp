@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/averaged_walls.hpp"
+
+namespace spume {
+
+void AveragedWalls::take_points(double t) {
+  if (boundary_.bodies() != nullptr) boundary_.bodies()->take_all_points(t);
+}
+
+void AveragedWalls::find_entries(const Arrangement& arrangement) {
+  if (boundary_.bodies() == nullptr) return;
+  averages_.find_entries(arrangement.context, boundary_.reflection(), boundary_.bodies()->stencils());
+}
+
+void AveragedWalls::follow(double t) {
+  if (boundary_.bodies() != nullptr) boundary_.bodies()->follow_points(t);
+}
+
+void AveragedWalls::weigh(const Arrangement& arrangement) {
+  if (boundary_.bodies() != nullptr) averages_.weigh(arrangement.context, boundary_.bodies()->stencils());
+}
+
+void AveragedWalls::find_pressure(const Arrangement& arrangement, const double* pressure, const float* density) {
+  if (boundary_.bodies() == nullptr) return;
+  const BodyWalls& walls = *boundary_.bodies();
+  scratch_.lease(pressure_, walls.stencils().size());
+  scratch_.lease(density_, walls.stencils().size());
+  averages_.extrapolate(
+      arrangement.context, walls.stencils(),
+      {.pressure = pressure, .density = density, .gravity = gravity_, .wall_acceleration = read(walls.acceleration())},
+      pressure_.data(), density_.data());
+}
+
+void AveragedWalls::release() {
+  scratch_.release(pressure_);
+  scratch_.release(density_);
+}
+
+std::array<const double*, 3> AveragedWalls::place() const {
+  if (boundary_.bodies() == nullptr) return {};
+  return static_cast<const Boundary&>(boundary_).bodies()->wet().position;
+}
+
+std::vector<WallForce> AveragedWalls::forces(const Arrangement& arrangement, const Liquid& liquid) const {
+  const BodyWalls& walls = *boundary_.bodies();
+  std::vector<std::int32_t> body(walls.stencils().size());
+  for (std::size_t g = 0; g < body.size(); ++g) body[g] = walls.body_of_wet(g);
+  return wall_forces(arrangement.context,
+                     {.velocity = liquid.velocity,
+                      .pressure = liquid.pressure,
+                      .volume = liquid.volume,
+                      .viscosity = liquid.viscosity,
+                      .friction = liquid.friction,
+                      .gravity = gravity_,
+                      .reflection = &boundary_.reflection(),
+                      .held = &boundary_.velocity_rule().sign,
+                      .wall_pressure = pressure_.data(),
+                      .wall_density = density_.data(),
+                      .wall_position = walls.wet().position,
+                      .body = body.data()},
+                     walls.bodies().size());
+}
+
+}  // namespace spume

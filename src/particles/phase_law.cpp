@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/phase_law.hpp"
+
+#include <algorithm>
+
+namespace spume {
+namespace {
+
+// Sound is ten times as fast as the flow: the density changes by Ma^2 = 1 % (Monaghan 1994, Morris et al. 1997).
+constexpr double sound_over_speed = 10;
+// Exponents of the equation of state (Monaghan 1994; Colagrossi and Landrini 2003). A phase is a gas where its density
+// is below a fiftieth of the largest: the lightest liquids have half of that of water, the heaviest gases a hundredth.
+constexpr double gas_exponent = 1.4, gas_density_ratio = 0.02;
+
+}  // namespace
+
+std::vector<PhaseLaw> phase_laws(const Scene& scene, double speed) {
+  std::vector<PhaseLaw> laws;
+  double largest = 0;
+  for (const Phase& phase : scene.phases) largest = std::max(largest, phase.density);
+  for (const Phase& phase : scene.phases)
+    laws.push_back({phase.density, phase.viscosity, phase.sound_speed,
+                    phase.exponent > 0                            ? phase.exponent
+                    : phase.density < gas_density_ratio * largest ? gas_exponent
+                                                                  : liquid_exponent});
+  PhaseLaw& heaviest = *std::max_element(laws.begin(), laws.end(),
+                                         [](const PhaseLaw& a, const PhaseLaw& b) { return a.density < b.density; });
+  if (heaviest.sound_speed == 0) heaviest.sound_speed = sound_over_speed * speed;
+  // Of equal stiffness B sound is 14 times as fast in air as in water.
+  for (PhaseLaw& law : laws)
+    if (law.sound_speed == 0) law.sound_speed = std::sqrt(law.exponent * heaviest.stiffness() / law.density);
+  return laws;
+}
+
+std::vector<float> distinct_densities(const std::vector<PhaseLaw>& laws) {
+  std::vector<float> densities;
+  for (const PhaseLaw& law : laws) {
+    auto density = static_cast<float>(law.density);
+    while (std::find(densities.begin(), densities.end(), density) != densities.end())
+      density = std::nextafter(density, 2 * density);
+    densities.push_back(density);
+  }
+  return densities;
+}
+
+}  // namespace spume

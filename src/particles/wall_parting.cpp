@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/wall_parting.hpp"
+
+#include <cmath>
+
+#include "spume/core/kernel.hpp"
+#include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
+
+namespace spume {
+namespace {
+
+// Monaghan (2000): R = eps |P| f^4, f = W(r) / W(spacing).
+constexpr double stress_share = 0.2;
+
+}  // namespace
+
+WallParting::WallParting(const Scene& scene, const Boundary& boundary, const Resolution& resolution,
+                         double particle_volume, const Vec3& gravity)
+    : scene_(scene),
+      boundary_(boundary),
+      dimensions_(scene.domain.dimensions),
+      h_(resolution.smoothing_length),
+      particle_volume_(particle_volume),
+      gravity_(gravity) {}
+
+Vec3 WallParting::place_of(const Liquid& liquid, std::size_t i) const {
+  Vec3 r{};
+  for (int axis = 0; axis < dimensions_; ++axis) r[axis] = liquid.place[axis][i];
+  return r;
+}
+
+// Away from the wall, per volume; `head`: what the image has of pressure beside the particle.
+double WallParting::force_of(const Liquid& liquid, std::size_t i, double distance, double gap, double head) const {
+  const double way = 2 * distance;
+  const double scale =
+      liquid.gradient_scale * particle_volume_ * WendlandC2::normalisation(dimensions_) / std::pow(h_, dimensions_ + 2);
+  const double f = WendlandC2::w(way / h_) / WendlandC2::w(2 * gap / h_);
+  const double stress = stress_share * std::abs(2 * liquid.pressure[i] + head) * (f * f * f * f - 1);
+  return -scale * WendlandC2::f(way / h_) * liquid.volume[i] * stress * way;
+}
+
+// The wall of a body that is nearer than half a spacing, and the force. A bubble that begins to grow appears beside
+// particles, or under one: it claims no more than half of its half width around it.
+std::optional<WallParting::Parting> WallParting::from_bodies(const Liquid& liquid, std::size_t i, const Vec3& r) const {
+  const BodyWalls& walls = *boundary_.bodies();
+  const double gap = scene_.spacing / 2;
+  if (walls.surely_farther(r, gap) || !(walls.distance(r) < gap)) return std::nullopt;
+  const BodyWalls::NearestWall near = walls.nearest_wall(r);
+  const double distance = std::max(near.distance, 0.0), own_gap = std::min(gap, near.half_width / 2);
+  if (distance >= own_gap || !scene_.bodies[near.body].motion) return std::nullopt;
+  const double head = -2 * distance * liquid.law(i).density * dot(gravity_, near.normal);
+  return Parting{near.body, near.point, multiply(force_of(liquid, i, distance, own_gap, head), near.normal)};
+}
+
+void WallParting::add_forces(std::size_t particles, const Liquid& liquid, const std::array<float*, 3>& out) const {
+  parallel_for(particles, [&](std::size_t i) {
+    for (int axis = 0; axis < dimensions_; ++axis)
+      for (std::size_t side = 0; side < 2; ++side) {
+        const double way = boundary_.walls[axis][side] - liquid.place[axis][i];
+        if (std::abs(way) >= scene_.spacing / 2 || !is_wall(scene_.domain.sides[axis][side].kind)) continue;
+        const double force =
+            force_of(liquid, i, std::abs(way), scene_.spacing / 2, 2 * liquid.law(i).density * gravity_[axis] * way);
+        out[axis][i] += static_cast<float>(way > 0 ? -force : force);
+      }
+    if (!boundary_.features.displaced_bodies) return;
+    if (const auto found = from_bodies(liquid, i, place_of(liquid, i)))
+      for (int axis = 0; axis < dimensions_; ++axis) out[axis][i] += static_cast<float>(found->force[axis]);
+  });
+}
+
+void WallParting::add_to_bodies(std::size_t particles, const Liquid& liquid, std::vector<WallForce>& forces) const {
+  if (!boundary_.features.displaced_bodies) return;
+  std::vector<std::vector<Parting>> found(block_count(particles, default_block));
+  parallel_blocks(particles, default_block, [&](std::size_t block, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      auto parting = from_bodies(liquid, i, place_of(liquid, i));
+      if (!parting) continue;
+      parting->force = multiply(-particle_volume_ * double{liquid.volume[i]}, parting->force);
+      found[block].push_back(*parting);
+    }
+  });
+  for (const auto& block : found)
+    for (const Parting& parting : block) {
+      WallForce& force = forces[parting.body];
+      force.pressure = add(force.pressure, parting.force);
+      force.pressure_torque = add(force.pressure_torque, cross(parting.foot, parting.force));
+    }
+}
+
+}  // namespace spume
