@@ -19,7 +19,8 @@ Section numerics() {
       .word("precision", &S::precision, {{"double", FieldPrecision::f64}, {"single", FieldPrecision::f32}},
             "precision of the fields and their transforms")
       .word("plans", &S::plans, {{"estimate", PlanEffort::estimate}, {"measured", PlanEffort::measured}},
-            "planning of FFTW, for lengths with a prime factor above 5: the others have transforms of our own; measured plans "
+            "planning of FFTW, for lengths with a prime factor above 5: the others have transforms of our own; "
+            "measured plans "
             "are kept in the user's cache folder")
       .behind_output();
 }

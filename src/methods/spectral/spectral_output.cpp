@@ -132,16 +132,21 @@ std::vector<GridSnapshot> Spectral<T>::grid_snapshot() {
   return {family};
 }
 
-// Every field as it is written, and the one that is being computed.
+// Every field as it is written, and the one that is being computed. The pressure is that of the modes less the square
+// of the velocity, which is drawn for it.
 template <class T>
 double Spectral<T>::snapshot_bytes() const {
+  const std::span<const OutputField> fields = output_fields();
+  const bool pressure = wants(fields[2]);
   std::size_t drawn = 0, computed = 0;
-  for (const OutputField& field : output_fields()) {
-    if (!wants(field) || drawn_.contains(field.name)) continue;
+  for (const OutputField& field : fields) {
+    const bool needed = wants(field) || (pressure && &field == &fields[0]);
+    if (!needed || drawn_.contains(field.name)) continue;
     drawn += field.components * sizeof(float);
     computed = std::max(computed, field.components * sizeof(T));
   }
-  return static_cast<double>((drawn + computed) * particle_count());
+  const std::size_t modes = pressure && total_pressure_.capacity() == 0 ? flow_.layout().size() : 0;
+  return static_cast<double>((drawn + computed) * particle_count() + modes * sizeof(std::complex<T>));
 }
 
 template <class T>
