@@ -52,8 +52,12 @@ void pack_coefficient(const SweepContext& context, float* records, int width, in
   parallel_for(context.images->size(), [=](std::size_t k) { out[(n + k) * w] = values[source[k]]; });
 }
 
-void pack_velocity(const SweepContext& context, float* records, int width, int slot,
-                   const std::array<const double*, 3>& velocity, const VelocityImageRule& rule) {
+namespace {
+
+// of_particle(i, axis) and of_point(g), the velocity of a wall point.
+template <class OfParticle, class OfPoint>
+void pack_velocity_any(const SweepContext& context, float* records, int width, int slot, const VelocityImageRule& rule,
+                       const OfParticle& of_particle, const OfPoint& of_point) {
   const int dimensions = context.dimensions;
   const std::size_t n = context.list->particles();
   const std::int32_t* source = context.images->source();
@@ -61,15 +65,14 @@ void pack_velocity(const SweepContext& context, float* records, int width, int s
   float* out = records + dimensions + slot;
   const auto w = static_cast<std::size_t>(width);
   parallel_for(n, [=](std::size_t i) {
-    for (int axis = 0; axis < dimensions; ++axis) out[i * w + axis] = static_cast<float>(velocity[axis][i]);
+    for (int axis = 0; axis < dimensions; ++axis) out[i * w + axis] = static_cast<float>(of_particle(i, axis));
   });
   const bool moving = !rule.offset[0].empty();
   const std::int32_t* point = context.walls == nullptr ? nullptr : context.images->wall_point();
   parallel_for(context.images->size(), [&, out, w, n, moving, point](std::size_t k) {
     const auto& sign = rule.sign[path[k]];
     if (point != nullptr && point[k] >= 0) {
-      const auto u = context.walls->velocity(static_cast<std::size_t>(point[k]), dimensions, velocity, rule.friction,
-                                             rule.moving, rule.before_pressure, rule.bends);
+      const auto u = of_point(static_cast<std::size_t>(point[k]));
       for (int axis = 0; axis < dimensions; ++axis) {
         const float value = sign[axis] * static_cast<float>(u[axis]);
         out[(n + k) * w + axis] = moving ? value + rule.offset[axis][k] : value;
@@ -77,10 +80,31 @@ void pack_velocity(const SweepContext& context, float* records, int width, int s
       return;
     }
     for (int axis = 0; axis < dimensions; ++axis) {
-      const float value = sign[axis] * static_cast<float>(velocity[axis][source[k]]);
+      const float value = sign[axis] * static_cast<float>(of_particle(static_cast<std::size_t>(source[k]), axis));
       out[(n + k) * w + axis] = moving ? value + rule.offset[axis][k] : value;
     }
   });
+}
+
+}  // namespace
+
+void pack_velocity(const SweepContext& context, float* records, int width, int slot,
+                   const std::array<const double*, 3>& velocity, const VelocityImageRule& rule) {
+  pack_velocity_any(
+      context, records, width, slot, rule, [=](std::size_t i, int axis) { return velocity[axis][i]; },
+      [&](std::size_t g) {
+        return context.walls->velocity(g, context.dimensions, velocity, rule.friction, rule.moving,
+                                       rule.before_pressure, rule.bends);
+      });
+}
+
+void pack_velocity(const SweepContext& context, float* records, int width, int slot,
+                   const std::array<const double*, 3>& velocity, const std::array<const float*, 3>& acceleration,
+                   double ahead, const VelocityImageRule& rule) {
+  pack_velocity_any(
+      context, records, width, slot, rule,
+      [=](std::size_t i, int axis) { return velocity[axis][i] + ahead * acceleration[axis][i]; },
+      [](std::size_t) { return std::array<double, 3>{}; });
 }
 
 void pack_vector(const SweepContext& context, float* records, int width, int slot,

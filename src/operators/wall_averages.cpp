@@ -82,7 +82,7 @@ void WallAverages::extrapolate(const SweepContext& context, const WallStencils& 
     for (std::int64_t k = stencils.first[g]; k < stencils.first[g + 1]; ++k) {
       const auto j = static_cast<std::size_t>(stencils.source[k]);
       const double head = spume::dot(pull, offset(context, j, static_cast<std::size_t>(image_[k])));
-      p += stencils.coefficient[k] * (liquid.pressure[j] + liquid.density[j] * head);
+      p += stencils.coefficient[k] * (double{liquid.pressure[j]} + liquid.density[j] * head);
       rho += stencils.coefficient[k] * liquid.density[j];
     }
     pressure[g] = p;
@@ -119,7 +119,7 @@ std::vector<WallForce> wall_forces(const SweepContext& context, const WallForceF
         }
         const Vec3 u = context.walls->velocity(g, d, fields.velocity, fields.friction, true, false);
         for (int axis = 0; axis < d; ++axis) {
-          pressure[axis] = sign[axis] * weight * (fields.pressure[i] + other) * way[axis];
+          pressure[axis] = sign[axis] * weight * (double{fields.pressure[i]} + other) * way[axis];
           if (fields.viscosity != nullptr)
             viscous[axis] = -2 * weight * fields.viscosity[i] * (u[axis] - held[axis] * fields.velocity[axis][i]);
         }

@@ -103,14 +103,20 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
   using At = ContinuityLayout<dimensions, several, viscous, friction, shifted>;
   constexpr int width = At::width;
   float* records = packed.prepare(context, At::payload);
-  pack_velocity(context, records, width, At::velocity, fields.velocity, *fields.mirror);
+  const auto pack = [&](int slot, const VelocityImageRule& rule) {
+    if (fields.acceleration[0] == nullptr)
+      pack_velocity(context, records, width, slot, fields.velocity, rule);
+    else
+      pack_velocity(context, records, width, slot, fields.velocity, fields.acceleration, fields.ahead, rule);
+  };
+  pack(At::velocity, *fields.mirror);
   pack_scalar(context, records, width, At::volume, fields.volume);
   pack_scalar(context, records, width, At::excess, fields.excess);
   if constexpr (viscous && several) pack_scalar(context, records, width, At::viscosity, fields.viscosity);
   if constexpr (several) pack_scalar(context, records, width, At::phase, fields.phase);
   if constexpr (walls && viscous) mark_walls(context, records, width, At::viscosity);
   if constexpr (walls) mark_walls(context, records, width, At::phase);
-  if constexpr (friction) pack_velocity(context, records, width, At::held, fields.velocity, *fields.friction);
+  if constexpr (friction) pack(At::held, *fields.friction);
   if constexpr (shifted) pack_vector(context, records, width, At::shift, fields.shift, *fields.reflection);
   const KernelScale<dimensions, Kernel> scale(context);
   sweep(context.list->particles(), [&](std::size_t i) {
@@ -194,7 +200,7 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
   const std::size_t n = context.list->particles();
   float* records = packed.prepare(context, payload);
   pack_scalar(context, records, width, 0, fields.volume);
-  parallel_for(n, [&](std::size_t i) { records[i * width + dimensions + 1] = static_cast<float>(fields.pressure[i]); });
+  parallel_for(n, [&](std::size_t i) { records[i * width + dimensions + 1] = fields.pressure[i]; });
   const std::int32_t* point = context.walls == nullptr ? nullptr : context.images->wall_point();
   parallel_for(context.images->size(), [&](std::size_t k) {
     const bool of_point = point != nullptr && point[k] >= 0;
@@ -204,8 +210,9 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
     for (int a = 0; a < dimensions; ++a)
       if (fields.gravity[a] != 0) head += fields.gravity[a] * (context.images->position(a)[k] - from[a][source]);
     records[(n + k) * width + dimensions + 1] =
-        of_point ? static_cast<float>(fields.wall_pressure[source] + fields.wall_density[source] * head)
-                 : static_cast<float>(fields.pressure[source] + (head == 0 ? 0 : fields.density[source] * head));
+        of_point
+            ? static_cast<float>(fields.wall_pressure[source] + fields.wall_density[source] * head)
+            : static_cast<float>(double{fields.pressure[source]} + (head == 0 ? 0 : fields.density[source] * head));
   });
   if constexpr (several) pack_scalar(context, records, width, 2, fields.density);
   if constexpr (phases == Phases::beside_walls) mark_walls(context, records, width, 2);
@@ -236,7 +243,10 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
       const f32n weight = share * both;
       for (int a = 0; a < dimensions; ++a) force[a] = force[a] + weight * b.d[a];
     });
-    for (int a = 0; a < dimensions; ++a) out[a][i] = scale.gradient * simd::sum(force[a]);
+    for (int a = 0; a < dimensions; ++a) {
+      const float other = fields.others[a] == nullptr ? 0 : fields.others[a][i];
+      out[a][i] = other + scale.gradient * simd::sum(force[a]);
+    }
     if constexpr (concentrated)
       for (int a = 0; a < dimensions; ++a) concentration[a][i] = -h * scale.gradient * simd::sum(crowd[a]);
   });

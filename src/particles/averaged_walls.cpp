@@ -20,7 +20,7 @@ void AveragedWalls::weigh(const Arrangement& arrangement) {
   if (boundary_.bodies() != nullptr) averages_.weigh(arrangement.context, boundary_.bodies()->stencils());
 }
 
-void AveragedWalls::find_pressure(const Arrangement& arrangement, const double* pressure, const float* density) {
+void AveragedWalls::find_pressure(const Arrangement& arrangement, const float* pressure, const float* density) {
   if (boundary_.bodies() == nullptr) return;
   const BodyWalls& walls = *boundary_.bodies();
   scratch_.lease(pressure_, walls.stencils().size());

@@ -50,7 +50,7 @@ double LayerSettling::step(VectorScratch& way) const {
       const Vec3 force = add(vector_at(now.force, dimensions, i), multiply(rho, gravity));
       // The force of a move by h^2 grad C, under the largest pressure of a pair: over the support gravity adds 2 h g
       // rho.
-      const double of_move = 2 * (std::max(now.pressure[i], 0.0) + h * g * rho);
+      const double of_move = 2 * (std::max(double{now.pressure[i]}, 0.0) + h * g * rho);
       Vec3 next = add(multiply(kept, vector_at(way, dimensions, id)), multiply(coefficient * h * h / of_move, force));
       if (const double size = length(next); size > longest) next = multiply(longest / size, next);
       for (int axis = 0; axis < dimensions; ++axis) way[axis][id] = next[axis];

@@ -30,6 +30,13 @@ void SnapshotTable::add(std::string name, bool standard, const VectorField& vect
   entries_.push_back(std::move(entry));
 }
 
+void SnapshotTable::add(std::string name, bool standard, const FloatVectorField& vector) {
+  Entry entry{.name = std::move(name), .standard = standard};
+  for (const Array<float>* component : vector)
+    if (component != nullptr) entry.f32.push_back(component);
+  entries_.push_back(std::move(entry));
+}
+
 void SnapshotTable::add(std::string name, bool standard, const Array<double>& values) {
   entries_.push_back({.name = std::move(name), .standard = standard, .f64 = {&values}});
 }
@@ -56,6 +63,20 @@ ParticleSnapshot SnapshotTable::take(std::string name, std::size_t size, const V
     ParticleField field{entry.name, {}, {}};
     for (const Array<double>* component : entry.f64) field.f64.push_back(component->data());
     if (entry.i64 != nullptr) field.i64.push_back(entry.i64->data());
+    if (!entry.f32.empty()) {
+      for (std::size_t c = 0; c < entry.f32.size(); ++c) {
+        Array<double>& values = computed_[entry.name + '_' + std::to_string(c)];
+        values.resize(size);
+        field.f64.push_back(values.data());
+      }
+      field.compute = [this, &entry, size] {
+        for (std::size_t c = 0; c < entry.f32.size(); ++c) {
+          Array<double>& values = computed_[entry.name + '_' + std::to_string(c)];
+          const Array<float>& from = *entry.f32[c];
+          parallel_for(size, [&](std::size_t i) { values[i] = from[i]; });
+        }
+      };
+    }
     if (entry.value) {
       Array<double>& values = computed_[entry.name];
       values.resize(size);

@@ -36,7 +36,7 @@ double WallParting::force_of(const Liquid& liquid, std::size_t i, double distanc
   const double scale =
       liquid.gradient_scale * particle_volume_ * WendlandC2::normalisation(dimensions_) / std::pow(h_, dimensions_ + 2);
   const double f = WendlandC2::w(way / h_) / WendlandC2::w(2 * gap / h_);
-  const double stress = stress_share * std::abs(2 * liquid.pressure[i] + head) * (f * f * f * f - 1);
+  const double stress = stress_share * std::abs(2 * double{liquid.pressure[i]} + head) * (f * f * f * f - 1);
   return -scale * WendlandC2::f(way / h_) * liquid.volume[i] * stress * way;
 }
 

@@ -187,7 +187,7 @@ TEST(WcsphVolume, AStepTakesTheShareOfItsWay) {
     flow.particles.fields.add<double>("density_lack", Lifetime::state).fill(lack);
     flow.largest_speed = speed;
     flow.drift(dt);
-    flow.find_rates();
+    flow.find_rates(dt);
     flow.advance_density(dt);
     return flow.next_excess[5];
   };

@@ -20,8 +20,7 @@ std::vector<Arrangement*> wcsph_arrangements() {
 
 // Three phases, dispersed among each other.
 struct Fields {
-  Array<float> volume, excess, phase, density, viscosity;
-  Array<double> pressure;
+  Array<float> volume, excess, phase, density, viscosity, pressure;
   VectorArrays<double> velocity;
   VelocityImageRule mirror;
 
@@ -31,7 +30,7 @@ struct Fields {
         phase(a.size()),
         density(a.size()),
         viscosity(a.size()),
-        pressure(a.random(4)),
+        pressure(to_float(a.random(4))),
         velocity(random_velocity(a, 11)) {
     const Array<double> change = a.random(5);
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -122,6 +121,49 @@ struct BothSums {
                          pressure.write());
   }
 };
+
+// A velocity that is found where it is packed gives the sums of one that is kept, and forces come on top of others.
+TEST(WcsphSums, TakeVelocitiesAheadAndAddToOtherForces) {
+  for (Arrangement* arrangement : wcsph_arrangements()) {
+    Arrangement& a = *arrangement;
+    if (a.context.walls != nullptr) continue;
+    SCOPED_TRACE(a.setup.name);
+    const Fields f(a);
+    constexpr double ahead = 0.37;
+    const Array<float> x = to_float(a.random(31)), y = to_float(a.random(32)), z = to_float(a.random(33));
+    const std::array<const float*, 3> acceleration{x.data(), y.data(), z.data()};
+    VectorArrays<double> later = f.velocity;
+    for (int axis = 0; axis < a.dimensions(); ++axis)
+      for (std::size_t i = 0; i < a.size(); ++i) later[axis][i] += ahead * acceleration[axis][i];
+    Array<float> rate(a.size()), diffusion(a.size()), kept_rate(a.size());
+    VectorArrays<float> force(a.size(), a.dimensions()), kept(a.size(), a.dimensions()), both(a.size(), a.dimensions());
+    const auto sweep = [&](ContinuityFields fields, Array<float>& rates, VectorArrays<float>& forces) {
+      fields.mirror = &f.mirror;
+      fields.friction = &a.rule;
+      fields.volume = f.volume.data();
+      fields.excess = f.excess.data();
+      fields.phase = f.phase.data();
+      fields.viscosity = f.viscosity.data();
+      continuity_sweep(a.context, a.packed, fields, {rates.data(), diffusion.data(), forces.write()});
+    };
+    sweep({.velocity = later.read()}, kept_rate, kept);
+    sweep({.velocity = f.velocity.read(), .acceleration = acceleration, .ahead = ahead}, rate, force);
+    PressureFields pressures{
+        .pressure = f.pressure.data(), .volume = f.volume.data(), .density = f.density.data(), .several = true};
+    VectorArrays<float> alone(a.size(), a.dimensions());
+    pressure_force_sweep(a.context, a.packed, pressures, alone.write());
+    pressures.others = force.read();
+    pressure_force_sweep(a.context, a.packed, pressures, both.write());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      ASSERT_EQ(rate[i], kept_rate[i]);
+      for (int axis = 0; axis < a.dimensions(); ++axis) {
+        ASSERT_EQ(force[axis][i], kept[axis][i]);
+        ASSERT_NEAR(both[axis][i], force[axis][i] + alone[axis][i],
+                    2e-7 * (std::abs(force[axis][i]) + std::abs(alone[axis][i])));
+      }
+    }
+  }
+}
 
 // The batches are the same, so that every sum has its order.
 TEST(WcsphSums, NarrowListsGiveTheSameBits) {
@@ -233,8 +275,8 @@ TEST(WcsphSums, TensionAgreesWithTheSlowTwinAndIsBalancedByThePressureOfTheColou
         forces.add(force[axis][i], slow, a.twin.tolerance(i), i);
       }
     potential.fill(3);
-    Array<double> pressure(a.size()), own(a.size());
-    for (std::size_t i = 0; i < a.size(); ++i) pressure[i] = 3 * double{colour[i]};
+    Array<float> pressure(a.size()), own(a.size());
+    for (std::size_t i = 0; i < a.size(); ++i) pressure[i] = 3 * colour[i];
     const double* position[3] = {a.hood.x.data(), a.hood.y.data(), a.hood.z.data()};
     pressure_force_sweep(a.context, a.packed,
                          {.pressure = pressure.data(),
@@ -270,7 +312,7 @@ TEST(WcsphSums, WhatShiftingCarriesAgreesWithTheSlowTwin) {
       return point.reflection[axis] * shift[axis][point.source];
     };
     const Array<float> viscosity = to_float(a.random(6));
-    const Array<double> pressure(a.size());
+    const Array<float> pressure(a.size());
     for (const bool several : {false, true}) {
       const bool viscous = several;
       Array<float> rate(a.size()), diffusion(a.size()), carried(a.size());

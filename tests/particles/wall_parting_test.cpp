@@ -26,14 +26,13 @@ TEST(WallParting, IsTheStressOfTheFormulaAndBodiesTakeTheirs) {
   const Vec3 gravity{0, -3, 0};
   const std::vector<PhaseLaw> laws{{.density = 1000, .sound_speed = 10}, {.density = 2, .sound_speed = 20}};
   Array<std::int64_t> phase(n);
-  Array<double> pressure(n);
-  Array<float> volume(n);
+  Array<float> pressure(n), volume(n);
   std::array<Array<float>, 3> force;
   for (auto& component : force) component = Array<float>(n, 0.0F);
   for (std::size_t i = 0; i < n; ++i) {
     const auto random = uniform(i, 21);
     phase[i] = random[0] > 0.5;
-    pressure[i] = 100 * (random[1] - 0.5);
+    pressure[i] = static_cast<float>(100 * (random[1] - 0.5));
     volume[i] = static_cast<float>(1 + 0.1 * (random[2] - 0.5));
   }
   const WallParting parting(walled.scene(), walled.boundary, walled.resolution, walled.particles.volume, gravity);
@@ -57,7 +56,7 @@ TEST(WallParting, IsTheStressOfTheFormulaAndBodiesTakeTheirs) {
     double modulus = 0;
     const auto add_wall = [&](double distance, const Vec3& normal) {
       const double head = -2 * distance * laws[static_cast<std::size_t>(phase[i])].density * dot(gravity, normal);
-      const double stress = 0.2 * std::abs(2 * pressure[i] + head) * (std::pow(w(2 * distance) / w(dr), 4) - 1);
+      const double stress = 0.2 * std::abs(2 * double{pressure[i]} + head) * (std::pow(w(2 * distance) / w(dr), 4) - 1);
       const double slope =
           scale * walled.particles.volume * kernel.normalisation() * kernel.f(2 * distance / h) / std::pow(h, 4);
       const Vec3 of_wall = multiply(-slope * volume[i] * stress * 2 * distance, normal);

@@ -40,8 +40,8 @@ const std::vector<Layout>& wcsph_layouts() {
 struct WalledLiquid {
   Walled walled;
   WallAverages averages;
-  Array<float> volume, excess, phase, density, viscosity;
-  Array<double> pressure, wall_pressure, wall_density;
+  Array<float> volume, excess, phase, density, viscosity, pressure;
+  Array<double> wall_pressure, wall_density;
   std::array<Array<double>, 3> velocity;
   std::vector<std::int32_t> body;
   VelocityImageRule mirror;
@@ -59,7 +59,7 @@ struct WalledLiquid {
       const auto a = uniform(i, 11), b = uniform(i, 12);
       volume[i] = static_cast<float>(1 + 0.1 * (a[0] - 0.5));
       excess[i] = static_cast<float>(a[1] - 0.5);
-      pressure[i] = a[2] - 0.3;
+      pressure[i] = static_cast<float>(a[2] - 0.3);
       phase[i] = static_cast<float>(i % 3);
       density[i] = i % 3 == 0 ? 1000.0F : i % 3 == 1 ? 1.0F : 800.0F;
       viscosity[i] = i % 3 == 0 ? 1.0F : i % 3 == 1 ? 0.018F : 0.0F;

@@ -97,6 +97,11 @@ void for_each_image_pressure(const SweepContext& context, const T* values, bool 
 void pack_velocity(const SweepContext& context, float* records, int width, int slot,
                    const std::array<const double*, 3>& velocity, const VelocityImageRule& rule);
 
+// The same of u + ahead a, without wall points: what a leap of half a step makes of a velocity need not be kept.
+void pack_velocity(const SweepContext& context, float* records, int width, int slot,
+                   const std::array<const double*, 3>& velocity, const std::array<const float*, 3>& acceleration,
+                   double ahead, const VelocityImageRule& rule);
+
 // The same for a geometric vector (a normal): reflected, without wall motion.
 void pack_vector(const SweepContext& context, float* records, int width, int slot,
                  const std::array<const float*, 3>& values, const std::vector<std::array<float, 3>>& reflection);

@@ -29,7 +29,7 @@ class WallAverages {
   void weigh(const SweepContext& context, WallStencils& stencils) const;
 
   struct Liquid {
-    const double* pressure = nullptr;
+    const float* pressure = nullptr;
     const float* density = nullptr;                    // rho_0
     Vec3 gravity{};                                    // zero along periodic axes
     std::array<const double*, 3> wall_acceleration{};  // per wall point; null: none
@@ -50,7 +50,7 @@ struct WallForce {
 };
 struct WallForceFields {
   std::array<const double*, 3> velocity{};
-  const double* pressure = nullptr;
+  const float* pressure = nullptr;
   const float* volume = nullptr;     // v
   const float* viscosity = nullptr;  // mu; null: inviscid
   bool friction = false;             // at no-slip walls

@@ -50,6 +50,9 @@ namespace spume {
 // Per particle. Images have the values of their sources, and velocities by the rules.
 struct ContinuityFields {
   std::array<const double*, 3> velocity{};
+  // What the velocity has beside it, `ahead` times a; null: nothing. Not beside wall points.
+  std::array<const float*, 3> acceleration{};
+  double ahead = 0;
   const VelocityImageRule* mirror = nullptr;                      // of rates of volume
   const VelocityImageRule* friction = nullptr;                    // of the viscous force; null: the same
   const float* volume = nullptr;                                  // v
@@ -72,12 +75,14 @@ void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, con
                       const ContinuityOut& out);
 
 struct PressureFields {
-  const double* pressure = nullptr;
+  const float* pressure = nullptr;
   const float* volume = nullptr;   // v
   const float* density = nullptr;  // rho_0; null: of one phase without gravity and walls of bodies
   bool several = false;            // phases: repulsion between them
   bool weighted = false;           // between phases
   float repulsion = 0;             // eps
+  // Forces that `out` has beside that of pressure, `out` itself among them; null: none.
+  std::array<const float*, 3> others{};
   // Images at mirrors continue the pressure of their source by density gravity . (r_image - r_source), as Adami et al.
   // (2012) do at walls.
   Vec3 gravity{};

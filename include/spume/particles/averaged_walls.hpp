@@ -26,7 +26,7 @@ class AveragedWalls {
   void weigh(const Arrangement& arrangement);
 
   // Pressure and density of every point, by those of the liquid as it is now; leased until release().
-  void find_pressure(const Arrangement& arrangement, const double* pressure, const float* density);
+  void find_pressure(const Arrangement& arrangement, const float* pressure, const float* density);
   void release();
   const double* pressure() const { return pressure_.data(); }
   const double* density() const { return density_.data(); }
@@ -35,7 +35,7 @@ class AveragedWalls {
   // On each body of the scene, by the pressures found last.
   struct Liquid {
     std::array<const double*, 3> velocity{};
-    const double* pressure = nullptr;
+    const float* pressure = nullptr;
     const float* volume = nullptr;     // over that at rest
     const float* viscosity = nullptr;  // null: inviscid
     bool friction = false;             // at no-slip walls

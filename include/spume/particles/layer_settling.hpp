@@ -29,7 +29,7 @@ struct LayerSettling {
   Vec3 gravity{};         // across sides
 
   struct Forces {
-    const double* pressure = nullptr;
+    const float* pressure = nullptr;
     const FloatVectorScratch& force;  // (rho du/dt)_i by pressure
   };
   using UseForces = std::function<void(const Forces&)>;

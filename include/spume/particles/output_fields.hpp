@@ -38,8 +38,8 @@ struct FieldNeed {
 template <class State>
 class OutputField {
  public:
-  // `read` gives a VectorField or a pointer to an Array<double> or Array<std::int64_t>, [](const State&), or the value
-  // of particle i, [](const State&, std::size_t i).
+  // `read` gives a VectorField, a FloatVectorField or a pointer to an Array<double> or Array<std::int64_t>, [](const
+  // State&), or the value of particle i, [](const State&, std::size_t i).
   template <class Read>
   OutputField(std::string name, CaseCondition standard, Read read, FieldNeed need = {})
       : name_(std::move(name)), standard_(standard), need_(need) {

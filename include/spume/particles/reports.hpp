@@ -42,6 +42,7 @@ class SnapshotTable {
  public:
   // A field of the state.
   void add(std::string name, bool standard, const VectorField& vector);
+  void add(std::string name, bool standard, const FloatVectorField& vector);
   void add(std::string name, bool standard, const Array<double>& values);
   void add(std::string name, bool standard, const Array<std::int64_t>& values);
   // One that is computed for every snapshot.
@@ -57,6 +58,7 @@ class SnapshotTable {
     std::string name;
     bool standard = false;
     std::vector<const Array<double>*> f64 = {};
+    std::vector<const Array<float>*> f32 = {};  // written as doubles
     const Array<std::int64_t>* i64 = nullptr;
     std::function<double(std::size_t)> value = {};
   };

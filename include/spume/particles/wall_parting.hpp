@@ -30,7 +30,7 @@ class WallParting {
   struct Liquid {
     ParticleLaws law;
     std::array<const double*, 3> place{};
-    const double* pressure = nullptr;
+    const float* pressure = nullptr;
     const float* volume = nullptr;  // v
     double gradient_scale = 1;      // of the kernel gradient: SweepContext
   };

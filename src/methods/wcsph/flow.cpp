@@ -80,7 +80,7 @@ Flow::Flow(const LoadedCase& loaded_case)
   arrangement.context.gradient_scale = dimensions / resolution.lattice.divergence_of_position;
   FieldSet& fields = particles.fields;
   particles.add_vector(acceleration, "acceleration", Lifetime::state);
-  particles.add_vector(listed, "listed_position", Lifetime::state);
+  particles.add_vector(listed, "listed_place", Lifetime::state);
   if (features.shifting) particles.add_vector(shift, "shifting_velocity", Lifetime::state);
   excess = &fields.add<double>("density_excess", Lifetime::state);
   phase_number = &fields.add<std::int64_t>("phase", Lifetime::state);
@@ -165,7 +165,7 @@ double Flow::leased_bytes() const {
   const auto add = [&sum](const auto&... arrays) { ((sum += arrays.bytes()), ...); };
   for (const auto* vector : {&half_velocity, &place})
     for (const auto& array : *vector) add(array);
-  for (const auto* vector : {&viscous_force, &pressure_force, &way, &flux, &concentration})
+  for (const auto* vector : {&force, &flux, &concentration})
     for (const auto& array : *vector) add(array);
   add(next_excess, pressure, volume, reduced_excess, rate, diffusion, carried, density, viscosity);
   return sum + walls.leased_bytes();

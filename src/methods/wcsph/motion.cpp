@@ -25,7 +25,7 @@ bool Flow::lists_hold(double dt) const {
     double sum = 0;
     for (int axis = 0; axis < dimensions; ++axis) {
       const double u = (*particles.velocity[axis])[i] + dt / 2 * (*acceleration[axis])[i];
-      const double moved = (*particles.position[axis])[i] + dt * transport(axis, u, i) - (*listed[axis])[i];
+      const double moved = (*particles.position[axis])[i] + dt * transport(axis, u, i) - listed_at(axis, i);
       sum += moved * moved;
     }
     return sum;
@@ -34,11 +34,24 @@ bool Flow::lists_hold(double dt) const {
 }
 
 void Flow::build_lists() {
-  arrangement.sort(particles, listed);
+  ScratchPool& scratch = particles.scratch();
+  VectorScratch place_of_list;
+  scratch.lease(place_of_list, dimensions, size());
+  VectorField at{};
+  for (int axis = 0; axis < dimensions; ++axis) at[axis] = &place_of_list[axis];
+  const auto find_places = [&] {
+    parallel_for(size(), [&](std::size_t i) {
+      for (int axis = 0; axis < dimensions; ++axis) (*at[axis])[i] = listed_at(axis, i);
+    });
+  };
+  find_places();
+  arrangement.sort(particles, at);
+  find_places();  // in the new order
   boundary.next_walls = boundary.walls;
   walls.take_points(listed_time);
-  boundary.make_images(arrangement, particles, listed, 1, {time, time, time}, false);
-  arrangement.find_neighbours(particles, listed, sizes);
+  boundary.make_images(arrangement, particles, at, 1, {time, time, time}, false);
+  arrangement.find_neighbours(particles, at, sizes);
+  scratch.release(place_of_list);
   if (features.tension) tension->find_bands(arrangement, *phase_number);
   walls.find_entries(arrangement);
   has_lists = true;
@@ -55,7 +68,10 @@ void Flow::keep_lists(double dt) {
   parallel_for(size(), [&](std::size_t i) {
     Vec3 r = vector_at(particles.position, dimensions, i);
     boundary.apply_walls(boundary.walls, r, nullptr);
-    for (int axis = 0; axis < dimensions; ++axis) (*listed[axis])[i] = (*particles.position[axis])[i] = r[axis];
+    for (int axis = 0; axis < dimensions; ++axis) {
+      (*particles.position[axis])[i] = r[axis];
+      (*listed[axis])[i] = static_cast<float>(r[axis] - arrangement.origin[axis]);
+    }
   });
   has_moved = steps > 0;
   build_lists();
@@ -99,12 +115,13 @@ Vec3 Flow::held_velocity(std::size_t i, double dt, Vec3& r) const {
 
 void Flow::drift(double dt) {
   ScratchPool& scratch = particles.scratch();
-  scratch.lease(half_velocity, dimensions, size());
+  // Wall points take averages of it; without them the sweep finds it where it packs it.
+  if (features.bodies) scratch.lease(half_velocity, dimensions, size());
   scratch.lease(place, dimensions, size());
   parallel_for(size(), [&](std::size_t i) {
     for (int axis = 0; axis < dimensions; ++axis) {
       const HalfStep half = half_step(axis, i, dt);
-      half_velocity[axis][i] = half.velocity;
+      if (features.bodies) half_velocity[axis][i] = half.velocity;
       place[axis][i] = half.place;
     }
   });
@@ -117,7 +134,6 @@ void Flow::lease_properties() {
   scratch.lease(reduced_excess, size());
   if (needs_density()) scratch.lease(density, size());
   if (needs_viscosity()) scratch.lease(viscosity, size());
-  if (features.shifting) scratch.lease(way, dimensions, size());
   parallel_for(size(), [&](std::size_t i) {
     const PhaseLaw& own = law(i);
     double head = 0;
@@ -127,23 +143,23 @@ void Flow::lease_properties() {
     reduced_excess[i] = static_cast<float>((*excess)[i] - head / (own.sound_speed * own.sound_speed));
     if (needs_density()) density[i] = phase_density[phase_of(i)];
     if (needs_viscosity()) viscosity[i] = static_cast<float>(own.viscosity);
-    for (int axis = 0; features.shifting && axis < dimensions; ++axis)
-      way[axis][i] = static_cast<float>((*shift[axis])[i]);
   });
 }
 
-void Flow::find_rates() {
+void Flow::find_rates(double dt) {
   lease_properties();
   ScratchPool& scratch = particles.scratch();
   scratch.lease(rate, size());
   scratch.lease(diffusion, size());
-  if (features.viscosity) scratch.lease(viscous_force, dimensions, size());
+  if (features.viscosity) scratch.lease(force, dimensions, size());
   if (features.shifting) {
     scratch.lease(carried, size());
     scratch.lease(flux, dimensions, size());
   }
   continuity_sweep(arrangement.context, arrangement.packed,
-                   {.velocity = read(half_velocity),
+                   {.velocity = features.bodies ? read(half_velocity) : read(particles.velocity),
+                    .acceleration = features.bodies ? std::array<const float*, 3>{} : read(acceleration),
+                    .ahead = dt / 2,
                     .mirror = &boundary.volume_rule(),
                     .friction = features.friction ? &boundary.velocity_rule() : nullptr,
                     .volume = volume.data(),
@@ -152,15 +168,16 @@ void Flow::find_rates() {
                     .weighted = features.weighted,
                     .viscosity = needs_viscosity() ? viscosity.data() : nullptr,
                     .common_viscosity = needs_phase() ? 0 : static_cast<float>(laws[0].viscosity),
-                    .shift = read(way),
+                    .shift = read(shift),
                     .reflection = &boundary.reflection()},
                    {.rate = rate.data(),
                     .diffusion = diffusion.data(),
-                    .viscous = write(viscous_force),
+                    .viscous = write(force),
                     .carried = carried.data(),
                     .flux = write(flux)});
   scratch.release(half_velocity);
   scratch.release(viscosity);
+  scratch.release(reduced_excess);
 }
 
 void Flow::advance_density(double dt) {
@@ -183,11 +200,11 @@ void Flow::advance_density(double dt) {
       // delta u . grad s, of the reduced excess and of the hydrostatic part.
       double climbed = carried[i];
       for (int axis = 0; axis < dimensions; ++axis)
-        climbed += wall_gravity[axis] * way[axis][i] / (own.sound_speed * own.sound_speed);
+        climbed += wall_gravity[axis] * (*shift[axis])[i] / (own.sound_speed * own.sound_speed);
       s += dt * climbed;
     }
     next_excess[i] = s;
-    pressure[i] = pressure_at(s, i);
+    pressure[i] = static_cast<float>(pressure_at(s, i));
     volume[i] = static_cast<float>(1 / (1 + s));
     Vec3 r{};
     held_velocity(i, dt, r);
@@ -195,9 +212,7 @@ void Flow::advance_density(double dt) {
   });
   scratch.release(rate);
   scratch.release(diffusion);
-  scratch.release(reduced_excess);
   scratch.release(carried);
-  scratch.release(way);
   move_images(read(place), time + dt);
 }
 
@@ -211,7 +226,7 @@ void Flow::filter_density() {
   density_filter_sweep(arrangement.context, arrangement.packed, volume.data(), density.data(), filtered.data());
   parallel_for(size(), [&](std::size_t i) {
     next_excess[i] = filtered[i];
-    pressure[i] = pressure_at(filtered[i], i);
+    pressure[i] = static_cast<float>(pressure_at(filtered[i], i));
     volume[i] = 1 / (1 + filtered[i]);
   });
 }
@@ -219,7 +234,8 @@ void Flow::filter_density() {
 void Flow::find_pressure_force() {
   walls.find_pressure(arrangement, pressure.data(), density.data());
   ScratchPool& scratch = particles.scratch();
-  scratch.lease(pressure_force, dimensions, size());
+  const auto viscous = read(force);  // null without viscosity
+  scratch.lease(force, dimensions, size());
   if (features.shifting) scratch.lease(concentration, dimensions, size());
   pressure_force_sweep(arrangement.context, arrangement.packed,
                        {.pressure = pressure.data(),
@@ -228,13 +244,14 @@ void Flow::find_pressure_force() {
                         .several = features.several,
                         .weighted = features.weighted,
                         .repulsion = static_cast<float>(options.get<CompressibilityOptions>().repulsion),
+                        .others = viscous,
                         .gravity = wall_gravity,
                         .position = read(place),
                         .wall_pressure = walls.pressure(),
                         .wall_density = walls.density(),
                         .wall_position = walls.place()},
-                       write(pressure_force), write(concentration));
-  if (scene.free_surface) parting.add_forces(size(), parted(read(place)), write(pressure_force));
+                       write(force), write(concentration));
+  if (scene.free_surface) parting.add_forces(size(), parted(read(place)), write(force));
 }
 
 WallParting::Liquid Flow::parted(const std::array<const double*, 3>& at) const {
@@ -254,9 +271,9 @@ void Flow::settle() {
     drift(0);
     lease_properties();
     particles.scratch().lease(pressure, size());
-    parallel_for(size(), [&](std::size_t i) { pressure[i] = pressure_at((*excess)[i], i); });
+    parallel_for(size(), [&](std::size_t i) { pressure[i] = static_cast<float>(pressure_at((*excess)[i], i)); });
     find_pressure_force();
-    use({pressure.data(), pressure_force});
+    use({pressure.data(), force});
     release_leased();
   };
   unsettled = LayerSettling{.scene = scene,
@@ -277,7 +294,7 @@ SurfaceTension::Now Flow::tension_now() {
 
 void Flow::add_tension() {
   tension->find_potentials(tension_now());
-  tension->add_force(tension_now(), write(pressure_force));
+  tension->add_force(tension_now(), write(force));
 }
 
 // Towards fewer particles.
@@ -290,14 +307,14 @@ void Flow::find_shift(std::size_t i) {
   }
   const double bound = largest_shift * expected_speed;
   const double factor = speed2 > bound * bound ? bound / std::sqrt(speed2) : 1;
-  for (int axis = 0; axis < dimensions; ++axis) (*shift[axis])[i] = factor * velocity[axis];
+  for (int axis = 0; axis < dimensions; ++axis) (*shift[axis])[i] = static_cast<float>(factor * velocity[axis]);
 }
 
 void Flow::accept(double dt) {
   const double worst = parallel_max(size(), 0.0, [&](std::size_t i) {
     double sum = std::abs(next_excess[i]) / largest_excess_of_a_flow;
     for (int axis = 0; axis < dimensions; ++axis)
-      if (!std::isfinite(pressure_force[axis][i])) sum = NAN;
+      if (!std::isfinite(force[axis][i])) sum = NAN;
     return sum;
   });
   if (!(worst <= 1)) {
@@ -307,7 +324,7 @@ void Flow::accept(double dt) {
     details.option = "compressibility.max_speed";
     details.value = worst * largest_excess_of_a_flow;
     for (std::size_t i = 0; i < size(); ++i) {
-      if (std::abs(next_excess[i]) <= largest_excess_of_a_flow && std::isfinite(pressure_force[0][i])) continue;
+      if (std::abs(next_excess[i]) <= largest_excess_of_a_flow && std::isfinite(force[0][i])) continue;
       details.particle = (*particles.identifier)[i];
       for (int axis = 0; axis < dimensions; ++axis) details.position[axis] = (*particles.position[axis])[i];
       break;
@@ -316,11 +333,11 @@ void Flow::accept(double dt) {
   }
   solute_transport.keep_shift(shift, dt);
   parallel_blocks(size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
-    const VectorExpression force = scene.body_force ? scene.body_force->clone() : VectorExpression();
+    const VectorExpression given = scene.body_force ? scene.body_force->clone() : VectorExpression();
     for (std::size_t i = first; i < last; ++i) {
       Vec3 a = scene.fluid.gravity;
       if (scene.body_force) {
-        const Vec3 f = force(vector_at(place, dimensions, i), time + dt);
+        const Vec3 f = given(vector_at(place, dimensions, i), time + dt);
         for (std::size_t axis = 0; axis < 3; ++axis) a[axis] += f[axis];
       }
       // Where no wall has moved the particle none has held it.
@@ -334,12 +351,12 @@ void Flow::accept(double dt) {
       if (!free) u = held_velocity(i, dt, r);
       const double specific_volume = 1 / (law(i).density * (1 + next_excess[i]));
       for (int axis = 0; axis < dimensions; ++axis) {
-        const double viscous = features.viscosity ? viscous_force[axis][i] : 0.0F;
-        a[axis] += specific_volume * (double{pressure_force[axis][i]} + viscous);
+        a[axis] += specific_volume * double{force[axis][i]};
         if (features.shifting) a[axis] += double{flux[axis][i]};
-        (*acceleration[axis])[i] = a[axis];
+        // Both halves of a step take the acceleration that is kept between them.
+        (*acceleration[axis])[i] = static_cast<float>(a[axis]);
         (*particles.position[axis])[i] = place[axis][i];
-        (*particles.velocity[axis])[i] = u[axis] + dt / 2 * a[axis];
+        (*particles.velocity[axis])[i] = u[axis] + dt / 2 * (*acceleration[axis])[i];
       }
       (*excess)[i] = next_excess[i];
       if (features.shifting) find_shift(i);
@@ -356,10 +373,10 @@ void Flow::accept(double dt) {
 void Flow::release_leased() {
   ScratchPool& scratch = particles.scratch();
   for (auto* vector : {&half_velocity, &place}) scratch.release(*vector);
-  for (auto* vector : {&viscous_force, &pressure_force, &flux, &concentration}) scratch.release(*vector);
-  for (auto* array : {&next_excess, &pressure}) scratch.release(*array);
+  for (auto* vector : {&force, &flux, &concentration}) scratch.release(*vector);
+  scratch.release(next_excess);
   walls.release();
-  for (auto* array : {&volume, &density, &viscosity, &reduced_excess}) scratch.release(*array);
+  for (auto* array : {&pressure, &volume, &density, &viscosity, &reduced_excess}) scratch.release(*array);
 }
 
 std::vector<WallForce> Flow::forces_on_bodies() {
@@ -373,7 +390,7 @@ std::vector<WallForce> Flow::forces_on_bodies() {
     volume[i] = static_cast<float>(1 / (1 + (*excess)[i]));
     density[i] = static_cast<float>(law(i).density);
     viscosity[i] = static_cast<float>(law(i).viscosity);
-    pressure[i] = pressure_at((*excess)[i], i);
+    pressure[i] = static_cast<float>(pressure_at((*excess)[i], i));
   });
   walls.find_pressure(arrangement, pressure.data(), density.data());
   std::vector<WallForce> forces =

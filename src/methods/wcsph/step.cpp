@@ -46,13 +46,12 @@ Plan make_plan(Flow& f) {
                std::string(has.viscosity ? "(1) and the viscous part of (2)" : "(1), inviscid") +
                    (has.diffusion ? ", with diffusion of density" : "") +
                    (has.shifting ? ", and what shifting carries" : ""),
-               &Flow::find_rates, {f.half_velocity, *f.excess, *f.phase_number, f.shift},
-               {f.rate, f.diffusion, f.viscous_force, f.carried, f.flux, f.way, f.volume, f.reduced_excess, f.density,
-                f.viscosity});
-  stages.add(both, "density", true, f.laws_in_words(), &Flow::advance_density,
-             {f.rate, f.diffusion, f.carried, f.way, p.position, p.velocity, f.acceleration, f.shift, *f.excess,
-              *f.phase_number},
-             {f.next_excess, f.pressure, f.volume, f.place});
+               &Flow::find_rates, {f.half_velocity, p.velocity, f.acceleration, *f.excess, *f.phase_number, f.shift},
+               {f.rate, f.diffusion, f.force, f.carried, f.flux, f.volume, f.reduced_excess, f.density, f.viscosity});
+  stages.add(
+      both, "density", true, f.laws_in_words(), &Flow::advance_density,
+      {f.rate, f.diffusion, f.carried, p.position, p.velocity, f.acceleration, f.shift, *f.excess, *f.phase_number},
+      {f.next_excess, f.pressure, f.volume, f.place});
   const int interval = f.options.get<CompressibilityOptions>().filter_interval;
   stages.sweep(both, "density filter", has.shepard,
                has.shepard ? "average of the phase, every " + std::to_string(interval) + " steps"
@@ -60,13 +59,12 @@ Plan make_plan(Flow& f) {
                &Flow::filter_density, {f.volume, f.density}, {f.next_excess, f.pressure, f.volume},
                [&f, interval] { return f.steps % interval == interval - 1; });
   stages.sweep(both, "pressure force", true, std::string("(2)") + (has.several ? ", (4)" : "") + ": " + several,
-               &Flow::find_pressure_force, {f.pressure, f.volume, f.density}, {f.pressure_force, f.concentration});
+               &Flow::find_pressure_force, {f.pressure, f.volume, f.density}, {f.force, f.concentration});
   stages.sweep(both, "surface tension", has.tension,
                has.tension ? "(11): curvature of the interfaces, force of pairs across them" : no_tension,
-               &Flow::add_tension, {f.volume, interfaces}, {f.pressure_force, interfaces});
+               &Flow::add_tension, {f.volume, interfaces}, {f.force, interfaces});
   stages.add(both, "acceptance", true, "(6): the new state", &Flow::accept,
-             {p.position, p.velocity, f.acceleration, f.place, f.next_excess, f.pressure_force, f.viscous_force, f.flux,
-              f.concentration},
+             {p.position, p.velocity, f.acceleration, f.place, f.next_excess, f.force, f.flux, f.concentration},
              {p.position, p.velocity, f.acceleration, f.shift, *f.excess});
   add_solute_stages(stages, f, has, oxygen::in_words(f.scene), []() -> const oxygen::Supply* { return nullptr; });
   return plan;

@@ -12,7 +12,7 @@ bool MeasuredTransport::meets_air() const {
   return liquid_.free_surface && solutes.oxygen != nullptr && solutes.oxygen->has_surface();
 }
 
-void MeasuredTransport::keep_shift(const VectorField& velocity, double dt) {
+void MeasuredTransport::keep_shift(const FloatVectorField& velocity, double dt) {
   if (liquid_.solutes.scalars == nullptr || !liquid_.shifting) return;
   ParticleStore& particles = liquid_.particles;
   particles.scratch().lease(shift_, particles.dimensions, particles.size());

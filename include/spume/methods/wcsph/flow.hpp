@@ -59,9 +59,9 @@ struct Flow {
   double time = 0;
   std::int64_t steps = 0;
   ParticleStore particles;
-  VectorField acceleration{};  // at the positions of the state
-  VectorField listed{};        // where the lists were made
-  VectorField shift{};         // velocity of shifting, delta u
+  FloatVectorField acceleration{};  // at the positions of the state
+  FloatVectorField listed{};        // where the lists were made, less the origin of the arrangement
+  FloatVectorField shift{};         // velocity of shifting, delta u
   Array<double>* excess = nullptr;
   Array<std::int64_t>* phase_number = nullptr;
   Boundary boundary;
@@ -87,15 +87,16 @@ struct Flow {
 
   // --- Leased within a step.
   VectorScratch half_velocity, place;
-  Array<double> next_excess, pressure;
-  Array<float> volume, reduced_excess, rate, diffusion, carried, density, viscosity;
-  FloatVectorScratch viscous_force, pressure_force, way, flux, concentration;
+  Array<double> next_excess;
+  Array<float> pressure, volume, reduced_excess, rate, diffusion, carried, density, viscosity;
+  FloatVectorScratch force, flux, concentration;
 
   std::size_t size() const { return particles.size(); }
   std::size_t phase_of(std::size_t i) const { return static_cast<std::size_t>((*phase_number)[i]); }
   const PhaseLaw& law(std::size_t i) const { return laws[phase_of(i)]; }
   ParticleLaws law_of_particles() const { return {laws, *phase_number}; }
   double pressure_at(double s, std::size_t i) const { return law(i).pressure(s) + background; }
+  double listed_at(int axis, std::size_t i) const { return arrangement.origin[axis] + double{(*listed[axis])[i]}; }
   double transport(int axis, double u, std::size_t i) const { return features.shifting ? u + (*shift[axis])[i] : u; }
   double mass(std::size_t i) const { return particles.volume * law(i).density; }
   double kinetic_energy() const;
@@ -109,7 +110,7 @@ struct Flow {
   void settle();  // of layers, to where they are at rest
   void keep_lists(double dt);
   void drift(double dt);            // (5), to the middle of the step
-  void find_rates();                // (1), and the viscous part of (2)
+  void find_rates(double dt);       // (1), and the viscous part of (2)
   void advance_density(double dt);  // (1), (3), and (5) to the end of the step
   void filter_density();
   void start_tension();        // the first pressures of whole phases jump by the mean tension

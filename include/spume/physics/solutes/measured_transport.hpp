@@ -23,7 +23,7 @@ class MeasuredTransport {
   explicit MeasuredTransport(const Liquid& liquid) : liquid_(liquid) {}
 
   // By which a step of dt has shifted the particles, before the next velocity takes the place of this one.
-  void keep_shift(const VectorField& velocity, double dt);
+  void keep_shift(const FloatVectorField& velocity, double dt);
   // Sources, diffusion, and the change by the shift of a step of dt up to the time t. Returns the number of sweeps.
   std::int64_t transport(double t, double dt);
   // Behind it: oxygen of released bodies and of the air.
