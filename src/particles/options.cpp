@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/particles/options.hpp"
 
+#include "spume/particles/direct_pressure.hpp"
 #include "spume/particles/number_density.hpp"
 #include "spume/scene/document.hpp"
 #include "spume/scene/option.hpp"
@@ -13,20 +14,30 @@ Section pressure_section() {
       "relaxation time of the number density in steps of courant " + brief(full_displacement) +
       "; with a free surface " + brief(more_steps_below_surface) + " times as long where the liquid is too dense; " +
       shortest(never_relaxed) + ": off";
+  const std::string solver_text =
+      "of the pressure equation: BiCGStab; conjugate gradients, where its matrix is symmetric; a factorisation, for up "
+      "to " +
+      std::to_string(most_particles_of_direct_solver(2)) + " particles in 2-D, " +
+      std::to_string(most_particles_of_direct_solver(3)) + " in 3-D";
   return section<P>("pressure")
-      .word("solver", &P::solver, {{"bicgstab", PressureSolver::bicgstab}, {"cg", PressureSolver::cg}},
-            "Krylov method of the pressure equation")
+      .word("solver", &P::solver,
+            {{"bicgstab", PressureSolver::bicgstab}, {"cg", PressureSolver::cg}, {"direct", PressureSolver::direct}},
+            solver_text.c_str())
       .word("preconditioner", &P::preconditioner,
             {{"jacobi", PreconditionerKind::jacobi}, {"multigrid", PreconditionerKind::multigrid}},
             "multigrid: Jacobi plus one V-cycle on cells")
+      .when("solver", {"bicgstab", "cg"})
       .word("precision", &P::precision, {{"mixed", Precision::mixed}, {"double", Precision::f64}},
             "mixed: residuals in double, corrections in float")
+      .when("solver", {"bicgstab", "cg"})
       .option("tolerance", &P::tolerance, "1", above_up_to(0, 0.1),
               "residual relative to the right-hand side; relative to the divergence removed 1000 times as much will do")
       .option("max_iterations", &P::max_iterations, "", between(1, 1e6), "largest number of iterations per solve")
+      .when("solver", {"bicgstab", "cg"})
       .option("cell_ratio", &P::cell_ratio, "spacing", between(1, 8), "side of the multigrid cells")
       .when("preconditioner", {"multigrid"})
       .option("warm_start", &P::warm_start, "initial guess: the last pressure, carried by the particles")
+      .when("solver", {"bicgstab", "cg"})
       .option("density_relaxation", &P::density_relaxation, "steps", between(1, never_relaxed),
               relaxation_text.c_str());
 }

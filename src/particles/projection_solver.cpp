@@ -85,10 +85,12 @@ struct ProjectionSolver::Operator final : LinearOperator<float> {
   bool without_mean_;
 };
 
-// The same in double, for comparison: A x = -(0 - A x).
+// The same in double, for comparison: A x = -(0 - A x). Its weights are floats, so that it is symmetric to 1e-8 at
+// most, which matters to the tolerances that double is for: the mean is taken out of products of a symmetric matrix
+// too.
 struct ProjectionSolver::DoubleOperator final : LinearOperator<double> {
   DoubleOperator(ProjectionMatrix& matrix, const PressureRows& rows, std::span<const double> zero)
-      : matrix_(matrix), zero_(zero), without_mean_(rows.singular && rows.unsymmetric) {}
+      : matrix_(matrix), zero_(zero), without_mean_(rows.singular) {}
   std::size_t size() const override { return matrix_.size(); }
   void apply(std::span<const double> x, std::span<double> y) override {
     matrix_.residual(x, zero_, y, false);
@@ -153,12 +155,24 @@ Preconditioner<Real>& ProjectionSolver::preconditioner(JacobiPreconditioner<Real
   return jacobi;
 }
 
+ProjectionSolver::Options projection_options(const PressureOptions& pressure, double spacing) {
+  return {.method = pressure.solver == PressureSolver::cg ? KrylovMethod::conjugate_gradients : KrylovMethod::bicgstab,
+          .multigrid = pressure.preconditioner == PreconditionerKind::multigrid,
+          .mixed = pressure.precision == Precision::mixed,
+          .tolerance = pressure.tolerance,
+          .max_iterations = pressure.max_iterations,
+          .cell_size = pressure.cell_ratio * spacing,
+          .direct = pressure.solver == PressureSolver::direct};
+}
+
 double divergence_tolerance(double tolerance) {
   return std::max(tolerance, std::min(1000 * tolerance, 0.01));
 }
 
 ProjectionSolver::ProjectionSolver(const Boundary& boundary, const Options& options) : options_(options) {
-  if (options.multigrid) multigrid_ = std::make_unique<CellMultigrid>(cell_geometry(boundary, options.cell_size));
+  if (options.direct) direct_ = std::make_unique<DirectPressure>();
+  if (options.multigrid && !options.direct)
+    multigrid_ = std::make_unique<CellMultigrid>(cell_geometry(boundary, options.cell_size));
 }
 
 void ProjectionSolver::prepare(const PressureRows& rows, ParticleStore& particles, const VectorField& at,
@@ -204,13 +218,14 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
                              Array<double>& q) {
   const std::size_t n = particles.size();
   matrix_ = &matrix;
-  ScratchArray<double> residual(particles.scratch(), n);
   // At most the share itself: where sources cancel, the right-hand side is smaller than each of them.
   const double of_divergence = rows.reference_norm > 0 ? std::min(1.0, rows.source_norm / rows.reference_norm) : 0;
-  const RefinementOptions refinement{
-      std::max(options_.tolerance, of_divergence * divergence_tolerance(options_.tolerance)), rows.reference_norm,
-      options_.max_iterations, rows.singular};
-  if (options_.mixed) {
+  const double tolerance = std::max(options_.tolerance, of_divergence * divergence_tolerance(options_.tolerance));
+  const RefinementOptions refinement{tolerance, rows.reference_norm, options_.max_iterations, rows.singular};
+  ScratchArray<double> residual(particles.scratch(), n);
+  if (direct_ != nullptr) {
+    solve_directly(rows, tolerance, residual, q);
+  } else if (options_.mixed) {
     MixedSystem system(*this, rows, particles.scratch(), q);
     report_ = solve_refined(system, refinement, residual);
   } else {
@@ -219,8 +234,30 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
   }
 }
 
+// A correction at least, whatever the guess: the result is exact to rounding then, and one more says so.
+void ProjectionSolver::solve_directly(const PressureRows& rows, double tolerance, std::span<double> r,
+                                      std::span<double> q) {
+  constexpr int most_corrections = 3;
+  report_ = {.tolerance = tolerance};
+  const auto find_residual = [&] {
+    matrix_->residual(q, rows.right_hand_side, r, true);
+    ++report_.applications;
+    if (rows.singular) subtract_mean(r);
+  };
+  find_residual();
+  do {
+    direct_->solve(r, r);
+    parallel_for(q.size(), [&](std::size_t i) { q[i] += r[i]; });
+    ++report_.iterations;
+    find_residual();
+    const double size = std::sqrt(parallel_sum(r.size(), [&](std::size_t i) { return r[i] * r[i]; }));
+    report_.relative_residual = rows.reference_norm > 0 ? size / rows.reference_norm : 0;
+    report_.converged = size <= tolerance * rows.reference_norm;
+  } while (!report_.converged && report_.iterations < most_corrections);
+}
+
 double ProjectionSolver::bytes() const {
-  double total = operator_.bytes() + double_work_.bytes();
+  double total = operator_.bytes() + double_work_.bytes() + (direct_ == nullptr ? 0 : direct_->bytes());
   for (const auto* array : {&zero_, &double_diagonal_}) total += array->bytes();
   return multigrid_ == nullptr ? total : total + multigrid_->bytes();
 }

@@ -267,6 +267,9 @@ INSTANTIATE_TEST_SUITE_P(
                       PressureCase{"ClosedBoxCompressible", closed_box, {"fluid.mach=0.1"}},
                       PressureCase{"Tank", tank, {}}, PressureCase{"DamBreak", dam_break, {}},
                       PressureCase{"DamBreak3D", dam_break_3d, {}}, PressureCase{"SquarePatch", square_patch, {}},
+                      PressureCase{"DamBreakByFactors", dam_break, {"pressure.solver=\"direct\""}},
+                      PressureCase{"ClosedBoxByFactors", closed_box, {"pressure.solver=\"direct\""}},
+                      PressureCase{"Periodic3DByFactors", taylor_green_3d, {"pressure.solver=\"direct\""}},
                       PressureCase{"DamBreakJacobi", dam_break, {"pressure.preconditioner=\"jacobi\""}},
                       PressureCase{"ClosedBoxConjugateGradients", closed_box, {"pressure.solver=\"cg\""}}),
     [](const auto& info) { return std::string(info.param.name); });

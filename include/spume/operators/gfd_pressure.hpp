@@ -46,6 +46,7 @@ class GfdPressureOperator final : public ProjectionMatrix {
   void subtract_product(double scale, std::span<const float> x, std::span<double> r) override;
 
   std::size_t size() const override { return context_.list->particles(); }
+  const SweepContext* context() const override { return &context_; }
   double bytes() const { return partial_.bytes() + first_weight_.bytes() + block_start_.bytes() + weight_.bytes(); }
 
  private:

@@ -43,6 +43,7 @@ class PressureOperator final : public ProjectionMatrix {
   void subtract_product(double scale, std::span<const float> x, std::span<double> r) override;
 
   std::size_t size() const override { return context_.list->particles(); }
+  const SweepContext* context() const override { return &context_; }
   double bytes() const { return partial_.bytes() + weight_sum_.bytes(); }
 
  private:

@@ -8,10 +8,14 @@
 
 namespace spume {
 
+struct SweepContext;
+
 class ProjectionMatrix {
  public:
   virtual ~ProjectionMatrix() = default;
   virtual std::size_t size() const = 0;
+  // The lists, images and wall points that its rows pass over; null: rows meet more than these.
+  virtual const SweepContext* context() const { return nullptr; }
   // y = A x in float, with sum w y and sum y y accumulated in double in fixed blocks.
   virtual Dots apply(std::span<const float> x, std::span<float> y, std::span<const float> w) = 0;
   // r = b - A q with q, differences and sums in double. `given` false: without the pressures given behind openings, as

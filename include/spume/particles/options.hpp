@@ -6,7 +6,7 @@ namespace spume {
 
 struct Section;
 
-enum class PressureSolver { bicgstab, cg };
+enum class PressureSolver { bicgstab, cg, direct };
 enum class PreconditionerKind { jacobi, multigrid };
 enum class Precision { mixed, f64 };
 enum class ShiftCorrection { none, first_order, second_order };

@@ -5,7 +5,7 @@
 //   V [ row_i sum_j 2 g_ij weight_j (q_i - q_j) + diagonal_shift_i q_i ] = right_hand_side_i
 //
 // Iterative refinement: residuals in double, corrections by a Krylov method in float; or all in double. Preconditioner:
-// Jacobi, with `multigrid` plus one V-cycle on Cartesian cells.
+// Jacobi, with `multigrid` plus one V-cycle on Cartesian cells. Or by factors of the matrix, exact to rounding.
 #pragma once
 
 #include <functional>
@@ -14,6 +14,8 @@
 
 #include "spume/operators/pressure_operator.hpp"
 #include "spume/particles/boundary.hpp"
+#include "spume/particles/direct_pressure.hpp"
+#include "spume/particles/options.hpp"
 #include "spume/solvers/cell_multigrid.hpp"
 #include "spume/solvers/refinement.hpp"
 
@@ -56,6 +58,7 @@ class ProjectionSolver {
     double tolerance = 1e-6;  // residual over the reference norm
     int max_iterations = 500;
     double cell_size = 0;  // of the multigrid
+    bool direct = false;   // by factorisation instead
   };
   ProjectionSolver(const Boundary& boundary, const Options& options);
 
@@ -63,10 +66,16 @@ class ProjectionSolver {
   void prepare(const PressureRows& rows, ParticleStore& particles, const VectorField& at, const Boundary& boundary);
   // The matrix of these rows. Pressures given behind walls, in the context, are part of its residuals.
   PressureOperator& bind(const PressureRows& rows, const SweepContext& context, PackedNeighbours& packed);
+  // The factors of a matrix bound to these rows, for a direct solver.
+  void factorise(const PressureRows& rows, ProjectionMatrix& matrix) {
+    direct_->factorise(matrix, rows.diagonal, rows.singular);
+  }
   // Improves `q`, which holds the guess and where the pressure is fixed the value, with a matrix bound to these rows.
-  // What did not converge is said in the report: the caller decides.
+  // What did not converge is said in the report: the caller decides. A direct solver has the factors of that matrix.
   void solve(const PressureRows& rows, ProjectionMatrix& matrix, ParticleStore& particles, Array<double>& q);
 
+  const DirectPressure* direct() const { return direct_.get(); }  // null: iterative
+  double factor_bytes() const { return direct_ == nullptr ? 0 : direct_->factor_bytes(); }
   bool has_multigrid() const { return multigrid_ != nullptr; }
   const RefinementResult& report() const { return report_; }
   double bytes() const;  // beside what is leased
@@ -76,6 +85,7 @@ class ProjectionSolver {
   struct DoubleOperator;
   class MixedSystem;
   class DoubleSystem;
+  void solve_directly(const PressureRows& rows, double tolerance, std::span<double> r, std::span<double> q);
   template <class Real>
   Preconditioner<Real>& preconditioner(JacobiPreconditioner<Real>& jacobi);
 
@@ -85,8 +95,12 @@ class ProjectionSolver {
   std::unique_ptr<CellMultigrid> multigrid_;
   CorrectionWorkspace<double> double_work_;  // empty in mixed precision, as are the next
   Array<double> double_diagonal_, zero_;
+  std::unique_ptr<DirectPressure> direct_;
   RefinementResult report_;
 };
+
+// Those of the section [pressure].
+ProjectionSolver::Options projection_options(const PressureOptions& pressure, double spacing);
 
 // Of what pressures given behind walls bring to the right-hand side.
 double given_norm(ProjectionMatrix& matrix, ParticleStore& particles);

@@ -13,16 +13,6 @@
 namespace spume::gfd {
 namespace {
 
-ProjectionSolver::Options solver_options(const Case& options) {
-  const PressureOptions& pressure = options.get<PressureOptions>();
-  return {.method = KrylovMethod::bicgstab,  // the matrix is not symmetric
-          .multigrid = pressure.preconditioner == PreconditionerKind::multigrid,
-          .mixed = pressure.precision == Precision::mixed,
-          .tolerance = pressure.tolerance,
-          .max_iterations = pressure.max_iterations,
-          .cell_size = pressure.cell_ratio * options.spacing};
-}
-
 std::vector<double> of_phases(const Scene& scene, double Phase::*property) {
   std::vector<double> values;
   for (const Phase& phase : scene.phases) values.push_back(phase.*property);
@@ -105,7 +95,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       moments(particles, {.kernel_sum = true, .concentration_gradient = features.shifting, .fading = {}}),
       colours(colours_of(scene)),
       phase_volume(scene.phases.size()),
-      solver(boundary, solver_options(options)) {
+      solver(boundary, projection_options(options.get<PressureOptions>(), options.spacing)) {
   FieldSet& fields = particles.fields;
   pressure = &fields.add<double>("pressure", Lifetime::state);
   phase_number = &fields.add<std::int64_t>("phase", Lifetime::state);

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "spume/methods/gfd/gfd.hpp"
+#include "spume/particles/direct_pressure.hpp"
 #include "spume/particles/thin_regions.hpp"
 #include "spume/scene/document.hpp"
 #include "spume/scene/option.hpp"
@@ -34,6 +35,7 @@ void check(Draft& draft, Problems& problems) {
 }
 
 void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
+  check_direct_solver(draft, scene, problems);
   const double support = support_ratio(draft.options.resolution) * scene.spacing;
   for (const ThinRegion& thin : thin_regions(scene, support)) {
     const std::string name = "region." + std::to_string(thin.region);

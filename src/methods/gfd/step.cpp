@@ -3,35 +3,9 @@
 // The same list is what `spume check` prints and what the ledger times. The stages up to the potentials also run at the
 // start, for the reports of the initial state.
 #include "spume/methods/gfd/gfd.hpp"
-#include "spume/methods/particle_stages.hpp"
+#include "stage_list.hpp"
 
 namespace spume::gfd {
-namespace {
-
-// Of one phase nothing is filtered.
-auto blending(Flow& f) {
-  return [&f](StageRun& run) {
-    f.blend_properties();
-    if (f.features.interfaces) run.pairs = f.arrangement.pair_count();
-  };
-}
-
-// A solve counts what the applications of its matrix stream itself.
-auto solving(Flow& f) {
-  return [&f](StageRun& run) {
-    f.solve_pressure();
-    run.pairs = f.arrangement.pair_count() * f.solver.report().applications;
-  };
-}
-
-auto implicitly(Flow& f) {
-  return [&f](StageRun& run) {
-    f.diffuse_implicitly(run.dt);
-    run.pairs = f.arrangement.pair_count() * (f.implicit_diffusion.report().applications + 2);
-  };
-}
-
-}  // namespace
 
 using enum StagePart;
 Plan make_plan(Flow& f) {
@@ -48,6 +22,7 @@ Plan make_plan(Flow& f) {
     for (const Colour& colour : f.colours) sum += colour.value.bytes() + colour.potential.bytes();
     return sum;
   });
+  const ArrayUse factors([&f] { return f.solver.factor_bytes(); });
   const ParticleStages stages(plan, f);
   const std::string several = has.interfaces ? "several phases" : "one phase";
 
@@ -102,11 +77,16 @@ Plan make_plan(Flow& f) {
   stages.sweep(step, "matrix", true, "(24), with the jumps at the interfaces", &Flow::set_matrix,
                {f.divergence, colours, *f.density, f.offset, *f.laplacian_factor},
                {f.rows.diagonal, f.rows.right_hand_side, f.force_acceleration, f.reciprocal_density});
+  const bool direct = f.solver.direct() != nullptr;
   stages.add(step, "preconditioner", f.solver.has_multigrid(),
-             f.solver.has_multigrid() ? "cells with 1 / rho" : "pressure.preconditioner = \"jacobi\"",
+             f.solver.has_multigrid() ? "cells with 1 / rho"
+             : direct                 ? "the solver is direct"
+                                      : "pressure.preconditioner = \"jacobi\"",
              &Flow::prepare_solver, {p.position, f.rows.diagonal, f.reciprocal_density}, {});
-  stages.add(step, "pressure", true, "(23): BiCGStab", solving(f),
-             {*f.pressure, f.rows.diagonal, f.rows.right_hand_side}, {f.reduced_pressure});
+  stages.add(step, "factorisation", direct, direct ? "UMFPACK" : "the solver is iterative", factorising(f),
+             {f.rows.diagonal}, {factors});
+  stages.add(step, "pressure", true, direct ? "(23): by the factors" : "(23): BiCGStab", solving(f),
+             {*f.pressure, f.rows.diagonal, f.rows.right_hand_side, factors}, {f.reduced_pressure});
   stages.sweep(step, "projection", true, "(21), (22)", &Flow::project_velocity,
                {f.reduced_pressure, f.force_acceleration, f.intermediate_velocity}, {f.next_velocity});
   // (25) r^{k+1}

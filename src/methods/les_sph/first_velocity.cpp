@@ -30,6 +30,7 @@ void Flow::set_in_motion() {
     find_divergence(1);
     set_matrix();
     prepare_solver();
+    if (solver.direct() != nullptr) factorise();
     parallel_for(size(), [&](std::size_t i) { (*reduced_pressure)[i] = 0; });
     solve("the solve of the first impulse");
     project_velocity(1);

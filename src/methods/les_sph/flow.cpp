@@ -11,16 +11,6 @@
 namespace spume::les_sph {
 namespace {
 
-ProjectionSolver::Options solver_options(const Case& options) {
-  const PressureOptions& pressure = options.get<PressureOptions>();
-  return {.method = pressure.solver == PressureSolver::cg ? KrylovMethod::conjugate_gradients : KrylovMethod::bicgstab,
-          .multigrid = pressure.preconditioner == PreconditionerKind::multigrid,
-          .mixed = pressure.precision == Precision::mixed,
-          .tolerance = pressure.tolerance,
-          .max_iterations = pressure.max_iterations,
-          .cell_size = pressure.cell_ratio * options.spacing};
-}
-
 // A free surface has mirrored liquid. At the edges of a solid images are missing as neighbours are beside a void,
 // though the liquid is full there. Without density relaxation voids stay, and the solve of a cavity at Re = 100 and
 // 1/20 fails with the fading.
@@ -60,7 +50,7 @@ Flow::Flow(const LoadedCase& loaded_case)
                           .concentration_gradient = features.shifting,
                           .normal = features.free_surface,
                           .fading = fading}),
-      solver(boundary, solver_options(options)),
+      solver(boundary, projection_options(options.get<PressureOptions>(), options.spacing)),
       solutes(particles, resolution, options, scene) {
   FieldSet& fields = particles.fields;
   pressure = &fields.add<double>("pressure", Lifetime::state);

@@ -213,6 +213,10 @@ void Flow::prepare_solver() {
   solver.prepare(rows, particles, intermediate_position, boundary);
 }
 
+void Flow::factorise() {
+  solver.factorise(rows, solver.bind(rows, arrangement.context, arrangement.packed));
+}
+
 void Flow::solve(const char* name) {
   if (floating != nullptr) {
     const BodyForces::Fields fields{.grid = arrangement.grid,

@@ -85,7 +85,10 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_p
   centring = centred ? "free of divergence half a step ahead" : "time.centred = false";
   relaxation = has.density_relaxation ? "the pressure evens out the number density"
                                       : "pressure.density_relaxation = " + shortest(never_relaxed);
-  preconditioner = options.get<PressureOptions>().preconditioner == PreconditionerKind::multigrid
+  const bool direct = options.get<PressureOptions>().solver == PressureSolver::direct;
+  factorisation = direct ? "UMFPACK" : "the solver is iterative";
+  preconditioner = direct ? "the solver is direct"
+                   : options.get<PressureOptions>().preconditioner == PreconditionerKind::multigrid
                        ? "Jacobi and a V-cycle on cells"
                        : "pressure.preconditioner = \"jacobi\"";
   pressure = has.closed    ? "closed domain: the constant is removed"

@@ -109,6 +109,7 @@ Registration registration() {
   method.sections = sections();
   method.check = check;
   method.check_scene = [](const Draft& draft, const Scene& scene, Problems& problems) {
+    check_direct_solver(draft, scene, problems);
     check_bubble_sources(draft, scene, problems);
     check_initial_scalars(draft, scene, problems);
     check_released_gas(draft, scene, problems);

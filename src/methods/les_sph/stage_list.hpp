@@ -55,6 +55,13 @@ inline Arrays arrays_of(const PressureRows& rows) {
   return {rows.diagonal_shift, rows.diagonal, rows.weight, rows.row, rows.right_hand_side};
 }
 
+inline auto factorising(Flow& f) {
+  return [&f](StageRun& run) {
+    f.factorise();
+    run.pairs = f.arrangement.pair_count() * f.solver.direct()->products();
+  };
+}
+
 // A solve counts what the applications of its matrix stream itself.
 inline auto solving(Flow& f, void (Flow::*solve)()) {
   return [&f, solve](StageRun& run) {

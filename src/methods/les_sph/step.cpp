@@ -18,6 +18,7 @@ Plan make_plan(Flow& f) {
   const auto& r = f.intermediate_position;
   const KeptArrays kept(f);
   const auto living = [&f](Arrays arrays) { return while_bubbles_live(f, std::move(arrays)); };
+  const ArrayUse factors([&f] { return f.solver.factor_bytes(); });
   const ParticleStages stages(plan, f);
 
   stages.add(step, "openings", has.openings, why.openings, &Flow::exchange_with_openings, {p.position, p.velocity},
@@ -92,10 +93,12 @@ Plan make_plan(Flow& f) {
              arrays_of(f.rows));
   stages.add(both, "preconditioner", f.solver.has_multigrid(), why.preconditioner, &Flow::prepare_solver,
              {r, f.rows.diagonal}, {});
+  stages.add(both, "factorisation", f.solver.direct() != nullptr, why.factorisation, factorising(f), {f.rows.diagonal},
+             {factors});
   stages.add(start, "first pressure", true, why.pressure, solving(f, &Flow::solve_first_pressure),
-             {f.rows.diagonal, f.potential}, {f.reduced_pressure, f.pressure});
+             {f.rows.diagonal, f.potential, factors}, {f.reduced_pressure, f.pressure});
   stages.add(step, "pressure", true, why.pressure, solving(f, &Flow::solve_pressure),
-             {f.rows.diagonal, f.potential, f.pressure}, {f.reduced_pressure});
+             {f.rows.diagonal, f.potential, f.pressure, factors}, {f.reduced_pressure});
   stages.sweep(step, "projection", true, "pressure gradient", &Flow::project_velocity,
                {f.reduced_pressure, moments.correction, f.intermediate_velocity}, {f.next_velocity});
   stages.sweep(start, "first acceleration", f.acceleration[0] != nullptr, why.centring, &Flow::set_first_acceleration,

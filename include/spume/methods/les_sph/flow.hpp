@@ -206,6 +206,7 @@ struct Flow {
   void set_first_source();
   void find_matrix(double dt);
   void prepare_solver();
+  void factorise();
   void solve_pressure();        // (x)
   void solve_first_pressure();  // lap p = div F - tr(grad u . grad u)
   void set_first_acceleration();

@@ -15,8 +15,8 @@ Plan make_plan(Flow& flow);
 struct Reasons {
   Reasons(const LoadedCase& loaded, const Features& has, bool force_has_potential);
   std::string openings, impulse, advection, bubbles, images, surface, shift, gradients, curvature, closure, integrator,
-      forces, viscosity, sponges, divergence, centring, relaxation, preconditioner, pressure, events, level, balance,
-      packing, oxygen, ripples;
+      forces, viscosity, sponges, divergence, centring, relaxation, preconditioner, factorisation, pressure, events,
+      level, balance, packing, oxygen, ripples;
 };
 
 }  // namespace spume::les_sph
