@@ -41,6 +41,12 @@ def circulation(run):
     return (edges[1:] + edges[:-1]) / 2, total / np.maximum(number, 1)
 
 
+def recirculation(run):
+    """Volume that goes up, and down, a second and unit of depth: the largest stream function of the mean flow."""
+    x, upward = circulation(run)
+    return float(np.abs(np.cumsum(upward) * (x[1] - x[0])).max())
+
+
 def measure(runs):
     measured = {}
     for name, run in runs.items():
@@ -55,4 +61,5 @@ def measure(runs):
             measured[f"{name}_steady_lift_error"] = float(abs(lift[steady].mean() / due[steady].mean() - 1))
             measured[f"{name}_bubbles"] = float(due[steady].mean() * width / area_of_one(run))
             measured[f"{name}_upflow"] = float(np.abs(circulation(run)[1]).max())
+            measured[f"{name}_recirculation"] = recirculation(run)
     return measured

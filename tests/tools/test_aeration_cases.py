@@ -138,3 +138,34 @@ class BubbleColumnIn3D(CaseTest):
         self.assertAlmostEqual(self.measured(slip=0.7)["power_error"], 0.2, places=6)
         self.assertAlmostEqual(self.measured(lost=1e-6)["gas_balance"], 1e-6 / 2.1e-3, places=9)
         self.assertTrue(np.isnan(self.measured(until=8.0)["mixing_time"]))
+
+
+class BubbleColumn(CaseTest):
+    """Two bubbles, the second of half the length, that lift the surface by what they displace; liquid that goes up in the
+    middle as a cosine."""
+
+    def measured(self, lift=1.0, turned=1.0):
+        folder, module = self.run_of("bubble_column")
+        t = np.linspace(0, 2.5, 251)
+        area = np.pi * 0.007 * 0.0045 * (1 + 0.25) * (t > 0)
+        write_table(folder / "bodies.csv", {"t": np.repeat(t, 2), "body": np.tile([0, 1], t.size),
+                                            "scale": np.tile([1, 0.5], t.size) * np.repeat(t > 0, 2)})
+        write_table(folder / "probes.csv", {"t": t, "level_1": 0.35 + lift * area / 0.18, "level_2": 0.35 + lift * area / 0.18})
+        points = lattice((0, 0), (0.18, 0.35), 0.01)
+        write_snapshots(folder / "fluid.vtkhdf", (0, 1, 1.6, 2.5), lambda time: points, {
+            "velocity": lambda r, time: np.column_stack(
+                [0 * r[:, 0], (time >= 1.6) * turned * -0.1 * np.cos(2 * np.pi * r[:, 0] / 0.18)])})
+        return module.measure({"column": Results(folder)})
+
+    def test_known_answers_are_found(self):
+        measured = self.measured()
+        self.assertLess(measured["column_lift_error"], 1e-9)
+        self.assertLess(measured["column_steady_lift_error"], 1e-9)
+        self.assertAlmostEqual(measured["column_bubbles"], 1.25, places=9)
+        # The quarters of the wave lie between edges of the columns, half a centimetre off: cos(2 pi 0.5 / 18) of it.
+        self.assertAlmostEqual(measured["column_recirculation"], 0.1 * 0.18 / (2 * np.pi) * np.cos(np.pi / 18), delta=2e-5)
+
+    def test_a_lower_lift_and_a_weaker_flow_are_seen(self):
+        self.assertAlmostEqual(self.measured(lift=0.9)["column_lift_error"], 0.1, places=9)
+        ratio = self.measured(turned=0.5)["column_recirculation"] / self.measured()["column_recirculation"]
+        self.assertAlmostEqual(ratio, 0.5, places=6)
