@@ -348,7 +348,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   add_flaps(draft, scene, problems);
   problems.throw_if_any();
   scene.walls = make_walls(scene.bodies, scene.motions);
-  loaded.bytes_per_particle = method->bytes_per_particle(draft.options, draft.dimensions);
+  loaded.bytes_per_particle = method->bytes_per_particle(draft);
   const double most = machine_memory_bytes() / loaded.bytes_per_particle;
   if (method->uses_grid) set_grid(draft, most, scene, problems);
   Lattice lattice;

@@ -24,7 +24,7 @@ const CaseSchema& schema() {
     method.name = "walled";
     method.fills_regions = true;
     method.honours_bodies = true;
-    method.bytes_per_particle = [](const Case&, int) { return 100.0; };
+    method.bytes_per_particle = [](const Draft&) { return 100.0; };
     method.default_courant = [](const Case&, const Scene&) { return 0.2; };
     method.default_courant_in_words = "0.2";
     method.output_fields = [](const Case&) { return std::vector<OutputFieldInfo>{{"velocity"}}; };

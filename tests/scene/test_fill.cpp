@@ -333,7 +333,9 @@ TEST(Fill, MoreThanTheMemoryHoldsIsRefusedBeforeAllocation) {
   ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
   const rlimit small{3'000'000'000, before.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_AS, &small), 0);
-  const double most = 3e9 / registered_method("les-sph").bytes_per_particle(Case(), 2);
+  Draft flat;
+  flat.dimensions = 2;
+  const double most = 3e9 / registered_method("les-sph").bytes_per_particle(flat);
   const std::vector<std::string> spacing{"resolution.spacing=0.0003"};  // 2.2e7 particles in all
   const auto plain = problems_of(tank("[[liquid]]\n"), spacing);
   const auto shaped = problems_of(tank("[[liquid]]\nwhere = \"1 + x\"\n"), spacing);

@@ -47,7 +47,7 @@ MethodDeclaration particles_method(const std::string& name) {
   method.name = name;
   method.fills_regions = true;
   method.sections = {heat_section()};
-  method.bytes_per_particle = [](const Case&, int) { return 100.0; };
+  method.bytes_per_particle = [](const Draft&) { return 100.0; };
   method.default_courant = [](const Case&, const Scene& scene) { return scene.free_surface ? 0.4 : 0.1; };
   method.default_courant_in_words = "0.1, " + name + " 0.4";
   method.output_fields = [](const Case&) { return std::vector<OutputFieldInfo>{{"temperature"}}; };

@@ -156,7 +156,7 @@ Registration heat_conduction() {
   method.sections = {section<HeatOptions>("heat")
                          .option("temperature", &HeatOptions::temperature, "at the start: an expression of x, y, z")
                          .required()};
-  method.bytes_per_particle = [](const Case&, int dimensions) { return 8.0 * (2 * dimensions + 2); };
+  method.bytes_per_particle = [](const Draft& draft) { return 8.0 * (2 * draft.dimensions + 2); };
   method.default_courant = [](const Case&, const Scene&) { return 0.5; };
   method.default_courant_in_words = "0.5";
   method.output_fields = [](const Case& options) { return field_infos(HeatConduction::output_fields(), options); };

@@ -51,7 +51,7 @@ struct MethodDeclaration {
   std::function<void(const Draft&, const Scene&, Problems&)> check_scene = {};
 
   // Bytes per particle or point of the grid that a run holds once its first steps are done; a run needs no less.
-  std::function<double(const Case&, int dimensions)> bytes_per_particle;
+  std::function<double(const Draft&)> bytes_per_particle;
 
   // Courant number of a case that gives none, and in words what decides it.
   std::function<double(const Case&, const Scene&)> default_courant;

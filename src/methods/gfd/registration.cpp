@@ -53,7 +53,9 @@ void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
 
 // Fields, lists of neighbours, sweep records and the pressure system of a large case: `spume check` and the arrays of a
 // run of 40 000 particles give what is left beside the lists.
-double bytes_per_particle(const Case& options, int dimensions) {
+double bytes_per_particle(const Draft& draft) {
+  const Case& options = draft.options;
+  const int dimensions = draft.dimensions;
   const double support = support_ratio(options.resolution);
   const double neighbours = std::numbers::pi * support * support * (dimensions == 3 ? 4.0 / 3 * support : 1);
   return (dimensions == 3 ? 460 : 390) + 4.63 * neighbours;

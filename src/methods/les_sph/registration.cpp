@@ -78,7 +78,9 @@ void check(Draft& draft, Problems& problems) {
 
 // Fields, neighbour lists with the particles of a full support, sweep records and the pressure system of a large case.
 // Left out is what falls with its size (images beside walls) and what the scene adds (surfaces, bubbles).
-double bytes_per_particle(const Case& options, int dimensions) {
+double bytes_per_particle(const Draft& draft) {
+  const Case& options = draft.options;
+  const int dimensions = draft.dimensions;
   const double support_radius = support_ratio(options.resolution);
   const double neighbours =
       std::numbers::pi * support_radius * support_radius * (dimensions == 3 ? 4.0 / 3 * support_radius : 1);

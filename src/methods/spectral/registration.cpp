@@ -14,8 +14,8 @@ void check(Draft& draft, Problems& problems) {
 }
 
 // The states of the integrator; left out are the planes of a product, whose share falls with the size of the grid.
-double bytes_per_point(const Case& options, int /*dimensions*/) {
-  const SpectralOptions& numerics = options.get<SpectralOptions>();
+double bytes_per_point(const Draft& draft) {
+  const SpectralOptions& numerics = draft.options.get<SpectralOptions>();
   // Three components of N/2 + 1 complex modes are 3 numbers per point.
   const double number = numerics.precision == FieldPrecision::f64 ? 8 : 4;
   const double states = numerics.integrator == Integrator::ab2 ? 3 : 4;

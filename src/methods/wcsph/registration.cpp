@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/methods/wcsph/registration.hpp"
 
+#include <algorithm>
 #include <numbers>
 
 #include "spume/methods/wcsph/wcsph.hpp"
@@ -55,12 +56,18 @@ void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
         "particles would be shifted across a free surface; expected phases that fill the domain: remove the key");
 }
 
-// Fields, lists of neighbours (18 bytes a batch of eight, the last half empty) and sweep records: the arrays of runs of
-// 40 000 particles.
-double bytes_per_particle(const Case& options, int dimensions) {
-  const double reach = support_ratio(options.resolution) + options.get<ListOptions>().skin;
-  const double neighbours = std::numbers::pi * reach * reach * (dimensions == 3 ? 4.0 / 3 * reach : 1);
-  return (dimensions == 3 ? 300 : 230) + 2.4 * neighbours;
+// Fields, cells, sweep records, leased arrays and lists of neighbours: the arrays of `spume check` of runs of 3,000 to
+// 100,000 particles. Left out is what falls with their size, images and the points of walls.
+double bytes_per_particle(const Draft& draft) {
+  const bool deep = draft.dimensions == 3, tension = draft.surface_tension > 0 && draft.phases.size() > 1;
+  const bool bodies = std::any_of(draft.bodies.begin(), draft.bodies.end(),
+                                  [](const auto& body) { return body.wall != BoundaryKind::open; });
+  double bytes = deep ? 207 : 164;
+  if (tension) bytes += deep ? 160 : 102;  // shifting, bands, colours, normals and curvatures
+  if (bodies) bytes += deep ? 36 : 28;     // velocities of half a step, densities, viscosities
+  const double reach = support_ratio(draft.options.resolution) + draft.options.get<ListOptions>().skin;
+  const double neighbours = std::numbers::pi * reach * reach * (deep ? 4.0 / 3 * reach : 1);
+  return bytes + (tension || bodies ? 3.8 : 2.3) * neighbours;
 }
 
 // Of the smoothing length over the sum of sound speed and speed.
