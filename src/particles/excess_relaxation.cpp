@@ -18,7 +18,7 @@ constexpr double believed_excess = 0.06;
 // What the disorder of an arrangement makes of single kernel sums: their standard deviation is 0.006 in the stirred
 // tank. Evening out less than 0.005 damps: a standing wave 25 spacings deep keeps 0.19 of its kinetic energy after ten
 // periods without relaxation and with 0.01, 0.15 if nothing is let be.
-constexpr double local_disorder = 0.01;
+constexpr double disorder_of_sums = 0.01;
 
 }  // namespace
 
@@ -78,7 +78,7 @@ void ExcessRelaxation::measure() {
   const double mean = total.difference / std::max(total.weight, 1.0);
   parallel_for(n, [&](std::size_t i) {
     const double local = difference(i) - mean;
-    const double uneven = local - std::clamp(local, -local_disorder, local_disorder);
+    const double uneven = local - std::clamp(local, -disorder_of_sums, disorder_of_sums);
     (*lack_)[i] = mean + interior(divergence_of_position[i]) * uneven;
   });
 }
