@@ -8,7 +8,7 @@
 namespace spume {
 
 // Finds the triangle of a surface that is nearest to a point. Keeps what it needs of the surface. Any number of threads
-// may ask at once.
+// may ask at once. It has a triangle at least.
 class MeshTree {
  public:
   explicit MeshTree(const TriangleSurface& surface);

@@ -37,6 +37,9 @@ BodyWalls::BodyWalls(const Scene& scene, const Resolution& resolution, double pa
   for (const Body& body : scene.bodies)
     surfaces_move_ = surfaces_move_ || (body.wall != BoundaryKind::open && (body.velocity || body.motion));
   if (parts_.size() > many_parts) bounds_.emplace(scene.domain, resolution.spacing, resolution.support_radius);
+  const auto walled = [](const auto& part) { return !part->empty(); };
+  if (std::count_if(parts_.begin(), parts_.end(), walled) == 1)
+    only_ = std::find_if(parts_.begin(), parts_.end(), walled)->get();
   const RigidWalls& still = *parts_[0];
   points_ = still.points();
   standing_ = points_.size();
@@ -127,6 +130,11 @@ BodyWalls::Nearest BodyWalls::nearest_part(const Vec3& point) const {
   return best;
 }
 
+// The same part; where there is one alone it is not asked.
+const RigidWalls& BodyWalls::nearest_walls(const Vec3& point) const {
+  return only_ != nullptr ? *only_ : *nearest_part(point).part;
+}
+
 double BodyWalls::distance(const Vec3& point) const {
   return nearest_part(point).distance;
 }
@@ -141,7 +149,7 @@ bool BodyWalls::surely_farther(const Vec3& point, double gap) const {
 }
 
 BodyWalls::NearestWall BodyWalls::nearest_wall(const Vec3& point) const {
-  const RigidWalls& walls = *nearest_part(point).part;
+  const RigidWalls& walls = nearest_walls(point);
   NearestWall found;
   static_cast<NearestPoint&>(found) = walls.nearest(point);
   found.body = walls.body_near(found.point);
@@ -157,11 +165,11 @@ void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
   NearestPoint near = walls.nearest(position);
   const NearestPoint first = near;
   position = add(near.point, multiply(std::max(gap, std::abs(near.distance)), near.normal));
-  if (!(nearest_part(position).part->exact_distance(position) >= 0.5 * gap)) {
+  if (!(nearest_walls(position).exact_distance(position) >= 0.5 * gap)) {
     // Another wall is there: before the nearest face.
     for (int round = 0; round < 3 && near.distance < gap; ++round) {
       position = add(near.point, multiply(gap, near.normal));
-      near = nearest_part(position).part->nearest(position);
+      near = nearest_walls(position).nearest(position);
     }
   }
   if (velocity == nullptr) return;

@@ -84,7 +84,7 @@ void ContinuedLiquid::find(const Arrangement& arrangement, MomentFields& moments
   parallel_select(divergence_of_position.size(), beside_, [&](std::size_t i) {
     const Vec3 place = vector_at(at, d, i);
     if (bodies.surely_farther(place, reach)) return false;
-    // The surface before the distance, which a mesh takes 7 us for.
+    // The surface before the distance, which a mesh takes 3 us for.
     bool sees = is_near(i);
     for (const std::int32_t j : list.of(i)) sees = sees || is_near(arrangement.particle_of(j));
     return sees && bodies.nearer_than(place, reach);

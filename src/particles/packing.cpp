@@ -163,11 +163,13 @@ void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boun
     return true;
   };
   move_in_rounds(arrangement, particles, boundary, resolution, at, t, start, [&](std::size_t i, auto&& f) {
-    const double distance = bodies.distance(vector_at(at, d, i));
+    const Vec3 place = vector_at(at, d, i);
     // Wall points beside the surface are there or not as a whole: those that move horizontally see their neighbours
     // mirrored at the wall instead, which spaces the first row evenly.
     const bool horizontally = sees_surface[static_cast<std::size_t>((*particles.identifier)[i])] != 0;
     const double reach = (horizontally ? level_layers : packed_layers) * resolution.spacing;
+    if (bodies.surely_farther(place, reach)) return Vec3{};
+    const double distance = bodies.distance(place);
     if (distance >= reach) return Vec3{};
     Vec3 gradient{};
     const auto add_neighbour = [&](const Vec3& dr) {
@@ -178,7 +180,7 @@ void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boun
     // `across` for every length that its mirror image lies before it.
     Vec3 normal{}, across{};
     if (horizontally) {
-      normal = bodies.normal(vector_at(at, d, i));
+      normal = bodies.normal(place);
       Vec3 aside = normal;
       aside[d - 1] = 0;
       across = multiply(-2 / std::max(dot(aside, aside), least_aside), aside);

@@ -23,8 +23,12 @@ CellGeometry cell_geometry(const Boundary& boundary, double cell_size) {
     for (int side = 0; side < 2; ++side) geometry.wall[axis][side] = boundary.holds(axis, side);
   }
   for (const SolidBox& box : domain.boxes) geometry.solids.push_back({box.lower, box.upper});
-  if (const BodyWalls* bodies = boundary.bodies(); bodies != nullptr)
+  if (const BodyWalls* bodies = boundary.bodies(); bodies != nullptr) {
     geometry.distance = [bodies](const std::array<double, 3>& place) { return bodies->distance(place); };
+    geometry.farther = [bodies](const std::array<double, 3>& place, double gap) {
+      return bodies->surely_farther(place, gap);
+    };
+  }
   return geometry;
 }
 

@@ -69,13 +69,11 @@ struct ShellLattice {
 };
 
 // Onto the middle of the shell, along the normal: twice, as a normal turns on the way.
-NearestPoint onto_shell(const Combination& walls, ShellPoint& point) {
-  NearestPoint near = walls.nearest(point.place);
+void onto_shell(const Combination& walls, ShellPoint& point) {
   for (int round = 0; round < 2; ++round) {
+    const NearestPoint near = walls.nearest(point.place);
     point.place = add(point.place, multiply(point.distance - near.distance, near.normal));
-    near = walls.nearest(point.place);
   }
-  return near;
 }
 
 std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domain, double spacing, double reach) {

@@ -29,6 +29,8 @@ void CellMultigrid::mark_bodies() {
       std::array<double, 3> middle{};
       for (std::size_t a = 0; a < dimensions; ++a)
         middle[a] = axis_[a].origin + (first_cell_[a] + (a == 0 ? i : start[a]) + 0.5) * width_[a];
+      // Faces are cut within half a width of a cell.
+      if (geometry_.farther && geometry_.farther(middle, 2 * width_[0])) continue;
       const double distance = geometry_.distance(middle);
       const auto open = [&](double away, std::size_t a) {
         return static_cast<float>(std::clamp(0.5 + away / width_[a], 0.0, 1.0));

@@ -68,7 +68,7 @@ class BodyWalls {
   bool is_wet(std::size_t point) const;
   // Distance from the walls, negative inside them; farther than four support radii from a surface a bound of it.
   double distance(const Vec3& point) const;
-  Vec3 normal(const Vec3& point) const { return nearest_part(point).part->nearest(point).normal; }
+  Vec3 normal(const Vec3& point) const { return nearest_walls(point).nearest(point).normal; }
   struct NearestWall : NearestPoint {
     std::size_t body = 0;          // among those of the scene
     double half_width = infinite;  // of a body that grows, from its middle to its farthest face, now
@@ -103,10 +103,12 @@ class BodyWalls {
     double distance = infinite;
   };
   Nearest nearest_part(const Vec3& point) const;
+  const RigidWalls& nearest_walls(const Vec3& point) const;
 
   const Scene& scene_;
   const Resolution resolution_;
   std::vector<std::unique_ptr<RigidWalls>> parts_;   // what stands still, and each motion of the scene
+  const RigidWalls* only_ = nullptr;                 // the one of them that has walls, if there is one
   std::optional<MovingBounds> bounds_;               // of many moving parts
   std::vector<WallPoint> points_;                    // of all parts, as they are
   std::vector<std::uint16_t> body_;                  // of each point, among the bodies of the scene

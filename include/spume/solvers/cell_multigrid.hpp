@@ -38,6 +38,8 @@ struct CellGeometry {
   std::vector<Box> solids;                    // impermeable boxes inside the domain
   // Of impermeable bodies of any shape: the distance from their surface, negative inside; null without.
   std::function<double(const std::array<double, 3>&)> distance = {};
+  // True where a place is known to lie farther outside than that, which costs less; null: never known.
+  std::function<bool(const std::array<double, 3>&, double)> farther = {};
   double cell_size = 0;  // about 1.5 particle spacings; adjusted to fit between walls
 };
 
