@@ -4,6 +4,8 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <tuple>
 
 #include "spume/core/vectors.hpp"
 #include "spume/geometry/mesh.hpp"
@@ -160,6 +162,82 @@ class Faults {
     return total / (4 * std::numbers::pi);
   }
 
+  struct Span {
+    std::size_t triangle = 0, part = 0;
+    std::array<Vec3, 3> corners{};
+    Bounds bounds{};
+  };
+
+  static bool meet(const Bounds& a, const Bounds& b) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (a.lower[k] > b.upper[k] || a.upper[k] < b.lower[k]) return false;
+    return true;
+  }
+  // Whether the line from a to b passes the triangle between its corners.
+  static bool passes(const Vec3& a, const Vec3& b, const std::array<Vec3, 3>& corners) {
+    const auto side = [](const Vec3& o, const Vec3& u, const Vec3& v, const Vec3& w) {
+      return dot(subtract(u, o), cross(subtract(v, o), subtract(w, o)));
+    };
+    const auto& [u, v, w] = corners;
+    if (!(side(a, u, v, w) * side(b, u, v, w) < 0)) return false;
+    const double first = side(a, b, u, v), second = side(a, b, v, w), third = side(a, b, w, u);
+    return (first > 0 && second > 0 && third > 0) || (first < 0 && second < 0 && third < 0);
+  }
+  static bool cross_each_other(const Span& s, const Span& t) {
+    for (const auto& [own, other] : {std::pair(&s, &t), std::pair(&t, &s)})
+      for (std::size_t k = 0; k < 3; ++k)
+        if (passes(own->corners[k], own->corners[(k + 1) % 3], other->corners)) return true;
+    return false;
+  }
+
+  // The first two triangles that cross once every part is moved by `way` against the part before it. Triangles are
+  // looked at in their order along x, each beside those that reach as far as it begins.
+  std::optional<std::pair<std::size_t, std::size_t>> crossing(const std::vector<Part>& parts,
+                                                              const std::vector<std::size_t>& number, const Vec3& way) {
+    std::vector<Span> spans;
+    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
+      Span span{.triangle = t, .part = number[root(t)]};
+      for (std::size_t c = 0; c < 3; ++c)
+        span.corners[c] = add(point(surface_.triangles[t][c]), multiply(static_cast<double>(span.part), way));
+      span.bounds = {span.corners[0], span.corners[0]};
+      for (const Vec3& corner : span.corners)
+        for (std::size_t k = 0; k < 3; ++k) {
+          span.bounds.lower[k] = std::min(span.bounds.lower[k], corner[k]);
+          span.bounds.upper[k] = std::max(span.bounds.upper[k], corner[k]);
+        }
+      const bool near = std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
+        return &part != &parts[span.part] && meet(part.bounds, span.bounds);
+      });
+      if (near) spans.push_back(span);
+    }
+    std::sort(spans.begin(), spans.end(), [](const Span& a, const Span& b) {
+      return std::tuple(a.bounds.lower[0], a.triangle) < std::tuple(b.bounds.lower[0], b.triangle);
+    });
+    std::vector<const Span*> open;
+    for (const Span& span : spans) {
+      std::erase_if(open, [&](const Span* one) { return one->bounds.upper[0] < span.bounds.lower[0]; });
+      for (const Span* one : open)
+        if (one->part != span.part && meet(one->bounds, span.bounds) && cross_each_other(*one, span))
+          return std::minmax(one->triangle, span.triangle);
+      open.push_back(&span);
+    }
+    return std::nullopt;
+  }
+
+  // Moved a little, so that no edge meets an edge, as those of boxes do: parts that only touch then cross one way
+  // alone.
+  bool look_at_crossings(const std::vector<Part>& parts, const std::vector<std::size_t>& number) {
+    double size = 0;
+    for (const Part& part : parts) size = std::max(size, length(subtract(part.bounds.upper, part.bounds.lower)));
+    const Vec3 way = multiply(1e-7 * size, {0.61, 0.47, 0.63});
+    const auto found = crossing(parts, number, way);
+    if (!found || !crossing(parts, number, multiply(-1, way))) return false;
+    faults_.push_back("its parts cross: " + triangle_at(found->first) + " and " + triangle_at(found->second) +
+                      " pass through each other; expected parts that lie apart or within each other: unite them to one "
+                      "surface, or write a [[body]] for each");
+    return true;
+  }
+
   // Every part is closed and of one direction. A part in nothing faces outwards, a hollow in a part inwards.
   void look_at_parts() {
     std::vector<Part> parts;
@@ -184,6 +262,7 @@ class Faults {
           part.bounds.upper[k] = std::max(part.bounds.upper[k], point(corner)[k]);
         }
     }
+    if (parts.size() > 1 && look_at_crossings(parts, number)) return;
     for (const Part& part : parts) {
       const std::size_t first = part.triangles.front();
       const Vec3& corner = point(surface_.triangles[first][0]);

@@ -8,6 +8,7 @@
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -25,11 +26,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t largest_file = 2u << 30;  // 40 million triangles of binary STL
 constexpr std::size_t most_triangles = 40'000'000;
 
+// With what stands before .gz.
 std::string extension_of(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
+  const fs::path file(path);
+  std::string extension = file.extension().string();
+  if (extension == ".gz") extension = file.stem().extension().string() + extension;
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return extension;
 }
@@ -74,6 +77,25 @@ void check_binary_stl(const std::string& path, std::uintmax_t size) {
     throw InputError("the mesh '" + path + "' is damaged: the " + std::to_string(count) +
                      " triangles that it counts need " + std::to_string(wanted) + " bytes, found " +
                      std::to_string(size) + save_again);
+}
+
+// Points that no face names do not come out of the reader of assimp, whatever they are.
+void check_obj_points(const std::string& path) {
+  std::ifstream in(path);
+  std::size_t number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    if (line.compare(0, 2, "v ") != 0 && line.compare(0, 2, "v\t") != 0) continue;
+    const char* at = line.c_str() + 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      char* end = nullptr;
+      const double value = std::strtod(at, &end);
+      if (end == at || !std::isfinite(value))
+        throw InputError("the mesh '" + path + "' is damaged: line " + std::to_string(number) +
+                         " must give a point three finite numbers, found '" + printable(line) + "'" + save_again);
+      at = end;
+    }
+  }
 }
 
 // A polygon in space is cut as seen along its normal, so that hollow corners stay hollow. One that cannot be cut, for
@@ -186,17 +208,19 @@ void weld(TriangleSurface& surface) {
 
 TriangleSurface read_mesh(const std::string& path) {
   const std::string extension = extension_of(path);
-  if (extension != ".stl" && extension != ".obj" && extension != ".ply")
-    throw InputError("the mesh '" + path + "' must be a .stl, .obj or .ply file");
+  const bool is_ply = extension == ".ply" || extension == ".ply.gz";
+  if (extension != ".stl" && extension != ".obj" && !is_ply)
+    throw InputError("the mesh '" + path + "' must be a .stl, .obj, .ply or .ply.gz file");
   std::error_code failure;
   if (!fs::is_regular_file(path, failure)) throw InputError("there is no mesh file '" + path + "'");
   const std::uintmax_t size = fs::file_size(path, failure);
   if (failure) throw InputError("cannot read the mesh '" + path + "': " + failure.message());
-  if (size > largest_file) throw InputError("the mesh '" + path + "' is larger than 2 GiB");
+  if (size > largest_mesh_file) throw InputError("the mesh '" + path + "' is larger than 2 GiB");
   if (extension == ".stl") check_binary_stl(path, size);
+  if (extension == ".obj") check_obj_points(path);
 
   std::vector<PolygonMesh> meshes;
-  if (extension == ".ply") {
+  if (is_ply) {
     meshes.push_back(read_ply(path));
     check_size(meshes[0].points.size(), meshes[0].faces.size(), path);
   } else {

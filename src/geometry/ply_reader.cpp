@@ -3,13 +3,14 @@
 // then follow the values of every element, as words of text or as bytes.
 #include "ply_reader.hpp"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <memory>
 #include <sstream>
 
 #include "spume/core/error.hpp"
@@ -195,13 +196,30 @@ class Reader {
   std::vector<Element> elements_;
 };
 
+// Also of a file that gzip has made smaller, by what it begins with.
+std::string contents_of(const std::string& path) {
+  const std::unique_ptr<gzFile_s, decltype(&gzclose)> in(gzopen(path.c_str(), "rb"), &gzclose);
+  if (in == nullptr) throw InputError("cannot read the mesh '" + path + "'");
+  std::string data;
+  std::vector<char> block(std::size_t{1} << 20);
+  for (int count = 1; count > 0;) {
+    count = gzread(in.get(), block.data(), static_cast<unsigned>(block.size()));
+    if (count > 0) data.append(block.data(), static_cast<std::size_t>(count));
+    if (data.size() > largest_mesh_file) throw InputError("the mesh '" + path + "' is larger than 2 GiB");
+  }
+  int status = Z_OK;
+  const char* reason = gzerror(in.get(), &status);
+  if (status == Z_ERRNO) throw InputError("cannot read the mesh '" + path + "'");
+  if (status != Z_OK)
+    throw InputError("the mesh '" + path + "' is damaged: " + (*reason != 0 ? reason : "gzip cannot read it") +
+                     "; save or copy it again");
+  return data;
+}
+
 }  // namespace
 
 PolygonMesh read_ply(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string data{std::istreambuf_iterator<char>(in), {}};
-  if (in.bad()) throw InputError("cannot read the mesh '" + path + "'");
-  return Reader(path, std::move(data)).read();
+  return Reader(path, contents_of(path)).read();
 }
 
 }  // namespace spume

@@ -22,7 +22,7 @@ Section body_section() {
       .absent("given by where or mesh")
       .option("where", &B::where, "expression of x y z, positive inside the shape, as far as the domain")
       .absent("given by shape or mesh")
-      .option("mesh", &B::mesh, "closed triangle mesh: .stl, .obj or .ply file beside the case (3-D)")
+      .option("mesh", &B::mesh, "closed triangle mesh: .stl, .obj, .ply or .ply.gz file beside the case (3-D)")
       .beside_case()
       .absent("given by shape or where")
       .option("size", &B::size, "length", "box: lengths of its edges")

@@ -3,8 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <numeric>
 #include <sstream>
@@ -162,6 +164,26 @@ TEST(Mesh, DistancesAreThoseOfEveryTriangleForItself) {
   }
 }
 
+// Several levels of the tree, slivers at its poles, triangles of very different sizes: points beside the surface, in
+// the middle, where nothing is much nearer than the rest, and far away.
+TEST(Mesh, TheNearestOfManyTrianglesIsFound) {
+  TriangleSurface surface = make_ellipsoid({0.9, 0.5, 0.3}, 3)->surface(window, 0.1);
+  const TriangleSurface box = place(make_box({0.1, 6, 0.2}, 3), {{2, 0, 0}}, true, 3)->surface(window, 1);
+  const auto first = static_cast<std::int32_t>(surface.points.size());
+  surface.points.insert(surface.points.end(), box.points.begin(), box.points.end());
+  for (const auto& [a, b, c] : box.triangles) surface.triangles.push_back({a + first, b + first, c + first});
+  ASSERT_GT(surface.triangles.size(), 1000u);
+  const ShapePointer mesh = make_mesh(surface);
+  for (std::uint64_t i = 0; i < 120; ++i) {
+    Vec3 p = random_point(i, i % 4 == 3 ? 100 : 1.2, 3);
+    if (i % 4 == 1) p = moved(corner(surface, 7 * i, 0), 1e-3, p);
+    if (i % 4 == 2) p = moved({0, 0, 0}, 0.05, p);
+    const double brute = brute_distance(surface, p);
+    // Golden sections find the place to 1e-8 of a side, as flat as the distance is there in rounding.
+    EXPECT_NEAR(mesh->distance(p), brute, 1e-7 * std::max(1.0, std::abs(brute))) << i;
+  }
+}
+
 // What a mesh of flat faces bounds is the shape that it was made from.
 TEST(Mesh, FlatShapesAndTheirMeshesAreTheSame) {
   for (const ShapePointer& shape :
@@ -205,6 +227,16 @@ TEST(Mesh, EveryFormatGivesTheSameTriangles) {
       for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(corner(read, t, k), corner(box, t, k));
     EXPECT_NEAR(enclosed_volume(read), 1, 1e-15);
   }
+  // As gzip leaves it, whole and cut off.
+  const std::string path = folder / "g.ply.gz";
+  const auto zipped = gzopen(path.c_str(), "wb");
+  const std::string text = ply(box);
+  ASSERT_EQ(gzwrite(zipped, text.data(), static_cast<unsigned>(text.size())), static_cast<int>(text.size()));
+  gzclose(zipped);
+  EXPECT_EQ(read_mesh(path).triangles, read_mesh(folder / "d.ply").triangles);
+  EXPECT_EQ(read_mesh(path).points, read_mesh(folder / "d.ply").points);
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 20);
+  EXPECT_THAT(refusal_of(path), HasSubstr("is damaged"));
   // Polygons, and corners that share a place but not a number.
   write_contents(folder / "quads.obj",
                  "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nv 0 0 0\n"
@@ -266,6 +298,11 @@ TEST(Mesh, FaultsAreNamedWithTheirTriangleAndPlace) {
               ElementsAre(HasSubstr("its part of 12 triangles with triangle 13 at (2.9")));
   EXPECT_THAT(mesh_faults(two_boxes(0.5, {0, 0, 0}, false)), ElementsAre(HasSubstr("lies within another part")));
   EXPECT_NEAR(make_mesh(two_boxes(0.5, {0, 0, 0}, true))->distance({0, 0, 0}), 0.25, 1e-15);
+  // Into a side, with edges on the edges and diagonals of triangles, and beside each other.
+  EXPECT_THAT(mesh_faults(two_boxes(0.5, {0.5, 0.03, 0.01}, false)),
+              ElementsAre(AllOf(HasSubstr("its parts cross: triangle "), HasSubstr("pass through each other"))));
+  EXPECT_THAT(mesh_faults(two_boxes(1, {0.5, 0.5, 0.5}, false)), ElementsAre(HasSubstr("its parts cross")));
+  EXPECT_THAT(mesh_faults(two_boxes(0.5, {0.75, 0.25, 0}, false)), testing::Each(testing::Not(HasSubstr("cross"))));
 }
 
 TEST(Mesh, FilesThatAreNoMeshAreRefusedWithTheReason) {
@@ -273,7 +310,7 @@ TEST(Mesh, FilesThatAreNoMeshAreRefusedWithTheReason) {
   const TriangleSurface box = make_box({1, 2, 0.5}, 3)->surface(window, 1);
   EXPECT_THAT(refusal_of(folder / "none.stl"), HasSubstr("there is no mesh file"));
   write_contents(folder / "hull.step", "ISO");
-  EXPECT_THAT(refusal_of(folder / "hull.step"), HasSubstr("must be a .stl, .obj or .ply file"));
+  EXPECT_THAT(refusal_of(folder / "hull.step"), HasSubstr("must be a .stl, .obj, .ply or .ply.gz file"));
   write_contents(folder / "cut.stl", binary_stl(box).substr(0, 300));
   EXPECT_THAT(refusal_of(folder / "cut.stl"),
               HasSubstr("12 triangles that it counts need 684 bytes, found 300; save or copy it again"));
@@ -285,6 +322,10 @@ TEST(Mesh, FilesThatAreNoMeshAreRefusedWithTheReason) {
   EXPECT_NE(refusal_of(folder / "points.obj"), "");
   write_contents(folder / "nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
   EXPECT_NE(refusal_of(folder / "nan.obj"), "");
+  // A point that no face names.
+  write_contents(folder / "unused.obj", obj(box) + "v 1 2 three\n");
+  EXPECT_THAT(refusal_of(folder / "unused.obj"),
+              HasSubstr("is damaged: line 21 must give a point three finite numbers, found 'v 1 2 three'"));
   write_contents(folder / "beyond.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
   EXPECT_NE(refusal_of(folder / "beyond.obj"), "");
   std::string text = ply(box);
