@@ -12,7 +12,7 @@ import numpy as np
 from PIL import Image
 from spume_tools.plots import bubble_views, planes, style, views
 from spume_tools.plots.liquid import liquid_surface
-from spume_tools.plots.renderer import Scene, View
+from spume_tools.plots.renderer import Scene, View, closed_surface
 from spume_tools.plots.request import DrawnRun, Request
 from spume_tools.plots.sums import kernel_sums
 from spume_tools.results import MissingResult, Results
@@ -32,7 +32,7 @@ def write_tank(folder, spacing=0.1, height=1.0, si=True, solid=None, **domain):
     """Still water one half deep in a tank of 2 x 1, with the speed z and the pressure 0.5 - z."""
     write_case(folder, "Some tank", [0, 0, 0], [2, 1, height], spacing, **(domain or TANK))
     with (folder / "case.toml").open("a") as file:
-        file.write("[fluid]\ndensity = 1000\n" if si else "[fluid]\nreynolds = 100\n")
+        file.write("[fluid]\ndensity = 1000\ngravity = 9.81\n" if si else "[fluid]\nreynolds = 100\n")
         if solid:
             file.write(f"[[solid]]\nlower = {solid[0]}\nupper = {solid[1]}\n")
     grid = lattice([0, 0, 0], [2, 1, 0.5], spacing)
@@ -41,6 +41,31 @@ def write_tank(folder, spacing=0.1, height=1.0, si=True, solid=None, **domain):
     write_table(folder / "series.csv", series_of([0, 0.5, 1], kinetic_energy=[1, 2, 3], surface_particles=10), {"t": "time"})
     write_snapshots(folder / "fluid.vtkhdf", [0, 0.5, 1], lambda t: grid,
                     {"velocity": lambda p, t: p * [0, 0, 1], "pressure": lambda p, t: 0.5 - p[:, 2]})
+
+
+def write_bodies(folder, *solids):
+    """bodies.vtp with walls that stand still: triangles (N, 3, 3) each."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+    surface = closed_surface(np.concatenate(solids))
+    numbers = np.repeat(np.arange(len(solids)), [len(solid) for solid in solids])
+    for name, values in (("body", numbers.astype(np.int32)), *((name, np.full(len(numbers), value, np.int8))
+                                                               for name, value in (("wall", 1), ("inside", 1), ("subtract", 0)))):
+        array = numpy_to_vtk(values, deep=True)
+        array.SetName(name)
+        surface.GetCellData().AddArray(array)
+    writer = vtkXMLPolyDataWriter()
+    writer.SetFileName(str(folder / "bodies.vtp"))
+    writer.SetInputData(surface)
+    writer.Write()
+
+
+def block(lower, upper):
+    """The twelve triangles of a box, outwards."""
+    corner = lambda i: np.where([i & 1, i & 2, i & 4], upper, lower)
+    faces = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+    return np.array([[corner(a), corner(b), corner(c)] for w, x, y, z in faces for a, b, c in ((w, x, y), (w, y, z))], float)
 
 
 class Planes(Scratch):
@@ -93,6 +118,31 @@ class Planes(Scratch):
         crossing = [np.interp(0.5, column, y) for column in above]
         np.testing.assert_allclose(crossing, 0.3, atol=0.01)  # a fifth of a spacing: the sums are on half spacings
 
+    def test_liquid_is_drawn_up_to_a_body_and_not_along_its_dry_face(self):
+        # Faces are half a spacing from the nearest particles: where they end, half of the kernel sum is missing.
+        folder = new_folder(self.path, "run")
+        low, high = np.array([1.2, -0.1, -0.1]), np.array([1.6, 1.1, 0.9])
+        write_tank(folder, solid=(list(low), list(high)))
+        case = (folder / "case.toml").read_text()
+        (folder / "case.toml").write_text(case[: case.index("[[solid]]")])  # the body takes its place
+        write_bodies(folder, block(low, high))
+        run = DrawnRun(folder, Request(plane=(1, 0.5)))
+        plane, (panel,) = planes.panels_of(run, "pressure", run.snapshots(), [0])
+        left, right, bottom, top = panel.extent
+        columns, rows = panel.values.shape
+        x, z = (low + (np.arange(n) + 0.5) / n * (high - low) for n, low, high in ((columns, left, right), (rows, bottom, top)))
+        drawn = np.isfinite(panel.values)
+        wet = z < 0.4
+        step = x[1] - x[0]
+        for beside in ((x > 1.0) & (x < 1.2 - step), (x > 1.6 + step) & (x < 1.8)):
+            self.assertTrue(drawn[np.ix_(beside, wet)].all())
+        self.assertFalse(drawn[np.ix_((x > 1.2 + step) & (x < 1.6 - step), wet)].any())
+        self.assertFalse(drawn[:, z > 0.6].any())
+        # Without the share of the body a slit is left.
+        with mock.patch.object(planes, "share_in_plane", lambda *_: None):
+            _, (bare,) = planes.panels_of(run, "pressure", run.snapshots(), [0])
+        self.assertFalse(np.isfinite(bare.values)[np.ix_((x > 1.2 - 0.3 * run.spacing) & (x < 1.2), wet)].all())
+
     def test_a_plane_outside_the_domain_is_said(self):
         folder = new_folder(self.path, "run")
         write_tank(folder)
@@ -133,6 +183,20 @@ class Rendering(Scratch):
         self.assertGreater(np.mean(blue > red + 15), 0.2)  # water
         self.assertGreater(np.mean((red > blue + 8) & drawn), 0.03)  # the block
 
+    def test_bodies_are_seen_where_they_stand_and_hold_the_depth(self):
+        folder = new_folder(self.path, "run")
+        write_tank(folder, height=4.0, x="periodic", front="free-slip", back="free-slip", bottom="free-slip")
+        position = lattice([0, 0, 0], [2, 1, 3], 0.1)
+        write_snapshots(folder / "fluid.vtkhdf", [0, 1], lambda t: position, {"velocity": lambda p, t: p})
+        run = DrawnRun(folder, Request())
+        self.assertGreater(views.Stage(run, run.snapshots(), [0]).lower[2], 2)  # deep water without ends is cut
+        write_bodies(folder, block([1.2, 0.2, 1.0], [1.6, 0.6, 3.4]))
+        stage = views.Stage(run, run.snapshots(), [0])
+        self.assertEqual(stage.lower[2], 0)
+        self.assertAlmostEqual(stage.upper[2], 3.4, places=6)
+        stone = lambda image: np.mean(image[..., 0] > image[..., 2] + 8)
+        self.assertGreater(stone(self.picture(folder)), 0.005)
+
     def test_a_tall_tank_fits_the_page(self):
         folder = new_folder(self.path, "run")
         write_tank(folder, height=8.0, left="free-slip", right="free-slip", bottom="free-slip")
@@ -171,7 +235,7 @@ class Options(Scratch):
         folder = new_folder(self.path, name)
         write_case(folder, "A square", [0, 0], [1, 1], 0.1, left="free-slip", bottom="free-slip")
         with (folder / "case.toml").open("a") as file:
-            file.write("[fluid]\ndensity = 1000\n")
+            file.write("[fluid]\ndensity = 1000\ngravity = 9.81\n")
         write_table(folder / "series.csv", series_of([0, 1.0], kinetic_energy=[1, 2]), {"t": "time"})
         write_snapshots(folder / "fluid.vtkhdf", [0, 0.5, 1], lambda t: lattice([0, 0], [1, 1], 0.1),
                         {"velocity": lambda p, t: p, "pressure": lambda p, t: p[:, 0]})

@@ -80,16 +80,16 @@ def outline(corners):
 
 
 def cut(corners, normal, coordinate, axes):
-    """Lines in which triangles cross a plane, which is moved by a rounding so that no corner lies on it."""
+    """Lines (N, 2, 2) in which triangles cross a plane, which is moved by a rounding so that no corner lies on it."""
     coordinate += 1e-7 * np.ptp(corners[:, :, normal])
     height = corners[:, :, normal] - coordinate
     crossing = (height.min(axis=1) < 0) & (height.max(axis=1) > 0)
-    lines = []
-    for triangle, h in zip(corners[crossing], height[crossing]):
-        ends = [triangle[a] + (triangle[b] - triangle[a]) * h[a] / (h[a] - h[b])
-                for a, b in ((0, 1), (1, 2), (2, 0)) if (h[a] < 0) != (h[b] < 0)]
-        lines.append(np.array(ends[:2])[:, list(axes)])
-    return lines
+    corners, height = corners[crossing], height[crossing]
+    first, second = [0, 1, 2], [1, 2, 0]  # of the edges, of which two cross the plane
+    crossed = (height[:, first] < 0) != (height[:, second] < 0)
+    share = height[:, first] / np.where(crossed, height[:, first] - height[:, second], 1.0)
+    ends = corners[:, first] + (corners[:, second] - corners[:, first]) * share[..., None]
+    return ends[crossed].reshape(-1, 2, 3)[:, :, list(axes)]
 
 
 def draw_bodies(axis, run, plane, time):

@@ -45,7 +45,7 @@ def bubbles_at(bubbles, time):
 def scene_of(run, stage, liquid, shot, view, size, colours):
     """Water, tank and bubbles at one time. size: inches per unit of length."""
     scene = Scene()
-    stage.add_to(scene, floor=view is not BENEATH)
+    stage.add_to(scene, liquid.time, floor=view is not BENEATH)
     scene.add_surface(liquid_of(stage, liquid), WATER, opacity=CLEARNESS)
     if shot is not None and len(shot):
         width = run.bounds()[1][1] - run.bounds()[0][1]

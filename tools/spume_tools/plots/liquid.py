@@ -2,6 +2,7 @@
 """The surface of the liquid: where the kernel sum of its particles is one half."""
 import numpy as np
 
+from .shares import beside_bodies
 from .sums import SUPPORT, kernel_sums, sides_of, with_images
 
 FINENESS = 0.8  # distance of the points at which sums are taken, in spacings
@@ -9,11 +10,11 @@ MARGIN = 3.0    # how far beyond a side the surface is made, in spacings
 SMOOTHING = 15, 0.08  # passes and pass band of the filter that takes the lattice out of the surface (Taubin 1995)
 
 
-def liquid_surface(case, position, spacing, copies=1, bottom=None):
+def liquid_surface(case, position, spacing, copies=1, bottom=None, bodies=None):
     """The closed surface of the liquid of a three-dimensional case as vtkPolyData with normals.
 
     Sides of the domain cut it flat. copies: how often a width that is periodic in y is repeated; bottom: a height that
-    cuts it as well, for particles that reach below it.
+    cuts it as well, for particles that reach below it; bodies(low, step, shape): the share of the kernel that they take.
     """
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPlane, vtkPlaneCollection
@@ -48,6 +49,9 @@ def liquid_surface(case, position, spacing, copies=1, bottom=None):
     cells = np.maximum(2, np.ceil((high - low) / (FINENESS * spacing)).astype(int))
     step = (high - low).max() / cells[np.argmax(high - low)]
     filled, = kernel_sums(place, spacing, low, step, cells + 1)
+    share = None if bodies is None else bodies(low, step, cells + 1)
+    if share is not None:
+        filled = beside_bodies(filled, share)
     closed = np.pad(filled, 1)  # a layer of air closes the surface
     image = vtkImageData()
     image.SetDimensions(*closed.shape)

@@ -10,6 +10,7 @@ from ..results import MissingResult
 from ..results.units import field_label
 from .bodies import draw_bodies, extent_with_bodies
 from .request import Request, request_of
+from .shares import beside_bodies, share_in_plane
 from .style import (EDGE, FIELDS, SIGNED, SOLID, chosen_steps, extension, field_norm, finish, length_label, panel_grid,
                     panel_size, time_title, title_of)
 from .sums import SUPPORT, boxes_of, kernel_sums, sides_of, with_images
@@ -87,8 +88,12 @@ def particle_plane(run, plane, snapshot, values):
     shape = np.maximum(2, np.round((high - low) / step).astype(int) + 1)
     phase = snapshot.field("phase") if "phase" in snapshot.fields else np.zeros(len(values))
     inside = [(phase[index] == number).astype(float) for number in np.unique(phase)[1:]]
-    weight, *totals = (finer(sums) for sums in kernel_sums(own, spacing, low, step, shape, (values[index], *inside), beside))
-    total, *phases = (sums / np.maximum(weight, 1e-300) for sums in totals)
+    weight, *totals = kernel_sums(own, spacing, low, step, shape, (values[index], *inside), beside)
+    total, *phases = (finer(sums) / np.maximum(finer(weight), 1e-300) for sums in totals)
+    bodies = share_in_plane(run, plane, snapshot.time, low, step, shape)
+    weight = finer(weight if bodies is None else beside_bodies(weight, bodies[1]))
+    if bodies is not None:
+        weight[finer(bodies[0]) > 0.5] = np.nan
     drawn = np.where(weight >= 0.5, total, np.nan)
     return Panel(snapshot.time, drawn, extent_of(low, low + (shape - 1) * step, drawn.shape), weight, tuple(phases))
 
@@ -149,7 +154,7 @@ def draw_panel(axis, run, plane, panel, frame, name, norm):
     """One panel with walls and solids; returns the image."""
     image = axis.imshow(panel.values.T, origin="lower", extent=panel.extent, norm=norm, interpolation="nearest",
                         cmap=FIELDS.get(name, "RdBu_r" if name in SIGNED else "viridis"), rasterized=True)
-    if panel.share is not None and panel.share.min() < 0.5:
+    if panel.share is not None and np.nanmin(panel.share) < 0.5:
         axis.contour(panel.share.T, levels=[0.5], extent=panel.extent, colors=[EDGE], linewidths=0.7)
     for phase in panel.phases:
         if phase.min() < 0.5 < phase.max():

@@ -71,6 +71,23 @@ class View:
         return np.array([flat[:, 0].min(), flat[:, 0].max(), flat[:, 1].min(), flat[:, 1].max()])
 
 
+def closed_surface(corners):
+    """Triangles (N, 3, 3) as vtkPolyData that share their corners."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+
+    place, index = np.unique(np.asarray(corners, float).reshape(-1, 3), axis=0, return_inverse=True)
+    index = index.reshape(-1, 3)
+    points, triangles, surface = vtkPoints(), vtkCellArray(), vtkPolyData()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(place), deep=True))
+    listed = np.column_stack([np.full(len(index), 3), index]).astype(np.int64).ravel()
+    triangles.SetCells(len(index), numpy_to_vtkIdTypeArray(listed, deep=True))
+    surface.SetPoints(points)
+    surface.SetPolys(triangles)
+    return surface
+
+
 class Scene:
     """Things to be drawn, as VTK actors. Colours are (red, green, blue) from 0 to 1."""
 
@@ -116,6 +133,35 @@ class Scene:
         mapper = vtkPolyDataMapper()
         mapper.SetInputConnection(cube.GetOutputPort())
         return self.add(mapper, colour, ambient=0.25)
+
+    def add_solid(self, corners, lower, upper, colour):
+        """A closed surface of triangles (N, 3, 3), cut flat at the sides of a box."""
+        from vtkmodules.vtkCommonDataModel import vtkPlane, vtkPlaneCollection
+        from vtkmodules.vtkFiltersCore import vtkPolyDataNormals, vtkTriangleFilter
+        from vtkmodules.vtkFiltersGeneral import vtkClipClosedSurface
+
+        place = np.asarray(corners, float).reshape(-1, 3)
+        sides = vtkPlaneCollection()
+        for axis in range(3):
+            for limits, inward in ((lower, 1.0), (upper, -1.0)):
+                if (inward * (place[:, axis] - limits[axis])).min() >= 0:
+                    continue  # the solid does not pass this side
+                plane = vtkPlane()
+                plane.SetOrigin(*np.where(np.arange(3) == axis, limits, 0.0))
+                plane.SetNormal(*np.where(np.arange(3) == axis, inward, 0.0))
+                sides.AddItem(plane)
+        cut = vtkClipClosedSurface()
+        cut.SetInputData(closed_surface(corners))
+        cut.SetClippingPlanes(sides)
+        cut.SetTolerance(1e-6)
+        whole = vtkTriangleFilter()
+        whole.SetInputConnection(cut.GetOutputPort())
+        normals = vtkPolyDataNormals()
+        normals.SetInputConnection(whole.GetOutputPort())
+        normals.SetFeatureAngle(30)
+        normals.SplittingOn()
+        normals.Update()
+        return self.add_surface(normals.GetOutput(), colour, shine=0.1)
 
     def add_lines(self, pairs, colour, width=1.2):
         """Straight lines between pairs of points (N, 2, 3)."""

@@ -3,8 +3,10 @@
 import numpy as np
 from matplotlib.transforms import offset_copy
 
+from .bodies import bodies_of, places
 from .liquid import liquid_surface
 from .renderer import Scene, View
+from .shares import share_in_space
 from .style import chosen_steps, finish, panel_grid, panel_size, picture_axes, time_title, title_of
 from .sums import boxes_of, sides_of
 
@@ -19,7 +21,7 @@ DOTS_PER_INCH = 130
 
 
 class Stage:
-    """What does not move: the part of the domain that is drawn, its walls and solids.
+    """The part of the domain that is drawn, its walls and solids.
 
     lower, upper: the box that is drawn; copies: how often a narrow periodic width is repeated for the eye; deepest: a
     height that is drawn in any case.
@@ -33,6 +35,8 @@ class Stage:
         periodic = sides_of(domain, 1) == "periodic"
         self.copies = copies or (max(1, int(round(0.45 * length / width))) if periodic else 1)
         self.upper[1] += (self.copies - 1) * width
+        # All around the others is solid: they are the tank.
+        self.bodies = [(body, places(run, body)) for body in bodies_of(run) if not body.outside]
         self._fit(snapshots, steps, deepest)
 
     def _fit(self, snapshots, steps, deepest):
@@ -49,6 +53,8 @@ class Stage:
             np.maximum.at(top, index.ravel(), position[:, 2])
             depth.append(np.percentile(top, 0.5))
         solids = [corner for _, corner in boxes_of(run.case)]
+        solids += [corners.reshape(-1, 3).max(axis=0) for step in steps for _, place in self.bodies
+                   for corners in [self._in_domain(place(snapshots.times[int(step)]))] if len(corners)]
         highest = max([np.max(high, axis=0)[2] + 2 * spacing, *(corner[2] for corner in solids)])
         self.upper[2] = min(self.upper[2], highest)
         for axis in range(3):
@@ -62,8 +68,15 @@ class Stage:
         if not solids and sides_of(run.case["domain"], 0) == "periodic":
             self.lower[2] = max(self.lower[2], min(np.min(depth) - 0.15 * length, deepest - 0.05 * length))
 
-    def add_to(self, scene, floor=True):
-        """Floor, solids and the edges of the domain."""
+    def _in_domain(self, corners):
+        """Those of some triangles that reach into the domain; none of a body that is not there."""
+        lower, upper = self.run.bounds()
+        if np.ptp(corners) == 0:
+            return corners[:0]
+        return corners[np.all((corners.max(axis=1) >= lower) & (corners.min(axis=1) <= upper), axis=1)]
+
+    def add_to(self, scene, time, floor=True):
+        """Floor, solids where they stand at a time, and the edges of the domain."""
         lower, upper = self.lower, self.upper
         lines = []
         for axis in range(3):
@@ -83,6 +96,11 @@ class Stage:
         cover = 0.2 * self.run.spacing
         for low, high in boxes_of(self.run.case):
             scene.add_box(low - cover, high + cover, STONE)
+        for _, place in self.bodies:
+            corners = place(time)
+            width = self.run.bounds()[1][1] - self.run.bounds()[0][1]
+            for k in range(self.copies if len(self._in_domain(corners)) else 0):
+                scene.add_solid(corners + [0, k * width, 0], lower, upper, STONE)
 
     def cut(self, position):
         """Particles that are drawn."""
@@ -94,7 +112,8 @@ def liquid_of(stage, snapshot):
     case = stage.run.case
     cut = stage.lower[2] > case["domain"]["lower"][2]
     return liquid_surface(case, stage.cut(snapshot.position), stage.run.spacing, stage.copies,
-                          bottom=stage.lower[2] if cut else None)
+                          bottom=stage.lower[2] if cut else None,
+                          bodies=lambda *grid: share_in_space(stage.run, snapshot.time, *grid))
 
 
 def scale_bar(axis, view, stage):
@@ -136,7 +155,7 @@ def draw_side_view(run, snapshots, steps, of_steps=None):
         snapshot = snapshots[int(step)]
         scene = Scene()
         scene.add_surface(liquid_of(stage, snapshot), WATER)
-        stage.add_to(scene)
+        stage.add_to(scene, snapshot.time)
         image = scene.render(OBLIQUE, frame, int(width * size * DOTS_PER_INCH), OCCLUSION * run.spacing)
         show(axis, image, frame, time_title(snapshot.time, run.si))
         scale_bar(axis, OBLIQUE, stage)

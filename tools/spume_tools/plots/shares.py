@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT
+"""The share of the kernel that bodies take at the points of a grid.
+
+Liquid ends at a body, and so do kernel sums of its particles: beside a wall they are half of what they are inside. Divided
+by what the bodies leave of the kernel, the sums are those of liquid that goes on behind the wall, and its drawn surface is
+that of the body.
+"""
+import numpy as np
+
+from .bodies import bodies_of, cut, outline, places
+from .sums import SUPPORT
+
+# Of the kernel, what is divided by at least: less is left only within bodies and in the narrowest of their corners.
+LEAST_LEFT = 0.2
+FINER = 4  # samples across a cell of the grid in a plane, along each axis; along one of them cells are cut exactly
+FINER_3D = 2
+
+
+def kernel_weights(spacing, step, d):
+    """Offsets in points and weights of the kernel on a grid; the weights add up to 1."""
+    reach = int(SUPPORT * spacing / step)
+    offsets = np.stack(np.meshgrid(*[np.arange(-reach, reach + 1)] * d, indexing="ij"), -1).reshape(-1, d)
+    q = np.linalg.norm(offsets, axis=1) * step / spacing
+    weights = np.where(q < SUPPORT, (1 - 0.5 * q) ** 4 * (1 + 2 * q), 0.0)
+    return offsets[weights > 0], weights[weights > 0] / weights.sum()
+
+
+def smeared(covered, spacing, step):
+    """The kernel sum of a share that is known at all points of a grid, and goes on at its edges."""
+    offsets, weights = kernel_weights(spacing, step, covered.ndim)
+    margin = int(np.max(offsets)) if len(offsets) else 0
+    wide = np.pad(covered, margin, mode="edge")
+    total = np.zeros(covered.shape)
+    for offset, weight in zip(offsets, weights):
+        total += weight * wide[tuple(slice(margin + k, margin + k + n) for k, n in zip(offset, covered.shape))]
+    return total
+
+
+def covered_cells(lines, low, step, shape, finer=FINER):
+    """The share of each cell around the points low + step * (i, j) that lies inside closed lines (N, 2, 2)."""
+    columns = low[0] + step * ((np.arange(shape[0] * finer) + 0.5) / finer - 0.5)
+    edges = low[1] + step * (np.arange(shape[1] + 1) - 0.5)
+    inside = np.zeros((len(columns), shape[1]))
+    swap = lines[:, 0, 0] > lines[:, 1, 0]
+    left, right = (np.where(swap[:, None], lines[:, one], lines[:, other]) for one, other in ((1, 0), (0, 1)))
+    first, last = np.searchsorted(columns, [lines[:, :, 0].min(), lines[:, :, 0].max()]) if len(lines) else (0, 0)
+    for i in range(first, last):
+        x = columns[i]
+        crossed = (left[:, 0] <= x) & (right[:, 0] > x)
+        a, b = left[crossed], right[crossed]
+        heights = np.sort(a[:, 1] + (b[:, 1] - a[:, 1]) * (x - a[:, 0]) / (b[:, 0] - a[:, 0]))
+        for lower, upper in zip(heights[::2], heights[1::2]):
+            inside[i] += np.diff(np.clip(edges, lower, upper))
+    return np.clip(inside.reshape(shape[0], finer, shape[1]).mean(axis=1) / step, 0, 1)
+
+
+def share_in_plane(run, plane, time, low, step, shape):
+    """The share of each cell of a plane that bodies cover, and the share of the kernel that they take; None without bodies."""
+    total = None
+    for body in bodies_of(run):
+        corners = places(run, body)(time)
+        if np.ptp(corners) == 0:
+            continue
+        lines = outline(corners) if plane.normal is None else cut(corners, plane.normal, plane.coordinate, plane.axes)
+        covered = covered_cells(lines, low, step, shape)
+        covered = 1 - covered if body.outside else covered
+        total = covered if total is None else np.maximum(total, covered)
+    return None if total is None else (total, smeared(total, run.spacing, step))
+
+
+def share_in_space(run, time, low, step, shape):
+    """The share of the kernel that bodies take at the points low + step * (i, j, k); None without bodies."""
+    total = None
+    for body in bodies_of(run):
+        corners = places(run, body)(time)
+        if np.ptp(corners) == 0:
+            continue
+        covered = np.zeros(shape)
+        for k in range(shape[2]):
+            height = low[2] + k * step
+            if corners[:, :, 2].min() < height < corners[:, :, 2].max():
+                covered[:, :, k] = covered_cells(cut(corners, 2, height, (0, 1)), low, step, shape[:2], FINER_3D)
+        covered = 1 - covered if body.outside else covered
+        total = covered if total is None else np.maximum(total, covered)
+    return None if total is None else smeared(total, run.spacing, step)
+
+
+def beside_bodies(sums, share):
+    """Kernel sums of liquid, as if it went on behind the walls of bodies."""
+    return sums / np.maximum(1 - share, LEAST_LEFT)
