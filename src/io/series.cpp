@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <sstream>
 #include <utility>
 
@@ -25,6 +26,11 @@ std::string column_line(const std::vector<SeriesColumn>& columns) {
 }
 
 void append_number(std::string& text, double value) {
+  // 0/0 has a sign on some machines.
+  if (std::isnan(value)) {
+    text += "nan";
+    return;
+  }
   char digits[32];
   text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
 }

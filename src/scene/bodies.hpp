@@ -19,6 +19,9 @@ std::vector<Body> make_bodies(const Draft& draft, const CompileExpression& compi
 // The walls of bodies at the start, in their order; those that are released then or later are not there yet.
 Combination make_walls(const std::vector<Body>& bodies, const std::vector<BodyMotion>& motions);
 
+// Point probes in solids that stand still, which record nothing.
+void warn_of_probes(const Draft& draft, const Scene& scene, Problems& problems);
+
 // Bodies that lie outside the domain, that are much larger, or thinner than a spacing.
 std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const std::string& file);
 

@@ -95,7 +95,46 @@ double thin_share(const Body& body, const Bounds& domain, double spacing, int di
   return all > 0 ? thin / all : 0;
 }
 
+// The body whose wall the place lies in, or null.
+const Body* around(const Scene& scene, const Vec3& place) {
+  const Body* found = nullptr;
+  double distance = infinite;
+  for (const Body& body : scene.bodies) {
+    if (body.wall == BoundaryKind::open || body.motion) continue;
+    const double own = body.solid->distance(place);
+    if (body.subtract ? -own > distance : own < distance) {
+      distance = body.subtract ? -own : own;
+      found = &body;
+    }
+  }
+  return distance < -1e-6 * scene.spacing ? found : nullptr;  // on the surface: by rounding
+}
+
+bool in_box(const SolidBox& box, const Vec3& place, const Domain& domain, double margin) {
+  for (int a = 0; a < domain.dimensions; ++a)
+    if (place[a] < box.lower[a] + margin || place[a] > box.upper[a] - margin) return false;
+  return true;
+}
+
 }  // namespace
+
+void warn_of_probes(const Draft& draft, const Scene& scene, Problems& problems) {
+  for (std::size_t k = 0; k < draft.options.probes.size(); ++k) {
+    const ProbeOptions& probe = draft.options.probes[k];
+    const Node* node = draft.node("probe." + std::to_string(k) + ".position");
+    if (probe.kind != ProbeKind::point || probe.motion || node == nullptr) continue;
+    const auto warn = [&](const std::string& solid) {
+      problems.warn(*node, "the probe '" + probe.name + "' lies inside " + solid +
+                               " and records nothing but nan; move it into the liquid");
+    };
+    if (const Body* body = around(scene, probe.position)) warn("the body '" + body->name + "'");
+    for (std::size_t b = 0; b < scene.domain.boxes.size(); ++b)
+      if (in_box(scene.domain.boxes[b], probe.position, scene.domain, 1e-6 * scene.spacing)) {
+        warn("solid." + std::to_string(b));
+        break;
+      }
+  }
+}
 
 std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const std::string& file) {
   std::vector<Problem> warnings;
@@ -126,8 +165,14 @@ std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const
     const bool released = body.motion && scene.motions[*body.motion].release;
     if (released) continue;  // it waits outside
     if (apart(bounds, domain, dimensions)) {
+      // A tank is as long as its bodies, or a few times shorter than those that reach out of it.
+      constexpr double another_unit = 10;
       warn("lies outside the domain: " + sides_of(bounds, dimensions) + ", the domain's " +
-           sides_of(domain, dimensions) + "; move it with position, or remove it");
+           sides_of(domain, dimensions) + "; move it with position, or remove it" +
+           (std::isfinite(size) && size >= another_unit * room
+                ? "; it is " + brief(std::round(size / room)) +
+                      " times as long as the domain: if its lengths are in another unit, set scale, 0.001 from mm to m"
+                : ""));
       continue;
     }
     // Edges of a shape that is thick elsewhere are thin too, a wedge behind a part of its faces.

@@ -157,12 +157,17 @@ void Problems::add(Place place, std::string text) {
   problems_.push_back({file_, place.line, place.column, std::move(text)});
 }
 
+Problem Problems::at(const Node& node, std::string text) const {
+  if (!node.override_text.empty()) return {node.override_text, 0, 0, std::move(text)};
+  return {file_, node.place.line, node.place.column, std::move(text)};
+}
+
 void Problems::add(const Node& node, std::string text) {
-  if (!node.override_text.empty()) {
-    problems_.push_back({node.override_text, 0, 0, std::move(text)});
-  } else {
-    add(node.place, std::move(text));
-  }
+  problems_.push_back(at(node, std::move(text)));
+}
+
+void Problems::warn(const Node& node, std::string text) {
+  warnings_.push_back(at(node, std::move(text)));
 }
 
 void Problems::add_key(const Node& node, std::string text) {

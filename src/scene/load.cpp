@@ -375,6 +375,8 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   note_places(document, "", file, draft.options.places);
   draft.options.resolved = resolved_text(document, schema, draft);
   draft.options.warnings = translation.warnings;
+  warn_of_probes(draft, scene, problems);
+  for (const Problem& warning : problems.warnings()) draft.options.warnings.push_back(warning);
   for (Problem& warning : unused_options(draft, schema, file)) draft.options.warnings.push_back(std::move(warning));
   for (Problem& warning : body_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
   for (Problem& warning : release_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));

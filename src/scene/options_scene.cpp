@@ -9,13 +9,24 @@ Draft& whole(Draft& draft) {
   return draft;
 }
 
+// Values in cm or of a benchmark without units are taken as they are, and nothing tells them from SI but gravity: on
+// the Earth 9.764 to 9.834 m/s2.
+std::string units_by_gravity(const Draft& draft) {
+  const double gravity = draft.fluid.gravity.value_or(0);
+  return uses_si(draft) && gravity >= 9.7 && gravity <= 9.9 ? "\"SI\"" : "\"none\"";
+}
+
 Section general() {
   Section section = spume::section<Draft>("", whole)
                         .option("title", &Case::title, "title of reports and pictures")
                         .absent("the name of the case")
                         .option("method", &Case::method, "numerical method")
                         .required()
-                        .option("seed", &Case::seed, "", not_negative(), "seed of all random numbers");
+                        .option("seed", &Case::seed, "", not_negative(), "seed of all random numbers")
+                        .word("units", &Case::units, {{"SI", Units::si}, {"none", Units::none}},
+                              "of its numbers, in pictures and tables; the gravity of the Earth shows that they are SI")
+                        .absent("SI with a gravity of 9.7 to 9.9, else none")
+                        .chosen(units_by_gravity);
   section.options[1].type = OptionType::word;  // the schema knows the words
   return section;
 }

@@ -111,7 +111,13 @@ class SectionReader {
     const std::string unit = option.unit.empty() || option.unit == "1" ? "" : " (" + option.unit + ")";
     const std::string expected =
         option.type == OptionType::word ? words_in_words(option.words) : type_in_words(option.type);
-    return refuse(node, name + " must be " + expected + unit + ", found " + kind_in_words(node));
+    // TOML has integers of 64 bits: digits that are more are no value on the command line, and are taken for a text.
+    const std::size_t sign = node.text.find_first_of("+-") == 0 ? 1 : 0;
+    const bool digits = !node.override_text.empty() && node.kind == Node::Kind::string && node.text.size() > sign &&
+                        node.text.find_first_not_of("0123456789", sign) == std::string::npos;
+    return refuse(node,
+                  name + " must be " + expected + unit + ", found " +
+                      (digits ? node.text + ", beyond the integers from -2^63 to 2^63 - 1" : kind_in_words(node)));
   }
 
   bool in_range(const Option& option, const std::string& name, const Node& node, double value) {

@@ -47,6 +47,16 @@ TEST(Series, NumbersReadBackToTheSameBits) {
   EXPECT_EQ(std::strtod(end + 1, nullptr), values[1]);
 }
 
+TEST(Series, ANumberThatIsNoneHasNoSign) {
+  const TemporaryFolder folder;
+  const double none = std::numeric_limits<double>::quiet_NaN(), values[] = {none, -none};
+  {
+    auto file = SeriesFile::create(folder / "series.csv", "A case", columns);
+    file.row(values);
+  }
+  EXPECT_TRUE(contents(folder / "series.csv").ends_with("\nnan,nan\n"));
+}
+
 TEST(Series, AnExistingFileIsNotOverwritten) {
   const TemporaryFolder folder;
   { auto file = SeriesFile::create(folder / "series.csv", "A case", columns); }

@@ -96,6 +96,17 @@ TEST(SpectralOutput, TheIntegralScaleIsThatOfTheModesInAnyBox) {
   }
 }
 
+TEST(SpectralOutput, AFlowAtRestHasNoScales) {
+  SpectralRun<> run(
+      spectral_text("8", "[fluid]\nreynolds = 20\n[initial]\nkind = \"expressions\"\nvelocity = [0, 0, 0]\n"));
+  run.start();
+  const auto row = run.series();
+  for (const char* scale : {"integral_scale", "taylor_scale", "kolmogorov_scale", "reynolds_lambda", "kmax_eta"})
+    EXPECT_TRUE(std::isnan(row.at(scale))) << scale;
+  for (const char* sum : {"mean_energy", "mean_dissipation", "mean_enstrophy", "balance_residual", "rms_velocity"})
+    EXPECT_EQ(row.at(sum), 0) << sum;
+}
+
 // u = exp(-nu pi^2 t) (cos pi z, -sin pi z, 0) has one speed everywhere.
 TEST(SpectralOutput, TheLargestSpeedIsThatOfTheRow) {
   SpectralRun<> run(spectral_text("8",

@@ -236,6 +236,15 @@ TEST(Bodies, SuspiciousBodiesAreWarnedOf) {
   EXPECT_THAT(
       warnings(start + "shape = \"ball\"\nradius = 2000\nposition = [0, -2000.5]\n"),
       Contains(AllOf(HasSubstr("the body 'it' is 4000 long, 2000 times the domain of 2"), HasSubstr("set scale"))));
+  EXPECT_THAT(warnings(start + "shape = \"ball\"\nradius = 400\nposition = [0, 1500]\n"),
+              Contains(AllOf(HasSubstr("the body 'it' lies outside the domain"),
+                             HasSubstr("it is 400 times as long as the domain"), HasSubstr("set scale"))));
+  const std::string probe = "[[probe]]\nname = \"p\"\nposition = ";
+  EXPECT_THAT(warnings(start + "shape = \"ball\"\nradius = 0.5\n" + probe + "[0.3, 0.3]\n"),
+              ElementsAre(HasSubstr("20:12 the probe 'p' lies inside the body 'it' and records nothing but nan")));
+  EXPECT_THAT(warnings(start + "shape = \"ball\"\nradius = 0.5\n" + probe + "[0, 0.5]\n"), IsEmpty());
+  EXPECT_THAT(warnings(start + "shape = \"ball\"\nradius = 0.5\ninside = false\n" + probe + "[0.6, 0.6]\n"),
+              ElementsAre(HasSubstr("the probe 'p' lies inside the body 'it'")));
   EXPECT_THAT(warnings(start + "shape = \"ball\"\nradius = 0.002\n"),
               Contains(AllOf(HasSubstr("the body 'it' is 0.004 long, less than a spacing, "), HasSubstr("set scale"))));
   EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.04, 1]\n"),

@@ -149,6 +149,9 @@ TEST(BubbleSections, RefuseNegativeAndAbsurdRates) {
   EXPECT_THAT(texts(plain, sparger, {"sparger.0.rate=\"1 - 2*t\""}),
               ElementsAre(HasSubstr("rate must be a number >= 0 at all times")));
   EXPECT_THAT(texts(plain, sparger, {"sparger.0.rate=\"1\""}), ElementsAre(HasSubstr("more than the liquid holds")));
+  const auto still = load_text(tank(plain, sparger), {"sparger.0.rate=0"}).options.warnings;
+  ASSERT_EQ(still.size(), 1U);
+  EXPECT_THAT(still[0].text, HasSubstr("sparger.0.rate is 0 at all times: no bubble is set out"));
   // What rises leaves: a tank may be aerated for long.
   EXPECT_THAT(texts(plain, sparger, {"sparger.0.rate=\"0.002\"", "time.end=2000"}), ElementsAre());
   EXPECT_THAT(texts(plain, sparger, {"sparger.0.rate=\"0.1\"", "sparger.0.bubble_radius=1e-5"}),

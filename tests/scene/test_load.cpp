@@ -178,6 +178,10 @@ TEST(Load, OverridesReachEveryKeyAndReportThemselves) {
                   "--set nonsense expected section.key=value, for example --set fluid.mach=0.1",
                   "--set liquid.3.where=1 '3' is not an entry of 'liquid', which has 1 (the first is 0)",
                   "--set liquid.0.where=2*(x liquid.0.where: this '(' is never closed (character 3)"));
+  EXPECT_THAT(
+      problems_of(small_case(), {"seed=18446744073709551616"}),
+      ElementsAre("--set seed=18446744073709551616 seed must be an integer, found 18446744073709551616, beyond the "
+                  "integers from -2^63 to 2^63 - 1"));
   EXPECT_THAT(problems_of(small_case(), {"title.x=1", "method.y=2"}), testing::SizeIs(1));
   EXPECT_THAT(problems_of(small_case(), {"time.end=0"}),
               ElementsAre("--set time.end=0 time.end must be > 0 (time), found 0"));

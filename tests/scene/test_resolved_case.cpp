@@ -126,6 +126,24 @@ TEST(ResolvedCase, DefaultsOfTheTableAreTheDefaultsOfTheCase) {
   EXPECT_EQ(loaded.output.h5part_view, standard.output.h5part_view);
 }
 
+TEST(ResolvedCase, UnitsAreThoseThatGravityShowsOrThatTheCaseNames) {
+  const std::string tank =
+      "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [1, 1]\nleft = \"free-slip\"\nright = \"free-slip\"\n"
+      "bottom = \"free-slip\"\n[resolution]\nspacing = 0.1\n[time]\nend = 1\n[[liquid]]\nupper = [1, 0.5]\n[fluid]\n"
+      "density = 1000\nviscosity = 1e-3\n";
+  const auto units = [&](const std::vector<std::string>& set) {
+    const std::string text = load_text(tank, set).options.resolved;
+    const std::size_t at = text.find("units = \"") + 9;
+    return text.substr(at, text.find('"', at) - at);
+  };
+  EXPECT_EQ(units({"fluid.gravity=9.81"}), "SI");
+  EXPECT_EQ(units({"fluid.gravity=981"}), "none");  // cm, g, s
+  EXPECT_EQ(units({}), "none");
+  EXPECT_EQ(units({"units=SI"}), "SI");
+  EXPECT_EQ(units({"fluid.gravity=9.81", "units=none"}), "none");
+  EXPECT_THAT(load_text(small_case()).options.resolved, HasSubstr("units = \"none\""));
+}
+
 TEST(ResolvedCase, TheCourantNumberOfACaseThatGivesNoneFollowsTheSurface) {
   const LoadedCase open = load_text(plunging_breaker);
   ASSERT_TRUE(open.scene.free_surface);

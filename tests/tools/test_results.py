@@ -164,7 +164,7 @@ class ReadingResults(unittest.TestCase):
         labels = {name: Results(self.folder).series.label(name) for name in notes}
         self.assertEqual(labels, {name: name.replace("_", " ") for name in notes})
         with (self.folder / "case.toml").open("a") as file:
-            file.write("[fluid]\ndensity = 1000\nviscosity = 1e-3\n")
+            file.write("[fluid]\ndensity = 1000\nviscosity = 1e-3\ngravity = 9.81\n")
         series = Results(self.folder).series
         self.assertEqual([series.label(name) for name in notes],
                          ["t [s]", "kinetic energy [J/m]", "retries", "mass [kg/m]", "momentum x [kg/s]",

@@ -63,12 +63,15 @@ struct ProbeOptions {
   std::optional<std::size_t> motion = {};
 };
 
+enum class Units { unsaid, si, none };
+
 struct Case : OptionGroups {
   std::string path;  // the file as given
   std::string title;
   std::string method;
   double spacing = 0;
   std::uint64_t seed = 1;
+  Units units = Units::unsaid;  // of its numbers, for labels
   ResolutionOptions resolution;
   TimeOptions time;
   OutputOptions output;

@@ -49,10 +49,15 @@ class Problems {
   void add_in_string(const Node& node, std::size_t offset, std::string text, const std::string& source);
   bool empty() const { return problems_.empty(); }
   void throw_if_any();
+  // What a run takes and its user should know; at the value.
+  void warn(const Node& node, std::string text);
+  const std::vector<Problem>& warnings() const { return warnings_; }
 
  private:
+  Problem at(const Node& node, std::string text) const;
+
   std::string file_;
-  std::vector<Problem> problems_;
+  std::vector<Problem> problems_, warnings_;
 };
 
 // Parses TOML text; throws InputError with the place of the syntax error.

@@ -108,6 +108,13 @@ Scales flow_scales(const Flow<T>& flow, const ShellSpectrum& spectrum) {
                         (std::norm(std::complex<double>(b[0][at])) + std::norm(std::complex<double>(b[1][at])) +
                          std::norm(std::complex<double>(b[2][at])));
                });
+  if (!(scales.rms_velocity > 0)) {
+    // A flow at rest has no lengths, nor a Reynolds number of them.
+    for (double* length : {&scales.integral_scale, &scales.taylor_scale, &scales.reynolds_lambda,
+                           &scales.kolmogorov_scale, &scales.kmax_eta})
+      *length = std::numeric_limits<double>::quiet_NaN();
+    return scales;
+  }
   scales.integral_scale = std::numbers::pi / (2 * scales.rms_velocity * scales.rms_velocity) * weighted;
   scales.taylor_scale = scales.rms_velocity * std::sqrt(15 * nu / dissipation);
   scales.reynolds_lambda = scales.rms_velocity * scales.taylor_scale / nu;

@@ -313,6 +313,8 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
       gas += rate * end / samples;
     }
     if (!good) continue;
+    if (gas == 0)
+      problems.warn(*node, name + ".rate is 0 at all times: no bubble is set out; give a rate, or remove [[sparger]]");
     const double smallest = bubbles::volume_of(sparger.sizes.mean);
     if (const double held = gas * share_in_liquid(draft, scene, sparger); held > volume)
       problems.add(*node, name + ".rate brings " + brief(held) +

@@ -24,10 +24,12 @@ SYMBOL = re.compile(r"(?:[kMGmcµn]?(?:m|s|g|Pa|J|W|N|Hz|K|rad)|1|°C|%)(?:[²³
 
 
 def in_si_units(case):
-    """Whether a resolved case gives its fluid in SI units and not in dimensionless groups."""
+    """Whether the numbers of a resolved case are SI: as it says, and else where gravity is that of the Earth."""
+    if "units" in case:
+        return case["units"] == "SI"
     fluid = case.get("fluid", {})
     in_groups = {"reynolds", "froude", "mach"} & fluid.keys()
-    return not in_groups and bool({"density", "viscosity", "gravity", "sound_speed"} & fluid.keys())
+    return not in_groups and 9.7 <= fluid.get("gravity", 0) <= 9.9
 
 
 def unit_of(name, note, si=False, dimensions=3):
