@@ -11,13 +11,13 @@
 namespace spume {
 namespace {
 
-constexpr double off_lattice = 0.2;   // spacings along each axis at most; 0.1 and 0.3 end in the same speeds
-constexpr double longest_move = 0.1;  // spacings a round
+constexpr double off_lattice = 0.2;            // spacings along each axis at most; 0.1 and 0.3 end in the same speeds
+constexpr double longest_settling_move = 0.1;  // spacings a round
 // Of h^2 grad C, and of the last round's move (the heavy ball of Polyak 1964), which stands eigenvalues of the moves up
-// to 2 (1 + kept): with 1 particles below the ceiling never came to rest.
-constexpr double coefficient = 0.5, kept = 0.9;
+// to 2 (1 + kept_of_move): with 1 particles below the ceiling never came to rest.
+constexpr double settling_coefficient = 0.5, kept_of_move = 0.9;
 constexpr int even_after = 100;  // rounds: neighbours are evenly spaced, no layer has stretched
-constexpr int most_rounds = 4000;
+constexpr int most_settling_rounds = 4000;
 
 }  // namespace
 
@@ -41,7 +41,8 @@ void LayerSettling::move(std::size_t i, const Vec3& way) const {
 // acceleration over that of gravity.
 double LayerSettling::step(VectorScratch& way) const {
   const int dimensions = particles.dimensions;
-  const double g = length(gravity), h = resolution.smoothing_length, longest = longest_move * resolution.spacing;
+  const double g = length(gravity), h = resolution.smoothing_length,
+               longest = longest_settling_move * resolution.spacing;
   double worst = 0;
   with_forces([&](const Forces& now) {
     worst = parallel_max(particles.size(), 0.0, [&](std::size_t i) {
@@ -51,7 +52,8 @@ double LayerSettling::step(VectorScratch& way) const {
       // The force of a move by h^2 grad C, under the largest pressure of a pair: over the support gravity adds 2 h g
       // rho.
       const double of_move = 2 * (std::max(double{now.pressure[i]}, 0.0) + h * g * rho);
-      Vec3 next = add(multiply(kept, vector_at(way, dimensions, id)), multiply(coefficient * h * h / of_move, force));
+      Vec3 next = add(multiply(kept_of_move, vector_at(way, dimensions, id)),
+                      multiply(settling_coefficient * h * h / of_move, force));
       if (const double size = length(next); size > longest) next = multiply(longest / size, next);
       for (int axis = 0; axis < dimensions; ++axis) way[axis][id] = next[axis];
       return length(force) / (rho * g);
@@ -98,7 +100,7 @@ double LayerSettling::settle() const {
     move(i, aside);
   });
   double left = 0;
-  for (int round = 0; round < most_rounds && (left = step(way)) > at_rest; ++round) {
+  for (int round = 0; round < most_settling_rounds && (left = step(way)) > at_rest; ++round) {
     if (round == even_after) fit_gradient_scale();
     parallel_for(particles.size(), [&](std::size_t i) {
       move(i, vector_at(way, particles.dimensions, static_cast<std::size_t>((*particles.identifier)[i])));
