@@ -17,6 +17,13 @@ namespace {
 // 0.01 % and 0.002 %.
 constexpr double wall_gap = 1e-3;
 
+std::vector<Opening> openings_of(const OpenGates* gates) {
+  std::vector<Opening> openings;
+  if (gates != nullptr)
+    for (const OpenGate& gate : gates->list) openings.push_back(*gate.opening);
+  return openings;
+}
+
 }  // namespace
 
 BoundaryKind kind_of_face(const Domain& domain, int axis, int face) {
@@ -49,13 +56,14 @@ BoundaryFeatures::BoundaryFeatures(const Domain& domain, const std::vector<Body>
 }
 
 Boundary::Boundary(const Domain& domain, double spacing, std::unique_ptr<BodyWalls> bodies,
-                   std::unique_ptr<OpenSides> openings)
+                   std::unique_ptr<OpenSides> openings, const OpenGates* gates)
     : features(domain, bodies == nullptr ? std::vector<Body>{} : bodies->bodies(),
-               openings == nullptr ? std::vector<Opening>{} : openings->openings()),
+               openings_of(openings != nullptr ? &openings->gates() : gates)),
       domain_(domain),
       spacing_(spacing),
       bodies_(std::move(bodies)),
-      openings_(std::move(openings)) {
+      openings_(std::move(openings)),
+      gates_(openings_ != nullptr ? &openings_->gates() : gates) {
   for (int axis = 0; axis < domain.dimensions; ++axis) walls[axis] = {domain.lower[axis], domain.upper[axis]};
   next_walls = walls;
   if (openings_ != nullptr) wall_speed = openings_->largest_speed();
@@ -103,8 +111,8 @@ ImageRules Boundary::image_rules(double support_radius) const {
   }
   rules.solids = solids_;
   rules.find_nearest = find_nearest_images;
-  if (openings_ != nullptr)
-    rules.open_at = [this](int axis, int side, const Vec3& foot) { return openings_->open_at(axis, side, foot); };
+  if (gates_ != nullptr)
+    rules.open_at = [this](int axis, int side, const Vec3& foot) { return gates_->open_at(axis, side, foot); };
   return rules;
 }
 
@@ -288,9 +296,9 @@ void Boundary::keep_before_sides(const WallPositions& at, int axis, Vec3& positi
   const double tiny = wall_gap * spacing_, lower = at[axis][0], upper = at[axis][1];
   double& x = position[axis];
   const auto holds = [&](int side) {
-    if (openings_->outflow_at(axis, side, position)) return false;
+    if (gates_->outflow_at(axis, side, position)) return false;
     const Side& of = domain_.sides[axis][side];
-    return is_wall(of.kind) || of.opening || openings_->open_at(axis, side, position);
+    return is_wall(of.kind) || of.opening || gates_->open_at(axis, side, position);
   };
   if (x < lower + tiny && holds(0)) {
     x = std::clamp(2 * lower - x, lower + tiny, upper);
@@ -303,10 +311,10 @@ void Boundary::keep_before_sides(const WallPositions& at, int axis, Vec3& positi
 
 bool Boundary::holds(int axis, int side) const {
   if (is_wall(domain_.sides[axis][side].kind)) return true;
-  if (openings_ == nullptr || !domain_.sides[axis][side].opening) return false;
+  if (gates_ == nullptr || !domain_.sides[axis][side].opening) return false;
   Vec3 middle;
   for (std::size_t a = 0; a < 3; ++a) middle[a] = (domain_.lower[a] + domain_.upper[a]) / 2;
-  return !openings_->outflow_at(axis, side, middle);
+  return !gates_->outflow_at(axis, side, middle);
 }
 
 void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity) const {
@@ -314,7 +322,7 @@ void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* veloci
   for (int axis = 0; axis < domain_.dimensions; ++axis) {
     double& x = position[axis];
     const double lower = at[axis][0], upper = at[axis][1];
-    if (openings_ != nullptr && !domain_.periodic(axis)) {
+    if (gates_ != nullptr && !domain_.periodic(axis)) {
       keep_before_sides(at, axis, position, velocity);
       continue;
     }

@@ -56,6 +56,7 @@ void ExcessRelaxation::measure() {
   const auto difference = [&](std::size_t i) {
     return std::clamp(geometric(i), -believed_excess, believed_excess) - (reduced(i) - start_);
   };
+  const auto in_domain = [&](std::size_t i) { return liquid_.left_out == nullptr || (*liquid_.left_out)[i] < 0; };
   struct Sum {
     double weight = 0, difference = 0, volume = 0;
   };
@@ -64,6 +65,7 @@ void ExcessRelaxation::measure() {
       [&](std::size_t first, std::size_t last) {
         Sum sum;
         for (std::size_t i = first; i < last; ++i) {
+          if (!in_domain(i)) continue;
           const double weight = interior(divergence_of_position[i]);
           sum.weight += weight;
           sum.difference += weight * difference(i);
@@ -77,6 +79,7 @@ void ExcessRelaxation::measure() {
   volume = particles.volume * total.volume;
   const double mean = total.difference / std::max(total.weight, 1.0);
   parallel_for(n, [&](std::size_t i) {
+    if (!in_domain(i)) return;
     const double local = difference(i) - mean;
     const double uneven = local - std::clamp(local, -disorder_of_sums, disorder_of_sums);
     (*lack_)[i] = mean + interior(divergence_of_position[i]) * uneven;

@@ -6,11 +6,28 @@
 #include <numbers>
 #include <vector>
 
+#include "spume/particles/open_gates.hpp"
+
 namespace spume {
 namespace {
 
 double norm(const Vec3& v) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+double speed_of_inflows(const Scene& scene, double end) {
+  constexpr int times = 32;
+  double speed = 0;
+  if (scene.openings.empty()) return speed;
+  OpenGates gates(scene, std::pow(scene.spacing, scene.domain.dimensions));
+  for (OpenGate& gate : gates.list)
+    for (int n = 0; n <= times && gate.opening->inflow; ++n) {
+      const double t = end * n / times;
+      const Entering entering(*gate.opening, gate.find_wet(scene.domain.dimensions - 1, t), t);
+      for (const OpenGate::Column& column : gate.columns)
+        if (column.wet) speed = std::max(speed, norm(entering.velocity(column.foot)));
+    }
+  return speed;
 }
 
 double squared_speed_of_tension(const Scene& scene) {
@@ -34,7 +51,7 @@ double squared_speed_of_tension(const Scene& scene) {
 double expected_speed(const Scene& scene, double end) {
   const Domain& domain = scene.domain;
   const InitialParticles& p = scene.particles;
-  double speed2 = squared_speed_of_tension(scene), length = 0;
+  double speed2 = std::max(squared_speed_of_tension(scene), std::pow(speed_of_inflows(scene, end), 2)), length = 0;
   Vec3 centre{};
   for (int axis = 0; axis < domain.dimensions; ++axis) {
     length = std::max(length, domain.upper[axis] - domain.lower[axis]);

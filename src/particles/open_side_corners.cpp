@@ -4,8 +4,8 @@
 // opening gives there.
 #include <optional>
 
-#include "gate.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/particles/open_sides.hpp"
 #include "spume/particles/point_fits.hpp"
 
 namespace spume {
@@ -15,7 +15,7 @@ void OpenSides::find_corners(const VectorField& at, double t, const WallStencils
   const auto r = read(at);
   corners_.clear();
   for (std::size_t g = 0; g < gates_.size(); ++g) {
-    const Gate& gate = gates_[g];
+    const OpenGate& gate = gates_[g];
     const Opening& opening = *gate.opening;
     const std::size_t axis = static_cast<std::size_t>(opening.axis);
     if (!scene_.domain.sides[opening.axis][opening.side].opening) continue;
@@ -76,7 +76,7 @@ void OpenSides::append_corners(WallStencils& stencils, std::array<Array<double>,
   for (int axis = 0; axis < d; ++axis) position[axis].resize(stencils.size());
   parallel_for(corners_.size(), [&](std::size_t k) {
     const std::size_t g = first_corner_ + k, p = corners_[k].wall_point;
-    const Gate& gate = gates_[static_cast<std::size_t>(corners_[k].gate)];
+    const OpenGate& gate = gates_[static_cast<std::size_t>(corners_[k].gate)];
     stencils.no_slip[g] = stencils.no_slip[p];
     for (int axis = 0; axis < d; ++axis) {
       const bool along = axis == gate.opening->axis;

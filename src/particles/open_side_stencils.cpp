@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What the points behind openings carry in a step.
-#include "gate.hpp"
+#include <cmath>
+
 #include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
+#include "spume/particles/open_sides.hpp"
 #include "spume/particles/point_fits.hpp"
 
 namespace spume {
@@ -17,24 +20,24 @@ constexpr double wet_opening_share = 0.15;
 void OpenSides::list_points(double t) {
   points_.clear();
   const auto add_point = [&](std::size_t g, const Vec3& place, const Vec3& velocity, std::int32_t number) {
-    const Gate& gate = gates_[g];
+    const OpenGate& gate = gates_[g];
     Point point{place, place, place, static_cast<std::int32_t>(g), number, velocity, {}};
     point.foot[gate.opening->axis] = gate.plane;
     // Behind an inflow the first liquid is at least half a layer before the foremost point. A value nearer to the side
     // would be one beyond all particles, and the gradient that an inflow gives would act over no distance: plug flow
     // into a channel of 16 across between no-slip walls, Re = 50, then loses 13 % of its flow rate as points pass the
     // side and has blown up at t = 0.6.
-    const double depth = depth_behind(gate, place);
+    const double depth = gate.depth_behind(place);
     const double ahead = number >= 0 ? std::abs(depth) : std::max(depth, gate.layer - depth);
     point.mirror[gate.opening->axis] = gate.plane + gate.inwards * ahead;
     points_.push_back(point);
   };
   for (std::size_t g = 0; g < gates_.size(); ++g) {
-    Gate& gate = gates_[g];
+    OpenGate& gate = gates_[g];
     if (!gate.opening->inflow) continue;
     const double wet = gate.find_wet(scene_.domain.dimensions - 1, t);
     const Entering entering(*gate.opening, wet, t), last(*gate.opening, wet, t - step_);
-    for (const Gate::Column& column : gate.columns) {
+    for (const OpenGate::Column& column : gate.columns) {
       if (!column.wet) continue;
       const Vec3 velocity = entering.velocity(column.foot);
       Vec3 acceleration{};
@@ -65,7 +68,7 @@ void OpenSides::fit(const Arrangement& arrangement, const VectorField& at, std::
   const double reach = fit.reach();
   for (std::size_t k = first; k < last; ++k) {
     const Point& point = points_[k];
-    const Gate& gate = gates_[static_cast<std::size_t>(point.gate)];
+    const OpenGate& gate = gates_[static_cast<std::size_t>(point.gate)];
     const double above = gate.inwards * (point.mirror[gate.opening->axis] - gate.plane);
     fit.clear();
     double kernel_sum = 0;
@@ -126,7 +129,7 @@ void OpenSides::find_stencils(const Arrangement& arrangement, const VectorField&
   parallel_for(n, [&](std::size_t p) {
     const std::size_t g = first_point_ + p;
     const Point& point = points_[p];
-    const Gate& gate = gates_[static_cast<std::size_t>(point.gate)];
+    const OpenGate& gate = gates_[static_cast<std::size_t>(point.gate)];
     const bool inflow = gate.opening->inflow, wet = stencils.first[g + 1] > stencils.first[g];
     stencils.no_slip[g] = 0;
     // What has left without liquid behind it keeps its velocity.
@@ -147,7 +150,7 @@ void OpenSides::give_gradients(const std::array<const double*, 3>& before, const
   give_corner_gradients(before, after, dt, stencils);
   parallel_for(points_.size(), [&](std::size_t p) {
     const Point& point = points_[p];
-    const Gate& gate = gates_[static_cast<std::size_t>(point.gate)];
+    const OpenGate& gate = gates_[static_cast<std::size_t>(point.gate)];
     const std::size_t g = first_point_ + p;
     for (int axis = 0; axis < d; ++axis) stencils.predicted[axis][g] = 0;
     if (!gate.opening->inflow || stencils.pressure_sign[g] == 0) return;
@@ -158,7 +161,7 @@ void OpenSides::give_gradients(const std::array<const double*, 3>& before, const
     if (before[axis] != nullptr) {
       // The velocity goes on linearly through what is given: a zero gradient in its place lets half of a difference
       // between the two pass, as the divergence of the other half is behind the side.
-      const double behind = depth_behind(gate, point.place) / std::abs(point.mirror[axis] - gate.plane);
+      const double behind = gate.depth_behind(point.place) / std::abs(point.mirror[axis] - gate.plane);
       for (int k = 0; k < d; ++k)
         stencils.predicted[k][g] = static_cast<float>(behind * (point.velocity[k] - stencils.mirrored(g, before[k])));
     }
@@ -167,25 +170,15 @@ void OpenSides::give_gradients(const std::array<const double*, 3>& before, const
   });
 }
 
-double OpenSides::pressure_outside(const Opening& opening, const Vec3& foot, double t) const {
-  const Fluid& fluid = scene_.fluid;
-  const int up = scene_.domain.dimensions - 1;
-  double pressure = 0;
-  if (opening.pressure) pressure = value_at(*opening.pressure, foot, t);
-  if (opening.level && !opening.inflow)
-    pressure += fluid.density * -fluid.gravity[up] * std::max(0.0, value_at(*opening.level, {}, t) - foot[up]);
-  if (!std::isfinite(pressure)) refuse_value(opening, "the pressure of an outflow", pressure);
-  return pressure / fluid.density;
-}
-
 void OpenSides::give_pressures(const std::function<double(const Vec3&)>& potential, double t,
                                WallStencils& stencils) const {
+  const double density = scene_.fluid.density;
   for (std::size_t k = 0; k < corners_.size(); ++k) {
     const Corner& corner = corners_[k];
     const Opening& opening = *gates_[static_cast<std::size_t>(corner.gate)].opening;
     if (opening.inflow) continue;
     stencils.given_pressure[first_corner_ + k] =
-        2 * (pressure_outside(opening, corner.foot, t) + potential(corner.foot));
+        2 * (pressure_outside(scene_, opening, corner.foot, density, t) / density + potential(corner.foot));
   }
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const Point& point = points_[p];
@@ -193,7 +186,8 @@ void OpenSides::give_pressures(const std::function<double(const Vec3&)>& potenti
     const std::size_t g = first_point_ + p;
     const bool wet = stencils.pressure_sign[g] != 0;
     if (wet && opening.inflow) continue;
-    const double q = pressure_outside(opening, point.foot, t) + potential(wet ? point.foot : point.place);
+    const double q =
+        pressure_outside(scene_, opening, point.foot, density, t) / density + potential(wet ? point.foot : point.place);
     stencils.given_pressure[g] = wet ? 2 * q : q;
   }
 }

@@ -1,83 +1,27 @@
 // SPDX-License-Identifier: MIT
 // Openings over time: how their points move, and what becomes of them.
-#include "gate.hpp"
+#include <cmath>
+#include <limits>
+
+#include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/periodic_grid.hpp"
+#include "spume/core/vectors.hpp"
 #include "spume/particles/boundary.hpp"
 
 namespace spume {
-namespace {
-
-// Of a cell: through less nothing enters, as its particles would be farther apart than kernels reach.
-constexpr double least_share = 0.25;
-
-// Moves the middle of a cell of an opening to that of its part outside bodies and boxes, and returns the share of it.
-template <class Gate>
-double keep_outside_bodies(const Scene& scene, const Gate& gate, Vec3& middle) {
-  constexpr int places = 8;  // along each side of the cell
-  const bool flat = gate.across[1] < 0;
-  Vec3 sum{};
-  int outside = 0;
-  for (int i = 0; i < places; ++i)
-    for (int j = 0; j < (flat ? 1 : places); ++j) {
-      Vec3 place = middle;
-      place[gate.across[0]] += ((i + 0.5) / places - 0.5) * gate.size[0];
-      if (!flat) place[gate.across[1]] += ((j + 0.5) / places - 0.5) * gate.size[1];
-      if (inside_solid(scene.domain, place)) continue;
-      if (!scene.walls.empty() && !(scene.walls.distance(place) > 0)) continue;
-      sum = add(sum, place);
-      ++outside;
-    }
-  const int all = flat ? places : places * places;
-  if (outside > 0 && outside < all) middle = multiply(1.0 / outside, sum);
-  return static_cast<double>(outside) / all;
-}
-
-}  // namespace
-
 OpenSides::OpenSides(const Scene& scene, const Resolution& resolution, double particle_volume)
-    : scene_(scene), resolution_(resolution), particle_volume_(particle_volume) {
-  const Domain& domain = scene.domain;
-  const int d = domain.dimensions;
-  for (const Opening& opening : scene.openings) {
-    Gate gate;
-    gate.opening = &opening;
-    gate.plane = opening.side == 0 ? domain.lower[opening.axis] : domain.upper[opening.axis];
-    gate.inwards = opening.side == 0 ? 1 : -1;
-    double area = 1;
-    std::size_t k = 0;
-    for (int axis = 0; axis < d; ++axis) {
-      if (axis == opening.axis) continue;
-      const double length = opening.upper[axis] - opening.lower[axis];
-      gate.across[k] = axis;
-      gate.lower[k] = opening.lower[axis];
-      gate.cells[k] = static_cast<std::size_t>(std::max(1.0, std::round(length / scene.spacing)));
-      gate.size[k] = length / static_cast<double>(gate.cells[k]);
-      area *= gate.size[k++];
-    }
-    gate.layer = particle_volume / area;
-    gate.column_of.assign(gate.cells[0] * gate.cells[1], -1);
-    for (std::size_t cell = 0; cell < gate.column_of.size(); ++cell) {
-      Gate::Column column;
-      column.foot[opening.axis] = gate.plane;
-      const std::array<std::size_t, 2> at{cell % gate.cells[0], cell / gate.cells[0]};
-      for (std::size_t a = 0; a < 2; ++a)
-        if (gate.across[a] >= 0)
-          column.foot[gate.across[a]] = gate.lower[a] + (static_cast<double>(at[a]) + 0.5) * gate.size[a];
-      if (opening.where && !((*opening.where)(column.foot[0], column.foot[1], column.foot[2], 0) > 0)) continue;
-      column.area = area * keep_outside_bodies(scene, gate, column.foot);
-      if (opening.inflow && column.area < least_share * area) continue;
-      column.layer = particle_volume / column.area;
-      gate.column_of[cell] = static_cast<std::int32_t>(gate.columns.size());
-      gate.columns.push_back(column);
-    }
-    gates_.push_back(std::move(gate));
-  }
+    : scene_(scene),
+      resolution_(resolution),
+      particle_volume_(particle_volume),
+      open_gates_(scene, particle_volume),
+      gates_(open_gates_.list) {
+  const int d = scene.domain.dimensions;
   // Behind an outflow stands what mirrors the liquid before it.
   const InitialParticles& initial = scene.particles;
   next_identifier_ = static_cast<std::int64_t>(initial.size());
   for (std::size_t g = 0; g < gates_.size(); ++g) {
-    const Gate& gate = gates_[g];
+    const OpenGate& gate = gates_[g];
     if (gate.opening->inflow) continue;
     for (std::size_t i = 0; i < initial.size(); ++i) {
       Drifting one;
@@ -99,32 +43,15 @@ OpenSides::OpenSides(const Scene& scene, const Resolution& resolution, double pa
 
 OpenSides::~OpenSides() = default;
 
-int OpenSides::opening_at(int axis, int side, const Vec3& place) const {
-  for (std::size_t g = 0; g < gates_.size(); ++g) {
-    const Opening& opening = *gates_[g].opening;
-    if (opening.axis == axis && opening.side == side && gates_[g].column_at(place) >= 0) return static_cast<int>(g);
-  }
-  return -1;
-}
-
-bool OpenSides::outflow_at(int axis, int side, const Vec3& place) const {
-  const int g = opening_at(axis, side, place);
-  return g >= 0 && !gates_[static_cast<std::size_t>(g)].opening->inflow;
-}
-
-double OpenSides::depth_behind(const Gate& gate, const Vec3& place) const {
-  return gate.inwards * (gate.plane - place[gate.opening->axis]);
-}
-
 void OpenSides::advance(double t, double dt) {
   step_ = dt;
-  for (Gate& gate : gates_) {
+  for (OpenGate& gate : gates_) {
     const Opening& opening = *gate.opening;
     if (!opening.inflow) continue;
     const double wet = gate.find_wet(scene_.domain.dimensions - 1, t + dt);
     // Simpson's rule in time, as for moving walls.
     const Entering before(opening, wet, t), middle(opening, wet, t + dt / 2), after(opening, wet, t + dt);
-    for (Gate::Column& column : gate.columns) {
+    for (OpenGate::Column& column : gate.columns) {
       column.next = column.travelled;
       if (!column.wet) continue;
       const auto speed = [&](const Entering& at) { return gate.inwards * at.velocity(column.foot)[opening.axis]; };
@@ -133,7 +60,7 @@ void OpenSides::advance(double t, double dt) {
   }
   const Domain& domain = scene_.domain;
   for (Drifting& one : drifting_) {
-    const Gate& gate = gates_[static_cast<std::size_t>(one.gate)];
+    const OpenGate& gate = gates_[static_cast<std::size_t>(one.gate)];
     one.next = add(one.place, multiply(dt, one.velocity));
     for (int axis = 0; axis < domain.dimensions; ++axis) {
       if (axis == gate.opening->axis) continue;
@@ -150,25 +77,18 @@ void OpenSides::advance(double t, double dt) {
 }
 
 void OpenSides::accept() {
-  for (Gate& gate : gates_)
-    for (Gate::Column& column : gate.columns) column.travelled = column.next;
+  for (OpenGate& gate : gates_)
+    for (OpenGate::Column& column : gate.columns) column.travelled = column.next;
   for (Drifting& one : drifting_) one.place = one.next;
 }
 
-int OpenSides::outflow_behind(const Vec3& place) const {
-  for (std::size_t g = 0; g < gates_.size(); ++g)
-    if (!gates_[g].opening->inflow && depth_behind(gates_[g], place) > 0 && gates_[g].column_at(place) >= 0)
-      return static_cast<int>(g);
-  return -1;
-}
-
 void OpenSides::take_entering(int up, double t, std::vector<Newcomer>& newcomers) {
-  for (Gate& gate : gates_) {
+  for (OpenGate& gate : gates_) {
     const Opening& opening = *gate.opening;
     if (!opening.inflow) continue;
     const double wet = gate.find_wet(up, t);
     std::unique_ptr<Entering> entering;
-    for (Gate::Column& column : gate.columns)
+    for (OpenGate::Column& column : gate.columns)
       for (; column.travelled > 0.5 * column.layer; column.travelled -= column.layer) {
         if (entering == nullptr) entering = std::make_unique<Entering>(opening, wet, t);
         Newcomer one{column.foot, entering->velocity(column.foot)};
@@ -182,8 +102,8 @@ void OpenSides::take_entering(int up, double t, std::vector<Newcomer>& newcomers
 void OpenSides::take_returning(std::vector<Newcomer>& newcomers) {
   std::vector<Drifting> kept, behind;
   for (Drifting one : drifting_) {
-    const Gate& gate = gates_[static_cast<std::size_t>(one.gate)];
-    const double depth = depth_behind(gate, one.place), reach = resolution_.support_radius + gate.layer;
+    const OpenGate& gate = gates_[static_cast<std::size_t>(one.gate)];
+    const double depth = gate.depth_behind(one.place), reach = resolution_.support_radius + gate.layer;
     if (depth > reach || gate.column_at(one.place) < 0) continue;
     if (depth >= 0) {
       kept.push_back(one);
@@ -203,18 +123,18 @@ bool OpenSides::exchange(ParticleStore& particles, double t) {
   const std::size_t n = particles.size();
   Array<std::int32_t> gone, order;
   const auto place_of = [&](std::size_t i) { return vector_at(particles.position, d, i); };
-  parallel_select(n, gone, [&](std::size_t i) { return outflow_behind(place_of(i)) >= 0; });
+  parallel_select(n, gone, [&](std::size_t i) { return open_gates_.outflow_behind(place_of(i)) >= 0; });
   std::vector<Newcomer> newcomers;
   take_entering(d - 1, t, newcomers);
   take_returning(newcomers);
   for (const std::int32_t i : gone) {
     const auto k = static_cast<std::size_t>(i);
     const Vec3 place = place_of(k);
-    drifting_.push_back({place, place, vector_at(particles.velocity, d, k), outflow_behind(place)});
+    drifting_.push_back({place, place, vector_at(particles.velocity, d, k), open_gates_.outflow_behind(place)});
     ++left_;
   }
   if (gone.empty() && newcomers.empty()) return false;
-  parallel_select(n, order, [&](std::size_t i) { return outflow_behind(place_of(i)) < 0; });
+  parallel_select(n, order, [&](std::size_t i) { return open_gates_.outflow_behind(place_of(i)) < 0; });
   add_copies_of_nearest(particles, newcomers, order);
   const std::size_t staying = order.size() - newcomers.size();
   if (n > 0) {
@@ -243,8 +163,8 @@ void OpenSides::add_copies_of_nearest(const ParticleStore& particles, const std:
   std::vector<std::int32_t> candidates;
   for (std::size_t k = 0; k < staying; ++k) {
     const Vec3 place = vector_at(particles.position, d, static_cast<std::size_t>(order[k]));
-    for (const Gate& gate : gates_)
-      if (depth_behind(gate, place) > -2 * resolution_.support_radius) {
+    for (const OpenGate& gate : gates_)
+      if (gate.depth_behind(place) > -2 * resolution_.support_radius) {
         candidates.push_back(order[k]);
         break;
       }
@@ -284,8 +204,8 @@ void OpenSides::follow(const WallStencils& stencils, const std::array<const doub
 void OpenSides::save(StateWriter& writer) const {
   std::vector<double> travelled, place;
   std::vector<std::int64_t> gate{entered_, left_, next_identifier_};
-  for (const Gate& one : gates_)
-    for (const Gate::Column& column : one.columns) travelled.push_back(column.travelled);
+  for (const OpenGate& one : gates_)
+    for (const OpenGate::Column& column : one.columns) travelled.push_back(column.travelled);
   for (const Drifting& one : drifting_) {
     place.insert(place.end(), one.place.begin(), one.place.end());
     place.insert(place.end(), one.velocity.begin(), one.velocity.end());
@@ -303,15 +223,15 @@ void OpenSides::load(StateReader& reader) {
   reader.f64("open_points", place);
   reader.i64("open_counts", gate);
   std::size_t columns = 0;
-  for (const Gate& one : gates_) columns += one.columns.size();
+  for (const OpenGate& one : gates_) columns += one.columns.size();
   if (travelled.size() != columns || place.size() % 6 != 0 || gate.size() != 3 + place.size() / 6)
     throw FileError("the checkpoint is of a scene with other openings");
   entered_ = gate[0];
   left_ = gate[1];
   next_identifier_ = gate[2];
   std::size_t k = 0;
-  for (Gate& one : gates_)
-    for (Gate::Column& column : one.columns) column.travelled = column.next = travelled[k++];
+  for (OpenGate& one : gates_)
+    for (OpenGate::Column& column : one.columns) column.travelled = column.next = travelled[k++];
   drifting_.resize(place.size() / 6);
   for (std::size_t p = 0; p < drifting_.size(); ++p) {
     Drifting& one = drifting_[p];
@@ -325,8 +245,8 @@ void OpenSides::load(StateReader& reader) {
 
 double OpenSides::bytes() const {
   double sum = static_cast<double>(drifting_.capacity() * sizeof(Drifting) + points_.capacity() * sizeof(Point));
-  for (const Gate& gate : gates_)
-    sum += static_cast<double>(gate.columns.capacity() * sizeof(Gate::Column) + 4 * gate.column_of.capacity());
+  for (const OpenGate& gate : gates_)
+    sum += static_cast<double>(gate.columns.capacity() * sizeof(OpenGate::Column) + 4 * gate.column_of.capacity());
   return sum;
 }
 

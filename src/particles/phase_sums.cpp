@@ -15,7 +15,7 @@ PhaseSums::Sums PhaseSums::sums_of(std::size_t phase) const {
       [&](std::size_t first, std::size_t last) {
         Sums sums;
         for (std::size_t i = first; i < last; ++i) {
-          if (static_cast<std::size_t>(phase_[i]) != phase) continue;
+          if (static_cast<std::size_t>(phase_[i]) != phase || (left_out_ != nullptr && (*left_out_)[i] >= 0)) continue;
           const double mass = particles_.volume * density_[phase];
           sums.mass += mass;
           for (int axis = 0; axis < particles_.dimensions; ++axis) {

@@ -87,7 +87,35 @@ ParticleSnapshot SnapshotTable::take(std::string name, std::size_t size, const V
     }
     snapshot.fields.push_back(std::move(field));
   }
+  if (left_out_ != nullptr) gather(snapshot);
   return snapshot;
+}
+
+// Copies of what is not left out stand for the arrays of the state.
+void SnapshotTable::gather(ParticleSnapshot& snapshot) {
+  const Array<std::int64_t>& left_out = *left_out_;
+  parallel_select(snapshot.size, chosen_, [&](std::size_t i) { return left_out[i] < 0; });
+  const std::size_t n = chosen_.size();
+  const auto copy = [&](const auto* from, auto& to) {
+    to.resize(n);
+    parallel_for(n, [&](std::size_t k) { to[k] = from[chosen_[k]]; });
+    return to.data();
+  };
+  const auto copy_components = [&](const std::string& name, std::vector<const double*>& components) {
+    std::vector<Array<double>>& copies = chosen_values_[name];
+    copies.resize(components.size());
+    for (std::size_t a = 0; a < components.size(); ++a) components[a] = copy(components[a], copies[a]);
+  };
+  copy_components("", snapshot.position);
+  for (ParticleField& field : snapshot.fields) {
+    if (field.compute) {
+      field.compute();
+      field.compute = {};
+    }
+    copy_components(field.name, field.f64);
+    for (const std::int64_t*& numbers : field.i64) numbers = copy(numbers, chosen_numbers_[field.name]);
+  }
+  snapshot.size = n;
 }
 
 SavedNumbers& SavedNumbers::add(double& value) {

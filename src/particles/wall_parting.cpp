@@ -59,6 +59,7 @@ void WallParting::add_forces(std::size_t particles, const Liquid& liquid, const 
       for (std::size_t side = 0; side < 2; ++side) {
         const double way = boundary_.walls[axis][side] - liquid.place[axis][i];
         if (std::abs(way) >= scene_.spacing / 2 || !is_wall(scene_.domain.sides[axis][side].kind)) continue;
+        if (boundary_.open_at(axis, static_cast<int>(side), place_of(liquid, i))) continue;
         const double force =
             force_of(liquid, i, std::abs(way), scene_.spacing / 2, 2 * liquid.law(i).density * gravity_[axis] * way);
         out[axis][i] += static_cast<float>(way > 0 ? -force : force);

@@ -338,18 +338,22 @@ void check_phases(const Draft& draft, Problems& problems) {
   }
 }
 
-// A step ends at each of these times: an interval far below the steps is a slip of the pen, which would fill the disk
-// or take for ever. The cases ask for at most 1,000 of a kind; a million rows of series.csv have 200 to 440 MB.
 void check_phases_filled(const Draft& draft, const Scene& scene, Problems& problems) {
   std::vector<bool> filled(scene.phases.size());
   for (const std::int32_t phase : scene.particles.phase) filled[static_cast<std::size_t>(phase)] = true;
+  for (const Opening& opening : scene.openings)
+    if (opening.inflow) filled[opening.phase] = true;
   for (std::size_t n = 0; n < filled.size(); ++n)
     if (!filled[n])
-      problems.add(*draft.node("phase." + std::to_string(n)),
-                   "phase '" + scene.phases[n].name +
-                       "' fills nothing: no [[region]] of it is left; add a region behind the others, or remove it");
+      problems.add(
+          *draft.node("phase." + std::to_string(n)),
+          "phase '" + scene.phases[n].name +
+              "' fills nothing: no [[region]] of it is left; add a region behind the others, let it enter by an "
+              "[[inflow]], or remove it");
 }
 
+// A step ends at each of these times: an interval far below the steps is a slip of the pen, which would fill the disk
+// or take for ever. The cases ask for at most 1,000 of a kind; a million rows of series.csv have 200 to 440 MB.
 void check_output(const Draft& draft, Problems& problems) {
   constexpr double most = 1e6;
   if (!draft.usable("time.end")) return;

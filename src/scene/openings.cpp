@@ -48,6 +48,7 @@ class CheckOpening {
 
   void check() {
     given();
+    if (named_.inflow()) phase();
     if (!draft_.usable(named_.name + ".side") || draft_.dimensions == 0) return;
     const auto [axis, end] = side_place(one_.side, draft_.dimensions);
     const Node& side = *draft_.node(named_.name + ".side");
@@ -80,6 +81,18 @@ class CheckOpening {
       problems_.add(*draft_.node(named_.name + ".velocity"),
                     named_.name + ".velocity must have " + std::to_string(wanted) + " entries in a " +
                         std::to_string(wanted) + "-D domain, found " + std::to_string(one_.velocity.size()));
+  }
+
+  void phase() {
+    std::vector<std::string> names;
+    for (const Phase& phase : draft_.phases) names.push_back(phase.name);
+    const Node* given = draft_.node(named_.name + ".phase");
+    if (names.empty() || (given != nullptr && !draft_.usable(named_.name + ".phase"))) return;
+    if (given == nullptr && names.size() > 1)
+      problems_.add(node_, "missing key 'phase' in [[inflow]]; say which phase enters, " + words_in_words(names));
+    if (given == nullptr || std::find(names.begin(), names.end(), one_.phase) != names.end()) return;
+    problems_.add(*given, named_.name + ".phase must be the name of a phase, " + words_in_words(names) + ", found " +
+                              to_toml_string(one_.phase));
   }
 
   void moving(const Node& side) {
@@ -404,6 +417,8 @@ std::vector<Opening> make_openings(const Draft& draft, const CompileExpression& 
     if (axis < 0) continue;
     opening.axis = axis;
     opening.side = end;
+    for (std::size_t n = 0; n < draft.phases.size(); ++n)
+      if (draft.phases[n].name == one.phase) opening.phase = n;
     for (std::size_t a = 0; a < static_cast<std::size_t>(draft.dimensions); ++a) {
       const auto [low, high] = extent(draft, one, a);
       opening.lower[a] = low;

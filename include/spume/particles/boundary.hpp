@@ -17,6 +17,7 @@
 #include "spume/operators/image_values.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/body_walls.hpp"
+#include "spume/particles/open_gates.hpp"
 #include "spume/particles/open_sides.hpp"
 #include "spume/scene/scene.hpp"
 #include "spume/scene/solid_union.hpp"
@@ -55,9 +56,9 @@ class Boundary {
  public:
   // `domain` outlives the boundary.
   // `bodies`: null without walls of bodies.
-  // `openings`: null without.
+  // `openings`: null without. `gates`: of openings behind which particles stand instead, outlive it; null without.
   Boundary(const Domain& domain, double spacing, std::unique_ptr<BodyWalls> bodies = nullptr,
-           std::unique_ptr<OpenSides> openings = nullptr);
+           std::unique_ptr<OpenSides> openings = nullptr, const OpenGates* gates = nullptr);
 
   const Domain& domain() const { return domain_; }
   const BoundaryFeatures features;
@@ -103,6 +104,10 @@ class Boundary {
   const BodyWalls* bodies() const { return bodies_.get(); }
   // Null without.
   OpenSides* openings() const { return openings_.get(); }
+  // Whether a place on a side of the domain is in an opening.
+  bool open_at(int axis, int side, const Vec3& place) const {
+    return gates_ != nullptr && gates_->open_at(axis, side, place);
+  }
   // Behind openings, for the images as they are: pressure gradients by OpenSides::give_gradients(), of a predicted
   // velocity whose images then follow predicted_rule().
   void give_gradients(const std::array<const double*, 3>& before, const std::array<const double*, 3>& after,
@@ -150,6 +155,7 @@ class Boundary {
   double spacing_;
   std::unique_ptr<BodyWalls> bodies_;
   std::unique_ptr<OpenSides> openings_;
+  const OpenGates* gates_;
   // With openings: all points behind walls of bodies and openings.
   WallStencils stencils_;
   std::array<Array<double>, 3> point_position_;

@@ -28,6 +28,7 @@ class ExcessRelaxation {
     ParticleLaws law;
     const Array<double>& excess;
     Vec3 gravity{};
+    const Array<std::int64_t>* left_out = nullptr;  // particles with 0 or more are not relaxed; null: all are
   };
   // Of the liquid as it starts. `way`: N. Adds a field of state.
   ExcessRelaxation(const Liquid& liquid, double way);

@@ -19,6 +19,7 @@
 #include "spume/core/saved_state.hpp"
 #include "spume/operators/wall_stencils.hpp"
 #include "spume/particles/arrangement.hpp"
+#include "spume/particles/open_gates.hpp"
 
 namespace spume {
 
@@ -56,10 +57,7 @@ class OpenSides {
   // Velocities with which the points of outflows move on, by the stencils.
   void follow(const WallStencils& stencils, const std::array<const double*, 3>& velocity);
 
-  // Whether a place on a side of the domain is open, and to what.
-  bool open_at(int axis, int side, const Vec3& place) const { return opening_at(axis, side, place) >= 0; }
-  bool outflow_at(int axis, int side, const Vec3& place) const;
-  const std::vector<Opening>& openings() const { return scene_.openings; }
+  const OpenGates& gates() const { return open_gates_; }
   // Of the last stencils, first of t = 0: of what enters, and of what has left.
   double largest_speed() const { return largest_speed_; }
 
@@ -73,7 +71,6 @@ class OpenSides {
   double bytes() const;
 
  private:
-  struct Gate;
   struct Point {
     Vec3 place{}, mirror{}, foot{};
     std::int32_t gate = 0;
@@ -98,9 +95,6 @@ class OpenSides {
     Vec3 place, velocity;
   };
 
-  int opening_at(int axis, int side, const Vec3& place) const;
-  double depth_behind(const Gate& gate, const Vec3& place) const;
-  int outflow_behind(const Vec3& place) const;  // the gate of the outflow that the place lies behind, or -1
   void take_entering(int up, double t, std::vector<Newcomer>& newcomers);
   void take_returning(std::vector<Newcomer>& newcomers);
   void add_copies_of_nearest(const ParticleStore& particles, const std::vector<Newcomer>& newcomers,
@@ -112,8 +106,6 @@ class OpenSides {
   void append_corners(WallStencils& stencils, std::array<Array<double>, 3>& position);
   void give_corner_gradients(const std::array<const double*, 3>& before, const std::array<const double*, 3>& after,
                              double dt, WallStencils& stencils) const;
-  // Pressure over density.
-  double pressure_outside(const Opening& opening, const Vec3& foot, double t) const;
   template <int dimensions>
   void fit(const Arrangement& arrangement, const VectorField& at, std::size_t first, std::size_t last,
            PointFits& fits) const;
@@ -121,7 +113,8 @@ class OpenSides {
   const Scene& scene_;
   const Resolution resolution_;
   const double particle_volume_;
-  std::vector<Gate> gates_;
+  OpenGates open_gates_;
+  std::vector<OpenGate>& gates_;
   std::vector<Drifting> drifting_;
   std::vector<Point> points_;
   std::vector<Corner> corners_;

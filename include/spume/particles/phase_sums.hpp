@@ -16,9 +16,15 @@ class PhaseSums {
     double mass = 0;
     Vec3 momentum{}, moment{};  // sum m u, sum m x
   };
-  // `density` of each phase; `phase` of each particle, its index.
-  PhaseSums(const ParticleStore& particles, const Array<std::int64_t>& phase, std::vector<double> density)
-      : particles_(particles), phase_(phase), density_(std::move(density)), sums_(density_.size()) {}
+  // `density` of each phase; `phase` of each particle, its index. `left_out`: particles with 0 or more do not count;
+  // null: all do.
+  PhaseSums(const ParticleStore& particles, const Array<std::int64_t>& phase, std::vector<double> density,
+            const Array<std::int64_t>* left_out = nullptr)
+      : particles_(particles),
+        phase_(phase),
+        density_(std::move(density)),
+        left_out_(left_out),
+        sums_(density_.size()) {}
 
   std::size_t size() const { return density_.size(); }
   void find();  // of the present state
@@ -32,6 +38,7 @@ class PhaseSums {
   const ParticleStore& particles_;
   const Array<std::int64_t>& phase_;
   std::vector<double> density_;
+  const Array<std::int64_t>* left_out_;
   std::vector<Sums> sums_;
 };
 

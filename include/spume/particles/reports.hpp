@@ -47,6 +47,8 @@ class SnapshotTable {
   void add(std::string name, bool standard, const Array<std::int64_t>& values);
   // One that is computed for every snapshot.
   void add(std::string name, bool standard, std::function<double(std::size_t)> value);
+  // Particles with 0 or more are not in the snapshots.
+  void leave_out(const Array<std::int64_t>& left_out) { left_out_ = &left_out; }
 
   // The snapshot with the wanted fields (none wanted: the standard ones); its arrays live until the next one. Fields
   // that are computed for it are not filled yet.
@@ -63,7 +65,13 @@ class SnapshotTable {
     std::function<double(std::size_t)> value = {};
   };
   std::vector<Entry> entries_;
+  void gather(ParticleSnapshot& snapshot);
+
+  const Array<std::int64_t>* left_out_ = nullptr;
   std::map<std::string, Array<double>> computed_;
+  Array<std::int32_t> chosen_;
+  std::map<std::string, std::vector<Array<double>>> chosen_values_;
+  std::map<std::string, Array<std::int64_t>> chosen_numbers_;
 };
 
 // The numbers of a state between steps, under one name of a checkpoint: written and read in the order in which they

@@ -94,7 +94,7 @@ struct SpongeDraft {
 
 // An [[inflow]] or [[outflow]].
 struct OpeningDraft {
-  std::string side;
+  std::string side, phase;
   std::vector<double> lower, upper;
   std::optional<ExpressionText> where;
   std::vector<ExpressionText> velocity;

@@ -53,6 +53,7 @@ struct Opening {
   // Inflow: the velocity, or the volume per time.
   std::optional<VectorExpression> velocity;
   std::shared_ptr<const Expression> flow_rate;
+  std::size_t phase = 0;                       // of what enters
   std::shared_ptr<const Expression> pressure;  // outflow, at the level where there is one; null: zero
   // Height of the surface: liquid enters below it; the pressure out is hydrostatic from it on. Null: none.
   std::shared_ptr<const Expression> level;

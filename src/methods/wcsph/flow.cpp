@@ -34,7 +34,8 @@ double background_of(const LoadedCase& loaded, const Features& features, double 
 }  // namespace
 
 Features::Features(const LoadedCase& loaded)
-    : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies), SoluteFeatures(loaded.options) {
+    : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies, loaded.scene.openings),
+      SoluteFeatures(loaded.options) {
   const Scene& scene = loaded.scene;
   several = scene.phases.size() > 1;
   gravity = gravity_across_sides(scene) != Vec3{};
@@ -50,7 +51,7 @@ Features::Features(const LoadedCase& loaded)
              (smoothing.shifting == Shifting::automatic && (!several || tension) && !scene.free_surface);
   const InterfacePressure meeting = smoothing.interface_pressure;
   weighted = several && !shifting && !tension && meeting != InterfacePressure::mean;
-  layers = weighted && !scene.free_surface && !moving_bodies && !scene.body_force && lie_in_layers(scene);
+  layers = weighted && !scene.free_surface && !openings && !moving_bodies && !scene.body_force && lie_in_layers(scene);
   weighted = layers || (weighted && meeting == InterfacePressure::weighted);
 }
 
@@ -68,15 +69,17 @@ Flow::Flow(const LoadedCase& loaded_case)
       background(background_of(loaded_case, features, expected_speed, laws)),
       wall_gravity(gravity_across_sides(scene)),
       particles(dimensions, scene.particles),
-      boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution)),
+      openings(features.openings ? std::make_unique<BufferLayers>(scene, resolution, skin, laws, particles) : nullptr),
+      boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution), nullptr,
+               openings == nullptr ? nullptr : &openings->gates()),
       arrangement(scene.domain, resolution, particles.volume, particles.size(), skin),
       walls(boundary, wall_gravity, particles.scratch()),
       parting(scene, boundary, resolution, particles.volume, wall_gravity),
       solutes(particles, resolution, options, scene),
       solute_transport(
           {solutes, particles, arrangement, boundary, scene.spacing, features.shifting, scene.free_surface}) {
-  // Bands of interfaces and averages at wall points read lists one neighbour at a time.
-  if (!features.tension && !features.bodies) arrangement.list.keep_narrow();
+  // Bands of interfaces and averages behind walls and openings read lists one neighbour at a time.
+  if (!features.tension && !features.bodies && !features.openings) arrangement.list.keep_narrow();
   arrangement.context.gradient_scale = dimensions / resolution.lattice.divergence_of_position;
   FieldSet& fields = particles.fields;
   particles.add_vector(acceleration, "acceleration", Lifetime::state);
@@ -94,8 +97,10 @@ Flow::Flow(const LoadedCase& loaded_case)
   if (features.gravity) start_density();
   if (features.density_relaxation)
     relaxation = std::make_unique<ExcessRelaxation>(
-        ExcessRelaxation::Liquid{particles, arrangement, resolution, law_of_particles(), *excess, wall_gravity},
+        ExcessRelaxation::Liquid{particles, arrangement, resolution, law_of_particles(), *excess, wall_gravity,
+                                 openings == nullptr ? nullptr : &openings->column()},
         options.get<CompressibilityOptions>().density_relaxation);
+  if (features.openings) openings->fill(*phase_number, *excess, {acceleration, shift});
   find_signal();
 }
 
@@ -127,7 +132,7 @@ double Flow::potential_energy() const {
 
 double Flow::compression_energy() const {
   return parallel_sum(size(), [&](std::size_t i) {
-    return particles.volume * law(i).stiffness() * law(i).energy_over_stiffness((*excess)[i]);
+    return in_domain(i) ? particles.volume * law(i).stiffness() * law(i).energy_over_stiffness((*excess)[i]) : 0;
   });
 }
 

@@ -62,12 +62,13 @@ void Flow::build_lists() {
 void Flow::keep_lists(double dt) {
   if (!has_lists && steps > 0) build_lists();
   has_moved = false;
-  if (has_lists && lists_hold(dt)) return;
+  if (has_lists && !(features.openings && openings->stale()) && lists_hold(dt)) return;
+  if (features.openings && has_lists) openings->renew();
   listed_time = time;
   if (features.displaced_bodies) boundary.bodies()->move_to(time);
   parallel_for(size(), [&](std::size_t i) {
     Vec3 r = vector_at(particles.position, dimensions, i);
-    boundary.apply_walls(boundary.walls, r, nullptr);
+    apply_walls(i, r, nullptr);
     for (int axis = 0; axis < dimensions; ++axis) {
       (*particles.position[axis])[i] = r[axis];
       (*listed[axis])[i] = static_cast<float>(r[axis] - arrangement.origin[axis]);
@@ -89,6 +90,27 @@ void Flow::move_images(const std::array<const double*, 3>& at, double t) {
   walls.weigh(arrangement);
 }
 
+void Flow::apply_walls(std::size_t i, Vec3& r, Vec3* u) const {
+  if (openings != nullptr)
+    openings->apply_walls(boundary, i, r, u);
+  else
+    boundary.apply_walls(boundary.walls, r, u);
+}
+
+void Flow::move_layers(double dt) {
+  openings->set_velocities(time, dt);
+}
+
+void Flow::find_pressure_behind(double dt) {
+  openings->find_pressures({.arrangement = arrangement,
+                            .images = boundary.image_map(arrangement.images),
+                            .gravity = wall_gravity,
+                            .background = background,
+                            .time = time + dt,
+                            .velocity = [&](int axis, std::size_t i) { return half_step(axis, i, dt).velocity; }},
+                           next_excess, pressure, volume);
+}
+
 // (5), (6) along one axis.
 Flow::HalfStep Flow::half_step(int axis, std::size_t i, double dt) const {
   const double u = (*particles.velocity[axis])[i] + dt / 2 * (*acceleration[axis])[i];
@@ -106,7 +128,7 @@ Vec3 Flow::held_velocity(std::size_t i, double dt, Vec3& r) const {
     r[axis] = half.place + half.way;
   }
   const Vec3 before = r;
-  boundary.apply_walls(boundary.walls, r, &u);
+  apply_walls(i, r, &u);
   // Particles go round periodic sides when lists are made.
   for (int axis = 0; axis < dimensions; ++axis)
     if (scene.domain.periodic(axis)) r[axis] = before[axis];
@@ -195,6 +217,7 @@ void Flow::advance_density(double dt) {
     const double grown = dt / 2 * rate[i];
     double s = (*excess)[i];
     s += (1 + s) * 2 * grown / (1 - grown) + dt * smoothing * own.sound_speed * diffusion[i];
+    if (!in_domain(i)) s = (*excess)[i];
     if (features.density_relaxation) s += share * relaxation->lack(i);
     if (features.shifting) {
       // delta u . grad s, of the reduced excess and of the hydrostatic part.
@@ -359,11 +382,19 @@ void Flow::accept(double dt) {
         (*particles.velocity[axis])[i] = u[axis] + dt / 2 * (*acceleration[axis])[i];
       }
       (*excess)[i] = next_excess[i];
-      if (features.shifting) find_shift(i);
+      if (!in_domain(i)) {
+        for (int axis = 0; axis < dimensions; ++axis) {
+          (*acceleration[axis])[i] = 0;
+          (*particles.velocity[axis])[i] = u[axis];
+        }
+      } else if (features.shifting) {
+        find_shift(i);
+      }
     }
   });
   release_leased();
   boundary.accept();
+  if (features.openings) openings->accept(dt);
   if (features.tension) surface_energy = tension->energy();
   time += dt;
   if (dt > 0) ++steps;

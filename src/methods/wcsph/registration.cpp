@@ -41,6 +41,13 @@ void check(Draft& draft, Problems& problems) {
                                 std::to_string(draft.phases.size()) + "; leave the gas out, or remove the scalars");
         break;
       }
+  for (const char* section : {"inflow.0", "outflow.0"})
+    if (const Node* node = draft.node(section);
+        node != nullptr && (SoluteFeatures(draft.options).scalars || SoluteFeatures(draft.options).recorded_flow))
+      problems.add(*node,
+                   "method \"wcsph\" takes no scalars and no recorded flow through openings; remove one of the two, or "
+                   "use method "
+                   "\"les-sph\"");
   if (!draft.solids.empty())
     problems.add(*draft.node("solid.0"),
                  "method \"wcsph\" knows walls of [[body]], not [[solid]]; write the box as [[body]] with shape = "
@@ -80,6 +87,7 @@ Registration registration() {
   method.name = "wcsph";
   method.description = "flow of several phases by weakly compressible SPH, with repulsion between them";
   method.fills_phases = true;
+  method.passes_openings = true;
   method.honours_bodies = true;
   method.honours_solids = false;
   method.honours_displaced_walls = false;

@@ -28,6 +28,8 @@ Plan make_plan(Flow& f) {
     run.bytes =
         f.arrangement.sort_traffic(f.particles) + f.arrangement.image_traffic() + f.arrangement.list_traffic(f.sizes);
   };
+  const char* const openings = has.openings ? "particles enter and leave" : "no inflow, no outflow";
+  stages.add(both, "openings", has.openings, openings, &Flow::move_layers, {p.position}, {p.velocity});
   stages.add(both, "lists", true, "made anew when a particle has moved by half of lists.skin", keep_lists,
              {p.position, p.velocity, f.acceleration, f.listed}, {});
   const ArrayUse lack([&f] { return f.relaxation == nullptr ? 0 : f.relaxation->bytes(); });
@@ -58,6 +60,8 @@ Plan make_plan(Flow& f) {
                            : "compressibility.density_filter is not \"shepard\"",
                &Flow::filter_density, {f.volume, f.density}, {f.next_excess, f.pressure, f.volume},
                [&f, interval] { return f.steps % interval == interval - 1; });
+  stages.add(both, "pressure at openings", has.openings, openings, &Flow::find_pressure_behind,
+             {p.position, p.velocity, *f.phase_number}, {f.next_excess, f.pressure, f.volume});
   stages.sweep(both, "pressure force", true, std::string("(2)") + (has.several ? ", (4)" : "") + ": " + several,
                &Flow::find_pressure_force, {f.pressure, f.volume, f.density}, {f.force, f.concentration});
   stages.sweep(both, "surface tension", has.tension,

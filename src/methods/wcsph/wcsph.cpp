@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "spume/core/error.hpp"
@@ -51,13 +52,21 @@ Wcsph::Wcsph(const LoadedCase& loaded)
     : flow_(loaded),
       plan_(make_plan(flow_)),
       snapshot_(snapshot_table(output_fields(), loaded.options, flow_)),
-      phase_sums_(flow_.particles, *flow_.phase_number, densities_of(flow_)),
+      phase_sums_(flow_.particles, *flow_.phase_number, densities_of(flow_),
+                  flow_.openings == nullptr ? nullptr : &flow_.openings->column()),
       remarked_(flow_.laws.size(), false) {
   for (const PhaseLaw& law : flow_.laws)
     if (!(law.sound_speed > 0))
       throw refusal(loaded.options, "compressibility.max_speed",
                     "nothing tells how fast the flow will be: it starts at rest, without gravity, forces and moving "
                     "walls; set compressibility.max_speed");
+  if (flow_.features.openings) {
+    snapshot_.leave_out(flow_.openings->column());
+    if (const auto fastest = flow_.openings->fastest_inflow(loaded.options.time.end); fastest.mach >= 1)
+      throw refusal(loaded.options, fastest.name,
+                    fastest.name + " lets its phase enter at " + brief(fastest.mach) +
+                        " times its sound speed; expected a flow slower than sound: raise compressibility.max_speed");
+  }
   declare_series();
   if (flow_.features.scalars) flow_.solutes.scalars->add_fields(snapshot_);
   if (flow_.features.bodies)
@@ -114,6 +123,7 @@ void Wcsph::declare_series() {
     series_.add("density_change_" + name, "1, largest", [&flow, n] { return flow.largest_excess(n); });
     phase_sums_.add_columns(series_, n, name);
   }
+  if (flow.features.openings) flow.openings->add_columns(series_);
   flow.solutes.add_columns(series_, nullptr);
 }
 
@@ -140,15 +150,27 @@ std::vector<Remark> Wcsph::take_remarks() {
 }
 
 std::vector<Invariant> Wcsph::invariants() const {
-  if (!flow_.features.density_relaxation) return {};
-  return {
-      {.quantity = "volume_drift", .kind = Invariant::Kind::drift, .column = "volume", .bound = largest_volume_drift}};
+  std::vector<Invariant> list;
+  if (flow_.features.density_relaxation && !flow_.features.openings)
+    list.push_back({.quantity = "volume_drift",
+                    .kind = Invariant::Kind::drift,
+                    .column = "volume",
+                    .bound = largest_volume_drift});
+  // To the rounding of three products.
+  for (std::size_t n = 0; n < flow_.laws.size() && flow_.features.openings; ++n)
+    list.push_back({.quantity = "balance_" + flow_.scene.phases[n].name,
+                    .kind = Invariant::Kind::drift,
+                    .column = "volume_" + flow_.scene.phases[n].name,
+                    .bound = 4 * std::numeric_limits<double>::epsilon(),
+                    .beside = [this, n] { return flow_.openings->net_outflow(n); }});
+  return list;
 }
 
 std::vector<ArrayInfo> Wcsph::arrays() const {
   std::vector<ArrayInfo> list = particle_arrays(flow_.particles, flow_.arrangement);
   if (flow_.features.bodies) list.push_back({"wall points", flow_.boundary.bytes() + flow_.walls.bytes()});
   if (flow_.features.tension) list.push_back({"interfaces", flow_.tension->bytes()});
+  if (flow_.features.openings) list.push_back({"openings", flow_.openings->bytes()});
   list.push_back({"leased within a step", flow_.leased_bytes()});
   return list;
 }
@@ -190,6 +212,7 @@ void Wcsph::save(StateWriter& writer) const {
   writer.f64("listed_time", listed_time);
   writer.i64("counters", count);
   flow_.boundary.save_walls(writer);
+  if (flow_.features.openings) flow_.openings->save(writer);
   save_fields(flow_.particles.fields, writer);
   flow_.solutes.save(writer);
 }
@@ -201,6 +224,7 @@ void Wcsph::load(StateReader& reader) {
   reader.f64("listed_time", listed_time);
   reader.i64("counters", count);
   flow_.boundary.load_walls(reader, flow_.time);
+  if (flow_.features.openings) flow_.openings->load(reader);
   if (count.size() != 1 || listed_time.size() != 1)
     throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(count[0]), "particle", reader);

@@ -13,6 +13,7 @@
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/averaged_walls.hpp"
 #include "spume/particles/boundary.hpp"
+#include "spume/particles/buffer_layers.hpp"
 #include "spume/particles/excess_relaxation.hpp"
 #include "spume/particles/phase_law.hpp"
 #include "spume/particles/surface_tension.hpp"
@@ -64,6 +65,7 @@ struct Flow {
   FloatVectorField shift{};         // velocity of shifting, delta u
   Array<double>* excess = nullptr;
   Array<std::int64_t>* phase_number = nullptr;
+  std::unique_ptr<BufferLayers> openings;  // null: none
   Boundary boundary;
   double listed_time = 0;  // of the places of moving bodies in the lists
   double settled = 0;      // 1: settle() has been
@@ -98,7 +100,8 @@ struct Flow {
   double pressure_at(double s, std::size_t i) const { return law(i).pressure(s) + background; }
   double listed_at(int axis, std::size_t i) const { return arrangement.origin[axis] + double{(*listed[axis])[i]}; }
   double transport(int axis, double u, std::size_t i) const { return features.shifting ? u + (*shift[axis])[i] : u; }
-  double mass(std::size_t i) const { return particles.volume * law(i).density; }
+  bool in_domain(std::size_t i) const { return openings == nullptr || !openings->holds(i); }
+  double mass(std::size_t i) const { return in_domain(i) ? particles.volume * law(i).density : 0; }
   double kinetic_energy() const;
   double potential_energy() const;  // across axes with sides
   double compression_energy() const;
@@ -107,16 +110,18 @@ struct Flow {
   std::string laws_in_words() const;
 
   // The stages.
-  void settle();  // of layers, to where they are at rest
+  void move_layers(double dt);  // behind openings
+  void settle();                // of layers, to where they are at rest
   void keep_lists(double dt);
   void drift(double dt);            // (5), to the middle of the step
   void find_rates(double dt);       // (1), and the viscous part of (2)
   void advance_density(double dt);  // (1), (3), and (5) to the end of the step
   void filter_density();
-  void start_tension();        // the first pressures of whole phases jump by the mean tension
-  void find_pressure_force();  // (2), (4)
-  void add_tension();          // (11)
-  void accept(double dt);      // (2)
+  void find_pressure_behind(double dt);  // openings
+  void start_tension();                  // the first pressures of whole phases jump by the mean tension
+  void find_pressure_force();            // (2), (4)
+  void add_tension();                    // (11)
+  void accept(double dt);                // (2)
   std::int64_t transport_scalars(double dt) { return solute_transport.transport(time, dt); }
   void transfer_oxygen(double dt) { solute_transport.transfer_oxygen(time, dt); }
 
@@ -132,6 +137,7 @@ struct Flow {
   };
   HalfStep half_step(int axis, std::size_t i, double dt) const;
   Vec3 held_velocity(std::size_t i, double dt, Vec3& r) const;
+  void apply_walls(std::size_t i, Vec3& r, Vec3* u) const;
   SurfaceTension::Now tension_now();
   void build_lists();
   bool lists_hold(double dt) const;

@@ -1,0 +1,461 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/buffer_layers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "spume/core/error.hpp"
+#include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
+
+namespace spume {
+namespace {
+
+// K L / c: Poinsot and Lele (1992), after D. H. Rudy and J. C. Strikwerda, J. Comput. Phys. 36 (1980), who have 0.27.
+constexpr double relaxation = 0.25;
+
+// Liquid that came back through a column, which is to be made up for; its own inverse.
+constexpr std::int64_t returned(std::int64_t column) {
+  return -2 - column;
+}
+constexpr std::int64_t liquid_of_domain = -1;
+
+}  // namespace
+
+// In the life of a list a layer comes forward by half the skin.
+BufferLayers::BufferLayers(const Scene& scene, const Resolution& resolution, double skin,
+                           const std::vector<PhaseLaw>& laws, ParticleStore& particles)
+    : scene_(scene),
+      resolution_(resolution),
+      laws_(laws),
+      particles_(particles),
+      gates_(scene, particles.volume),
+      reach_(resolution.support_radius + skin / 2),
+      outwards_(gates_.list.size()),
+      column_(&particles.fields.add<std::int64_t>("buffer_column", Lifetime::state)),
+      entered_(laws.size()),
+      left_(laws.size()) {
+  for (std::size_t g = 0; g < gates_.list.size(); ++g) {
+    const OpenGate& gate = gates_.list[g];
+    first_.push_back(columns_.size());
+    for (std::size_t cell = 0; cell < gate.columns.size(); ++cell)
+      columns_.push_back({.gate = static_cast<std::int32_t>(g),
+                          .cell = static_cast<std::int32_t>(cell),
+                          .phase = gate.opening->phase});
+  }
+}
+
+void BufferLayers::fill(Array<std::int64_t>& phase, Array<double>& excess, std::vector<FloatVectorField> changes) {
+  phase_ = &phase;
+  excess_ = &excess;
+  changes_ = std::move(changes);
+  column_->fill(liquid_of_domain);
+  next_identifier_ = static_cast<std::int64_t>(particles_.size());
+  set_velocities(0, 0);
+  std::vector<Newcomer> newcomers;
+  add_columns_of_inflows(newcomers);
+  // Behind an outflow stands what mirrors the liquid before it.
+  for (std::size_t g = 0; g < gates_.list.size(); ++g) {
+    const OpenGate& gate = gates_.list[g];
+    if (gate.opening->inflow) continue;
+    for (std::size_t i = 0; i < particles_.size(); ++i) {
+      Newcomer one{.source = i,
+                   .phase = phase[i],
+                   .place = vector_at(particles_.position, particles_.dimensions, i),
+                   .velocity = vector_at(particles_.velocity, particles_.dimensions, i)};
+      const std::int32_t cell = gate.column_at(one.place);
+      if (cell < 0 || -gate.depth_behind(one.place) > reach_) continue;
+      one.column = static_cast<std::int64_t>(first_[g]) + cell;
+      one.place[gate.opening->axis] = 2 * gate.plane - one.place[gate.opening->axis];
+      newcomers.push_back(one);
+    }
+  }
+  Array<std::int32_t> all;
+  parallel_select(particles_.size(), all, [](std::size_t) { return true; });
+  insert(all, newcomers);
+}
+
+void BufferLayers::find_members() {
+  parallel_select(particles_.size(), members_, [&](std::size_t i) { return holds(i); });
+}
+
+// The velocity of a step is its integral by Simpson's rule, as for moving walls.
+void BufferLayers::set_velocities(double t, double dt) {
+  const int d = particles_.dimensions;
+  for (std::size_t g = 0; g < gates_.list.size(); ++g) {
+    OpenGate& gate = gates_.list[g];
+    const Opening& opening = *gate.opening;
+    if (!opening.inflow) continue;
+    const double wet = gate.find_wet(d - 1, t + dt);
+    const Entering before(opening, wet, t), middle(opening, wet, t + dt / 2), after(opening, wet, t + dt);
+    for (std::size_t cell = 0; cell < gate.columns.size(); ++cell) {
+      Column& column = columns_[first_[g] + cell];
+      const Vec3& foot = gate.columns[cell].foot;
+      const Vec3 first = before.velocity(foot), last = after.velocity(foot);
+      column.velocity = multiply(1.0 / 6, add(add(first, multiply(4, middle.velocity(foot))), last));
+      double& normal = column.velocity[opening.axis];
+      normal = gate.inwards * std::max(0.0, gate.inwards * normal);
+      column.acceleration = dt > 0 ? (last[opening.axis] - first[opening.axis]) / dt : 0;
+    }
+  }
+  find_members();
+  std::vector<std::int32_t> count(columns_.size());
+  for (const std::int32_t i : members_) {
+    const std::int64_t c = (*column_)[i];
+    ++count[static_cast<std::size_t>(c)];
+    if (!gate_of(c).opening->inflow) continue;
+    for (int axis = 0; axis < d; ++axis)
+      (*particles_.velocity[axis])[i] = columns_[static_cast<std::size_t>(c)].velocity[axis];
+  }
+  stale_ = parallel_max(particles_.size(), 0.0,
+                        [&](std::size_t i) { return (*column_)[i] < liquid_of_domain ? 1.0 : 0.0; }) > 0;
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    const OpenGate& gate = gates_.list[static_cast<std::size_t>(columns_[c].gate)];
+    const bool wet = gate.columns[static_cast<std::size_t>(columns_[c].cell)].wet;
+    stale_ = stale_ || (gate.opening->inflow && wet != (count[c] > 0));
+  }
+}
+
+void BufferLayers::add_columns_of_inflows(std::vector<Newcomer>& newcomers) const {
+  constexpr double none = -1;
+  std::vector<double> deepest(columns_.size(), none);
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    if (!holds(i)) continue;
+    const auto c = static_cast<std::size_t>((*column_)[i]);
+    const double depth = gate_of((*column_)[i]).depth_behind(vector_at(particles_.position, particles_.dimensions, i));
+    deepest[c] = std::max(deepest[c], depth);
+  }
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    const Column& column = columns_[c];
+    const OpenGate& gate = gates_.list[static_cast<std::size_t>(column.gate)];
+    const OpenGate::Column& cell = gate.columns[static_cast<std::size_t>(column.cell)];
+    if (!gate.opening->inflow || !cell.wet) continue;
+    double depth = deepest[c] == none ? -cell.layer / 2 : deepest[c];
+    while (depth + cell.layer / 2 < reach_) {
+      depth += cell.layer;
+      Newcomer one{.column = static_cast<std::int64_t>(c),
+                   .phase = static_cast<std::int64_t>(column.phase),
+                   .place = cell.foot,
+                   .velocity = column.velocity};
+      one.place[gate.opening->axis] -= gate.inwards * depth;
+      newcomers.push_back(one);
+    }
+  }
+}
+
+void BufferLayers::renew() {
+  std::vector<Newcomer> newcomers;
+  add_columns_of_inflows(newcomers);
+  Array<std::int32_t> staying;
+  const int d = particles_.dimensions;
+  const auto stays = [&](std::size_t i) {
+    if (!holds(i)) return true;
+    const std::int64_t c = (*column_)[i];
+    const OpenGate& gate = gate_of(c);
+    if (gate.opening->inflow)
+      return gate.columns[static_cast<std::size_t>(columns_[static_cast<std::size_t>(c)].cell)].wet;
+    const Vec3 place = vector_at(particles_.position, d, i);
+    return gate.depth_behind(place) <= reach_ + gate.layer && gate.column_at(place) >= 0;
+  };
+  parallel_select(particles_.size(), staying, stays);
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    std::int64_t& c = (*column_)[i];
+    if (c >= liquid_of_domain) continue;
+    c = returned(c);
+    const OpenGate& gate = gate_of(c);
+    Newcomer one{.source = i,
+                 .column = c,
+                 .phase = (*phase_)[i],
+                 .place = vector_at(particles_.position, d, i),
+                 .velocity = vector_at(particles_.velocity, d, i)};
+    one.place[gate.opening->axis] -= gate.inwards * std::ceil(reach_ / gate.layer) * gate.layer;
+    newcomers.push_back(one);
+    c = liquid_of_domain;
+  }
+  if (newcomers.empty() && staying.size() == particles_.size()) return;
+  insert(staying, newcomers);
+}
+
+void BufferLayers::insert(const Array<std::int32_t>& staying, const std::vector<Newcomer>& newcomers) {
+  const std::size_t before = particles_.size(), first = staying.size();
+  Array<std::int32_t> order;
+  order.resize(first + newcomers.size());
+  std::copy_n(staying.data(), first, order.data());
+  for (std::size_t k = 0; k < newcomers.size(); ++k) order[first + k] = static_cast<std::int32_t>(newcomers[k].source);
+  if (before > 0)
+    particles_.fields.permute(order);
+  else
+    particles_.fields.resize(order.size());
+  // A newcomer has nothing of the particle that it is a copy of.
+  for (const auto& field : particles_.fields.fields())
+    if (field->lifetime == Lifetime::state)
+      std::visit([&](auto& values) { std::fill(values.data() + first, values.data() + order.size(), 0); },
+                 field->values);
+  for (std::size_t k = 0; k < newcomers.size(); ++k) {
+    const Newcomer& one = newcomers[k];
+    for (int axis = 0; axis < particles_.dimensions; ++axis) {
+      (*particles_.position[axis])[first + k] = one.place[axis];
+      (*particles_.velocity[axis])[first + k] = one.velocity[axis];
+    }
+    (*particles_.identifier)[first + k] = next_identifier_++;
+    (*column_)[first + k] = one.column;
+    (*phase_)[first + k] = one.phase;
+  }
+}
+
+void BufferLayers::apply_walls(const Boundary& boundary, std::size_t i, Vec3& r, Vec3* u) const {
+  if (!holds(i)) {
+    boundary.apply_walls(boundary.walls, r, u);
+    return;
+  }
+  const OpenGate& gate = gate_of((*column_)[i]);
+  const int axis = gate.opening->axis;
+  const double along = r[axis];
+  if (gate.opening->inflow) {
+    r = vector_at(particles_.position, particles_.dimensions, i);
+  } else {
+    r[axis] = gate.plane + gate.inwards * scene_.spacing / 2;
+    boundary.apply_walls(boundary.walls, r, u);
+  }
+  r[axis] = along;
+}
+
+BufferLayers::Seen BufferLayers::look(const Liquid& liquid, const Array<float>& pressure, std::size_t i) const {
+  const NeighbourList& list = liquid.arrangement.list;
+  const Images& images = liquid.arrangement.images;
+  const OpenGate& gate = gate_of((*column_)[i]);
+  const int d = particles_.dimensions, normal = gate.opening->axis;
+  const bool inflow = gate.opening->inflow;
+  const auto n = static_cast<std::int32_t>(list.particles());
+  const std::int32_t* wall_point = images.wall_point();
+  Vec3 pull = liquid.gravity;
+  if (inflow) pull[normal] -= columns_[static_cast<std::size_t>((*column_)[i])].acceleration;
+  Seen all;
+  std::array<Seen, 2> sums;  // of the other phases, of its own
+  for (const std::int32_t point : list.of(i)) {
+    const std::size_t j = liquid.arrangement.particle_of(point), k = static_cast<std::size_t>(std::max(0, point - n));
+    if (holds(j)) continue;
+    if (point >= n) {
+      if (wall_point != nullptr && wall_point[k] >= 0) continue;
+      if (images.paths()[liquid.images.path(k)].side[normal] >= 0) continue;
+    }
+    double distance2 = 0, head = 0;
+    for (int axis = 0; axis < d; ++axis) {
+      const float* x = list.coordinate(axis);
+      const double way = double{x[point]} - double{x[i]};
+      distance2 += way * way;
+      head += pull[axis] * (double{x[i]} - double{x[j]});
+    }
+    const double weight = WendlandC2::w(std::sqrt(distance2) / resolution_.smoothing_length);
+    const bool same = (*phase_)[j] == (*phase_)[i];
+    const double density = laws_[static_cast<std::size_t>((*phase_)[i])].density;
+    Seen& sum = sums[same ? 1 : 0];
+    sum.weight += weight;
+    sum.pressure += weight * (double{pressure[j]} - liquid.background + density * head);
+    const PhaseLaw& law = laws_[static_cast<std::size_t>((*phase_)[j])];
+    all.all += weight;
+    all.mass += weight * law.density;
+    all.impedance += weight * law.density * law.sound_speed;
+    all.momentum += weight * law.density * gate.inwards * liquid.velocity(normal, j);
+    for (int axis = 0; axis < d; ++axis) {
+      const double u = liquid.velocity(axis, j);
+      sum.velocity[axis] += weight * (point < n ? u : liquid.images.velocity(k, axis, u));
+    }
+  }
+  Seen seen = sums[sums[1].weight > 0 ? 1 : 0];
+  seen.all = all.all;
+  seen.mass = all.mass;
+  seen.impedance = all.impedance;
+  seen.momentum = all.momentum;
+  if (seen.weight > 0) {
+    seen.pressure /= seen.weight;
+    seen.velocity = multiply(1 / seen.weight, seen.velocity);
+  }
+  return seen;
+}
+
+// Of single columns the mean has the noise of the few particles that are seen, 0.01 of the speed: times rho c that
+// would be a tenth of rho u^2.
+void BufferLayers::find_outwards() {
+  struct Sum {
+    double mass = 0, momentum = 0;
+  };
+  std::vector<Sum> sums(gates_.list.size());
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    const std::int64_t c = (*column_)[members_[k]];
+    const OpenGate& gate = gate_of(c);
+    if (gate.opening->inflow) continue;
+    Sum& sum = sums[static_cast<std::size_t>(columns_[static_cast<std::size_t>(c)].gate)];
+    sum.mass += seen_[k].mass;
+    sum.momentum -= seen_[k].momentum;
+  }
+  for (std::size_t g = 0; g < sums.size(); ++g) {
+    if (!(sums[g].mass > 0)) continue;
+    outwards_[g].now = sums[g].momentum / sums[g].mass;
+    if (!outwards_[g].known) outwards_[g].mean = outwards_[g].now;
+    outwards_[g].known = true;
+  }
+}
+
+void BufferLayers::find_pressures(const Liquid& liquid, Array<double>& excess, Array<float>& pressure,
+                                  Array<float>& volume) {
+  find_members();
+  const std::size_t n = members_.size();
+  seen_.resize(n);
+  parallel_for(n, [&](std::size_t k) { seen_[k] = look(liquid, pressure, static_cast<std::size_t>(members_[k])); });
+  find_outwards();
+  // Expressions are not for several threads at a time.
+  double heaviest = 0;
+  for (const PhaseLaw& law : laws_) heaviest = std::max(heaviest, law.density);
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto i = static_cast<std::size_t>(members_[k]);
+    const std::int64_t c = (*column_)[i];
+    const OpenGate& gate = gate_of(c);
+    const PhaseLaw& law = laws_[static_cast<std::size_t>((*phase_)[i])];
+    const Seen& seen = seen_[k];
+    double p = seen.pressure;
+    if (!gate.opening->inflow) {
+      const auto axis = static_cast<std::size_t>(gate.opening->axis);
+      Vec3 foot{};
+      for (int a = 0; a < particles_.dimensions; ++a)
+        foot[a] = liquid.arrangement.list.coordinate(a)[i] + liquid.arrangement.origin[a];
+      foot[axis] = gate.plane;
+      p = pressure_outside(scene_, *gate.opening, foot, heaviest, liquid.time);
+      const Outwards& outwards = outwards_[static_cast<std::size_t>(columns_[static_cast<std::size_t>(c)].gate)];
+      // The impedance is that of what is seen: that of water before it would shoot air back.
+      if (seen.weight > 0 && !scene_.free_surface) p += seen.impedance / seen.all * (outwards.now - outwards.mean);
+    }
+    excess[i] = law.excess(p);
+    pressure[i] = static_cast<float>(p + liquid.background);
+    volume[i] = static_cast<float>(1 / (1 + excess[i]));
+  }
+}
+
+double BufferLayers::share_of_step(int axis, double sound_speed, double dt) const {
+  const double length = scene_.domain.upper[axis] - scene_.domain.lower[axis];
+  return -std::expm1(-relaxation * dt * sound_speed / length);
+}
+
+void BufferLayers::accept(double dt) {
+  const int d = particles_.dimensions;
+  for (std::size_t k = 0; k < members_.size(); ++k) {
+    const auto i = static_cast<std::size_t>(members_[k]);
+    const Opening& opening = *gate_of((*column_)[i]).opening;
+    const Seen& seen = seen_[k];
+    if (opening.inflow || !(seen.weight > 0)) continue;
+    const double share = share_of_step(opening.axis, laws_[static_cast<std::size_t>((*phase_)[i])].sound_speed, dt);
+    for (int axis = 0; axis < d; ++axis) {
+      double& u = (*particles_.velocity[axis])[i];
+      u += share * (seen.velocity[axis] - u);
+    }
+  }
+  // The slowest sound goes farthest from the mean before it is forgotten.
+  double slowest = std::numeric_limits<double>::infinity();
+  for (const PhaseLaw& law : laws_) slowest = std::min(slowest, law.sound_speed);
+  for (std::size_t g = 0; g < outwards_.size(); ++g)
+    outwards_[g].mean +=
+        share_of_step(gates_.list[g].opening->axis, slowest, dt) * (outwards_[g].now - outwards_[g].mean);
+  parallel_select(particles_.size(), passed_, [&](std::size_t i) {
+    const Vec3 place = vector_at(particles_.position, d, i);
+    return holds(i) ? gate_of((*column_)[i]).depth_behind(place) < 0 : gates_.outflow_behind(place) >= 0;
+  });
+  for (const std::int32_t i : passed_) {
+    std::int64_t& column = (*column_)[i];
+    const auto phase = static_cast<std::size_t>((*phase_)[i]);
+    if (column >= 0) {
+      const bool enters = gate_of(column).opening->inflow;
+      if (enters)
+        ++entered_[phase];
+      else
+        --left_[phase];
+      column = enters ? liquid_of_domain : returned(column);
+      continue;
+    }
+    ++left_[phase];
+    const Vec3 place = vector_at(particles_.position, d, static_cast<std::size_t>(i));
+    const auto g = static_cast<std::size_t>(gates_.outflow_behind(place));
+    // One that came back and leaves again needs no other in its place.
+    column = static_cast<std::int64_t>(first_[g]) + gates_.list[g].column_at(place);
+    for (const FloatVectorField& change : changes_)
+      for (int axis = 0; axis < d; ++axis)
+        if (change[axis] != nullptr) (*change[axis])[i] = 0;
+  }
+}
+
+double BufferLayers::volume_inside(std::size_t phase) const {
+  return particles_.volume * parallel_sum(particles_.size(), [&](std::size_t i) {
+           return !holds(i) && static_cast<std::size_t>((*phase_)[i]) == phase ? 1.0 : 0.0;
+         });
+}
+
+double BufferLayers::net_outflow(std::size_t phase) const {
+  return particles_.volume * static_cast<double>(left_[phase] - entered_[phase]);
+}
+
+void BufferLayers::add_columns(SeriesTable& series) const {
+  const std::string unit = particles_.dimensions == 3 ? "length^3" : "length^2";
+  for (std::size_t n = 0; n < laws_.size(); ++n) {
+    const std::string& name = scene_.phases[n].name;
+    const std::string of = laws_.size() > 1 ? "_" + name : "";  // one liquid has the columns of other methods
+    series.add("volume_" + name, unit + ", of its particles in the domain", [this, n] { return volume_inside(n); });
+    series.add("volume_in" + of, unit + ", since the start",
+               [this, n] { return particles_.volume * static_cast<double>(entered_[n]); });
+    series.add("volume_out" + of, unit + ", since the start",
+               [this, n] { return particles_.volume * static_cast<double>(left_[n]); });
+  }
+}
+
+BufferLayers::Fastest BufferLayers::fastest_inflow(double end) const {
+  constexpr int times = 32;
+  Fastest fastest;
+  std::vector<OpenGate> gates = gates_.list;
+  for (OpenGate& gate : gates) {
+    const Opening& opening = *gate.opening;
+    for (int n = 0; n <= times && opening.inflow; ++n) {
+      const double t = end * n / times;
+      const Entering entering(opening, gate.find_wet(particles_.dimensions - 1, t), t);
+      for (const OpenGate::Column& column : gate.columns)
+        if (const double mach = length(entering.velocity(column.foot)) / laws_[opening.phase].sound_speed;
+            column.wet && mach > fastest.mach)
+          fastest = {mach, opening.name};
+    }
+  }
+  return fastest;
+}
+
+void BufferLayers::save(StateWriter& writer) const {
+  std::vector<double> means;
+  std::vector<std::int64_t> counts{next_identifier_};
+  for (const Outwards& one : outwards_) means.insert(means.end(), {one.mean, one.known ? 1.0 : 0.0});
+  counts.insert(counts.end(), entered_.begin(), entered_.end());
+  counts.insert(counts.end(), left_.begin(), left_.end());
+  writer.f64("open_means", means);
+  writer.i64("open_counts", counts);
+}
+
+void BufferLayers::load(StateReader& reader) {
+  Array<double> means;
+  Array<std::int64_t> counts;
+  reader.f64("open_means", means);
+  reader.i64("open_counts", counts);
+  if (means.size() != 2 * outwards_.size() || counts.size() != 1 + 2 * laws_.size())
+    throw FileError("the checkpoint is of a scene with other openings");
+  for (std::size_t g = 0; g < outwards_.size(); ++g) {
+    outwards_[g].mean = means[2 * g];
+    outwards_[g].known = means[2 * g + 1] != 0;
+  }
+  next_identifier_ = counts[0];
+  std::copy_n(counts.data() + 1, laws_.size(), entered_.begin());
+  std::copy_n(counts.data() + 1 + laws_.size(), laws_.size(), left_.begin());
+}
+
+double BufferLayers::bytes() const {
+  double sum = static_cast<double>(columns_.capacity() * sizeof(Column) + seen_.capacity() * sizeof(Seen)) +
+               members_.bytes() + passed_.bytes();
+  for (const OpenGate& gate : gates_.list)
+    sum += static_cast<double>(gate.columns.capacity() * sizeof(OpenGate::Column) + 4 * gate.column_of.capacity());
+  return sum;
+}
+
+}  // namespace spume
