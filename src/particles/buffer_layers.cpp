@@ -255,9 +255,8 @@ BufferLayers::Seen BufferLayers::look(const Liquid& liquid, const Array<float>& 
     sum.pressure += weight * (double{pressure[j]} - liquid.background + density * head);
     const PhaseLaw& law = laws_[static_cast<std::size_t>((*phase_)[j])];
     all.all += weight;
-    all.mass += weight * law.density;
-    all.impedance += weight * law.density * law.sound_speed;
-    all.momentum += weight * law.density * gate.inwards * liquid.velocity(normal, j);
+    all.outwards -= weight * gate.inwards * liquid.velocity(normal, j);
+    all.compliance += weight / (law.density * law.sound_speed);
     for (int axis = 0; axis < d; ++axis) {
       const double u = liquid.velocity(axis, j);
       sum.velocity[axis] += weight * (point < n ? u : liquid.images.velocity(k, axis, u));
@@ -265,9 +264,8 @@ BufferLayers::Seen BufferLayers::look(const Liquid& liquid, const Array<float>& 
   }
   Seen seen = sums[sums[1].weight > 0 ? 1 : 0];
   seen.all = all.all;
-  seen.mass = all.mass;
-  seen.impedance = all.impedance;
-  seen.momentum = all.momentum;
+  seen.outwards = all.outwards;
+  seen.compliance = all.compliance;
   if (seen.weight > 0) {
     seen.pressure /= seen.weight;
     seen.velocity = multiply(1 / seen.weight, seen.velocity);
@@ -276,23 +274,23 @@ BufferLayers::Seen BufferLayers::look(const Liquid& liquid, const Array<float>& 
 }
 
 // Of single columns the mean has the noise of the few particles that are seen, 0.01 of the speed: times rho c that
-// would be a tenth of rho u^2.
+// would be a tenth of rho u^2. Fluids side by side have one pressure, so that their velocities add up as 1 / (rho c):
+// the impedance of water alone would shoot air back that is with it.
 void BufferLayers::find_outwards() {
-  struct Sum {
-    double mass = 0, momentum = 0;
-  };
-  std::vector<Sum> sums(gates_.list.size());
+  std::vector<Seen> sums(gates_.list.size());
   for (std::size_t k = 0; k < members_.size(); ++k) {
     const std::int64_t c = (*column_)[members_[k]];
     const OpenGate& gate = gate_of(c);
     if (gate.opening->inflow) continue;
-    Sum& sum = sums[static_cast<std::size_t>(columns_[static_cast<std::size_t>(c)].gate)];
-    sum.mass += seen_[k].mass;
-    sum.momentum -= seen_[k].momentum;
+    Seen& sum = sums[static_cast<std::size_t>(columns_[static_cast<std::size_t>(c)].gate)];
+    sum.all += seen_[k].all;
+    sum.outwards += seen_[k].outwards;
+    sum.compliance += seen_[k].compliance;
   }
   for (std::size_t g = 0; g < sums.size(); ++g) {
-    if (!(sums[g].mass > 0)) continue;
-    outwards_[g].now = sums[g].momentum / sums[g].mass;
+    if (!(sums[g].all > 0)) continue;
+    outwards_[g].now = sums[g].outwards / sums[g].all;
+    outwards_[g].impedance = sums[g].all / sums[g].compliance;
     if (!outwards_[g].known) outwards_[g].mean = outwards_[g].now;
     outwards_[g].known = true;
   }
@@ -323,8 +321,7 @@ void BufferLayers::find_pressures(const Liquid& liquid, Array<double>& excess, A
       foot[axis] = gate.plane;
       p = pressure_outside(scene_, *gate.opening, foot, heaviest, liquid.time);
       const Outwards& outwards = outwards_[static_cast<std::size_t>(columns_[static_cast<std::size_t>(c)].gate)];
-      // The impedance is that of what is seen: that of water before it would shoot air back.
-      if (seen.weight > 0 && !scene_.free_surface) p += seen.impedance / seen.all * (outwards.now - outwards.mean);
+      if (seen.weight > 0 && !scene_.free_surface) p += outwards.impedance * (outwards.now - outwards.mean);
     }
     excess[i] = law.excess(p);
     pressure[i] = static_cast<float>(p + liquid.background);

@@ -5,21 +5,23 @@
 //
 // They are particles of the store, with a phase, neighbours and a part in every sum; the equations do not move them.
 //
-//   inflow    They stand in columns that move with the given velocity; by the volume of a particle over the
-//   cross-section
-//             of the column what enters is what the velocity gives, to a particle. The pressure is that of the liquid
-//             before them and its weight. What passes the side is liquid.
-//   outflow   Liquid that passes the side goes on with its velocity, which follows that of the liquid before it. With
-//             rho c the mean of the impedances of that liquid, u_n its mean velocity outwards by mass over the whole
-//             opening and U the mean of that over a time 1 / K, the pressure is
-//                 p = p_out + rho c (u_n - U),  dU/dt = K (u_n - U).
-//             p_b lets plane waves of sound out: it is the characteristic condition dp_b/dt + K (p_b - p_out) = rho c
-//             du_n/dt of T. J. Poinsot and S. K. Lele, J. Comput. Phys. 101 (1992), K = 0.25 c / L, L the length of the
-//             domain. Beside a free surface, which lets sound out itself, p_b = p_out: drops that fall out would be
-//             held back. What comes back is liquid again; one takes its place at the far end.
+// Behind an inflow they stand in columns that move with the given velocity: by the volume of a particle over the
+// cross-section of the column what enters is what the velocity gives, to a particle. Their pressure is that of the
+// liquid before them and its weight. What passes the side is liquid.
 //
-// Means are over the liquid within the kernel, of the phase of the particle where there is any. An inflow holds its
-// velocity and therefore reflects sound, as a wall does.
+// Liquid that passes an outflow goes on with its velocity, which follows that of the liquid before it. With u_n the
+// mean velocity outwards before the whole opening, Z the harmonic mean of the impedances rho c there and U the mean of
+// u_n over a time 1 / K, the pressure is
+//
+//   p = p_out + Z (u_n - U),  dU/dt = K (u_n - U).
+//
+// That lets plane waves of sound out: it is the characteristic condition dp/dt + K (p - p_out) = Z du_n/dt of T. J.
+// Poinsot and S. K. Lele, J. Comput. Phys. 101 (1992), with K = 0.25 c / L, L the length of the domain. Beside a free
+// surface, which lets sound out itself, p = p_out: drops that fall out would be held back. What comes back is liquid
+// again; one takes its place at the far end.
+//
+// Means are over the liquid within the kernel, pressures and velocities behind a side over that of the phase of the
+// particle where there is any. An inflow holds its velocity and therefore reflects sound, as a wall does.
 #pragma once
 
 #include <functional>
@@ -97,10 +99,10 @@ class BufferLayers {
     Vec3 velocity{};          // of an inflow, in this step
     double acceleration = 0;  // inwards
   };
-  // Of an outflow: the velocity outwards of the liquid before it, and its mean over time.
+  // Of an outflow: the velocity outwards of the liquid before it, its mean over time, and the impedance.
   struct Outwards {
-    double now = 0, mean = 0;
-    bool known = false;  // both are
+    double now = 0, mean = 0, impedance = 0;
+    bool known = false;  // they are
   };
   struct Newcomer {
     std::size_t source = 0;  // any particle that there is
@@ -112,7 +114,7 @@ class BufferLayers {
   struct Seen {
     double weight = 0, pressure = 0;
     Vec3 velocity{};
-    double all = 0, mass = 0, impedance = 0, momentum = 0;  // inwards
+    double all = 0, outwards = 0, compliance = 0;  // of u_n and of 1 / (rho c)
   };
 
   const OpenGate& gate_of(std::int64_t column) const {
