@@ -7,11 +7,11 @@
 #include <string>
 
 #include "facet_sweep.hpp"
-#include "isosurface.hpp"
 #include "mesh_tree.hpp"
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
+#include "spume/geometry/isosurface.hpp"
 #include "spume/geometry/mesh.hpp"
 #include "triangles.hpp"
 

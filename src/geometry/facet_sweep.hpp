@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "isosurface.hpp"
+#include "spume/geometry/isosurface.hpp"
 
 namespace spume {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "isosurface.hpp"
+#include "spume/geometry/isosurface.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +33,8 @@ constexpr double thinnest = 1e-6;
 
 class Marcher {
  public:
-  Marcher(const std::function<double(const Vec3&)>& value, const NodeGrid& grid, const std::vector<double>& nodes)
+  // Without `value` linear between the nodes.
+  Marcher(const std::function<double(const Vec3&)>* value, const NodeGrid& grid, const std::vector<double>& nodes)
       : value_(value), grid_(grid), nodes_(nodes) {}
 
   Isosurface in_space() {
@@ -69,23 +70,43 @@ class Marcher {
     return std::move(found_);
   }
 
+  Contour lines() {
+    for (std::size_t j = 0; j + 1 < grid_.count[1]; ++j)
+      for (std::size_t i = 0; i + 1 < grid_.count[0]; ++i) {
+        const std::size_t a = grid_.number(i, j, 0), b = grid_.number(i + 1, j, 0), c = grid_.number(i + 1, j + 1, 0),
+                          d = grid_.number(i, j + 1, 0);
+        if (!std::isfinite(nodes_[a] + nodes_[b] + nodes_[c] + nodes_[d])) continue;
+        line({a, b, c});
+        line({a, c, d});
+      }
+    return {std::move(found_.boundary.points), std::move(corners_)};
+  }
+
  private:
   bool positive(std::size_t node) const { return nodes_[node] > 0; }
   bool mixed(std::size_t i, std::size_t j, std::size_t k) const {
     int count = 0;
-    for (int c = 0; c < 8; ++c)
-      count += positive(grid_.number(i + static_cast<std::size_t>(c & 1), j + static_cast<std::size_t>(c >> 1 & 1),
-                                     k + static_cast<std::size_t>(c >> 2)));
+    for (int c = 0; c < 8; ++c) {
+      const std::size_t node =
+          grid_.number(i + static_cast<std::size_t>(c & 1), j + static_cast<std::size_t>(c >> 1 & 1),
+                       k + static_cast<std::size_t>(c >> 2));
+      if (!std::isfinite(nodes_[node])) return false;
+      count += positive(node);
+    }
     return count != 0 && count != 8;
   }
 
   Vec3 root(std::size_t in, std::size_t out) const {
     Vec3 inner = grid_.node(in), outer = grid_.node(out);
     if (nodes_[out] == 0) return outer;
+    if (value_ == nullptr) {
+      const double share = nodes_[in] / (nodes_[in] - nodes_[out]);
+      return add(multiply(1 - share, inner), multiply(share, outer));
+    }
     // 40 halvings: 1e-12 of the spacing.
     for (int i = 0; i < 40; ++i) {
       const Vec3 middle = multiply(0.5, add(inner, outer));
-      (value_(middle) > 0 ? inner : outer) = middle;
+      ((*value_)(middle) > 0 ? inner : outer) = middle;
     }
     return multiply(0.5, add(inner, outer));
   }
@@ -129,6 +150,22 @@ class Marcher {
     }
   }
 
+  // From where the triangle, counter-clockwise, ceases to be positive to where it begins.
+  void line(const std::array<std::size_t, 3>& corners) {
+    std::int32_t first = -1, last = -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t from = corners[k], to = corners[(k + 1) % 3];
+      if (positive(from) == positive(to)) continue;
+      (positive(from) ? first : last) = positive(from) ? on_edge(from, to) : on_edge(to, from);
+    }
+    if (first < 0) return;
+    const auto& points = found_.boundary.points;
+    if (length(subtract(points[static_cast<std::size_t>(first)], points[static_cast<std::size_t>(last)])) <=
+        thinnest * grid_.spacing)
+      return;
+    corners_.insert(corners_.end(), {first, last});
+  }
+
   // What of a triangle is positive, as a fan, and the segment where it ends.
   void flat_triangle(const std::array<std::size_t, 3>& corners) {
     std::vector<Vec3> area, ends;
@@ -159,12 +196,13 @@ class Marcher {
     std::size_t operator()(const Edge& edge) const { return edge.first * 0x9E3779B97F4A7C15ull + edge.second; }
   };
 
-  const std::function<double(const Vec3&)>& value_;
+  const std::function<double(const Vec3&)>* value_;
   const NodeGrid& grid_;
   const std::vector<double>& nodes_;
   std::unordered_map<Edge, std::int32_t, Hash> edges_;
   std::unordered_map<Edge, Vec3, Hash> roots_;
   Isosurface found_;
+  std::vector<std::int32_t> corners_;  // of lines
   double height_ = 0;
 };
 
@@ -172,8 +210,18 @@ class Marcher {
 
 Isosurface find_isosurface(const std::function<double(const Vec3&)>& value, const NodeGrid& grid,
                            const std::vector<double>& nodes, int dimensions) {
-  Marcher marcher(value, grid, nodes);
+  Marcher marcher(&value, grid, nodes);
   return dimensions == 3 ? marcher.in_space() : marcher.in_plane();
+}
+
+Contour find_contour(const NodeGrid& grid, const std::vector<double>& nodes, int dimensions) {
+  Marcher marcher(nullptr, grid, nodes);
+  if (dimensions == 2) return marcher.lines();
+  Isosurface found = marcher.in_space();
+  Contour contour{std::move(found.boundary.points), {}};
+  for (const auto& triangle : found.boundary.triangles)
+    contour.corners.insert(contour.corners.end(), triangle.begin(), triangle.end());
+  return contour;
 }
 
 }  // namespace spume

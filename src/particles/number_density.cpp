@@ -24,7 +24,7 @@ constexpr double thin_as_void = 0.05;
 // What disorder changes the kernel sums by without any liquid being denser: their mean, and those of single particles,
 // whose standard deviation is 0.009 in taylor_green_2d. Evening out the latter stirs the liquid: at 1/200 the error of
 // that case's velocity is 0.037 %, 0.024 % when twice the deviation is let be, 0.023 % without any relaxation.
-constexpr double mean_disorder = 0.002, local_disorder = 0.02;
+constexpr double mean_disorder = 0.002, particle_disorder = 0.02;
 // Of the full displacement: less is below what positions, of 1e-16 of the domain, can tell.
 constexpr double least_displacement = 1e-12;
 
@@ -111,7 +111,7 @@ double even_out_density(const DensityRelaxation& relaxation, const Arrangement& 
         for (std::size_t i = first; i < last; ++i)
           if (read.tells_density(i)) {
             const double excess = read.excess(i);
-            sum.disorder += within(excess, local_disorder);
+            sum.disorder += within(excess, particle_disorder);
             sum.particles += 1;
             sum.volume += 1 / (1 + excess);
           } else {
@@ -132,7 +132,7 @@ double even_out_density(const DensityRelaxation& relaxation, const Arrangement& 
     const double rate = own < 0 ? closing * std::max(1.0, -own / thin_as_void) : expanding;
     const double taken = relaxation.still == nullptr ? 1.0 : 1.0 - double{(*relaxation.still)[i]};
     divergence[i] -=
-        taken * (expanding * of_all + std::min(rate, 1 / relaxation.dt) * (own - within(own, local_disorder)));
+        taken * (expanding * of_all + std::min(rate, 1 / relaxation.dt) * (own - within(own, particle_disorder)));
   });
   return total.volume;
 }

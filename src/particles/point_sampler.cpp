@@ -215,6 +215,15 @@ double PointSampler::coverage(const Vec3& point) const {
   return sum;
 }
 
+double PointSampler::colour(const Vec3& point, const Array<std::int64_t>& phase, std::int64_t number) const {
+  double within = 0, all = 0;
+  visit(point, [&](std::size_t j, double weight, const Vec3&, const Vec3&, const Mirrored&) {
+    all += weight;
+    if (phase[j] == number) within += weight;
+  });
+  return within / all;
+}
+
 double PointSampler::wet_share(const Vec3& point) const {
   const BodyWalls* bodies = state_.boundary->bodies();
   if (bodies == nullptr || !bodies->nearer_than(point, state_.arrangement->grid.support_radius()))

@@ -10,6 +10,8 @@
 namespace spume {
 namespace {
 
+const char* const interface_name = "interface";
+
 std::vector<SeriesColumn> series_headings(const Method& method) {
   std::vector<SeriesColumn> columns = {{"step", "1"}, {"t", "time"}, {"dt", "time"}};
   for (const SeriesColumn& column : method.series_columns()) columns.push_back(column);
@@ -33,6 +35,7 @@ Recorder::Recorder(std::filesystem::path folder, const LoadedCase& loaded, const
       probes_{"probes", "probes over time", probe_columns(loaded)},
       lines_{"lines", "values along lines at output times", line_columns(loaded)},
       method_tables_(method.tables()) {
+  if (loaded.options.output.interface) interfaces_.emplace(folder_, interface_name);
   if (!resume_) return;
   cut_families();
   continue_tables();
@@ -48,6 +51,10 @@ void Recorder::cut_families() {
       VtkhdfGridFile(entry.path(), {loaded_.options.output.h5part_view, {}}).keep_steps(kept);
     else
       VtkhdfFile(entry.path(), {loaded_.options.output.h5part_view, {}}).keep_steps(kept);
+  }
+  if (interfaces_) {
+    const auto found = resume_->find(PolyDataSeries::index_name(interface_name));
+    interfaces_->keep_steps(found == resume_->end() ? 0 : found->second);
   }
   for (const auto& [name, count] : *resume_)
     if (count > 0 && name.ends_with(".vtkhdf") && !std::filesystem::exists(folder_ / name))
@@ -111,6 +118,7 @@ void Recorder::snapshot(Method& method) {
     }
     found->second.append(method.time(), family);
   }
+  if (interfaces_) interfaces_->append(method.time(), method.interface_surface());
   for (const ProbeOptions& probe : loaded_.options.probes)
     if (probe.kind == ProbeKind::line) write_line(probe, method, file_of(lines_));
   fill_tables(method, RecordTable::When::output);
@@ -149,6 +157,7 @@ Recorder::Extent Recorder::extent() const {
   for (const auto& [name, file] : files_) extent[name] = file.rows();
   for (const auto& [name, file] : particles_) extent[name] = file.steps();
   for (const auto& [name, file] : grids_) extent[name] = file.steps();
+  if (interfaces_) extent[PolyDataSeries::index_name(interface_name)] = interfaces_->steps();
   return extent;
 }
 

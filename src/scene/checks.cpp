@@ -317,6 +317,11 @@ void check_phases(const Draft& draft, Problems& problems) {
     else
       names.push_back(name);
   }
+  if (const Node* drawn = draft.node("output.interface");
+      drawn && draft.options.output.interface && draft.phases.size() == 1)
+    problems.add(
+        *drawn,
+        "the case has one phase and no interface that output.interface could write; remove it, or add a [[phase]]");
   if (const Node* tension = draft.node("interface.surface_tension"); tension && draft.phases.size() == 1)
     problems.add(*tension, "interface.surface_tension needs two phases, found one; add a [[phase]], or remove it");
 

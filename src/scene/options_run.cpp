@@ -33,7 +33,10 @@ Section output() {
       .steerable()
       .option("fields", &O::fields, "fields of a snapshot; empty: the method's standard set")
       .option("h5part_view", &O::h5part_view,
-              "add views for ParaView 5.11: <name>.h5part of particles, <name>.hdf.series of fields on a grid");
+              "add views for ParaView 5.11: <name>.h5part of particles, <name>.hdf.series of fields on a grid")
+      .option("interface", &O::interface,
+              "add interface.vtp.series: surfaces between phases at the times of snapshots, lines in 2-D")
+      .only(fills_phases);
 }
 
 Section probe() {

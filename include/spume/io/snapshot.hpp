@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spume {
@@ -49,6 +50,15 @@ struct GridSnapshot {
   std::array<double, 3> origin{}, spacing{};
   std::vector<Field> fields;
   bool periodic = true;
+};
+
+// Segments or triangles, with numbers of each.
+struct SurfaceSnapshot {
+  std::string name;
+  std::vector<std::array<double, 3>> points;
+  std::vector<std::int32_t> corners;
+  int corners_per_cell = 3;  // 2: segments
+  std::vector<std::pair<std::string, std::vector<std::int32_t>>> fields = {};
 };
 
 }  // namespace spume

@@ -48,6 +48,9 @@ class Method {
   // Of memory that a snapshot is yet to make, beside arrays().
   virtual double snapshot_bytes() const { return 0; }
 
+  // Surfaces between phases, for a case that asks for them.
+  virtual SurfaceSnapshot interface_surface() { return {}; }
+
   // Null where the method has no such probes: a case that wants them is refused.
   virtual FieldProbes* field_probes() { return nullptr; }
   virtual SurfaceProbes* surface_probes() { return nullptr; }

@@ -38,6 +38,8 @@ class PointSampler {
   // all are not a number.
   PointSample sample(const Vec3& point) const;
   double coverage(const Vec3& point) const;
+  // Shepard average of 1 at particles of the phase and 0 at others; not a number where there are none.
+  double colour(const Vec3& point, const Array<std::int64_t>& phase, std::int64_t number) const;
   // Coverage of the point, or in a solid of the nearest point before it: one half at the surface. Beside bodies with
   // the liquid mirrored at them.
   double wet_share(const Vec3& point) const;
@@ -51,6 +53,8 @@ class PointSampler {
   // of a cell is where `wet_share`, linear between the corners, is one half or more; the fields are sampled at its
   // centroid. Linear fields come out exact, and the area changes continuously as the surface moves.
   PlaneSample plane_average(int axis, double position) const;
+
+  const SampledState& state() const { return state_; }
 
  private:
   PointSample fit(const Vec3& point) const;

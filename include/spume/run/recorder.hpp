@@ -4,6 +4,7 @@
 //   probes.csv        a row whenever series.csv has one (run/probes.hpp)
 //   lines.csv         long: every line probe at every output time
 //   <table>.csv       the tables of the method (methods/records.hpp), such as spectrum.csv, bubble_sizes.csv
+//   interface.vtp.series, interface/*.vtp   surfaces between phases, with output.interface, a file per output time
 //   <family>.vtkhdf   one per family of particles or of fields on a grid, a step per output time; beside it views for
 //                     older readers
 #pragma once
@@ -17,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "spume/io/polydata.hpp"
 #include "spume/io/series.hpp"
 #include "spume/io/vtkhdf.hpp"
 #include "spume/io/vtkhdf_grid.hpp"
@@ -63,6 +65,7 @@ class Recorder {
   std::map<std::string, SeriesFile> files_;  // of the tables, by name
   std::map<std::string, VtkhdfFile> particles_;
   std::map<std::string, VtkhdfGridFile> grids_;
+  std::optional<PolyDataSeries> interfaces_;
   std::vector<double> series_row_, rows_;
 };
 

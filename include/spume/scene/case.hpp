@@ -44,6 +44,7 @@ struct OutputOptions {
   double spectrum_every = 0;        // 0: no spectra
   std::vector<std::string> fields;  // empty: the method's standard set
   bool h5part_view = true;
+  bool interface = false;  // surfaces between phases
 };
 
 enum class ProbeKind { point, elevation, wetted, front, line, plane };

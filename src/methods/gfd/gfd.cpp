@@ -6,6 +6,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/particles/interface_contour.hpp"
 
 namespace spume::gfd {
 namespace {
@@ -128,6 +129,11 @@ void Gfd::series_values(std::span<double> values) {
 std::vector<ParticleSnapshot> Gfd::snapshot_on_demand() {
   ensure_arranged();
   return {snapshot_.take("fluid", flow_.size(), flow_.particles.position, flow_.options.output.fields)};
+}
+
+SurfaceSnapshot Gfd::interface_surface() {
+  ensure_arranged();
+  return interface_contours(sampler(), *flow_.phase_number, flow_.scene.phases.size());
 }
 
 const PointSampler& Gfd::sampler() {

@@ -8,6 +8,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/particles/interface_contour.hpp"
 #include "spume/particles/layer_settling.hpp"
 #include "spume/particles/step_limits.hpp"
 #include "spume/scene/refusal.hpp"
@@ -173,6 +174,10 @@ std::vector<ArrayInfo> Wcsph::arrays() const {
   if (flow_.features.openings) list.push_back({"openings", flow_.openings->bytes()});
   list.push_back({"leased within a step", flow_.leased_bytes()});
   return list;
+}
+
+SurfaceSnapshot Wcsph::interface_surface() {
+  return interface_contours(sampler(), *flow_.phase_number, flow_.scene.phases.size());
 }
 
 const PointSampler& Wcsph::sampler() {

@@ -35,6 +35,7 @@ class Gfd final : public Method, public FieldProbes {
   void series_values(std::span<double> values) override;
   std::vector<ParticleSnapshot> snapshot() override { return completed(snapshot_on_demand()); }
   std::vector<ParticleSnapshot> snapshot_on_demand() override;
+  SurfaceSnapshot interface_surface() override;
   std::vector<RecordTable> tables() const override;  // forces on bodies
   void table_rows(const std::string& name, std::vector<double>& rows) override;
   FieldProbes* field_probes() override { return this; }

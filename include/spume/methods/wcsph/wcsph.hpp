@@ -34,6 +34,7 @@ class Wcsph final : public Method, public FieldProbes, public SurfaceProbes {
   void series_values(std::span<double> values) override { series_.values(values); }
   std::vector<ParticleSnapshot> snapshot() override { return completed(snapshot_on_demand()); }
   std::vector<ParticleSnapshot> snapshot_on_demand() override;
+  SurfaceSnapshot interface_surface() override;
   std::vector<RecordTable> tables() const override;  // bodies.csv
   void table_rows(const std::string& name, std::vector<double>& rows) override;
   FieldProbes* field_probes() override { return this; }

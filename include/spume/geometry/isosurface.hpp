@@ -35,4 +35,13 @@ struct Isosurface {
 Isosurface find_isosurface(const std::function<double(const Vec3&)>& value, const NodeGrid& grid,
                            const std::vector<double>& nodes, int dimensions);
 
+// Where values that are linear on each simplex change their sign, in cells whose nodes all have a finite one:
+// triangles, counter-clockwise seen from where they are not positive, in two dimensions segments with the positive side
+// to the left. Cells share the points on their edges.
+struct Contour {
+  std::vector<Vec3> points;
+  std::vector<std::int32_t> corners;  // `dimensions` of each triangle or segment
+};
+Contour find_contour(const NodeGrid& grid, const std::vector<double>& nodes, int dimensions);
+
 }  // namespace spume
