@@ -225,7 +225,8 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
   // At most the share itself: where sources cancel, the right-hand side is smaller than each of them.
   const double of_divergence = rows.reference_norm > 0 ? std::min(1.0, rows.source_norm / rows.reference_norm) : 0;
   const double tolerance = std::max(options_.tolerance, of_divergence * divergence_tolerance(options_.tolerance));
-  const RefinementOptions refinement{tolerance, rows.reference_norm, options_.max_iterations, rows.singular};
+  const RefinementOptions refinement{tolerance, rows.reference_norm, options_.max_iterations, rows.singular,
+                                     rows.measured};
   ScratchArray<double> residual(particles.scratch(), n);
   if (direct_ != nullptr) {
     solve_directly(rows, tolerance, residual, q);

@@ -61,6 +61,12 @@ RefinementResult solve_refined(RefinedSystem& system, const RefinementOptions& o
     if (solved.converged && size <= trusted_reduction * target) {
       result.relative_residual = solved.relative_residual * size / options.reference_norm;
       result.converged = true;
+      if (options.measure) {
+        system.subtract_product(r);
+        ++result.applications;
+        if (options.remove_mean) subtract_mean(r);
+        result.relative_residual = norm(r) / options.reference_norm;
+      }
       return result;
     }
     system.subtract_product(r);

@@ -288,6 +288,28 @@ TEST(Refinement, AResidualThatIsSmallEnoughTakesNoCorrection) {
   EXPECT_LE(result.relative_residual, 1e-9);
 }
 
+// A correction that says it has converged and corrects nothing: only a measured residual tells.
+class EmptyCorrection final : public RefinedSystem {
+ public:
+  void residual(std::span<double> r) override { std::fill(r.begin(), r.end(), 1.0); }
+  KrylovResult correct(std::span<const double>, const CorrectionTask&) override {
+    KrylovResult result;
+    result.iterations = 1;
+    result.converged = true;
+    result.relative_residual = 1e-3;
+    return result;
+  }
+  void subtract_product(std::span<double>) override {}
+};
+
+TEST(Refinement, AMeasuredResidualDoesNotTrustTheRecurrence) {
+  std::vector<double> r(100);
+  EmptyCorrection system;
+  const double size = 10;  // of 100 ones
+  EXPECT_LT(solve_refined(system, {0.1, size, 500, false, false}, r).relative_residual, 0.1);
+  EXPECT_NEAR(solve_refined(system, {0.1, size, 500, false, true}, r).relative_residual, 1, 1e-12);
+}
+
 // One measured residual for a start, then a product for each correction: two of three digits for 1e-6. No product where
 // a hundredth is asked for and the recurrence may be trusted.
 TEST(Refinement, ResidualsAreMeasuredOnceAndKept) {

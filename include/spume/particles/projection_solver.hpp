@@ -36,12 +36,18 @@ struct PressureRows {
   // The matrix is not symmetric: its residuals sum to anything. The mean is taken out of products as well, which makes
   // a singular system solvable: what is left over is a uniform source.
   bool unsymmetric = false;
+  bool measured = false;  // the residual that is reported is measured also where a recurrence may be trusted
   // Of a coefficient 1 / rho in the equation, for the preconditioner: per particle, positive. Null: constant, and then
   // folded into the rows.
   const float* coefficient = nullptr;
 
   void release(ScratchPool& scratch);
 };
+
+// Every so many steps the residual is measured, which costs a sixteenth of a sweep; what the verdict on it may reach,
+// over the tolerance: a float leaves 1e-3 of a residual, of which up to 100 tolerances are trusted to a recurrence.
+inline constexpr int steps_between_measured = 16;
+inline constexpr double largest_measured_residual = 1.5;
 
 // The residual relative to PressureRows::source_norm that is small enough beside one of the tolerance relative to the
 // reference norm: a thousand times the tolerance, at most a hundredth. So liquid at rest is held to a millionth of its

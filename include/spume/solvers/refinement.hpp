@@ -41,6 +41,7 @@ struct RefinementOptions {
   double reference_norm = 0;  // of the right-hand side, as the caller measures it
   int max_iterations = 500;   // of the Krylov solver, all corrections together
   bool remove_mean = false;   // of residuals: the null space of A is the constant
+  bool measure = false;       // the residual of the last correction too; x is the same
 };
 
 struct RefinementResult {

@@ -179,7 +179,7 @@ std::vector<Invariant> Gfd::invariants() const {
   list.push_back({.quantity = "pressure_residual",
                   .kind = Invariant::Kind::largest,
                   .column = "pressure_residual",
-                  .bound = 1,
+                  .bound = largest_measured_residual,
                   .scale_column = "pressure_tolerance"});
   return list;
 }

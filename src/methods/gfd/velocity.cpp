@@ -236,6 +236,7 @@ void Flow::solve_pressure() {
   parallel_for(size(), [&](std::size_t i) { reduced_pressure[i] = warm_start ? last_reduced(i) : 0.0; });
   if (arrangement.context.image_pressure != nullptr)
     rows.reference_norm = std::hypot(rows.reference_norm, given_norm(matrix, particles));
+  rows.measured = steps % steps_between_measured == 0;
   solver.solve(rows, matrix, particles, reduced_pressure);
   rows.release(scratch);
   scratch.release(reciprocal_density);

@@ -218,6 +218,7 @@ void Flow::factorise() {
 }
 
 void Flow::solve(const char* name) {
+  rows.measured = steps % steps_between_measured == 0;
   if (floating != nullptr) {
     const BodyForces::Fields fields{.grid = arrangement.grid,
                                     .particles = size(),
