@@ -136,7 +136,8 @@ class Planes(Scratch):
         step = x[1] - x[0]
         for beside in ((x > 1.0) & (x < 1.2 - step), (x > 1.6 + step) & (x < 1.8)):
             self.assertTrue(drawn[np.ix_(beside, wet)].all())
-        self.assertFalse(drawn[np.ix_((x > 1.2 + step) & (x < 1.6 - step), wet)].any())
+        within = 0.25 * run.spacing
+        self.assertFalse(drawn[np.ix_((x > 1.2 + within) & (x < 1.6 - within), wet)].any())
         self.assertFalse(drawn[:, z > 0.6].any())
         # Without the share of the body a slit is left.
         with mock.patch.object(planes, "share_in_plane", lambda *_: None):

@@ -17,6 +17,7 @@ from .sums import SUPPORT, boxes_of, kernel_sums, sides_of, with_images
 
 FINENESS = 0.5  # distance of the sums of a plane, in spacings; coarser where there are more than MOST along a side
 MOST = 600
+WITHIN = 0.7    # share of a point's cell that a body covers where no liquid is drawn
 PIXELS = 600    # along the longer side, at least: between the sums pixels are linear
 
 
@@ -92,8 +93,9 @@ def particle_plane(run, plane, snapshot, values):
     total, *phases = (finer(sums) / np.maximum(finer(weight), 1e-300) for sums in totals)
     bodies = share_in_plane(run, plane, snapshot.time, low, step, shape)
     weight = finer(weight if bodies is None else beside_bodies(weight, bodies[1]))
-    if bodies is not None:
-        weight[finer(bodies[0]) > 0.5] = np.nan
+    if bodies is not None and plane.normal is not None:
+        # Bodies are drawn over the liquid in two dimensions, and as lines in three: it ends a little behind these.
+        weight[finer(bodies[0]) > WITHIN] = np.nan
     drawn = np.where(weight >= 0.5, total, np.nan)
     return Panel(snapshot.time, drawn, extent_of(low, low + (shape - 1) * step, drawn.shape), weight, tuple(phases))
 
