@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
@@ -32,7 +31,6 @@ BufferLayers::BufferLayers(const Scene& scene, const Resolution& resolution, dou
       particles_(particles),
       gates_(scene, particles.volume),
       reach_(resolution.support_radius + skin / 2),
-      outwards_(gates_.list.size()),
       column_(&particles.fields.add<std::int64_t>("buffer_column", Lifetime::state)),
       entered_(laws.size()),
       left_(laws.size()) {
@@ -273,36 +271,12 @@ BufferLayers::Seen BufferLayers::look(const Liquid& liquid, const Array<float>& 
   return seen;
 }
 
-// Of single columns the mean has the noise of the few particles that are seen, 0.01 of the speed: times rho c that
-// would be a tenth of rho u^2. Fluids side by side have one pressure, so that their velocities add up as 1 / (rho c):
-// the impedance of water alone would shoot air back that is with it.
-void BufferLayers::find_outwards() {
-  std::vector<Seen> sums(gates_.list.size());
-  for (std::size_t k = 0; k < members_.size(); ++k) {
-    const std::int64_t c = (*column_)[members_[k]];
-    const OpenGate& gate = gate_of(c);
-    if (gate.opening->inflow) continue;
-    Seen& sum = sums[static_cast<std::size_t>(columns_[static_cast<std::size_t>(c)].gate)];
-    sum.all += seen_[k].all;
-    sum.outwards += seen_[k].outwards;
-    sum.compliance += seen_[k].compliance;
-  }
-  for (std::size_t g = 0; g < sums.size(); ++g) {
-    if (!(sums[g].all > 0)) continue;
-    outwards_[g].now = sums[g].outwards / sums[g].all;
-    outwards_[g].impedance = sums[g].all / sums[g].compliance;
-    if (!outwards_[g].known) outwards_[g].mean = outwards_[g].now;
-    outwards_[g].known = true;
-  }
-}
-
 void BufferLayers::find_pressures(const Liquid& liquid, Array<double>& excess, Array<float>& pressure,
                                   Array<float>& volume) {
   find_members();
   const std::size_t n = members_.size();
   seen_.resize(n);
   parallel_for(n, [&](std::size_t k) { seen_[k] = look(liquid, pressure, static_cast<std::size_t>(members_[k])); });
-  find_outwards();
   // Expressions are not for several threads at a time.
   double heaviest = 0;
   for (const PhaseLaw& law : laws_) heaviest = std::max(heaviest, law.density);
@@ -320,8 +294,10 @@ void BufferLayers::find_pressures(const Liquid& liquid, Array<double>& excess, A
         foot[a] = liquid.arrangement.list.coordinate(a)[i] + liquid.arrangement.origin[a];
       foot[axis] = gate.plane;
       p = pressure_outside(scene_, *gate.opening, foot, heaviest, liquid.time);
-      const Outwards& outwards = outwards_[static_cast<std::size_t>(columns_[static_cast<std::size_t>(c)].gate)];
-      if (seen.weight > 0 && !scene_.free_surface) p += outwards.impedance * (outwards.now - outwards.mean);
+      // Fluids side by side have one pressure, so that their velocities add up as 1 / (rho c): the impedance of water
+      // alone would shoot air back that is with it.
+      const Column& column = columns_[static_cast<std::size_t>(c)];
+      if (column.known && seen.all > 0) p += (seen.outwards - seen.all * column.mean) / seen.compliance;
     }
     excess[i] = law.excess(p);
     pressure[i] = static_cast<float>(p + liquid.background);
@@ -336,23 +312,33 @@ double BufferLayers::share_of_step(int axis, double sound_speed, double dt) cons
 
 void BufferLayers::accept(double dt) {
   const int d = particles_.dimensions;
+  struct Mean {
+    double all = 0, outwards = 0, share = 0;
+  };
+  std::vector<Mean> means(columns_.size());
   for (std::size_t k = 0; k < members_.size(); ++k) {
     const auto i = static_cast<std::size_t>(members_[k]);
     const Opening& opening = *gate_of((*column_)[i]).opening;
     const Seen& seen = seen_[k];
     if (opening.inflow || !(seen.weight > 0)) continue;
     const double share = share_of_step(opening.axis, laws_[static_cast<std::size_t>((*phase_)[i])].sound_speed, dt);
+    Mean& mean = means[static_cast<std::size_t>((*column_)[i])];
+    mean.all += seen.all;
+    mean.outwards += seen.outwards;
+    mean.share += seen.all * share;
     for (int axis = 0; axis < d; ++axis) {
       double& u = (*particles_.velocity[axis])[i];
       u += share * (seen.velocity[axis] - u);
     }
   }
-  // The slowest sound goes farthest from the mean before it is forgotten.
-  double slowest = std::numeric_limits<double>::infinity();
-  for (const PhaseLaw& law : laws_) slowest = std::min(slowest, law.sound_speed);
-  for (std::size_t g = 0; g < outwards_.size(); ++g)
-    outwards_[g].mean +=
-        share_of_step(gates_.list[g].opening->axis, slowest, dt) * (outwards_[g].now - outwards_[g].mean);
+  for (std::size_t c = 0; c < columns_.size() && !scene_.free_surface; ++c) {
+    const Mean& mean = means[c];
+    if (!(mean.all > 0)) continue;
+    Column& column = columns_[c];
+    const double now = mean.outwards / mean.all;
+    column.mean = column.known ? column.mean + mean.share / mean.all * (now - column.mean) : now;
+    column.known = true;
+  }
   parallel_select(particles_.size(), passed_, [&](std::size_t i) {
     const Vec3 place = vector_at(particles_.position, d, i);
     return holds(i) ? gate_of((*column_)[i]).depth_behind(place) < 0 : gates_.outflow_behind(place) >= 0;
@@ -424,7 +410,7 @@ BufferLayers::Fastest BufferLayers::fastest_inflow(double end) const {
 void BufferLayers::save(StateWriter& writer) const {
   std::vector<double> means;
   std::vector<std::int64_t> counts{next_identifier_};
-  for (const Outwards& one : outwards_) means.insert(means.end(), {one.mean, one.known ? 1.0 : 0.0});
+  for (const Column& one : columns_) means.insert(means.end(), {one.mean, one.known ? 1.0 : 0.0});
   counts.insert(counts.end(), entered_.begin(), entered_.end());
   counts.insert(counts.end(), left_.begin(), left_.end());
   writer.f64("open_means", means);
@@ -436,11 +422,11 @@ void BufferLayers::load(StateReader& reader) {
   Array<std::int64_t> counts;
   reader.f64("open_means", means);
   reader.i64("open_counts", counts);
-  if (means.size() != 2 * outwards_.size() || counts.size() != 1 + 2 * laws_.size())
+  if (means.size() != 2 * columns_.size() || counts.size() != 1 + 2 * laws_.size())
     throw FileError("the checkpoint is of a scene with other openings");
-  for (std::size_t g = 0; g < outwards_.size(); ++g) {
-    outwards_[g].mean = means[2 * g];
-    outwards_[g].known = means[2 * g + 1] != 0;
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    columns_[c].mean = means[2 * c];
+    columns_[c].known = means[2 * c + 1] != 0;
   }
   next_identifier_ = counts[0];
   std::copy_n(counts.data() + 1, laws_.size(), entered_.begin());

@@ -10,15 +10,16 @@
 // liquid before them and its weight. What passes the side is liquid.
 //
 // Liquid that passes an outflow goes on with its velocity, which follows that of the liquid before it. With u_n the
-// mean velocity outwards before the whole opening, Z the harmonic mean of the impedances rho c there and U the mean of
-// u_n over a time 1 / K, the pressure is
+// mean velocity outwards of the liquid before it, U the mean of that before its column of the opening over a time 1 / K
+// and Z the harmonic mean of the impedances rho c there, its pressure is
 //
 //   p = p_out + Z (u_n - U),  dU/dt = K (u_n - U).
 //
-// That lets plane waves of sound out: it is the characteristic condition dp/dt + K (p - p_out) = Z du_n/dt of T. J.
-// Poinsot and S. K. Lele, J. Comput. Phys. 101 (1992), with K = 0.25 c / L, L the length of the domain. Beside a free
-// surface, which lets sound out itself, p = p_out: drops that fall out would be held back. What comes back is liquid
-// again; one takes its place at the far end.
+// That lets sound out: it is the characteristic condition dp/dt + K (p - p_out) = Z du_n/dt of T. J. Poinsot and S. K.
+// Lele, J. Comput. Phys. 101 (1992), with K = 0.25 c / L, L the length of the domain. By the mean over the whole
+// opening in place of columns air that sloshes below an open top gains speed until it breaks up. Beside a free surface,
+// which lets sound out itself, p = p_out: drops that fall out would be held back. What comes back is liquid again; one
+// takes its place at the far end.
 //
 // Means are over the liquid within the kernel, pressures and velocities behind a side over that of the phase of the
 // particle where there is any. An inflow holds its velocity and therefore reflects sound, as a wall does.
@@ -98,11 +99,8 @@ class BufferLayers {
     std::size_t phase = 0;    // of what enters
     Vec3 velocity{};          // of an inflow, in this step
     double acceleration = 0;  // inwards
-  };
-  // Of an outflow: the velocity outwards of the liquid before it, its mean over time, and the impedance.
-  struct Outwards {
-    double now = 0, mean = 0, impedance = 0;
-    bool known = false;  // they are
+    double mean = 0;          // of the velocity outwards at an outflow
+    bool known = false;       // `mean` is one
   };
   struct Newcomer {
     std::size_t source = 0;  // any particle that there is
@@ -124,7 +122,6 @@ class BufferLayers {
   void add_columns_of_inflows(std::vector<Newcomer>& newcomers) const;
   void insert(const Array<std::int32_t>& staying, const std::vector<Newcomer>& newcomers);
   Seen look(const Liquid& liquid, const Array<float>& pressure, std::size_t i) const;
-  void find_outwards();
   double share_of_step(int axis, double sound_speed, double dt) const;
   double volume_inside(std::size_t phase) const;
 
@@ -135,7 +132,6 @@ class BufferLayers {
   OpenGates gates_;
   const double reach_;  // of the layers, when they are renewed
   std::vector<Column> columns_;
-  std::vector<Outwards> outwards_;         // of each gate
   std::vector<std::size_t> first_;         // column of each gate
   Array<std::int64_t>* column_ = nullptr;  // of each particle; -1: liquid, below: liquid that came back through -2 - it
   Array<std::int64_t>* phase_ = nullptr;

@@ -132,7 +132,8 @@ double Flow::potential_energy() const {
 
 double Flow::compression_energy() const {
   return parallel_sum(size(), [&](std::size_t i) {
-    return in_domain(i) ? particles.volume * law(i).stiffness() * law(i).energy_over_stiffness((*excess)[i]) : 0;
+    if (!in_domain(i)) return 0.0;
+    return particles.volume * law(i).stiffness() * law(i).energy_over_stiffness((*excess)[i]);
   });
 }
 
