@@ -33,6 +33,8 @@ constexpr double even_enough = 0.05;
 constexpr double flat_channel = 2;
 // Spacings: what is narrower is filled with nothing, and stays so.
 constexpr double least_room = 0.5;
+// Spacings between the rows beside a level interface, at least.
+constexpr double level_height = 0.9;
 // Of the squared horizontal part of a normal: below it, a wall at 6 degrees, images along the horizontal are far away.
 constexpr double least_aside = 0.01;
 
@@ -100,6 +102,41 @@ void find_surface(const Arrangement& arrangement, const ParticleStore& particles
   });
 }
 
+// Where phases are layers, 1 for particles that the height of an interface depends on: those that meet another phase,
+// and their neighbours, whose sums are those of its colour. In layers whoever meets another phase meets it above alone
+// or below alone.
+void find_interfaces_of_layers(const Arrangement& arrangement, const ParticleStore& particles,
+                               const Resolution& resolution, const Array<std::int64_t>& phase,
+                               std::vector<std::uint8_t>& sees_interface) {
+  const NeighbourList& list = arrangement.list;
+  const std::size_t n = particles.size();
+  const double least_height = level_height * resolution.spacing;
+  const auto is_wall_point = [&](std::int32_t j) {
+    const std::int32_t* point = arrangement.images.wall_point();
+    return j >= static_cast<std::int32_t>(n) && point != nullptr && point[static_cast<std::size_t>(j) - n] >= 0;
+  };
+  std::vector<std::uint8_t> meets(n);
+  const double uneven = parallel_max(n, 0.0, [&](std::size_t i) {
+    bool above = false, below = false, beside = false;
+    for (const std::int32_t j : list.of(i)) {
+      if (is_wall_point(j) || phase[arrangement.particle_of(j)] == phase[i]) continue;
+      const double height = way_to(list, particles.dimensions, i, j)[particles.dimensions - 1];
+      above = above || height >= least_height;
+      below = below || height <= -least_height;
+      beside = beside || std::abs(height) < least_height;
+    }
+    meets[i] = above || below || beside ? 1 : 0;
+    return beside || (above && below) ? 1.0 : 0.0;
+  });
+  if (uneven > 0) return;
+  parallel_for(n, [&](std::size_t i) {
+    bool sees = meets[i] != 0;
+    for (const std::int32_t j : list.of(i))
+      sees = sees || (!is_wall_point(j) && meets[arrangement.particle_of(j)] != 0);
+    sees_interface[static_cast<std::size_t>((*particles.identifier)[i])] = sees ? 1 : 0;
+  });
+}
+
 Vec3 limited(const Vec3& way, double longest) {
   const double size = length(way);
   return size > longest ? multiply(longest / size, way) : way;
@@ -147,7 +184,8 @@ void move_in_rounds(Arrangement& arrangement, ParticleStore& particles, Boundary
 }  // namespace
 
 void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boundary& boundary,
-                        const Resolution& resolution, const VectorField& at, bool free_surface, double t) {
+                        const Resolution& resolution, const VectorField& at, bool free_surface, double t,
+                        const Array<std::int64_t>* phase) {
   const int d = particles.dimensions;
   const BodyWalls& bodies = *boundary.bodies();
   const NeighbourList& list = arrangement.list;
@@ -160,6 +198,7 @@ void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boun
       for (Lack& lack : lacks) lack.all_around = false;  // bodies leave no gaps of whole rows
       find_surface(arrangement, particles, resolution, lacks, beyond_support, sees_surface);
     }
+    if (phase != nullptr) find_interfaces_of_layers(arrangement, particles, resolution, *phase, sees_surface);
     return true;
   };
   move_in_rounds(arrangement, particles, boundary, resolution, at, t, start, [&](std::size_t i, auto&& f) {

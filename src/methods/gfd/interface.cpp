@@ -13,7 +13,9 @@ namespace spume::gfd {
 
 void Flow::pack() {
   if (packed != 0) return;
-  pack_beside_bodies(arrangement, particles, boundary, resolution, particles.position, false, time);
+  const bool layered = features.interfaces && features.gravity;
+  pack_beside_bodies(arrangement, particles, boundary, resolution, particles.position, false, time,
+                     layered ? phase_number : nullptr);
   packed = 1;
 }
 

@@ -12,8 +12,12 @@ void Flow::sort_particles() {
 }
 
 void Flow::pack() {
-  const auto even_out = features.bodies ? pack_beside_bodies : pack_beside_solids;
-  even_out(arrangement, particles, boundary, resolution, intermediate_position, features.free_surface, time);
+  if (features.bodies)
+    pack_beside_bodies(arrangement, particles, boundary, resolution, intermediate_position, features.free_surface,
+                       time);
+  else
+    pack_beside_solids(arrangement, particles, boundary, resolution, intermediate_position, features.free_surface,
+                       time);
 }
 
 void Flow::make_images(double dt) {
