@@ -8,7 +8,7 @@
 
 namespace spume {
 
-// The distances of a shape, for one whose own take long (of a mesh of 1e5 triangles 3 us near its surface and 20 us far
+// The distances of a shape, for one whose own take long (of a mesh of 1e5 triangles 3 us near its surface and 13 us far
 // from it, against 0.01 to 0.03 us here: bench/geometry.cpp); the shape itself is asked outside `box`, and once at
 // every node. Its error() adds to that of the shape the largest difference at the centres of the cells that the surface
 // passes: of the order spacing^2 / (8 radius of curvature) at smooth faces, and of a tenth of the spacing at edges.
