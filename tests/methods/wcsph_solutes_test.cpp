@@ -257,6 +257,22 @@ TEST(WcsphSolutes, StillWaterHasTheSurfaceOfItsWidth) {
   EXPECT_NEAR(run.series()["kla"], 1e-3 * 0.2 / (0.2 * 0.2), 1e-3 * 5e-3);
 }
 
+// What neither diffuses nor is shifted needs no sums over pairs; what diffuses takes two, of which one measures.
+TEST(WcsphSolutes, WhatNothingMovesCostsNoSweep) {
+  const auto pairs_of = [](const std::string& more) {
+    WcsphRun run(with_scalar(without_solutes(discs), "x", more));
+    run.steps(3, run.method.step_limit().dt);
+    double scalars = 0, continuity = 0;
+    for (const Ledger::Entry& entry : run.ledger.entries()) {
+      if (entry.stage == "scalars") scalars = entry.pairs / 3;
+      if (entry.stage == "continuity") continuity = entry.pairs / static_cast<double>(entry.calls);
+    }
+    return scalars / continuity;
+  };
+  EXPECT_EQ(pairs_of(""), 0);
+  EXPECT_NEAR(pairs_of("diffusivity = 0.001\n"), 2, 0.01);
+}
+
 // Uniform sludge in still water is one tank: the same as the reactions alone.
 TEST(WcsphSolutes, SludgeInStillWaterReactsAsInOneTank) {
   std::string text = replaced(discs, "surface_k_l = 1e-3", "");
