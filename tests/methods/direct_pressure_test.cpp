@@ -149,18 +149,6 @@ TEST(DirectSolver, GoesOnBitForBitWithAnyNumberOfThreads) {
   expect_the_same_bits<Simulation>(dam_break_3d);
 }
 
-// Two chambers: each has a pressure that is known up to a constant.
-TEST(DirectSolver, TellsAMatrixThatIsSingularTwice) {
-  const std::string halved =
-      replaced(closed_box, "[[liquid]]", "[[solid]]\nlower = [0.4, 0]\nupper = [0.6, 1]\n[[liquid]]");
-  try {
-    Simulation(halved, with(direct, {"fluid.mach=0"})).steps(1, 0.002);
-    FAIL() << "solved";
-  } catch (const StepFailure& failure) {
-    EXPECT_THAT(failure.details().cause, HasSubstr("singular"));
-  }
-}
-
 std::string refused_directly(const std::string& text, const Overrides& overrides) {
   try {
     load_text(text, with(direct, overrides));

@@ -160,5 +160,16 @@ TEST(GfdViscosity, TheSceneDecidesAndThePlanTells) {
   EXPECT_EQ(bound.method.step_limit().limited_by, "viscous");
 }
 
+// The rim of the tank turns with pi at the end of the run, half a length from its axis: what decides on implicit steps
+// expects that, where nothing else in the scene moves but by tension.
+TEST(GfdViscosity, ExpectsTheSpeedOfGivenMotions) {
+  const Overrides no_tension{"interface.surface_tension=0"};
+  EXPECT_GE(GfdRun(drop_in_a_turning_tank, no_tension).flow().viscous.speed, M_PI * 0.5);
+  Overrides slower = no_tension;
+  slower.push_back("body.0.angle=\"9*t*t\"");
+  EXPECT_NEAR(GfdRun(drop_in_a_turning_tank, slower).flow().viscous.speed,
+              GfdRun(drop_in_a_turning_tank, no_tension).flow().viscous.speed / 10, 1e-6);
+}
+
 }  // namespace
 }  // namespace spume::test
