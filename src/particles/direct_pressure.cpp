@@ -50,6 +50,7 @@ void DirectPressure::factorise(ProjectionMatrix& matrix, std::span<const float> 
   if (context == nullptr) throw std::logic_error("the direct solver needs a matrix of pairs of particles");
   size_ = matrix.size();
   bordered_ = singular;
+  if (size_ == 0) return;
   find_pattern(*context, diagonal);
   find_colours();
   find_entries(matrix);
@@ -90,7 +91,7 @@ void DirectPressure::find_pattern(const SweepContext& context, std::span<const f
   // By columns, rows in order; the border last.
   const std::size_t columns = size_ + (bordered_ ? 1 : 0);
   first_.assign(columns + 1, 0);
-  const double border = *std::max_element(diagonal.begin(), diagonal.end());
+  const double border = bordered_ ? *std::max_element(diagonal.begin(), diagonal.end()) : 0;
   for (const int j : column_) ++first_[static_cast<std::size_t>(j) + 1];
   for (std::size_t j = 0; j < size_ && bordered_; ++j) ++first_[j + 1];
   if (bordered_) first_[columns] = n;
@@ -188,6 +189,7 @@ void DirectPressure::factorise_entries() {
 }
 
 void DirectPressure::solve(std::span<const double> r, std::span<double> x) {
+  if (size_ == 0 && r.empty()) return;
   if (factors_->numeric == nullptr || r.size() != size_)
     throw std::logic_error("the direct solver has no factors of this matrix");
   const std::size_t columns = first_.size() - 1;

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "checks.hpp"
+#include "spume/core/vectors.hpp"
 #include "spume/scene/expression.hpp"
 #include "spume/scene/option.hpp"
 #include "time_table.hpp"
@@ -288,7 +289,8 @@ void check_velocity(const Draft& draft, const Scene& scene, const Opening& openi
     const double speed = opening.velocity ? inwards * (*opening.velocity)(place, t)[opening.axis]
                                           : (*opening.flow_rate)(place[0], place[1], place[2], t);
     refused = !(speed >= 0);
-    if (!std::isfinite(speed)) {
+    // Along the side too.
+    if (!std::isfinite(opening.velocity ? length((*opening.velocity)(place, t)) : speed)) {
       problems.add(node, key + " is not a finite number at t = " + brief(t));
       return false;
     }

@@ -87,6 +87,34 @@ displacement = ["0", "0.05*sin(5*t)"]
 end = 1
 )toml";
 
+TEST(DirectSolver, LiquidMayLeaveWholly) {
+  Simulation run(R"toml(method = "les-sph"
+[domain]
+lower = [0, 0]
+upper = [0.4, 0.4]
+left = "free-slip"
+right = "free-slip"
+[resolution]
+spacing = 0.05
+[fluid]
+reynolds = 100
+froude = 1
+[[liquid]]
+upper = [0.4, 0.1]
+velocity = ["0", "-1"]
+[[outflow]]
+side = "bottom"
+[pressure]
+solver = "direct"
+[time]
+end = 1
+)toml");
+  for (int step = 0; step < 200 && run.method.particle_count() > 0; ++step)
+    run.method.step(run.method.step_limit().dt, run.ledger);
+  EXPECT_EQ(run.method.particle_count(), 0U);
+  EXPECT_NO_THROW(run.method.step(0.01, run.ledger));
+}
+
 TEST(DirectSolver, AgreesWithTheIterativeOneInGfd) {
   expect_agreement<GfdRun>(drop_in_a_box);
   expect_agreement<GfdRun>(drop_in_a_box, {"phase.1.density=1000", "phase.1.viscosity=10"});

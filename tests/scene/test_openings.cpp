@@ -143,6 +143,7 @@ TEST(Openings, AreRefusedWhenTheFlowMakesNoSense) {
   EXPECT_THAT(of("[\"y*t\", \"0\"]", "[1]"),
               ElementsAre("17:12 inflow.0.velocity must have 2 entries in a 2-D domain, found 1"));
   EXPECT_THAT(of("[\"y*t\", \"0\"]", "[\"1/(y*0)\", 0]"), ElementsAre(HasSubstr("is not a finite number")));
+  EXPECT_THAT(of("[\"y*t\", \"0\"]", "[\"1\", \"1/(y*0)\"]"), ElementsAre(HasSubstr("is not a finite number")));
   // Nothing leaves a full tank.
   EXPECT_THAT(
       of("[[outflow]]\nside = \"right\"\npressure = \"1 + t\"\n", "[[inflow]]\nside = \"right\"\nvelocity = [-1, 0]\n"),

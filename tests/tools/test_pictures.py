@@ -43,15 +43,15 @@ def write_tank(folder, spacing=0.1, height=1.0, si=True, solid=None, **domain):
                     {"velocity": lambda p, t: p * [0, 0, 1], "pressure": lambda p, t: 0.5 - p[:, 2]})
 
 
-def write_bodies(folder, *solids):
-    """bodies.vtp with walls that stand still: triangles (N, 3, 3) each."""
+def write_bodies(folder, *solids, taken_away=()):
+    """bodies.vtp with walls that stand still: triangles (N, 3, 3) each. taken_away: the numbers of those that are."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
     surface = closed_surface(np.concatenate(solids))
     numbers = np.repeat(np.arange(len(solids)), [len(solid) for solid in solids])
-    for name, values in (("body", numbers.astype(np.int32)), *((name, np.full(len(numbers), value, np.int8))
-                                                               for name, value in (("wall", 1), ("inside", 1), ("subtract", 0)))):
+    for name, values in (("body", numbers.astype(np.int32)), ("subtract", np.isin(numbers, taken_away).astype(np.int8)),
+                         *((name, np.ones(len(numbers), np.int8)) for name in ("wall", "inside"))):
         array = numpy_to_vtk(values, deep=True)
         array.SetName(name)
         surface.GetCellData().AddArray(array)
@@ -143,6 +143,18 @@ class Planes(Scratch):
         with mock.patch.object(planes, "share_in_plane", lambda *_: None):
             _, (bare,) = planes.panels_of(run, "pressure", run.snapshots(), [0])
         self.assertFalse(np.isfinite(bare.values)[np.ix_((x > 1.2 - 0.3 * run.spacing) & (x < 1.2), wet)].all())
+
+    def test_liquid_in_what_is_taken_away_from_a_body_is_drawn(self):
+        folder = new_folder(self.path, "run")
+        write_tank(folder)
+        for taken_away, drawn in (((1,), True), ((), False)):
+            write_bodies(folder, block([0.4, -0.1, -0.1], [1.6, 1.1, 0.9]), block([0.8, 0.2, 0.1], [1.2, 0.8, 0.4]),
+                         taken_away=taken_away)
+            run = DrawnRun(folder, Request(plane=(1, 0.5)))
+            _, (panel,) = planes.panels_of(run, "pressure", run.snapshots(), [0])
+            columns, rows = panel.values.shape
+            middle = panel.values[int(columns * 0.5), int(rows * 0.25)]
+            self.assertEqual(np.isfinite(middle), drawn)
 
     def test_a_plane_outside_the_domain_is_said(self):
         folder = new_folder(self.path, "run")

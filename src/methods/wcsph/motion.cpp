@@ -136,6 +136,9 @@ Vec3 Flow::held_velocity(std::size_t i, double dt, Vec3& r) const {
 }
 
 void Flow::drift(double dt) {
+  // A step that was refused has left its forces leased, which the pressure force of this one would take for viscous
+  // ones.
+  release_leased();
   ScratchPool& scratch = particles.scratch();
   // Wall points take averages of it; without them the sweep finds it where it packs it.
   if (features.bodies) scratch.lease(half_velocity, dimensions, size());

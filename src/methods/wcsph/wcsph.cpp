@@ -134,7 +134,7 @@ std::vector<ParticleSnapshot> Wcsph::snapshot_on_demand() {
 
 std::vector<Remark> Wcsph::take_remarks() {
   std::vector<Remark> remarks;
-  if (flow_.unsettled > LayerSettling::at_rest)
+  if (!(flow_.unsettled <= LayerSettling::at_rest))
     remarks.push_back({"the layers are not at rest at the start: a particle is accelerated by " +
                        brief(100 * std::exchange(flow_.unsettled, 0)) + " % of gravity"});
   for (std::size_t n = 0; n < flow_.laws.size(); ++n) {

@@ -12,15 +12,16 @@ from .style import EDGE, SOLID
 
 @dataclass
 class Body:
-    """corners (triangles, 3, 3) at the start; outside: all around the shape is solid."""
+    """corners (triangles, 3, 3) at the start; outside: all around the shape is solid; taken_away: from those before it."""
 
     number: int
     corners: np.ndarray
     outside: bool
+    taken_away: bool
 
 
-def bodies_of(run):
-    """The bodies that are walls; those that are taken away from others are part of none."""
+def bodies_of(run, taken_away=False):
+    """The bodies that are walls, in the order of the case; if asked for also those that are taken away from others."""
     path = run.folder / "bodies.vtp"
     if not path.exists():
         return []
@@ -34,8 +35,8 @@ def bodies_of(run):
     number, wall, inside, subtract = (vtk_to_numpy(cells.GetArray(name)) for name in ("body", "wall", "inside", "subtract"))
     corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     points = vtk_to_numpy(surface.GetPoints().GetData()).astype(float)[corners]
-    return [Body(int(n), points[number == n], not inside[number == n][0])
-            for n in np.unique(number) if wall[number == n][0] and not subtract[number == n][0]]
+    return [Body(int(n), points[number == n], not inside[number == n][0], bool(subtract[number == n][0]))
+            for n in np.unique(number) if (taken_away if subtract[number == n][0] else wall[number == n][0])]
 
 
 def turned(vector, points):

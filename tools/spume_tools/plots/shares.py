@@ -54,24 +54,31 @@ def covered_cells(lines, low, step, shape, finer=FINER):
     return np.clip(inside.reshape(shape[0], finer, shape[1]).mean(axis=1) / step, 0, 1)
 
 
+def joined(total, covered, body):
+    """What bodies cover with one more of them, which may be taken away from those before it."""
+    covered = 1 - covered if body.outside else covered
+    if body.taken_away:
+        return None if total is None else np.minimum(total, 1 - covered)
+    return covered if total is None else np.maximum(total, covered)
+
+
 def share_in_plane(run, plane, time, low, step, shape):
     """The share of each cell of a plane that bodies cover, and the share of the kernel that they take; None without bodies."""
     total = None
-    for body in bodies_of(run):
+    for body in bodies_of(run, taken_away=True):
         corners = places(run, body)(time)
         if np.ptp(corners) == 0:
             continue
         lines = outline(corners) if plane.normal is None else cut(corners, plane.normal, plane.coordinate, plane.axes)
         covered = covered_cells(lines, low, step, shape)
-        covered = 1 - covered if body.outside else covered
-        total = covered if total is None else np.maximum(total, covered)
+        total = joined(total, covered, body)
     return None if total is None else (total, smeared(total, run.spacing, step))
 
 
 def share_in_space(run, time, low, step, shape):
     """The share of the kernel that bodies take at the points low + step * (i, j, k); None without bodies."""
     total = None
-    for body in bodies_of(run):
+    for body in bodies_of(run, taken_away=True):
         corners = places(run, body)(time)
         if np.ptp(corners) == 0:
             continue
@@ -80,8 +87,7 @@ def share_in_space(run, time, low, step, shape):
             height = low[2] + k * step
             if corners[:, :, 2].min() < height < corners[:, :, 2].max():
                 covered[:, :, k] = covered_cells(cut(corners, 2, height, (0, 1)), low, step, shape[:2], FINER_3D)
-        covered = 1 - covered if body.outside else covered
-        total = covered if total is None else np.maximum(total, covered)
+        total = joined(total, covered, body)
     return None if total is None else smeared(total, run.spacing, step)
 
 
