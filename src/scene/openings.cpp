@@ -159,15 +159,14 @@ bool share_a_place(const Draft& draft, const OpeningDraft& one, const OpeningDra
   return true;
 }
 
-bool covers_side(const Opening& opening, const Domain& domain) {
-  if (opening.where) return false;
-  for (int axis = 0; axis < domain.dimensions; ++axis) {
-    if (axis == opening.axis) continue;
-    const double slack = 1e-9 * (domain.upper[axis] - domain.lower[axis]);
-    if (opening.lower[axis] > domain.lower[axis] + slack || opening.upper[axis] < domain.upper[axis] - slack)
-      return false;
-  }
-  return true;
+// Of the area of its side.
+double share_of_side(const Opening& opening, const Domain& domain) {
+  if (opening.where) return 0;
+  double share = 1;
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    if (axis != opening.axis)
+      share *= (opening.upper[axis] - opening.lower[axis]) / (domain.upper[axis] - domain.lower[axis]);
+  return share;
 }
 
 void read_table(const Draft& draft, const Named& named, Opening& opening, Problems& problems) {
@@ -309,6 +308,16 @@ void check_velocity(const Draft& draft, const Scene& scene, const Opening& openi
                  opening.name + " lets nothing enter: solids cover all of it; move it or the solids");
 }
 
+void check_pressure(const Draft& draft, const Scene& scene, const Opening& opening, Problems& problems) {
+  const std::string key = opening.name + ".pressure";
+  if (!opening.pressure || draft.node(key) == nullptr) return;
+  sample(opening, scene.domain, draft.options.time.end, [&](const Vec3& place, double t) {
+    if (std::isfinite((*opening.pressure)(place[0], place[1], place[2], t))) return true;
+    problems.add(*draft.node(key), key + " is not a finite number at t = " + brief(t));
+    return false;
+  });
+}
+
 // Rate at which liquid enters, at the 33 times of sample().
 std::vector<double> rates_of(const Scene& scene, const Opening& opening, double end) {
   const int up = scene.domain.dimensions - 1;
@@ -447,12 +456,18 @@ std::vector<Opening> make_openings(const Draft& draft, const CompileExpression& 
 }
 
 void open_sides_at(const std::vector<Opening>& openings, Domain& domain) {
-  for (const Opening& opening : openings) {
-    if (!covers_side(opening, domain)) continue;
-    Side& side = domain.sides[opening.axis][opening.side];
-    side.kind = BoundaryKind::open;
-    side.opening = true;
-  }
+  // No two share a place: several may cover a side together.
+  std::array<std::array<double, 2>, 3> share{};
+  for (const Opening& opening : openings)
+    share[static_cast<std::size_t>(opening.axis)][static_cast<std::size_t>(opening.side)] +=
+        share_of_side(opening, domain);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t end = 0; end < 2; ++end) {
+      if (share[axis][end] < 1 - 1e-9) continue;
+      Side& side = domain.sides[static_cast<int>(axis)][static_cast<int>(end)];
+      side.kind = BoundaryKind::open;
+      side.opening = true;
+    }
 }
 
 void check_openings_of(const Draft& draft, const Scene& scene, double particle_volume, Problems& problems) {
@@ -460,7 +475,10 @@ void check_openings_of(const Draft& draft, const Scene& scene, double particle_v
   bool outflow = false;
   for (const Opening& opening : scene.openings) {
     outflow = outflow || !opening.inflow;
-    if (!opening.inflow) continue;
+    if (!opening.inflow) {
+      check_pressure(draft, scene, opening, problems);
+      continue;
+    }
     if (inflow == nullptr) inflow = &opening;
     check_velocity(draft, scene, opening, problems);
   }

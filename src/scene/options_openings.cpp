@@ -35,6 +35,7 @@ Section inflow() {
       .absent("liquid enters everywhere")
       .steerable()
       .option("table", &O::table, "CSV file with columns t and velocity_x ..., flow_rate or level, in their place")
+      .beside_case()
       .absent("none")
       .whole_only(passes_openings);
 }
@@ -51,6 +52,7 @@ Section outflow() {
       .absent("not hydrostatic")
       .steerable()
       .option("table", &O::table, "CSV file with columns t and pressure or level, in their place")
+      .beside_case()
       .absent("none")
       .whole_only(passes_openings);
 }

@@ -118,6 +118,45 @@ TEST(WcsphLayers, TheirSumsAreWeightedAndThoseOfOthersWhereAsked) {
   EXPECT_TRUE(weighted(layers, {column, "compressibility.interface_pressure=\"weighted\""}));
 }
 
+// Water and air at rest in SI units, the air below an open top; by the mean of the pressures speeds reach 0.17 m/s by
+// 0.3 s, 0.12 sqrt(g H). The bound is that of cases/hydrostatic_layers with the viscosity of the phases.
+TEST(WcsphLayers, StayAtRestBelowAnOpenTop) {
+  const std::string text = R"toml(method = "wcsph"
+[domain]
+lower = [0, 0]
+upper = [0.2, 0.3]
+bottom = "free-slip"
+left = "free-slip"
+right = "free-slip"
+[resolution]
+spacing = 0.01
+[fluid]
+gravity = 9.81
+[[phase]]
+name = "water"
+density = 1000
+viscosity = 1e-3
+[[phase]]
+name = "air"
+density = 1.2
+viscosity = 1.8e-5
+[[region]]
+phase = "air"
+[[region]]
+phase = "water"
+upper = [0.2, 0.2]
+[[outflow]]
+side = "top"
+[time]
+end = 0.3
+)toml";
+  WcsphRun run(text);
+  EXPECT_TRUE(run.method.flow().features.weighted);
+  EXPECT_FALSE(run.method.flow().features.layers);  // not settled
+  until(run, 0.3);
+  EXPECT_LT(run.method.flow().largest_speed, 0.01 * std::sqrt(9.81 * 0.3));
+}
+
 TEST(WcsphLayers, AreRecognised) {
   const auto in_layers = [](const std::string& text, const Overrides& set = {}) {
     return lie_in_layers(WcsphRun(text, set).method.flow().scene);

@@ -56,6 +56,16 @@ TEST(Openings, CoverASideThroughWhichTheLiquidGoesOn) {
   EXPECT_EQ(scene.particles.size(), 200U);
 }
 
+TEST(Openings, CoverASideTogether) {
+  const std::string upper = "[[inflow]]\nside = \"left\"\nlower = [0, 0.4]\nvelocity = [1, 0]\n";
+  const std::string lower = replaced(stream, "side = \"left\"", "side = \"left\"\nupper = [0, 0.4]");
+  const LoadedCase both = load_text(lower + upper);
+  EXPECT_TRUE(both.scene.domain.sides[0][0].opening);
+  EXPECT_FALSE(both.scene.free_surface);
+  EXPECT_THAT(both.options.warnings, testing::IsEmpty());
+  EXPECT_FALSE(load_text(lower).scene.domain.sides[0][0].opening);
+}
+
 TEST(Openings, APartOfAWallLeavesTheRestAWall) {
   const Scene scene =
       load_text(replaced(replaced(stream, "side = \"left\"", "side = \"left\"\nlower = [0, 0.2]\nupper = [0, 0.6]"),
@@ -78,6 +88,10 @@ TEST(Openings, ValuesComeFromATable) {
   EXPECT_EQ((*in.flow_rate)(0, 0, 0, 0.5), 1.5);
   EXPECT_EQ((*in.flow_rate)(0, 0, 0, 9), 3);
   EXPECT_EQ((*in.level)(0, 0, 0, 1), 0.5);
+  // The resolved case stands in the folder of the run, where a name beside the case is none.
+  const test::CaseFile beside(replaced(stream, "velocity = [\"y*t\", \"0\"]", "table = \"inlet.csv\""), "third.toml");
+  std::filesystem::copy_file(table, beside.folder() + "/inlet.csv");
+  EXPECT_THAT(load_case(beside.path()).options.resolved, HasSubstr("table = \"" + beside.folder() + "/inlet.csv\""));
   std::ofstream(table) << "t, flow_rate, speed\n0, 1, 2\n";
   EXPECT_THAT(of("velocity = [\"y*t\", \"0\"]", given),
               ElementsAre(HasSubstr("17:9 inflow.0.table has a column 'speed'; those of an inflow are t, level, "
@@ -144,6 +158,8 @@ TEST(Openings, AreRefusedWhenTheFlowMakesNoSense) {
               ElementsAre("17:12 inflow.0.velocity must have 2 entries in a 2-D domain, found 1"));
   EXPECT_THAT(of("[\"y*t\", \"0\"]", "[\"1/(y*0)\", 0]"), ElementsAre(HasSubstr("is not a finite number")));
   EXPECT_THAT(of("[\"y*t\", \"0\"]", "[\"1\", \"1/(y*0)\"]"), ElementsAre(HasSubstr("is not a finite number")));
+  EXPECT_THAT(of("pressure = \"1 + t\"", "pressure = \"0/(y*0)\""),
+              ElementsAre(HasSubstr("outflow.0.pressure is not a finite number")));
   // Nothing leaves a full tank.
   EXPECT_THAT(
       of("[[outflow]]\nside = \"right\"\npressure = \"1 + t\"\n", "[[inflow]]\nside = \"right\"\nvelocity = [-1, 0]\n"),

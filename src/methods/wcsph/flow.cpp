@@ -51,8 +51,9 @@ Features::Features(const LoadedCase& loaded)
              (smoothing.shifting == Shifting::automatic && (!several || tension) && !scene.free_surface);
   const InterfacePressure meeting = smoothing.interface_pressure;
   weighted = several && !shifting && !tension && meeting != InterfacePressure::mean;
-  layers = weighted && !scene.free_surface && !openings && !moving_bodies && !scene.body_force && lie_in_layers(scene);
-  weighted = layers || (weighted && meeting == InterfacePressure::weighted);
+  const bool in_layers = weighted && !scene.free_surface && !moving_bodies && !scene.body_force && lie_in_layers(scene);
+  layers = in_layers && !openings;
+  weighted = in_layers || (weighted && meeting == InterfacePressure::weighted);
 }
 
 Flow::Flow(const LoadedCase& loaded_case)
