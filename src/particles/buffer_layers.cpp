@@ -292,6 +292,7 @@ void BufferLayers::find_pressures(const Liquid& liquid, Array<double>& excess, A
       Vec3 foot{};
       for (int a = 0; a < particles_.dimensions; ++a)
         foot[a] = liquid.arrangement.list.coordinate(a)[i] + liquid.arrangement.origin[a];
+      foot = gate.wrapped(foot);
       foot[axis] = gate.plane;
       p = pressure_outside(scene_, *gate.opening, foot, heaviest, liquid.time);
       // Fluids side by side have one pressure, so that their velocities add up as 1 / (rho c): the impedance of water

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "spume/core/error.hpp"
+#include "spume/core/periodic_grid.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/particles/boundary.hpp"
 
@@ -62,11 +63,18 @@ double OpenGate::wet_area() const {
   return area;
 }
 
+Vec3 OpenGate::wrapped(Vec3 place) const {
+  for (std::size_t k = 0; k < 2; ++k)
+    if (period[k] > 0) place[across[k]] = wrap_periodic(place[across[k]], start[k], period[k]);
+  return place;
+}
+
 std::int32_t OpenGate::column_at(const Vec3& place) const {
+  const Vec3 inside = wrapped(place);
   std::array<std::size_t, 2> at{};
   for (std::size_t k = 0; k < 2; ++k) {
     if (across[k] < 0) continue;
-    const double cell = (place[across[k]] - lower[k]) / size[k];
+    const double cell = (inside[across[k]] - lower[k]) / size[k];
     if (!(cell >= 0 && cell < static_cast<double>(cells[k]))) return -1;
     at[k] = static_cast<std::size_t>(cell);
   }
@@ -88,6 +96,8 @@ OpenGates::OpenGates(const Scene& scene, double particle_volume) {
       const double length = opening.upper[axis] - opening.lower[axis];
       gate.across[k] = axis;
       gate.lower[k] = opening.lower[axis];
+      gate.start[k] = domain.lower[axis];
+      gate.period[k] = domain.periodic(axis) ? domain.upper[axis] - domain.lower[axis] : 0;
       gate.cells[k] = static_cast<std::size_t>(std::max(1.0, std::round(length / scene.spacing)));
       gate.size[k] = length / static_cast<double>(gate.cells[k]);
       area *= gate.size[k++];

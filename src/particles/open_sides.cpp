@@ -5,7 +5,6 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
-#include "spume/core/periodic_grid.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/particles/boundary.hpp"
 
@@ -61,14 +60,12 @@ void OpenSides::advance(double t, double dt) {
   const Domain& domain = scene_.domain;
   for (Drifting& one : drifting_) {
     const OpenGate& gate = gates_[static_cast<std::size_t>(one.gate)];
-    one.next = add(one.place, multiply(dt, one.velocity));
+    one.next = gate.wrapped(add(one.place, multiply(dt, one.velocity)));
     for (int axis = 0; axis < domain.dimensions; ++axis) {
-      if (axis == gate.opening->axis) continue;
+      if (axis == gate.opening->axis || domain.periodic(axis)) continue;
       double& x = one.next[axis];
       const double lower = domain.lower[axis], upper = domain.upper[axis];
-      if (domain.periodic(axis))
-        x = wrap_periodic(x, lower, upper - lower);
-      else if (x < lower && domain.sides[axis][0].kind != BoundaryKind::open)
+      if (x < lower && domain.sides[axis][0].kind != BoundaryKind::open)
         x = 2 * lower - x;
       else if (x > upper && domain.sides[axis][1].kind != BoundaryKind::open)
         x = 2 * upper - x;

@@ -25,6 +25,7 @@ struct Mirrored {
 // point.
 struct Copy : Mirrored {
   Vec3 point;
+  std::array<int, 3> side{-1, -1, -1};  // of the domain that mirrors, along each axis
 };
 
 // Of a probe in a solid, in spacings: farther behind a face it tells nothing of the liquid before it.
@@ -76,13 +77,27 @@ std::vector<Copy> copies_of(const SampledState& state, const Vec3& point) {
         } else {
           copy.point[axis] = 2 * plane - copy.point[axis];
           copy.sign[axis] = -1;
-          reflect_velocity(state, axis, side, copy, point);
+          copy.side[axis] = side;
+          // Without layers the liquid before an opening is all that tells what passes it.
+          if (state.layer != nullptr || !state.boundary->open_at(axis, side, point))
+            reflect_velocity(state, axis, side, copy, point);
         }
         copies.push_back(copy);
       }
     }
   }
   return copies;
+}
+
+// Behind openings stand particles in place of images: as Images::build.
+bool mirrored_at_opening(const SampledState& state, const Copy& copy, Vec3 place) {
+  for (int axis = 0; axis < state.particles->dimensions; ++axis) {
+    const int side = copy.side[axis];
+    if (side < 0) continue;
+    if (state.boundary->open_at(axis, side, place)) return true;
+    place[axis] = 2 * state.boundary->walls[axis][side] - place[axis];
+  }
+  return false;
 }
 
 }  // namespace
@@ -196,6 +211,7 @@ void PointSampler::visit(const Vec3& point, Visit&& visit) const {
     for (const Copy& copy : copies_of(state_, point))
       each_in_rows(copy.point, table_, [&](std::int32_t k) {
         const std::size_t j = particle_at(k);
+        if (state_.layer != nullptr && mirrored_at_opening(state_, copy, place_of(j))) return;
         Vec3 offset{}, place = point;
         double r2 = 0;
         for (int axis = 0; axis < d; ++axis) {
@@ -331,12 +347,15 @@ double PointSampler::front(int axis, double height) const {
   const int up = state_.particles->dimensions - 1;
   const double lowest = state_.boundary->domain().lower[axis];
   const double farthest = parallel_max(state_.particles->size(), lowest, [&](std::size_t i) {
+    if (state_.layer != nullptr && (*state_.layer)[i] >= 0) return lowest;
     if ((*state_.particles->position[up])[i] >= height) return lowest;
     Vec3 r{};
     for (int a = 0; a < state_.particles->dimensions; ++a) r[a] = (*state_.particles->position[a])[i];
     return coverage(r) >= 0.5 ? r[axis] : lowest;
   });
-  return farthest > lowest ? farthest + 0.5 * state_.resolution->spacing : lowest;
+  if (farthest == lowest) return lowest;
+  const double front = farthest + 0.5 * state_.resolution->spacing;
+  return state_.layer == nullptr ? front : std::min(front, state_.boundary->walls[axis][1]);
 }
 
 }  // namespace spume

@@ -52,6 +52,8 @@ class BufferLayers {
   const OpenGates& gates() const { return gates_; }
   // Whether a particle belongs to a layer.
   bool holds(std::size_t i) const { return (*column_)[i] >= 0; }
+  // Whether it stands in a column of an inflow, which leads it along its axis alone.
+  bool leads(std::size_t i) const { return holds(i) && gate_of((*column_)[i]).opening->inflow; }
   const Array<std::int64_t>& column() const { return *column_; }  // >= 0: holds
 
   // Sets the velocities with which the layers of inflows move in a step.
@@ -98,7 +100,7 @@ class BufferLayers {
     std::int32_t gate = 0, cell = 0;
     std::size_t phase = 0;    // of what enters
     Vec3 velocity{};          // of an inflow, in this step
-    double acceleration = 0;  // inwards
+    double acceleration = 0;  // of it along the axis of the opening
     double mean = 0;          // of the velocity outwards at an outflow
     bool known = false;       // `mean` is one
   };

@@ -25,14 +25,17 @@ struct OpenGate {
   std::array<int, 2> across{0, -1};  // axes on the side
   std::array<std::size_t, 2> cells{1, 1};
   std::array<double, 2> lower{}, size{1, 1};
-  std::vector<std::int32_t> column_of;  // of a cell, -1: closed
+  std::array<double, 2> start{}, period{};  // of the domain along periodic axes; a period of 0: not periodic
+  std::vector<std::int32_t> column_of;      // of a cell, -1: closed
   std::vector<Column> columns;
   double layer = 0;  // distance of the particles of a column of a whole cell
 
   // Marks the columns below the level at time t, and adds up their areas.
   double find_wet(int up, double t);
   double wet_area() const;
-  std::int32_t column_at(const Vec3& place) const;  // -1: none
+  // Back into the domain along periodic axes.
+  Vec3 wrapped(Vec3 place) const;
+  std::int32_t column_at(const Vec3& place) const;  // also of places that are to go round periodic sides; -1: none
   double depth_behind(const Vec3& place) const { return inwards * (plane - place[opening->axis]); }
 };
 

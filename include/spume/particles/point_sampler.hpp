@@ -25,6 +25,7 @@ struct SampledState {
   std::vector<SampledScalar> scalars = {};
   const Array<double>* volume_fraction = nullptr;  // of the liquid; null: 1
   Vec3 uniform_acceleration{};                     // of the hydrostatic pressure
+  const Array<std::int64_t>* layer = nullptr;      // >= 0: of a buffer layer behind an opening; null: none is
   double time = 0;
 };
 
@@ -48,6 +49,7 @@ class PointSampler {
   double elevation(const Vec3& point) const;
   // Sum of the intervals of the column whose coverage is above one half, their ends found in the same way.
   double wetted_length(const Vec3& point) const;
+  // Of the particles below the height, but for those of buffer layers.
   double front(int axis, double height) const;
   // Averages over a plane across the domain, from cells one spacing wide whose middle lies in no solid. The liquid part
   // of a cell is where `wet_share`, linear between the corners, is one half or more; the fields are sampled at its

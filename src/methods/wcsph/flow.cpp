@@ -139,8 +139,16 @@ double Flow::compression_energy() const {
 }
 
 double Flow::largest_excess(std::size_t phase_wanted) const {
-  return parallel_max(size(), 0.0,
-                      [&](std::size_t i) { return phase_of(i) == phase_wanted ? std::abs((*excess)[i]) : 0.0; });
+  return parallel_max(size(), 0.0, [&](std::size_t i) {
+    return in_domain(i) && phase_of(i) == phase_wanted ? std::abs((*excess)[i]) : 0.0;
+  });
+}
+
+double Flow::largest_speed_in_domain() const {
+  if (!features.openings) return largest_speed;
+  return std::sqrt(parallel_max(size(), 0.0, [&](std::size_t i) {
+    return in_domain(i) ? squared_norm(particles.velocity, dimensions, i) : 0.0;
+  }));
 }
 
 // A mean of two viscosities is at most twice that of the particle.

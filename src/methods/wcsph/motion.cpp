@@ -129,8 +129,8 @@ Vec3 Flow::held_velocity(std::size_t i, double dt, Vec3& r) const {
   }
   const Vec3 before = r;
   apply_walls(i, r, &u);
-  // Particles go round periodic sides when lists are made.
-  for (int axis = 0; axis < dimensions; ++axis)
+  // Particles go round periodic sides when lists are made; those of inflows keep to their columns there too.
+  for (int axis = 0; axis < dimensions && !(features.openings && openings->leads(i)); ++axis)
     if (scene.domain.periodic(axis)) r[axis] = before[axis];
   return u;
 }

@@ -118,7 +118,7 @@ void Wcsph::declare_series() {
   if (flow.features.density_relaxation)
     series_.add("volume", flow.dimensions == 3 ? "length^3, by kernel sums" : "length^2, by kernel sums",
                 [&flow] { return flow.relaxation->volume; });
-  series_.add("max_speed", "speed", [&flow] { return flow.largest_speed; });
+  series_.add("max_speed", "speed", [&flow] { return flow.largest_speed_in_domain(); });
   for (std::size_t n = 0; n < phase_sums_.size(); ++n) {
     const std::string& name = flow.scene.phases[n].name;
     series_.add("density_change_" + name, "1, largest", [&flow, n] { return flow.largest_excess(n); });
@@ -191,6 +191,7 @@ const PointSampler& Wcsph::sampler() {
                    .resolution = &flow_.resolution,
                    .scalars = {{&sampled_pressure_, flow_.features.several ? 0 : flow_.laws[0].density}},
                    .uniform_acceleration = flow_.wall_gravity,
+                   .layer = flow_.openings == nullptr ? nullptr : &flow_.openings->column(),
                    .time = flow_.time});
   sampled_step_ = flow_.steps;
   return sampler_;

@@ -105,7 +105,9 @@ struct Flow {
   double kinetic_energy() const;
   double potential_energy() const;  // across axes with sides
   double compression_energy() const;
+  // Without the layers behind openings.
   double largest_excess(std::size_t phase) const;
+  double largest_speed_in_domain() const;
   double largest_kinematic_viscosity() const;
   std::string laws_in_words() const;
 
