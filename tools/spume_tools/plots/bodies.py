@@ -17,7 +17,7 @@ class Body:
     number: int
     corners: np.ndarray
     outside: bool
-    taken_away: bool
+    taken_away: bool = False
 
 
 def bodies_of(run, taken_away=False):
