@@ -338,7 +338,9 @@ TEST(BodyWalls, OfManyAnswerAsAllAskedInTurn) {
       }
       EXPECT_EQ(walls.distance(point), least);
       EXPECT_EQ(walls.surely_farther(point, gap), farther);
-      if (least < 0.1) EXPECT_EQ(walls.nearest_wall(point).body, best);
+      if (least < 0.1) {
+        EXPECT_EQ(walls.nearest_wall(point).body, best);
+      }
       named_by_cells += farther ? 0 : 1;
     }
     EXPECT_GT(named_by_cells, 100);

@@ -75,6 +75,7 @@ Flow::Flow(const LoadedCase& loaded_case)
     floating =
         std::make_unique<FloatingBodies>(scene, resolution, *boundary.bodies(), options.get<SchemeOptions>().centred);
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
+  if (features.wall_bends) wall_bends = std::make_unique<WallBends>(boundary, resolution);
   if (features.eddy_viscosity)
     closure = std::make_unique<turbulence::EddyViscosity>(particles, options.get<TurbulenceOptions>());
   if (features.bubbles) {

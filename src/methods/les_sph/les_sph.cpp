@@ -28,7 +28,7 @@ constexpr double bubble_stride = 0.5;
 
 // Of h^2 / nu: with cubics through no-slip surfaces the spectrum of the viscous sums ends at -9.2 / h^2, over jittered
 // lattices in two and three dimensions and the particles beside a cylinder, in place of -7.5.
-constexpr double most_viscous_beside_bodies = 0.2;
+constexpr double most_viscous_beside_no_slip = 0.2;
 
 // A liquid at rest without forces: the first steps follow the time scale of the run.
 constexpr double steps_of_run_at_rest = 1000;
@@ -162,7 +162,8 @@ StepLimit LesSph::step_limit() const {
   const double h = flow_.resolution.smoothing_length;
   const TimeOptions& options = flow_.options.time;
   double most_diffusion = flow_.options.get<SchemeOptions>().viscous;
-  if (flow_.features.no_slip_bodies) most_diffusion = std::min(most_diffusion, most_viscous_beside_bodies);
+  if (flow_.features.no_slip_bodies || flow_.features.wall_bends)
+    most_diffusion = std::min(most_diffusion, most_viscous_beside_no_slip);
   Vec3 force = flow_.scene.fluid.gravity;
   if (flow_.features.uniform_body_force) {
     const Vec3 beside = (*flow_.scene.body_force)(flow_.arrangement.origin, flow_.time);

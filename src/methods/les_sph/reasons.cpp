@@ -77,6 +77,10 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_p
            : force_has_potential    ? "gravity, and forces.body by its potential"
                                     : "gravity; forces.body has no potential";
   viscosity = has.viscous_stress ? "div(2 nu S)" : has.viscosity ? "div(nu grad u)" : "inviscid";
+  bends = has.wall_bends       ? "friction of boundary layers that the first rows resolve"
+          : !has.viscosity     ? "inviscid"
+          : has.eddy_viscosity ? "unresolved at walls: a closure"
+                               : "no no-slip sides";
   sponges = has.sponges ? "velocity damped in layers beside sides" : "no section [[sponge]]";
   divergence = loaded.scene.fluid.sound_speed > 0 ? "right-hand side of the Helmholtz equation"
                                                   : "right-hand side of the Poisson equation";

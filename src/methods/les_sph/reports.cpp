@@ -204,6 +204,7 @@ std::vector<ArrayInfo> LesSph::arrays() const {
   list.push_back({"pressure solver", flow_.solver.bytes()});
   list.push_back({"gradient corrections left out", flow_.moments.uncorrected.bytes()});
   list.push_back({"leased within a step", flow_.leased_bytes()});
+  if (flow_.wall_bends != nullptr) list.push_back({"wall bends", flow_.wall_bends->bytes()});
   if (flow_.boundary.bodies() != nullptr) list.push_back({"wall points", flow_.boundary.bytes()});
   if (flow_.features.moving_walls && flow_.boundary.bodies() == nullptr)
     list.push_back({"velocities of images", flow_.boundary.bytes()});

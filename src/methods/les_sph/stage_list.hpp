@@ -18,12 +18,13 @@ struct KeptArrays {
         lists([&f] { return f.arrangement.list_traffic(f.sizes); }),
         sorted([&f] { return f.arrangement.sort_traffic(f.particles); }),
         surface([&f] { return f.surface->traffic(); }),
+        bends([&f] { return f.wall_bends == nullptr ? 0.0 : f.wall_bends->bytes(); }),
         sizes([&f] { return 4.0 * 4.0 * static_cast<double>(f.sizes.length_ratio.size()); }),
         bubbles([&f] { return f.bubbles->population().traffic(); }),
         bubble_images([&f] { return f.bubbles->image_traffic(); }) {}
 
   ArrayUse images, lists, sorted, surface;  // lists: with the coordinates that they refer to
-  ArrayUse sizes, bubbles, bubble_images;
+  ArrayUse bends, sizes, bubbles, bubble_images;
 };
 
 // What a stage of the bubbles reads or writes of the particles, while bubbles live: else it returns at once.

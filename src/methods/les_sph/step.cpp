@@ -71,6 +71,8 @@ Plan make_plan(Flow& f) {
              living(seen_by_bubbles(f, kept)), living({kept.bubbles, f.bubble_exchange(), f.bubble_viscosity()}));
   // (viii) u* from forces and viscosity
   stages.add(both, "forces", has.potential, why.forces, &Flow::find_potential, {r}, {f.potential, f.varying_force});
+  stages.add(both, "wall bends", has.wall_bends, why.bends, &Flow::find_wall_bends, {r, f.advecting_velocity},
+             {kept.bends});
   stages.sweep(both, "viscosity", has.viscosity, why.viscosity, &Flow::find_viscous_acceleration,
                {f.advecting_velocity, moments.divergence_of_position, f.eddy_viscosity()}, {f.viscous_acceleration});
   stages.add(step, "prediction", true, "velocity without pressure", &Flow::predict_velocity,

@@ -19,6 +19,7 @@
 #include "spume/particles/shift.hpp"
 #include "spume/particles/step_limits.hpp"
 #include "spume/particles/surface.hpp"
+#include "spume/particles/wall_bends.hpp"
 #include "spume/physics/bubbles/coupling.hpp"
 #include "spume/physics/solutes/solutes.hpp"
 #include "spume/physics/turbulence/eddy_viscosity.hpp"
@@ -95,6 +96,7 @@ struct Flow {
   MomentFields moments;
   std::unique_ptr<FreeSurface> surface;       // null: the liquid fills the domain
   std::unique_ptr<Shift> shift;               // null: no shifting
+  std::unique_ptr<WallBends> wall_bends;      // null: no friction at no-slip sides
   VectorField intermediate_position{};        // r*
   Array<double>* reduced_pressure = nullptr;  // q = p / rho + potential
   Array<double>* potential = nullptr;         // of the accelerations that have one, at r*; null without forces
@@ -184,6 +186,7 @@ struct Flow {
   // StepFailure.
   void find_uniform_acceleration(double t);
   void find_potential(double dt);  // at the end of the step
+  void find_wall_bends();
   void find_viscous_acceleration();
   // Of the particles that see a no-slip body, how far inside the liquid they are: of them the viscous term takes off
   // what it makes of linear velocities. A constant viscosity only: one that varies makes something of them.
