@@ -63,9 +63,12 @@ struct Held {
     find();
   }
   void find() {
-    bends.find(arrangement, particles.position, {velocity[0].data(), velocity[1].data(), velocity[2].data()}, 0);
+    bends.find(arrangement, particles.position, {velocity[0].data(), velocity[1].data(), velocity[2].data()}, 0,
+               particles.scratch());
   }
   const Scene& scene() const { return loaded.scene; }
+  // Behind a side: no particle that stands off it sees farther.
+  double deepest_seen() const { return resolution.support_radius - 0.25 * scene().spacing; }
   Vec3 place(std::size_t i) const { return vector_at(particles.position, particles.dimensions, i); }
   std::size_t images() const { return arrangement.images.size(); }
   std::size_t source(std::size_t k) const { return static_cast<std::size_t>(arrangement.images.source()[k]); }
@@ -85,10 +88,12 @@ struct Held {
 // e of a particle at a side by an orthogonal decomposition over all particles and their periodic copies.
 Vec3 slow_bend(const Held& held, std::size_t i, int axis, int side) {
   const Domain& domain = held.scene().domain;
-  const double h = held.resolution.smoothing_length, reach = fit_reach * held.resolution.support_radius;
+  const double h = held.resolution.smoothing_length,
+               reach = (domain.dimensions == 2 ? fit_reach : 1) * held.resolution.support_radius;
   const double plane = side == 0 ? domain.lower[axis] : domain.upper[axis], inward = side == 0 ? 1 : -1;
   const Vec3 here = held.place(i);
   const double s = inward * (here[axis] - plane);
+  if (s >= held.deepest_seen()) return {};
   std::vector<reference::Neighbour> near;
   std::vector<double> distance;
   std::vector<Vec3> relative;  // to the wall
@@ -143,7 +148,7 @@ TEST(WallBends, ContinueCubicsBehindWallsThatShear) {
       Vec3 place{};
       for (int axis = 0; axis < held.particles.dimensions; ++axis)
         place[axis] = held.arrangement.images.position(axis)[k];
-      if (place[up] > 0) continue;
+      if (place[up] > 0 || -place[up] > held.deepest_seen()) continue;
       // Where liquid is on all sides of the foot, which bears a polynomial of order 2.
       const double clear = 3.5 * spacing;
       if (place[0] < clear || place[0] > 1 - clear || (three && (place[1] < clear || place[1] > 1 - clear))) continue;
@@ -153,7 +158,7 @@ TEST(WallBends, ContinueCubicsBehindWallsThatShear) {
         // Single precision: of the velocity, and of the offset that the motion of the wall and e are added to.
         EXPECT_NEAR(held.image_velocity(k, axis, held.bends.rule()), there[static_cast<std::size_t>(axis)], 1e-6);
     }
-    EXPECT_GT(seen, 20U);
+    EXPECT_GT(seen, 15U);
   }
 }
 

@@ -196,7 +196,7 @@ void Flow::add_force_potential(double t) {
 
 void Flow::find_wall_bends() {
   wall_bends->find(arrangement, intermediate_position, started ? read(advecting_velocity) : read(particles.velocity),
-                   wall_times.velocity);
+                   wall_times.velocity, particles.scratch());
 }
 
 void Flow::find_viscous_acceleration() {
@@ -219,7 +219,8 @@ void Flow::find_viscous_acceleration() {
   if (features.held_by_bodies) find_held_by_bodies(share.data());
   particles.scratch().lease(viscous_acceleration, dimensions, size());
   viscous_sweep(arrangement.context, arrangement.packed, started ? read(advecting_velocity) : read(particles.velocity),
-                wall_bends != nullptr ? wall_bends->rule() : boundary.velocity_rule(), diffusivity.data(), write(viscous_acceleration), features.viscous_stress,
+                wall_bends != nullptr ? wall_bends->rule() : boundary.velocity_rule(), diffusivity.data(),
+                write(viscous_acceleration), features.viscous_stress,
                 {features.held_by_bodies ? share.data() : nullptr, moments.read_correction()});
 }
 
