@@ -5,11 +5,13 @@
 #include <cctype>
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "spume/scene/second_order_waves.hpp"
 #include "spume/scene/wave_theory.hpp"
 
 namespace spume {
@@ -69,17 +71,6 @@ TEST(WaveTheory, TransferIsTheProjectionOnTheTravellingMode) {
   }
 }
 
-TEST(WaveTheory, SecondOrderMotionIsThatOfTheReference) {
-  for (const auto& row : reference("piston.csv")) {
-    const double height = 0.3, depth = 2;
-    EXPECT_NEAR(piston_second_amplitude(height, row[0], depth) * depth / (height * height) / row[2], 1, 1e-5) << row[0];
-  }
-  // Of long waves the liquid moves as a whole: 2 w e2 h is the flux c a2 of the second harmonic of Stokes.
-  const double kh = 0.01, second = 3 / (16 * kh * kh);  // a2 h / H^2
-  EXPECT_NEAR(2 * kh * piston_second_amplitude(1, kh, 1) / second, 1, 1e-3);
-  EXPECT_NEAR(piston_second_amplitude(0.1, 1000, 1), -0.01 / 32, 1e-15);
-}
-
 TEST(WaveTheory, MadsensNumberIsOneWhereTheSecondHarmonicMakesASecondCrest) {
   EXPECT_DOUBLE_EQ(madsen_number(8 * pi * pi / 3 * 2 * 2 * 2 / (5 * 5), 2 * pi / 5, 2), 1);
 }
@@ -112,6 +103,9 @@ TEST(WaveTheory, VelocitiesAreRatesOfDisplacements) {
   expect_consistent(
       OscillatingPiston(piston_motion(focused_waves(0.1, 2 * pi / w, 3.3, 40, 6, 15, 0.8, 9.81), 0.8, 9.81), 5), 30, w,
       0.2);
+  const std::vector<Oscillation> low{{0.02, 0.3 * w, 1}, {0.01, 2 * w, 2}};
+  for (const double ramp : {0.0, 5.0})
+    expect_consistent(OscillatingPiston(regular, ramp, std::make_shared<TabulatedOscillations>(low, 9)), 12, w, 0.25);
   const SolitaryWave wave(0.3, 1, 1);
   expect_consistent(SolitaryPiston(wave), 40, wave.decay * wave.speed, 0.26);
 }
