@@ -59,19 +59,22 @@ FreeWave travelling(double w, double depth, double gravity) {
   return {w, k, w * w / (gravity * k), 1 / std::cosh(k * depth)};
 }
 
+// Integral of f cosh(k z') over cosh kappa h cosh K h, k = kappa + K or kappa - K, from the sinh and the cosh of kh
+// over the same and 1 over it.
+Complex moved_by(WavemakerKind kind, const Complex& k, const Complex& sinh, const Complex& cosh, const Complex& one,
+                 double depth) {
+  // Where a factor has the wavenumber of the free wave: leading terms.
+  const bool none = std::abs(k) * depth < 1e-4;
+  const Complex whole = none ? one * depth : sinh / k;
+  if (kind == WavemakerKind::piston) return whole;
+  return whole - (none ? one * depth / 2.0 : (cosh - one) / (k * k * depth));
+}
+
 // Integral of f sinh kappa z' sinh K z' over the depth, z' from the bed, over cosh kappa h cosh K h.
 Complex overlap(WavemakerKind kind, const SurfaceMode& mode, const FreeWave& free, double depth) {
-  const Complex sum = mode.kappa + free.k, apart = mode.kappa - free.k;
-  const Complex hyperbolic_sum = mode.tanh + free.tanh, hyperbolic_apart = mode.tanh - free.tanh;
-  const Complex seches = mode.sech * free.sech;
-  const bool equal = std::abs(apart) * depth < 1e-4;  // leading terms of the series
-  if (kind == WavemakerKind::piston)
-    return 0.5 * (hyperbolic_sum / sum - (equal ? seches * depth : hyperbolic_apart / apart));
-  const Complex of_sum = depth * hyperbolic_sum / sum - (1.0 + mode.tanh * free.tanh - seches) / (sum * sum);
-  const Complex of_apart =
-      equal ? seches * depth * depth / 2.0
-            : depth * hyperbolic_apart / apart - (1.0 - mode.tanh * free.tanh - seches) / (apart * apart);
-  return (of_sum - of_apart) / (2 * depth);
+  const Complex product = mode.tanh * free.tanh, one = mode.sech * free.sech;
+  return 0.5 * (moved_by(kind, mode.kappa + free.k, mode.tanh + free.tanh, 1.0 + product, one, depth) -
+                moved_by(kind, mode.kappa - free.k, mode.tanh - free.tanh, 1.0 - product, one, depth));
 }
 
 // Integral of f cosh K z' over cosh K h.

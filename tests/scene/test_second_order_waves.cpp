@@ -3,6 +3,7 @@
 // group of waves carries.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -150,6 +151,36 @@ TEST(SecondOrderWaves, AGroupTakesItsMassFromTheWall) {
       EXPECT_NEAR(velocity.real() * moved / (group * eta), 1, 0.01) << kh;
       EXPECT_LT(std::abs(velocity.imag()), 0.01 * std::abs(velocity.real())) << kh;
     }
+}
+
+// Far from the piston and less what the moving gauge sees of the slope, the elevation is that of the bound waves: the
+// second harmonic of Stokes and the long wave of Longuet-Higgins and Stewart; decaying modes have died out there, and
+// the piston makes no free wave.
+TEST(SecondOrderWaves, TheElevationOfPairsIsThatOfTheBoundWavesFarAway) {
+  for (const double kh : {0.5, 1.0, 1.5}) {
+    const double amplitude = 0.05, gauge = 6, w = frequency(kh), s = std::tanh(kh), apart = 1e-3 * w;
+    const FaceOfPiston face{1, 1, gauge};
+    // Of the motion of one with the slope that another has at the gauge.
+    const auto carried = [&](const FirstOrderMotion& a, const FirstOrderMotion& b, bool difference) {
+      const double k = wavenumber(b.angular_frequency, 1, 1);
+      const Complex slope = -i * k * i * b.amplitude * b.modes[0].transfer * std::exp(-i * k * gauge);
+      return 0.5 * a.amplitude * (difference ? std::conj(slope) : slope);
+    };
+    const FirstOrderMotion a = motion(piston, amplitude, w, 0, 20);
+    const Complex harmonic =
+        second_order_elevation(a, a, false, second_order_amplitude(piston, a, a, false, 1, 1), face) -
+        carried(a, a, false);
+    EXPECT_NEAR(std::abs(harmonic), amplitude * amplitude * kh * (3 - s * s) / (4 * s * s * s),
+                0.01 * std::abs(harmonic));
+    EXPECT_NEAR(std::remainder(std::arg(harmonic) + 2 * kh * gauge, 2 * pi), 0, 0.02);
+
+    const FirstOrderMotion p = motion(piston, amplitude, w + apart / 2, 0, 20),
+                           q = motion(piston, amplitude, w - apart / 2, 0, 20);
+    const Complex slow = second_order_elevation(p, q, true, second_order_amplitude(piston, p, q, true, 1, 1), face) -
+                         carried(p, q, true) - std::conj(carried(q, p, true));
+    const double n = 0.5 * (1 + 2 * kh / std::sinh(2 * kh)), group = n * w / kh;
+    EXPECT_NEAR(slow.real(), -amplitude * amplitude * (2 * n - 0.5) / (1 - group * group), 0.02 * std::abs(slow)) << kh;
+  }
 }
 
 TEST(SecondOrderWaves, MoreModesChangeLittle) {

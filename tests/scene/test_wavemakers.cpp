@@ -143,8 +143,7 @@ TEST(Wavemakers, OtherWavesMoveTheSideByTheirTheory) {
   const auto group = piston_motion(focused_waves(0.05, 5, 3.3, 100, 6, 30, 1, 1), 1, 1);
   const OscillatingPiston meeting(group, 10, second_of(group));
   const Scene linear = load_text(focus, {"wavemaker.0.order=1"}).scene;
-  const Scene many =
-      load_text(focus, {"wavemaker.0.components=301"}).scene;
+  const Scene many = load_text(focus, {"wavemaker.0.components=301"}).scene;
   const OscillatingPiston meeting_linear(group, 10);
   const OscillatingPiston meeting_many(piston_motion(focused_waves(0.05, 5, 3.3, 301, 6, 30, 1, 1), 1, 1), 10);
   for (const double t : {0.5, 8.0, 15.0, 31.0}) {
