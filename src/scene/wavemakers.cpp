@@ -76,6 +76,14 @@ void check_motion(const Draft& draft, const Scene& scene, const Wavemaker& maker
                            "; make the waves lower or longer, or raise the sound speed");
 }
 
+// Of waves that have a period; 0: there are none.
+double frequency_of_first(const Draft& draft) {
+  for (const WavemakerDraft& maker : draft.wavemakers)
+    if (maker.waves != WaveKind::none && maker.waves != WaveKind::solitary && maker.period)
+      return 2 * pi / *maker.period;
+  return 0;
+}
+
 const char* name_of(WaveKind kind) {
   switch (kind) {
     case WaveKind::none:
@@ -177,7 +185,7 @@ std::vector<Wavemaker> make_wavemakers(const Draft& draft, Scene& scene, Problem
     maker.depth = one.depth.value_or(maker.still_depth);
     maker.height = one.waves == WaveKind::focused ? 2 * *one.amplitude : one.height.value_or(0);
     maker.absorbs = one.absorption != AbsorptionKind::none;
-    if (one.waves == WaveKind::none && !made.empty()) maker.angular_frequency = made.front().angular_frequency;
+    if (one.waves == WaveKind::none) maker.angular_frequency = frequency_of_first(draft);
     const auto motion = wavemaker_motion(one, maker, scene, draft.options.time.end);
     find_wavemaker_extremes(*motion, draft.options.time.end, maker);
     check_motion(draft, scene, maker, problems);

@@ -45,7 +45,7 @@ void check_sponges(const Draft& draft, Problems& problems);
 // wavenumber. `end` of the run.
 std::shared_ptr<const PistonMotion> wavemaker_motion(const WavemakerDraft& draft, Wavemaker& maker, const Scene& scene,
                                                      double end);
-// Pairs of more components than these cost more than the first second of a run.
+// Their pairs take seven seconds of processor time.
 constexpr std::int64_t most_of_second_order = 300;
 inline bool takes_second_order(const WavemakerDraft& draft) {
   const bool sum = draft.waves == WaveKind::jonswap || draft.waves == WaveKind::focused;
@@ -56,8 +56,8 @@ void find_wavemaker_extremes(const PistonMotion& motion, double end, Wavemaker& 
 inline FaceOfPiston face_of(const Wavemaker& maker, const Scene& scene) {
   return {maker.depth, gravity_of(scene), gauge_columns * scene.spacing / 2};
 }
-// How it takes up waves beside those that it makes with `motion`. A wall that makes none is tuned to its period, or to
-// the wavemaker before it in the case.
+// How it takes up waves beside those that it makes with `motion`. A wall that makes none is tuned to its period, else
+// to that of the first wavemaker that has one; without either its law is that of long waves, as beside solitary waves.
 WaveAbsorption wave_absorption(const WavemakerDraft& draft, const Wavemaker& maker, const PistonMotion& motion,
                                const Scene& scene);
 // The reflection that linear theory expects, in words.

@@ -71,6 +71,19 @@ TEST(WaveTheory, TransferIsTheProjectionOnTheTravellingMode) {
   }
 }
 
+// Madsen's, which lets the second harmonic of a long wave move the liquid as a whole.
+TEST(WaveTheory, SecondOrderMotionOfLongWavesIsThatOfTheReference) {
+  for (const auto& row : reference("piston.csv")) {
+    if (row[0] > 0.45) continue;
+    const double height = 0.3, depth = 2, w = std::sqrt(row[0] / depth * std::tanh(row[0]));
+    const auto second = second_order_motion({{height / 2 / row[1], w, 0}}, WavemakerKind::piston, depth, 1);
+    ASSERT_EQ(second.size(), 1U);
+    EXPECT_DOUBLE_EQ(second[0].angular_frequency, 2 * w);
+    EXPECT_NEAR(std::remainder(second[0].phase, 2 * pi), 0, 0.01);
+    EXPECT_NEAR(second[0].amplitude * depth / (height * height) / row[2], 1, std::pow(row[0], 4)) << row[0];
+  }
+}
+
 TEST(WaveTheory, MadsensNumberIsOneWhereTheSecondHarmonicMakesASecondCrest) {
   EXPECT_DOUBLE_EQ(madsen_number(8 * pi * pi / 3 * 2 * 2 * 2 / (5 * 5), 2 * pi / 5, 2), 1);
 }
