@@ -76,7 +76,7 @@ Complex by_quadrature(WavemakerKind kind, const FirstOrderMotion& a, const First
     for (const Mode& n : of_b) sum -= asked(x_a, n);
     return sum;
   };
-  constexpr int n = 4000;
+  constexpr int n = 1000;
   Complex need = 0;
   double moved = 0;
   for (int j = 0; j <= n; ++j) {
