@@ -117,6 +117,6 @@ def curves(runs):
     lines = []
     for name, run in runs.items():
         t, measured, theory = compared(run, "behind", 13)
-        lines.append((name.replace("_", " "), t, measured, "-"))
+        lines.append(("second order" if name == "standard" else name.replace("_", " "), t, measured, "-"))
     return [{"file": "long_wave", "x": "t", "y": "slow elevation at x = 13, in depths",
-             "curves": [*lines, ("theory", t, theory, "k--")]}]
+             "curves": [*lines, ("theory", t, theory, "--")]}]
