@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <set>
 
 #include "checks.hpp"
 #include "spume/core/parallel.hpp"
