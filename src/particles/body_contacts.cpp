@@ -122,6 +122,8 @@ std::vector<BodyContact> BodyContacts::find(const Surroundings& surroundings, do
       Vec3 centre = multiply(0.5, add(domain.lower, domain.upper));
       centre[axis] = surroundings.walls[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)];
       side_velocity[static_cast<std::size_t>(2 * axis + side)] = (*velocity)(centre, surroundings.ahead);
+      if (axis == 0)
+        side_velocity[static_cast<std::size_t>(side)][0] += surroundings.absorption[static_cast<std::size_t>(side)];
     }
   std::vector<double> speed(parts_);
   for (std::size_t part = 0; part < parts_; ++part) speed[part] = largest_speed_of(part);

@@ -51,6 +51,7 @@ BoundaryFeatures::BoundaryFeatures(const Domain& domain, const std::vector<Body>
       moving_walls = true;
       displaced_walls = displaced_walls || side.velocity->component[axis] != nullptr;
     }
+  absorbing_walls = AbsorbingWalls::any(domain);
   images = images || bodies || openings || !domain.boxes.empty();
   for (const SolidBox& box : domain.boxes) no_slip = no_slip || box.kind == BoundaryKind::no_slip;
 }
@@ -67,6 +68,7 @@ Boundary::Boundary(const Domain& domain, double spacing, std::unique_ptr<BodyWal
   for (int axis = 0; axis < domain.dimensions; ++axis) walls[axis] = {domain.lower[axis], domain.upper[axis]};
   next_walls = walls;
   if (openings_ != nullptr) wall_speed = openings_->largest_speed();
+  if (features.absorbing_walls) absorbing_ = std::make_unique<AbsorbingWalls>(domain, spacing);
   unite_solids(walls);
 }
 
@@ -79,6 +81,7 @@ void Boundary::advance(double t, double dt) {
   if (openings_ != nullptr) openings_->advance(t, dt);
   if (features.displaced_bodies) bodies_->move_to(t + dt);
   if (!features.displaced_walls) return;
+  if (absorbing_ != nullptr) absorbing_->advance(t, dt);
   for (int axis = 0; axis < domain_.dimensions; ++axis)
     for (int side = 0; side < 2; ++side) {
       const auto& velocity = domain_.sides[axis][side].velocity;
@@ -91,6 +94,7 @@ void Boundary::advance(double t, double dt) {
                            (*velocity)(centre, t + dt)[axis]) /
                           6;
       next_walls[axis][side] += mean * dt;
+      if (domain_.sides[axis][side].absorption) next_walls[axis][side] += absorbing_->way(side);
     }
   unite_solids(next_walls);
 }
@@ -226,7 +230,7 @@ void Boundary::find_offsets(const Images& images, double t, bool friction, Veloc
           Vec3 foot{};
           for (int a = 0; a < d; ++a) foot[a] = images.position(a)[k];
           foot[axis] = next_walls[axis][face];
-          wall = velocity[axis][face](foot, t);
+          wall = with_correction(velocity[axis][face](foot, t), axis, face, t);
         }
         for (int a = 0; a < d; ++a)
           if (holds || a == axis) offset[a] = 2 * wall[a] - offset[a];
@@ -260,8 +264,9 @@ void Boundary::find_image_pressure(Arrangement& arrangement, const VectorField& 
       Vec3 middle;
       for (std::size_t a = 0; a < 3; ++a) middle[a] = (domain_.lower[a] + domain_.upper[a]) / 2;
       middle[axis] = next_walls[axis][side];
-      acceleration[axis][side] =
-          ((*velocity)(middle, times.ahead)[axis] - (*velocity)(middle, times.velocity)[axis]) / duration;
+      acceleration[axis][side] = (wall_velocity(axis, side, middle, times.ahead)[axis] -
+                                  wall_velocity(axis, side, middle, times.velocity)[axis]) /
+                                 duration;
     }
   const auto r = read(at);
   const std::int32_t* point = bodies_ == nullptr ? nullptr : images.wall_point();
@@ -369,6 +374,7 @@ void Boundary::save_walls(StateWriter& writer) const {
   std::array<double, 6> all{};
   for (std::size_t axis = 0; axis < 3; ++axis) std::copy_n(walls[axis].data(), 2, all.data() + 2 * axis);
   writer.f64("walls", all);
+  if (absorbing_ != nullptr) absorbing_->save(writer);
 }
 
 void Boundary::load_walls(StateReader& reader, double t) {
@@ -376,6 +382,7 @@ void Boundary::load_walls(StateReader& reader, double t) {
   reader.f64("walls", all);
   if (all.size() != 6) throw FileError("the checkpoint was written by another version of the method");
   for (std::size_t axis = 0; axis < 3; ++axis) walls[axis] = {all[2 * axis], all[2 * axis + 1]};
+  if (absorbing_ != nullptr) absorbing_->load(reader, t);
   if (features.displaced_bodies) bodies_->move_to(t);
 }
 

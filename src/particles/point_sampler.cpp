@@ -40,7 +40,7 @@ void reflect_velocity(const SampledState& state, int axis, int face, Mirrored& c
   if (face < 2 && domain.sides[axis][face].velocity) {
     Vec3 foot = point;
     foot[axis] = state.boundary->walls[axis][face];
-    speed = (*domain.sides[axis][face].velocity)(foot, state.time);
+    speed = state.boundary->wall_velocity(axis, face, foot, state.time);
   }
   for (int a = 0; a < state.particles->dimensions; ++a) {
     if (a != axis && kind_of_face(domain, axis, face) == BoundaryKind::free_slip) continue;

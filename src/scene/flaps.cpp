@@ -45,7 +45,7 @@ void add_flaps(const Draft& draft, Scene& scene, Problems& problems) {
     maker.depth = *one.depth;
     maker.height = one.waves == WaveKind::focused ? 2 * *one.amplitude : *one.height;
     maker.hinge = one.hinge.value_or(side);
-    auto motion = wavemaker_motion(one, maker, scene);
+    auto motion = wavemaker_motion(one, maker, scene, draft.options.time.end);
     find_wavemaker_extremes(*motion, draft.options.time.end, maker);
     // Wall points stand as deep as the support behind the flap; at the top of the domain it swings farthest back.
     const double room = support_ratio(draft.options.resolution) * scene.spacing -
@@ -59,7 +59,8 @@ void add_flaps(const Draft& draft, Scene& scene, Problems& problems) {
       // Whole spacings of the lattice, so that columns of particles stand as before a side.
       const double length = domain.upper[0] - domain.lower[0], step = length / std::round(length / scene.spacing);
       maker.hinge = side + inwards * step * std::ceil(room / step);
-      if (one.waves == WaveKind::focused) motion = wavemaker_motion(one, maker, scene);  // the way to the focus
+      if (one.waves == WaveKind::focused)
+        motion = wavemaker_motion(one, maker, scene, draft.options.time.end);  // the way to the focus
     }
     const ShapePointer half = make_half_space({inwards, 0, 0}, domain.dimensions);
     Pose pose;

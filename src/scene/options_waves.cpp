@@ -13,22 +13,23 @@ Section wavemaker() {
       .word("kind", &W::kind, {{"piston", WavemakerKind::piston}, {"flap", WavemakerKind::flap}},
             "how it moves: piston: along its normal; flap: a wall of its own that turns about a hinge at the bed")
       .word("waves", &W::waves,
-            {{"regular", WaveKind::regular},
+            {{"none", WaveKind::none},
+             {"regular", WaveKind::regular},
              {"jonswap", WaveKind::jonswap},
              {"focused", WaveKind::focused},
              {"solitary", WaveKind::solitary}},
-            "waves that it makes; focused: the crests of a JONSWAP spectrum meet")
+            "waves that it makes; focused: the crests of a JONSWAP spectrum meet; none: a piston that only absorbs")
       .required()
       .option("height", &W::height, "length", positive(), "wave height; of jonswap the significant one")
       .when("waves", {"regular", "jonswap", "solitary"})
-      .absent("none; required but for focused waves")
+      .absent("none; required of waves but focused ones")
       .option("amplitude", &W::amplitude, "length", positive(),
               "height above still water at the focus, by linear theory")
       .when("waves", {"focused"})
       .absent("none; required for focused waves")
       .option("period", &W::period, "time", positive(), "wave period; of jonswap and focused that of the peak")
-      .when("waves", {"regular", "jonswap", "focused"})
-      .absent("none; required but for solitary waves")
+      .when("waves", {"none", "regular", "jonswap", "focused"})
+      .absent("none; required of waves but solitary ones")
       .option("gamma", &W::gamma, "1", between(1, 20), "peak enhancement; 1: Pierson and Moskowitz")
       .when("waves", {"jonswap", "focused"})
       .option("components", &W::components, "", between(10, 10000), "waves that represent the spectrum")
@@ -50,9 +51,16 @@ Section wavemaker() {
       .option("ramp", &W::ramp, "time", not_negative(), "time over which the motion grows from rest")
       .when("waves", {"regular", "jonswap", "focused"})
       .absent("two periods")
-      .option("order", &W::order, "", between(0, 2),
-              "order of the theory: 1, or for regular waves 2; 0: the highest there is")
+      .option("order", &W::order, "", between(0, 2), "order of the theory: 1 or 2; 0: 2, of up to 300 components")
       .when("waves", {"regular", "jonswap", "focused"})
+      .word(
+          "absorption", &W::absorption,
+          {{"none", AbsorptionKind::none}, {"tuned", AbsorptionKind::tuned}, {"long-wave", AbsorptionKind::long_wave}},
+          "how a piston takes up waves that come to it: tuned: all of those of the period, without one that of the "
+          "first "
+          "wavemaker with one, else as long-wave; long-wave: by shallow-water theory")
+      .only(absorbs_waves)
+      .when("kind", {"piston"})
       .whole_only(uses_particles);
 }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "spume/core/random.hpp"
+#include "spume/scene/second_order_waves.hpp"
 
 namespace spume {
 namespace {
@@ -44,11 +45,6 @@ double flap_transfer(double kh) {
   // Both sides times 2 exp(-2kh).
   const double e = std::exp(-2 * kh), less = -std::expm1(-2 * kh);
   return 2 * less / kh * (kh * less - 1 - e + 2 * std::exp(-kh)) / (-std::expm1(-4 * kh) + 4 * kh * e);
-}
-
-double piston_second_amplitude(double height, double kh, double depth) {
-  const double s = std::sinh(kh), bound = std::isfinite(s * s * s) ? 3 * std::cosh(kh) / (s * s * s) : 0;
-  return height * height / (32 * depth) * (bound - 2 / piston_transfer(kh));
 }
 
 double madsen_number(double height, double wavenumber, double depth) {
@@ -112,16 +108,24 @@ double OscillatingPiston::rate(double t) const {
   return v;
 }
 
+double start_share(double t, double ramp) {
+  if (!(t < ramp)) return 1;
+  const double s = t / ramp;
+  return s * s * s * (10 - 15 * s + 6 * s * s);
+}
+
 double OscillatingPiston::displacement(double t) const {
-  if (ramp_ == 0) return sum(t) - sum(0);
-  const double s = t / ramp_;
-  return s >= 1 ? sum(t) : s * s * s * (10 - 15 * s + 6 * s * s) * sum(t);
+  const double share = start_share(t, ramp_), first = ramp_ == 0 ? sum(t) - sum(0) : share * sum(t);
+  return second_ == nullptr ? first : first + share * share * (second_->value(t) - second_->value(0));
 }
 
 double OscillatingPiston::velocity(double t) const {
   const double s = ramp_ == 0 ? 1 : t / ramp_;
-  if (s >= 1) return rate(t);
-  return s * s * s * (10 - 15 * s + 6 * s * s) * rate(t) + 30 * s * s * (1 - s) * (1 - s) / ramp_ * sum(t);
+  if (s >= 1) return rate(t) + (second_ == nullptr ? 0 : second_->rate(t));
+  const double share = start_share(t, ramp_), growth = 30 * s * s * (1 - s) * (1 - s) / ramp_;
+  const double first = share * rate(t) + growth * sum(t);
+  if (second_ == nullptr) return first;
+  return first + share * (share * second_->rate(t) + 2 * growth * (second_->value(t) - second_->value(0)));
 }
 
 SolitaryWave::SolitaryWave(double wave_height, double water_depth, double gravity)
@@ -150,9 +154,14 @@ double SolitaryPiston::displacement(double t) const {
   return wave_.height / (wave_.decay * wave_.depth) * (std::tanh(phase(t)) + std::tanh(start_phase));
 }
 
+double SolitaryPiston::elevation_beside(double t) const {
+  const double th = std::tanh(phase(t));
+  return wave_.height * (1 - th * th);
+}
+
 double SolitaryPiston::velocity(double t) const {
-  const double th = std::tanh(phase(t)), elevation = wave_.height * (1 - th * th);
-  return wave_.speed * elevation / (wave_.depth + elevation);
+  const double above = elevation_beside(t);
+  return wave_.speed * above / (wave_.depth + above);
 }
 
 }  // namespace spume

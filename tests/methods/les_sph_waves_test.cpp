@@ -125,5 +125,55 @@ TEST(Wavemaker, TheWallMovesByTheTheoryAndHoldsTheLiquid) {
   for (const Vec3& r : run.state().position) EXPECT_GT(r[0], place);
 }
 
+// The wall gives way to what rises at it; the way that it has gone is that of its correction.
+const std::string absorber = "[[wavemaker]]\nside = \"right\"\nwaves = \"none\"\nabsorption = \"long-wave\"\n";
+
+TEST(Absorption, AWallGivesWayToTheLiquidThatRisesAtIt) {
+  Simulation held(thrown), run(thrown + absorber);
+  held.steps(30, 0.005);
+  run.steps(30, 0.005);
+  const Boundary& boundary = run.method.flow().boundary;
+  EXPECT_GT(boundary.absorbing()->excess(1), 0.02);
+  EXPECT_GT(boundary.walls[0][1], 1.001);
+  EXPECT_NEAR(boundary.walls[0][1], 1 - boundary.absorbing()->displacement(1), 1e-12);
+  EXPECT_EQ(boundary.walls[0][0], 0);
+  EXPECT_LT(run.method.elevation({0.95, 0, 0}), held.method.elevation({0.95, 0, 0}));
+  // A place beyond the side that was: the wall has let liquid there.
+  double farthest = 0;
+  for (const Vec3& r : run.state().position) farthest = std::max(farthest, r[0]);
+  EXPECT_GT(farthest, 0.98);
+  EXPECT_LT(farthest, boundary.walls[0][1]);
+}
+
+TEST(Absorption, RunsAreTheSameToTheBitAfterACheckpointAndOnAnyThreads) {
+  Simulation straight(thrown + absorber), before(thrown + absorber), after(thrown + absorber);
+  straight.steps(12, 0.005);
+  test::MemoryState saved;
+  straight.method.save(saved);
+  straight.steps(12, 0.005);
+  after.method.load(saved);
+  after.steps(12, 0.005);
+  EXPECT_TRUE(after.state() == straight.state());
+  EXPECT_EQ(after.saved_state(), straight.saved_state());
+  const test::OneThread one;
+  before.steps(24, 0.005);
+  EXPECT_EQ(before.saved_state(), straight.saved_state());
+}
+
+TEST(Absorption, ARefusedStepLeavesTheStateAsItWas) {
+  EXPECT_EQ(test::changed_by_a_refused_step(thrown + absorber, {}, 0.005), "");
+}
+
+TEST(Absorption, OnlyASceneThatAbsorbsHasItsStage) {
+  const auto on = [](const std::string& text) {
+    Simulation run(text);
+    for (const Stage& stage : run.method.plan())
+      if (stage.name == "absorption") return stage.on;
+    throw std::logic_error("no stage");
+  };
+  EXPECT_FALSE(on(tank));
+  EXPECT_TRUE(on(tank + absorber));
+}
+
 }  // namespace
 }  // namespace spume

@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "helpers.hpp"
+#include "spume/scene/second_order_waves.hpp"
+#include "spume/scene/wave_absorption.hpp"
 #include "spume/scene/wave_theory.hpp"
 
 namespace spume {
@@ -47,6 +49,11 @@ side = "right"
 length = 4
 )toml";
 
+std::shared_ptr<const TabulatedOscillations> second_of(const std::vector<Oscillation>& first,
+                                                       WavemakerKind kind = WavemakerKind::piston) {
+  return std::make_shared<TabulatedOscillations>(second_order_motion(first, kind, 1, 1), 20);
+}
+
 double velocity_of(const Scene& scene, int end, double t) {
   const auto& velocity = scene.domain.sides[0][static_cast<std::size_t>(end)].velocity;
   EXPECT_TRUE(velocity.has_value());
@@ -57,7 +64,7 @@ double velocity_of(const Scene& scene, int end, double t) {
 TEST(Wavemakers, ARegularWaveMovesTheSideByTheoryOfSecondOrder) {
   const LoadedCase loaded = load_text(flume);
   const double w = 2 * pi / 5, kh = wavenumber(w, 1, 1), stroke = 0.1 / piston_transfer(kh);
-  const OscillatingPiston second({{stroke / 2, w, 0}, {piston_second_amplitude(0.1, kh, 1), 2 * w, 0}}, 10);
+  const OscillatingPiston second({{stroke / 2, w, 0}}, 10, second_of({{stroke / 2, w, 0}}));
   const OscillatingPiston first({{stroke / 2, w, 0}}, 3);
   const Scene one = load_text(flume, {"wavemaker.0.order=1", "wavemaker.0.ramp=3"}).scene;
   const Scene right = load_text(flume, {"wavemaker.0.side=right", "sponge.0.side=left"}).scene;
@@ -74,9 +81,10 @@ TEST(Wavemakers, ARegularWaveMovesTheSideByTheoryOfSecondOrder) {
   EXPECT_THAT(loaded.options.warnings, IsEmpty());
 }
 
-TEST(Wavemakers, AFlapTurnsAboutItsHingeByTheoryOfFirstOrder) {
+TEST(Wavemakers, AFlapTurnsAboutItsHingeByTheoryOfSecondOrder) {
   const double w = 2 * pi / 5, kh = wavenumber(w, 1, 1);
-  const OscillatingPiston way({{0.05 / flap_transfer(kh), w, 0}}, 10);
+  const std::vector<Oscillation> first{{0.05 / flap_transfer(kh), w, 0}};
+  const OscillatingPiston way(first, 10, second_of(first, WavemakerKind::flap));
   for (const bool left : {true, false}) {
     const LoadedCase loaded = left ? load_text(flume, {"wavemaker.0.kind=flap", "wavemaker.0.depth=1"})
                                    : load_text(flume, {"wavemaker.0.kind=flap", "wavemaker.0.depth=1",
@@ -111,8 +119,9 @@ TEST(Wavemakers, AFlapThatCannotBeIsRefused) {
   };
   EXPECT_THAT(with(""), ElementsAre(HasSubstr("missing key 'depth' in [[wavemaker]]")));
   EXPECT_THAT(with("depth = 2\n"), ElementsAre(HasSubstr("wavemaker.0.depth must be less than the height")));
-  EXPECT_THAT(with("depth = 1\norder = 2\n"),
-              ElementsAre(HasSubstr("for flaps there is the theory of first order only")));
+  EXPECT_TRUE(with("depth = 1\norder = 2\n").empty());
+  EXPECT_THAT(with("depth = 1\nabsorption = \"tuned\"\n"),
+              ElementsAre(HasSubstr("wavemaker.0.absorption is for pistons; set  kind = \"piston\"")));
   EXPECT_THAT(with("depth = 1\nhinge = 0.2\n"), ElementsAre(HasSubstr("wavemaker.0.hinge is 0.2 from the left side")));
   EXPECT_TRUE(with("depth = 1\nhinge = 0.5\n").empty());
   EXPECT_THAT(problems_of(replaced(replaced(flume, "waves = \"regular\"\nheight = 0.1\nperiod = 5\n",
@@ -126,15 +135,23 @@ TEST(Wavemakers, OtherWavesMoveTheSideByTheirTheory) {
       load_text(flume, {"wavemaker.0.waves=solitary", "wavemaker.0.height=0.2", "wavemaker.0.depth=1.02"}).scene;
   const SolitaryPiston piston(SolitaryWave(0.2, 1.02, 1));
   const Scene irregular = load_text(flume, {"wavemaker.0.waves=jonswap", "wavemaker.0.seed=3", "seed=9"}).scene;
-  const OscillatingPiston sum(piston_motion(jonswap_waves(0.1, 5, 3.3, 100, 9, 3), 1, 1), 10);
+  const auto waves = piston_motion(jonswap_waves(0.1, 5, 3.3, 100, 9, 3), 1, 1);
+  const OscillatingPiston sum(waves, 10, second_of(waves));
   const std::string focus = replaced(flume, "waves = \"regular\"\nheight = 0.1",
                                      "waves = \"focused\"\namplitude = 0.05\nfocus_place = 6\nfocus_time = 30");
   const Scene focused = load_text(focus).scene;
-  const OscillatingPiston meeting(piston_motion(focused_waves(0.05, 5, 3.3, 100, 6, 30, 1, 1), 1, 1), 10);
+  const auto group = piston_motion(focused_waves(0.05, 5, 3.3, 100, 6, 30, 1, 1), 1, 1);
+  const OscillatingPiston meeting(group, 10, second_of(group));
+  const Scene linear = load_text(focus, {"wavemaker.0.order=1"}).scene;
+  const Scene many = load_text(focus, {"wavemaker.0.components=301"}).scene;
+  const OscillatingPiston meeting_linear(group, 10);
+  const OscillatingPiston meeting_many(piston_motion(focused_waves(0.05, 5, 3.3, 301, 6, 30, 1, 1), 1, 1), 10);
   for (const double t : {0.5, 8.0, 15.0, 31.0}) {
     EXPECT_DOUBLE_EQ(velocity_of(solitary, 0, t), piston.velocity(t));
     EXPECT_NEAR(velocity_of(irregular, 0, t), sum.velocity(t), 1e-12);
     EXPECT_NEAR(velocity_of(focused, 0, t), meeting.velocity(t), 1e-12);
+    EXPECT_NEAR(velocity_of(linear, 0, t), meeting_linear.velocity(t), 1e-12);
+    EXPECT_NEAR(velocity_of(many, 0, t), meeting_many.velocity(t), 1e-12);
   }
 }
 
@@ -151,6 +168,42 @@ TEST(Wavemakers, ACloneOfTheVelocityFollowsItsOwnTime) {
   EXPECT_NE(copy({}, 11)[0], at_3);
   EXPECT_EQ(copy({}, 3)[0], at_3);
   EXPECT_EQ(velocity({}, 3)[0], at_3);
+}
+
+TEST(Wavemakers, AnAbsorbingSideHasTheLawOfItsWavesAndTheElevationThatItMakes) {
+  const FaceOfPiston face{1, 1, 0.15};
+  const double w = 2 * pi / 5;
+  const LoadedCase loaded = load_text(flume, {"wavemaker.0.absorption=tuned", "wavemaker.0.order=1"});
+  ASSERT_TRUE(loaded.scene.domain.sides[0][0].absorption.has_value());
+  const WaveAbsorption& of = *loaded.scene.domain.sides[0][0].absorption;
+  const AbsorptionLaw tuned = tuned_law(face, w), longer = long_wave_law(face);
+  EXPECT_NEAR(of.law.gain, tuned.gain, 1e-12);
+  EXPECT_NEAR(of.law.smoothing, tuned.smoothing, 1e-12);
+  EXPECT_NEAR(of.still, 1, 1e-12);
+  const std::vector<Oscillation> first{{0.05 / piston_transfer(wavenumber(w, 1, 1)), w, 0}};
+  const auto elevation = OscillatingPiston(first, 10).elevation(face);
+  const auto second = OscillatingPiston(first, 10, second_of(first)).elevation(face);
+  const Scene both = load_text(flume, {"wavemaker.0.absorption=tuned"}).scene;
+  for (const double t : {3.0, 11.0, 12.0}) {
+    EXPECT_NEAR((*of.elevation)(0, 0, 0, t), (*elevation)(0, 0, 0, t), 1e-12);
+    EXPECT_NEAR((*both.domain.sides[0][0].absorption->elevation)(0, 0, 0, t), (*second)(0, 0, 0, t), 1e-12);
+  }
+  EXPECT_THAT(loaded.options.groups.at("wavemaker left"), HasSubstr("absorbs: velocity "));
+
+  // One that only absorbs takes the period of the other.
+  const std::string two = replaced(flume, "[[sponge]]\nside = \"right\"\nlength = 4\n",
+                                   "[[wavemaker]]\nside = \"right\"\nwaves = \"none\"\nabsorption = \"tuned\"\n");
+  const Scene absorber = load_text(two).scene;
+  EXPECT_FALSE(absorber.domain.sides[0][0].absorption.has_value());
+  EXPECT_NEAR(absorber.domain.sides[0][1].absorption->law.gain, tuned.gain, 1e-12);
+  EXPECT_EQ(absorber.domain.sides[0][1].absorption->elevation, nullptr);
+  EXPECT_EQ(velocity_of(absorber, 1, 3), 0);
+  EXPECT_NEAR(load_text(two, {"wavemaker.1.period=8"}).scene.domain.sides[0][1].absorption->law.gain,
+              tuned_law(face, 2 * pi / 8).gain, 1e-12);
+  EXPECT_NEAR(load_text(two, {"wavemaker.1.absorption=long-wave"}).scene.domain.sides[0][1].absorption->law.gain,
+              longer.gain, 1e-12);
+  EXPECT_THAT(problems_of(two, {"wavemaker.1.absorption=none"}),
+              ElementsAre(HasSubstr("wavemaker.1 makes no waves and absorbs none; add  absorption = \"tuned\"")));
 }
 
 TEST(Wavemakers, ASpongeTakesItsStrengthFromTheWaves) {
@@ -180,8 +233,8 @@ TEST(Wavemakers, WhatCannotBeIsRefusedWithTheFix) {
   EXPECT_THAT(problems_of(replaced(flume, "height = 0.1\nperiod = 5\n", "")),
               ElementsAre("18:1 missing key 'height' in [[wavemaker]]; add  height = <number>  # length",
                           "18:1 missing key 'period' in [[wavemaker]]; add  period = <number>  # time"));
-  EXPECT_THAT(problems_of(flume, {"wavemaker.0.waves=jonswap", "wavemaker.0.order=2"}),
-              ElementsAre(HasSubstr("for sums of waves there is the theory of first order only; remove it")));
+  EXPECT_THAT(problems_of(flume, {"wavemaker.0.waves=jonswap", "wavemaker.0.order=2", "wavemaker.0.components=400"}),
+              ElementsAre(HasSubstr("components is 400, and theory of second order takes 300 at most")));
   EXPECT_THAT(problems_of(flume, {"wavemaker.0.waves=focused", "wavemaker.0.amplitude=0.1",
                                   "wavemaker.0.focus_place=11", "wavemaker.0.focus_time=9"}),
               ElementsAre(HasSubstr("focus_place lies outside the domain: x = 11, the domain's x from 0 to 10")));

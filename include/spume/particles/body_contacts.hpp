@@ -41,7 +41,8 @@ class BodyContacts {
   using Sides = std::array<std::array<double, 2>, 3>;  // of the domain, by axis and side
   struct Surroundings {
     Sides walls{};
-    double ahead = 0;  // time of the velocities that bodies are to have
+    double ahead = 0;                    // time of the velocities that bodies are to have
+    std::array<double, 2> absorption{};  // velocities along x that the left and right walls have beside those given
   };
   // Of all points that may come as near as the clearance within `dt`, where accelerations take them no farther than a
   // spacing.

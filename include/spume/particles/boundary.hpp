@@ -15,6 +15,7 @@
 #include "spume/core/saved_state.hpp"
 #include "spume/neighbours/images.hpp"
 #include "spume/operators/image_values.hpp"
+#include "spume/particles/absorbing_walls.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/body_walls.hpp"
 #include "spume/particles/open_gates.hpp"
@@ -43,6 +44,7 @@ struct BoundaryFeatures {
   bool no_slip = false;           // some wall or solid holds the liquid
   bool moving_walls = false;      // some wall has a velocity
   bool displaced_walls = false;   // some wall velocity has a normal component
+  bool absorbing_walls = false;   // some of these take up waves
 };
 
 // Times of a step at which walls are asked for their velocities.
@@ -74,6 +76,18 @@ class Boundary {
     walls = next_walls;
     wall_speed = next_wall_speed;
     if (openings_ != nullptr) openings_->accept();
+    if (absorbing_ != nullptr) absorbing_->accept();
+  }
+
+  // Velocity of a wall of the domain that moves, at a time of the step: as given, and what takes up waves.
+  Vec3 wall_velocity(int axis, int side, const Vec3& at, double t) const {
+    return with_correction((*domain_.sides[axis][side].velocity)(at, t), axis, side, t);
+  }
+
+  // What the left and the right wall have of it to take up waves.
+  std::array<double, 2> absorption_at(double t) const {
+    if (absorbing_ == nullptr) return {};
+    return {absorbing_->velocity(0, t), absorbing_->velocity(1, t)};
   }
 
   // Images at `at` for walls at `next_walls`, and how they mirror values. Throws StepFailure for a wall
@@ -102,6 +116,7 @@ class Boundary {
 
   // Walls of bodies; null without.
   const BodyWalls* bodies() const { return bodies_.get(); }
+  AbsorbingWalls* absorbing() const { return absorbing_.get(); }  // null without
   // Null without.
   OpenSides* openings() const { return openings_.get(); }
   // Whether a place on a side of the domain is in an opening.
@@ -143,6 +158,10 @@ class Boundary {
   double bytes() const;
 
  private:
+  Vec3 with_correction(Vec3 velocity, int axis, int side, double t) const {
+    if (axis == 0 && domain_.sides[axis][side].absorption) velocity[0] += absorbing_->velocity(side, t);
+    return velocity;
+  }
   void keep_before_sides(const WallPositions& at, int axis, Vec3& position, Vec3* velocity) const;
   void unite_solids(const WallPositions& at);
   bool displaces() const { return features.displaced_walls || features.displaced_bodies; }
@@ -156,6 +175,7 @@ class Boundary {
   std::unique_ptr<BodyWalls> bodies_;
   std::unique_ptr<OpenSides> openings_;
   const OpenGates* gates_;
+  std::unique_ptr<AbsorbingWalls> absorbing_;
   // With openings: all points behind walls of bodies and openings.
   WallStencils stencils_;
   std::array<Array<double>, 3> point_position_;

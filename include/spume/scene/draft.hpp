@@ -10,6 +10,7 @@
 
 #include "spume/scene/case.hpp"
 #include "spume/scene/document.hpp"
+#include "spume/scene/wave_modes.hpp"
 
 namespace spume {
 
@@ -65,8 +66,8 @@ struct BodyDraft {
   std::optional<double> release_interval, release_duration, release_delay, release_growth, release_shrinkage;
 };
 
-enum class WavemakerKind { piston, flap };
-enum class WaveKind { regular, jonswap, focused, solitary };
+enum class WaveKind { none, regular, jonswap, focused, solitary };
+enum class AbsorptionKind { none, tuned, long_wave };
 
 // A [[wavemaker]]: a side of the domain that moves as a piston, or a flap before it. `side` is "left" or "right".
 struct WavemakerDraft {
@@ -83,6 +84,7 @@ struct WavemakerDraft {
   std::optional<double> hinge;  // x, of a flap
   std::optional<double> ramp;
   std::int64_t order = 0;  // 0: the highest that there is for the waves
+  AbsorptionKind absorption = AbsorptionKind::none;
 };
 
 struct SpongeDraft {

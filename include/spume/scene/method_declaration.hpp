@@ -38,6 +38,7 @@ struct MethodDeclaration {
   bool incompressible = false;  // without a sound speed in [fluid]: liquid that fills a closed tank cannot be pressed
 
   bool damps_sponges = false;    // [[sponge]]
+  bool absorbs_waves = false;    // absorption of a [[wavemaker]]
   bool passes_openings = false;  // [[inflow]], [[outflow]]
 
   // Sections of its own, and options that it adds to sections of the scene. Several methods may name the same
@@ -78,6 +79,9 @@ inline bool uses_particles(const MethodDeclaration& method) {
 }
 inline bool damps_sponges(const MethodDeclaration& method) {
   return method.damps_sponges;
+}
+inline bool absorbs_waves(const MethodDeclaration& method) {
+  return method.absorbs_waves;
 }
 inline bool passes_openings(const MethodDeclaration& method) {
   return method.passes_openings;

@@ -34,11 +34,24 @@ struct VectorExpression {
 
 enum class BoundaryKind { periodic, free_slip, no_slip, open };
 
+// scene/wave_absorption.hpp
+struct AbsorptionLaw {
+  double gain = 0, smoothing = 0, drift = 0;  // 1/time, time, time
+};
+
+// A moving wall that takes up the waves that come to it.
+struct WaveAbsorption {
+  AbsorptionLaw law;
+  double still = 0;                             // height of the still surface
+  std::shared_ptr<const Expression> elevation;  // above it, of the waves that the wall makes; null: it makes none
+};
+
 // One side of the domain. `velocity` (walls only) may have a normal component: the wall then moves, and its
 // displacement is the time integral of that component.
 struct Side {
   BoundaryKind kind = BoundaryKind::open;
   std::optional<VectorExpression> velocity;
+  std::optional<WaveAbsorption> absorption;  // along x, of walls that move
   bool opening = false;  // an opening covers all of it: the kind is open, and the liquid goes on behind it
   bool bounds_liquid() const { return kind != BoundaryKind::open || opening; }
 };

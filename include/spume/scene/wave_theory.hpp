@@ -16,10 +16,19 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
 namespace spume {
+
+class Expression;
+class TabulatedOscillations;
+
+// Still water before a piston, and how far from it the elevation is measured.
+struct FaceOfPiston {
+  double depth = 0, gravity = 0, gauge = 0;
+};
 
 // The wavenumber with w^2 = g k tanh(kh), to rounding. All arguments above zero.
 double wavenumber(double angular_frequency, double depth, double gravity);
@@ -31,9 +40,6 @@ double piston_transfer(double kh);
 // 4 (sinh kh / kh) (kh sinh kh - cosh kh + 1) / (sinh 2kh + 2kh).
 double flap_transfer(double kh);
 
-// Amplitude of the motion e2 sin 2wt that a piston S/2 sin wt needs beside it, so that no free second harmonic leaves
-// it (Madsen): H^2 / (32 h) (3 cosh kh / sinh^3 kh - 2 S / H). Holds while madsen_number() is below 1.
-double piston_second_amplitude(double height, double kh, double depth);
 // H (2 pi / k)^2 / h^3 over 8 pi^2 / 3, where the second harmonic of a Stokes wave makes a second crest.
 double madsen_number(double height, double wavenumber, double depth);
 
@@ -66,28 +72,37 @@ std::vector<WaveComponent> focused_waves(double amplitude, double peak_period, d
 std::vector<Oscillation> piston_motion(const std::vector<WaveComponent>& waves, double depth, double gravity,
                                        double (*transfer)(double) = piston_transfer);
 
+// 10 s^3 - 15 s^4 + 6 s^5 with s = t / ramp, 1 from t = ramp on.
+double start_share(double t, double ramp);
+
 // How a piston moves into the liquid from its place at t = 0.
 class PistonMotion {
  public:
   virtual ~PistonMotion() = default;
   virtual double displacement(double t) const = 0;
   virtual double velocity(double t) const = 0;
+  // Of the waves that it makes, above the still surface where the elevation beside the piston is measured; null: none.
+  virtual std::shared_ptr<const Expression> elevation(const FaceOfPiston& face) const = 0;
 };
 
-// A sum of oscillations, times 10 s^3 - 15 s^4 + 6 s^5 with s = t / ramp up to t = ramp: velocity and acceleration
-// start from zero.
+// A sum of oscillations times start_share(): velocity and acceleration start from zero. `second`, the way of a motion
+// of second order from where it stands at t = 0, grows with the square of that; null: none.
 class OscillatingPiston final : public PistonMotion {
  public:
-  OscillatingPiston(std::vector<Oscillation> oscillations, double ramp)
-      : terms_(std::move(oscillations)), ramp_(ramp) {}
+  OscillatingPiston(std::vector<Oscillation> oscillations, double ramp,
+                    std::shared_ptr<const TabulatedOscillations> second = nullptr)
+      : terms_(std::move(oscillations)), ramp_(ramp), second_(std::move(second)) {}
   double displacement(double t) const override;
   double velocity(double t) const override;
+  // By linear theory, the liquid that the piston pushes up before itself included.
+  std::shared_ptr<const Expression> elevation(const FaceOfPiston& face) const override;
 
  private:
   double sum(double t) const;
   double rate(double t) const;
   std::vector<Oscillation> terms_;
   double ramp_;
+  std::shared_ptr<const TabulatedOscillations> second_;
 };
 
 // Rayleigh's solitary wave H sech^2 kappa(ct - x), kappa^2 = 3 H / (4 h^2 (h + H)), c^2 = g (h + H).
@@ -106,7 +121,9 @@ class SolitaryPiston final : public PistonMotion {
   explicit SolitaryPiston(const SolitaryWave& wave);
   double displacement(double t) const override;
   double velocity(double t) const override;
+  std::shared_ptr<const Expression> elevation(const FaceOfPiston&) const override;
   double crest_time() const { return start_; }  // when the crest leaves the piston
+  double elevation_beside(double t) const;      // the piston
 
  private:
   double phase(double t) const;  // kappa (ct - x), by Newton's iteration

@@ -7,6 +7,17 @@
 
 namespace spume::les_sph {
 
+// Between steps cells and images are those of where the particles were; the gauge makes its own.
+void Flow::measure_waves() {
+  gauge->update({.arrangement = &arrangement,
+                 .boundary = &boundary,
+                 .particles = &particles,
+                 .resolution = &resolution,
+                 .volume_fraction = volume_fraction(),
+                 .time = time});
+  boundary.absorbing()->measure(boundary.walls[0], time, [this](const Vec3& at) { return gauge->elevation(at); });
+}
+
 void Flow::sort_particles() {
   arrangement.sort(particles, intermediate_position);
 }

@@ -74,6 +74,7 @@ Flow::Flow(const LoadedCase& loaded_case)
   if (std::any_of(scene.motions.begin(), scene.motions.end(), [](const BodyMotion& motion) { return motion.floats; }))
     floating =
         std::make_unique<FloatingBodies>(scene, resolution, *boundary.bodies(), options.get<SchemeOptions>().centred);
+  if (features.absorbing_walls) gauge = std::make_unique<PointSampler>();
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
   if (features.wall_bends) wall_bends = std::make_unique<WallBends>(boundary, resolution);
   if (features.eddy_viscosity)

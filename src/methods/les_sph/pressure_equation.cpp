@@ -227,8 +227,9 @@ void Flow::solve(const char* name) {
                                     .pressure = pressure->data(),
                                     .particle_volume = particles.volume,
                                     .dynamic_viscosity = density() * viscosity()};
-    ProjectionMatrix& matrix = floating->couple(solver, rows, arrangement, particles, {fields, density(), potential},
-                                                {boundary.next_walls, wall_times.ahead});
+    ProjectionMatrix& matrix =
+        floating->couple(solver, rows, arrangement, particles, {fields, density(), potential},
+                         {boundary.next_walls, wall_times.ahead, boundary.absorption_at(wall_times.ahead)});
     const double norm = rows.reference_norm;
     do {
       rows.reference_norm = std::hypot(norm, given_norm(matrix, particles));

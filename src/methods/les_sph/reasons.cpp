@@ -53,6 +53,7 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_p
             : has.potential   ? "the surface is pressed where it will be"
                               : "no gravity, no body force";
   openings = has.openings ? "particles enter and leave" : "no inflow, no outflow";
+  absorption = has.absorbing_walls ? "the elevation at walls that take up waves" : "no wavemaker absorbs";
   impulse = has.openings ? "the liquid moves with what enters" : "no inflow, no outflow";
   const bool lattice = loaded.scene.domain.boxes.empty() && !has.bodies;
   level = !has.free_surface ? "the liquid fills the domain"

@@ -122,6 +122,7 @@ Registration registration() {
   method.fills_regions = true;
   method.incompressible = true;
   method.damps_sponges = true;
+  method.absorbs_waves = true;
   method.honours_bodies = true;
   method.honours_floating_bodies = true;
   method.passes_openings = true;

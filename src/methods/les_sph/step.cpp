@@ -23,6 +23,7 @@ Plan make_plan(Flow& f) {
 
   stages.add(step, "openings", has.openings, why.openings, &Flow::exchange_with_openings, {p.position, p.velocity},
              {p.position, p.velocity});
+  stages.add(step, "absorption", has.absorbing_walls, why.absorption, &Flow::measure_waves, {p.position}, {});
   // (i) intermediate positions r* = r^n + dt u^n, in the order of cells
   stages.add(both, "move", true, "particles to their intermediate positions", &Flow::move_to_intermediate_position,
              {p.position, p.velocity}, {r});

@@ -15,6 +15,7 @@
 #include "spume/particles/floating_bodies.hpp"
 #include "spume/particles/force_potential.hpp"
 #include "spume/particles/moments.hpp"
+#include "spume/particles/point_sampler.hpp"
 #include "spume/particles/projection_solver.hpp"
 #include "spume/particles/shift.hpp"
 #include "spume/particles/step_limits.hpp"
@@ -113,6 +114,7 @@ struct Flow {
   Solutes solutes;                                     // their fields are state
   std::unique_ptr<FloatingBodies> floating;            // null: none; its places are state
   WallTimes wall_times;                                // of the step
+  std::unique_ptr<PointSampler> gauge;                 // of walls that take up waves; null: none
 
   // --- Leased within a step: by the stage that writes one until the stage that reads it last.
   std::array<Array<float>, 9> velocity_gradient;
@@ -203,6 +205,7 @@ struct Flow {
   void find_divergence(double dt);
   void centre_divergence(double dt);
   void relax_density(double dt);
+  void measure_waves();           // at walls that take them up
   void exchange_with_openings();  // particles enter and leave, where they stand at the start of the step
   void set_in_motion();           // of the start, with what enters
   void find_first_forces();

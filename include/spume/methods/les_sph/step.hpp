@@ -16,7 +16,7 @@ struct Reasons {
   Reasons(const LoadedCase& loaded, const Features& has, bool force_has_potential);
   std::string openings, impulse, advection, bubbles, images, surface, shift, gradients, curvature, closure, integrator,
       forces, viscosity, sponges, divergence, centring, relaxation, preconditioner, factorisation, pressure, events,
-      level, balance, packing, oxygen, ripples, bends;
+      level, balance, packing, oxygen, ripples, bends, absorption;
 };
 
 }  // namespace spume::les_sph
