@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/methods/les_sph/registration.hpp"
 
+#include <algorithm>
 #include <numbers>
 
 #include "spume/methods/les_sph/les_sph.hpp"
@@ -23,22 +24,17 @@ std::vector<Section> sections() {
   return all;
 }
 
-// Wall points of bodies have images in the sides of the domain alone, and bubbles know nothing of them.
+// Wall points of bodies have images in the sides of the domain alone.
 void check_walls_of_bodies(Draft& draft, Problems& problems) {
-  std::vector<std::string> walls;
-  for (std::size_t k = 0; k < draft.bodies.size(); ++k)
-    if (draft.bodies[k].wall != BoundaryKind::open) walls.push_back("body." + std::to_string(k));
-  for (std::size_t k = 0; k < draft.wavemakers.size(); ++k)
-    if (draft.wavemakers[k].kind == WavemakerKind::flap) walls.push_back("wavemaker." + std::to_string(k));
-  if (walls.empty()) return;
+  const bool walls = std::any_of(draft.bodies.begin(), draft.bodies.end(),
+                                 [](const auto& body) { return body.wall != BoundaryKind::open; }) ||
+                     std::any_of(draft.wavemakers.begin(), draft.wavemakers.end(),
+                                 [](const auto& wavemaker) { return wavemaker.kind == WavemakerKind::flap; });
+  if (!walls) return;
   if (draft.node("solid.0"))
     problems.add(*draft.node("solid.0"),
                  "a scene with walls of [[body]] or a flap takes no [[solid]] box; write it as  "
                  "[[body]]  with  shape = \"box\"");
-  if (draft.node("bubbles"))
-    problems.add(*draft.node("bubbles"), "[bubbles] needs walls along the axes, and " + walls.front() +
-                                             " is a wall of another shape; remove one of them, or write a box as "
-                                             "[[solid]]");
 }
 
 // Points behind openings have images in the sides of the domain alone, bubbles know nothing of them, and their pressure
