@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "spume/methods/les_sph/registration.hpp"
 
-#include <algorithm>
 #include <numbers>
 
 #include "spume/methods/les_sph/les_sph.hpp"
@@ -24,29 +23,13 @@ std::vector<Section> sections() {
   return all;
 }
 
-// Wall points of bodies have images in the sides of the domain alone.
-void check_walls_of_bodies(Draft& draft, Problems& problems) {
-  const bool walls = std::any_of(draft.bodies.begin(), draft.bodies.end(),
-                                 [](const auto& body) { return body.wall != BoundaryKind::open; }) ||
-                     std::any_of(draft.wavemakers.begin(), draft.wavemakers.end(),
-                                 [](const auto& wavemaker) { return wavemaker.kind == WavemakerKind::flap; });
-  if (!walls) return;
-  if (draft.node("solid.0"))
-    problems.add(*draft.node("solid.0"),
-                 "a scene with walls of [[body]] or a flap takes no [[solid]] box; write it as  "
-                 "[[body]]  with  shape = \"box\"");
-}
-
-// Points behind openings have images in the sides of the domain alone, bubbles know nothing of them, and their pressure
-// is a fit, which makes the matrix unsymmetric.
+// Bubbles know nothing of openings, and the pressure of the points behind them is a fit, which makes the matrix
+// unsymmetric.
 void check_openings(Draft& draft, Problems& problems) {
   for (const char* section : {"inflow", "outflow"}) {
     const Node* opening = draft.node(std::string(section) + ".0");
     if (opening == nullptr) continue;
     const std::string name = std::string("[[") + section + "]]";
-    if (draft.node("solid.0"))
-      problems.add(*draft.node("solid.0"),
-                   "a scene with " + name + " takes no [[solid]] box; write it as  [[body]]  with  shape = \"box\"");
     if (draft.node("bubbles"))
       problems.add(*draft.node("bubbles"),
                    "[bubbles] does not go with " + name + ": bubbles do not enter or leave; remove one of them");
@@ -65,7 +48,6 @@ void check(Draft& draft, Problems& problems) {
   std::vector<std::string> fields;
   for (const OutputFieldInfo& field : field_infos(output_fields(), draft.options)) fields.push_back(field.name);
   check_solutes(draft, fields, problems);
-  check_walls_of_bodies(draft, problems);
   if (draft.node("bubbles") && draft.dimensions != 2 && draft.node("pressure.solver") &&
       draft.options.get<PressureOptions>().solver == PressureSolver::cg)
     problems.add(*draft.node("pressure.solver"),
@@ -120,6 +102,7 @@ Registration registration() {
   method.damps_sponges = true;
   method.honours_bodies = true;
   method.honours_floating_bodies = true;
+  method.solids_join_bodies = true;
   method.passes_openings = true;
   method.sections = sections();
   method.check = check;
