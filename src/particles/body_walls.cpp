@@ -157,6 +157,16 @@ BodyWalls::NearestWall BodyWalls::nearest_wall(const Vec3& point) const {
   return found;
 }
 
+std::optional<BodyWalls::NearWall> BodyWalls::wall_within(const Vec3& point, double gap) const {
+  if (surely_farther(point, gap)) return {};
+  const Nearest nearest = nearest_part(point);
+  if (nearest.distance > gap) return {};
+  NearWall found;
+  static_cast<NearestPoint&>(found) = nearest.part->nearest(point);
+  found.velocity = nearest.part->velocity_at(found.point);
+  return found;
+}
+
 void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
   if (surely_farther(position, gap)) return;
   const Nearest nearest = nearest_part(position);

@@ -362,6 +362,10 @@ void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* veloci
     if ((*velocity)[axis] * outward[axis] < 0) (*velocity)[axis] = 0;
 }
 
+double Boundary::gap() const {
+  return wall_gap * spacing_;
+}
+
 double Boundary::bytes() const {
   double sum =
       (bodies_ == nullptr ? 0 : bodies_->bytes()) + (openings_ == nullptr ? 0 : openings_->bytes() + stencils_.bytes());

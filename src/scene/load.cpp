@@ -11,6 +11,7 @@
 
 #include "bodies.hpp"
 #include "body_motion.hpp"
+#include "box_bodies.hpp"
 #include "checks.hpp"
 #include "fill.hpp"
 #include "motion_checks.hpp"
@@ -346,6 +347,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   scene.spacing = draft.options.spacing;
   scene.seed = draft.options.seed;
   add_flaps(draft, scene, problems);
+  if (method->solids_join_bodies) make_bodies_of_boxes(scene);
   problems.throw_if_any();
   scene.walls = make_walls(scene.bodies, scene.motions);
   loaded.bytes_per_particle = method->bytes_per_particle(draft);

@@ -225,11 +225,19 @@ velocity = ["sin(pi*x)*cos(pi*y)", "-cos(pi*x)*sin(pi*y)"]
   }
 }
 
-TEST(LesSphBodies, AreRefusedBesideBoxesAndBubbles) {
-  using testing::Contains, testing::HasSubstr;
-  EXPECT_THAT(problems_of(tank + turned_box + "[[solid]]\nlower = [0, 0]\nupper = [0.2, 0.2]\n"),
-              Contains(HasSubstr("takes no [[solid]] box; write it as  [[body]]")));
-  EXPECT_THAT(problems_of(tank + turned_box + "[bubbles]\n"), Contains(HasSubstr("body.0 is a wall of another shape")));
+// To the bit; what reaches a side goes on beyond it by ten spacings.
+TEST(LesSphBodies, MakeBodiesOfBoxesBesideThem) {
+  Simulation box(tank + turned_box + "[[solid]]\nlower = [0, 0]\nupper = [0.2, 0.2]\nwall = \"no-slip\"\n"),
+      body(tank + turned_box +
+           "[[body]]\nshape = \"box\"\nsize = [0.7, 0.7]\nposition = [-0.15, -0.15]\nwall = \"no-slip\"\n");
+  box.steps(3, 0.004);
+  body.steps(3, 0.004);
+  EXPECT_EQ(box.saved_state(), body.saved_state());
+  EXPECT_TRUE(box.loaded.scene.domain.boxes.empty());
+  ASSERT_EQ(box.loaded.scene.bodies.size(), 2U);
+  EXPECT_EQ(box.loaded.scene.bodies[1].name, "solid.0");
+  // Alone they stay boxes.
+  EXPECT_EQ(load_text(tank + "[[solid]]\nlower = [0, 0]\nupper = [0.2, 0.2]\n").scene.domain.boxes.size(), 1U);
 }
 
 }  // namespace spume::test

@@ -74,6 +74,11 @@ class BodyWalls {
     double half_width = infinite;  // of a body that grows, from its middle to its farthest face, now
   };
   NearestWall nearest_wall(const Vec3& point) const;
+  // The wall at most `gap` from a point, if there is one, and its velocity there.
+  struct NearWall : NearestPoint {
+    Vec3 velocity{};
+  };
+  std::optional<NearWall> wall_within(const Vec3& point, double gap) const;
   bool nearer_than(const Vec3& point, double gap) const { return !surely_farther(point, gap) && distance(point) < gap; }
   bool surely_farther(const Vec3& point, double gap) const;  // false where the cells do not tell
   // A point nearer than `gap` to a wall, or inside it, is reflected back; of its velocity what goes into the wall, as

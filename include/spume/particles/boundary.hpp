@@ -155,6 +155,9 @@ class Boundary {
   // Periodic wrap; a point beyond a wall or inside a solid is reflected back, its velocity too when given.
   void apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity) const;
 
+  // How near to a wall points may come.
+  double gap() const;
+
   double bytes() const;
 
  private:

@@ -31,6 +31,8 @@ struct MethodDeclaration {
 
   bool honours_solids = true;  // the same of [[solid]]
 
+  bool solids_join_bodies = false;  // beside walls of bodies and openings [[solid]] boxes are bodies too
+
   bool honours_floating_bodies = false;  // whose motion follows from the pressure
 
   bool honours_displaced_walls = true;  // sides that move along their normal, pistons among them

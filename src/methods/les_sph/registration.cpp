@@ -23,34 +23,13 @@ std::vector<Section> sections() {
   return all;
 }
 
-// Wall points of bodies have images in the sides of the domain alone, and bubbles know nothing of them.
-void check_walls_of_bodies(Draft& draft, Problems& problems) {
-  std::vector<std::string> walls;
-  for (std::size_t k = 0; k < draft.bodies.size(); ++k)
-    if (draft.bodies[k].wall != BoundaryKind::open) walls.push_back("body." + std::to_string(k));
-  for (std::size_t k = 0; k < draft.wavemakers.size(); ++k)
-    if (draft.wavemakers[k].kind == WavemakerKind::flap) walls.push_back("wavemaker." + std::to_string(k));
-  if (walls.empty()) return;
-  if (draft.node("solid.0"))
-    problems.add(*draft.node("solid.0"),
-                 "a scene with walls of [[body]] or a flap takes no [[solid]] box; write it as  "
-                 "[[body]]  with  shape = \"box\"");
-  if (draft.node("bubbles"))
-    problems.add(*draft.node("bubbles"), "[bubbles] needs walls along the axes, and " + walls.front() +
-                                             " is a wall of another shape; remove one of them, or write a box as "
-                                             "[[solid]]");
-}
-
-// Points behind openings have images in the sides of the domain alone, bubbles know nothing of them, and their pressure
-// is a fit, which makes the matrix unsymmetric.
+// Bubbles know nothing of openings, and the pressure of the points behind them is a fit, which makes the matrix
+// unsymmetric.
 void check_openings(Draft& draft, Problems& problems) {
   for (const char* section : {"inflow", "outflow"}) {
     const Node* opening = draft.node(std::string(section) + ".0");
     if (opening == nullptr) continue;
     const std::string name = std::string("[[") + section + "]]";
-    if (draft.node("solid.0"))
-      problems.add(*draft.node("solid.0"),
-                   "a scene with " + name + " takes no [[solid]] box; write it as  [[body]]  with  shape = \"box\"");
     if (draft.node("bubbles"))
       problems.add(*draft.node("bubbles"),
                    "[bubbles] does not go with " + name + ": bubbles do not enter or leave; remove one of them");
@@ -69,7 +48,6 @@ void check(Draft& draft, Problems& problems) {
   std::vector<std::string> fields;
   for (const OutputFieldInfo& field : field_infos(output_fields(), draft.options)) fields.push_back(field.name);
   check_solutes(draft, fields, problems);
-  check_walls_of_bodies(draft, problems);
   if (draft.node("bubbles") && draft.dimensions != 2 && draft.node("pressure.solver") &&
       draft.options.get<PressureOptions>().solver == PressureSolver::cg)
     problems.add(*draft.node("pressure.solver"),
@@ -125,6 +103,7 @@ Registration registration() {
   method.absorbs_waves = true;
   method.honours_bodies = true;
   method.honours_floating_bodies = true;
+  method.solids_join_bodies = true;
   method.passes_openings = true;
   method.sections = sections();
   method.check = check;

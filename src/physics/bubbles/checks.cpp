@@ -188,6 +188,29 @@ std::vector<Vec3> outline(const Sparger& sparger) {
   return places;
 }
 
+// The first place of a source that lies in a wall of a body. A disc is looked at on rings, a quarter of it apart.
+std::optional<Vec3> first_in_solid(const Scene& scene, const Sparger& sparger) {
+  if (scene.walls.empty()) return {};
+  std::vector<Vec3> places = {sparger.position};
+  if (sparger.shape == SpargerShape::line) places.push_back(sparger.end);
+  constexpr int rings = 4;
+  for (int ring = 1; ring <= rings; ++ring) {
+    Sparger part = sparger;
+    if (sparger.shape == SpargerShape::disc) part.radius *= static_cast<double>(ring) / rings;
+    for (const Vec3& r : outline(part)) places.push_back(r);
+  }
+  const auto found = std::find_if(places.begin(), places.end(), [&](const Vec3& r) { return scene.walls.inside(r); });
+  return found == places.end() ? std::optional<Vec3>() : std::optional<Vec3>(*found);
+}
+
+// In words, the wall that a place lies in.
+std::string body_at(const Scene& scene, const Vec3& place) {
+  for (const Body& body : scene.bodies)
+    if (body.wall != BoundaryKind::open && !body.subtract && body.solid->inside(place))
+      return body.name.empty() ? "the wall of a body, a " + body.kind : "the body \"" + body.name + "\"";
+  return "a body";
+}
+
 std::vector<Vec3> outline(const BubbleCloud& cloud) {
   std::vector<Vec3> places;
   for (int i = -1; i <= 1; ++i)
@@ -286,9 +309,14 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
   for (std::size_t k = 0; k < sources.spargers.size(); ++k) {
     const Sparger& sparger = sources.spargers[k];
     const std::string name = "sparger." + std::to_string(k);
-    bool in_liquid = true;
+    const auto solid = first_in_solid(scene, sparger);
+    if (solid)
+      problems.add(*draft.node(name), name + " reaches into a solid: (" + brief((*solid)[0]) + ", " +
+                                          brief((*solid)[1]) + ", " + brief((*solid)[2]) + ") lies in " +
+                                          body_at(scene, *solid) + "; keep all of it in the liquid");
+    bool in_liquid = !solid;
     for (const char* key : {"position", "end"})
-      if (const Node* node = draft.node(name + "." + key); node &&
+      if (const Node* node = draft.node(name + "." + key); node && !solid &&
                                                            (key[0] == 'p' || sparger.shape == SpargerShape::line) &&
                                                            !wet(key[0] == 'p' ? sparger.position : sparger.end)) {
         problems.add(*node, name + "." + key + " lies outside the liquid; move it below the surface");
@@ -328,7 +356,13 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
     const BubbleCloud& cloud = sources.clouds[k];
     const std::string name = "bubble_cloud." + std::to_string(k);
     check_substeps(draft, scene, name, cloud.sizes, problems);
-    if (const auto dry = first_dry(outline(cloud))) problems.add(*draft.node(name), reaches_out(name, *dry));
+    std::vector<Vec3> places = outline(cloud);  // of which those in solids get no bubbles
+    const Vec3 some = places.back();
+    if (!scene.walls.empty()) std::erase_if(places, [&](const Vec3& r) { return scene.walls.inside(r); });
+    if (places.empty())
+      problems.add(*draft.node(name), name + " lies in " + body_at(scene, some) + "; move it into the liquid");
+    else if (const auto dry = first_dry(places))
+      problems.add(*draft.node(name), reaches_out(name, *dry));
     const double gas = bubbles::volume_of(cloud.sizes.mean) * static_cast<double>(cloud.number);
     if (gas > volume)
       problems.add(*draft.node(name), name + " holds " + brief(gas) + " of gas, more than the liquid, " +

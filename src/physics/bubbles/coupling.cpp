@@ -32,6 +32,8 @@ BubbleCoupling::BubbleCoupling(ParticleStore& particles, const Carrier& carrier,
       population_({options.fluctuations, options.breakup, options.surface_interaction && has_surface(),
                    carrier.gas != nullptr}),
       sources_(sources, carrier.scene.seed) {
+  if (const BodyWalls* bodies = carrier.boundary.bodies(); bodies != nullptr)
+    sources_.keep_clouds_out([bodies](const Vec3& place) { return bodies->nearer_than(place, 0); });
   particles.add_vector(exchange_, "bubble_exchange", Lifetime::result);
   volume_fraction_ = &particles.fields.add<double>("volume_fraction", Lifetime::state);
   parallel_for(particles.size(), [&](std::size_t i) { (*volume_fraction_)[i] = 1; });
@@ -118,8 +120,14 @@ void BubbleCoupling::place_bubbles() {
   ImageRules rules =
       carrier_.boundary.image_rules(carrier_.arrangement.grid.support_radius() * carrier_.sizes.largest_length_ratio);
   rules.only_nearest = true;  // places are looked up without asking what they see
+  WallPointView beside_walls;
+  if (beside_bodies()) {
+    reflect_bubbles(rules);
+    beside_walls = reflections();
+  }
   images_.build(rules, carrier_.arrangement.grid, population_.next_position[0]->data(),
-                population_.next_position[1]->data(), population_.next_position[2]->data(), nb);
+                population_.next_position[1]->data(), population_.next_position[2]->data(), nb,
+                beside_walls.size > 0 ? &beside_walls : nullptr);
   const std::size_t all = nb + images_.size();
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
@@ -153,6 +161,7 @@ CrossTargets BubbleCoupling::particle_targets() const {
 void BubbleCoupling::share_volume(ParticleSizes& sizes) {
   if (population_.empty()) return;
   place_bubbles();
+  if (beside_bodies()) weigh_reflections();
   const std::size_t n = carrier_.size(), nb = population_.size(), all = nb + images_.size();
   constexpr std::size_t width = 4;
   bubble_records_.resize(all * 8);
@@ -162,6 +171,8 @@ void BubbleCoupling::share_volume(ParticleSizes& sizes) {
     for (std::size_t a = 0; a < 3; ++a) records[k * width + a] = bubble_point_[a][k];
     records[k * width + 3] = static_cast<float>((*population_.volume)[b]);
   });
+  if (beside_bodies())
+    parallel_for(images_.size(), [&](std::size_t k) { records[(nb + k) * width + 3] *= share_of_image(k); });
 
   near_.resize(n);
   with_plain_kernel(3, carrier_.resolution.kernel, [&]<int d, class Kernel>() {
@@ -192,6 +203,11 @@ std::vector<ArrayInfo> BubbleCoupling::arrays() const {
   };
   list.push_back({"bubbles", population_.fields.bytes()});
   list.push_back({"bubble images", images_.bytes()});
+  if (beside_bodies())
+    list.push_back({"bubbles beside bodies",
+                    bytes(wall_near_, received_weight_, beside_walls_, reflection_share_, mirrored_place_[0],
+                          mirrored_place_[1], mirrored_place_[2], reflection_[0], reflection_[1], reflection_[2],
+                          liquid_point_[0], liquid_point_[1], liquid_point_[2])});
   list.push_back({"bubble records",
                   bytes(bubble_point_[0], bubble_point_[1], bubble_point_[2], inverse_support_radius_, liquid_records_,
                         bubble_records_, interpolated_, dissipation_, next_merge_time_, reaction_[0], reaction_[1],

@@ -57,10 +57,12 @@ void BubbleCoupling::accept(double dt) {
   if (population_.empty() && nb > 0) parallel_for(n, [&](std::size_t i) { (*volume_fraction_)[i] = 1; });
   if (options_.entrainment && has_surface()) entrain(dt);
   if (exchanges_gas()) fill_new_bubbles(oxygen::oxygen_of_air);
+  const std::size_t before = population_.size();
   Released released = sources_.release(population_, t - dt, dt);
   const Released cloud = sources_.place_clouds(population_, t);
   released.bubbles += cloud.bubbles;
   released.volume += cloud.volume;
+  if (beside_bodies()) keep_new_bubbles_outside(before);
   history_.injected += static_cast<std::int64_t>(released.bubbles);
   history_.injected_volume += released.volume;
   if (exchanges_gas()) fill_new_bubbles(carrier_.gas->fraction);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "liquid_record.hpp"
 #include "spume/core/random.hpp"
 #include "spume/physics/bubbles/coupling.hpp"
 #include "spume/physics/bubbles/fluctuations.hpp"
@@ -10,10 +11,7 @@
 namespace spume::bubbles {
 namespace {
 
-// What bubbles see of a particle, times its volume times its kernel's normalisation over h_i^3, in units of V / h^3:
-// one line of cache. The factor itself is among them, so that its sum comes with the others; the last is h_i / h.
-constexpr int velocity_at = 0, vorticity_at = 3, acceleration_at = 6, energy_at = 9, dissipation_at = 10,
-              normal_at = 11, factor_at = 14, length_at = 15, record = line_floats;
+using namespace liquid_record;
 
 constexpr std::size_t pack_block = 64;
 
@@ -105,6 +103,8 @@ void BubbleCoupling::pack_images() {
   const std::size_t n = carrier_.size(), m = carrier_.arrangement.images.size();
   const bool around_boxes = seen_beyond_reach();
   const ImageMap map = carrier_.boundary.image_map(carrier_.arrangement.images);
+  const std::int32_t* wall_point =
+      carrier_.arrangement.context.walls == nullptr ? nullptr : carrier_.arrangement.images.wall_point();
   parallel_for(m, [&](std::size_t k) {
     const std::size_t source = map.source(k);
     // Other images overlap those, and no place is nearer to one than a support radius of nothing.
@@ -113,6 +113,8 @@ void BubbleCoupling::pack_images() {
     if (!around_boxes && near_[source] == 0) return;
     float* value = liquid_records_.data() + (n + k) * record;
     std::copy_n(liquid_records_.data() + source * record, record, value);
+    if (wall_point != nullptr && wall_point[k] >= 0)
+      return mirror_record(map, k, static_cast<std::size_t>(wall_point[k]), value);
     for (int a = 0; a < 3; ++a) {
       const int b = (a + 1) % 3, c = (a + 2) % 3;
       value[velocity_at + a] *= map.velocity_sign(k, a);
@@ -204,19 +206,20 @@ Braking BubbleCoupling::brake_at_surface(std::size_t b, const Vec3& slip, double
 }
 
 // The next velocity of bubble b, which has u, and what it gives to the liquid.
-BubbleCoupling::Moved BubbleCoupling::accelerate(std::size_t b, const Surroundings& around, const Vec3& u,
-                                                 double radius, const Braking& braking, double dt) const {
+BubbleCoupling::Moved BubbleCoupling::accelerate(const Gas& gas, std::size_t b, const Surroundings& around,
+                                                 const Vec3& u, double radius, const Braking& braking,
+                                                 double dt) const {
   const double volume = (*population_.volume)[b];
   Moved moved;
   moved.velocity = options_.integrator == BubbleIntegrator::stable
-                       ? advance_stable(gas_, radius, around, u, dt, braking)
-                       : advance_substepped(gas_, radius, around, u, dt, carrier_.resolution.spacing, braking);
-  moved.reaction = bubbles::reaction(gas_, volume, around, difference(moved.velocity, u), dt,
+                       ? advance_stable(gas, radius, around, u, dt, braking)
+                       : advance_substepped(gas, radius, around, u, dt, carrier_.resolution.spacing, braking);
+  moved.reaction = bubbles::reaction(gas, volume, around, difference(moved.velocity, u), dt,
                                      /*pressure_holds_inertia=*/!mixture_pressure());
   if (options_.surface_reaction == SurfaceReaction::surface && braking.share > 0) {
     double slip_normal = 0;
     for (std::size_t a = 0; a < 3; ++a) slip_normal += (around.velocity[a] - u[a]) * braking.normal[a];
-    const Vec3 borne = braking_force(gas_, radius, around, moved.velocity, slip_normal, dt, braking);
+    const Vec3 borne = braking_force(gas, radius, around, moved.velocity, slip_normal, dt, braking);
     for (std::size_t a = 0; a < 3; ++a) moved.reaction[a] += volume * borne[a];
   }
   return moved;
@@ -224,7 +227,8 @@ BubbleCoupling::Moved BubbleCoupling::accelerate(std::size_t b, const Surroundin
 
 void BubbleCoupling::move_bubble(std::size_t b, double dt) {
   const float* here = interpolated_.data() + b * record;
-  const double sum = here[factor_at], volume = (*population_.volume)[b], radius = radius_of(volume);
+  const double sum = beside_bodies() ? received_weight_[b] : here[factor_at], volume = (*population_.volume)[b],
+               radius = radius_of(volume);
   const Vec3 resolved = vector_at(here, velocity_at);
   Surroundings around{resolved, vector_at(here, vorticity_at), vector_at(here, acceleration_at)};
   Vec3 u = resolved;
@@ -238,7 +242,8 @@ void BubbleCoupling::move_bubble(std::size_t b, double dt) {
   if (population_.merge_time != nullptr) braking = brake_at_surface(b, difference(around.velocity, u), radius, dt);
   Moved moved{u, {}};
   if (exchanges_gas()) next_gas_[b] = {{(*population_.oxygen)[b], (*population_.inert)[b]}};
-  if (sum > 0) moved = accelerate(b, around, u, radius, braking, dt);
+  if (sum > 0) moved = accelerate(gas_, b, around, u, radius, braking, dt);
+  if (sum > 0 && beside_bodies()) slide_along_wall(b, around, u, radius, braking, dt, moved);
 
   float* record_of = bubble_records_.data() + b * 8;  // x y z, M / N (3), viscosity, oxygen / N
   double slip2 = 0, resolved_slip2 = 0;
@@ -272,6 +277,8 @@ void BubbleCoupling::move_bubbles(double dt) {
   parallel_for(images_.size(), [&](std::size_t k) {
     float* out = records + (nb + k) * 8;
     std::copy_n(records + static_cast<std::size_t>(images_.source()[k]) * 8, 8, out);
+    if (beside_bodies())
+      for (int value = 3; value < 8; ++value) out[value] *= share_of_image(k);
     for (std::size_t a = 0; a < 3; ++a) out[a] = bubble_point_[a][nb + k];
   });
 }
@@ -311,6 +318,7 @@ void BubbleCoupling::exchange_momentum(double dt, PackedNeighbours& packed) {
   pack_liquid();
   if (exchanges_gas()) pack_dissolved();
   interpolate();
+  if (beside_bodies()) weigh_received();
   move_bubbles(dt);
   if (!exchanges_gas()) return deposit<4>();
   dissolution_.resize(carrier_.size());

@@ -13,6 +13,7 @@ namespace {
 // Clouds are numbered after every possible sparger.
 constexpr std::uint64_t first_cloud = 1U << 20;
 constexpr std::uint32_t place_draw = 1U << 20;  // radii take the draws below
+constexpr std::uint32_t most_draws = 10'000;    // of a cloud with a ten thousandth outside solids
 
 std::uint64_t stream(std::uint64_t source, std::uint64_t count) {
   return source << 40 | count;
@@ -31,12 +32,18 @@ Vec3 place_on(const Sparger& sparger, std::uint64_t seed, std::uint64_t source, 
   return r;
 }
 
-Vec3 place_in(const BubbleCloud& cloud, std::uint64_t seed, std::uint64_t source, std::uint64_t count) {
+// Places in solids are drawn again; a cloud that is all solid, which a moving body can make of it, keeps the last.
+Vec3 place_in(const BubbleCloud& cloud, std::uint64_t seed, std::uint64_t source, std::uint64_t count,
+              const std::function<bool(const Vec3&)>& solid) {
+  const auto refused = [&](const Vec3& r, std::uint32_t draw) {
+    return solid && draw < place_draw + most_draws && solid(r);
+  };
   for (std::uint32_t draw = place_draw;; ++draw) {
     const auto u = random_uniform(seed, RandomPurpose::bubble_source, stream(source, count), 0, draw);
     Vec3 r;
     if (!cloud.ball) {
       for (std::size_t a = 0; a < 3; ++a) r[a] = cloud.lower[a] + u[a] * (cloud.upper[a] - cloud.lower[a]);
+      if (refused(r, draw)) continue;
       return r;
     }
     double distance2 = 0;
@@ -44,7 +51,7 @@ Vec3 place_in(const BubbleCloud& cloud, std::uint64_t seed, std::uint64_t source
       r[a] = cloud.centre[a] + cloud.radius * (2 * u[a] - 1);
       distance2 += (2 * u[a] - 1) * (2 * u[a] - 1);
     }
-    if (distance2 <= 1) return r;
+    if (distance2 <= 1 && !refused(r, draw)) return r;
   }
 }
 
@@ -104,7 +111,7 @@ Released Sources::place_clouds(Population& population, double t) {
     released.bubbles += population.give_birth(
         static_cast<std::size_t>(cloud.number), t, [&](std::size_t item, std::vector<NewBubble>& made) {
           NewBubble bubble;
-          bubble.position = place_in(cloud, seed_, first_cloud + k, item);
+          bubble.position = place_in(cloud, seed_, first_cloud + k, item, solid_);
           bubble.volume = volume_of(draw_radius(cloud.sizes, seed_, first_cloud + k, item));
           bubble.at_rest_in_liquid = true;
           made.push_back(bubble);

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Long runs of small scenes: conserved quantities, statistics, memory and speed must not drift.
 
-Each scene has a state that it keeps: a flow that its force sustains, liquid at rest, a plume whose bubbles come and go,
+Each scene has a state that it keeps: a flow that its force sustains, liquid at rest, a plume whose bubbles come and go, a tank that is shaken,
 stirred turbulence without and with particles, a sustained flow and layers at rest of weakly compressible phases. Memory and processor time of the program are read while it runs.
 """
 import math
@@ -49,6 +49,16 @@ def plume(step):
             "time": {"max_step": step}}
 
 
+def sloshing(step):
+    """A tank shaken along x, a tenth of gravity below the frequency of its first mode, with a wedge on its floor."""
+    return {"title": "sloshing", "method": "les-sph",
+            "domain": {"lower": [0.0, 0.0], "upper": [1.0, 1.5], "left": "free-slip", "right": "free-slip", "bottom": "no-slip"},
+            "resolution": {"spacing": 1 / 24}, "fluid": {"reynolds": 1000.0, "froude": 1.0, "mach": 0.05},
+            "forces": {"body": ["0.1*sin(1.5*t)", "0"]}, "liquid": [{"where": "0.5 - y"}],
+            "body": [{"shape": "outline", "points": [[0.2, -0.1], [0.8, -0.1], [0.5, 0.2]], "wall": "no-slip"}],
+            "time": {"max_step": step}}
+
+
 def turbulence(step, points=32, reynolds=40.0):
     side = 2 * math.pi
     return {"title": "turbulence", "method": "spectral",
@@ -86,6 +96,7 @@ def layers(step):
 
 
 SCENES = {"sustained_flow": (sustained_flow, 0.004), "pool": (pool, 0.01), "plume": (plume, 0.02),
+          "sloshing": (sloshing, 0.005),
           "turbulence": (turbulence, 0.02), "particles": (particles, 0.02), "sustained_phase": (sustained_phase, 0.0025),
           "layers": (layers, 2e-4)}
 

@@ -146,9 +146,22 @@ class BubbleCoupling final : public oxygen::Supply {
   struct Moved {
     Vec3 velocity{}, reaction{};
   };
-  Moved accelerate(std::size_t b, const Surroundings& around, const Vec3& u, double radius, const Braking& braking,
-                   double dt) const;
+  Moved accelerate(const Gas& gas, std::size_t b, const Surroundings& around, const Vec3& u, double radius,
+                   const Braking& braking, double dt) const;
   void interpolate();
+  // Walls of bodies (walls.cpp).
+  bool beside_bodies() const { return carrier_.boundary.bodies() != nullptr; }
+  void reflect_bubbles(const ImageRules& rules);
+  WallPointView reflections() const;
+  template <class Factor, class Take>
+  void weigh_beside_walls(const std::array<const float*, 3>& point, const Factor& factor, const Take& take) const;
+  void weigh_reflections();
+  float share_of_image(std::size_t k) const;
+  void weigh_received();
+  void mirror_record(const ImageMap& map, std::size_t k, std::size_t point, float* value) const;
+  void slide_along_wall(std::size_t b, const Surroundings& around, const Vec3& u, double radius, const Braking& braking,
+                        double dt, Moved& moved) const;
+  void keep_new_bubbles_outside(std::size_t first);
   template <int components>
   void deposit();
   void remove_dead(double t);
@@ -173,7 +186,7 @@ class BubbleCoupling final : public oxygen::Supply {
     return carrier_.velocity_gradient[static_cast<std::size_t>(a * 3 + b)];
   }
   // An image inside a box belongs to the face nearest to it: that of a particle may reach a bubble whose own does not
-  // reach the particle.
+  // reach the particle. So may a wall point of a body.
   bool seen_beyond_reach() const { return carrier_.arrangement.images.inside_domain(); }
   bool has_surface() const { return carrier_.surface != nullptr; }
   double per_time(double change) const;
@@ -234,6 +247,16 @@ class BubbleCoupling final : public oxygen::Supply {
   Array<std::uint8_t> near_;            // particles with bubbles in their reach
   Array<std::int32_t> near_particles_;  // those whose normals are seen
   FloatVectorScratch smoothed_normal_;  // Shepard-filtered, of these
+  // Beside walls of bodies; empty without. Per bubble: whether it is near one, its mirrored place, what it is divided
+  // by.
+  Array<std::uint8_t> wall_near_;
+  std::array<Array<double>, 3> mirrored_place_;
+  Array<float> received_weight_;
+  // Per bubble that is.
+  Array<std::int32_t> beside_walls_;
+  std::array<Array<double>, 3> reflection_;
+  Array<float> reflection_share_;
+  std::array<Array<float>, 3> liquid_point_;  // of particles and images
   SnapshotTable snapshot_;
 };
 

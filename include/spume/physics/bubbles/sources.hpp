@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <vector>
 
 #include "spume/physics/bubbles/options.hpp"
@@ -32,6 +33,8 @@ class Sources {
   // `given` outlives it.
   Sources(const BubbleSources& given, std::uint64_t seed);
   SourceState state;
+  // Clouds have no bubble at places for which `solid` is true.
+  void keep_clouds_out(std::function<bool(const Vec3&)> solid) { solid_ = std::move(solid); }
 
   // What enters in (t, t + dt]: the rate at the middle of the step, in whole bubbles; the rest waits. A bubble bigger
   // than what is pending waits too, so that the volume never runs ahead of the rate.
@@ -47,6 +50,7 @@ class Sources {
  private:
   const BubbleSources& given_;
   const std::uint64_t seed_;
+  std::function<bool(const Vec3&)> solid_;  // empty: nowhere
 };
 
 }  // namespace spume::bubbles

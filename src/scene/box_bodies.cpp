@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "box_bodies.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "spume/geometry/shapes.hpp"
+
+namespace spume {
+namespace {
+
+// In spacings: what reaches a side of the domain goes on so far beyond it, which is more than liquid sees.
+constexpr double beyond_side = 10;
+// In spacings: nearer to a side than this a face is in it.
+constexpr double in_side = 1e-6;
+
+}  // namespace
+
+void make_bodies_of_boxes(Scene& scene) {
+  Domain& domain = scene.domain;
+  const bool beside =
+      !scene.openings.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                             [](const Body& body) { return body.wall != BoundaryKind::open; });
+  if (!beside) return;
+  Bounds whole;
+  Vec3 periods{};
+  for (int axis = 0; axis < domain.dimensions; ++axis) {
+    whole.lower[axis] = domain.lower[axis];
+    whole.upper[axis] = domain.upper[axis];
+    if (domain.periodic(axis)) periods[axis] = domain.upper[axis] - domain.lower[axis];
+  }
+  for (std::size_t k = 0; k < domain.boxes.size(); ++k) {
+    const SolidBox& box = domain.boxes[k];
+    Vec3 size{};
+    Pose pose;
+    for (int axis = 0; axis < domain.dimensions; ++axis) {
+      const double slack = in_side * scene.spacing, more = beyond_side * scene.spacing;
+      const bool below = box.lower[axis] <= domain.lower[axis] + slack,
+                 above = box.upper[axis] >= domain.upper[axis] - slack;
+      // Along a periodic axis one that does not span it has copies, which join it at the side.
+      const bool goes_on = !domain.periodic(axis) || (below && above);
+      const double lower = box.lower[axis] - (below && goes_on ? more : 0),
+                   upper = box.upper[axis] + (above && goes_on ? more : 0);
+      size[axis] = upper - lower;
+      pose.position[axis] = 0.5 * (lower + upper);
+    }
+    const ShapePointer placed = place(make_box(size, domain.dimensions), pose, true, domain.dimensions);
+    const ShapePointer repeated = repeat(placed, whole, periods);
+    scene.bodies.push_back({.name = "solid." + std::to_string(k),
+                            .kind = "box",
+                            .shape = repeated,
+                            .solid = repeated,
+                            .wall = box.kind,
+                            .alone = placed});
+  }
+  domain.boxes.clear();
+}
+
+}  // namespace spume
