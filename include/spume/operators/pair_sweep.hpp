@@ -125,6 +125,9 @@ inline void decode(const std::uint16_t* code, std::int32_t base, std::int32_t se
     entry[l] = entry_scale * (code[l] == no_neighbour ? sentinel : code[l]) + (code[l] == no_neighbour ? 0 : base);
 }
 
+// Bytes of lists asked for ahead of a sweep, seven particles: pressure operator 1.2 times faster (bench/README.md).
+inline constexpr std::size_t list_ahead = 2048;
+
 // Calls body(batch) for the padded list of particle i. Where a batch holds two of the eights that lists are padded to,
 // a last one alone is filled up with the sentinel.
 template <int dimensions, int payload, class Body>
@@ -142,6 +145,10 @@ template <int dimensions, int payload, class Body>
   for (std::size_t next = 0; next < end; next += pair_lanes) {
     std::array<f32n, width> value;
     const std::uint16_t* const code = narrow ? batches.code + next : nullptr;
+    if (narrow)
+      __builtin_prefetch(code + list_ahead / sizeof *code);
+    else
+      __builtin_prefetch(begin + next + list_ahead / sizeof *begin);
     if (narrow && code[pair_lanes - 1] != no_neighbour) {
       const float* from = records + simd::record_offset<width>(batches.base[next / pair_lanes]);
       for (int block = 0; block < width / 4; ++block)
