@@ -39,6 +39,7 @@ struct InterfaceView {
   std::array<const float*, 6> correction;               // B of gfd_moments.hpp, at the varying particles
   ScratchPool& scratch;
   int smoothing;  // InterfaceOptions
+  const Array<std::int64_t>* left_out = nullptr;  // of the area, particles with 0 or more; null: none
 };
 
 // Measures the interface of a colour, whose value is known, and adds to its potential.

@@ -13,6 +13,7 @@
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/averaged_walls.hpp"
 #include "spume/particles/boundary.hpp"
+#include "spume/particles/acoustic_layers.hpp"
 #include "spume/particles/buffer_layers.hpp"
 #include "spume/particles/excess_relaxation.hpp"
 #include "spume/particles/phase_law.hpp"
@@ -66,6 +67,7 @@ struct Flow {
   Array<double>* excess = nullptr;
   Array<std::int64_t>* phase_number = nullptr;
   std::unique_ptr<BufferLayers> openings;  // null: none
+  std::unique_ptr<AcousticLayers> acoustic;  // null: none
   Boundary boundary;
   double listed_time = 0;  // of the places of moving bodies in the lists
   double settled = 0;      // 1: settle() has been
