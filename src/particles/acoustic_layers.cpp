@@ -100,7 +100,7 @@ void AcousticLayers::find_pressures(const Liquid& liquid, Array<double>& excess,
         foot[a] = liquid.arrangement.list.coordinate(a)[i] + liquid.arrangement.origin[a];
       foot = gate.wrapped(foot);
       foot[axis] = gate.plane;
-      p = pressure_outside(scene_, *gate.opening, foot, heaviest, liquid.time);
+      p = pressure_outside(scene_, *gate.opening, foot, {heaviest}, liquid.time);
       // Fluids side by side have one pressure, so that their velocities add up as 1 / (rho c): the impedance of water
       // alone would shoot air back that is with it.
       const Mean& mean = mean_of(i);

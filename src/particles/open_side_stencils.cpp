@@ -77,7 +77,7 @@ void OpenSides::give_pressures(const std::function<double(const Vec3&)>& potenti
     const Opening& opening = *gates_[static_cast<std::size_t>(corner.gate)].opening;
     if (opening.inflow) continue;
     stencils.given_pressure[first_corner_ + k] =
-        2 * (pressure_outside(scene_, opening, corner.foot, density, t) / density + potential(corner.foot));
+        2 * (pressure_outside(scene_, opening, corner.foot, {density}, t) / density + potential(corner.foot));
   }
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const OpeningPoint& point = points_[p];
@@ -86,7 +86,7 @@ void OpenSides::give_pressures(const std::function<double(const Vec3&)>& potenti
     const bool wet = stencils.pressure_sign[g] != 0;
     if (wet && opening.inflow) continue;
     const double q =
-        pressure_outside(scene_, opening, point.foot, density, t) / density + potential(wet ? point.foot : point.place);
+        pressure_outside(scene_, opening, point.foot, {density}, t) / density + potential(wet ? point.foot : point.place);
     stencils.given_pressure[g] = wet ? 2 * q : q;
   }
 }

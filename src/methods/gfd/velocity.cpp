@@ -211,7 +211,8 @@ void Flow::set_matrix(double dt) {
   GfdPressureMatrix pairs{stencils(), density_property()};
   if (features.openings) {
     layers->give_pressures(
-        time + dt, [&](const Vec3& place, std::size_t i) { return -hydrostatic_part(place, phase[i]); });
+        time + dt, read(particles.velocity),
+        [&](const Vec3& place, std::size_t i) { return -hydrostatic_part(place, phase[i]); });
     rows.pressure_fixed = &layers->masked();
     pairs.masked = layers->masked().data();
     pairs.tied = &layers->tied();
