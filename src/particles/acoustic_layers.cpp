@@ -79,7 +79,7 @@ AcousticLayers::Seen AcousticLayers::look(const Liquid& liquid, const Array<floa
 }
 
 void AcousticLayers::find_pressures(const Liquid& liquid, Array<double>& excess, Array<float>& pressure,
-                                  Array<float>& volume) {
+                                    Array<float>& volume) {
   members_ = &layers_.find_members();
   const std::size_t n = members_->size();
   seen_.resize(n);

@@ -280,16 +280,14 @@ void BufferLayers::save(StateWriter& writer) const {
 void BufferLayers::load(StateReader& reader) {
   Array<std::int64_t> counts;
   reader.i64("open_counts", counts);
-  if (counts.size() != 1 + 2 * entered_.size())
-    throw FileError("the checkpoint is of a scene with other openings");
+  if (counts.size() != 1 + 2 * entered_.size()) throw FileError("the checkpoint is of a scene with other openings");
   next_identifier_ = counts[0];
   std::copy_n(counts.data() + 1, entered_.size(), entered_.begin());
   std::copy_n(counts.data() + 1 + entered_.size(), left_.size(), left_.begin());
 }
 
 double BufferLayers::bytes() const {
-  double sum = static_cast<double>(columns_.capacity() * sizeof(Column)) +
-               members_.bytes() + passed_.bytes();
+  double sum = static_cast<double>(columns_.capacity() * sizeof(Column)) + members_.bytes() + passed_.bytes();
   for (const OpenGate& gate : gates_.list)
     sum += static_cast<double>(gate.columns.capacity() * sizeof(OpenGate::Column) + 4 * gate.column_of.capacity());
   return sum;

@@ -58,8 +58,7 @@ void DirectPressure::factorise(ProjectionMatrix& matrix, std::span<const float> 
 }
 
 // Rows of fixed particles hold themselves alone, and so do their columns: nothing is added to what they have.
-void DirectPressure::find_pattern(const SweepContext& context, const TiedRows* tied,
-                                  std::span<const float> diagonal) {
+void DirectPressure::find_pattern(const SweepContext& context, const TiedRows* tied, std::span<const float> diagonal) {
   const auto n = static_cast<std::int32_t>(size_);
   const std::int32_t* source = context.images == nullptr ? nullptr : context.images->source();
   const std::int32_t* point = context.walls == nullptr ? nullptr : context.images->wall_point();

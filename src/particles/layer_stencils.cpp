@@ -69,7 +69,8 @@ void LayerStencils::predict(const std::array<const double*, 3>& before, const st
   give_opening_gradients(layers_.gates().list, points_, 0, before, {after[0], after[1], after[2]}, dt, d, stencils_);
   parallel_for(points_.size(), [&](std::size_t g) {
     const auto i = static_cast<std::size_t>((*members_)[g]);
-    const Vec3 u = velocity_at(g, {after[0], after[1], after[2]}, true);
+    Vec3 u = velocity_at(g, {after[0], after[1], after[2]}, true);
+    for (int axis = 0; axis < d; ++axis) u[axis] += dt * points_[g].acceleration[axis];  // to the end of the step
     for (int axis = 0; axis < d; ++axis) after[axis][i] = u[axis];
     stencils_.given_pressure[g] *= density[i];
   });
@@ -88,9 +89,8 @@ void LayerStencils::follow(const std::array<double*, 3>& velocity) const {
 // Expressions are not for several threads at a time.
 void LayerStencils::give_pressures(double t, const std::array<const double*, 3>& velocity,
                                    const std::function<double(const Vec3& place, std::size_t i)>& reduced) {
-  const auto [lightest, heaviest] =
-      std::minmax_element(scene_.phases.begin(), scene_.phases.end(),
-                          [](const Phase& a, const Phase& b) { return a.density < b.density; });
+  const auto [lightest, heaviest] = std::minmax_element(
+      scene_.phases.begin(), scene_.phases.end(), [](const Phase& a, const Phase& b) { return a.density < b.density; });
   const OutsideDensity outside{heaviest->density, lightest->density};
   for (std::size_t g = 0; g < points_.size(); ++g) {
     const OpeningPoint& point = points_[g];

@@ -85,8 +85,8 @@ void OpenSides::give_pressures(const std::function<double(const Vec3&)>& potenti
     const std::size_t g = first_point_ + p;
     const bool wet = stencils.pressure_sign[g] != 0;
     if (wet && opening.inflow) continue;
-    const double q =
-        pressure_outside(scene_, opening, point.foot, {density}, t) / density + potential(wet ? point.foot : point.place);
+    const double q = pressure_outside(scene_, opening, point.foot, {density}, t) / density +
+                     potential(wet ? point.foot : point.place);
     stencils.given_pressure[g] = wet ? 2 * q : q;
   }
 }

@@ -44,9 +44,8 @@ inline std::string gfd_stream_with_air(const std::string& region) {
 }
 
 // A round drop of air carried through, with tension, weight and viscosity.
-inline const std::string gfd_drop_in_a_stream =
-    replaced(gfd_stream_with_air("centre = [0.6, 0.25]\nradius = 0.15\n"), "[time]",
-             "[interface]\nsurface_tension = 2\n[time]");
+inline const std::string gfd_drop_in_a_stream = replaced(gfd_stream_with_air("centre = [0.6, 0.25]\nradius = 0.15\n"),
+                                                         "[time]", "[interface]\nsurface_tension = 2\n[time]");
 
 // Water over its level at rest in a tank that is open to the right.
 inline const std::string gfd_layers_beside_an_outflow = R"toml(method = "gfd"

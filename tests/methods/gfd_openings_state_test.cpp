@@ -43,9 +43,9 @@ TEST(GfdOpeningsState, EveryStageCountsItsTraffic) {
 
 // Not the particles of the layers: neither the speed of the inflow nor what stands behind it.
 TEST(GfdOpeningsState, SeriesAreOfTheDomain) {
-  GfdRun run(gfd_stream_with_air("lower = [0.8, 0]\n"), {"region.0.velocity=[\"0\", \"0\"]",
-                                                         "region.1.velocity=[\"0\", \"0\"]",
-                                                         "inflow.0.velocity=[\"0.5*t\", \"0\"]"});
+  GfdRun run(
+      gfd_stream_with_air("lower = [0.8, 0]\n"),
+      {"region.0.velocity=[\"0\", \"0\"]", "region.1.velocity=[\"0\", \"0\"]", "inflow.0.velocity=[\"0.5*t\", \"0\"]"});
   run.steps(2, 0.005);
   auto series = run.series();
   EXPECT_NEAR(series["volume_air"], 0.1, 1e-12);
@@ -54,8 +54,7 @@ TEST(GfdOpeningsState, SeriesAreOfTheDomain) {
   EXPECT_NEAR(series["interface_area"], 0.5, 0.02);  // one of two: a mirror of it stands behind the outflow
   double kinetic = 0;
   for (std::size_t i = 0; i < run.flow().size(); ++i)
-    if (run.flow().in_domain(i))
-      kinetic += run.flow().mass(i) * squared_norm(run.flow().particles.velocity, 2, i) / 2;
+    if (run.flow().in_domain(i)) kinetic += run.flow().mass(i) * squared_norm(run.flow().particles.velocity, 2, i) / 2;
   EXPECT_EQ(series["kinetic_energy"], kinetic);
 }
 
@@ -106,8 +105,8 @@ end = 2
   EXPECT_NEAR(series["volume_out_air"], series["volume_in_air"], 0.03);
   EXPECT_EQ(series["volume_out_water"], 0);
   for (const std::string name : {"water", "air"})
-    EXPECT_NEAR(series["volume_" + name], start["volume_" + name] + series["volume_in_" + name] - series["volume_out_" + name],
-                1e-12);
+    EXPECT_NEAR(series["volume_" + name],
+                start["volume_" + name] + series["volume_in_" + name] - series["volume_out_" + name], 1e-12);
 }
 
 TEST(GfdOpeningsState, WhatItCannotDoIsRefusedInWords) {

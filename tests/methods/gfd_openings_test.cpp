@@ -95,10 +95,9 @@ TEST(GfdOpenings, APlugFlowFollowsItsInflow) {
 // rho L du/dt = P - rho u^2 / 2, u = U tanh(U t / 2 L), U^2 = 2 P / rho. The head is that of the last step: first order
 // in time, dt U / L of U.
 TEST(GfdOpenings, LiquidFromRestOutsideEntersByItsPressure) {
-  const std::string text =
-      replaced(replaced(gfd_stream, "[[inflow]]\nside = \"left\"\nvelocity = [\"1\", \"0\"]",
-                        "[[outflow]]\nside = \"left\"\npressure = 500"),
-               "velocity = [\"1\", \"0\"]", "velocity = [\"0\", \"0\"]");
+  const std::string text = replaced(replaced(gfd_stream, "[[inflow]]\nside = \"left\"\nvelocity = [\"1\", \"0\"]",
+                                             "[[outflow]]\nside = \"left\"\npressure = 500"),
+                                    "velocity = [\"1\", \"0\"]", "velocity = [\"0\", \"0\"]");
   GfdRun run(text, {"time.max_step=0.01"});
   for (const double t : {0.5, 1.5}) {
     run.until(t);
@@ -160,11 +159,11 @@ TEST(GfdOpenings, LayersStayStillBesideAnOutflow) {
 // u = 4 y (1 - y), p = 8 nu (1.5 - x), nu = 0.05: with 16 spacings across the velocity errs by 0.2 % of its peak, as it
 // does between periodic sides.
 TEST(GfdOpenings, APoiseuilleFlowGoesThrough) {
-  const std::string text = replaced(
-      replaced(replaced(gfd_stream, "upper = [1, 0.5]\nbottom = \"free-slip\"\ntop = \"free-slip\"",
-                        "upper = [1.5, 1]\nbottom = \"no-slip\"\ntop = \"no-slip\""),
-               "density = 1000\nviscosity = 1\n", "density = 1\nviscosity = 0.05\n"),
-      "spacing = 0.05", "spacing = 0.0625");
+  const std::string text =
+      replaced(replaced(replaced(gfd_stream, "upper = [1, 0.5]\nbottom = \"free-slip\"\ntop = \"free-slip\"",
+                                 "upper = [1.5, 1]\nbottom = \"no-slip\"\ntop = \"no-slip\""),
+                        "density = 1000\nviscosity = 1\n", "density = 1\nviscosity = 0.05\n"),
+               "spacing = 0.05", "spacing = 0.0625");
   GfdRun run(text, {"region.0.velocity=[\"4*y*(1-y)\", \"0\"]", "inflow.0.velocity=[\"4*y*(1-y)\", \"0\"]"});
   run.until(1.5);
   const StreamErrors errors = stream_errors(

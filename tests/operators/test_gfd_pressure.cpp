@@ -128,9 +128,9 @@ TEST(GfdPressureOperator, TiedRowsFollowTheOthers) {
     stencils.first[rows.size()] = static_cast<std::int64_t>(3 * rows.size());
     const TiedRows tied{rows, point, &stencils};
     GfdPressureOperator fast;
-    fast.bind(a.context, a.packed,
-              {system.stencils.read(), system.density.read(), system.diagonal_shift.data(), system.masked.data(),
-               &tied});
+    fast.bind(
+        a.context, a.packed,
+        {system.stencils.read(), system.density.read(), system.diagonal_shift.data(), system.masked.data(), &tied});
     const auto x = random_unmasked(system, 151);
     const auto extended = [&](bool given) {
       Array<double> all(a.size());

@@ -11,8 +11,8 @@
 namespace spume {
 
 struct TiedRows {
-  std::span<const std::int32_t> rows;       // the particle of each point of the stencils; no source is among them
-  std::span<const std::int32_t> point;      // of each particle, -1: not tied
+  std::span<const std::int32_t> rows;   // the particle of each point of the stencils; no source is among them
+  std::span<const std::int32_t> point;  // of each particle, -1: not tied
   const WallStencils* stencils = nullptr;
 
   // Sets the values of the rows; `given` false leaves out what is given, as for a change of the pressure.

@@ -85,9 +85,9 @@ class AcousticLayers {
   ParticleStore& particles_;
   const Array<std::int64_t>& phase_;
   BufferLayers& layers_;
-  std::vector<Mean> means_;                        // of the columns
-  const Array<std::int32_t>* members_ = nullptr;   // particles of the layers
-  std::vector<Seen> seen_;                         // of them
+  std::vector<Mean> means_;                       // of the columns
+  const Array<std::int32_t>* members_ = nullptr;  // particles of the layers
+  std::vector<Seen> seen_;                        // of them
 };
 
 }  // namespace spume

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Openings as buffer layers of particles behind inflows and outflows, as deep as a kernel reaches (M. Lastiwka, M. Basa,
-// N. J. Quinlan, Int. J. Numer. Meth. Fluids 61 (2009); A. Tafuni et al., Comput. Methods Appl. Mech. Engrg. 342 (2018)).
+// Openings as buffer layers of particles behind inflows and outflows, as deep as a kernel reaches (M. Lastiwka, M.
+// Basa, N. J. Quinlan, Int. J. Numer. Meth. Fluids 61 (2009); A. Tafuni et al., Comput. Methods Appl. Mech. Engrg. 342
+// (2018)).
 //
 // They are particles of the store, with a phase, neighbours and a part in every sum; the equations do not move them.
 //

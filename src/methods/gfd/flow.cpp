@@ -25,7 +25,8 @@ bool differ(const std::vector<double>& values) {
 
 }  // namespace
 
-Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies, loaded.scene.openings) {
+Features::Features(const LoadedCase& loaded)
+    : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies, loaded.scene.openings) {
   const Scene& scene = loaded.scene;
   const Vec3& g = scene.fluid.gravity;
   interfaces = scene.phases.size() > 1;

@@ -202,8 +202,7 @@ std::vector<ArrayInfo> Gfd::arrays() const {
   std::vector<ArrayInfo> list = particle_arrays(flow_.particles, flow_.arrangement);
   list.push_back({"pressure solver", flow_.solver.bytes() + flow_.matrix.bytes()});
   if (const double bytes = flow_.implicit_diffusion.bytes(); bytes > 0) list.push_back({"implicit viscosity", bytes});
-  if (flow_.features.openings)
-    list.push_back({"openings", flow_.openings->bytes() + flow_.layers->bytes()});
+  if (flow_.features.openings) list.push_back({"openings", flow_.openings->bytes() + flow_.layers->bytes()});
   list.push_back({"leased within a step", flow_.leased_bytes()});
   double interfaces = flow_.bands.bytes() + flow_.phase.bytes();
   for (const Colour& colour : flow_.colours) interfaces += colour.value.bytes() + colour.potential.bytes();

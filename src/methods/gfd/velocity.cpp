@@ -156,12 +156,12 @@ void Flow::find_divergence() {
 }
 
 void Flow::relax_density(double dt) {
-  volume_ratio = even_out_density({.steps = options.get<PressureOptions>().density_relaxation,
-                                   .displacement = displacement,
-                                   .dt = dt,
-                                   .left_out = left_out()},
-                                  arrangement, scene.domain, particles.position, resolution, moments, nullptr,
-                                  divergence);
+  volume_ratio =
+      even_out_density({.steps = options.get<PressureOptions>().density_relaxation,
+                        .displacement = displacement,
+                        .dt = dt,
+                        .left_out = left_out()},
+                       arrangement, scene.domain, particles.position, resolution, moments, nullptr, divergence);
   // What it lets be from particle to particle adds up over a phase: a bubble that rises by its diameter shrinks by 0.5
   // %. The volume of a whole phase has no such disorder and need not wait as long: it closes its excess while the
   // particles move by a support, over which their neighbours change.
@@ -210,9 +210,8 @@ void Flow::set_matrix(double dt) {
   scratch.lease(rows.right_hand_side, n);
   GfdPressureMatrix pairs{stencils(), density_property()};
   if (features.openings) {
-    layers->give_pressures(
-        time + dt, read(particles.velocity),
-        [&](const Vec3& place, std::size_t i) { return -hydrostatic_part(place, phase[i]); });
+    layers->give_pressures(time + dt, read(particles.velocity),
+                           [&](const Vec3& place, std::size_t i) { return -hydrostatic_part(place, phase[i]); });
     rows.pressure_fixed = &layers->masked();
     pairs.masked = layers->masked().data();
     pairs.tied = &layers->tied();
@@ -226,9 +225,7 @@ void Flow::set_matrix(double dt) {
     if (!in_domain(i)) rows.diagonal[i] = 0;
   });
   rows.coefficient = reciprocal_density.data();
-  const auto of_divergence = [&](std::size_t i) {
-    return in_domain(i) ? -particles.volume * divergence[i] / dt : 0.0;
-  };
+  const auto of_divergence = [&](std::size_t i) { return in_domain(i) ? -particles.volume * divergence[i] / dt : 0.0; };
   const double squares = parallel_sum(n, [&](std::size_t i) {
     const double value = in_domain(i) ? of_divergence(i) - particles.volume * source[i] : 0.0;
     rows.right_hand_side[i] = value;
@@ -308,7 +305,8 @@ void Flow::refuse_unconverged_diffusion() const {
 // flow may hold is its mechanical energy at the start and that of the interfaces, and what rearranged particles lift, a
 // tenth of the weight over a spacing. An instability passes twice of it soon.
 void Flow::refuse_energy_from_nothing() const {
-  if (features.forces || features.moving_walls || features.moving_bodies || features.openings) return;  // their work is not followed
+  if (features.forces || features.moving_walls || features.moving_bodies || features.openings)
+    return;  // their work is not followed
   const double kinetic =
       parallel_sum(size(), [&](std::size_t i) { return mass(i) * squared_norm(next_velocity, dimensions, i) / 2; });
   if (kinetic <= 2 * std::max(0.0, energy_supply - potential_energy()) + 0.1 * weight * spacing()) return;

@@ -84,7 +84,7 @@ struct Flow {
   ParticleStore particles;
   Array<double>* pressure = nullptr;  // p
   Array<std::int64_t>* phase_number = nullptr;
-  std::unique_ptr<BufferLayers> openings;    // null: none
+  std::unique_ptr<BufferLayers> openings;  // null: none
   Boundary boundary;
   Speeds speeds;
   double energy_supply = 0;          // mechanical energy at the start and that of the interfaces
@@ -138,10 +138,10 @@ struct Flow {
   double gravity_potential(std::size_t i) const {
     return gravity_potential(vector_at(particles.position, dimensions, i));
   }
-  double hydrostatic_part(std::size_t i) const;                            // p - pi
-  double hydrostatic_part(const Vec3& place, std::uint8_t of_phase) const;  // of a particle there
+  double hydrostatic_part(std::size_t i) const;                                              // p - pi
+  double hydrostatic_part(const Vec3& place, std::uint8_t of_phase) const;                   // of a particle there
   double last_reduced(std::size_t i) const { return (*pressure)[i] - hydrostatic_part(i); }  // pi of the last step
-  double largest_speed() const;  // in the domain
+  double largest_speed() const;                                                              // in the domain
   double kinetic_energy() const;
   double potential_energy() const;  // across axes with sides
   double roundness() const;         // of the second of two phases: surface of a ball of its volume over that area

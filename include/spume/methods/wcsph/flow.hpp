@@ -10,10 +10,10 @@
 
 #include "spume/methods/wcsph/options.hpp"
 #include "spume/operators/wcsph_sums.hpp"
+#include "spume/particles/acoustic_layers.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/averaged_walls.hpp"
 #include "spume/particles/boundary.hpp"
-#include "spume/particles/acoustic_layers.hpp"
 #include "spume/particles/buffer_layers.hpp"
 #include "spume/particles/excess_relaxation.hpp"
 #include "spume/particles/phase_law.hpp"
@@ -66,7 +66,7 @@ struct Flow {
   FloatVectorField shift{};         // velocity of shifting, delta u
   Array<double>* excess = nullptr;
   Array<std::int64_t>* phase_number = nullptr;
-  std::unique_ptr<BufferLayers> openings;  // null: none
+  std::unique_ptr<BufferLayers> openings;    // null: none
   std::unique_ptr<AcousticLayers> acoustic;  // null: none
   Boundary boundary;
   double listed_time = 0;  // of the places of moving bodies in the lists
