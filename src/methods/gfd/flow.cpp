@@ -142,7 +142,9 @@ double Flow::kinetic_energy() const {
 
 double Flow::potential_energy() const {
   if (!features.gravity) return 0;
-  return parallel_sum(size(), [&](std::size_t i) { return in_domain(i) ? mass(i) * gravity_potential(i) : 0.0; });
+  if (features.openings)
+    return parallel_sum(size(), [&](std::size_t i) { return in_domain(i) ? mass(i) * gravity_potential(i) : 0.0; });
+  return parallel_sum(size(), [&](std::size_t i) { return mass(i) * gravity_potential(i); });
 }
 
 double Flow::roundness() const {
@@ -190,6 +192,14 @@ double Flow::gravity_potential(const Vec3& place) const {
   return sum;
 }
 
+double Flow::gravity_potential(std::size_t i) const {
+  double sum = 0;
+  for (int axis = 0; axis < dimensions; ++axis)
+    if (!scene.domain.periodic(axis))
+      sum -= scene.fluid.gravity[axis] * ((*particles.position[axis])[i] - arrangement.origin[axis]);
+  return sum;
+}
+
 double Flow::hydrostatic_part(const Vec3& place, std::uint8_t of_phase) const {
   double sum = features.gravity ? -densities[of_phase] * gravity_potential(place) : 0;
   for (const Colour& colour : colours) sum += colour.mean_potential * colour.is(of_phase);
@@ -197,7 +207,9 @@ double Flow::hydrostatic_part(const Vec3& place, std::uint8_t of_phase) const {
 }
 
 double Flow::hydrostatic_part(std::size_t i) const {
-  return hydrostatic_part(vector_at(particles.position, dimensions, i), phase[i]);
+  double sum = features.gravity ? -densities[phase[i]] * gravity_potential(i) : 0;
+  for (const Colour& colour : colours) sum += colour.mean_potential * colour.is(phase[i]);
+  return sum;
 }
 
 double Flow::leased_bytes() const {

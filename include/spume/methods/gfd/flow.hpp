@@ -135,9 +135,7 @@ struct Flow {
   FloatVectorField displacement_by_shift() const { return shift == nullptr ? FloatVectorField{} : shift->displacement; }
   bool takes_viscosity_gradient() const;
   double gravity_potential(const Vec3& place) const;  // -g . (x - x_0), of gravity across sides
-  double gravity_potential(std::size_t i) const {
-    return gravity_potential(vector_at(particles.position, dimensions, i));
-  }
+  double gravity_potential(std::size_t i) const;
   double hydrostatic_part(std::size_t i) const;                                              // p - pi
   double hydrostatic_part(const Vec3& place, std::uint8_t of_phase) const;                   // of a particle there
   double last_reduced(std::size_t i) const { return (*pressure)[i] - hydrostatic_part(i); }  // pi of the last step
