@@ -75,20 +75,21 @@ TEST(GfdOpenings, APhaseEntersThatTheSceneDoesNotHave) {
   EXPECT_EQ(run.series()["volume_water"], 0);
 }
 
-// u = 1 + sin(t) / 2: what enters is accelerated, p = rho du/dt (1 - x). The velocity meets that of the end of a step,
-// the pressure that of its middle, dt/2 before.
+// u = 1 + sin(t) / 2: what enters is accelerated, p = rho du/dt (1 - x). Particles move by the velocity of the end of a
+// step, the layers by its mean: a dt / 2 apart, which is what evening out the density may give back in the velocity, and
+// a tenth of it from step to step in the pressure. Without the gradient that the inflow gives it is off by all of it.
 TEST(GfdOpenings, APlugFlowFollowsItsInflow) {
   GfdRun run(gfd_stream, {"inflow.0.velocity=[\"1 + 0.5*sin(t)\", \"0\"]"});
-  run.until(0.5);
-  const double dt = run.method.step_limit().dt;
+  const double dt = 0.01, acceleration = 0.5 * std::cos(0.5);
+  run.steps(50, dt);
   const StreamErrors errors = stream_errors(
       run,
       [](const Vec3&) {
         return Vec3{1 + 0.5 * std::sin(0.5), 0, 0};
       },
-      [](const Vec3& r) { return -1000 * 0.5 * std::cos(0.5) * (r[0] - 1); });
-  EXPECT_LT(errors.velocity, 1e-5);
-  EXPECT_LT(errors.pressure, 0.5 * 1000 * dt);
+      [&](const Vec3& r) { return -1000 * acceleration * (r[0] - 1); });
+  EXPECT_LT(errors.velocity, 0.5 * dt * acceleration);
+  EXPECT_LT(errors.pressure, 0.1 * 1000 * acceleration / 2);
 }
 
 // Two sides with pressures P and 0 outside: liquid from rest there enters with P - rho u^2 / 2, so that
