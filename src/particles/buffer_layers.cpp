@@ -86,12 +86,9 @@ void BufferLayers::set_velocities(double t, double dt) {
       Column& column = columns_[first_[g] + cell];
       const Vec3& foot = gate.columns[cell].foot;
       const Vec3 first = before.velocity(foot), last = after.velocity(foot);
-      column.start = first;
       column.velocity = multiply(1.0 / 6, add(add(first, multiply(4, middle.velocity(foot))), last));
-      for (Vec3* velocity : {&column.start, &column.velocity}) {
-        double& normal = (*velocity)[opening.axis];
-        normal = gate.inwards * std::max(0.0, gate.inwards * normal);
-      }
+      double& normal = column.velocity[opening.axis];
+      normal = gate.inwards * std::max(0.0, gate.inwards * normal);
       column.acceleration = dt > 0 ? (last[opening.axis] - first[opening.axis]) / dt : 0;
     }
   }

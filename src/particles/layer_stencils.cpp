@@ -7,7 +7,7 @@
 namespace spume {
 
 void LayerStencils::find(const Arrangement& arrangement, const ParticleStore& particles,
-                         std::span<const std::uint8_t> phase) {
+                         std::span<const std::uint8_t> phase, double dt) {
   const int d = particles.dimensions;
   const std::vector<OpenGate>& gates = layers_.gates().list;
   members_ = &layers_.find_members();
@@ -22,8 +22,12 @@ void LayerStencils::find(const Arrangement& arrangement, const ParticleStore& pa
     const OpenGate& gate = gates[static_cast<std::size_t>(column.gate)];
     OpeningPoint& point = points_[k];
     point = opening_point(gate, column.gate, gate.wrapped(vector_at(particles.position, d, i)),
-                          gate.opening->inflow ? column.start : vector_at(particles.velocity, d, i), -1);
-    if (gate.opening->inflow) point.acceleration[gate.opening->axis] = column.acceleration;
+                          gate.opening->inflow ? column.velocity : vector_at(particles.velocity, d, i), -1);
+    if (gate.opening->inflow) {
+      // What the liquid has met in the last step.
+      point.acceleration[gate.opening->axis] = column.acceleration;
+      point.velocity[gate.opening->axis] -= dt * column.acceleration;
+    }
     point.phase = phase[i];
     masked_[i] = 1;
     point_of_[i] = static_cast<std::int32_t>(k);
@@ -70,7 +74,7 @@ void LayerStencils::predict(const std::array<const double*, 3>& before, const st
   parallel_for(points_.size(), [&](std::size_t g) {
     const auto i = static_cast<std::size_t>((*members_)[g]);
     Vec3 u = velocity_at(g, {after[0], after[1], after[2]}, true);
-    for (int axis = 0; axis < d; ++axis) u[axis] += dt * points_[g].acceleration[axis];  // to the end of the step
+    for (int axis = 0; axis < d; ++axis) u[axis] += dt * points_[g].acceleration[axis];  // to this step
     for (int axis = 0; axis < d; ++axis) after[axis][i] = u[axis];
     stencils_.given_pressure[g] *= density[i];
   });

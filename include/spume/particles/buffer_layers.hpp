@@ -29,8 +29,7 @@ class BufferLayers {
   struct Column {
     std::int32_t gate = 0, cell = 0;
     std::size_t phase = 0;    // of what enters
-    Vec3 start{};             // velocity of an inflow when this step begins
-    Vec3 velocity{};          // its mean over the step
+    Vec3 velocity{};          // of an inflow, its mean over this step
     double acceleration = 0;  // of it along the axis of the opening
   };
 

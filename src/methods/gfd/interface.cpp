@@ -34,8 +34,8 @@ void Flow::find_neighbours(double dt) {
   parallel_for(size(), [&](std::size_t i) { phase[i] = static_cast<std::uint8_t>((*phase_number)[i]); });
 }
 
-void Flow::find_layers() {
-  layers->find(arrangement, particles, phase);
+void Flow::find_layers(double dt) {
+  layers->find(arrangement, particles, phase, dt);
 }
 
 void Flow::measure_stencils() {

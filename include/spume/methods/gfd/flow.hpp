@@ -152,8 +152,8 @@ struct Flow {
   void pack();  // at the start, beside bodies
   void make_images(double dt);
   void find_neighbours(double dt);
-  void find_layers();       // where they mirror the liquid
-  void measure_stencils();  // (10), (11)
+  void find_layers(double dt);  // where they mirror the liquid
+  void measure_stencils();      // (10), (11)
   void find_bands();
   void blend_properties();           // (6), (7)
   void find_potentials();            // (14) to (17), pairwise
