@@ -3,7 +3,7 @@
 
 Groups are of particles of air less than LINK spacings from each other. A group that reaches neither the slot nor the air
 above the water is a bubble; it has departed in the first snapshot in which it is one. Its volume is the sum of that of
-its particles, at their densities. The period between departures times the flow rate is a second measure of it.
+its particles: at their densities, or that of all of them alike where the method is incompressible. The period between departures times the flow rate is a second measure of it.
 """
 import numpy as np
 from spume_tools.places import CASES
@@ -41,12 +41,15 @@ def groups(position, spacing):
 
 
 def bubbles(snapshot, spacing, top, half_width, density):
-    """Volume and height of every group of air between the slot and the air above."""
+    """Volume and height of every group of air between the slot and the air above. `density` at rest; None: particles
+    keep their volume."""
     phase = np.asarray(snapshot.field("phase"), int)
     at = snapshot.position[phase == 1][:, :2]
     if len(at) == 0:
         return []
-    volume = spacing**2 * density / np.asarray(snapshot.field("density"), float)[phase == 1]
+    volume = np.full(len(at), spacing**2)
+    if density is not None:
+        volume *= density / np.asarray(snapshot.field("density"), float)[phase == 1]
     group = groups(at, spacing)
     found = []
     for name in np.unique(group):
@@ -79,8 +82,9 @@ def measure(runs):
         half_width = float(slot["upper"][0])
         limit = largest_static_area(half_width)
         top = float(run.case["domain"]["upper"][1]) - spacing
-        times, volumes = departures(run.snapshots(), spacing, top, half_width,
-                                    float(run.case["phase"][1]["density"]), LEAST * limit)
+        # The density of particles of gfd is that of the filtered interface.
+        density = None if run.case["method"] == "gfd" else float(run.case["phase"][1]["density"])
+        times, volumes = departures(run.snapshots(), spacing, top, half_width, density, LEAST * limit)
         series = run.series
         balance = max(abs(float(np.max(np.abs(series[f"volume_{phase}"] - series[f"volume_{phase}"][0] -
                                               series[f"volume_in_{phase}"] + series[f"volume_out_{phase}"]))))

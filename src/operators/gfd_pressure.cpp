@@ -147,10 +147,20 @@ void GfdPressureOperator::find_weights() {
   });
 }
 
+// Without tied rows x itself.
+template <class T>
+const T* GfdPressureOperator::extended(std::span<const T> x, bool given, Array<T>& room) const {
+  if (matrix_.tied == nullptr) return x.data();
+  room.resize(x.size());
+  parallel_for(x.size(), [&](std::size_t i) { room[i] = x[i]; });
+  matrix_.tied->extend(room.data(), given);
+  return room.data();
+}
+
 Dots GfdPressureOperator::apply(std::span<const float> x, std::span<float> y, std::span<const float> w) {
   float* records = packed_->prepare(context_, 1);
   const int width = record_width(context_.dimensions, 1);
-  pack_scalar(context_, records, width, 0, x.data());
+  pack_scalar(context_, records, width, 0, extended(x, false, extended_));
   // x, offset, factor, density, shift, w, y and what tells whether the density varies.
   packed_->count(static_cast<double>(size()) * (24 + 4 * context_.dimensions));
   with_gfd_kernel(context_, [&]<int dimensions, class Kernel>() {
@@ -200,8 +210,9 @@ void GfdPressureOperator::residual(std::span<const double> q, std::span<const do
     record[0] = static_cast<float>(value);
     record[1] = static_cast<float>(value - double{record[0]});
   };
-  parallel_for(n, [&](std::size_t i) { split(out + i * width, q[i]); });
-  for_each_image_pressure(context_, q.data(), given,
+  const double* all = extended(q, given, extended_double_);
+  parallel_for(n, [&](std::size_t i) { split(out + i * width, all[i]); });
+  for_each_image_pressure(context_, all, given,
                           [&](std::size_t k, double value) { split(out + (n + k) * width, value); });
   packed_->count(static_cast<double>(n) * (40 + 4 * context_.dimensions));
   with_gfd_kernel(context_, [&]<int dimensions, class Kernel>() {
@@ -216,7 +227,7 @@ void GfdPressureOperator::residual(std::span<const double> q, std::span<const do
 
 void GfdPressureOperator::subtract_product(double scale, std::span<const float> x, std::span<double> r) {
   float* records = packed_->prepare(context_, 1);
-  pack_scalar(context_, records, record_width(context_.dimensions, 1), 0, x.data());
+  pack_scalar(context_, records, record_width(context_.dimensions, 1), 0, extended(x, false, extended_));
   packed_->count(static_cast<double>(size()) * (32 + 4 * context_.dimensions));
   with_gfd_kernel(context_, [&]<int dimensions, class Kernel>() {
     const Rows<dimensions, Kernel> rows{context_, matrix_, first_weight_.data(), weight_.data()};

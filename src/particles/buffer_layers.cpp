@@ -11,9 +11,6 @@
 namespace spume {
 namespace {
 
-// K L / c: Poinsot and Lele (1992), after D. H. Rudy and J. C. Strikwerda, J. Comput. Phys. 36 (1980), who have 0.27.
-constexpr double relaxation = 0.25;
-
 // Liquid that came back through a column, which is to be made up for; its own inverse.
 constexpr std::int64_t returned(std::int64_t column) {
   return -2 - column;
@@ -23,17 +20,15 @@ constexpr std::int64_t liquid_of_domain = -1;
 }  // namespace
 
 // In the life of a list a layer comes forward by half the skin.
-BufferLayers::BufferLayers(const Scene& scene, const Resolution& resolution, double skin,
-                           const std::vector<PhaseLaw>& laws, ParticleStore& particles)
+BufferLayers::BufferLayers(const Scene& scene, const Resolution& resolution, double skin, ParticleStore& particles)
     : scene_(scene),
       resolution_(resolution),
-      laws_(laws),
       particles_(particles),
       gates_(scene, particles.volume),
       reach_(resolution.support_radius + skin / 2),
       column_(&particles.fields.add<std::int64_t>("buffer_column", Lifetime::state)),
-      entered_(laws.size()),
-      left_(laws.size()) {
+      entered_(scene.phases.size()),
+      left_(scene.phases.size()) {
   for (std::size_t g = 0; g < gates_.list.size(); ++g) {
     const OpenGate& gate = gates_.list[g];
     first_.push_back(columns_.size());
@@ -44,9 +39,8 @@ BufferLayers::BufferLayers(const Scene& scene, const Resolution& resolution, dou
   }
 }
 
-void BufferLayers::fill(Array<std::int64_t>& phase, Array<double>& excess, std::vector<FloatVectorField> changes) {
+void BufferLayers::fill(Array<std::int64_t>& phase, std::vector<FloatVectorField> changes) {
   phase_ = &phase;
-  excess_ = &excess;
   changes_ = std::move(changes);
   column_->fill(liquid_of_domain);
   next_identifier_ = static_cast<std::int64_t>(particles_.size());
@@ -74,8 +68,9 @@ void BufferLayers::fill(Array<std::int64_t>& phase, Array<double>& excess, std::
   insert(all, newcomers);
 }
 
-void BufferLayers::find_members() {
+const Array<std::int32_t>& BufferLayers::find_members() {
   parallel_select(particles_.size(), members_, [&](std::size_t i) { return holds(i); });
+  return members_;
 }
 
 // The velocity of a step is its integral by Simpson's rule, as for moving walls.
@@ -118,9 +113,8 @@ void BufferLayers::set_velocities(double t, double dt) {
 void BufferLayers::add_columns_of_inflows(std::vector<Newcomer>& newcomers) const {
   constexpr double none = -1;
   std::vector<double> deepest(columns_.size(), none);
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    if (!holds(i)) continue;
-    const auto c = static_cast<std::size_t>((*column_)[i]);
+  for (const std::int32_t member : members_) {
+    const auto i = static_cast<std::size_t>(member), c = static_cast<std::size_t>((*column_)[i]);
     const double depth = gate_of((*column_)[i]).depth_behind(vector_at(particles_.position, particles_.dimensions, i));
     deepest[c] = std::max(deepest[c], depth);
   }
@@ -143,6 +137,7 @@ void BufferLayers::add_columns_of_inflows(std::vector<Newcomer>& newcomers) cons
 }
 
 void BufferLayers::renew() {
+  find_members();
   std::vector<Newcomer> newcomers;
   add_columns_of_inflows(newcomers);
   Array<std::int32_t> staying;
@@ -157,9 +152,10 @@ void BufferLayers::renew() {
     return gate.depth_behind(place) <= reach_ + gate.layer && gate.column_at(place) >= 0;
   };
   parallel_select(particles_.size(), staying, stays);
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
+  parallel_select(particles_.size(), passed_, [&](std::size_t i) { return (*column_)[i] < liquid_of_domain; });
+  for (const std::int32_t back : passed_) {
+    const auto i = static_cast<std::size_t>(back);
     std::int64_t& c = (*column_)[i];
-    if (c >= liquid_of_domain) continue;
     c = returned(c);
     const OpenGate& gate = gate_of(c);
     Newcomer one{.source = i,
@@ -219,127 +215,8 @@ void BufferLayers::apply_walls(const Boundary& boundary, std::size_t i, Vec3& r,
   r[axis] = along;
 }
 
-BufferLayers::Seen BufferLayers::look(const Liquid& liquid, const Array<float>& pressure, std::size_t i) const {
-  const NeighbourList& list = liquid.arrangement.list;
-  const Images& images = liquid.arrangement.images;
-  const OpenGate& gate = gate_of((*column_)[i]);
-  const int d = particles_.dimensions, normal = gate.opening->axis;
-  const bool inflow = gate.opening->inflow;
-  const auto n = static_cast<std::int32_t>(list.particles());
-  const std::int32_t* wall_point = images.wall_point();
-  Vec3 pull = liquid.gravity;
-  if (inflow) pull[normal] -= columns_[static_cast<std::size_t>((*column_)[i])].acceleration;
-  Seen all;
-  std::array<Seen, 2> sums;  // of the other phases, of its own
-  for (const std::int32_t point : list.of(i)) {
-    const std::size_t j = liquid.arrangement.particle_of(point), k = static_cast<std::size_t>(std::max(0, point - n));
-    if (holds(j)) continue;
-    if (point >= n) {
-      if (wall_point != nullptr && wall_point[k] >= 0) continue;
-      if (images.paths()[liquid.images.path(k)].side[normal] >= 0) continue;
-    }
-    double distance2 = 0, head = 0;
-    for (int axis = 0; axis < d; ++axis) {
-      const float* x = list.coordinate(axis);
-      const double way = double{x[point]} - double{x[i]};
-      distance2 += way * way;
-      head += pull[axis] * (double{x[i]} - double{x[j]});
-    }
-    const double weight = WendlandC2::w(std::sqrt(distance2) / resolution_.smoothing_length);
-    const bool same = (*phase_)[j] == (*phase_)[i];
-    const double density = laws_[static_cast<std::size_t>((*phase_)[i])].density;
-    Seen& sum = sums[same ? 1 : 0];
-    sum.weight += weight;
-    sum.pressure += weight * (double{pressure[j]} - liquid.background + density * head);
-    const PhaseLaw& law = laws_[static_cast<std::size_t>((*phase_)[j])];
-    all.all += weight;
-    all.outwards -= weight * gate.inwards * liquid.velocity(normal, j);
-    all.compliance += weight / (law.density * law.sound_speed);
-    for (int axis = 0; axis < d; ++axis) {
-      const double u = liquid.velocity(axis, j);
-      sum.velocity[axis] += weight * (point < n ? u : liquid.images.velocity(k, axis, u));
-    }
-  }
-  Seen seen = sums[sums[1].weight > 0 ? 1 : 0];
-  seen.all = all.all;
-  seen.outwards = all.outwards;
-  seen.compliance = all.compliance;
-  if (seen.weight > 0) {
-    seen.pressure /= seen.weight;
-    seen.velocity = multiply(1 / seen.weight, seen.velocity);
-  }
-  return seen;
-}
-
-void BufferLayers::find_pressures(const Liquid& liquid, Array<double>& excess, Array<float>& pressure,
-                                  Array<float>& volume) {
-  find_members();
-  const std::size_t n = members_.size();
-  seen_.resize(n);
-  parallel_for(n, [&](std::size_t k) { seen_[k] = look(liquid, pressure, static_cast<std::size_t>(members_[k])); });
-  // Expressions are not for several threads at a time.
-  double heaviest = 0;
-  for (const PhaseLaw& law : laws_) heaviest = std::max(heaviest, law.density);
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto i = static_cast<std::size_t>(members_[k]);
-    const std::int64_t c = (*column_)[i];
-    const OpenGate& gate = gate_of(c);
-    const PhaseLaw& law = laws_[static_cast<std::size_t>((*phase_)[i])];
-    const Seen& seen = seen_[k];
-    double p = seen.pressure;
-    if (!gate.opening->inflow) {
-      const auto axis = static_cast<std::size_t>(gate.opening->axis);
-      Vec3 foot{};
-      for (int a = 0; a < particles_.dimensions; ++a)
-        foot[a] = liquid.arrangement.list.coordinate(a)[i] + liquid.arrangement.origin[a];
-      foot = gate.wrapped(foot);
-      foot[axis] = gate.plane;
-      p = pressure_outside(scene_, *gate.opening, foot, heaviest, liquid.time);
-      // Fluids side by side have one pressure, so that their velocities add up as 1 / (rho c): the impedance of water
-      // alone would shoot air back that is with it.
-      const Column& column = columns_[static_cast<std::size_t>(c)];
-      if (column.known && seen.all > 0) p += (seen.outwards - seen.all * column.mean) / seen.compliance;
-    }
-    excess[i] = law.excess(p);
-    pressure[i] = static_cast<float>(p + liquid.background);
-    volume[i] = static_cast<float>(1 / (1 + excess[i]));
-  }
-}
-
-double BufferLayers::share_of_step(int axis, double sound_speed, double dt) const {
-  const double length = scene_.domain.upper[axis] - scene_.domain.lower[axis];
-  return -std::expm1(-relaxation * dt * sound_speed / length);
-}
-
-void BufferLayers::accept(double dt) {
+void BufferLayers::accept() {
   const int d = particles_.dimensions;
-  struct Mean {
-    double all = 0, outwards = 0, share = 0;
-  };
-  std::vector<Mean> means(columns_.size());
-  for (std::size_t k = 0; k < members_.size(); ++k) {
-    const auto i = static_cast<std::size_t>(members_[k]);
-    const Opening& opening = *gate_of((*column_)[i]).opening;
-    const Seen& seen = seen_[k];
-    if (opening.inflow || !(seen.weight > 0)) continue;
-    const double share = share_of_step(opening.axis, laws_[static_cast<std::size_t>((*phase_)[i])].sound_speed, dt);
-    Mean& mean = means[static_cast<std::size_t>((*column_)[i])];
-    mean.all += seen.all;
-    mean.outwards += seen.outwards;
-    mean.share += seen.all * share;
-    for (int axis = 0; axis < d; ++axis) {
-      double& u = (*particles_.velocity[axis])[i];
-      u += share * (seen.velocity[axis] - u);
-    }
-  }
-  for (std::size_t c = 0; c < columns_.size() && !scene_.free_surface; ++c) {
-    const Mean& mean = means[c];
-    if (!(mean.all > 0)) continue;
-    Column& column = columns_[c];
-    const double now = mean.outwards / mean.all;
-    column.mean = column.known ? column.mean + mean.share / mean.all * (now - column.mean) : now;
-    column.known = true;
-  }
   parallel_select(particles_.size(), passed_, [&](std::size_t i) {
     const Vec3 place = vector_at(particles_.position, d, i);
     return holds(i) ? gate_of((*column_)[i]).depth_behind(place) < 0 : gates_.outflow_behind(place) >= 0;
@@ -379,9 +256,9 @@ double BufferLayers::net_outflow(std::size_t phase) const {
 
 void BufferLayers::add_columns(SeriesTable& series) const {
   const std::string unit = particles_.dimensions == 3 ? "length^3" : "length^2";
-  for (std::size_t n = 0; n < laws_.size(); ++n) {
+  for (std::size_t n = 0; n < entered_.size(); ++n) {
     const std::string& name = scene_.phases[n].name;
-    const std::string of = laws_.size() > 1 ? "_" + name : "";  // one liquid has the columns of other methods
+    const std::string of = entered_.size() > 1 ? "_" + name : "";  // one liquid has the columns of other methods
     series.add("volume_" + name, unit + ", of its particles in the domain", [this, n] { return volume_inside(n); });
     series.add("volume_in" + of, unit + ", since the start",
                [this, n] { return particles_.volume * static_cast<double>(entered_[n]); });
@@ -390,53 +267,24 @@ void BufferLayers::add_columns(SeriesTable& series) const {
   }
 }
 
-BufferLayers::Fastest BufferLayers::fastest_inflow(double end) const {
-  constexpr int times = 32;
-  Fastest fastest;
-  std::vector<OpenGate> gates = gates_.list;
-  for (OpenGate& gate : gates) {
-    const Opening& opening = *gate.opening;
-    for (int n = 0; n <= times && opening.inflow; ++n) {
-      const double t = end * n / times;
-      const Entering entering(opening, gate.find_wet(particles_.dimensions - 1, t), t);
-      for (const OpenGate::Column& column : gate.columns)
-        if (const double mach = length(entering.velocity(column.foot)) / laws_[opening.phase].sound_speed;
-            column.wet && mach > fastest.mach)
-          fastest = {mach, opening.name};
-    }
-  }
-  return fastest;
-}
-
 void BufferLayers::save(StateWriter& writer) const {
-  std::vector<double> means;
   std::vector<std::int64_t> counts{next_identifier_};
-  for (const Column& one : columns_) means.insert(means.end(), {one.mean, one.known ? 1.0 : 0.0});
   counts.insert(counts.end(), entered_.begin(), entered_.end());
   counts.insert(counts.end(), left_.begin(), left_.end());
-  writer.f64("open_means", means);
   writer.i64("open_counts", counts);
 }
 
 void BufferLayers::load(StateReader& reader) {
-  Array<double> means;
   Array<std::int64_t> counts;
-  reader.f64("open_means", means);
   reader.i64("open_counts", counts);
-  if (means.size() != 2 * columns_.size() || counts.size() != 1 + 2 * laws_.size())
-    throw FileError("the checkpoint is of a scene with other openings");
-  for (std::size_t c = 0; c < columns_.size(); ++c) {
-    columns_[c].mean = means[2 * c];
-    columns_[c].known = means[2 * c + 1] != 0;
-  }
+  if (counts.size() != 1 + 2 * entered_.size()) throw FileError("the checkpoint is of a scene with other openings");
   next_identifier_ = counts[0];
-  std::copy_n(counts.data() + 1, laws_.size(), entered_.begin());
-  std::copy_n(counts.data() + 1 + laws_.size(), laws_.size(), left_.begin());
+  std::copy_n(counts.data() + 1, entered_.size(), entered_.begin());
+  std::copy_n(counts.data() + 1 + entered_.size(), left_.size(), left_.begin());
 }
 
 double BufferLayers::bytes() const {
-  double sum = static_cast<double>(columns_.capacity() * sizeof(Column) + seen_.capacity() * sizeof(Seen)) +
-               members_.bytes() + passed_.bytes();
+  double sum = static_cast<double>(columns_.capacity() * sizeof(Column)) + members_.bytes() + passed_.bytes();
   for (const OpenGate& gate : gates_.list)
     sum += static_cast<double>(gate.columns.capacity() * sizeof(OpenGate::Column) + 4 * gate.column_of.capacity());
   return sum;

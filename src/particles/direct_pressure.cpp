@@ -51,14 +51,14 @@ void DirectPressure::factorise(ProjectionMatrix& matrix, std::span<const float> 
   size_ = matrix.size();
   bordered_ = singular;
   if (size_ == 0) return;
-  find_pattern(*context, diagonal);
+  find_pattern(*context, matrix.tied(), diagonal);
   find_colours();
   find_entries(matrix);
   factorise_entries();
 }
 
 // Rows of fixed particles hold themselves alone, and so do their columns: nothing is added to what they have.
-void DirectPressure::find_pattern(const SweepContext& context, std::span<const float> diagonal) {
+void DirectPressure::find_pattern(const SweepContext& context, const TiedRows* tied, std::span<const float> diagonal) {
   const auto n = static_cast<std::int32_t>(size_);
   const std::int32_t* source = context.images == nullptr ? nullptr : context.images->source();
   const std::int32_t* point = context.walls == nullptr ? nullptr : context.images->wall_point();
@@ -68,8 +68,19 @@ void DirectPressure::find_pattern(const SweepContext& context, std::span<const f
   std::vector<std::int32_t> met;
   for (std::int32_t i = 0; i < n; ++i) {
     met.assign(1, i);
-    const auto meet = [&](std::int32_t j) {
+    const auto meet_particle = [&](std::int32_t j) {
       if (!fixed(j)) met.push_back(j);
+    };
+    const auto meet_sources = [&](const WallStencils& stencils, std::size_t g, auto&& meet_source) {
+      for (std::int64_t e = stencils.first[g]; e < stencils.first[g + 1]; ++e)
+        meet_source(stencils.source[static_cast<std::size_t>(e)]);
+    };
+    const auto meet = [&](std::int32_t j) {
+      const std::int32_t g = tied == nullptr ? -1 : tied->point[static_cast<std::size_t>(j)];
+      if (g < 0)
+        meet_particle(j);
+      else
+        meet_sources(*tied->stencils, static_cast<std::size_t>(g), meet_particle);
     };
     if (!fixed(i))
       for (const std::int32_t p : context.list->of(static_cast<std::size_t>(i))) {
@@ -78,9 +89,7 @@ void DirectPressure::find_pattern(const SweepContext& context, std::span<const f
         } else if (const std::int32_t k = p - n; point == nullptr || point[k] < 0) {
           meet(source[k]);
         } else {
-          const auto g = static_cast<std::size_t>(point[k]);
-          for (std::int64_t e = context.walls->first[g]; e < context.walls->first[g + 1]; ++e)
-            meet(context.walls->source[static_cast<std::size_t>(e)]);
+          meet_sources(*context.walls, static_cast<std::size_t>(point[k]), meet);
         }
       }
     std::sort(met.begin(), met.end());

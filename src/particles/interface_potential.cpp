@@ -99,7 +99,9 @@ InterfaceMeasure::InterfaceMeasure(const InterfaceView& view, Colour& colour, bo
   });
   const auto& band = view_.bands.varying();
   colour_.area = view_.particle_volume * parallel_sum(band.size(), [&](std::size_t s) {
-                   return std::sqrt(squared_norm(gradient_, dimensions, static_cast<std::size_t>(band[s])));
+                   const auto i = static_cast<std::size_t>(band[s]);
+                   if (view_.left_out != nullptr && (*view_.left_out)[i] >= 0) return 0.0;
+                   return std::sqrt(squared_norm(gradient_, dimensions, i));
                  });
 }
 

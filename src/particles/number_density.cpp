@@ -36,7 +36,9 @@ struct Reader {
   const Resolution& resolution;
   const MomentFields& moments;
   const FreeSurface* surface;
+  const Array<std::int64_t>* left_out;
 
+  bool counts(std::size_t i) const { return left_out == nullptr || (*left_out)[i] < 0; }
   bool near_box(std::size_t i) const {
     const double support_radius = arrangement.grid.support_radius();
     for (const SolidBox& box : domain.boxes) {
@@ -100,7 +102,7 @@ double displacement_fraction(const Arrangement& arrangement, const ParticleStore
 double even_out_density(const DensityRelaxation& relaxation, const Arrangement& arrangement, const Domain& domain,
                         const VectorField& at, const Resolution& resolution, const MomentFields& moments,
                         const FreeSurface* surface, std::span<double> divergence) {
-  const Reader read{arrangement, domain, at, resolution, moments, surface};
+  const Reader read{arrangement, domain, at, resolution, moments, surface, relaxation.left_out};
   struct Sum {
     double disorder = 0, particles = 0, volume = 0;
   };
@@ -109,7 +111,9 @@ double even_out_density(const DensityRelaxation& relaxation, const Arrangement& 
       [&](std::size_t first, std::size_t last) {
         Sum sum;
         for (std::size_t i = first; i < last; ++i)
-          if (read.tells_density(i)) {
+          if (!read.counts(i)) {
+            continue;
+          } else if (read.tells_density(i)) {
             const double excess = read.excess(i);
             sum.disorder += within(excess, particle_disorder);
             sum.particles += 1;
@@ -127,7 +131,7 @@ double even_out_density(const DensityRelaxation& relaxation, const Arrangement& 
   const double closing = relaxation.displacement / (relaxation.steps * relaxation.dt);
   const double expanding = surface != nullptr ? closing / more_steps_below_surface : closing;
   parallel_for(divergence.size(), [&](std::size_t i) {
-    if (!read.tells_density(i)) return;
+    if (!read.counts(i) || !read.tells_density(i)) return;
     const double own = read.excess(i);
     const double rate = own < 0 ? closing * std::max(1.0, -own / thin_as_void) : expanding;
     const double taken = relaxation.still == nullptr ? 1.0 : 1.0 - double{(*relaxation.still)[i]};

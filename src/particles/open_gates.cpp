@@ -159,12 +159,15 @@ Vec3 Entering::velocity(const Vec3& foot) const {
   return u;
 }
 
-double pressure_outside(const Scene& scene, const Opening& opening, const Vec3& foot, double density, double t) {
+double pressure_outside(const Scene& scene, const Opening& opening, const Vec3& foot, const OutsideDensity& density,
+                        double t) {
   const int up = scene.domain.dimensions - 1;
   double pressure = 0;
   if (opening.pressure) pressure = value_at(*opening.pressure, foot, t);
-  if (opening.level && !opening.inflow)
-    pressure += density * -scene.fluid.gravity[up] * std::max(0.0, value_at(*opening.level, {}, t) - foot[up]);
+  if (opening.level && !opening.inflow) {
+    const double depth = value_at(*opening.level, {}, t) - foot[up];
+    pressure += (depth > 0 ? density.below : density.above) * -scene.fluid.gravity[up] * depth;
+  }
   if (!std::isfinite(pressure)) refuse_value(opening, "the pressure of an outflow", pressure);
   return pressure;
 }

@@ -190,7 +190,7 @@ void OpenSides::add_copies_of_nearest(const ParticleStore& particles, const std:
 void OpenSides::follow(const WallStencils& stencils, const std::array<const double*, 3>& velocity) {
   const int d = scene_.domain.dimensions;
   parallel_for(points_.size(), [&](std::size_t p) {
-    const std::int32_t k = points_[p].drifting;
+    const std::int32_t k = points_[p].number;
     const std::size_t g = first_point_ + p;
     if (k < 0 || stencils.kind[g] != PointKind::outflow) return;
     for (int axis = 0; axis < d; ++axis)
@@ -241,7 +241,7 @@ void OpenSides::load(StateReader& reader) {
 }
 
 double OpenSides::bytes() const {
-  double sum = static_cast<double>(drifting_.capacity() * sizeof(Drifting) + points_.capacity() * sizeof(Point));
+  double sum = static_cast<double>(drifting_.capacity() * sizeof(Drifting) + points_.capacity() * sizeof(OpeningPoint));
   for (const OpenGate& gate : gates_)
     sum += static_cast<double>(gate.columns.capacity() * sizeof(OpenGate::Column) + 4 * gate.column_of.capacity());
   return sum;

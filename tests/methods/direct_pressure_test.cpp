@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "methods/gfd_run.hpp"
+#include "methods/gfd_openings_run.hpp"
 #include "methods/les_sph_simulation.hpp"
 
 namespace spume::test {
@@ -121,6 +121,7 @@ TEST(DirectSolver, AgreesWithTheIterativeOneInGfd) {
   expect_agreement<GfdRun>(drop_in_a_box, {"time.viscosity=\"implicit\""});
   expect_agreement<GfdRun>(drop_in_a_turning_tank);
   expect_agreement<GfdRun>(small_ball);
+  expect_agreement<GfdRun>(gfd_drop_in_a_stream);
 }
 
 TEST(DirectSolver, AgreesWithTheIterativeOneInLesSph) {

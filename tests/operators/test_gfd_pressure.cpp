@@ -95,6 +95,74 @@ TEST(GfdPressureOperator, AgreesWithTheSlowTwinOnEveryArrangement) {
   });
 }
 
+// Every second masked row is tied to three that are not, with either sign and a given part, whatever the vectors hold
+// there.
+TEST(GfdPressureOperator, TiedRowsFollowTheOthers) {
+  for_every_equal_arrangement([&](Arrangement& a) {
+    GfdSystem system(a);
+    std::vector<std::int32_t> rows, point(a.size(), -1), free;
+    WallStencils stencils;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      if (system.masked[i] == 0)
+        free.push_back(static_cast<std::int32_t>(i));
+      else if (i % 2 == 0)
+        rows.push_back(static_cast<std::int32_t>(i));
+    stencils.source.resize(3 * rows.size());
+    stencils.coefficient.resize(3 * rows.size());
+    stencils.first.resize(rows.size() + 1);
+    stencils.kind.resize(rows.size());
+    stencils.pressure_sign.resize(rows.size());
+    stencils.given_pressure.resize(rows.size());
+    const auto random = a.random(150);
+    for (std::size_t g = 0; g < rows.size(); ++g) {
+      point[static_cast<std::size_t>(rows[g])] = static_cast<std::int32_t>(g);
+      stencils.first[g] = static_cast<std::int64_t>(3 * g);
+      stencils.kind[g] = g % 2 == 0 ? PointKind::inflow : PointKind::outflow;
+      stencils.pressure_sign[g] = g % 2 == 0 ? 1.0F : -1.0F;
+      stencils.given_pressure[g] = random[g];
+      for (std::size_t k = 0; k < 3; ++k) {
+        stencils.source[3 * g + k] = free[(5 * g + 11 * k) % free.size()];
+        stencils.coefficient[3 * g + k] = k == 0 ? 1.5 : -0.25;
+      }
+    }
+    stencils.first[rows.size()] = static_cast<std::int64_t>(3 * rows.size());
+    const TiedRows tied{rows, point, &stencils};
+    GfdPressureOperator fast;
+    fast.bind(
+        a.context, a.packed,
+        {system.stencils.read(), system.density.read(), system.diagonal_shift.data(), system.masked.data(), &tied});
+    const auto x = random_unmasked(system, 151);
+    const auto extended = [&](bool given) {
+      Array<double> all(a.size());
+      for (std::size_t i = 0; i < a.size(); ++i) all[i] = x[i];
+      for (std::size_t g = 0; g < rows.size(); ++g) {
+        double sum = given ? stencils.given_pressure[g] : 0.0;
+        for (std::size_t k = 3 * g; k < 3 * g + 3; ++k)
+          sum += double{stencils.pressure_sign[g]} * stencils.coefficient[k] * x[stencils.source[k]];
+        all[static_cast<std::size_t>(rows[g])] = sum;
+      }
+      return all;
+    };
+    const Array<double> change = extended(false), whole = extended(true);
+    Array<double> q(a.size()), zero(a.size(), 0.0), r(a.size()), taken(a.size(), 0.0);
+    Array<float> y(a.size());
+    for (std::size_t i = 0; i < a.size(); ++i) q[i] = x[i];
+    fast.apply(x, y, x);
+    fast.residual(q, zero, r, true);
+    fast.subtract_product(1, x, taken);
+    Comparison product("A x"), residual("-A q"), subtracted("-A x");
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const double rounding = system.twin.tolerance(i);
+      Sum of_change = system.product(i, change), of_whole = system.product(i, whole);
+      product.add(y[i], of_change, rounding, i);
+      of_change.value = -of_change.value;
+      of_whole.value = -of_whole.value;
+      subtracted.add(taken[i], of_change, rounding, i);
+      residual.add(r[i], of_whole, rounding, i);
+    }
+  });
+}
+
 // All but the coefficients is double in both: they differ by the rounding of some 80 terms in double.
 TEST(GfdPressureOperator, TakesTheProductOfACorrectionFromAResidual) {
   for_every_equal_arrangement([&](Arrangement& a) {

@@ -112,6 +112,11 @@ class BubbleDeparture(CaseTest):
         self.assertAlmostEqual(measured["slot_volume"], np.pi * radius**2 / 1.25, delta=0.06)
         self.assertAlmostEqual(measured["slot_volume_error"], measured["slot_volume"] / measured["slot_static_limit"] - 1)
         self.assertAlmostEqual(measured["slot_balance"], 0.01)
+        # Particles of an incompressible phase keep their volume, whatever the filtered density is.
+        text = (folder / "case.toml").read_text(encoding="utf-8")
+        (folder / "case.toml").write_text(text.replace('method = "wcsph"', 'method = "gfd"'), encoding="utf-8")
+        measured = module.measure({"gfd": Results(folder)})
+        self.assertAlmostEqual(measured["gfd_volume"], np.pi * radius**2, delta=0.06)
 
 
 class PoiseuilleTwoPhase(CaseTest):

@@ -7,7 +7,8 @@
 //
 // The matrix is not symmetric: o_i and f_i are those of the row. Without a shift and without masked rows it is singular
 // in closed and periodic domains. Masked rows belong to particles with a given value: they give zero, and vectors must
-// be zero there. Its interface is that of PressureOperator.
+// be zero there. With tied rows, which are masked too, their q follows from that of others (operators/tied_rows.hpp),
+// whatever the vectors hold there. Its interface is that of PressureOperator.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +16,7 @@
 
 #include "spume/operators/gfd_moments.hpp"
 #include "spume/operators/projection_matrix.hpp"
+#include "spume/operators/tied_rows.hpp"
 
 namespace spume {
 
@@ -24,6 +26,7 @@ struct GfdPressureMatrix {
   PhaseProperty density;
   const float* diagonal_shift = nullptr;  // null: none
   const std::uint8_t* masked = nullptr;   // null: no masked rows
+  const TiedRows* tied = nullptr;         // null: none
 };
 
 // Rows where the density varies read weights with 1 / rho_ij that bind() stores, 4 bytes a pair: they then take 0.9
@@ -47,10 +50,16 @@ class GfdPressureOperator final : public ProjectionMatrix {
 
   std::size_t size() const override { return context_.list->particles(); }
   const SweepContext* context() const override { return &context_; }
-  double bytes() const { return partial_.bytes() + first_weight_.bytes() + block_start_.bytes() + weight_.bytes(); }
+  const TiedRows* tied() const override { return matrix_.tied; }
+  double bytes() const {
+    return partial_.bytes() + first_weight_.bytes() + block_start_.bytes() + weight_.bytes() + extended_.bytes() +
+           extended_double_.bytes();
+  }
 
  private:
   void find_weights();
+  template <class T>
+  const T* extended(std::span<const T> x, bool given, Array<T>& room) const;
 
   SweepContext context_;
   PackedNeighbours* packed_ = nullptr;
@@ -60,6 +69,8 @@ class GfdPressureOperator final : public ProjectionMatrix {
   // batch that a row begins with, and that of its block.
   Array<float> weight_;
   Array<std::uint32_t> first_weight_, block_start_;
+  Array<float> extended_;  // with tied rows alone
+  Array<double> extended_double_;
 };
 
 }  // namespace spume

@@ -9,6 +9,7 @@
 namespace spume {
 
 struct SweepContext;
+struct TiedRows;
 
 class ProjectionMatrix {
  public:
@@ -16,6 +17,8 @@ class ProjectionMatrix {
   virtual std::size_t size() const = 0;
   // The lists, images and wall points that its rows pass over; null: rows meet more than these.
   virtual const SweepContext* context() const { return nullptr; }
+  // Rows whose unknown follows from others; null: none.
+  virtual const TiedRows* tied() const { return nullptr; }
   // y = A x in float, with sum w y and sum y y accumulated in double in fixed blocks.
   virtual Dots apply(std::span<const float> x, std::span<float> y, std::span<const float> w) = 0;
   // r = b - A q with q, differences and sums in double. `given` false: without the pressures given behind openings, as

@@ -5,7 +5,8 @@
 // The matrix is assembled from products with vectors that are 1 at the particles of one colour: no row meets two of
 // them, so that each entry is read off a product in double (A. Curtis, M. Powell and J. Reid, IMA J. Appl. Math. 13
 // (1974) 117). It has then the weights of the operator that the iterative solvers apply, whatever its sums. Which
-// particles a row meets follows from the lists, from the sources of images and from the fits at wall points.
+// particles a row meets follows from the lists, from the sources of images and from the fits at wall points and of tied
+// rows.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +16,7 @@
 
 #include "spume/operators/pair_sweep.hpp"
 #include "spume/operators/projection_matrix.hpp"
+#include "spume/operators/tied_rows.hpp"
 
 namespace spume {
 
@@ -46,7 +48,7 @@ class DirectPressure {
 
  private:
   struct Factors;
-  void find_pattern(const SweepContext& context, std::span<const float> diagonal);
+  void find_pattern(const SweepContext& context, const TiedRows* tied, std::span<const float> diagonal);
   void find_colours();
   void find_entries(ProjectionMatrix& matrix);
   void factorise_entries();

@@ -38,7 +38,8 @@ struct InterfaceView {
   const std::vector<std::array<float, 3>>& reflection;  // of geometric vectors, per path of an image
   std::array<const float*, 6> correction;               // B of gfd_moments.hpp, at the varying particles
   ScratchPool& scratch;
-  int smoothing;  // InterfaceOptions
+  int smoothing;                                  // InterfaceOptions
+  const Array<std::int64_t>* left_out = nullptr;  // of the area, particles with 0 or more; null: none
 };
 
 // Measures the interface of a colour, whose value is known, and adds to its potential.

@@ -32,7 +32,8 @@ struct DensityRelaxation {
   double steps = 0;         // pressure.density_relaxation
   double displacement = 0;  // displacement_fraction() of the step
   double dt = 0;
-  const Array<float>* still = nullptr;  // shares of particles that are left alone as they stand; null: 0
+  const Array<float>* still = nullptr;            // shares of particles that are left alone as they stand; null: 0
+  const Array<std::int64_t>* left_out = nullptr;  // particles with 0 or more do not count; null: all do
 };
 
 // Subtracts from `divergence` that which evens out the number density over N = `pressure.density_relaxation` steps of

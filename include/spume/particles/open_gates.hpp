@@ -68,8 +68,14 @@ class Entering {
 
 double value_at(const Expression& expression, const Vec3& r, double t);
 
-// The pressure that an outflow gives at a place of its side, above a liquid of this density hydrostatic from its level
-// on. Throws StepFailure for one that is not finite.
-double pressure_outside(const Scene& scene, const Opening& opening, const Vec3& foot, double density, double t);
+// What stands outside below and above the level of an outflow.
+struct OutsideDensity {
+  double below = 0, above = 0;
+};
+
+// The pressure that an outflow gives at a place of its side, hydrostatic from its level on. Throws StepFailure for one
+// that is not finite.
+double pressure_outside(const Scene& scene, const Opening& opening, const Vec3& foot, const OutsideDensity& density,
+                        double t);
 
 }  // namespace spume

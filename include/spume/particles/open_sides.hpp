@@ -20,10 +20,9 @@
 #include "spume/operators/wall_stencils.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/open_gates.hpp"
+#include "spume/particles/opening_points.hpp"
 
 namespace spume {
-
-struct PointFits;
 
 class OpenSides {
  public:
@@ -45,11 +44,7 @@ class OpenSides {
   // not finite.
   void find_stencils(const Arrangement& arrangement, const VectorField& at, double t, WallStencils& stencils,
                      std::array<Array<double>, 3>& position);
-  // The pressure gradient behind inflows, for the points that find_stencils() appended: what a velocity has gained in a
-  // step `dt` without pressure, beside what is given, the pressure takes away. Where `before` differs from what is
-  // given it goes on linearly through that. With zero in place of the gradient the pressure of an incompressible
-  // channel of 20 particles across has a standard deviation of 7.5 % of its mean in place of 1.5 %, and its velocity an
-  // error of 0.31 % in place of 0.12 %. `before`: null components are zero, and nothing is given.
+  // give_opening_gradients() for the points that find_stencils() appended.
   void give_gradients(const std::array<const double*, 3>& before, const std::array<const double*, 3>& after, double dt,
                       WallStencils& stencils) const;
   // Pressures over density for the points that find_stencils() appended, with the potential that is part of q.
@@ -71,13 +66,6 @@ class OpenSides {
   double bytes() const;
 
  private:
-  struct Point {
-    Vec3 place{}, mirror{}, foot{};
-    std::int32_t gate = 0;
-    std::int32_t drifting = -1;  // of an outflow: its number among the drifting points
-    Vec3 velocity{};             // given, or of one that drifts
-    Vec3 acceleration{};         // of what is given, over the last step
-  };
   struct Drifting {
     Vec3 place{}, next{}, velocity{};
     int gate = 0;
@@ -106,9 +94,6 @@ class OpenSides {
   void append_corners(WallStencils& stencils, std::array<Array<double>, 3>& position);
   void give_corner_gradients(const std::array<const double*, 3>& before, const std::array<const double*, 3>& after,
                              double dt, WallStencils& stencils) const;
-  template <int dimensions>
-  void fit(const Arrangement& arrangement, const VectorField& at, std::size_t first, std::size_t last,
-           PointFits& fits) const;
 
   const Scene& scene_;
   const Resolution resolution_;
@@ -116,7 +101,7 @@ class OpenSides {
   OpenGates open_gates_;
   std::vector<OpenGate>& gates_;
   std::vector<Drifting> drifting_;
-  std::vector<Point> points_;
+  std::vector<OpeningPoint> points_;  // number: among the drifting points
   std::vector<Corner> corners_;
   std::size_t first_corner_ = 0;
   std::size_t first_point_ = 0;  // among the points of the stencils

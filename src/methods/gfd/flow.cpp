@@ -25,7 +25,8 @@ bool differ(const std::vector<double>& values) {
 
 }  // namespace
 
-Features::Features(const LoadedCase& loaded) : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies) {
+Features::Features(const LoadedCase& loaded)
+    : BoundaryFeatures(loaded.scene.domain, loaded.scene.bodies, loaded.scene.openings) {
   const Scene& scene = loaded.scene;
   const Vec3& g = scene.fluid.gravity;
   interfaces = scene.phases.size() > 1;
@@ -59,6 +60,10 @@ ViscousChoice::ViscousChoice(const LoadedCase& loaded, const Resolution& resolut
   }
   limit = limits.diffusive * resolution.spacing * resolution.spacing / largest;
   speed = expected_speed(scene, time.end);
+  if (!scene.openings.empty()) {
+    reason = "explicit, beside openings";
+    return;
+  }
   implicit = limits.viscosity == ViscousSteps::implicit;
   reason = std::string("time.viscosity = \"") + (implicit ? "implicit" : "explicit") + '"';
   if (limits.viscosity != ViscousSteps::automatic) return;
@@ -89,7 +94,9 @@ Flow::Flow(const LoadedCase& loaded_case)
       viscosities(of_phases(scene, &Phase::viscosity)),
       viscous(loaded_case, resolution),
       particles(dimensions, scene.particles),
-      boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution)),
+      openings(features.openings ? std::make_unique<BufferLayers>(scene, resolution, 0, particles) : nullptr),
+      boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution), nullptr,
+               openings == nullptr ? nullptr : &openings->gates()),
       first_volume(scene.phases.size()),
       arrangement(scene.domain, resolution, particles.volume, particles.size()),
       moments(particles, {.kernel_sum = true, .concentration_gradient = features.shifting, .fading = {}}),
@@ -109,6 +116,10 @@ Flow::Flow(const LoadedCase& loaded_case)
   if (features.writes_diffusion) particles.add_vector(diffusion, diffusion_field, Lifetime::result);
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
   parallel_for(size(), [&](std::size_t i) { (*phase_number)[i] = scene.particles.phase[i]; });
+  if (features.openings) {
+    openings->fill(*phase_number, {});
+    layers = std::make_unique<LayerStencils>(scene, resolution, *openings);
+  }
   speeds = find_speeds(arrangement, particles);
   double g2 = 0;
   for (int axis = 0; axis < dimensions && features.gravity; ++axis)
@@ -116,13 +127,23 @@ Flow::Flow(const LoadedCase& loaded_case)
   weight = std::sqrt(g2) * parallel_sum(size(), [&](std::size_t i) { return mass(i); });
 }
 
+double Flow::largest_speed() const {
+  if (!features.openings) return speeds.largest;
+  return std::sqrt(parallel_max(size(), 0.0, [&](std::size_t i) {
+    return in_domain(i) ? squared_norm(particles.velocity, dimensions, i) : 0.0;
+  }));
+}
+
 double Flow::kinetic_energy() const {
-  return parallel_sum(size(),
-                      [&](std::size_t i) { return mass(i) * squared_norm(particles.velocity, dimensions, i) / 2; });
+  return parallel_sum(size(), [&](std::size_t i) {
+    return in_domain(i) ? mass(i) * squared_norm(particles.velocity, dimensions, i) / 2 : 0.0;
+  });
 }
 
 double Flow::potential_energy() const {
   if (!features.gravity) return 0;
+  if (features.openings)
+    return parallel_sum(size(), [&](std::size_t i) { return in_domain(i) ? mass(i) * gravity_potential(i) : 0.0; });
   return parallel_sum(size(), [&](std::size_t i) { return mass(i) * gravity_potential(i); });
 }
 
@@ -130,6 +151,16 @@ double Flow::roundness() const {
   const double volume = phase_volume[1], pi = std::numbers::pi;
   const double least = dimensions == 3 ? std::cbrt(36 * pi * volume * volume) : 2 * std::sqrt(pi * volume);
   return least / interface_area(colours);
+}
+
+std::size_t Flow::particles_of(std::size_t n) const {
+  return static_cast<std::size_t>(
+      parallel_sum(size(), [&](std::size_t i) { return phase[i] == n && in_domain(i) ? 1.0 : 0.0; }));
+}
+
+void Flow::renew_layers(double dt) {
+  openings->set_velocities(time, dt);
+  openings->renew();
 }
 
 void Flow::sort_particles() {
@@ -154,11 +185,24 @@ bool Flow::takes_viscosity_gradient() const {
   return features.viscosity_jump && (form == Diffusion::split || form == Diffusion::printed);
 }
 
+double Flow::gravity_potential(const Vec3& place) const {
+  double sum = 0;
+  for (int axis = 0; axis < dimensions; ++axis)
+    if (!scene.domain.periodic(axis)) sum -= scene.fluid.gravity[axis] * (place[axis] - arrangement.origin[axis]);
+  return sum;
+}
+
 double Flow::gravity_potential(std::size_t i) const {
   double sum = 0;
   for (int axis = 0; axis < dimensions; ++axis)
     if (!scene.domain.periodic(axis))
       sum -= scene.fluid.gravity[axis] * ((*particles.position[axis])[i] - arrangement.origin[axis]);
+  return sum;
+}
+
+double Flow::hydrostatic_part(const Vec3& place, std::uint8_t of_phase) const {
+  double sum = features.gravity ? -densities[of_phase] * gravity_potential(place) : 0;
+  for (const Colour& colour : colours) sum += colour.mean_potential * colour.is(of_phase);
   return sum;
 }
 

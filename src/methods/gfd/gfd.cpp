@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
@@ -42,7 +43,8 @@ Gfd::Gfd(const LoadedCase& loaded)
     : flow_(loaded),
       plan_(make_plan(flow_)),
       snapshot_(snapshot_table(output_fields(), loaded.options, flow_)),
-      phase_sums_(flow_.particles, *flow_.phase_number, flow_.densities) {
+      phase_sums_(flow_.particles, *flow_.phase_number, flow_.densities, flow_.left_out()) {
+  if (flow_.features.openings) snapshot_.leave_out(flow_.openings->column());
   declare_series();
   saved_.add(flow_.time)
       .add(flow_.steps)
@@ -107,14 +109,16 @@ void Gfd::declare_series() {
     series_.add(flow.dimensions == 3 ? "sphericity" : "circularity",
                 "surface of a ball of the volume of " + flow.scene.phases[1].name + " over the area",
                 [&flow] { return flow.roundness(); });
-  series_.add("max_speed", "speed", [&flow] { return flow.speeds.largest; });
+  series_.add("max_speed", "speed", [&flow] { return flow.largest_speed(); });
   for (std::size_t n = 0; n < phase_sums_.size(); ++n) {
     const std::string& name = flow.scene.phases[n].name;
-    series_.add("volume_" + name,
-                flow.dimensions == 3 ? "length^3, share by kernel sums" : "length^2, share by kernel sums",
-                [&flow, n] { return flow.phase_volume[n]; });
+    if (!flow.features.openings)
+      series_.add("volume_" + name,
+                  flow.dimensions == 3 ? "length^3, share by kernel sums" : "length^2, share by kernel sums",
+                  [&flow, n] { return flow.phase_volume[n]; });
     phase_sums_.add_columns(series_, n, name);
   }
+  if (flow.features.openings) flow.openings->add_columns(series_);
   series_.add("max_divergence", "of the predicted velocity, 1 / time", [&flow] { return flow.max_divergence; });
   series_.add("pressure_iterations", "1", [&flow] { return double(flow.solver.report().iterations); });
   series_.add("pressure_residual", "relative", [&flow] { return flow.solver.report().relative_residual; });
@@ -144,6 +148,7 @@ const PointSampler& Gfd::sampler() {
                      .particles = &flow_.particles,
                      .resolution = &flow_.resolution,
                      .scalars = {{flow_.pressure}},
+                     .layer = flow_.left_out(),
                      .time = flow_.time});
     sampled_step_ = flow_.steps;
   }
@@ -171,11 +176,20 @@ void Gfd::table_rows(const std::string&, std::vector<double>& rows) {
 
 std::vector<Invariant> Gfd::invariants() const {
   std::vector<Invariant> list;
-  for (const Phase& phase : flow_.scene.phases)
-    list.push_back({.quantity = "volume_" + phase.name + "_drift",
-                    .kind = Invariant::Kind::drift,
-                    .column = "volume_" + phase.name,
-                    .bound = largest_volume_drift});
+  for (std::size_t n = 0; n < flow_.scene.phases.size(); ++n) {
+    const std::string& name = flow_.scene.phases[n].name;
+    if (flow_.features.openings)
+      list.push_back({.quantity = "balance_" + name,
+                      .kind = Invariant::Kind::drift,
+                      .column = "volume_" + name,
+                      .bound = 4 * std::numeric_limits<double>::epsilon(),  // of three products
+                      .beside = [this, n] { return flow_.openings->net_outflow(n); }});
+    else
+      list.push_back({.quantity = "volume_" + name + "_drift",
+                      .kind = Invariant::Kind::drift,
+                      .column = "volume_" + name,
+                      .bound = largest_volume_drift});
+  }
   list.push_back({.quantity = "pressure_residual",
                   .kind = Invariant::Kind::largest,
                   .column = "pressure_residual",
@@ -188,6 +202,7 @@ std::vector<ArrayInfo> Gfd::arrays() const {
   std::vector<ArrayInfo> list = particle_arrays(flow_.particles, flow_.arrangement);
   list.push_back({"pressure solver", flow_.solver.bytes() + flow_.matrix.bytes()});
   if (const double bytes = flow_.implicit_diffusion.bytes(); bytes > 0) list.push_back({"implicit viscosity", bytes});
+  if (flow_.features.openings) list.push_back({"openings", flow_.openings->bytes() + flow_.layers->bytes()});
   list.push_back({"leased within a step", flow_.leased_bytes()});
   double interfaces = flow_.bands.bytes() + flow_.phase.bytes();
   for (const Colour& colour : flow_.colours) interfaces += colour.value.bytes() + colour.potential.bytes();
@@ -201,6 +216,7 @@ void Gfd::save(StateWriter& writer) const {
   saved_.save(writer);
   writer.i64("counters", count);
   flow_.boundary.save_walls(writer);
+  if (flow_.features.openings) flow_.openings->save(writer);
   save_fields(flow_.particles.fields, writer);
 }
 
@@ -211,6 +227,7 @@ void Gfd::load(StateReader& reader) {
   saved_.load(reader);
   reader.i64("counters", count);
   flow_.boundary.load_walls(reader, flow_.time);
+  if (flow_.features.openings) flow_.openings->load(reader);
   if (count.size() != 1) throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(count[0]), "particle", reader);
 }

@@ -34,6 +34,10 @@ void Flow::find_neighbours(double dt) {
   parallel_for(size(), [&](std::size_t i) { phase[i] = static_cast<std::uint8_t>((*phase_number)[i]); });
 }
 
+void Flow::find_layers(double dt) {
+  layers->find(arrangement, particles, phase, dt);
+}
+
 void Flow::measure_stencils() {
   GfdMoments out;
   for (std::size_t k = 0; k < 6; ++k) out.correction[k] = correction[k] == nullptr ? nullptr : correction[k]->data();
@@ -46,12 +50,14 @@ void Flow::measure_stencils() {
   double total = 0;
   for (std::size_t n = 0; n < phase_volume.size(); ++n) {
     phase_volume[n] = parallel_sum(size(), [&](std::size_t i) {
-      return phase[i] == n && moments.kernel_sum[i] > 0 ? bulk / moments.kernel_sum[i] : 0.0;
+      return phase[i] == n && moments.kernel_sum[i] > 0 && in_domain(i) ? bulk / moments.kernel_sum[i] : 0.0;
     });
     total += phase_volume[n];
   }
   // The phases fill the domain: what disorder does to the sums of all of them, 0.1 %, says nothing of their volumes.
-  for (double& volume : phase_volume) volume *= particles.volume * static_cast<double>(size()) / total;
+  std::size_t inside = features.openings ? 0 : size();
+  for (std::size_t n = 0; n < phase_volume.size() && features.openings; ++n) inside += particles_of(n);
+  for (double& volume : phase_volume) volume *= particles.volume * static_cast<double>(inside) / total;
   if (steps == 0) first_volume = phase_volume;
 }
 
@@ -118,7 +124,8 @@ void Flow::find_potential(Colour& colour) {
                             .reflection = boundary.reflection(),
                             .correction = stencils().correction,
                             .scratch = particles.scratch(),
-                            .smoothing = options.get<InterfaceOptions>().smoothing},
+                            .smoothing = options.get<InterfaceOptions>().smoothing,
+                            .left_out = left_out()},
                            colour, features.tension);
   if (features.tension) measure.add_tension();
   if (!features.gravity || colour.density_jump == 0) return;

@@ -34,8 +34,26 @@ void check(Draft& draft, Problems& problems) {
   }
 }
 
+// Layers behind openings know flat sides that stand still and slide, and explicit diffusion.
+void check_openings(const Draft& draft, const Scene& scene, Problems& problems) {
+  if (scene.openings.empty()) return;
+  const Node& opening = *draft.node(scene.openings.front().name);
+  if (draft.options.get<LimitOptions>().viscosity == ViscousSteps::implicit)
+    problems.add(*draft.node("time.viscosity"),
+                 "time.viscosity = \"implicit\" beside openings: the steps of method \"gfd\" are explicit there; "
+                 "remove the key");
+  if (!draft.solids.empty())
+    problems.add(*draft.node("solid.0"),
+                 "method \"gfd\" knows no [[solid]] beside openings; write the box as [[body]] with shape = \"box\"");
+  if (BoundaryFeatures(scene.domain).displaced_walls)
+    problems.add(opening, scene.openings.front().name +
+                              " stands beside a side that moves along its normal, which method \"gfd\" does not "
+                              "join; let sides slide along themselves alone, or move a [[body]]");
+}
+
 void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
   check_direct_solver(draft, scene, problems);
+  check_openings(draft, scene, problems);
   const double support = support_ratio(draft.options.resolution) * scene.spacing;
   for (const ThinRegion& thin : thin_regions(scene, support)) {
     const std::string name = "region." + std::to_string(thin.region);
@@ -48,7 +66,8 @@ void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
     problems.add(
         *draft.node("region.0"),
         "the phases leave a part of the domain empty or a side open; method \"gfd\" has no free surface: begin "
-        "with a [[region]] that fills the domain, between walls or periodic sides");
+        "with a [[region]] that fills the domain, between walls, periodic sides and openings ([[inflow]], "
+        "[[outflow]])");
 }
 
 // Fields, lists of neighbours, sweep records and the pressure system of a large case: `spume check` and the arrays of a
@@ -72,6 +91,7 @@ Registration registration() {
       "incompressible flow of several phases by generalised finite differences, with tension and the full stress";
   method.fills_phases = true;
   method.incompressible = true;
+  method.passes_openings = true;
   method.honours_bodies = true;
   method.sections = {pressure_section(), shifting_section(false), momentum_section(), interface_section(),
                      limits_section()};

@@ -23,10 +23,12 @@ Plan make_plan(Flow& f) {
     return sum;
   });
   const ArrayUse factors([&f] { return f.solver.factor_bytes(); });
+  const char* const openings = has.openings ? "particles enter and leave" : "no inflow, no outflow";
   const ParticleStages stages(plan, f);
   const std::string several = has.interfaces ? "several phases" : "one phase";
 
   // The arrangement at r^k
+  stages.add(step, "openings", has.openings, openings, &Flow::renew_layers, {p.position}, {p.velocity});
   stages.add(both, "sort", true, "particles in cell order", &Flow::sort_particles, {}, {sorted});
   stages.sweep(start, "packing", has.bodies, has.bodies ? "particles beside bodies evened out" : "no walls of bodies",
                &Flow::pack, {}, {p.position});
@@ -34,6 +36,7 @@ Plan make_plan(Flow& f) {
              {images, f.boundary.velocity_rule().offset});
   stages.add(both, "neighbours", true, "lists within the kernel support", &Flow::find_neighbours, {*f.phase_number},
              {lists, f.phase});
+  stages.add(step, "layers", has.openings, openings, &Flow::find_layers, {p.position, f.phase}, {p.velocity});
   stages.sweep(both, "stencils", true, "(10), (11) and kernel moments", &Flow::measure_stencils, {},
                {f.correction, f.offset, *f.laplacian_factor, f.moments.correction, f.moments.kernel_sum,
                 f.moments.concentration_gradient});
@@ -62,6 +65,8 @@ Plan make_plan(Flow& f) {
              {p.velocity, f.viscous_acceleration}, {f.intermediate_velocity});
   stages.add(step, "implicit viscosity", f.viscous.implicit, f.viscous.reason, implicitly(f),
              {f.intermediate_velocity, *f.pressure, f.viscosity, f.offset, *f.laplacian_factor},
+             {f.intermediate_velocity});
+  stages.add(step, "prediction in layers", has.openings, openings, &Flow::predict_layers, {f.intermediate_velocity},
              {f.intermediate_velocity});
   // Shifting of Xu, in the form of King (3.12)
   stages.add(step, "shift", has.shifting, has.shifting ? "Fickian shifting" : "shifting.on = false",

@@ -140,6 +140,10 @@ void Flow::add_interface_forces(const InterfaceForce& out) {
   }
 }
 
+void Flow::predict_layers(double dt) {
+  layers->predict(read(particles.velocity), write(intermediate_velocity), dt, *density);
+}
+
 DiffusionProperties Flow::diffusion_properties() const {
   return {{viscosity->data(), features.viscosity_jump ? bands.varies() : nullptr}, density->data()};
 }
@@ -152,15 +156,22 @@ void Flow::find_divergence() {
 }
 
 void Flow::relax_density(double dt) {
-  volume_ratio = even_out_density({options.get<PressureOptions>().density_relaxation, displacement, dt}, arrangement,
-                                  scene.domain, particles.position, resolution, moments, nullptr, divergence);
+  volume_ratio =
+      even_out_density({.steps = options.get<PressureOptions>().density_relaxation,
+                        .displacement = displacement,
+                        .dt = dt,
+                        .left_out = left_out()},
+                       arrangement, scene.domain, particles.position, resolution, moments, nullptr, divergence);
   // What it lets be from particle to particle adds up over a phase: a bubble that rises by its diameter shrinks by 0.5
   // %. The volume of a whole phase has no such disorder and need not wait as long: it closes its excess while the
   // particles move by a support, over which their neighbours change.
   const double steps_to_close = resolution.support_radius / (full_displacement * resolution.smoothing_length);
   const double rate = displacement / (steps_to_close * dt);
   for (std::size_t n = 0; n < phase_volume.size() && features.interfaces; ++n) {
-    const double excess = phase_volume[n] / first_volume[n] - 1;
+    // With openings of what there is of the phase now.
+    const double whole = features.openings ? particles.volume * static_cast<double>(particles_of(n)) : first_volume[n];
+    if (features.openings && !(whole > 0)) continue;
+    const double excess = phase_volume[n] / whole - 1;
     parallel_for(size(), [&](std::size_t i) {
       if (phase[i] == n) divergence[i] += rate * excess;
     });
@@ -197,14 +208,26 @@ void Flow::set_matrix(double dt) {
   if (!incremental) add_interface_forces({write(force_acceleration), source.data()});
   for (Array<float>* array : {&rows.diagonal_shift, &rows.diagonal, &reciprocal_density}) scratch.lease(*array, n);
   scratch.lease(rows.right_hand_side, n);
-  matrix.bind(arrangement.context, arrangement.packed, {stencils(), density_property()});
+  GfdPressureMatrix pairs{stencils(), density_property()};
+  if (features.openings) {
+    layers->give_pressures(time + dt, read(particles.velocity),
+                           [&](const Vec3& place, std::size_t i) { return -hydrostatic_part(place, phase[i]); });
+    rows.pressure_fixed = &layers->masked();
+    pairs.masked = layers->masked().data();
+    pairs.tied = &layers->tied();
+  }
+  matrix.bind(arrangement.context, arrangement.packed, pairs);
   matrix.diagonal(rows.diagonal);
-  rows.singular = rows.unsymmetric = true;
-  parallel_for(n, [&](std::size_t i) { reciprocal_density[i] = 1 / (*density)[i]; });
+  rows.singular = !features.outflow;
+  rows.unsymmetric = true;
+  parallel_for(n, [&](std::size_t i) {
+    reciprocal_density[i] = 1 / (*density)[i];
+    if (!in_domain(i)) rows.diagonal[i] = 0;
+  });
   rows.coefficient = reciprocal_density.data();
-  const auto of_divergence = [&](std::size_t i) { return -particles.volume * divergence[i] / dt; };
+  const auto of_divergence = [&](std::size_t i) { return in_domain(i) ? -particles.volume * divergence[i] / dt : 0.0; };
   const double squares = parallel_sum(n, [&](std::size_t i) {
-    const double value = of_divergence(i) - particles.volume * source[i];
+    const double value = in_domain(i) ? of_divergence(i) - particles.volume * source[i] : 0.0;
     rows.right_hand_side[i] = value;
     return value * value;
   });
@@ -234,10 +257,11 @@ void Flow::solve_pressure() {
   scratch.lease(reduced_pressure, size());
   const bool warm_start = options.get<PressureOptions>().warm_start && steps > 0 && !incremental;
   parallel_for(size(), [&](std::size_t i) { reduced_pressure[i] = warm_start ? last_reduced(i) : 0.0; });
-  if (arrangement.context.image_pressure != nullptr)
+  if (arrangement.context.image_pressure != nullptr || features.openings)
     rows.reference_norm = std::hypot(rows.reference_norm, given_norm(matrix, particles));
   rows.measured = steps % steps_between_measured == 0;
   solver.solve(rows, matrix, particles, reduced_pressure);
+  if (features.openings) layers->tied().extend(reduced_pressure.data(), true);
   rows.release(scratch);
   scratch.release(reciprocal_density);
   demand_convergence(solver.report(), "the pressure solve");
@@ -246,8 +270,10 @@ void Flow::solve_pressure() {
 void Flow::project_velocity(double dt) {
   const std::size_t n = size();
   ScratchPool& scratch = particles.scratch();
-  const double mean = parallel_sum(n, [&](std::size_t i) { return reduced_pressure[i]; }) / static_cast<double>(n);
-  parallel_for(n, [&](std::size_t i) { reduced_pressure[i] -= mean; });
+  if (rows.singular) {
+    const double mean = parallel_sum(n, [&](std::size_t i) { return reduced_pressure[i]; }) / static_cast<double>(n);
+    parallel_for(n, [&](std::size_t i) { reduced_pressure[i] -= mean; });
+  }
   FloatVectorScratch gradient;
   scratch.lease(gradient, dimensions, n);
   gfd_gradient_over_density_sweep(arrangement.context, arrangement.packed, reduced_pressure.data(), 0,
@@ -260,6 +286,7 @@ void Flow::project_velocity(double dt) {
     }
   });
   if (incremental) parallel_for(n, [&](std::size_t i) { reduced_pressure[i] += last_reduced(i); });
+  if (features.openings) layers->follow(write(next_velocity));
   scratch.release(gradient);
   scratch.release(force_acceleration);
   scratch.release(intermediate_velocity);
@@ -278,7 +305,8 @@ void Flow::refuse_unconverged_diffusion() const {
 // flow may hold is its mechanical energy at the start and that of the interfaces, and what rearranged particles lift, a
 // tenth of the weight over a spacing. An instability passes twice of it soon.
 void Flow::refuse_energy_from_nothing() const {
-  if (features.forces || features.moving_walls || features.moving_bodies) return;  // their work is not followed
+  if (features.forces || features.moving_walls || features.moving_bodies || features.openings)
+    return;  // their work is not followed
   const double kinetic =
       parallel_sum(size(), [&](std::size_t i) { return mass(i) * squared_norm(next_velocity, dimensions, i) / 2; });
   if (kinetic <= 2 * std::max(0.0, energy_supply - potential_energy()) + 0.1 * weight * spacing()) return;
@@ -298,11 +326,15 @@ void Flow::accept(double dt) {
     Vec3 u = vector_at(next_velocity, dimensions, i), r = vector_at(particles.position, dimensions, i);
     for (int axis = 0; axis < dimensions; ++axis) {
       r[axis] += dt * u[axis];
+      if (!in_domain(i)) continue;
       if (features.shifting) r[axis] += (*shift->displacement[axis])[i];
       if (features.shift_correction) u[axis] += shift_velocity[axis][i];
     }
     (*pressure)[i] = reduced_pressure[i] + hydrostatic_part(i);
-    boundary.apply_walls(boundary.next_walls, r, &u);
+    if (features.openings)
+      openings->apply_walls(boundary, i, r, &u);
+    else
+      boundary.apply_walls(boundary.next_walls, r, &u);
     for (int axis = 0; axis < dimensions; ++axis) {
       (*particles.position[axis])[i] = r[axis];
       (*particles.velocity[axis])[i] = u[axis];
@@ -312,6 +344,7 @@ void Flow::accept(double dt) {
   particles.scratch().release(shift_velocity);
   particles.scratch().release(reduced_pressure);
   boundary.accept();
+  if (features.openings) openings->accept();
   time += dt;
   ++steps;
   speeds = find_speeds(arrangement, particles);

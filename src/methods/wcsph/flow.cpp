@@ -70,7 +70,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       background(background_of(loaded_case, features, expected_speed, laws)),
       wall_gravity(gravity_across_sides(scene)),
       particles(dimensions, scene.particles),
-      openings(features.openings ? std::make_unique<BufferLayers>(scene, resolution, skin, laws, particles) : nullptr),
+      openings(features.openings ? std::make_unique<BufferLayers>(scene, resolution, skin, particles) : nullptr),
       boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution), nullptr,
                openings == nullptr ? nullptr : &openings->gates()),
       arrangement(scene.domain, resolution, particles.volume, particles.size(), skin),
@@ -101,7 +101,10 @@ Flow::Flow(const LoadedCase& loaded_case)
         ExcessRelaxation::Liquid{particles, arrangement, resolution, law_of_particles(), *excess, wall_gravity,
                                  openings == nullptr ? nullptr : &openings->column()},
         options.get<CompressibilityOptions>().density_relaxation);
-  if (features.openings) openings->fill(*phase_number, *excess, {acceleration, shift});
+  if (features.openings) {
+    openings->fill(*phase_number, {acceleration, shift});
+    acoustic = std::make_unique<AcousticLayers>(scene, resolution, laws, particles, *phase_number, *openings);
+  }
   find_signal();
 }
 

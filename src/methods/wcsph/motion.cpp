@@ -102,7 +102,7 @@ void Flow::move_layers(double dt) {
 }
 
 void Flow::find_pressure_behind(double dt) {
-  openings->find_pressures({.arrangement = arrangement,
+  acoustic->find_pressures({.arrangement = arrangement,
                             .images = boundary.image_map(arrangement.images),
                             .gravity = wall_gravity,
                             .background = background,
@@ -397,7 +397,10 @@ void Flow::accept(double dt) {
   });
   release_leased();
   boundary.accept();
-  if (features.openings) openings->accept(dt);
+  if (features.openings) {
+    acoustic->follow(dt);
+    openings->accept();
+  }
   if (features.tension) surface_energy = tension->energy();
   time += dt;
   if (dt > 0) ++steps;

@@ -63,7 +63,7 @@ Wcsph::Wcsph(const LoadedCase& loaded)
                     "walls; set compressibility.max_speed");
   if (flow_.features.openings) {
     snapshot_.leave_out(flow_.openings->column());
-    if (const auto fastest = flow_.openings->fastest_inflow(loaded.options.time.end); fastest.mach >= 1)
+    if (const auto fastest = flow_.acoustic->fastest_inflow(loaded.options.time.end); fastest.mach >= 1)
       throw refusal(loaded.options, fastest.name,
                     fastest.name + " lets its phase enter at " + brief(fastest.mach) +
                         " times its sound speed; expected a flow slower than sound: raise compressibility.max_speed");
@@ -171,7 +171,7 @@ std::vector<ArrayInfo> Wcsph::arrays() const {
   std::vector<ArrayInfo> list = particle_arrays(flow_.particles, flow_.arrangement);
   if (flow_.features.bodies) list.push_back({"wall points", flow_.boundary.bytes() + flow_.walls.bytes()});
   if (flow_.features.tension) list.push_back({"interfaces", flow_.tension->bytes()});
-  if (flow_.features.openings) list.push_back({"openings", flow_.openings->bytes()});
+  if (flow_.features.openings) list.push_back({"openings", flow_.openings->bytes() + flow_.acoustic->bytes()});
   list.push_back({"leased within a step", flow_.leased_bytes()});
   return list;
 }
@@ -218,7 +218,10 @@ void Wcsph::save(StateWriter& writer) const {
   writer.f64("listed_time", listed_time);
   writer.i64("counters", count);
   flow_.boundary.save_walls(writer);
-  if (flow_.features.openings) flow_.openings->save(writer);
+  if (flow_.features.openings) {
+    flow_.acoustic->save(writer);
+    flow_.openings->save(writer);
+  }
   save_fields(flow_.particles.fields, writer);
   flow_.solutes.save(writer);
 }
@@ -230,7 +233,10 @@ void Wcsph::load(StateReader& reader) {
   reader.f64("listed_time", listed_time);
   reader.i64("counters", count);
   flow_.boundary.load_walls(reader, flow_.time);
-  if (flow_.features.openings) flow_.openings->load(reader);
+  if (flow_.features.openings) {
+    flow_.acoustic->load(reader);
+    flow_.openings->load(reader);
+  }
   if (count.size() != 1 || listed_time.size() != 1)
     throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(count[0]), "particle", reader);

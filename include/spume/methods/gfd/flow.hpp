@@ -20,7 +20,9 @@
 #include "spume/operators/interface_jump.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/boundary.hpp"
+#include "spume/particles/buffer_layers.hpp"
 #include "spume/particles/interface_potential.hpp"
+#include "spume/particles/layer_stencils.hpp"
 #include "spume/particles/moments.hpp"
 #include "spume/particles/projection_solver.hpp"
 #include "spume/particles/shift.hpp"
@@ -82,6 +84,7 @@ struct Flow {
   ParticleStore particles;
   Array<double>* pressure = nullptr;  // p
   Array<std::int64_t>* phase_number = nullptr;
+  std::unique_ptr<BufferLayers> openings;  // null: none
   Boundary boundary;
   Speeds speeds;
   double energy_supply = 0;          // mechanical energy at the start and that of the interfaces
@@ -93,6 +96,7 @@ struct Flow {
   ParticleSizes sizes;  // all alike
   MomentFields moments;
   std::unique_ptr<Shift> shift;               // null: no shifting
+  std::unique_ptr<LayerStencils> layers;      // behind openings; null: none
   std::array<Array<float>*, 6> correction{};  // B
   FloatVectorField offset{};                  // o
   Array<float>* laplacian_factor = nullptr;   // f
@@ -120,6 +124,9 @@ struct Flow {
 
   std::size_t size() const { return particles.size(); }
   double spacing() const { return resolution.spacing; }
+  bool in_domain(std::size_t i) const { return openings == nullptr || !openings->holds(i); }
+  std::size_t particles_of(std::size_t n) const;  // of a phase, in the domain
+  const Array<std::int64_t>* left_out() const { return openings == nullptr ? nullptr : &openings->column(); }
   double mass(std::size_t i) const {
     return particles.volume * densities[static_cast<std::size_t>((*phase_number)[i])];
   }
@@ -127,9 +134,12 @@ struct Flow {
   PhaseProperty density_property() const { return {density->data(), bands.varies()}; }
   FloatVectorField displacement_by_shift() const { return shift == nullptr ? FloatVectorField{} : shift->displacement; }
   bool takes_viscosity_gradient() const;
-  double gravity_potential(std::size_t i) const;  // -g . (x - x_0), of gravity across sides
-  double hydrostatic_part(std::size_t i) const;   // p - pi
+  double gravity_potential(const Vec3& place) const;  // -g . (x - x_0), of gravity across sides
+  double gravity_potential(std::size_t i) const;
+  double hydrostatic_part(std::size_t i) const;                                              // p - pi
+  double hydrostatic_part(const Vec3& place, std::uint8_t of_phase) const;                   // of a particle there
   double last_reduced(std::size_t i) const { return (*pressure)[i] - hydrostatic_part(i); }  // pi of the last step
+  double largest_speed() const;                                                              // in the domain
   double kinetic_energy() const;
   double potential_energy() const;  // across axes with sides
   double roundness() const;         // of the second of two phases: surface of a ball of its volume over that area
@@ -137,11 +147,13 @@ struct Flow {
   void start_energy();  // of a run that begins
 
   // The stages.
+  void renew_layers(double dt);  // behind openings
   void sort_particles();
   void pack();  // at the start, beside bodies
   void make_images(double dt);
   void find_neighbours(double dt);
-  void measure_stencils();  // (10), (11)
+  void find_layers(double dt);  // where they mirror the liquid
+  void measure_stencils();      // (10), (11)
   void find_bands();
   void blend_properties();           // (6), (7)
   void find_potentials();            // (14) to (17), pairwise
@@ -150,6 +162,7 @@ struct Flow {
   void measure_diffusion();          // of the initial state
   void predict_velocity(double dt);  // (20)
   void diffuse_implicitly(double dt);
+  void predict_layers(double dt);
   void find_divergence();
   void relax_density(double dt);
   void compute_shift();

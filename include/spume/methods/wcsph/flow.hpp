@@ -10,6 +10,7 @@
 
 #include "spume/methods/wcsph/options.hpp"
 #include "spume/operators/wcsph_sums.hpp"
+#include "spume/particles/acoustic_layers.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/averaged_walls.hpp"
 #include "spume/particles/boundary.hpp"
@@ -65,7 +66,8 @@ struct Flow {
   FloatVectorField shift{};         // velocity of shifting, delta u
   Array<double>* excess = nullptr;
   Array<std::int64_t>* phase_number = nullptr;
-  std::unique_ptr<BufferLayers> openings;  // null: none
+  std::unique_ptr<BufferLayers> openings;    // null: none
+  std::unique_ptr<AcousticLayers> acoustic;  // null: none
   Boundary boundary;
   double listed_time = 0;  // of the places of moving bodies in the lists
   double settled = 0;      // 1: settle() has been
