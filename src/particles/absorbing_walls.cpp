@@ -9,6 +9,10 @@
 namespace spume {
 namespace {
 
+// Of the length of the domain. A level that stays off by e moves a wall by gain times drift times e, for good: a wall
+// that is to follow a flood would leave its flume.
+constexpr double farthest = 0.5;
+
 constexpr int columns_across = 5;  // of the wall, in three dimensions: the correction is that of all of it
 
 double inwards(int side) {
@@ -55,6 +59,15 @@ void AbsorbingWalls::advance(double t, double dt) {
     // By the trapezoidal rule, with the velocity at the end from the displacement there.
     wall.next.displacement =
         (wall.now.displacement + dt / 2 * (before + wall.next.smoothed)) / (1 + dt / (2 * law.drift));
+    if (const double most = farthest * (domain_.upper[0] - domain_.lower[0]);
+        !(std::abs(wall.next.displacement) <= most)) {
+      StepFailure::Details details;
+      details.cause = "a wall that absorbs waves follows a level that stays off, by more than half of the domain";
+      details.option = "wavemaker.absorption";
+      details.position[0] = side == 0 ? domain_.lower[0] : domain_.upper[0];
+      details.value = wall.next.displacement;
+      throw StepFailure(details);
+    }
     wall.start = inwards(side) * before;
     wall.slope = dt > 0 ? (velocity_of(side, wall.next) - wall.start) / dt : 0;
     wall.way = inwards(side) * (wall.next.displacement - wall.now.displacement);

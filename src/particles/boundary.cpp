@@ -76,6 +76,11 @@ void Boundary::unite_solids(const WallPositions& at) {
   if (!domain_.boxes.empty()) solids_ = std::make_shared<const SolidUnion>(domain_, at, spacing_);
 }
 
+void Boundary::return_walls() {
+  next_walls = walls;
+  if (features.displaced_walls) unite_solids(walls);
+}
+
 void Boundary::advance(double t, double dt) {
   next_walls = walls;
   if (openings_ != nullptr) openings_->advance(t, dt);
@@ -388,6 +393,7 @@ void Boundary::load_walls(StateReader& reader, double t) {
   for (std::size_t axis = 0; axis < 3; ++axis) walls[axis] = {all[2 * axis], all[2 * axis + 1]};
   if (absorbing_ != nullptr) absorbing_->load(reader, t);
   if (features.displaced_bodies) bodies_->move_to(t);
+  return_walls();
 }
 
 bool inside_solid(const Domain& domain, const Vec3& point) {

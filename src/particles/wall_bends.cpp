@@ -102,7 +102,7 @@ class BendFit {
       add(i, here, here, wall);
       for (const std::int32_t j : arrangement_.list.of(i)) {
         const auto k = static_cast<std::size_t>(j - n);
-        if (j >= n && !copies_[static_cast<std::size_t>(images.path()[k])]) continue;
+        if (j >= n && !is_copy(images, k)) continue;
         Vec3 place{};
         for (int a = 0; a < d; ++a) place[a] = j < n ? position_[a][j] : images.position(a)[k];
         add(arrangement_.particle_of(j), place, here, wall);
@@ -113,6 +113,12 @@ class BendFit {
       for (int a = 0; a < d; ++a) fit_.offset(a)[k] = near_[k].offset[a];
       fit_.weight()[k] = near_[k].weight;
     }
+  }
+
+  // Whether image k is a particle beyond periodic sides: no mirror image, no wall point.
+  bool is_copy(const Images& images, std::size_t k) const {
+    return copies_[static_cast<std::size_t>(images.path()[k])] &&
+           (images.wall_point() == nullptr || images.wall_point()[k] < 0);
   }
 
   void add(std::size_t j, const Vec3& place, const Vec3& here, const WallSide& wall) {
@@ -223,7 +229,7 @@ void WallBends::find_wall_velocities(std::size_t count, const VectorField& at, d
           Vec3 foot{};
           for (int a = 0; a < domain.dimensions; ++a) foot[a] = r[a][i];
           foot[axis] = plane;
-          found[i] = velocity(foot, t);
+          found[i] = boundary_.with_correction(velocity(foot, t), axis, side, t);
         }
       });
     }

@@ -57,8 +57,7 @@ Section wavemaker() {
           "absorption", &W::absorption,
           {{"none", AbsorptionKind::none}, {"tuned", AbsorptionKind::tuned}, {"long-wave", AbsorptionKind::long_wave}},
           "how a piston takes up waves that come to it: tuned: all of those of the period, without one that of the "
-          "first "
-          "wavemaker with one, else as long-wave; long-wave: by shallow-water theory")
+          "first wavemaker with one, else as long-wave; long-wave: by shallow-water theory")
       .only(absorbs_waves)
       .when("kind", {"piston"})
       .whole_only(uses_particles);

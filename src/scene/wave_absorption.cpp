@@ -120,7 +120,8 @@ WaveAbsorption wave_absorption(const WavemakerDraft& draft, const Wavemaker& mak
           .elevation = draft.waves == WaveKind::none ? nullptr : motion.elevation(face)};
 }
 
-std::string describe_absorption(const WaveAbsorption& absorption, const Wavemaker& maker, const Scene& scene) {
+std::string describe_absorption(const WaveAbsorption& absorption, WaveKind waves, const Wavemaker& maker,
+                                const Scene& scene) {
   const FaceOfPiston face = face_of(maker, scene);
   std::string text = "velocity " + brief(absorption.law.gain) + " times the excess elevation, delay " +
                      brief(absorption.law.smoothing) + ", return " + brief(absorption.law.drift) + "; ";
@@ -130,7 +131,7 @@ std::string describe_absorption(const WaveAbsorption& absorption, const Wavemake
     const double kh = 0.5 * static_cast<double>(i + 1);
     frequencies[i] = std::sqrt(face.gravity * kh * std::tanh(kh) / face.depth);
   }
-  if (const double w = maker.angular_frequency; w > 0) {
+  if (const double w = maker.angular_frequency; w > 0 && waves != WaveKind::solitary) {
     after = " % of half, all and twice the frequency of the waves";
     frequencies = {w / 2, w, 2 * w};
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a [[wavemaker]] or a [[sponge]] lacks, or cannot be.
+#include <algorithm>
 #include <set>
 
 #include "checks.hpp"
@@ -139,9 +140,12 @@ void check_sponges(const Draft& draft, Problems& problems) {
         given && sponge.velocity.size() != wanted && draft.usable(name + ".velocity"))
       problems.add(*given, name + ".velocity must have " + std::to_string(wanted) + " entries in a " +
                                std::to_string(wanted) + "-D domain, found " + std::to_string(sponge.velocity.size()));
-    if (!draft.node(name + ".strength") && draft.wavemakers.empty())
+    const bool waves = std::any_of(draft.wavemakers.begin(), draft.wavemakers.end(), [](const WavemakerDraft& maker) {
+      return maker.waves != WaveKind::none || maker.period;
+    });
+    if (!draft.node(name + ".strength") && !waves)
       problems.add(*draft.node(name), name +
-                                          " has no strength, and there is no wavemaker to take it from; add  "
+                                          " has no strength, and no wavemaker has waves to take it from; add  "
                                           "strength = <number>  # 1/time, about three times the angular frequency "
                                           "of the waves");
   }

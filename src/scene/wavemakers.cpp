@@ -235,7 +235,7 @@ void describe_waves(const Draft& draft, const Scene& scene, const std::vector<Wa
     text += "depth " + brief(maker.depth);
     if (maker.absorbs)
       text += "; absorbs: " +
-              describe_absorption(*scene.domain.sides[0][maker.side == "left" ? 0 : 1].absorption, maker, scene);
+              describe_absorption(*scene.domain.sides[0][maker.side == "left" ? 0 : 1].absorption, kind, maker, scene);
     if (draft.wavemakers[k].kind == WavemakerKind::flap)
       text += "; flap with its hinge at x = " + brief(maker.hinge) + ", turns by up to " +
               brief(std::atan(maker.stroke / 2 / maker.depth) * 180 / pi) + " degrees";

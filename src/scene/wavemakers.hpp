@@ -61,7 +61,8 @@ inline FaceOfPiston face_of(const Wavemaker& maker, const Scene& scene) {
 WaveAbsorption wave_absorption(const WavemakerDraft& draft, const Wavemaker& maker, const PistonMotion& motion,
                                const Scene& scene);
 // The reflection that linear theory expects, in words.
-std::string describe_absorption(const WaveAbsorption& absorption, const Wavemaker& maker, const Scene& scene);
+std::string describe_absorption(const WaveAbsorption& absorption, WaveKind waves, const Wavemaker& maker,
+                                const Scene& scene);
 
 // Adds the walls of flaps to the bodies, behind all others: solids from the flap to its side, which turn about the
 // hinge. The scene has its domain, its fluid and its other bodies.

@@ -243,6 +243,7 @@ TEST(BubblesBesideBodies, StayOutOfSolidsAndKeepTheirVolume) {
 }
 
 TEST(BubblesBesideBodies, DoNotDependOnThreadsOrInterruptions) {
+  const int before = omp_get_max_threads();
   omp_set_num_threads(3);
   Simulation straight(round_stirred_tank);
   straight.steps(12, 0.004);
@@ -252,7 +253,7 @@ TEST(BubblesBesideBodies, DoNotDependOnThreadsOrInterruptions) {
   omp_set_num_threads(1);
   Simulation other(round_stirred_tank), restored(round_stirred_tank);
   other.steps(18, 0.004);
-  omp_set_num_threads(2);
+  omp_set_num_threads(before);
   restored.method.load(saved);
   restored.steps(6, 0.004);
   EXPECT_TRUE(saved_of(other) == saved_of(straight));

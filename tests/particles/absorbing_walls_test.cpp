@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "methods/method_run.hpp"
+#include "spume/core/error.hpp"
 
 namespace spume {
 namespace {
@@ -48,7 +49,9 @@ TEST(AbsorbingWalls, FollowTheLaw) {
       t += dt;
       walls.advance(t, 0);
       EXPECT_NEAR(walls.velocity(side, t), end, 1e-15);
-      if (t > 30) EXPECT_NEAR(inwards * end, std::real(answer * std::exp(s * t)), 1e-3 * std::abs(answer)) << t;
+      if (t > 30) {
+        EXPECT_NEAR(inwards * end, std::real(answer * std::exp(s * t)), 1e-3 * std::abs(answer)) << t;
+      }
     }
     EXPECT_NEAR(inwards * place, walls.displacement(side), 1e-12);
     EXPECT_EQ(walls.velocity(1 - side, t), 0);
@@ -66,6 +69,21 @@ TEST(AbsorbingWalls, AMeanElevationMovesThemByItsGainTimesTheReturn) {
   }
   EXPECT_NEAR(walls.displacement(0), -0.5 * 0.2 * 2, 1e-6);
   EXPECT_NEAR(walls.velocity(0, 40), 0, 1e-6);
+}
+
+// A level that stays off takes it half a domain away, where it says so.
+TEST(AbsorbingWalls, StopWhereTheyWouldLeaveTheDomain) {
+  const Domain of = domain({.gain = 0.5, .smoothing = 0.1, .drift = 200}, 0);
+  AbsorbingWalls walls(of, 0.1);
+  const auto flood = [&] {
+    for (int n = 0; n < 4000; ++n) {
+      walls.measure({0, 10}, 0.1 * n, [](const Vec3&) { return 1.2; });
+      walls.advance(0.1 * n, 0.1);
+      walls.accept();
+    }
+  };
+  EXPECT_THROW(flood(), StepFailure);
+  EXPECT_NEAR(walls.displacement(0), -5, 0.02);
 }
 
 TEST(AbsorbingWalls, ARefusedStepLeavesTheStateAndItIsSaved) {

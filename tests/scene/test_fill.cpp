@@ -100,8 +100,9 @@ TEST(Fill, MassIsThatOfTheRegion) {
                 4 * std::stod(spacing) * 3 / 256);
     // A line through the middle of cells parts them in halves: here along their diagonal.
     const double cells = 2 / std::stod(spacing);
-    if (cells == std::round(cells))
+    if (cells == std::round(cells)) {
       EXPECT_NEAR(volume_of(load_text(open + spacing + "\n[[liquid]]\nwhere = \"-x - y\"\n")), 2, 1e-12);
+    }
   }
   // Around a solid, which takes its share, from a surface given by an expression too.
   EXPECT_NEAR(volume_of(load_text(tank("[[solid]]\nlower = [0.3, 0]\nupper = [0.8, 0.3]\n"

@@ -202,6 +202,10 @@ TEST(Wavemakers, AnAbsorbingSideHasTheLawOfItsWavesAndTheElevationThatItMakes) {
               tuned_law(face, 2 * pi / 8).gain, 1e-12);
   EXPECT_NEAR(load_text(two, {"wavemaker.1.absorption=long-wave"}).scene.domain.sides[0][1].absorption->law.gain,
               longer.gain, 1e-12);
+  // A wall that only absorbs has no waves that a sponge could take its strength from.
+  EXPECT_THAT(problems_of(replaced(flume, "waves = \"regular\"\nheight = 0.1\nperiod = 5\n",
+                                   "waves = \"none\"\nabsorption = \"long-wave\"\n")),
+              HasSubstr("sponge.0 has no strength, and no wavemaker has waves to take it from"));
   EXPECT_THAT(problems_of(two, {"wavemaker.1.absorption=none"}),
               ElementsAre(HasSubstr("wavemaker.1 makes no waves and absorbs none; add  absorption = \"tuned\"")));
 }

@@ -70,6 +70,9 @@ class Boundary {
   bool find_nearest_images = false;  // ImagePath::nearest, which bubbles ask for
   double wall_speed = 0, next_wall_speed = 0;
 
+  // Before the step moves them: walls and boxes as they are at its start.
+  void return_walls();
+
   // Wall planes at t + dt from the time integral of the walls' normal velocities: `next_walls`.
   void advance(double t, double dt);
   void accept() {
@@ -82,6 +85,12 @@ class Boundary {
   // Velocity of a wall of the domain that moves, at a time of the step: as given, and what takes up waves.
   Vec3 wall_velocity(int axis, int side, const Vec3& at, double t) const {
     return with_correction((*domain_.sides[axis][side].velocity)(at, t), axis, side, t);
+  }
+
+  // The velocity that a wall is given, with what it takes up waves by.
+  Vec3 with_correction(Vec3 velocity, int axis, int side, double t) const {
+    if (axis == 0 && domain_.sides[axis][side].absorption) velocity[0] += absorbing_->velocity(side, t);
+    return velocity;
   }
 
   // What the left and the right wall have of it to take up waves.
@@ -161,10 +170,6 @@ class Boundary {
   double bytes() const;
 
  private:
-  Vec3 with_correction(Vec3 velocity, int axis, int side, double t) const {
-    if (axis == 0 && domain_.sides[axis][side].absorption) velocity[0] += absorbing_->velocity(side, t);
-    return velocity;
-  }
   void keep_before_sides(const WallPositions& at, int axis, Vec3& position, Vec3* velocity) const;
   void unite_solids(const WallPositions& at);
   bool displaces() const { return features.displaced_walls || features.displaced_bodies; }

@@ -9,6 +9,7 @@ namespace spume::les_sph {
 
 // Between steps cells and images are those of where the particles were; the gauge makes its own.
 void Flow::measure_waves() {
+  boundary.return_walls();  // a step that was refused has moved them
   gauge->update({.arrangement = &arrangement,
                  .boundary = &boundary,
                  .particles = &particles,

@@ -75,7 +75,7 @@ Features::Features(const LoadedCase& loaded)
       viscosity && (form == DiffusionForm::stress || (form == DiffusionForm::automatic && scene.free_surface));
   no_slip_bodies = std::any_of(scene.bodies.begin(), scene.bodies.end(),
                                [](const Body& body) { return body.wall == BoundaryKind::no_slip; });
-  wall_bends = has_no_slip_sides(scene.domain) && viscosity && !eddy_viscosity;
+  wall_bends = has_no_slip_sides(scene.domain) && viscosity && !eddy_viscosity && !bubbles;
   held_by_bodies = no_slip_bodies && viscosity && !eddy_viscosity && !bubbles;
   body_force = scene.body_force.has_value();
   uniform_body_force = body_force && uniform(*scene.body_force, scene.domain);

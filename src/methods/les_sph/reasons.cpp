@@ -81,6 +81,7 @@ Reasons::Reasons(const LoadedCase& loaded, const Features& has, bool force_has_p
   bends = has.wall_bends       ? "friction of boundary layers that the first rows resolve"
           : !has.viscosity     ? "inviscid"
           : has.eddy_viscosity ? "unresolved at walls: a closure"
+          : has.bubbles        ? "unresolved at walls: bubbles"
                                : "no no-slip sides";
   sponges = has.sponges ? "velocity damped in layers beside sides" : "no section [[sponge]]";
   divergence = loaded.scene.fluid.sound_speed > 0 ? "right-hand side of the Helmholtz equation"

@@ -31,7 +31,7 @@ struct Features : BoundaryFeatures, SoluteFeatures {
   bool viscosity = false;
   bool viscous_stress = false;  // div(2 nu S) in place of div(nu grad u)
   bool no_slip_bodies = false;
-  bool wall_bends = false;      // friction at no-slip sides, with a viscosity that is that of the liquid
+  bool wall_bends = false;  // friction at no-slip sides, of boundary layers that are resolved: no closure, no bubbles
   bool held_by_bodies = false;  // no-slip bodies, and a viscosity that is the same everywhere
   bool potential = false;       // gravity or a body force
   bool body_force = false;

@@ -97,7 +97,7 @@ struct Flow {
   MomentFields moments;
   std::unique_ptr<FreeSurface> surface;       // null: the liquid fills the domain
   std::unique_ptr<Shift> shift;               // null: no shifting
-  std::unique_ptr<WallBends> wall_bends;      // null: no friction at no-slip sides
+  std::unique_ptr<WallBends> wall_bends;      // null: no friction at no-slip sides, or a closure
   VectorField intermediate_position{};        // r*
   Array<double>* reduced_pressure = nullptr;  // q = p / rho + potential
   Array<double>* potential = nullptr;         // of the accelerations that have one, at r*; null without forces
