@@ -116,14 +116,22 @@ Vec3 slow_bend(const Held& held, std::size_t i, int axis, int side) {
       distance.push_back(eta);
       relative.push_back(subtract(vector_at(held.velocity, 3, j), wall));
     }
-  const std::size_t monomials = domain.dimensions == 3 ? 10 : 6;
-  // Monomials by degree: 1, then the coordinates.
-  const Eigen::MatrixXd c = reference::fit_coefficients(domain.dimensions, near.size() > 2 * monomials ? 2 : 1, near);
-  Vec3 e{};
-  for (std::size_t j = 0; j < near.size(); ++j)
-    for (int a = 0; a < domain.dimensions; ++a)
-      e[a] += 2 * s * s / (h * h) * c(1 + axis, static_cast<Eigen::Index>(j)) * relative[j][a] / distance[j];
-  return e;
+  for (const int order : {2, 1}) {
+    const std::size_t monomials = reference::exponents(domain.dimensions, order).size();
+    if (near.size() <= 2 * monomials) continue;
+    // Monomials by degree: 1, then the coordinates.
+    const Eigen::MatrixXd c = reference::fit_coefficients(domain.dimensions, order, near);
+    Vec3 e{};
+    double moduli = 0;
+    for (std::size_t j = 0; j < near.size(); ++j) {
+      const double share = 2 * s * s / (h * h) * c(1 + axis, static_cast<Eigen::Index>(j)) / distance[j];
+      moduli += std::abs(share);
+      for (int a = 0; a < domain.dimensions; ++a) e[a] += share * relative[j][a];
+    }
+    // Where particles hardly bear the fit, as beside the ball, a lower order answers.
+    if (moduli <= 16 * s / held.scene().spacing) return e;
+  }
+  return {};
 }
 
 Vec3 smooth_velocity(const Vec3& r) {
