@@ -85,7 +85,7 @@ std::string remarks_in(Simulation& run) {
 
 // A swarm that rises from the floor, 13 spacings and more below the surface. Particles that take in gas crowd the
 // mixture before they have moved apart; the gradient of that at the front of the swarm, taken for the normal of a
-// surface, let 102 of 537 bubbles burst.
+// surface, let 70 of 537 bubbles burst.
 TEST(BubblesInside, DoNotBurstAtTheFrontOfASwarm) {
   Simulation run(tank_with_sparger);
   run.steps(36, 0.005);
