@@ -149,6 +149,16 @@ CrossSearch BubbleCoupling::bubble_search() const {
           sets};
 }
 
+CrossSearch BubbleCoupling::liquid_search() const {
+  const NeighbourList& list = carrier_.arrangement.list;
+  const CrossSearch::Points sets[] = {{&carrier_.arrangement.table, carrier_.size()},
+                                      images_as_points(carrier_.arrangement.images)};
+  return {carrier_.arrangement.grid,
+          carrier_.arrangement.origin,
+          {list.coordinate(0), list.coordinate(1), list.coordinate(2)},
+          sets};
+}
+
 CrossTargets BubbleCoupling::particle_targets() const {
   return {carrier_.size(),
           read(carrier_.intermediate_position),
@@ -212,7 +222,8 @@ std::vector<ArrayInfo> BubbleCoupling::arrays() const {
                   bytes(bubble_point_[0], bubble_point_[1], bubble_point_[2], inverse_support_radius_, liquid_records_,
                         bubble_records_, interpolated_, dissipation_, next_merge_time_, reaction_[0], reaction_[1],
                         reaction_[2], dead_, near_, near_particles_, dissolved_, dissolution_, dissolved_at_bubble_,
-                        next_gas_, smoothed_normal_[0], smoothed_normal_[1], smoothed_normal_[2])});
+                        next_gas_, beside_surface_, surface_normal_[0], surface_normal_[1], surface_normal_[2],
+                        smoothed_normal_[0], smoothed_normal_[1], smoothed_normal_[2])});
   return list;
 }
 

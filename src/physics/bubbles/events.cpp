@@ -52,6 +52,7 @@ void BubbleCoupling::accept(double dt) {
     if (exchanges_gas()) accept_gas();
     if (population_.deformation != nullptr) break_up(dt);
     remove_dead(t);
+    history_.inner_bursts += next_inner_bursts_;
   }
   // A liquid that was left by its last bubble.
   if (population_.empty() && nb > 0) parallel_for(n, [&](std::size_t i) { (*volume_fraction_)[i] = 1; });
@@ -76,6 +77,13 @@ void BubbleCoupling::accept(double dt) {
     remark(std::to_string(overfull_) + " particles hold more gas than liquid (alpha down to " +
            std::to_string(least_volume_fraction_) + " at t = " + std::to_string(t) +
            "): the closures of the forces do not hold there");
+  }
+  if (history_.inner_bursts >= growth_between_remarks * most_inner_bursts_) {
+    most_inner_bursts_ = history_.inner_bursts;
+    remark(
+        std::to_string(history_.inner_bursts) + " of " + std::to_string(history_.bursts) +
+        " bursts until t = " + std::to_string(t) +
+        " were of bubbles with liquid before them: they burst in gaps of the liquid, or deeper than a surface reaches");
   }
   if (population_.size() >= growth_between_remarks * most_alive_) {
     most_alive_ = population_.size();

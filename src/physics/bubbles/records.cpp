@@ -48,6 +48,8 @@ void BubbleCoupling::add_columns(SeriesTable& table) const {
   table.add("breakups", "1, since the start", [this, number] { return number(history_.breakups); });
   table.add("entrained_bubbles", "1, since the start", [this, number] { return number(history_.entrained); });
   table.add("bursts", "1, since the start", [this, number] { return number(history_.bursts); });
+  table.add("inner_bursts", "1, of these with 6.5 spacings of liquid before them",
+            [this, number] { return number(history_.inner_bursts); });
   table.add("breakup_rate", "1/time, last step",
             [this, number] { return per_time(number(history_.breakups - history_before_.breakups)); });
   table.add("entrainment_rate", "length^3/time, last step",
@@ -148,7 +150,9 @@ void BubbleCoupling::save(StateWriter& writer) const {
                                    history_before_.bursts,
                                    overfull_,
                                    most_overfull_,
-                                   trace_due_};
+                                   trace_due_,
+                                   history_.inner_bursts,
+                                   most_inner_bursts_};
   const double scalars[] = {history_.injected_volume,
                             history_.entrained_volume,
                             history_.burst_volume,
@@ -181,16 +185,18 @@ void BubbleCoupling::load(StateReader& reader) {
   reader.i64("sparger_emitted", emitted);
   reader.i64("cloud_out", cloud_out);
   auto& sources = sources_.state;
-  if (counters.size() != 12 || scalars.size() != 10 || pending.size() != sources.pending_volume.size() ||
+  if (counters.size() != 14 || scalars.size() != 10 || pending.size() != sources.pending_volume.size() ||
       emitted.size() != sources.emitted.size() || cloud_out.size() != sources.cloud_out.size())
     throw FileError("the checkpoint's bubbles do not fit the case: it has other sources or another version");
   load_fields(population_.fields, static_cast<std::size_t>(counters[0]), "bubble", reader);
   population_.next_identifier = counters[1];
-  history_ = {counters[2], counters[3], counters[4], counters[5], scalars[0], scalars[1], scalars[2]};
-  history_before_ = {history_.injected, counters[6], counters[7], counters[8], scalars[3], scalars[4], scalars[5]};
+  history_ = {counters[2], counters[3], counters[4], counters[5], scalars[0], scalars[1], scalars[2], counters[12]};
+  history_before_ = {history_.injected, counters[6], counters[7], counters[8],
+                     scalars[3],        scalars[4],  scalars[5],  counters[12]};
   overfull_ = counters[9];
   most_overfull_ = counters[10];
   trace_due_ = counters[11];
+  most_inner_bursts_ = counters[13];
   last_step_ = scalars[6];
   max_speed_ = scalars[7];
   least_volume_fraction_ = scalars[8];

@@ -134,10 +134,12 @@ class BubbleCoupling final : public oxygen::Supply {
   void measure_sizes(ParticleSizes& sizes) const;
   void place_bubbles();
   CrossSearch bubble_search() const;  // bubbles and their images
+  CrossSearch liquid_search() const;  // particles and their images
   CrossTargets particle_targets() const;
   void pack_liquid();
   void pack_particles(std::size_t first, std::size_t last);
   void pack_images();
+  void select_normals();
   void smooth_normals(PackedNeighbours& packed);
   void move_bubbles(double dt);
   void move_bubble(std::size_t b, double dt);
@@ -149,6 +151,10 @@ class BubbleCoupling final : public oxygen::Supply {
   Moved accelerate(const Gas& gas, std::size_t b, const Surroundings& around, const Vec3& u, double radius,
                    const Braking& braking, double dt) const;
   void interpolate();
+  // Bursts inside the liquid (inner_bursts.cpp).
+  double mixture_at(const CrossSearch& search, const std::array<float, 3>& place) const;
+  bool faces_liquid(const CrossSearch& search, std::size_t b) const;
+  std::int64_t count_inner_bursts() const;
   // Walls of bodies (walls.cpp).
   bool beside_bodies() const { return carrier_.boundary.bodies() != nullptr; }
   void reflect_bubbles(const ImageRules& rules);
@@ -214,8 +220,10 @@ class BubbleCoupling final : public oxygen::Supply {
   double mean_slip_ = 0;
   double least_volume_fraction_ = 1;
   std::int64_t overfull_ = 0, most_overfull_ = 0;
+  static constexpr std::int64_t noted_inner_bursts = 10;  // fewer are no news
   // What was last remarked on; the next time is when it has doubled.
   double most_bursts_ = 0;
+  std::int64_t most_inner_bursts_ = noted_inner_bursts / 2, next_inner_bursts_ = 0;  // the latter of this step
   std::size_t most_alive_ = 500'000;  // the first remark comes at a million, as many as particles of a large case
   std::int64_t trace_due_ = 0;
   std::string note_;
@@ -246,7 +254,9 @@ class BubbleCoupling final : public oxygen::Supply {
   Array<std::uint8_t> dead_;
   Array<std::uint8_t> near_;            // particles with bubbles in their reach
   Array<std::int32_t> near_particles_;  // those whose normals are seen
-  FloatVectorScratch smoothed_normal_;  // Shepard-filtered, of these
+  Array<std::uint8_t> beside_surface_;  // surface particles and their neighbours
+  FloatVectorScratch surface_normal_;   // of these, else 0
+  FloatVectorScratch smoothed_normal_;  // Shepard-filtered, of those that are seen
   // Beside walls of bodies; empty without. Per bubble: whether it is near one, its mirrored place, what it is divided
   // by.
   Array<std::uint8_t> wall_near_;

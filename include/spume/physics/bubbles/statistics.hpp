@@ -13,6 +13,7 @@ namespace spume::bubbles {
 struct History {
   std::int64_t injected = 0, entrained = 0, breakups = 0, bursts = 0;
   double injected_volume = 0, entrained_volume = 0, burst_volume = 0;
+  std::int64_t inner_bursts = 0;  // of the bursts those that happened before 6.5 spacings of liquid
 };
 
 struct SizeCounts {
