@@ -131,8 +131,18 @@ Dots PressureOperator::apply(std::span<const float> x, std::span<float> y, std::
   float* out = records + context_.dimensions;
   if (const float* weight = matrix_.weight; weight != nullptr) {
     parallel_for(n, [&, out, width](std::size_t i) { out[i * width] = weight[i] * x[i]; });
-    parallel_for(context_.images->size(),
-                 [&, out, width, n](std::size_t k) { out[(n + k) * width] = weight[source[k]] * x[source[k]]; });
+    if (context_.walls == nullptr) {
+      parallel_for(context_.images->size(),
+                   [&, out, width, n](std::size_t k) { out[(n + k) * width] = weight[source[k]] * x[source[k]]; });
+    } else {
+      // At wall points both are fits, as residual() has them.
+      for_each_image_pressure(context_, x.data(), false, [out, width, n](std::size_t k, double value) {
+        out[(n + k) * width] = static_cast<float>(value);
+      });
+      for_each_image_value(context_, weight, [out, width, n](std::size_t k, double value) {
+        out[(n + k) * width] *= static_cast<float>(value);
+      });
+    }
   } else {
     parallel_for(n, [&, out, width](std::size_t i) { out[i * width] = x[i]; });
     for_each_image_pressure(context_, x.data(), false, [out, width, n](std::size_t k, double value) {
