@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <experimental/simd>
+#include <tuple>
 
 #include "least_reciprocal_condition.hpp"
+#include "small_cholesky.hpp"
 #include "spume/operators/moving_least_squares.hpp"
-#include "spume/operators/small_matrix.hpp"
 
 namespace spume {
 
@@ -44,6 +45,22 @@ std::array<Pack, Dimensions> load(const std::array<std::vector<double>, Dimensio
 }
 
 }  // namespace
+
+template <int Dimensions>
+struct MomentFactors {
+  template <int Order>
+  using Cholesky = detail::SmallCholesky<static_cast<int>(monomial_count(Dimensions, Order))>;
+  template <int Order>
+  auto& of() {
+    return std::get<Cholesky<Order>>(orders);
+  }
+  std::tuple<Cholesky<1>, Cholesky<2>, Cholesky<3>> orders;
+};
+
+template <int Dimensions>
+MovingLeastSquares<Dimensions>::MovingLeastSquares() : factors_(std::make_unique<MomentFactors<Dimensions>>()) {}
+template <int Dimensions>
+MovingLeastSquares<Dimensions>::~MovingLeastSquares() = default;
 
 template <int Dimensions>
 void MovingLeastSquares<Dimensions>::resize(std::size_t count) {
@@ -88,25 +105,32 @@ bool MovingLeastSquares<Dimensions>::factor_order() {
     if (!(diagonal > 0)) return false;
     scale_[i] = 1 / std::sqrt(diagonal);
   }
-  for (std::size_t j = 0; j < size; ++j)
+  auto& cholesky = factors_->template of<Order>();
+  for (std::size_t j = 0; j < size; ++j) {
+    cholesky.column[j].fill(0);
     for (std::size_t i = j; i < size; ++i)
-      factor_[j * size + i] = moments_[product_index<Dimensions, Order>[i][j]] * (scale_[i] * scale_[j]);
-  if (!factor_cholesky(factor_.data(), static_cast<int>(size))) return false;
-  for (std::size_t i = 0; i < size; ++i)
-    if (!(factor_[i * size + i] * factor_[i * size + i] > smallest_pivot)) return false;
+      cholesky.column[j][i] = moments_[product_index<Dimensions, Order>[i][j]] * (scale_[i] * scale_[j]);
+  }
+  if (!cholesky.factor(smallest_pivot)) return false;
   order_ = Order;
   return true;
 }
 
-// Of the moments as they are: scaled, two planes that nearly coincide would pass for neighbours on all sides.
+// Of the moments as they are, in the 1-norm: scaled, two planes that nearly coincide would pass for neighbours on all
+// sides.
 template <int Dimensions>
 template <int Order>
 double MovingLeastSquares<Dimensions>::reciprocal_condition() const {
   constexpr std::size_t size = monomial_count(Dimensions, Order);
-  std::array<double, size * size> matrix;
-  for (std::size_t j = 0; j < size; ++j)
-    for (std::size_t i = 0; i < size; ++i) matrix[j * size + i] = moments_[product_index<Dimensions, Order>[i][j]];
-  return spume::reciprocal_condition(matrix.data(), static_cast<int>(size));
+  double norm = 0;
+  for (std::size_t j = 0; j < size; ++j) {
+    double sum = 0;
+    for (std::size_t i = 0; i < size; ++i) sum += std::abs(moments_[product_index<Dimensions, Order>[i][j]]);
+    norm = std::max(norm, sum);
+  }
+  typename MomentFactors<Dimensions>::template Cholesky<Order>::Vector scale{};
+  std::copy_n(scale_.begin(), size, scale.begin());
+  return 1 / (norm * factors_->template of<Order>().inverse_norm(scale));
 }
 
 template <int Dimensions>
@@ -135,9 +159,9 @@ template <int Dimensions>
 template <int Order>
 void MovingLeastSquares<Dimensions>::solve(std::size_t monomial, double factor) {
   constexpr std::size_t size = monomial_count(Dimensions, Order);
-  std::array<double, size> polynomial{};
+  typename MomentFactors<Dimensions>::template Cholesky<Order>::Vector polynomial{};
   polynomial[monomial] = factor * scale_[monomial];
-  solve_cholesky(factor_.data(), static_cast<int>(size), polynomial.data());
+  factors_->template of<Order>().solve(polynomial);
   for (std::size_t i = 0; i < size; ++i) polynomial[i] *= scale_[i];
   Pack sum = 0;
   for (std::size_t n = 0; n < count_; n += Pack::size()) {

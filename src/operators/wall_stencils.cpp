@@ -33,11 +33,15 @@ std::array<double, 3> WallStencils::velocity(std::size_t g, int dimensions,
   // disordered particles may be anything.
   std::array<double, 3> bent{};
   double bent2 = 0, slip2 = 0;
+  const std::int64_t begin = first[g], end = first[g + 1];
   for (int axis = 0; axis < dimensions; ++axis) {
     const double slip = u[axis] - wall[axis];
-    for (std::int64_t k = first[g]; k < first[g + 1]; ++k)
-      bent[axis] += bend[k] * (velocity[axis][source[k]] - wall[axis]);
-    bent2 += bent[axis] * bent[axis];
+    const double* const value = velocity[axis];
+    double sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (std::int64_t k = begin; k < end; ++k) sum += bend[k] * (value[source[k]] - wall[axis]);
+    bent[axis] = sum;
+    bent2 += sum * sum;
     slip2 += slip * slip;
   }
   const double share = bent2 > slip2 ? std::sqrt(slip2 / bent2) : 1;

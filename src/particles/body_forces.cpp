@@ -63,6 +63,25 @@ bool any_grows(const Scene& scene) {
 
 }  // namespace
 
+// Positions in the order of the cells.
+struct BodyForces::Sorted {
+  CellOrder cells;
+  std::array<std::vector<double>, 3> sorted;
+  std::array<const double*, 3> position{};
+
+  Sorted(const Fields& fields, int dimensions) {
+    cells.build(fields.grid, fields.position[0], fields.position[1], fields.position[2], fields.particles);
+    const Array<std::int32_t>& order = cells.order();
+    for (int axis = 0; axis < dimensions; ++axis) {
+      sorted[axis].resize(fields.particles);
+      parallel_for(fields.particles, [&, axis](std::size_t k) {
+        sorted[axis][k] = fields.position[axis][static_cast<std::size_t>(order[k])];
+      });
+      position[axis] = sorted[axis].data();
+    }
+  }
+};
+
 BodyForces::BodyForces(const Scene& scene, const Resolution& resolution, const BodyWalls& walls)
     : scene_(scene), resolution_(resolution), walls_(walls) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
@@ -89,8 +108,9 @@ void BodyForces::add_elements(std::int32_t b) {
 }
 
 template <int dimensions>
-BodyForces::Traction BodyForces::traction(const Fields& fields, const CellOrder& table, const Element& element,
-                                          const Vec3& wall_velocity, std::vector<PressureWeight>* weights) const {
+BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& table, NearParticles& near,
+                                          const Element& element, const Vec3& wall_velocity,
+                                          std::vector<PressureWeight>* weights) const {
   const double h = resolution_.smoothing_length, reach = fit_reach * resolution_.support_radius;
   const Vec3 normal = multiply(1 / length(element.area), element.area);
   struct Near {
@@ -98,55 +118,52 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const CellOrder&
     Vec3 offset;
     double weight;
   };
-  std::vector<Near> near;
+  near.find(scene_.domain, fields.grid, table.cells, table.position, element.middle, reach);
+  std::vector<Near> before;
   double sum = 0, covered = 0;
   with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
     const double scale = fields.particle_volume * Kernel::normalisation(d) / std::pow(h, d);
-    visit_near(scene_.domain, fields.grid, table, element.middle, reach, [&](std::int32_t k, const Vec3& shift) {
-      const auto j = static_cast<std::size_t>(table.order()[static_cast<std::size_t>(k)]);
+    for (std::size_t k = 0; k < near.size(); ++k) {
       Vec3 offset{};
-      double r2 = 0;
-      for (int axis = 0; axis < d; ++axis) {
-        offset[axis] = fields.position[axis][j] + shift[axis] - element.middle[axis];
-        r2 += offset[axis] * offset[axis];
-      }
-      if (r2 >= reach * reach || dot(offset, normal) < 0) return;
-      const double weight = WendlandC2::w(WendlandC2::support * std::sqrt(r2) / reach);
-      near.push_back({j, offset, weight});
+      for (int axis = 0; axis < d; ++axis) offset[axis] = near.offset(axis, k);
+      if (dot(offset, normal) < 0) continue;
+      const double r = std::sqrt(near.r2(k)), weight = WendlandC2::w(WendlandC2::support * r / reach);
+      before.push_back(
+          {static_cast<std::size_t>(table.cells.order()[static_cast<std::size_t>(near.particle(k))]), offset, weight});
       sum += weight;
-      covered += 2 * scale * Kernel::w(std::sqrt(r2) / h);
-    });
+      covered += 2 * scale * Kernel::w(r / h);
+    }
   });
   Traction found;
   if (covered < 0.5) return found;
   MovingLeastSquares<dimensions> fit;
   const auto fill = [&](bool pin) {
-    fit.resize(near.size() + (pin ? 1 : 0));
-    for (std::size_t k = 0; k < near.size(); ++k) {
-      for (int axis = 0; axis < dimensions; ++axis) fit.offset(axis)[k] = near[k].offset[axis] / h;
-      fit.weight()[k] = near[k].weight;
+    fit.resize(before.size() + (pin ? 1 : 0));
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      for (int axis = 0; axis < dimensions; ++axis) fit.offset(axis)[k] = before[k].offset[axis] / h;
+      fit.weight()[k] = before[k].weight;
     }
     if (!pin) return;
-    for (int axis = 0; axis < dimensions; ++axis) fit.offset(axis)[near.size()] = 0;
-    fit.weight()[near.size()] = pinned * sum;
+    for (int axis = 0; axis < dimensions; ++axis) fit.offset(axis)[before.size()] = 0;
+    fit.weight()[before.size()] = pinned * sum;
   };
   fill(false);
   if (fit.fit(2) < 0) return found;
   double p = 0;
   const auto value = fit.value();
-  for (std::size_t k = 0; k < near.size(); ++k) {
+  for (std::size_t k = 0; k < before.size(); ++k) {
     if (weights != nullptr)
-      weights->push_back({static_cast<std::int32_t>(near[k].particle), element.body, element.middle,
+      weights->push_back({static_cast<std::int32_t>(before[k].particle), element.body, element.middle,
                           multiply(-value[k], element.area)});
     else
-      p += value[k] * fields.pressure[near[k].particle];
+      p += value[k] * fields.pressure[before[k].particle];
   }
   found.pressure = multiply(-p, element.area);
   const bool holds = scene_.bodies[static_cast<std::size_t>(element.body)].wall == BoundaryKind::no_slip;
   double viscosity = fields.dynamic_viscosity;
   if (fields.viscosity != nullptr) {
     viscosity = 0;
-    for (const Near& one : near) viscosity += one.weight / sum * fields.viscosity[one.particle];
+    for (const Near& one : before) viscosity += one.weight / sum * fields.viscosity[one.particle];
   }
   if (!(viscosity > 0) || !holds) return found;
   fill(true);
@@ -156,11 +173,11 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const CellOrder&
     for (int b = 0; b < dimensions; ++b) {
       const auto slope = fit.gradient(b, h);
       double moduli = 0;
-      for (std::size_t k = 0; k < near.size(); ++k) moduli += std::abs(slope[k]);
+      for (std::size_t k = 0; k < before.size(); ++k) moduli += std::abs(slope[k]);
       if (order > 2 && moduli * h > steepest) return false;
       for (int a = 0; a < dimensions; ++a) {
-        double total = slope[near.size()] * wall_velocity[a];
-        for (std::size_t k = 0; k < near.size(); ++k) total += slope[k] * fields.velocity[a][near[k].particle];
+        double total = slope[before.size()] * wall_velocity[a];
+        for (std::size_t k = 0; k < before.size(); ++k) total += slope[k] * fields.velocity[a][before[k].particle];
         gradient[a][b] = total;
       }
     }
@@ -220,13 +237,13 @@ std::vector<BodyForces::Traction> BodyForces::tractions(const Fields& fields, do
   constexpr std::size_t block = 256;
   std::vector<Traction> of(elements_.size());
   if (weights != nullptr) weights->resize(block_count(elements_.size(), block));
-  CellOrder table;
-  table.build(fields.grid, fields.position[0], fields.position[1], fields.position[2], fields.particles);
+  const Sorted table(fields, scene_.domain.dimensions);
   parallel_blocks(elements_.size(), block, [&](std::size_t b, std::size_t first, std::size_t last) {
     // Expressions keep their variables inside: each block evaluates its own copies.
     std::vector<VectorExpression> velocity;
     for (const Body& body : scene_.bodies)
       velocity.push_back(body.velocity ? body.velocity->clone() : VectorExpression{});
+    NearParticles near;
     std::vector<PressureWeight>* const own = weights == nullptr ? nullptr : &(*weights)[b];
     for (std::size_t e = first; e < last; ++e) {
       if (weights != nullptr && !floats(elements_[e])) continue;
@@ -234,8 +251,8 @@ std::vector<BodyForces::Traction> BodyForces::tractions(const Fields& fields, do
       const auto body = static_cast<std::size_t>(element.body);
       const Vec3 wall = scene_.bodies[body].motion ? walls_.part_of(body).velocity_at(element.middle)
                                                    : velocity[body](element.middle, t);
-      of[e] = scene_.domain.dimensions == 3 ? traction<3>(fields, table, element, wall, own)
-                                            : traction<2>(fields, table, element, wall, own);
+      of[e] = scene_.domain.dimensions == 3 ? traction<3>(fields, table, near, element, wall, own)
+                                            : traction<2>(fields, table, near, element, wall, own);
     }
   });
   return of;

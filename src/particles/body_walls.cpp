@@ -213,36 +213,40 @@ WallPointView BodyWalls::wet() const {
 template <int dimensions>
 void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at, double particle_volume,
                           std::size_t first, std::size_t last, Block& block) const {
-  const auto r = read(at);
   const double h = resolution_.smoothing_length;
   PointFit<dimensions> fit(resolution_);
-  const double reach = fit.reach();
+  std::vector<double> across;  // of the particles near a point, from its tangent plane
   for (std::size_t g = first; g < last; ++g) {
     const WallPoint& point = points_[g];
-    fit.clear();
     double kernel_sum = 0;
     bool seen = false;  // from within the support radius
+    const NearParticles& near = fit.begin(scene_.domain, arrangement, at, point.mirror);
+    const double depth = dot(subtract(point.mirror, point.foot), point.normal),
+                 support2 = resolution_.support_radius * resolution_.support_radius;
+    const Vec3 behind = subtract(point.mirror, point.position);
     with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
       const double scale = particle_volume * Kernel::normalisation(d) / std::pow(h, d);
-      visit_near(scene_.domain, arrangement.grid, arrangement.table, point.mirror, reach,
-                 [&](std::int32_t j, const Vec3& shift) {
-                   Vec3 offset{};
-                   double r2 = 0, across = 0, way2 = 0;
-                   for (int axis = 0; axis < d; ++axis) {
-                     const double x = r[axis][j] + shift[axis];
-                     offset[axis] = x - point.mirror[axis];
-                     r2 += offset[axis] * offset[axis];
-                     across += (x - point.foot[axis]) * point.normal[axis];
-                     way2 += (x - point.position[axis]) * (x - point.position[axis]);
-                   }
-                   seen = seen || way2 < resolution_.support_radius * resolution_.support_radius;
-                   // Behind the tangent plane stands liquid of another side, or of a curved one, which the fit can
-                   // miss.
-                   if (across < 0 || r2 >= reach * reach) return;
-                   const double mirrored2 = r2 + 4 * across * dot(subtract(point.mirror, point.foot), point.normal);
-                   kernel_sum += scale * (Kernel::w(std::sqrt(r2) / h) + Kernel::w(std::sqrt(mirrored2) / h));
-                   fit.add(j, offset, r2);
-                 });
+      across.resize(near.size());
+      double nearest2 = support2, sum = 0;
+#pragma omp simd reduction(min : nearest2) reduction(+ : sum)
+      for (std::size_t k = 0; k < near.size(); ++k) {
+        double height = depth, way2 = 0;
+        for (int axis = 0; axis < d; ++axis) {
+          const double offset = near.offset(axis, k), way = offset + behind[axis];
+          height += offset * point.normal[axis];
+          way2 += way * way;
+        }
+        across[k] = height;
+        nearest2 = std::min(nearest2, way2);
+        const double r2 = near.r2(k), mirrored2 = std::max(0.0, r2 + 4 * height * depth);
+        const double both = Kernel::w(std::sqrt(r2) / h) + Kernel::w(std::sqrt(mirrored2) / h);
+        sum += height < 0 ? 0 : both;
+      }
+      seen = nearest2 < support2;
+      kernel_sum = scale * sum;
+      // Behind the tangent plane stands liquid of another side, or of a curved one, which the fit can miss.
+      for (std::size_t k = 0; k < near.size(); ++k)
+        if (!(across[k] < 0)) fit.add(k);
     });
     if (kernel_sum < wet_wall_share || !seen || fit.fit() < least_order) continue;
     block.point.push_back(static_cast<std::int32_t>(g));

@@ -29,29 +29,21 @@ struct Fitted {
 template <int dimensions>
 bool fit_point(const OpeningLiquid& liquid, const OpeningPoint& point, const Fitted& fitted,
                PointFit<dimensions>& fit) {
-  const auto r = read(liquid.at);
-  const double h = liquid.resolution.smoothing_length, reach = fit.reach();
+  const double h = liquid.resolution.smoothing_length;
   const OpenGate& gate = liquid.gates[static_cast<std::size_t>(point.gate)];
-  const double above = gate.inwards * (point.mirror[gate.opening->axis] - gate.plane);
-  fit.clear();
+  const int axis = gate.opening->axis;
+  const double above = gate.inwards * (point.mirror[axis] - gate.plane);
+  const NearParticles& near = fit.begin(liquid.domain, liquid.arrangement, liquid.at, point.mirror);
   double kernel_sum = 0;
   with_plain_kernel(dimensions, liquid.resolution.kernel, [&]<int d, class Kernel>() {
     const double scale = liquid.particle_volume * Kernel::normalisation(d) / std::pow(h, d);
-    visit_near(liquid.domain, liquid.arrangement.grid, liquid.arrangement.table, point.mirror, reach,
-               [&](std::int32_t j, const Vec3& shift) {
-                 if (!fitted(j, point)) return;
-                 Vec3 offset{};
-                 double r2 = 0;
-                 for (int axis = 0; axis < d; ++axis) {
-                   offset[axis] = r[axis][j] + shift[axis] - point.mirror[axis];
-                   r2 += offset[axis] * offset[axis];
-                 }
-                 if (r2 >= reach * reach) return;
-                 const double height = gate.inwards * offset[gate.opening->axis] + above;
-                 const double mirrored2 = r2 + 4 * std::max(0.0, height) * above;
-                 kernel_sum += scale * (Kernel::w(std::sqrt(r2) / h) + Kernel::w(std::sqrt(mirrored2) / h));
-                 fit.add(j, offset, r2);
-               });
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      if (!fitted(near.particle(k), point)) continue;
+      const double r2 = near.r2(k), height = gate.inwards * near.offset(axis, k) + above,
+                   mirrored2 = r2 + 4 * std::max(0.0, height) * above;
+      kernel_sum += scale * (Kernel::w(std::sqrt(r2) / h) + Kernel::w(std::sqrt(mirrored2) / h));
+      fit.add(k);
+    }
   });
   return kernel_sum >= wet_opening_share && fit.fit() >= 0;
 }

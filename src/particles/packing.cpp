@@ -146,10 +146,13 @@ Vec3 limited(const Vec3& way, double longest) {
 // all. move(i, f): what particle i moves by, with f(dr) = V h^2 W'(r) / r of a neighbour.
 template <class Start, class Move>
 void move_in_rounds(Arrangement& arrangement, ParticleStore& particles, Boundary& boundary,
-                    const Resolution& resolution, const VectorField& at, double t, Start&& start, Move&& move) {
+                    const Resolution& resolution, const VectorField& at, double t, const Array<std::int64_t>* layer,
+                    Start&& start, Move&& move) {
   const int d = particles.dimensions;
   const std::size_t n = particles.size();
   const double longest = longest_move * resolution.spacing;
+  const Domain& domain = boundary.domain();
+  const auto stays = [layer](std::size_t i) { return layer != nullptr && (*layer)[i] >= 0; };
   VectorScratch way;
   particles.scratch().lease(way, d, n);
   for (int round = 0; round < most_rounds; ++round) {
@@ -162,15 +165,19 @@ void move_in_rounds(Arrangement& arrangement, ParticleStore& particles, Boundary
       const double h = resolution.smoothing_length;
       const double value = particles.volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions);
       farthest = parallel_max(n, 0.0, [&](std::size_t i) {
+        if (stays(i)) return 0.0;
         const Vec3 moved = limited(move(i, [&](const Vec3& dr) { return value * Kernel::f(length(dr) / h); }), longest);
         for (int axis = 0; axis < d; ++axis) way[axis][i] = moved[axis];
         return length(moved);
       });
     });
     parallel_for(n, [&](std::size_t i) {
+      if (stays(i)) return;
       Vec3 place = add(vector_at(at, d, i), vector_at(way, d, i));
       boundary.apply_walls(boundary.walls, place, nullptr);
       for (int axis = 0; axis < d; ++axis) {
+        // Open sides let it through; its other components move on.
+        if (!domain.periodic(axis) && (place[axis] < domain.lower[axis] || place[axis] > domain.upper[axis])) continue;
         (*at[axis])[i] = place[axis];
         (*particles.position[axis])[i] = place[axis];
       }
@@ -185,7 +192,7 @@ void move_in_rounds(Arrangement& arrangement, ParticleStore& particles, Boundary
 
 void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boundary& boundary,
                         const Resolution& resolution, const VectorField& at, bool free_surface, double t,
-                        const Array<std::int64_t>* phase) {
+                        const Array<std::int64_t>* phase, const Array<std::int64_t>* layer) {
   const int d = particles.dimensions;
   const BodyWalls& bodies = *boundary.bodies();
   const NeighbourList& list = arrangement.list;
@@ -201,7 +208,7 @@ void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boun
     if (phase != nullptr) find_interfaces_of_layers(arrangement, particles, resolution, *phase, sees_surface);
     return true;
   };
-  move_in_rounds(arrangement, particles, boundary, resolution, at, t, start, [&](std::size_t i, auto&& f) {
+  move_in_rounds(arrangement, particles, boundary, resolution, at, t, layer, start, [&](std::size_t i, auto&& f) {
     const Vec3 place = vector_at(at, d, i);
     // Wall points beside the surface are there or not as a whole: those that move horizontally see their neighbours
     // mirrored at the wall instead, which spaces the first row evenly.
@@ -267,7 +274,7 @@ void pack_beside_solids(Arrangement& arrangement, ParticleStore& particles, Boun
              return moves ? std::abs(lacks[i].share) : 0.0;
            }) > even_enough;
   };
-  move_in_rounds(arrangement, particles, boundary, resolution, at, t, uneven, [&](std::size_t i, auto&& f) {
+  move_in_rounds(arrangement, particles, boundary, resolution, at, t, nullptr, uneven, [&](std::size_t i, auto&& f) {
     Vec3 gradient{};
     if (stays[static_cast<std::size_t>((*particles.identifier)[i])] != 0) return gradient;
     for (const std::int32_t j : list.of(i)) {

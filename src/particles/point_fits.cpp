@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
@@ -24,43 +25,50 @@ constexpr double most_bend = 16;
 }  // namespace
 
 template <int dimensions>
-int PointFit<dimensions>::fit() {
-  fit_.resize(near_.size());
-  for (std::size_t k = 0; k < near_.size(); ++k) {
-    for (int axis = 0; axis < dimensions; ++axis) fit_.offset(axis)[k] = near_[k].offset[axis] / smoothing_length_;
-    fit_.weight()[k] = WendlandC2::w(WendlandC2::support * std::sqrt(near_[k].r2) / reach_);
+double PointFit<dimensions>::fill(const Vec3& behind, std::size_t more) {
+  const std::size_t count = taken_.size();
+  fit_.resize(count + more);
+  for (int axis = 0; axis < dimensions; ++axis) {
+    double* const offset = fit_.offset(axis);
+    for (std::size_t k = 0; k < count; ++k)
+      offset[k] = (near_.offset(axis, static_cast<std::size_t>(taken_[k])) - behind[axis]) / smoothing_length_;
   }
+  double* const weight = fit_.weight();
+  for (std::size_t k = 0; k < count; ++k) weight[k] = near_.r2(static_cast<std::size_t>(taken_[k]));
+  for (std::size_t k = 0; k < count; ++k)
+    weight[k] = WendlandC2::w(WendlandC2::support * std::sqrt(weight[k]) / reach_);
+  return std::accumulate(weight, weight + count, 0.0);
+}
+
+template <int dimensions>
+int PointFit<dimensions>::fit() {
+  fill({}, 0);
   order_ = fit_.fit(highest_order);
   return order_;
 }
 
 template <int dimensions>
 void PointFit<dimensions>::append(PointFits& fits) {
+  const std::size_t count = taken_.size(), begin = fits.source.size();
   const auto coefficient = fit_.value();
   fits.nearest.push_back(nearest_);
-  fits.entries.push_back(static_cast<std::int32_t>(near_.size()));
-  double sum = 0;
-  for (const double c : coefficient) sum += c;
-  for (std::size_t k = 0; k < near_.size(); ++k) {
-    fits.source.push_back(near_[k].particle);
-    fits.coefficient.push_back(coefficient[k] / sum);
+  fits.entries.push_back(static_cast<std::int32_t>(count));
+  fits.source.resize(begin + count);
+  fits.coefficient.resize(begin + count);
+  const double sum = std::accumulate(coefficient.begin(), coefficient.end(), 0.0);
+  for (std::size_t k = 0; k < count; ++k) {
+    fits.source[begin + k] = near_.particle(static_cast<std::size_t>(taken_[k]));
+    fits.coefficient[begin + k] = coefficient[k] / sum;
   }
 }
 
 template <int dimensions>
 void PointFit<dimensions>::append_bend(const Vec3& behind, PointFits& fits) {
-  const std::size_t count = near_.size(), begin = fits.source.size() - count;
+  const std::size_t count = taken_.size(), begin = fits.source.size() - count;
   fits.bend.resize(fits.source.size(), 0.0);
   if (order_ < highest_order) return;
   // About the wall point, so that the value of the fit is that of the parabola there.
-  fit_.resize(count + 1);
-  double sum = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    for (int axis = 0; axis < dimensions; ++axis)
-      fit_.offset(axis)[k] = (near_[k].offset[axis] - behind[axis]) / smoothing_length_;
-    fit_.weight()[k] = WendlandC2::w(WendlandC2::support * std::sqrt(near_[k].r2) / reach_);
-    sum += fit_.weight()[k];
-  }
+  const double sum = fill(behind, 1);
   for (int axis = 0; axis < dimensions; ++axis) fit_.offset(axis)[count] = -behind[axis] / 2 / smoothing_length_;
   fit_.weight()[count] = pinned * sum;
   const double most = most_bend * length(behind) / 2 / spacing_;

@@ -37,7 +37,7 @@ class BendFit {
       : boundary_(boundary),
         arrangement_(arrangement),
         h_(resolution.smoothing_length),
-        reach_((d == 2 ? fit_reach : 1) * resolution.support_radius),
+        reach_(fit_reach_of(d) * resolution.support_radius),
         spacing_(resolution.spacing),
         position_(read(at)) {
     for (const ImagePath& path : arrangement.images.paths()) {

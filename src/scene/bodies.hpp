@@ -22,6 +22,9 @@ Combination make_walls(const std::vector<Body>& bodies, const std::vector<BodyMo
 // Point probes in solids that stand still, which record nothing.
 void warn_of_probes(const Draft& draft, const Scene& scene, Problems& problems);
 
+// The [[body]], or the [[solid]] that became one, which body k of the scene is; null of flaps and of copies.
+const Node* node_of_body(const Draft& draft, const Scene& scene, std::size_t k);
+
 // Bodies that lie outside the domain, that are much larger, or thinner than a spacing.
 std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const std::string& file);
 

@@ -136,14 +136,20 @@ void warn_of_probes(const Draft& draft, const Scene& scene, Problems& problems) 
   }
 }
 
+const Node* node_of_body(const Draft& draft, const Scene& scene, std::size_t k) {
+  if (k < draft.bodies.size()) return draft.node("body." + std::to_string(k));
+  const std::string& name = scene.bodies[k].name;
+  return name.starts_with("solid.") ? draft.node(name) : nullptr;
+}
+
 std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const std::string& file) {
   std::vector<Problem> warnings;
   const int dimensions = scene.domain.dimensions;
   const Bounds domain{scene.domain.lower, scene.domain.upper};
-  // Copies that are released stand behind those of the case.
-  for (std::size_t k = 0; k < draft.bodies.size(); ++k) {
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
     const Body& body = scene.bodies[k];
-    const Node* node = draft.node("body." + std::to_string(k));
+    const Node* node = node_of_body(draft, scene, k);
+    if (node == nullptr) continue;
     const auto warn = [&](const std::string& text) {
       warnings.push_back({file, node->place.line, node->place.column, "the body '" + body.name + "' " + text});
     };

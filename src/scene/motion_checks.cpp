@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "bodies.hpp"
 #include "checks.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/scene/expression.hpp"
@@ -200,7 +201,7 @@ std::vector<Problem> collision_warnings(const Draft& draft, const Scene& scene, 
   std::vector<Problem> warnings;
   const double deep = scene.spacing / 2;
   const Domain& domain = scene.domain;
-  std::vector<std::optional<std::vector<Vec3>>> found_places(draft.bodies.size());
+  std::vector<std::optional<std::vector<Vec3>>> found_places(scene.bodies.size());
   const auto places_of = [&](std::size_t k) -> const std::vector<Vec3>& {
     if (!found_places[k]) found_places[k] = places_on(scene.bodies[k], scene);
     return *found_places[k];
@@ -227,9 +228,11 @@ std::vector<Problem> collision_warnings(const Draft& draft, const Scene& scene, 
               }))
             found.push_back(static_cast<std::size_t>(2 * axis + end));
         }
-      for (std::size_t j = 0; j < draft.bodies.size(); ++j) {
+      for (std::size_t j = 0; j < scene.bodies.size(); ++j) {
         const Body& other = scene.bodies[j];
-        if (j == k || other.wall == BoundaryKind::open || other.subtract || other.motion == body.motion) continue;
+        if (j == k || node_of_body(draft, scene, j) == nullptr || other.wall == BoundaryKind::open || other.subtract ||
+            other.motion == body.motion)
+          continue;
         if (other.motion && (scene.motions[*other.motion].floats || scene.motions[*other.motion].release)) continue;
         const RigidPlace theirs = other.motion ? given_place(scene.motions[*other.motion], t) : RigidPlace{};
         // A small body may go into the middle of a face: places of both are looked at.

@@ -20,6 +20,15 @@ class WarnOfWaves {
 
   void maker(const Wavemaker& maker, const WavemakerDraft& draft) {
     if (maker.height > 0) height(maker, draft);
+    if (draft.order == 0 && draft.components > most_of_second_order &&
+        (draft.waves == WaveKind::jonswap || draft.waves == WaveKind::focused)) {
+      const Node* components = draft_.node(maker.name + ".components");
+      warn(components != nullptr ? *components : *draft_.node(maker.name),
+           maker.name + ".components is " + std::to_string(draft.components) + ", and above " +
+               std::to_string(most_of_second_order) +
+               " the motion is of first order: free waves go with the bound ones; lower it, or set  order = 1  to say "
+               "so");
+    }
     if (maker.absorbs && maker.wavenumber > 0 && draft.waves != WaveKind::solitary) absorption(maker, draft);
     // The surface is known to half a spacing.
     if (std::abs(maker.depth - maker.still_depth) > scene_.spacing / 2)

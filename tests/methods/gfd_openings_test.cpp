@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "methods/gfd_openings_run.hpp"
 
@@ -46,6 +47,19 @@ TEST(GfdOpenings, AUniformStreamStaysUniformInThreeDimensions) {
   const StreamErrors errors = stream_errors(run, along_x, nothing);
   EXPECT_LT(errors.velocity, 1e-6);
   EXPECT_LT(errors.pressure, 1e-6 * 1000);
+}
+
+// Bodies are packed around at the start, near openings too: layers stay behind their sides, and no liquid leaves. What
+// enters is a layer of particles at most.
+TEST(GfdOpenings, PackingBesideABodyLeavesLayersBehindTheirSides) {
+  for (const double x : {0.5, 0.12, 0.9}) {
+    GfdRun run(gfd_stream + "[[body]]\nshape = \"ball\"\nradius = 0.09\nposition = [" + std::to_string(x) +
+               ", 0.26]\n");
+    run.steps(1, 1e-3);
+    EXPECT_LE(run.series()["volume_in"], 0.05 * 0.5 + 1e-12) << x;
+    EXPECT_LE(run.series()["volume_out"], 0.05 * 0.5 + 1e-12) << x;
+    EXPECT_NEAR(run.series()["volume_water"], 0.5 - std::numbers::pi * 0.09 * 0.09, 0.05 * 0.5 + 0.005) << x;
+  }
 }
 
 // A plug of air, 1000 times as light, goes with the water around it and leaves: what is inside is what the velocity

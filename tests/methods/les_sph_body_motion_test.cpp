@@ -45,6 +45,21 @@ const std::string shaken = moving_tank + "displacement = [\"0.25*t^2\", \"0\"]\n
 
 // The pressure of a tank that is pushed evenly is linear across it and moves all of the liquid alike. Fits at the walls
 // take single precision.
+// Of [[solid]] boxes that stand beside bodies too, as they are bodies then.
+TEST(LesSphBodyMotion, BoxesThatBecomeBodiesAreWarnedOf) {
+  const auto warned = [](const std::string& box) {
+    std::vector<std::string> texts;
+    for (const Problem& one :
+         Simulation(moving_tank + "displacement = [\"t\", \"0\"]\n[[solid]]\n" + box).loaded.options.warnings)
+      texts.push_back(one.text);
+    return texts;
+  };
+  EXPECT_THAT(warned("lower = [0, -0.2]\nupper = [0.04, 0.2]\n"),
+              testing::Contains(testing::HasSubstr("the body 'solid.0' is thinner than a spacing, 0.05, behind")));
+  EXPECT_THAT(warned("lower = [-0.2, -0.2]\nupper = [0.1, 0.2]\n"),
+              testing::Not(testing::Contains(testing::HasSubstr("'solid.0'"))));
+}
+
 TEST(LesSphBodyMotion, LiquidMovesWithATankThatIsPushed) {
   Simulation run(moving_tank + "displacement = [\"0.25*t^2\", \"-0.1*t^2\"]\n");
   for (int step = 0; step < 30; ++step) run.steps(1, 0.02);

@@ -225,6 +225,51 @@ TEST(BubblesBesideBodies, SlideAlongASlope) {
   EXPECT_GT(touching, 40);
 }
 
+// Below a lid, a box and a ridge bubbles rest, and what presses them stirs nothing.
+TEST(BubblesBesideBodies, RestUnderACeiling) {
+  const std::string tank = R"toml(method = "les-sph"
+[domain]
+lower = [0, 0, 0]
+upper = [0.8, 0.8, 1]
+left = "free-slip"
+right = "free-slip"
+y = "periodic"
+bottom = "free-slip"
+top = "free-slip"
+[resolution]
+spacing = 0.1
+[fluid]
+reynolds = 1e3
+froude = 1
+mach = 0.05
+[[liquid]]
+[bubbles]
+weber = 1e3
+[[bubble_cloud]]
+lower = [0.3, 0.1, 0.3]
+upper = [0.5, 0.7, 0.4]
+number = 10
+bubble_radius = 0.02
+[time]
+end = 10
+)toml";
+  const std::string box = "[[solid]]\nlower = [0, 0, 0.7]\nupper = [0.8, 0.8, 1]\n",
+                    ridge =
+                        "[[body]]\nshape = \"outline\"\npoints = [[-0.4, 0.55], [0.4, 0.85], [1.2, 0.55], [1.2, "
+                        "1.5], [-0.4, 1.5]]\nwall = \"free-slip\"\n";
+  for (const std::string& ceiling : {std::string(), box, ridge}) {
+    SCOPED_TRACE(ceiling);
+    Simulation run(tank + ceiling);
+    run.steps(200, 0.05);
+    const double before = run.series()["kinetic_energy"];
+    run.steps(40, 0.05);
+    EXPECT_LT(run.series()["kinetic_energy"], before);
+    // Of a terminal speed of 0.068, with which they arrive at t = 9 at the latest. In the edge of the ridge they go to
+    // and fro between its faces, a gap wide.
+    EXPECT_LT(run.series()["bubble_slip"], ceiling == ridge ? 0.068 / 3 : 0.004);
+  }
+}
+
 TEST(BubblesBesideBodies, StayOutOfSolidsAndKeepTheirVolume) {
   Simulation run(round_stirred_tank);
   const BodyWalls& wall = *run.method.flow().boundary.bodies();

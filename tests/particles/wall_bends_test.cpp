@@ -89,7 +89,7 @@ struct Held {
 Vec3 slow_bend(const Held& held, std::size_t i, int axis, int side) {
   const Domain& domain = held.scene().domain;
   const double h = held.resolution.smoothing_length,
-               reach = (domain.dimensions == 2 ? fit_reach : 1) * held.resolution.support_radius;
+               reach = fit_reach_of(domain.dimensions) * held.resolution.support_radius;
   const double plane = side == 0 ? domain.lower[axis] : domain.upper[axis], inward = side == 0 ? 1 : -1;
   const Vec3 here = held.place(i);
   const double s = inward * (here[axis] - plane);

@@ -65,7 +65,7 @@ struct WallSums {
     std::vector<Carried> value;
   };
   Near near(const WallPoint& point) const {
-    const double reach = 1.25 * support_radius;
+    const double reach = (scene.domain.dimensions == 2 ? 1.25 : 1) * support_radius;
     Near found;
     for (std::size_t j = 0; j < particle.size(); ++j)
       for (const Vec3& place : periodic_copies(particle[j])) {

@@ -277,6 +277,8 @@ std::vector<std::string> warnings_of(const std::vector<std::string>& overrides) 
 }
 
 TEST(Wavemakers, WavesThatBreakAndSpongesTooShortAreWarnedOf) {
+  EXPECT_THAT(warnings_of({"wavemaker.0.waves=jonswap", "wavemaker.0.components=301"}),
+              ElementsAre(HasSubstr("wavemaker.0.components is 301, and above 300 the motion is of first order")));
   EXPECT_THAT(warnings_of({"wavemaker.0.height=0.8", "wavemaker.0.order=1"}),
               ElementsAre(HasSubstr("the wave height 0.8 is 0.8 of the depth; waves break above 0.78")));
   // kh = 4: 1.58 long; 0.14 tanh kh is 0.14 of that.

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -20,11 +21,17 @@
 
 namespace spume {
 
+template <int Dimensions>
+struct MomentFactors;
+
 // Coefficients c_j for neighbours that are kept. One per thread, used again for the next point.
 template <int Dimensions>
 class MovingLeastSquares {
  public:
   static constexpr int highest_order = 3;
+
+  MovingLeastSquares();
+  ~MovingLeastSquares();
 
   // A point with `count` neighbours. The caller fills offset(axis)[j] and weight()[j] for j < count before anything
   // else is asked.
@@ -73,8 +80,8 @@ class MovingLeastSquares {
   int measured_ = -1;  // degree up to which moments_ are known
   std::array<double, Products::size> moments_{};
   int order_ = -1;
-  alignas(64) std::array<double, most_monomials * most_monomials> factor_{};  // lower triangle, by columns
-  std::array<double, most_monomials> scale_{};                                // of the moments to a unit diagonal
+  std::unique_ptr<MomentFactors<Dimensions>> factors_;  // of each order
+  std::array<double, most_monomials> scale_{};          // of the moments to a unit diagonal
   double amplification_ = 0;
 };
 

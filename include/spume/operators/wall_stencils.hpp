@@ -70,9 +70,12 @@ struct WallStencils {
   // f(m).
   template <class T>
   double mirrored(std::size_t g, const T* values) const {
+    const std::int64_t begin = first[g], end = first[g + 1];
+    const double* const c = coefficient.data();
+    const std::int32_t* const j = source.data();
     double sum = 0;
-    for (std::int64_t k = first[g]; k < first[g + 1]; ++k)
-      sum += coefficient[k] * static_cast<double>(values[source[k]]);
+#pragma omp simd reduction(+ : sum)
+    for (std::int64_t k = begin; k < end; ++k) sum += c[k] * static_cast<double>(values[j[k]]);
     return sum;
   }
   // q_g; `given` false leaves out what is given, as for a correction of q.

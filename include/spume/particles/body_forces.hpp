@@ -14,6 +14,7 @@
 
 #include "spume/io/record_table.hpp"
 #include "spume/particles/boundary.hpp"
+#include "spume/particles/near_particles.hpp"
 
 namespace spume {
 
@@ -66,9 +67,10 @@ class BodyForces {
     Vec3 pressure{}, viscous{};
   };
   // Null `weights`: they are not asked for.
+  struct Sorted;
   template <int dimensions>
-  Traction traction(const Fields& fields, const CellOrder& table, const Element& element, const Vec3& wall_velocity,
-                    std::vector<PressureWeight>* weights) const;
+  Traction traction(const Fields& fields, const Sorted& table, NearParticles& near, const Element& element,
+                    const Vec3& wall_velocity, std::vector<PressureWeight>* weights) const;
   // Of every element; with `weights` those of floating bodies alone, and what they are made of, block by block.
   std::vector<Traction> tractions(const Fields& fields, double t,
                                   std::vector<std::vector<PressureWeight>>* weights) const;

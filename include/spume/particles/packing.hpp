@@ -5,7 +5,8 @@
 // Beside walls of bodies the lattice that fills a scene is cut by the surface: some particles stand closer to it than
 // half a spacing, some leave a gap. Those nearer than four spacings to a body move; those that see a free surface keep
 // its height: they move horizontally. With `phase`, where phases lie in layers, so do those that see an interface:
-// moved up and down with its particles it would be a wave of a tenth of a spacing.
+// moved up and down with its particles it would be a wave of a tenth of a spacing. Layers behind openings, the
+// particles with 0 or more in `layer`, stay, and no particle leaves the domain.
 //
 // Between faces of solids off the lattice, columns have cells and layers of other sizes, whole numbers of which make up
 // the volume to half a particle only. Thin ones draw particles in as soon as the liquid moves, and take themselves for
@@ -22,7 +23,7 @@ namespace spume {
 // Moves particles, in both `particles.position` and `at`, and leaves them in cell order of `at`.
 void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boundary& boundary,
                         const Resolution& resolution, const VectorField& at, bool free_surface, double t,
-                        const Array<std::int64_t>* phase = nullptr);
+                        const Array<std::int64_t>* phase = nullptr, const Array<std::int64_t>* layer = nullptr);
 void pack_beside_solids(Arrangement& arrangement, ParticleStore& particles, Boundary& boundary,
                         const Resolution& resolution, const VectorField& at, bool free_surface, double t);
 

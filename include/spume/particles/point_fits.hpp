@@ -31,20 +31,23 @@ class PointFit {
   explicit PointFit(const Resolution& resolution)
       : spacing_(resolution.spacing),
         smoothing_length_(resolution.smoothing_length),
-        reach_(fit_reach * resolution.support_radius) {}
+        reach_(fit_reach_of(dimensions) * resolution.support_radius) {}
 
   double reach() const { return reach_; }
-  void clear() {
-    near_.clear();
+  // The particles within the reach of a place, of which those that add() names are taken.
+  const NearParticles& begin(const Domain& domain, const Arrangement& arrangement, const VectorField& at,
+                             const Vec3& place) {
+    near_.find(domain, arrangement.grid, arrangement.table, read(at), place, reach_);
+    taken_.clear();
     nearest_ = 0;
     nearest2_ = std::numeric_limits<double>::infinity();
+    return near_;
   }
-  // A particle at a squared distance within the reach.
-  void add(std::int32_t particle, const Vec3& offset, double r2) {
-    near_.push_back({particle, offset, r2});
-    if (r2 >= nearest2_) return;
-    nearest2_ = r2;
-    nearest_ = particle;
+  void add(std::size_t k) {
+    taken_.push_back(static_cast<std::int32_t>(k));
+    if (near_.r2(k) >= nearest2_) return;
+    nearest2_ = near_.r2(k);
+    nearest_ = near_.particle(k);
   }
   // The order that the particles bear, -1: none.
   int fit();
@@ -60,14 +63,13 @@ class PointFit {
   }
 
  private:
-  struct Near {
-    std::int32_t particle;
-    Vec3 offset;
-    double r2;
-  };
+  // Offsets less `behind` and weights of the particles taken, and `more` places for others. Returns the sum of weights.
+  double fill(const Vec3& behind, std::size_t more);
+
   const double spacing_, smoothing_length_, reach_;
   MovingLeastSquares<dimensions> fit_;
-  std::vector<Near> near_;
+  NearParticles near_;
+  std::vector<std::int32_t> taken_;
   std::int32_t nearest_ = 0;
   double nearest2_ = 0;
   int order_ = -1;

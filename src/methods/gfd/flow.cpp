@@ -150,7 +150,8 @@ double Flow::potential_energy() const {
 double Flow::roundness() const {
   const double volume = phase_volume[1], pi = std::numbers::pi;
   const double least = dimensions == 3 ? std::cbrt(36 * pi * volume * volume) : 2 * std::sqrt(pi * volume);
-  return least / interface_area(colours);
+  const double area = interface_area(colours);
+  return area > 0 ? least / area : 1;  // a phase that has left has no interface
 }
 
 std::size_t Flow::particles_of(std::size_t n) const {

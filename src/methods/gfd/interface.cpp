@@ -15,7 +15,7 @@ void Flow::pack() {
   if (packed != 0) return;
   const bool layered = features.interfaces && features.gravity;
   pack_beside_bodies(arrangement, particles, boundary, resolution, particles.position, false, time,
-                     layered ? phase_number : nullptr);
+                     layered ? phase_number : nullptr, left_out());
   packed = 1;
 }
 

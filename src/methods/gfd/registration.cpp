@@ -42,6 +42,14 @@ void check_openings(const Draft& draft, const Scene& scene, Problems& problems) 
     problems.add(*draft.node("time.viscosity"),
                  "time.viscosity = \"implicit\" beside openings: the steps of method \"gfd\" are explicit there; "
                  "remove the key");
+  for (const Opening& each : scene.openings) {
+    if (!each.inflow || each.level == nullptr) continue;
+    const Node* const node = draft.node(each.name + ".level");
+    problems.add(node != nullptr ? *node : *draft.node(each.name),
+                 each.name +
+                     ".level leaves a part of the side dry, and method \"gfd\" fills its domain: nothing would "
+                     "stand behind that part; give the height of the opening by upper or where, beside a wall");
+  }
   if (!draft.solids.empty())
     problems.add(*draft.node("solid.0"),
                  "method \"gfd\" knows no [[solid]] beside openings; write the box as [[body]] with shape = \"box\"");

@@ -152,7 +152,8 @@ void Flow::find_divergence() {
   particles.scratch().lease(divergence, size());
   gfd_velocity_gradient_sweep(arrangement.context, arrangement.packed, read(intermediate_velocity),
                               boundary.volume_rule(), stencils().correction, {{}, divergence.data()});
-  max_divergence = parallel_max(size(), 0.0, [&](std::size_t i) { return std::abs(divergence[i]); });
+  max_divergence =
+      parallel_max(size(), 0.0, [&](std::size_t i) { return in_domain(i) ? std::abs(divergence[i]) : 0.0; });
 }
 
 void Flow::relax_density(double dt) {

@@ -133,7 +133,7 @@ void Flow::set_matrix() {
   // Bodies may enclose the liquid in a domain that is open.
   const bool enclosed = surface != nullptr && !features.outflow && surface->near_surface.size() == 0;
   rows.singular = (features.closed || enclosed) && equation.helmholtz == 0;
-  rows.unsymmetric = features.bodies || features.openings;
+  rows.unsymmetric = features.bodies || features.openings || sizes.variable;  // weights of bubbles
   const auto volume = static_cast<float>(particles.volume);
   parallel_for(n, [&](std::size_t i) {
     rows.diagonal_shift[i] = static_cast<float>(equation.helmholtz * row_scale(i));

@@ -265,7 +265,7 @@ void BubbleCoupling::move_bubble(std::size_t b, double dt) {
   Moved moved{u, {}};
   if (exchanges_gas()) next_gas_[b] = {{(*population_.oxygen)[b], (*population_.inert)[b]}};
   if (sum > 0) moved = accelerate(gas_, b, around, u, radius, braking, dt);
-  if (sum > 0 && beside_bodies()) slide_along_wall(b, around, u, radius, braking, dt, moved);
+  if (sum > 0) slide_along_walls(b, around, u, radius, braking, dt, moved);
 
   float* record_of = bubble_records_.data() + b * 8;  // x y z, M / N (3), viscosity, oxygen / N
   double slip2 = 0, resolved_slip2 = 0;

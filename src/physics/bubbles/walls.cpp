@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Bubbles beside walls of bodies.
+// Bubbles beside walls.
 //
-// The liquid behind a surface is its wall points, which bubbles see as they see particles. Of a bubble the liquid sees,
-// besides itself, its reflection in the point of the surface nearest to it, with the share
+// The liquid behind the surface of a body is its wall points, which bubbles see as they see particles. Of a bubble the
+// liquid sees, besides itself, its reflection in the point of the surface nearest to it, with the share
 //
 //   s_b = sum_g V_g W(r_b - r_g, h_g) / sum_i V_i W(r_b' - r_i, h_i),    g wall points, i particles,
 //
@@ -10,10 +10,14 @@
 // arrives in the liquid, at surfaces of any curvature and in corners. Before a plane the share is 1, as of an image in
 // a side of the domain.
 //
-// A bubble that is pressed to a surface slides along it: what would lead it nearer than the gap that particles keep
-// within a step is taken away, together with the forces that press it, which the surface bears.
+// A bubble that is pressed to a surface, a side of the domain or a box slides along it: what would lead it nearer than
+// the gap that particles keep within a step is taken away, together with the forces that press it, which the wall
+// bears. Between two of them it slides along their edge, between three it rests. Without this 20 bubbles of 0.02 below
+// a ridge or a lid stir the liquid without an end, to 0.15 and 0.34 after six units of time.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "liquid_record.hpp"
 #include "spume/core/periodic_grid.hpp"
@@ -25,6 +29,8 @@ namespace {
 
 // In the corner of three planes a bubble has seven reflections, of which one is made.
 constexpr double largest_share = 7;
+// The sine of the angle between walls above which they make an edge.
+constexpr double least_of_edge = 1e-3;
 
 // Kernel sums of particles and of wall points around a place, with their images.
 struct Weights {
@@ -204,23 +210,65 @@ void BubbleCoupling::mirror_record(const ImageMap& map, std::size_t k, std::size
   }
 }
 
-void BubbleCoupling::slide_along_wall(std::size_t b, const Surroundings& around, const Vec3& u, double radius,
-                                      const Braking& braking, double dt, Moved& moved) const {
-  const BodyWalls& bodies = *carrier_.boundary.bodies();
-  const double gap = carrier_.boundary.gap();
-  const auto wall = bodies.wall_within(vector_at(population_.next_position, 3, b),
-                                       gap + dt * (length(moved.velocity) + bodies.largest_speed()));
-  if (!wall) return;
-  const double least = dot(wall->velocity, wall->normal) - std::max(0.0, wall->distance - gap) / dt;
-  if (dot(moved.velocity, wall->normal) >= least) return;
-  const auto along = [&](const Vec3& v) { return subtract(v, multiply(dot(v, wall->normal), wall->normal)); };
-  const Vec3 across = multiply(least, wall->normal), start = add(along(u), across);
-  Gas pressed = gas_;
-  pressed.gravity = along(gas_.gravity);
-  const Surroundings beside{add(along(around.velocity), across),
-                            multiply(dot(around.vorticity, wall->normal), wall->normal), along(around.acceleration)};
-  moved = accelerate(pressed, b, beside, start, radius, braking, dt);
-  moved.velocity = add(along(moved.velocity), across);  // whatever a surface of the liquid adds
+// The wall of a body that a bubble which moves with `velocity` from `at` would pass within the step, else the sides and
+// boxes that would turn it back: a direction out of the wall, and the least velocity along it.
+std::optional<BubbleCoupling::Stop> BubbleCoupling::stop_before(const Vec3& at, const Vec3& velocity, double dt) const {
+  const Boundary& boundary = carrier_.boundary;
+  if (beside_bodies()) {
+    const BodyWalls& bodies = *boundary.bodies();
+    const double gap = boundary.gap();
+    if (const auto wall = bodies.wall_within(at, gap + dt * (length(velocity) + bodies.largest_speed()))) {
+      const double least = dot(wall->velocity, wall->normal) - std::max(0.0, wall->distance - gap) / dt;
+      if (dot(velocity, wall->normal) < least) return Stop{wall->normal, least};
+    }
+  }
+  const Vec3 next = add(at, multiply(dt, velocity));
+  Vec3 kept = next;
+  boundary.apply_walls(boundary.next_walls, kept, nullptr);
+  Vec3 back = subtract(kept, next);
+  const Domain& domain = boundary.domain();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double period = domain.upper[axis] - domain.lower[axis];
+    if (domain.periodic(axis)) back[axis] -= period * std::round(back[axis] / period);
+  }
+  const double size = length(back);
+  if (!(size > boundary.gap())) return {};
+  // Up to the gap before another face of a body. Sides and boxes reflect: as far before as it would be behind.
+  const double inside = beside_bodies() ? boundary.gap() - boundary.bodies()->distance(next) : 0;
+  const Vec3 normal = multiply(1 / size, back);
+  return Stop{normal, dot(velocity, normal) + (inside > 0 ? inside : size / 2) / dt};
+}
+
+void BubbleCoupling::slide_along_walls(std::size_t b, const Surroundings& around, const Vec3& u, double radius,
+                                       const Braking& braking, double dt, Moved& moved) const {
+  Vec3 at = vector_at(population_.next_position, 3, b);
+  carrier_.boundary.apply_walls(carrier_.boundary.next_walls, at, nullptr);
+  std::array<Vec3, 3> held{};  // directions, at right angles, in which walls give the velocity `given`
+  Vec3 given{};
+  for (std::size_t faces = 0; faces < 3; ++faces) {
+    const auto stop = stop_before(at, moved.velocity, dt);
+    if (!stop) return;
+    Vec3 normal = stop->normal;
+    for (std::size_t k = 0; k < faces; ++k) normal = subtract(normal, multiply(dot(normal, held[k]), held[k]));
+    const double size = length(normal);
+    if (!(size > least_of_edge)) return;
+    normal = multiply(1 / size, normal);
+    // Along `normal` for what the wall wants along its own.
+    const double speed = dot(moved.velocity, normal) + (stop->least - dot(moved.velocity, stop->normal)) / size;
+    held[faces] = normal;
+    given = add(given, multiply(speed, normal));
+    const auto along = [&](Vec3 v) {
+      for (std::size_t k = 0; k <= faces; ++k) v = subtract(v, multiply(dot(v, held[k]), held[k]));
+      return v;
+    };
+    // Lift along a wall is that of what turns about its normal; along an edge there is none.
+    const Vec3 vorticity = faces == 0 ? multiply(dot(around.vorticity, normal), normal) : Vec3{};
+    Gas pressed = gas_;
+    pressed.gravity = along(gas_.gravity);
+    const Surroundings beside{add(along(around.velocity), given), vorticity, along(around.acceleration)};
+    moved = accelerate(pressed, b, beside, add(along(u), given), radius, braking, dt);
+    moved.velocity = add(along(moved.velocity), given);  // whatever a surface of the liquid adds
+  }
 }
 
 void BubbleCoupling::keep_new_bubbles_outside(std::size_t first) {

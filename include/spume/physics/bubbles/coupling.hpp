@@ -22,6 +22,7 @@
 // deformation, which is not resolved, leaves the liquid at rest. The latter is the default (surface_reaction).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -155,7 +156,7 @@ class BubbleCoupling final : public oxygen::Supply {
   double mixture_at(const CrossSearch& search, const std::array<float, 3>& place) const;
   bool faces_liquid(const CrossSearch& search, std::size_t b) const;
   std::int64_t count_inner_bursts() const;
-  // Walls of bodies (walls.cpp).
+  // Walls (walls.cpp).
   bool beside_bodies() const { return carrier_.boundary.bodies() != nullptr; }
   void reflect_bubbles(const ImageRules& rules);
   WallPointView reflections() const;
@@ -165,8 +166,13 @@ class BubbleCoupling final : public oxygen::Supply {
   float share_of_image(std::size_t k) const;
   void weigh_received();
   void mirror_record(const ImageMap& map, std::size_t k, std::size_t point, float* value) const;
-  void slide_along_wall(std::size_t b, const Surroundings& around, const Vec3& u, double radius, const Braking& braking,
-                        double dt, Moved& moved) const;
+  struct Stop {
+    Vec3 normal;
+    double least;
+  };
+  std::optional<Stop> stop_before(const Vec3& at, const Vec3& velocity, double dt) const;
+  void slide_along_walls(std::size_t b, const Surroundings& around, const Vec3& u, double radius,
+                         const Braking& braking, double dt, Moved& moved) const;
   void keep_new_bubbles_outside(std::size_t first);
   template <int components>
   void deposit();
