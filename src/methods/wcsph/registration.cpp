@@ -6,7 +6,6 @@
 
 #include "spume/methods/wcsph/wcsph.hpp"
 #include "spume/particles/options.hpp"
-#include "spume/physics/oxygen/checks.hpp"
 #include "spume/physics/solutes/solutes.hpp"
 #include "spume/scene/document.hpp"
 #include "spume/scene/option.hpp"
@@ -56,7 +55,6 @@ void check(Draft& draft, Problems& problems) {
 
 void check_scene(const Draft& draft, const Scene& scene, Problems& problems) {
   check_initial_scalars(draft, scene, problems);
-  check_released_gas(draft, scene, problems);
   if (draft.options.get<CompressibilityOptions>().shifting == Shifting::on && scene.free_surface)
     problems.add(
         *draft.node("compressibility.shifting"),
