@@ -15,7 +15,8 @@ import sys
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-STEP = 1e-3
+STEP = 0.06     # over the number of panels
+LOST = 0.02     # most of the area, in which the nodes then no longer keep up
 DAMPING = 0.5   # of waves of two panels, a step
 CLOSED = 0.015  # half width
 
@@ -94,14 +95,16 @@ def closing(tension, panels, start=0.15):
     """Rows of time, area, half width of the foot and height of the top, from a half disc at rest until the foot closes."""
     angle = np.linspace(0, np.pi / 2, panels + 1)
     x, z, phi = start * np.cos(angle), start * np.sin(angle), np.zeros(panels + 1)
-    time, rows = area(x, z), []
+    time, rows, step = area(x, z), [], STEP / panels
     while x[:panels // 2].min() > CLOSED:
         first = rates(x, z, phi, tension)
-        second = rates(*(f + STEP / 2 * rate for f, rate in zip((x, z, phi), first)), tension)
-        x, z, phi = spread(*(f + STEP * rate for f, rate in zip((x, z, phi), second)))
+        second = rates(*(f + step / 2 * rate for f, rate in zip((x, z, phi), first)), tension)
+        x, z, phi = spread(*(f + step * rate for f, rate in zip((x, z, phi), second)))
         phi -= phi.mean()
-        time += STEP
+        time += step
         rows.append((time, area(x, z), x[0], z[-1]))
+        if not abs(rows[-1][1] / time - 1) < LOST:
+            raise SystemExit(f"the area is {rows[-1][1]:.3f} at t = {time:.3f}: take fewer panels")
     return np.array(rows)
 
 
@@ -109,6 +112,6 @@ if __name__ == "__main__":
     tension = float(sys.argv[1]) if len(sys.argv) > 1 else 0.0
     panels = int(sys.argv[2]) if len(sys.argv) > 2 else 60
     rows = closing(tension, panels)
-    for row in rows[100::100]:
+    for row in rows[::len(rows) // 15]:
         print("t {:.3f}  area {:.3f}  half width of the foot {:.3f}  top {:.3f}".format(*row))
     print(f"area when the foot closes: {rows[-1][1]:.3f}")
