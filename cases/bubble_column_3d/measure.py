@@ -47,19 +47,19 @@ def circulation(run):
     return (edges[1:] + edges[:-1]) / 2, total / np.maximum(number, 1)
 
 
-def unevenness(run):
-    """Times after the pulse, and the rms of the tracer's cell means about the mean, over the mean."""
+def unevenness(run, name="tracer"):
+    """Times after the pulse, and the rms of the tracer's cell means about the mean, over the mean; in 2-D too."""
     lower, upper = (np.array(run.case["domain"][key], dtype=float) for key in ("lower", "upper"))
     count = np.maximum(1, np.round((upper - lower) / SIDE).astype(int))
     times, uneven = [], []
     for snapshot in run.snapshots():
         if snapshot.time < PULSE:
             continue
-        place = np.clip(np.floor((snapshot.position - lower) / (upper - lower) * count).astype(int), 0, count - 1)
+        place = np.clip(np.floor((snapshot.position[:, :len(lower)] - lower) / (upper - lower) * count).astype(int), 0, count - 1)
         cell = np.ravel_multi_index(place.T, count)
         number = np.bincount(cell, minlength=count.prod())
         full = number >= 0.3 * np.median(number[number > 0])  # cells of the surface hold a few
-        tracer = snapshot.field("tracer")
+        tracer = snapshot.field(name)
         mean = np.bincount(cell, tracer, count.prod())[full] / number[full]
         times.append(snapshot.time)
         uneven.append(np.sqrt(np.average((mean - tracer.mean()) ** 2, weights=number[full])) / tracer.mean())
@@ -67,9 +67,11 @@ def unevenness(run):
 
 
 def mixing_time(times, uneven):
-    """From the pulse until the cells differ by 5 % rms, 95 % mixed; not-a-number where the run ends before."""
-    mixed = np.flatnonzero(uneven <= 0.05)
-    return float(times[mixed[0]] - PULSE) if mixed.size else float("nan")
+    """From the pulse until the cells differ by 5 % rms at most from then on, 95 % mixed; not-a-number where the run ends
+    before."""
+    uneven_at = np.flatnonzero(uneven > 0.05)
+    first = uneven_at[-1] + 1 if uneven_at.size else 0
+    return float(times[first] - PULSE) if first < len(times) else float("nan")
 
 
 def measure(runs):

@@ -363,6 +363,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   scene.sponges = make_sponges(draft, wavemakers);
   check_openings_of(draft, scene, lattice.volume(), problems);
   check_motions(draft, scene, method->incompressible, problems);
+  if (uses_particles(*method)) check_released_ways(draft, scene, problems);
   double& courant = draft.options.time.courant;
   if (courant == 0) courant = method->default_courant(draft.options, scene);
   if (method->fills_phases) check_phases_filled(draft, scene, problems);

@@ -49,6 +49,23 @@ double nearest_liquid(const Scene& scene, const Shape& solid, const Vec3& way, d
   return least;
 }
 
+// Whether some particle is within `reach` of the surface of a body there.
+bool meets_liquid(const Scene& scene, const Shape& shape, const RigidPlace& place, double reach) {
+  const InitialParticles& particles = scene.particles;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    Vec3 r{};
+    for (std::size_t a = 0; a < static_cast<std::size_t>(scene.domain.dimensions); ++a) {
+      r[a] = particles.position[a][i];
+      if (scene.domain.periodic(static_cast<int>(a))) {
+        const double period = scene.domain.upper[a] - scene.domain.lower[a];
+        r[a] -= period * std::round((r[a] - place.position[a]) / period);
+      }
+    }
+    if (place.scale * shape.distance(place.start(r)) < reach) return true;
+  }
+  return false;
+}
+
 double least_half_width(const Shape& solid, int dimensions) {
   const Bounds box = solid.bounds();
   double least = std::numeric_limits<double>::infinity();
@@ -138,6 +155,27 @@ void add_released(const Draft& draft, std::vector<Body>& bodies, std::vector<Bod
                                             std::to_string(most_bodies) + " are possible");
 }
 
+void check_released_ways(const Draft& draft, const Scene& scene, Problems& problems) {
+  const double reach = support_ratio(draft.options.resolution) * scene.spacing;
+  for (std::size_t k = 0; k < draft.bodies.size(); ++k) {
+    const Body& body = scene.bodies[k];
+    if (!body.motion || !scene.motions[*body.motion].release) continue;
+    const BodyMotion& motion = scene.motions[*body.motion];
+    const auto meets_at = [&](double share) {
+      const RigidPlace place = given_place(motion, motion.release->first + share * motion.release->duration);
+      return place.scale > 0 && meets_liquid(scene, *body.alone, place, reach);
+    };
+    constexpr int places = 50;
+    bool meets = false;
+    for (int n = 0; n < places && !meets; ++n) meets = meets_at((n + 0.5) / places);
+    if (meets) continue;
+    problems.add_key(*draft.node("body." + std::to_string(k) + ".release_interval"),
+                     "the body '" + body.name +
+                         "' is released, and nowhere on its way is liquid within the kernel support " + brief(reach) +
+                         " of it; set its position below the surface, or remove it");
+  }
+}
+
 std::vector<Problem> release_warnings(const Draft& draft, const Scene& scene, const std::string& file) {
   std::vector<Problem> warnings;
   // What is said of several bodies is said once: an array of orifices has many that are alike.
@@ -169,6 +207,12 @@ std::vector<Problem> release_warnings(const Draft& draft, const Scene& scene, co
            "below " +
            brief(few) +
            ", and the liquid may lose volume with each; lower resolution.spacing, or watch the level of the liquid");
+    if (const RigidPlace at = given_place(motion, motion.release->first);
+        motion.release->growth > 0 &&
+        nearest_liquid(scene, *body.alone, subtract(at.position, at.pivot), reach) == reach)
+      warn("grows where no liquid is within the kernel support " + brief(reach) +
+           " of it at t = 0, and displaces nothing as it does; set its position below the surface, or remove "
+           "release_growth");
     const double start = motion.release->growth > 0 ? reach : nearest_liquid(scene, *body.alone, Vec3{}, reach);
     if (start < reach)
       warn("appears " + (start < 0 ? "in the liquid" : brief(start) + " from the liquid") +

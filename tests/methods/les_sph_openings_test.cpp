@@ -272,6 +272,21 @@ TEST(LesSphOpenings, LiquidThatComesBackIsLiquidAgain) {
   EXPECT_LT(errors.velocity, 0.01);
 }
 
+// A stream of 1 brings 2 of a dye where 0.5 was; the front does not reach the other side.
+TEST(LesSphOpenings, WhatEntersBringsAScalarAndWhatLeavesTakesIt) {
+  Simulation run(stream +
+                 "[[scalar]]\nname = \"dye\"\ninitial = \"0.5\"\ninflow = \"2\"\n"
+                 "[[scalar]]\nname = \"still\"\ninitial = \"3\"\n");
+  run_until(run, 0.6);
+  const auto series = run.series();
+  EXPECT_NEAR(series.at("amount_of_dye"), 0.25 + series.at("openings_gave_dye"), 1e-12);
+  EXPECT_NEAR(series.at("openings_gave_dye"), 2 * series.at("volume_in") - 0.5 * series.at("volume_out"), 1e-12);
+  EXPECT_GT(series.at("openings_gave_dye"), 0.4);
+  // Without a value what enters is like the liquid there.
+  EXPECT_NEAR(series.at("openings_gave_still"), 3 * (series.at("volume_in") - series.at("volume_out")), 1e-12);
+  EXPECT_EQ(Simulation(tank + "[[scalar]]\nname = \"dye\"\n").series().count("openings_gave_dye"), 0U);
+}
+
 TEST(LesSphOpenings, GiveTheSameBitsForAnyNumberOfThreads) {
   const int threads = omp_get_max_threads();
   std::map<std::string, std::vector<double>> first;
@@ -290,7 +305,8 @@ TEST(LesSphOpenings, GiveTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(LesSphOpenings, GoOnBitForBitFromASavedState) {
-  for (const std::string& text : {poiseuille, filling}) {
+  const std::string dyed = filling + "[[scalar]]\nname = \"dye\"\ninflow = \"2 + t\"\ndiffusivity = 0.01\n";
+  for (const std::string& text : {poiseuille, filling, dyed}) {
     Simulation straight(text, {"fluid.mach=0.05"}), restored(text, {"fluid.mach=0.05"});
     straight.steps(17, 0.01);
     MemoryState saved, one, other;

@@ -431,6 +431,22 @@ TEST(WcsphOpenings, AreTheSameForAnyNumberOfThreadsAndResumeBitForBit) {
   EXPECT_EQ(first.saved_state(), second.saved_state());
 }
 
+// 1000:1 beside openings: with tension, with shifting, or as air of a hundredth, nothing is said.
+TEST(WcsphOpenings, AirAndWaterThatMayTearAreWarnedOf) {
+  const auto said = [](const std::string& text) {
+    const LoadedCase loaded = load_text(text);
+    return std::any_of(loaded.options.warnings.begin(), loaded.options.warnings.end(), [](const Problem& warning) {
+      return warning.text.find("phases of 1000:1 beside openings, without surface tension, tear") != std::string::npos;
+    });
+  };
+  const std::string air = with_air("lower = [0.4, 0]\nupper = [0.7, 0.3]\n");
+  EXPECT_TRUE(said(air));
+  EXPECT_FALSE(said(air + "[interface]\nsurface_tension = 0.07\n"));
+  EXPECT_FALSE(said(air + "[compressibility]\nshifting = \"on\"\n"));
+  EXPECT_FALSE(said(replaced(air, "density = 1\n", "density = 10\n")));
+  EXPECT_FALSE(said(stream));
+}
+
 TEST(WcsphOpenings, AreRefusedInWords) {
   const auto refusal_of = [](const std::string& text, const Overrides& overrides = {}) -> std::string {
     try {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "spume/physics/biokinetics/asm1.hpp"
 
@@ -123,8 +124,11 @@ TEST(Bsm1Plant, OpenLoopReachesThePublishedEffluent) {
   constexpr double step = 2e-4;
   for (int n = 0; n < 750'000; ++n) p = moved(p, step, plant.change(moved(p, step / 2, plant.change(p))));
   const State out = Plant::effluent(p);
-  for (std::size_t i = 0; i < out.size(); ++i)
+  std::printf("effluent  here      published\n");
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    std::printf("%-8s %9.6g %9.6g\n", plant.model.components[i].c_str(), out[i], published[i]);
     EXPECT_NEAR(out[i], published[i], 1e-3 * published[i]) << plant.model.components[i];
+  }
 }
 
 }  // namespace

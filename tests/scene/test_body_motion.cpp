@@ -229,10 +229,12 @@ TEST(BodyMotion, AReleaseInTheLiquidIsWarnedOf) {
   EXPECT_THAT(warnings(plane + bubbles + every_second), Not(said("the body 'bubble'")));
   const std::string inside = test::replaced(bubbles, "-1.4", "-0.9");
   EXPECT_THAT(warnings(plane + inside + every_second), said("the body 'bubble' appears"));
-  EXPECT_THAT(warnings(plane + inside + every_second + "release_growth = 0.1\n"), Not(said("appears")));
+  EXPECT_THAT(warnings(plane + inside + every_second + "release_growth = 0.1\n"),
+              testing::AllOf(Not(said("appears")), Not(said("grows where no liquid"))));
   // Two spacings from the middle to the face are little; the tank has a free surface.
   const auto growing = warnings(plane + bubbles + every_second + "release_growth = 0.1\n");
   EXPECT_THAT(growing, said("displaces up to a half less"));
+  EXPECT_THAT(growing, said("the body 'bubble' grows where no liquid is within"));
   EXPECT_THAT(warnings(plane + bubbles + every_second + "release_shrinkage = 0.1\n"),
               said("displaces up to a half less"));
   EXPECT_THAT(growing, Not(said("nothing takes what it displaces")));
@@ -268,6 +270,7 @@ TEST(BodyMotion, AReleaseThatCannotBeIsRefused) {
   expect(bubbles + every_second + "release_growth = 1\ninside = false\n", "cannot grow");
   expect(bubbles + every_second + "release_growth = 1\nrelease_shrinkage = 0.6\n", "grows for 1 and shrinks for 0.6");
   expect(slab + every_second, "this one does not");
+  expect(test::replaced(bubbles, "[0.2, -1.4]", "[0.2, 0.4]") + every_second, "nowhere on its way is liquid");
   expect(slab + "mass = 1\n" + every_second, "floats, and bodies are released on a given way alone");
   expect(bubbles + every_second + test::replaced(slab, "size", "moves_with = \"bubble\"\nsize"), "moves with it");
 }

@@ -127,6 +127,37 @@ TEST(Expression, ClonesAreIndependent) {
   EXPECT_LT(worst, 1e-14);
 }
 
+TEST(Expression, ACopyDoesNotKnowWhereThoseBeforeItWereEvaluated) {
+  ExpressionScope scope;
+  scope.define({{"depth", "1 + x^2"}, {"wave", "sin(t)"}});
+  const auto original = scope.compile("depth*z + wave");
+  for (const double x : {0.0, -0.0, 3.0, 0.0}) {
+    for (const double t : {0.0, 2.0}) {
+      const auto first = original->clone(), second = original->clone();
+      EXPECT_EQ((*first)(x, 0, 2, t), (1 + x * x) * 2 + std::sin(t));
+      EXPECT_EQ((*second)(x + 1, 0, 1, 0), 1 + (x + 1) * (x + 1));
+      EXPECT_EQ((*first)(x, 0, 2, t), (1 + x * x) * 2 + std::sin(t));
+    }
+  }
+}
+
+// Sweeps make a copy for every block of 512 particles: it may not cost what it takes to parse the text, a thousand
+// times an evaluation. The factor of ten leaves room for a busy machine.
+TEST(Expression, ACopyOfWhatWasCopiedBeforeParsesNothing) {
+  ExpressionScope scope;
+  const auto original = scope.compile("t > 2 && (x - 0.5)^2 + y^2 < 1 ? 1 : 0");
+  const auto seconds = [](auto&& work) {
+    const double start = omp_get_wtime();
+    for (int i = 0; i < 200; ++i) work();
+    return omp_get_wtime() - start;
+  };
+  double sum = 0;
+  const double parsed = seconds([&] { sum += (*scope.compile("t > 2 && (x - 0.5)^2 + y^2 < 1 ? 1 : 0"))(0, 0, 0, 3); });
+  const double copied = seconds([&] { sum += (*original->clone())(0, 0, 0, 3); });
+  EXPECT_EQ(sum, 400);
+  EXPECT_LT(copied, parsed / 10);
+}
+
 TEST(Expression, VectorTreatsAnAbsentComponentAsZero) {
   VectorExpression vector;
   vector.component[1] = ExpressionScope().compile("x + t");

@@ -8,8 +8,11 @@
 namespace spume::test {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::Field;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::string box_with(const std::string& scalars) {
   return "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [1, 1]\nx = \"periodic\"\ny = \"periodic\"\n"
@@ -49,6 +52,21 @@ TEST(ScalarSections, WrongOnesAreRefusedWithPlaceFindingAndFix) {
               ElementsAre(HasSubstr("it must be a finite number where there is liquid")));
   EXPECT_THAT(problems_of(box_with("[[scalar]]\nname = \"dye\"\ninflow = \"1\"\n")),
               ElementsAre(HasSubstr("scalar.0.inflow needs an opening where liquid enters")));
+}
+
+TEST(ScalarSections, WhatEntersIsCheckedAndWhatIsNotGivenIsSaid) {
+  const std::string stream =
+      "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [1, 0.5]\nbottom = \"free-slip\"\ntop = \"free-slip\"\n"
+      "[resolution]\nspacing = 0.05\n[fluid]\nreynolds = 20\n[[liquid]]\nvelocity = [\"1\", \"0\"]\n[[inflow]]\nside = "
+      "\"left\"\nvelocity = [\"1\", \"0\"]\n[[outflow]]\nside = \"right\"\n[time]\nend = 2\n[[scalar]]\nname = "
+      "\"dye\"\n";
+  EXPECT_THAT(problems_of(stream + "inflow = \"1/(1 - t)\"\n"),
+              ElementsAre(HasSubstr("scalar.0.inflow is inf in the middle of inflow.0 at t = 1")));
+  EXPECT_THAT(test::load_text(stream).options.warnings,
+              Contains(Field(&Problem::text,
+                             HasSubstr("the concentration of the nearest liquid of 'dye', which have no key inflow"))));
+  EXPECT_THAT(test::load_text(stream + "inflow = \"1\"\n").options.warnings,
+              Not(Contains(Field(&Problem::text, HasSubstr("nearest liquid")))));
 }
 
 }  // namespace

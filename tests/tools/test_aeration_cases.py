@@ -2,7 +2,9 @@
 """Measures of the aerated tanks, on run folders written from known answers."""
 import numpy as np
 from case_test import CaseTest
+from spume_tools.places import CASES
 from spume_tools.results import Results
+from spume_tools.verify.cases import load_measure
 from synthetic import lattice, series_of, write_snapshots, write_table
 
 
@@ -144,7 +146,8 @@ class BubbleColumn(CaseTest):
     """Two bubbles, the second of half the length, that lift the surface by what they displace; liquid that goes up in the
     middle as a cosine."""
 
-    def measured(self, lift=1.0, turned=1.0):
+    def measured(self, lift=1.0, turned=1.0, breath=0.0, **tracers):
+        """With a breath the snapshots show the water going up everywhere. Of a tracer the rate with which halves even out."""
         folder, module = self.run_of("bubble_column")
         t = np.linspace(0, 2.5, 251)
         area = np.pi * 0.007 * 0.0045 * (1 + 0.25) * (t > 0)
@@ -152,9 +155,13 @@ class BubbleColumn(CaseTest):
                                             "scale": np.tile([1, 0.5], t.size) * np.repeat(t > 0, 2)})
         write_table(folder / "probes.csv", {"t": t, "level_1": 0.35 + lift * area / 0.18, "level_2": 0.35 + lift * area / 0.18})
         points = lattice((0, 0), (0.18, 0.35), 0.01)
-        write_snapshots(folder / "fluid.vtkhdf", (0, 1, 1.6, 2.5), lambda time: points, {
+        halves = {name: lambda r, time, rate=rate: 1 + np.exp(-rate * (time - 2.1)) * np.sign(r[:, 0] - 0.09)
+                  for name, rate in tracers.items()}
+        times = (0, 1, 1.6, 2.5) + tuple(np.arange(2.6, 14, 0.1) if tracers else ())
+        write_snapshots(folder / "fluid.vtkhdf", times, lambda time: points, {
             "velocity": lambda r, time: np.column_stack(
-                [0 * r[:, 0], (time >= 1.6) * turned * -0.1 * np.cos(2 * np.pi * r[:, 0] / 0.18)])})
+                [0 * r[:, 0], breath + (time >= 1.6) * turned * -0.1 * np.cos(2 * np.pi * r[:, 0] / 0.18)])} | halves)
+        write_table(folder / "series.csv", series_of(t, **{f"amount_of_{name}": 1 for name in tracers}))
         return module.measure({"column": Results(folder)})
 
     def test_known_answers_are_found(self):
@@ -169,3 +176,17 @@ class BubbleColumn(CaseTest):
         self.assertAlmostEqual(self.measured(lift=0.9)["column_lift_error"], 0.1, places=9)
         ratio = self.measured(turned=0.5)["column_recirculation"] / self.measured()["column_recirculation"]
         self.assertAlmostEqual(ratio, 0.5, places=6)
+
+    def test_sound_in_step_with_the_snapshots_is_no_circulation(self):
+        self.assertAlmostEqual(self.measured(breath=0.05)["column_recirculation"], self.measured()["column_recirculation"])
+
+    def test_mixing_times_of_two_tracers(self):
+        measured = self.measured(tracer=0.3, tracer_2=0.31)
+        self.assertAlmostEqual(measured["column_mixing_time"], np.log(20 * np.sqrt(8 / 9)) / 0.3, delta=0.1)
+        self.assertAlmostEqual(measured["column_effect_of_diffusivity"], 1 - 0.3 / 0.31, delta=0.02)
+        self.assertNotIn("column_mixing_time", self.measured())
+        self.assertTrue(np.isnan(self.measured(tracer=0.1)["column_mixing_time"]))
+
+    def test_mixed_is_what_stays_even(self):
+        column = load_measure(CASES / "bubble_column_3d")
+        self.assertAlmostEqual(column.mixing_time(np.array([2.1, 3, 4, 5, 6]), np.array([2, 0.04, 0.06, 0.05, 0.01])), 2.9)

@@ -79,46 +79,6 @@ class BubbleReachesSurface(CaseTest):
         self.assertEqual(measured["bubble_lost"], 0)
 
 
-class BubbleDeparture(CaseTest):
-    def test_the_largest_static_bubble(self):
-        _, module = self.run_of("bubble_departure")
-        # A narrow slot: two sides hold 2 sigma, which is the weight of 2 l_c^2 (planar Tate), and no more by half a slot.
-        self.assertAlmostEqual(module.largest_static_area(0.01), 2, delta=0.03)
-        # A wider one carries more by the pressure on it.
-        self.assertGreater(module.largest_static_area(0.6), module.largest_static_area(0.3))
-
-    def test_volumes_and_times_of_departures(self):
-        folder, module = self.run_of("bubble_departure")
-        at = lattice([-3, 0], [3, 6.75], 0.15)
-        times, period, radius = np.arange(0, 8, 0.5), 3.0, 0.6
-
-        def air(p, t):
-            """Air stands on the slot; a disc leaves it every three times, at 1, and rises by one in a time."""
-            found = (np.abs(p[:, 0]) < 0.45) & (p[:, 1] < 0.3) | (p[:, 1] > 5.25)
-            for left in (1.0, 4.0, 7.0):
-                if t >= left:
-                    found |= p[:, 0] ** 2 + (p[:, 1] - 1.35 - (t - left)) ** 2 < radius**2
-            return found
-
-        write_snapshots(folder / "fluid.vtkhdf", times, lambda t: at, {
-            "phase": air, "density": lambda p, t: np.where(air(p, t), 0.01 * 1.25, 1.0)})
-        lost = np.where(times > 5, 0.01, 0)
-        write_table(folder / "series.csv", series_of(
-            times, volume_water=31.5, volume_in_water=0, volume_out_water=0, volume_air=9 + 0.1 * times - lost,
-            volume_in_air=0.1 * times, volume_out_air=0))
-        measured = module.measure({"slot": Results(folder)})
-        self.assertEqual(measured["slot_departures"], 3)
-        self.assertAlmostEqual(measured["slot_period"], period)
-        self.assertAlmostEqual(measured["slot_volume"], np.pi * radius**2 / 1.25, delta=0.06)
-        self.assertAlmostEqual(measured["slot_volume_error"], measured["slot_volume"] / measured["slot_static_limit"] - 1)
-        self.assertAlmostEqual(measured["slot_balance"], 0.01)
-        # Particles of an incompressible phase keep their volume, whatever the filtered density is.
-        text = (folder / "case.toml").read_text(encoding="utf-8")
-        (folder / "case.toml").write_text(text.replace('method = "wcsph"', 'method = "gfd"'), encoding="utf-8")
-        measured = module.measure({"gfd": Results(folder)})
-        self.assertAlmostEqual(measured["gfd_volume"], np.pi * radius**2, delta=0.06)
-
-
 class PoiseuilleTwoPhase(CaseTest):
     def test_the_steady_profile_is_that_of_the_reference(self):
         module = load_measure(CASES / "poiseuille_two_phase")

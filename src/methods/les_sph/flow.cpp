@@ -166,9 +166,12 @@ void Flow::exchange_with_openings() {
   const EnergyBalance balance = energy_balance(0);
   const double before = energy.held(balance, particles);
   const std::int64_t next = boundary.openings()->next_identifier(), entered = boundary.openings()->entered();
+  const std::vector<double> amounts = solutes.scalars != nullptr ? solutes.scalars->amounts() : std::vector<double>();
   if (boundary.openings()->exchange(particles, time)) energy.supply += energy.held(balance, particles) - before;
+  if (solutes.scalars == nullptr) return;
   // What enters is numbered before what comes back through outflows.
-  if (solutes.scalars != nullptr) solutes.scalars->enter(next, next + boundary.openings()->entered() - entered, time);
+  solutes.scalars->enter(next, next + boundary.openings()->entered() - entered, time);
+  solutes.scalars->count_openings(amounts);
 }
 
 bool Flow::has_left(std::size_t i) const {

@@ -6,7 +6,6 @@
 #include "spume/methods/les_sph/les_sph.hpp"
 #include "spume/methods/les_sph/options.hpp"
 #include "spume/physics/bubbles/options.hpp"
-#include "spume/physics/oxygen/checks.hpp"
 #include "spume/physics/solutes/solutes.hpp"
 #include "spume/physics/turbulence/options.hpp"
 #include "spume/scene/document.hpp"
@@ -112,7 +111,6 @@ Registration registration() {
     check_enclosed_liquid(draft, scene, problems);
     check_bubble_sources(draft, scene, problems);
     check_initial_scalars(draft, scene, problems);
-    check_released_gas(draft, scene, problems);
   };
   method.bytes_per_particle = bytes_per_particle;
   method.default_courant = default_courant;

@@ -347,7 +347,8 @@ void Flow::accept(double dt) {
     StepFailure::Details details;
     details.cause =
         std::isfinite(worst) ? "the density has changed by more than half" : "a force is not a finite number";
-    details.option = "compressibility.max_speed";
+    const bool tears = openings != nullptr && features.several && !features.shifting;
+    details.option = tears ? "compressibility.shifting" : "compressibility.max_speed";
     details.value = worst * largest_excess_of_a_flow;
     for (std::size_t i = 0; i < size(); ++i) {
       if (std::abs(next_excess[i]) <= largest_excess_of_a_flow && std::isfinite(force[0][i])) continue;

@@ -49,6 +49,38 @@ void refuse_value(const Draft& draft, std::size_t k, const Vec3& r, double value
                           " where there is liquid; change the expression");
 }
 
+// What inflows bring, at their middles and 100 times of the run: a finite number, of a substance not below zero.
+void check_inflows(const Draft& draft, const Scene& scene, Problems& problems) {
+  const std::vector<ScalarOption>& scalars = draft.options.get<ScalarOptions>().scalars;
+  std::string nearest;
+  const Opening* entrance = nullptr;
+  for (const Opening& opening : scene.openings)
+    if (opening.inflow) entrance = &opening;
+  if (entrance == nullptr) return;
+  for (std::size_t k = 0; k < scalars.size(); ++k) {
+    if (scalars[k].inflow == nullptr) nearest += (nearest.empty() ? "'" : ", '") + scalars[k].name + "'";
+    const auto wrong_at = [&](const Opening& opening, double t) {
+      Vec3 r{};
+      for (std::size_t a = 0; a < 3; ++a) r[a] = (opening.lower[a] + opening.upper[a]) / 2;
+      const double value = (*scalars[k].inflow)(r[0], r[1], r[2], t);
+      if (std::isfinite(value) && !(scalars[k].not_negative && value < 0)) return false;
+      problems.add(*draft.node(place_of(k) + ".inflow"), place_of(k) + ".inflow is " + brief(value) +
+                                                             " in the middle of " + opening.name +
+                                                             " at t = " + brief(t) + "; it must be a finite number" +
+                                                             (value < 0 ? " >= 0" : "") + "; change the expression");
+      return true;
+    };
+    bool wrong = scalars[k].inflow == nullptr;
+    for (const Opening& opening : scene.openings)
+      for (int n = 0; n <= 100 && opening.inflow && !wrong; ++n)
+        wrong = wrong_at(opening, draft.options.time.end * n / 100);
+  }
+  if (!nearest.empty())
+    problems.warn(*draft.node(entrance->name), "what enters has the concentration of the nearest liquid of " + nearest +
+                                                   ", which have no key inflow: none is brought or washed out there; "
+                                                   "give  [[scalar]] inflow = \"<expression>\", \"0\" for none");
+}
+
 }  // namespace
 
 Section scalar_section() {
@@ -132,6 +164,7 @@ void check_initial_scalars(const Draft& draft, const Scene& scene, Problems& pro
       break;
     }
   }
+  check_inflows(draft, scene, problems);
 }
 
 }  // namespace spume

@@ -71,6 +71,16 @@ void Scalars::enter(std::int64_t first, std::int64_t last, double t) {
       });
 }
 
+std::vector<double> Scalars::amounts() const {
+  std::vector<double> found(size());
+  for (std::size_t s = 0; s < size(); ++s) found[s] = amount(s);
+  return found;
+}
+
+void Scalars::count_openings(const std::vector<double>& before) {
+  for (std::size_t s = 0; s < size(); ++s) from_openings_[s] += amount(s) - before[s];
+}
+
 void Scalars::add_sources(double t, double dt, const VectorField& places) {
   for (std::size_t s = 0; s < size(); ++s) {
     if (option(s).source == nullptr) continue;
@@ -295,6 +305,9 @@ void Scalars::add_columns(SeriesTable& series) const {
   for (std::size_t s = 0; s < size(); ++s)
     if (std::any_of(walls_.walls.begin(), walls_.walls.end(), [s](const ScalarWall& w) { return w.scalar == s; }))
       series.add("walls_gave_" + option(s).name, "amount, since the start", [this, s] { return from_walls_[s]; });
+  for (std::size_t s = 0; s < from_openings_.size(); ++s)
+    series.add("openings_gave_" + option(s).name, "amount, less what they took, since the start",
+               [this, s] { return from_openings_[s]; });
   series.add("scalar_substeps", "1, into which diffusion divided the last step",
              [this] { return static_cast<double>(substeps_); });
 }
@@ -306,12 +319,15 @@ void Scalars::add_fields(SnapshotTable& snapshot) const {
 void Scalars::save(StateWriter& writer) const {
   writer.f64("scalar_sources", added_);
   writer.f64("scalar_walls", from_walls_);
+  if (!from_openings_.empty()) writer.f64("scalar_openings", from_openings_);
   writer.i64("scalar_substeps", {&substeps_, 1});
 }
 
 void Scalars::load(StateReader& reader) {
   Array<double> saved;
-  for (auto [name, values] : {std::pair{"scalar_sources", &added_}, {"scalar_walls", &from_walls_}}) {
+  for (auto [name, values] :
+       {std::pair{"scalar_sources", &added_}, {"scalar_walls", &from_walls_}, {"scalar_openings", &from_openings_}}) {
+    if (values->empty()) continue;
     reader.f64(name, saved);
     if (saved.size() != values->size()) throw FileError("the checkpoint holds other scalars than the case");
     std::copy(saved.begin(), saved.end(), values->begin());

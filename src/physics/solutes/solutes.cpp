@@ -13,9 +13,11 @@ SoluteFeatures::SoluteFeatures(const Case& options)
 
 Solutes::Solutes(ParticleStore& particles, const Resolution& resolution, const Case& options, const Scene& scene) {
   const SoluteFeatures has(options);
-  if (has.scalars)
+  if (has.scalars) {
     scalars =
         std::make_unique<Scalars>(particles, resolution, options.get<ScalarOptions>(), options.get<ScalarWalls>());
+    if (!scene.openings.empty()) scalars->expect_openings();
+  }
   if (has.oxygen) {
     oxygen = std::make_unique<oxygen::Oxygen>(*scalars, particles, resolution, options, scene);
     if (oxygen::RigidBubbles::exist(scene))

@@ -40,7 +40,7 @@ Section scalar_section();
 void check_scalars(Draft& draft, const std::vector<std::string>& taken, Problems& problems);
 // Index of the scalar of that name; one that no [[scalar]] gives is added as described. It may not be negative.
 std::size_t require_scalar(Draft& draft, const ScalarOption& scalar);
-// Values where the particles start.
+// Values where the particles start, and of what enters.
 void check_initial_scalars(const Draft& draft, const Scene& scene, Problems& problems);
 
 }  // namespace spume

@@ -62,6 +62,10 @@ class Scalars {
 
   // Gives particles of identifiers in [first, last) what inflows bring at time t.
   void enter(std::int64_t first, std::int64_t last, double t);
+  // With openings what they gave, less what they took, is counted: the amounts around an exchange with them.
+  void expect_openings() { from_openings_.resize(size()); }
+  std::vector<double> amounts() const;
+  void count_openings(const std::vector<double>& before);
 
   std::size_t size() const { return fields_.size(); }
   const ScalarOption& option(std::size_t scalar) const { return options_.scalars[scalar]; }
@@ -70,8 +74,8 @@ class Scalars {
   // Parts into which diffusion divided the last step.
   std::int64_t substeps() const { return substeps_; }
 
-  // Columns "amount_of_<name>", "source_of_<name>" and "walls_gave_<name>" with a source and walls, and
-  // "scalar_substeps".
+  // Columns "amount_of_<name>", "source_of_<name>", "walls_gave_<name>" and "openings_gave_<name>" where there are
+  // some, and "scalar_substeps".
   void add_columns(SeriesTable& series) const;
   void add_fields(SnapshotTable& snapshot) const;
   void save(StateWriter& writer) const;
@@ -105,7 +109,8 @@ class Scalars {
   std::unique_ptr<const WallProfile> wall_profile_;  // null without walls
   std::vector<Array<double>> wall_change_;           // per wall, of a part of a step
   double nearest_to_wall_;
-  std::vector<double> from_walls_;  // per scalar, since the start
+  std::vector<double> from_walls_;     // per scalar, since the start
+  std::vector<double> from_openings_;  // the same; empty without openings
 };
 
 // The output fields of scalars behind those of the method.
