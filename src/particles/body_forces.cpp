@@ -18,6 +18,8 @@ namespace {
 
 // Spacings: an element farther from the walls lies inside another body, or where the scene ends.
 constexpr double on_surface = 0.25;
+// Spacings: a place before the surface that the surface itself does not hide.
+constexpr double before_surface = 0.1;
 // Of the sum of all weights: what pins the fit of a velocity to that of a no-slip surface.
 constexpr double pinned = 10;
 // Of a cubic through the surface, the sum of the moduli of a slope times h: 8.8 with liquid all around, on jittered
@@ -99,6 +101,9 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const CellOrder&
     double weight;
   };
   std::vector<Near> near;
+  const ThinWalls* thin = walls_.thin();
+  const Vec3 before = add(element.middle, multiply(before_surface * resolution_.spacing, normal));
+  const double free = thin == nullptr ? infinite : thin->distance(before);
   double sum = 0, covered = 0;
   with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
     const double scale = fields.particle_volume * Kernel::normalisation(d) / std::pow(h, d);
@@ -111,6 +116,10 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const CellOrder&
         r2 += offset[axis] * offset[axis];
       }
       if (r2 >= reach * reach || dot(offset, normal) < 0) return;
+      if (free < reach) {
+        const Vec3 place = add(element.middle, offset);
+        if (thin->hides(before, free, place, thin->distance(place))) return;
+      }
       const double weight = WendlandC2::w(WendlandC2::support * std::sqrt(r2) / reach);
       near.push_back({j, offset, weight});
       sum += weight;

@@ -9,6 +9,7 @@
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/particles/point_fits.hpp"
+#include "spume/particles/thin_bodies.hpp"
 
 namespace spume {
 namespace {
@@ -31,9 +32,14 @@ struct BodyWalls::Block {
 
 BodyWalls::BodyWalls(const Scene& scene, const Resolution& resolution, double particle_volume)
     : scene_(scene), resolution_(resolution) {
-  parts_.push_back(std::make_unique<RigidWalls>(scene, std::nullopt, resolution, particle_volume));
+  const std::vector<std::uint8_t> thin = find_thin_bodies(scene, resolution);
+  parts_.push_back(std::make_unique<RigidWalls>(scene, std::nullopt, resolution, particle_volume, thin));
   for (std::size_t m = 0; m < scene.motions.size(); ++m)
-    parts_.push_back(std::make_unique<RigidWalls>(scene, m, resolution, particle_volume));
+    parts_.push_back(std::make_unique<RigidWalls>(scene, m, resolution, particle_volume, thin));
+  std::vector<const RigidWalls*> with_thin;
+  for (const auto& part : parts_)
+    if (part->has_thin()) with_thin.push_back(part.get());
+  if (!with_thin.empty()) thin_ = std::make_unique<ThinWalls>(scene, resolution, std::move(with_thin));
   for (const Body& body : scene.bodies)
     surfaces_move_ = surfaces_move_ || (body.wall != BoundaryKind::open && (body.velocity || body.motion));
   if (parts_.size() > many_parts) bounds_.emplace(scene.domain, resolution.spacing, resolution.support_radius);
@@ -93,10 +99,11 @@ void BodyWalls::gather_points() {
     std::vector<std::uint8_t> seen(count);
     parallel_for(count, [&](std::size_t g) {
       bool is_first = walls.now(g, now[g]);
-      ask_near(now[g].position, [&](std::size_t before) {
+      const Vec3& at = now[g].one_sided ? now[g].foot : now[g].position;
+      ask_near(at, [&](std::size_t before) {
         if (!is_first || before >= part) return;
-        is_first = parts_[before]->empty() || parts_[before]->surely_farther(now[g].position, 0) ||
-                   !(parts_[before]->distance(now[g].position) < 0);
+        is_first =
+            parts_[before]->empty() || parts_[before]->surely_farther(at, 0) || !(parts_[before]->distance(at) < 0);
       });
       seen[g] = is_first ? 1 : 0;
     });
@@ -219,6 +226,8 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
   const double reach = fit.reach();
   for (std::size_t g = first; g < last; ++g) {
     const WallPoint& point = points_[g];
+    const double free = thin_ == nullptr ? infinite : thin_->distance(point.mirror);
+    if (point.one_sided && !sees_mirror(point, free)) continue;
     fit.clear();
     double kernel_sum = 0;
     bool seen = false;  // from within the support radius
@@ -239,6 +248,9 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
                    // Behind the tangent plane stands liquid of another side, or of a curved one, which the fit can
                    // miss.
                    if (across < 0 || r2 >= reach * reach) return;
+                   if (free < reach && thin_->hides(point.mirror, free, add(point.mirror, offset),
+                                                    thin_->particle_distance(static_cast<std::size_t>(j))))
+                     return;
                    const double mirrored2 = r2 + 4 * across * dot(subtract(point.mirror, point.foot), point.normal);
                    kernel_sum += scale * (Kernel::w(std::sqrt(r2) / h) + Kernel::w(std::sqrt(mirrored2) / h));
                    fit.add(j, offset, r2);
@@ -247,7 +259,7 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
     if (kernel_sum < wet_wall_share || !seen || fit.fit() < least_order) continue;
     block.point.push_back(static_cast<std::int32_t>(g));
     fit.append(block.fits);
-    if (scene_.bodies[body_[g]].wall == BoundaryKind::no_slip)
+    if (scene_.bodies[body_[g]].wall == BoundaryKind::no_slip && !point.past_edge)
       fit.append_bend(subtract(point.position, point.mirror), block.fits);
   }
 }
