@@ -232,6 +232,13 @@ template <int dimensions, class Number, class Put>
   });
 }
 
+// The same of what hides points that is no solid box.
+[[gnu::noinline]] std::int32_t* keep_seen(const Sight& sight, std::size_t i, std::int32_t* start, std::int32_t* stop) {
+  if (sight.open_around(i)) return stop;
+  return std::remove_if(
+      start, stop, [&](std::int32_t entry) { return !sight.sees(i, static_cast<std::size_t>(entry) / entry_scale); });
+}
+
 }  // namespace
 
 template <int dimensions>
@@ -357,8 +364,8 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles,
         const Codes code = codes_of(packed(entry, packing), low);
         std::memcpy(to, &code, sizeof code);
       };
-      const bool one_base =
-          narrow && images.solids() == nullptr && NarrowBlock::within_reach(candidates.entry, candidates.size, low);
+      const bool one_base = narrow && images.solids() == nullptr && images.sight() == nullptr &&
+                            NarrowBlock::within_reach(candidates.entry, candidates.size, low);
       std::size_t slot = 0;
       for (; i < group.last; ++i) {
         std::int32_t* const start = collected.data() + filled;
@@ -382,6 +389,8 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles,
         own = kept;
         if (images.solids() != nullptr)
           stop = keep_seen(position, dimensions, i, images, support_radius, n, start, stop);
+        else if (images.sight() != nullptr)
+          stop = keep_seen(*images.sight(), i, start, stop);
         const auto count = static_cast<std::int32_t>(stop - start);
         pairs += count;
         if (narrow) {

@@ -18,6 +18,8 @@ namespace {
 
 // Spacings: an element farther from the walls lies inside another body, or where the scene ends.
 constexpr double on_surface = 0.25;
+// Spacings: a place before the surface that the surface itself does not hide.
+constexpr double before_surface = 0.1;
 // Of the sum of all weights: what pins the fit of a velocity to that of a no-slip surface.
 constexpr double pinned = 10;
 // Of a cubic through the surface, the sum of the moduli of a slope times h: 8.8 with liquid all around, on jittered
@@ -120,6 +122,9 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
   };
   near.find(scene_.domain, fields.grid, table.cells, table.position, element.middle, reach);
   std::vector<Near> before;
+  const ThinWalls* thin = walls_.thin();
+  const Vec3 eye = add(element.middle, multiply(before_surface * resolution_.spacing, normal));
+  const double free = thin == nullptr ? infinite : thin->distance(eye);
   double sum = 0, covered = 0;
   with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
     const double scale = fields.particle_volume * Kernel::normalisation(d) / std::pow(h, d);
@@ -127,6 +132,10 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
       Vec3 offset{};
       for (int axis = 0; axis < d; ++axis) offset[axis] = near.offset(axis, k);
       if (dot(offset, normal) < 0) continue;
+      if (free < reach) {
+        const Vec3 place = add(element.middle, offset);
+        if (thin->hides(eye, free, place, thin->distance(place))) continue;
+      }
       const double r = std::sqrt(near.r2(k)), weight = WendlandC2::w(WendlandC2::support * r / reach);
       before.push_back(
           {static_cast<std::size_t>(table.cells.order()[static_cast<std::size_t>(near.particle(k))]), offset, weight});

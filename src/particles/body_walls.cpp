@@ -9,6 +9,7 @@
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/particles/point_fits.hpp"
+#include "spume/particles/thin_bodies.hpp"
 
 namespace spume {
 namespace {
@@ -31,9 +32,14 @@ struct BodyWalls::Block {
 
 BodyWalls::BodyWalls(const Scene& scene, const Resolution& resolution, double particle_volume)
     : scene_(scene), resolution_(resolution) {
-  parts_.push_back(std::make_unique<RigidWalls>(scene, std::nullopt, resolution, particle_volume));
+  const std::vector<std::uint8_t> thin = find_thin_bodies(scene, resolution);
+  parts_.push_back(std::make_unique<RigidWalls>(scene, std::nullopt, resolution, particle_volume, thin));
   for (std::size_t m = 0; m < scene.motions.size(); ++m)
-    parts_.push_back(std::make_unique<RigidWalls>(scene, m, resolution, particle_volume));
+    parts_.push_back(std::make_unique<RigidWalls>(scene, m, resolution, particle_volume, thin));
+  std::vector<const RigidWalls*> with_thin;
+  for (const auto& part : parts_)
+    if (part->has_thin()) with_thin.push_back(part.get());
+  if (!with_thin.empty()) thin_ = std::make_unique<ThinWalls>(scene, resolution, std::move(with_thin));
   for (const Body& body : scene.bodies)
     surfaces_move_ = surfaces_move_ || (body.wall != BoundaryKind::open && (body.velocity || body.motion));
   if (parts_.size() > many_parts) bounds_.emplace(scene.domain, resolution.spacing, resolution.support_radius);
@@ -93,10 +99,11 @@ void BodyWalls::gather_points() {
     std::vector<std::uint8_t> seen(count);
     parallel_for(count, [&](std::size_t g) {
       bool is_first = walls.now(g, now[g]);
-      ask_near(now[g].position, [&](std::size_t before) {
+      const Vec3& at = now[g].one_sided ? now[g].foot : now[g].position;
+      ask_near(at, [&](std::size_t before) {
         if (!is_first || before >= part) return;
-        is_first = parts_[before]->empty() || parts_[before]->surely_farther(now[g].position, 0) ||
-                   !(parts_[before]->distance(now[g].position) < 0);
+        is_first =
+            parts_[before]->empty() || parts_[before]->surely_farther(at, 0) || !(parts_[before]->distance(at) < 0);
       });
       seen[g] = is_first ? 1 : 0;
     });
@@ -218,6 +225,8 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
   std::vector<double> across;  // of the particles near a point, from its tangent plane
   for (std::size_t g = first; g < last; ++g) {
     const WallPoint& point = points_[g];
+    const double free = thin_ == nullptr ? infinite : thin_->distance(point.mirror);
+    if (point.one_sided && !sees_mirror(point, free)) continue;
     double kernel_sum = 0;
     bool seen = false;  // from within the support radius
     const NearParticles& near = fit.begin(scene_.domain, arrangement, at, point.mirror);
@@ -227,6 +236,10 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
     with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
       const double scale = particle_volume * Kernel::normalisation(d) / std::pow(h, d);
       across.resize(near.size());
+      const auto with_mirrored = [&](double r2, double height) {
+        const double mirrored2 = std::max(0.0, r2 + 4 * height * depth);
+        return Kernel::w(std::sqrt(r2) / h) + Kernel::w(std::sqrt(mirrored2) / h);
+      };
       double nearest2 = support2, sum = 0;
 #pragma omp simd reduction(min : nearest2) reduction(+ : sum)
       for (std::size_t k = 0; k < near.size(); ++k) {
@@ -238,20 +251,30 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
         }
         across[k] = height;
         nearest2 = std::min(nearest2, way2);
-        const double r2 = near.r2(k), mirrored2 = std::max(0.0, r2 + 4 * height * depth);
-        const double both = Kernel::w(std::sqrt(r2) / h) + Kernel::w(std::sqrt(mirrored2) / h);
+        const double both = with_mirrored(near.r2(k), height);
         sum += height < 0 ? 0 : both;
       }
       seen = nearest2 < support2;
-      kernel_sum = scale * sum;
       // Behind the tangent plane stands liquid of another side, or of a curved one, which the fit can miss.
-      for (std::size_t k = 0; k < near.size(); ++k)
-        if (!(across[k] < 0)) fit.add(k);
+      for (std::size_t k = 0; k < near.size(); ++k) {
+        if (across[k] < 0) continue;
+        if (free < fit.reach()) {
+          Vec3 offset{};
+          for (int axis = 0; axis < d; ++axis) offset[axis] = near.offset(axis, k);
+          if (thin_->hides(point.mirror, free, add(point.mirror, offset),
+                           thin_->particle_distance(static_cast<std::size_t>(near.particle(k))))) {
+            sum -= with_mirrored(near.r2(k), across[k]);
+            continue;
+          }
+        }
+        fit.add(k);
+      }
+      kernel_sum = scale * sum;
     });
     if (kernel_sum < wet_wall_share || !seen || fit.fit() < least_order) continue;
     block.point.push_back(static_cast<std::int32_t>(g));
     fit.append(block.fits);
-    if (scene_.bodies[body_[g]].wall == BoundaryKind::no_slip)
+    if (scene_.bodies[body_[g]].wall == BoundaryKind::no_slip && !point.past_edge)
       fit.append_bend(subtract(point.position, point.mirror), block.fits);
   }
 }

@@ -131,6 +131,10 @@ void Boundary::make_images(Arrangement& arrangement, const ParticleStore& partic
   const auto r = read(at);
   WallPointView wall_points;
   if (bodies_ != nullptr) {
+    if (ThinWalls* thin = bodies_->thin(); thin != nullptr) {
+      thin->set_sides(image_rules(support_radius));
+      thin->measure(r, particles.size(), support_radius);
+    }
     if (find_wet) bodies_->find_stencils(arrangement, at, particles.volume, times.velocity, times.ahead);
     wall_points = bodies_->wet();
   }
@@ -153,6 +157,7 @@ void Boundary::make_images(Arrangement& arrangement, const ParticleStore& partic
   arrangement.context.walls = wet ? stencils : nullptr;
   arrangement.images.build(image_rules(support_radius), arrangement.grid, r[0], r[1], r[2], particles.size(),
                            wet ? &wall_points : nullptr);
+  if (bodies_ != nullptr) bodies_->look(arrangement.images);
   find_rules(arrangement.images, support_radius, times);
   find_image_pressure(arrangement, at, times);
 }
@@ -327,8 +332,10 @@ bool Boundary::holds(int axis, int side) const {
   return !gates_->outflow_at(axis, side, middle);
 }
 
-void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity) const {
+void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity, const Vec3* from) const {
   const double tiny = wall_gap * spacing_;
+  if (from != nullptr && bodies_ != nullptr && bodies_->thin() != nullptr)
+    bodies_->keep_before_thin(*from, position, velocity, tiny);
   for (int axis = 0; axis < domain_.dimensions; ++axis) {
     double& x = position[axis];
     const double lower = at[axis][0], upper = at[axis][1];

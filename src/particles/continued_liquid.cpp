@@ -107,6 +107,10 @@ void ContinuedLiquid::find(const Arrangement& arrangement, MomentFields& moments
   });
 }
 
+const WallPoint& ContinuedLiquid::sorted_point(const Boundary& boundary, std::size_t sorted) const {
+  return boundary.bodies()->all_points()[static_cast<std::size_t>(table_.order()[sorted])];
+}
+
 template <int dimensions>
 void ContinuedLiquid::find_planes(const Arrangement& arrangement, const MomentFields& moments, const Boundary& boundary,
                                   const VectorField& at) {
@@ -148,15 +152,22 @@ void ContinuedLiquid::find_planes(const Arrangement& arrangement, const MomentFi
 template <int dimensions, class Kernel>
 void ContinuedLiquid::find_shares(const Arrangement& arrangement, const Boundary& boundary) {
   const double reach = plane_reach * resolution_.support_radius, dr = resolution_.spacing;
+  const ThinWalls* thin = boundary.bodies()->thin();
   parallel_blocks_dynamic(share_.size(), 256, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t g = first; g < last; ++g) {
       double weights = 0, sum = 0;
-      const auto weigh = [&](const Vec3& seen, const Vec3&) {
+      const auto weigh = [&](const Vec3& seen, const Vec3& sign) {
+        // Planes beyond a thin body are those of other liquid than the point mirrors.
+        Vec3 mirror = seen;
+        if (thin != nullptr)
+          for (std::size_t axis = 0; axis < 3; ++axis)
+            mirror[axis] += sign[axis] * (sorted_point(boundary, g).mirror[axis] - point_[g][axis]);
         visit_near(boundary.domain(), arrangement.grid, plane_table_, seen, reach,
                    [&](std::int32_t j, const Vec3& shift) {
                      const auto k = static_cast<std::size_t>(plane_table_.order()[static_cast<std::size_t>(j)]);
                      const Plane& plane = plane_[k];
                      if (plane.normal == Vec3{}) return;  // a particle without one
+                     if (thin != nullptr && thin->hides(mirror, add(plane.place, shift))) return;
                      const Vec3 offset = subtract(seen, add(plane.place, shift));
                      const double weight = Kernel::w(Kernel::support * length(offset) / reach);
                      weights += weight;
@@ -180,6 +191,7 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
   const std::int32_t* const wall_point = arrangement.images.wall_point();
   const double h = resolution_.smoothing_length, reach = resolution_.support_radius, dr = resolution_.spacing;
   const SweepContext& context = arrangement.context;
+  const ThinWalls* thin = boundary.bodies()->thin();
   const double gradient =
       context.gradient_scale * context.volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions + 2);
   // What a particle sees: others and images of them, and wall points by their share.
@@ -199,9 +211,15 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
         for (int axis = 0; axis < dimensions; ++axis)
           offset[axis] = sign[axis] * (point_[static_cast<std::size_t>(g)][axis] + shift[axis] - seen[axis]);
         const double r2 = dot(offset, offset);
-        if (r2 < reach * reach)
-          visit(double{share_[static_cast<std::size_t>(g)]}, offset, r2,
-                continued_[static_cast<std::size_t>(g)] != 0 ? Seen::continued : Seen::wet);
+        if (r2 >= reach * reach) return;
+        if (thin != nullptr) {
+          const WallPoint& point = sorted_point(boundary, static_cast<std::size_t>(g));
+          if (!thin->sees(seen, thin->particle_distance(i), add(point.position, shift), add(point.mirror, shift),
+                          point.one_sided))
+            return;
+        }
+        visit(double{share_[static_cast<std::size_t>(g)]}, offset, r2,
+              continued_[static_cast<std::size_t>(g)] != 0 ? Seen::continued : Seen::wet);
       });
     };
     visit_reflections(boundary.domain(), boundary.next_walls, vector_at(at, dimensions, i), reach, visit_points);

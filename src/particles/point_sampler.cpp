@@ -208,6 +208,8 @@ void PointSampler::visit(const Vec3& point, Visit&& visit) const {
       });
       return;
     }
+    const ThinWalls* thin = state_.boundary->bodies() == nullptr ? nullptr : state_.boundary->bodies()->thin();
+    const double free = thin == nullptr ? infinite : thin->distance(point);
     for (const Copy& copy : copies_of(state_, point))
       each_in_rows(copy.point, table_, [&](std::int32_t k) {
         const std::size_t j = particle_at(k);
@@ -219,7 +221,12 @@ void PointSampler::visit(const Vec3& point, Visit&& visit) const {
           r2 += offset[axis] * offset[axis];
           place[axis] = copy.sign[axis] > 0 ? point[axis] + offset[axis] : copy.point[axis] - offset[axis];
         }
-        if (r2 < support_radius * support_radius) weigh(j, offset, r2, place, copy);
+        if (r2 >= support_radius * support_radius) return;
+        if (free < support_radius) {
+          const Vec3 seen = add(point, offset);
+          if (thin->hides(point, free, seen, thin->distance(seen))) return;
+        }
+        weigh(j, offset, r2, place, copy);
       });
   });
 }

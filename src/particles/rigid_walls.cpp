@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "spume/core/parallel.hpp"
+#include "spume/particles/thin_bodies.hpp"
 #include "spume/scene/expression.hpp"
 
 namespace spume {
@@ -25,18 +26,20 @@ bool is_along(const Vec3& direction, int axis) {
 }  // namespace
 
 RigidWalls::RigidWalls(const Scene& scene, std::optional<std::size_t> motion, const Resolution& resolution,
-                       double particle_volume)
+                       double particle_volume, const std::vector<std::uint8_t>& thin)
     : scene_(scene),
       motion_(motion ? &scene.motions[*motion] : nullptr),
       bounds_{{infinite, infinite, infinite}, {-infinite, -infinite, -infinite}},
       reach_(far_away * resolution.support_radius) {
   const int d = scene.domain.dimensions;
-  std::vector<CombinedPart> parts;
+  std::vector<CombinedPart> parts, thin_parts;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     if (body.wall == BoundaryKind::open || body.motion != motion) continue;
     bodies_.push_back(b);
     parts.push_back({motion ? body.alone : body.solid, body.subtract});
+    thin_.push_back(thin[b]);
+    if (thin[b] != 0) thin_parts.push_back(parts.back());
     const Bounds own = parts.back().shape->bounds();
     for (int axis = 0; axis < d && !body.subtract; ++axis) {
       bounds_.lower[axis] = std::min(bounds_.lower[axis], own.lower[axis]);
@@ -44,9 +47,11 @@ RigidWalls::RigidWalls(const Scene& scene, std::optional<std::size_t> motion, co
     }
   }
   walls_ = Combination(std::move(parts));
+  thin_walls_ = Combination(std::move(thin_parts));
   if (bodies_.empty()) return;
   if (motion_ != nullptr) place.pivot = place.position = motion_->pivot;
   if (motion_ != nullptr && motion_->release) place = given_place(*motion_, 0);
+  accepted = place;
   const Bounds cells = motion_ == nullptr ? Bounds{scene.domain.lower, scene.domain.upper} : window(reach_);
   cells_.emplace(walls_, d, cells.lower, cells.upper, resolution.spacing, resolution.support_radius, error());
   std::size_t sizes = 1;
@@ -74,9 +79,19 @@ RigidWalls::Level RigidWalls::make_level(double scale, const Resolution& resolut
     pose.position = multiply(1 - scale, motion_->pivot);
     scaled = Combination({{spume::place(scene_.bodies[bodies_[0]].alone, pose, true, d), false}});
   }
-  level.points = make_wall_points(scale < 1 ? scaled : walls_,
-                                  motion_ == nullptr ? scene_.domain : domain_at_start(resolution.support_radius),
-                                  resolution, particle_volume);
+  const Domain domain = motion_ == nullptr ? scene_.domain : domain_at_start(resolution.support_radius);
+  const bool all_thin = std::find(thin_.begin(), thin_.end(), 0) == thin_.end();
+  if (!all_thin) level.points = make_wall_points(scale < 1 ? scaled : walls_, domain, resolution, particle_volume);
+  if (has_thin()) {
+    std::erase_if(level.points, [&](const WallPoint& point) { return is_thin(body_at(point.foot)); });
+    std::vector<StandingBody> bodies;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      const Body& body = scene_.bodies[bodies_[k]];
+      bodies.push_back({motion_ == nullptr ? body.solid : body.alone, thin_[k] != 0});
+    }
+    const std::vector<WallPoint> sheets = make_sheet_points(bodies, walls_, domain, resolution, particle_volume);
+    level.points.insert(level.points.end(), sheets.begin(), sheets.end());
+  }
   if (scale < 1)
     for (WallPoint& point : level.points)
       for (Vec3* at : {&point.position, &point.foot, &point.mirror})
@@ -85,6 +100,10 @@ RigidWalls::Level RigidWalls::make_level(double scale, const Resolution& resolut
   parallel_for(level.points.size(),
                [&](std::size_t g) { level.body[g] = static_cast<std::uint16_t>(body_at(level.points[g].foot)); });
   return level;
+}
+
+bool RigidWalls::is_thin(std::size_t body) const {
+  return thin_[static_cast<std::size_t>(std::find(bodies_.begin(), bodies_.end(), body) - bodies_.begin())] != 0;
 }
 
 std::size_t RigidWalls::level_of(double scale) const {
@@ -237,6 +256,14 @@ NearestPoint RigidWalls::nearest(const Vec3& point) const {
   return found;
 }
 
+NearestPoint RigidWalls::thin_nearest(const Vec3& point) const {
+  NearestPoint found = thin_walls_.nearest(start(point));
+  if (motion_ == nullptr) return found;
+  found.normal = place.direction_now(found.normal);
+  found.point = subtract(point, multiply(found.distance, found.normal));
+  return found;
+}
+
 std::optional<Vec3> RigidWalls::foremost(const Vec3& point, const Vec3& direction, double size, double about) const {
   const Vec3 at = place.start(point), way = rotated_back(place.rotation, direction);
   // What is nearest to a place far away reaches farthest to it: of a ball of radius r the share r / (r + far) of the
@@ -259,8 +286,11 @@ bool RigidWalls::now(std::size_t point, WallPoint& found) const {
   const Domain& domain = scene_.domain;
   for (int axis = 0; axis < domain.dimensions; ++axis) {
     double shift = 0;
-    const double x = found.position[axis], period = domain.upper[axis] - domain.lower[axis];
-    if (domain.periodic(axis)) {
+    const bool periodic = domain.periodic(axis);
+    // Points behind the face of a thin body may lie beyond a side that the body is before.
+    const double x = found.one_sided && !periodic ? found.mirror[axis] : found.position[axis];
+    const double period = domain.upper[axis] - domain.lower[axis];
+    if (periodic) {
       shift = -period * std::floor((x - domain.lower[axis]) / period);
     } else {
       for (int side = 0; side < 2; ++side) {

@@ -11,6 +11,7 @@
 #include "spume/core/vectors.hpp"
 #include "spume/neighbours/neighbour_list.hpp"
 #include "spume/operators/pair_sweep.hpp"
+#include "wall_shells.hpp"
 
 namespace spume {
 namespace {
@@ -20,11 +21,6 @@ constexpr double even_out = 0.25;
 // Rounds until points move by less than 1 % of a spacing a round, around discs, balls and the inside of a pipe.
 constexpr int rounds = 40;
 constexpr double longest_slide = 0.2;  // spacings a round
-
-struct ShellPoint {
-  Vec3 place{};
-  double distance = 0;  // from the surface, of the middle of its shell; negative inside the solid
-};
 
 // Sites of the lattice per point, along each axis.
 constexpr std::size_t finer_2d = 3, finer_3d = 2;
@@ -76,7 +72,8 @@ void onto_shell(const Combination& walls, ShellPoint& point) {
   }
 }
 
-std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domain, double spacing, double reach) {
+std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domain, double spacing, double reach,
+                                   bool outside) {
   const int d = domain.dimensions;
   const std::size_t finer = d == 3 ? finer_3d : finer_2d;
   const ShellLattice lattice(domain, spacing / static_cast<double>(finer), reach);
@@ -87,6 +84,7 @@ std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domai
     int shell = 0;  // from -layers to layers - 1
     std::uint64_t code = 0;
     Vec3 place{};
+    double share = 1;  // of its volume that counts
   };
   const auto shells = static_cast<std::size_t>(2 * layers);
   std::vector<std::vector<Site>> rows(lattice.count[1] * lattice.count[2]);
@@ -107,7 +105,10 @@ std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domai
       for (double shell = first; shell < layers && shell * spacing < distance + width / 2; ++shell)
         parts[row][static_cast<std::size_t>(shell + layers)] += below((shell + 1) * spacing) - below(shell * spacing);
       const double own = std::floor(distance / spacing);
-      if (own >= -layers && own < layers) rows[row].push_back({static_cast<int>(own), interleave(i, j, k), place});
+      if (own >= (outside ? 0 : -layers) && own < layers) {
+        rows[row].push_back({static_cast<int>(own), interleave(i, j, k), place});
+        if (outside) rows[row].back().share = mirrored_share(walls, walls.nearest(place), place, spacing, d).share;
+      }
       ++i;
     }
   });
@@ -130,7 +131,7 @@ std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domai
   double counted = 0.5;
   for (std::size_t s = 0; s < sites.size(); ++s) {
     if (s > 0 && sites[s].shell != sites[s - 1].shell) counted = 0.5;
-    counted += of_site[static_cast<std::size_t>(sites[s].shell + static_cast<int>(layers))];
+    counted += sites[s].share * of_site[static_cast<std::size_t>(sites[s].shell + static_cast<int>(layers))];
     if (counted < 1) continue;
     counted -= 1;
     points.push_back({sites[s].place, (sites[s].shell + 0.5) * spacing});
@@ -246,14 +247,43 @@ class Evening {
 
 }  // namespace
 
-std::vector<WallPoint> make_wall_points(const Combination& walls, const Domain& domain, const Resolution& resolution,
-                                        double particle_volume) {
+MirroredShare mirrored_share(const Combination& walls, const NearestPoint& near, const Vec3& place, double spacing,
+                             int dimensions) {
+  constexpr double step = 0.25, crossed = 0.9;  // spacings; of the distance at which normals that meet do so
+  const Vec3 n = near.normal;
+  Vec3 first = dimensions == 3 ? cross(n, std::abs(n[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}) : Vec3{-n[1], n[0], 0};
+  first = unit(first, dimensions);
+  const std::array<Vec3, 2> along{first, dimensions == 3 ? cross(n, first) : Vec3{}};
+  const int ways = dimensions - 1;
+  std::array<std::array<double, 2>, 2> bent{};
+  for (int b = 0; b < ways; ++b) {
+    const Vec3 way = multiply(step * spacing, along[static_cast<std::size_t>(b)]);
+    const Vec3 ahead = multiply(1 / (step * spacing), subtract(walls.nearest(add(place, way)).normal, n));
+    const Vec3 back = multiply(1 / (step * spacing), subtract(n, walls.nearest(subtract(place, way)).normal));
+    const Vec3& less = dot(ahead, ahead) < dot(back, back) ? ahead : back;
+    for (int a = 0; a < ways; ++a)
+      bent[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] =
+          near.distance * dot(less, along[static_cast<std::size_t>(a)]);
+  }
+  const double trace = bent[0][0] + bent[1][1], determinant = bent[0][0] * bent[1][1] - bent[0][1] * bent[1][0];
+  const double largest = 0.5 * trace + std::sqrt(std::max(0.0, 0.25 * trace * trace - determinant));
+  if (largest > crossed) return {1, true};
+  return {largest >= 0.5 ? 0.0 : std::max(0.0, 1 - 2 * trace + 4 * determinant), false};
+}
+
+std::vector<ShellPoint> make_shells(const Combination& walls, const Domain& domain, const Resolution& resolution,
+                                    double particle_volume, bool outside) {
   const double spacing = std::pow(particle_volume, 1.0 / domain.dimensions);
-  std::vector<ShellPoint> shells = cut_shells(walls, domain, spacing, resolution.support_radius);
+  std::vector<ShellPoint> shells = cut_shells(walls, domain, spacing, resolution.support_radius, outside);
   Evening evening(walls, domain, resolution, particle_volume, spacing);
   for (int round = 0; round < rounds; ++round) evening.round(shells);
+  return shells;
+}
+
+std::vector<WallPoint> make_wall_points(const Combination& walls, const Domain& domain, const Resolution& resolution,
+                                        double particle_volume) {
   std::vector<WallPoint> points;
-  for (ShellPoint& point : shells) {
+  for (const ShellPoint& point : make_shells(walls, domain, resolution, particle_volume, false)) {
     if (point.distance > 0) continue;
     const NearestPoint near = walls.nearest(point.place);
     if (near.distance >= 0) continue;

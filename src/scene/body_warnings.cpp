@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
 #include "bodies.hpp"
+#include "spume/core/vectors.hpp"
 
 namespace spume {
 namespace {
@@ -28,6 +30,10 @@ double longest(const Bounds& bounds, int dimensions) {
     size = std::max(size, bounds.upper[a] - bounds.lower[a]);
   return size;
 }
+
+// Spacings: twice the support radius of the standard kernel, 2.6. Behind faces that are not flat, liquid on one side
+// then sees none on the other.
+constexpr double screening = 5;
 
 // A place of the surface and its weight.
 struct SurfacePart {
@@ -63,8 +69,26 @@ std::vector<SurfacePart> parts_of(const TriangleSurface& surface, int dimensions
   return parts;
 }
 
-// The share of the surface in the domain behind which the solid ends within a spacing.
-double thin_share(const Body& body, const Bounds& domain, double spacing, int dimensions) {
+// Whether the surface around one of its places is flat, on one side at least: the other may be past an edge.
+bool is_flat(const Body& body, const NearestPoint& at, double spacing, int dimensions) {
+  constexpr double flat = 0.2;  // of the curvature times a spacing: as of thin bodies (particles/thin_bodies.hpp)
+  const Vec3 n = at.normal;
+  Vec3 along = dimensions == 3 ? cross(n, std::abs(n[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}) : Vec3{-n[1], n[0], 0};
+  along = unit(along, dimensions);
+  const std::array<Vec3, 2> ways{along, cross(n, along)};
+  const auto turned = [&](const Vec3& way) {
+    const Vec3 before = add(at.point, add(multiply(0.25 * spacing, n), way));
+    return length(subtract(body.solid->nearest(before).normal, n));
+  };
+  for (int way = 0; way < dimensions - 1; ++way) {
+    const Vec3 step = multiply(spacing, ways[static_cast<std::size_t>(way)]);
+    if (std::min(turned(step), turned(multiply(-1, step))) > flat) return false;
+  }
+  return true;
+}
+
+// The share of the surface in the domain behind which the solid ends within a spacing; `curved`: where it is not flat.
+double thin_share(const Body& body, const Bounds& domain, double spacing, int dimensions, bool curved = false) {
   double thin = 0, all = 0;
   const std::vector<SurfacePart> parts = parts_of(body.solid->surface(domain, spacing), dimensions);
   // Of a large mesh some of its facets tell the share to a per cent: each is asked for nine distances.
@@ -82,6 +106,7 @@ double thin_share(const Body& body, const Bounds& domain, double spacing, int di
     // Where the surface was cut at the window the solid goes on: that is no face of it.
     if (std::abs(found.distance) > 0.5 * spacing) continue;
     all += part.size;
+    if (curved && is_flat(body, found, spacing / screening, dimensions)) continue;
     constexpr int steps = 8;
     for (int k = 1; k <= steps; ++k) {
       Vec3 p = found.point;
@@ -187,18 +212,19 @@ std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const
     if (thin > most_thin)
       warn("is thinner than a spacing, " + brief(scene.spacing) + ", behind " + brief(std::round(100 * thin)) +
            " % of its surface; liquid may pass there: make it thicker, or lower resolution.spacing");
-    // Twice the support radius of the standard kernel, 2.6 spacings: liquid on one side then sees none on the other.
-    constexpr double screening = 5;
+    // What bodies are taken away from is not looked at.
+    const bool cut = std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& other) {
+      return other.subtract && other.wall != BoundaryKind::open && other.motion == body.motion;
+    });
     constexpr double most_unscreened = 0.5;
     const double unscreened = body.wall == BoundaryKind::open || thin > most_thin
                                   ? 0
-                                  : thin_share(body, domain, screening * scene.spacing, dimensions);
+                                  : thin_share(body, domain, screening * scene.spacing, dimensions, !cut);
     if (unscreened > most_unscreened)
-      warn(
-          "is thinner than five spacings, " + brief(screening * scene.spacing) + ", behind " +
-          brief(std::round(100 * unscreened)) +
-          " % of its surface; liquid on its two sides acts on each other through it: lower resolution.spacing, or make "
-          "it thicker unless there is liquid on one side alone");
+      warn("is thinner than five spacings, " + brief(screening * scene.spacing) + ", behind " +
+           brief(std::round(100 * unscreened)) +
+           " % of its surface, and is no plate with flat faces; liquid on its two sides acts on each other through it: "
+           "lower resolution.spacing, or make it thicker unless there is liquid on one side alone");
   }
   return warnings;
 }

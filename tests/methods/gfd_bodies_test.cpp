@@ -123,4 +123,53 @@ TEST(GfdBodies, LiquidTurnsOnWithATankThatTurns) {
   EXPECT_LT(deviation(run, [](const Vec3& r) { return Vec3{-r[1], r[0], 0}; }), 0.02);
 }
 
+// Water 0.8 m deep on the left of a plate one spacing thick and 0.4 m on the right, oil above: hydrostatics on both of
+// its faces. When liquid on its two sides acts on each other, the run ends at t = 0.3.
+TEST(GfdBodies, TwoLevelsBesideAThinPlateStayStill) {
+  GfdRun run(R"toml(method = "gfd"
+[time]
+end = 4
+[domain]
+lower = [0, 0]
+upper = [1.6, 1.2]
+left = "free-slip"
+right = "free-slip"
+bottom = "free-slip"
+top = "free-slip"
+[resolution]
+spacing = 0.05
+[fluid]
+gravity = 1
+[[phase]]
+name = "oil"
+density = 1
+viscosity = 0.1
+[[phase]]
+name = "water"
+density = 1000
+viscosity = 10
+[interface]
+surface_tension = 0
+[[region]]
+phase = "oil"
+[[region]]
+phase = "water"
+upper = [0.8, 0.8]
+[[region]]
+phase = "water"
+lower = [0.85, 0]
+upper = [1.6, 0.4]
+[[body]]
+shape = "box"
+size = [0.05, 2]
+position = [0.825, 0]
+wall = "no-slip"
+)toml");
+  for (int step = 0; step < 800; ++step) run.steps(1, 0.005);
+  EXPECT_LT(deviation(run, [](const Vec3&) { return Vec3{}; }), 3e-3);
+  std::vector<double> rows;
+  run.method.table_rows("bodies", rows);
+  EXPECT_NEAR(rows[2], 0.5 * 999 * (0.64 - 0.16), 0.01 * 240);
+}
+
 }  // namespace spume::test

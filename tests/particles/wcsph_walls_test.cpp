@@ -22,8 +22,8 @@ const std::vector<Layout>& wcsph_layouts() {
        scene_text("lower = [0, 0]\nupper = [1, 1]\nleft = \"no-slip\"\nright = \"free-slip\"\nbottom = "
                   "\"free-slip\"\ntop = \"no-slip\"\n",
                   1.0 / 16,
-                  "[[body]]\nshape = \"outline\"\npoints = [[0.2, -0.1], [0.47, 0.4], [0.75, -0.1]]\n[[body]]\nshape = "
-                  "\"box\"\nsize = [0.31, 0.4]\nposition = [0.8, 0.1]\nwall = \"no-slip\"\n")},
+                  "[[body]]\nshape = \"outline\"\npoints = [[0.2, -0.3], [0.47, 0.4], [0.75, -0.3]]\n[[body]]\nshape = "
+                  "\"box\"\nsize = [0.35, 0.4]\nposition = [0.8, 0.1]\nwall = \"no-slip\"\n")},
       {"a surface in the open",
        scene_text("lower = [0, 0]\nupper = [1, 1]\nleft = \"open\"\nright = \"open\"\nbottom = \"open\"\ntop = "
                   "\"open\"\n",

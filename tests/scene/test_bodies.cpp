@@ -249,9 +249,15 @@ TEST(Bodies, SuspiciousBodiesAreWarnedOf) {
               Contains(AllOf(HasSubstr("the body 'it' is 0.004 long, less than a spacing, "), HasSubstr("set scale"))));
   EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.04, 1]\n"),
               Contains(HasSubstr("the body 'it' is thinner than a spacing, 0.05, behind 96 % of its surface")));
-  EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.05, 1]\n"),
-              ElementsAre(HasSubstr("the body 'it' is thinner than five spacings, 0.25, behind")));
-  EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.26, 1]\n"), IsEmpty());
+  // Plates hide what is behind them; what is curved does not, nor what others are taken away from.
+  EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.05, 1]\n"), IsEmpty());
+  EXPECT_THAT(
+      warnings(start + "shape = \"ball\"\nradius = 0.1\n"),
+      ElementsAre(HasSubstr("the body 'it' is thinner than five spacings, 0.25, behind 100 % of its surface, and "
+                            "is no plate with flat faces")));
+  EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.1, 1]\n[[body]]\nshape = \"ball\"\nradius = "
+                               "0.3\nsubtract = true\n"),
+              Contains(HasSubstr("the body 'it' is thinner than five spacings, 0.25, behind")));
   EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.04, 1]\nwall = \"none\"\n"), IsEmpty());
   EXPECT_THAT(warnings(start + "shape = \"half-space\"\n"), IsEmpty());
   // What lies between the tank and the side of the domain goes on beyond it.

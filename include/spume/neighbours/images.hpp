@@ -20,6 +20,7 @@
 #include "spume/core/array.hpp"
 #include "spume/neighbours/cell_grid.hpp"
 #include "spume/neighbours/cell_order.hpp"
+#include "spume/neighbours/sight.hpp"
 #include "spume/scene/solid_union.hpp"
 
 namespace spume {
@@ -86,6 +87,9 @@ class Images {
   static int sign(const ImagePath& path, const ImageRules& rules, int axis);
   // Solids, null without. Lists of neighbours then hold what a particle sees.
   const SolidUnion* solids() const { return solids_.get(); }
+  // What else hides points from particles, null without; it outlives the images or is taken back. Not beside solids.
+  void set_sight(const Sight* sight) { sight_ = sight; }
+  const Sight* sight() const { return sight_; }
   // Whether a particle at `place` sees image k of the source at `source`.
   bool sees(const Vec3& place, std::size_t k, const Vec3& source) const;
   // Every image lies outside the box [image_free_lower, image_free_upper], unless inside_domain(): solid boxes
@@ -118,6 +122,7 @@ class Images {
   std::array<double, 3> image_free_lower_{}, image_free_upper_{};
   bool inside_domain_ = false;
   std::shared_ptr<const SolidUnion> solids_;
+  const Sight* sight_ = nullptr;
   std::array<double, 3> period_{};  // of periodic axes
   CellOrder table_;
 };

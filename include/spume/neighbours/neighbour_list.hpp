@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Neighbour lists of particles: for each particle the particles and images within the support radius, itself excluded.
-// With solids, of these what it sees (scene/solid_union.hpp).
+// With solids, of these what it sees (scene/solid_union.hpp), and with anything else that hides points
+// (neighbours/sight.hpp).
 //
 // Points are numbered particles first (0 .. n-1), then images (n .. n+m-1), then one sentinel (n+m) far from
 // everything. Lists are padded with the sentinel to a multiple of 8, so that pair loops have no remainder:

@@ -14,6 +14,7 @@
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/moving_bounds.hpp"
 #include "spume/particles/rigid_walls.hpp"
+#include "spume/particles/thin_walls.hpp"
 
 namespace spume {
 
@@ -30,6 +31,13 @@ class BodyWalls {
   // What stands still, and each motion of the scene.
   std::size_t parts() const { return parts_.size(); }
   const RigidWalls& part(std::size_t k) const { return *parts_[k]; }
+  // What thin bodies hide; null without.
+  ThinWalls* thin() { return thin_.get(); }
+  const ThinWalls* thin() const { return thin_.get(); }
+  // Of the images that were made last, whose lists follow.
+  void look(Images& images);
+  // Where the bodies are now is where those of the last state are.
+  void accept();
   // What the surface of a body is part of.
   const RigidWalls& part_of(std::size_t body) const {
     const auto& motion = scene_.bodies[body].motion;
@@ -84,6 +92,9 @@ class BodyWalls {
   // A point nearer than `gap` to a wall, or inside it, is reflected back; of its velocity what goes into the wall, as
   // that moves, is lost.
   void keep_outside(Vec3& position, Vec3* velocity, double gap) const;
+  // A way from where a point was, when the bodies were where the last state has them, that leads through a thin body is
+  // reflected where it enters it.
+  void keep_before_thin(const Vec3& from, Vec3& position, Vec3* velocity, double gap) const;
   // Nearer than `gap` a velocity that leads to the wall faster than `speed` is no faster than it was before.
   void limit_approach(const Vec3& position, double gap, double speed, const Vec3& before, Vec3& velocity) const;
 
@@ -94,6 +105,7 @@ class BodyWalls {
   template <int dimensions>
   void fit_block(const Arrangement& arrangement, const VectorField& at, double particle_volume, std::size_t first,
                  std::size_t last, Block& block) const;
+  bool sees_mirror(const WallPoint& point, double mirror_distance) const;
   void set_surfaces(double t, double ahead);
   void place_wet_points(std::size_t from);
   void set_acceleration(double t);
@@ -114,6 +126,7 @@ class BodyWalls {
   const Resolution resolution_;
   std::vector<std::unique_ptr<RigidWalls>> parts_;   // what stands still, and each motion of the scene
   const RigidWalls* only_ = nullptr;                 // the one of them that has walls, if there is one
+  std::unique_ptr<ThinWalls> thin_;                  // null without thin bodies
   std::optional<MovingBounds> bounds_;               // of many moving parts
   std::vector<WallPoint> points_;                    // of all parts, as they are
   std::vector<std::uint16_t> body_;                  // of each point, among the bodies of the scene

@@ -78,6 +78,7 @@ class Boundary {
   void accept() {
     walls = next_walls;
     wall_speed = next_wall_speed;
+    if (bodies_ != nullptr) bodies_->accept();
     if (openings_ != nullptr) openings_->accept();
     if (absorbing_ != nullptr) absorbing_->accept();
   }
@@ -161,8 +162,9 @@ class Boundary {
            (bodies_ != nullptr && bodies_->distance(point) < reach);
   }
 
-  // Periodic wrap; a point beyond a wall or inside a solid is reflected back, its velocity too when given.
-  void apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity) const;
+  // Periodic wrap; a point beyond a wall or inside a solid is reflected back, its velocity too when given. `from`:
+  // where it was in the last state, or since; it has passed no thin body then.
+  void apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity, const Vec3* from = nullptr) const;
 
   // How near to a wall points may come.
   double gap() const;

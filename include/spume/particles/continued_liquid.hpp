@@ -56,6 +56,7 @@ class ContinuedLiquid {
     double of_particles = 0;  // div r without wall points
     bool sees_surface = false;
   };
+  const WallPoint& sorted_point(const Boundary& boundary, std::size_t sorted) const;
   void sort_points(const Boundary& boundary);
   template <int dimensions>
   void find_planes(const Arrangement& arrangement, const MomentFields& moments, const Boundary& boundary,

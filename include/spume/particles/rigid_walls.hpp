@@ -14,9 +14,10 @@ namespace spume {
 
 class RigidWalls {
  public:
-  // `motion` among those of the scene, or none. The scene outlives the walls.
+  // `motion` among those of the scene, or none. The scene outlives the walls. `thin`: which of its bodies are
+  // (particles/thin_bodies.hpp).
   RigidWalls(const Scene& scene, std::optional<std::size_t> motion, const Resolution& resolution,
-             double particle_volume);
+             double particle_volume, const std::vector<std::uint8_t>& thin);
   RigidWalls(const RigidWalls&) = delete;
   RigidWalls& operator=(const RigidWalls&) = delete;
 
@@ -28,7 +29,13 @@ class RigidWalls {
   // From the middle to the farthest face, now, of a body that grows; of others endless.
   double half_width() const { return place.scale * half_width_; }
 
+  bool has_thin() const { return !thin_walls_.empty(); }
+  // Of its thin bodies alone.
+  double thin_distance(const Vec3& point) const { return thin_walls_.distance(start(point)); }
+  NearestPoint thin_nearest(const Vec3& point) const;
+
   RigidPlace place;          // in use; without a motion it stays
+  RigidPlace accepted;       // of the last state, with thin bodies
   RigidPlace behind, ahead;  // at the times of the velocities that the liquid has, and that it is to have
 
   // A box that the solid is in now; of endless solids it is endless.
@@ -75,6 +82,7 @@ class RigidWalls {
   bool keeps(int axis) const;  // the motion does not lead along it
   double error() const;
   std::size_t body_at(const Vec3& foot) const;
+  bool is_thin(std::size_t body) const;
   std::size_t level_of(double scale) const;
   bool grows() const { return motion_ != nullptr && motion_->release && motion_->release->grows(); }
   // Wall points of one size, in the coordinates of the start and the full size. Level 0 is empty.
@@ -87,8 +95,9 @@ class RigidWalls {
   const Scene& scene_;
   const BodyMotion* motion_ = nullptr;
   std::vector<std::size_t> bodies_;  // that are walls
-  Combination walls_;
-  Bounds bounds_{};  // of the solid
+  Combination walls_, thin_walls_;
+  std::vector<std::uint8_t> thin_;  // of bodies_
+  Bounds bounds_{};                 // of the solid
   double reach_ = 0;
   std::optional<DistanceCells> cells_;
   double half_width_ = infinite;

@@ -324,7 +324,8 @@ void Flow::accept(double dt) {
   refuse_energy_from_nothing();
   boundary.advance(time, dt);
   parallel_for(size(), [&](std::size_t i) {
-    Vec3 u = vector_at(next_velocity, dimensions, i), r = vector_at(particles.position, dimensions, i);
+    const Vec3 from = vector_at(particles.position, dimensions, i);
+    Vec3 u = vector_at(next_velocity, dimensions, i), r = from;
     for (int axis = 0; axis < dimensions; ++axis) {
       r[axis] += dt * u[axis];
       if (!in_domain(i)) continue;
@@ -335,7 +336,7 @@ void Flow::accept(double dt) {
     if (features.openings)
       openings->apply_walls(boundary, i, r, &u);
     else
-      boundary.apply_walls(boundary.next_walls, r, &u);
+      boundary.apply_walls(boundary.next_walls, r, &u, &from);
     for (int axis = 0; axis < dimensions; ++axis) {
       (*particles.position[axis])[i] = r[axis];
       (*particles.velocity[axis])[i] = u[axis];

@@ -118,6 +118,7 @@ void LesSph::start(Ledger& ledger) {
     if (!flow_.features.velocity_gradient) flow_.strain->release();
     remark_surface_at_bodies();
     remark_wide_kernel();
+    remark_bubbles_beside_thin_bodies();
   }
   flow_.started = true;
 }
@@ -151,6 +152,15 @@ void LesSph::remark_wide_kernel() {
            " is wide for this kernel below a free surface: liquid at rest moves by itself in the end; take " +
            brief(widest) + " at most",
        false});
+}
+
+// Particles do not, but what bubbles give and take is weighed by distance alone.
+void LesSph::remark_bubbles_beside_thin_bodies() {
+  const BodyWalls* bodies = flow_.boundary.bodies();
+  if (!flow_.features.bubbles || bodies == nullptr || bodies->thin() == nullptr) return;
+  remarks_.push_back({"bubbles act through bodies thinner than five spacings, " + brief(5 * flow_.scene.spacing) +
+                          ", on the liquid beyond; lower resolution.spacing where they rise beside one",
+                      false});
 }
 
 void LesSph::ensure_started() {

@@ -86,9 +86,10 @@ void Flow::move_to_intermediate_position(double dt) {
   boundary.advance(time, dt);
   parallel_for(size(), [&](std::size_t i) {
     const Vec3 u = advecting_velocity_of(i, dt);
+    const Vec3 from = vector_at(particles.position, dimensions, i);
     Vec3 r{};
-    for (int axis = 0; axis < dimensions; ++axis) r[axis] = (*particles.position[axis])[i] + dt * u[axis];
-    boundary.apply_walls(boundary.next_walls, r, nullptr);
+    for (int axis = 0; axis < dimensions; ++axis) r[axis] = from[axis] + dt * u[axis];
+    boundary.apply_walls(boundary.next_walls, r, nullptr, &from);
     for (int axis = 0; axis < dimensions; ++axis) (*intermediate_position[axis])[i] = r[axis];
   });
 }
@@ -355,10 +356,11 @@ void Flow::accept(double dt) {
         (*material_acceleration[axis])[i] = (ahead[axis] - before[axis]) / dt;
     if (surface != nullptr && surface->pressure_fixed[i] != 0) {
       // No pressure has stopped what has met a wall on its way here.
+      const Vec3 from = vector_at(particles.position, dimensions, i);
       Vec3 straight{};
-      for (int axis = 0; axis < dimensions; ++axis) straight[axis] = (*particles.position[axis])[i] + dt * before[axis];
+      for (int axis = 0; axis < dimensions; ++axis) straight[axis] = from[axis] + dt * before[axis];
       Vec3 stopped = before;
-      boundary.apply_walls(boundary.next_walls, straight, &stopped);
+      boundary.apply_walls(boundary.next_walls, straight, &stopped, &from);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         ahead[axis] += stopped[axis] - before[axis];
         before[axis] = stopped[axis];

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Bodies so thin that what mirrors the liquid before one of their faces does not fit behind it: their solid is nowhere
+// deeper than the support radius, and most of their surface is flat, which a ball of a few spacings is not.
+//
+// Wall points of such a body stand behind each of its faces as if the solid went on there, through the body and the
+// liquid beyond: mirror images of places before the face, and of places past its edges in the plane of the face. What
+// stands before the face sees them there in place of what the body hides (particles/thin_walls.hpp).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "spume/particles/wall_points.hpp"
+#include "spume/scene/scene.hpp"
+
+namespace spume {
+
+// One per body of the scene. Bodies that are released, and those that others are taken away from, are not looked at.
+std::vector<std::uint8_t> find_thin_bodies(const Scene& scene, const Resolution& resolution);
+
+// A body that is a wall, as it stands in what moves as one.
+struct StandingBody {
+  ShapePointer solid;
+  bool thin = false;
+};
+
+// Wall points of the thin ones of `bodies`, whose union is `walls`, and those in corners that a thin one makes with
+// another: there the liquid is mirrored at both.
+std::vector<WallPoint> make_sheet_points(const std::vector<StandingBody>& bodies, const Combination& walls,
+                                         const Domain& domain, const Resolution& resolution, double particle_volume);
+
+}  // namespace spume
