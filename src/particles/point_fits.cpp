@@ -24,13 +24,22 @@ constexpr double most_bend = 16;
 }  // namespace
 
 template <int dimensions>
-int PointFit<dimensions>::fit() {
+int PointFit<dimensions>::fit(double most_moduli) {
   fit_.resize(near_.size());
   for (std::size_t k = 0; k < near_.size(); ++k) {
     for (int axis = 0; axis < dimensions; ++axis) fit_.offset(axis)[k] = near_[k].offset[axis] / smoothing_length_;
     fit_.weight()[k] = WendlandC2::w(WendlandC2::support * std::sqrt(near_[k].r2) / reach_);
   }
   order_ = fit_.fit(highest_order);
+  if (!std::isfinite(most_moduli)) return order_;
+  const auto too_much = [&] {
+    fit_.value();
+    return fit_.amplification() > most_moduli;
+  };
+  while (order_ > 0 && too_much()) {
+    --order_;
+    if (!fit_.factor(order_)) order_ = -1;
+  }
   return order_;
 }
 
