@@ -15,6 +15,11 @@ namespace spume {
 namespace {
 
 constexpr double wet_wall_share = 0.5;
+// In liquid that has no surface, of a full kernel sum: less is a void, where particles are missing on some side. Fits
+// there may amplify what particles carry: with liquid all around, on lattices jittered by a fifth of a spacing, the sum
+// of |c_j| is 1.25 to 1.45 and up to 1.85, without 30 % of the particles up to 40. The jet that leaves the lid of a
+// cavity of bodies at Re = 1000 then reached 90 times the speed of the lid.
+constexpr double full_wall_share = 0.9, most_moduli_beside_void = 1.5;
 // Means of a few particles are no values of liquid mirrored at a wall: where one of them has a pressure and the others
 // hold p = 0, the mean draws it into the wall, the faster the more its pressure grows. At the back of a weir spray
 // reached 135 m/s where the water falls with 2.6 m/s.
@@ -271,7 +276,9 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
       }
       kernel_sum = scale * sum;
     });
-    if (kernel_sum < wet_wall_share || !seen || fit.fit() < least_order) continue;
+    if (kernel_sum < wet_wall_share || !seen) continue;
+    const bool beside_void = !scene_.free_surface && kernel_sum < full_wall_share;
+    if (fit.fit(beside_void ? most_moduli_beside_void : infinite) < least_order) continue;
     block.point.push_back(static_cast<std::int32_t>(g));
     fit.append(block.fits);
     if (scene_.bodies[body_[g]].wall == BoundaryKind::no_slip && !point.past_edge)

@@ -41,9 +41,18 @@ double PointFit<dimensions>::fill(const Vec3& behind, std::size_t more) {
 }
 
 template <int dimensions>
-int PointFit<dimensions>::fit() {
+int PointFit<dimensions>::fit(double most_moduli) {
   fill({}, 0);
   order_ = fit_.fit(highest_order);
+  if (!std::isfinite(most_moduli)) return order_;
+  const auto too_much = [&] {
+    fit_.value();
+    return fit_.amplification() > most_moduli;
+  };
+  while (order_ > 0 && too_much()) {
+    --order_;
+    if (!fit_.factor(order_)) order_ = -1;
+  }
   return order_;
 }
 

@@ -165,7 +165,11 @@ TEST(LesSphBodies, AreRemarkedOnWhereAGapIsTooNarrow) {
   const std::string box = "[[body]]\nshape = \"box\"\nsize = [0.3, 0.3]\nposition = [0.5, 0.15]\n";
   Simulation cusp(tank + box + "[[body]]\nshape = \"ball\"\nradius = 0.2\nposition = [0.85, 0.3]\n", wide);
   cusp.steps(1, 0.004);
-  EXPECT_THAT(cusp.method.take_remarks(), Contains(Field(&Remark::text, HasSubstr("gap too narrow"))));
+  EXPECT_THAT(cusp.method.take_remarks(), Contains(Field(&Remark::text, HasSubstr("free surface between bodies"))));
+  // One body and a wall of the domain.
+  Simulation alone(tank + "[[body]]\nshape = \"ball\"\nradius = 0.4\nposition = [0.4, 0.5]\n", wide);
+  alone.steps(1, 0.004);
+  EXPECT_THAT(alone.method.take_remarks(), Contains(Field(&Remark::text, HasSubstr("free surface beside the body"))));
   Simulation beach(tank + half_space + "position = [0.31, 0]\nnormal = [0.866, 0.5]\n", wide);
   beach.steps(1, 0.004);
   EXPECT_THAT(beach.method.take_remarks(), IsEmpty());

@@ -141,8 +141,14 @@ TEST(ThinWalls, ListsHoldNothingThatTheyHide) {
         // Where a way into a body begins, what the point holds comes from there without crossing one.
         const auto entry = thin.entry(eye, thin.distance(eye), place);
         if (!entry) {
-          // Past an edge, by so little that the plane of the face counts for the face.
-          ASSERT_LT(least_distance(walled, eye, place), 0.1 * walled.resolution.spacing);
+          // Points past an edge complete what is seen there. Of others the way passes an edge by so little that the
+          // plane of the face counts for the face.
+          const bool past_edge =
+              std::any_of(bodies.all_points().begin(), bodies.all_points().end(), [&](const WallPoint& point) {
+                return point.past_edge && length(subtract(point.position, place)) < 1e-3 * walled.resolution.spacing;
+              });
+          const bool mirrored = images.paths()[static_cast<std::size_t>(images.path()[j - n])].side != not_mirrored;
+          if (!past_edge && !mirrored) ASSERT_LT(least_distance(walled, eye, place), 0.1 * walled.resolution.spacing);
           continue;
         }
         const Vec3 before = add(entry->place, multiply(0.1 * walled.resolution.spacing, entry->normal));

@@ -49,8 +49,8 @@ class PointFit {
     nearest2_ = near_.r2(k);
     nearest_ = near_.particle(k);
   }
-  // The order that the particles bear, -1: none.
-  int fit();
+  // The order that the particles bear, -1: none; above order 0 the sum of |c_j| is `most_moduli` at most.
+  int fit(double most_moduli = std::numeric_limits<double>::infinity());
   // Adds the point of the last fit.
   void append(PointFits& fits);
   // The bend e_j of WallStencils of the point added last, which lies at `behind` from the place of its fit; zero where

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Bodies so thin that what mirrors the liquid before one of their faces does not fit behind it: their solid is nowhere
-// deeper than the support radius, and most of their surface is flat, which a ball of a few spacings is not.
+// deeper than the support radius, most of their surface is flat, which a ball of a few spacings is not, and they are
+// twice as long as thick or thinner than a support radius.
 //
 // Wall points of such a body stand behind each of its faces as if the solid went on there, through the body and the
 // liquid beyond: mirror images of places before the face, and of places past its edges in the plane of the face. What

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include "spume/core/error.hpp"
 #include "spume/methods/les_sph/step.hpp"
@@ -133,10 +135,17 @@ void LesSph::remark_surface_at_bodies() {
     return !continued && flow_.boundary.bodies()->nearer_than(place, reach) ? 1.0 : 0.0;
   });
   if (beside == 0) return;
+  const std::vector<Body>& bodies = flow_.boundary.bodies()->bodies();
+  const bool alone =
+      std::count_if(bodies.begin(), bodies.end(), [](const Body& b) { return b.wall != BoundaryKind::open; }) == 1;
+  const std::string where = alone ? "beside the body" : "between bodies";
+  const std::string cure = alone ? "part it by five spacings from the walls of the domain, or let it reach them"
+                                 : "join the bodies, or part them by five spacings";
   remarks_.push_back({std::to_string(static_cast<long long>(beside)) +
-                          " particles at the start count as a free surface between bodies: in a gap too narrow for "
-                          "particles still water does not stay still (0.5 sqrt(g H) where a ball touches a box); join "
-                          "the bodies, or part them by five spacings",
+                          " particles at the start count as a free surface " + where +
+                          ": in a gap too narrow for particles still water does not stay still (0.5 sqrt(g H) where a "
+                          "ball touches a box); " +
+                          cure,
                       false});
 }
 

@@ -17,7 +17,8 @@ namespace {
 // by 0.02 %.
 constexpr double least_divergence_of_position = 0.95;
 
-// Of a spacing a step: faster than this the pressure of the surface does not draw a particle into the wall of a body.
+// Of a spacing a step: faster than this the pressure at a surface or a void does not draw a particle into the wall of a
+// body.
 // At wall points a pressure that one particle has alone is lower than its own.
 constexpr double least_approach = 0.05;
 
@@ -141,8 +142,13 @@ void Flow::differentiate(const std::array<const double*, 3>& velocity, bool firs
     out.displacement = read(shift->displacement);
     out.change = write(shift_velocity);
   }
-  velocity_gradient_sweep(arrangement.context, arrangement.packed, velocity, boundary.velocity_rule(),
-                          moments.read_correction(), out);
+  // The change by the shift is bounded by what a particle sees: beside voids bends behind a wall make that anything.
+  VelocityImageRule odd;
+  const bool beside_voids = features.bodies && fading.missing > 0;
+  if (beside_voids) odd = boundary.velocity_rule();
+  odd.bends = false;
+  velocity_gradient_sweep(arrangement.context, arrangement.packed, velocity,
+                          beside_voids ? odd : boundary.velocity_rule(), moments.read_correction(), out);
 }
 
 void Flow::find_shift_curvature() {
@@ -366,7 +372,8 @@ void Flow::accept(double dt) {
         before[axis] = stopped[axis];
       }
     }
-    if (surface != nullptr && boundary.bodies() != nullptr && surface->at_surface[i] != 0)
+    const bool sparse = surface != nullptr ? surface->at_surface[i] != 0 : inside(i) < 1;
+    if (sparse && boundary.bodies() != nullptr)
       boundary.bodies()->limit_approach(r, resolution.spacing, least_approach * resolution.spacing / dt, before, ahead);
     Vec3 u = ahead;
     if (acceleration[0] != nullptr)
