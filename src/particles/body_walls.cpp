@@ -277,7 +277,7 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
       kernel_sum = scale * sum;
     });
     if (kernel_sum < wet_wall_share || !seen) continue;
-    const bool beside_void = !scene_.free_surface && kernel_sum < full_wall_share;
+    const bool beside_void = !scene_.free_surface && scene_.motions.empty() && kernel_sum < full_wall_share;
     if (fit.fit(beside_void ? most_moduli_beside_void : infinite) < least_order) continue;
     block.point.push_back(static_cast<std::int32_t>(g));
     fit.append(block.fits);
