@@ -112,10 +112,35 @@ struct WallSums {
     return of;
   }
 
-  // Quadratic fit at the mirror of a wall point.
+  // The kernel sum at the mirror of a wall point, of the particles before the wall and of their mirror images.
+  double share(const WallPoint& point, const Near& around) const {
+    const int d = scene.domain.dimensions;
+    const double depth = dot(subtract(point.mirror, point.foot), point.normal);
+    double sum = 0;
+    for (const Vec3& xi : around.offset) {
+      const Vec3 offset = multiply(smoothing_length, xi);
+      const double across = depth + dot(offset, point.normal);
+      for (const double r2 : {dot(offset, offset), dot(offset, offset) + 4 * across * depth})
+        sum += WendlandC2::w(std::sqrt(r2) / smoothing_length);
+    }
+    return sum * volume * WendlandC2::normalisation(d) / std::pow(smoothing_length, d);
+  }
+
+  // Of the fit at the mirror: 2, beside voids of liquid that has no surface the highest whose sum of |c_j| is at most 1.5.
+  int order(const WallPoint& point, const Near& around) const {
+    if (scene.free_surface || !scene.motions.empty() || share(point, around) >= 0.9) return 2;
+    for (int high = 2; high > 0; --high) {
+      double moduli = 0;
+      for (const double c : coefficients(around, high, {}, nullptr)) moduli += std::abs(c);
+      if (moduli <= 1.5) return high;
+    }
+    return 0;
+  }
+
+  // The fit at the mirror of a wall point.
   Carried fit(const WallPoint& point) const {
     const Near around = near(point);
-    const std::vector<double> c = coefficients(around, 2, {}, nullptr);
+    const std::vector<double> c = coefficients(around, order(point, around), {}, nullptr);
     Carried sum;
     for (std::size_t k = 0; k < c.size(); ++k) {
       sum.scalar += c[k] * around.value[k].scalar;
@@ -129,12 +154,13 @@ struct WallSums {
   // depth; at most as long as the velocity relative to the surface.
   Vec3 bend(const WallPoint& point, const Vec3& wall, const Vec3& relative) const {
     const Near around = near(point);
+    if (order(point, around) < 2) return {};
     const std::vector<double> c = coefficients(around, 2, {}, nullptr);
     const Vec3 foot = multiply(1 / smoothing_length, subtract(point.foot, point.mirror));
     const double depth = length(subtract(point.position, point.foot));
     Vec3 bent{};
-    for (const int order : {3, 2}) {
-      const std::vector<double> behind = coefficients(around, order, multiply(2, foot), &foot);
+    for (const int high : {3, 2}) {
+      const std::vector<double> behind = coefficients(around, high, multiply(2, foot), &foot);
       double moduli = 0;
       bent = {};
       for (std::size_t k = 0; k < c.size(); ++k) {
