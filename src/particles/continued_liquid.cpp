@@ -215,7 +215,7 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
         if (thin != nullptr) {
           const WallPoint& point = sorted_point(boundary, static_cast<std::size_t>(g));
           if (!thin->sees(seen, thin->particle_distance(i), add(point.position, shift), add(point.mirror, shift),
-                          point.one_sided))
+                          point))
             return;
         }
         visit(double{share_[static_cast<std::size_t>(g)]}, offset, r2,

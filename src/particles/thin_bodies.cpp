@@ -21,6 +21,9 @@ constexpr double same_face = 0.94;
 constexpr double on_surface = 1e-3;
 // Spacings: what closes a corner lies on the surface, by no more than this.
 constexpr double closed = 0.1;
+// Spacings: a place nearer to the second face of a corner is its own image there, and what looks through that face
+// takes it for free.
+constexpr double before_second_face = 0.1;
 // Of the sine of the angle between two faces, those that make a corner.
 constexpr double upright = 0.7;
 // Of the curvature of a flat surface, times a spacing, at most.
@@ -177,7 +180,8 @@ class Sheets {
   void add_corner(const Vec3& place, const NearestPoint& near, std::size_t other,
                   std::vector<WallPoint>& points) const {
     const NearestPoint second = bodies_[other].solid->nearest(place);
-    if (!(second.distance > 0) || second.distance >= reach_ || std::abs(dot(near.normal, second.normal)) > upright)
+    if (!(second.distance > before_second_face * spacing_) || second.distance >= reach_ ||
+        std::abs(dot(near.normal, second.normal)) > upright)
       return;
     Vec3 corner = place;
     for (int round = 0; round < 8; ++round)
@@ -190,6 +194,7 @@ class Sheets {
     point.mirror = place;
     point.foot = multiply(0.5, spume::add(point.position, place));
     point.normal = unit(subtract(place, point.position), domain_.dimensions);
+    point.in_corner = true;
     points.push_back(point);
   }
 

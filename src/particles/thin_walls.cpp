@@ -187,8 +187,9 @@ bool ThinWalls::sees_face(const Vec3& eye, double eye_distance, const Vec3& poin
 bool ThinWalls::is_behind_face(std::size_t point) const {
   if (point < particles_ || images_->wall_point() == nullptr) return false;
   const std::int32_t g = images_->wall_point()[point - particles_];
-  return g >= 0 && static_cast<std::size_t>(g) < wet_->size() &&
-         (*points_)[static_cast<std::size_t>((*wet_)[static_cast<std::size_t>(g)])].one_sided;
+  if (g < 0 || static_cast<std::size_t>(g) >= wet_->size()) return false;
+  const WallPoint& wall = (*points_)[static_cast<std::size_t>((*wet_)[static_cast<std::size_t>(g)])];
+  return wall.one_sided || wall.in_corner;
 }
 
 bool ThinWalls::sees(std::size_t particle, std::size_t point) const {
@@ -202,13 +203,14 @@ bool ThinWalls::sees(std::size_t particle, std::size_t point) const {
   if (g < 0 || static_cast<std::size_t>(g) >= wet_->size()) return !hides(eye, eye_distance, place, distance_[point]);
   const WallPoint& wall = (*points_)[static_cast<std::size_t>((*wet_)[static_cast<std::size_t>(g)])];
   const Vec3 mirror = imaged(images_->paths()[static_cast<std::size_t>(images_->path()[k])], wall.mirror);
-  return sees(eye, eye_distance, place, mirror, wall.one_sided);
+  return sees(eye, eye_distance, place, mirror, wall);
 }
 
 bool ThinWalls::sees(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& mirror,
-                     bool one_sided) const {
-  if (eye_distance >= reach_) return !one_sided;
-  return one_sided ? sees_face(eye, eye_distance, point, mirror) : !hides(eye, eye_distance, mirror, distance(mirror));
+                     const WallPoint& kind) const {
+  if (eye_distance >= reach_) return !kind.one_sided && !kind.in_corner;
+  return kind.one_sided ? sees_face(eye, eye_distance, point, mirror)
+                        : !hides(eye, eye_distance, mirror, distance(mirror));
 }
 
 }  // namespace spume

@@ -126,7 +126,8 @@ struct WallSums {
     return sum * volume * WendlandC2::normalisation(d) / std::pow(smoothing_length, d);
   }
 
-  // Of the fit at the mirror: 2, beside voids of liquid that has no surface the highest whose sum of |c_j| is at most 1.5.
+  // Of the fit at the mirror: 2, beside voids of liquid that has no surface the highest whose sum of |c_j| is at
+  // most 1.5.
   int order(const WallPoint& point, const Near& around) const {
     if (scene.free_surface || !scene.motions.empty() || share(point, around) >= 0.9) return 2;
     for (int high = 2; high > 0; --high) {

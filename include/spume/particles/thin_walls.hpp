@@ -39,8 +39,8 @@ class ThinWalls final : public Sight {
   };
   std::optional<Entry> entry(const Vec3& from, double from_distance, const Vec3& to) const;
 
-  // A wall point, or a mirror image of one, from a place within the reach of measure().
-  bool sees(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& mirror, bool one_sided) const;
+  // A wall point of that kind, or a mirror image of one, from a place within the reach of measure().
+  bool sees(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& mirror, const WallPoint& kind) const;
 
   // Distances of particles as far as `reach`, and then of their images. What is given outlives the lists made with it.
   void measure(const std::array<const double*, 3>& position, std::size_t particles, double reach);

@@ -21,8 +21,8 @@ struct WallPoint {
   Vec3 foot{}, normal{};  // on the surface, and out of the solid there
   Vec3 mirror{};          // as far before the foot as the position is behind it
   // Of a thin body (particles/thin_bodies.hpp): seen through the face of its foot alone, which may lie past the edge of
-  // that in its plane.
-  bool one_sided = false, past_edge = false;
+  // that in its plane; or mirrored at both faces of a corner.
+  bool one_sided = false, past_edge = false, in_corner = false;
 };
 
 // Down to the support radius below the walls, as far as liquid may see: inside the domain, and beyond its open sides.
