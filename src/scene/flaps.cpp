@@ -31,7 +31,8 @@ class FlapAngle final : public Expression {
 
 }  // namespace
 
-void add_flaps(const Draft& draft, Scene& scene, Problems& problems) {
+std::vector<std::shared_ptr<const PistonMotion>> add_flaps(const Draft& draft, Scene& scene, Problems& problems) {
+  std::vector<std::shared_ptr<const PistonMotion>> motions;
   const Domain& domain = scene.domain;
   const int up = domain.dimensions - 1;
   for (std::size_t k = 0; k < draft.wavemakers.size(); ++k) {
@@ -72,6 +73,7 @@ void add_flaps(const Draft& draft, Scene& scene, Problems& problems) {
     turning.pivot = pose.position;
     // A positive angle leads from z to x about y, and from x to y about z.
     turning.axis = up == 2 ? Vec3{0, 1, 0} : Vec3{0, 0, -1};
+    motions.push_back(motion);
     turning.angle = std::make_shared<FlapAngle>(motion, maker.depth, inwards);
     turning.time_scale = 2 * std::numbers::pi / maker.angular_frequency;
     scene.bodies.push_back({.name = maker.name,
@@ -83,6 +85,7 @@ void add_flaps(const Draft& draft, Scene& scene, Problems& problems) {
                             .alone = shape});
     scene.motions.push_back(std::move(turning));
   }
+  return motions;
 }
 
 }  // namespace spume

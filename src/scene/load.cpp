@@ -346,7 +346,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   scene.surface_tension = draft.surface_tension;
   scene.spacing = draft.options.spacing;
   scene.seed = draft.options.seed;
-  add_flaps(draft, scene, problems);
+  const std::vector<std::shared_ptr<const PistonMotion>> of_flaps = add_flaps(draft, scene, problems);
   if (method->solids_join_bodies) make_bodies_of_boxes(scene);
   problems.throw_if_any();
   scene.walls = make_walls(scene.bodies, scene.motions);
@@ -359,7 +359,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
     fill_scene(scene, lattice, regions, draft.jitter, most, problems);
   }
   problems.throw_if_any();
-  const std::vector<Wavemaker> wavemakers = make_wavemakers(draft, scene, problems);
+  const std::vector<Wavemaker> wavemakers = make_wavemakers(draft, scene, of_flaps, problems);
   scene.sponges = make_sponges(draft, wavemakers);
   check_openings_of(draft, scene, lattice.volume(), problems);
   check_motions(draft, scene, method->incompressible, problems);

@@ -158,7 +158,9 @@ void find_wavemaker_extremes(const PistonMotion& motion, double end, Wavemaker& 
   maker.smallest_displacement = lowest;
 }
 
-std::vector<Wavemaker> make_wavemakers(const Draft& draft, Scene& scene, Problems& problems) {
+std::vector<Wavemaker> make_wavemakers(const Draft& draft, Scene& scene,
+                                       const std::vector<std::shared_ptr<const PistonMotion>>& of_flaps,
+                                       Problems& problems) {
   std::vector<Wavemaker> made;
   for (std::size_t k = 0; k < draft.wavemakers.size(); ++k) {
     const WavemakerDraft& one = draft.wavemakers[k];
@@ -167,13 +169,11 @@ std::vector<Wavemaker> make_wavemakers(const Draft& draft, Scene& scene, Problem
     maker.side = one.side;
     const int end = one.side == "left" ? 0 : 1;
     double wall = (end == 0 ? scene.domain.lower : scene.domain.upper)[0];
-    if (one.kind == WavemakerKind::flap) {
-      // The last bodies are those of the flaps, in their order.
-      const auto flaps =
-          std::count_if(draft.wavemakers.begin() + static_cast<std::ptrdiff_t>(k), draft.wavemakers.end(),
-                        [](const WavemakerDraft& other) { return other.kind == WavemakerKind::flap; });
-      wall = maker.hinge = scene.motions[scene.motions.size() - static_cast<std::size_t>(flaps)].pivot[0];
-    }
+    // The last bodies are those of the flaps, in their order.
+    const auto flaps_left = static_cast<std::size_t>(
+        std::count_if(draft.wavemakers.begin() + static_cast<std::ptrdiff_t>(k), draft.wavemakers.end(),
+                      [](const WavemakerDraft& other) { return other.kind == WavemakerKind::flap; }));
+    if (one.kind == WavemakerKind::flap) wall = maker.hinge = scene.motions[scene.motions.size() - flaps_left].pivot[0];
     find_still_water(scene, wall, maker);
     if (!(maker.still_depth > 0)) {
       problems.add(*draft.node(maker.name), maker.name +
@@ -185,7 +185,10 @@ std::vector<Wavemaker> make_wavemakers(const Draft& draft, Scene& scene, Problem
     maker.height = one.waves == WaveKind::focused ? 2 * *one.amplitude : one.height.value_or(0);
     maker.absorbs = one.absorption != AbsorptionKind::none;
     if (one.waves == WaveKind::none) maker.angular_frequency = frequency_of_first(draft);
-    const auto motion = wavemaker_motion(one, maker, scene, draft.options.time.end);
+    WavemakerDraft of_order = one;
+    if (one.kind == WavemakerKind::flap) of_order.order = 1;  // the motion is known: its frequencies are meant
+    auto motion = wavemaker_motion(of_order, maker, scene, draft.options.time.end);
+    if (one.kind == WavemakerKind::flap) motion = of_flaps[of_flaps.size() - flaps_left];
     find_wavemaker_extremes(*motion, draft.options.time.end, maker);
     check_motion(draft, scene, maker, problems);
     if (one.kind == WavemakerKind::flap) {

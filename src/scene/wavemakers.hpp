@@ -65,11 +65,15 @@ std::string describe_absorption(const WaveAbsorption& absorption, WaveKind waves
                                 const Scene& scene);
 
 // Adds the walls of flaps to the bodies, behind all others: solids from the flap to its side, which turn about the
-// hinge. The scene has its domain, its fluid and its other bodies.
-void add_flaps(const Draft& draft, Scene& scene, Problems& problems);
+// hinge. The scene has its domain, its fluid and its other bodies. Returns their motions, in their order: of hundreds
+// of components those of second order take seconds.
+std::vector<std::shared_ptr<const PistonMotion>> add_flaps(const Draft& draft, Scene& scene, Problems& problems);
 
-// Sets the velocities of the sides. The scene has its particles: the still water is measured beside the wall.
-std::vector<Wavemaker> make_wavemakers(const Draft& draft, Scene& scene, Problems& problems);
+// Sets the velocities of the sides; `of_flaps` as add_flaps() returns them. The scene has its particles: the still
+// water is measured beside the wall.
+std::vector<Wavemaker> make_wavemakers(const Draft& draft, Scene& scene,
+                                       const std::vector<std::shared_ptr<const PistonMotion>>& of_flaps,
+                                       Problems& problems);
 std::vector<Sponge> make_sponges(const Draft& draft, const std::vector<Wavemaker>& wavemakers);
 
 // For the start-up table.
