@@ -14,7 +14,7 @@ namespace spume {
 
 // Of the support radius: where quadratic fits beside a wall look for particles. Half a disc then holds 17, enough in
 // two dimensions, where the support radius alone has 11. In three dimensions half a ball of the support radius has 37:
-// at 1.25 a step beside a round wall takes 1.5 times as long, and Taylor-Couette flow of 10 spacings errs by 0.306 %
+// at 1.25 the stage that fits takes 1.4 times as long, and Taylor-Couette flow of 10 spacings errs by 0.306 %
 // either way.
 inline constexpr double fit_reach = 1.25;
 inline constexpr double fit_reach_of(int dimensions) {
