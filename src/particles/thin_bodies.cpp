@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/particles/thin_bodies.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,13 +29,46 @@ constexpr double before_second_face = 0.1;
 constexpr double upright = 0.7;
 // Of the curvature of a flat surface, times a spacing, at most.
 constexpr double flat = 0.2;
-// Length over thickness of a plate. What is shorter and hides liquid by its thickness alone, such as a square pillar,
+// Length over thickness of a plate, along the principal axes of the solid. What is shorter and hides liquid by its thickness alone, such as a square pillar,
 // stays as thick bodies are: four spacings wide on the floor of a tank it left layers of wcsph with accelerations
 // of 1.6 g.
 constexpr double slender = 2;
 
 struct Window {
   Vec3 lower{}, upper{};
+};
+
+// Moments of places within a solid.
+struct Moments {
+  double count = 0;
+  Vec3 sum{};
+  std::array<Vec3, 3> product{};
+
+  void add(const Vec3& place) {
+    ++count;
+    for (std::size_t a = 0; a < 3; ++a) {
+      sum[a] += place[a];
+      for (std::size_t b = 0; b < 3; ++b) product[a][b] += place[a] * place[b];
+    }
+  }
+  void add(const Moments& other) {
+    count += other.count;
+    for (std::size_t a = 0; a < 3; ++a) {
+      sum[a] += other.sum[a];
+      for (std::size_t b = 0; b < 3; ++b) product[a][b] += other.product[a][b];
+    }
+  }
+  // Of the box that has the same second moments, which a box is however it is turned.
+  double longest_edge() const {
+    if (!(count > 0)) return 0;
+    Eigen::Matrix3d covariance;
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b)
+        covariance(a, b) = product[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] / count -
+                           sum[static_cast<std::size_t>(a)] / count * (sum[static_cast<std::size_t>(b)] / count);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance, Eigen::EigenvaluesOnly);
+    return std::sqrt(12 * std::max(axes.eigenvalues()[2], 0.0));
+  }
 };
 
 // Where a body can be met: all of one that moves, else its part in the domain and a support radius around it.
@@ -69,6 +103,7 @@ bool is_thin(const Scene& scene, const Body& body, double spacing, double reach)
     bool deep = false;
     std::size_t flat = 0, curved = 0;
     double depth = 0;  // of the deepest place
+    Moments inside;    // about the lower corner of the window
   };
   const Found all = parallel_reduce(
       rows, Found{},
@@ -84,25 +119,25 @@ bool is_thin(const Scene& scene, const Body& body, double spacing, double reach)
               found.deep = true;
               break;
             }
+            if (distance < 0) found.inside.add(subtract(place, window.lower));
             if (distance > 0.25 * spacing && distance < 0.75 * spacing) {
               const NearestPoint near = solid->nearest(place);
               const MirroredShare share = mirrored_share(alone, near, place, spacing, d);
               if (!share.edge)
                 ++(std::abs(share.share - 1) < 2 * flat * distance / spacing ? found.flat : found.curved);
             }
-            // Neither the deepest places nor the surface are nearer.
-            const double away = distance > 0 ? distance - 0.75 * spacing : reach + distance;
-            place[0] += std::max(step, distance > 0 ? away : std::min(away, -distance));
+            place[0] += std::max(step, distance - 0.75 * spacing);  // the surface is not nearer
           }
         }
         return found;
       },
       [](const Found& a, const Found& b) {
-        return Found{a.deep || b.deep, a.flat + b.flat, a.curved + b.curved, std::max(a.depth, b.depth)};
+        Found both{a.deep || b.deep, a.flat + b.flat, a.curved + b.curved, std::max(a.depth, b.depth), a.inside};
+        both.inside.add(b.inside);
+        return both;
       });
-  double longest = 0;
-  for (int axis = 0; axis < d; ++axis) longest = std::max(longest, window.upper[axis] - window.lower[axis] - 2 * reach);
-  return !all.deep && all.flat > all.curved && (longest > slender * 2 * all.depth || 2 * all.depth < reach);
+  return !all.deep && all.flat > all.curved &&
+         (2 * all.depth < reach || all.inside.longest_edge() > slender * 2 * all.depth);
 }
 
 // Normals of the faces that meet at an edge.

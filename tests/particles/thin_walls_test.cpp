@@ -72,6 +72,10 @@ TEST(ThinWalls, AreFlatBodiesThinnerThanTwiceTheSupport) {
   EXPECT_FALSE(is_thin("[[body]]\nshape = \"cylinder\"\nradius = 0.1\nposition = [0.8, 0.6]\n"));
   EXPECT_FALSE(is_thin("[[body]]\nshape = \"outline\"\npoints = [[0, 0], [1.6, 0], [1.6, 0.5]]\n"));
   EXPECT_FALSE(is_thin("[[body]]\nshape = \"box\"\nsize = [1, 1]\nposition = [0.8, 0.6]\ninside = false\n"));
+  // A box 1.8 times as long as thick is none however it is turned, one 2.2 times as long is.
+  const std::string of_thickness = "[[body]]\nshape = \"box\"\nposition = [0.8, 0.6]\nrotation = [30]\nsize = [";
+  EXPECT_FALSE(is_thin(of_thickness + "0.36, 0.2]\n"));
+  EXPECT_TRUE(is_thin(of_thickness + "0.44, 0.2]\n"));
   // A cylinder whose wall is a shell is not; one of twenty spacings radius that is cut is none either, as it is not
   // looked at.
   EXPECT_FALSE(
