@@ -105,12 +105,8 @@ struct ScalarRow {
       out.rate[first + s][i] = diffusivity[s] * simd::sum(rate[s]) + share[s] * simd::sum(eddy_rate[s]);
       most = std::max(most, diffusivity[s] * all + share[s] * all_by_eddies);
       if constexpr (shifted) {
-        float least = 0, largest = 0;
-        for (int l = 0; l < simd::pair_lanes; ++l) {
-          least = std::min<float>(least, low[s][l]);
-          largest = std::max<float>(largest, high[s][l]);
-        }
-        out.change[first + s][i] = std::clamp(-shift.gradient * simd::sum(along[s]), 0.5F * least, 0.5F * largest);
+        out.change[first + s][i] = std::clamp(-shift.gradient * simd::sum(along[s]), 0.5F * simd::least(low[s]),
+                                              0.5F * simd::largest(high[s]));
       }
     }
     out.exchange[i] = most;

@@ -74,11 +74,10 @@ void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
     }
     DifferenceBounds<dimensions> bounds;
     if constexpr (bounded)
-      for (int a = 0; a < dimensions; ++a)
-        for (int l = 0; l < simd::pair_lanes; ++l) {
-          bounds.low[a] = std::min(bounds.low[a], low[a][l]);
-          bounds.high[a] = std::max(bounds.high[a], high[a][l]);
-        }
+      for (int a = 0; a < dimensions; ++a) {
+        bounds.low[a] = simd::least(low[a]);
+        bounds.high[a] = simd::largest(high[a]);
+      }
     store(i, gradient, bounds);
   });
 }

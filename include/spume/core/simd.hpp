@@ -113,6 +113,18 @@ template <FloatVector V = f32x8>
   return (s[0] + s[2]) + (s[1] + s[3]);
 }
 
+// The least of the lanes and the largest: halves, then halves of halves.
+[[gnu::always_inline]] inline float least(f32x8 v) {
+  const f32x8 four = min(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
+  const f32x8 two = min(four, __builtin_shufflevector(four, four, 2, 3, 0, 1, 6, 7, 4, 5));
+  return two[1] < two[0] ? two[1] : two[0];
+}
+[[gnu::always_inline]] inline float largest(f32x8 v) {
+  const f32x8 four = max(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
+  const f32x8 two = max(four, __builtin_shufflevector(four, four, 2, 3, 0, 1, 6, 7, 4, 5));
+  return two[0] < two[1] ? two[1] : two[0];
+}
+
 [[gnu::always_inline]] inline f64x4 to_f64_low(f32x8 v) {
   return __builtin_convertvector(__builtin_shufflevector(v, v, 0, 1, 2, 3), f64x4);
 }
@@ -165,6 +177,12 @@ inline constexpr __mmask16 all_lanes = 0xffff;
 }
 [[gnu::always_inline]] inline float sum(f32x16 v) {
   return sum(low_half(v) + high_half(v));
+}
+[[gnu::always_inline]] inline float least(f32x16 v) {
+  return least(min(low_half(v), high_half(v)));
+}
+[[gnu::always_inline]] inline float largest(f32x16 v) {
+  return largest(max(low_half(v), high_half(v)));
 }
 [[gnu::always_inline]] inline f64x8 to_f64_low(f32x16 v) {
   return __builtin_convertvector(low_half(v), f64x8);

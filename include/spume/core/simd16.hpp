@@ -81,12 +81,6 @@ template <class V>
 [[gnu::always_inline]] inline i32x16 quarters() {
   return i32x16{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 }
-[[gnu::always_inline]] inline float least(f32x16 v) {
-  const f32x8 eight = min(low_half(v), high_half(v));
-  const f32x8 four = min(eight, __builtin_shufflevector(eight, eight, 4, 5, 6, 7, 0, 1, 2, 3));
-  const f32x8 two = min(four, __builtin_shufflevector(four, four, 2, 3, 0, 1, 6, 7, 4, 5));
-  return std::min(two[0], two[1]);
-}
 
 #else
 
