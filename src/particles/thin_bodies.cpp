@@ -29,9 +29,9 @@ constexpr double before_second_face = 0.1;
 constexpr double upright = 0.7;
 // Of the curvature of a flat surface, times a spacing, at most.
 constexpr double flat = 0.2;
-// Length over thickness of a plate, along the principal axes of the solid. What is shorter and hides liquid by its thickness alone, such as a square pillar,
-// stays as thick bodies are: four spacings wide on the floor of a tank it left layers of wcsph with accelerations
-// of 1.6 g.
+// Length over thickness of a plate, along the principal axes of the solid. What is shorter and hides liquid by its
+// thickness alone, such as a square pillar, stays as thick bodies are: four spacings wide on the floor of a tank it
+// left layers of wcsph with accelerations of 1.6 g.
 constexpr double slender = 2;
 
 struct Window {
