@@ -400,6 +400,7 @@ void Boundary::load_walls(StateReader& reader, double t) {
   for (std::size_t axis = 0; axis < 3; ++axis) walls[axis] = {all[2 * axis], all[2 * axis + 1]};
   if (absorbing_ != nullptr) absorbing_->load(reader, t);
   if (features.displaced_bodies) bodies_->move_to(t);
+  if (bodies_ != nullptr) bodies_->accept();
   return_walls();
 }
 

@@ -175,4 +175,21 @@ TEST(LesSphThinBodies, GoOnBitForBitFromASavedState) {
   EXPECT_TRUE(restored.state() == straight.state());
 }
 
+// Where a plate stood at the last state tells whom it meets in the next step: here it has come four spacings far, and
+// liquid lies where it was.
+TEST(LesSphThinBodies, GoOnBitForBitOnceAPlateHasMovedFar) {
+  const std::string text = empty_tank +
+                           "[[liquid]]\nupper = [1.6, 0.8]\n[[body]]\nshape = \"box\"\nsize = [0.05, 4]\nposition = "
+                           "[0.825, 2]\ndisplacement = [\"0.1*(1-cos(3*t))\", \"0\"]\n";
+  Simulation straight(text, long_tank), restored(text, long_tank);
+  while (straight.method.time() < 1) straight.steps(1, straight.method.step_limit().dt);
+  MemoryState saved;
+  straight.method.save(saved);
+  const double dt = straight.method.step_limit().dt;
+  straight.steps(3, dt);
+  restored.method.load(saved);
+  restored.steps(3, dt);
+  EXPECT_TRUE(restored.state() == straight.state());
+}
+
 }  // namespace spume::test
