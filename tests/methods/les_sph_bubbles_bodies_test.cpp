@@ -225,6 +225,60 @@ TEST(BubblesBesideBodies, SlideAlongASlope) {
   EXPECT_GT(touching, 40);
 }
 
+// Inside a pipe that lies, a wall that bends under way: the slip along it is that of gravity times the sine of the
+// angle from the crown, as on a slope, with strides of a fifth of a spacing and a radius of
+// five.
+TEST(BubblesBesideBodies, SlideAlongAVault) {
+  Simulation run(R"toml(method = "les-sph"
+[domain]
+lower = [-0.6, 0, -0.6]
+upper = [0.6, 0.8, 0.6]
+y = "periodic"
+[resolution]
+spacing = 0.1
+[fluid]
+reynolds = 1e4
+froude = 1
+mach = 0.05
+[[liquid]]
+[[body]]
+shape = "cylinder"
+radius = 0.5
+length = 4
+rotation = [90, 0, 0]
+inside = false
+wall = "free-slip"
+[bubbles]
+weber = 1e3
+[[bubble_cloud]]
+centre = [0.46, 0.4, 0.05]
+bubble_radius = 0.02
+[time]
+end = 10
+)toml");
+  const BodyWalls& wall = *run.method.flow().boundary.bodies();
+  const double dt = 0.15;
+  int touching = 0;
+  for (int k = 0; k < 60; ++k) {
+    run.steps(1, dt);
+    const Vec3 r = bubble_place(run, 0);
+    ASSERT_GT(wall.distance(r), 0);
+    // The gap is a thousandth of a spacing. By the crown the slip goes down with the slope.
+    if (wall.distance(r) > 1.1e-4 || ++touching < 5 || r[0] < 0.15) continue;
+    // By what it turns in a step, where it was and where it will be differ.
+    const double angle = std::atan2(r[0], r[2]), slip = (*swarm_of(run).population().slip)[0], turn = slip * dt / 0.5;
+    const auto terminal = [&](double at) {
+      return bubbles::terminal_speed({.density_ratio = run.loaded.options.get<BubbleOptions>().density_ratio,
+                                      .viscosity = 1e-4,
+                                      .gravity = {0, 0, -std::sin(at)}},
+                                     0.02);
+    };
+    EXPECT_GT(slip, terminal(angle - turn)) << k;
+    EXPECT_LT(slip, terminal(angle + turn)) << k;
+  }
+  EXPECT_GT(touching, 10);
+}
+
 // Below a lid, a box and a ridge bubbles rest, and what presses them stirs nothing.
 TEST(BubblesBesideBodies, RestUnderACeiling) {
   const std::string tank = R"toml(method = "les-sph"
