@@ -217,9 +217,20 @@ std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const
       return other.subtract && other.wall != BoundaryKind::open && other.motion == body.motion;
     });
     constexpr double most_unscreened = 0.5;
-    const double unscreened = body.wall == BoundaryKind::open || thin > most_thin
-                                  ? 0
-                                  : thin_share(body, domain, screening * scene.spacing, dimensions, !cut);
+    // Flat ones twice as long as thick are walls of two sides (particles/thin_bodies.hpp).
+    const auto is_slender = [&] {
+      Bounds part = bounds;
+      for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a) {
+        part.lower[a] = std::max(part.lower[a], domain.lower[a]);
+        part.upper[a] = std::min(part.upper[a], domain.upper[a]);
+      }
+      const double half = longest(part, dimensions) / 2, deep = screening * scene.spacing;
+      return half > deep || thin_share(body, domain, half, dimensions) > most_unscreened;
+    };
+    const double unscreened =
+        body.wall == BoundaryKind::open || thin > most_thin
+            ? 0
+            : thin_share(body, domain, screening * scene.spacing, dimensions, !cut && is_slender());
     if (unscreened > most_unscreened)
       warn("is thinner than five spacings, " + brief(screening * scene.spacing) + ", behind " +
            brief(std::round(100 * unscreened)) +

@@ -155,20 +155,33 @@ void add_released(const Draft& draft, std::vector<Body>& bodies, std::vector<Bod
                                             std::to_string(most_bodies) + " are possible");
 }
 
+namespace {
+
+// On the way of a body that is released, at one of fifty places.
+bool meets_liquid_on_its_way(const Scene& scene, const Body& body, double reach) {
+  const BodyMotion& motion = scene.motions[*body.motion];
+  constexpr int places = 50;
+  for (int n = 0; n < places; ++n) {
+    const double share = (n + 0.5) / places;
+    const RigidPlace place = given_place(motion, motion.release->first + share * motion.release->duration);
+    if (place.scale > 0 && meets_liquid(scene, *body.alone, place, reach)) return true;
+  }
+  return false;
+}
+
+// What enters may come to bodies that meet nothing of what is there at the start.
+bool has_inflow(const Scene& scene) {
+  return std::any_of(scene.openings.begin(), scene.openings.end(), [](const Opening& each) { return each.inflow; });
+}
+
+}  // namespace
+
 void check_released_ways(const Draft& draft, const Scene& scene, Problems& problems) {
   const double reach = support_ratio(draft.options.resolution) * scene.spacing;
+  if (has_inflow(scene)) return;
   for (std::size_t k = 0; k < draft.bodies.size(); ++k) {
     const Body& body = scene.bodies[k];
-    if (!body.motion || !scene.motions[*body.motion].release) continue;
-    const BodyMotion& motion = scene.motions[*body.motion];
-    const auto meets_at = [&](double share) {
-      const RigidPlace place = given_place(motion, motion.release->first + share * motion.release->duration);
-      return place.scale > 0 && meets_liquid(scene, *body.alone, place, reach);
-    };
-    constexpr int places = 50;
-    bool meets = false;
-    for (int n = 0; n < places && !meets; ++n) meets = meets_at((n + 0.5) / places);
-    if (meets) continue;
+    if (!body.motion || !scene.motions[*body.motion].release || meets_liquid_on_its_way(scene, body, reach)) continue;
     problems.add_key(*draft.node("body." + std::to_string(k) + ".release_interval"),
                      "the body '" + body.name +
                          "' is released, and nowhere on its way is liquid within the kernel support " + brief(reach) +
@@ -193,6 +206,9 @@ std::vector<Problem> release_warnings(const Draft& draft, const Scene& scene, co
       else
         before->second.second += ", '" + body.name + "'";
     };
+    if (has_inflow(scene) && !meets_liquid_on_its_way(scene, body, reach))
+      warn("meets no liquid on its way as that stands at t = 0: it does nothing until what enters has come within " +
+           brief(reach) + " of it");
     if (motion.release->grows() && !scene.free_surface && scene.openings.empty())
       warn(
           "grows, and nothing takes what it displaces: the domain is full and closed; leave a free surface, or remove "

@@ -251,6 +251,10 @@ TEST(Bodies, SuspiciousBodiesAreWarnedOf) {
               Contains(HasSubstr("the body 'it' is thinner than a spacing, 0.05, behind 96 % of its surface")));
   // Plates hide what is behind them; what is curved does not, nor what others are taken away from.
   EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.05, 1]\n"), IsEmpty());
+  // A short flat one is none either.
+  EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.2, 0.2]\n"),
+              ElementsAre(HasSubstr("behind 100 % of its surface, and is no plate")));
+  EXPECT_THAT(warnings(start + "shape = \"box\"\nrotation = [20]\nsize = [0.1, 0.3]\n"), IsEmpty());
   EXPECT_THAT(
       warnings(start + "shape = \"ball\"\nradius = 0.1\n"),
       ElementsAre(HasSubstr("the body 'it' is thinner than five spacings, 0.25, behind 100 % of its surface, and "

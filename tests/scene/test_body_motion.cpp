@@ -251,6 +251,10 @@ TEST(BodyMotion, AReleaseInTheLiquidIsWarnedOf) {
   const std::string shorter = test::replaced(every_second, "1.5", "0.5");
   EXPECT_THAT(warnings(plane + bubbles + shorter), said("the body 'bubble' is taken away"));
   EXPECT_THAT(warnings(plane + bubbles + shorter + "release_shrinkage = 0.1\n"), Not(said("taken away")));
+  // Where more enters it may come to what is dry at the start.
+  const std::string dry = test::replaced(bubbles, "[0.2, -1.4]", "[0.2, 0.4]") + every_second;
+  EXPECT_THAT(warnings(plane + dry + "[[inflow]]\nside = \"left\"\nvelocity = [1, 0]\n"),
+              said("meets no liquid on its way as that stands at t = 0"));
   // Of several orifices it is said once.
   const std::string grows = bubbles + every_second + "release_growth = 0.1\n",
                     second = test::replaced(grows, "name = \"bubble\"", "name = \"second\""),
