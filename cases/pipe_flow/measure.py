@@ -9,7 +9,8 @@ from spume_tools.results import read_reference
 REFERENCE = read_reference(Path(__file__).parent / "reference" / "pipe_flow.csv", ("T", "s", "u_over_Umax", "tau"))
 RADIUS = 0.5
 NU = 0.1
-STRESS = 1.6 * RADIUS / 2  # steady, density 1
+FORCE = 1.6
+STRESS = FORCE * RADIUS / 2  # steady, density 1
 
 
 def at_time(t):
@@ -27,7 +28,8 @@ def profile(t):
 
 def errors(run):
     """Of the last time that the table has: rms of the axial velocity over the particles, over the steady maximum 1; the
-    largest velocity across; the axial force on the pipe against that of the exact stress."""
+    largest velocity across; the axial force on the pipe against that of the exact stress; the dissipation against the
+    power of the body force less what the kinetic energy gains."""
     result = None
     for snapshot in run.snapshots():
         exact = profile(snapshot.time)
@@ -42,6 +44,11 @@ def errors(run):
         forces = run.table("bodies")
         length = run.bounds()[1][2] - run.bounds()[0][2]
         row = np.argmin(np.abs(forces["t"] - snapshot.time))
+        series = run.series
+        after = series["t"] >= snapshot.time / 2
+        kept = np.gradient(series["kinetic_energy"], series["t"])[after]
+        power = FORCE * series["momentum_z"][after]
+        result["dissipation_error"] = float(np.max(np.abs(series["dissipation"][after][:-1] / (power - kept)[:-1] - 1)))
         result["stress_error"] = float(abs(forces["viscous_force_z"][row] / (2 * np.pi * RADIUS * length * STRESS * tau) - 1))
     return result
 

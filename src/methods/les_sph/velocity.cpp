@@ -137,18 +137,27 @@ void Flow::differentiate(const std::array<const double*, 3>& velocity, bool firs
     scratch.lease(gradient_trace, size());
     out.trace = gradient_trace.data();
   }
+  VelocityGradientOut of_shift;
   if (features.shift_correction && !first) {
     scratch.lease(shift_velocity, dimensions, size());
-    out.displacement = read(shift->displacement);
-    out.change = write(shift_velocity);
+    of_shift.displacement = read(shift->displacement);
+    of_shift.change = write(shift_velocity);
   }
+  const auto sweep = [&](const VelocityImageRule& rule, const VelocityGradientOut& what) {
+    velocity_gradient_sweep(arrangement.context, arrangement.packed, velocity, rule, moments.read_correction(), what);
+  };
   // The change by the shift is bounded by what a particle sees: beside voids bends behind a wall make that anything.
-  VelocityImageRule odd;
+  // The gradient itself needs them: without, the dissipation in a round pipe of 20 spacings is 2 % too low, not 0.3 %.
   const bool beside_voids = features.bodies && fading.missing > 0;
-  if (beside_voids) odd = boundary.velocity_rule();
-  odd.bends = false;
-  velocity_gradient_sweep(arrangement.context, arrangement.packed, velocity,
-                          beside_voids ? odd : boundary.velocity_rule(), moments.read_correction(), out);
+  if (of_shift.change[0] != nullptr && beside_voids) {
+    VelocityImageRule odd = boundary.velocity_rule();
+    odd.bends = false;
+    sweep(odd, of_shift);
+  } else {
+    out.displacement = of_shift.displacement;
+    out.change = of_shift.change;
+  }
+  sweep(boundary.velocity_rule(), out);
 }
 
 void Flow::find_shift_curvature() {
