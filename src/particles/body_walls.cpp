@@ -485,6 +485,7 @@ double BodyWalls::bytes() const {
   double sum = stencils_.bytes() + static_cast<double>(points_.capacity() * sizeof(WallPoint) + 2 * body_.capacity() +
                                                        4 * wet_points_.capacity());
   for (const auto& part : parts_) sum += part->bytes();
+  if (thin_ != nullptr) sum += thin_->bytes();
   for (const auto& component : wet_position_) sum += component.bytes();
   return sum;
 }

@@ -43,8 +43,6 @@ const std::string shaken = moving_tank + "displacement = [\"0.25*t^2\", \"0\"]\n
 
 }  // namespace
 
-// The pressure of a tank that is pushed evenly is linear across it and moves all of the liquid alike. Fits at the walls
-// take single precision.
 // Of [[solid]] boxes that stand beside bodies too, as they are bodies then.
 TEST(LesSphBodyMotion, BoxesThatBecomeBodiesAreWarnedOf) {
   const auto warned = [](const std::string& box) {
@@ -60,6 +58,8 @@ TEST(LesSphBodyMotion, BoxesThatBecomeBodiesAreWarnedOf) {
               testing::Not(testing::Contains(testing::HasSubstr("'solid.0'"))));
 }
 
+// The pressure of a tank that is pushed evenly is linear across it and moves all of the liquid alike. Fits at the walls
+// take single precision.
 TEST(LesSphBodyMotion, LiquidMovesWithATankThatIsPushed) {
   Simulation run(moving_tank + "displacement = [\"0.25*t^2\", \"-0.1*t^2\"]\n");
   for (int step = 0; step < 30; ++step) run.steps(1, 0.02);
