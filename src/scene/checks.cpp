@@ -152,10 +152,14 @@ void check_shape(const Draft& draft, const char* header, const std::string& name
     if (ball && liquid.lower.empty() && liquid.upper.empty()) {
       low = liquid.centre[a] - *liquid.radius;
       high = liquid.centre[a] + *liquid.radius;
+      // Half of a ball about a place on a side: the other half is its image.
+      if (!draft.periodic[a] && std::abs(liquid.centre[a] - draft.lower[a]) <= slack) low = draft.lower[a];
+      if (!draft.periodic[a] && std::abs(liquid.centre[a] - draft.upper[a]) <= slack) high = draft.upper[a];
     }
     if (low >= draft.lower[a] - slack && high <= draft.upper[a] + slack) continue;
     problems.add(node, name + " reaches outside the domain: " + span_in_words(a, low, high) + ", the domain's " +
-                           span_in_words(a, draft.lower[a], draft.upper[a]));
+                           span_in_words(a, draft.lower[a], draft.upper[a]) +
+                           (ball ? "; a ball lies inside, or its centre on a side that is not periodic" : ""));
     break;
   }
 }

@@ -156,7 +156,8 @@ void add_shape(SectionOf<Region>& section) {
       .absent("the domain")
       .option("centre", &L::centre, "length", "centre of a ball (disc in 2-D)")
       .absent("no ball")
-      .option("radius", &L::radius, "length", positive(), "radius of a ball (disc in 2-D)")
+      .option("radius", &L::radius, "length", positive(),
+              "radius of a ball (disc in 2-D); half of one where its centre is on a side")
       .absent("no ball")
       .option("body", &L::body, "name of a [[body]], whose inside it fills")
       .absent("no body")

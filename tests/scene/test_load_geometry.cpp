@@ -74,6 +74,17 @@ TEST(LoadGeometry, WallVelocityNeedsAWallAndOneExpressionPerDirection) {
 TEST(LoadGeometry, SolidsRegionsAndProbesMustLieInTheDomain) {
   EXPECT_THAT(problems_of(small_case("lower = [0, 0]\nupper = [1, 1.2]\n")),
               ElementsAre("13:1 liquid.0 reaches outside the domain: y from 0 to 1.2, the domain's y from 0 to 1"));
+  // Half of a ball on a side, a quarter in a corner: its images are the rest, but not across a periodic side.
+  const std::string periodic = small_case("radius = 0.4\ncentre = "),
+                    ball = replaced(replaced(periodic, "x = \"periodic\"", "left = \"free-slip\""), "y = \"periodic\"",
+                                    "bottom = \"free-slip\"");
+  EXPECT_THAT(problems_of(ball + "[0, 0.5]\n"), IsEmpty());
+  EXPECT_THAT(problems_of(ball + "[1, 0]\n"), IsEmpty());
+  EXPECT_THAT(problems_of(ball + "[0.1, 0.5]\n"),
+              ElementsAre("13:1 liquid.0 reaches outside the domain: x from -0.3 to 0.5, the domain's x from 0 to 1; a "
+                          "ball lies inside, or its centre on a side that is not periodic"));
+  EXPECT_THAT(problems_of(periodic + "[0, 0.5]\n"),
+              ElementsAre(HasSubstr("reaches outside the domain: x from -0.4 to 0.4")));
   EXPECT_THAT(problems_of(small_case("centre = [0.5, 0.5]\n[[liquid]]\nradius = 0.1\n")),
               ElementsAre(HasSubstr("13:1 missing key 'radius'"), HasSubstr("15:1 missing key 'centre'")));
   EXPECT_THAT(problems_of(small_case("conform = true\n")),
