@@ -36,7 +36,7 @@ InvariantWatch::InvariantWatch(std::vector<Invariant> invariants, const std::vec
 
 void InvariantWatch::observe(std::span<const double> row) {
   for (Watched& w : watched_) {
-    const double scale = std::abs(row[w.scale]);
+    const double scale = std::abs(w.invariant.scale ? w.invariant.scale() : row[w.scale]);
     const double column = row[w.column] + (w.invariant.beside ? w.invariant.beside() : 0.0);
     const bool row_by_row = w.invariant.kind == Invariant::Kind::largest && w.scale != w.column;
     const double value = row_by_row ? relative(column, scale) : column;

@@ -54,6 +54,12 @@ TEST(Verdicts, ChangeCountsBothWaysByItsScale) {
   momentum.scale_floor = 20;
   EXPECT_EQ(watched(momentum, rows).verdicts().at(0).value, 3.0 / 60);
   EXPECT_TRUE(watched(momentum, rows).verdicts().at(0).pass());
+  double scale = 1;
+  momentum.scale = [&] { return scale += 1; };  // 2, 3, 4 in place of the column
+  EXPECT_EQ(watched(momentum, rows).verdicts().at(0).value, 3.0 / 60);
+  momentum.scale_floor = 0;
+  scale = 5;
+  EXPECT_EQ(watched(momentum, rows).verdicts().at(0).value, 3.0 / 80);
 }
 
 TEST(Verdicts, LargestTakesEitherSign) {

@@ -26,7 +26,8 @@ struct Remark {
 
 // A statement about a column of series.csv that holds for a whole run whatever its solution, so that no reference is
 // needed to judge it: what summary.json gives as a verdict. With x(t) the column, and what lies beside it, and
-// s = factor max |scale column| + floor over the rows, the value compared with the bound is
+// s = factor max |scale column| + floor over the rows, or of what `scale` gives in its place, the value compared with
+// the bound is
 //   drift:   max |x(t) - x(0)| / |x(0)|
 //   growth:  max (x(t) - x(0), 0) / s
 //   change:  max |x(t) - x(0)| / s
@@ -39,7 +40,9 @@ struct Invariant {
   double bound = 0;
   std::string scale_column = {};  // of growth, change and largest
   double scale_factor = 1, scale_floor = 0;
-  std::function<double()> beside = {};  // of the present state, added to the column; lives as long as the method
+  // Of the present state; they live as long as the method.
+  std::function<double()> beside = {};  // added to the column
+  std::function<double()> scale = {};   // in place of the scale column of growth and change
 };
 
 }  // namespace spume

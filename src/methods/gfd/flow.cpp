@@ -147,6 +147,33 @@ double Flow::potential_energy() const {
   return parallel_sum(size(), [&](std::size_t i) { return mass(i) * gravity_potential(i); });
 }
 
+double Flow::energy_without_potential() const {
+  return kinetic_energy() + surface_energy(colours);
+}
+
+double Flow::mass() const {
+  return parallel_sum(size(), [&](std::size_t i) { return in_domain(i) ? mass(i) : 0.0; });
+}
+
+double Flow::momentum(int axis) const {
+  return parallel_sum(size(),
+                      [&](std::size_t i) { return in_domain(i) ? mass(i) * (*particles.velocity[axis])[i] : 0.0; });
+}
+
+bool Flow::keeps_momentum(int axis) const {
+  if (!scene.domain.periodic(axis) || scene.body_force || features.bodies || features.openings ||
+      scene.fluid.gravity[static_cast<std::size_t>(axis)] != 0)
+    return false;
+  for (int across = 0; across < dimensions; ++across)
+    for (const Side& side : scene.domain.sides[static_cast<std::size_t>(across)])
+      if (!scene.domain.periodic(across) && side.kind != BoundaryKind::free_slip) return false;
+  return scene.domain.boxes.empty();
+}
+
+bool Flow::gains_no_energy() const {
+  return !features.forces && !features.moving_walls && !features.moving_bodies && !features.openings;
+}
+
 double Flow::roundness() const {
   const double volume = phase_volume[1], pi = std::numbers::pi;
   const double least = dimensions == 3 ? std::cbrt(36 * pi * volume * volume) : 2 * std::sqrt(pi * volume);

@@ -306,8 +306,7 @@ void Flow::refuse_unconverged_diffusion() const {
 // flow may hold is its mechanical energy at the start and that of the interfaces, and what rearranged particles lift, a
 // tenth of the weight over a spacing. An instability passes twice of it soon.
 void Flow::refuse_energy_from_nothing() const {
-  if (features.forces || features.moving_walls || features.moving_bodies || features.openings)
-    return;  // their work is not followed
+  if (!gains_no_energy()) return;
   const double kinetic =
       parallel_sum(size(), [&](std::size_t i) { return mass(i) * squared_norm(next_velocity, dimensions, i) / 2; });
   if (kinetic <= 2 * std::max(0.0, energy_supply - potential_energy()) + 0.1 * weight * spacing()) return;

@@ -141,8 +141,13 @@ struct Flow {
   double last_reduced(std::size_t i) const { return (*pressure)[i] - hydrostatic_part(i); }  // pi of the last step
   double largest_speed() const;                                                              // in the domain
   double kinetic_energy() const;
-  double potential_energy() const;  // across axes with sides
-  double roundness() const;         // of the second of two phases: surface of a ball of its volume over that area
+  double potential_energy() const;          // across axes with sides
+  double energy_without_potential() const;  // kinetic, and of the interfaces
+  double mass() const;                      // this and the next: in the domain
+  double momentum(int axis) const;
+  bool keeps_momentum(int axis) const;  // nothing acts along it
+  bool gains_no_energy() const;         // forces, walls and openings whose work is not followed do not act
+  double roundness() const;             // of the second of two phases: surface of a ball of its volume over that area
   // What the guard of the energy measures by; after the first interfaces have been found.
   void start_energy();  // of a run that begins
 

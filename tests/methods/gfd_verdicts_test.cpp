@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// What gfd says of momentum and energy that it makes from nothing.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "methods/gfd_run.hpp"
+#include "spume/run/verdicts.hpp"
+
+namespace spume::test {
+namespace {
+
+const std::string drop_in_a_wind = R"toml(method = "gfd"
+[domain]
+lower = [0, 0]
+upper = [4, 2]
+x = "periodic"
+bottom = "free-slip"
+top = "free-slip"
+[resolution]
+spacing = 0.0625
+[[phase]]
+name = "gas"
+density = 1
+viscosity = 0.002
+[[phase]]
+name = "drop"
+density = 1
+viscosity = 0.002
+[interface]
+surface_tension = 0.05
+[[region]]
+phase = "gas"
+velocity = ["1", "0"]
+[[region]]
+phase = "drop"
+centre = [1, 1]
+radius = 0.35
+[time]
+end = 1
+)toml";
+
+std::map<std::string, Verdict> verdicts_of(GfdRun& run, double end) {
+  const std::vector<SeriesColumn> columns = run.method.series_columns();
+  InvariantWatch watch(run.method.invariants(), columns);
+  std::vector<double> row(columns.size());
+  const auto observe = [&] {
+    run.method.series_values(row);
+    watch.observe(row);
+  };
+  observe();
+  while (run.method.time() < end) {
+    run.until(run.method.time() + end / 8);
+    observe();
+  }
+  std::map<std::string, Verdict> found;
+  for (const Verdict& verdict : watch.verdicts()) found.emplace(verdict.quantity, verdict);
+  return found;
+}
+
+// A drop a hundred times as dense gains momentum where the densities of its outer particles are blends.
+TEST(GfdVerdicts, MomentumFromNothingIsSaid) {
+  GfdRun even(drop_in_a_wind), heavy(drop_in_a_wind, {"phase.1.density=100", "phase.1.viscosity=0.02"});
+  const auto good = verdicts_of(even, 0.5), bad = verdicts_of(heavy, 0.5);
+  EXPECT_TRUE(good.at("momentum_x_change").pass()) << good.at("momentum_x_change").value;
+  EXPECT_FALSE(bad.at("momentum_x_change").pass()) << bad.at("momentum_x_change").value;
+  EXPECT_EQ(good.count("momentum_y_change"), 0U);  // walls push along y
+  EXPECT_TRUE(good.at("energy_growth").pass()) << good.at("energy_growth").value;
+}
+
+TEST(GfdVerdicts, AreLeftOutWhereSomethingActs) {
+  GfdRun driven(drop_in_a_wind, {"forces.body=[\"0.1\",\"0\"]"}), held(drop_in_a_wind, {"domain.top=\"no-slip\""}),
+      falling(drop_in_a_wind, {"fluid.gravity=1"});
+  EXPECT_EQ(verdicts_of(driven, 0.02).count("momentum_x_change"), 0U);
+  EXPECT_EQ(verdicts_of(driven, 0.02).count("energy_growth"), 0U);
+  EXPECT_EQ(verdicts_of(held, 0.02).count("momentum_x_change"), 0U);
+  EXPECT_EQ(verdicts_of(held, 0.02).count("energy_growth"), 1U);
+  EXPECT_EQ(verdicts_of(falling, 0.02).count("momentum_x_change"), 1U);
+}
+
+// The columns are the sums over the particles.
+TEST(GfdVerdicts, ColumnsOfTheMomentumAreThoseOfTheParticles) {
+  GfdRun run(ball_in_a_box);
+  const std::vector<SeriesColumn> columns = run.method.series_columns();
+  std::vector<double> row(columns.size());
+  run.method.series_values(row);
+  const gfd::Flow& flow = run.flow();
+  const double outside = static_cast<double>(flow.particles_of(0)) * flow.particles.volume;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (columns[c].name == "momentum_x") EXPECT_NEAR(row[c], 0.2 * outside, 1e-12);
+    if (columns[c].name == "momentum_y") EXPECT_EQ(row[c], 0);
+    if (columns[c].name == "momentum_z") EXPECT_NEAR(row[c], 0.1 * outside, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace spume::test
