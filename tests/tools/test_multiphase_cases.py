@@ -432,5 +432,26 @@ class RisingBubbleInATube(CaseTest):
         np.testing.assert_allclose(across**2 / 0.6**2 + height**2 / 0.4**2, 1, atol=0.15)
 
 
+class BubbleInAViscousLiquid(CaseTest):
+    def test_the_reynolds_number_is_held_against_the_row_of_the_run(self):
+        folder, module = self.run_of("bhaga_weber")
+        at = lattice([0, 0, -2], [1, 1, 5], 1 / 16)
+        inside = np.hypot(at[:, 0], at[:, 1]) ** 2 / 0.6**2 + (at[:, 2] - 1) ** 2 / 0.4**2 < 1
+        t = np.linspace(0, 4.5, 46)
+        write_table(folder / "series.csv", series_of(t, velocity_bubble_z=np.where(t < 3.45, 9, 0.36481 * 1.05)))
+        write_snapshots(folder / "fluid.vtkhdf", [0, 4.5], lambda t: at, {"phase": lambda p, t: inside})
+        measured = module.measure({"m848": Results(folder)})
+        self.assertAlmostEqual(measured["m848_reynolds"], 1.05 * 2.3895, delta=1e-3)
+        self.assertAlmostEqual(measured["m848_reynolds_error"], 0.05, delta=5e-4)
+        self.assertAlmostEqual(measured["m848_difference_from_experiment"], 1.05 * 2.3895 / 2.47 - 1, delta=5e-4)
+        self.assertAlmostEqual(measured["m848_growth"], 0)
+        self.assertAlmostEqual(measured["m848_width"], 1.2, delta=0.02)
+        self.assertAlmostEqual(measured["m848_height"], 0.8, delta=0.02)
+        text = (folder / "case.toml").read_text(encoding="utf-8")
+        (folder / "case.toml").write_text(text.replace("0.15268", "0.14"), encoding="utf-8")
+        with self.assertRaises(ValueError):  # no row has this liquid
+            module.measure({"m848": Results(folder)})
+
+
 if __name__ == "__main__":
     unittest.main()
