@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "spume/operators/image_values.hpp"
+#include "scalar_sums.hpp"
 #include "symmetric_matrix.hpp"
 
 namespace spume {
@@ -11,30 +11,20 @@ namespace {
 
 using simd::f32n;
 
-// The value of an image that exchanges nothing; its products with weights of zero are finite.
-constexpr float exchanges_nothing = 1e30F;
-
 template <int count>
 void pack_scalars(const SweepContext& context, float* records, std::size_t width, const ScalarSweepInput& in,
                   std::size_t first) {
-  const std::size_t n = context.list->particles();
   const auto dimensions = static_cast<std::size_t>(context.dimensions);
   const std::size_t last = std::min(first + count, in.values.size());
-  const auto write = [=, &in](std::size_t record, std::size_t i) {
-    float* out = records + record * width + dimensions;
-    for (std::size_t s = first; s < last; ++s) out[s - first] = static_cast<float>(in.values[s][i] - in.reference[s]);
-    for (std::size_t s = last; s < first + count; ++s) out[s - first] = 0;
-  };
-  parallel_for(n, [&](std::size_t i) { write(i, i); });
-  const Images& images = *context.images;
-  const std::int32_t* point = context.walls == nullptr ? nullptr : images.wall_point();
-  parallel_for(images.size(), [&](std::size_t k) {
-    const bool stands_for_wall = point != nullptr && point[k] >= 0;
-    if (stands_for_wall || images.paths()[static_cast<std::size_t>(images.path()[k])].reflections() > 0)
-      std::fill_n(records + (n + k) * width + dimensions, count, exchanges_nothing);
-    else
-      write(n + k, static_cast<std::size_t>(images.source()[k]));
-  });
+  for_each_scalar_record(
+      context,
+      [=, &in](std::size_t record, std::size_t i) {
+        float* out = records + record * width + dimensions;
+        for (std::size_t s = first; s < last; ++s)
+          out[s - first] = static_cast<float>(in.values[s][i] - in.reference[s]);
+        for (std::size_t s = last; s < first + count; ++s) out[s - first] = 0;
+      },
+      [=](std::size_t record) { std::fill_n(records + record * width + dimensions, count, exchanges_nothing); });
 }
 
 template <int dimensions, class Kernel, int count, bool shifted, bool varies>
@@ -67,17 +57,16 @@ struct ScalarRow {
       if (varies && in.eddy_viscosity != nullptr) share[s] = in.inverse_schmidt[first + s];
     }
     [[maybe_unused]] const Shift shift = shift_of(i, ratio);
-    std::array<f32n, count> rate{}, eddy_rate{}, along{}, low{}, high{};
-    f32n exchange{}, eddy_exchange{};
+    ScalarSums<count, shifted> sums;
+    [[maybe_unused]] std::array<f32n, count> eddy_rate{};
+    [[maybe_unused]] f32n eddy_exchange{};
     for_each_batch<dimensions, payload>(*context.list, records, i, scale.inverse_h / ratio, [&](const auto& b) {
-      // Differences from what exchanges nothing, and from the sentinel, count as none.
-      const auto counts = (b.payload[0] < simd::splat<f32n>(exchanges_nothing)) &
-                          (b.q < simd::splat<f32n>(static_cast<float>(Kernel::support)));
+      const auto counts = exchanges<Kernel>(b, b.payload[0]);
       f32n weight = (-own_volume * scale.gradient) * (own_normalisation + b.payload[count]) *
                     Kernel::f(varies ? b.q * ratio : b.q);
       if constexpr (varies) weight = weight * b.payload[count + 2];
       weight = counts ? weight : f32n{};
-      exchange = exchange + weight;
+      sums.exchange = sums.exchange + weight;
       [[maybe_unused]] f32n by_eddies{}, pull{};
       if constexpr (varies) {
         by_eddies = weight * (0.5F * (b.payload[count + 1] + own_eddy));
@@ -90,25 +79,19 @@ struct ScalarRow {
       }
       for (int s = 0; s < count; ++s) {
         const f32n difference = counts ? b.payload[s] - own_record[s] : f32n{};
-        rate[s] = rate[s] + weight * difference;
+        sums.add(s, weight, pull, difference);
         if constexpr (varies) eddy_rate[s] = eddy_rate[s] + by_eddies * difference;
-        if constexpr (shifted) {
-          along[s] = along[s] + pull * difference;
-          low[s] = simd::min(low[s], difference);
-          high[s] = simd::max(high[s], difference);
-        }
       }
     });
-    const float all = simd::sum(exchange), all_by_eddies = simd::sum(eddy_exchange);
-    float most = first == 0 ? 0 : out.exchange[i];
     for (std::size_t s = 0; s < scalars; ++s) {
-      out.rate[first + s][i] = diffusivity[s] * simd::sum(rate[s]) + share[s] * simd::sum(eddy_rate[s]);
-      most = std::max(most, diffusivity[s] * all + share[s] * all_by_eddies);
-      if constexpr (shifted) {
-        out.change[first + s][i] = std::clamp(-shift.gradient * simd::sum(along[s]), 0.5F * simd::least(low[s]),
-                                              0.5F * simd::largest(high[s]));
-      }
+      const auto slot = static_cast<int>(s);
+      out.rate[first + s][i] = diffusivity[s] * simd::sum(sums.rate[s]) + share[s] * simd::sum(eddy_rate[s]);
+      if constexpr (shifted) out.change[first + s][i] = sums.change(slot, -shift.gradient);
     }
+    if (out.exchange == nullptr) return;
+    const float all = simd::sum(sums.exchange), all_by_eddies = simd::sum(eddy_exchange);
+    float most = first == 0 ? 0 : out.exchange[i];
+    for (std::size_t s = 0; s < scalars; ++s) most = std::max(most, diffusivity[s] * all + share[s] * all_by_eddies);
     out.exchange[i] = most;
   }
 
