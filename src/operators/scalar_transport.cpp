@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "scalar_sums.hpp"
+#include "scalar_records.hpp"
 #include "symmetric_matrix.hpp"
 
 namespace spume {
@@ -57,16 +57,17 @@ struct ScalarRow {
       if (varies && in.eddy_viscosity != nullptr) share[s] = in.inverse_schmidt[first + s];
     }
     [[maybe_unused]] const Shift shift = shift_of(i, ratio);
-    ScalarSums<count, shifted> sums;
-    [[maybe_unused]] std::array<f32n, count> eddy_rate{};
-    [[maybe_unused]] f32n eddy_exchange{};
+    std::array<f32n, count> rate{}, eddy_rate{}, along{}, low{}, high{};
+    f32n exchange{}, eddy_exchange{};
     for_each_batch<dimensions, payload>(*context.list, records, i, scale.inverse_h / ratio, [&](const auto& b) {
-      const auto counts = exchanges<Kernel>(b, b.payload[0]);
+      // Differences from what exchanges nothing, and from the sentinel, count as none.
+      const auto counts = (b.payload[0] < simd::splat<f32n>(exchanges_nothing)) &
+                          (b.q < simd::splat<f32n>(static_cast<float>(Kernel::support)));
       f32n weight = (-own_volume * scale.gradient) * (own_normalisation + b.payload[count]) *
                     Kernel::f(varies ? b.q * ratio : b.q);
       if constexpr (varies) weight = weight * b.payload[count + 2];
       weight = counts ? weight : f32n{};
-      sums.exchange = sums.exchange + weight;
+      exchange = exchange + weight;
       [[maybe_unused]] f32n by_eddies{}, pull{};
       if constexpr (varies) {
         by_eddies = weight * (0.5F * (b.payload[count + 1] + own_eddy));
@@ -79,17 +80,23 @@ struct ScalarRow {
       }
       for (int s = 0; s < count; ++s) {
         const f32n difference = counts ? b.payload[s] - own_record[s] : f32n{};
-        sums.add(s, weight, pull, difference);
+        rate[s] = rate[s] + weight * difference;
         if constexpr (varies) eddy_rate[s] = eddy_rate[s] + by_eddies * difference;
+        if constexpr (shifted) {
+          along[s] = along[s] + pull * difference;
+          low[s] = simd::min(low[s], difference);
+          high[s] = simd::max(high[s], difference);
+        }
       }
     });
     for (std::size_t s = 0; s < scalars; ++s) {
-      const auto slot = static_cast<int>(s);
-      out.rate[first + s][i] = diffusivity[s] * simd::sum(sums.rate[s]) + share[s] * simd::sum(eddy_rate[s]);
-      if constexpr (shifted) out.change[first + s][i] = sums.change(slot, -shift.gradient);
+      out.rate[first + s][i] = diffusivity[s] * simd::sum(rate[s]) + share[s] * simd::sum(eddy_rate[s]);
+      if constexpr (shifted)
+        out.change[first + s][i] = std::clamp(-shift.gradient * simd::sum(along[s]), 0.5F * simd::least(low[s]),
+                                              0.5F * simd::largest(high[s]));
     }
     if (out.exchange == nullptr) return;
-    const float all = simd::sum(sums.exchange), all_by_eddies = simd::sum(eddy_exchange);
+    const float all = simd::sum(exchange), all_by_eddies = simd::sum(eddy_exchange);
     float most = first == 0 ? 0 : out.exchange[i];
     for (std::size_t s = 0; s < scalars; ++s) most = std::max(most, diffusivity[s] * all + share[s] * all_by_eddies);
     out.exchange[i] = most;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <stdexcept>
 
-#include "scalar_sums.hpp"
+#include "scalar_records.hpp"
 #include "spume/operators/scalar_transport.hpp"
 #include "spume/operators/sph_operators.hpp"
 #include "symmetric_matrix.hpp"
@@ -74,37 +75,41 @@ class Passenger {
         context,
         [=](std::size_t record, std::size_t i) { out[record * width] = static_cast<float>(values[i] - reference); },
         [=](std::size_t record) { out[record * width] = exchanges_nothing; });
+    out[context.list->points() * width] = exchanges_nothing;  // the sentinel
   }
 
-  Passenger(const RidingScalar* scalar, std::size_t i, const float* own_record) : own_(own_record[dimensions + slot]) {
+  [[gnu::always_inline]] Passenger(const RidingScalar* scalar, std::size_t i, const float* own_record)
+      : own_(simd::splat<f32n>(own_record[dimensions + slot])) {
     if (scalar->shift[0] == nullptr) return;
     // L is symmetric: (L sum g d f) . s = sum g f (d . L s).
     std::array<float, dimensions> s;
     for (int a = 0; a < dimensions; ++a) s[a] = scalar->shift[a][i];
-    along_ = symmetric_product<dimensions>(scalar->correction, i, s);
+    direction_ = symmetric_product<dimensions>(scalar->correction, i, s);
   }
-  // With 4 g in the place of g, and kappa in that of nu a.
+  // With 4 g in the place of g, and kappa in that of nu a. Differences from what exchanges nothing count as none.
   template <class Batch>
   [[gnu::always_inline]] void add(const Batch& b, float gradient_scale, f32n own_kappa) {
-    const auto counts = exchanges<Kernel>(b, b.payload[slot]);
     const f32n slope = (-4.0F * gradient_scale) * Kernel::f(b.q);
-    const f32n weight = slope * (own_kappa + b.payload[dimensions]);
-    sums_.exchange = sums_.exchange + (counts ? weight : f32n{});
     f32n pull{};
-    for (int a = 0; a < dimensions; ++a) pull = pull + b.d[a] * along_[a];
-    sums_.add(0, weight, pull * slope, counts ? b.payload[slot] - own_ : f32n{});
+    for (int a = 0; a < dimensions; ++a) pull = pull + b.d[a] * direction_[a];
+    const f32n value = b.payload[slot];
+    const f32n difference = value < simd::splat<f32n>(exchanges_nothing) ? value - own_ : f32n{};
+    const f32n slant = slope * difference;
+    rate_ = rate_ + (own_kappa + b.payload[dimensions]) * slant;
+    along_ = along_ + pull * slant;
+    low_ = simd::min(low_, difference);
+    high_ = simd::max(high_, difference);
   }
-  void store(const RidingScalar* scalar, std::size_t i) const {
-    scalar->rate[i] = static_cast<float>(scalar->diffusivity / (4 * scalar->viscosity)) * simd::sum(sums_.rate[0]);
-    scalar->exchange[i] =
-        static_cast<float>(scalar->largest_diffusivity / (4 * scalar->viscosity)) * simd::sum(sums_.exchange);
-    if (scalar->shift[0] != nullptr) scalar->change[i] = sums_.change(0, 0.25F);
+  [[gnu::always_inline]] void store(const RidingScalar* scalar, std::size_t i) const {
+    scalar->rate[i] = static_cast<float>(scalar->diffusivity / (4 * scalar->viscosity)) * simd::sum(rate_);
+    if (scalar->shift[0] != nullptr)
+      scalar->change[i] = std::clamp(0.25F * simd::sum(along_), 0.5F * simd::least(low_), 0.5F * simd::largest(high_));
   }
 
  private:
-  float own_;
-  std::array<float, dimensions> along_{};  // L s
-  ScalarSums<1, true> sums_;
+  f32n own_;
+  std::array<float, dimensions> direction_{};  // L s
+  f32n rate_{}, along_{}, low_{}, high_{};     // no arrays: GCC 12 keeps such sums in memory
 };
 
 // `records` as the viscous sweep has packed them.

@@ -161,16 +161,16 @@ TEST(ScalarTransport, AUniformValueStays) {
 // One scalar that rides on a viscous sweep of uniform viscosity.
 struct RiddenScalar {
   static constexpr double viscosity = 0.3;
-  static constexpr float diffusivity = 0.7F, largest_diffusivity = 1.1F;
+  static constexpr float diffusivity = 0.7F;
   Array<double> values;
-  Array<float> kappa, normalisation, none, rate, change, exchange;
+  Array<float> kappa, normalisation, none, rate, change;
   VectorArrays<double> velocity;
   VectorArrays<float> shift, acceleration;
 
   RiddenScalar(Arrangement& a, const Moments& moments, bool stress, bool shifted, bool held)
       : values(a.random(70)), velocity(random_velocity(a, 40)), acceleration(a.size(), a.dimensions()) {
     const std::size_t n = a.size();
-    for (auto* array : {&kappa, &normalisation, &none, &rate, &change, &exchange}) array->resize(n);
+    for (auto* array : {&kappa, &normalisation, &none, &rate, &change}) array->resize(n);
     none.fill(0);
     for (std::size_t i = 0; i < n; ++i) {
       kappa[i] = static_cast<float>(viscosity * (0.5 + uniform(i, 91)[0]));
@@ -186,12 +186,10 @@ struct RiddenScalar {
                               .reference = -1,
                               .viscosity = viscosity,
                               .diffusivity = diffusivity,
-                              .largest_diffusivity = largest_diffusivity,
                               .shift = shifted ? shift.read() : std::array<const float*, 3>{},
                               .correction = moments.read_correction(),
                               .rate = rate.data(),
-                              .change = change.data(),
-                              .exchange = exchange.data()};
+                              .change = change.data()};
     Array<float> share(n);
     share.fill(0.5);
     viscous_sweep(a.context, a.packed, velocity.read(), a.rule, kappa.data(), acceleration.write(), stress,
@@ -209,7 +207,7 @@ TEST(ScalarTransport, OneThatRidesOnTheViscousSweepAgreesWithTheSlowTwin) {
     for (const bool stress : {false, true})
       for (const bool shifted : {false, true}) {
         const RiddenScalar ridden(a, moments, stress, shifted, stress != shifted);
-        Comparison rates("rate"), changes("change"), exchanges("exchange");
+        Comparison rates("rate"), changes("change");
         for (std::size_t i = 0; i < a.size(); i += 7) {
           const double rounding = a.twin.tolerance(i) + 16 * std::ldexp(1.0, -24);
           auto rate = twin.rate(i, ridden.values, RiddenScalar::diffusivity, ridden.normalisation, ridden.none, 0);
@@ -217,10 +215,6 @@ TEST(ScalarTransport, OneThatRidesOnTheViscousSweepAgreesWithTheSlowTwin) {
               twin.rate(i, ridden.values, RiddenScalar::diffusivity, ridden.normalisation, ridden.none, 0, true);
           rate.magnitude += 4 * weights.magnitude;
           rates.add(ridden.rate[i], rate, rounding, i);
-          exchanges.add(ridden.exchange[i],
-                        twin.rate(i, ridden.values, RiddenScalar::largest_diffusivity, ridden.normalisation,
-                                  ridden.none, 0, true),
-                        rounding, i);
           if (!shifted) continue;
           reference::Vector way{};
           for (int axis = 0; axis < a.dimensions(); ++axis) way[axis] = ridden.shift[axis][i];

@@ -44,20 +44,18 @@ struct ScalarSweepOutput {
 void scalar_transport_sweep(const SweepContext& context, PackedNeighbours& packed, const ScalarSweepInput& in,
                             const ScalarSweepOutput& out);
 
-// The same of one scalar as part of a viscous sweep (sph_operators.hpp), whose records have room for it: the pairs, the
-// kernel and kappa_i = nu a_i of a viscosity that is the same everywhere are there already. Particles are of one size.
+// Rate and change of one scalar as part of a viscous sweep (sph_operators.hpp), whose records have room for it: the
+// pairs, the kernel and kappa_i = nu a_i of a viscosity that is the same everywhere are there already. Particles are of
+// one size, and lists reach no farther than their support.
 struct RidingScalar {
   const double* values = nullptr;  // c; null: none rides
   double reference = 0;
-  double viscosity = 0;    // nu
-  double diffusivity = 0;  // D
-  // Of which `exchange` tells, the largest D of all scalars.
-  double largest_diffusivity = 0;
+  double viscosity = 0;                 // nu
+  double diffusivity = 0;               // D
   std::array<const float*, 3> shift{};  // s; null: no shift
   std::array<const float*, 6> correction{};
   float* rate = nullptr;
   float* change = nullptr;  // read with a shift
-  float* exchange = nullptr;
 };
 
 }  // namespace spume

@@ -206,7 +206,7 @@ void Flow::find_wall_bends() {
                    wall_times.velocity, particles.scratch());
 }
 
-void Flow::find_viscous_acceleration() {
+void Flow::find_viscous_acceleration(double dt) {
   // The Morris Laplacian of a quadratic field is d / div r too small. Folding the factor into the coefficient keeps the
   // pair exchange symmetric; near a surface, where the kernel is cut, the factor of the bulk is used.
   const double nu = viscosity();
@@ -225,7 +225,7 @@ void Flow::find_viscous_acceleration() {
   ScratchArray<float> share(particles.scratch(), features.held_by_bodies ? size() : 0);
   if (features.held_by_bodies) find_held_by_bodies(share.data());
   particles.scratch().lease(viscous_acceleration, dimensions, size());
-  const RidingScalar scalar = scalar_beside_viscosity();
+  const RidingScalar scalar = scalar_beside_viscosity(dt);
   viscous_sweep(arrangement.context, arrangement.packed, started ? read(advecting_velocity) : read(particles.velocity),
                 wall_bends != nullptr ? wall_bends->rule() : boundary.velocity_rule(), diffusivity.data(),
                 write(viscous_acceleration), features.viscous_stress,
@@ -425,9 +425,12 @@ void Flow::accept(double dt) {
 }
 
 // Scalars see the positions and the shift that viscosity sees.
-RidingScalar Flow::scalar_beside_viscosity() {
+RidingScalar Flow::scalar_beside_viscosity(double dt) {
   if (!features.scalars || !started || features.eddy_viscosity || sizes.variable) return {};
-  return solutes.scalars->ride(viscosity(), shift_of_scalars(), moments.read_correction());
+  return solutes.scalars->ride(dt, {.viscosity = viscosity(),
+                                    .laplacian_diagonal = moments.laplacian_diagonal,
+                                    .shift = shift_of_scalars(),
+                                    .correction = moments.read_correction()});
 }
 
 FloatVectorField Flow::shift_of_scalars() const {

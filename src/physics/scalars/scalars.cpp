@@ -37,7 +37,7 @@ void set_values(const ParticleStore& particles, const Expression& expression, do
 
 // The value that is better than all others, in eight lanes: a comparison waits for the one before.
 template <class T, class Better>
-double extreme(const Array<T>& values, std::size_t n, Better better) {
+double extreme(const T* values, std::size_t n, Better better) {
   constexpr std::size_t lanes = 8;
   const auto choose = [better](T a, T b) { return better(b, a) ? b : a; };
   return parallel_reduce(
@@ -56,7 +56,7 @@ double extreme(const Array<T>& values, std::size_t n, Better better) {
 }
 
 double least(const Array<double>& values, std::size_t n) {
-  return extreme(values, n, std::less<>());
+  return extreme(values.data(), n, std::less<>());
 }
 
 }  // namespace
@@ -206,7 +206,6 @@ double Scalars::amount(std::size_t scalar) const {
 void Scalars::lease(std::size_t scalars) {
   for (auto* arrays : {&rate_, &change_})
     for (std::size_t s = 0; s < scalars; ++s) particles_.scratch().lease((*arrays)[s], particles_.size());
-  particles_.scratch().lease(exchange_, particles_.size());
 }
 
 void Scalars::release() {
@@ -215,30 +214,35 @@ void Scalars::release() {
   for (Array<float>* array : {&exchange_, &normalisation_}) particles_.scratch().release(*array);
 }
 
-RidingScalar Scalars::ride(double viscosity, const FloatVectorField& shift,
-                           const std::array<const float*, 6>& correction) {
-  ridden_ = 0;
+// dt sum_j w_ij is at most D dt times the largest sum_j 2 g and a.
+bool Scalars::ride_pays(double dt, const Carriage& carriage) const {
   const std::size_t left_over = size() % scalars_of_a_sweep;
-  const bool moved = shift[0] != nullptr || diffuse();
-  if (particles_.size() == 0 || !moved || (left_over != 1 && left_over != 2)) return {};
-  ridden_ = 1;
-  ridden_shift_ = shift[0] != nullptr;
-  lease(ridden_);
-  double largest = 0;
-  for (const ScalarOption& scalar : options_.scalars) largest = std::max(largest, scalar.diffusivity);
-  return {.values = fields_[0]->data(),
-          .reference = least(*fields_[0], particles_.size()),
-          .viscosity = viscosity,
-          .diffusivity = option(0).diffusivity,
-          .largest_diffusivity = largest,
-          .shift = shift[0] != nullptr ? read(shift) : std::array<const float*, 3>{},
-          .correction = correction,
-          .rate = rate_[0].data(),
-          .change = change_[0].data(),
-          .exchange = exchange_.data()};
+  if (particles_.size() == 0 || (left_over != 1 && left_over != 2) || wall_has_value()) return false;
+  if (carriage.shift[0] == nullptr && !diffuse()) return false;
+  double diffusivity = 0;
+  for (const ScalarOption& scalar : options_.scalars) diffusivity = std::max(diffusivity, scalar.diffusivity);
+  return dt * diffusivity * particles_.dimensions / (least_divergence_of_position * bulk_) *
+             extreme(carriage.laplacian_diagonal.data(), particles_.size(), std::greater<>()) <=
+         largest_exchange;
 }
 
-// The value, its rate and the exchange; the shift, its change and the symmetric L.
+RidingScalar Scalars::ride(double dt, const Carriage& carriage) {
+  ridden_ = 0;
+  if (!ride_pays(dt, carriage)) return {};
+  ridden_ = 1;
+  ridden_shift_ = carriage.shift[0] != nullptr;
+  lease(ridden_);
+  return {.values = fields_[0]->data(),
+          .reference = least(*fields_[0], particles_.size()),
+          .viscosity = carriage.viscosity,
+          .diffusivity = option(0).diffusivity,
+          .shift = ridden_shift_ ? read(carriage.shift) : std::array<const float*, 3>{},
+          .correction = carriage.correction,
+          .rate = rate_[0].data(),
+          .change = change_[0].data()};
+}
+
+// The value, its rate and sum_j 2 g; the shift, its change and the symmetric L.
 double Scalars::ridden_bytes() const {
   const double d = particles_.dimensions, shifted = ridden_shift_ ? 4 * (d + 1 + d * (d + 1) / 2) : 0;
   return static_cast<double>(ridden_ * particles_.size()) * (8 + 4 + 4 + shifted);
@@ -254,10 +258,11 @@ void Scalars::find_normalisation(const Carrier& carrier) {
   });
 }
 
-// Of the scalars from `first` on: what one that rode found of the exchange holds for all.
+// Of the scalars from `first` on. Where one rode the exchange is known to be small.
 void Scalars::sweep(std::size_t first, const Carrier& carrier, bool shifted) {
   if (first == size()) return;
   find_normalisation(carrier);
+  if (first == 0) particles_.scratch().lease(exchange_, particles_.size());
   for (std::size_t s = first; s < size(); ++s) {
     packed_.values[s] = fields_[s]->data();
     packed_.reference[s] = least(*fields_[s], particles_.size());
@@ -282,10 +287,13 @@ void Scalars::sweep(std::size_t first, const Carrier& carrier, bool shifted) {
        .exchange = first == 0 ? exchange_.data() : nullptr});
 }
 
+bool Scalars::wall_has_value() const {
+  return std::any_of(walls_.walls.begin(), walls_.walls.end(),
+                     [](const ScalarWall& wall) { return wall.value != nullptr; });
+}
+
 double Scalars::largest_exchange_of(const Carrier& carrier) const {
-  const bool given = std::any_of(walls_.walls.begin(), walls_.walls.end(),
-                                 [](const ScalarWall& wall) { return wall.value != nullptr; });
-  if (!given) return extreme(exchange_, particles_.size(), std::greater<>());
+  if (!wall_has_value()) return extreme(exchange_.data(), particles_.size(), std::greater<>());
   return parallel_max(particles_.size(), 0.0, [&](std::size_t i) {
     double most = 0;
     for (const ScalarWall& wall : walls_.walls)
@@ -349,8 +357,10 @@ std::int64_t Scalars::transport(double dt, const Carrier& carrier) {
   if (particles_.size() == 0 || !(shifted || carrier.eddy_viscosity != nullptr || diffuse())) return 0;
   lease(size());
   sweep(ridden, carrier, shifted);
-  substeps_ = std::max<std::int64_t>(
-      1, static_cast<std::int64_t>(std::ceil(dt * largest_exchange_of(carrier) / largest_exchange)));
+  substeps_ = 1;
+  if (ridden == 0)
+    substeps_ = std::max<std::int64_t>(
+        1, static_cast<std::int64_t>(std::ceil(dt * largest_exchange_of(carrier) / largest_exchange)));
   const double part = dt / static_cast<double>(substeps_);
   for (std::int64_t k = 0; k < substeps_; ++k) {
     if (k > 0) sweep(0, carrier, false);

@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,11 +47,17 @@ class Scalars {
   };
   // Whether some scalar diffuses in a liquid without eddies, or a wall gives some.
   bool diffuse() const;
-  // Lets the first scalar ride on the viscous sweep of a step where that leaves one sweep less for the others: what is
-  // found there replaces what transport() of this step would find, as no value changes until then. The viscosity is the
-  // same everywhere and the particles are of one size. A step that is refused in between is begun again with another
-  // sweep.
-  RidingScalar ride(double viscosity, const FloatVectorField& shift, const std::array<const float*, 6>& correction);
+  // Lets the first scalar ride on the viscous sweep of a step, where that spares the others a sweep or makes it one of
+  // a single scalar, diffusion needs no parts of the step `dt`, and no wall has a value. What is found there replaces
+  // what transport() of this step would find, as no value changes until then. A step that is refused in between is
+  // begun again with another sweep.
+  struct Carriage {
+    double viscosity = 0;                       // the same everywhere; particles are of one size
+    std::span<const float> laplacian_diagonal;  // sum_j 2 g
+    FloatVectorField shift{};                   // as of the carrier
+    std::array<const float*, 6> correction{};
+  };
+  RidingScalar ride(double dt, const Carriage& carriage);
   double ridden_bytes() const;  // that it streams beside the records of that sweep
   // Diffusion over dt, what walls give and the change by the shift, at the positions of the lists. Returns the number
   // of sweeps, without that on which one rode.
@@ -97,6 +104,8 @@ class Scalars {
   void sweep(std::size_t first, const Carrier& carrier, bool shifted);
   void find_normalisation(const Carrier& carrier);
   double largest_exchange_of(const Carrier& carrier) const;
+  bool wall_has_value() const;
+  bool ride_pays(double dt, const Carriage& carriage) const;
   Sums sums_of(std::size_t scalar, const float* interior, bool shifted) const;
   void apply(double dt, const float* interior, bool shifted);
   double distance_from(const ScalarWall& wall, const Carrier& carrier, std::size_t i) const;
