@@ -2,6 +2,7 @@
 #include "spume/physics/scalars/scalars.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
