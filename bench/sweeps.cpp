@@ -7,6 +7,7 @@
 // bytes of input and output.
 #include "machine.hpp"
 #include "particle_cube.hpp"
+#include "spume/operators/scalar_transport.hpp"
 #include "spume/operators/sph_operators.hpp"
 #include "spume/operators/surface_layers.hpp"
 
@@ -153,6 +154,63 @@ void viscous_stress(benchmark::State& state) {
   });
 }
 
+void viscous_laplacian(benchmark::State& state) {
+  Sweeps sweeps(state);
+  sweeps.run(state, {10 + 5 + 6 + 6, 2, 24 + 4 + 12}, [&] {
+    viscous_sweep(sweeps.context, sweeps.packed, sweeps.velocities(), sweeps.rule, sweeps.scalar[0].data(),
+                  Sweeps::write(sweeps.out));
+  });
+}
+
+// Of the scalar: a comparison, a difference, its product with the slope, rate 2, along the shift 7, extremes 2.
+constexpr double of_scalar = 14;
+
+void viscous_laplacian_with_scalar(benchmark::State& state) {
+  Sweeps sweeps(state);
+  const RidingScalar scalar{.values = sweeps.potential.data(),
+                            .reference = -1,
+                            .viscosity = 1,
+                            .diffusivity = 1,
+                            .shift = Sweeps::read(sweeps.shift),
+                            .correction = sweeps.corrections(),
+                            .rate = sweeps.scalar[2].data(),
+                            .change = sweeps.scalar[3].data()};
+  sweeps.run(state, {10 + 5 + 6 + 6 + of_scalar, 2, 24 + 4 + 12 + 8 + 12 + 24 + 8}, [&] {
+    viscous_sweep(sweeps.context, sweeps.packed, sweeps.velocities(), sweeps.rule, sweeps.scalar[0].data(),
+                  Sweeps::write(sweeps.out), false, {}, &scalar);
+  });
+}
+
+// Scalars in a sweep of their own.
+template <int count>
+void scalars_alone(benchmark::State& state) {
+  Sweeps sweeps(state);
+  const std::size_t n = sweeps.particles.n;
+  std::vector<Array<float>> rate, change;
+  for (int s = 0; s < count; ++s) {
+    rate.emplace_back(n);
+    change.emplace_back(n);
+  }
+  std::vector<const double*> values(count, sweeps.potential.data());
+  const std::vector<double> reference(count, -1.0);
+  const std::vector<float> diffusivity(count, 1.0F), inverse_schmidt(count, 1.0F);
+  std::vector<float*> rates, changes;
+  for (std::size_t s = 0; s < count; ++s) {
+    rates.push_back(rate[s].data());
+    changes.push_back(change[s].data());
+  }
+  const ScalarSweepInput in{.values = values,
+                            .reference = reference,
+                            .diffusivity = diffusivity,
+                            .normalisation = sweeps.scalar[0].data(),
+                            .inverse_schmidt = inverse_schmidt,
+                            .shift = Sweeps::read(sweeps.shift),
+                            .correction = sweeps.corrections()};
+  const ScalarSweepOutput out{.rate = rates, .change = changes, .exchange = sweeps.scalar[4].data()};
+  sweeps.run(state, {10 + 5 + 2 + 2 + 1 + 6 + 7 * count, 2, 4 + 12 + 24 + 4 + 16.0 * count},
+             [&] { scalar_transport_sweep(sweeps.context, sweeps.packed, in, out); });
+}
+
 void velocity_divergence(benchmark::State& state) {
   Sweeps sweeps(state);
   sweeps.run(state, {10 + 5 + 3 + 3 + 18 + 3, 2, 24 + 8 + 24 + 12}, [&] {
@@ -248,6 +306,11 @@ BENCHMARK(geometry_sums)->Apply(ParticleCube::sizes);
 BENCHMARK(velocity_gradient)->Apply(ParticleCube::sizes);
 BENCHMARK(shift_curvature)->Apply(ParticleCube::sizes);
 BENCHMARK(viscous_stress)->Apply(ParticleCube::sizes);
+BENCHMARK(viscous_laplacian)->Apply(ParticleCube::sizes);
+BENCHMARK(viscous_laplacian_with_scalar)->Apply(ParticleCube::sizes);
+BENCHMARK(scalars_alone<1>)->Apply(ParticleCube::sizes);
+BENCHMARK(scalars_alone<2>)->Apply(ParticleCube::sizes);
+BENCHMARK(scalars_alone<4>)->Apply(ParticleCube::sizes);
 BENCHMARK(velocity_divergence)->Apply(ParticleCube::sizes);
 BENCHMARK(pressure_gradient)->Apply(ParticleCube::sizes);
 BENCHMARK(filter_of_vector)->Apply(ParticleCube::sizes);

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "spume/operators/image_values.hpp"
+#include "scalar_records.hpp"
 #include "symmetric_matrix.hpp"
 
 namespace spume {
@@ -11,30 +11,20 @@ namespace {
 
 using simd::f32n;
 
-// The value of an image that exchanges nothing; its products with weights of zero are finite.
-constexpr float exchanges_nothing = 1e30F;
-
 template <int count>
 void pack_scalars(const SweepContext& context, float* records, std::size_t width, const ScalarSweepInput& in,
                   std::size_t first) {
-  const std::size_t n = context.list->particles();
   const auto dimensions = static_cast<std::size_t>(context.dimensions);
   const std::size_t last = std::min(first + count, in.values.size());
-  const auto write = [=, &in](std::size_t record, std::size_t i) {
-    float* out = records + record * width + dimensions;
-    for (std::size_t s = first; s < last; ++s) out[s - first] = static_cast<float>(in.values[s][i] - in.reference[s]);
-    for (std::size_t s = last; s < first + count; ++s) out[s - first] = 0;
-  };
-  parallel_for(n, [&](std::size_t i) { write(i, i); });
-  const Images& images = *context.images;
-  const std::int32_t* point = context.walls == nullptr ? nullptr : images.wall_point();
-  parallel_for(images.size(), [&](std::size_t k) {
-    const bool stands_for_wall = point != nullptr && point[k] >= 0;
-    if (stands_for_wall || images.paths()[static_cast<std::size_t>(images.path()[k])].reflections() > 0)
-      std::fill_n(records + (n + k) * width + dimensions, count, exchanges_nothing);
-    else
-      write(n + k, static_cast<std::size_t>(images.source()[k]));
-  });
+  for_each_scalar_record(
+      context,
+      [=, &in](std::size_t record, std::size_t i) {
+        float* out = records + record * width + dimensions;
+        for (std::size_t s = first; s < last; ++s)
+          out[s - first] = static_cast<float>(in.values[s][i] - in.reference[s]);
+        for (std::size_t s = last; s < first + count; ++s) out[s - first] = 0;
+      },
+      [=](std::size_t record) { std::fill_n(records + record * width + dimensions, count, exchanges_nothing); });
 }
 
 template <int dimensions, class Kernel, int count, bool shifted, bool varies>
@@ -99,16 +89,16 @@ struct ScalarRow {
         }
       }
     });
-    const float all = simd::sum(exchange), all_by_eddies = simd::sum(eddy_exchange);
-    float most = first == 0 ? 0 : out.exchange[i];
     for (std::size_t s = 0; s < scalars; ++s) {
       out.rate[first + s][i] = diffusivity[s] * simd::sum(rate[s]) + share[s] * simd::sum(eddy_rate[s]);
-      most = std::max(most, diffusivity[s] * all + share[s] * all_by_eddies);
-      if constexpr (shifted) {
+      if constexpr (shifted)
         out.change[first + s][i] = std::clamp(-shift.gradient * simd::sum(along[s]), 0.5F * simd::least(low[s]),
                                               0.5F * simd::largest(high[s]));
-      }
     }
+    if (out.exchange == nullptr) return;
+    const float all = simd::sum(exchange), all_by_eddies = simd::sum(eddy_exchange);
+    float most = first == 0 ? 0 : out.exchange[i];
+    for (std::size_t s = 0; s < scalars; ++s) most = std::max(most, diffusivity[s] * all + share[s] * all_by_eddies);
     out.exchange[i] = most;
   }
 

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <stdexcept>
+
+#include "scalar_records.hpp"
+#include "spume/operators/scalar_transport.hpp"
 #include "spume/operators/sph_operators.hpp"
 #include "symmetric_matrix.hpp"
 
@@ -45,35 +50,77 @@ template <int dimensions, bool stress, class Batch>
   }
 }
 
+// Nothing rides on the sweep.
+struct NoPassenger {
+  static constexpr int floats = 0;
+  static void pack(const SweepContext&, float*, std::size_t, const RidingScalar*) {}
+  NoPassenger(const RidingScalar*, std::size_t, const float*) {}
+  template <class Batch>
+  [[gnu::always_inline]] void add(const Batch&, float, f32n) {}
+  void store(const RidingScalar*, std::size_t) const {}
+};
+
+// A scalar does, in a float that fills the records up to eight.
+template <int dimensions, class Kernel>
+class Passenger {
+ public:
+  static constexpr int floats = 1;
+  static constexpr int slot = dimensions + 1;  // behind the velocity and kappa
+
+  static void pack(const SweepContext& context, float* records, std::size_t width, const RidingScalar* scalar) {
+    float* out = records + dimensions + slot;
+    const double* const values = scalar->values;
+    const double reference = scalar->reference;
+    for_each_scalar_record(
+        context,
+        [=](std::size_t record, std::size_t i) { out[record * width] = static_cast<float>(values[i] - reference); },
+        [=](std::size_t record) { out[record * width] = exchanges_nothing; });
+    out[context.list->points() * width] = exchanges_nothing;  // the sentinel
+  }
+
+  [[gnu::always_inline]] Passenger(const RidingScalar* scalar, std::size_t i, const float* own_record)
+      : own_(simd::splat<f32n>(own_record[dimensions + slot])) {
+    if (scalar->shift[0] == nullptr) return;
+    // L is symmetric: (L sum g d f) . s = sum g f (d . L s).
+    std::array<float, dimensions> s;
+    for (int a = 0; a < dimensions; ++a) s[a] = scalar->shift[a][i];
+    direction_ = symmetric_product<dimensions>(scalar->correction, i, s);
+  }
+  // With 4 g in the place of g, and kappa in that of nu a. Differences from what exchanges nothing count as none.
+  template <class Batch>
+  [[gnu::always_inline]] void add(const Batch& b, float gradient_scale, f32n own_kappa) {
+    const f32n slope = (-4.0F * gradient_scale) * Kernel::f(b.q);
+    f32n pull{};
+    for (int a = 0; a < dimensions; ++a) pull = pull + b.d[a] * direction_[a];
+    const f32n value = b.payload[slot];
+    const f32n difference = value < simd::splat<f32n>(exchanges_nothing) ? value - own_ : f32n{};
+    const f32n slant = slope * difference;
+    rate_ = rate_ + (own_kappa + b.payload[dimensions]) * slant;
+    along_ = along_ + pull * slant;
+    low_ = simd::min(low_, difference);
+    high_ = simd::max(high_, difference);
+  }
+  [[gnu::always_inline]] void store(const RidingScalar* scalar, std::size_t i) const {
+    scalar->rate[i] = static_cast<float>(scalar->diffusivity / (4 * scalar->viscosity)) * simd::sum(rate_);
+    if (scalar->shift[0] != nullptr)
+      scalar->change[i] = std::clamp(0.25F * simd::sum(along_), 0.5F * simd::least(low_), 0.5F * simd::largest(high_));
+  }
+
+ private:
+  f32n own_;
+  std::array<float, dimensions> direction_{};  // L s
+  f32n rate_{}, along_{}, low_{}, high_{};     // no arrays: GCC 12 keeps such sums in memory
+};
+
+// `records` as the viscous sweep has packed them.
 template <int dimensions, class Kernel, bool stress>
-void viscous(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
-             const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out,
-             const LinearPart& taken_off) {
+void take_off_linear_part(const SweepContext& context, const float* records, const float* kappa,
+                          const std::array<float*, 3>& out, const LinearPart& taken_off) {
   const NeighbourList& list = *context.list;
   constexpr int payload = dimensions + 1 + volume_slots<Kernel>;
-  float* records = packed.prepare(context, payload);
   constexpr int width = record_width(dimensions, payload);
-  pack_velocity(context, records, width, 0, velocity, rule);
-  pack_coefficient(context, records, width, dimensions, kappa);
-  pack_own_volumes<Kernel>(context, records, width, dimensions + 1);
   const KernelScale<dimensions, Kernel> common(context);
   const auto tiny = static_cast<float>(coincident * context.smoothing_length * context.smoothing_length);
-
-  sweep(list.particles(), [&](std::size_t i) {
-    const KernelScale<dimensions, Kernel> scale = common.at(context, i);
-    std::array<f32n, dimensions> own{}, sum{};
-    for (int a = 0; a < dimensions; ++a) own[a] = simd::splat<f32n>(records[i * width + dimensions + a]);
-    const f32n own_kappa = simd::splat<f32n>(kappa[i]);
-    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      std::array<f32n, dimensions> difference;
-      for (int a = 0; a < dimensions; ++a) difference[a] = b.payload[a] - own[a];
-      add_pair<dimensions, stress>(b, pair_weight<dimensions, Kernel>(b, scale.gradient, own_kappa), difference, tiny,
-                                   sum);
-    });
-    for (int a = 0; a < dimensions; ++a) out[a][i] = simd::sum(sum[a]);
-  });
-  if (taken_off.share == nullptr) return;
-
   sweep(list.particles(), [&](std::size_t i) {
     if (taken_off.share[i] == 0) return;
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
@@ -101,16 +148,63 @@ void viscous(const SweepContext& context, PackedNeighbours& packed, const std::a
   });
 }
 
+template <int dimensions, class Kernel, bool stress, class Beside>
+void viscous(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
+             const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out,
+             const LinearPart& taken_off, const RidingScalar* scalar) {
+  const NeighbourList& list = *context.list;
+  constexpr int alone = dimensions + 1 + volume_slots<Kernel>, payload = alone + Beside::floats;
+  constexpr int width = record_width(dimensions, payload);
+  static_assert(width == record_width(dimensions, alone));
+  float* records = packed.prepare(context, payload);
+  pack_velocity(context, records, width, 0, velocity, rule);
+  pack_coefficient(context, records, width, dimensions, kappa);
+  pack_own_volumes<Kernel>(context, records, width, dimensions + 1);
+  Beside::pack(context, records, width, scalar);
+  const KernelScale<dimensions, Kernel> common(context);
+  const auto tiny = static_cast<float>(coincident * context.smoothing_length * context.smoothing_length);
+
+  sweep(list.particles(), [&](std::size_t i) {
+    const KernelScale<dimensions, Kernel> scale = common.at(context, i);
+    std::array<f32n, dimensions> own{}, sum{};
+    for (int a = 0; a < dimensions; ++a) own[a] = simd::splat<f32n>(records[i * width + dimensions + a]);
+    const f32n own_kappa = simd::splat<f32n>(kappa[i]);
+    Beside beside(scalar, i, records + i * width);
+    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
+      std::array<f32n, dimensions> difference;
+      for (int a = 0; a < dimensions; ++a) difference[a] = b.payload[a] - own[a];
+      add_pair<dimensions, stress>(b, pair_weight<dimensions, Kernel>(b, scale.gradient, own_kappa), difference, tiny,
+                                   sum);
+      beside.add(b, scale.gradient, own_kappa);
+    });
+    for (int a = 0; a < dimensions; ++a) out[a][i] = simd::sum(sum[a]);
+    beside.store(scalar, i);
+  });
+  if (taken_off.share != nullptr)
+    take_off_linear_part<dimensions, Kernel, stress>(context, records, kappa, out, taken_off);
+}
+
 }  // namespace
 
 void viscous_sweep(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
                    const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out, bool stress,
-                   const LinearPart& taken_off) {
+                   const LinearPart& taken_off, const RidingScalar* scalar) {
+  const bool rides = scalar != nullptr && scalar->values != nullptr;
+  if (rides && context.length_ratio != nullptr)
+    throw std::logic_error("no scalar rides on a viscous sweep of particles that differ in size");
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    if (stress)
-      viscous<dimensions, Kernel, true>(context, packed, velocity, rule, kappa, out, taken_off);
-    else
-      viscous<dimensions, Kernel, false>(context, packed, velocity, rule, kappa, out, taken_off);
+    const auto run = [&]<bool stress_form, class Beside>() {
+      viscous<dimensions, Kernel, stress_form, Beside>(context, packed, velocity, rule, kappa, out, taken_off, scalar);
+    };
+    const auto with = [&]<class Beside>() {
+      if (stress)
+        run.template operator()<true, Beside>();
+      else
+        run.template operator()<false, Beside>();
+    };
+    if constexpr (!is_variable_h<Kernel>)
+      if (rides) return with.template operator()<Passenger<dimensions, Kernel>>();
+    with.template operator()<NoPassenger>();
   });
 }
 

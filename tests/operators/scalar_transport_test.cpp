@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <stdexcept>
 
 #include "operators/sph_arrangement.hpp"
 #include "spume/operators/scalar_transport.hpp"
@@ -155,6 +156,100 @@ TEST(ScalarTransport, AUniformValueStays) {
       EXPECT_EQ(change[i], 0);
     }
   }
+}
+
+// One scalar that rides on a viscous sweep of uniform viscosity.
+struct RiddenScalar {
+  static constexpr double viscosity = 0.3;
+  static constexpr float diffusivity = 0.7F;
+  Array<double> values;
+  Array<float> kappa, normalisation, none, rate, change;
+  VectorArrays<double> velocity;
+  VectorArrays<float> shift, acceleration;
+
+  RiddenScalar(Arrangement& a, const Moments& moments, bool stress, bool shifted, bool held)
+      : values(a.random(70)), velocity(random_velocity(a, 40)), acceleration(a.size(), a.dimensions()) {
+    const std::size_t n = a.size();
+    for (auto* array : {&kappa, &normalisation, &none, &rate, &change}) array->resize(n);
+    none.fill(0);
+    for (std::size_t i = 0; i < n; ++i) {
+      kappa[i] = static_cast<float>(viscosity * (0.5 + uniform(i, 91)[0]));
+      normalisation[i] = static_cast<float>(kappa[i] / viscosity);
+    }
+    if (shifted)
+      for (int axis = 0; axis < a.dimensions(); ++axis) {
+        auto way = a.random(60 + static_cast<std::uint32_t>(axis));
+        for (double& x : way) x *= 0.1 * a.setup.spacing;
+        shift[axis] = to_float(way);
+      }
+    const RidingScalar scalar{.values = values.data(),
+                              .reference = -1,
+                              .viscosity = viscosity,
+                              .diffusivity = diffusivity,
+                              .shift = shifted ? shift.read() : std::array<const float*, 3>{},
+                              .correction = moments.read_correction(),
+                              .rate = rate.data(),
+                              .change = change.data()};
+    Array<float> share(n);
+    share.fill(0.5);
+    viscous_sweep(a.context, a.packed, velocity.read(), a.rule, kappa.data(), acceleration.write(), stress,
+                  {held ? share.data() : nullptr, moments.read_correction()}, &scalar);
+  }
+};
+
+// To the tolerance of the test above: kappa stands for nu a, and D / nu is rounded once.
+TEST(ScalarTransport, OneThatRidesOnTheViscousSweepAgreesWithTheSlowTwin) {
+  for (Arrangement& a : all_arrangements()) {
+    if (a.setup.sizes) continue;
+    SCOPED_TRACE(a.setup.name);
+    const Moments moments(a);
+    const reference::ScalarTransport twin{a.twin, a.context.smoothing_length, a.context.volume};
+    for (const bool stress : {false, true})
+      for (const bool shifted : {false, true}) {
+        const RiddenScalar ridden(a, moments, stress, shifted, stress != shifted);
+        Comparison rates("rate"), changes("change");
+        for (std::size_t i = 0; i < a.size(); i += 7) {
+          const double rounding = a.twin.tolerance(i) + 16 * std::ldexp(1.0, -24);
+          auto rate = twin.rate(i, ridden.values, RiddenScalar::diffusivity, ridden.normalisation, ridden.none, 0);
+          const auto weights =
+              twin.rate(i, ridden.values, RiddenScalar::diffusivity, ridden.normalisation, ridden.none, 0, true);
+          rate.magnitude += 4 * weights.magnitude;
+          rates.add(ridden.rate[i], rate, rounding, i);
+          if (!shifted) continue;
+          reference::Vector way{};
+          for (int axis = 0; axis < a.dimensions(); ++axis) way[axis] = ridden.shift[axis][i];
+          auto change = twin.change(i, ridden.values, way, moments.correction_of(i, a.dimensions()));
+          change.magnitude *= 4;
+          changes.add(ridden.change[i], change, rounding, i);
+        }
+      }
+  }
+}
+
+TEST(ScalarTransport, ARidingScalarChangesNoBitOfTheViscousAcceleration) {
+  for (Arrangement& a : all_arrangements()) {
+    if (a.setup.sizes) continue;
+    SCOPED_TRACE(a.setup.name);
+    const Moments moments(a);
+    for (const bool stress : {false, true})
+      for (const bool held : {false, true}) {
+        const RiddenScalar ridden(a, moments, stress, true, held);
+        Array<float> share(a.size());
+        share.fill(0.5);
+        VectorArrays<float> alone(a.size(), a.dimensions());
+        viscous_sweep(a.context, a.packed, ridden.velocity.read(), a.rule, ridden.kappa.data(), alone.write(), stress,
+                      {held ? share.data() : nullptr, moments.read_correction()});
+        for (int axis = 0; axis < a.dimensions(); ++axis)
+          EXPECT_TRUE(std::equal(alone[axis].begin(), alone[axis].end(), ridden.acceleration[axis].begin()));
+      }
+  }
+}
+
+TEST(ScalarTransport, NoScalarRidesBesideParticlesOfDifferentSizes) {
+  Arrangement& a = all_arrangements().back();
+  ASSERT_TRUE(a.setup.sizes);
+  const Moments moments(a);
+  EXPECT_THROW(RiddenScalar(a, moments, false, false, false), std::logic_error);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ void add_solute_stages(const ParticleStages<Flow>& stages, Flow& f, const Solute
   const Arrays scalars = values(f.solutes.count()), oxygen = values(has.oxygen ? 1 : 0),
                sludge = values(has.biokinetics ? std::size_t{biokinetics::asm1::components} : 0);
   stages.add(
-      step, "scalars", has.scalars, has.scalars ? "sources, diffusion, and their change by the shift" : "no [[scalar]]",
+      step, "scalars", has.scalars, has.scalars ? "diffusion, their change by the shift, and sources" : "no [[scalar]]",
       [&f](StageRun& run) {
         run.pairs = f.arrangement.pair_count() * static_cast<double>(f.transport_scalars(run.dt));
       },

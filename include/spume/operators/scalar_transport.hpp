@@ -38,10 +38,24 @@ struct ScalarSweepInput {
 struct ScalarSweepOutput {
   std::span<float* const> rate;    // dc/dt per scalar and particle
   std::span<float* const> change;  // by the shift; read with one
-  float* exchange = nullptr;       // the largest sum_j 2 g v_i v_j k_ij of all scalars, 1/time
+  float* exchange = nullptr;       // the largest sum_j 2 g v_i v_j k_ij of all scalars, 1/time; null: not wanted
 };
 
 void scalar_transport_sweep(const SweepContext& context, PackedNeighbours& packed, const ScalarSweepInput& in,
                             const ScalarSweepOutput& out);
+
+// Rate and change of one scalar as part of a viscous sweep (sph_operators.hpp), whose records have room for it: the
+// pairs, the kernel and kappa_i = nu a_i of a viscosity that is the same everywhere are there already. Particles are of
+// one size, and lists reach no farther than their support.
+struct RidingScalar {
+  const double* values = nullptr;  // c; null: none rides
+  double reference = 0;
+  double viscosity = 0;                 // nu
+  double diffusivity = 0;               // D
+  std::array<const float*, 3> shift{};  // s; null: no shift
+  std::array<const float*, 6> correction{};
+  float* rate = nullptr;
+  float* change = nullptr;  // read with a shift
+};
 
 }  // namespace spume

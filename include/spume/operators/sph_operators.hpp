@@ -20,6 +20,8 @@
 
 namespace spume {
 
+struct RidingScalar;  // scalar_transport.hpp
+
 // Shape of the particle arrangement around each particle. Null pointers are not computed; L and `uncorrected` go
 // together, div r is always wanted.
 struct KernelMoments {
@@ -102,9 +104,11 @@ struct LinearPart {
 // for constant k: its dissipation is 2 k S:S up to a free surface, which it leaves without shear stress. The Laplacian
 // dissipates k |grad u|^2, half as much in an irrotational wave. On a lattice the shear terms d_a d_b u_b, a != b, come
 // out too small: by 19 % in 2-D and 13 % in 3-D with the Wendland kernel at h = 1.3 spacings, 4 % and 2 % at h = 2.
+// A scalar that rides on the sweep changes no bit of the acceleration. With particles of different sizes none can:
+// std::logic_error.
 void viscous_sweep(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
                    const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out,
-                   bool stress = false, const LinearPart& taken_off = {});
+                   bool stress = false, const LinearPart& taken_off = {}, const RidingScalar* scalar = nullptr);
 
 // Corrected divergence of u, and -lap of a scalar potential in the same pass (potential may be null).
 void divergence_sweep(const SweepContext& context, PackedNeighbours& packed,

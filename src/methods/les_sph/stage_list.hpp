@@ -47,6 +47,12 @@ inline Arrays arrays_of(const MomentFields& m) {
           m.kernel_sum, m.normal,      m.concentration_gradient};
 }
 
+// With what a scalar that rides on the sweep reads and writes.
+inline Arrays read_by_viscosity(const Flow& f) {
+  const auto riding = [&f] { return f.solutes.scalars == nullptr ? 0.0 : f.solutes.scalars->ridden_bytes(); };
+  return {f.advecting_velocity, f.moments.divergence_of_position, f.eddy_viscosity(), ArrayUse(riding)};
+}
+
 inline Arrays read_by_matrix(const Flow& f) {
   const MomentFields& m = f.moments;
   return {m.divergence_of_position, m.laplacian_diagonal, f.divergence, f.first_source, f.pressure, f.potential};

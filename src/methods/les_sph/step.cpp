@@ -74,8 +74,8 @@ Plan make_plan(Flow& f) {
   stages.add(both, "forces", has.potential, why.forces, &Flow::find_potential, {r}, {f.potential, f.varying_force});
   stages.add(both, "wall bends", has.wall_bends, why.bends, &Flow::find_wall_bends, {r, f.advecting_velocity},
              {kept.bends});
-  stages.sweep(both, "viscosity", has.viscosity, why.viscosity, &Flow::find_viscous_acceleration,
-               {f.advecting_velocity, moments.divergence_of_position, f.eddy_viscosity()}, {f.viscous_acceleration});
+  stages.sweep(both, "viscosity", has.viscosity, why.viscosity, &Flow::find_viscous_acceleration, read_by_viscosity(f),
+               {f.viscous_acceleration});
   stages.add(step, "prediction", true, "velocity without pressure", &Flow::predict_velocity,
              {f.advecting_velocity, f.viscous_acceleration}, {f.intermediate_velocity});
   stages.add(step, "sponges", has.sponges, why.sponges, &Flow::damp_velocity, {r, f.intermediate_velocity},

@@ -215,7 +215,7 @@ void Flow::find_wall_bends() {
                    wall_times.velocity, particles.scratch());
 }
 
-void Flow::find_viscous_acceleration() {
+void Flow::find_viscous_acceleration(double dt) {
   // The Morris Laplacian of a quadratic field is d / div r too small. Folding the factor into the coefficient keeps the
   // pair exchange symmetric; near a surface, where the kernel is cut, the factor of the bulk is used.
   const double nu = viscosity();
@@ -234,10 +234,11 @@ void Flow::find_viscous_acceleration() {
   ScratchArray<float> share(particles.scratch(), features.held_by_bodies ? size() : 0);
   if (features.held_by_bodies) find_held_by_bodies(share.data());
   particles.scratch().lease(viscous_acceleration, dimensions, size());
+  const RidingScalar scalar = scalar_beside_viscosity(dt);
   viscous_sweep(arrangement.context, arrangement.packed, started ? read(advecting_velocity) : read(particles.velocity),
                 wall_bends != nullptr ? wall_bends->rule() : boundary.velocity_rule(), diffusivity.data(),
                 write(viscous_acceleration), features.viscous_stress,
-                {features.held_by_bodies ? share.data() : nullptr, moments.read_correction()});
+                {features.held_by_bodies ? share.data() : nullptr, moments.read_correction()}, &scalar);
 }
 
 void Flow::find_held_by_bodies(float* share) const {
@@ -432,17 +433,36 @@ void Flow::accept(double dt) {
                   });
 }
 
+// Scalars see the positions and the shift that viscosity sees.
+RidingScalar Flow::scalar_beside_viscosity(double dt) {
+  if (!features.scalars || !started || features.eddy_viscosity || sizes.variable) return {};
+  return solutes.scalars->ride(dt, {.viscosity = viscosity(),
+                                    .laplacian_diagonal = moments.laplacian_diagonal,
+                                    .shift = shift_of_scalars(),
+                                    .correction = moments.read_correction()});
+}
+
+FloatVectorField Flow::shift_of_scalars() const {
+  return features.shift_correction ? shift->displacement : FloatVectorField{};
+}
+
 std::int64_t Flow::transport_scalars(double dt) {
+  const bool faded = features.shift_correction && surface == nullptr && fading.missing > 0;
+  ScratchArray<float> weight(particles.scratch(), faded ? size() : 0);
+  if (faded) parallel_for(size(), [&](std::size_t i) { weight[i] = static_cast<float>(inside(i)); });
+  const std::int64_t sweeps = solutes.scalars->transport(
+      dt, {.arrangement = arrangement,
+           .divergence_of_position = moments.divergence_of_position->data(),
+           .correction = moments.read_correction(),
+           .eddy_viscosity = eddy_viscosity(),
+           .places = particles.position,
+           .walls = boundary.walls,
+           .time = time - dt,
+           .shift = shift_of_scalars(),
+           .interior = surface != nullptr ? surface->interior_weight.data() : (faded ? weight.data() : nullptr)});
+  // Behind diffusion, which may have been found from the values at the start of the step.
   solutes.scalars->add_sources(time - dt, dt, particles.position);
-  return solutes.scalars->transport(dt, {.arrangement = arrangement,
-                                         .divergence_of_position = moments.divergence_of_position->data(),
-                                         .correction = moments.read_correction(),
-                                         .eddy_viscosity = eddy_viscosity(),
-                                         .places = particles.position,
-                                         .walls = boundary.walls,
-                                         .time = time - dt,
-                                         .shift = features.shift_correction ? shift->displacement : FloatVectorField{},
-                                         .interior = [this](std::size_t i) { return inside(i); }});
+  return sweeps;
 }
 
 void Flow::transfer_oxygen(double dt) {

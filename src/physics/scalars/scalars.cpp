@@ -2,7 +2,9 @@
 #include "spume/physics/scalars/scalars.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -19,6 +21,9 @@ constexpr double largest_exchange = 0.5;
 // Of the lattice: below it a surface cuts the kernel, and what is missing there exchanges nothing.
 constexpr double least_divergence_of_position = 0.95;
 
+// Of scalar_transport_sweep: three or four cost little more than two.
+constexpr std::size_t scalars_of_a_sweep = 4;
+
 void set_values(const ParticleStore& particles, const Expression& expression, double t, Array<double>& values,
                 const std::function<bool(std::size_t)>& wanted) {
   parallel_blocks(particles.size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
@@ -31,8 +36,28 @@ void set_values(const ParticleStore& particles, const Expression& expression, do
   });
 }
 
+// The value that is better than all others, in eight lanes: a comparison waits for the one before.
+template <class T, class Better>
+double extreme(const T* values, std::size_t n, Better better) {
+  constexpr std::size_t lanes = 8;
+  const auto choose = [better](T a, T b) { return better(b, a) ? b : a; };
+  return parallel_reduce(
+      n, values[0],
+      [&](std::size_t first, std::size_t last) {
+        std::array<T, lanes> best;
+        best.fill(values[first]);
+        std::size_t i = first;
+        for (; i + lanes <= last; i += lanes)
+          for (std::size_t l = 0; l < lanes; ++l) best[l] = choose(best[l], values[i + l]);
+        for (; i < last; ++i) best[0] = choose(best[0], values[i]);
+        for (std::size_t l = 1; l < lanes; ++l) best[0] = choose(best[0], best[l]);
+        return best[0];
+      },
+      choose);
+}
+
 double least(const Array<double>& values, std::size_t n) {
-  return -parallel_max(n, -values[0], [&](std::size_t i) { return -values[i]; });
+  return extreme(values.data(), n, std::less<>());
 }
 
 }  // namespace
@@ -179,21 +204,67 @@ double Scalars::amount(std::size_t scalar) const {
   return particles_.volume * parallel_sum(particles_.size(), [&](std::size_t i) { return values(scalar)[i]; });
 }
 
-void Scalars::lease() {
+void Scalars::lease(std::size_t scalars) {
   for (auto* arrays : {&rate_, &change_})
-    for (Array<float>& array : *arrays) particles_.scratch().lease(array, particles_.size());
-  for (Array<float>* array : {&exchange_, &normalisation_, &interior_})
-    particles_.scratch().lease(*array, particles_.size());
+    for (std::size_t s = 0; s < scalars; ++s) particles_.scratch().lease((*arrays)[s], particles_.size());
 }
 
 void Scalars::release() {
   for (auto* arrays : {&rate_, &change_})
     for (Array<float>& array : *arrays) particles_.scratch().release(array);
-  for (Array<float>* array : {&exchange_, &normalisation_, &interior_}) particles_.scratch().release(*array);
+  for (Array<float>* array : {&exchange_, &normalisation_}) particles_.scratch().release(*array);
 }
 
-void Scalars::sweep(const Carrier& carrier, bool shifted) {
-  for (std::size_t s = 0; s < size(); ++s) {
+// dt sum_j w_ij is at most D dt times the largest sum_j 2 g and a.
+bool Scalars::ride_pays(double dt, const Carriage& carriage) const {
+  const std::size_t left_over = size() % scalars_of_a_sweep;
+  if (particles_.size() == 0 || (left_over != 1 && left_over != 2) || wall_has_value()) return false;
+  if (carriage.shift[0] == nullptr && !diffuse()) return false;
+  double diffusivity = 0;
+  for (const ScalarOption& scalar : options_.scalars) diffusivity = std::max(diffusivity, scalar.diffusivity);
+  return dt * diffusivity * particles_.dimensions / (least_divergence_of_position * bulk_) *
+             extreme(carriage.laplacian_diagonal.data(), particles_.size(), std::greater<>()) <=
+         largest_exchange;
+}
+
+RidingScalar Scalars::ride(double dt, const Carriage& carriage) {
+  ridden_ = 0;
+  if (!ride_pays(dt, carriage)) return {};
+  ridden_ = 1;
+  ridden_shift_ = carriage.shift[0] != nullptr;
+  lease(ridden_);
+  return {.values = fields_[0]->data(),
+          .reference = least(*fields_[0], particles_.size()),
+          .viscosity = carriage.viscosity,
+          .diffusivity = option(0).diffusivity,
+          .shift = ridden_shift_ ? read(carriage.shift) : std::array<const float*, 3>{},
+          .correction = carriage.correction,
+          .rate = rate_[0].data(),
+          .change = change_[0].data()};
+}
+
+// The value, its rate and sum_j 2 g; the shift, its change and the symmetric L.
+double Scalars::ridden_bytes() const {
+  const double d = particles_.dimensions, shifted = ridden_shift_ ? 4 * (d + 1 + d * (d + 1) / 2) : 0;
+  return static_cast<double>(ridden_ * particles_.size()) * (8 + 4 + 4 + shifted);
+}
+
+void Scalars::find_normalisation(const Carrier& carrier) {
+  if (!normalisation_.empty()) return;
+  particles_.scratch().lease(normalisation_, particles_.size());
+  const float* div_r = carrier.divergence_of_position;
+  parallel_for(particles_.size(), [&](std::size_t i) {
+    normalisation_[i] =
+        static_cast<float>(particles_.dimensions / std::max<double>(div_r[i], least_divergence_of_position * bulk_));
+  });
+}
+
+// Of the scalars from `first` on. Where one rode the exchange is known to be small.
+void Scalars::sweep(std::size_t first, const Carrier& carrier, bool shifted) {
+  if (first == size()) return;
+  find_normalisation(carrier);
+  if (first == 0) particles_.scratch().lease(exchange_, particles_.size());
+  for (std::size_t s = first; s < size(); ++s) {
     packed_.values[s] = fields_[s]->data();
     packed_.reference[s] = least(*fields_[s], particles_.size());
     packed_.diffusivity[s] = static_cast<float>(option(s).diffusivity);
@@ -201,56 +272,74 @@ void Scalars::sweep(const Carrier& carrier, bool shifted) {
     packed_.rate[s] = rate_[s].data();
     packed_.change[s] = change_[s].data();
   }
+  const auto behind = [first](const auto& values) { return std::span(values).subspan(first); };
   scalar_transport_sweep(
       carrier.arrangement.context, carrier.arrangement.packed,
-      {.values = packed_.values,
-       .reference = packed_.reference,
-       .diffusivity = packed_.diffusivity,
+      {.values = behind(packed_.values),
+       .reference = behind(packed_.reference),
+       .diffusivity = behind(packed_.diffusivity),
        .normalisation = normalisation_.data(),
        .eddy_viscosity = carrier.eddy_viscosity == nullptr ? nullptr : carrier.eddy_viscosity->data(),
-       .inverse_schmidt = packed_.inverse_schmidt,
+       .inverse_schmidt = behind(packed_.inverse_schmidt),
        .shift = shifted ? read(carrier.shift) : std::array<const float*, 3>{},
        .correction = carrier.correction},
-      {.rate = packed_.rate, .change = packed_.change, .exchange = exchange_.data()});
+      {.rate = behind(packed_.rate),
+       .change = behind(packed_.change),
+       .exchange = first == 0 ? exchange_.data() : nullptr});
 }
 
-void Scalars::apply(double dt, bool shifted) {
-  struct Sums {
-    double net = 0, moved = 0;     // of the rates
-    double gains = 0, losses = 0;  // of the changes
-  };
-  const std::size_t n = particles_.size();
-  for (std::size_t s = 0; s < size(); ++s) {
-    const float *rate = rate_[s].data(), *change = change_[s].data(), *interior = interior_.data();
-    const Sums sums = parallel_reduce(
-        n, Sums{},
-        [=](std::size_t first, std::size_t last) {
-          Sums part;
+bool Scalars::wall_has_value() const {
+  return std::any_of(walls_.walls.begin(), walls_.walls.end(),
+                     [](const ScalarWall& wall) { return wall.value != nullptr; });
+}
+
+double Scalars::largest_exchange_of(const Carrier& carrier) const {
+  if (!wall_has_value()) return extreme(exchange_.data(), particles_.size(), std::greater<>());
+  return parallel_max(particles_.size(), 0.0, [&](std::size_t i) {
+    double most = 0;
+    for (const ScalarWall& wall : walls_.walls)
+      if (wall.value != nullptr) most = std::max(most, wall_rate(wall, carrier, i));
+    return exchange_[i] + most;
+  });
+}
+
+Scalars::Sums Scalars::sums_of(std::size_t scalar, const float* interior, bool shifted) const {
+  const float *rate = rate_[scalar].data(), *change = change_[scalar].data();
+  return parallel_reduce(
+      particles_.size(), Sums{},
+      [=](std::size_t first, std::size_t last) {
+        Sums part;
+        for (std::size_t i = first; i < last; ++i) {
+          part.net += rate[i];
+          part.moved += std::abs(double{rate[i]});
+        }
+        if (shifted)
           for (std::size_t i = first; i < last; ++i) {
-            part.net += rate[i];
-            part.moved += std::abs(double{rate[i]});
+            const double by = interior == nullptr ? double{change[i]} : double{interior[i]} * change[i];
+            part.gains += std::max(by, 0.0);
+            part.losses += std::max(-by, 0.0);
           }
-          if (shifted)
-            for (std::size_t i = first; i < last; ++i) {
-              const double by = double{interior[i]} * change[i];
-              part.gains += std::max(by, 0.0);
-              part.losses += std::max(-by, 0.0);
-            }
-          return part;
-        },
-        [](const Sums& a, const Sums& b) {
-          return Sums{a.net + b.net, a.moved + b.moved, a.gains + b.gains, a.losses + b.losses};
-        });
+        return part;
+      },
+      [](const Sums& a, const Sums& b) {
+        return Sums{a.net + b.net, a.moved + b.moved, a.gains + b.gains, a.losses + b.losses};
+      });
+}
+
+void Scalars::apply(double dt, const float* interior, bool shifted) {
+  for (std::size_t s = 0; s < size(); ++s) {
+    const float *rate = rate_[s].data(), *change = change_[s].data();
+    const Sums sums = sums_of(s, interior, shifted);
     const double excess = sums.moved > 0 ? sums.net / sums.moved : 0;
     const double both = std::min(sums.gains, sums.losses);
     const double gain = both > 0 ? both / sums.gains : 0, loss = both > 0 ? both / sums.losses : 0;
     double* values = fields_[s]->data();
-    parallel_blocks(n, default_block, [=](std::size_t, std::size_t first, std::size_t last) {
+    parallel_blocks(particles_.size(), default_block, [=](std::size_t, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i)
         values[i] += dt * (double{rate[i]} - excess * std::abs(double{rate[i]}));
       if (both > 0)
         for (std::size_t i = first; i < last; ++i) {
-          const double by = double{interior[i]} * change[i];
+          const double by = interior == nullptr ? double{change[i]} : double{interior[i]} * change[i];
           values[i] += by * (by > 0 ? gain : loss);
         }
     });
@@ -263,33 +352,25 @@ bool Scalars::diffuse() const {
 }
 
 std::int64_t Scalars::transport(double dt, const Carrier& carrier) {
+  const std::size_t ridden = std::exchange(ridden_, 0);
   substeps_ = 0;
   const bool shifted = carrier.shift[0] != nullptr;
   if (particles_.size() == 0 || !(shifted || carrier.eddy_viscosity != nullptr || diffuse())) return 0;
-  lease();
-  const float* div_r = carrier.divergence_of_position;
-  parallel_for(particles_.size(), [&](std::size_t i) {
-    normalisation_[i] =
-        static_cast<float>(particles_.dimensions / std::max<double>(div_r[i], least_divergence_of_position * bulk_));
-    interior_[i] = shifted ? static_cast<float>(carrier.interior(i)) : 0;
-  });
-  sweep(carrier, shifted);
-  const double exchange = parallel_max(particles_.size(), 0.0, [&](std::size_t i) {
-    double most = 0;
-    for (const ScalarWall& wall : walls_.walls)
-      if (wall.value != nullptr) most = std::max(most, wall_rate(wall, carrier, i));
-    return exchange_[i] + most;
-  });
-  substeps_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(dt * exchange / largest_exchange)));
+  lease(size());
+  sweep(ridden, carrier, shifted);
+  substeps_ = 1;
+  if (ridden == 0)
+    substeps_ = std::max<std::int64_t>(
+        1, static_cast<std::int64_t>(std::ceil(dt * largest_exchange_of(carrier) / largest_exchange)));
   const double part = dt / static_cast<double>(substeps_);
   for (std::int64_t k = 0; k < substeps_; ++k) {
-    if (k > 0) sweep(carrier, false);
+    if (k > 0) sweep(0, carrier, false);
     find_wall_changes(carrier.time + static_cast<double>(k) * part, part, carrier);
-    apply(part, k == 0 && shifted);
+    apply(part, carrier.interior, k == 0 && shifted);
     apply_wall_changes();
   }
   release();
-  return substeps_;
+  return substeps_ - (ridden == size() ? 1 : 0);
 }
 
 void Scalars::add_columns(SeriesTable& series) const {
@@ -324,6 +405,7 @@ void Scalars::save(StateWriter& writer) const {
 }
 
 void Scalars::load(StateReader& reader) {
+  ridden_ = 0;
   Array<double> saved;
   for (auto [name, values] :
        {std::pair{"scalar_sources", &added_}, {"scalar_walls", &from_walls_}, {"scalar_openings", &from_openings_}}) {

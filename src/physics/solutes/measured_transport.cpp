@@ -23,9 +23,14 @@ void MeasuredTransport::keep_shift(const FloatVectorField& velocity, double dt) 
 }
 
 std::int64_t MeasuredTransport::transport(double t, double dt) {
+  const std::int64_t sweeps = move(t, dt);
+  liquid_.solutes.scalars->add_sources(t - dt, dt, liquid_.particles.position);
+  return sweeps;
+}
+
+std::int64_t MeasuredTransport::move(double t, double dt) {
   ParticleStore& particles = liquid_.particles;
   Scalars& scalars = *liquid_.solutes.scalars;
-  scalars.add_sources(t - dt, dt, particles.position);
   const bool surface = meets_air(), moved = liquid_.shifting || scalars.diffuse();
   if (!surface && !moved) return 0;
   ScratchPool& scratch = particles.scratch();
@@ -65,8 +70,7 @@ std::int64_t MeasuredTransport::transport(double t, double dt) {
                                                      .places = particles.position,
                                                      .walls = liquid_.boundary.walls,
                                                      .time = t - dt,
-                                                     .shift = moves,
-                                                     .interior = [](std::size_t) { return 1.0; }});
+                                                     .shift = moves});
   for (auto& part : correction) scratch.release(part);
   scratch.release(uncorrected);
   scratch.release(shift_);

@@ -189,7 +189,7 @@ struct Flow {
   void find_uniform_acceleration(double t);
   void find_potential(double dt);  // at the end of the step
   void find_wall_bends();
-  void find_viscous_acceleration();
+  void find_viscous_acceleration(double dt);
   // Of the particles that see a no-slip body, how far inside the liquid they are: of them the viscous term takes off
   // what it makes of linear velocities. A constant viscosity only: one that varies makes something of them.
   void find_held_by_bodies(float* share) const;
@@ -220,7 +220,9 @@ struct Flow {
   void accept(double dt);  // (xi)
   // Scalars over the step that was accepted, at the positions of its lists. Returns the number of sweeps.
   std::int64_t transport_scalars(double dt);
-  void transfer_oxygen(double dt);  // from bubbles and through the surface, of the same step
+  RidingScalar scalar_beside_viscosity(double dt);  // what the viscous sweep finds for that step
+  FloatVectorField shift_of_scalars() const;        // null: none
+  void transfer_oxygen(double dt);                  // from bubbles and through the surface, of the same step
 
   void forget_rest(std::size_t i, double way);  // that particle i has gone in a step
 

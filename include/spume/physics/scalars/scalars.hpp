@@ -13,10 +13,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "spume/operators/scalar_transport.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/reports.hpp"
 #include "spume/particles/resolution.hpp"
@@ -41,12 +43,24 @@ class Scalars {
     const std::array<std::array<double, 2>, 3>& walls;  // sides at [axis][end]
     double time = 0;                                    // at the start of the step
     FloatVectorField shift{};                           // of the step; null: none
-    std::function<double(std::size_t)> interior = {};   // factor of the change by the shift, 0 to 1; read with one
+    const float* interior = nullptr;                    // factor of the change by the shift, 0 to 1; null: 1
   };
   // Whether some scalar diffuses in a liquid without eddies, or a wall gives some.
   bool diffuse() const;
+  // Lets the first scalar ride on the viscous sweep of a step, where that spares the others a sweep or makes it one of
+  // a single scalar, diffusion needs no parts of the step `dt`, and no wall has a value. What is found there replaces
+  // what transport() of this step would find, as no value changes until then. A step that is refused in between is
+  // begun again with another sweep.
+  struct Carriage {
+    double viscosity = 0;                       // the same everywhere; particles are of one size
+    std::span<const float> laplacian_diagonal;  // sum_j 2 g
+    FloatVectorField shift{};                   // as of the carrier
+    std::array<const float*, 6> correction{};
+  };
+  RidingScalar ride(double dt, const Carriage& carriage);
+  double ridden_bytes() const;  // that it streams beside the records of that sweep
   // Diffusion over dt, what walls give and the change by the shift, at the positions of the lists. Returns the number
-  // of sweeps.
+  // of sweeps, without that on which one rode.
   std::int64_t transport(double dt, const Carrier& carrier);
 
   // Sources over dt from time t on, at the places of the particles: what they add counts to added().
@@ -82,21 +96,33 @@ class Scalars {
   void load(StateReader& reader);
 
  private:
-  void sweep(const Carrier& carrier, bool shifted);
-  void apply(double dt, bool shifted);
+  // Of rates and changes by the shift.
+  struct Sums {
+    double net = 0, moved = 0;
+    double gains = 0, losses = 0;
+  };
+  void sweep(std::size_t first, const Carrier& carrier, bool shifted);
+  void find_normalisation(const Carrier& carrier);
+  double largest_exchange_of(const Carrier& carrier) const;
+  bool wall_has_value() const;
+  bool ride_pays(double dt, const Carriage& carriage) const;
+  Sums sums_of(std::size_t scalar, const float* interior, bool shifted) const;
+  void apply(double dt, const float* interior, bool shifted);
   double distance_from(const ScalarWall& wall, const Carrier& carrier, std::size_t i) const;
   double wall_rate(const ScalarWall& wall, const Carrier& carrier, std::size_t i) const;
   void find_wall_changes(double t, double dt, const Carrier& carrier);
   void apply_wall_changes();
-  void lease();
+  void lease(std::size_t scalars);
   void release();
 
   ParticleStore& particles_;
   const ScalarOptions& options_;
   const double bulk_;  // div r of the lattice
   std::vector<Array<double>*> fields_;
-  std::vector<Array<float>> rate_, change_;  // leased within transport()
-  Array<float> exchange_, normalisation_, interior_;
+  std::vector<Array<float>> rate_, change_;  // leased from ride() or transport() to its end
+  Array<float> exchange_, normalisation_;
+  std::size_t ridden_ = 0;  // scalars that rode on the viscous sweep of the step
+  bool ridden_shift_ = false;
   struct {  // of a sweep, per scalar: kept, as a step allocates nothing
     std::vector<const double*> values;
     std::vector<double> reference;

@@ -24,13 +24,14 @@ class MeasuredTransport {
 
   // By which a step of dt has shifted the particles, before the next velocity takes the place of this one.
   void keep_shift(const FloatVectorField& velocity, double dt);
-  // Sources, diffusion, and the change by the shift of a step of dt up to the time t. Returns the number of sweeps.
+  // Diffusion, the change by the shift, and sources of a step of dt up to the time t. Returns the number of sweeps.
   std::int64_t transport(double t, double dt);
   // Behind it: oxygen of released bodies and of the air.
   void transfer_oxygen(double t, double dt);
 
  private:
   bool meets_air() const;
+  std::int64_t move(double t, double dt);
 
   const Liquid liquid_;
   // Leased from the acceptance of a step until the last stage that reads them.
