@@ -13,7 +13,7 @@ namespace spume {
 // without.
 template <class Flow>
 void add_solute_stages(const ParticleStages<Flow>& stages, Flow& f, const SoluteFeatures& has,
-                       const std::string& oxygen_from, std::function<const oxygen::Supply*()> bubbles) {
+                       const std::string& oxygen_from, const std::function<const oxygen::Supply*()>& bubbles) {
   using enum StagePart;
   // Values, rates and changes of so many scalars.
   const auto values = [&f](std::size_t count) {
