@@ -231,7 +231,7 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
   for (std::size_t g = first; g < last; ++g) {
     const WallPoint& point = points_[g];
     const double free = thin_ == nullptr ? infinite : thin_->distance(point.mirror);
-    if (point.one_sided && !sees_mirror(point, free)) continue;
+    if (point.one_sided && !point.in_corner && !sees_mirror(point, free)) continue;
     double kernel_sum = 0;
     bool seen = false;  // from within the support radius
     const NearParticles& near = fit.begin(scene_.domain, arrangement, at, point.mirror);

@@ -14,8 +14,6 @@ namespace {
 constexpr double grazing = 0.05;
 // Halves of halves, after which what is left of a way is shorter than `grazing` for any that lists have.
 constexpr int most_halves = 8;
-// Of the cosine of the angle between the normals of a face and of a point behind it.
-constexpr double of_face = 0.7;
 // Spacings: of a flat face from its plane.
 constexpr double on_face = 0.1;
 // Of the height above a face, what is free half-way to it where nothing else is near; one half above a plane.
@@ -168,20 +166,21 @@ Vec3 ThinWalls::imaged(const ImagePath& path, const Vec3& place) const {
   return at;
 }
 
-bool ThinWalls::sees_face(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& mirror) const {
-  const Vec3 across = subtract(mirror, point);
+bool ThinWalls::sees_face(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& unfolded,
+                          const WallPoint& kind) const {
+  const Vec3 across = subtract(unfolded, point);
   const double size = length(across);
   const Vec3 normal = multiply(1 / size, across), way = subtract(point, eye);
   const double above = -dot(way, normal) - size / 2;  // the eye above the plane of the face
   if (!(above > 0)) return false;
   const Vec3 crossing = add(eye, multiply(above / (above + size / 2), way));
-  if (std::abs(distance(crossing)) < on_face * spacing_) {
+  if (!kind.beside_edge && std::abs(distance(crossing)) < on_face * spacing_) {
     Vec3 half_way;
     for (std::size_t axis = 0; axis < 3; ++axis) half_way[axis] = 0.5 * (eye[axis] + crossing[axis]);
     if (distance(half_way) > free_half_way * above) return true;
   }
   const std::optional<Entry> found = entry(eye, eye_distance, point);
-  return found && dot(found->normal, normal) > of_face;
+  return found && dot(found->normal, normal) > kind.least_cosine;
 }
 
 bool ThinWalls::is_behind_face(std::size_t point) const {
@@ -202,15 +201,15 @@ bool ThinWalls::sees(std::size_t particle, std::size_t point) const {
   const std::int32_t g = images_->wall_point() == nullptr ? -1 : images_->wall_point()[k];
   if (g < 0 || static_cast<std::size_t>(g) >= wet_->size()) return !hides(eye, eye_distance, place, distance_[point]);
   const WallPoint& wall = (*points_)[static_cast<std::size_t>((*wet_)[static_cast<std::size_t>(g)])];
-  const Vec3 mirror = imaged(images_->paths()[static_cast<std::size_t>(images_->path()[k])], wall.mirror);
-  return sees(eye, eye_distance, place, mirror, wall);
+  const Vec3 unfolded = imaged(images_->paths()[static_cast<std::size_t>(images_->path()[k])], wall.unfolded());
+  return sees(eye, eye_distance, place, unfolded, wall);
 }
 
-bool ThinWalls::sees(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& mirror,
+bool ThinWalls::sees(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& unfolded,
                      const WallPoint& kind) const {
   if (eye_distance >= reach_) return !kind.one_sided && !kind.in_corner;
-  return kind.one_sided ? sees_face(eye, eye_distance, point, mirror)
-                        : !hides(eye, eye_distance, mirror, distance(mirror));
+  return kind.one_sided ? sees_face(eye, eye_distance, point, unfolded, kind)
+                        : !hides(eye, eye_distance, unfolded, distance(unfolded));
 }
 
 }  // namespace spume

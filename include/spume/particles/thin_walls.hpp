@@ -39,8 +39,9 @@ class ThinWalls final : public Sight {
   };
   std::optional<Entry> entry(const Vec3& from, double from_distance, const Vec3& to) const;
 
-  // A wall point of that kind, or a mirror image of one, from a place within the reach of measure().
-  bool sees(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& mirror, const WallPoint& kind) const;
+  // A wall point of that kind, or a mirror image of one, from a place within the reach of measure(); `unfolded`:
+  // WallPoint::unfolded() of it.
+  bool sees(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& unfolded, const WallPoint& kind) const;
 
   // Distances of particles as far as `reach`, and then of their images. What is given outlives the lists made with it.
   void measure(const std::array<const double*, 3>& position, std::size_t particles, double reach);
@@ -58,7 +59,8 @@ class ThinWalls final : public Sight {
   NearestPoint nearest(const Vec3& place) const;
   bool hides(const Vec3& a, double da, const Vec3& b, double db, double length, int depth) const;
   bool is_behind_face(std::size_t point) const;
-  bool sees_face(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& mirror) const;
+  bool sees_face(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& unfolded,
+                 const WallPoint& kind) const;
   Vec3 imaged(const ImagePath& path, const Vec3& place) const;
   Vec3 particle_place(std::size_t particle) const;
   Vec3 image_place(std::size_t image) const;
