@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
@@ -74,6 +73,29 @@ Window window_of(const Scene& scene, const Body& body, double reach) {
   return window;
 }
 
+// How deep a solid is around one of its places that is the deepest of a lattice, by steps of half the length after
+// steps that lead no deeper: a lattice itself misses up to half its diagonal.
+double deepest_around(const Shape& solid, Vec3 place, double step, int dimensions) {
+  constexpr int halves = 8;
+  double depth = -solid.distance(place);
+  for (int half = 0; half < halves;) {
+    const Vec3 from = place;
+    for (int axis = 0; axis < dimensions; ++axis)
+      for (const double way : {-step, step}) {
+        Vec3 beside = place;
+        beside[axis] += way;
+        if (const double own = -solid.distance(beside); own > depth) {
+          depth = own;
+          place = beside;
+        }
+      }
+    if (place != from) continue;
+    step /= 2;
+    ++half;
+  }
+  return depth;
+}
+
 bool is_thin(const Scene& scene, const Body& body, double spacing, double reach) {
   const int d = scene.domain.dimensions;
   const ShapePointer& solid = body.motion ? body.alone : body.solid;
@@ -90,7 +112,15 @@ bool is_thin(const Scene& scene, const Body& body, double spacing, double reach)
     bool deep = false;
     std::size_t flat = 0, curved = 0;
     double depth = 0;  // of the deepest place
-    Moments inside;    // about the lower corner of the window
+    Vec3 deepest{};
+    Moments inside;  // about the lower corner of the window
+  };
+  // Of a body that stands still liquid meets the part in the domain.
+  const auto is_met = [&](const Vec3& place) {
+    for (int axis = 0; axis < d; ++axis)
+      if (!body.motion && (place[axis] < scene.domain.lower[axis] || place[axis] > scene.domain.upper[axis]))
+        return false;
+    return true;
   };
   const Found all = parallel_reduce(
       rows, Found{},
@@ -101,12 +131,15 @@ bool is_thin(const Scene& scene, const Body& body, double spacing, double reach)
                      d == 3 ? window.lower[2] + step * static_cast<double>(row / count[1]) : 0.0};
           while (place[0] <= window.upper[0] + step) {
             const double distance = solid->distance(place);
-            found.depth = std::max(found.depth, -distance);
+            if (-distance > found.depth) {
+              found.depth = -distance;
+              found.deepest = place;
+            }
             if (distance < -reach) {
               found.deep = true;
               break;
             }
-            if (distance < 0) found.inside.add(subtract(place, window.lower));
+            if (distance < 0 && is_met(place)) found.inside.add(subtract(place, window.lower));
             if (distance > 0.25 * spacing && distance < 0.75 * spacing) {
               const NearestPoint near = solid->nearest(place);
               const MirroredShare share = mirrored_share(alone, near, place, spacing, d);
@@ -119,12 +152,14 @@ bool is_thin(const Scene& scene, const Body& body, double spacing, double reach)
         return found;
       },
       [](const Found& a, const Found& b) {
-        Found both{a.deep || b.deep, a.flat + b.flat, a.curved + b.curved, std::max(a.depth, b.depth), a.inside};
+        const Found& deeper = b.depth > a.depth ? b : a;
+        Found both{a.deep || b.deep, a.flat + b.flat, a.curved + b.curved, deeper.depth, deeper.deepest, a.inside};
         both.inside.add(b.inside);
         return both;
       });
-  return !all.deep && all.flat > all.curved &&
-         (2 * all.depth < reach || all.inside.longest_edge() > slender * 2 * all.depth);
+  if (all.deep || all.flat <= all.curved) return false;
+  const double depth = deepest_around(*solid, all.deepest, step / 2, d);
+  return depth <= reach && (2 * depth < reach || all.inside.longest_edge() > slender * 2 * depth);
 }
 
 }  // namespace
