@@ -11,7 +11,7 @@ namespace spume {
 namespace {
 
 // In spacings.
-constexpr double grazing = 0.05;
+constexpr double grazing = 0.05, least_stride = 1e-3;
 // Halves of halves, after which what is left of a way is shorter than `grazing` for any that lists have.
 constexpr int most_halves = 8;
 // Spacings: of a flat face from its plane.
@@ -71,16 +71,20 @@ double ThinWalls::distance(const Vec3& place) const {
 }
 
 NearestPoint ThinWalls::nearest(const Vec3& place) const {
-  Vec3 sign{1, 1, 1};
-  const Vec3 inside = folded(place, &sign);
   NearestPoint best;
   best.distance = infinite;
   for (const RigidWalls* part : parts_) {
-    const NearestPoint own = part->thin_nearest(inside);
+    const NearestPoint own = nearest(*part, place);
     if (own.distance < best.distance) best = own;
   }
-  for (std::size_t axis = 0; axis < 3; ++axis) best.normal[axis] *= sign[axis];
   return best;
+}
+
+NearestPoint ThinWalls::nearest(const RigidWalls& part, const Vec3& place) const {
+  Vec3 sign{1, 1, 1};
+  NearestPoint found = part.thin_nearest(folded(place, &sign));
+  for (std::size_t axis = 0; axis < 3; ++axis) found.normal[axis] *= sign[axis];
+  return found;
 }
 
 bool ThinWalls::hides(const Vec3& from, const Vec3& to) const {
@@ -114,6 +118,23 @@ std::optional<ThinWalls::Entry> ThinWalls::entry(const Vec3& from, double from_d
     if (gone >= size) return std::nullopt;
     gone = std::min(size, gone + std::max(away, tiny));
     away = distance(add(from, multiply(gone / size, way)));
+  }
+}
+
+std::optional<ThinWalls::Entry> ThinWalls::entry(const RigidWalls& part, const Vec3& from, const Vec3& to) const {
+  const Vec3 way = subtract(to, from);
+  const double size = length(way);
+  if (!(size > 0)) return std::nullopt;
+  double gone = 0;
+  while (true) {
+    const Vec3 at = add(from, multiply(gone / size, way));
+    const double away = part.thin_distance(folded(at));
+    if (away <= 0) {
+      const NearestPoint near = nearest(part, at);
+      if (dot(near.normal, way) < 0 || away < -grazing * spacing_) return Entry{at, near.normal};
+    }
+    if (gone >= size) return std::nullopt;
+    gone = std::min(size, gone + std::max(away, least_stride * spacing_));
   }
 }
 

@@ -69,6 +69,14 @@ TEST(ThinWalls, AreFlatBodiesThinnerThanTwiceTheSupport) {
   const std::string of_width = "[[body]]\nshape = \"box\"\nposition = [0.8, 0.6]\nsize = [0.8, ";
   EXPECT_TRUE(is_thin(of_width + "0.24]\n"));
   EXPECT_FALSE(is_thin(of_width + "0.3]\n"));
+  // Deeper than the support radius, 0.13, in the middle between places half a spacing apart.
+  EXPECT_FALSE(is_thin(of_width + "0.265]\n"));
+  EXPECT_FALSE(is_thin("[[body]]\nshape = \"box\"\nposition = [0.8, 0.6]\nrotation = [45]\nsize = [0.8, 0.265]\n"));
+  // Pillars of 0.2 by 0.28 on the floor and through it.
+  const std::string pillar = "[[body]]\nshape = \"box\"\nsize = [0.2, ";
+  EXPECT_FALSE(is_thin(pillar + "0.28]\nposition = [0.8, 0.14]\n"));
+  EXPECT_FALSE(is_thin(pillar + "0.78]\nposition = [0.8, -0.11]\n"));
+  EXPECT_TRUE(is_thin(pillar + "0.78]\nposition = [0.8, 0.39]\n"));
   EXPECT_FALSE(is_thin("[[body]]\nshape = \"cylinder\"\nradius = 0.1\nposition = [0.8, 0.6]\n"));
   EXPECT_FALSE(is_thin("[[body]]\nshape = \"outline\"\npoints = [[0, 0], [1.6, 0], [1.6, 0.5]]\n"));
   EXPECT_FALSE(is_thin("[[body]]\nshape = \"box\"\nsize = [1, 1]\nposition = [0.8, 0.6]\ninside = false\n"));
@@ -233,6 +241,37 @@ TEST(ThinWalls, WaysThroughThemAreReflected) {
     EXPECT_LT(place[0], 0.8);
     EXPECT_GT(place[0], 0.73);
     EXPECT_EQ(velocity[0], 0);
+    EXPECT_EQ(velocity[1], 0.2);
+  }
+}
+
+TEST(ThinWalls, WaysThatEndBeforeThemAreLeftAlone) {
+  const Walled walled(scene_text(thin_tank, 0.05, wall_of_a_tank));
+  const Vec3 from{0.79, 0.5, 0}, to{0.7985, 0.5, 0};  // to 0.03 spacings before it
+  Vec3 place = to, velocity{1, 0.2, 0};
+  walled.boundary.apply_walls(walled.boundary.walls, place, &velocity, &from);
+  EXPECT_EQ(place, to);
+  EXPECT_EQ(velocity[0], 1);
+}
+
+// Two plates that move apart: each holds what meets it with its own velocity.
+TEST(ThinWalls, EachOfThemHoldsWithItsVelocity) {
+  const auto plate_at = [](double x, const std::string& way) {
+    return "[[body]]\nshape = \"box\"\nsize = [0.05, 0.6]\nposition = [" + std::to_string(x) +
+           ", 0.6]\ndisplacement = [\"" + way + "\", \"0\"]\n";
+  };
+  Walled walled(scene_text(thin_tank, 0.05, plate_at(0.525, "-0.25*t") + plate_at(0.825, "0.5*t")));
+  BodyWalls& bodies = *walled.boundary.bodies();
+  bodies.move_to(0);
+  bodies.accept();
+  bodies.move_to(0.01);
+  for (const bool first : {true, false}) {
+    const double face = first ? 0.5 - 0.0025 : 0.8 + 0.005, own = first ? -0.25 : 0.5;
+    const Vec3 from{first ? 0.495 : 0.795, 0.6, 0};
+    Vec3 place{face + 0.02, 0.6, 0}, velocity{1, 0.2, 0};
+    walled.boundary.apply_walls(walled.boundary.walls, place, &velocity, &from);
+    EXPECT_LT(place[0], face);
+    EXPECT_NEAR(velocity[0], own, 1e-9);  // of a motion, by differences over time
     EXPECT_EQ(velocity[1], 0.2);
   }
 }

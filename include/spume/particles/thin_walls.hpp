@@ -38,6 +38,8 @@ class ThinWalls final : public Sight {
     Vec3 place{}, normal{};
   };
   std::optional<Entry> entry(const Vec3& from, double from_distance, const Vec3& to) const;
+  // Where it meets the surface of those of one part, within a thousandth of a spacing.
+  std::optional<Entry> entry(const RigidWalls& part, const Vec3& from, const Vec3& to) const;
 
   // A wall point of that kind, or a mirror image of one, from a place within the reach of measure(); `unfolded`:
   // WallPoint::unfolded() of it.
@@ -57,6 +59,7 @@ class ThinWalls final : public Sight {
   // A place beyond a side in the domain, and the signs of directions there.
   Vec3 folded(const Vec3& place, Vec3* sign = nullptr) const;
   NearestPoint nearest(const Vec3& place) const;
+  NearestPoint nearest(const RigidWalls& part, const Vec3& place) const;
   bool hides(const Vec3& a, double da, const Vec3& b, double db, double length, int depth) const;
   bool is_behind_face(std::size_t point) const;
   bool sees_face(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& unfolded,
