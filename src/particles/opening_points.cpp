@@ -33,7 +33,7 @@ bool fit_point(const OpeningLiquid& liquid, const OpeningPoint& point, const Fit
   const OpenGate& gate = liquid.gates[static_cast<std::size_t>(point.gate)];
   const int axis = gate.opening->axis;
   const double above = gate.inwards * (point.mirror[axis] - gate.plane);
-  const double free = liquid.thin == nullptr ? infinite : liquid.thin->distance(point.mirror);
+  const double free = liquid.thin == nullptr ? infinite : liquid.thin->free_distance(point.mirror);
   const NearParticles& near = fit.begin(liquid.domain, liquid.arrangement, liquid.at, point.mirror);
   double kernel_sum = 0;
   with_plain_kernel(dimensions, liquid.resolution.kernel, [&]<int d, class Kernel>() {

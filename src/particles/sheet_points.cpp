@@ -106,6 +106,7 @@ class Sheets {
     point.foot = subtract(position, multiply(dot(subtract(position, face.point), face.normal), face.normal));
     point.one_sided = true;
     point.beside_edge = face.beside_edge;
+    point.flat = face.flat;
     point.least_cosine = static_cast<float>(face.least_cosine);
     return point;
   }
@@ -160,7 +161,7 @@ class Sheets {
 
   bool is_near(const Vec3& position, const Face& face) const {
     return std::any_of(face.samples.begin(), face.samples.end(),
-                       [&](const Vec3& sample) { return length(subtract(sample, position)) < reach_; });
+                       [&](const Vec3& sample) { return length(subtract(sample, position)) < reach_ + spacing_; });
   }
 
   // The image that turns a place about a corner.

@@ -44,8 +44,9 @@ void BodyWalls::accept() {
 
 // Nothing thin lies between the face that a point is behind and what it mirrors there.
 bool BodyWalls::sees_mirror(const WallPoint& point, double mirror_distance) const {
+  if (point.flat && thin_->parts().size() == 1) return true;
   const Vec3 before = add(point.foot, multiply(before_face * resolution_.spacing, point.normal));
-  return !thin_->hides(point.mirror, mirror_distance, before, thin_->distance(before));
+  return !thin_->hides(point.mirror, mirror_distance, before, 0);
 }
 
 }  // namespace spume

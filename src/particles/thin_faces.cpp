@@ -87,16 +87,17 @@ void ThinFaces::sort() {
     upper[axis] = domain_.upper[axis] + reach_;
     for (const Sample& sample : samples_) x[axis].push_back(sample.point[axis]);
   }
-  grid_ = CellGrid(domain_.dimensions, lower, upper, reach_, samples_.size());
+  grid_ = CellGrid(domain_.dimensions, lower, upper, reach_ + spacing_, samples_.size());
   table_.build(grid_, x[0].data(), x[1].data(), d == 3 ? x[2].data() : nullptr, samples_.size());
 }
 
 std::vector<ThinFaces::Sample> ThinFaces::near_samples(const Vec3& place) const {
   std::vector<Sample> near;
-  visit_near(domain_, grid_, table_, place, reach_, [&](std::int32_t k, const Vec3& shift) {
+  const double farthest = reach_ + spacing_;  // samples stand up to that from the end of a face
+  visit_near(domain_, grid_, table_, place, farthest, [&](std::int32_t k, const Vec3& shift) {
     Sample sample = samples_[static_cast<std::size_t>(table_.order()[static_cast<std::size_t>(k)])];
     sample.point = add(sample.point, shift);
-    if (length(subtract(sample.point, place)) < reach_) near.push_back(sample);
+    if (length(subtract(sample.point, place)) < farthest) near.push_back(sample);
   });
   return near;
 }
@@ -111,7 +112,7 @@ bool ThinFaces::sees(const Vec3& place, const Sample& sample) const {
 }
 
 std::vector<ThinFaces::Face> ThinFaces::around(std::size_t body, const Vec3& place, const NearestPoint& near) const {
-  const Face own{body, near.point, near.normal, false, of_face, {}};
+  Face own{body, near.point, near.normal, false, false, of_face, {}};
   const bool before_face = dot(sampled(body, near).normal, near.normal) > same_normal;
   std::vector<Sample> samples = near_samples(place);
   const auto is_plain = [&](const Sample& s) {
@@ -119,7 +120,14 @@ std::vector<ThinFaces::Face> ThinFaces::around(std::size_t body, const Vec3& pla
     return s.body == body &&
            (cosine > same_face || (cosine < -same_face && dot(subtract(place, s.point), s.normal) < 0));
   };
-  if (std::all_of(samples.begin(), samples.end(), is_plain) && (before_face || samples.empty())) return {own};
+  if (std::all_of(samples.begin(), samples.end(), is_plain) && before_face) {
+    own.flat = std::all_of(samples.begin(), samples.end(), [&](const Sample& s) {
+      const double cosine = dot(s.normal, near.normal);
+      return cosine < 0 ||
+             (cosine > same_normal && std::abs(dot(subtract(s.point, near.point), near.normal)) < in_plane * spacing_);
+    });
+    return {own};
+  }
 
   // Faces, by links of one sample to the next.
   constexpr std::size_t none = static_cast<std::size_t>(-1);
@@ -182,7 +190,7 @@ std::vector<ThinFaces::Face> ThinFaces::around(std::size_t body, const Vec3& pla
     all.push_back(face);
     if (is_own) std::swap(all.front(), all.back());
   }
-  if (all.empty()) all.push_back(own);
+  if (all.empty() && before_face) all.push_back(own);
   return all;
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Faces of thin bodies around places before them, by samples of their surfaces, about one for the square of a spacing.
 //
-// Samples nearer to a place than the support radius whose normals change by less than 20 degrees from one to the next
-// are of one face: a surface that bends over a few spacings is one, a fold of 20 degrees or more makes two. Normals are
-// those a twentieth of a spacing inside the body, which next to an edge are those of its faces and none between.
+// Samples nearer to a place than the support radius and a spacing whose normals change by less than 20 degrees from one
+// to the next are of one face: a surface that bends over a few spacings is one, a fold of 20 degrees or more makes two.
+// Normals are those a twentieth of a spacing inside the body, which next to an edge are those of its faces and none
+// between.
 #pragma once
 
 #include <cstdint>
@@ -31,6 +32,7 @@ class ThinFaces {
     std::size_t body = 0;      // among `bodies`
     Vec3 point{}, normal{};    // the plane that stands for it around the place
     bool beside_edge = false;  // of that body, or in a corner
+    bool flat = false;
     // Of the cosine of the angle between its normal and that of a place of the surface that belongs to it.
     double least_cosine = 0;
     std::vector<Vec3> samples;

@@ -12,6 +12,8 @@ namespace {
 
 // In spacings.
 constexpr double grazing = 0.05, least_stride = 1e-3;
+// Spacings: a bound that is more stands for the distance where less is of use too.
+constexpr double clear = 0.1;
 // Halves of halves, after which what is left of a way is shorter than `grazing` for any that lists have.
 constexpr int most_halves = 8;
 // Spacings: of a flat face from its plane.
@@ -70,6 +72,16 @@ double ThinWalls::distance(const Vec3& place) const {
   return least;
 }
 
+NearDistances::Range ThinWalls::range(const Vec3& place) const {
+  const Vec3 inside = folded(place);
+  NearDistances::Range found{infinite, infinite};
+  for (const RigidWalls* part : parts_) {
+    const NearDistances::Range own = part->thin_range(inside);
+    found = {std::min(found.least, own.least), std::min(found.most, own.most)};
+  }
+  return found;
+}
+
 NearestPoint ThinWalls::nearest(const Vec3& place) const {
   NearestPoint best;
   best.distance = infinite;
@@ -87,7 +99,14 @@ NearestPoint ThinWalls::nearest(const RigidWalls& part, const Vec3& place) const
   return found;
 }
 
+double ThinWalls::free_distance(const Vec3& place) const {
+  const double least = range(place).least;
+  return least > clear * spacing_ ? least : distance(place);
+}
+
 bool ThinWalls::hides(const Vec3& from, const Vec3& to) const {
+  const double free = std::max(range(from).least, 0.0) + std::max(range(to).least, 0.0);
+  if (length(subtract(to, from)) <= free + 2 * grazing * spacing_) return false;
   return hides(from, distance(from), to, distance(to));
 }
 
@@ -99,7 +118,10 @@ bool ThinWalls::hides(const Vec3& a, double da, const Vec3& b, double db, double
   if (length <= std::max(da, 0.0) + std::max(db, 0.0) + 2 * grazing * spacing_ || depth == most_halves) return false;
   Vec3 middle;
   for (std::size_t axis = 0; axis < 3; ++axis) middle[axis] = 0.5 * (a[axis] + b[axis]);
-  const double dm = distance(middle);
+  const NearDistances::Range bounds = range(middle);
+  const double dm = bounds.most < -grazing * spacing_ ? bounds.most
+                    : bounds.least > clear * spacing_ ? bounds.least
+                                                      : distance(middle);
   if (dm < -grazing * spacing_) return true;
   return hides(a, da, middle, dm, length / 2, depth + 1) || hides(middle, dm, b, db, length / 2, depth + 1);
 }
@@ -117,7 +139,7 @@ std::optional<ThinWalls::Entry> ThinWalls::entry(const Vec3& from, double from_d
     }
     if (gone >= size) return std::nullopt;
     gone = std::min(size, gone + std::max(away, tiny));
-    away = distance(add(from, multiply(gone / size, way)));
+    away = free_distance(add(from, multiply(gone / size, way)));
   }
 }
 
@@ -144,7 +166,7 @@ void ThinWalls::measure(const std::array<const double*, 3>& position, std::size_
   reach_ = reach;
   images_ = nullptr;
   distance_.resize(particles);
-  parallel_for(particles, [&](std::size_t i) { distance_[i] = static_cast<float>(distance(particle_place(i))); });
+  parallel_for(particles, [&](std::size_t i) { distance_[i] = static_cast<float>(free_distance(particle_place(i))); });
 }
 
 void ThinWalls::measure(const Images& images, const std::vector<WallPoint>& points,
@@ -156,7 +178,7 @@ void ThinWalls::measure(const Images& images, const std::vector<WallPoint>& poin
   parallel_for(images.size(), [&](std::size_t k) {
     const bool of_body = images.wall_point() != nullptr && images.wall_point()[k] >= 0 &&
                          static_cast<std::size_t>(images.wall_point()[k]) < wet.size();
-    distance_[particles_ + k] = of_body ? 0 : static_cast<float>(distance(image_place(k)));
+    distance_[particles_ + k] = of_body ? 0 : static_cast<float>(free_distance(image_place(k)));
   });
 }
 
@@ -195,10 +217,12 @@ bool ThinWalls::sees_face(const Vec3& eye, double eye_distance, const Vec3& poin
   const double above = -dot(way, normal) - size / 2;  // the eye above the plane of the face
   if (!(above > 0)) return false;
   const Vec3 crossing = add(eye, multiply(above / (above + size / 2), way));
-  if (!kind.beside_edge && std::abs(distance(crossing)) < on_face * spacing_) {
+  // What is within the support of a flat face, beside which no other is, sees it, unless something that moves is near.
+  if (kind.flat && parts_.size() == 1) return true;
+  if (kind.flat || (!kind.beside_edge && std::abs(distance(crossing)) < on_face * spacing_)) {
     Vec3 half_way;
     for (std::size_t axis = 0; axis < 3; ++axis) half_way[axis] = 0.5 * (eye[axis] + crossing[axis]);
-    if (distance(half_way) > free_half_way * above) return true;
+    if (range(half_way).least > free_half_way * above || distance(half_way) > free_half_way * above) return true;
   }
   const std::optional<Entry> found = entry(eye, eye_distance, point);
   return found && dot(found->normal, normal) > kind.least_cosine;
@@ -230,7 +254,7 @@ bool ThinWalls::sees(const Vec3& eye, double eye_distance, const Vec3& point, co
                      const WallPoint& kind) const {
   if (eye_distance >= reach_) return !kind.one_sided && !kind.in_corner;
   return kind.one_sided ? sees_face(eye, eye_distance, point, unfolded, kind)
-                        : !hides(eye, eye_distance, unfolded, distance(unfolded));
+                        : !hides(eye, eye_distance, unfolded, free_distance(unfolded));
 }
 
 }  // namespace spume

@@ -5,9 +5,11 @@
 // twentieth of a spacing more, that meet leave nothing between them; else the middle is asked and then both halves. A
 // middle deeper than a twentieth of a spacing in a body ends the way. So ways no deeper than a tenth of a spacing may
 // pass, at edges, and none that leads through a plate a quarter of a spacing thick or more.
+// Where bounds of a distance (particles/near_distances.hpp) do, it is not asked for.
 //
 // Behind a face stand wall points that belong to it: a particle sees one of them when the way there enters the bodies
-// through a face with its normal, within 45 degrees. Other wall points it sees when it sees what they mirror.
+// through a face with its normal, within 45 degrees and half of the angle to the next face. Other wall points it sees
+// when it sees what they mirror.
 #pragma once
 
 #include <array>
@@ -31,6 +33,8 @@ class ThinWalls final : public Sight {
 
   // From the thin bodies where they are now; infinite where it is surely more than twice the reach of measure().
   double distance(const Vec3& place) const;
+  NearDistances::Range range(const Vec3& place) const;  // bounds of it
+  double free_distance(const Vec3& place) const;        // the lower one where that tells that the place is free
   bool hides(const Vec3& from, const Vec3& to) const;
   bool hides(const Vec3& from, double from_distance, const Vec3& to, double to_distance) const;
   // Where a straight way enters a thin body.

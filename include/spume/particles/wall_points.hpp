@@ -21,9 +21,10 @@ struct WallPoint {
   Vec3 foot{}, normal{};  // on the surface, and out of the solid there
   Vec3 mirror{};          // as far before the foot as the position is behind it
   // Of a thin body (particles/thin_bodies.hpp): seen through the face of its foot alone, which may lie past the edge of
-  // that in its plane; mirrored in the faces of a corner in turns; with another face of the body within the support
-  // radius.
+  // that in its plane; mirrored in the faces of a corner in turns; with another face of a thin body within the support
+  // radius of the mirror.
   bool one_sided = false, past_edge = false, in_corner = false, beside_edge = false;
+  bool flat = false;  // no other face is, and this one is flat
   // Of a one-sided point: of the cosine of the angle between the normal and that of a place of the surface where what
   // enters sees the point.
   float least_cosine = 0;
