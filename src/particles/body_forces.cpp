@@ -134,7 +134,7 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
       if (dot(offset, normal) < 0) continue;
       if (free < reach) {
         const Vec3 place = add(element.middle, offset);
-        if (thin->hides(eye, free, place, thin->distance(place))) continue;
+        if (thin->hides(eye, free, place, thin->free_distance(place))) continue;
       }
       const double r = std::sqrt(near.r2(k)), weight = WendlandC2::w(WendlandC2::support * r / reach);
       before.push_back(

@@ -148,7 +148,8 @@ void Boundary::make_images(Arrangement& arrangement, const ParticleStore& partic
       point_position_[axis].resize(wall_points.size);
       std::copy_n(wall_points.position[axis], wall_points.size, point_position_[axis].data());
     }
-    openings_->find_stencils(arrangement, at, times.place, stencils_, point_position_);
+    openings_->find_stencils(arrangement, at, times.place, bodies_ == nullptr ? nullptr : bodies_->thin(), stencils_,
+                             point_position_);
     stencils = &stencils_;
     wall_points = {.size = stencils_.size(), .source = stencils_.nearest.data()};
     for (int axis = 0; axis < domain_.dimensions; ++axis) wall_points.position[axis] = point_position_[axis].data();

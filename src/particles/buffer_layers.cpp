@@ -198,9 +198,9 @@ void BufferLayers::insert(const Array<std::int32_t>& staying, const std::vector<
   }
 }
 
-void BufferLayers::apply_walls(const Boundary& boundary, std::size_t i, Vec3& r, Vec3* u) const {
+void BufferLayers::apply_walls(const Boundary& boundary, std::size_t i, Vec3& r, Vec3* u, const Vec3* from) const {
   if (!holds(i)) {
-    boundary.apply_walls(boundary.walls, r, u);
+    boundary.apply_walls(boundary.walls, r, u, from);
     return;
   }
   const OpenGate& gate = gate_of((*column_)[i]);

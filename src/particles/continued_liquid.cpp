@@ -214,7 +214,7 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
         if (r2 >= reach * reach) return;
         if (thin != nullptr) {
           const WallPoint& point = sorted_point(boundary, static_cast<std::size_t>(g));
-          if (!thin->sees(seen, thin->particle_distance(i), add(point.position, shift), add(point.mirror, shift),
+          if (!thin->sees(seen, thin->particle_distance(i), add(point.position, shift), add(point.unfolded(), shift),
                           point))
             return;
         }

@@ -54,14 +54,14 @@ double DistanceCells::distance(const Vec3& point) const {
   return walls_.distance(point);
 }
 
-bool DistanceCells::surely_farther(const Vec3& point, double gap) const {
+double DistanceCells::least(const Vec3& point) const {
   std::array<std::size_t, 3> at{};
   for (int axis = 0; axis < dimensions_; ++axis) {
     const double cell = (point[axis] - fine_lower_[axis]) / fine_;
-    if (!(cell >= 0 && cell < static_cast<double>(fine_cells_[axis]))) return false;
+    if (!(cell >= 0 && cell < static_cast<double>(fine_cells_[axis]))) return -infinite;
     at[axis] = static_cast<std::size_t>(cell);
   }
-  return least_[(at[2] * fine_cells_[1] + at[1]) * fine_cells_[0] + at[0]] > gap;
+  return least_[(at[2] * fine_cells_[1] + at[1]) * fine_cells_[0] + at[0]];
 }
 
 double DistanceCells::bytes() const {

@@ -7,7 +7,7 @@
 namespace spume {
 
 void LayerStencils::find(const Arrangement& arrangement, const ParticleStore& particles,
-                         std::span<const std::uint8_t> phase, double dt) {
+                         std::span<const std::uint8_t> phase, const ThinWalls* thin, double dt) {
   const int d = particles.dimensions;
   const std::vector<OpenGate>& gates = layers_.gates().list;
   members_ = &layers_.find_members();
@@ -40,7 +40,8 @@ void LayerStencils::find(const Arrangement& arrangement, const ParticleStore& pa
                          .arrangement = arrangement,
                          .at = particles.position,
                          .layer = &layers_.column(),
-                         .phase = scene_.phases.size() > 1 ? phase.data() : nullptr},
+                         .phase = scene_.phases.size() > 1 ? phase.data() : nullptr,
+                         .thin = thin},
                         points_, stencils_);
   parallel_for(points_.size(), [&](std::size_t g) {
     if (stencils_.kind[g] == PointKind::outflow) stencils_.pressure_sign[g] = static_cast<float>(-behind(points_[g]));

@@ -40,16 +40,22 @@ void OpenSides::list_points(double t) {
   largest_speed_ = std::sqrt(speed2);
 }
 
-void OpenSides::find_stencils(const Arrangement& arrangement, const VectorField& at, double t, WallStencils& stencils,
-                              std::array<Array<double>, 3>& position) {
+void OpenSides::find_stencils(const Arrangement& arrangement, const VectorField& at, double t, const ThinWalls* thin,
+                              WallStencils& stencils, std::array<Array<double>, 3>& position) {
   list_points(t);
   const std::size_t walls = stencils.size();
   find_corners(at, t, stencils, position);
   append_corners(stencils, position);
   const int d = scene_.domain.dimensions;
   const std::size_t n = points_.size();
-  first_point_ =
-      append_opening_points({scene_.domain, resolution_, gates_, particle_volume_, arrangement, at}, points_, stencils);
+  first_point_ = append_opening_points({.domain = scene_.domain,
+                                        .resolution = resolution_,
+                                        .gates = gates_,
+                                        .particle_volume = particle_volume_,
+                                        .arrangement = arrangement,
+                                        .at = at,
+                                        .thin = thin},
+                                       points_, stencils);
   for (int axis = 0; axis < d; ++axis) position[axis].resize(first_point_ + n);
   parallel_for(first_point_, [&](std::size_t g) {
     stencils.kind[g] = PointKind::wall;

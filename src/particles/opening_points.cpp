@@ -33,12 +33,20 @@ bool fit_point(const OpeningLiquid& liquid, const OpeningPoint& point, const Fit
   const OpenGate& gate = liquid.gates[static_cast<std::size_t>(point.gate)];
   const int axis = gate.opening->axis;
   const double above = gate.inwards * (point.mirror[axis] - gate.plane);
+  const double free = liquid.thin == nullptr ? infinite : liquid.thin->free_distance(point.mirror);
   const NearParticles& near = fit.begin(liquid.domain, liquid.arrangement, liquid.at, point.mirror);
   double kernel_sum = 0;
   with_plain_kernel(dimensions, liquid.resolution.kernel, [&]<int d, class Kernel>() {
     const double scale = liquid.particle_volume * Kernel::normalisation(d) / std::pow(h, d);
     for (std::size_t k = 0; k < near.size(); ++k) {
       if (!fitted(near.particle(k), point)) continue;
+      if (free < fit.reach()) {
+        Vec3 place = point.mirror;
+        for (int a = 0; a < d; ++a) place[a] += near.offset(a, k);
+        if (liquid.thin->hides(point.mirror, free, place,
+                               liquid.thin->particle_distance(static_cast<std::size_t>(near.particle(k)))))
+          continue;
+      }
       const double r2 = near.r2(k), height = gate.inwards * near.offset(axis, k) + above,
                    mirrored2 = r2 + 4 * std::max(0.0, height) * above;
       kernel_sum += scale * (Kernel::w(std::sqrt(r2) / h) + Kernel::w(std::sqrt(mirrored2) / h));

@@ -224,7 +224,7 @@ void PointSampler::visit(const Vec3& point, Visit&& visit) const {
         if (r2 >= support_radius * support_radius) return;
         if (free < support_radius) {
           const Vec3 seen = add(point, offset);
-          if (thin->hides(point, free, seen, thin->distance(seen))) return;
+          if (thin->hides(point, free, seen, thin->free_distance(seen))) return;
         }
         weigh(j, offset, r2, place, copy);
       });

@@ -54,6 +54,12 @@ RigidWalls::RigidWalls(const Scene& scene, std::optional<std::size_t> motion, co
   accepted = place;
   const Bounds cells = motion_ == nullptr ? Bounds{scene.domain.lower, scene.domain.upper} : window(reach_);
   cells_.emplace(walls_, d, cells.lower, cells.upper, resolution.spacing, resolution.support_radius, error());
+  if (has_thin()) {
+    const Bounds thin_box = motion_ == nullptr ? cells : window(2 * resolution.support_radius);
+    // Half the diagonal of a block less than a spacing and half from its middle.
+    thin_cells_.emplace(thin_walls_, d, thin_box.lower, thin_box.upper, resolution.spacing,
+                        [&](const Vec3& at) { return cells_->least(at) > 1.5 * resolution.spacing; });
+  }
   std::size_t sizes = 1;
   if (grows()) {
     half_width_ = 0;
@@ -264,6 +270,14 @@ NearestPoint RigidWalls::thin_nearest(const Vec3& point) const {
   return found;
 }
 
+NearDistances::Range RigidWalls::thin_range(const Vec3& point) const {
+  const Vec3 at = start(point);
+  NearDistances::Range range = thin_cells_->at(at);
+  if (range.most == infinite) range.least = cells_->least(at);
+  if (motion_ != nullptr) range.least = std::max(range.least, distance_from_bounds(at));
+  return range;
+}
+
 std::optional<Vec3> RigidWalls::foremost(const Vec3& point, const Vec3& direction, double size, double about) const {
   const Vec3 at = place.start(point), way = rotated_back(place.rotation, direction);
   // What is nearest to a place far away reaches farthest to it: of a ball of radius r the share r / (r + far) of the
@@ -306,7 +320,7 @@ bool RigidWalls::now(std::size_t point, WallPoint& found) const {
 }
 
 double RigidWalls::bytes() const {
-  double sum = cells_ ? cells_->bytes() : 0;
+  double sum = (cells_ ? cells_->bytes() : 0) + (thin_cells_ ? thin_cells_->bytes() : 0);
   for (const Level& level : levels_)
     sum += static_cast<double>(level.points.capacity() * sizeof(WallPoint) + 2 * level.body.capacity());
   return sum;

@@ -18,12 +18,14 @@ void BodyWalls::keep_before_thin(const Vec3& from, Vec3& position, Vec3* velocit
   if (surely_farther(position, 2 * way + resolution_.spacing)) return;
   for (const RigidWalls* part : thin_->parts()) {
     const Vec3 start = part->motion() == nullptr ? from : part->place.now(part->accepted.start(from));
-    const std::optional<ThinWalls::Entry> entry = thin_->entry(start, thin_->distance(start), position);
+    if (part->surely_farther(position, length(subtract(position, start)))) continue;
+    const std::optional<ThinWalls::Entry> entry = thin_->entry(*part, start, position);
     if (!entry) continue;
     const Vec3 beyond = subtract(position, entry->place);
     const double depth = std::max(0.0, -dot(beyond, entry->normal));
     position = add(position, multiply(2 * depth, entry->normal));
-    if (thin_->hides(start, position)) position = add(entry->place, multiply(gap, entry->normal));
+    const Vec3 before = add(entry->place, multiply(gap, entry->normal));
+    if (thin_->hides(before, position)) position = before;
     if (velocity == nullptr) continue;
     const double inwards = dot(subtract(*velocity, part->velocity_at(entry->place)), entry->normal);
     if (inwards < 0) *velocity = subtract(*velocity, multiply(inwards, entry->normal));
@@ -42,8 +44,9 @@ void BodyWalls::accept() {
 
 // Nothing thin lies between the face that a point is behind and what it mirrors there.
 bool BodyWalls::sees_mirror(const WallPoint& point, double mirror_distance) const {
+  if (point.flat && thin_->parts().size() == 1) return true;
   const Vec3 before = add(point.foot, multiply(before_face * resolution_.spacing, point.normal));
-  return !thin_->hides(point.mirror, mirror_distance, before, thin_->distance(before));
+  return !thin_->hides(point.mirror, mirror_distance, before, 0);
 }
 
 }  // namespace spume

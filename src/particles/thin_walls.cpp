@@ -11,11 +11,11 @@ namespace spume {
 namespace {
 
 // In spacings.
-constexpr double grazing = 0.05;
+constexpr double grazing = 0.05, least_stride = 1e-3;
+// Spacings: a bound that is more stands for the distance where less is of use too.
+constexpr double clear = 0.1;
 // Halves of halves, after which what is left of a way is shorter than `grazing` for any that lists have.
 constexpr int most_halves = 8;
-// Of the cosine of the angle between the normals of a face and of a point behind it.
-constexpr double of_face = 0.7;
 // Spacings: of a flat face from its plane.
 constexpr double on_face = 0.1;
 // Of the height above a face, what is free half-way to it where nothing else is near; one half above a plane.
@@ -72,20 +72,41 @@ double ThinWalls::distance(const Vec3& place) const {
   return least;
 }
 
+NearDistances::Range ThinWalls::range(const Vec3& place) const {
+  const Vec3 inside = folded(place);
+  NearDistances::Range found{infinite, infinite};
+  for (const RigidWalls* part : parts_) {
+    const NearDistances::Range own = part->thin_range(inside);
+    found = {std::min(found.least, own.least), std::min(found.most, own.most)};
+  }
+  return found;
+}
+
 NearestPoint ThinWalls::nearest(const Vec3& place) const {
-  Vec3 sign{1, 1, 1};
-  const Vec3 inside = folded(place, &sign);
   NearestPoint best;
   best.distance = infinite;
   for (const RigidWalls* part : parts_) {
-    const NearestPoint own = part->thin_nearest(inside);
+    const NearestPoint own = nearest(*part, place);
     if (own.distance < best.distance) best = own;
   }
-  for (std::size_t axis = 0; axis < 3; ++axis) best.normal[axis] *= sign[axis];
   return best;
 }
 
+NearestPoint ThinWalls::nearest(const RigidWalls& part, const Vec3& place) const {
+  Vec3 sign{1, 1, 1};
+  NearestPoint found = part.thin_nearest(folded(place, &sign));
+  for (std::size_t axis = 0; axis < 3; ++axis) found.normal[axis] *= sign[axis];
+  return found;
+}
+
+double ThinWalls::free_distance(const Vec3& place) const {
+  const double least = range(place).least;
+  return least > clear * spacing_ ? least : distance(place);
+}
+
 bool ThinWalls::hides(const Vec3& from, const Vec3& to) const {
+  const double free = std::max(range(from).least, 0.0) + std::max(range(to).least, 0.0);
+  if (length(subtract(to, from)) <= free + 2 * grazing * spacing_) return false;
   return hides(from, distance(from), to, distance(to));
 }
 
@@ -97,7 +118,10 @@ bool ThinWalls::hides(const Vec3& a, double da, const Vec3& b, double db, double
   if (length <= std::max(da, 0.0) + std::max(db, 0.0) + 2 * grazing * spacing_ || depth == most_halves) return false;
   Vec3 middle;
   for (std::size_t axis = 0; axis < 3; ++axis) middle[axis] = 0.5 * (a[axis] + b[axis]);
-  const double dm = distance(middle);
+  const NearDistances::Range bounds = range(middle);
+  const double dm = bounds.most < -grazing * spacing_ ? bounds.most
+                    : bounds.least > clear * spacing_ ? bounds.least
+                                                      : distance(middle);
   if (dm < -grazing * spacing_) return true;
   return hides(a, da, middle, dm, length / 2, depth + 1) || hides(middle, dm, b, db, length / 2, depth + 1);
 }
@@ -115,7 +139,24 @@ std::optional<ThinWalls::Entry> ThinWalls::entry(const Vec3& from, double from_d
     }
     if (gone >= size) return std::nullopt;
     gone = std::min(size, gone + std::max(away, tiny));
-    away = distance(add(from, multiply(gone / size, way)));
+    away = free_distance(add(from, multiply(gone / size, way)));
+  }
+}
+
+std::optional<ThinWalls::Entry> ThinWalls::entry(const RigidWalls& part, const Vec3& from, const Vec3& to) const {
+  const Vec3 way = subtract(to, from);
+  const double size = length(way);
+  if (!(size > 0)) return std::nullopt;
+  double gone = 0;
+  while (true) {
+    const Vec3 at = add(from, multiply(gone / size, way));
+    const double away = part.thin_distance(folded(at));
+    if (away <= 0) {
+      const NearestPoint near = nearest(part, at);
+      if (dot(near.normal, way) < 0 || away < -grazing * spacing_) return Entry{at, near.normal};
+    }
+    if (gone >= size) return std::nullopt;
+    gone = std::min(size, gone + std::max(away, least_stride * spacing_));
   }
 }
 
@@ -125,7 +166,7 @@ void ThinWalls::measure(const std::array<const double*, 3>& position, std::size_
   reach_ = reach;
   images_ = nullptr;
   distance_.resize(particles);
-  parallel_for(particles, [&](std::size_t i) { distance_[i] = static_cast<float>(distance(particle_place(i))); });
+  parallel_for(particles, [&](std::size_t i) { distance_[i] = static_cast<float>(free_distance(particle_place(i))); });
 }
 
 void ThinWalls::measure(const Images& images, const std::vector<WallPoint>& points,
@@ -137,7 +178,7 @@ void ThinWalls::measure(const Images& images, const std::vector<WallPoint>& poin
   parallel_for(images.size(), [&](std::size_t k) {
     const bool of_body = images.wall_point() != nullptr && images.wall_point()[k] >= 0 &&
                          static_cast<std::size_t>(images.wall_point()[k]) < wet.size();
-    distance_[particles_ + k] = of_body ? 0 : static_cast<float>(distance(image_place(k)));
+    distance_[particles_ + k] = of_body ? 0 : static_cast<float>(free_distance(image_place(k)));
   });
 }
 
@@ -168,20 +209,23 @@ Vec3 ThinWalls::imaged(const ImagePath& path, const Vec3& place) const {
   return at;
 }
 
-bool ThinWalls::sees_face(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& mirror) const {
-  const Vec3 across = subtract(mirror, point);
+bool ThinWalls::sees_face(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& unfolded,
+                          const WallPoint& kind) const {
+  const Vec3 across = subtract(unfolded, point);
   const double size = length(across);
   const Vec3 normal = multiply(1 / size, across), way = subtract(point, eye);
   const double above = -dot(way, normal) - size / 2;  // the eye above the plane of the face
   if (!(above > 0)) return false;
   const Vec3 crossing = add(eye, multiply(above / (above + size / 2), way));
-  if (std::abs(distance(crossing)) < on_face * spacing_) {
+  // What is within the support of a flat face, beside which no other is, sees it, unless something that moves is near.
+  if (kind.flat && parts_.size() == 1) return true;
+  if (kind.flat || (!kind.beside_edge && std::abs(distance(crossing)) < on_face * spacing_)) {
     Vec3 half_way;
     for (std::size_t axis = 0; axis < 3; ++axis) half_way[axis] = 0.5 * (eye[axis] + crossing[axis]);
-    if (distance(half_way) > free_half_way * above) return true;
+    if (range(half_way).least > free_half_way * above || distance(half_way) > free_half_way * above) return true;
   }
   const std::optional<Entry> found = entry(eye, eye_distance, point);
-  return found && dot(found->normal, normal) > of_face;
+  return found && dot(found->normal, normal) > kind.least_cosine;
 }
 
 bool ThinWalls::is_behind_face(std::size_t point) const {
@@ -202,15 +246,15 @@ bool ThinWalls::sees(std::size_t particle, std::size_t point) const {
   const std::int32_t g = images_->wall_point() == nullptr ? -1 : images_->wall_point()[k];
   if (g < 0 || static_cast<std::size_t>(g) >= wet_->size()) return !hides(eye, eye_distance, place, distance_[point]);
   const WallPoint& wall = (*points_)[static_cast<std::size_t>((*wet_)[static_cast<std::size_t>(g)])];
-  const Vec3 mirror = imaged(images_->paths()[static_cast<std::size_t>(images_->path()[k])], wall.mirror);
-  return sees(eye, eye_distance, place, mirror, wall);
+  const Vec3 unfolded = imaged(images_->paths()[static_cast<std::size_t>(images_->path()[k])], wall.unfolded());
+  return sees(eye, eye_distance, place, unfolded, wall);
 }
 
-bool ThinWalls::sees(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& mirror,
+bool ThinWalls::sees(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& unfolded,
                      const WallPoint& kind) const {
   if (eye_distance >= reach_) return !kind.one_sided && !kind.in_corner;
-  return kind.one_sided ? sees_face(eye, eye_distance, point, mirror)
-                        : !hides(eye, eye_distance, mirror, distance(mirror));
+  return kind.one_sided ? sees_face(eye, eye_distance, point, unfolded, kind)
+                        : !hides(eye, eye_distance, unfolded, free_distance(unfolded));
 }
 
 }  // namespace spume

@@ -35,6 +35,7 @@ class BendFit {
  public:
   BendFit(const Boundary& boundary, const Arrangement& arrangement, const Resolution& resolution, const VectorField& at)
       : boundary_(boundary),
+        thin_(boundary.bodies() == nullptr ? nullptr : boundary.bodies()->thin()),
         arrangement_(arrangement),
         h_(resolution.smoothing_length),
         reach_(fit_reach_of(d) * resolution.support_radius),
@@ -94,6 +95,7 @@ class BendFit {
                  [&](std::int32_t j, const Vec3& shift) {
                    Vec3 place{};
                    for (int a = 0; a < d; ++a) place[a] = position_[a][j] + shift[a];
+                   if (thin_ != nullptr && hides(i, here, j, place)) return;
                    add(static_cast<std::size_t>(j), place, here, wall);
                  });
     } else {
@@ -113,6 +115,12 @@ class BendFit {
       for (int a = 0; a < d; ++a) fit_.offset(a)[k] = near_[k].offset[a];
       fit_.weight()[k] = near_[k].weight;
     }
+  }
+
+  // As lists have it.
+  bool hides(std::size_t i, const Vec3& here, std::int32_t j, const Vec3& place) const {
+    const double free = thin_->particle_distance(i);
+    return free < reach_ && thin_->hides(here, free, place, thin_->particle_distance(static_cast<std::size_t>(j)));
   }
 
   // Whether image k is a particle beyond periodic sides: no mirror image, no wall point.
@@ -141,6 +149,7 @@ class BendFit {
   }
 
   const Boundary& boundary_;
+  const ThinWalls* const thin_;  // null: nothing is hidden
   const Arrangement& arrangement_;
   const double h_, reach_, spacing_;
   const std::array<const double*, 3> position_;

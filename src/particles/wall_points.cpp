@@ -72,6 +72,16 @@ void onto_shell(const Combination& walls, ShellPoint& point) {
   }
 }
 
+// Sites above each other come to one place, and points at one place do not part.
+void part_points(std::vector<ShellPoint>& points, const Combination& walls, double spacing, int dimensions) {
+  parallel_for(points.size(), [&](std::size_t i) {
+    const auto random = random_uniform(0, RandomPurpose::wall_point, i, 0, 0);
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(dimensions); ++axis)
+      points[i].place[axis] += 0.1 * spacing * (random[axis] - 0.5);
+    onto_shell(walls, points[i]);
+  });
+}
+
 std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domain, double spacing, double reach,
                                    bool outside) {
   const int d = domain.dimensions;
@@ -136,13 +146,7 @@ std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domai
     counted -= 1;
     points.push_back({sites[s].place, (sites[s].shell + 0.5) * spacing});
   }
-  // Sites above each other come to one place, and points at one place do not part.
-  parallel_for(points.size(), [&](std::size_t i) {
-    const auto random = random_uniform(0, RandomPurpose::wall_point, i, 0, 0);
-    for (std::size_t axis = 0; axis < static_cast<std::size_t>(d); ++axis)
-      points[i].place[axis] += 0.1 * spacing * (random[axis] - 0.5);
-    onto_shell(walls, points[i]);
-  });
+  part_points(points, walls, spacing, d);
   return points;
 }
 
@@ -165,8 +169,14 @@ ImageRules rules_of(const Domain& domain, double support_radius) {
 // One round of evening out.
 class Evening {
  public:
-  Evening(const Combination& walls, const Domain& domain, const Resolution& resolution, double volume, double spacing)
-      : walls_(walls), domain_(domain), resolution_(resolution), volume_(volume), spacing_(spacing) {}
+  Evening(const Combination& walls, const Domain& domain, const Resolution& resolution, double volume, double spacing,
+          const std::vector<std::vector<CornerPlane>>* corners = nullptr)
+      : walls_(walls),
+        domain_(domain),
+        resolution_(resolution),
+        volume_(volume),
+        spacing_(spacing),
+        corners_(corners) {}
 
   void round(std::vector<ShellPoint>& points) {
     const int d = domain_.dimensions;
@@ -216,6 +226,10 @@ class Evening {
         const double g = scale * Kernel::f(std::sqrt(r2) / h);
         for (int axis = 0; axis < dimensions; ++axis) gradient[axis] += g * d[axis];
       }
+      if (points[i].corner >= 0)
+        gradient =
+            add(gradient, behind_faces<dimensions, Kernel>(
+                              i, points[i].place, (*corners_)[static_cast<std::size_t>(points[i].corner)], scale));
       Vec3 way = multiply(-even_out, gradient);
       const double length = std::sqrt(dot(way, way));
       if (length > longest) way = multiply(longest / length, way);
@@ -235,10 +249,43 @@ class Evening {
     });
   }
 
+  // The gradient by the images of point i and its neighbours in the planes of a corner, and in two of them.
+  template <int dimensions, class Kernel>
+  Vec3 behind_faces(std::size_t i, const Vec3& place, const std::vector<CornerPlane>& planes, double scale) const {
+    Vec3 gradient{};
+    const auto count = [&](const Vec3& way) {
+      const double g = scale * Kernel::f(length(way) / resolution_.smoothing_length);
+      gradient = add(gradient, multiply(g, way));
+    };
+    const auto height = [&](const Vec3& way, const CornerPlane& plane) {
+      return dot(subtract(add(place, way), plane.point), plane.normal);
+    };
+    const auto count_images = [&](const Vec3& way) {
+      for (const CornerPlane& first : planes) {
+        const double before = height(way, first);
+        if (!(before > 0)) continue;
+        const Vec3 image = subtract(way, multiply(2 * before, first.normal));
+        count(image);
+        for (const CornerPlane* second = &first + 1; second != planes.data() + planes.size(); ++second)
+          if (const double above = height(image, *second); above > 0)
+            count(subtract(image, multiply(2 * above, second->normal)));
+      }
+    };
+    count_images({});
+    for (const std::int32_t j : list_.of(i)) {
+      Vec3 way{};
+      for (int axis = 0; axis < dimensions; ++axis)
+        way[axis] = double{list_.coordinate(axis)[j]} - double{list_.coordinate(axis)[i]};
+      count_images(way);
+    }
+    return gradient;
+  }
+
   const Combination& walls_;
   const Domain& domain_;
   const Resolution& resolution_;
   double volume_, spacing_;
+  const std::vector<std::vector<CornerPlane>>* corners_;
   std::array<Array<double>, 3> position_;
   CellOrder order_;
   Images images_;
@@ -278,6 +325,15 @@ std::vector<ShellPoint> make_shells(const Combination& walls, const Domain& doma
   Evening evening(walls, domain, resolution, particle_volume, spacing);
   for (int round = 0; round < rounds; ++round) evening.round(shells);
   return shells;
+}
+
+void even_out_in_corners(const Combination& walls, const Domain& domain, const Resolution& resolution,
+                         double particle_volume, const std::vector<std::vector<CornerPlane>>& corners,
+                         std::vector<ShellPoint>& shells) {
+  const double spacing = std::pow(particle_volume, 1.0 / domain.dimensions);
+  part_points(shells, walls, spacing, domain.dimensions);
+  Evening evening(walls, domain, resolution, particle_volume, spacing, &corners);
+  for (int round = 0; round < rounds; ++round) evening.round(shells);
 }
 
 std::vector<WallPoint> make_wall_points(const Combination& walls, const Domain& domain, const Resolution& resolution,

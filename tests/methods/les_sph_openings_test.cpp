@@ -55,6 +55,30 @@ const Vec3 along_x{1, 0, 0};
 
 }  // namespace
 
+// Points behind an opening that a plate divides stand for the liquid on their side of it.
+TEST(LesSphOpenings, PointsFollowTheLiquidOnTheirSideOfAPlate) {
+  Simulation run(replaced(stream, "[[inflow]]",
+                          "[[body]]\nshape = \"box\"\nsize = [4, 0.05]\nposition = [0.5, 0.225]\n[[inflow]]"));
+  run.steps(1, 0.005);
+  const les_sph::Flow& flow = run.method.flow();
+  ASSERT_NE(flow.boundary.bodies()->thin(), nullptr);
+  const Images& images = flow.arrangement.images;
+  const WallStencils& stencils = *flow.arrangement.context.walls;
+  std::size_t entries = 0;
+  for (std::size_t k = 0; k < images.size(); ++k) {
+    const std::int32_t g = images.wall_point()[k];
+    if (g < 0 || stencils.kind[static_cast<std::size_t>(g)] == PointKind::wall) continue;
+    const double y = images.position(1)[k];
+    if (y < 0 || y > 0.5) continue;
+    const auto point = static_cast<std::size_t>(g);
+    for (std::int64_t e = stencils.first[point]; e < stencils.first[point + 1]; ++e, ++entries) {
+      const auto source = static_cast<std::size_t>(stencils.source[e]);
+      EXPECT_EQ((*flow.particles.position[1])[source] < 0.225, y < 0.225) << "of the point at " << y;
+    }
+  }
+  EXPECT_GT(entries, 200U);
+}
+
 // A wall reverses no velocity before its opening. What the rest of the wall takes off the stream is a fortieth here;
 // reversed velocities take three quarters.
 TEST(LesSphOpenings, AProbeBesideAPatchReadsTheStream) {

@@ -87,6 +87,13 @@ struct Held {
 
 // e of a particle at a side by an orthogonal decomposition over all particles and their periodic copies.
 Vec3 slow_bend(const Held& held, std::size_t i, int axis, int side) {
+  const auto is_open = [&](const Vec3& from, const Vec3& to) {
+    constexpr int steps = 200;
+    for (int k = 0; k <= steps; ++k)
+      if (held.scene().walls.distance(add(multiply(1 - double(k) / steps, from), multiply(double(k) / steps, to))) < 0)
+        return false;
+    return true;
+  };
   const Domain& domain = held.scene().domain;
   const double h = held.resolution.smoothing_length,
                reach = fit_reach_of(domain.dimensions) * held.resolution.support_radius;
@@ -106,6 +113,7 @@ Vec3 slow_bend(const Held& held, std::size_t i, int axis, int side) {
       foot[axis] = plane;
       const double away = length(subtract(r, here));
       if (away >= reach) continue;
+      if (held.boundary.bodies() != nullptr && held.boundary.bodies()->thin() != nullptr && !is_open(here, r)) continue;
       const Vec3 wall = domain.sides[axis][side].velocity ? (*domain.sides[axis][side].velocity)(foot, 0) : Vec3{};
       const double eta = inward * (r[axis] - plane) / h;
       reference::Neighbour neighbour;
@@ -211,6 +219,27 @@ TEST(WallBends, AreThoseOfFitsOverAllParticles) {
       EXPECT_GT(in_corners, 10U);
     }
   }
+}
+
+// Nor does a particle beside a plate see what is on its other side, which slides the other way.
+TEST(WallBends, AreOfTheirSideOfAPlate) {
+  const auto sliding = [](const Vec3& r) -> Vec3 {
+    const Vec3 u = smooth_velocity(r);
+    return r[0] < 0.525 ? u : multiply(-5, u);
+  };
+  const Held held(closed, 0.05, sliding, "[[body]]\nshape = \"box\"\nsize = [0.05, 4]\nposition = [0.525, 0.3]\n");
+  ASSERT_NE(held.boundary.bodies()->thin(), nullptr);
+  std::size_t beside = 0;
+  for (std::size_t k = 0; k < held.images(); ++k) {
+    if (held.arrangement.images.wall_point() != nullptr && held.arrangement.images.wall_point()[k] >= 0) continue;
+    const ImagePath& path = held.path(k);
+    if (path.side[1] != 0 || path.side[0] >= 0) continue;
+    if (std::abs(held.place(held.source(k))[0] - 0.525) < 0.1) ++beside;
+    const Vec3 expected = slow_bend(held, held.source(k), 1, 0);
+    for (std::size_t a = 0; a < 2; ++a)
+      EXPECT_NEAR(held.added(k, static_cast<int>(a)), expected[a], 1e-5 * (1 + std::abs(expected[a]))) << "image " << k;
+  }
+  EXPECT_GT(beside, 4U);
 }
 
 // A few particles bear no fit.

@@ -26,6 +26,9 @@ struct WallSums {
   double smoothing_length, support_radius, volume;
   std::vector<Vec3> particle;
   std::vector<Carried> value;
+  // Beside thin bodies: what is seen from a place, another place or a wall point; null: all.
+  std::function<bool(const Vec3&, const Vec3&)> sees{};
+  std::function<bool(const Vec3&, const WallPoint&)> sees_point{};
 
   // All shifts by the periods, and reflections in walls, that a point of the domain may be seen at. `mirrored`: as a
   // free-slip wall has it; `no_slip` walls of the domain turn the velocity round.
@@ -71,6 +74,7 @@ struct WallSums {
       for (const Vec3& place : periodic_copies(particle[j])) {
         const Vec3 xi = multiply(1 / smoothing_length, subtract(place, point.mirror));
         if (length(xi) * smoothing_length >= reach || dot(subtract(place, point.foot), point.normal) < 0) continue;
+        if (sees && !sees(point.mirror, place)) continue;
         found.offset.push_back(xi);
         found.weight.push_back(WendlandC2::w(2 * length(xi) * smoothing_length / reach));
         found.value.push_back(value[j]);
@@ -180,7 +184,7 @@ struct WallSums {
     const Vec3 wall = body.velocity ? (*body.velocity)(point.foot, 0) : Vec3{};
     const Vec3 relative = subtract(carried.velocity, wall);
     carried.velocity = friction && body.wall == BoundaryKind::no_slip
-                           ? add(subtract(wall, relative), bend(point, wall, relative))
+                           ? add(subtract(wall, relative), point.past_edge ? Vec3{} : bend(point, wall, relative))
                            : subtract(carried.velocity, multiply(2 * dot(relative, point.normal), point.normal));
     return carried;
   }
@@ -197,8 +201,10 @@ struct WallSums {
         first = false;
       }
     };
-    for (std::size_t j = 0; j < particle.size(); ++j) visit(particle[j], value[j], j == i);
-    for (std::size_t g = 0; g < walls.size(); ++g) visit(walls[g].position, at_walls[g], false);
+    for (std::size_t j = 0; j < particle.size(); ++j)
+      if (!sees || sees(particle[i], particle[j])) visit(particle[j], value[j], j == i);
+    for (std::size_t g = 0; g < walls.size(); ++g)
+      if (!sees_point || sees_point(particle[i], walls[g])) visit(walls[g].position, at_walls[g], false);
   }
 
   // V F(q) / h^(d+2) with the sign of V grad W = g (r_j - r_i).

@@ -61,8 +61,9 @@ class BufferLayers {
   bool stale() const { return stale_; }
   // What is out of reach is dropped, what is missing at the far ends is added. Particles are numbered anew.
   void renew();
-  // Walls, for a particle at r on its way; columns of inflows keep to their cross-section.
-  void apply_walls(const Boundary& boundary, std::size_t i, Vec3& r, Vec3* u) const;
+  // Walls, for a particle at r on its way; columns of inflows keep to their cross-section. `from` as for
+  // Boundary::apply_walls().
+  void apply_walls(const Boundary& boundary, std::size_t i, Vec3& r, Vec3* u, const Vec3* from = nullptr) const;
 
   // Particles are where the step has brought them: who passes a side changes over.
   void accept();

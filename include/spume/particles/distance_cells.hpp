@@ -19,7 +19,9 @@ class DistanceCells {
   // From the walls, negative inside them; farther than four support radii from a surface a bound of it.
   double distance(const Vec3& point) const;
   // That it is so; false where the cells do not tell.
-  bool surely_farther(const Vec3& point, double gap) const;
+  bool surely_farther(const Vec3& point, double gap) const { return least(point) > gap; }
+  // No more than the distance; of what the cells do not tell no bound.
+  double least(const Vec3& point) const;
   double bytes() const;
 
  private:

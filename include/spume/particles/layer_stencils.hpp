@@ -30,9 +30,9 @@ class LayerStencils {
   LayerStencils(const Scene& scene, const Resolution& resolution, BufferLayers& layers)
       : scene_(scene), resolution_(resolution), layers_(layers) {}
 
-  // Of the particles as they are arranged, for a step dt; `phase` of each.
+  // Of the particles as they are arranged, of which `thin` hides some (null: none), for a step dt; `phase` of each.
   void find(const Arrangement& arrangement, const ParticleStore& particles, std::span<const std::uint8_t> phase,
-            double dt);
+            const ThinWalls* thin, double dt);
   // A velocity `after` a step dt without pressure, in the layers: of inflows with what the pressure will take away,
   // whose gradient is kept. `before` the step; `density` of the particles.
   void predict(const std::array<const double*, 3>& before, const std::array<double*, 3>& after, double dt,

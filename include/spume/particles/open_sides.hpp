@@ -40,10 +40,10 @@ class OpenSides {
   // particles, which take the fields that they do not have from the nearest particle. Returns whether there were any.
   bool exchange(ParticleStore& particles, double t);
 
-  // Appends the points and their stencils for particles at `at` at time t. Throws StepFailure for a velocity that is
-  // not finite.
-  void find_stencils(const Arrangement& arrangement, const VectorField& at, double t, WallStencils& stencils,
-                     std::array<Array<double>, 3>& position);
+  // Appends the points and their stencils for particles at `at` at time t, of which `thin` hides some; null: none.
+  // Throws StepFailure for a velocity that is not finite.
+  void find_stencils(const Arrangement& arrangement, const VectorField& at, double t, const ThinWalls* thin,
+                     WallStencils& stencils, std::array<Array<double>, 3>& position);
   // give_opening_gradients() for the points that find_stencils() appended.
   void give_gradients(const std::array<const double*, 3>& before, const std::array<const double*, 3>& after, double dt,
                       WallStencils& stencils) const;

@@ -9,6 +9,7 @@
 #include "spume/operators/wall_stencils.hpp"
 #include "spume/particles/arrangement.hpp"
 #include "spume/particles/open_gates.hpp"
+#include "spume/particles/thin_walls.hpp"
 
 namespace spume {
 
@@ -36,6 +37,7 @@ struct OpeningLiquid {
   const Array<std::int64_t>* layer = nullptr;  // particles with 0 or more are no liquid; null: all are
   // Of the particles: points follow those of their phase where there are enough of them; null: all.
   const std::uint8_t* phase = nullptr;
+  const ThinWalls* thin = nullptr;  // what hides liquid from the mirrors, measured for the particles; null: nothing
 };
 
 // Appends the fits at the mirrors of the points, their kinds, normals and velocities, and the signs of their pressures;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "spume/particles/distance_cells.hpp"
+#include "spume/particles/near_distances.hpp"
 #include "spume/particles/wall_points.hpp"
 
 namespace spume {
@@ -33,6 +34,7 @@ class RigidWalls {
   // Of its thin bodies alone.
   double thin_distance(const Vec3& point) const { return thin_walls_.distance(start(point)); }
   NearestPoint thin_nearest(const Vec3& point) const;
+  NearDistances::Range thin_range(const Vec3& point) const;  // of the distance
 
   RigidPlace place;          // in use; without a motion it stays
   RigidPlace accepted;       // of the last state, with thin bodies
@@ -100,6 +102,7 @@ class RigidWalls {
   Bounds bounds_{};                 // of the solid
   double reach_ = 0;
   std::optional<DistanceCells> cells_;
+  std::optional<NearDistances> thin_cells_;  // with thin bodies
   double half_width_ = infinite;
   std::vector<Level> levels_{1};
   std::size_t level_ = 0;

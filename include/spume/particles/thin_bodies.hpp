@@ -5,7 +5,10 @@
 //
 // Wall points of such a body stand behind each of its faces as if the solid went on there, through the body and the
 // liquid beyond: mirror images of places before the face, and of places past its edges in the plane of the face. What
-// stands before the face sees them there in place of what the body hides (particles/thin_walls.hpp).
+// stands before the face sees them there in place of what the body hides (particles/thin_walls.hpp). In a corner of two
+// faces a place is mirrored in both in turns, as long as its image is before the next face, and the face that is last
+// is that which it is seen through: at any angle from 45 degrees on every place behind the corner then mirrors one
+// before it. Images that both orders have, as at right angles, are one and seen where the place is.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +28,8 @@ struct StandingBody {
   bool thin = false;
 };
 
-// Wall points of the thin ones of `bodies`, whose union is `walls`, and those in corners that a thin one makes with
-// another: there the liquid is mirrored at both.
+// Wall points of the thin ones of `bodies`, whose union is `walls`, and those in corners of their faces and with other
+// bodies, of thick ones at 45 degrees or more.
 std::vector<WallPoint> make_sheet_points(const std::vector<StandingBody>& bodies, const Combination& walls,
                                          const Domain& domain, const Resolution& resolution, double particle_volume);
 

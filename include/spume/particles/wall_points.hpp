@@ -21,8 +21,23 @@ struct WallPoint {
   Vec3 foot{}, normal{};  // on the surface, and out of the solid there
   Vec3 mirror{};          // as far before the foot as the position is behind it
   // Of a thin body (particles/thin_bodies.hpp): seen through the face of its foot alone, which may lie past the edge of
-  // that in its plane; or mirrored at both faces of a corner.
-  bool one_sided = false, past_edge = false, in_corner = false;
+  // that in its plane; mirrored in the faces of a corner in turns; with another face of a thin body within the support
+  // radius of the mirror.
+  bool one_sided = false, past_edge = false, in_corner = false, beside_edge = false;
+  bool flat = false;  // no other face is, and this one is flat
+  // Of a one-sided point: of the cosine of the angle between the normal and that of a place of the surface where what
+  // enters sees the point.
+  float least_cosine = 0;
+
+  // Where a way to the point leads on from the face that it is seen through; of other points what they mirror.
+  Vec3 unfolded() const {
+    if (!one_sided) return mirror;
+    double before = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) before += (foot[axis] - position[axis]) * normal[axis];
+    Vec3 place = position;
+    for (std::size_t axis = 0; axis < 3; ++axis) place[axis] += 2 * before * normal[axis];
+    return place;
+  }
 };
 
 // Down to the support radius below the walls, as far as liquid may see: inside the domain, and beyond its open sides.

@@ -35,7 +35,7 @@ void Flow::find_neighbours(double dt) {
 }
 
 void Flow::find_layers(double dt) {
-  layers->find(arrangement, particles, phase, dt);
+  layers->find(arrangement, particles, phase, boundary.bodies() == nullptr ? nullptr : boundary.bodies()->thin(), dt);
 }
 
 void Flow::measure_stencils() {

@@ -333,7 +333,7 @@ void Flow::accept(double dt) {
     }
     (*pressure)[i] = reduced_pressure[i] + hydrostatic_part(i);
     if (features.openings)
-      openings->apply_walls(boundary, i, r, &u);
+      openings->apply_walls(boundary, i, r, &u, &from);
     else
       boundary.apply_walls(boundary.next_walls, r, &u, &from);
     for (int axis = 0; axis < dimensions; ++axis) {

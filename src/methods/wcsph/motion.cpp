@@ -68,7 +68,7 @@ void Flow::keep_lists(double dt) {
   if (features.displaced_bodies) boundary.bodies()->move_to(time);
   parallel_for(size(), [&](std::size_t i) {
     Vec3 r = vector_at(particles.position, dimensions, i);
-    apply_walls(i, r, nullptr);
+    apply_walls(i, r, nullptr, nullptr);
     for (int axis = 0; axis < dimensions; ++axis) {
       (*particles.position[axis])[i] = r[axis];
       (*listed[axis])[i] = static_cast<float>(r[axis] - arrangement.origin[axis]);
@@ -90,11 +90,11 @@ void Flow::move_images(const std::array<const double*, 3>& at, double t) {
   walls.weigh(arrangement);
 }
 
-void Flow::apply_walls(std::size_t i, Vec3& r, Vec3* u) const {
+void Flow::apply_walls(std::size_t i, Vec3& r, Vec3* u, const Vec3* from) const {
   if (openings != nullptr)
-    openings->apply_walls(boundary, i, r, u);
+    openings->apply_walls(boundary, i, r, u, from);
   else
-    boundary.apply_walls(boundary.walls, r, u);
+    boundary.apply_walls(boundary.walls, r, u, from);
 }
 
 void Flow::move_layers(double dt) {
@@ -127,8 +127,8 @@ Vec3 Flow::held_velocity(std::size_t i, double dt, Vec3& r) const {
     u[axis] = half.velocity;
     r[axis] = half.place + half.way;
   }
-  const Vec3 before = r;
-  apply_walls(i, r, &u);
+  const Vec3 before = r, from = vector_at(particles.position, dimensions, i);
+  apply_walls(i, r, &u, &from);
   // Particles go round periodic sides when lists are made; those of inflows keep to their columns there too.
   for (int axis = 0; axis < dimensions && !(features.openings && openings->leads(i)); ++axis)
     if (scene.domain.periodic(axis)) r[axis] = before[axis];

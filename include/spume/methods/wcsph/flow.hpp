@@ -141,7 +141,7 @@ struct Flow {
   };
   HalfStep half_step(int axis, std::size_t i, double dt) const;
   Vec3 held_velocity(std::size_t i, double dt, Vec3& r) const;
-  void apply_walls(std::size_t i, Vec3& r, Vec3* u) const;
+  void apply_walls(std::size_t i, Vec3& r, Vec3* u, const Vec3* from) const;
   SurfaceTension::Now tension_now();
   void build_lists();
   bool lists_hold(double dt) const;
