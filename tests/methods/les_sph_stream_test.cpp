@@ -73,5 +73,16 @@ TEST(LesSphStreams, PassABoxThatTheySlideAlong) {
   expect_no_jets("[[body]]\nshape = \"box\"\nsize = [9, 10]\nposition = [24.5, 15]\nwall = \"free-slip\"\n", 800);
 }
 
+// The faces by which bodies touch are no walls: a particle that comes into the corner above them stays out of the seam,
+// where it left the solve without a pressure.
+TEST(LesSphStreams, PassBodiesThatTouch) {
+  expect_no_jets("[[solid]]\nlower = [20, 0]\nupper = [30, 10]\n[[solid]]\nlower = [30, 0]\nupper = [40.3, 5.1]\n",
+                 200);
+  expect_no_jets(
+      "[[body]]\nshape = \"box\"\nsize = [10, 15]\nposition = [25, 2.5]\nwall = \"no-slip\"\n"
+      "[[body]]\nshape = \"box\"\nsize = [10.3, 10.1]\nposition = [35.15, 0.05]\nwall = \"no-slip\"\n",
+      200);
+}
+
 }  // namespace
 }  // namespace spume::test
