@@ -179,39 +179,6 @@ std::optional<BodyWalls::NearWall> BodyWalls::wall_within(const Vec3& point, dou
   return found;
 }
 
-void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
-  if (surely_farther(position, gap)) return;
-  const Nearest nearest = nearest_part(position);
-  if (nearest.distance >= gap) return;
-  const RigidWalls& walls = *nearest.part;
-  NearestPoint near = walls.nearest(position);
-  const NearestPoint first = near;
-  position = add(near.point, multiply(std::max(gap, std::abs(near.distance)), near.normal));
-  if (!(nearest_walls(position).exact_distance(position) >= 0.5 * gap)) {
-    // Another wall is there: before the nearest face.
-    for (int round = 0; round < 3 && near.distance < gap; ++round) {
-      position = add(near.point, multiply(gap, near.normal));
-      near = nearest_walls(position).nearest(position);
-    }
-  }
-  if (velocity == nullptr) return;
-  const double inwards = dot(subtract(*velocity, walls.velocity_at(first.point)), first.normal);
-  if (inwards < 0) *velocity = subtract(*velocity, multiply(inwards, first.normal));
-}
-
-void BodyWalls::limit_approach(const Vec3& position, double gap, double speed, const Vec3& before,
-                               Vec3& velocity) const {
-  if (surely_farther(position, gap)) return;
-  const Nearest nearest = nearest_part(position);
-  if (nearest.distance >= gap) return;
-  const RigidWalls& walls = *nearest.part;
-  const NearestPoint near = walls.nearest(position);
-  const Vec3 surface = walls.velocity_at(near.point);
-  const double approach = dot(subtract(velocity, surface), near.normal),
-               most = std::min(-speed, dot(subtract(before, surface), near.normal));
-  if (approach < most) velocity = add(velocity, multiply(most - approach, near.normal));
-}
-
 bool BodyWalls::is_wet(std::size_t point) const {
   return std::binary_search(wet_points_.begin(), wet_points_.end(), static_cast<std::int32_t>(point));
 }

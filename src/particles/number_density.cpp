@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
 
 namespace spume {
 namespace {
@@ -31,7 +32,7 @@ constexpr double least_displacement = 1e-12;
 // What the relaxation reads.
 struct Reader {
   const Arrangement& arrangement;
-  const Domain& domain;
+  const Boundary& boundary;
   const VectorField& at;
   const Resolution& resolution;
   const MomentFields& moments;
@@ -39,31 +40,26 @@ struct Reader {
   const Array<std::int64_t>* left_out;
 
   bool counts(std::size_t i) const { return left_out == nullptr || (*left_out)[i] < 0; }
-  bool near_box(std::size_t i) const {
-    const double support_radius = arrangement.grid.support_radius();
-    for (const SolidBox& box : domain.boxes) {
-      double distance2 = 0;
-      for (int axis = 0; axis < domain.dimensions; ++axis) {
-        const double x = (*at[axis])[i];
-        const double outside = std::max({box.lower[axis] - x, x - box.upper[axis], 0.0});
-        distance2 += outside * outside;
-      }
-      if (distance2 < support_radius * support_radius) return true;
-    }
-    return false;
-  }
 
   // Whether the neighbourhood of a particle is full, or as thin on all sides. Where liquid ends the normal is large:
   // h |m| is 0.66 (3-D) and 0.84 (2-D) times what div r lacks in the upper layer of a lattice, 0.6 times in the second
   // one. In foam that falls back into the liquid it is a tenth; left at the density of nine tenths that it arrives
   // with, such liquid raised the second wave of dam_break_3d.
   bool tells_density(std::size_t i) const {
-    if (near_box(i)) return false;
     if (surface == nullptr || surface->interior_weight[i] == 1) return true;
     if (surface->at_surface[i] != 0) return false;
-    const double normal2 = squared_norm(moments.normal, domain.dimensions, i);
+    const double normal2 = squared_norm(moments.normal, resolution.dimensions, i);
     const double missing = resolution.lattice.divergence_of_position - (*moments.divergence_of_position)[i];
     return std::sqrt(normal2) < largest_isotropic_normal * missing;
+  }
+
+  // Beside an obstacle how much of a void a particle stands at: 0 with what is let be, 1 as thin as a void.
+  double void_share(std::size_t i) const {
+    const double lack = -excess(i) - particle_disorder;
+    if (!(lack > 0) || !boundary.has_obstacles() ||
+        !boundary.obstacle_near(vector_at(at, resolution.dimensions, i), resolution.support_radius))
+      return 0;
+    return std::min(1.0, lack / (thin_as_void - particle_disorder));
   }
 
   double excess(std::size_t i) const {
@@ -99,10 +95,10 @@ double displacement_fraction(const Arrangement& arrangement, const ParticleStore
   return fraction < least_displacement ? 0.0 : std::min(most_displacement, fraction);
 }
 
-double even_out_density(const DensityRelaxation& relaxation, const Arrangement& arrangement, const Domain& domain,
+double even_out_density(const DensityRelaxation& relaxation, const Arrangement& arrangement, const Boundary& boundary,
                         const VectorField& at, const Resolution& resolution, const MomentFields& moments,
                         const FreeSurface* surface, std::span<double> divergence) {
-  const Reader read{arrangement, domain, at, resolution, moments, surface, relaxation.left_out};
+  const Reader read{arrangement, boundary, at, resolution, moments, surface, relaxation.left_out};
   struct Sum {
     double disorder = 0, particles = 0, volume = 0;
   };
@@ -129,11 +125,13 @@ double even_out_density(const DensityRelaxation& relaxation, const Arrangement& 
   const double mean = total.disorder / std::max(total.particles, 1.0);
   const double of_all = mean - within(mean, mean_disorder);
   const double closing = relaxation.displacement / (relaxation.steps * relaxation.dt);
+  const double at_once = relaxation.displacement / relaxation.dt;
   const double expanding = surface != nullptr ? closing / more_steps_below_surface : closing;
   parallel_for(divergence.size(), [&](std::size_t i) {
     if (!read.counts(i) || !read.tells_density(i)) return;
     const double own = read.excess(i);
-    const double rate = own < 0 ? closing * std::max(1.0, -own / thin_as_void) : expanding;
+    const double rate =
+        own < 0 ? std::max(closing * std::max(1.0, -own / thin_as_void), at_once * read.void_share(i)) : expanding;
     const double taken = relaxation.still == nullptr ? 1.0 : 1.0 - double{(*relaxation.still)[i]};
     divergence[i] -=
         taken * (expanding * of_all + std::min(rate, 1 / relaxation.dt) * (own - within(own, particle_disorder)));

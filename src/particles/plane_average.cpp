@@ -13,7 +13,7 @@
 namespace spume {
 namespace {
 
-// A corner of a cell, and how far its wet share lies above one half.
+// A corner of a cell, and how far its wet share lies above one half: below zero in a body.
 struct Corner {
   Vec3 point{};
   double wetness = 0;
@@ -112,11 +112,16 @@ PlaneSample PointSampler::plane_average(int axis, double position) const {
   if (position < walls[normal][0] || position > walls[normal][1]) return result;  // a wall has moved past it
   const PlaneCells plane(walls, state_.particles->dimensions, normal, position, state_.resolution->spacing);
 
+  const BodyWalls* const bodies = state_.boundary->bodies();
   std::vector<Corner> corners(plane.corners[0] * plane.corners[1]);
   parallel_for(corners.size(), [&](std::size_t k) {
     const auto column = k % plane.corners[0], row = k / plane.corners[0];
     const Vec3 point = plane.point(static_cast<double>(column), static_cast<double>(row));
     corners[k] = {point, wet_share(point) - 0.5};
+    if (bodies == nullptr) return;
+    // Up to the surface of a body, from which a distance of a spacing counts as wet all round.
+    const double from_body = bodies->distance(point) / (2 * state_.resolution->spacing);
+    corners[k].wetness = from_body < 0 ? from_body : std::min(corners[k].wetness, from_body);
   });
 
   const auto wet_piece = [&](std::size_t i, std::size_t j) {

@@ -16,12 +16,13 @@ constexpr double in_side = 1e-6;
 
 }  // namespace
 
+bool has_wall_points(const Scene& scene) {
+  return !scene.openings.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                                [](const Body& body) { return body.wall != BoundaryKind::open; });
+}
+
 void make_bodies_of_boxes(Scene& scene) {
   Domain& domain = scene.domain;
-  const bool beside =
-      !scene.openings.empty() || std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                                             [](const Body& body) { return body.wall != BoundaryKind::open; });
-  if (!beside) return;
   Bounds whole;
   Vec3 periods{};
   for (int axis = 0; axis < domain.dimensions; ++axis) {

@@ -347,7 +347,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   scene.spacing = draft.options.spacing;
   scene.seed = draft.options.seed;
   const std::vector<std::shared_ptr<const PistonMotion>> of_flaps = add_flaps(draft, scene, problems);
-  if (method->solids_join_bodies) make_bodies_of_boxes(scene);
+  if (method->solids_join_bodies && has_wall_points(scene)) make_bodies_of_boxes(scene);
   problems.throw_if_any();
   scene.walls = make_walls(scene.bodies, scene.motions);
   loaded.bytes_per_particle = method->bytes_per_particle(draft);
@@ -370,6 +370,11 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   if (!method->honours_displaced_walls) check_sliding_walls(draft, scene, method->name, problems);
   if (method->check_scene) method->check_scene(draft, scene, problems);
   problems.throw_if_any();
+  // Where nothing but the walls holds the pressure, images at the edges of boxes leave a stream without liquid there.
+  if (method->solids_join_bodies && !scene.free_surface && !scene.domain.boxes.empty()) {
+    make_bodies_of_boxes(scene);
+    scene.walls = make_walls(scene.bodies, scene.motions);
+  }
 
   loaded.probe_scalars = probe_scalars(method, draft.options);
   draft.options.groups = describe_groups(draft, scene, compiler.scope());

@@ -109,6 +109,16 @@ TEST(LesSphPlanes, LeaveOutSolids) {
   EXPECT_NEAR(run.method.plane_average(1, 0.6).area, 1, 1e-12);
 }
 
+// Off the cells, to the error of a distance that is linear over a cell; a circle of 0.3 is cut by cells of 0.05.
+TEST(LesSphPlanes, LeaveOutBodies) {
+  Simulation box(closed_box +
+                 "[[body]]\nshape = \"box\"\nsize = [0.41, 0.33]\nposition = [0.52, 0.47]\nwall = \"no-slip\"\n");
+  EXPECT_NEAR(box.method.plane_average(0, 0.5).area, 0.67, 1e-12);
+  EXPECT_NEAR(box.method.plane_average(1, 0.4).area, 0.59, 1e-12);
+  Simulation ball(closed_box + "[[body]]\nshape = \"ball\"\nradius = 0.3\nposition = [0.5, 0.5]\nwall = \"no-slip\"\n");
+  EXPECT_NEAR(ball.method.plane_average(0, 0.5).area, 0.4, 1e-12);
+}
+
 TEST(LesSphPlanes, AreTheSameForAnyNumberOfThreads) {
   Simulation run(dam_break_3d);
   run.steps(1, 0.002);

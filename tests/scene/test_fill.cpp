@@ -192,6 +192,7 @@ TEST(Fill, TouchingRegionsShareNothingAndKeepTheirOrder) {
   }
 }
 
+// Where no surface is, boxes are bodies for les-sph.
 TEST(Fill, ClosedBoxAroundASolidHasNoFreeSurface) {
   const std::string closed =
       "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [2, 2]\nleft = \"no-slip\"\nright = \"no-slip\"\n"
@@ -200,8 +201,14 @@ TEST(Fill, ClosedBoxAroundASolidHasNoFreeSurface) {
   const LoadedCase full = load_text(closed);
   EXPECT_EQ(full.scene.particles.size(), 400u - 36u);
   EXPECT_FALSE(full.scene.free_surface);
-  EXPECT_EQ(full.scene.domain.boxes.at(0).kind, BoundaryKind::no_slip);
-  EXPECT_TRUE(load_text(closed + "upper = [2, 1.5]\nlower = [0, 0]\n").scene.free_surface);
+  EXPECT_TRUE(full.scene.domain.boxes.empty());
+  EXPECT_EQ(full.scene.bodies.at(0).wall, BoundaryKind::no_slip);
+  EXPECT_NEAR(full.scene.bodies.at(0).solid->distance({0.6, 1, 0}), 0.1, 1e-12);
+  EXPECT_NEAR(full.scene.walls.distance({0.6, 1, 0}), 0.1, 1e-12);
+  const LoadedCase open = load_text(closed + "upper = [2, 1.5]\nlower = [0, 0]\n");
+  EXPECT_TRUE(open.scene.free_surface);
+  EXPECT_EQ(open.scene.domain.boxes.at(0).kind, BoundaryKind::no_slip);
+  EXPECT_TRUE(open.scene.bodies.empty());
 }
 
 TEST(Fill, ConformingColumnsEndOnTheSurfaceAndStandOnTheBottom) {

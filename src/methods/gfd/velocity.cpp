@@ -157,12 +157,11 @@ void Flow::find_divergence() {
 }
 
 void Flow::relax_density(double dt) {
-  volume_ratio =
-      even_out_density({.steps = options.get<PressureOptions>().density_relaxation,
-                        .displacement = displacement,
-                        .dt = dt,
-                        .left_out = left_out()},
-                       arrangement, scene.domain, particles.position, resolution, moments, nullptr, divergence);
+  volume_ratio = even_out_density({.steps = options.get<PressureOptions>().density_relaxation,
+                                   .displacement = displacement,
+                                   .dt = dt,
+                                   .left_out = left_out()},
+                                  arrangement, boundary, particles.position, resolution, moments, nullptr, divergence);
   // What it lets be from particle to particle adds up over a phase: a bubble that rises by its diameter shrinks by 0.5
   // %. The volume of a whole phase has no such disorder and need not wait as long: it closes its excess while the
   // particles move by a support, over which their neighbours change.

@@ -65,12 +65,12 @@ void Flow::centre_divergence(double dt) {
 }
 
 void Flow::relax_density(double dt) {
-  const double taken = even_out_density({.steps = options.get<PressureOptions>().density_relaxation,
-                                         .displacement = displacement,
-                                         .dt = dt,
-                                         .still = rest.share},
-                                        arrangement, scene.domain, intermediate_position, resolution, moments,
-                                        surface.get(), divergence);
+  const double taken =
+      even_out_density({.steps = options.get<PressureOptions>().density_relaxation,
+                        .displacement = displacement,
+                        .dt = dt,
+                        .still = rest.share},
+                       arrangement, boundary, intermediate_position, resolution, moments, surface.get(), divergence);
   volume = particles.volume * taken;
   particles.scratch().release(moments.kernel_sum);
 }
