@@ -6,6 +6,7 @@
 #include "spume/operators/cross_sums.hpp"
 #include "spume/physics/bubbles/entrainment.hpp"
 #include "spume/physics/bubbles/population.hpp"
+#include "spume/physics/oxygen/transfer.hpp"
 
 namespace spume {
 namespace {
@@ -149,6 +150,35 @@ void entrainment(benchmark::State& state) {
   state.counters["bubbles"] = benchmark::Counter(static_cast<double>(bubbles), benchmark::Counter::kAvgIterations);
 }
 
+// Oxygen of a bubble over a step, in closed form with Higbie's coefficient; the concentration that it sees and its
+// share of the return ride on the passes of the momentum exchange.
+void oxygen_of_bubbles(benchmark::State& state) {
+  use_threads(state, 1);
+  const auto size = static_cast<std::size_t>(state.range(0));
+  const oxygen::Gas gas{.diffusivity = 2e-9, .viscosity = 1e-6, .saturation = 9.1, .weight = 9810, .level = 1};
+  Array<double> radius(size), height(size), slip(size), concentration(size);
+  std::vector<oxygen::Exchange> found(size);
+  std::vector<oxygen::Contents> contents(size);
+  for (std::size_t b = 0; b < size; ++b) {
+    const auto r = random_uniform(3, RandomPurpose::test, b, 0, 0);
+    radius[b] = 0.001 + 0.002 * r[0];
+    height[b] = r[1];
+    slip[b] = 0.1 + 0.2 * r[2];
+    concentration[b] = 8 * r[0];
+    const double moles = gas.moles(4 * M_PI / 3 * radius[b] * radius[b] * radius[b], height[b]);
+    contents[b] = {gas.fraction * moles, (1 - gas.fraction) * moles};
+  }
+  for (auto _ : state) {
+    parallel_for(size, [&](std::size_t b) {
+      found[b] =
+          oxygen::exchange(gas, contents[b], oxygen::sphere(radius[b]), height[b], slip[b], concentration[b], 1e-3);
+    });
+    benchmark::ClobberMemory();
+  }
+  state.counters["time_per_bubble"] = benchmark::Counter(
+      static_cast<double>(size), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
 // Argument: bubbles, all born and all removed.
 void births_and_deaths(benchmark::State& state) {
   use_threads(state, 1);
@@ -170,6 +200,11 @@ BENCHMARK(bubble_sums)->Apply(ParticleCube::sizes);
 BENCHMARK(particles_around_bubbles)->Apply(ParticleCube::sizes);
 BENCHMARK(interpolation_to_bubbles)->Apply(ParticleCube::sizes);
 BENCHMARK(entrainment)->Arg(5)->Arg(15);
+BENCHMARK(oxygen_of_bubbles)
+    ->ArgNames({"bubbles", "threads"})
+    ->ArgsProduct({{10000, 100000}, thread_counts()})
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 BENCHMARK(births_and_deaths)
     ->ArgNames({"bubbles", "threads"})
     ->ArgsProduct({{10000, 100000}, thread_counts()})

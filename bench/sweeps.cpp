@@ -162,52 +162,69 @@ void viscous_laplacian(benchmark::State& state) {
   });
 }
 
-// Of the scalar: a comparison, a difference, its product with the slope, rate 2, along the shift 7, extremes 2.
-constexpr double of_scalar = 14;
+// `count` scalars with what sweeps give of them.
+template <int count>
+struct SweptScalars {
+  std::vector<Array<float>> rate, change;
+  std::vector<const double*> values;
+  std::vector<double> reference = std::vector<double>(count, -1.0);
+  std::vector<float> diffusivity = std::vector<float>(count, 1.0F);
+  std::vector<Array<double>> of_each;
+  std::vector<float*> rates, changes;
 
-void viscous_laplacian_with_scalar(benchmark::State& state) {
+  explicit SweptScalars(const Sweeps& sweeps) {
+    for (int s = 0; s < count; ++s) {
+      of_each.push_back(sweeps.potential);
+      rate.emplace_back(sweeps.particles.n);
+      change.emplace_back(sweeps.particles.n);
+    }
+    for (int s = 0; s < count; ++s) {
+      values.push_back(of_each[s].data());
+      rates.push_back(rate[s].data());
+      changes.push_back(change[s].data());
+    }
+  }
+};
+
+// Of all a comparison, their weight 2, along the shift 6; of each a difference, rate and change 4, extremes 2.
+template <int count>
+void viscous_laplacian_with_scalars(benchmark::State& state) {
   Sweeps sweeps(state);
-  const RidingScalar scalar{.values = sweeps.potential.data(),
-                            .reference = -1,
-                            .viscosity = 1,
-                            .diffusivity = 1,
-                            .shift = Sweeps::read(sweeps.shift),
-                            .correction = sweeps.corrections(),
-                            .rate = sweeps.scalar[2].data(),
-                            .change = sweeps.scalar[3].data()};
-  sweeps.run(state, {10 + 5 + 6 + 6 + of_scalar, 2, 24 + 4 + 12 + 8 + 12 + 24 + 8}, [&] {
+  const SweptScalars<count> swept(sweeps);
+  const RidingScalars scalars{.values = swept.values,
+                              .reference = swept.reference,
+                              .diffusivity = swept.diffusivity,
+                              .viscosity = 1,
+                              .shift = Sweeps::read(sweeps.shift),
+                              .correction = sweeps.corrections(),
+                              .rate = swept.rates,
+                              .change = swept.changes};
+  sweeps.run(state, {10 + 5 + 6 + 6 + 9 + 7 * count, count == 1 ? 2 : 3, 24 + 4 + 12 + 12 + 24 + 16.0 * count}, [&] {
     viscous_sweep(sweeps.context, sweeps.packed, sweeps.velocities(), sweeps.rule, sweeps.scalar[0].data(),
-                  Sweeps::write(sweeps.out), false, {}, &scalar);
+                  Sweeps::write(sweeps.out), false, {}, &scalars);
   });
 }
 
-// Scalars in a sweep of their own.
-template <int count>
+// Scalars in sweeps of their own; of eddies 4 and of each scalar 2.
+template <int count, bool eddies = false>
 void scalars_alone(benchmark::State& state) {
   Sweeps sweeps(state);
-  const std::size_t n = sweeps.particles.n;
-  std::vector<Array<float>> rate, change;
-  for (int s = 0; s < count; ++s) {
-    rate.emplace_back(n);
-    change.emplace_back(n);
-  }
-  std::vector<const double*> values(count, sweeps.potential.data());
-  const std::vector<double> reference(count, -1.0);
-  const std::vector<float> diffusivity(count, 1.0F), inverse_schmidt(count, 1.0F);
-  std::vector<float*> rates, changes;
-  for (std::size_t s = 0; s < count; ++s) {
-    rates.push_back(rate[s].data());
-    changes.push_back(change[s].data());
-  }
-  const ScalarSweepInput in{.values = values,
-                            .reference = reference,
-                            .diffusivity = diffusivity,
+  const SweptScalars<count> swept(sweeps);
+  const std::vector<float> inverse_schmidt(count, 1.0F);
+  const ScalarSweepInput in{.values = swept.values,
+                            .reference = swept.reference,
+                            .diffusivity = swept.diffusivity,
                             .normalisation = sweeps.scalar[0].data(),
+                            .eddy_viscosity = eddies ? sweeps.scalar[1].data() : nullptr,
                             .inverse_schmidt = inverse_schmidt,
                             .shift = Sweeps::read(sweeps.shift),
                             .correction = sweeps.corrections()};
-  const ScalarSweepOutput out{.rate = rates, .change = changes, .exchange = sweeps.scalar[4].data()};
-  sweeps.run(state, {10 + 5 + 2 + 2 + 1 + 6 + 7 * count, 2, 4 + 12 + 24 + 4 + 16.0 * count},
+  const ScalarSweepOutput out{.rate = swept.rates, .change = swept.changes, .exchange = sweeps.scalar[4].data()};
+  // Up to eight share a sweep: records of eight floats hold four scalars, without eddies, of twelve eight.
+  const double turns = (count + 7) / 8, records = turns * (count == 1 || (count <= 4 && !eddies) ? 2 : 3);
+  sweeps.run(state,
+             {turns * (10 + 5 + 2 + 2 + 1 + 6 + (eddies ? 4 : 0)) + (eddies ? 9 : 7) * count, records,
+              turns * (4 + 12 + 24 + 4) + 16.0 * count},
              [&] { scalar_transport_sweep(sweeps.context, sweeps.packed, in, out); });
 }
 
@@ -307,10 +324,20 @@ BENCHMARK(velocity_gradient)->Apply(ParticleCube::sizes);
 BENCHMARK(shift_curvature)->Apply(ParticleCube::sizes);
 BENCHMARK(viscous_stress)->Apply(ParticleCube::sizes);
 BENCHMARK(viscous_laplacian)->Apply(ParticleCube::sizes);
-BENCHMARK(viscous_laplacian_with_scalar)->Apply(ParticleCube::sizes);
+BENCHMARK(viscous_laplacian_with_scalars<1>)->Apply(ParticleCube::sizes);
+BENCHMARK(viscous_laplacian_with_scalars<2>)->Apply(ParticleCube::sizes);
+BENCHMARK(viscous_laplacian_with_scalars<3>)->Apply(ParticleCube::sizes);
+BENCHMARK(viscous_laplacian_with_scalars<4>)->Apply(ParticleCube::sizes);
+BENCHMARK(viscous_laplacian_with_scalars<5>)->Apply(ParticleCube::sizes);
 BENCHMARK(scalars_alone<1>)->Apply(ParticleCube::sizes);
 BENCHMARK(scalars_alone<2>)->Apply(ParticleCube::sizes);
 BENCHMARK(scalars_alone<4>)->Apply(ParticleCube::sizes);
+BENCHMARK(scalars_alone<8>)->Apply(ParticleCube::sizes);
+BENCHMARK(scalars_alone<14>)->Apply(ParticleCube::sizes);
+BENCHMARK(scalars_alone<1, true>)->Apply(ParticleCube::sizes);
+BENCHMARK(scalars_alone<4, true>)->Apply(ParticleCube::sizes);
+BENCHMARK(scalars_alone<8, true>)->Apply(ParticleCube::sizes);
+BENCHMARK(scalars_alone<14, true>)->Apply(ParticleCube::sizes);
 BENCHMARK(velocity_divergence)->Apply(ParticleCube::sizes);
 BENCHMARK(pressure_gradient)->Apply(ParticleCube::sizes);
 BENCHMARK(filter_of_vector)->Apply(ParticleCube::sizes);

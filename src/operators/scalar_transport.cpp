@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "scalar_records.hpp"
+#include "scalar_sums.hpp"
 #include "symmetric_matrix.hpp"
 
 namespace spume {
@@ -56,44 +57,35 @@ struct ScalarRow {
       diffusivity[s] = in.diffusivity[first + s];
       if (varies && in.eddy_viscosity != nullptr) share[s] = in.inverse_schmidt[first + s];
     }
-    [[maybe_unused]] const Shift shift = shift_of(i, ratio);
-    std::array<f32n, count> rate{}, eddy_rate{}, along{}, low{}, high{};
+    const Shift shift = shift_of(i, ratio);
+    ScalarSums<count, shifted, varies> sums(own_record);
     f32n exchange{}, eddy_exchange{};
-    for_each_batch<dimensions, payload>(*context.list, records, i, scale.inverse_h / ratio, [&](const auto& b) {
-      // Differences from what exchanges nothing, and from the sentinel, count as none.
-      const auto counts = (b.payload[0] < simd::splat<f32n>(exchanges_nothing)) &
-                          (b.q < simd::splat<f32n>(static_cast<float>(Kernel::support)));
-      f32n weight = (-own_volume * scale.gradient) * (own_normalisation + b.payload[count]) *
-                    Kernel::f(varies ? b.q * ratio : b.q);
-      if constexpr (varies) weight = weight * b.payload[count + 2];
-      weight = counts ? weight : f32n{};
-      exchange = exchange + weight;
-      [[maybe_unused]] f32n by_eddies{}, pull{};
-      if constexpr (varies) {
-        by_eddies = weight * (0.5F * (b.payload[count + 1] + own_eddy));
-        eddy_exchange = eddy_exchange + by_eddies;
-      }
-      if constexpr (shifted) {
-        for (int a = 0; a < dimensions; ++a) pull = pull + b.d[a] * shift.direction[a];
-        pull = pull * Kernel::f(b.q);
-        if constexpr (varies) pull = pull * b.payload[count + 2];
-      }
-      for (int s = 0; s < count; ++s) {
-        const f32n difference = counts ? b.payload[s] - own_record[s] : f32n{};
-        rate[s] = rate[s] + weight * difference;
-        if constexpr (varies) eddy_rate[s] = eddy_rate[s] + by_eddies * difference;
-        if constexpr (shifted) {
-          along[s] = along[s] + pull * difference;
-          low[s] = simd::min(low[s], difference);
-          high[s] = simd::max(high[s], difference);
-        }
-      }
-    });
+    for_each_batch<dimensions, payload>(
+        *context.list, records, i, scale.inverse_h / ratio, [&](const auto& b) __attribute__((always_inline)) {
+          // Differences from what exchanges nothing, and from the sentinel, count as none.
+          const auto counts = (b.payload[0] < simd::splat<f32n>(exchanges_nothing)) &
+                              (b.q < simd::splat<f32n>(static_cast<float>(Kernel::support)));
+          f32n weight = (-own_volume * scale.gradient) * (own_normalisation + b.payload[count]) *
+                        Kernel::f(varies ? b.q * ratio : b.q);
+          if constexpr (varies) weight = weight * b.payload[count + 2];
+          weight = counts ? weight : f32n{};
+          exchange = exchange + weight;
+          [[maybe_unused]] f32n by_eddies{}, pull{};
+          if constexpr (varies) {
+            by_eddies = weight * (0.5F * (b.payload[count + 1] + own_eddy));
+            eddy_exchange = eddy_exchange + by_eddies;
+          }
+          if constexpr (shifted) {
+            for (int a = 0; a < dimensions; ++a) pull = pull + b.d[a] * shift.direction[a];
+            pull = pull * Kernel::f(b.q);
+            if constexpr (varies) pull = pull * b.payload[count + 2];
+          }
+          sums.template add<0>(b.payload, counts, weight, pull, by_eddies);
+        });
+    const auto found = sums.found(-shift.gradient);
     for (std::size_t s = 0; s < scalars; ++s) {
-      out.rate[first + s][i] = diffusivity[s] * simd::sum(rate[s]) + share[s] * simd::sum(eddy_rate[s]);
-      if constexpr (shifted)
-        out.change[first + s][i] = std::clamp(-shift.gradient * simd::sum(along[s]), 0.5F * simd::least(low[s]),
-                                              0.5F * simd::largest(high[s]));
+      out.rate[first + s][i] = diffusivity[s] * found.rate[s] + share[s] * found.eddy_rate[s];
+      if constexpr (shifted) out.change[first + s][i] = found.change[s];
     }
     if (out.exchange == nullptr) return;
     const float all = simd::sum(exchange), all_by_eddies = simd::sum(eddy_exchange);
@@ -160,9 +152,17 @@ void transport(const SweepContext& context, PackedNeighbours& packed, const Scal
 void scalar_transport_sweep(const SweepContext& context, PackedNeighbours& packed, const ScalarSweepInput& in,
                             const ScalarSweepOutput& out) {
   with_plain_kernel(context.dimensions, context.kernel, [&]<int dimensions, class Kernel>() {
-    std::size_t first = 0;
-    for (; first + 1 < in.values.size(); first += 4) transport<dimensions, Kernel, 4>(context, packed, in, out, first);
-    if (first < in.values.size()) transport<dimensions, Kernel, 1>(context, packed, in, out, first);
+    const auto run = [&]<int count>(std::size_t first) {
+      transport<dimensions, Kernel, count>(context, packed, in, out, first);
+      return first + count;
+    };
+    const std::size_t all = in.values.size();
+    for (std::size_t first = 0; first < all;) {
+      const std::size_t left = all - first;
+      first = left > 4   ? run.template operator()<8>(first)
+              : left > 1 ? run.template operator()<4>(first)
+                         : run.template operator()<1>(first);
+    }
   });
 }
 

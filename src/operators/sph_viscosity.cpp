@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "scalar_records.hpp"
+#include "scalar_sums.hpp"
 #include "spume/operators/scalar_transport.hpp"
 #include "spume/operators/sph_operators.hpp"
 #include "symmetric_matrix.hpp"
@@ -51,40 +52,43 @@ template <int dimensions, bool stress, class Batch>
 }
 
 // Nothing rides on the sweep.
-struct NoPassenger {
+struct NoPassengers {
   static constexpr int floats = 0;
-  static void pack(const SweepContext&, float*, std::size_t, const RidingScalar*) {}
-  NoPassenger(const RidingScalar*, std::size_t, const float*) {}
+  static void pack(const SweepContext&, float*, std::size_t, const RidingScalars*) {}
+  NoPassengers(const RidingScalars*, std::size_t, const float*) {}
   template <class Batch>
   [[gnu::always_inline]] void add(const Batch&, float, f32n) {}
-  void store(const RidingScalar*, std::size_t) const {}
+  void store(const RidingScalars*, std::size_t) const {}
 };
 
-// A scalar does, in a float that fills the records up to eight.
-template <int dimensions, class Kernel>
-class Passenger {
+// `count` scalars do, in floats behind the velocity and kappa.
+template <int dimensions, class Kernel, int count>
+class Passengers {
  public:
-  static constexpr int floats = 1;
-  static constexpr int slot = dimensions + 1;  // behind the velocity and kappa
+  static constexpr int floats = count;
+  static constexpr int slot = dimensions + 1;
 
-  static void pack(const SweepContext& context, float* records, std::size_t width, const RidingScalar* scalar) {
-    float* out = records + dimensions + slot;
-    const double* const values = scalar->values;
-    const double reference = scalar->reference;
+  static void pack(const SweepContext& context, float* records, std::size_t width, const RidingScalars* scalars) {
+    float* const out = records + dimensions + slot;
+    const auto clear = [=](std::size_t record) { std::fill_n(out + record * width, count, exchanges_nothing); };
     for_each_scalar_record(
         context,
-        [=](std::size_t record, std::size_t i) { out[record * width] = static_cast<float>(values[i] - reference); },
-        [=](std::size_t record) { out[record * width] = exchanges_nothing; });
-    out[context.list->points() * width] = exchanges_nothing;  // the sentinel
+        [=](std::size_t record, std::size_t i) {
+          unrolled<count>([&](auto s) {
+            out[record * width + s] = static_cast<float>(scalars->values[s][i] - scalars->reference[s]);
+          });
+        },
+        clear);
+    clear(context.list->points());  // the sentinel
   }
 
-  [[gnu::always_inline]] Passenger(const RidingScalar* scalar, std::size_t i, const float* own_record)
-      : own_(simd::splat<f32n>(own_record[dimensions + slot])) {
-    if (scalar->shift[0] == nullptr) return;
+  [[gnu::always_inline]] Passengers(const RidingScalars* scalars, std::size_t i, const float* own_record)
+      : sums_(own_record + dimensions + slot) {
+    if (scalars->shift[0] == nullptr) return;
     // L is symmetric: (L sum g d f) . s = sum g f (d . L s).
     std::array<float, dimensions> s;
-    for (int a = 0; a < dimensions; ++a) s[a] = scalar->shift[a][i];
-    direction_ = symmetric_product<dimensions>(scalar->correction, i, s);
+    for (int a = 0; a < dimensions; ++a) s[a] = scalars->shift[a][i];
+    direction_ = symmetric_product<dimensions>(scalars->correction, i, s);
   }
   // With 4 g in the place of g, and kappa in that of nu a. Differences from what exchanges nothing count as none.
   template <class Batch>
@@ -92,32 +96,27 @@ class Passenger {
     const f32n slope = (-4.0F * gradient_scale) * Kernel::f(b.q);
     f32n pull{};
     for (int a = 0; a < dimensions; ++a) pull = pull + b.d[a] * direction_[a];
-    const f32n value = b.payload[slot];
-    const f32n difference = value < simd::splat<f32n>(exchanges_nothing) ? value - own_ : f32n{};
-    const f32n slant = slope * difference;
-    rate_ = rate_ + (own_kappa + b.payload[dimensions]) * slant;
-    along_ = along_ + pull * slant;
-    low_ = simd::min(low_, difference);
-    high_ = simd::max(high_, difference);
+    sums_.template add<slot>(b.payload, b.payload[slot] < simd::splat<f32n>(exchanges_nothing),
+                             (own_kappa + b.payload[dimensions]) * slope, pull * slope, f32n{});
   }
-  [[gnu::always_inline]] void store(const RidingScalar* scalar, std::size_t i) const {
-    scalar->rate[i] = static_cast<float>(scalar->diffusivity / (4 * scalar->viscosity)) * simd::sum(rate_);
-    if (scalar->shift[0] != nullptr)
-      scalar->change[i] = std::clamp(0.25F * simd::sum(along_), 0.5F * simd::least(low_), 0.5F * simd::largest(high_));
+  [[gnu::always_inline]] void store(const RidingScalars* scalars, std::size_t i) const {
+    const auto found = sums_.found(0.25F);
+    const auto share = static_cast<float>(1 / (4 * scalars->viscosity));
+    for (int s = 0; s < count; ++s) scalars->rate[s][i] = scalars->diffusivity[s] * share * found.rate[s];
+    if (scalars->shift[0] == nullptr) return;
+    for (int s = 0; s < count; ++s) scalars->change[s][i] = found.change[s];
   }
 
  private:
-  f32n own_;
+  ScalarSums<count, true> sums_;
   std::array<float, dimensions> direction_{};  // L s
-  f32n rate_{}, along_{}, low_{}, high_{};     // no arrays: GCC 12 keeps such sums in memory
 };
 
 // `records` as the viscous sweep has packed them.
-template <int dimensions, class Kernel, bool stress>
+template <int dimensions, class Kernel, bool stress, int payload>
 void take_off_linear_part(const SweepContext& context, const float* records, const float* kappa,
                           const std::array<float*, 3>& out, const LinearPart& taken_off) {
   const NeighbourList& list = *context.list;
-  constexpr int payload = dimensions + 1 + volume_slots<Kernel>;
   constexpr int width = record_width(dimensions, payload);
   const KernelScale<dimensions, Kernel> common(context);
   const auto tiny = static_cast<float>(coincident * context.smoothing_length * context.smoothing_length);
@@ -127,23 +126,26 @@ void take_off_linear_part(const SweepContext& context, const float* records, con
     std::array<f32n, dimensions> own{}, sum{};
     for (int a = 0; a < dimensions; ++a) own[a] = simd::splat<f32n>(records[i * width + dimensions + a]);
     std::array<std::array<f32n, dimensions>, dimensions> m{};
-    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      const f32n g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
-      for (int a = 0; a < dimensions; ++a)
-        for (int c = 0; c < dimensions; ++c) m[a][c] = m[a][c] + g * (b.payload[a] - own[a]) * b.d[c];
-    });
+    for_each_batch<dimensions, payload>(
+        list, records, i, scale.inverse_h, [&](const auto& b) __attribute__((always_inline)) {
+          const f32n g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
+          for (int a = 0; a < dimensions; ++a)
+            for (int c = 0; c < dimensions; ++c) m[a][c] = m[a][c] + g * (b.payload[a] - own[a]) * b.d[c];
+        });
     std::array<std::array<float, dimensions>, dimensions> gradient{};
     for (int a = 0; a < dimensions; ++a) {
       for (int c = 0; c < dimensions; ++c) gradient[a][c] = taken_off.share[i] * simd::sum(m[a][c]);
       gradient[a] = symmetric_product<dimensions>(taken_off.correction, i, gradient[a]);
     }
     const f32n own_kappa = simd::splat<f32n>(kappa[i]);
-    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      std::array<f32n, dimensions> linear{};
-      for (int a = 0; a < dimensions; ++a)
-        for (int c = 0; c < dimensions; ++c) linear[a] = linear[a] + gradient[a][c] * b.d[c];
-      add_pair<dimensions, stress>(b, pair_weight<dimensions, Kernel>(b, scale.gradient, own_kappa), linear, tiny, sum);
-    });
+    for_each_batch<dimensions, payload>(
+        list, records, i, scale.inverse_h, [&](const auto& b) __attribute__((always_inline)) {
+          std::array<f32n, dimensions> linear{};
+          for (int a = 0; a < dimensions; ++a)
+            for (int c = 0; c < dimensions; ++c) linear[a] = linear[a] + gradient[a][c] * b.d[c];
+          add_pair<dimensions, stress>(b, pair_weight<dimensions, Kernel>(b, scale.gradient, own_kappa), linear, tiny,
+                                       sum);
+        });
     for (int a = 0; a < dimensions; ++a) out[a][i] -= simd::sum(sum[a]);
   });
 }
@@ -151,16 +153,15 @@ void take_off_linear_part(const SweepContext& context, const float* records, con
 template <int dimensions, class Kernel, bool stress, class Beside>
 void viscous(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
              const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out,
-             const LinearPart& taken_off, const RidingScalar* scalar) {
+             const LinearPart& taken_off, const RidingScalars* scalars) {
   const NeighbourList& list = *context.list;
   constexpr int alone = dimensions + 1 + volume_slots<Kernel>, payload = alone + Beside::floats;
   constexpr int width = record_width(dimensions, payload);
-  static_assert(width == record_width(dimensions, alone));
   float* records = packed.prepare(context, payload);
   pack_velocity(context, records, width, 0, velocity, rule);
   pack_coefficient(context, records, width, dimensions, kappa);
   pack_own_volumes<Kernel>(context, records, width, dimensions + 1);
-  Beside::pack(context, records, width, scalar);
+  Beside::pack(context, records, width, scalars);
   const KernelScale<dimensions, Kernel> common(context);
   const auto tiny = static_cast<float>(coincident * context.smoothing_length * context.smoothing_length);
 
@@ -169,42 +170,45 @@ void viscous(const SweepContext& context, PackedNeighbours& packed, const std::a
     std::array<f32n, dimensions> own{}, sum{};
     for (int a = 0; a < dimensions; ++a) own[a] = simd::splat<f32n>(records[i * width + dimensions + a]);
     const f32n own_kappa = simd::splat<f32n>(kappa[i]);
-    Beside beside(scalar, i, records + i * width);
-    for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
-      std::array<f32n, dimensions> difference;
-      for (int a = 0; a < dimensions; ++a) difference[a] = b.payload[a] - own[a];
-      add_pair<dimensions, stress>(b, pair_weight<dimensions, Kernel>(b, scale.gradient, own_kappa), difference, tiny,
-                                   sum);
-      beside.add(b, scale.gradient, own_kappa);
-    });
+    Beside beside(scalars, i, records + i * width);
+    for_each_batch<dimensions, payload>(
+        list, records, i, scale.inverse_h, [&](const auto& b) __attribute__((always_inline)) {
+          std::array<f32n, dimensions> difference;
+          for (int a = 0; a < dimensions; ++a) difference[a] = b.payload[a] - own[a];
+          add_pair<dimensions, stress>(b, pair_weight<dimensions, Kernel>(b, scale.gradient, own_kappa), difference,
+                                       tiny, sum);
+          beside.add(b, scale.gradient, own_kappa);
+        });
     for (int a = 0; a < dimensions; ++a) out[a][i] = simd::sum(sum[a]);
-    beside.store(scalar, i);
+    beside.store(scalars, i);
   });
   if (taken_off.share != nullptr)
-    take_off_linear_part<dimensions, Kernel, stress>(context, records, kappa, out, taken_off);
+    take_off_linear_part<dimensions, Kernel, stress, payload>(context, records, kappa, out, taken_off);
 }
 
 }  // namespace
 
 void viscous_sweep(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
                    const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out, bool stress,
-                   const LinearPart& taken_off, const RidingScalar* scalar) {
-  const bool rides = scalar != nullptr && scalar->values != nullptr;
-  if (rides && context.length_ratio != nullptr)
-    throw std::logic_error("no scalar rides on a viscous sweep of particles that differ in size");
+                   const LinearPart& taken_off, const RidingScalars* scalars) {
+  const std::size_t riding = scalars == nullptr ? 0 : scalars->values.size();
+  if (riding > most_riding_scalars || (riding > 0 && context.length_ratio != nullptr))
+    throw std::logic_error("at most five scalars ride on a viscous sweep, of particles of one size");
   with_kernel(context, [&]<int dimensions, class Kernel>() {
-    const auto run = [&]<bool stress_form, class Beside>() {
-      viscous<dimensions, Kernel, stress_form, Beside>(context, packed, velocity, rule, kappa, out, taken_off, scalar);
-    };
     const auto with = [&]<class Beside>() {
       if (stress)
-        run.template operator()<true, Beside>();
+        viscous<dimensions, Kernel, true, Beside>(context, packed, velocity, rule, kappa, out, taken_off, scalars);
       else
-        run.template operator()<false, Beside>();
+        viscous<dimensions, Kernel, false, Beside>(context, packed, velocity, rule, kappa, out, taken_off, scalars);
     };
-    if constexpr (!is_variable_h<Kernel>)
-      if (rides) return with.template operator()<Passenger<dimensions, Kernel>>();
-    with.template operator()<NoPassenger>();
+    if constexpr (!is_variable_h<Kernel>) {
+      if (riding == 1) return with.template operator()<Passengers<dimensions, Kernel, 1>>();
+      if (riding == 2) return with.template operator()<Passengers<dimensions, Kernel, 2>>();
+      if (riding == 3) return with.template operator()<Passengers<dimensions, Kernel, 3>>();
+      if (riding == 4) return with.template operator()<Passengers<dimensions, Kernel, 4>>();
+      if (riding == 5) return with.template operator()<Passengers<dimensions, Kernel, 5>>();
+    }
+    with.template operator()<NoPassengers>();
   });
 }
 

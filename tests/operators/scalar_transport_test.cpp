@@ -69,12 +69,12 @@ TEST(ScalarTransport, RatesChangesAndExchangeAgreeWithTheSlowTwin) {
     SCOPED_TRACE(a.setup.name);
     const Moments moments(a);
     const reference::ScalarTransport twin{a.twin, a.context.smoothing_length, a.context.volume};
-    for (const std::size_t count : {1U, 3U, 5U})
+    for (const std::size_t count : {1U, 2U, 3U, 4U, 5U, 6U, 9U})
       for (const bool eddies : {false, true})
         for (const bool shifted : {false, true}) {
           const SweptScalars swept(a, moments, count, eddies, shifted);
           Comparison rates("rate"), changes("change"), exchanges("exchange");
-          for (std::size_t i = 0; i < a.size(); i += 7) {
+          for (std::size_t i = 0; i < a.size(); i += count == 1 ? 7 : 47) {
             // Beside that of a sum: the rounding of the value as a float, of the means of viscosity and a and of four
             // products.
             const double rounding = a.twin.tolerance(i) + 16 * std::ldexp(1.0, -24);
@@ -158,19 +158,33 @@ TEST(ScalarTransport, AUniformValueStays) {
   }
 }
 
-// One scalar that rides on a viscous sweep of uniform viscosity.
-struct RiddenScalar {
+// Scalars of different diffusivity that ride on a viscous sweep of uniform viscosity.
+struct RiddenScalars {
   static constexpr double viscosity = 0.3;
-  static constexpr float diffusivity = 0.7F;
-  Array<double> values;
-  Array<float> kappa, normalisation, none, rate, change;
+  std::vector<Array<double>> values;
+  std::vector<float> diffusivity;
+  Array<float> kappa, normalisation, none;
+  std::vector<Array<float>> rate, change;
   VectorArrays<double> velocity;
   VectorArrays<float> shift, acceleration;
 
-  RiddenScalar(Arrangement& a, const Moments& moments, bool stress, bool shifted, bool held)
-      : values(a.random(70)), velocity(random_velocity(a, 40)), acceleration(a.size(), a.dimensions()) {
+  RiddenScalars(Arrangement& a, const Moments& moments, std::size_t count, bool stress, bool shifted, bool held)
+      : velocity(random_velocity(a, 40)), acceleration(a.size(), a.dimensions()) {
     const std::size_t n = a.size();
-    for (auto* array : {&kappa, &normalisation, &none, &rate, &change}) array->resize(n);
+    std::vector<const double*> in;
+    std::vector<float*> rates, changes;
+    for (std::size_t s = 0; s < count; ++s) {
+      values.push_back(a.random(70 + static_cast<std::uint32_t>(s)));
+      diffusivity.push_back(0.7F + static_cast<float>(s));
+      rate.emplace_back(n);
+      change.emplace_back(n);
+    }
+    for (std::size_t s = 0; s < count; ++s) {
+      in.push_back(values[s].data());
+      rates.push_back(rate[s].data());
+      changes.push_back(change[s].data());
+    }
+    for (auto* array : {&kappa, &normalisation, &none}) array->resize(n);
     none.fill(0);
     for (std::size_t i = 0; i < n; ++i) {
       kappa[i] = static_cast<float>(viscosity * (0.5 + uniform(i, 91)[0]));
@@ -182,74 +196,87 @@ struct RiddenScalar {
         for (double& x : way) x *= 0.1 * a.setup.spacing;
         shift[axis] = to_float(way);
       }
-    const RidingScalar scalar{.values = values.data(),
-                              .reference = -1,
-                              .viscosity = viscosity,
-                              .diffusivity = diffusivity,
-                              .shift = shifted ? shift.read() : std::array<const float*, 3>{},
-                              .correction = moments.read_correction(),
-                              .rate = rate.data(),
-                              .change = change.data()};
+    const std::vector<double> least(count, -1.0);
+    const RidingScalars scalars{.values = in,
+                                .reference = least,
+                                .diffusivity = diffusivity,
+                                .viscosity = viscosity,
+                                .shift = shifted ? shift.read() : std::array<const float*, 3>{},
+                                .correction = moments.read_correction(),
+                                .rate = rates,
+                                .change = changes};
     Array<float> share(n);
     share.fill(0.5);
     viscous_sweep(a.context, a.packed, velocity.read(), a.rule, kappa.data(), acceleration.write(), stress,
-                  {held ? share.data() : nullptr, moments.read_correction()}, &scalar);
+                  {held ? share.data() : nullptr, moments.read_correction()}, &scalars);
   }
 };
 
 // To the tolerance of the test above: kappa stands for nu a, and D / nu is rounded once.
-TEST(ScalarTransport, OneThatRidesOnTheViscousSweepAgreesWithTheSlowTwin) {
+TEST(ScalarTransport, ThoseThatRideOnTheViscousSweepAgreeWithTheSlowTwin) {
   for (Arrangement& a : all_arrangements()) {
     if (a.setup.sizes) continue;
     SCOPED_TRACE(a.setup.name);
     const Moments moments(a);
     const reference::ScalarTransport twin{a.twin, a.context.smoothing_length, a.context.volume};
-    for (const bool stress : {false, true})
-      for (const bool shifted : {false, true}) {
-        const RiddenScalar ridden(a, moments, stress, shifted, stress != shifted);
-        Comparison rates("rate"), changes("change");
-        for (std::size_t i = 0; i < a.size(); i += 7) {
-          const double rounding = a.twin.tolerance(i) + 16 * std::ldexp(1.0, -24);
-          auto rate = twin.rate(i, ridden.values, RiddenScalar::diffusivity, ridden.normalisation, ridden.none, 0);
-          const auto weights =
-              twin.rate(i, ridden.values, RiddenScalar::diffusivity, ridden.normalisation, ridden.none, 0, true);
-          rate.magnitude += 4 * weights.magnitude;
-          rates.add(ridden.rate[i], rate, rounding, i);
-          if (!shifted) continue;
-          reference::Vector way{};
-          for (int axis = 0; axis < a.dimensions(); ++axis) way[axis] = ridden.shift[axis][i];
-          auto change = twin.change(i, ridden.values, way, moments.correction_of(i, a.dimensions()));
-          change.magnitude *= 4;
-          changes.add(ridden.change[i], change, rounding, i);
+    for (std::size_t count = 1; count <= most_riding_scalars; ++count)
+      for (const bool stress : {false, true})
+        for (const bool shifted : {false, true}) {
+          const RiddenScalars ridden(a, moments, count, stress, shifted, stress != shifted);
+          Comparison rates("rate"), changes("change");
+          for (std::size_t i = 0; i < a.size(); i += count == 1 ? 7 : 47) {
+            const double rounding = a.twin.tolerance(i) + 16 * std::ldexp(1.0, -24);
+            reference::Vector way{};
+            if (shifted)
+              for (int axis = 0; axis < a.dimensions(); ++axis) way[axis] = ridden.shift[axis][i];
+            for (std::size_t s = 0; s < count; ++s) {
+              const auto& c = ridden.values[s];
+              const double diffusivity = ridden.diffusivity[s];
+              auto rate = twin.rate(i, c, diffusivity, ridden.normalisation, ridden.none, 0);
+              const auto weights = twin.rate(i, c, diffusivity, ridden.normalisation, ridden.none, 0, true);
+              rate.magnitude += 4 * weights.magnitude;
+              rates.add(ridden.rate[s][i], rate, rounding, i);
+              if (!shifted) continue;
+              auto change = twin.change(i, c, way, moments.correction_of(i, a.dimensions()));
+              change.magnitude *= 4;
+              changes.add(ridden.change[s][i], change, rounding, i);
+            }
+          }
         }
-      }
   }
 }
 
-TEST(ScalarTransport, ARidingScalarChangesNoBitOfTheViscousAcceleration) {
+TEST(ScalarTransport, RidingScalarsChangeNoBitOfTheViscousAcceleration) {
   for (Arrangement& a : all_arrangements()) {
     if (a.setup.sizes) continue;
     SCOPED_TRACE(a.setup.name);
     const Moments moments(a);
-    for (const bool stress : {false, true})
-      for (const bool held : {false, true}) {
-        const RiddenScalar ridden(a, moments, stress, true, held);
-        Array<float> share(a.size());
-        share.fill(0.5);
-        VectorArrays<float> alone(a.size(), a.dimensions());
-        viscous_sweep(a.context, a.packed, ridden.velocity.read(), a.rule, ridden.kappa.data(), alone.write(), stress,
-                      {held ? share.data() : nullptr, moments.read_correction()});
-        for (int axis = 0; axis < a.dimensions(); ++axis)
-          EXPECT_TRUE(std::equal(alone[axis].begin(), alone[axis].end(), ridden.acceleration[axis].begin()));
-      }
+    for (std::size_t count = 1; count <= most_riding_scalars; ++count)
+      for (const bool stress : {false, true})
+        for (const bool held : {false, true}) {
+          const RiddenScalars ridden(a, moments, count, stress, true, held);
+          Array<float> share(a.size());
+          share.fill(0.5);
+          VectorArrays<float> alone(a.size(), a.dimensions());
+          viscous_sweep(a.context, a.packed, ridden.velocity.read(), a.rule, ridden.kappa.data(), alone.write(), stress,
+                        {held ? share.data() : nullptr, moments.read_correction()});
+          for (int axis = 0; axis < a.dimensions(); ++axis)
+            EXPECT_TRUE(std::equal(alone[axis].begin(), alone[axis].end(), ridden.acceleration[axis].begin()));
+        }
   }
+}
+
+TEST(ScalarTransport, NoMoreThanFiveScalarsRide) {
+  Arrangement& a = all_arrangements().front();
+  const Moments moments(a);
+  EXPECT_THROW(RiddenScalars(a, moments, most_riding_scalars + 1, false, false, false), std::logic_error);
 }
 
 TEST(ScalarTransport, NoScalarRidesBesideParticlesOfDifferentSizes) {
   Arrangement& a = all_arrangements().back();
   ASSERT_TRUE(a.setup.sizes);
   const Moments moments(a);
-  EXPECT_THROW(RiddenScalar(a, moments, false, false, false), std::logic_error);
+  EXPECT_THROW(RiddenScalars(a, moments, 1, false, false, false), std::logic_error);
 }
 
 }  // namespace

@@ -76,21 +76,34 @@ Found by_own_sweep(Walled& walled, const Field& field) {
   return found;
 }
 
-Found beside_viscosity(Walled& walled, const Field& field, bool stress) {
+// As the last of `count` scalars.
+Found beside_viscosity(Walled& walled, const Field& field, std::size_t count, bool stress) {
   const std::size_t n = walled.particles.size();
   Found found(n);
   std::array<Array<float>, 3> acceleration{Array<float>(n), Array<float>(n), Array<float>(n)};
-  const RidingScalar scalar{.values = field.values.data(),
-                            .viscosity = Field::viscosity,
-                            .diffusivity = Field::diffusivity,
-                            .shift = field.moves(),
-                            .correction = field.correction(),
-                            .rate = found.rate.data(),
-                            .change = found.change.data()};
+  const std::vector<const double*> values(count, field.values.data());
+  const std::vector<double> least(count, 0.0);
+  const std::vector<float> diffusivity(count, Field::diffusivity);
+  std::vector<Array<float>> others(count - 1, Array<float>(n));
+  std::vector<float*> rate, change;
+  for (Array<float>& other : others) {
+    rate.push_back(other.data());
+    change.push_back(other.data());
+  }
+  rate.push_back(found.rate.data());
+  change.push_back(found.change.data());
+  const RidingScalars scalars{.values = values,
+                              .reference = least,
+                              .diffusivity = diffusivity,
+                              .viscosity = Field::viscosity,
+                              .shift = field.moves(),
+                              .correction = field.correction(),
+                              .rate = rate,
+                              .change = change};
   viscous_sweep(walled.arrangement.context, walled.arrangement.packed,
                 {field.velocity[0].data(), field.velocity[1].data(), field.velocity[2].data()},
                 walled.boundary.velocity_rule(), field.kappa.data(),
-                {acceleration[0].data(), acceleration[1].data(), acceleration[2].data()}, stress, {}, &scalar);
+                {acceleration[0].data(), acceleration[1].data(), acceleration[2].data()}, stress, {}, &scalars);
   return found;
 }
 
@@ -107,7 +120,8 @@ TEST(ScalarWalls, WallPointsExchangeNothingByEitherSweep) {
     const double epsilon = std::ldexp(1.0, -24), of_place = 4 * 2 * epsilon / walled.resolution.smoothing_length;
     std::vector<Found> ways;
     ways.push_back(by_own_sweep(walled, field));
-    for (const bool stress : {false, true}) ways.push_back(beside_viscosity(walled, field, stress));
+    for (const std::size_t count : {1U, 3U, 5U})
+      for (const bool stress : {false, true}) ways.push_back(beside_viscosity(walled, field, count, stress));
     for (std::size_t i = 0; i < walled.particles.size(); i += 3) {
       double rate = 0, exchange = 0, change = 0, low = 0, high = 0;
       double bound_of_rate = 0, bound_of_exchange = 0, bound_of_change = 0;

@@ -198,9 +198,11 @@ inline constexpr __mmask16 all_lanes = 0xffff;
 template <int width, class Entry>
 [[gnu::always_inline]] inline void load_records(const float* records, const Entry* entry, int block, f32x16 out[4]) {
   const float* base = records + 4 * block;
-  const auto at = [&](int l) { return load4(base + record_offset<width>(entry[l])); };
+  const auto at = [&](int l) __attribute__((always_inline)) {
+    return load4(base + record_offset<width>(entry[l]));
+  };
   // Records l, l + 4, l + 8 and l + 12 side by side; what follows stays within these quarters.
-  const auto four = [&](int l) {
+  const auto four = [&](int l) __attribute__((always_inline)) {
     const f32x8 low = side_by_side(at(l), at(l + 4)), high = side_by_side(at(l + 8), at(l + 12));
     return _mm512_maskz_insertf32x8(all_lanes, _mm512_castps256_ps512(__m256(low)), __m256(high), 1);
   };

@@ -17,6 +17,7 @@
 #include "spume/core/kernel_kind.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/simd.hpp"
+#include "spume/core/unrolled.hpp"
 #include "spume/neighbours/neighbour_list.hpp"
 
 namespace spume {
@@ -151,8 +152,9 @@ template <int dimensions, int payload, class Body>
       __builtin_prefetch(begin + next + list_ahead / sizeof *begin);
     if (narrow && code[pair_lanes - 1] != no_neighbour) {
       const float* from = records + simd::record_offset<width>(batches.base[next / pair_lanes]);
-      for (int block = 0; block < width / 4; ++block)
-        simd::load_records<width>(from, code, block, value.data() + 4 * block);
+      unrolled<width / 4>([&](auto block) __attribute__((always_inline)) {
+        simd::load_records<width>(from, code, block, &value[4 * block]);
+      });
     } else {
       const std::int32_t* entry = narrow ? filled : begin + next;
       if (narrow) {
@@ -164,8 +166,9 @@ template <int dimensions, int payload, class Body>
           entry = filled;
         }
       }
-      for (int block = 0; block < width / 4; ++block)
-        simd::load_records<width>(records, entry, block, value.data() + 4 * block);
+      unrolled<width / 4>([&](auto block) __attribute__((always_inline)) {
+        simd::load_records<width>(records, entry, block, &value[4 * block]);
+      });
     }
     Batch<dimensions, payload> batch;
     f32n r2{};
@@ -174,7 +177,7 @@ template <int dimensions, int payload, class Body>
       r2 = r2 + batch.d[axis] * batch.d[axis];
     }
     batch.q = simd::sqrt(r2) * inverse_h;
-    for (int p = 0; p < payload; ++p) batch.payload[p] = value[dimensions + p];
+    unrolled<payload>([&](auto p) __attribute__((always_inline)) { batch.payload[p] = value[dimensions + p]; });
     body(batch);
   }
 }

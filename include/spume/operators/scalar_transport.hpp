@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Diffusion of scalars that particles carry, and what a shift of the particles does to them: one sweep over the pairs
-// for up to four scalars.
+// for up to eight scalars.
 //
 // With g_ij of sph_operators.hpp taken at the smoothing length h of the context, whatever that of the particles, and
 // volumes over that of the context, v_i = V_i / V,
@@ -44,18 +44,20 @@ struct ScalarSweepOutput {
 void scalar_transport_sweep(const SweepContext& context, PackedNeighbours& packed, const ScalarSweepInput& in,
                             const ScalarSweepOutput& out);
 
-// Rate and change of one scalar as part of a viscous sweep (sph_operators.hpp), whose records have room for it: the
+// Rates and changes of scalars as part of a viscous sweep (sph_operators.hpp), whose records have room for them: the
 // pairs, the kernel and kappa_i = nu a_i of a viscosity that is the same everywhere are there already. Particles are of
 // one size, and lists reach no farther than their support.
-struct RidingScalar {
-  const double* values = nullptr;  // c; null: none rides
-  double reference = 0;
+inline constexpr std::size_t most_riding_scalars = 5;
+
+struct RidingScalars {
+  std::span<const double* const> values;  // c per scalar and particle, at most most_riding_scalars; none: nothing rides
+  std::span<const double> reference;      // as of a sweep of their own
+  std::span<const float> diffusivity;
   double viscosity = 0;                 // nu
-  double diffusivity = 0;               // D
   std::array<const float*, 3> shift{};  // s; null: no shift
   std::array<const float*, 6> correction{};
-  float* rate = nullptr;
-  float* change = nullptr;  // read with a shift
+  std::span<float* const> rate;
+  std::span<float* const> change;  // read with a shift
 };
 
 }  // namespace spume

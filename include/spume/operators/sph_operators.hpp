@@ -20,7 +20,7 @@
 
 namespace spume {
 
-struct RidingScalar;  // scalar_transport.hpp
+struct RidingScalars;  // scalar_transport.hpp
 
 // Shape of the particle arrangement around each particle. Null pointers are not computed; L and `uncorrected` go
 // together, div r is always wanted.
@@ -108,7 +108,7 @@ struct LinearPart {
 // std::logic_error.
 void viscous_sweep(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
                    const VelocityImageRule& rule, const float* kappa, const std::array<float*, 3>& out,
-                   bool stress = false, const LinearPart& taken_off = {}, const RidingScalar* scalar = nullptr);
+                   bool stress = false, const LinearPart& taken_off = {}, const RidingScalars* scalars = nullptr);
 
 // Corrected divergence of u, and -lap of a scalar potential in the same pass (potential may be null).
 void divergence_sweep(const SweepContext& context, PackedNeighbours& packed,

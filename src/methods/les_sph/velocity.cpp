@@ -234,11 +234,11 @@ void Flow::find_viscous_acceleration(double dt) {
   ScratchArray<float> share(particles.scratch(), features.held_by_bodies ? size() : 0);
   if (features.held_by_bodies) find_held_by_bodies(share.data());
   particles.scratch().lease(viscous_acceleration, dimensions, size());
-  const RidingScalar scalar = scalar_beside_viscosity(dt);
+  const RidingScalars scalars = scalars_beside_viscosity(dt);
   viscous_sweep(arrangement.context, arrangement.packed, started ? read(advecting_velocity) : read(particles.velocity),
                 wall_bends != nullptr ? wall_bends->rule() : boundary.velocity_rule(), diffusivity.data(),
                 write(viscous_acceleration), features.viscous_stress,
-                {features.held_by_bodies ? share.data() : nullptr, moments.read_correction()}, &scalar);
+                {features.held_by_bodies ? share.data() : nullptr, moments.read_correction()}, &scalars);
 }
 
 void Flow::find_held_by_bodies(float* share) const {
@@ -434,7 +434,7 @@ void Flow::accept(double dt) {
 }
 
 // Scalars see the positions and the shift that viscosity sees.
-RidingScalar Flow::scalar_beside_viscosity(double dt) {
+RidingScalars Flow::scalars_beside_viscosity(double dt) {
   if (!features.scalars || !started || features.eddy_viscosity || sizes.variable) return {};
   return solutes.scalars->ride(dt, {.viscosity = viscosity(),
                                     .laplacian_diagonal = moments.laplacian_diagonal,

@@ -21,9 +21,6 @@ constexpr double largest_exchange = 0.5;
 // Of the lattice: below it a surface cuts the kernel, and what is missing there exchanges nothing.
 constexpr double least_divergence_of_position = 0.95;
 
-// Of scalar_transport_sweep: three or four cost little more than two.
-constexpr std::size_t scalars_of_a_sweep = 4;
-
 void set_values(const ParticleStore& particles, const Expression& expression, double t, Array<double>& values,
                 const std::function<bool(std::size_t)>& wanted) {
   parallel_blocks(particles.size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
@@ -217,8 +214,7 @@ void Scalars::release() {
 
 // dt sum_j w_ij is at most D dt times the largest sum_j 2 g and a.
 bool Scalars::ride_pays(double dt, const Carriage& carriage) const {
-  const std::size_t left_over = size() % scalars_of_a_sweep;
-  if (particles_.size() == 0 || (left_over != 1 && left_over != 2) || wall_has_value()) return false;
+  if (particles_.size() == 0 || wall_has_value()) return false;
   if (carriage.shift[0] == nullptr && !diffuse()) return false;
   double diffusivity = 0;
   for (const ScalarOption& scalar : options_.scalars) diffusivity = std::max(diffusivity, scalar.diffusivity);
@@ -227,26 +223,30 @@ bool Scalars::ride_pays(double dt, const Carriage& carriage) const {
          largest_exchange;
 }
 
-RidingScalar Scalars::ride(double dt, const Carriage& carriage) {
+RidingScalars Scalars::ride(double dt, const Carriage& carriage) {
   ridden_ = 0;
   if (!ride_pays(dt, carriage)) return {};
-  ridden_ = 1;
+  ridden_ = std::min(size(), most_riding_scalars);
   ridden_shift_ = carriage.shift[0] != nullptr;
   lease(ridden_);
-  return {.values = fields_[0]->data(),
-          .reference = least(*fields_[0], particles_.size()),
+  find_packed(0, ridden_);
+  const auto ridden = [this](const auto& values) { return std::span(values).first(ridden_); };
+  return {.values = ridden(packed_.values),
+          .reference = ridden(packed_.reference),
+          .diffusivity = ridden(packed_.diffusivity),
           .viscosity = carriage.viscosity,
-          .diffusivity = option(0).diffusivity,
           .shift = ridden_shift_ ? read(carriage.shift) : std::array<const float*, 3>{},
           .correction = carriage.correction,
-          .rate = rate_[0].data(),
-          .change = change_[0].data()};
+          .rate = ridden(packed_.rate),
+          .change = ridden(packed_.change)};
 }
 
-// The value, its rate and sum_j 2 g; the shift, its change and the symmetric L.
+// Of each the value, its rate and its change by the shift; sum_j 2 g, the shift and the symmetric L.
 double Scalars::ridden_bytes() const {
-  const double d = particles_.dimensions, shifted = ridden_shift_ ? 4 * (d + 1 + d * (d + 1) / 2) : 0;
-  return static_cast<double>(ridden_ * particles_.size()) * (8 + 4 + 4 + shifted);
+  if (ridden_ == 0) return 0;
+  const double d = particles_.dimensions, of_all = 4 + (ridden_shift_ ? 4 * (d + d * (d + 1) / 2) : 0);
+  const double of_each = 8 + 4 + (ridden_shift_ ? 4 : 0);
+  return static_cast<double>(particles_.size()) * (of_all + of_each * static_cast<double>(ridden_));
 }
 
 void Scalars::find_normalisation(const Carrier& carrier) {
@@ -259,12 +259,9 @@ void Scalars::find_normalisation(const Carrier& carrier) {
   });
 }
 
-// Of the scalars from `first` on. Where one rode the exchange is known to be small.
-void Scalars::sweep(std::size_t first, const Carrier& carrier, bool shifted) {
-  if (first == size()) return;
-  find_normalisation(carrier);
-  if (first == 0) particles_.scratch().lease(exchange_, particles_.size());
-  for (std::size_t s = first; s < size(); ++s) {
+// What sweeps read of the scalars in [first, last).
+void Scalars::find_packed(std::size_t first, std::size_t last) {
+  for (std::size_t s = first; s < last; ++s) {
     packed_.values[s] = fields_[s]->data();
     packed_.reference[s] = least(*fields_[s], particles_.size());
     packed_.diffusivity[s] = static_cast<float>(option(s).diffusivity);
@@ -272,6 +269,14 @@ void Scalars::sweep(std::size_t first, const Carrier& carrier, bool shifted) {
     packed_.rate[s] = rate_[s].data();
     packed_.change[s] = change_[s].data();
   }
+}
+
+// Of the scalars from `first` on. Where some rode the exchange is known to be small.
+void Scalars::sweep(std::size_t first, const Carrier& carrier, bool shifted) {
+  if (first == size()) return;
+  find_normalisation(carrier);
+  if (first == 0) particles_.scratch().lease(exchange_, particles_.size());
+  find_packed(first, size());
   const auto behind = [first](const auto& values) { return std::span(values).subspan(first); };
   scalar_transport_sweep(
       carrier.arrangement.context, carrier.arrangement.packed,

@@ -220,9 +220,9 @@ struct Flow {
   void accept(double dt);  // (xi)
   // Scalars over the step that was accepted, at the positions of its lists. Returns the number of sweeps.
   std::int64_t transport_scalars(double dt);
-  RidingScalar scalar_beside_viscosity(double dt);  // what the viscous sweep finds for that step
-  FloatVectorField shift_of_scalars() const;        // null: none
-  void transfer_oxygen(double dt);                  // from bubbles and through the surface, of the same step
+  RidingScalars scalars_beside_viscosity(double dt);  // what the viscous sweep finds for that step
+  FloatVectorField shift_of_scalars() const;          // null: none
+  void transfer_oxygen(double dt);                    // from bubbles and through the surface, of the same step
 
   void forget_rest(std::size_t i, double way);  // that particle i has gone in a step
 

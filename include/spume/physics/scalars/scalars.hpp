@@ -47,20 +47,19 @@ class Scalars {
   };
   // Whether some scalar diffuses in a liquid without eddies, or a wall gives some.
   bool diffuse() const;
-  // Lets the first scalar ride on the viscous sweep of a step, where that spares the others a sweep or makes it one of
-  // a single scalar, diffusion needs no parts of the step `dt`, and no wall has a value. What is found there replaces
-  // what transport() of this step would find, as no value changes until then. A step that is refused in between is
-  // begun again with another sweep.
+  // Lets the first scalars, as many as may, ride on the viscous sweep of a step, where diffusion needs no parts of the
+  // step `dt` and no wall has a value. What is found there replaces what transport() of this step would find, as no
+  // value changes until then. A step that is refused in between is begun again with another sweep.
   struct Carriage {
     double viscosity = 0;                       // the same everywhere; particles are of one size
     std::span<const float> laplacian_diagonal;  // sum_j 2 g
     FloatVectorField shift{};                   // as of the carrier
     std::array<const float*, 6> correction{};
   };
-  RidingScalar ride(double dt, const Carriage& carriage);
+  RidingScalars ride(double dt, const Carriage& carriage);
   double ridden_bytes() const;  // that it streams beside the records of that sweep
   // Diffusion over dt, what walls give and the change by the shift, at the positions of the lists. Returns the number
-  // of sweeps, without that on which one rode.
+  // of sweeps, without that on which some rode.
   std::int64_t transport(double dt, const Carrier& carrier);
 
   // Sources over dt from time t on, at the places of the particles: what they add counts to added().
@@ -101,6 +100,7 @@ class Scalars {
     double net = 0, moved = 0;
     double gains = 0, losses = 0;
   };
+  void find_packed(std::size_t first, std::size_t last);
   void sweep(std::size_t first, const Carrier& carrier, bool shifted);
   void find_normalisation(const Carrier& carrier);
   double largest_exchange_of(const Carrier& carrier) const;
