@@ -255,6 +255,10 @@ TEST(Bodies, SuspiciousBodiesAreWarnedOf) {
   EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.2, 0.2]\n"),
               ElementsAre(HasSubstr("behind 100 % of its surface, and is no plate")));
   EXPECT_THAT(warnings(start + "shape = \"box\"\nrotation = [20]\nsize = [0.1, 0.3]\n"), IsEmpty());
+  // But one thinner than the support radius, 0.13, or twice as long as thick.
+  for (const char* size : {"[0.12, 0.12]", "[0.16, 0.1]", "[0.2, 0.12]", "[0.26, 0.12]"})
+    EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = " + size + "\n"), IsEmpty()) << size;
+  EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.24, 0.16]\n"), ElementsAre(HasSubstr("is no plate")));
   EXPECT_THAT(
       warnings(start + "shape = \"ball\"\nradius = 0.1\n"),
       ElementsAre(HasSubstr("the body 'it' is thinner than five spacings, 0.25, behind 100 % of its surface, and "
