@@ -32,9 +32,9 @@ double longest(const Bounds& bounds, int dimensions) {
   return size;
 }
 
-// Spacings: the support radius of the standard kernel, and twice that. Behind faces that are not flat, liquid on one
-// side then sees none on the other.
-constexpr double support = 2.6, screening = 5;
+// Spacings: twice the support radius of the standard kernel, 2.6. Behind faces that are not flat, liquid on one side
+// then sees none on the other.
+constexpr double screening = 5;
 
 // A place of the surface and its weight.
 struct SurfacePart {
@@ -222,7 +222,7 @@ std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const
     double unscreened =
         body.wall == BoundaryKind::open || thin > most_thin ? 0 : thin_share(body, domain, deep, dimensions);
     // Flat plates are walls of two sides (particles/thin_bodies.hpp).
-    if (unscreened > most_unscreened && !cut && is_plate(scene, body, scene.spacing, support * scene.spacing))
+    if (unscreened > most_unscreened && !cut && is_plate(scene, body, scene.spacing, standard_support * scene.spacing))
       unscreened = thin_share(body, domain, deep, dimensions, true);
     if (unscreened > most_unscreened)
       warn("is thinner than five spacings, " + brief(deep) + ", behind " + brief(std::round(100 * unscreened)) +

@@ -7,6 +7,9 @@
 
 namespace spume {
 
+// Spacings: the support radius of the standard kernel.
+constexpr double standard_support = 2.6;
+
 // Where liquid can meet a body: all of one that moves, else its part in the domain, and `reach` around it.
 Bounds window_around(const Scene& scene, const Body& body, double reach);
 
