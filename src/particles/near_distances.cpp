@@ -12,7 +12,9 @@ NearDistances::NearDistances(const Combination& walls, int dimensions, const Vec
                              double spacing, const std::function<bool(const Vec3&)>& is_far)
     : dimensions_(dimensions), lower_(lower), spacing_(spacing) {
   for (int axis = 0; axis < dimensions; ++axis) {
-    count_[axis] = static_cast<std::size_t>(std::ceil((upper[axis] - lower[axis]) / spacing)) + 1;
+    // Blocks that begin at the upper side or beyond it have nothing in the box, but for rounding of its width.
+    const double blocks = std::ceil((upper[axis] - lower[axis]) / spacing - 1e-6);
+    count_[axis] = static_cast<std::size_t>(std::max(1.0, blocks));
     cells_ *= finer;
   }
   // Half a diagonal, and what rounding to float takes.
@@ -48,8 +50,8 @@ NearDistances::Range NearDistances::at(const Vec3& place) const {
   std::size_t block = 0, cell = 0, blocks = 1, cells = 1;
   for (int axis = 0; axis < dimensions_; ++axis) {
     const double along = (place[axis] - lower_[axis]) / spacing_;
-    if (!(along >= 0 && along < static_cast<double>(count_[axis]))) return {};
-    const auto index = static_cast<std::size_t>(along);
+    if (!(along >= 0 && along <= static_cast<double>(count_[axis]))) return {};
+    const std::size_t index = std::min(count_[axis] - 1, static_cast<std::size_t>(along));
     block += blocks * index;
     cell += cells * std::min(finer - 1, static_cast<std::size_t>((along - static_cast<double>(index)) * finer));
     blocks *= count_[axis];

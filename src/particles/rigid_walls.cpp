@@ -56,9 +56,10 @@ RigidWalls::RigidWalls(const Scene& scene, std::optional<std::size_t> motion, co
   cells_.emplace(walls_, d, cells.lower, cells.upper, resolution.spacing, resolution.support_radius, error());
   if (has_thin()) {
     const Bounds thin_box = motion_ == nullptr ? cells : window(2 * resolution.support_radius);
-    // Half the diagonal of a block less than a spacing and half from its middle.
+    // Half the diagonal of a block less than a spacing and half from its middle. Within thick bodies nobody asks.
+    const double far = 1.5 * resolution.spacing;
     thin_cells_.emplace(thin_walls_, d, thin_box.lower, thin_box.upper, resolution.spacing,
-                        [&](const Vec3& at) { return cells_->least(at) > 1.5 * resolution.spacing; });
+                        [&](const Vec3& at) { return cells_->least(at) > far || thin_walls_.distance(at) > far; });
   }
   std::size_t sizes = 1;
   if (grows()) {
@@ -90,21 +91,25 @@ RigidWalls::Level RigidWalls::make_level(double scale, const Resolution& resolut
   if (!all_thin) level.points = make_wall_points(scale < 1 ? scaled : walls_, domain, resolution, particle_volume);
   if (has_thin()) {
     std::erase_if(level.points, [&](const WallPoint& point) { return is_thin(body_at(point.foot)); });
+  }
+  level.body.resize(level.points.size());
+  parallel_for(level.points.size(),
+               [&](std::size_t g) { level.body[g] = static_cast<std::uint16_t>(body_at(level.points[g].foot)); });
+  if (has_thin()) {
     std::vector<StandingBody> bodies;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       const Body& body = scene_.bodies[bodies_[k]];
       bodies.push_back({motion_ == nullptr ? body.solid : body.alone, thin_[k] != 0});
     }
-    const std::vector<WallPoint> sheets = make_sheet_points(bodies, walls_, domain, resolution, particle_volume);
-    level.points.insert(level.points.end(), sheets.begin(), sheets.end());
+    for (const SheetPoint& point : make_sheet_points(bodies, walls_, domain, resolution, particle_volume)) {
+      level.points.push_back(point);
+      level.body.push_back(static_cast<std::uint16_t>(bodies_[point.body]));
+    }
   }
   if (scale < 1)
     for (WallPoint& point : level.points)
       for (Vec3* at : {&point.position, &point.foot, &point.mirror})
         *at = add(motion_->pivot, multiply(1 / scale, subtract(*at, motion_->pivot)));
-  level.body.resize(level.points.size());
-  parallel_for(level.points.size(),
-               [&](std::size_t g) { level.body[g] = static_cast<std::uint16_t>(body_at(level.points[g].foot)); });
   return level;
 }
 

@@ -50,7 +50,7 @@ class Sheets {
         faces_(faces) {}
 
   // The images of a place beside a body.
-  void add(std::size_t body, const Vec3& place, std::vector<WallPoint>& points) const {
+  void add(std::size_t body, const Vec3& place, std::vector<SheetPoint>& points) const {
     if (walls_.distance(place) < 0) return;  // in another body
     const NearestPoint near = bodies_[body].solid->nearest(place);
     if (walls_.distance(near.point) < -on_surface * spacing_) return;
@@ -68,7 +68,7 @@ class Sheets {
     add_corner_of_three(place, faces, right, points);
     if (faces.size() > 1 && !is_on(near.point, faces.front())) return;
     for (std::size_t other = 0; other < bodies_.size(); ++other)
-      if (!bodies_[other].thin) add_thick_corner(place, near, other, points);
+      if (!bodies_[other].thin) add_thick_corner(place, body, near, other, points);
   }
 
   // The planes of the faces that make corners with others before a place.
@@ -90,16 +90,17 @@ class Sheets {
   }
 
   // The image in the plane of a face.
-  void add_behind(const Vec3& place, const Face& face, std::vector<WallPoint>& points) const {
+  void add_behind(const Vec3& place, const Face& face, std::vector<SheetPoint>& points) const {
     const double before = dot(subtract(place, face.point), face.normal);
     if (!(before > 0) || before >= reach_) return;
-    WallPoint point = seen_through(face, reflected(place, face.point, face.normal), place);
+    SheetPoint point = seen_through(face, reflected(place, face.point, face.normal), place);
     point.past_edge = face.beside_edge && std::abs(bodies_[face.body].solid->distance(point.foot)) > closed * spacing_;
     points.push_back(point);
   }
 
-  WallPoint seen_through(const Face& face, const Vec3& position, const Vec3& mirror) const {
-    WallPoint point;
+  SheetPoint seen_through(const Face& face, const Vec3& position, const Vec3& mirror) const {
+    SheetPoint point;
+    point.body = face.body;
     point.position = position;
     point.mirror = mirror;
     point.normal = face.normal;
@@ -134,7 +135,7 @@ class Sheets {
   // The images in two faces in turns, as long as each is before the next; the face that is last is that which it is
   // seen through. Those that both orders have are seen where the place is. Returns whether it is one, as where the
   // faces are at right angles.
-  bool add_corner(const Vec3& place, const Face& a, const Face& b, std::vector<WallPoint>& points) const {
+  bool add_corner(const Vec3& place, const Face& a, const Face& b, std::vector<SheetPoint>& points) const {
     const std::array<const Face*, 2> face{&a, &b};
     std::array<Vec3, 2> at{reflected(place, a.point, a.normal), reflected(place, b.point, b.normal)};
     std::array<bool, 2> goes_on{true, true};
@@ -146,12 +147,12 @@ class Sheets {
         if (goes_on[order]) at[order] = reflected(at[order], next[order]->point, next[order]->normal);
       }
       if (goes_on[0] && goes_on[1] && length(subtract(at[0], at[1])) < same_place * spacing_) {
-        add_turned(place, at[0], points);
+        add_turned(place, at[0], std::max(a.body, b.body), points);
         return image == 0;
       }
       for (std::size_t order = 0; order < 2; ++order) {
         if (!goes_on[order] || !is_near(at[order], *next[order])) continue;
-        WallPoint point = seen_through(*next[order], at[order], place);
+        SheetPoint point = seen_through(*next[order], at[order], place);
         point.in_corner = point.past_edge = true;
         points.push_back(point);
       }
@@ -165,19 +166,22 @@ class Sheets {
   }
 
   // The image that turns a place about a corner.
-  void add_turned(const Vec3& place, const Vec3& position, std::vector<WallPoint>& points) const {
-    WallPoint point;
+  void add_turned(const Vec3& place, const Vec3& position, std::size_t body, std::vector<SheetPoint>& points) const {
+    SheetPoint point;
+    point.body = body;
     point.position = position;
     point.mirror = place;
     point.foot = multiply(0.5, spume::add(position, place));
     point.normal = unit(subtract(place, position), domain_.dimensions);
     point.in_corner = true;
+    point.turned = true;
     points.push_back(point);
   }
 
   // Behind three faces at right angles to each other.
   void add_corner_of_three(const Vec3& place, const std::vector<Face>& faces,
-                           const std::vector<std::array<std::size_t, 2>>& right, std::vector<WallPoint>& points) const {
+                           const std::vector<std::array<std::size_t, 2>>& right,
+                           std::vector<SheetPoint>& points) const {
     const auto are_right = [&](std::size_t a, std::size_t b) {
       return std::find(right.begin(), right.end(), std::array{a, b}) != right.end();
     };
@@ -187,13 +191,13 @@ class Sheets {
           if (!are_right(a, b) || !are_right(a, c) || !are_right(b, c)) continue;
           Vec3 position = place;
           for (const std::size_t f : {a, b, c}) position = reflected(position, faces[f].point, faces[f].normal);
-          add_turned(place, position, points);
+          add_turned(place, position, std::max({faces[a].body, faces[b].body, faces[c].body}), points);
         }
   }
 
   // In the corner with a body that has points of its own.
-  void add_thick_corner(const Vec3& place, const NearestPoint& near, std::size_t other,
-                        std::vector<WallPoint>& points) const {
+  void add_thick_corner(const Vec3& place, std::size_t body, const NearestPoint& near, std::size_t other,
+                        std::vector<SheetPoint>& points) const {
     const NearestPoint second = bodies_[other].solid->nearest(place);
     if (!(second.distance > before_second_face * spacing_) || second.distance >= reach_ ||
         std::abs(dot(near.normal, second.normal)) > upright)
@@ -204,7 +208,9 @@ class Sheets {
         corner = subtract(corner, multiply(dot(subtract(corner, face->point), face->normal), face->normal));
     if (std::abs(bodies_[other].solid->distance(corner)) > closed * spacing_) return;
     if (std::abs(walls_.distance(corner)) > closed * spacing_) return;
-    add_turned(place, reflected(reflected(place, near.point, near.normal), second.point, second.normal), points);
+    add_turned(place, reflected(reflected(place, near.point, near.normal), second.point, second.normal),
+               std::max(body, other), points);
+    points.back().turned = false;  // what enters the thick body is not looked for
   }
 
   const std::vector<StandingBody>& bodies_;
@@ -226,8 +232,8 @@ void wrap(const Domain& domain, WallPoint& point) {
 
 }  // namespace
 
-std::vector<WallPoint> make_sheet_points(const std::vector<StandingBody>& bodies, const Combination& walls,
-                                         const Domain& domain, const Resolution& resolution, double particle_volume) {
+std::vector<SheetPoint> make_sheet_points(const std::vector<StandingBody>& bodies, const Combination& walls,
+                                          const Domain& domain, const Resolution& resolution, double particle_volume) {
   std::vector<std::vector<ShellPoint>> shells(bodies.size());
   ThinFaces faces(bodies, walls, domain, resolution.spacing, resolution.support_radius);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -240,7 +246,7 @@ std::vector<WallPoint> make_sheet_points(const std::vector<StandingBody>& bodies
   }
   faces.sort();
   const Sheets sheets(bodies, walls, domain, resolution, faces);
-  std::vector<WallPoint> points;
+  std::vector<SheetPoint> points;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (!bodies[b].thin) continue;
     std::erase_if(shells[b], [&](const ShellPoint& shell) { return walls.distance(shell.place) < 0; });  // in another
@@ -252,11 +258,11 @@ std::vector<WallPoint> make_sheet_points(const std::vector<StandingBody>& bodies
     if (std::any_of(corners.begin(), corners.end(), [](const auto& planes) { return !planes.empty(); }))
       even_out_in_corners(Combination({{bodies[b].solid, false}}), domain, resolution, particle_volume, corners,
                           shells[b]);
-    std::vector<std::vector<WallPoint>> of_place(shells[b].size());
+    std::vector<std::vector<SheetPoint>> of_place(shells[b].size());
     parallel_for(shells[b].size(), [&](std::size_t i) { sheets.add(b, shells[b][i].place, of_place[i]); });
     for (const auto& some : of_place) points.insert(points.end(), some.begin(), some.end());
   }
-  for (WallPoint& point : points) wrap(domain, point);
+  for (SheetPoint& point : points) wrap(domain, point);
   return points;
 }
 

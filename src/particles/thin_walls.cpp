@@ -228,6 +228,14 @@ bool ThinWalls::sees_face(const Vec3& eye, double eye_distance, const Vec3& poin
   return found && dot(found->normal, normal) > kind.least_cosine;
 }
 
+// The face that the way to a point enters has what the point mirrors before it and the point behind it: so have those
+// of the corner between, but none past their ends, which both stand behind.
+bool ThinWalls::enters_between(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& mirror) const {
+  const std::optional<Entry> found = entry(eye, eye_distance, point);
+  return found && dot(subtract(mirror, found->place), found->normal) > 0 &&
+         dot(subtract(point, found->place), found->normal) < 0;
+}
+
 bool ThinWalls::is_behind_face(std::size_t point) const {
   if (point < particles_ || images_->wall_point() == nullptr) return false;
   const std::int32_t g = images_->wall_point()[point - particles_];
@@ -253,8 +261,9 @@ bool ThinWalls::sees(std::size_t particle, std::size_t point) const {
 bool ThinWalls::sees(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& unfolded,
                      const WallPoint& kind) const {
   if (eye_distance >= reach_) return !kind.one_sided && !kind.in_corner;
-  return kind.one_sided ? sees_face(eye, eye_distance, point, unfolded, kind)
-                        : !hides(eye, eye_distance, unfolded, free_distance(unfolded));
+  if (kind.one_sided) return sees_face(eye, eye_distance, point, unfolded, kind);
+  return !hides(eye, eye_distance, unfolded, free_distance(unfolded)) &&
+         (!kind.turned || enters_between(eye, eye_distance, point, unfolded));
 }
 
 }  // namespace spume

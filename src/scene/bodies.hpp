@@ -28,4 +28,7 @@ const Node* node_of_body(const Draft& draft, const Scene& scene, std::size_t k);
 // Bodies that lie outside the domain, that are much larger, or thinner than a spacing.
 std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const std::string& file);
 
+// Faces of thin bodies that meet others at less than 45 degrees.
+std::vector<Problem> corner_warnings(const Draft& draft, const Scene& scene, const std::string& file);
+
 }  // namespace spume

@@ -6,6 +6,7 @@
 
 #include "bodies.hpp"
 #include "spume/core/vectors.hpp"
+#include "spume/scene/plates.hpp"
 
 namespace spume {
 namespace {
@@ -217,23 +218,14 @@ std::vector<Problem> body_warnings(const Draft& draft, const Scene& scene, const
       return other.subtract && other.wall != BoundaryKind::open && other.motion == body.motion;
     });
     constexpr double most_unscreened = 0.5;
-    // Flat ones twice as long as thick are walls of two sides (particles/thin_bodies.hpp).
-    const auto is_slender = [&] {
-      Bounds part = bounds;
-      for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a) {
-        part.lower[a] = std::max(part.lower[a], domain.lower[a]);
-        part.upper[a] = std::min(part.upper[a], domain.upper[a]);
-      }
-      const double half = longest(part, dimensions) / 2, deep = screening * scene.spacing;
-      return half > deep || thin_share(body, domain, half, dimensions) > most_unscreened;
-    };
-    const double unscreened =
-        body.wall == BoundaryKind::open || thin > most_thin
-            ? 0
-            : thin_share(body, domain, screening * scene.spacing, dimensions, !cut && is_slender());
+    const double deep = screening * scene.spacing;
+    double unscreened =
+        body.wall == BoundaryKind::open || thin > most_thin ? 0 : thin_share(body, domain, deep, dimensions);
+    // Flat plates are walls of two sides (particles/thin_bodies.hpp).
+    if (unscreened > most_unscreened && !cut && is_plate(scene, body, scene.spacing, standard_support * scene.spacing))
+      unscreened = thin_share(body, domain, deep, dimensions, true);
     if (unscreened > most_unscreened)
-      warn("is thinner than five spacings, " + brief(screening * scene.spacing) + ", behind " +
-           brief(std::round(100 * unscreened)) +
+      warn("is thinner than five spacings, " + brief(deep) + ", behind " + brief(std::round(100 * unscreened)) +
            " % of its surface, and is no plate with flat faces; liquid on its two sides acts on each other through it: "
            "lower resolution.spacing, or make it thicker unless there is liquid on one side alone");
   }

@@ -387,6 +387,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   for (const Problem& warning : problems.warnings()) draft.options.warnings.push_back(warning);
   for (Problem& warning : unused_options(draft, schema, file)) draft.options.warnings.push_back(std::move(warning));
   for (Problem& warning : body_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
+  for (Problem& warning : corner_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
   for (Problem& warning : release_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
   for (Problem& warning : collision_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
   if (uses_particles(*method)) {

@@ -52,6 +52,23 @@ TEST(LesSphPlan, APeriodicBoxHasNoSurface) {
   EXPECT_TRUE(runs(run, "images"));
 }
 
+// Bends behind no-slip bodies alone are left out of the change by the shift, which takes a sweep of its own.
+TEST(LesSphPlan, FreeSlipBodiesHaveOneSweepOfGradients) {
+  const auto gradients = [](const std::string& wall) {
+    Simulation run(taylor_green + "[[body]]\nshape = \"cylinder\"\nradius = 0.15\nposition = [0.5, 0.5]\nwall = \"" +
+                   wall + "\"\n");
+    run.steps(2, 0.002);
+    for (const Ledger::Entry& entry : run.ledger.entries())
+      if (entry.stage == "gradients") return entry;
+    ADD_FAILURE() << "no gradients";
+    return Ledger::Entry{};
+  };
+  const Ledger::Entry one = gradients("free-slip"), two = gradients("no-slip");
+  EXPECT_GT(one.pairs, 0);
+  EXPECT_NEAR(two.pairs, 2 * one.pairs, 0.01 * one.pairs);  // the shift of the second step differs
+  EXPECT_GT(two.bytes, 1.3 * one.bytes);
+}
+
 TEST(LesSphPlan, EveryStageHasItsArraysOnlyWhenItRuns) {
   Simulation plain(taylor_green, {"shifting.on=false", "time.centred=false"});
   plain.steps(2, 0.004);

@@ -91,11 +91,55 @@ TEST(ThinWalls, AreFlatBodiesThinnerThanTwiceTheSupport) {
               "\"cylinder\"\nradius = 0.45\nposition = [0.8, 0.6]\nsubtract = true\n"));
 }
 
+// `spume check` warns of those that are none.
+TEST(ThinWalls, AreThoseThatNobodyIsWarnedOf) {
+  const auto is_warned_of = [](const std::string& body, const std::string& domain, double spacing) {
+    const LoadedCase loaded = load_text(scene_text(domain, spacing, body));
+    return std::any_of(loaded.options.warnings.begin(), loaded.options.warnings.end(), [](const Problem& problem) {
+      return problem.text.find("is no plate with flat faces") != std::string::npos;
+    });
+  };
+  for (const char* size :
+       {"[0.12, 0.12]", "[0.16, 0.1]", "[0.2, 0.12]", "[0.26, 0.12]", "[0.2, 0.2]", "[0.24, 0.16]", "[0.5, 0.2]"}) {
+    const std::string box =
+        "[[body]]\nshape = \"box\"\nposition = [0.8, 0.6]\nrotation = [10]\nsize = " + std::string(size) + "\n";
+    EXPECT_NE(is_thin(box), is_warned_of(box, thin_tank, 0.05)) << size;
+  }
+  for (const char* size : {"[0.4, 0.4, 0.24]", "[0.4, 0.4, 0.3]", "[0.8, 0.3, 0.3]", "[0.4, 0.3, 0.3]"}) {
+    const std::string box = "[[body]]\nshape = \"box\"\nposition = [0.5, 0.4, 0.5]\nsize = " + std::string(size) + "\n";
+    EXPECT_NE(is_thin(box, thin_tank_3d, 0.1), is_warned_of(box, thin_tank_3d, 0.1)) << size;
+  }
+}
+
 TEST(ThinWalls, NoneCostNothing) {
   const Walled walled(scene_text(thin_tank, 0.05, turned));
   EXPECT_EQ(walled.boundary.bodies()->thin(), nullptr);
   EXPECT_EQ(walled.arrangement.images.sight(), nullptr);
   for (const WallPoint& point : walled.boundary.bodies()->all_points()) EXPECT_FALSE(point.one_sided);
+}
+
+// Two plates, A with friction, each with points past its ends, some nearer to the other's surface than to their own.
+TEST(ThinWalls, PointsAreOfTheBodyOfTheirFace) {
+  const std::string a = "[[body]]\nshape = \"box\"\nsize = [0.8, 0.1]\nposition = [0.7, 0.5]\nwall = \"no-slip\"\n";
+  for (const char* b : {"size = [0.1, 0.5]\nposition = [0.8, 0.78]\nrotation = [-10]\n",
+                        "size = [0.6, 0.1]\nposition = [0.85, 0.75]\nrotation = [50]\n",
+                        "size = [0.1, 0.5]\nposition = [1.22, 0.62]\nrotation = [-10]\n"}) {
+    const Walled walled(scene_text(thin_tank, 0.05, a + "[[body]]\nshape = \"box\"\n" + b));
+    const BodyWalls& bodies = *walled.boundary.bodies();
+    std::size_t wet = 0, of_a = 0;
+    for (std::size_t g = 0; g < bodies.points(); ++g) {
+      if (!bodies.is_wet(g)) continue;
+      const WallPoint& point = bodies.all_points()[g];
+      const bool no_slip = bodies.stencils().no_slip[wet++] != 0;
+      if (!point.one_sided) continue;
+      // The faces of A are along the axes, those of B are not.
+      const bool along_axes = std::max(std::abs(point.normal[0]), std::abs(point.normal[1])) > 0.9999;
+      EXPECT_EQ(no_slip, along_axes) << "at " << point.position[0] << " " << point.position[1];
+      of_a += along_axes ? 1 : 0;
+    }
+    EXPECT_GT(of_a, 50U);
+    EXPECT_GT(wet, of_a + 50);
+  }
 }
 
 TEST(ThinWalls, HideWhatAStraightWayThroughThemLeadsTo) {

@@ -31,20 +31,38 @@ struct ThinSight {
     return least >= 0 ? Answer::yes : least < -shallow * spacing ? Answer::no : Answer::unclear;
   }
 
-  // A wall point of a face is seen by ways that enter the bodies through that face, others when what they mirror is.
+  // A wall point of a face is seen by ways that enter the bodies through that face, others when what they mirror is; of
+  // these what a corner turns by ways that enter through one of its faces, which leads through the foot and turns the
+  // point from the mirror.
   Answer point(const Vec3& eye, const WallPoint& point) const {
-    if (!point.one_sided) return between(eye, point.mirror);
+    if (!point.one_sided) {
+      const Answer mirror = between(eye, point.mirror);
+      if (mirror == Answer::no || !point.turned) return mirror;
+      const Answer entered = enters(eye, point.position, [&](const Vec3& entry, const Vec3& normal) {
+        return std::abs(dot(subtract(point.foot, entry), normal)) < shallow * spacing &&
+               dot(subtract(point.mirror, point.position), normal) > shallow * spacing;
+      });
+      return entered == Answer::no ? entered : mirror == Answer::unclear ? mirror : entered;
+    }
+    return enters(eye, point.position,
+                  [&](const Vec3&, const Vec3& normal) { return dot(normal, point.normal) > 0.99; });
+  }
+
+ private:
+  // Whether a way enters the bodies through a face that is_of(place, normal) says.
+  template <class IsOf>
+  Answer enters(const Vec3& eye, const Vec3& position, IsOf&& is_of) const {
     Vec3 entry{};
     double least = infinite;
     std::vector<Vec3> passed;  // normals where the way is about to enter
-    const bool enters = along(eye, point.position, [&](const Vec3& place) {
+    const bool is_entered = along(eye, position, [&](const Vec3& place) {
       entry = place;
       const NearestPoint near = solids.nearest(place);
       least = std::min(least, near.distance);
       if (near.distance < shallow * spacing) passed.push_back(near.normal);
       return near.distance < 0;
     });
-    if (!enters) return least > shallow * spacing ? Answer::no : Answer::unclear;
+    if (!is_entered) return least > shallow * spacing ? Answer::no : Answer::unclear;
     const Vec3 normal = solids.nearest(entry).normal;
     if (std::any_of(passed.begin(), passed.end(), [&](const Vec3& other) { return dot(other, normal) < 0.99; }))
       return Answer::unclear;
@@ -59,10 +77,9 @@ struct ThinSight {
         way = subtract(way, multiply(dot(way, normal), normal));
         if (length(way) > 0.1 && is_edge(unit(way))) return Answer::unclear;
       }
-    return dot(normal, point.normal) > 0.99 ? Answer::yes : Answer::no;
+    return is_of(entry, normal) ? Answer::yes : Answer::no;
   }
 
- private:
   // Calls visit(place) until it returns true.
   template <class Visit>
   bool along(const Vec3& from, const Vec3& to, Visit&& visit) const {

@@ -255,6 +255,10 @@ TEST(Bodies, SuspiciousBodiesAreWarnedOf) {
   EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.2, 0.2]\n"),
               ElementsAre(HasSubstr("behind 100 % of its surface, and is no plate")));
   EXPECT_THAT(warnings(start + "shape = \"box\"\nrotation = [20]\nsize = [0.1, 0.3]\n"), IsEmpty());
+  // But one thinner than the support radius, 0.13, or twice as long as thick.
+  for (const char* size : {"[0.12, 0.12]", "[0.16, 0.1]", "[0.2, 0.12]", "[0.26, 0.12]"})
+    EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = " + size + "\n"), IsEmpty()) << size;
+  EXPECT_THAT(warnings(start + "shape = \"box\"\nsize = [0.24, 0.16]\n"), ElementsAre(HasSubstr("is no plate")));
   EXPECT_THAT(
       warnings(start + "shape = \"ball\"\nradius = 0.1\n"),
       ElementsAre(HasSubstr("the body 'it' is thinner than five spacings, 0.25, behind 100 % of its surface, and "
@@ -268,6 +272,38 @@ TEST(Bodies, SuspiciousBodiesAreWarnedOf) {
   EXPECT_THAT(warnings(start + "shape = \"ball\"\nradius = 0.98\ninside = false\n"), IsEmpty());
   EXPECT_THAT(warnings(head3 + "[[body]]\nshape = \"box\"\nsize = [0.5, 0.5, 0.05]\n"),
               Contains(HasSubstr("thinner than a spacing, 0.1")));
+}
+
+// Two plates two spacings thick, the second turned by an angle and across the first or on it; 3-D; and a fold.
+TEST(Bodies, AcuteCornersOfThinBodiesAreWarnedOf) {
+  const std::string start = head2 + "[[liquid]]\nlower = [-1, -1]\nupper = [1, 0.9]\n";
+  const std::string floor = "[[body]]\nname = \"floor\"\nshape = \"box\"\nsize = [1.2, 0.1]\n";
+  const auto across = [&](const std::string& degrees, const std::string& position) {
+    return warnings(start + floor + "[[body]]\nname = \"it\"\nshape = \"box\"\nsize = [0.9, 0.1]\nposition = " +
+                    position + "\nrotation = [" + degrees + "]\n");
+  };
+  for (const char* degrees : {"20", "30", "40"}) {
+    EXPECT_THAT(
+        across(degrees, "[0, 0]"),
+        ElementsAre(HasSubstr(std::string("18:1 the bodies 'floor' and 'it' meet at ") + degrees + " degrees")));
+    EXPECT_THAT(
+        across(degrees, "[0, 0.2]"),
+        ElementsAre(HasSubstr(std::string("18:1 the bodies 'floor' and 'it' meet at ") + degrees + " degrees")));
+  }
+  for (const char* degrees : {"45", "50", "70", "90"}) {
+    EXPECT_THAT(across(degrees, "[0, 0]"), IsEmpty()) << degrees;
+    EXPECT_THAT(across(degrees, "[0, 0.3]"), IsEmpty()) << degrees;
+  }
+  EXPECT_THAT(across("0", "[0, 0.15]"), IsEmpty());  // a channel
+  EXPECT_THAT(across("30", "[0, 0.6]"), IsEmpty());  // apart
+  const std::string fold = "[[body]]\nname = \"v\"\nshape = \"outline\"\npoints = [[0, 0], [0.8, 0], [0.8, 0.1], ";
+  EXPECT_THAT(warnings(start + fold + "[0.3, 0.1], [0.75, 0.36], [0.7, 0.446]]\n"),
+              ElementsAre(HasSubstr("two faces of the body 'v' meet at 30 degrees")));
+  const std::string start3 = head3 + "[[body]]\nname = \"a\"\nshape = \"box\"\nsize = ";
+  EXPECT_THAT(
+      warnings(start3 + "[1.6, 0.8, 0.2]\n[[body]]\nname = \"b\"\nshape = \"box\"\nsize = [1.5, 0.8, 0.2]\nrotation "
+                        "= [0, 30, 0]\n"),
+      ElementsAre(HasSubstr("the bodies 'a' and 'b' meet at 30 degrees")));
 }
 
 TEST(Bodies, TheResolvedCaseIsReadBackToTheSameBodies) {

@@ -4,7 +4,8 @@
 //
 // Beside walls of bodies the lattice that fills a scene is cut by the surface: some particles stand closer to it than
 // half a spacing, some leave a gap. Those nearer than four spacings to a body move; those that see a free surface keep
-// its height: they move horizontally. With `phase`, where phases lie in layers, so do those that see an interface:
+// its height: they move horizontally. Below a free surface those nearer than a quarter of a spacing to a face are moved
+// out to there. With `phase`, where phases lie in layers, so do those that see an interface:
 // moved up and down with its particles it would be a wave of a tenth of a spacing. Layers behind openings, the
 // particles with 0 or more in `layer`, stay, and no particle leaves the domain.
 //

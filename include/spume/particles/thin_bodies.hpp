@@ -28,9 +28,15 @@ struct StandingBody {
   bool thin = false;
 };
 
+// A point and the body that it belongs to, among those given: the one of the face that it is seen through, of points in
+// the corner of several the last. The nearest to its foot may be another, past an edge.
+struct SheetPoint : WallPoint {
+  std::size_t body = 0;
+};
+
 // Wall points of the thin ones of `bodies`, whose union is `walls`, and those in corners of their faces and with other
 // bodies, of thick ones at 45 degrees or more.
-std::vector<WallPoint> make_sheet_points(const std::vector<StandingBody>& bodies, const Combination& walls,
-                                         const Domain& domain, const Resolution& resolution, double particle_volume);
+std::vector<SheetPoint> make_sheet_points(const std::vector<StandingBody>& bodies, const Combination& walls,
+                                          const Domain& domain, const Resolution& resolution, double particle_volume);
 
 }  // namespace spume

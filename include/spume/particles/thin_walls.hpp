@@ -9,7 +9,8 @@
 //
 // Behind a face stand wall points that belong to it: a particle sees one of them when the way there enters the bodies
 // through a face with its normal, within 45 degrees and half of the angle to the next face. Other wall points it sees
-// when it sees what they mirror.
+// when it sees what they mirror, and of those that the faces of a corner turn about it when the way to them enters one
+// of these faces, too: past its ends others hide them.
 #pragma once
 
 #include <array>
@@ -68,6 +69,7 @@ class ThinWalls final : public Sight {
   bool is_behind_face(std::size_t point) const;
   bool sees_face(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& unfolded,
                  const WallPoint& kind) const;
+  bool enters_between(const Vec3& eye, double eye_distance, const Vec3& point, const Vec3& mirror) const;
   Vec3 imaged(const ImagePath& path, const Vec3& place) const;
   Vec3 particle_place(std::size_t particle) const;
   Vec3 image_place(std::size_t image) const;

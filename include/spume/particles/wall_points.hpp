@@ -25,6 +25,8 @@ struct WallPoint {
   // radius of the mirror.
   bool one_sided = false, past_edge = false, in_corner = false, beside_edge = false;
   bool flat = false;  // no other face is, and this one is flat
+  // What faces of thin bodies that meet turn about the corner between them: seen by ways that enter one of these, too.
+  bool turned = false;
   // Of a one-sided point: of the cosine of the angle between the normal and that of a place of the surface where what
   // enters sees the point.
   float least_cosine = 0;

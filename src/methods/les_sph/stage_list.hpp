@@ -62,6 +62,14 @@ inline Arrays arrays_of(const PressureRows& rows) {
   return {rows.diagonal_shift, rows.diagonal, rows.weight, rows.row, rows.right_hand_side};
 }
 
+// One sweep, or that of the change by the shift too.
+inline auto differentiating(Flow& f) {
+  return [&f](StageRun& run) {
+    f.differentiate_velocity();
+    run.pairs = f.arrangement.pair_count() * (f.shifts_without_bends() ? 2 : 1);
+  };
+}
+
 inline auto factorising(Flow& f) {
   return [&f](StageRun& run) {
     f.factorise();

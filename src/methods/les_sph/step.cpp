@@ -61,8 +61,8 @@ Plan make_plan(Flow& f) {
   const Arrays gradients{f.strain, f.velocity_gradient, f.filtered_velocity, f.gradient_trace, f.shift_velocity};
   stages.sweep(start, "first gradients", true, "strain and source of the first pressure",
                &Flow::differentiate_first_velocity, {p.velocity, moments.correction}, gradients);
-  stages.sweep(step, "gradients", has.velocity_gradient, why.gradients, &Flow::differentiate_velocity,
-               {f.advecting_velocity, moments.correction, f.displacement_by_shift()}, gradients);
+  stages.add(step, "gradients", has.velocity_gradient, why.gradients, differentiating(f),
+             {f.advecting_velocity, moments.correction, f.displacement_by_shift()}, gradients);
   stages.sweep(step, "shift curvature", has.shift_curvature, why.curvature, &Flow::find_shift_curvature,
                {f.velocity_gradient, f.displacement_by_shift(), moments.correction}, {f.shift_velocity});
   // (vi) closure of the unresolved stress; (vii) bubbles

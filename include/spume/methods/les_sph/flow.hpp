@@ -182,6 +182,7 @@ struct Flow {
   void compute_shift();                 // (iii)
   void differentiate_velocity();        // (v)
   void differentiate_first_velocity();  // of the start
+  bool shifts_without_bends() const;    // the change by the shift takes a sweep of its own
   void find_shift_curvature();
   void find_eddy_viscosity(double dt);
   // Gravity and a uniform body force at time t, along axes without periodicity and along the others. Throws
