@@ -14,7 +14,7 @@ namespace {
 
 // Length over thickness of a plate, along the principal axes of the solid. What is shorter and hides liquid by its
 // thickness alone, such as a square pillar, stays as thick bodies are: four spacings wide on the floor of a tank it
-// left layers of wcsph with accelerations of 1.6 g.
+// left weakly compressible layers with accelerations of 1.6 g.
 constexpr double slender = 2;
 
 // Moments of places within a solid.
