@@ -21,6 +21,16 @@ bool has_wall_points(const Scene& scene) {
                                                 [](const Body& body) { return body.wall != BoundaryKind::open; });
 }
 
+bool boxes_stand_in_full_domain(const Scene& scene) {
+  const auto thick = [&](const SolidBox& box) {
+    for (int axis = 0; axis < scene.domain.dimensions; ++axis)
+      if (box.upper[axis] - box.lower[axis] < (1 - in_side) * scene.spacing) return false;
+    return true;
+  };
+  const std::vector<SolidBox>& boxes = scene.domain.boxes;
+  return !scene.free_surface && !boxes.empty() && std::all_of(boxes.begin(), boxes.end(), thick);
+}
+
 void make_bodies_of_boxes(Scene& scene) {
   Domain& domain = scene.domain;
   Bounds whole;

@@ -370,8 +370,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   if (!method->honours_displaced_walls) check_sliding_walls(draft, scene, method->name, problems);
   if (method->check_scene) method->check_scene(draft, scene, problems);
   problems.throw_if_any();
-  // Where nothing but the walls holds the pressure, images at the edges of boxes leave a stream without liquid there.
-  if (method->solids_join_bodies && !scene.free_surface && !scene.domain.boxes.empty()) {
+  if (method->solids_join_bodies && boxes_stand_in_full_domain(scene)) {
     make_bodies_of_boxes(scene);
     scene.walls = make_walls(scene.bodies, scene.motions);
   }

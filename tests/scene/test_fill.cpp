@@ -209,6 +209,7 @@ TEST(Fill, ClosedBoxAroundASolidHasNoFreeSurface) {
   EXPECT_TRUE(open.scene.free_surface);
   EXPECT_EQ(open.scene.domain.boxes.at(0).kind, BoundaryKind::no_slip);
   EXPECT_TRUE(open.scene.bodies.empty());
+  EXPECT_TRUE(load_text(closed, {"solid.0.upper=[0.79, 1.3]"}).scene.bodies.empty());  // thinner than a spacing
 }
 
 TEST(Fill, ConformingColumnsEndOnTheSurfaceAndStandOnTheBottom) {
