@@ -41,11 +41,26 @@ struct Reader {
 
   bool counts(std::size_t i) const { return left_out == nullptr || (*left_out)[i] < 0; }
 
+  bool near_box(std::size_t i) const {
+    const double support_radius = arrangement.grid.support_radius();
+    for (const SolidBox& box : boundary.domain().boxes) {
+      double distance2 = 0;
+      for (int axis = 0; axis < resolution.dimensions; ++axis) {
+        const double x = (*at[axis])[i];
+        const double outside = std::max({box.lower[axis] - x, x - box.upper[axis], 0.0});
+        distance2 += outside * outside;
+      }
+      if (distance2 < support_radius * support_radius) return true;
+    }
+    return false;
+  }
+
   // Whether the neighbourhood of a particle is full, or as thin on all sides. Where liquid ends the normal is large:
   // h |m| is 0.66 (3-D) and 0.84 (2-D) times what div r lacks in the upper layer of a lattice, 0.6 times in the second
   // one. In foam that falls back into the liquid it is a tenth; left at the density of nine tenths that it arrives
   // with, such liquid raised the second wave of dam_break_3d.
   bool tells_density(std::size_t i) const {
+    if (surface != nullptr && near_box(i)) return false;
     if (surface == nullptr || surface->interior_weight[i] == 1) return true;
     if (surface->at_surface[i] != 0) return false;
     const double normal2 = squared_norm(moments.normal, resolution.dimensions, i);
@@ -53,10 +68,11 @@ struct Reader {
     return std::sqrt(normal2) < largest_isotropic_normal * missing;
   }
 
-  // Beside an obstacle how much of a void a particle stands at: 0 with what is let be, 1 as thin as a void.
+  // Beside an obstacle in liquid without a surface how much of a void a particle stands at: 0 with what is let be, 1 as
+  // thin as a void.
   double void_share(std::size_t i) const {
     const double lack = -excess(i) - particle_disorder;
-    if (!(lack > 0) || !boundary.has_obstacles() ||
+    if (surface != nullptr || !(lack > 0) || !boundary.has_obstacles() ||
         !boundary.obstacle_near(vector_at(at, resolution.dimensions, i), resolution.support_radius))
       return 0;
     return std::min(1.0, lack / (thin_as_void - particle_disorder));

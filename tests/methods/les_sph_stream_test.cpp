@@ -11,7 +11,7 @@
 namespace spume::test {
 namespace {
 
-// Between free-slip walls, Re = 9000 with the height of the obstacles, about ten spacings.
+// Between free-slip walls, Re = 3e4 with the height of the obstacles, about ten spacings.
 const std::string stream = R"toml(method = "les-sph"
 [domain]
 lower = [0, 0]
