@@ -102,6 +102,15 @@ class Repeated final : public Shape {
     return least;
   }
   Bounds bounds() const override { return shape_->bounds(); }
+  Bounds extent() const override {
+    Bounds all = shape_->bounds();
+    for (const Vec3& shift : shifts_)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        all.lower[axis] = std::min(all.lower[axis], shape_->bounds().lower[axis] + shift[axis]);
+        all.upper[axis] = std::max(all.upper[axis], shape_->bounds().upper[axis] + shift[axis]);
+      }
+    return all;
+  }
   double volume() const override { return shape_->volume(); }
   double error() const override { return shape_->error(); }
   TriangleSurface surface(const Bounds& window, double step) const override { return shape_->surface(window, step); }
@@ -141,7 +150,7 @@ ShapePointer place(ShapePointer shape, const Pose& pose, bool inside, int dimens
   return std::make_shared<Placed>(std::move(shape), pose, inside, dimensions);
 }
 
-ShapePointer repeat(ShapePointer shape, const Bounds& domain, const Vec3& periods) {
+ShapePointer repeat(ShapePointer shape, const Bounds& window, const Vec3& periods) {
   const Bounds bounds = shape->bounds();
   std::vector<Vec3> shifts{{}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -149,7 +158,7 @@ ShapePointer repeat(ShapePointer shape, const Bounds& domain, const Vec3& period
     if (periods[axis] == 0 || !std::isfinite(bounds.upper[axis] - bounds.lower[axis])) continue;
     const std::size_t before = shifts.size();
     for (const double period : {-periods[axis], periods[axis]}) {
-      if (bounds.lower[axis] + period >= domain.upper[axis] || bounds.upper[axis] + period <= domain.lower[axis])
+      if (bounds.lower[axis] + period >= window.upper[axis] || bounds.upper[axis] + period <= window.lower[axis])
         continue;
       for (std::size_t k = 0; k < before; ++k) {
         Vec3 shift = shifts[k];
@@ -163,9 +172,26 @@ ShapePointer repeat(ShapePointer shape, const Bounds& domain, const Vec3& period
   return std::make_shared<Repeated>(std::move(shape), std::move(shifts));
 }
 
+Combination::Combination(std::vector<CombinedPart> parts) : parts_(std::move(parts)) {
+  for (const CombinedPart& part : parts_) extents_.push_back(part.shape->extent());
+}
+
+bool Combination::may_change(std::size_t part, const Vec3& point, double distance) const {
+  double outside2 = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double outside =
+        std::max({extents_[part].lower[axis] - point[axis], point[axis] - extents_[part].upper[axis], 0.0});
+    outside2 += outside * outside;
+  }
+  const bool settled = parts_[part].subtract ? distance >= 0 : distance <= 0;
+  return outside2 == 0 || !(settled || outside2 >= distance * distance);
+}
+
 NearestPoint Combination::nearest(const Vec3& point) const {
   NearestPoint best{infinite, {0, 0, 0}, point};
-  for (const CombinedPart& part : parts_) {
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    if (!may_change(k, point, best.distance)) continue;
+    const CombinedPart& part = parts_[k];
     NearestPoint next = part.shape->nearest(point);
     if (part.subtract) {
       next.distance = -next.distance;
@@ -178,7 +204,9 @@ NearestPoint Combination::nearest(const Vec3& point) const {
 
 double Combination::distance(const Vec3& point) const {
   double best = infinite;
-  for (const CombinedPart& part : parts_) {
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    if (!may_change(k, point, best)) continue;
+    const CombinedPart& part = parts_[k];
     const double next = part.shape->distance(point);
     best = part.subtract ? std::max(best, -next) : std::min(best, next);
   }

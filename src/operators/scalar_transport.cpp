@@ -149,21 +149,23 @@ void transport(const SweepContext& context, PackedNeighbours& packed, const Scal
 
 }  // namespace
 
-void scalar_transport_sweep(const SweepContext& context, PackedNeighbours& packed, const ScalarSweepInput& in,
-                            const ScalarSweepOutput& out) {
+std::int64_t scalar_transport_sweep(const SweepContext& context, PackedNeighbours& packed, const ScalarSweepInput& in,
+                                    const ScalarSweepOutput& out) {
+  std::int64_t sweeps = 0;
   with_plain_kernel(context.dimensions, context.kernel, [&]<int dimensions, class Kernel>() {
     const auto run = [&]<int count>(std::size_t first) {
       transport<dimensions, Kernel, count>(context, packed, in, out, first);
       return first + count;
     };
     const std::size_t all = in.values.size();
-    for (std::size_t first = 0; first < all;) {
+    for (std::size_t first = 0; first < all; ++sweeps) {
       const std::size_t left = all - first;
       first = left > 4   ? run.template operator()<8>(first)
               : left > 1 ? run.template operator()<4>(first)
                          : run.template operator()<1>(first);
     }
   });
+  return sweeps;
 }
 
 }  // namespace spume

@@ -18,6 +18,11 @@ void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
   const Vec3 start = position;
   Vec3 outwards = first.normal;
   const auto is_free = [&](const Vec3& place) { return nearest_walls(place).exact_distance(place) >= 0.5 * gap; };
+  const auto is_reached = [&](const Vec3& place) {
+    for (int axis = 0; axis < scene_.domain.dimensions; ++axis)
+      if (place[axis] < scene_.domain.lower[axis] || place[axis] > scene_.domain.upper[axis]) return false;
+    return is_free(place);
+  };
   position = add(near.point, multiply(std::max(gap, std::abs(near.distance)), near.normal));
   if (!is_free(position)) {
     // Another wall is there: before the nearest face.
@@ -27,7 +32,7 @@ void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
     }
     // Between bodies that touch, faces that no liquid sees push to and fro: out to where there is none.
     if (!is_free(position))
-      if (const auto place = free_place_near(start, scene_.domain.dimensions, scene_.spacing / 8, is_free)) {
+      if (const auto place = free_place_near(start, scene_.domain.dimensions, scene_.spacing / 8, is_reached)) {
         position = *place;
         outwards = multiply(1 / length(subtract(position, start)), subtract(position, start));
       }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 
+#include "box_bodies.hpp"
 #include "checks.hpp"
 #include "spume/core/error.hpp"
 #include "spume/geometry/distance_field.hpp"
@@ -309,8 +310,8 @@ std::vector<Body> make_bodies(const Draft& draft, const CompileExpression& compi
           Bounds domain;
           Vec3 periods{};
           for (std::size_t a = 0; a < static_cast<std::size_t>(draft.dimensions); ++a) {
-            domain.lower[a] = draft.lower[a];
-            domain.upper[a] = draft.upper[a];
+            domain.lower[a] = draft.lower[a] - beyond_side * draft.options.spacing;
+            domain.upper[a] = draft.upper[a] + beyond_side * draft.options.spacing;
             if (draft.periodic[a]) periods[a] = draft.upper[a] - draft.lower[a];
           }
           const ShapePointer placed = place(shape, pose, true, draft.dimensions);

@@ -9,8 +9,6 @@
 namespace spume {
 namespace {
 
-// In spacings: what reaches a side of the domain goes on so far beyond it, which is more than liquid sees.
-constexpr double beyond_side = 10;
 // In spacings: nearer to a side than this a face is in it.
 constexpr double in_side = 1e-6;
 
@@ -36,8 +34,8 @@ void make_bodies_of_boxes(Scene& scene) {
   Bounds whole;
   Vec3 periods{};
   for (int axis = 0; axis < domain.dimensions; ++axis) {
-    whole.lower[axis] = domain.lower[axis];
-    whole.upper[axis] = domain.upper[axis];
+    whole.lower[axis] = domain.lower[axis] - beyond_side * scene.spacing;
+    whole.upper[axis] = domain.upper[axis] + beyond_side * scene.spacing;
     if (domain.periodic(axis)) periods[axis] = domain.upper[axis] - domain.lower[axis];
   }
   for (std::size_t k = 0; k < domain.boxes.size(); ++k) {

@@ -5,6 +5,10 @@
 
 namespace spume {
 
+// In spacings: bodies and their copies that come as near to a periodic side, and boxes that reach a side, are seen so
+// far beyond it, which is more than liquid sees.
+inline constexpr double beyond_side = 10;
+
 // Whether walls of bodies, or openings, stand in a scene.
 bool has_wall_points(const Scene& scene);
 

@@ -192,6 +192,16 @@ TEST(LesSphBodies, GoOnBeyondPeriodicSides) {
   EXPECT_NEAR(rows[3], buoyancy, 0.005 * buoyancy);
 }
 
+// A box that ends 0.3 spacings before a periodic side is seen from beyond it: unseen there, it let the liquid fall
+// into its place, at 0.25 sqrt(gH).
+TEST(LesSphBodies, AreSeenBeyondAPeriodicSideThatTheyDoNotReach) {
+  Simulation run(replaced(level_tank, "left = \"free-slip\"\nright = \"free-slip\"", "x = \"periodic\"") +
+                     "[[body]]\nshape = \"box\"\nsize = [0.4, 0.5]\nposition = [1.285, 0.25]\n",
+                 inviscid);
+  while (run.method.time() < 2) run.steps(1, run.method.step_limit().dt);
+  EXPECT_LT(run.series()["max_speed"], 1e-3);
+}
+
 // Less than half of the surroundings of a point on a concave wall is liquid, and about half on a flat one.
 TEST(LesSphBodies, ProbesOnTheirSurfaceAreWet) {
   Simulation run(level_tank + "[[body]]\nshape = \"ball\"\nradius = 0.6\nposition = [0.75, 0.75]\ninside = false\n",

@@ -143,6 +143,9 @@ TEST(LesSphInvariants, AreStatedWhereTheyHold) {
             "mass_drift " + momentum + "energy_growth pressure_residual ");
   EXPECT_EQ(invariants_of(dam_break), "mass_drift volume_drift energy_growth pressure_residual ");
   EXPECT_EQ(invariants_of(cavity), "mass_drift volume_drift pressure_residual ");
+  for (const char* obstacle : {"[[solid]]\nlower = [0.4, 0.4]\nupper = [0.6, 0.6]\n",
+                               "[[body]]\nshape = \"ball\"\nradius = 0.2\nposition = [0.5, 0.5]\nwall = \"no-slip\"\n"})
+    EXPECT_EQ(invariants_of(taylor_green + obstacle).find("momentum"), std::string::npos);
   for (const char* forced : {"forces.body=[\"1\", \"0\"]", "forces.body=[\"sin(2*pi*y)\", \"0\"]", "fluid.froude=1"})
     EXPECT_EQ(invariants_of(taylor_green, {forced}), "mass_drift volume_drift energy_growth pressure_residual ");
 }

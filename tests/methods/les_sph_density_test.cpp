@@ -169,7 +169,93 @@ TEST(NumberDensity, OfAVoidBesideABodyIsClosedWithinOneDisplacement) {
   expect_closing(0.1, 1, 2.0 / 30);
   expect_closing(0.05, 1, 1.0 / 30);
   expect_closing(0.035, 0.5, 1.0 / 30);
-  expect_closing(0.02, 1.0 / 30, 1.0 / 30);
+}
+
+// A square of 12 spacings in a tank, its faces along those of the tank.
+const std::string sunken_square = R"toml(method = "les-sph"
+[domain]
+lower = [0, 0]
+upper = [2, 1.6]
+left = "free-slip"
+right = "free-slip"
+bottom = "free-slip"
+[resolution]
+spacing = 0.04
+[fluid]
+reynolds = 1000
+froude = 1
+[[liquid]]
+upper = [2, 1.2]
+where = "1.2 - y"
+velocity = ["0.1*sin(pi*x/2)", "0"]
+[time]
+end = 1
+)toml";
+
+// How far the point of the square nearest to a place lies from its nearest corner, and the place from the square.
+struct BesideSquare {
+  double from_corner = 0, distance = 0;
+};
+
+BesideSquare beside_square(const Vec3& place) {
+  const double half = 0.24, x = std::abs(place[0] - 1), y = std::abs(place[1] - 0.5);
+  const double beyond_x = std::max(x - half, 0.0), beyond_y = std::max(y - half, 0.0);
+  return {half - std::min({x, y, half}), std::hypot(beyond_x, beyond_y)};
+}
+
+// Below a surface voids close within a displacement where the wall bends away: 0.8 of two support radii from a corner.
+// Closed at once along flat walls too, what lacks in the layer at the floor of sloshing drove a jet along it.
+void expect_closing_behind_corners(const std::string& square) {
+  Simulation run(sunken_square + square);
+  const double dt = 0.004, lack = 0.05;
+  run.steps(5, dt);
+  les_sph::Flow& flow = before_relaxation(run, dt);
+  for (float& sum : flow.moments.kernel_sum) sum = static_cast<float>((1 - lack) * flow.resolution.lattice.kernel_sum);
+  const std::vector<double> change = change_by_relaxation(flow, 30, dt);
+  const double support = flow.resolution.support_radius;
+  int at_once = 0, along_faces = 0;
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    const Vec3 place = vector_at(flow.intermediate_position, 2, i);
+    if (place[1] > 1.2 - 2 * support) continue;
+    const auto [from_corner, distance] = beside_square(place);
+    const bool behind_corner = distance < support && from_corner < 0.8 * 2 * support;
+    if (std::abs(distance - support) < 0.01 * support || std::abs(from_corner - 1.6 * support) < 0.01 * support)
+      continue;
+    at_once += behind_corner;
+    along_faces += distance < support && !behind_corner;
+    EXPECT_NEAR(change[i] * dt / flow.displacement, 0.018 / 300 + 0.03 * (behind_corner ? 1 : 1.0 / 30), 1e-6)
+        << place[0] << ' ' << place[1];
+  }
+  EXPECT_GT(at_once, 50);
+  EXPECT_GT(along_faces, 10);
+}
+
+TEST(NumberDensity, OfAVoidBelowASurfaceIsClosedWithinOneDisplacementBehindCorners) {
+  expect_closing_behind_corners(
+      "[[body]]\nshape = \"box\"\nsize = [0.48, 0.48]\nposition = [1, 0.5]\nwall = \"no-slip\"\n");
+}
+
+// Near the surface the sums beside a box are left alone: at its edges they lack what its images do not tell.
+TEST(NumberDensity, IsLeftAloneBesideABoxNearASurface) {
+  Simulation run(sunken_square + "[[solid]]\nlower = [0.6, 0]\nupper = [1.4, 1.1]\n");
+  run.steps(5, 0.004);
+  les_sph::Flow& flow = before_relaxation(run, 0.004);
+  const std::vector<double> change = change_when_denser(flow);
+  const double support = flow.arrangement.grid.support_radius();
+  int beside_box = 0, submerged = 0;
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    const Vec3 place = vector_at(flow.intermediate_position, 2, i);
+    const double beyond_x = std::max(std::abs(place[0] - 1) - 0.4, 0.0), beyond_y = std::max(place[1] - 1.1, 0.0);
+    if (std::hypot(beyond_x, beyond_y) >= support) continue;
+    const bool near_surface = place[1] > 1.2 - support;
+    const bool deep = place[1] < 1.2 - 2 * support;
+    if (near_surface) EXPECT_EQ(change[i], 0) << place[0] << ' ' << place[1];
+    if (deep) EXPECT_NE(change[i], 0) << place[0] << ' ' << place[1];
+    beside_box += near_surface;
+    submerged += deep;
+  }
+  EXPECT_GT(beside_box, 0);
+  EXPECT_GT(submerged, 0);
 }
 
 // The same steps rearrange the liquid alike, whatever limit they might have gone to: rearranged in full at every step

@@ -142,9 +142,9 @@ TEST(ThinCorners, AWaySeesThePointsOfOneFaceOfAnEdge) {
   }
 }
 
-// Two spacings thick, with all ends in the liquid. Points that the faces of the corner turn about it were seen past its
-// ends too, by whoever saw what they mirror: the sums were up to 1.25 beside the L and 1.18 beside the plates. Beside
-// one plate they are 1.065 at the most.
+// Two spacings thick, with all ends in the liquid. Points that the faces of the corner turn about it are not seen past
+// its ends: seen there by whoever sees what they mirror, the sums are up to 1.25 beside the L and 1.18 beside the
+// plates. Beside one plate they are 1.065 at the most.
 TEST(ThinCorners, EveryPlaceIsSeenOnceAtTheEndsOfACornerInSpace) {
   const std::string tank = "lower = [0, 0, 0]\nupper = [1.6, 1.2, 1.3]\n";
   const std::string ell =

@@ -45,6 +45,8 @@ class Shape {
   bool inside(const Vec3& point) const { return distance(point) < 0; }
 
   virtual Bounds bounds() const = 0;
+  // The same with the copies of a shape that is repeated.
+  virtual Bounds extent() const { return bounds(); }
   // Area in two dimensions; infinite for a shape without end.
   virtual double volume() const = 0;
   // Upper bound of the error of distances to a smooth surface, estimated where no closed form gives them; 0 for those.

@@ -53,10 +53,10 @@ Vec3 to_own_coordinates(const Pose& pose, const Vec3& point);
 // With `inside` false the solid is what lies outside the shape.
 ShapePointer place(ShapePointer shape, const Pose& pose, bool inside, int dimensions);
 
-// The shape and what it is seen at beyond the periodic sides of a domain from `lower` to `upper`, whose periods are 0
-// along other axes: the copies one period away, as far as they reach into the domain. Bounds, volume and surface are
-// those of the shape itself. Returns the shape where no copy does.
-ShapePointer repeat(ShapePointer shape, const Bounds& domain, const Vec3& periods);
+// The shape and its copies one period away along axes whose periods are not 0, those that reach into `window`: the
+// domain and how far liquid sees beyond its sides. Bounds, volume and surface are those of the shape itself. Returns
+// the shape where no copy does.
+ShapePointer repeat(ShapePointer shape, const Bounds& window, const Vec3& periods);
 
 // The union of shapes, each of which is added to what those before it make, or taken away from it. Outside a union and
 // inside a difference the distance is exact; else its size is a lower bound of the distance.
@@ -67,7 +67,7 @@ struct CombinedPart {
 class Combination {
  public:
   Combination() = default;
-  explicit Combination(std::vector<CombinedPart> parts) : parts_(std::move(parts)) {}
+  explicit Combination(std::vector<CombinedPart> parts);
   bool empty() const { return parts_.empty(); }
   // Of no solid at all: infinitely far.
   NearestPoint nearest(const Vec3& point) const;
@@ -75,7 +75,12 @@ class Combination {
   bool inside(const Vec3& point) const { return distance(point) < 0; }
 
  private:
+  // Whether a part can make the distance of a point another than `distance`, that of the parts before it: by its extent
+  // alone, of which a bed of 100 boxes asks for most.
+  bool may_change(std::size_t part, const Vec3& point, double distance) const;
+
   std::vector<CombinedPart> parts_;
+  std::vector<Bounds> extents_;
 };
 
 }  // namespace spume

@@ -41,8 +41,9 @@ struct ScalarSweepOutput {
   float* exchange = nullptr;       // the largest sum_j 2 g v_i v_j k_ij of all scalars, 1/time; null: not wanted
 };
 
-void scalar_transport_sweep(const SweepContext& context, PackedNeighbours& packed, const ScalarSweepInput& in,
-                            const ScalarSweepOutput& out);
+// Returns the number of sweeps: up to eight scalars share one.
+std::int64_t scalar_transport_sweep(const SweepContext& context, PackedNeighbours& packed, const ScalarSweepInput& in,
+                                    const ScalarSweepOutput& out);
 
 // Rates and changes of scalars as part of a viscous sweep (sph_operators.hpp), whose records have room for them: the
 // pairs, the kernel and kappa_i = nu a_i of a viscosity that is the same everywhere are there already. Particles are of

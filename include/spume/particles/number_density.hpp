@@ -41,18 +41,17 @@ struct DensityRelaxation {
 //   div u^{n+1} = displacement / (dt M) (<c> - b(<c>, 0.002)) + displacement / (dt N_i) (e_i - c_i),  c = b(e, 0.02),
 //   e = S / (S of the lattice) - 1 within -0.5 and 0.1,  S = sum_j V_j W_ij,  b(x, a) = min(max(x, -a), a).
 // N_i = N, less in a void: N 0.05 / |e_i| where e_i < -0.05. M = N. In a scene with a surface expansion lifts what lies
-// above it: M = 10 N, and N_i = 10 N where e_i > 0. Without one, within the support of an obstacle, N_i is at most
-// 0.03 / (|e_i| - 0.02) where e_i < -0.02, and 1 where e_i < -0.05: a stream opens voids behind edges within a spacing,
-// which is four steps; closed in tens of steps they let jets in. Streams past a triangle, a free-slip box and boxes of
-// 5 to 13 spacings (2-D, Re = 3e4) doubled their energy; with N_i = 2 one of two boxes still did, with 1 none does.
-// Beside walls and a surface the same gives spray energy: sloshing had four times its own at the first impact.
+// above it: M = 10 N, and N_i = 10 N where e_i > 0. Beside an obstacle, within two support radii of an edge that the
+// liquid goes around and farther than the support from a surface, N_i is at most 0.03 / (|e_i| - 0.02) where
+// e_i < -0.02, and 1 where e_i < -0.05: a stream opens voids behind edges within a spacing, which is four steps; closed
+// in tens of steps they let jets in. Streams past a triangle, a free-slip box and boxes of 5 to 13 spacings (2-D,
+// Re = 3e4) double their energy with N_i = N and one of two boxes does with N_i = 2; with 1 none does.
 // S tells the density and hardly the strain of a lattice (at 1.2 by 1/1.2 it rises by 0.3 %, div r by 1.5 %, which
 // would lift the crest of a wave) or a surface one layer off (0.4 %). Velocities free of divergence keep the density
 // only as far as their discrete divergence tells the volume of a moving arrangement: without this voids open in a
 // lid-driven cavity. What is let be is what the disorder of an arrangement makes of S: 0.002 in the mean (0.0017 in a
 // cavity), which must not raise the level of a liquid with a surface, and 0.02 from particle to particle. Particles of
-// the uppermost layer, which lack neighbours, and, in scenes with a surface, those within reach of a solid box are left
-// alone.
+// the uppermost layer, which lack neighbours, and those within reach of both a surface and a solid box are left alone.
 // Returns the volume that the particles take by their kernel sums, over that of one on the lattice: the sum of
 // 1 / (1 + e_i), 1 for those left alone. `surface`: null without one. `at`: where the moments were measured.
 double even_out_density(const DensityRelaxation& relaxation, const Arrangement& arrangement, const Boundary& boundary,

@@ -31,7 +31,8 @@ struct MethodDeclaration {
 
   bool honours_solids = true;  // the same of [[solid]]
 
-  bool solids_join_bodies = false;  // beside walls of bodies and openings [[solid]] boxes are bodies too
+  // Beside walls of bodies and openings, and where liquid fills the domain, [[solid]] boxes are bodies too.
+  bool solids_join_bodies = false;
 
   bool honours_floating_bodies = false;  // whose motion follows from the pressure
 

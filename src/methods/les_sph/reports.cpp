@@ -163,9 +163,9 @@ std::vector<Invariant> LesSph::invariants() const {
         return flow_.particles.volume * static_cast<double>(openings.left() - openings.entered());
       };
   }
-  // Without forces and walls the momentum stays. The corrected gradient is not antisymmetric, so that it drifts by the
-  // truncation error.
-  if (periodic() && !has.potential && !has.bubbles && flow_.scene.domain.boxes.empty()) {
+  // Without forces, walls and solids the momentum stays. The corrected gradient is not antisymmetric, so that it drifts
+  // by the truncation error.
+  if (periodic() && !has.potential && !has.bubbles && !flow_.boundary.has_obstacles()) {
     const double mass = flow_.particle_mass() * static_cast<double>(flow_.size());
     const char* const momentum[3] = {"momentum_x", "momentum_y", "momentum_z"};
     for (int axis = 0; axis < flow_.dimensions; ++axis)

@@ -272,13 +272,13 @@ void Scalars::find_packed(std::size_t first, std::size_t last) {
 }
 
 // Of the scalars from `first` on. Where some rode the exchange is known to be small.
-void Scalars::sweep(std::size_t first, const Carrier& carrier, bool shifted) {
-  if (first == size()) return;
+std::int64_t Scalars::sweep(std::size_t first, const Carrier& carrier, bool shifted) {
+  if (first == size()) return 0;
   find_normalisation(carrier);
   if (first == 0) particles_.scratch().lease(exchange_, particles_.size());
   find_packed(first, size());
   const auto behind = [first](const auto& values) { return std::span(values).subspan(first); };
-  scalar_transport_sweep(
+  return scalar_transport_sweep(
       carrier.arrangement.context, carrier.arrangement.packed,
       {.values = behind(packed_.values),
        .reference = behind(packed_.reference),
@@ -362,20 +362,20 @@ std::int64_t Scalars::transport(double dt, const Carrier& carrier) {
   const bool shifted = carrier.shift[0] != nullptr;
   if (particles_.size() == 0 || !(shifted || carrier.eddy_viscosity != nullptr || diffuse())) return 0;
   lease(size());
-  sweep(ridden, carrier, shifted);
+  std::int64_t sweeps = sweep(ridden, carrier, shifted);
   substeps_ = 1;
   if (ridden == 0)
     substeps_ = std::max<std::int64_t>(
         1, static_cast<std::int64_t>(std::ceil(dt * largest_exchange_of(carrier) / largest_exchange)));
   const double part = dt / static_cast<double>(substeps_);
   for (std::int64_t k = 0; k < substeps_; ++k) {
-    if (k > 0) sweep(0, carrier, false);
+    if (k > 0) sweeps += sweep(0, carrier, false);
     find_wall_changes(carrier.time + static_cast<double>(k) * part, part, carrier);
     apply(part, carrier.interior, k == 0 && shifted);
     apply_wall_changes();
   }
   release();
-  return substeps_ - (ridden == size() ? 1 : 0);
+  return sweeps;
 }
 
 void Scalars::add_columns(SeriesTable& series) const {

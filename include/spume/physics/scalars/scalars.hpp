@@ -101,7 +101,7 @@ class Scalars {
     double gains = 0, losses = 0;
   };
   void find_packed(std::size_t first, std::size_t last);
-  void sweep(std::size_t first, const Carrier& carrier, bool shifted);
+  std::int64_t sweep(std::size_t first, const Carrier& carrier, bool shifted);
   void find_normalisation(const Carrier& carrier);
   double largest_exchange_of(const Carrier& carrier) const;
   bool wall_has_value() const;
