@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where shapes stand, turned inside out or not, and what they make together.
+// Where shapes stand, turned inside out or not, and their copies.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -170,47 +170,6 @@ ShapePointer repeat(ShapePointer shape, const Bounds& window, const Vec3& period
   if (shifts.size() == 1) return shape;
   shifts.erase(shifts.begin());
   return std::make_shared<Repeated>(std::move(shape), std::move(shifts));
-}
-
-Combination::Combination(std::vector<CombinedPart> parts) : parts_(std::move(parts)) {
-  for (const CombinedPart& part : parts_) extents_.push_back(part.shape->extent());
-}
-
-bool Combination::may_change(std::size_t part, const Vec3& point, double distance) const {
-  double outside2 = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double outside =
-        std::max({extents_[part].lower[axis] - point[axis], point[axis] - extents_[part].upper[axis], 0.0});
-    outside2 += outside * outside;
-  }
-  const bool settled = parts_[part].subtract ? distance >= 0 : distance <= 0;
-  return outside2 == 0 || !(settled || outside2 >= distance * distance);
-}
-
-NearestPoint Combination::nearest(const Vec3& point) const {
-  NearestPoint best{infinite, {0, 0, 0}, point};
-  for (std::size_t k = 0; k < parts_.size(); ++k) {
-    if (!may_change(k, point, best.distance)) continue;
-    const CombinedPart& part = parts_[k];
-    NearestPoint next = part.shape->nearest(point);
-    if (part.subtract) {
-      next.distance = -next.distance;
-      next.normal = multiply(-1, next.normal);
-    }
-    if (part.subtract ? next.distance > best.distance : next.distance < best.distance) best = next;
-  }
-  return best;
-}
-
-double Combination::distance(const Vec3& point) const {
-  double best = infinite;
-  for (std::size_t k = 0; k < parts_.size(); ++k) {
-    if (!may_change(k, point, best)) continue;
-    const CombinedPart& part = parts_[k];
-    const double next = part.shape->distance(point);
-    best = part.subtract ? std::max(best, -next) : std::min(best, next);
-  }
-  return best;
 }
 
 }  // namespace spume

@@ -40,46 +40,50 @@ TEST(Shapes, GoOnBeyondPeriodicSides) {
   EXPECT_EQ(repeat(floor, domain, periods), floor);
 }
 
-// Parts that the extents rule out change nothing: the same to the bit as asking all, with copies, holes and a shape
-// without end.
-TEST(Shapes, CombinedAreThoseOfAllParts) {
-  for (const int dimensions : {2, 3}) {
-    std::vector<CombinedPart> parts;
-    const Bounds window{{-1, -1, -1}, {1, 1, 1}};
-    for (std::uint64_t k = 0; k < 24; ++k) {
-      const Vec3 at = random_point(k, 7, dimensions), size = random_point(k, 8, dimensions);
-      Pose pose{.position = at, .rotation = rotation_by({0, 0, 40.0 * static_cast<double>(k)})};
-      const double z = dimensions == 3 ? 0.1 + 0.1 * std::abs(size[2]) : 0;
-      const Vec3 sides{0.1 + 0.1 * std::abs(size[0]), 0.1 + 0.1 * std::abs(size[1]), z};
-      ShapePointer shape =
-          place(k % 3 == 0 ? make_ball(0.15, dimensions) : make_box(sides, dimensions), pose, true, dimensions);
-      if (k % 4 == 0) shape = repeat(shape, window, {2, 2, 0});
-      parts.push_back({shape, k % 5 == 4});
-    }
-    parts.push_back({place(make_half_space({0, 1, 0}, dimensions), {.position = {0, -0.9, 0}}, true, dimensions)});
-    parts.push_back({place(make_ball(1.2, dimensions), {}, false, dimensions)});
-    const Combination all(parts);
-    int inside = 0;
-    for (std::uint64_t k = 0; k < 2000; ++k) {
-      const Vec3 p = random_point(k, 9, dimensions);
-      double distance = std::numeric_limits<double>::infinity();
-      NearestPoint nearest{distance, {}, p};
-      for (const CombinedPart& part : parts) {
-        const double own = part.shape->distance(p);
-        distance = part.subtract ? std::max(distance, -own) : std::min(distance, own);
-        NearestPoint next = part.shape->nearest(p);
-        if (part.subtract ? -next.distance > nearest.distance : next.distance < nearest.distance) {
-          nearest = next;
-          if (part.subtract) nearest.distance = -next.distance;
-        }
-      }
-      EXPECT_EQ(all.distance(p), distance);
-      EXPECT_EQ(all.nearest(p).distance, nearest.distance);
-      EXPECT_EQ(all.nearest(p).point, nearest.point);
-      inside += distance < 0;
-    }
-    EXPECT_GT(inside, 100);
+// Of every third of them a copy, with a half-space and the outside of a ball; some are taken away where `holes`.
+std::vector<CombinedPart> many_parts(int dimensions, bool holes) {
+  std::vector<CombinedPart> parts;
+  for (std::uint64_t k = 0; k < 24; ++k) {
+    const Vec3 size = random_point(k, 8, dimensions);
+    const Pose pose{.position = random_point(k, 7, dimensions),
+                    .rotation = rotation_by({0, 0, 40.0 * static_cast<double>(k)})};
+    const Vec3 sides{0.1 + 0.1 * std::abs(size[0]), 0.1 + 0.1 * std::abs(size[1]),
+                     dimensions == 3 ? 0.1 + 0.1 * std::abs(size[2]) : 0};
+    const ShapePointer own = k % 3 == 0 ? make_ball(0.15, dimensions) : make_box(sides, dimensions);
+    ShapePointer shape = place(own, pose, true, dimensions);
+    if (k % 4 == 0) shape = repeat(shape, {{-1, -1, -1}, {1, 1, 1}}, {2, 2, 0});
+    parts.push_back({shape, holes && k % 5 == 4});
   }
+  parts.push_back({place(make_half_space({0, 1, 0}, dimensions), {.position = {0, -0.9, 0}}, true, dimensions)});
+  parts.push_back({place(make_ball(1.2, dimensions), {}, false, dimensions)});
+  return parts;
+}
+
+// Parts that cells and extents rule out change nothing: the same to the bit as asking all.
+TEST(Shapes, CombinedAreThoseOfAllParts) {
+  for (const int dimensions : {2, 3})
+    for (const bool holes : {false, true}) {
+      const std::vector<CombinedPart> parts = many_parts(dimensions, holes);
+      const Combination all(parts);
+      int inside = 0;
+      for (std::uint64_t k = 0; k < 2000; ++k) {
+        const Vec3 p = random_point(k, 9, dimensions);
+        double distance = infinite;
+        NearestPoint nearest{infinite, {}, p};
+        for (const CombinedPart& part : parts) {
+          const double own = part.shape->distance(p);
+          distance = part.subtract ? std::max(distance, -own) : std::min(distance, own);
+          NearestPoint next = part.shape->nearest(p);
+          if (part.subtract) next.distance = -next.distance;
+          if (part.subtract ? next.distance > nearest.distance : next.distance < nearest.distance) nearest = next;
+        }
+        EXPECT_EQ(all.distance(p), distance);
+        EXPECT_EQ(all.nearest(p).distance, nearest.distance);
+        EXPECT_EQ(all.nearest(p).point, nearest.point);
+        inside += distance < 0;
+      }
+      EXPECT_GT(inside, 100);
+    }
 }
 
 // The distance is no less than that of some point of the boundary, which nearest() names, and no more than that of all

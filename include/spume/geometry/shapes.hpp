@@ -5,7 +5,11 @@
 // Geometric Tools 2013).
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "spume/geometry/shape.hpp"
 
@@ -75,12 +79,20 @@ class Combination {
   bool inside(const Vec3& point) const { return distance(point) < 0; }
 
  private:
-  // Whether a part can make the distance of a point another than `distance`, that of the parts before it: by its extent
-  // alone, of which a bed of 100 boxes asks for most.
+  void make_cells();
+  // Those that can be the nearest ones of a point, in their order.
+  std::span<const std::int32_t> candidates(const Vec3& point) const;
+  // Whether a part can make the distance of a point another than `distance`, that of the parts before it.
   bool may_change(std::size_t part, const Vec3& point, double distance) const;
+  double distance_of(std::span<const std::int32_t> parts, const Vec3& point) const;
 
   std::vector<CombinedPart> parts_;
   std::vector<Bounds> extents_;
+  std::vector<std::int32_t> all_;
+  // Cells around many parts of exact distance, none of which is subtracted: what may be nearest in each.
+  Vec3 lower_{}, width_{};
+  std::array<std::size_t, 3> count_{1, 1, 1};
+  std::vector<std::int32_t> begin_, candidates_;  // begin_ is empty without cells
 };
 
 }  // namespace spume
