@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "spume/core/vectors.hpp"
 #include "spume/geometry/shapes.hpp"
@@ -13,8 +14,8 @@ namespace {
 
 // Fewer parts are asked as fast one by one.
 constexpr std::size_t least_for_cells = 8;
-// A cell for each part and axis would hold one part each in an even bed; finer ones hold fewer parts of their
-// neighbours. 32 million candidates at most, at four bytes, in 1e3 parts.
+// Of an even bed each part has eight: what may be nearest in a cell are then a few. Each cell is rounded up along
+// three axes at most, so that there are less than eight times as many as asked for.
 constexpr double cells_per_part = 8, most_cells = 32768;
 
 double squared_outside(const Bounds& extent, const Vec3& point) {
@@ -48,17 +49,21 @@ void Combination::make_cells() {
         around.lower[axis] = std::min(around.lower[axis], extent.lower[axis]);
         around.upper[axis] = std::max(around.upper[axis], extent.upper[axis]);
       }
-  double volume = 1;
-  int axes = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
     if (!(around.upper[axis] >= around.lower[axis])) return;  // all parts are endless along it
-    if (around.upper[axis] == around.lower[axis]) continue;
-    volume *= around.upper[axis] - around.lower[axis];
-    ++axes;
+  const double cells = std::min(most_cells, cells_per_part * static_cast<double>(parts_.size()));
+  // An axis along which they are shorter than a cell is one cell long and leaves all to the others.
+  double size = 0;
+  for (int axes = 3; axes > 0 && size == 0; --axes) {
+    std::array<double, 3> length{};
+    for (std::size_t axis = 0; axis < 3; ++axis) length[axis] = around.upper[axis] - around.lower[axis];
+    std::sort(length.begin(), length.end(), std::greater<>());
+    double volume = 1;
+    for (int axis = 0; axis < axes; ++axis) volume *= length[static_cast<std::size_t>(axis)];
+    const double edge = std::pow(volume / cells, 1.0 / axes);
+    if (edge > 0 && length[static_cast<std::size_t>(axes) - 1] >= edge) size = edge;
   }
-  if (axes == 0) return;
-  const double cells = std::min(most_cells, cells_per_part * static_cast<double>(parts_.size())),
-               size = std::pow(volume / cells, 1.0 / axes);
+  if (size == 0) return;
   double diagonal2 = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double length = around.upper[axis] - around.lower[axis];

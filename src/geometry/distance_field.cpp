@@ -119,6 +119,7 @@ class DistanceField final : public Shape {
   }
   double distance(const Vec3& p) const override { return values_.covers(p) ? values_.at(p) : exact_->distance(p); }
   Bounds bounds() const override { return exact_->bounds(); }
+  Bounds extent() const override { return exact_->extent(); }
   double volume() const override { return exact_->volume(); }
   double error() const override { return exact_->error() + error_; }
   TriangleSurface surface(const Bounds& window, double step) const override { return exact_->surface(window, step); }
@@ -157,6 +158,8 @@ class LevelSet final : public Shape {
   }
   double distance(const Vec3& p) const override { return values_.covers(p) ? values_.at(p) : nearest(p).distance; }
   Bounds bounds() const override { return bounds_; }
+  // Where it ends on the window it goes on beyond.
+  Bounds extent() const override { return {{-infinite, -infinite, -infinite}, {infinite, infinite, infinite}}; }
   double volume() const override { return volume_; }
   double error() const override { return error_; }
   TriangleSurface surface(const Bounds&, double) const override { return body_; }

@@ -50,16 +50,8 @@ class Placed final : public Shape {
   double distance(const Vec3& p) const override {
     return (inside_ ? 1 : -1) * pose_.scale * shape_->distance(own_point(p));
   }
-  Bounds bounds() const override {
-    if (!inside_) {
-      const double z = dimensions_ == 3 ? infinite : 0;
-      return {{-infinite, -infinite, -z}, {infinite, infinite, z}};
-    }
-    Bounds bounds = turned(pose_.rotation, shape_->bounds(), pose_.scale);
-    bounds.lower = add(bounds.lower, pose_.position);
-    bounds.upper = add(bounds.upper, pose_.position);
-    return bounds;
-  }
+  Bounds bounds() const override { return placed(shape_->bounds()); }
+  Bounds extent() const override { return placed(shape_->extent()); }
   double volume() const override { return inside_ ? shape_->volume() * std::pow(pose_.scale, dimensions_) : infinite; }
   double error() const override { return pose_.scale * shape_->error(); }
   TriangleSurface surface(const Bounds& window, double step) const override {
@@ -73,6 +65,16 @@ class Placed final : public Shape {
 
  private:
   Vec3 own_point(const Vec3& p) const { return multiply(1 / pose_.scale, turned(back_, subtract(p, pose_.position))); }
+  Bounds placed(const Bounds& own) const {
+    if (!inside_) {
+      const double z = dimensions_ == 3 ? infinite : 0;
+      return {{-infinite, -infinite, -z}, {infinite, infinite, z}};
+    }
+    Bounds bounds = turned(pose_.rotation, own, pose_.scale);
+    bounds.lower = add(bounds.lower, pose_.position);
+    bounds.upper = add(bounds.upper, pose_.position);
+    return bounds;
+  }
   Vec3 placed(const Vec3& p) const { return add(pose_.position, multiply(pose_.scale, turned(pose_.rotation, p))); }
 
   ShapePointer shape_;

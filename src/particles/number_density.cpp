@@ -86,9 +86,9 @@ struct Reader {
   // Beside an edge how much of a void a particle stands at: 0 with what is let be, 1 as thin as a void.
   double void_share(std::size_t i) const {
     const double lack = -excess(i) - particle_disorder;
-    if (!(lack > 0) || !boundary.has_obstacles() || (surface != nullptr && !submerged(i))) return 0;
+    if (!(lack > 0) || !boundary.has_obstacles()) return 0;
     const Vec3 place = vector_at(at, resolution.dimensions, i);
-    if (!boundary.obstacle_near(place, resolution.support_radius) ||
+    if (!boundary.obstacle_near(place, resolution.support_radius) || (surface != nullptr && !submerged(i)) ||
         !salient_edge_near(boundary, place, reach_of_edges * resolution.support_radius, resolution.dimensions))
       return 0;
     return std::min(1.0, lack / (thin_as_void - particle_disorder));

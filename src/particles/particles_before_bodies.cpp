@@ -20,7 +20,12 @@ void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
   const auto is_free = [&](const Vec3& place) { return nearest_walls(place).exact_distance(place) >= 0.5 * gap; };
   const auto is_reached = [&](const Vec3& place) {
     for (int axis = 0; axis < scene_.domain.dimensions; ++axis)
-      if (place[axis] < scene_.domain.lower[axis] || place[axis] > scene_.domain.upper[axis]) return false;
+      for (const int side : {0, 1}) {
+        const bool beyond =
+            side == 0 ? place[axis] < scene_.domain.lower[axis] : place[axis] > scene_.domain.upper[axis];
+        const BoundaryKind kind = scene_.domain.sides[axis][side].kind;
+        if (beyond && (kind == BoundaryKind::free_slip || kind == BoundaryKind::no_slip)) return false;
+      }
     return is_free(place);
   };
   position = add(near.point, multiply(std::max(gap, std::abs(near.distance)), near.normal));

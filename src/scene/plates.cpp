@@ -73,18 +73,6 @@ double deepest_around(const Shape& solid, Vec3 place, double step, int dimension
   return depth;
 }
 
-// Along periodic axes the whole body, wherever the period is cut.
-Bounds whole_window(const Scene& scene, const Body& body, double reach) {
-  const Bounds bounds = body.shape->bounds();
-  Bounds window = window_around(scene, body, reach);
-  for (int axis = 0; axis < scene.domain.dimensions; ++axis)
-    if (scene.domain.periodic(axis) && body.inside && std::isfinite(bounds.upper[axis] - bounds.lower[axis])) {
-      window.lower[axis] = bounds.lower[axis] - reach;
-      window.upper[axis] = bounds.upper[axis] + reach;
-    }
-  return window;
-}
-
 }  // namespace
 
 Bounds window_around(const Scene& scene, const Body& body, double reach) {
@@ -105,7 +93,7 @@ Bounds window_around(const Scene& scene, const Body& body, double reach) {
 bool is_plate(const Scene& scene, const Body& body, double spacing, double reach) {
   const int d = scene.domain.dimensions;
   const ShapePointer& solid = body.motion ? body.alone : body.solid;
-  const Bounds window = whole_window(scene, body, reach);
+  const Bounds window = window_around(scene, body, reach);
   const double step = spacing / 2;
   std::array<std::size_t, 3> count{1, 1, 1};
   for (int axis = 0; axis < d; ++axis) {
@@ -121,8 +109,7 @@ bool is_plate(const Scene& scene, const Body& body, double spacing, double reach
   // Of a body that stands still liquid meets the part in the domain.
   const auto is_met = [&](const Vec3& place) {
     for (int axis = 0; axis < d; ++axis)
-      if (!body.motion && !scene.domain.periodic(axis) &&
-          (place[axis] < scene.domain.lower[axis] || place[axis] > scene.domain.upper[axis]))
+      if (!body.motion && (place[axis] < scene.domain.lower[axis] || place[axis] > scene.domain.upper[axis]))
         return false;
     return true;
   };

@@ -40,7 +40,8 @@ TEST(Shapes, GoOnBeyondPeriodicSides) {
   EXPECT_EQ(repeat(floor, domain, periods), floor);
 }
 
-// Of every third of them a copy, with a half-space and the outside of a ball; some are taken away where `holes`.
+// Every fourth has copies, before or after it is placed, with a half-space and the outside of a ball; some are taken
+// away where `holes`.
 std::vector<CombinedPart> many_parts(int dimensions, bool holes) {
   std::vector<CombinedPart> parts;
   for (std::uint64_t k = 0; k < 24; ++k) {
@@ -52,6 +53,7 @@ std::vector<CombinedPart> many_parts(int dimensions, bool holes) {
     const ShapePointer own = k % 3 == 0 ? make_ball(0.15, dimensions) : make_box(sides, dimensions);
     ShapePointer shape = place(own, pose, true, dimensions);
     if (k % 4 == 0) shape = repeat(shape, {{-1, -1, -1}, {1, 1, 1}}, {2, 2, 0});
+    if (k % 8 == 0) shape = place(shape, {.position = {0.3, -0.2, 0}}, true, dimensions);
     parts.push_back({shape, holes && k % 5 == 4});
   }
   parts.push_back({place(make_half_space({0, 1, 0}, dimensions), {.position = {0, -0.9, 0}}, true, dimensions)});

@@ -171,8 +171,8 @@ TEST(NumberDensity, OfAVoidBesideABodyIsClosedWithinOneDisplacement) {
   expect_closing(0.035, 0.5, 1.0 / 30);
 }
 
-// A square of 12 spacings in a tank, its faces along those of the tank.
-const std::string sunken_square = R"toml(method = "les-sph"
+// Waves in a tank.
+const std::string tank_of_waves = R"toml(method = "les-sph"
 [domain]
 lower = [0, 0]
 upper = [2, 1.6]
@@ -192,21 +192,31 @@ velocity = ["0.1*sin(pi*x/2)", "0"]
 end = 1
 )toml";
 
-// How far the point of the square nearest to a place lies from its nearest corner, and the place from the square.
-struct BesideSquare {
+// An obstacle about (1, 0.5) whose faces are those of a box. How far the point of it nearest to a place lies from its
+// nearest corner, and the place from the obstacle; of [[solid]] boxes the larger of the distances along the axes
+// counts.
+struct Obstacle {
+  std::string text;
+  double half_width, half_height;
+  bool solid;
+};
+struct Beside {
   double from_corner = 0, distance = 0;
 };
 
-BesideSquare beside_square(const Vec3& place) {
-  const double half = 0.24, x = std::abs(place[0] - 1), y = std::abs(place[1] - 0.5);
-  const double beyond_x = std::max(x - half, 0.0), beyond_y = std::max(y - half, 0.0);
-  return {half - std::min({x, y, half}), std::hypot(beyond_x, beyond_y)};
+Beside beside(const Obstacle& obstacle, const Vec3& place) {
+  const double x = std::abs(place[0] - 1), y = std::abs(place[1] - 0.5);
+  const double beyond_x = std::max(x - obstacle.half_width, 0.0), beyond_y = std::max(y - obstacle.half_height, 0.0);
+  const double distance = obstacle.solid ? std::max(beyond_x, beyond_y) : std::hypot(beyond_x, beyond_y);
+  if (beyond_x > 0 && beyond_y > 0) return {0, distance};
+  return {beyond_y > 0 ? obstacle.half_width - x : obstacle.half_height - y, distance};
 }
 
 // Below a surface voids close within a displacement where the wall bends away: 0.8 of two support radii from a corner.
 // Closed at once along flat walls too, what lacks in the layer at the floor of sloshing drove a jet along it.
-void expect_closing_behind_corners(const std::string& square) {
-  Simulation run(sunken_square + square);
+void expect_closing_behind_corners(const Obstacle& obstacle) {
+  SCOPED_TRACE(obstacle.text);
+  Simulation run(tank_of_waves + obstacle.text);
   const double dt = 0.004, lack = 0.05;
   run.steps(5, dt);
   les_sph::Flow& flow = before_relaxation(run, dt);
@@ -216,8 +226,8 @@ void expect_closing_behind_corners(const std::string& square) {
   int at_once = 0, along_faces = 0;
   for (std::size_t i = 0; i < flow.size(); ++i) {
     const Vec3 place = vector_at(flow.intermediate_position, 2, i);
-    if (place[1] > 1.2 - 2 * support) continue;
-    const auto [from_corner, distance] = beside_square(place);
+    if (place[1] > 1.2 - 2 * support || place[1] < support) continue;  // the floor is near too
+    const auto [from_corner, distance] = beside(obstacle, place);
     const bool behind_corner = distance < support && from_corner < 0.8 * 2 * support;
     if (std::abs(distance - support) < 0.01 * support || std::abs(from_corner - 1.6 * support) < 0.01 * support)
       continue;
@@ -232,12 +242,15 @@ void expect_closing_behind_corners(const std::string& square) {
 
 TEST(NumberDensity, OfAVoidBelowASurfaceIsClosedWithinOneDisplacementBehindCorners) {
   expect_closing_behind_corners(
-      "[[body]]\nshape = \"box\"\nsize = [0.48, 0.48]\nposition = [1, 0.5]\nwall = \"no-slip\"\n");
+      {"[[body]]\nshape = \"box\"\nsize = [0.48, 0.48]\nposition = [1, 0.5]\nwall = \"no-slip\"\n", 0.24, 0.24, false});
+  expect_closing_behind_corners({"[[solid]]\nlower = [0.76, 0.26]\nupper = [1.24, 0.74]\n", 0.24, 0.24, true});
+  // Of a plate of two spacings the middle of a face is flat too.
+  expect_closing_behind_corners({"[[solid]]\nlower = [0.76, 0.46]\nupper = [1.24, 0.54]\n", 0.24, 0.04, true});
 }
 
 // Near the surface the sums beside a box are left alone: at its edges they lack what its images do not tell.
 TEST(NumberDensity, IsLeftAloneBesideABoxNearASurface) {
-  Simulation run(sunken_square + "[[solid]]\nlower = [0.6, 0]\nupper = [1.4, 1.1]\n");
+  Simulation run(tank_of_waves + "[[solid]]\nlower = [0.6, 0]\nupper = [1.4, 1.1]\n");
   run.steps(5, 0.004);
   les_sph::Flow& flow = before_relaxation(run, 0.004);
   const std::vector<double> change = change_when_denser(flow);
