@@ -42,7 +42,8 @@ class NarrowBlock {
   }
   std::int32_t end_list(std::size_t count, std::int32_t low) {
     const std::size_t batches = (count + pair_lanes - 1) / pair_lanes;
-    std::fill_n(code_.data() + size_ * pair_lanes + count, pair_lanes, no_neighbour);
+    std::uint16_t* const code = code_.data() + size_ * pair_lanes;
+    for (std::size_t k = count; k < batches * pair_lanes; ++k) code[k] = code[k / pair_lanes * pair_lanes];
     for (std::size_t b = 0; b < batches; ++b) base_[size_ + b] = low;
     size_ += batches;
     return static_cast<std::int32_t>(batches);
@@ -63,7 +64,7 @@ class NarrowBlock {
       }
       std::uint16_t* const code = code_.data() + size_ * pair_lanes;
       for (int l = 0; l < pair_lanes; ++l)
-        code[l] = l < taken ? static_cast<std::uint16_t>((start[l] - low) / entry_scale) : no_neighbour;
+        code[l] = static_cast<std::uint16_t>((start[l < taken ? l : 0] - low) / entry_scale);
       base_[size_++] = low;
       start += taken;
     }
@@ -76,7 +77,7 @@ class NarrowBlock {
   }
 
  private:
-  static constexpr std::int32_t reach = no_neighbour * entry_scale;
+  static constexpr std::int32_t reach = narrow_reach * entry_scale;
 
   // Of so many numbers, and of the vectors that are written behind the last.
   void make_room(std::size_t numbers) {

@@ -46,38 +46,89 @@ void mark_walls(const SweepContext& context, float* records, int width, int slot
   return a == b ? then : f32n{};
 }
 
-// The gradient (sum w d (x) (u_j - u_i)) (sum w d (x) d)^-1, w < 0, exact for linear velocities on any arrangement: its
-// trace, and its product with a vector.
-template <int dimensions>
-class CorrectedGradient {
+// The sums of a block of particles that gradients (sum w d (x) (u_j - u_i)) (sum w d (x) d)^-1 follow from, w < 0,
+// which are exact for linear velocities on any arrangement. A vector of particles at a time: one by one this takes a
+// sixth of the sweep.
+template <int dimensions, bool several>
+class CorrectedGradients {
  public:
-  CorrectedGradient(const std::array<f32n, dimensions * dimensions>& velocity_sum,
-                    const std::array<f32n, 6>& moment_sum) {
-    std::array<double, 6> m{};
-    for (int k = 0; k < dimensions * (dimensions + 1) / 2; ++k) m[k] = -simd::sum(moment_sum[k]);
-    scale_ = normalised_inverse<dimensions>(m, inverse_).scale;
-    for (int k = 0; k < dimensions * dimensions; ++k) sum_[k] = simd::sum(velocity_sum[k]);
+  static constexpr int symmetric = dimensions * (dimensions + 1) / 2;
+  // Of one phase the symmetric part, that beside the diagonal twice.
+  static constexpr int products = several ? dimensions * dimensions : symmetric;
+
+  // sum: the products, then the moments.
+  void keep(std::size_t k, const float* sum) {
+    for (int c = 0; c < products + symmetric; ++c) sum_[c][k] = sum[c];
   }
-  float divergence() const {
+  // As normalised_inverse() has them.
+  void invert(std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) {
+      double m[symmetric], trace = 0;
+      for (int c = 0; c < symmetric; ++c) m[c] = -sum_[products + c][k];
+      for (int a = 0; a < dimensions; ++a) trace += m[symmetric_index<dimensions>(a, a)];
+      const double scale = trace > 0 ? dimensions / trace : 0;
+      for (double& entry : m) entry *= scale;
+      double cofactor[symmetric], determinant, squares;
+      if constexpr (dimensions == 2) {
+        cofactor[0] = m[2];
+        cofactor[1] = -m[1];
+        cofactor[2] = m[0];
+        determinant = m[0] * m[2] - m[1] * m[1];
+        squares = m[0] * m[0] + 2 * m[1] * m[1] + m[2] * m[2];
+      } else {
+        cofactor[0] = m[3] * m[5] - m[4] * m[4];
+        cofactor[1] = m[2] * m[4] - m[1] * m[5];
+        cofactor[2] = m[1] * m[4] - m[2] * m[3];
+        cofactor[3] = m[0] * m[5] - m[2] * m[2];
+        cofactor[4] = m[1] * m[2] - m[0] * m[4];
+        cofactor[5] = m[0] * m[3] - m[1] * m[1];
+        determinant = m[0] * cofactor[0] + m[1] * cofactor[1] + m[2] * cofactor[2];
+        squares = cofactor[0] * cofactor[0] + cofactor[3] * cofactor[3] + cofactor[5] * cofactor[5] +
+                  2 * (cofactor[1] * cofactor[1] + cofactor[2] * cofactor[2] + cofactor[4] * cofactor[4]);
+      }
+      constexpr double bound = dimensions * largest_correction * largest_correction;
+      const bool inverted = (determinant > singular) & (squares < bound * determinant * determinant);
+      const double factor = inverted ? scale / determinant : 0, identity = inverted ? 0 : scale;
+      for (int c = 0; c < symmetric; ++c) inverse_[c][k] = factor * cofactor[c];
+      for (int a = 0; a < dimensions; ++a) inverse_[symmetric_index<dimensions>(a, a)][k] += identity;
+    }
+  }
+  float divergence(std::size_t k) const {
     double trace = 0;
     for (int a = 0; a < dimensions; ++a)
-      for (int c = 0; c < dimensions; ++c)
-        trace -= inverse_[symmetric_index<dimensions>(a, c)] * sum_[a * dimensions + c];
-    return static_cast<float>(scale_ * trace);
+      for (int c = several ? 0 : a; c < dimensions; ++c) {
+        const int at = symmetric_index<dimensions>(a, c);
+        trace -= inverse_[at][k] * sum_[several ? a * dimensions + c : at][k];
+      }
+    return static_cast<float>(trace);
   }
   // (v . grad) u_c.
-  float along(const float* v, int c) const {
+  float along(std::size_t k, const float* v, int c) const {
     double result = 0;
     for (int a = 0; a < dimensions; ++a)
       for (int b = 0; b < dimensions; ++b)
-        result -= v[a] * inverse_[symmetric_index<dimensions>(a, b)] * sum_[b * dimensions + c];
-    return static_cast<float>(scale_ * result);
+        result -= v[a] * inverse_[symmetric_index<dimensions>(a, b)][k] * sum_[b * dimensions + c][k];
+    return static_cast<float>(result);
   }
 
  private:
-  std::array<double, 6> inverse_{};
-  std::array<double, dimensions * dimensions> sum_{};
-  double scale_ = 0;
+  alignas(64) float sum_[products + symmetric][sweep_block];
+  alignas(64) double inverse_[symmetric][sweep_block];
+};
+
+struct NoGradients {};
+
+// Where the sums over the neighbours stand: those of the rate and the diffusion, the viscous force, what the shift
+// carries, of one phase its flux, products of distances with changes of velocity (of one phase their symmetric part,
+// the diagonal once), products of distances.
+template <int dimensions, bool several, bool viscous, bool shifted>
+struct ContinuitySums {
+  using Gradients = CorrectedGradients<dimensions, several>;
+  static constexpr int diffusion = 0, rate = 1, force = rate + (shifted ? 0 : 1);
+  static constexpr int carried = force + (viscous ? dimensions : 0), flux = carried + (shifted ? 1 : 0);
+  static constexpr int gradient = flux + (shifted && !several ? dimensions : 0);
+  static constexpr int moment = gradient + (shifted ? Gradients::products : 0);
+  static constexpr int count = moment + (shifted ? Gradients::symmetric : 0);
 };
 
 // Payload of the continuity records: u, v, s', and then what the scene has: mu and the number of phases that differ,
@@ -101,6 +152,7 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
                 const ContinuityOut& out) {
   constexpr bool several = phases != Phases::one, walls = phases == Phases::beside_walls;
   using At = ContinuityLayout<dimensions, several, viscous, friction, shifted>;
+  using In = ContinuitySums<dimensions, several, viscous, shifted>;
   constexpr int width = At::width;
   float* records = packed.prepare(context, At::payload);
   const auto pack = [&](int slot, const VelocityImageRule& rule) {
@@ -119,75 +171,98 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
   if constexpr (friction) pack(At::held, *fields.friction);
   if constexpr (shifted) pack_vector(context, records, width, At::shift, fields.shift, *fields.reflection);
   const KernelScale<dimensions, Kernel> scale(context);
-  sweep(context.list->particles(), [&](std::size_t i) {
+  const auto of_particle = [&](std::size_t i, [[maybe_unused]] auto& gradients, [[maybe_unused]] std::size_t k) {
     const float* own = records + i * width + dimensions;
-    f32n rate{}, diffusion{}, carried{};
-    std::array<f32n, dimensions> force{}, flux{};
-    std::array<f32n, dimensions * dimensions> velocity_sum{};
-    std::array<f32n, 6> moment_sum{};
-    for_each_batch<dimensions, At::payload>(*context.list, records, i, scale.inverse_h, [&](const auto& b) {
-      const f32n weight = Kernel::f(b.q) * b.payload[At::volume];
-      f32n approach{};
-      for (int a = 0; a < dimensions; ++a) approach = approach + (b.payload[At::velocity + a] - own[a]) * b.d[a];
-      if constexpr (weighted) {
-        const f32n own_density = simd::splat<f32n>(own[At::phase]);
-        f32n other = b.payload[At::phase];
-        if constexpr (walls) other = simd::max(other, f32n{}) + equals(other, simd::splat<f32n>(of_wall), own_density);
-        approach = approach + contrast(own_density, other) * approach;
-      }
-      rate = rate + weight * approach;
-      f32n same = weight;
-      if constexpr (several) same = equals(b.payload[At::phase], simd::splat<f32n>(own[At::phase]), weight);
-      diffusion = diffusion + same * (b.payload[At::excess] - own[At::excess]);
-      if constexpr (viscous) {
-        f32n drag = weight;
-        if constexpr (several) {
-          const f32n own_viscosity = simd::splat<f32n>(own[At::viscosity]), other = b.payload[At::viscosity];
-          if constexpr (walls)
-            drag = drag * (harmonic_mean(own_viscosity, simd::max(other, f32n{})) +
-                           equals(other, simd::splat<f32n>(of_wall), own_viscosity));
-          else
-            drag = drag * harmonic_mean(own_viscosity, other);
-        }
-        constexpr int u = friction ? At::held : At::velocity;
-        for (int a = 0; a < dimensions; ++a) force[a] = force[a] + drag * (b.payload[u + a] - own[a]);
-      }
-      if constexpr (shifted) {
-        f32n own_way{}, other_way{};
-        for (int a = 0; a < dimensions; ++a) {
-          own_way = own_way + own[At::shift + a] * b.d[a];
-          other_way = other_way + b.payload[At::shift + a] * b.d[a];
-          const f32n along = weight * b.d[a];
-          for (int c = 0; c < dimensions; ++c)
-            velocity_sum[a * dimensions + c] =
-                velocity_sum[a * dimensions + c] + along * (b.payload[At::velocity + c] - own[c]);
-          for (int c = a; c < dimensions; ++c) {
-            f32n& sum = moment_sum[symmetric_index<dimensions>(a, c)];
-            sum = sum + along * b.d[c];
+    f32n sum[In::count]{};
+    for_each_batch<dimensions, At::payload>(
+        *context.list, records, i, scale.inverse_h, [&](const auto& b) __attribute__((always_inline)) {
+          const f32n weight = Kernel::f(b.q) * b.payload[At::volume];
+          f32n approach{};
+          std::array<f32n, dimensions> change;
+          unrolled<dimensions>([&](auto a) __attribute__((always_inline)) {
+            change[a] = b.payload[At::velocity + a] - own[a];
+            approach = approach + change[a] * b.d[a];
+          });
+          if constexpr (weighted) {
+            const f32n own_density = simd::splat<f32n>(own[At::phase]);
+            f32n other = b.payload[At::phase];
+            if constexpr (walls)
+              other = simd::max(other, f32n{}) + equals(other, simd::splat<f32n>(of_wall), own_density);
+            approach = approach + contrast(own_density, other) * approach;
           }
-        }
-        own_way = weight * own_way;
-        other_way = weight * other_way;
-        f32n within = own_way;
-        if constexpr (several) within = equals(b.payload[At::phase], simd::splat<f32n>(own[At::phase]), own_way);
-        carried = carried + within * (b.payload[At::excess] - own[At::excess]);
-        if constexpr (!several)
-          for (int a = 0; a < dimensions; ++a)
-            flux[a] = flux[a] + own_way * own[a] + other_way * b.payload[At::velocity + a];
-      }
-    });
-    out.rate[i] = scale.gradient * simd::sum(rate);
-    out.diffusion[i] = -2 * scale.gradient * simd::sum(diffusion);
+          if constexpr (!shifted) sum[In::rate] = sum[In::rate] + weight * approach;
+          f32n same = weight;
+          if constexpr (several) same = equals(b.payload[At::phase], simd::splat<f32n>(own[At::phase]), weight);
+          const f32n rise = b.payload[At::excess] - own[At::excess];
+          sum[In::diffusion] = sum[In::diffusion] + same * rise;
+          if constexpr (viscous) {
+            f32n drag = weight;
+            if constexpr (several) {
+              const f32n own_viscosity = simd::splat<f32n>(own[At::viscosity]), other = b.payload[At::viscosity];
+              if constexpr (walls)
+                drag = drag * (harmonic_mean(own_viscosity, simd::max(other, f32n{})) +
+                               equals(other, simd::splat<f32n>(of_wall), own_viscosity));
+              else
+                drag = drag * harmonic_mean(own_viscosity, other);
+            }
+            unrolled<dimensions>([&](auto a) __attribute__((always_inline)) {
+              f32n slip = change[a];
+              if constexpr (friction) slip = b.payload[At::held + a] - own[a];
+              sum[In::force + a] = sum[In::force + a] + drag * slip;
+            });
+          }
+          if constexpr (shifted) {
+            f32n own_way{}, other_way{};
+            unrolled<dimensions>([&](auto a) __attribute__((always_inline)) {
+              own_way = own_way + own[At::shift + a] * b.d[a];
+              other_way = other_way + b.payload[At::shift + a] * b.d[a];
+              const f32n along = weight * b.d[a];
+              unrolled<dimensions>([&](auto c) __attribute__((always_inline)) {
+                constexpr int at = symmetric_index<dimensions>(a, c);
+                f32n& product = sum[In::gradient + (several ? a * dimensions + c : at)];
+                product = product + along * change[c];
+                if constexpr (a <= c) sum[In::moment + at] = sum[In::moment + at] + along * b.d[c];
+              });
+            });
+            own_way = weight * own_way;
+            other_way = weight * other_way;
+            f32n within = own_way;
+            if constexpr (several) within = equals(b.payload[At::phase], simd::splat<f32n>(own[At::phase]), own_way);
+            sum[In::carried] = sum[In::carried] + within * rise;
+            if constexpr (!several)
+              unrolled<dimensions>([&](auto a) __attribute__((always_inline)) {
+                sum[In::flux + a] = sum[In::flux + a] + own_way * own[a] + other_way * b.payload[At::velocity + a];
+              });
+          }
+        });
+    float total[In::count];
+    simd::sums(sum, total);
+    if constexpr (!shifted) out.rate[i] = scale.gradient * total[In::rate];
+    out.diffusion[i] = -2 * scale.gradient * total[In::diffusion];
     if constexpr (viscous) {
       const float factor = -2 * scale.gradient * (several ? 1 : own_viscosity(fields, i));
-      for (int a = 0; a < dimensions; ++a) out.viscous[a][i] = factor * simd::sum(force[a]);
+      for (int a = 0; a < dimensions; ++a) out.viscous[a][i] = factor * total[In::force + a];
     }
     if constexpr (shifted) {
-      const CorrectedGradient<dimensions> gradient(velocity_sum, moment_sum);
-      out.rate[i] = -gradient.divergence();
-      out.carried[i] = -scale.gradient * simd::sum(carried);
-      for (int a = 0; a < dimensions; ++a)
-        out.flux[a][i] = several ? gradient.along(own + At::shift, a) : -scale.gradient * simd::sum(flux[a]);
+      out.carried[i] = -scale.gradient * total[In::carried];
+      if constexpr (!several)
+        for (int a = 0; a < dimensions; ++a) out.flux[a][i] = -scale.gradient * total[In::flux + a];
+      gradients.keep(k, total + In::gradient);
+    }
+  };
+  sweep_blocks(context.list->particles(), [&](std::size_t first, std::size_t last) {
+    if constexpr (shifted) {
+      typename In::Gradients gradients;
+      for (std::size_t i = first; i < last; ++i) of_particle(i, gradients, i - first);
+      gradients.invert(last - first);
+      for (std::size_t i = first; i < last; ++i) out.rate[i] = -gradients.divergence(i - first);
+      if constexpr (several)
+        for (std::size_t i = first; i < last; ++i)
+          for (int a = 0; a < dimensions; ++a)
+            out.flux[a][i] = gradients.along(i - first, records + i * width + dimensions + At::shift, a);
+    } else {
+      NoGradients none;
+      for (std::size_t i = first; i < last; ++i) of_particle(i, none, 0);
     }
   });
 }
@@ -220,35 +295,39 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
   const KernelScale<dimensions, Kernel> scale(context);
   sweep(n, [&](std::size_t i) {
     const float* own = records + i * width + dimensions;
-    std::array<f32n, dimensions> force{}, crowd{};
-    for_each_batch<dimensions, payload>(*context.list, records, i, scale.inverse_h, [&](const auto& b) {
-      f32n both = b.payload[1] + own[1];
-      if constexpr (several) {
-        const f32n zero{}, own_density = simd::splat<f32n>(own[2]);
-        f32n other = b.payload[2];
-        if constexpr (phases == Phases::beside_walls)
-          other = simd::max(other, zero) + equals(other, simd::splat<f32n>(of_wall), own_density);
-        if constexpr (weighted) {
-          const f32n kappa = contrast(own_density, other);
-          both = both + kappa * (own[1] - b.payload[1]);
-          both = both + fields.repulsion * simd::max(kappa, zero - kappa) * simd::max(both, zero - both);
-        } else {
-          const f32n jump = simd::max(other - own_density, own_density - other);
-          both = both + fields.repulsion * (jump / (other + own_density)) * simd::max(both, zero - both);
-        }
-      }
-      const f32n share = Kernel::f(b.q) * b.payload[0];
-      if constexpr (concentrated)
-        for (int a = 0; a < dimensions; ++a) crowd[a] = crowd[a] + share * b.d[a];
-      const f32n weight = share * both;
-      for (int a = 0; a < dimensions; ++a) force[a] = force[a] + weight * b.d[a];
-    });
+    f32n sum[concentrated ? 2 * dimensions : dimensions]{};
+    for_each_batch<dimensions, payload>(
+        *context.list, records, i, scale.inverse_h, [&](const auto& b) __attribute__((always_inline)) {
+          f32n both = b.payload[1] + own[1];
+          if constexpr (several) {
+            const f32n zero{}, own_density = simd::splat<f32n>(own[2]);
+            f32n other = b.payload[2];
+            if constexpr (phases == Phases::beside_walls)
+              other = simd::max(other, zero) + equals(other, simd::splat<f32n>(of_wall), own_density);
+            if constexpr (weighted) {
+              const f32n kappa = contrast(own_density, other);
+              both = both + kappa * (own[1] - b.payload[1]);
+              both = both + fields.repulsion * simd::max(kappa, zero - kappa) * simd::max(both, zero - both);
+            } else {
+              const f32n jump = simd::max(other - own_density, own_density - other);
+              both = both + fields.repulsion * (jump / (other + own_density)) * simd::max(both, zero - both);
+            }
+          }
+          const f32n share = Kernel::f(b.q) * b.payload[0];
+          if constexpr (concentrated)
+            unrolled<dimensions>([&](auto a) __attribute__((always_inline)) {
+              sum[dimensions + a] = sum[dimensions + a] + share * b.d[a];
+            });
+          const f32n weight = share * both;
+          unrolled<dimensions>([&](auto a) __attribute__((always_inline)) { sum[a] = sum[a] + weight * b.d[a]; });
+        });
+    float total[concentrated ? 2 * dimensions : dimensions];
+    simd::sums(sum, total);
     for (int a = 0; a < dimensions; ++a) {
       const float other = fields.others[a] == nullptr ? 0 : fields.others[a][i];
-      out[a][i] = other + scale.gradient * simd::sum(force[a]);
+      out[a][i] = other + scale.gradient * total[a];
+      if constexpr (concentrated) concentration[a][i] = -h * scale.gradient * total[dimensions + a];
     }
-    if constexpr (concentrated)
-      for (int a = 0; a < dimensions; ++a) concentration[a][i] = -h * scale.gradient * simd::sum(crowd[a]);
   });
 }
 

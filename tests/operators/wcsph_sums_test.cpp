@@ -172,7 +172,7 @@ TEST(WcsphSums, NarrowListsGiveTheSameBits) {
     SCOPED_TRACE(a.setup.name);
     const Fields f(a);
     const Neighbourhood& hood = a.hood;
-    ASSERT_LT(hood.list.points(), no_neighbour);
+    ASSERT_LT(hood.list.points(), narrow_reach);
     NeighbourList narrow;
     narrow.keep_narrow();
     narrow.build(hood.grid, hood.table, hood.x.data(), hood.y.data(), hood.z.data(), hood.n, hood.images, hood.origin);

@@ -66,13 +66,14 @@ class ListedPoints {
 
 // Lists may be kept narrow: batches of as many entries as a pair loop takes at a time, each one number for all and one
 // of 16 bits for each, what it is beyond the smallest. A list of 104 neighbours takes 250 bytes in place of 432. Points
-// are mostly closer together than 16 bits reach; a batch ends where they are not.
+// are mostly closer together than 16 bits reach; a batch ends where they are not. What is left of a batch repeats its
+// first neighbour: none stands twice in a list, so that this needs no number of its own and no other way of reading.
 struct NarrowBatches {
   const std::uint16_t* code = nullptr;  // points beyond the base, simd::pair_lanes a batch
   const std::int32_t* base = nullptr;   // an entry
   std::size_t size = 0;                 // batches
 };
-inline constexpr std::uint16_t no_neighbour = 0xFFFF;  // stands for the sentinel
+inline constexpr std::int32_t narrow_reach = 0x10000;  // points
 
 class NeighbourList {
  public:

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <utility>
 
 #include "spume/core/array.hpp"
@@ -120,10 +121,24 @@ struct Batch {
   std::array<simd::f32n, payload_floats> payload;
 };
 
-// The entries of a batch of a narrow list that is filled up.
-inline void decode(const std::uint16_t* code, std::int32_t base, std::int32_t sentinel, std::int32_t* entry) {
-  for (int l = 0; l < simd::pair_lanes; ++l)
-    entry[l] = entry_scale * (code[l] == no_neighbour ? sentinel : code[l]) + (code[l] == no_neighbour ? 0 : base);
+// q where the lanes of a batch of a narrow list hold a neighbour. Others repeat the first: they are put where every
+// kernel vanishes.
+inline constexpr float beyond_kernels = 1e6F;
+[[gnu::always_inline]] inline simd::f32n q_of_neighbours(const std::uint16_t* code, simd::f32n q) {
+#if defined(__AVX512BW__) && defined(__AVX512VL__)
+  const __mmask16 repeated =
+      _mm256_mask_cmpeq_epi16_mask(0xFFFE, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(code)),
+                                   _mm256_set1_epi16(static_cast<short>(code[0])));
+  return simd::f32n(_mm512_mask_blend_ps(repeated, __m512(q), _mm512_set1_ps(beyond_kernels)));
+#else
+  using Codes = std::int16_t __attribute__((vector_size(2 * simd::pair_lanes)));
+  using Lanes = std::int32_t __attribute__((vector_size(4 * simd::pair_lanes)));
+  Codes codes;
+  std::memcpy(&codes, code, sizeof codes);
+  Lanes repeated = __builtin_convertvector(codes == codes[0], Lanes);
+  repeated[0] = 0;
+  return repeated ? simd::splat<simd::f32n>(beyond_kernels) : q;
+#endif
 }
 
 // Bytes of lists asked for ahead of a sweep, seven particles: pressure operator 1.2 times faster (bench/README.md).
@@ -146,46 +161,47 @@ template <int dimensions, int payload, class Body>
   for (std::size_t next = 0; next < end; next += pair_lanes) {
     std::array<f32n, width> value;
     const std::uint16_t* const code = narrow ? batches.code + next : nullptr;
-    if (narrow)
+    if (narrow) {
       __builtin_prefetch(code + list_ahead / sizeof *code);
-    else
-      __builtin_prefetch(begin + next + list_ahead / sizeof *begin);
-    if (narrow && code[pair_lanes - 1] != no_neighbour) {
       const float* from = records + simd::record_offset<width>(batches.base[next / pair_lanes]);
-      unrolled<width / 4>([&](auto block) __attribute__((always_inline)) {
-        simd::load_records<width>(from, code, block, &value[4 * block]);
-      });
+      simd::load_whole_records<width>(from, code, value.data());
     } else {
-      const std::int32_t* entry = narrow ? filled : begin + next;
-      if (narrow) {
-        decode(code, batches.base[next / pair_lanes], list.sentinel(), filled);
-      } else if constexpr (pair_lanes > simd::lanes) {
+      __builtin_prefetch(begin + next + list_ahead / sizeof *begin);
+      const std::int32_t* entry = begin + next;
+      if constexpr (pair_lanes > simd::lanes) {
         if (end - next < pair_lanes) {
           std::copy_n(entry, simd::lanes, filled);
           std::fill_n(filled + simd::lanes, pair_lanes - simd::lanes, entry_scale * list.sentinel());
           entry = filled;
         }
       }
-      unrolled<width / 4>([&](auto block) __attribute__((always_inline)) {
-        simd::load_records<width>(records, entry, block, &value[4 * block]);
-      });
+      simd::load_whole_records<width>(records, entry, value.data());
     }
     Batch<dimensions, payload> batch;
     f32n r2{};
-    for (int axis = 0; axis < dimensions; ++axis) {
+    unrolled<dimensions>([&](auto axis) __attribute__((always_inline)) {
       batch.d[axis] = value[axis] - centre[axis];
       r2 = r2 + batch.d[axis] * batch.d[axis];
-    }
+    });
     batch.q = simd::sqrt(r2) * inverse_h;
+    if (narrow) batch.q = q_of_neighbours(code, batch.q);
     unrolled<payload>([&](auto p) __attribute__((always_inline)) { batch.payload[p] = value[dimensions + p]; });
     body(batch);
   }
 }
 
-// Sweeps all particles in parallel: body(i).
+// Sweeps all particles in parallel: body(first, last) of blocks of at most so many.
+inline constexpr std::size_t sweep_block = 256;
+template <class Body>
+void sweep_blocks(std::size_t particles, Body&& body) {
+  parallel_blocks_dynamic(particles, sweep_block,
+                          [&](std::size_t, std::size_t first, std::size_t last) { body(first, last); });
+}
+
+// The same one by one: body(i).
 template <class Body>
 void sweep(std::size_t particles, Body&& body) {
-  parallel_blocks_dynamic(particles, 256, [&](std::size_t, std::size_t first, std::size_t last) {
+  sweep_blocks(particles, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) body(i);
   });
 }
