@@ -27,8 +27,18 @@ class NarrowBlock {
 
   // Whether one base reaches all of them.
   static bool within_reach(const std::int32_t* entry, std::size_t size, std::int32_t& low) {
-    std::int32_t high = low = size == 0 ? 0 : entry[0];
-    for (std::size_t k = 0; k < size; ++k) {
+    low = 0;
+    if (size == 0) return true;
+    i32n least = i32n{} + entry[0], most = least;
+    std::size_t k = 0;
+    for (; k + pair_lanes <= size; k += pair_lanes) {
+      const auto more = load_int<i32n>(entry + k);
+      least = least < more ? least : more;
+      most = most < more ? more : most;
+    }
+    low = least_lane(least);
+    std::int32_t high = largest_lane(most);
+    for (; k < size; ++k) {
       low = std::min(low, entry[k]);
       high = std::max(high, entry[k]);
     }
@@ -55,6 +65,14 @@ class NarrowBlock {
     const std::size_t before = size_;
     while (start < stop) {
       std::int32_t low = start[0], high = start[0];
+      if (stop - start >= pair_lanes && within_reach(start, pair_lanes, low)) {
+        const Codes whole = codes_of(load_int<i32n>(start), low);
+        std::memcpy(code_.data() + size_ * pair_lanes, &whole, sizeof whole);
+        base_[size_++] = low;
+        start += pair_lanes;
+        continue;
+      }
+      low = start[0];
       int taken = 1;
       for (; taken < std::min<std::ptrdiff_t>(stop - start, pair_lanes); ++taken) {
         const std::int32_t lower = std::min(low, start[taken]), higher = std::max(high, start[taken]);

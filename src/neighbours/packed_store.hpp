@@ -115,6 +115,20 @@ template <class V = i32x8>
   return v;
 }
 
+// The least and the largest of the lanes.
+[[gnu::always_inline]] inline std::int32_t least_lane(i32n v) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+  return _mm512_mask_reduce_min_epi32(0xFFFF, __m512i(v));
+#else
+  std::int32_t least = v[0];
+  for (int l = 1; l < pair_lanes; ++l) least = v[l] < least ? v[l] : least;
+  return least;
+#endif
+}
+[[gnu::always_inline]] inline std::int32_t largest_lane(i32n v) {
+  return ~least_lane(~v);
+}
+
 [[gnu::always_inline]] inline void store_int(std::int32_t* p, i32x8 v) {
   std::memcpy(p, &v, sizeof v);
 }

@@ -13,6 +13,9 @@
 namespace spume::wcsph {
 namespace {
 
+// Of a bound that is not to be missed by rounding.
+constexpr double above_rounding = 1e-12;
+
 double speed_of(const LoadedCase& loaded) {
   const double given = loaded.options.get<CompressibilityOptions>().max_speed;
   return given > 0 ? given : spume::expected_speed(loaded.scene, loaded.options.time.end);
@@ -73,6 +76,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       openings(features.openings ? std::make_unique<BufferLayers>(scene, resolution, skin, particles) : nullptr),
       boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution), nullptr,
                openings == nullptr ? nullptr : &openings->gates()),
+      wall_gap(boundary.gap()),
       arrangement(scene.domain, resolution, particles.volume, particles.size(), skin),
       walls(boundary, wall_gravity, particles.scratch()),
       parting(scene, boundary, resolution, particles.volume, wall_gravity),
@@ -161,12 +165,33 @@ double Flow::largest_kinematic_viscosity() const {
   return features.several ? 2 * largest : largest;
 }
 
+// Powers are found where the sum may be the largest so far alone: (1 + s)^e, 0 <= e <= 1, lies below its tangent at
+// 0. Those of liquids take none.
 void Flow::find_signal() {
-  signal = parallel_max(size(), 0.0, [&](std::size_t i) {
-    return law(i).local_sound_speed((*excess)[i]) + std::sqrt(squared_norm(particles.velocity, dimensions, i));
-  });
-  largest_speed = std::sqrt(
-      parallel_max(size(), 0.0, [&](std::size_t i) { return squared_norm(particles.velocity, dimensions, i); }));
+  struct Largest {
+    double signal = 0, speed2 = 0;
+  };
+  const Largest largest = parallel_reduce(
+      size(), Largest{},
+      [&](std::size_t first, std::size_t last) {
+        Largest so_far;
+        for (std::size_t i = first; i < last; ++i) {
+          const PhaseLaw& own = law(i);
+          const double s = (*excess)[i], speed2 = squared_norm(particles.velocity, dimensions, i);
+          so_far.speed2 = larger_or_nan(so_far.speed2, speed2);
+          const double speed = std::sqrt(speed2), e = (own.exponent - 1) / 2;
+          if (own.exponent != liquid_exponent && e >= 0 && e <= 1 &&
+              (1 + above_rounding) * (own.sound_speed * (1 + e * s) + speed) <= so_far.signal)
+            continue;
+          so_far.signal = larger_or_nan(so_far.signal, own.local_sound_speed(s) + speed);
+        }
+        return so_far;
+      },
+      [](const Largest& a, const Largest& b) {
+        return Largest{larger_or_nan(a.signal, b.signal), larger_or_nan(a.speed2, b.speed2)};
+      });
+  signal = largest.signal;
+  largest_speed = std::sqrt(largest.speed2);
 }
 
 std::string Flow::laws_in_words() const {

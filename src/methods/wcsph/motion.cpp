@@ -97,6 +97,14 @@ void Flow::apply_walls(std::size_t i, Vec3& r, Vec3* u, const Vec3* from) const 
     boundary.apply_walls(boundary.walls, r, u, from);
 }
 
+// Before all sides, in scenes that have nothing else: apply_walls() would leave it there.
+bool Flow::clear_of_walls(const Vec3& r) const {
+  if (features.bodies || features.openings) return false;
+  for (int axis = 0; axis < dimensions; ++axis)
+    if (!(r[axis] > boundary.walls[axis][0] + wall_gap && r[axis] < boundary.walls[axis][1] - wall_gap)) return false;
+  return true;
+}
+
 void Flow::move_layers(double dt) {
   openings->set_velocities(time, dt);
 }
@@ -127,6 +135,7 @@ Vec3 Flow::held_velocity(std::size_t i, double dt, Vec3& r) const {
     u[axis] = half.velocity;
     r[axis] = half.place + half.way;
   }
+  if (clear_of_walls(r)) return u;
   const Vec3 before = r, from = vector_at(particles.position, dimensions, i);
   apply_walls(i, r, &u, &from);
   // Particles go round periodic sides when lists are made; those of inflows keep to their columns there too.

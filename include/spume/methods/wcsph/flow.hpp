@@ -69,6 +69,7 @@ struct Flow {
   std::unique_ptr<BufferLayers> openings;    // null: none
   std::unique_ptr<AcousticLayers> acoustic;  // null: none
   Boundary boundary;
+  const double wall_gap;   // of particles from sides
   double listed_time = 0;  // of the places of moving bodies in the lists
   double settled = 0;      // 1: settle() has been
   double unsettled = 0;    // the largest acceleration that it has left, over that of gravity
@@ -142,6 +143,7 @@ struct Flow {
   HalfStep half_step(int axis, std::size_t i, double dt) const;
   Vec3 held_velocity(std::size_t i, double dt, Vec3& r) const;
   void apply_walls(std::size_t i, Vec3& r, Vec3* u, const Vec3* from) const;
+  bool clear_of_walls(const Vec3& r) const;
   SurfaceTension::Now tension_now();
   void build_lists();
   bool lists_hold(double dt) const;
