@@ -105,11 +105,12 @@ class Repeated final : public Shape {
   }
   Bounds bounds() const override { return shape_->bounds(); }
   Bounds extent() const override {
-    Bounds all = shape_->bounds();
+    const Bounds own = shape_->extent();
+    Bounds all = own;
     for (const Vec3& shift : shifts_)
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        all.lower[axis] = std::min(all.lower[axis], shape_->bounds().lower[axis] + shift[axis]);
-        all.upper[axis] = std::max(all.upper[axis], shape_->bounds().upper[axis] + shift[axis]);
+        all.lower[axis] = std::min(all.lower[axis], own.lower[axis] + shift[axis]);
+        all.upper[axis] = std::max(all.upper[axis], own.upper[axis] + shift[axis]);
       }
     return all;
   }

@@ -307,15 +307,15 @@ std::vector<Body> make_bodies(const Draft& draft, const CompileExpression& compi
       try {
         if (ShapePointer shape = make_shape(draft, given, name, compile, problems)) {
           const Pose pose = pose_of(given, draft.dimensions);
-          Bounds domain;
+          Bounds window;
           Vec3 periods{};
           for (std::size_t a = 0; a < static_cast<std::size_t>(draft.dimensions); ++a) {
-            domain.lower[a] = draft.lower[a] - beyond_side * draft.options.spacing;
-            domain.upper[a] = draft.upper[a] + beyond_side * draft.options.spacing;
+            window.lower[a] = draft.lower[a] - beyond_side * draft.options.spacing;
+            window.upper[a] = draft.upper[a] + beyond_side * draft.options.spacing;
             if (draft.periodic[a]) periods[a] = draft.upper[a] - draft.lower[a];
           }
           const ShapePointer placed = place(shape, pose, true, draft.dimensions);
-          body.shape = repeat(placed, domain, periods);
+          body.shape = repeat(placed, window, periods);
           body.solid = given.inside ? body.shape : place(body.shape, Pose{}, false, draft.dimensions);
           body.alone = given.inside ? placed : place(placed, Pose{}, false, draft.dimensions);
         }

@@ -61,6 +61,17 @@ std::vector<CombinedPart> many_parts(int dimensions, bool holes) {
   return parts;
 }
 
+// What has copies may be repeated once more: the extent is that of all copies.
+TEST(Shapes, ExtentsOfRepeatedShapesHoldAllCopies) {
+  const Bounds window{{-0.2, 0, 0}, {1.2, 1, 1}};
+  const ShapePointer once = repeat(make_box({0.1, 0.2, 0}, 2), window, {1, 0, 0});
+  const ShapePointer twice = repeat(place(once, {}, true, 2), window, {0, 1, 0});
+  EXPECT_LE(once->extent().lower[0], -0.05);
+  EXPECT_GE(once->extent().upper[0], 1.05);
+  EXPECT_EQ(twice->extent().lower[0], once->extent().lower[0]);
+  EXPECT_EQ(twice->extent().upper[0], once->extent().upper[0]);
+}
+
 // Parts that cells and extents rule out change nothing: the same to the bit as asking all.
 TEST(Shapes, CombinedAreThoseOfAllParts) {
   for (const int dimensions : {2, 3})
@@ -76,12 +87,16 @@ TEST(Shapes, CombinedAreThoseOfAllParts) {
           const double own = part.shape->distance(p);
           distance = part.subtract ? std::max(distance, -own) : std::min(distance, own);
           NearestPoint next = part.shape->nearest(p);
-          if (part.subtract) next.distance = -next.distance;
+          if (part.subtract) {
+            next.distance = -next.distance;
+            for (double& component : next.normal) component = -component;
+          }
           if (part.subtract ? next.distance > nearest.distance : next.distance < nearest.distance) nearest = next;
         }
         EXPECT_EQ(all.distance(p), distance);
         EXPECT_EQ(all.nearest(p).distance, nearest.distance);
         EXPECT_EQ(all.nearest(p).point, nearest.point);
+        EXPECT_EQ(all.nearest(p).normal, nearest.normal);
         inside += distance < 0;
       }
       EXPECT_GT(inside, 100);

@@ -117,6 +117,45 @@ TEST(GfdViscosity, LongStepsAreStableAtAHundredToOne) {
   }
 }
 
+// A drop at rest, a thousand times as dense as what is around it, in steps of ten times the explicit limit for two of its
+// capillary times: the speeds that the scatter of the curvature makes die out below the capillary number that
+// static_drop allows. A quarter of it, with planes of symmetry.
+TEST(GfdViscosity, AHeavyDropRestsInImplicitSteps) {
+  GfdRun run(R"toml(method = "gfd"
+[domain]
+lower = [0, 0]
+upper = [0.5, 0.5]
+left = "free-slip"
+right = "free-slip"
+bottom = "free-slip"
+top = "free-slip"
+[resolution]
+spacing = 0.03125
+[[phase]]
+name = "outside"
+density = 1
+viscosity = 0.1
+[[phase]]
+name = "drop"
+density = 1000
+viscosity = 0.1
+[interface]
+surface_tension = 1
+[[region]]
+phase = "outside"
+[[region]]
+phase = "drop"
+centre = [0, 0]
+radius = 0.25
+[time]
+end = 8
+viscosity = "implicit"
+)toml");
+  run.until(8);
+  EXPECT_LT(run.method.step_count(), 500);
+  EXPECT_LT(0.1 * run.series().at("max_speed"), 1e-3);
+}
+
 // Between a wall that holds the liquid and one that moves, with body walls as with sides: steady shear within a step or
 // two of a hundred explicit limits.
 TEST(GfdViscosity, ATurningTankTakesItsLiquidAlong) {

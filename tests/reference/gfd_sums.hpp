@@ -259,6 +259,26 @@ class GfdSums {
     for (std::size_t k = 0; k < indicator.size(); ++k) indicator[k] = phase[k] == n ? 1 : 0;
     return sums_.filtered_scalar(i, indicator);
   }
+  // The change of the velocity of i by what its neighbours lose, and a bound of its rounding.
+  template <class Scalar, class Velocity>
+  std::array<Sum, 3> exchanged(std::size_t i, const Scalar& gain, double density, const Velocity& u) const {
+    std::array<Sum, 3> change{};
+    if (!(gain[i] > 0)) return change;
+    Sum total;
+    each(i, [&](const SphPoint& p, const Vector&, double w, double largest) {
+      total.add(w, largest, std::max(-double(gain[p.source]), 0.0), std::abs(double(gain[p.source])));
+    });
+    if (!(total.value > 0)) return change;
+    const double share = std::min(1.0, gain[i] / density) / total.value;
+    for (int a = 0; a < d_; ++a) {
+      each(i, [&](const SphPoint& p, const Vector&, double w, double largest) {
+        const double own = u[a][i], other = sums_.velocity_at(u, p, a), lost = std::max(-double(gain[p.source]), 0.0);
+        change[a].add(share * w * lost, share * largest * lost, other - own, std::abs(other) + std::abs(own));
+      });
+      change[a].magnitude += std::abs(change[a].value) * total.magnitude / total.value;
+    }
+    return change;
+  }
   // -div n over the particles with a normal, and a bound of its rounding; B that of these particles.
   template <class Normal>
   Sum curvature(std::size_t i, const Normal& normal, double largest_correction) const {

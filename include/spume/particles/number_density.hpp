@@ -45,15 +45,16 @@ struct DensityRelaxation {
 // liquid goes around and farther than the support from a surface, N_i is at most 0.03 / (|e_i| - 0.02) where
 // e_i < -0.02, and 1 where e_i < -0.05: a stream opens voids behind edges within a spacing, which is four steps; closed
 // in tens of steps they let jets in. Streams past a triangle, a free-slip box and boxes of 5 to 13 spacings (2-D,
-// Re = 3e4) double their energy with N_i = N and one of two boxes does with N_i = 2; with 1 none does.
-// S tells the density and hardly the strain of a lattice (at 1.2 by 1/1.2 it rises by 0.3 %, div r by 1.5 %, which
-// would lift the crest of a wave) or a surface one layer off (0.4 %). Velocities free of divergence keep the density
-// only as far as their discrete divergence tells the volume of a moving arrangement: without this voids open in a
-// lid-driven cavity. What is let be is what the disorder of an arrangement makes of S: 0.002 in the mean (0.0017 in a
-// cavity), which must not raise the level of a liquid with a surface, and 0.02 from particle to particle. Particles of
-// the uppermost layer, which lack neighbours, and those within reach of both a surface and a solid box are left alone.
-// Returns the volume that the particles take by their kernel sums, over that of one on the lattice: the sum of
-// 1 / (1 + e_i), 1 for those left alone. `surface`: null without one. `at`: where the moments were measured.
+// Re = 3e4) double their energy with N_i = N and one of two boxes does with N_i = 2; with 1 none of these does. Rows of
+// bars 4 spacings wide with slots of 3 to 6 do in 9 of 12 runs. S tells the density and hardly the strain of a lattice
+// (at 1.2 by 1/1.2 it rises by 0.3 %, div r by 1.5 %, which would lift the crest of a wave) or a surface one layer off
+// (0.4 %). Velocities free of divergence keep the density only as far as their discrete divergence tells the volume of
+// a moving arrangement: without this voids open in a lid-driven cavity. What is let be is what the disorder of an
+// arrangement makes of S: 0.002 in the mean (0.0017 in a cavity), which must not raise the level of a liquid with a
+// surface, and 0.02 from particle to particle. Particles of the uppermost layer, which lack neighbours, and those
+// within reach of both a surface and a solid box are left alone. Returns the volume that the particles take by their
+// kernel sums, over that of one on the lattice: the sum of 1 / (1 + e_i), 1 for those left alone. `surface`: null
+// without one. `at`: where the moments were measured.
 double even_out_density(const DensityRelaxation& relaxation, const Arrangement& arrangement, const Boundary& boundary,
                         const VectorField& at, const Resolution& resolution, const MomentFields& moments,
                         const FreeSurface* surface, std::span<double> divergence);

@@ -23,6 +23,17 @@ bool differ(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [&](double value) { return value != values.front(); });
 }
 
+// What the gradient of a pressure does not see of it and the matrix does adds up in the pressure of implicit steps, which
+// find its change. In a heavy phase that moves nothing until it acts on the light one beside it: static drops 30 times as
+// dense as their surroundings rest, those of 100 and 1000 times break up within two of their capillary times.
+// With 0.95 of the last pressure they rest, with 0.98 they do not; the 0.05 make the drop of viscous_drop, 100 times as
+// viscous and 5 times as dense, 12 across, faster by 4 %.
+double share_kept(const std::vector<double>& densities) {
+  constexpr double alike = 10, share = 0.95;
+  const auto [least, most] = std::minmax_element(densities.begin(), densities.end());
+  return *most > alike * *least ? share : 1;
+}
+
 }  // namespace
 
 Features::Features(const LoadedCase& loaded)
@@ -30,6 +41,7 @@ Features::Features(const LoadedCase& loaded)
   const Scene& scene = loaded.scene;
   const Vec3& g = scene.fluid.gravity;
   interfaces = scene.phases.size() > 1;
+  density_jump = differ(of_phases(scene, &Phase::density));
   tension = interfaces && scene.surface_tension > 0;
   forces = scene.body_force.has_value();
   for (int axis = 0; axis < scene.domain.dimensions; ++axis)
@@ -93,6 +105,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       densities(of_phases(scene, &Phase::density)),
       viscosities(of_phases(scene, &Phase::viscosity)),
       viscous(loaded_case, resolution),
+      kept_pressure(share_kept(densities)),
       particles(dimensions, scene.particles),
       openings(features.openings ? std::make_unique<BufferLayers>(scene, resolution, 0, particles) : nullptr),
       boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution), nullptr,
@@ -106,6 +119,7 @@ Flow::Flow(const LoadedCase& loaded_case)
   FieldSet& fields = particles.fields;
   pressure = &fields.add<double>("pressure", Lifetime::state);
   phase_number = &fields.add<std::int64_t>("phase", Lifetime::state);
+  if (features.density_jump) last_density = &fields.add<float>("last_density", Lifetime::state);
   for (int k = 0; k < dimensions * (dimensions + 1) / 2; ++k)
     correction[static_cast<std::size_t>(k)] =
         &fields.add<float>("truncation_tensor_" + std::to_string(k), Lifetime::result);
@@ -116,6 +130,10 @@ Flow::Flow(const LoadedCase& loaded_case)
   if (features.writes_diffusion) particles.add_vector(diffusion, diffusion_field, Lifetime::result);
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
   parallel_for(size(), [&](std::size_t i) { (*phase_number)[i] = scene.particles.phase[i]; });
+  if (features.density_jump)
+    parallel_for(size(), [&](std::size_t i) {
+      (*last_density)[i] = static_cast<float>(densities[scene.particles.phase[i]]);
+    });
   if (features.openings) {
     openings->fill(*phase_number, {});
     layers = std::make_unique<LayerStencils>(scene, resolution, *openings);

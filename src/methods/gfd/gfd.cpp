@@ -78,7 +78,12 @@ void Gfd::step(double dt, Ledger& ledger) {
   start_ledger_.clear();
   sampled_step_ = -1;
   arranged_ = true;
-  plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
+  try {
+    plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
+  } catch (...) {
+    flow_.undo_exchange();
+    throw;
+  }
 }
 
 StepLimit Gfd::step_limit() const {
@@ -230,7 +235,8 @@ std::vector<ArrayInfo> Gfd::arrays() const {
   if (const double bytes = flow_.implicit_diffusion.bytes(); bytes > 0) list.push_back({"implicit viscosity", bytes});
   if (flow_.features.openings) list.push_back({"openings", flow_.openings->bytes() + flow_.layers->bytes()});
   list.push_back({"leased within a step", flow_.leased_bytes()});
-  double interfaces = flow_.bands.bytes() + flow_.phase.bytes();
+  double interfaces = flow_.bands.bytes() + flow_.phase.bytes() +
+                      static_cast<double>(flow_.exchanged.capacity() * sizeof(flow_.exchanged[0]));
   for (const Colour& colour : flow_.colours) interfaces += colour.value.bytes() + colour.potential.bytes();
   list.push_back({"interfaces", interfaces});
   if (flow_.features.bodies) list.push_back({"wall points", flow_.boundary.bytes()});

@@ -44,6 +44,10 @@ Plan make_plan(Flow& f) {
   stages.sweep(both, "bands", has.interfaces, several, &Flow::find_bands, {f.phase}, {band});
   stages.add(both, "properties", true, has.interfaces ? "(6), (7): colours, filtered density and viscosity" : several,
              blending(f), {f.phase, band}, {colours, *f.density, f.viscosity});
+  const char* const jump = has.density_jump ? "momentum of the mass that the filter passes on" : "one density";
+  stages.sweep(start, "first mass exchange", has.density_jump, jump, &Flow::exchange_first_mass, {*f.density},
+               {p.velocity});
+  stages.sweep(step, "mass exchange", has.density_jump, jump, &Flow::exchange_mass, {*f.density}, {p.velocity});
   stages.sweep(both, "potentials", has.interfaces,
                has.interfaces ? "(14) to (17): tension and weight of the interfaces, pairwise" : several,
                &Flow::find_potentials, {colours, f.correction}, {colours});

@@ -97,7 +97,7 @@ void Flow::diffuse_implicitly(double dt) {
   incremental = steps > 0;
   if (incremental) {
     ScratchArray<double> last(scratch, n);
-    parallel_for(n, [&](std::size_t i) { last[i] = last_reduced(i); });
+    parallel_for(n, [&](std::size_t i) { last[i] = kept_pressure * last_reduced(i); });
     FloatVectorScratch gradient, force;
     scratch.lease(gradient, dimensions, n);
     scratch.lease(force, dimensions, n);
@@ -243,7 +243,7 @@ double Flow::last_norm() {
   const std::size_t n = size();
   ScratchArray<double> last(particles.scratch(), n), zero(particles.scratch(), n), product(particles.scratch(), n);
   zero.fill(0.0);
-  parallel_for(n, [&](std::size_t i) { last[i] = last_reduced(i); });
+  parallel_for(n, [&](std::size_t i) { last[i] = kept_pressure * last_reduced(i); });
   matrix.residual(last, zero, product, false);
   return std::sqrt(parallel_sum(n, [&](std::size_t i) { return product[i] * product[i]; }));
 }
@@ -285,7 +285,7 @@ void Flow::project_velocity(double dt) {
       next_velocity[axis][i] -= dt * (gradient[axis][i] - force);
     }
   });
-  if (incremental) parallel_for(n, [&](std::size_t i) { reduced_pressure[i] += last_reduced(i); });
+  if (incremental) parallel_for(n, [&](std::size_t i) { reduced_pressure[i] += kept_pressure * last_reduced(i); });
   if (features.openings) layers->follow(write(next_velocity));
   scratch.release(gradient);
   scratch.release(force_acceleration);
@@ -343,6 +343,7 @@ void Flow::accept(double dt) {
   particles.scratch().release(next_velocity);
   particles.scratch().release(shift_velocity);
   particles.scratch().release(reduced_pressure);
+  keep_exchange();
   boundary.accept();
   if (features.openings) openings->accept();
   time += dt;

@@ -39,6 +39,7 @@ inline constexpr const char* diffusion_field = "diffusion";
 struct Features : BoundaryFeatures {
   explicit Features(const LoadedCase& loaded);
   bool interfaces = false;  // several phases
+  bool density_jump = false;  // of them
   bool tension = false;
   bool gravity = false;  // across sides: part of the reduced pressure
   bool forces = false;   // added to the velocity: forces.body, gravity along a periodic axis
@@ -75,6 +76,7 @@ struct Flow {
   const std::vector<double> densities, viscosities;  // of the phases; dynamic
 
   const ViscousChoice viscous;
+  const double kept_pressure;  // share of the last pressure that implicit steps start from
 
   double weight = 0;  // sum of m |g|, of gravity across sides
 
@@ -84,6 +86,7 @@ struct Flow {
   ParticleStore particles;
   Array<double>* pressure = nullptr;  // p
   Array<std::int64_t>* phase_number = nullptr;
+  Array<float>* last_density = nullptr;  // rho~ of the last step; null: densities of the phases are alike
   std::unique_ptr<BufferLayers> openings;  // null: none
   Boundary boundary;
   Speeds speeds;
@@ -103,6 +106,7 @@ struct Flow {
   Array<std::uint8_t> phase;
   InterfaceBands bands;
   std::vector<Colour> colours;
+  std::vector<std::pair<std::size_t, Vec3>> exchanged;  // velocities before the mass exchange of the present step
   Array<float>* density = nullptr;    // rho~
   Array<float>* viscosity = nullptr;  // mu~; null without viscosity
   VectorField diffusion{};            // the viscous acceleration, where the case writes it; null: it does not
@@ -161,6 +165,10 @@ struct Flow {
   void measure_stencils();      // (10), (11)
   void find_bands();
   void blend_properties();           // (6), (7)
+  void exchange_mass();              // momentum with the mass that the filter passes on
+  void exchange_first_mass();        // of a run that begins: from the sharp densities
+  void keep_exchange();              // in an accepted step
+  void undo_exchange();              // in a refused one
   void find_potentials();            // (14) to (17), pairwise
   void find_viscosity_gradient();    // (18)
   void find_viscous_acceleration();  // (9), (12), (13), (19)
