@@ -117,8 +117,8 @@ TEST(GfdViscosity, LongStepsAreStableAtAHundredToOne) {
   }
 }
 
-// A drop at rest, a thousand times as dense as what is around it, in steps of ten times the explicit limit for two of its
-// capillary times: the speeds that the scatter of the curvature makes die out below the capillary number that
+// A drop at rest, a thousand times as dense as what is around it, in steps of ten times the explicit limit for two of
+// its capillary times: the speeds that the scatter of the curvature makes die out below the capillary number that
 // static_drop allows. A quarter of it, with planes of symmetry.
 TEST(GfdViscosity, AHeavyDropRestsInImplicitSteps) {
   GfdRun run(R"toml(method = "gfd"

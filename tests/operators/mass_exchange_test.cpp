@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Momentum with the mass that filtered densities pass on: the slow twin, and what must come of it.
+#include "spume/operators/mass_exchange.hpp"
+
 #include <gtest/gtest.h>
 
 #include "operators/gfd_arrangement.hpp"
 #include "spume/operators/interface_filters.hpp"
-#include "spume/operators/mass_exchange.hpp"
 
 namespace spume::test {
 namespace {
@@ -67,10 +68,10 @@ TEST(MassExchange, AgreesWithTheSlowTwin) {
   });
 }
 
-// In a periodic box, where every particle has all of its neighbours: a ball at rest in a uniform flow. All who lose have
-// one velocity, so that momentum of the filtered masses is that of the sharp ones as far as the filter keeps the mass:
-// by the scatter of the kernel sums, 1 % of what it moves with points off a lattice by up to a tenth of a spacing. Nobody
-// leaves the range of the velocities, and the kinetic energy falls to below that of the sharp masses.
+// In a periodic box, where every particle has all of its neighbours: a ball at rest in a uniform flow. All who lose
+// have one velocity, so that momentum of the filtered masses is that of the sharp ones as far as the filter keeps the
+// mass: by the scatter of the kernel sums, 1 % of what it moves with points off a lattice by up to a tenth of a
+// spacing. Nobody leaves the range of the velocities, and the kinetic energy falls to below that of the sharp masses.
 TEST(MassExchange, KeepsMomentumAndMakesNoEnergy) {
   for (const int d : {2, 3}) {
     ArrangementSetup setup;

@@ -23,9 +23,9 @@ bool differ(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [&](double value) { return value != values.front(); });
 }
 
-// What the gradient of a pressure does not see of it and the matrix does adds up in the pressure of implicit steps, which
-// find its change. In a heavy phase that moves nothing until it acts on the light one beside it: static drops 30 times as
-// dense as their surroundings rest, those of 100 and 1000 times break up within two of their capillary times.
+// What the gradient of a pressure does not see of it and the matrix does adds up in the pressure of implicit steps,
+// which find its change. In a heavy phase that moves nothing until it acts on the light one beside it: static drops 30
+// times as dense as their surroundings rest, those of 100 and 1000 times break up within two of their capillary times.
 // With 0.95 of the last pressure they rest, with 0.98 they do not; the 0.05 make the drop of viscous_drop, 100 times as
 // viscous and 5 times as dense, 12 across, faster by 4 %.
 double share_kept(const std::vector<double>& densities) {
@@ -131,9 +131,8 @@ Flow::Flow(const LoadedCase& loaded_case)
   if (features.shifting) shift = std::make_unique<Shift>(particles, resolution);
   parallel_for(size(), [&](std::size_t i) { (*phase_number)[i] = scene.particles.phase[i]; });
   if (features.density_jump)
-    parallel_for(size(), [&](std::size_t i) {
-      (*last_density)[i] = static_cast<float>(densities[scene.particles.phase[i]]);
-    });
+    parallel_for(size(),
+                 [&](std::size_t i) { (*last_density)[i] = static_cast<float>(densities[scene.particles.phase[i]]); });
   if (features.openings) {
     openings->fill(*phase_number, {});
     layers = std::make_unique<LayerStencils>(scene, resolution, *openings);

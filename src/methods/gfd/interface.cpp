@@ -125,8 +125,7 @@ void Flow::exchange_first_mass() {
 void Flow::exchange_mass() {
   ScratchPool& scratch = particles.scratch();
   ScratchArray<float> gain(scratch, size());
-  parallel_for(size(),
-               [&](std::size_t i) { gain[i] = in_domain(i) ? (*density)[i] - (*last_density)[i] : 0.0F; });
+  parallel_for(size(), [&](std::size_t i) { gain[i] = in_domain(i) ? (*density)[i] - (*last_density)[i] : 0.0F; });
   FloatVectorScratch change;
   scratch.lease(change, dimensions, size());
   mass_exchange_sweep(arrangement.context, arrangement.packed, bands,

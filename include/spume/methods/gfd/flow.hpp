@@ -38,7 +38,7 @@ inline constexpr const char* diffusion_field = "diffusion";
 // What a scene needs. Stages and arrays exist by these alone.
 struct Features : BoundaryFeatures {
   explicit Features(const LoadedCase& loaded);
-  bool interfaces = false;  // several phases
+  bool interfaces = false;    // several phases
   bool density_jump = false;  // of them
   bool tension = false;
   bool gravity = false;  // across sides: part of the reduced pressure
@@ -86,7 +86,7 @@ struct Flow {
   ParticleStore particles;
   Array<double>* pressure = nullptr;  // p
   Array<std::int64_t>* phase_number = nullptr;
-  Array<float>* last_density = nullptr;  // rho~ of the last step; null: densities of the phases are alike
+  Array<float>* last_density = nullptr;    // rho~ of the last step; null: densities of the phases are alike
   std::unique_ptr<BufferLayers> openings;  // null: none
   Boundary boundary;
   Speeds speeds;
@@ -107,9 +107,9 @@ struct Flow {
   InterfaceBands bands;
   std::vector<Colour> colours;
   std::vector<std::pair<std::size_t, Vec3>> exchanged;  // velocities before the mass exchange of the present step
-  Array<float>* density = nullptr;    // rho~
-  Array<float>* viscosity = nullptr;  // mu~; null without viscosity
-  VectorField diffusion{};            // the viscous acceleration, where the case writes it; null: it does not
+  Array<float>* density = nullptr;                      // rho~
+  Array<float>* viscosity = nullptr;                    // mu~; null without viscosity
+  VectorField diffusion{};  // the viscous acceleration, where the case writes it; null: it does not
   double displacement = 0, volume_ratio = 1;
   double max_divergence = 0;
   std::vector<double> phase_volume;  // shares of the domain, by kernel sums
