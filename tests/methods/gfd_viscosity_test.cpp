@@ -121,36 +121,9 @@ TEST(GfdViscosity, LongStepsAreStableAtAHundredToOne) {
 // its capillary times: the speeds that the scatter of the curvature makes die out below the capillary number that
 // static_drop allows. A quarter of it, with planes of symmetry.
 TEST(GfdViscosity, AHeavyDropRestsInImplicitSteps) {
-  GfdRun run(R"toml(method = "gfd"
-[domain]
-lower = [0, 0]
-upper = [0.5, 0.5]
-left = "free-slip"
-right = "free-slip"
-bottom = "free-slip"
-top = "free-slip"
-[resolution]
-spacing = 0.03125
-[[phase]]
-name = "outside"
-density = 1
-viscosity = 0.1
-[[phase]]
-name = "drop"
-density = 1000
-viscosity = 0.1
-[interface]
-surface_tension = 1
-[[region]]
-phase = "outside"
-[[region]]
-phase = "drop"
-centre = [0, 0]
-radius = 0.25
-[time]
-end = 8
-viscosity = "implicit"
-)toml");
+  GfdRun run(drop_in_a_box, {implicitly, "domain.upper=[0.5,0.5]", "domain.bottom=\"free-slip\"",
+                             "domain.top=\"free-slip\"", "resolution.spacing=0.03125", "fluid.gravity=0",
+                             "phase.0.viscosity=0.1", "phase.1.density=1000", "region.1.centre=[0,0]", "time.end=8"});
   run.until(8);
   EXPECT_LT(run.method.step_count(), 500);
   EXPECT_LT(0.1 * run.series().at("max_speed"), 1e-3);
