@@ -73,6 +73,26 @@ const Array<std::int32_t>& BufferLayers::find_members() {
   return members_;
 }
 
+std::vector<std::int32_t> BufferLayers::nearest_liquid() const {
+  std::vector<std::int32_t> nearest(columns_.size(), -1);
+  std::vector<double> least(columns_.size(), resolution_.support_radius);
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    if (holds(i)) continue;
+    const Vec3 place = vector_at(particles_.position, particles_.dimensions, i);
+    for (std::size_t g = 0; g < gates_.list.size(); ++g) {
+      const OpenGate& gate = gates_.list[g];
+      const double distance = -gate.depth_behind(place);
+      const std::int32_t cell = distance < resolution_.support_radius ? gate.column_at(place) : -1;
+      if (cell < 0) continue;
+      const std::size_t c = first_[g] + static_cast<std::size_t>(cell);
+      if (distance >= least[c]) continue;
+      least[c] = distance;
+      nearest[c] = static_cast<std::int32_t>(i);
+    }
+  }
+  return nearest;
+}
+
 // The velocity of a step is its integral by Simpson's rule, as for moving walls.
 void BufferLayers::set_velocities(double t, double dt) {
   const int d = particles_.dimensions;
@@ -181,11 +201,17 @@ void BufferLayers::insert(const Array<std::int32_t>& staying, const std::vector<
     particles_.fields.permute(order);
   else
     particles_.fields.resize(order.size());
-  // A newcomer has nothing of the particle that it is a copy of.
+  // A newcomer has nothing else of the particle that it is a copy of.
+  const auto carried = [&](const void* values) {
+    return std::any_of(carried_.begin(), carried_.end(), [values](const auto* one) { return one == values; });
+  };
   for (const auto& field : particles_.fields.fields())
     if (field->lifetime == Lifetime::state)
-      std::visit([&](auto& values) { std::fill(values.data() + first, values.data() + order.size(), 0); },
-                 field->values);
+      std::visit(
+          [&](auto& values) {
+            if (!carried(&values)) std::fill(values.data() + first, values.data() + order.size(), 0);
+          },
+          field->values);
   for (std::size_t k = 0; k < newcomers.size(); ++k) {
     const Newcomer& one = newcomers[k];
     for (int axis = 0; axis < particles_.dimensions; ++axis) {

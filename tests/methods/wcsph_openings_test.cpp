@@ -116,6 +116,18 @@ max_speed = 1.5
 end = 0.2
 )toml";
 
+// A profile that the stream carries along and diffusion leaves as it is; one of which nothing is said where it enters.
+const std::string carried = R"toml([[scalar]]
+name = "dye"
+initial = "3 - x"
+inflow = "3 - x + t"
+diffusivity = 0.01
+)toml";
+const std::string unled = R"toml([[scalar]]
+name = "silt"
+initial = "1 + y"
+)toml";
+
 }  // namespace
 
 // Every particle that enters goes on with the lattice, so that nothing but the rounding of floats disturbs it: 6e-8 in
@@ -408,27 +420,28 @@ TEST(WcsphOpenings, PressuresAreThoseOfTheirDefinition) {
 }
 
 TEST(WcsphOpenings, AreTheSameForAnyNumberOfThreadsAndResumeBitForBit) {
-  const std::string text = with_air("lower = [0.4, 0]\nupper = [0.7, 0.3]\n");
-  const auto state_after = [&](int threads) {
-    const int before = omp_get_max_threads();
-    omp_set_num_threads(threads);
-    WcsphRun run(text);
-    until(run, 0.4);
-    omp_set_num_threads(before);
-    return run.saved_state();
-  };
-  const auto whole = state_after(1);
-  EXPECT_EQ(whole, state_after(2));
-  WcsphRun first(text);
-  while (first.method.time() < 0.2)
-    first.method.step(std::min(first.method.step_limit().dt, 0.4 - first.method.time()), first.ledger);
-  MemoryState saved;
-  first.method.save(saved);
-  WcsphRun second(text);
-  second.method.load(saved);
-  until(second, 0.4);
-  until(first, 0.4);
-  EXPECT_EQ(first.saved_state(), second.saved_state());
+  for (const std::string& text : {with_air("lower = [0.4, 0]\nupper = [0.7, 0.3]\n"), stream + carried + unled}) {
+    const auto state_after = [&](int threads) {
+      const int before = omp_get_max_threads();
+      omp_set_num_threads(threads);
+      WcsphRun run(text);
+      until(run, 0.4);
+      omp_set_num_threads(before);
+      return run.saved_state();
+    };
+    const auto whole = state_after(1);
+    EXPECT_EQ(whole, state_after(2));
+    WcsphRun first(text);
+    while (first.method.time() < 0.2)
+      first.method.step(std::min(first.method.step_limit().dt, 0.4 - first.method.time()), first.ledger);
+    MemoryState saved;
+    first.method.save(saved);
+    WcsphRun second(text);
+    second.method.load(saved);
+    until(second, 0.4);
+    until(first, 0.4);
+    EXPECT_EQ(first.saved_state(), second.saved_state());
+  }
 }
 
 // 1000:1 beside openings: with tension, with shifting, or as air of a hundredth, nothing is said.
@@ -461,9 +474,73 @@ TEST(WcsphOpenings, AreRefusedInWords) {
   EXPECT_THAT(refusal_of(replaced(with_air(""), "[[inflow]]\nphase = \"water\"", "[[inflow]]")),
               HasSubstr("say which phase enters"));
   EXPECT_THAT(refusal_of(stream, {"compressibility.max_speed=0.05"}), HasSubstr("2 times its sound speed"));
-  EXPECT_THAT(refusal_of(stream + "[[scalar]]\nname = \"dye\"\n"), HasSubstr("no scalars"));
+  EXPECT_THAT(refusal_of(stream + carried + "[recorded_flow]\nfrom = 0.1\nuntil = 0.2\n"),
+              HasSubstr("no recorded flow"));
   EXPECT_THAT(refusal_of(replaced(stream, "[[outflow]]\nside = \"right\"\n", ""), {"domain.right=\"free-slip\""}),
               HasSubstr("full and closed"));
+}
+
+// Rates are floats of what is a sum to zero: D dt / h^2 = 4 of the differences between neighbours, 0.05, while a
+// particle passes, each to 6e-8; near the inflow the layers are as old as a step, dt = 4e-3 at most.
+TEST(WcsphOpenings, TheyBringScalarsAndTakeThemOut) {
+  WcsphRun run(stream + carried + unled);
+  until(run, 2);
+  const wcsph::Flow& flow = run.method.flow();
+  const Array<double>&dye = flow.solutes.scalars->values(0), &silt = flow.solutes.scalars->values(1);
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    if (!flow.in_domain(i)) continue;
+    EXPECT_NEAR(dye[i], 3 - (*flow.particles.position[0])[i] + flow.time, 1e-4);
+    EXPECT_NEAR(silt[i], 1 + (*flow.particles.position[1])[i], 1e-4);
+  }
+  auto series = run.series();
+  EXPECT_NEAR(series.at("amount_of_dye"), 0.5 * (3 - 0.5) + series.at("openings_gave_dye"), 1e-10);
+  EXPECT_NEAR(series.at("openings_gave_dye"), 0.5 * 2, 0.5 * 0.05);  // to half of a layer at each side
+}
+
+// Liquid that a pressure outside drives back through the outflow brings what left with it.
+TEST(WcsphOpenings, WhatComesBackBringsItsScalars) {
+  WcsphRun run(below_surface + unled, {"outflow.0.pressure=3000", "region.0.velocity=[\"0\", \"0\"]",
+                                       "inflow.0.velocity=[\"0\", \"0\"]", "scalar.0.initial=\"2\""});
+  until(run, 0.4);
+  auto series = run.series();
+  ASSERT_LT(series.at("volume_out"), -5 * 0.05 * 0.05);
+  EXPECT_NEAR(series.at("openings_gave_silt"), -2 * series.at("volume_out"), 1e-12);
+  EXPECT_NEAR(series.at("amount_of_silt"), 2 * series.at("volume_water"), 1e-12);
+}
+
+// Oxygen of the air, of what enters, and what sludge takes of it.
+TEST(WcsphOpenings, OxygenAndSludgeOfTheStreamBalance) {
+  WcsphRun run(below_surface + R"toml([oxygen]
+surface_k_l = 1e-2
+[[scalar]]
+name = "S_O"
+initial = "2"
+inflow = "4"
+diffusivity = 0.01
+[biokinetics]
+model = "asm1"
+[[scalar]]
+name = "X_BH"
+initial = "2500"
+[[scalar]]
+name = "S_S"
+initial = "10"
+[[scalar]]
+name = "S_NH"
+initial = "2"
+[[scalar]]
+name = "S_ALK"
+initial = "4"
+)toml");
+  const double start = run.series().at("amount_of_S_O");
+  until(run, 0.2);
+  auto series = run.series();
+  EXPECT_GT(series.at("openings_gave_S_O"), 0.01);
+  EXPECT_GT(series.at("oxygen_from_surface"), 1e-4);
+  EXPECT_GT(series.at("oxygen_uptake"), 1e-6);
+  EXPECT_NEAR(series.at("amount_of_S_O"),
+              start + series.at("openings_gave_S_O") + series.at("oxygen_from_surface") - series.at("oxygen_uptake"),
+              1e-12);
 }
 
 }  // namespace spume::test

@@ -303,6 +303,22 @@ TEST(WcsphSolutes, SludgeInStillWaterReactsAsInOneTank) {
   EXPECT_GT(run.series()["oxygen_uptake"], 0);
 }
 
+// With sludge dissolved oxygen is S_O: a scalar of the other name would stand by.
+TEST(WcsphSolutes, AScalarThatOnlyLooksLikeDissolvedOxygenIsWarnedOf) {
+  const auto said = [](const std::string& text) {
+    const LoadedCase loaded = load_text(text);
+    return std::any_of(loaded.options.warnings.begin(), loaded.options.warnings.end(), [](const Problem& warning) {
+      return warning.text.find("'oxygen' takes no part in [oxygen], whose scalar is 'S_O'") != std::string::npos;
+    });
+  };
+  const std::string sludge = discs +
+                             "[biokinetics]\nmodel = \"asm1\"\n[[scalar]]\nname = \"S_NH\"\ninitial = \"9\"\n"
+                             "[[scalar]]\nname = \"S_ALK\"\ninitial = \"5\"\n";
+  EXPECT_TRUE(said(sludge));
+  EXPECT_FALSE(said(replaced(sludge, "name = \"oxygen\"", "name = \"S_O\"")));
+  EXPECT_FALSE(said(discs));
+}
+
 TEST(WcsphSolutes, WhatItCannotCarryIsRefusedWithTheFix) {
   const auto refused = [](const std::string& text, const std::string& message) {
     EXPECT_THAT(problems_of(text), Contains(HasSubstr(message))) << message;

@@ -37,6 +37,8 @@ class BufferLayers {
   // hold until a particle has moved by skin / 2.
   BufferLayers(const Scene& scene, const Resolution& resolution, double skin, ParticleStore& particles);
 
+  // Fields that liquid takes along: what is made up for behind an outflow has them of what it is a copy of.
+  void carry(std::vector<const Array<double>*> fields) { carried_ = std::move(fields); }
   // At the start: the layers as the scene has them. `changes` are rates and shifts, zero in the layers.
   void fill(Array<std::int64_t>& phase, std::vector<FloatVectorField> changes);
 
@@ -52,6 +54,8 @@ class BufferLayers {
   }
   const Column& column_of(std::size_t i) const { return columns_[static_cast<std::size_t>((*column_)[i])]; }
   std::size_t columns() const { return columns_.size(); }
+  // Per column the liquid particle that is nearest before its side; -1: none.
+  std::vector<std::int32_t> nearest_liquid() const;
   // The particles of the layers, as numbered when they were found; particles are numbered anew by sorting.
   const Array<std::int32_t>& find_members();
 
@@ -98,6 +102,7 @@ class BufferLayers {
   Array<std::int64_t>* column_ = nullptr;  // of each particle; -1: liquid, below: liquid that came back through -2 - it
   Array<std::int64_t>* phase_ = nullptr;
   std::vector<FloatVectorField> changes_;
+  std::vector<const Array<double>*> carried_;
   Array<std::int32_t> members_;               // particles of the layers
   Array<std::int32_t> passed_;                // particles that have passed a side
   std::vector<std::int64_t> entered_, left_;  // particles of each phase

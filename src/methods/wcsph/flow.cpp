@@ -106,7 +106,7 @@ Flow::Flow(const LoadedCase& loaded_case)
                                  openings == nullptr ? nullptr : &openings->column()},
         options.get<CompressibilityOptions>().density_relaxation);
   if (features.openings) {
-    openings->fill(*phase_number, {acceleration, shift});
+    fill_layers();
     acoustic = std::make_unique<AcousticLayers>(scene, resolution, laws, particles, *phase_number, *openings);
   }
   find_signal();
@@ -115,6 +115,34 @@ Flow::Flow(const LoadedCase& loaded_case)
 void Flow::start_density() {
   const Array<double> weight = column_pressure(scene, particles, *phase_number);
   parallel_for(size(), [&](std::size_t i) { (*excess)[i] = law(i).excess(weight[i]); });
+}
+
+void Flow::fill_layers() {
+  if (features.scalars) {
+    std::vector<const Array<double>*> carried;
+    for (std::size_t k = 0; k < solutes.count(); ++k) carried.push_back(&std::as_const(*solutes.scalars).values(k));
+    openings->carry(std::move(carried));
+    solutes.scalars->leave_out(openings->column());
+  }
+  openings->fill(*phase_number, {acceleration, shift});
+  if (features.scalars) lead_scalars();
+}
+
+void Flow::lead_scalars() {
+  solutes.scalars->lead(time, [&](std::size_t i) { return openings->leads(i); });
+  if (!solutes.scalars->follows()) return;
+  const std::vector<std::int32_t> nearest = openings->nearest_liquid();
+  for (const std::int32_t member : openings->find_members()) {
+    const auto i = static_cast<std::size_t>(member);
+    if (!openings->leads(i)) continue;
+    const std::int32_t like = nearest[static_cast<std::size_t>(openings->column()[i])];
+    if (like >= 0) solutes.scalars->follow(i, static_cast<std::size_t>(like));
+  }
+}
+
+std::int64_t Flow::transport_scalars(double dt) {
+  if (features.openings) lead_scalars();
+  return solute_transport.transport(time, dt);
 }
 
 void Flow::start_tension() {

@@ -409,7 +409,9 @@ void Flow::accept(double dt) {
   boundary.accept();
   if (features.openings) {
     acoustic->follow(dt);
+    const std::vector<double> amounts = features.scalars ? solutes.scalars->amounts() : std::vector<double>();
     openings->accept();
+    if (features.scalars) solutes.scalars->count_openings(amounts);
   }
   if (features.tension) surface_energy = tension->energy();
   time += dt;

@@ -41,12 +41,8 @@ void check(Draft& draft, Problems& problems) {
         break;
       }
   for (const char* section : {"inflow.0", "outflow.0"})
-    if (const Node* node = draft.node(section);
-        node != nullptr && (SoluteFeatures(draft.options).scalars || SoluteFeatures(draft.options).recorded_flow))
-      problems.add(*node,
-                   "method \"wcsph\" takes no scalars and no recorded flow through openings; remove one of the two, or "
-                   "use method "
-                   "\"les-sph\"");
+    if (const Node* node = draft.node(section); node != nullptr && SoluteFeatures(draft.options).recorded_flow)
+      problems.add(*node, "method \"wcsph\" takes no recorded flow through openings; remove one of the two");
   if (!draft.solids.empty())
     problems.add(*draft.node("solid.0"),
                  "method \"wcsph\" knows walls of [[body]], not [[solid]]; write the box as [[body]] with shape = "

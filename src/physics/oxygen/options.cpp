@@ -82,6 +82,16 @@ Section oxygen_section() {
       .whole_optional();
 }
 
+// Dissolved oxygen has the name that sludge knows it by: one of another name would stand by without a word.
+void warn_of_bystander(const Draft& draft, const OxygenOptions& options, Problems& problems) {
+  const std::vector<ScalarOption>& scalars = draft.options.get<ScalarOptions>().scalars;
+  for (std::size_t k = 0; k < scalars.size(); ++k)
+    if (scalars[k].name == OxygenOptions().scalar && scalars[k].name != options.scalar)
+      problems.warn(*draft.node("scalar." + std::to_string(k) + ".name"),
+                    "the scalar '" + scalars[k].name + "' takes no part in [oxygen], whose scalar is '" +
+                        options.scalar + "'; give it that name, or set oxygen.scalar");
+}
+
 void check_oxygen(Draft& draft, Problems& problems) {
   OxygenOptions& options = draft.options.get<OxygenOptions>();
   const Node* section = draft.node("oxygen");
@@ -92,6 +102,7 @@ void check_oxygen(Draft& draft, Problems& problems) {
                  "[oxygen] holds values in SI units, and the liquid is given by groups; give density, viscosity and "
                  "fluid.gravity");
   if (draft.node("oxygen.scalar") == nullptr && draft.node("biokinetics") != nullptr) options.scalar = "S_O";
+  warn_of_bystander(draft, options, problems);
   ScalarOption dissolved;
   dissolved.name = options.scalar;
   dissolved.unit = "g/m3";

@@ -51,7 +51,7 @@ void Oxygen::exchange_with_air(double dt, const Surface& surface) {
         Sums part;
         for (std::size_t i = first; i < last; ++i) {
           const double share = 1 - surface.interior_weight[i];
-          if (!(share > 0)) continue;
+          if (!(share > 0) || !scalars_.counts(i)) continue;
           double normal2 = 0;
           for (const float* component : surface.normal)
             if (component != nullptr) normal2 += double{component[i]} * component[i];

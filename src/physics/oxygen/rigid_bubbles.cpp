@@ -160,6 +160,7 @@ void RigidBubbles::find_particles(const Liquid& liquid) {
     std::vector<Seen>& found = seen_[block];
     found.clear();
     for (std::size_t i = first; i < last; ++i) {
+      if (liquid.left_out != nullptr && (*liquid.left_out)[i] >= 0) continue;
       const Vec3 r = vector_at(liquid.places, dimensions_, i);
       const auto see = [&](std::size_t b) {
         if (bubbles_[b].turn < 0) return;

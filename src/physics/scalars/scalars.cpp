@@ -85,12 +85,25 @@ Scalars::Scalars(ParticleStore& particles, const Resolution& resolution, const S
 
 void Scalars::enter(std::int64_t first, std::int64_t last, double t) {
   if (first == last) return;
+  lead(t, [&](std::size_t i) {
+    const std::int64_t id = (*particles_.identifier)[i];
+    return id >= first && id < last;
+  });
+}
+
+void Scalars::lead(double t, const std::function<bool(std::size_t)>& wanted) {
   for (std::size_t s = 0; s < size(); ++s)
-    if (option(s).inflow != nullptr)
-      set_values(particles_, *option(s).inflow, t, *fields_[s], [&](std::size_t i) {
-        const std::int64_t id = (*particles_.identifier)[i];
-        return id >= first && id < last;
-      });
+    if (option(s).inflow != nullptr) set_values(particles_, *option(s).inflow, t, *fields_[s], wanted);
+}
+
+bool Scalars::follows() const {
+  return std::any_of(options_.scalars.begin(), options_.scalars.end(),
+                     [](const ScalarOption& one) { return one.inflow == nullptr; });
+}
+
+void Scalars::follow(std::size_t i, std::size_t like) {
+  for (std::size_t s = 0; s < size(); ++s)
+    if (option(s).inflow == nullptr) (*fields_[s])[i] = (*fields_[s])[like];
 }
 
 std::vector<double> Scalars::amounts() const {
@@ -115,6 +128,7 @@ void Scalars::add_sources(double t, double dt, const VectorField& places) {
                                            const std::unique_ptr<Expression> own = option(s).source->clone();
                                            double sum = 0;
                                            for (std::size_t i = first; i < last; ++i) {
+                                             if (!counts(i)) continue;
                                              const Vec3 r = vector_at(places, particles_.dimensions, i);
                                              const double given = dt * (*own)(r[0], r[1], r[2], t + dt / 2);
                                              const double by = std::max(given, std::min(0.0, least - values[i]));
@@ -155,7 +169,7 @@ void Scalars::find_wall_changes(double t, double dt, const Carrier& carrier) {
       for (std::size_t i = first; i < last; ++i) {
         const double share = (*wall_profile_)(distance_from(wall, carrier, i));
         change[i] = 0;
-        if (!(share > 0)) continue;
+        if (!(share > 0) || !counts(i)) continue;
         const Vec3 r = vector_at(carrier.places, particles_.dimensions, i);
         const double here = (*own)(r[0], r[1], r[2], t + dt / 2);
         change[i] = wall.flux != nullptr ? dt * share * here : dt * wall_rate(wall, carrier, i) * (here - values[i]);
@@ -198,7 +212,12 @@ void Scalars::add(std::size_t scalar, const Array<float>& change, double amount)
 }
 
 double Scalars::amount(std::size_t scalar) const {
-  return particles_.volume * parallel_sum(particles_.size(), [&](std::size_t i) { return values(scalar)[i]; });
+  return particles_.volume *
+         parallel_sum(particles_.size(), [&](std::size_t i) { return counts(i) ? values(scalar)[i] : 0.0; });
+}
+
+double Scalars::liquid_volume() const {
+  return particles_.volume * parallel_sum(particles_.size(), [&](std::size_t i) { return counts(i) ? 1.0 : 0.0; });
 }
 
 void Scalars::lease(std::size_t scalars) {
@@ -339,11 +358,12 @@ void Scalars::apply(double dt, const float* interior, bool shifted) {
     const double both = std::min(sums.gains, sums.losses);
     const double gain = both > 0 ? both / sums.gains : 0, loss = both > 0 ? both / sums.losses : 0;
     double* values = fields_[s]->data();
-    parallel_blocks(particles_.size(), default_block, [=](std::size_t, std::size_t first, std::size_t last) {
+    parallel_blocks(particles_.size(), default_block, [=, this](std::size_t, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i)
-        values[i] += dt * (double{rate[i]} - excess * std::abs(double{rate[i]}));
+        if (counts(i)) values[i] += dt * (double{rate[i]} - excess * std::abs(double{rate[i]}));
       if (both > 0)
         for (std::size_t i = first; i < last; ++i) {
+          if (!counts(i)) continue;
           const double by = interior == nullptr ? double{change[i]} : double{interior[i]} * change[i];
           values[i] += by * (by > 0 ? gain : loss);
         }
@@ -371,7 +391,9 @@ std::int64_t Scalars::transport(double dt, const Carrier& carrier) {
   for (std::int64_t k = 0; k < substeps_; ++k) {
     if (k > 0) sweeps += sweep(0, carrier, false);
     find_wall_changes(carrier.time + static_cast<double>(k) * part, part, carrier);
+    const std::vector<double> before = left_out_ == nullptr ? std::vector<double>() : amounts();
     apply(part, carrier.interior, k == 0 && shifted);
+    if (left_out_ != nullptr) count_openings(before);
     apply_wall_changes();
   }
   release();

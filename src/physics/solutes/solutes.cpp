@@ -36,7 +36,8 @@ void Solutes::take_from_rigid_bubbles(ParticleStore& particles, double t, double
                                                 .particle_volume = particles.volume,
                                                 .places = particles.position,
                                                 .velocity = particles.velocity,
-                                                .dissolved = oxygen->dissolved()},
+                                                .dissolved = oxygen->dissolved(),
+                                                .left_out = scalars->left_out()},
                                                change);
   oxygen->take_from_bubbles(change, given);
 }

@@ -127,7 +127,7 @@ struct Flow {
   void find_pressure_force();            // (2), (4)
   void add_tension();                    // (11)
   void accept(double dt);                // (2)
-  std::int64_t transport_scalars(double dt) { return solute_transport.transport(time, dt); }
+  std::int64_t transport_scalars(double dt);
   void transfer_oxygen(double dt) { solute_transport.transfer_oxygen(time, dt); }
 
   // What the liquid does to each body, as it is.
@@ -137,6 +137,8 @@ struct Flow {
 
  private:
   void start_density();
+  void fill_layers();   // what stands behind openings at the start
+  void lead_scalars();  // layers of inflows have what these bring
   struct HalfStep {
     double velocity, place, way;
   };

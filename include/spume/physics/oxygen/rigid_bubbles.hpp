@@ -39,6 +39,7 @@ class RigidBubbles final : public Supply {
     double particle_volume = 0;
     VectorField places, velocity;
     const Array<double>& dissolved;
+    const Array<std::int64_t>* left_out = nullptr;  // particles with 0 or more, behind openings; null: none
   };
   // A step of dt up to the time t: what the bubbles give changes the concentrations by `change`, float sums of the
   // amount that is returned.

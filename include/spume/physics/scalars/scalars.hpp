@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -71,10 +72,20 @@ class Scalars {
   void add(std::size_t scalar, const Array<float>& change, double amount);
   Array<double>& values(std::size_t scalar) { return *fields_[scalar]; }
   std::size_t particles() const { return particles_.size(); }
-  double liquid_volume() const { return particles_.volume * static_cast<double>(particles_.size()); }
+  double liquid_volume() const;
 
   // Gives particles of identifiers in [first, last) what inflows bring at time t.
   void enter(std::int64_t first, std::int64_t last, double t);
+  // Of layers behind openings: particles with column[i] >= 0 keep their values and belong to no amount. The liquid
+  // exchanges with them as with its own, which counts as given by the openings.
+  void leave_out(const Array<std::int64_t>& column) { left_out_ = &column; }
+  const Array<std::int64_t>* left_out() const { return left_out_; }
+  bool counts(std::size_t i) const { return left_out_ == nullptr || (*left_out_)[i] < 0; }
+  // Gives the wanted particles what inflows bring at time t.
+  void lead(double t, const std::function<bool(std::size_t)>& wanted);
+  // Gives particle i the values that no inflow gives of particle `like`.
+  void follow(std::size_t i, std::size_t like);
+  bool follows() const;  // whether there are such
   // With openings what they gave, less what they took, is counted: the amounts around an exchange with them.
   void expect_openings() { from_openings_.resize(size()); }
   std::vector<double> amounts() const;
@@ -137,6 +148,7 @@ class Scalars {
   double nearest_to_wall_;
   std::vector<double> from_walls_;     // per scalar, since the start
   std::vector<double> from_openings_;  // the same; empty without openings
+  const Array<std::int64_t>* left_out_ = nullptr;
 };
 
 // The output fields of scalars behind those of the method.
