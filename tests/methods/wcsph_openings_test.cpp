@@ -474,8 +474,8 @@ TEST(WcsphOpenings, AreRefusedInWords) {
   EXPECT_THAT(refusal_of(replaced(with_air(""), "[[inflow]]\nphase = \"water\"", "[[inflow]]")),
               HasSubstr("say which phase enters"));
   EXPECT_THAT(refusal_of(stream, {"compressibility.max_speed=0.05"}), HasSubstr("2 times its sound speed"));
-  EXPECT_THAT(refusal_of(stream + carried + "[recorded_flow]\nfrom = 0.1\nuntil = 0.2\n"),
-              HasSubstr("no recorded flow"));
+  EXPECT_THAT(refusal_of(stream + carried + "[recorded_flow]\nfrom = 0.1\nuntil = 0.2\nlag = 0.01\ncell = 0.1\n"),
+              HasSubstr("exchange within a closed liquid"));
   EXPECT_THAT(refusal_of(replaced(stream, "[[outflow]]\nside = \"right\"\n", ""), {"domain.right=\"free-slip\""}),
               HasSubstr("full and closed"));
 }

@@ -40,9 +40,6 @@ void check(Draft& draft, Problems& problems) {
                                 std::to_string(draft.phases.size()) + "; leave the gas out, or remove the scalars");
         break;
       }
-  for (const char* section : {"inflow.0", "outflow.0"})
-    if (const Node* node = draft.node(section); node != nullptr && SoluteFeatures(draft.options).recorded_flow)
-      problems.add(*node, "method \"wcsph\" takes no recorded flow through openings; remove one of the two");
   if (!draft.solids.empty())
     problems.add(*draft.node("solid.0"),
                  "method \"wcsph\" knows walls of [[body]], not [[solid]]; write the box as [[body]] with shape = "

@@ -106,7 +106,7 @@ void BubbleCoupling::pack_particles(std::size_t first, std::size_t last) {
     } else {
       put(normal_at + axis, nothing);
     }
-    if (carrier_.filtered_velocity == nullptr) continue;
+    if (population_.fluctuation[0] == nullptr) continue;
     const float* mean = (*carrier_.filtered_velocity)[a].data() + first;
     for (std::size_t k = 0; k < size; ++k) {
       const double unresolved = velocity[k] - double{mean[k]};
@@ -114,11 +114,15 @@ void BubbleCoupling::pack_particles(std::size_t first, std::size_t last) {
     }
   }
   put(energy_at, [&](std::size_t k) { return static_cast<float>(energy[k]); });
-  if (carrier_.eddy_viscosity != nullptr) {
+  if (options_.breakup && carrier_.eddy_viscosity != nullptr) {
     const float *viscosity = carrier_.eddy_viscosity->data() + first, *strain = carrier_.strain.data() + first;
     put(dissipation_at, [=](std::size_t k) { return viscosity[k] * strain[k] * strain[k]; });
   } else {
     put(dissipation_at, nothing);
+  }
+  if (dissolved_slot() >= 0) {
+    const double* dissolved = carrier_.dissolved->data() + first;
+    put(dissolved_slot(), [=](std::size_t k) { return static_cast<float>(dissolved[k]); });
   }
   put(factor_at, [](std::size_t) { return 1.0F; });
   put(length_at, [&](std::size_t k) { return carrier_.sizes.length_ratio[first + k]; });
@@ -160,6 +164,7 @@ void BubbleCoupling::interpolate() {
   interpolated_.resize(nb * record);
   if (exchanges_gas()) dissolved_at_bubble_.resize(nb);
   dead_.resize(nb);
+  const int slot = dissolved_slot();
   const CrossSearch search = liquid_search();
   const auto largest_support_radius =
       static_cast<float>(carrier_.arrangement.grid.support_radius() * carrier_.sizes.largest_length_ratio);
@@ -181,9 +186,9 @@ void BubbleCoupling::interpolate() {
           dead_[b] = dead ? 1 : 0;
           const float sum = second_half[factor_at - simd::lanes], share = sum > 0 ? 1 / sum : 0;
           float* out = interpolated_.data() + b * record;
-          if (exchanges_gas()) interpolate_dissolved(found, share, b);
           simd::store(out, first_half * share);
           simd::store(out + simd::lanes, second_half * share);
+          if (exchanges_gas()) dissolved_at_bubble_[b] = slot >= 0 ? out[slot] : share * sum_of_dissolved(found);
           out[factor_at] = scale * sum;
         }
       });
@@ -282,12 +287,12 @@ void BubbleCoupling::move_bubble(std::size_t b, double dt) {
   record_of[6] = static_cast<float>(options_.viscosity_constant * volume * 2 * radius * std::sqrt(slip2));
   record_of[7] =
       exchanges_gas() && sum > 0 ? dissolve(b, radius, std::sqrt(slip2), dt) / static_cast<float>(sum) : 0.0F;
-  dissipation_[b] = here[dissipation_at];
+  if (options_.breakup) dissipation_[b] = here[dissipation_at];
 }
 
 void BubbleCoupling::move_bubbles(double dt) {
   const std::size_t nb = population_.size();
-  dissipation_.resize(nb);
+  if (options_.breakup) dissipation_.resize(nb);
   next_slip_.resize(nb);
   if (population_.merge_time != nullptr) next_merge_time_.resize(nb);
   for (auto& component : reaction_) component.resize(nb);
@@ -339,7 +344,7 @@ void BubbleCoupling::exchange_momentum(double dt, PackedNeighbours& packed) {
   }
   smooth_normals(packed);
   pack_liquid();
-  if (exchanges_gas()) pack_dissolved();
+  if (exchanges_gas() && dissolved_slot() < 0) pack_dissolved();
   interpolate();
   if (beside_bodies()) weigh_received();
   move_bubbles(dt);

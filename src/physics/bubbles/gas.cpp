@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "liquid_record.hpp"
 #include "spume/physics/bubbles/coupling.hpp"
 
 namespace spume::bubbles {
@@ -15,6 +16,15 @@ namespace {
 constexpr double least_radius = 5e-6;
 
 }  // namespace
+
+// Where the record has room the concentration comes with the other sums of a bubble: a sum of its own takes 0.05 to
+// 0.07 us of it.
+int BubbleCoupling::dissolved_slot() const {
+  using namespace liquid_record;
+  if (!exchanges_gas()) return -1;
+  if (population_.fluctuation[0] == nullptr) return energy_at;
+  return options_.breakup ? -1 : dissipation_at;
+}
 
 // The concentrations times what multiplies the values of liquid_records_.
 void BubbleCoupling::pack_dissolved() {
@@ -29,7 +39,7 @@ void BubbleCoupling::pack_dissolved() {
   parallel_for(m, [&](std::size_t k) { dissolved_[n + k] = dissolved_[static_cast<std::size_t>(source[k])]; });
 }
 
-void BubbleCoupling::interpolate_dissolved(const CrossSearch::Found& found, float share, std::size_t b) {
+float BubbleCoupling::sum_of_dissolved(const CrossSearch::Found& found) const {
   const float* weight = found.share2.data();  // set by sum_of_lines
   const std::int32_t* index = found.index.data();
   const float* values = dissolved_.data();
@@ -41,7 +51,7 @@ void BubbleCoupling::interpolate_dissolved(const CrossSearch::Found& found, floa
   for (; k < found.size; ++k) sum[k % simd::lanes] += weight[k] * values[index[k]];
   float total = 0;
   for (const float part : sum) total += part;
-  dissolved_at_bubble_[b] = share * total;
+  return total;
 }
 
 // What bubble b gives over dt; it is taken over with the step.

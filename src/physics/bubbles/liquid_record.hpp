@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What bubbles see of a particle, times its volume times its kernel's normalisation over h_i^3, in units of V / h^3:
 // one line of cache. The factor itself is among them, so that its sum comes with the others; the last is h_i / h.
+// Oxygen takes the place of the energy of what is not resolved, or of the dissipation, where no fluctuation or no
+// breakup reads them.
 #pragma once
 
 #include "spume/operators/cross_sums.hpp"

@@ -181,7 +181,8 @@ class BubbleCoupling final : public oxygen::Supply {
   // Gas that bubbles exchange with the liquid (gas.cpp).
   bool exchanges_gas() const { return carrier_.gas != nullptr; }
   void pack_dissolved();
-  void interpolate_dissolved(const CrossSearch::Found& found, float share, std::size_t b);
+  int dissolved_slot() const;  // of the liquid's records that nothing else needs; -1: none
+  float sum_of_dissolved(const CrossSearch::Found& found) const;
   float dissolve(std::size_t b, double radius, double slip, double dt);
   bool dissolves_whole(const oxygen::Contents& contents, double height) const;
   void sum_gas();
