@@ -11,7 +11,7 @@
 //
 // A mean over those who lose: never beyond their velocities; kinetic energy of the filtered masses is not made; their
 // momentum is kept as far as what is gained around each particle is lost around it. One without a neighbour that loses
-// keeps its velocity.
+// keeps its velocity. Particles of layers behind openings, whose gain is given as 0, take no part.
 #pragma once
 
 #include "spume/operators/image_values.hpp"

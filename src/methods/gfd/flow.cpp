@@ -26,8 +26,8 @@ bool differ(const std::vector<double>& values) {
 // What the gradient of a pressure does not see of it and the matrix does adds up in the pressure of implicit steps,
 // which find its change. In a heavy phase that moves nothing until it acts on the light one beside it: static drops 30
 // times as dense as their surroundings rest, those of 100 and 1000 times break up within two of their capillary times.
-// With 0.95 of the last pressure they rest, with 0.98 they do not; the 0.05 make the drop of viscous_drop, 100 times as
-// viscous and 5 times as dense, 12 across, faster by 4 %.
+// With 0.95 of the last pressure they rest, with 0.98 they do not. Where the pressure does not need it the velocity
+// would change with it by 4 % (viscous_drop, 5 times as dense, 12 across).
 double share_kept(const std::vector<double>& densities) {
   constexpr double alike = 10, share = 0.95;
   const auto [least, most] = std::minmax_element(densities.begin(), densities.end());

@@ -18,8 +18,8 @@ constexpr double steps_of_run_at_rest = 1000;
 // the bubble stays within 0.3 % at 1/32.
 constexpr double largest_volume_drift = 0.02;
 // Of the momentum that the energy of the flow could have, and of that energy. A drop of 11 spacings in a wind, whose
-// gas is 2, 10 and 100 times as light: momentum 0.004, 0.03 and 0.25 (0.11 at 22 spacings), energy 0, 0 and 0.049
-// (0.011); vortices of two fluids 0.001; energy of capillary_wave 0.014, of the other cases 0.007 at most.
+// gas is 2, 10 and 100 times as light: momentum 0.003, 0.011 and 0.020 (0.006 at 22 spacings), no energy; vortices of
+// two fluids 0.001; energy of capillary_wave 0.014, of the other cases 0.007 at most.
 constexpr double largest_momentum_change = 0.05;
 constexpr double largest_energy_growth = 0.03;
 constexpr std::array<const char*, 3> momentum_columns{"momentum_x", "momentum_y", "momentum_z"};

@@ -130,16 +130,18 @@ void Flow::exchange_mass() {
   scratch.lease(change, dimensions, size());
   mass_exchange_sweep(arrangement.context, arrangement.packed, bands,
                       {gain.data(), density->data(), read(particles.velocity)}, boundary.volume_rule(), write(change));
-  exchanged.clear();
-  for (const std::int32_t s : bands.varying()) {
-    const auto i = static_cast<std::size_t>(s);
-    if (!(gain[i] > 0)) continue;
-    exchanged.push_back({i, vector_at(particles.velocity, dimensions, i)});
+  exchanged.resize(bands.varying().size());
+  parallel_for(exchanged.size(), [&](std::size_t s) {
+    const auto i = static_cast<std::size_t>(bands.varying()[s]);
+    exchanged[s] = {i, vector_at(particles.velocity, dimensions, i)};
     for (int axis = 0; axis < dimensions; ++axis) (*particles.velocity[axis])[i] += change[axis][i];
-  }
+  });
   scratch.release(change);
 }
 
+// What enters has its filtered density and the velocity that is given. With the sharp density until then a jet from a
+// slot is held back by the water beside it, and its pressure keeps the neck of the bubble open: 0.28 of a slot of 0.4
+// at ten spacings across, where it closes to 0.10 (bubble_departure).
 void Flow::keep_exchange() {
   exchanged.clear();
   if (features.density_jump) parallel_for(size(), [&](std::size_t i) { (*last_density)[i] = (*density)[i]; });

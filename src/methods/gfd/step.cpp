@@ -45,9 +45,11 @@ Plan make_plan(Flow& f) {
   stages.add(both, "properties", true, has.interfaces ? "(6), (7): colours, filtered density and viscosity" : several,
              blending(f), {f.phase, band}, {colours, *f.density, f.viscosity});
   const char* const jump = has.density_jump ? "momentum of the mass that the filter passes on" : "one density";
-  stages.sweep(start, "first mass exchange", has.density_jump, jump, &Flow::exchange_first_mass, {*f.density},
-               {p.velocity});
-  stages.sweep(step, "mass exchange", has.density_jump, jump, &Flow::exchange_mass, {*f.density}, {p.velocity});
+  const ArrayUse last([&f] { return f.last_density == nullptr ? 0.0 : f.last_density->bytes(); });
+  stages.sweep(start, "first mass exchange", has.density_jump, jump, &Flow::exchange_first_mass,
+               {p.velocity, *f.density, last, band}, {p.velocity, last});
+  stages.sweep(step, "mass exchange", has.density_jump, jump, &Flow::exchange_mass,
+               {p.velocity, *f.density, last, band}, {p.velocity});
   stages.sweep(both, "potentials", has.interfaces,
                has.interfaces ? "(14) to (17): tension and weight of the interfaces, pairwise" : several,
                &Flow::find_potentials, {colours, f.correction}, {colours});
@@ -101,7 +103,7 @@ Plan make_plan(Flow& f) {
   // (25) r^{k+1}
   stages.add(step, "acceptance", true, "(25): positions, limits", &Flow::accept,
              {f.next_velocity, f.displacement_by_shift(), f.shift_velocity, f.reduced_pressure},
-             {p.position, p.velocity, *f.pressure});
+             {p.position, p.velocity, *f.pressure, last});
   return plan;
 }
 

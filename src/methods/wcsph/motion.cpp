@@ -99,7 +99,7 @@ void Flow::apply_walls(std::size_t i, Vec3& r, Vec3* u, const Vec3* from) const 
 
 // Before all sides, in scenes that have nothing else: apply_walls() would leave it there.
 bool Flow::clear_of_walls(const Vec3& r) const {
-  if (features.bodies || features.openings) return false;
+  if (boundary.has_obstacles() || features.openings) return false;
   for (int axis = 0; axis < dimensions; ++axis)
     if (!(r[axis] > boundary.walls[axis][0] + wall_gap && r[axis] < boundary.walls[axis][1] - wall_gap)) return false;
   return true;
