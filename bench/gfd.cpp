@@ -11,6 +11,7 @@
 #include "spume/operators/gfd_pressure.hpp"
 #include "spume/operators/interface_curvature.hpp"
 #include "spume/operators/interface_filters.hpp"
+#include "spume/operators/mass_exchange.hpp"
 #include "spume/operators/pressure_operator.hpp"
 #include "spume/operators/sph_diffusion.hpp"
 
@@ -255,6 +256,17 @@ void interface_property(benchmark::State& state) {
            [&] { filter_property(cube.context, cube.packed, cube.bands, cube.density.data(), cube.result); });
 }
 
+// Gains as of a drop that moves: half of the varying particles gain what the others lose.
+void mass_exchange(benchmark::State& state) {
+  GfdCube cube(state);
+  parallel_for(cube.particles.n, [&](std::size_t i) { cube.single[i] *= 0.1F * cube.density[i]; });
+  cube.run(state, cube.pairs_of(cube.bands.varying()) / 2, 10 + 8 + 2 + 9, 1, 24 + 4 + 12, [&] {
+    mass_exchange_sweep(cube.context, cube.packed, cube.bands,
+                        {cube.single.data(), cube.density.data(), cube.velocities()}, cube.rule,
+                        GfdCube::write(cube.out));
+  });
+}
+
 void interface_normals(benchmark::State& state) {
   GfdCube cube(state);
   cube.run(state, cube.pairs_of(cube.bands.varying()), 10 + 8 + 2 + 3 + 6, 2, 8 + 24, [&] { cube.normals(); });
@@ -303,6 +315,7 @@ BENCHMARK(interface_bands)->Apply(two_phases);
 BENCHMARK(interface_colours)->Apply(two_phases);
 BENCHMARK(interface_property)->Apply(two_phases);
 BENCHMARK(interface_normals)->Apply(two_phases);
+BENCHMARK(mass_exchange)->Apply(two_phases);
 BENCHMARK(interface_curvature)->Apply(two_phases);
 
 }  // namespace

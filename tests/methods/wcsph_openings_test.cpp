@@ -3,39 +3,12 @@
 #include <gmock/gmock.h>
 #include <omp.h>
 
-#include "methods/wcsph_run.hpp"
+#include "methods/wcsph_openings_run.hpp"
 
 namespace spume::test {
 namespace {
 
 using testing::HasSubstr;
-
-// From the left to the right, between walls below and above.
-const std::string stream = R"toml(method = "wcsph"
-[domain]
-lower = [0, 0]
-upper = [1, 0.5]
-bottom = "free-slip"
-top = "free-slip"
-[resolution]
-spacing = 0.05
-[fluid]
-gravity = 0
-[[phase]]
-name = "water"
-density = 1000
-viscosity = 1
-[[region]]
-phase = "water"
-velocity = ["1", "0"]
-[[inflow]]
-side = "left"
-velocity = ["1", "0"]
-[[outflow]]
-side = "right"
-[time]
-end = 2
-)toml";
 
 // The whole stream is of water, or of air and water, one above the other or one behind the other.
 std::string with_air(const std::string& region) {
@@ -83,50 +56,6 @@ std::string aslant(const std::string& speed) {
                            "[\"1\", \"0\"]\n[[inflow]]", "[\"1\", \"" + speed + "\"]\n[[inflow]]"),
                   "[\"1\", \"0\"]", "[\"1\", \"" + speed + "\"]");
 }
-
-// A stream below a free surface, which enters through a patch of a wall.
-const std::string below_surface = R"toml(method = "wcsph"
-[domain]
-lower = [0, 0]
-upper = [1, 0.6]
-left = "free-slip"
-bottom = "free-slip"
-[resolution]
-spacing = 0.05
-[fluid]
-gravity = 1
-[[phase]]
-name = "water"
-density = 1000
-viscosity = 0.1
-[[region]]
-phase = "water"
-upper = [1, 0.3]
-velocity = ["0.5", "0"]
-[[inflow]]
-side = "left"
-upper = [0, 0.3]
-velocity = ["0.5", "0"]
-[[outflow]]
-side = "right"
-level = 0.3
-[compressibility]
-max_speed = 1.5
-[time]
-end = 0.2
-)toml";
-
-// A profile that the stream carries along and diffusion leaves as it is; one of which nothing is said where it enters.
-const std::string carried = R"toml([[scalar]]
-name = "dye"
-initial = "3 - x"
-inflow = "3 - x + t"
-diffusivity = 0.01
-)toml";
-const std::string unled = R"toml([[scalar]]
-name = "silt"
-initial = "1 + y"
-)toml";
 
 }  // namespace
 
@@ -478,69 +407,6 @@ TEST(WcsphOpenings, AreRefusedInWords) {
               HasSubstr("exchange within a closed liquid"));
   EXPECT_THAT(refusal_of(replaced(stream, "[[outflow]]\nside = \"right\"\n", ""), {"domain.right=\"free-slip\""}),
               HasSubstr("full and closed"));
-}
-
-// Rates are floats of what is a sum to zero: D dt / h^2 = 4 of the differences between neighbours, 0.05, while a
-// particle passes, each to 6e-8; near the inflow the layers are as old as a step, dt = 4e-3 at most.
-TEST(WcsphOpenings, TheyBringScalarsAndTakeThemOut) {
-  WcsphRun run(stream + carried + unled);
-  until(run, 2);
-  const wcsph::Flow& flow = run.method.flow();
-  const Array<double>&dye = flow.solutes.scalars->values(0), &silt = flow.solutes.scalars->values(1);
-  for (std::size_t i = 0; i < flow.size(); ++i) {
-    if (!flow.in_domain(i)) continue;
-    EXPECT_NEAR(dye[i], 3 - (*flow.particles.position[0])[i] + flow.time, 1e-4);
-    EXPECT_NEAR(silt[i], 1 + (*flow.particles.position[1])[i], 1e-4);
-  }
-  auto series = run.series();
-  EXPECT_NEAR(series.at("amount_of_dye"), 0.5 * (3 - 0.5) + series.at("openings_gave_dye"), 1e-10);
-  EXPECT_NEAR(series.at("openings_gave_dye"), 0.5 * 2, 0.5 * 0.05);  // to half of a layer at each side
-}
-
-// Liquid that a pressure outside drives back through the outflow brings what left with it.
-TEST(WcsphOpenings, WhatComesBackBringsItsScalars) {
-  WcsphRun run(below_surface + unled, {"outflow.0.pressure=3000", "region.0.velocity=[\"0\", \"0\"]",
-                                       "inflow.0.velocity=[\"0\", \"0\"]", "scalar.0.initial=\"2\""});
-  until(run, 0.4);
-  auto series = run.series();
-  ASSERT_LT(series.at("volume_out"), -5 * 0.05 * 0.05);
-  EXPECT_NEAR(series.at("openings_gave_silt"), -2 * series.at("volume_out"), 1e-12);
-  EXPECT_NEAR(series.at("amount_of_silt"), 2 * series.at("volume_water"), 1e-12);
-}
-
-// Oxygen of the air, of what enters, and what sludge takes of it.
-TEST(WcsphOpenings, OxygenAndSludgeOfTheStreamBalance) {
-  WcsphRun run(below_surface + R"toml([oxygen]
-surface_k_l = 1e-2
-[[scalar]]
-name = "S_O"
-initial = "2"
-inflow = "4"
-diffusivity = 0.01
-[biokinetics]
-model = "asm1"
-[[scalar]]
-name = "X_BH"
-initial = "2500"
-[[scalar]]
-name = "S_S"
-initial = "10"
-[[scalar]]
-name = "S_NH"
-initial = "2"
-[[scalar]]
-name = "S_ALK"
-initial = "4"
-)toml");
-  const double start = run.series().at("amount_of_S_O");
-  until(run, 0.2);
-  auto series = run.series();
-  EXPECT_GT(series.at("openings_gave_S_O"), 0.01);
-  EXPECT_GT(series.at("oxygen_from_surface"), 1e-4);
-  EXPECT_GT(series.at("oxygen_uptake"), 1e-6);
-  EXPECT_NEAR(series.at("amount_of_S_O"),
-              start + series.at("openings_gave_S_O") + series.at("oxygen_from_surface") - series.at("oxygen_uptake"),
-              1e-12);
 }
 
 }  // namespace spume::test

@@ -438,6 +438,21 @@ std::string refused(const std::string& text, const Overrides& overrides = {}) {
   return "accepted";
 }
 
+// The step asks few particles of the gas for the power in their sound speed; the sum that limits it is the largest of
+// all.
+TEST(WcsphStep, IsLimitedByTheLargestSignalOfAllParticles) {
+  WcsphRun run(column_in_air);
+  for (int k = 0; k < 30; ++k) {
+    run.steps(1, run.method.step_limit().dt);
+    const wcsph::Flow& flow = run.method.flow();
+    double largest = 0;
+    for (std::size_t i = 0; i < flow.size(); ++i)
+      largest = std::max(
+          largest, flow.law(i).local_sound_speed((*flow.excess)[i]) + length(vector_at(flow.particles.velocity, 2, i)));
+    ASSERT_NEAR(flow.signal / largest, 1, 1e-12) << k;
+  }
+}
+
 TEST(WcsphCases, WhatItCannotDoIsRefusedWithTheFix) {
   EXPECT_THAT(refused(column_in_air, {"resolution.kernel=\"quintic-spline\""}), HasSubstr("wendland-c2"));
   EXPECT_THAT(refused(paddle, {"interface.surface_tension=1"}), HasSubstr("beside walls of [[body]]"));

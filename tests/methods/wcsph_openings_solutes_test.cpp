@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Scalars, oxygen and sludge that pass the inflows and outflows of wcsph.
+#include <gtest/gtest.h>
+
+#include "methods/wcsph_openings_run.hpp"
+
+namespace spume::test {
+
+// Rates are floats of what is a sum to zero: D dt / h^2 = 4 of the differences between neighbours, 0.05, while a
+// particle passes, each to 6e-8; near the inflow the layers are as old as a step, dt = 4e-3 at most.
+TEST(WcsphOpeningsSolutes, TheyBringScalarsAndTakeThemOut) {
+  WcsphRun run(stream + carried + unled);
+  until(run, 2);
+  const wcsph::Flow& flow = run.method.flow();
+  const Array<double>&dye = flow.solutes.scalars->values(0), &silt = flow.solutes.scalars->values(1);
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    if (!flow.in_domain(i)) continue;
+    EXPECT_NEAR(dye[i], 3 - (*flow.particles.position[0])[i] + flow.time, 1e-4);
+    EXPECT_NEAR(silt[i], 1 + (*flow.particles.position[1])[i], 1e-4);
+  }
+  auto series = run.series();
+  EXPECT_NEAR(series.at("amount_of_dye"), 0.5 * (3 - 0.5) + series.at("openings_gave_dye"), 1e-10);
+  EXPECT_NEAR(series.at("openings_gave_dye"), 0.5 * 2, 0.5 * 0.05);  // to half of a layer at each side
+}
+
+// Liquid that a pressure outside drives back through the outflow brings what left with it.
+TEST(WcsphOpeningsSolutes, WhatComesBackBringsItsScalars) {
+  WcsphRun run(below_surface + unled, {"outflow.0.pressure=3000", "region.0.velocity=[\"0\", \"0\"]",
+                                       "inflow.0.velocity=[\"0\", \"0\"]", "scalar.0.initial=\"2\""});
+  until(run, 0.4);
+  auto series = run.series();
+  ASSERT_LT(series.at("volume_out"), -5 * 0.05 * 0.05);
+  EXPECT_NEAR(series.at("openings_gave_silt"), -2 * series.at("volume_out"), 1e-12);
+  EXPECT_NEAR(series.at("amount_of_silt"), 2 * series.at("volume_water"), 1e-12);
+}
+
+// Oxygen of the air, of what enters, and what sludge takes of it.
+TEST(WcsphOpeningsSolutes, OxygenAndSludgeOfTheStreamBalance) {
+  WcsphRun run(below_surface + R"toml([oxygen]
+surface_k_l = 1e-2
+[[scalar]]
+name = "S_O"
+initial = "2"
+inflow = "4"
+diffusivity = 0.01
+[biokinetics]
+model = "asm1"
+[[scalar]]
+name = "X_BH"
+initial = "2500"
+[[scalar]]
+name = "S_S"
+initial = "10"
+[[scalar]]
+name = "S_NH"
+initial = "2"
+[[scalar]]
+name = "S_ALK"
+initial = "4"
+)toml");
+  const double start = run.series().at("amount_of_S_O");
+  until(run, 0.2);
+  auto series = run.series();
+  EXPECT_GT(series.at("openings_gave_S_O"), 0.01);
+  EXPECT_GT(series.at("oxygen_from_surface"), 1e-4);
+  EXPECT_GT(series.at("oxygen_uptake"), 1e-6);
+  EXPECT_NEAR(series.at("amount_of_S_O"),
+              start + series.at("openings_gave_S_O") + series.at("oxygen_from_surface") - series.at("oxygen_uptake"),
+              1e-12);
+}
+
+}  // namespace spume::test
