@@ -49,10 +49,8 @@ void LayerStencils::find(const Arrangement& arrangement, const ParticleStore& pa
   tied_ = {{members_->data(), members_->size()}, {point_of_.data(), point_of_.size()}, &stencils_};
 }
 
-// How far it lies behind the side, of the way to its mirror.
 double LayerStencils::behind(const OpeningPoint& point) const {
-  const OpenGate& gate = layers_.gates().list[static_cast<std::size_t>(point.gate)];
-  return gate.depth_behind(point.place) / std::abs(point.mirror[gate.opening->axis] - gate.plane);
+  return share_behind(layers_.gates().list[static_cast<std::size_t>(point.gate)], point);
 }
 
 // What comes back has been at rest outside: it has no velocity along the side. Were it that of the liquid before it,

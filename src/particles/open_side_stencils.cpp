@@ -65,6 +65,9 @@ void OpenSides::find_stencils(const Arrangement& arrangement, const VectorField&
   });
   parallel_for(n, [&](std::size_t p) {
     for (int axis = 0; axis < d; ++axis) position[axis][first_point_ + p] = points_[p].place[axis];
+    if (stencils.kind[first_point_ + p] == PointKind::outflow)
+      stencils.pressure_sign[first_point_ + p] =
+          static_cast<float>(-share_behind(gates_[static_cast<std::size_t>(points_[p].gate)], points_[p]));
   });
 }
 
@@ -91,9 +94,11 @@ void OpenSides::give_pressures(const std::function<double(const Vec3&)>& potenti
     const std::size_t g = first_point_ + p;
     const bool wet = stencils.pressure_sign[g] != 0;
     if (wet && opening.inflow) continue;
-    const double q = pressure_outside(scene_, opening, point.foot, {density}, t) / density +
+    const double inwards = gates_[static_cast<std::size_t>(point.gate)].inwards * point.velocity[opening.axis];
+    const double head = wet && inwards > 0 ? 0.5 * inwards * inwards : 0;
+    const double q = pressure_outside(scene_, opening, point.foot, {density}, t) / density - head +
                      potential(wet ? point.foot : point.place);
-    stencils.given_pressure[g] = wet ? 2 * q : q;
+    stencils.given_pressure[g] = wet ? (1 - double{stencils.pressure_sign[g]}) * q : q;
   }
 }
 

@@ -100,7 +100,9 @@ void OpenSides::take_returning(std::vector<Newcomer>& newcomers) {
   std::vector<Drifting> kept, behind;
   for (Drifting one : drifting_) {
     const OpenGate& gate = gates_[static_cast<std::size_t>(one.gate)];
-    const double depth = gate.depth_behind(one.place), reach = resolution_.support_radius + gate.layer;
+    // Whole layers: what takes the place of one that comes back stands within them.
+    const double depth = gate.depth_behind(one.place),
+                 reach = std::ceil(resolution_.support_radius / gate.layer + 1) * gate.layer;
     if (depth > reach || gate.column_at(one.place) < 0) continue;
     if (depth >= 0) {
       kept.push_back(one);
@@ -108,7 +110,7 @@ void OpenSides::take_returning(std::vector<Newcomer>& newcomers) {
     }
     newcomers.push_back({one.place, one.velocity});
     --left_;
-    one.place[gate.opening->axis] -= gate.inwards * std::ceil(reach / gate.layer) * gate.layer;
+    one.place[gate.opening->axis] -= gate.inwards * reach;
     behind.push_back(one);
   }
   drifting_.swap(kept);

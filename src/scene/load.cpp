@@ -392,6 +392,7 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   if (uses_particles(*method)) {
     for (Problem& warning : open_side_warnings(draft, scene, file))
       draft.options.warnings.push_back(std::move(warning));
+    for (Problem& warning : outflow_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
     for (Problem& warning : cell_warnings(scene, lattice, regions, file))
       draft.options.warnings.push_back(std::move(warning));
     for (Problem& warning : level_warnings(scene, lattice, regions, file))

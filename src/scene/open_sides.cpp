@@ -29,6 +29,25 @@ bool bodies_between(const Scene& scene, const Vec3& from, const Vec3& to) {
   return false;
 }
 
+// Times at which expressions of an opening are asked.
+constexpr int level_samples = 100;
+
+// Height of the liquid before an opening at the start; without any the floor of the opening.
+double surface_before(const Scene& scene, const Opening& opening) {
+  const Domain& domain = scene.domain;
+  const auto up = static_cast<std::size_t>(domain.dimensions - 1), normal = static_cast<std::size_t>(opening.axis);
+  const double plane = opening.side == 0 ? domain.lower[normal] : domain.upper[normal];
+  return parallel_max(scene.particles.size(), opening.lower[up], [&](std::size_t i) {
+    for (std::size_t a = 0; a < up; ++a) {
+      const double x = scene.particles.position[a][i];
+      const bool before =
+          a == normal ? std::abs(x - plane) < 2 * scene.spacing : x > opening.lower[a] && x < opening.upper[a];
+      if (!before) return opening.lower[up];
+    }
+    return scene.particles.position[up][i] + scene.spacing / 2;
+  });
+}
+
 }  // namespace
 
 std::vector<Problem> open_side_warnings(const Draft& draft, const Scene& scene, const std::string& file) {
@@ -67,6 +86,29 @@ std::vector<Problem> open_side_warnings(const Draft& draft, const Scene& scene, 
            std::to_string(static_cast<long long>(loose)) + " particles lie " + (axis == up ? "above" : "beside") +
            " it, which leave the domain and are removed; set  " + name + " = \"free-slip\"  to hold them");
     }
+  return warnings;
+}
+
+std::vector<Problem> outflow_warnings(const Draft& draft, const Scene& scene, const std::string& file) {
+  std::vector<Problem> warnings;
+  const int up = scene.domain.dimensions - 1;
+  if (!scene.free_surface || !(scene.fluid.gravity[up] < 0)) return warnings;
+  for (const Opening& opening : scene.openings) {
+    if (opening.inflow || !opening.level || opening.axis == up) continue;
+    const double surface = surface_before(scene, opening), end = draft.options.time.end;
+    for (int n = 0; n <= level_samples; ++n) {
+      const double t = end * n / level_samples, level = (*opening.level)(0, 0, 0, t);
+      if (!(level > surface + scene.spacing)) continue;
+      const Node* node = draft.node(opening.name + ".level");
+      if (node == nullptr) node = draft.node(opening.name);
+      warnings.push_back({file, node->place.line, node->place.column,
+                          opening.name + ".level is " + brief(level) + " at t = " + brief(t) +
+                              ", and the liquid before it stands at " + brief(surface) +
+                              " at the start: an outflow does not fill a tank, what comes back through it at the "
+                              "surface breaks up; let it enter by an [[inflow]] with flow_rate and level"});
+      break;
+    }
+  }
   return warnings;
 }
 

@@ -193,6 +193,24 @@ TEST(Openings, AClosedTankIsNotFilledBeyondItsRoom) {
   EXPECT_THAT(problems_of(walled + body), ElementsAre(HasSubstr("its room of 0.5 is full at t = 1.41")));
 }
 
+// Liquid 0.5 deep before an outflow whose level rises above it by more than a spacing, 0.1.
+TEST(Openings, AnOutflowThatIsToFillATankIsWarnedOf) {
+  const auto said = [](const std::string& level) {
+    const std::string scene =
+        replaced(replaced(stream, "top = \"free-slip\"\n", ""), "[[liquid]]\n", "[[liquid]]\nupper = [2, 0.5]\n");
+    const LoadedCase loaded = load_text(
+        replaced(replaced(scene, "reynolds = 100", "reynolds = 100\nfroude = 1"), "pressure = \"1 + t\"", level));
+    return std::any_of(loaded.options.warnings.begin(), loaded.options.warnings.end(), [](const Problem& warning) {
+      return warning.text.find("outflow.0.level is 0.602 at t = 1.02, and the liquid before it stands at 0.5") !=
+             std::string::npos;
+    });
+  };
+  EXPECT_TRUE(said("level = \"0.5 + 0.1*t\""));
+  EXPECT_FALSE(said("level = \"0.5 + 0.02*t\""));
+  EXPECT_FALSE(said("level = 0.4"));
+  EXPECT_FALSE(said("pressure = 3"));
+}
+
 TEST(Openings, DoNotGoWithWhatCannotPassThem) {
   EXPECT_THAT(of("[time]", "[bubbles]\nweber = 100\ndensity_ratio = 800\n[time]"),
               Contains(HasSubstr("[bubbles] does not go with [[inflow]]")));

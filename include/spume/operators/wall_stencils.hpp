@@ -28,7 +28,7 @@
 //   velocity          u_w                                              inflow: given
 //                     u(m)                                             outflow; of an acceleration inflow too
 //   pressure          q(m) - (m - r_g) . n (a . n)                     inflow: grad q . n = a . n
-//                     2 q_o - q(m)                                     outflow: q_o on the side
+//                     (1 + s) q_o - s q(m)                             outflow: q_o on the side, s its share of the way
 //                     q_o                                              without liquid at m
 //
 // m of a point that is about to enter is a layer of points ahead of it.

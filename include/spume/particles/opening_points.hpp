@@ -26,6 +26,10 @@ struct OpeningPoint {
 OpeningPoint opening_point(const OpenGate& gate, std::int32_t number_of_gate, const Vec3& place, const Vec3& velocity,
                            std::int32_t number);
 
+// How far it lies behind the side, of the way from there to its mirror: with a value given on the side, that of the
+// point is (1 + share) of it less the share of that of the mirror.
+double share_behind(const OpenGate& gate, const OpeningPoint& point);
+
 // The liquid that values at the mirrors follow from.
 struct OpeningLiquid {
   const Domain& domain;
