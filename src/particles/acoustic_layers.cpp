@@ -101,6 +101,8 @@ void AcousticLayers::find_pressures(const Liquid& liquid, Array<double>& excess,
       foot = gate.wrapped(foot);
       foot[axis] = gate.plane;
       p = pressure_outside(scene_, *gate.opening, foot, {heaviest}, liquid.time);
+      // Of what comes back, which has been at rest outside.
+      if (seen.outwards < 0) p -= law.density / 2 * seen.outwards * seen.outwards / (seen.all * seen.all);
       // Fluids side by side have one pressure, so that their velocities add up as 1 / (rho c): the impedance of water
       // alone would shoot air back that is with it.
       const Mean& mean = mean_of(i);
@@ -121,6 +123,7 @@ void AcousticLayers::follow(double dt) {
   const int d = particles_.dimensions;
   struct Sum {
     double all = 0, outwards = 0, share = 0;
+    double inwards() const { return all > 0 ? -outwards / all : 0; }
   };
   std::vector<Sum> sums(means_.size());
   for (std::size_t k = 0; members_ != nullptr && k < members_->size(); ++k) {
@@ -137,6 +140,13 @@ void AcousticLayers::follow(double dt) {
       double& u = (*particles_.velocity[axis])[i];
       u += share * (seen.velocity[axis] - u);
     }
+  }
+  // What comes back goes as the liquid before its column does, at any depth: one that lagged would leave a void.
+  for (std::size_t k = 0; members_ != nullptr && k < members_->size(); ++k) {
+    const auto i = static_cast<std::size_t>((*members_)[k]);
+    const OpenGate& gate = gate_of(i);
+    const double inwards = sums[static_cast<std::size_t>(layers_.column()[i])].inwards();
+    if (!gate.opening->inflow && inwards > 0) (*particles_.velocity[gate.opening->axis])[i] = gate.inwards * inwards;
   }
   for (std::size_t c = 0; c < means_.size() && !scene_.free_surface; ++c) {
     const Sum& sum = sums[c];
