@@ -2,6 +2,7 @@
 // Scalars that the liquid of les-sph carries: exact solutions, amounts, bounds, state.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <numbers>
 
 #include "methods/les_sph_simulation.hpp"
@@ -213,6 +214,49 @@ TEST(LesSphScalars, AGaussianTurnsAndSpreads) {
   EXPECT_NEAR(spread / exact, 1, 0.05);
   EXPECT_NEAR(std::hypot(centre[0], centre[1]), 0.15, 0.01);
   EXPECT_NEAR(std::atan2(-centre[1], centre[0]), t, 0.05);
+}
+
+// The largest difference from an exact solution at t = 0.5 in steps of 0.0025.
+double error_of(const std::string& text, const std::string& spacing, const std::function<double(const Vec3&)>& exact) {
+  Simulation run(text, {"resolution.spacing=" + spacing});
+  run.steps(200, 0.0025);
+  const les_sph::Flow& flow = run.method.flow();
+  double most = 0;
+  for (std::size_t i = 0; i < flow.size(); ++i)
+    most =
+        std::max(most, std::abs(flow.solutes.scalars->values(0)[i] - exact(vector_at(flow.particles.position, 2, i))));
+  return most;
+}
+
+// The pair sum adds D h^2 / 8 of the fourth derivatives at most, 8 / sigma^4 in the middle of a Gaussian: with the
+// first sigma, of all times. Second order, and the steps of an explicit scheme, D dt / 2 of the same.
+TEST(LesSphScalars, AGaussianInAUniformStreamSpreadsAtSecondOrder) {
+  constexpr double diffusivity = 0.005, sigma2 = 0.01, t = 0.5;
+  const std::string text = with_scalar(replaced(still, "[[liquid]]\n", "[[liquid]]\nvelocity = [\"1\", \"0.5\"]\n"),
+                                       "exp(-((x - 0.5)^2 + (y - 0.5)^2)/(2*0.1^2))", "diffusivity = 0.005\n");
+  const auto exact = [](const Vec3& r) {
+    double c = 1;
+    for (const double x : {r[0] - 0.5 - t, r[1] - 0.5 - 0.5 * t}) {
+      const double nearest = x - std::round(x), now = sigma2 + 2 * diffusivity * t;
+      c *= std::sqrt(sigma2 / now) * std::exp(-nearest * nearest / (2 * now));
+    }
+    return c;
+  };
+  const double fine = error_of(text, "0.025", exact), coarse = error_of(text, "0.05", exact), h = 1.3 * 0.025;
+  EXPECT_LT(fine, diffusivity * t / (sigma2 * sigma2) * (h * h + 4 * diffusivity * 0.0025));
+  EXPECT_GT(coarse / fine, 3);
+}
+
+// Two layers: an error function between them. The same fourth derivative, of a step that has spread for the whole time.
+TEST(LesSphScalars, TwoLayersMixAsAnErrorFunction) {
+  constexpr double diffusivity = 0.01, t = 0.5;
+  const std::string text =
+      with_scalar(replaced(still, "x = \"periodic\"", "left = \"free-slip\"\nright = \"free-slip\""), "x < 0.5 ? 1 : 0",
+                  "diffusivity = 0.01\n");
+  const auto exact = [](const Vec3& r) { return 0.5 * std::erfc((r[0] - 0.5) / std::sqrt(4 * diffusivity * t)); };
+  const double fine = error_of(text, "0.025", exact), coarse = error_of(text, "0.05", exact), h = 1.3 * 0.025;
+  EXPECT_LT(fine, h * h / (16 * diffusivity * t));
+  EXPECT_GT(coarse / fine, 3);
 }
 
 // --- Five scalars ride on the viscous sweep; as the sixth a scalar has a sweep of its own.
