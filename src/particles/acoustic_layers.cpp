@@ -123,7 +123,6 @@ void AcousticLayers::follow(double dt) {
   const int d = particles_.dimensions;
   struct Sum {
     double all = 0, outwards = 0, share = 0;
-    double inwards() const { return all > 0 ? -outwards / all : 0; }
   };
   std::vector<Sum> sums(means_.size());
   for (std::size_t k = 0; members_ != nullptr && k < members_->size(); ++k) {
@@ -137,16 +136,19 @@ void AcousticLayers::follow(double dt) {
     sum.outwards += seen.outwards;
     sum.share += seen.all * share;
     for (int axis = 0; axis < d; ++axis) {
+      if (axis == opening.axis) continue;
       double& u = (*particles_.velocity[axis])[i];
       u += share * (seen.velocity[axis] - u);
     }
   }
-  // What comes back goes as the liquid before its column does, at any depth: one that lagged would leave a void.
+  // Into the domain and out of it a column goes as the liquid before it, at any depth: what lags when it comes back
+  // leaves a void, and what follows inwards alone is pumped in by sound.
   for (std::size_t k = 0; members_ != nullptr && k < members_->size(); ++k) {
     const auto i = static_cast<std::size_t>((*members_)[k]);
     const OpenGate& gate = gate_of(i);
-    const double inwards = sums[static_cast<std::size_t>(layers_.column()[i])].inwards();
-    if (!gate.opening->inflow && inwards > 0) (*particles_.velocity[gate.opening->axis])[i] = gate.inwards * inwards;
+    const Sum& sum = sums[static_cast<std::size_t>(layers_.column()[i])];
+    if (!gate.opening->inflow && sum.all > 0)
+      (*particles_.velocity[gate.opening->axis])[i] = -gate.inwards * sum.outwards / sum.all;
   }
   for (std::size_t c = 0; c < means_.size() && !scene_.free_surface; ++c) {
     const Sum& sum = sums[c];

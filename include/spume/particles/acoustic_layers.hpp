@@ -2,10 +2,10 @@
 // Buffer layers behind openings (particles/buffer_layers.hpp) of weakly compressible phases: their pressures, and the
 // velocities behind outflows.
 //
-// The pressure behind an inflow is that of the liquid before it and its weight. Behind an outflow particles go on with
-// their velocity, which follows that of the liquid before them. With u_n the mean velocity outwards of the liquid
-// before a particle, U the mean of that before its column of the opening over a time 1 / K and Z the harmonic mean of
-// the impedances rho c there, its pressure is
+// The pressure behind an inflow is that of the liquid before it and its weight. Behind an outflow columns of
+// particles go with the liquid before them; along the side their velocity follows it. With u_n the mean velocity
+// outwards of the liquid before a particle, U the mean of that before its column of the opening over a time 1 / K and Z
+// the harmonic mean of the impedances rho c there, its pressure is
 //
 //   p = p_out + Z (u_n - U),  dU/dt = K (u_n - U).
 //
