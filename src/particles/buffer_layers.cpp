@@ -74,23 +74,37 @@ const Array<std::int32_t>& BufferLayers::find_members() {
 }
 
 std::vector<std::int32_t> BufferLayers::nearest_liquid() const {
-  std::vector<std::int32_t> nearest(columns_.size(), -1);
-  std::vector<double> least(columns_.size(), resolution_.support_radius);
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    if (holds(i)) continue;
-    const Vec3 place = vector_at(particles_.position, particles_.dimensions, i);
-    for (std::size_t g = 0; g < gates_.list.size(); ++g) {
-      const OpenGate& gate = gates_.list[g];
-      const double distance = -gate.depth_behind(place);
-      const std::int32_t cell = distance < resolution_.support_radius ? gate.column_at(place) : -1;
-      if (cell < 0) continue;
-      const std::size_t c = first_[g] + static_cast<std::size_t>(cell);
-      if (distance >= least[c]) continue;
-      least[c] = distance;
-      nearest[c] = static_cast<std::int32_t>(i);
-    }
-  }
-  return nearest;
+  struct Nearest {
+    double distance = 0;
+    std::int32_t particle = -1;
+  };
+  const std::vector<Nearest> none(columns_.size(), {resolution_.support_radius, -1});
+  const std::vector<Nearest> found = parallel_reduce(
+      particles_.size(), none,
+      [&](std::size_t first, std::size_t last) {
+        std::vector<Nearest> nearest = none;
+        for (std::size_t i = first; i < last; ++i) {
+          if (holds(i)) continue;
+          const Vec3 place = vector_at(particles_.position, particles_.dimensions, i);
+          for (std::size_t g = 0; g < gates_.list.size(); ++g) {
+            const double distance = -gates_.list[g].depth_behind(place);
+            if (distance >= resolution_.support_radius) continue;
+            const std::int32_t cell = gates_.list[g].column_at(place);
+            if (cell < 0) continue;
+            Nearest& one = nearest[first_[g] + static_cast<std::size_t>(cell)];
+            if (distance < one.distance) one = {distance, static_cast<std::int32_t>(i)};
+          }
+        }
+        return nearest;
+      },
+      [](std::vector<Nearest> a, const std::vector<Nearest>& b) {
+        for (std::size_t c = 0; c < a.size(); ++c)
+          if (b[c].distance < a[c].distance) a[c] = b[c];
+        return a;
+      });
+  std::vector<std::int32_t> particles;
+  for (const Nearest& one : found) particles.push_back(one.particle);
+  return particles;
 }
 
 // The velocity of a step is its integral by Simpson's rule, as for moving walls.

@@ -358,16 +358,22 @@ void Scalars::apply(double dt, const float* interior, bool shifted) {
     const double both = std::min(sums.gains, sums.losses);
     const double gain = both > 0 ? both / sums.gains : 0, loss = both > 0 ? both / sums.losses : 0;
     double* values = fields_[s]->data();
-    parallel_blocks(particles_.size(), default_block, [=, this](std::size_t, std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i)
-        if (counts(i)) values[i] += dt * (double{rate[i]} - excess * std::abs(double{rate[i]}));
-      if (both > 0)
-        for (std::size_t i = first; i < last; ++i) {
-          if (!counts(i)) continue;
-          const double by = interior == nullptr ? double{change[i]} : double{interior[i]} * change[i];
-          values[i] += by * (by > 0 ? gain : loss);
-        }
-    });
+    const auto change_those = [&](auto&& wanted) {
+      parallel_blocks(particles_.size(), default_block, [=](std::size_t, std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+          if (wanted(i)) values[i] += dt * (double{rate[i]} - excess * std::abs(double{rate[i]}));
+        if (both > 0)
+          for (std::size_t i = first; i < last; ++i) {
+            if (!wanted(i)) continue;
+            const double by = interior == nullptr ? double{change[i]} : double{interior[i]} * change[i];
+            values[i] += by * (by > 0 ? gain : loss);
+          }
+      });
+    };
+    if (left_out_ == nullptr)
+      change_those([](std::size_t) { return true; });
+    else
+      change_those([column = left_out_->data()](std::size_t i) { return column[i] < 0; });
   }
 }
 
