@@ -5,42 +5,13 @@
 #include <functional>
 
 #include "methods/gfd_run.hpp"
+#include "methods/stream_of_phases.hpp"
 
 namespace spume::test {
 
-// From the left to the right, between walls below and above.
-inline const std::string gfd_stream = R"toml(method = "gfd"
-[domain]
-lower = [0, 0]
-upper = [1, 0.5]
-bottom = "free-slip"
-top = "free-slip"
-[resolution]
-spacing = 0.05
-[fluid]
-gravity = 0
-[[phase]]
-name = "water"
-density = 1000
-viscosity = 1
-[[region]]
-phase = "water"
-velocity = ["1", "0"]
-[[inflow]]
-side = "left"
-velocity = ["1", "0"]
-[[outflow]]
-side = "right"
-[time]
-end = 2
-)toml";
-
-// The whole stream is of water, or of air and water, one above the other or one behind the other.
+inline const std::string gfd_stream = stream_of_phases("gfd");
 inline std::string gfd_stream_with_air(const std::string& region) {
-  return replaced(
-      replaced(gfd_stream, "[[region]]", "[[phase]]\nname = \"air\"\ndensity = 1\nviscosity = 0.01\n[[region]]"),
-      "[[inflow]]",
-      "[[region]]\nphase = \"air\"\nvelocity = [\"1\", \"0\"]\n" + region + "[[inflow]]\nphase = \"water\"");
+  return stream_with_air(gfd_stream, region);
 }
 
 // A round drop of air carried through, with tension, weight and viscosity.

@@ -2,36 +2,12 @@
 // Scenes of wcsph with inflows and outflows, and scalars that go through them.
 #pragma once
 
+#include "methods/stream_of_phases.hpp"
 #include "methods/wcsph_run.hpp"
 
 namespace spume::test {
 
-// From the left to the right, between walls below and above.
-inline const std::string stream = R"toml(method = "wcsph"
-[domain]
-lower = [0, 0]
-upper = [1, 0.5]
-bottom = "free-slip"
-top = "free-slip"
-[resolution]
-spacing = 0.05
-[fluid]
-gravity = 0
-[[phase]]
-name = "water"
-density = 1000
-viscosity = 1
-[[region]]
-phase = "water"
-velocity = ["1", "0"]
-[[inflow]]
-side = "left"
-velocity = ["1", "0"]
-[[outflow]]
-side = "right"
-[time]
-end = 2
-)toml";
+inline const std::string stream = stream_of_phases("wcsph");
 
 // A stream below a free surface, which enters through a patch of a wall.
 inline const std::string below_surface = R"toml(method = "wcsph"

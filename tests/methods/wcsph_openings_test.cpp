@@ -10,12 +10,8 @@ namespace {
 
 using testing::HasSubstr;
 
-// The whole stream is of water, or of air and water, one above the other or one behind the other.
 std::string with_air(const std::string& region) {
-  return replaced(
-      replaced(stream, "[[region]]", "[[phase]]\nname = \"air\"\ndensity = 1\nviscosity = 0.01\n[[region]]"),
-      "[[inflow]]",
-      "[[region]]\nphase = \"air\"\nvelocity = [\"1\", \"0\"]\n" + region + "[[inflow]]\nphase = \"water\"");
+  return stream_with_air(stream, region);
 }
 
 const std::string poiseuille =
