@@ -40,8 +40,10 @@ struct ContourLattice {
   std::size_t cell_of(const Vec3& place) const {
     std::size_t number = 0;
     for (std::size_t a = 3; a-- > 0;) {
-      const double at =
-          std::clamp(std::floor((place[a] - lower[a]) / width[a]), 0.0, static_cast<double>(cells[a] - 1));
+      const auto count = static_cast<double>(cells[a]);
+      double at = std::floor((place[a] - lower[a]) / width[a]);
+      if (periodic[a]) at -= count * std::floor(at / count);
+      at = std::clamp(at, 0.0, count - 1);
       number = number * cells[a] + static_cast<std::size_t>(at);
     }
     return number;

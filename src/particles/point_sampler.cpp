@@ -59,7 +59,8 @@ Mirrored mirrored_by(const SampledState& state, const ImagePath& path, const Ima
   return result;
 }
 
-std::vector<Copy> copies_of(const SampledState& state, const Vec3& point) {
+// `outside`: how far particles may be beyond periodic sides.
+std::vector<Copy> copies_of(const SampledState& state, const Vec3& point, double outside) {
   const Domain& domain = state.boundary->domain();
   const double support_radius = state.arrangement->grid.support_radius();
   std::vector<Copy> copies{{{}, point}};
@@ -68,8 +69,8 @@ std::vector<Copy> copies_of(const SampledState& state, const Vec3& point) {
     const double length = state.boundary->walls[axis][1] - state.boundary->walls[axis][0];
     for (int side = 0; side < 2; ++side) {
       const double plane = state.boundary->walls[axis][side];
-      if (std::abs(point[axis] - plane) >= support_radius || domain.sides[axis][side].kind == BoundaryKind::open)
-        continue;
+      const double reach = domain.periodic(axis) ? support_radius + outside : support_radius;
+      if (std::abs(point[axis] - plane) >= reach || domain.sides[axis][side].kind == BoundaryKind::open) continue;
       for (std::size_t c = 0; c < made; ++c) {
         Copy copy = copies[c];
         if (domain.periodic(axis)) {
@@ -107,6 +108,13 @@ const PointSampler& PointSampler::update(const SampledState& state) {
   const auto r = read(state.particles->position);
   const CellGrid& grid = state.arrangement->grid;
   table_.build(grid, r[0], r[1], r[2], state.particles->size());
+  outside_ = 0;
+  for (int axis = 0; axis < state.particles->dimensions; ++axis) {
+    if (!state.boundary->domain().periodic(axis)) continue;
+    const double lower = state.boundary->walls[axis][0], upper = state.boundary->walls[axis][1];
+    outside_ = parallel_max(state.particles->size(), outside_,
+                            [&, axis](std::size_t i) { return std::max(lower - r[axis][i], r[axis][i] - upper); });
+  }
   if (state.boundary->solids() != nullptr)
     images_.build(state.boundary->image_rules(grid.support_radius()), grid, r[0], r[1], r[2], state.particles->size());
   return *this;
@@ -210,7 +218,7 @@ void PointSampler::visit(const Vec3& point, Visit&& visit) const {
     }
     const ThinWalls* thin = state_.boundary->bodies() == nullptr ? nullptr : state_.boundary->bodies()->thin();
     const double free = thin == nullptr ? infinite : thin->distance(point);
-    for (const Copy& copy : copies_of(state_, point))
+    for (const Copy& copy : copies_of(state_, point, outside_))
       each_in_rows(copy.point, table_, [&](std::int32_t k) {
         const std::size_t j = particle_at(k);
         if (state_.layer != nullptr && mirrored_at_opening(state_, copy, place_of(j))) return;

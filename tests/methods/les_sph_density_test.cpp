@@ -262,8 +262,12 @@ TEST(NumberDensity, IsLeftAloneBesideABoxNearASurface) {
     if (std::hypot(beyond_x, beyond_y) >= support) continue;
     const bool near_surface = place[1] > 1.2 - support;
     const bool deep = place[1] < 1.2 - 2 * support;
-    if (near_surface) EXPECT_EQ(change[i], 0) << place[0] << ' ' << place[1];
-    if (deep) EXPECT_NE(change[i], 0) << place[0] << ' ' << place[1];
+    if (near_surface) {
+      EXPECT_EQ(change[i], 0) << place[0] << ' ' << place[1];
+    }
+    if (deep) {
+      EXPECT_NE(change[i], 0) << place[0] << ' ' << place[1];
+    }
     beside_box += near_surface;
     submerged += deep;
   }

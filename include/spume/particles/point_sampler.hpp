@@ -74,7 +74,8 @@ class PointSampler {
 
   SampledState state_;
   CellOrder table_;
-  Images images_;  // with solids
+  Images images_;       // with solids
+  double outside_ = 0;  // the farthest way of a particle beyond a periodic side
 };
 
 }  // namespace spume

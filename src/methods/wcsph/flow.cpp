@@ -197,7 +197,7 @@ double Flow::largest_kinematic_viscosity() const {
 // 0. Those of liquids take none.
 void Flow::find_signal() {
   struct Largest {
-    double signal = 0, speed2 = 0;
+    double signal = 0, speed2 = 0, transport2 = 0, acceleration2 = 0;
   };
   const Largest largest = parallel_reduce(
       size(), Largest{},
@@ -207,6 +207,14 @@ void Flow::find_signal() {
           const PhaseLaw& own = law(i);
           const double s = (*excess)[i], speed2 = squared_norm(particles.velocity, dimensions, i);
           so_far.speed2 = larger_or_nan(so_far.speed2, speed2);
+          double transport2 = 0, acceleration2 = 0;
+          for (int axis = 0; axis < dimensions; ++axis) {
+            const double u = transport(axis, (*particles.velocity[axis])[i], i), a = (*acceleration[axis])[i];
+            transport2 += u * u;
+            acceleration2 += a * a;
+          }
+          so_far.transport2 = larger_or_nan(so_far.transport2, transport2);
+          so_far.acceleration2 = larger_or_nan(so_far.acceleration2, acceleration2);
           const double speed = std::sqrt(speed2), e = (own.exponent - 1) / 2;
           if (own.exponent != liquid_exponent && e >= 0 && e <= 1 &&
               (1 + above_rounding) * (own.sound_speed * (1 + e * s) + speed) <= so_far.signal)
@@ -216,10 +224,13 @@ void Flow::find_signal() {
         return so_far;
       },
       [](const Largest& a, const Largest& b) {
-        return Largest{larger_or_nan(a.signal, b.signal), larger_or_nan(a.speed2, b.speed2)};
+        return Largest{larger_or_nan(a.signal, b.signal), larger_or_nan(a.speed2, b.speed2),
+                       larger_or_nan(a.transport2, b.transport2), larger_or_nan(a.acceleration2, b.acceleration2)};
       });
   signal = largest.signal;
   largest_speed = std::sqrt(largest.speed2);
+  largest_transport = std::sqrt(largest.transport2);
+  largest_acceleration = std::sqrt(largest.acceleration2);
 }
 
 std::string Flow::laws_in_words() const {

@@ -18,19 +18,57 @@ constexpr double shifting_strength = 2, largest_shift = 0.5;
 
 }  // namespace
 
-// Where the particles will be at the end of the step is known: r + dt (u + dt/2 a).
-bool Flow::lists_hold(double dt) const {
+// Where the particles will be at the end of the step is known: r + dt (u + dt/2 a). Until the fastest could have used
+// up what the lists have in hand nobody is looked at: sides hold particles without moving them farther than that.
+bool Flow::lists_hold(double dt) {
   if (features.displaced_bodies && boundary.bodies()->way_of_points(listed_time, time + dt) > skin / 2) return false;
-  const double moved2 = parallel_max(size(), 0.0, [&](std::size_t i) {
-    double sum = 0;
-    for (int axis = 0; axis < dimensions; ++axis) {
-      const double u = (*particles.velocity[axis])[i] + dt / 2 * (*acceleration[axis])[i];
-      const double moved = (*particles.position[axis])[i] + dt * transport(axis, u, i) - listed_at(axis, i);
-      sum += moved * moved;
-    }
-    return sum;
-  });
-  return moved2 <= skin * skin / 4;
+  const bool of_flow_alone = !features.bodies && !features.openings;
+  next_slack = list_slack - 2 * dt * (largest_transport + dt / 2 * largest_acceleration);
+  if (of_flow_alone && dt > 0 && next_slack >= 0) return true;
+  FloatVectorScratch way;
+  particles.scratch().lease(way, dimensions, size());
+  struct Longest {
+    double way2 = 0, step2 = 0;
+  };
+  const Longest longest = parallel_reduce(
+      size(), Longest{},
+      [&](std::size_t first, std::size_t last) {
+        Longest so_far;
+        for (std::size_t i = first; i < last; ++i) {
+          double way2 = 0, step2 = 0;
+          for (int axis = 0; axis < dimensions; ++axis) {
+            const double u = (*particles.velocity[axis])[i] + dt / 2 * (*acceleration[axis])[i];
+            const double step = dt * transport(axis, u, i);
+            const double whole = (*particles.position[axis])[i] + step - listed_at(axis, i);
+            way[axis][i] = static_cast<float>(whole);
+            way2 += whole * whole;
+            step2 += step * step;
+          }
+          so_far = {larger_or_nan(so_far.way2, way2), larger_or_nan(so_far.step2, step2)};
+        }
+        return so_far;
+      },
+      [](const Longest& a, const Longest& b) {
+        return Longest{larger_or_nan(a.way2, b.way2), larger_or_nan(a.step2, b.step2)};
+      });
+  // Two that pass each other are nearer in the middle of the step than at its ends: by a^2 / (8 R), a the way of one
+  // against the other in the step.
+  const double support_radius = resolution.support_radius, passing = longest.step2 / (2 * support_radius);
+  next_slack = skin - 2 * std::sqrt(longest.way2);
+  // Wall points do not go with the liquid, and layers before openings are as deep as half a skin lets them.
+  if (next_slack < 0 && of_flow_alone && has_lists)
+    next_slack = list_skin.nearest({.grid = arrangement.grid,
+                                    .particles = arrangement.table,
+                                    .images = arrangement.images,
+                                    .rules = boundary.image_rules(arrangement.grid.support_radius()),
+                                    .origin = arrangement.origin,
+                                    .place = read(listed),
+                                    .way = read(way)},
+                                   std::sqrt(longest.way2)) -
+                 passing - support_radius;
+  particles.scratch().release(way);
+  if (dt == 0) list_slack = next_slack;
+  return next_slack >= 0;
 }
 
 void Flow::build_lists() {
@@ -54,6 +92,7 @@ void Flow::build_lists() {
   scratch.release(place_of_list);
   if (features.tension) tension->find_bands(arrangement, *phase_number);
   walls.find_entries(arrangement);
+  list_skin.renew();
   has_lists = true;
   ++list_builds;
 }
@@ -61,7 +100,8 @@ void Flow::build_lists() {
 // A restored state has the places of its lists: the same lists follow, with their neighbours in the same order.
 void Flow::keep_lists(double dt) {
   if (!has_lists && steps > 0) build_lists();
-  has_moved = false;
+  const double way = dt * std::min(largest_speed, expected_speed);
+  has_moved = features.density_relaxation && steps > 0 && measured_way + way > skin / 2;
   if (has_lists && !(features.openings && openings->stale()) && lists_hold(dt)) return;
   if (features.openings && has_lists) openings->renew();
   listed_time = time;
@@ -74,8 +114,8 @@ void Flow::keep_lists(double dt) {
       (*listed[axis])[i] = static_cast<float>(r[axis] - arrangement.origin[axis]);
     }
   });
-  has_moved = steps > 0;
   build_lists();
+  list_slack = skin;
   if (lists_hold(dt)) return;
   StepFailure::Details details;
   details.cause = "a particle would leave its lists of neighbours in one step";
@@ -103,6 +143,12 @@ bool Flow::clear_of_walls(const Vec3& r) const {
   for (int axis = 0; axis < dimensions; ++axis)
     if (!(r[axis] > boundary.walls[axis][0] + wall_gap && r[axis] < boundary.walls[axis][1] - wall_gap)) return false;
   return true;
+}
+
+void Flow::measure_volume() {
+  move_images(read(particles.position), time);
+  relaxation->measure();
+  measured_way = 0;
 }
 
 void Flow::move_layers(double dt) {
@@ -414,6 +460,8 @@ void Flow::accept(double dt) {
     if (features.scalars) solutes.scalars->count_openings(amounts);
   }
   if (features.tension) surface_energy = tension->energy();
+  list_slack = next_slack;
+  if (features.density_relaxation) measured_way += dt * std::min(largest_speed, expected_speed);
   time += dt;
   if (dt > 0) ++steps;
   find_signal();

@@ -30,15 +30,15 @@ Plan make_plan(Flow& f) {
   };
   const char* const openings = has.openings ? "particles enter and leave" : "no inflow, no outflow";
   stages.add(both, "openings", has.openings, openings, &Flow::move_layers, {p.position}, {p.velocity});
-  stages.add(both, "lists", true, "made anew when a particle has moved by half of lists.skin", keep_lists,
+  stages.add(both, "lists", true, "made anew when two may have come nearer by lists.skin", keep_lists,
              {p.position, p.velocity, f.acceleration, f.listed}, {});
   const ArrayUse lack([&f] { return f.relaxation == nullptr ? 0 : f.relaxation->bytes(); });
   stages.sweep(
       step, "density relaxation", has.density_relaxation,
-      has.density_relaxation ? "kernel sums of (12), where lists are new"
+      has.density_relaxation ? "kernel sums of (12), every half of lists.skin that the fastest goes"
       : f.scene.free_surface ? "compressibility.density_relaxation = 0"
                              : "no free surface",
-      [&f](StageRun&) { f.relaxation->measure(); }, {p.position, *f.excess}, {lack}, [&f] { return f.has_moved; });
+      [&f](StageRun&) { f.measure_volume(); }, {p.position, *f.excess}, {lack}, [&f] { return f.has_moved; });
   const std::string no_tension = has.several ? "no interface.surface_tension" : several;
   stages.sweep(start, "first tension", has.tension, has.tension ? "pressures of whole phases" : no_tension,
                &Flow::start_tension, {*f.phase_number}, {*f.excess, interfaces});

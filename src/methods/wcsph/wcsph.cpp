@@ -73,9 +73,10 @@ Wcsph::Wcsph(const LoadedCase& loaded)
   if (flow_.features.bodies)
     body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
   saved_.add(flow_.time).add(flow_.steps).add(flow_.signal).add(flow_.largest_speed).add(flow_.boundary.wall_speed);
+  saved_.add(flow_.largest_transport).add(flow_.largest_acceleration);
   if (flow_.features.layers) saved_.add(flow_.settled).add(flow_.arrangement.context.gradient_scale);
   if (flow_.features.tension) saved_.add(flow_.surface_energy);
-  if (flow_.features.density_relaxation) saved_.add(flow_.relaxation->volume);
+  if (flow_.features.density_relaxation) saved_.add(flow_.relaxation->volume).add(flow_.measured_way);
 }
 
 void Wcsph::step(double dt, Ledger& ledger) {
@@ -128,8 +129,21 @@ void Wcsph::declare_series() {
   flow.solutes.add_columns(series_, nullptr);
 }
 
+// Particles go round periodic sides where lists are made; who looks sees them inside.
 std::vector<ParticleSnapshot> Wcsph::snapshot_on_demand() {
-  return {snapshot_.take("fluid", flow_.size(), flow_.particles.position, flow_.options.output.fields)};
+  VectorField place = flow_.particles.position;
+  for (int axis = 0; axis < flow_.dimensions; ++axis) {
+    const Domain& domain = flow_.scene.domain;
+    if (!domain.periodic(axis)) continue;
+    const double lower = domain.lower[axis], length = domain.upper[axis] - lower;
+    const Array<double>& from = *place[axis];
+    shown_[axis].resize(flow_.size());
+    parallel_for(flow_.size(), [&, axis](std::size_t i) {
+      shown_[axis][i] = from[i] - length * std::floor((from[i] - lower) / length);
+    });
+    place[axis] = &shown_[axis];
+  }
+  return {snapshot_.take("fluid", flow_.size(), place, flow_.options.output.fields)};
 }
 
 std::vector<Remark> Wcsph::take_remarks() {
@@ -213,9 +227,9 @@ void Wcsph::table_rows(const std::string&, std::vector<double>& rows) {
 
 void Wcsph::save(StateWriter& writer) const {
   const std::int64_t count[] = {static_cast<std::int64_t>(flow_.size())};
-  const double listed_time[] = {flow_.listed_time};
+  const double lists[] = {flow_.listed_time, flow_.list_slack};
   saved_.save(writer);
-  writer.f64("listed_time", listed_time);
+  writer.f64("lists", lists);
   writer.i64("counters", count);
   flow_.boundary.save_walls(writer);
   if (flow_.features.openings) {
@@ -228,20 +242,21 @@ void Wcsph::save(StateWriter& writer) const {
 
 void Wcsph::load(StateReader& reader) {
   Array<std::int64_t> count;
-  Array<double> listed_time;
+  Array<double> lists;
   saved_.load(reader);
-  reader.f64("listed_time", listed_time);
+  reader.f64("lists", lists);
   reader.i64("counters", count);
   flow_.boundary.load_walls(reader, flow_.time);
   if (flow_.features.openings) {
     flow_.acoustic->load(reader);
     flow_.openings->load(reader);
   }
-  if (count.size() != 1 || listed_time.size() != 1)
+  if (count.size() != 1 || lists.size() != 2)
     throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(count[0]), "particle", reader);
   flow_.solutes.load(reader);
-  flow_.listed_time = listed_time[0];
+  flow_.listed_time = lists[0];
+  flow_.list_slack = lists[1];
   flow_.has_lists = false;
   sampled_step_ = -1;
 }

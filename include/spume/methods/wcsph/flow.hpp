@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "spume/methods/wcsph/options.hpp"
+#include "spume/neighbours/list_skin.hpp"
 #include "spume/operators/wcsph_sums.hpp"
 #include "spume/particles/acoustic_layers.hpp"
 #include "spume/particles/arrangement.hpp"
@@ -75,14 +76,20 @@ struct Flow {
   double unsettled = 0;    // the largest acceleration that it has left, over that of gravity
   double signal = 0;       // largest sum of sound speed and speed
   double largest_speed = 0;
+  double largest_transport = 0;  // of u + delta u
+  double largest_acceleration = 0;
+  double list_slack = 0;      // how much farther apart than the support whoever is not in the lists is at least
+  double measured_way = 0;    // of the fastest particle since (12) was measured
   double surface_energy = 0;  // of the interfaces where the last forces were found
 
   // --- Lists of neighbours at `listed`, seen from where the particles are.
   Arrangement arrangement;
   ParticleSizes sizes;  // all alike
+  ListSkin list_skin;
   bool has_lists = false;
   std::int64_t list_builds = 0;
-  bool has_moved = false;                        // the lists are new in this step, since particles have moved
+  bool has_moved = false;                        // far enough for (12) to be measured anew
+  double next_slack = 0;                         // list_slack when the step is accepted
   AveragedWalls walls;                           // of bodies
   const WallParting parting;                     // (8)
   std::unique_ptr<ExcessRelaxation> relaxation;  // (12); null: none
@@ -118,6 +125,7 @@ struct Flow {
   void move_layers(double dt);  // behind openings
   void settle();                // of layers, to where they are at rest
   void keep_lists(double dt);
+  void measure_volume();            // (12)
   void drift(double dt);            // (5), to the middle of the step
   void find_rates(double dt);       // (1), and the viscous part of (2)
   void advance_density(double dt);  // (1), (3), and (5) to the end of the step
@@ -148,7 +156,7 @@ struct Flow {
   bool clear_of_walls(const Vec3& r) const;
   SurfaceTension::Now tension_now();
   void build_lists();
-  bool lists_hold(double dt) const;
+  bool lists_hold(double dt);
   void move_images(const std::array<const double*, 3>& at, double t);
   WallParting::Liquid parted(const std::array<const double*, 3>& at) const;
   // Density does not diffuse to wall points: they have a phase of their own.
