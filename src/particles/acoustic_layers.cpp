@@ -2,6 +2,7 @@
 #include "spume/particles/acoustic_layers.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "spume/core/error.hpp"
@@ -62,12 +63,16 @@ AcousticLayers::Seen AcousticLayers::look(const Liquid& liquid, const Array<floa
     all.all += weight;
     all.outwards -= weight * gate.inwards * liquid.velocity(normal, j);
     all.compliance += weight / (law.density * law.sound_speed);
+    if (weight > 0) all.heaviest = std::max(all.heaviest, law.density);
     for (int axis = 0; axis < d; ++axis) {
       const double u = liquid.velocity(axis, j);
       sum.velocity[axis] += weight * (point < n ? u : liquid.images.velocity(k, axis, u));
     }
   }
-  Seen seen = sums[sums[1].weight > 0 ? 1 : 0];
+  const bool own = sums[1].weight > 0;
+  Seen seen = sums[own ? 1 : 0];
+  seen.own = own;
+  seen.heaviest = all.heaviest;
   seen.all = all.all;
   seen.outwards = all.outwards;
   seen.compliance = all.compliance;
@@ -101,8 +106,8 @@ void AcousticLayers::find_pressures(const Liquid& liquid, Array<double>& excess,
       foot = gate.wrapped(foot);
       foot[axis] = gate.plane;
       p = pressure_outside(scene_, *gate.opening, foot, {heaviest}, liquid.time);
-      // Of what comes back, which has been at rest outside.
-      if (seen.outwards < 0) p -= law.density / 2 * seen.outwards * seen.outwards / (seen.all * seen.all);
+      const double inwards = gate.inwards * seen.velocity[axis];
+      if (inwards > 0 && law.density <= seen.heaviest) p -= law.density / 2 * inwards * inwards;
       // Fluids side by side have one pressure, so that their velocities add up as 1 / (rho c): the impedance of water
       // alone would shoot air back that is with it.
       const Mean& mean = mean_of(i);
@@ -125,9 +130,15 @@ void AcousticLayers::follow(double dt) {
     double all = 0, outwards = 0, share = 0;
   };
   std::vector<Sum> sums(means_.size());
+  // Of the phases of each column: of the own phase, and of whatever is seen.
+  std::vector<std::array<Sum, 2>> before(means_.size() * laws_.size());
+  const auto before_phase = [&](std::size_t i) -> std::array<Sum, 2>& {
+    return before[static_cast<std::size_t>(layers_.column()[i]) * laws_.size() + static_cast<std::size_t>(phase_[i])];
+  };
   for (std::size_t k = 0; members_ != nullptr && k < members_->size(); ++k) {
     const auto i = static_cast<std::size_t>((*members_)[k]);
-    const Opening& opening = *gate_of(i).opening;
+    const OpenGate& gate = gate_of(i);
+    const Opening& opening = *gate.opening;
     const Seen& seen = seen_[k];
     if (opening.inflow || !(seen.weight > 0)) continue;
     const double share = share_of_step(opening.axis, laws_[static_cast<std::size_t>(phase_[i])].sound_speed, dt);
@@ -135,6 +146,11 @@ void AcousticLayers::follow(double dt) {
     sum.all += seen.all;
     sum.outwards += seen.outwards;
     sum.share += seen.all * share;
+    if (seen.own || laws_[static_cast<std::size_t>(phase_[i])].density <= seen.heaviest) {
+      Sum& of_phase = before_phase(i)[seen.own ? 0 : 1];
+      of_phase.all += seen.weight;
+      of_phase.outwards -= seen.weight * gate.inwards * seen.velocity[opening.axis];
+    }
     for (int axis = 0; axis < d; ++axis) {
       if (axis == opening.axis) continue;
       double& u = (*particles_.velocity[axis])[i];
@@ -146,9 +162,10 @@ void AcousticLayers::follow(double dt) {
   for (std::size_t k = 0; members_ != nullptr && k < members_->size(); ++k) {
     const auto i = static_cast<std::size_t>((*members_)[k]);
     const OpenGate& gate = gate_of(i);
-    const Sum& sum = sums[static_cast<std::size_t>(layers_.column()[i])];
-    if (!gate.opening->inflow && sum.all > 0)
-      (*particles_.velocity[gate.opening->axis])[i] = -gate.inwards * sum.outwards / sum.all;
+    if (gate.opening->inflow) continue;
+    const std::array<Sum, 2>& seen = before_phase(i);
+    const Sum& sum = seen[seen[0].all > 0 ? 0 : 1];
+    if (sum.all > 0) (*particles_.velocity[gate.opening->axis])[i] = -gate.inwards * sum.outwards / sum.all;
   }
   for (std::size_t c = 0; c < means_.size() && !scene_.free_surface; ++c) {
     const Sum& sum = sums[c];

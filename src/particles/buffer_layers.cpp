@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
@@ -57,7 +58,7 @@ void BufferLayers::fill(Array<std::int64_t>& phase, std::vector<FloatVectorField
                    .place = vector_at(particles_.position, particles_.dimensions, i),
                    .velocity = vector_at(particles_.velocity, particles_.dimensions, i)};
       const std::int32_t cell = gate.column_at(one.place);
-      if (cell < 0 || -gate.depth_behind(one.place) > reach_) continue;
+      if (cell < 0 || -gate.depth_behind(one.place) > gate.whole_layers(reach_)) continue;
       one.column = static_cast<std::int64_t>(first_[g]) + cell;
       one.place[gate.opening->axis] = 2 * gate.plane - one.place[gate.opening->axis];
       newcomers.push_back(one);
@@ -73,38 +74,72 @@ const Array<std::int32_t>& BufferLayers::find_members() {
   return members_;
 }
 
-std::vector<std::int32_t> BufferLayers::nearest_liquid() const {
+bool BufferLayers::any_inflow() const {
+  return std::any_of(gates_.list.begin(), gates_.list.end(), [](const OpenGate& gate) { return gate.opening->inflow; });
+}
+
+Vec3 BufferLayers::foot_of(std::size_t i) const {
+  const Column& column = column_of(i);
+  return gates_.list[static_cast<std::size_t>(column.gate)].columns[static_cast<std::size_t>(column.cell)].foot;
+}
+
+double BufferLayers::depth_of(std::size_t i) const {
+  return gate_of((*column_)[i]).depth_behind(vector_at(particles_.position, particles_.dimensions, i));
+}
+
+std::vector<std::int32_t> BufferLayers::nearest_liquid() {
+  const int d = particles_.dimensions;
+  const double reach = resolution_.support_radius;
+  const auto before = [&](const OpenGate& gate, const Vec3& place) {
+    return gate.opening->inflow && -gate.depth_behind(place) < reach;
+  };
+  parallel_select(particles_.size(), before_, [&](std::size_t i) {
+    if (holds(i)) return false;
+    const Vec3 place = vector_at(particles_.position, d, i);
+    return std::any_of(gates_.list.begin(), gates_.list.end(),
+                       [&](const OpenGate& gate) { return before(gate, place); });
+  });
+  std::vector<std::int32_t> nearest(columns_.size(), -1);
+  std::vector<double> distance(columns_.size(), reach);
+  for (const std::int32_t i : before_) {
+    const Vec3 place = vector_at(particles_.position, d, static_cast<std::size_t>(i));
+    for (std::size_t g = 0; g < gates_.list.size(); ++g) {
+      const OpenGate& gate = gates_.list[g];
+      const std::int32_t cell = before(gate, place) ? gate.column_at(place) : -1;
+      if (cell < 0) continue;
+      const std::size_t c = first_[g] + static_cast<std::size_t>(cell);
+      if (-gate.depth_behind(place) >= distance[c]) continue;
+      distance[c] = -gate.depth_behind(place);
+      nearest[c] = i;
+    }
+  }
+  for (const std::int32_t member : find_members()) {
+    const auto i = static_cast<std::size_t>(member), c = static_cast<std::size_t>((*column_)[i]);
+    if (!leads(i) || nearest[c] >= 0) continue;
+    nearest[c] = nearest_of_all(foot_of(i));
+  }
+  return nearest;
+}
+
+// Of equally near ones the first.
+std::int32_t BufferLayers::nearest_of_all(const Vec3& place) const {
   struct Nearest {
-    double distance = 0;
+    double distance2 = std::numeric_limits<double>::infinity();
     std::int32_t particle = -1;
   };
-  const std::vector<Nearest> none(columns_.size(), {resolution_.support_radius, -1});
-  const std::vector<Nearest> found = parallel_reduce(
-      particles_.size(), none,
-      [&](std::size_t first, std::size_t last) {
-        std::vector<Nearest> nearest = none;
-        for (std::size_t i = first; i < last; ++i) {
-          if (holds(i)) continue;
-          const Vec3 place = vector_at(particles_.position, particles_.dimensions, i);
-          for (std::size_t g = 0; g < gates_.list.size(); ++g) {
-            const double distance = -gates_.list[g].depth_behind(place);
-            if (distance >= resolution_.support_radius) continue;
-            const std::int32_t cell = gates_.list[g].column_at(place);
-            if (cell < 0) continue;
-            Nearest& one = nearest[first_[g] + static_cast<std::size_t>(cell)];
-            if (distance < one.distance) one = {distance, static_cast<std::int32_t>(i)};
-          }
-        }
-        return nearest;
-      },
-      [](std::vector<Nearest> a, const std::vector<Nearest>& b) {
-        for (std::size_t c = 0; c < a.size(); ++c)
-          if (b[c].distance < a[c].distance) a[c] = b[c];
-        return a;
-      });
-  std::vector<std::int32_t> particles;
-  for (const Nearest& one : found) particles.push_back(one.particle);
-  return particles;
+  return parallel_reduce(
+             particles_.size(), Nearest{},
+             [&](std::size_t first, std::size_t last) {
+               Nearest nearest;
+               for (std::size_t i = first; i < last; ++i) {
+                 if (holds(i)) continue;
+                 const Vec3 way = subtract(vector_at(particles_.position, particles_.dimensions, i), place);
+                 if (dot(way, way) < nearest.distance2) nearest = {dot(way, way), static_cast<std::int32_t>(i)};
+               }
+               return nearest;
+             },
+             [](const Nearest& a, const Nearest& b) { return b.distance2 < a.distance2 ? b : a; })
+      .particle;
 }
 
 // The velocity of a step is its integral by Simpson's rule, as for moving walls.
@@ -183,7 +218,7 @@ void BufferLayers::renew() {
     if (gate.opening->inflow)
       return gate.columns[static_cast<std::size_t>(columns_[static_cast<std::size_t>(c)].cell)].wet;
     const Vec3 place = vector_at(particles_.position, d, i);
-    return gate.depth_behind(place) <= reach_ + gate.layer && gate.column_at(place) >= 0;
+    return gate.depth_behind(place) <= gate.whole_layers(reach_) + gate.layer && gate.column_at(place) >= 0;
   };
   parallel_select(particles_.size(), staying, stays);
   parallel_select(particles_.size(), passed_, [&](std::size_t i) { return (*column_)[i] < liquid_of_domain; });
@@ -197,7 +232,7 @@ void BufferLayers::renew() {
                  .phase = (*phase_)[i],
                  .place = vector_at(particles_.position, d, i),
                  .velocity = vector_at(particles_.velocity, d, i)};
-    one.place[gate.opening->axis] -= gate.inwards * std::ceil(reach_ / gate.layer) * gate.layer;
+    one.place[gate.opening->axis] -= gate.inwards * gate.whole_layers(reach_);
     newcomers.push_back(one);
     c = liquid_of_domain;
   }
@@ -324,7 +359,8 @@ void BufferLayers::load(StateReader& reader) {
 }
 
 double BufferLayers::bytes() const {
-  double sum = static_cast<double>(columns_.capacity() * sizeof(Column)) + members_.bytes() + passed_.bytes();
+  double sum =
+      static_cast<double>(columns_.capacity() * sizeof(Column)) + members_.bytes() + passed_.bytes() + before_.bytes();
   for (const OpenGate& gate : gates_.list)
     sum += static_cast<double>(gate.columns.capacity() * sizeof(OpenGate::Column) + 4 * gate.column_of.capacity());
   return sum;

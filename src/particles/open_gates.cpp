@@ -69,6 +69,11 @@ Vec3 OpenGate::wrapped(Vec3 place) const {
   return place;
 }
 
+double OpenGate::whole_layers(double reach) const {
+  constexpr double rounding = 1e-9;  // a whole number of layers is not one more
+  return std::ceil(reach / layer - rounding) * layer;
+}
+
 std::int32_t OpenGate::column_at(const Vec3& place) const {
   const Vec3 inside = wrapped(place);
   std::array<std::size_t, 2> at{};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the points behind openings carry in a step.
 #include <cmath>
+#include <limits>
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
@@ -81,12 +82,31 @@ void OpenSides::give_gradients(const std::array<const double*, 3>& before, const
 void OpenSides::give_pressures(const std::function<double(const Vec3&)>& potential, double t,
                                WallStencils& stencils) const {
   const double density = scene_.fluid.density;
+  const auto head_of = [&](const OpeningPoint& point) {
+    const OpenGate& gate = gates_[static_cast<std::size_t>(point.gate)];
+    const double inwards = gate.inwards * point.velocity[gate.opening->axis];
+    return inwards > 0 ? 0.5 * inwards * inwards : 0;
+  };
+  // Corners have no velocity of their own: that of the nearest point behind the side.
+  std::vector<double> head(corners_.size());
+  parallel_blocks_dynamic(corners_.size(), 16, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      double nearest2 = std::numeric_limits<double>::infinity();
+      for (std::size_t p = 0; p < points_.size(); ++p) {
+        if (points_[p].gate != corners_[k].gate || stencils.pressure_sign[first_point_ + p] == 0) continue;
+        const Vec3 way = subtract(points_[p].place, corners_[k].foot);
+        if (dot(way, way) >= nearest2) continue;
+        nearest2 = dot(way, way);
+        head[k] = head_of(points_[p]);
+      }
+    }
+  });
   for (std::size_t k = 0; k < corners_.size(); ++k) {
     const Corner& corner = corners_[k];
     const Opening& opening = *gates_[static_cast<std::size_t>(corner.gate)].opening;
     if (opening.inflow) continue;
     stencils.given_pressure[first_corner_ + k] =
-        2 * (pressure_outside(scene_, opening, corner.foot, {density}, t) / density + potential(corner.foot));
+        2 * (pressure_outside(scene_, opening, corner.foot, {density}, t) / density - head[k] + potential(corner.foot));
   }
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const OpeningPoint& point = points_[p];
@@ -94,10 +114,8 @@ void OpenSides::give_pressures(const std::function<double(const Vec3&)>& potenti
     const std::size_t g = first_point_ + p;
     const bool wet = stencils.pressure_sign[g] != 0;
     if (wet && opening.inflow) continue;
-    const double inwards = gates_[static_cast<std::size_t>(point.gate)].inwards * point.velocity[opening.axis];
-    const double head = wet && inwards > 0 ? 0.5 * inwards * inwards : 0;
-    const double q = pressure_outside(scene_, opening, point.foot, {density}, t) / density - head +
-                     potential(wet ? point.foot : point.place);
+    const double q = pressure_outside(scene_, opening, point.foot, {density}, t) / density -
+                     (wet ? head_of(point) : 0) + potential(wet ? point.foot : point.place);
     stencils.given_pressure[g] = wet ? (1 - double{stencils.pressure_sign[g]}) * q : q;
   }
 }

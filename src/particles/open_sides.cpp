@@ -30,7 +30,8 @@ OpenSides::OpenSides(const Scene& scene, const Resolution& resolution, double pa
         one.velocity[axis] = initial.velocity[axis][i];
       }
       double& x = one.place[gate.opening->axis];
-      if (gate.inwards * (x - gate.plane) > resolution.support_radius + gate.layer || gate.column_at(one.place) < 0)
+      if (gate.inwards * (x - gate.plane) > gate.whole_layers(resolution.support_radius + gate.layer) ||
+          gate.column_at(one.place) < 0)
         continue;
       x = 2 * gate.plane - x;
       one.next = one.place;
@@ -102,7 +103,7 @@ void OpenSides::take_returning(std::vector<Newcomer>& newcomers) {
     const OpenGate& gate = gates_[static_cast<std::size_t>(one.gate)];
     // Whole layers: what takes the place of one that comes back stands within them.
     const double depth = gate.depth_behind(one.place),
-                 reach = std::ceil(resolution_.support_radius / gate.layer + 1) * gate.layer;
+                 reach = gate.whole_layers(resolution_.support_radius + gate.layer);
     if (depth > reach || gate.column_at(one.place) < 0) continue;
     if (depth >= 0) {
       kept.push_back(one);

@@ -2,10 +2,11 @@
 // Buffer layers behind openings (particles/buffer_layers.hpp) of weakly compressible phases: their pressures, and the
 // velocities behind outflows.
 //
-// The pressure behind an inflow is that of the liquid before it and its weight. Behind an outflow columns of
-// particles go with the liquid before them; along the side their velocity follows it. With u_n the mean velocity
-// outwards of the liquid before a particle, U the mean of that before its column of the opening over a time 1 / K and Z
-// the harmonic mean of the impedances rho c there, its pressure is
+// The pressure behind an inflow is that of the liquid before it and its weight. Behind an outflow the particles of a
+// phase in a column go with the liquid of their phase before them; where there is none they go with what there is,
+// unless they are heavier than all of it: air does not carry water back. Along the side their velocity follows. With
+// u_n the mean velocity outwards of the liquid before a particle, U the mean of that before its column of the opening
+// over a time 1 / K and Z the harmonic mean of the impedances rho c there, its pressure is
 //
 //   p = p_out + Z (u_n - U),  dU/dt = K (u_n - U).
 //
@@ -14,8 +15,9 @@
 // opening in place of columns air that sloshes below an open top gains speed until it breaks up. Beside a free surface,
 // which lets sound out itself, p = p_out: drops that fall out would be held back.
 //
-// Means are over the liquid within the kernel, pressures and velocities behind a side over that of the phase of the
-// particle where there is any. An inflow holds its velocity and therefore reflects sound, as a wall does.
+// What comes back has been at rest outside: rho u^2 / 2 less, u that of its phase. Means are over the liquid within the
+// kernel, pressures and velocities behind a side over that of the phase of the particle where there is any. An inflow
+// holds its velocity and therefore reflects sound, as a wall does.
 #pragma once
 
 #include <functional>
@@ -67,10 +69,12 @@ class AcousticLayers {
     double outwards = 0;  // velocity
     bool known = false;
   };
-  // What a particle of the layers sees of the liquid: means over its own phase, and sums over all phases.
+  // What a particle of the layers sees of the liquid: means over its own phase where there is any, and sums over all.
   struct Seen {
     double weight = 0, pressure = 0;
     Vec3 velocity{};
+    bool own = false;                              // phase, else all others
+    double heaviest = 0;                           // density
     double all = 0, outwards = 0, compliance = 0;  // of u_n and of 1 / (rho c)
   };
 

@@ -54,8 +54,13 @@ class BufferLayers {
   }
   const Column& column_of(std::size_t i) const { return columns_[static_cast<std::size_t>((*column_)[i])]; }
   std::size_t columns() const { return columns_.size(); }
-  // Per column the liquid particle that is nearest before its side; -1: none.
-  std::vector<std::int32_t> nearest_liquid() const;
+  bool any_inflow() const;
+  // Where a particle of a layer will pass the side, and how far it is from there.
+  Vec3 foot_of(std::size_t i) const;
+  double depth_of(std::size_t i) const;
+  // Per column of an inflow that has particles the liquid particle that is nearest before its side, where there is none
+  // within a support radius the nearest of all liquid; -1 of other columns, and without liquid.
+  std::vector<std::int32_t> nearest_liquid();
   // The particles of the layers, as numbered when they were found; particles are numbered anew by sorting.
   const Array<std::int32_t>& find_members();
 
@@ -91,6 +96,7 @@ class BufferLayers {
   void add_columns_of_inflows(std::vector<Newcomer>& newcomers) const;
   void insert(const Array<std::int32_t>& staying, const std::vector<Newcomer>& newcomers);
   double volume_inside(std::size_t phase) const;
+  std::int32_t nearest_of_all(const Vec3& place) const;
 
   const Scene& scene_;
   const Resolution resolution_;
@@ -105,6 +111,7 @@ class BufferLayers {
   std::vector<const Array<double>*> carried_;
   Array<std::int32_t> members_;               // particles of the layers
   Array<std::int32_t> passed_;                // particles that have passed a side
+  Array<std::int32_t> before_;                // liquid before inflows
   std::vector<std::int64_t> entered_, left_;  // particles of each phase
   std::int64_t next_identifier_ = 0;
   bool stale_ = false;

@@ -37,6 +37,9 @@ struct OpenGate {
   Vec3 wrapped(Vec3 place) const;
   std::int32_t column_at(const Vec3& place) const;  // also of places that are to go round periodic sides; -1: none
   double depth_behind(const Vec3& place) const { return inwards * (plane - place[opening->axis]); }
+  // Of as many layers as fill a depth, half a layer behind the side and farther: what takes the place of a particle
+  // that comes back stands a layer behind the last.
+  double whole_layers(double reach) const;
 };
 
 class OpenGates {

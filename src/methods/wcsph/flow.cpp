@@ -129,14 +129,23 @@ void Flow::fill_layers() {
 }
 
 void Flow::lead_scalars() {
-  solutes.scalars->lead(time, [&](std::size_t i) { return openings->leads(i); });
-  if (!solutes.scalars->follows()) return;
-  const std::vector<std::int32_t> nearest = openings->nearest_liquid();
+  if (!openings->any_inflow()) return;
+  std::vector<Scalars::Led> led;
   for (const std::int32_t member : openings->find_members()) {
     const auto i = static_cast<std::size_t>(member);
     if (!openings->leads(i)) continue;
-    const std::int32_t like = nearest[static_cast<std::size_t>(openings->column()[i])];
-    if (like >= 0) solutes.scalars->follow(i, static_cast<std::size_t>(like));
+    const OpenGate& gate = openings->gate_of(openings->column()[i]);
+    led.push_back({.particle = i,
+                   .foot = openings->foot_of(i),
+                   .depth = std::max(0.0, openings->depth_of(i)),
+                   .speed = gate.inwards * openings->column_of(i).velocity[gate.opening->axis]});
+  }
+  solutes.scalars->lead(led, time, options.time.end, resolution.support_radius);
+  if (!solutes.scalars->follows()) return;
+  const std::vector<std::int32_t> nearest = openings->nearest_liquid();
+  for (const Scalars::Led& one : led) {
+    const std::int32_t like = nearest[static_cast<std::size_t>(openings->column()[one.particle])];
+    if (like >= 0) solutes.scalars->follow(one.particle, static_cast<std::size_t>(like));
   }
 }
 

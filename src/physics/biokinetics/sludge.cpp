@@ -31,6 +31,7 @@ void Sludge::react(double dt) {
   for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = scalars_.values(options_.scalars[i]).data();
   const std::size_t oxygen = options_.scalars[asm1::s_o];
   const double before = scalars_.amount(oxygen);
+  keep_left_out();
   const double steps = parallel_reduce(
       n, 0.0,
       [&](std::size_t first, std::size_t last) {
@@ -40,11 +41,29 @@ void Sludge::react(double dt) {
         return sum;
       },
       [](double a, double b) { return a + b; });
+  restore_left_out();
   const double taken = before - scalars_.amount(oxygen), volume = scalars_.liquid_volume();
   uptake_ += taken;
   rate_ = volume > 0 ? taken / volume / pending_ * hour : 0;
   steps_ = n > 0 ? steps / static_cast<double>(n) : 0;
   pending_ = 0;
+}
+
+// Layers behind openings stand among the particles that react a vector at a time: their values are put back.
+void Sludge::keep_left_out() {
+  kept_.clear();
+  if (scalars_.left_out() == nullptr) return;
+  for (std::size_t i = 0; i < scalars_.particles(); ++i)
+    if (!scalars_.counts(i))
+      for (const double* values : values_) kept_.push_back(values[i]);
+}
+
+void Sludge::restore_left_out() {
+  if (kept_.empty()) return;
+  auto kept = kept_.begin();
+  for (std::size_t i = 0; i < scalars_.particles(); ++i)
+    if (!scalars_.counts(i))
+      for (double* values : values_) values[i] = *kept++;
 }
 
 void Sludge::react_in_cells(double dt, std::vector<std::vector<double>>& values, const std::vector<double>& volumes) {

@@ -85,15 +85,25 @@ Scalars::Scalars(ParticleStore& particles, const Resolution& resolution, const S
 
 void Scalars::enter(std::int64_t first, std::int64_t last, double t) {
   if (first == last) return;
-  lead(t, [&](std::size_t i) {
-    const std::int64_t id = (*particles_.identifier)[i];
-    return id >= first && id < last;
-  });
+  for (std::size_t s = 0; s < size(); ++s)
+    if (option(s).inflow != nullptr)
+      set_values(particles_, *option(s).inflow, t, *fields_[s], [&](std::size_t i) {
+        const std::int64_t id = (*particles_.identifier)[i];
+        return id >= first && id < last;
+      });
 }
 
-void Scalars::lead(double t, const std::function<bool(std::size_t)>& wanted) {
-  for (std::size_t s = 0; s < size(); ++s)
-    if (option(s).inflow != nullptr) set_values(particles_, *option(s).inflow, t, *fields_[s], wanted);
+void Scalars::lead(const std::vector<Led>& led, double t, double end, double support_radius) {
+  for (std::size_t s = 0; s < size(); ++s) {
+    if (option(s).inflow == nullptr) continue;
+    const std::unique_ptr<Expression> brought = option(s).inflow->clone();
+    const double diffusivity = option(s).diffusivity;
+    for (const Led& one : led) {
+      double later = diffusivity > 0 ? support_radius * support_radius / (2 * diffusivity) : std::max(0.0, end - t);
+      if (one.speed * later > one.depth) later = one.depth / one.speed;
+      (*fields_[s])[one.particle] = (*brought)(one.foot[0], one.foot[1], one.foot[2], t + later);
+    }
+  }
 }
 
 bool Scalars::follows() const {
@@ -212,11 +222,15 @@ void Scalars::add(std::size_t scalar, const Array<float>& change, double amount)
 }
 
 double Scalars::amount(std::size_t scalar) const {
+  if (left_out_ == nullptr)
+    return particles_.volume *
+           parallel_sum(particles_.size(), [value = values(scalar).data()](std::size_t i) { return value[i]; });
   return particles_.volume *
          parallel_sum(particles_.size(), [&](std::size_t i) { return counts(i) ? values(scalar)[i] : 0.0; });
 }
 
 double Scalars::liquid_volume() const {
+  if (left_out_ == nullptr) return particles_.volume * static_cast<double>(particles_.size());
   return particles_.volume * parallel_sum(particles_.size(), [&](std::size_t i) { return counts(i) ? 1.0 : 0.0; });
 }
 

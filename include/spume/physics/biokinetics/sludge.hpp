@@ -25,10 +25,14 @@ class Sludge {
   void load(StateReader& reader) { saved_.load(reader); }
 
  private:
+  void keep_left_out();
+  void restore_left_out();
+
   Scalars& scalars_;
   const BiokineticsOptions& options_;
   const Integrator integrator_;
   std::vector<double*> values_;   // per component
+  std::vector<double> kept_;      // of what belongs to no liquid
   double pending_ = 0;            // seconds that have not reacted
   double uptake_ = 0, rate_ = 0;  // g of oxygen since the start; g/m^3/h of the last reaction
   double steps_ = 0;              // per particle, of the last reaction
