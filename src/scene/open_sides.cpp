@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "open_sides.hpp"
 
+#include <algorithm>
+
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/scene/solid_union.hpp"
@@ -29,6 +31,23 @@ bool bodies_between(const Scene& scene, const Vec3& from, const Vec3& to) {
   return false;
 }
 
+bool has_opening(const Scene& scene, int axis, int side) {
+  return std::any_of(scene.openings.begin(), scene.openings.end(),
+                     [&](const Opening& one) { return one.axis == axis && one.side == side; });
+}
+
+// Whether the foot of a place on a side is in an opening.
+bool before_opening(const Scene& scene, int axis, int side, const Vec3& r) {
+  return std::any_of(scene.openings.begin(), scene.openings.end(), [&](const Opening& one) {
+    if (one.axis != axis || one.side != side) return false;
+    Vec3 foot = r;
+    foot[axis] = one.lower[axis];
+    for (int a = 0; a < scene.domain.dimensions; ++a)
+      if (a != axis && (r[a] < one.lower[a] || r[a] > one.upper[a])) return false;
+    return one.where == nullptr || (*one.where)(foot[0], foot[1], foot[2], 0) > 0;
+  });
+}
+
 // Times at which expressions of an opening are asked.
 constexpr int level_samples = 100;
 
@@ -54,7 +73,9 @@ std::vector<Problem> open_side_warnings(const Draft& draft, const Scene& scene, 
   std::vector<Problem> warnings;
   const Domain& domain = scene.domain;
   const int up = domain.dimensions - 1;
-  if (!(scene.fluid.gravity[up] < 0)) return warnings;
+  // Without it liquid that nothing holds may stay where it is; beside an opening of its side the stream spreads there.
+  const bool falls = scene.fluid.gravity[up] < 0;
+  if (!falls && scene.openings.empty()) return warnings;
   const InitialParticles& particles = scene.particles;
   const Node* node = draft.node("domain");
   const auto warn = [&](const std::string& text) {
@@ -72,19 +93,22 @@ std::vector<Problem> open_side_warnings(const Draft& draft, const Scene& scene, 
   const SolidUnion solids(domain, sides, scene.spacing);
   for (int axis = 0; axis < domain.dimensions; ++axis)
     for (int side = 0; side < 2; ++side) {
-      if (domain.sides[axis][side].bounds_liquid() || (axis == up && side == 1)) continue;
+      if (domain.sides[axis][side].bounds_liquid() || (falls && axis == up && side == 1)) continue;
+      if (!falls && !has_opening(scene, axis, side)) continue;
       const std::string name = side_name(axis, side, domain.dimensions);
       const double plane = side == 0 ? domain.lower[axis] : domain.upper[axis];
       const double loose = count([&](const Vec3& r) {
-        if (axis != up && std::abs(r[axis] - plane) > scene.spacing) return false;
+        if ((axis != up || !falls) && std::abs(r[axis] - plane) > scene.spacing) return false;
+        if (!falls && before_opening(scene, axis, side, r)) return false;
         Vec3 foot = r;
         foot[axis] = plane + (side == 0 ? -1 : 1) * scene.spacing;
         return solids.sees(r, foot, foot) && !bodies_between(scene, r, foot);
       });
       if (loose == 0) continue;
-      warn("nothing holds the liquid: domain." + name + " is open and " +
-           std::to_string(static_cast<long long>(loose)) + " particles lie " + (axis == up ? "above" : "beside") +
-           " it, which leave the domain and are removed; set  " + name + " = \"free-slip\"  to hold them");
+      warn("nothing holds the liquid: domain." + name + " is open" + (falls ? "" : " around its opening") + " and " +
+           std::to_string(static_cast<long long>(loose)) + " particles lie " +
+           (falls && axis == up ? "above" : "beside") + " it, which leave the domain and are removed; set  " + name +
+           " = \"free-slip\"  to hold them");
     }
   return warnings;
 }

@@ -11,7 +11,8 @@
 namespace spume {
 
 // With gravity: particles within a spacing of an open side other than the top, and those with nothing solid below them
-// above an open bottom.
+// above an open bottom. Without gravity: particles within a spacing of the part of a side that is open around an
+// opening, where what enters spreads out.
 std::vector<Problem> open_side_warnings(const Draft& draft, const Scene& scene, const std::string& file);
 
 // Below a free surface: outflows whose level stands a spacing above the liquid of the start before them, at some time.

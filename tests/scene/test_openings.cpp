@@ -13,6 +13,7 @@ using test::replaced;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 // Line 15 is the inflow, 18 the outflow.
 const std::string stream = R"toml(method = "les-sph"
@@ -209,6 +210,22 @@ TEST(Openings, AnOutflowThatIsToFillATankIsWarnedOf) {
   EXPECT_FALSE(said("level = \"0.5 + 0.02*t\""));
   EXPECT_FALSE(said("level = 0.4"));
   EXPECT_FALSE(said("pressure = 3"));
+}
+
+// Without gravity, of a side 1 high in spacings of 0.1 a patch of half: five particles stand beside the rest.
+TEST(Openings, TheOpenRestOfTheirSideIsWarnedOf) {
+  const auto warnings_of = [](const std::string& text) {
+    std::vector<std::string> found;
+    for (const Problem& warning : load_text(text).options.warnings) found.push_back(warning.text);
+    return found;
+  };
+  const std::string patch = replaced(stream, "side = \"left\"", "side = \"left\"\nlower = [0, 0]\nupper = [0, 0.5]");
+  EXPECT_THAT(warnings_of(patch),
+              Contains(HasSubstr("nothing holds the liquid: domain.left is open around its opening and 5 particles lie "
+                                 "beside it, which leave the domain and are removed; set  left = \"free-slip\"")));
+  EXPECT_THAT(warnings_of(stream), Not(Contains(HasSubstr("nothing holds the liquid"))));
+  EXPECT_THAT(warnings_of(replaced(patch, "bottom =", "left = \"free-slip\"\nbottom =")),
+              Not(Contains(HasSubstr("nothing holds the liquid"))));
 }
 
 TEST(Openings, DoNotGoWithWhatCannotPassThem) {
