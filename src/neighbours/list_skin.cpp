@@ -101,7 +101,7 @@ void ListSkin::find_blocks(const Points& points) {
   path_.resize(paths.size());
   for (std::size_t p = 0; p < paths.size(); ++p)
     for (int axis = 0; axis < grid.dimensions(); ++axis) {
-      const int side = paths[p].side[axis];
+      const std::int8_t side = paths[p].side[axis];
       const double lower = points.rules.lower[axis], upper = points.rules.upper[axis];
       path_[p].sign[axis] = static_cast<float>(Images::sign(paths[p], points.rules, axis));
       if (side < 0) continue;

@@ -333,6 +333,13 @@ bool Boundary::holds(int axis, int side) const {
   return !gates_->outflow_at(axis, side, middle);
 }
 
+bool Boundary::clear_of_sides(const Vec3& place) const {
+  if (has_obstacles() || gates_ != nullptr) return false;
+  for (int axis = 0; axis < domain_.dimensions; ++axis)
+    if (!(place[axis] > walls[axis][0] + gap() && place[axis] < walls[axis][1] - gap())) return false;
+  return true;
+}
+
 void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity, const Vec3* from) const {
   const double tiny = wall_gap * spacing_;
   if (from != nullptr && bodies_ != nullptr && bodies_->thin() != nullptr)

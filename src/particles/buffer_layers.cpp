@@ -74,17 +74,20 @@ const Array<std::int32_t>& BufferLayers::find_members() {
   return members_;
 }
 
-bool BufferLayers::any_inflow() const {
-  return std::any_of(gates_.list.begin(), gates_.list.end(), [](const OpenGate& gate) { return gate.opening->inflow; });
-}
-
-Vec3 BufferLayers::foot_of(std::size_t i) const {
-  const Column& column = column_of(i);
-  return gates_.list[static_cast<std::size_t>(column.gate)].columns[static_cast<std::size_t>(column.cell)].foot;
-}
-
-double BufferLayers::depth_of(std::size_t i) const {
-  return gate_of((*column_)[i]).depth_behind(vector_at(particles_.position, particles_.dimensions, i));
+std::vector<Coming> BufferLayers::coming() {
+  std::vector<Coming> list;
+  for (const std::int32_t member : find_members()) {
+    const auto i = static_cast<std::size_t>(member);
+    if (!leads(i)) continue;
+    const Column& column = column_of(i);
+    const OpenGate& gate = gates_.list[static_cast<std::size_t>(column.gate)];
+    const double depth = gate.depth_behind(vector_at(particles_.position, particles_.dimensions, i));
+    list.push_back({.particle = i,
+                    .foot = gate.columns[static_cast<std::size_t>(column.cell)].foot,
+                    .depth = std::max(0.0, depth),
+                    .speed = gate.inwards * column.velocity[gate.opening->axis]});
+  }
+  return list;
 }
 
 std::vector<std::int32_t> BufferLayers::nearest_liquid() {
@@ -113,10 +116,9 @@ std::vector<std::int32_t> BufferLayers::nearest_liquid() {
       nearest[c] = i;
     }
   }
-  for (const std::int32_t member : find_members()) {
-    const auto i = static_cast<std::size_t>(member), c = static_cast<std::size_t>((*column_)[i]);
-    if (!leads(i) || nearest[c] >= 0) continue;
-    nearest[c] = nearest_of_all(foot_of(i));
+  for (const Coming& one : coming()) {
+    std::int32_t& like = nearest[static_cast<std::size_t>((*column_)[one.particle])];
+    if (like < 0) like = nearest_of_all(one.foot);
   }
   return nearest;
 }

@@ -54,8 +54,17 @@ ParticleSnapshot SnapshotTable::take(std::string name, std::size_t size, const V
   ParticleSnapshot snapshot;
   snapshot.name = std::move(name);
   snapshot.size = size;
-  for (const Array<double>* component : position)
-    if (component != nullptr) snapshot.position.push_back(component->data());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (position[axis] == nullptr) continue;
+    const double* from = position[axis]->data();
+    snapshot.position.push_back(from);
+    if (domain_ == nullptr || !domain_->periodic(static_cast<int>(axis))) continue;
+    const double lower = domain_->lower[axis], length = domain_->upper[axis] - lower;
+    shown_[axis].resize(size);
+    double* to = shown_[axis].data();
+    parallel_for(size, [=](std::size_t i) { to[i] = from[i] - length * std::floor((from[i] - lower) / length); });
+    snapshot.position.back() = to;
+  }
   for (const Entry& entry : entries_) {
     const bool take =
         wanted.empty() ? entry.standard : std::find(wanted.begin(), wanted.end(), entry.name) != wanted.end();

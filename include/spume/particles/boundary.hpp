@@ -168,6 +168,9 @@ class Boundary {
 
   // How near to a wall points may come.
   double gap() const;
+  // Whether apply_walls() would leave a place as it is: before all sides, in scenes without bodies and openings; false
+  // where that is not seen at once.
+  bool clear_of_sides(const Vec3& place) const;
 
   double bytes() const;
 

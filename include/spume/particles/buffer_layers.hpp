@@ -54,10 +54,7 @@ class BufferLayers {
   }
   const Column& column_of(std::size_t i) const { return columns_[static_cast<std::size_t>((*column_)[i])]; }
   std::size_t columns() const { return columns_.size(); }
-  bool any_inflow() const;
-  // Where a particle of a layer will pass the side, and how far it is from there.
-  Vec3 foot_of(std::size_t i) const;
-  double depth_of(std::size_t i) const;
+  std::vector<Coming> coming();  // all behind inflows
   // Per column of an inflow that has particles the liquid particle that is nearest before its side, where there is none
   // within a support radius the nearest of all liquid; -1 of other columns, and without liquid.
   std::vector<std::int32_t> nearest_liquid();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -40,6 +41,13 @@ struct OpenGate {
   // Of as many layers as fill a depth, half a layer behind the side and farther: what takes the place of a particle
   // that comes back stands a layer behind the last.
   double whole_layers(double reach) const;
+};
+
+// A particle behind an inflow: where it will pass the side, how far it is from there, and how fast it goes.
+struct Coming {
+  std::size_t particle = 0;
+  Vec3 foot{};
+  double depth = 0, speed = 0;
 };
 
 class OpenGates {

@@ -47,6 +47,8 @@ class SnapshotTable {
   void add(std::string name, bool standard, const Array<std::int64_t>& values);
   // One that is computed for every snapshot.
   void add(std::string name, bool standard, std::function<double(std::size_t)> value);
+  // Particles are shown inside along periodic axes of the domain, which outlives the table, wherever they are.
+  void go_round(const Domain& domain) { domain_ = &domain; }
   // Particles with 0 or more are not in the snapshots.
   void leave_out(const Array<std::int64_t>& left_out) { left_out_ = &left_out; }
 
@@ -68,6 +70,8 @@ class SnapshotTable {
   void gather(ParticleSnapshot& snapshot);
 
   const Array<std::int64_t>* left_out_ = nullptr;
+  const Domain* domain_ = nullptr;
+  std::array<Array<double>, 3> shown_;  // along periodic axes
   std::map<std::string, Array<double>> computed_;
   Array<std::int32_t> chosen_;
   std::map<std::string, std::vector<Array<double>>> chosen_values_;

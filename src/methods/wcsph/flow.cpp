@@ -76,8 +76,8 @@ Flow::Flow(const LoadedCase& loaded_case)
       openings(features.openings ? std::make_unique<BufferLayers>(scene, resolution, skin, particles) : nullptr),
       boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution), nullptr,
                openings == nullptr ? nullptr : &openings->gates()),
-      wall_gap(boundary.gap()),
       arrangement(scene.domain, resolution, particles.volume, particles.size(), skin),
+      list_life(arrangement, particles, resolution.support_radius, skin, !features.bodies && !features.openings),
       walls(boundary, wall_gravity, particles.scratch()),
       parting(scene, boundary, resolution, particles.volume, wall_gravity),
       solutes(particles, resolution, options, scene),
@@ -129,21 +129,12 @@ void Flow::fill_layers() {
 }
 
 void Flow::lead_scalars() {
-  if (!openings->any_inflow()) return;
-  std::vector<Scalars::Led> led;
-  for (const std::int32_t member : openings->find_members()) {
-    const auto i = static_cast<std::size_t>(member);
-    if (!openings->leads(i)) continue;
-    const OpenGate& gate = openings->gate_of(openings->column()[i]);
-    led.push_back({.particle = i,
-                   .foot = openings->foot_of(i),
-                   .depth = std::max(0.0, openings->depth_of(i)),
-                   .speed = gate.inwards * openings->column_of(i).velocity[gate.opening->axis]});
-  }
-  solutes.scalars->lead(led, time, options.time.end, resolution.support_radius);
+  const std::vector<Coming> coming = openings->coming();
+  if (coming.empty()) return;
+  solutes.scalars->lead(coming, time, options.time.end, resolution.support_radius);
   if (!solutes.scalars->follows()) return;
   const std::vector<std::int32_t> nearest = openings->nearest_liquid();
-  for (const Scalars::Led& one : led) {
+  for (const Coming& one : coming) {
     const std::int32_t like = nearest[static_cast<std::size_t>(openings->column()[one.particle])];
     if (like >= 0) solutes.scalars->follow(one.particle, static_cast<std::size_t>(like));
   }
@@ -238,8 +229,8 @@ void Flow::find_signal() {
       });
   signal = largest.signal;
   largest_speed = std::sqrt(largest.speed2);
-  largest_transport = std::sqrt(largest.transport2);
-  largest_acceleration = std::sqrt(largest.acceleration2);
+  list_life.fastest = std::sqrt(largest.transport2);
+  list_life.most_accelerated = std::sqrt(largest.acceleration2);
 }
 
 std::string Flow::laws_in_words() const {

@@ -18,57 +18,10 @@ constexpr double shifting_strength = 2, largest_shift = 0.5;
 
 }  // namespace
 
-// Where the particles will be at the end of the step is known: r + dt (u + dt/2 a). Until the fastest could have used
-// up what the lists have in hand nobody is looked at: sides hold particles without moving them farther than that.
 bool Flow::lists_hold(double dt) {
   if (features.displaced_bodies && boundary.bodies()->way_of_points(listed_time, time + dt) > skin / 2) return false;
-  const bool of_flow_alone = !features.bodies && !features.openings;
-  next_slack = list_slack - 2 * dt * (largest_transport + dt / 2 * largest_acceleration);
-  if (of_flow_alone && dt > 0 && next_slack >= 0) return true;
-  FloatVectorScratch way;
-  particles.scratch().lease(way, dimensions, size());
-  struct Longest {
-    double way2 = 0, step2 = 0;
-  };
-  const Longest longest = parallel_reduce(
-      size(), Longest{},
-      [&](std::size_t first, std::size_t last) {
-        Longest so_far;
-        for (std::size_t i = first; i < last; ++i) {
-          double way2 = 0, step2 = 0;
-          for (int axis = 0; axis < dimensions; ++axis) {
-            const double u = (*particles.velocity[axis])[i] + dt / 2 * (*acceleration[axis])[i];
-            const double step = dt * transport(axis, u, i);
-            const double whole = (*particles.position[axis])[i] + step - listed_at(axis, i);
-            way[axis][i] = static_cast<float>(whole);
-            way2 += whole * whole;
-            step2 += step * step;
-          }
-          so_far = {larger_or_nan(so_far.way2, way2), larger_or_nan(so_far.step2, step2)};
-        }
-        return so_far;
-      },
-      [](const Longest& a, const Longest& b) {
-        return Longest{larger_or_nan(a.way2, b.way2), larger_or_nan(a.step2, b.step2)};
-      });
-  // Two that pass each other are nearer in the middle of the step than at its ends: by a^2 / (8 R), a the way of one
-  // against the other in the step.
-  const double support_radius = resolution.support_radius, passing = longest.step2 / (2 * support_radius);
-  next_slack = skin - 2 * std::sqrt(longest.way2);
-  // Wall points do not go with the liquid, and layers before openings are as deep as half a skin lets them.
-  if (next_slack < 0 && of_flow_alone && has_lists)
-    next_slack = list_skin.nearest({.grid = arrangement.grid,
-                                    .particles = arrangement.table,
-                                    .images = arrangement.images,
-                                    .rules = boundary.image_rules(arrangement.grid.support_radius()),
-                                    .origin = arrangement.origin,
-                                    .place = read(listed),
-                                    .way = read(way)},
-                                   std::sqrt(longest.way2)) -
-                 passing - support_radius;
-  particles.scratch().release(way);
-  if (dt == 0) list_slack = next_slack;
-  return next_slack >= 0;
+  return list_life.last(dt, {read(listed), read(acceleration), read(shift)},
+                        boundary.image_rules(arrangement.grid.support_radius()), particles.scratch());
 }
 
 void Flow::build_lists() {
@@ -92,7 +45,7 @@ void Flow::build_lists() {
   scratch.release(place_of_list);
   if (features.tension) tension->find_bands(arrangement, *phase_number);
   walls.find_entries(arrangement);
-  list_skin.renew();
+  list_life.remake();
   has_lists = true;
   ++list_builds;
 }
@@ -115,7 +68,7 @@ void Flow::keep_lists(double dt) {
     }
   });
   build_lists();
-  list_slack = skin;
+  list_life.renew();
   if (lists_hold(dt)) return;
   StepFailure::Details details;
   details.cause = "a particle would leave its lists of neighbours in one step";
@@ -135,14 +88,6 @@ void Flow::apply_walls(std::size_t i, Vec3& r, Vec3* u, const Vec3* from) const 
     openings->apply_walls(boundary, i, r, u, from);
   else
     boundary.apply_walls(boundary.walls, r, u, from);
-}
-
-// Before all sides, in scenes that have nothing else: apply_walls() would leave it there.
-bool Flow::clear_of_walls(const Vec3& r) const {
-  if (boundary.has_obstacles() || features.openings) return false;
-  for (int axis = 0; axis < dimensions; ++axis)
-    if (!(r[axis] > boundary.walls[axis][0] + wall_gap && r[axis] < boundary.walls[axis][1] - wall_gap)) return false;
-  return true;
 }
 
 void Flow::measure_volume() {
@@ -181,7 +126,7 @@ Vec3 Flow::held_velocity(std::size_t i, double dt, Vec3& r) const {
     u[axis] = half.velocity;
     r[axis] = half.place + half.way;
   }
-  if (clear_of_walls(r)) return u;
+  if (boundary.clear_of_sides(r)) return u;
   const Vec3 before = r, from = vector_at(particles.position, dimensions, i);
   apply_walls(i, r, &u, &from);
   // Particles go round periodic sides when lists are made; those of inflows keep to their columns there too.
@@ -460,7 +405,7 @@ void Flow::accept(double dt) {
     if (features.scalars) solutes.scalars->count_openings(amounts);
   }
   if (features.tension) surface_energy = tension->energy();
-  list_slack = next_slack;
+  list_life.accept();
   if (features.density_relaxation) measured_way += dt * std::min(largest_speed, expected_speed);
   time += dt;
   if (dt > 0) ++steps;

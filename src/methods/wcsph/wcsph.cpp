@@ -61,6 +61,7 @@ Wcsph::Wcsph(const LoadedCase& loaded)
       throw refusal(loaded.options, "compressibility.max_speed",
                     "nothing tells how fast the flow will be: it starts at rest, without gravity, forces and moving "
                     "walls; set compressibility.max_speed");
+  snapshot_.go_round(flow_.scene.domain);  // which particles do where lists are made
   if (flow_.features.openings) {
     snapshot_.leave_out(flow_.openings->column());
     if (const auto fastest = flow_.acoustic->fastest_inflow(loaded.options.time.end); fastest.mach >= 1)
@@ -73,7 +74,7 @@ Wcsph::Wcsph(const LoadedCase& loaded)
   if (flow_.features.bodies)
     body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
   saved_.add(flow_.time).add(flow_.steps).add(flow_.signal).add(flow_.largest_speed).add(flow_.boundary.wall_speed);
-  saved_.add(flow_.largest_transport).add(flow_.largest_acceleration);
+  saved_.add(flow_.list_life.fastest).add(flow_.list_life.most_accelerated);
   if (flow_.features.layers) saved_.add(flow_.settled).add(flow_.arrangement.context.gradient_scale);
   if (flow_.features.tension) saved_.add(flow_.surface_energy);
   if (flow_.features.density_relaxation) saved_.add(flow_.relaxation->volume).add(flow_.measured_way);
@@ -129,21 +130,8 @@ void Wcsph::declare_series() {
   flow.solutes.add_columns(series_, nullptr);
 }
 
-// Particles go round periodic sides where lists are made; who looks sees them inside.
 std::vector<ParticleSnapshot> Wcsph::snapshot_on_demand() {
-  VectorField place = flow_.particles.position;
-  for (int axis = 0; axis < flow_.dimensions; ++axis) {
-    const Domain& domain = flow_.scene.domain;
-    if (!domain.periodic(axis)) continue;
-    const double lower = domain.lower[axis], length = domain.upper[axis] - lower;
-    const Array<double>& from = *place[axis];
-    shown_[axis].resize(flow_.size());
-    parallel_for(flow_.size(), [&, axis](std::size_t i) {
-      shown_[axis][i] = from[i] - length * std::floor((from[i] - lower) / length);
-    });
-    place[axis] = &shown_[axis];
-  }
-  return {snapshot_.take("fluid", flow_.size(), place, flow_.options.output.fields)};
+  return {snapshot_.take("fluid", flow_.size(), flow_.particles.position, flow_.options.output.fields)};
 }
 
 std::vector<Remark> Wcsph::take_remarks() {
@@ -184,6 +172,7 @@ std::vector<Invariant> Wcsph::invariants() const {
 std::vector<ArrayInfo> Wcsph::arrays() const {
   std::vector<ArrayInfo> list = particle_arrays(flow_.particles, flow_.arrangement);
   if (flow_.features.bodies) list.push_back({"wall points", flow_.boundary.bytes() + flow_.walls.bytes()});
+  list.push_back({"blocks of lists", flow_.list_life.bytes()});
   if (flow_.features.tension) list.push_back({"interfaces", flow_.tension->bytes()});
   if (flow_.features.openings) list.push_back({"openings", flow_.openings->bytes() + flow_.acoustic->bytes()});
   list.push_back({"leased within a step", flow_.leased_bytes()});
@@ -227,7 +216,7 @@ void Wcsph::table_rows(const std::string&, std::vector<double>& rows) {
 
 void Wcsph::save(StateWriter& writer) const {
   const std::int64_t count[] = {static_cast<std::int64_t>(flow_.size())};
-  const double lists[] = {flow_.listed_time, flow_.list_slack};
+  const double lists[] = {flow_.listed_time, flow_.list_life.slack};
   saved_.save(writer);
   writer.f64("lists", lists);
   writer.i64("counters", count);
@@ -256,7 +245,7 @@ void Wcsph::load(StateReader& reader) {
   load_fields(flow_.particles.fields, static_cast<std::size_t>(count[0]), "particle", reader);
   flow_.solutes.load(reader);
   flow_.listed_time = lists[0];
-  flow_.list_slack = lists[1];
+  flow_.list_life.slack = lists[1];
   flow_.has_lists = false;
   sampled_step_ = -1;
 }

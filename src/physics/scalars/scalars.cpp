@@ -93,12 +93,12 @@ void Scalars::enter(std::int64_t first, std::int64_t last, double t) {
       });
 }
 
-void Scalars::lead(const std::vector<Led>& led, double t, double end, double support_radius) {
+void Scalars::lead(const std::vector<Coming>& coming, double t, double end, double support_radius) {
   for (std::size_t s = 0; s < size(); ++s) {
     if (option(s).inflow == nullptr) continue;
     const std::unique_ptr<Expression> brought = option(s).inflow->clone();
     const double diffusivity = option(s).diffusivity;
-    for (const Led& one : led) {
+    for (const Coming& one : coming) {
       double later = diffusivity > 0 ? support_radius * support_radius / (2 * diffusivity) : std::max(0.0, end - t);
       if (one.speed * later > one.depth) later = one.depth / one.speed;
       (*fields_[s])[one.particle] = (*brought)(one.foot[0], one.foot[1], one.foot[2], t + later);

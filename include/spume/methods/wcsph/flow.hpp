@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "spume/methods/wcsph/options.hpp"
-#include "spume/neighbours/list_skin.hpp"
 #include "spume/operators/wcsph_sums.hpp"
 #include "spume/particles/acoustic_layers.hpp"
 #include "spume/particles/arrangement.hpp"
@@ -17,6 +16,7 @@
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/buffer_layers.hpp"
 #include "spume/particles/excess_relaxation.hpp"
+#include "spume/particles/list_life.hpp"
 #include "spume/particles/phase_law.hpp"
 #include "spume/particles/surface_tension.hpp"
 #include "spume/particles/wall_parting.hpp"
@@ -70,26 +70,21 @@ struct Flow {
   std::unique_ptr<BufferLayers> openings;    // null: none
   std::unique_ptr<AcousticLayers> acoustic;  // null: none
   Boundary boundary;
-  const double wall_gap;   // of particles from sides
   double listed_time = 0;  // of the places of moving bodies in the lists
   double settled = 0;      // 1: settle() has been
   double unsettled = 0;    // the largest acceleration that it has left, over that of gravity
   double signal = 0;       // largest sum of sound speed and speed
   double largest_speed = 0;
-  double largest_transport = 0;  // of u + delta u
-  double largest_acceleration = 0;
-  double list_slack = 0;      // how much farther apart than the support whoever is not in the lists is at least
   double measured_way = 0;    // of the fastest particle since (12) was measured
   double surface_energy = 0;  // of the interfaces where the last forces were found
 
   // --- Lists of neighbours at `listed`, seen from where the particles are.
   Arrangement arrangement;
   ParticleSizes sizes;  // all alike
-  ListSkin list_skin;
+  ListLife list_life;
   bool has_lists = false;
   std::int64_t list_builds = 0;
   bool has_moved = false;                        // far enough for (12) to be measured anew
-  double next_slack = 0;                         // list_slack when the step is accepted
   AveragedWalls walls;                           // of bodies
   const WallParting parting;                     // (8)
   std::unique_ptr<ExcessRelaxation> relaxation;  // (12); null: none
@@ -153,7 +148,6 @@ struct Flow {
   HalfStep half_step(int axis, std::size_t i, double dt) const;
   Vec3 held_velocity(std::size_t i, double dt, Vec3& r) const;
   void apply_walls(std::size_t i, Vec3& r, Vec3* u, const Vec3* from) const;
-  bool clear_of_walls(const Vec3& r) const;
   SurfaceTension::Now tension_now();
   void build_lists();
   bool lists_hold(double dt);

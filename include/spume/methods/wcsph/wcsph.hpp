@@ -66,7 +66,6 @@ class Wcsph final : public Method, public FieldProbes, public SurfaceProbes {
   SavedNumbers saved_{"scalars"};
   PhaseSums phase_sums_;  // of the row of the series that is being read
   PointSampler sampler_;
-  std::array<Array<double>, 3> shown_;  // along periodic axes
   Array<double> sampled_pressure_;
   std::int64_t sampled_step_ = -1;                 // that the sampler has binned
   std::unique_ptr<const BodyForces> body_forces_;  // its table; null without bodies

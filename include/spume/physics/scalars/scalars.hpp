@@ -21,6 +21,7 @@
 
 #include "spume/operators/scalar_transport.hpp"
 #include "spume/particles/arrangement.hpp"
+#include "spume/particles/open_gates.hpp"
 #include "spume/particles/reports.hpp"
 #include "spume/particles/resolution.hpp"
 #include "spume/physics/scalars/options.hpp"
@@ -81,16 +82,10 @@ class Scalars {
   void leave_out(const Array<std::int64_t>& column) { left_out_ = &column; }
   const Array<std::int64_t>* left_out() const { return left_out_; }
   bool counts(std::size_t i) const { return left_out_ == nullptr || (*left_out_)[i] < 0; }
-  // A particle behind an inflow: where it will pass the side, how far it is from there, and how fast it goes.
-  struct Led {
-    std::size_t particle = 0;
-    Vec3 foot{};
-    double depth = 0, speed = 0;
-  };
-  // Gives them what inflows bring when they pass: after depth / speed from time t on, but no later than diffusion takes
-  // through the layers, R^2 / (2 D): where next to nothing flows the side has what it gives about now. What does not
-  // diffuse is seen by nobody before it passes; it is not asked for after `end`.
-  void lead(const std::vector<Led>& led, double t, double end, double support_radius);
+  // Gives particles behind inflows what these bring when they pass: after depth / speed from time t on, but no later
+  // than diffusion takes through the layers, R^2 / (2 D): where next to nothing flows the side has what it gives about
+  // now. What does not diffuse is seen by nobody before it passes; it is not asked for after `end`.
+  void lead(const std::vector<Coming>& coming, double t, double end, double support_radius);
   // Gives particle i the values that no inflow gives of particle `like`.
   void follow(std::size_t i, std::size_t like);
   bool follows() const;  // whether there are such

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/list_life.hpp"
+
+#include <cmath>
+
+#include "spume/core/parallel.hpp"
+
+namespace spume {
+
+bool ListLife::last(double dt, const Motion& motion, const ImageRules& rules, ScratchPool& scratch) {
+  next_slack_ = slack - 2 * dt * (fastest + dt / 2 * most_accelerated);
+  if (together_ && dt > 0 && next_slack_ >= 0) return true;
+  const int dimensions = particles_.dimensions;
+  const std::size_t n = particles_.size();
+  FloatVectorScratch way;
+  scratch.lease(way, dimensions, n);
+  struct Longest {
+    double way2 = 0, step2 = 0;
+  };
+  const Longest longest = parallel_reduce(
+      n, Longest{},
+      [&](std::size_t first, std::size_t last) {
+        Longest so_far;
+        for (std::size_t i = first; i < last; ++i) {
+          double way2 = 0, step2 = 0;
+          for (int axis = 0; axis < dimensions; ++axis) {
+            double u = (*particles_.velocity[axis])[i] + dt / 2 * motion.acceleration[axis][i];
+            if (motion.shift[axis] != nullptr) u += motion.shift[axis][i];
+            const double listed = arrangement_.origin[axis] + double{motion.listed[axis][i]};
+            const double whole = (*particles_.position[axis])[i] + dt * u - listed;
+            way[axis][i] = static_cast<float>(whole);
+            way2 += whole * whole;
+            step2 += dt * u * dt * u;
+          }
+          so_far = {larger_or_nan(so_far.way2, way2), larger_or_nan(so_far.step2, step2)};
+        }
+        return so_far;
+      },
+      [](const Longest& a, const Longest& b) {
+        return Longest{larger_or_nan(a.way2, b.way2), larger_or_nan(a.step2, b.step2)};
+      });
+  next_slack_ = skin_ - 2 * std::sqrt(longest.way2);
+  if (next_slack_ < 0 && together_) {
+    // Two that pass each other are nearer in the middle of the step than at its ends: by a^2 / (8 R), a the way of one
+    // against the other in the step.
+    const double passing = longest.step2 / (2 * support_radius_);
+    const double nearest = list_skin_.nearest({.grid = arrangement_.grid,
+                                               .particles = arrangement_.table,
+                                               .images = arrangement_.images,
+                                               .rules = rules,
+                                               .origin = arrangement_.origin,
+                                               .place = motion.listed,
+                                               .way = read(way)},
+                                              std::sqrt(longest.way2));
+    next_slack_ = nearest - passing - support_radius_;
+  }
+  scratch.release(way);
+  if (dt == 0) slack = next_slack_;
+  return next_slack_ >= 0;
+}
+
+}  // namespace spume

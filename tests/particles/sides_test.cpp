@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include "particles/walled.hpp"
+
+namespace spume::test {
+namespace {
+
+// Places all around a box of walls, periodic sides and open ones: those that are said to be clear of sides are left to
+// the bit, and so are all but those within a ten thousandth of a spacing of a side, which is the other way round.
+TEST(BoundarySides, APlaceClearOfThemIsLeftWhereItIs) {
+  for (const char* domain : {"lower = [0, 0]\nupper = [1, 0.7]\nleft = \"free-slip\"\nbottom = \"no-slip\"\n",
+                             "lower = [-1, 0, 0]\nupper = [1, 1, 1]\nx = \"periodic\"\nfront = \"free-slip\"\n"
+                             "back = \"free-slip\"\nbottom = \"free-slip\"\n"}) {
+    const LoadedCase loaded = load_text(scene_text(domain, 0.1, ""));
+    const Domain& box = loaded.scene.domain;
+    const Boundary boundary(box, loaded.scene.spacing, nullptr);
+    std::size_t clear = 0, held = 0;
+    for (std::uint64_t n = 0; n < 4000; ++n) {
+      Vec3 place{};
+      double depth = 1;
+      for (int axis = 0; axis < box.dimensions; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        // One in four lies within some gaps of a side.
+        const Point r = uniform(n, 5), near = uniform(n, 6);
+        const double side = near[a] < 0.5 ? box.lower[a] : box.upper[a];
+        place[a] = n % 4 == 0 && n / 4 % static_cast<std::uint64_t>(box.dimensions) == static_cast<std::uint64_t>(axis)
+                       ? side + 4 * boundary.gap() * (2 * r[a] - 1)
+                       : box.lower[a] + (1.2 * r[a] - 0.1) * (box.upper[a] - box.lower[a]);
+        depth = std::min({depth, place[a] - box.lower[a], box.upper[a] - place[a]});
+      }
+      Vec3 held_place = place;
+      boundary.apply_walls(boundary.walls, held_place, nullptr);
+      if (boundary.clear_of_sides(place)) {
+        EXPECT_EQ(held_place, place);
+        ++clear;
+      } else {
+        EXPECT_LT(depth, 1.01 * boundary.gap());
+        held += held_place != place ? 1 : 0;
+      }
+    }
+    EXPECT_GT(clear, 1000U);
+    EXPECT_GT(held, 100U);
+  }
+}
+
+// Bodies and openings have sides of their own.
+TEST(BoundarySides, NoPlaceBesideABodyIsSaidToBeClear) {
+  const Walled walled(scene_text("lower = [0, 0]\nupper = [1, 1]\nbottom = \"free-slip\"\n", 0.1,
+                                 "[[body]]\nshape = \"ball\"\nradius = 0.2\nposition = [0.5, 0.5]\n"));
+  EXPECT_FALSE(walled.boundary.clear_of_sides({0.5, 0.8, 0}));
+}
+
+}  // namespace
+}  // namespace spume::test
