@@ -14,7 +14,7 @@ namespace spume {
 
 struct Arrangement {
   // Cells cover the domain and one support radius around it. `particles`: how many there will be, about. `skin`: how
-  // much farther than the support the lists reach; they hold until a particle has moved by half of it (move()).
+  // much farther than the support the lists reach; how long they hold then, particles/list_life.hpp says.
   Arrangement(const Domain& domain, const Resolution& resolution, double particle_volume, std::size_t particles,
               double skin = 0);
   Arrangement(const Arrangement&) = delete;
