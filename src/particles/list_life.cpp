@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "spume/particles/list_life.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "spume/core/parallel.hpp"
 
 namespace spume {
+namespace {
+
+constexpr int longest_wait = 15;  // in lists
+
+}  // namespace
 
 bool ListLife::last(double dt, const Motion& motion, const ImageRules& rules, ScratchPool& scratch) {
-  next_slack_ = slack - 2 * dt * (fastest + dt / 2 * most_accelerated);
+  next_slack_ = slack_ - 2 * dt * (fastest + dt / 2 * most_accelerated);
   if (together_ && dt > 0 && next_slack_ >= 0) return true;
   const int dimensions = particles_.dimensions;
   const std::size_t n = particles_.size();
@@ -40,7 +46,7 @@ bool ListLife::last(double dt, const Motion& motion, const ImageRules& rules, Sc
         return Longest{larger_or_nan(a.way2, b.way2), larger_or_nan(a.step2, b.step2)};
       });
   next_slack_ = skin_ - 2 * std::sqrt(longest.way2);
-  if (next_slack_ < 0 && together_) {
+  if (next_slack_ < 0 && together_ && waiting_ == 0) {
     // Two that pass each other are nearer in the middle of the step than at its ends: by a^2 / (8 R), a the way of one
     // against the other in the step.
     const double passing = longest.step2 / (2 * support_radius_);
@@ -53,10 +59,28 @@ bool ListLife::last(double dt, const Motion& motion, const ImageRules& rules, Sc
                                                .way = read(way)},
                                               std::sqrt(longest.way2));
     next_slack_ = nearest - passing - support_radius_;
+    if (next_slack_ >= 0) {
+      helped_ = true;
+      waited_ = 0;
+    } else if (!helped_) {
+      waited_ = std::min(2 * waited_ + 1, longest_wait);
+      waiting_ = waited_ + 1;  // these, and so many more
+    }
   }
   scratch.release(way);
-  if (dt == 0) slack = next_slack_;
+  if (dt == 0) slack_ = next_slack_;
   return next_slack_ >= 0;
+}
+
+std::vector<double> ListLife::state() const {
+  return {slack_, helped_ ? 1.0 : 0.0, static_cast<double>(waiting_), static_cast<double>(waited_)};
+}
+
+void ListLife::restore(const double* state) {
+  slack_ = state[0];
+  helped_ = state[1] != 0;
+  waiting_ = static_cast<int>(state[2]);
+  waited_ = static_cast<int>(state[3]);
 }
 
 }  // namespace spume

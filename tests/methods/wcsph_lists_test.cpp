@@ -171,6 +171,8 @@ TEST(WcsphLists, WhoLooksSeesParticlesInsideAndAllAroundPeriodicSides) {
       ASSERT_GE(seen.position[0][i], 0);
       ASSERT_LE(seen.position[0][i], 1);
     }
+    // Thirty columns, one of which may have gone round: half a spacing off the middle at most.
+    EXPECT_NEAR(run.series().at("centre_liquid_x"), 0.5, 0.51 / 30);
     FieldProbes* const probes = run.method.field_probes();
     for (const double x : {0.001, 0.105, 0.115, 0.125, 0.999})
       error = std::max(error, std::abs(probes->sample({x, 0.51, 0}).velocity[1] -
@@ -179,6 +181,44 @@ TEST(WcsphLists, WhoLooksSeesParticlesInsideAndAllAroundPeriodicSides) {
   EXPECT_GT(outside, 2 * run.method.flow().skin) << "nobody has gone far enough for the test to see anything";
   // A linear fit to a wave of 30 spacings misses h^2 v'' / 2 of it at most, 0.037.
   EXPECT_LT(error, 0.1 * 0.037);
+}
+
+// Two drops that run into each other have to have new lists as soon as one has gone half a skin: after some vain looks
+// there are fewer of them. A stream keeps on looking.
+TEST(WcsphLists, TheBoundIsNotAskedForWhereItDoesNotHelp) {
+  WcsphRun drops(R"toml(method = "wcsph"
+[domain]
+lower = [-1, -0.6]
+upper = [1, 0.6]
+[resolution]
+spacing = 0.04
+[[phase]]
+name = "water"
+density = 1000
+viscosity = 0.5
+[[region]]
+phase = "water"
+centre = [-0.4, 0.02]
+radius = 0.3
+velocity = ["1", "0"]
+[[region]]
+phase = "water"
+centre = [0.4, -0.02]
+radius = 0.3
+velocity = ["-1", "0"]
+[time]
+end = 1
+)toml");
+  WcsphRun stream(vortices_in_stream);
+  double longest_wait = 0;
+  for (int step = 0; step < 400; ++step) {
+    drops.method.step(0.4 * drops.method.step_limit().dt, drops.ledger);
+    longest_wait = std::max(longest_wait, drops.method.flow().list_life.state()[3]);
+    if (step >= 40) continue;
+    stream.method.step(stream.method.step_limit().dt, stream.ledger);
+    EXPECT_EQ(stream.method.flow().list_life.state()[2], 0) << step;
+  }
+  EXPECT_GE(longest_wait, 7);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, WcsphListsOf, ::testing::Values(collapse, vortices_in_stream, channel));

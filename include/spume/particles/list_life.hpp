@@ -7,6 +7,9 @@
 // that is more. A step takes no more of it than twice the fastest could go, so that nobody is looked at while it lasts.
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "spume/neighbours/list_skin.hpp"
 #include "spume/particles/arrangement.hpp"
 
@@ -35,22 +38,31 @@ class ListLife {
 
   // Lists have been made anew where the particles are; or the same again, of a state that has been restored.
   void renew() {
-    slack = skin_;
+    slack_ = skin_;
+    helped_ = false;
+    if (waiting_ > 0) --waiting_;
     remake();
   }
   void remake() { list_skin_.renew(); }
-  void accept() { slack = next_slack_; }
+  void accept() { slack_ = next_slack_; }
   double bytes() const { return list_skin_.bytes(); }
 
-  // State between steps: what is in hand, and of the fastest particles |u + delta u| and |a|.
-  double slack = 0, fastest = 0, most_accelerated = 0;
+  // State between steps: of the fastest particles |u + delta u| and |a|; and what refused steps too may change, as the
+  // places of the lists.
+  double fastest = 0, most_accelerated = 0;
+  static constexpr std::size_t state_size = 4;
+  std::vector<double> state() const;
+  void restore(const double* state);
 
  private:
   const Arrangement& arrangement_;
   const ParticleStore& particles_;
   const double support_radius_, skin_;
   const bool together_;
-  double next_slack_ = 0;  // of the end of the step
+  double slack_ = 0, next_slack_ = 0;  // in hand, and at the end of the step
+  // Whether the bound has helped these lists, how many it is not asked for, and how many it was not the last time.
+  bool helped_ = false;
+  int waiting_ = 0, waited_ = 0;
   ListSkin list_skin_;
 };
 

@@ -26,6 +26,8 @@ class PhaseSums {
         left_out_(left_out),
         sums_(density_.size()) {}
 
+  // Particles count inside along periodic axes of the domain, which outlives the sums, wherever they are.
+  void go_round(const Domain& domain) { domain_ = &domain; }
   std::size_t size() const { return density_.size(); }
   void find();  // of the present state
   const Sums& of(std::size_t phase) const { return sums_[phase]; }
@@ -34,11 +36,13 @@ class PhaseSums {
 
  private:
   Sums sums_of(std::size_t phase) const;
+  double inside(int axis, double x) const;
 
   const ParticleStore& particles_;
   const Array<std::int64_t>& phase_;
   std::vector<double> density_;
   const Array<std::int64_t>* left_out_;
+  const Domain* domain_ = nullptr;
   std::vector<Sums> sums_;
 };
 

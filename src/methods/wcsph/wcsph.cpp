@@ -61,7 +61,8 @@ Wcsph::Wcsph(const LoadedCase& loaded)
       throw refusal(loaded.options, "compressibility.max_speed",
                     "nothing tells how fast the flow will be: it starts at rest, without gravity, forces and moving "
                     "walls; set compressibility.max_speed");
-  snapshot_.go_round(flow_.scene.domain);  // which particles do where lists are made
+  snapshot_.go_round(flow_.scene.domain);  // as particles do where lists are made
+  phase_sums_.go_round(flow_.scene.domain);
   if (flow_.features.openings) {
     snapshot_.leave_out(flow_.openings->column());
     if (const auto fastest = flow_.acoustic->fastest_inflow(loaded.options.time.end); fastest.mach >= 1)
@@ -216,7 +217,8 @@ void Wcsph::table_rows(const std::string&, std::vector<double>& rows) {
 
 void Wcsph::save(StateWriter& writer) const {
   const std::int64_t count[] = {static_cast<std::int64_t>(flow_.size())};
-  const double lists[] = {flow_.listed_time, flow_.list_life.slack};
+  std::vector<double> lists = flow_.list_life.state();
+  lists.push_back(flow_.listed_time);
   saved_.save(writer);
   writer.f64("lists", lists);
   writer.i64("counters", count);
@@ -240,12 +242,12 @@ void Wcsph::load(StateReader& reader) {
     flow_.acoustic->load(reader);
     flow_.openings->load(reader);
   }
-  if (count.size() != 1 || lists.size() != 2)
+  if (count.size() != 1 || lists.size() != ListLife::state_size + 1)
     throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(count[0]), "particle", reader);
   flow_.solutes.load(reader);
-  flow_.listed_time = lists[0];
-  flow_.list_life.slack = lists[1];
+  flow_.list_life.restore(lists.data());
+  flow_.listed_time = lists[ListLife::state_size];
   flow_.has_lists = false;
   sampled_step_ = -1;
 }
