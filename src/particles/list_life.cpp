@@ -72,8 +72,8 @@ bool ListLife::last(double dt, const Motion& motion, const ImageRules& rules, Sc
   return next_slack_ >= 0;
 }
 
-std::vector<double> ListLife::state() const {
-  return {slack_, helped_ ? 1.0 : 0.0, static_cast<double>(waiting_), static_cast<double>(waited_)};
+std::vector<double> ListLife::state(double beside) const {
+  return {slack_, helped_ ? 1.0 : 0.0, static_cast<double>(waiting_), static_cast<double>(waited_), beside};
 }
 
 void ListLife::restore(const double* state) {

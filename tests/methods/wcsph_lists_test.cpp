@@ -213,10 +213,10 @@ end = 1
   double longest_wait = 0;
   for (int step = 0; step < 400; ++step) {
     drops.method.step(0.4 * drops.method.step_limit().dt, drops.ledger);
-    longest_wait = std::max(longest_wait, drops.method.flow().list_life.state()[3]);
+    longest_wait = std::max(longest_wait, drops.method.flow().list_life.state(0)[3]);
     if (step >= 40) continue;
     stream.method.step(stream.method.step_limit().dt, stream.ledger);
-    EXPECT_EQ(stream.method.flow().list_life.state()[2], 0) << step;
+    EXPECT_EQ(stream.method.flow().list_life.state(0)[2], 0) << step;
   }
   EXPECT_GE(longest_wait, 7);
 }

@@ -51,7 +51,7 @@ class ListLife {
   // places of the lists.
   double fastest = 0, most_accelerated = 0;
   static constexpr std::size_t state_size = 4;
-  std::vector<double> state() const;
+  std::vector<double> state(double beside) const;  // with another number behind it
   void restore(const double* state);
 
  private:

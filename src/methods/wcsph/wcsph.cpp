@@ -217,8 +217,7 @@ void Wcsph::table_rows(const std::string&, std::vector<double>& rows) {
 
 void Wcsph::save(StateWriter& writer) const {
   const std::int64_t count[] = {static_cast<std::int64_t>(flow_.size())};
-  std::vector<double> lists = flow_.list_life.state();
-  lists.push_back(flow_.listed_time);
+  const std::vector<double> lists = flow_.list_life.state(flow_.listed_time);
   saved_.save(writer);
   writer.f64("lists", lists);
   writer.i64("counters", count);
