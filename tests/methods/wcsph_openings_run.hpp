@@ -41,6 +41,35 @@ max_speed = 1.5
 end = 0.2
 )toml";
 
+// Liquid at rest between two outflows, on the right one of which the pressure is 20.
+inline const std::string between_outflows =
+    replaced(replaced(replaced(stream, "viscosity = 1\n", "viscosity = 0.01\n"), "velocity = [\"1\", \"0\"]", ""),
+             "[[inflow]]\nside = \"left\"\nvelocity = [\"1\", \"0\"]\n[[outflow]]",
+             "[[outflow]]\nside = \"left\"\n[[outflow]]\npressure = 20");
+
+// A tank of water with a free surface at 0.5.
+inline const std::string tank_half_full = R"toml(method = "wcsph"
+[domain]
+lower = [0, 0]
+upper = [1, 1]
+left = "free-slip"
+right = "free-slip"
+bottom = "free-slip"
+[resolution]
+spacing = 0.05
+[fluid]
+gravity = 1
+[[phase]]
+name = "water"
+density = 1000
+viscosity = 1
+[[region]]
+phase = "water"
+upper = [1, 0.5]
+[time]
+end = 1
+)toml";
+
 // A profile that the stream carries along and diffusion leaves as it is; one of which nothing is said where it enters.
 inline const std::string carried = R"toml([[scalar]]
 name = "dye"

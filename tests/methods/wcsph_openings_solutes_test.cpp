@@ -26,12 +26,7 @@ TEST(WcsphOpeningsSolutes, TheyBringScalarsAndTakeThemOut) {
 // Liquid that a pressure outside drives back through the outflow, seven layers of it, brings what left with it, row by
 // row: what stands behind the side is a copy of what came back before it, of its height. Nothing diffuses, rows stay.
 TEST(WcsphOpeningsSolutes, WhatComesBackBringsItsScalars) {
-  WcsphRun run(
-      replaced(replaced(replaced(stream, "viscosity = 1\n", "viscosity = 0.01\n"), "velocity = [\"1\", \"0\"]", ""),
-               "[[inflow]]\nside = \"left\"\nvelocity = [\"1\", \"0\"]\n[[outflow]]",
-               "[[outflow]]\nside = \"left\"\n[[outflow]]\npressure = 20") +
-          unled,
-      {"compressibility.max_speed=0.3", "resolution.spacing=0.0625"});
+  WcsphRun run(between_outflows + unled, {"compressibility.max_speed=0.3", "resolution.spacing=0.0625"});
   const wcsph::Flow& flow = run.method.flow();
   const double start = run.series().at("amount_of_silt");
   const auto first_newcomer = static_cast<std::int64_t>(flow.size());
@@ -49,35 +44,10 @@ TEST(WcsphOpeningsSolutes, WhatComesBackBringsItsScalars) {
 
 // The jet of an inflow above the liquid has the values of the nearest liquid, not those of any particle.
 TEST(WcsphOpeningsSolutes, WhatEntersAboveTheLiquidHasTheValuesOfTheNearest) {
-  WcsphRun run(R"toml(method = "wcsph"
-[domain]
-lower = [0, 0]
-upper = [1, 1]
-left = "free-slip"
-right = "free-slip"
-bottom = "free-slip"
-[resolution]
-spacing = 0.05
-[fluid]
-gravity = 1
-[[phase]]
-name = "water"
-density = 1000
-viscosity = 1
-[[region]]
-phase = "water"
-upper = [1, 0.3]
-[[inflow]]
-side = "right"
-lower = [1, 0.5]
-upper = [1, 0.7]
-velocity = ["-0.5", "0"]
-[[scalar]]
-name = "silt"
-initial = "x < 0.5 ? 1 : 2"
-[time]
-end = 1
-)toml");
+  WcsphRun run(tank_half_full +
+                   "[[inflow]]\nside = \"right\"\nlower = [1, 0.5]\nupper = [1, 0.7]\nvelocity = [\"-0.5\", \"0\"]\n"
+                   "[[scalar]]\nname = \"silt\"\ninitial = \"x < 0.5 ? 1 : 2\"\n",
+               {"region.0.upper=[1, 0.3]"});
   until(run, 0.3);
   const wcsph::Flow& flow = run.method.flow();
   std::size_t jet = 0;

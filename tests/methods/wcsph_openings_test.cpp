@@ -251,11 +251,7 @@ TEST(WcsphOpenings, LiquidComesBackThroughAnOutflow) {
   constexpr double pressure = 20, density = 1000, spacing = 0.0625;
   // Kernels that reach 2.6 and 3 spacings: with half the skin, less and more than half a layer beyond a whole number.
   for (const char* ratio : {"resolution.smoothing_ratio=1.3", "resolution.smoothing_ratio=1.5"}) {
-    WcsphRun run(
-        replaced(replaced(replaced(stream, "viscosity = 1\n", "viscosity = 0.01\n"), "velocity = [\"1\", \"0\"]", ""),
-                 "[[inflow]]\nside = \"left\"\nvelocity = [\"1\", \"0\"]\n[[outflow]]",
-                 "[[outflow]]\nside = \"left\"\n[[outflow]]\npressure = 20"),
-        {"compressibility.max_speed=0.3", "resolution.spacing=0.0625", ratio});
+    WcsphRun run(between_outflows, {"compressibility.max_speed=0.3", "resolution.spacing=0.0625", ratio});
     const wcsph::Flow& flow = run.method.flow();
     for (int t = 12; t <= 20; t += 4) {  // behind the sound of the start
       until(run, t);
@@ -292,33 +288,8 @@ TEST(WcsphOpenings, SoundLeavesThroughAnOutflow) {
 
 // From a patch of the floor into a tank with a free surface: nothing else enters, nothing is lost.
 TEST(WcsphOpenings, ATankFillsThroughAPatch) {
-  const std::string text = R"toml(method = "wcsph"
-[domain]
-lower = [0, 0]
-upper = [1, 1]
-left = "free-slip"
-right = "free-slip"
-bottom = "free-slip"
-[resolution]
-spacing = 0.05
-[fluid]
-gravity = 1
-[[phase]]
-name = "water"
-density = 1000
-viscosity = 1
-[[region]]
-phase = "water"
-upper = [1, 0.5]
-[[inflow]]
-side = "bottom"
-lower = [0.4, 0]
-upper = [0.6, 0]
-velocity = ["0", "0.25"]
-[time]
-end = 1
-)toml";
-  WcsphRun run(text);
+  WcsphRun run(tank_half_full +
+               "[[inflow]]\nside = \"bottom\"\nlower = [0.4, 0]\nupper = [0.6, 0]\nvelocity = [\"0\", \"0.25\"]\n");
   until(run, 1);
   auto series = run.series();
   EXPECT_NEAR(series["volume_in"], 0.05, 4 * 0.05 * 0.05 * 0.5 + 1e-12);
