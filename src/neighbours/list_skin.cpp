@@ -29,8 +29,7 @@ f32x4 splat4(float value) {
   return f32x4{value, value, value, value};
 }
 
-// A bound from below of the least singular value of I + G, G by columns: 1 + its least eigenvalue of G + G^T + G^T G
-// by the circles of Gershgorin, and where these do not tell, the eigenvalue.
+// The least singular value of I + G, G by columns: the root of the least eigenvalue of (I + G)^T (I + G).
 float least_stretch(const std::array<f32x4, 3>& gradient) {
   std::array<f32x4, 3> map = gradient;
   for (int a = 0; a < 3; ++a) map[static_cast<std::size_t>(a)][a] += 1;

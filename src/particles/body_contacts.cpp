@@ -6,7 +6,6 @@
 #include <set>
 
 #include "spume/core/parallel.hpp"
-#include "spume/core/periodic_grid.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/surface_pieces.hpp"
@@ -96,11 +95,7 @@ Vec3 BodyContacts::normal(std::size_t other, const Vec3& at) const {
 
 // What stands still is known in the domain.
 Vec3 BodyContacts::in_domain(std::size_t other, Vec3 at) const {
-  const Domain& domain = scene_.domain;
-  for (int axis = 0; axis < domain.dimensions; ++axis)
-    if (other == 0 && domain.periodic(axis))
-      at[axis] = wrap_periodic(at[axis], domain.lower[axis], domain.upper[axis] - domain.lower[axis]);
-  return at;
+  return other == 0 ? scene_.domain.inside(at) : at;
 }
 
 bool BodyContacts::may_touch(std::size_t part, std::size_t other) const {

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "spume/core/parallel.hpp"
-#include "spume/core/periodic_grid.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/operators/moving_least_squares.hpp"
 #include "spume/particles/near_particles.hpp"
@@ -206,12 +205,7 @@ BodyForces::Element BodyForces::now(const Element& element) const {
   const auto body = static_cast<std::size_t>(element.body);
   if (!scene_.bodies[body].motion) return element;
   const RigidPlace& place = walls_.part_of(body).place;
-  Vec3 middle = place.now(element.middle);
-  for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
-    const double period = scene_.domain.upper[axis] - scene_.domain.lower[axis];
-    if (scene_.domain.periodic(axis)) middle[axis] = wrap_periodic(middle[axis], scene_.domain.lower[axis], period);
-  }
-  return {middle, place.direction_now(element.area), element.body};
+  return {scene_.domain.inside(place.now(element.middle)), place.direction_now(element.area), element.body};
 }
 
 bool BodyForces::floats(const Element& element) const {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
@@ -90,7 +91,7 @@ std::vector<Coming> BufferLayers::coming() {
   return list;
 }
 
-std::vector<std::int32_t> BufferLayers::nearest_liquid() {
+std::vector<std::int32_t> BufferLayers::nearest_liquid(const std::vector<Coming>& coming) {
   const int d = particles_.dimensions;
   const double reach = resolution_.support_radius;
   const auto before = [&](const OpenGate& gate, const Vec3& place) {
@@ -116,9 +117,14 @@ std::vector<std::int32_t> BufferLayers::nearest_liquid() {
       nearest[c] = i;
     }
   }
-  for (const Coming& one : coming()) {
-    std::int32_t& like = nearest[static_cast<std::size_t>((*column_)[one.particle])];
-    if (like < 0) like = nearest_of_all(one.foot);
+  // Far from all liquid the columns of an opening have one answer: every question goes over all particles.
+  std::vector<std::optional<std::int32_t>> nearest_of_gate(gates_.list.size());
+  for (const Coming& one : coming) {
+    const auto c = static_cast<std::size_t>((*column_)[one.particle]);
+    if (nearest[c] >= 0) continue;
+    std::optional<std::int32_t>& like = nearest_of_gate[static_cast<std::size_t>(columns_[c].gate)];
+    if (!like) like = nearest_of_all(one.foot);
+    nearest[c] = *like;
   }
   return nearest;
 }
@@ -135,7 +141,8 @@ std::int32_t BufferLayers::nearest_of_all(const Vec3& place) const {
                Nearest nearest;
                for (std::size_t i = first; i < last; ++i) {
                  if (holds(i)) continue;
-                 const Vec3 way = subtract(vector_at(particles_.position, particles_.dimensions, i), place);
+                 const Vec3 way =
+                     scene_.domain.shortest(subtract(vector_at(particles_.position, particles_.dimensions, i), place));
                  if (dot(way, way) < nearest.distance2) nearest = {dot(way, way), static_cast<std::int32_t>(i)};
                }
                return nearest;

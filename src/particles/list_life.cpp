@@ -18,8 +18,10 @@ bool ListLife::last(double dt, const Motion& motion, const ImageRules& rules, Sc
   if (together_ && dt > 0 && next_slack_ >= 0) return true;
   const int dimensions = particles_.dimensions;
   const std::size_t n = particles_.size();
+  // Who asks for the bound needs every way.
+  const bool asks = together_ && waiting_ == 0;
   FloatVectorScratch way;
-  scratch.lease(way, dimensions, n);
+  if (asks) scratch.lease(way, dimensions, n);
   struct Longest {
     double way2 = 0, step2 = 0;
   };
@@ -34,7 +36,7 @@ bool ListLife::last(double dt, const Motion& motion, const ImageRules& rules, Sc
             if (motion.shift[axis] != nullptr) u += motion.shift[axis][i];
             const double listed = arrangement_.origin[axis] + double{motion.listed[axis][i]};
             const double whole = (*particles_.position[axis])[i] + dt * u - listed;
-            way[axis][i] = static_cast<float>(whole);
+            if (asks) way[axis][i] = static_cast<float>(whole);
             way2 += whole * whole;
             step2 += dt * u * dt * u;
           }
@@ -46,7 +48,8 @@ bool ListLife::last(double dt, const Motion& motion, const ImageRules& rules, Sc
         return Longest{larger_or_nan(a.way2, b.way2), larger_or_nan(a.step2, b.step2)};
       });
   next_slack_ = skin_ - 2 * std::sqrt(longest.way2);
-  if (next_slack_ < 0 && together_ && waiting_ == 0) {
+  if (next_slack_ < 0 && asks) {
+    ++asked_;
     // Two that pass each other are nearer in the middle of the step than at its ends: by a^2 / (8 R), a the way of one
     // against the other in the step.
     const double passing = longest.step2 / (2 * support_radius_);
@@ -67,7 +70,7 @@ bool ListLife::last(double dt, const Motion& motion, const ImageRules& rules, Sc
       waiting_ = waited_ + 1;  // these, and so many more
     }
   }
-  scratch.release(way);
+  if (asks) scratch.release(way);
   if (dt == 0) slack_ = next_slack_;
   return next_slack_ >= 0;
 }

@@ -87,14 +87,19 @@ void OpenSides::give_pressures(const std::function<double(const Vec3&)>& potenti
     const double inwards = gate.inwards * point.velocity[gate.opening->axis];
     return inwards > 0 ? 0.5 * inwards * inwards : 0;
   };
-  // Corners have no velocity of their own: that of the nearest point behind the side.
+  // Corners have no velocity of their own: that of the nearest point behind the side, where something comes back.
   std::vector<double> head(corners_.size());
+  std::vector<bool> comes_back(gates_.size());
+  for (const OpeningPoint& point : points_)
+    if (head_of(point) > 0) comes_back[static_cast<std::size_t>(point.gate)] = true;
   parallel_blocks_dynamic(corners_.size(), 16, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
+      const auto g = static_cast<std::size_t>(corners_[k].gate);
+      if (gates_[g].opening->inflow || !comes_back[g]) continue;
       double nearest2 = std::numeric_limits<double>::infinity();
       for (std::size_t p = 0; p < points_.size(); ++p) {
         if (points_[p].gate != corners_[k].gate || stencils.pressure_sign[first_point_ + p] == 0) continue;
-        const Vec3 way = subtract(points_[p].place, corners_[k].foot);
+        const Vec3 way = scene_.domain.shortest(subtract(points_[p].place, corners_[k].foot));
         if (dot(way, way) >= nearest2) continue;
         nearest2 = dot(way, way);
         head[k] = head_of(points_[p]);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "spume/scene/document.hpp"
+
 namespace spume {
 namespace {
 
@@ -41,6 +43,15 @@ std::vector<float> distinct_densities(const std::vector<PhaseLaw>& laws) {
     densities.push_back(density);
   }
   return densities;
+}
+
+std::string in_words(const std::vector<PhaseLaw>& laws, const Scene& scene, double speed, double background) {
+  std::string text = "largest speed " + brief(speed) + " m/s";
+  for (std::size_t n = 0; n < laws.size(); ++n)
+    text += ", sound in " + scene.phases[n].name + " " + brief(laws[n].sound_speed) + " m/s (exponent " +
+            brief(laws[n].exponent) + ")";
+  if (background > 0) text += ", background " + brief(background) + " Pa";
+  return text;
 }
 
 }  // namespace spume

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "spume/particles/phase_sums.hpp"
 
-#include <cmath>
-
 #include "spume/core/parallel.hpp"
 
 namespace spume {
 
 void PhaseSums::find() {
   for (std::size_t n = 0; n < sums_.size(); ++n) sums_[n] = sums_of(n);
-}
-
-double PhaseSums::inside(int axis, double x) const {
-  if (domain_ == nullptr || !domain_->periodic(axis)) return x;
-  const double lower = domain_->lower[axis], length = domain_->upper[axis] - lower;
-  return x - length * std::floor((x - lower) / length);
 }
 
 PhaseSums::Sums PhaseSums::sums_of(std::size_t phase) const {
@@ -28,7 +20,8 @@ PhaseSums::Sums PhaseSums::sums_of(std::size_t phase) const {
           sums.mass += mass;
           for (int axis = 0; axis < particles_.dimensions; ++axis) {
             sums.momentum[axis] += mass * (*particles_.velocity[axis])[i];
-            sums.moment[axis] += mass * inside(axis, (*particles_.position[axis])[i]);
+            const double x = (*particles_.position[axis])[i];
+            sums.moment[axis] += mass * (domain_ == nullptr ? x : domain_->inside(axis, x));
           }
         }
         return sums;

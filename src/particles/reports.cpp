@@ -59,10 +59,9 @@ ParticleSnapshot SnapshotTable::take(std::string name, std::size_t size, const V
     const double* from = position[axis]->data();
     snapshot.position.push_back(from);
     if (domain_ == nullptr || !domain_->periodic(static_cast<int>(axis))) continue;
-    const double lower = domain_->lower[axis], length = domain_->upper[axis] - lower;
     shown_[axis].resize(size);
     double* to = shown_[axis].data();
-    parallel_for(size, [=](std::size_t i) { to[i] = from[i] - length * std::floor((from[i] - lower) / length); });
+    parallel_for(size, [=, this](std::size_t i) { to[i] = domain_->inside(static_cast<int>(axis), from[i]); });
     snapshot.position.back() = to;
   }
   for (const Entry& entry : entries_) {

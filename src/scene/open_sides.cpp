@@ -36,17 +36,33 @@ bool has_opening(const Scene& scene, int axis, int side) {
                      [&](const Opening& one) { return one.axis == axis && one.side == side; });
 }
 
-// Whether the foot of a place on a side is in an opening.
-bool before_opening(const Scene& scene, int axis, int side, const Vec3& r) {
-  return std::any_of(scene.openings.begin(), scene.openings.end(), [&](const Opening& one) {
-    if (one.axis != axis || one.side != side) return false;
-    Vec3 foot = r;
-    foot[axis] = one.lower[axis];
-    for (int a = 0; a < scene.domain.dimensions; ++a)
-      if (a != axis && (r[a] < one.lower[a] || r[a] > one.upper[a])) return false;
-    return one.where == nullptr || (*one.where)(foot[0], foot[1], foot[2], 0) > 0;
-  });
-}
+// The openings of a side, with expressions of their own: those of a scene are not for several threads.
+class OpeningsOfSide {
+ public:
+  OpeningsOfSide(const Scene& scene, int axis, int side) : axis_(axis), dimensions_(scene.domain.dimensions) {
+    for (const Opening& one : scene.openings)
+      if (one.axis == axis && one.side == side)
+        openings_.push_back({&one, one.where == nullptr ? nullptr : one.where->clone()});
+  }
+  // Whether the foot of a place on the side is in one.
+  bool before(const Vec3& r) const {
+    return std::any_of(openings_.begin(), openings_.end(), [&](const One& one) {
+      Vec3 foot = r;
+      foot[axis_] = one.opening->lower[axis_];
+      for (int a = 0; a < dimensions_; ++a)
+        if (a != axis_ && (r[a] < one.opening->lower[a] || r[a] > one.opening->upper[a])) return false;
+      return one.where == nullptr || (*one.where)(foot[0], foot[1], foot[2], 0) > 0;
+    });
+  }
+
+ private:
+  struct One {
+    const Opening* opening;
+    std::unique_ptr<Expression> where;
+  };
+  int axis_, dimensions_;
+  std::vector<One> openings_;
+};
 
 // Times at which expressions of an opening are asked.
 constexpr int level_samples = 100;
@@ -81,12 +97,20 @@ std::vector<Problem> open_side_warnings(const Draft& draft, const Scene& scene, 
   const auto warn = [&](const std::string& text) {
     warnings.push_back({file, node == nullptr ? 0 : node->place.line, node == nullptr ? 0 : node->place.column, text});
   };
-  const auto count = [&](auto&& meets) {
-    return parallel_sum(particles.size(), [&](std::size_t i) {
-      Vec3 r{};
-      for (int a = 0; a < domain.dimensions; ++a) r[a] = particles.position[a][i];
-      return meets(r) ? 1.0 : 0.0;
-    });
+  const auto count = [&](int axis, int side, auto&& meets) {
+    return parallel_reduce(
+        particles.size(), 0.0,
+        [&](std::size_t first, std::size_t last) {
+          const OpeningsOfSide openings(scene, axis, side);
+          double sum = 0;
+          for (std::size_t i = first; i < last; ++i) {
+            Vec3 r{};
+            for (int a = 0; a < domain.dimensions; ++a) r[a] = particles.position[a][i];
+            sum += meets(r, openings) ? 1 : 0;
+          }
+          return sum;
+        },
+        [](double a, double b) { return a + b; });
   };
   SolidUnion::Planes sides{};
   for (int a = 0; a < domain.dimensions; ++a) sides[a] = {domain.lower[a], domain.upper[a]};
@@ -97,9 +121,9 @@ std::vector<Problem> open_side_warnings(const Draft& draft, const Scene& scene, 
       if (!falls && !has_opening(scene, axis, side)) continue;
       const std::string name = side_name(axis, side, domain.dimensions);
       const double plane = side == 0 ? domain.lower[axis] : domain.upper[axis];
-      const double loose = count([&](const Vec3& r) {
+      const double loose = count(axis, side, [&](const Vec3& r, const OpeningsOfSide& openings) {
         if ((axis != up || !falls) && std::abs(r[axis] - plane) > scene.spacing) return false;
-        if (!falls && before_opening(scene, axis, side, r)) return false;
+        if (!falls && openings.before(r)) return false;
         Vec3 foot = r;
         foot[axis] = plane + (side == 0 ? -1 : 1) * scene.spacing;
         return solids.sees(r, foot, foot) && !bodies_between(scene, r, foot);

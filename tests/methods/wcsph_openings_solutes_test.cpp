@@ -59,16 +59,29 @@ TEST(WcsphOpeningsSolutes, WhatEntersAboveTheLiquidHasTheValuesOfTheNearest) {
   EXPECT_GT(jet, 12U);
 }
 
-// Oxygen of the air, of what enters, and what sludge takes of it.
-TEST(WcsphOpeningsSolutes, OxygenAndSludgeOfTheStreamBalance) {
-  WcsphRun run(below_surface + R"toml([oxygen]
-surface_k_l = 1e-2
-[[scalar]]
-name = "S_O"
-initial = "2"
-inflow = "4"
-diffusivity = 0.01
-[biokinetics]
+// An inflow that stands still gives what it has now, one that comes to rest nothing of beyond the end of the run.
+TEST(WcsphOpeningsSolutes, InflowsThatStandStillGiveWhatTheyHave) {
+  const std::string paused = replaced(stream, "velocity = [\"1\", \"0\"]\n[[outflow]]",
+                                      "velocity = [\"t < 0.05 ? 0 : 0.2\", \"0\"]\n[[outflow]]");
+  for (const char* diffusivity : {"0", "1e-5", "0.1"}) {
+    WcsphRun run(paused + "[[scalar]]\nname = \"dye\"\ninitial = \"1\"\ninflow = \"sqrt(1 - t)\"\ndiffusivity = " +
+                     diffusivity + "\n",
+                 {"time.end=1"});
+    const wcsph::Flow& flow = run.method.flow();
+    const auto each_layer = [&](auto&& check) {
+      for (std::size_t i = 0; i < flow.size(); ++i)
+        if (!flow.in_domain(i) && flow.openings->leads(i)) check(flow.solutes.scalars->values(0)[i]);
+    };
+    const double rest = run.method.step_limit().dt;
+    run.method.step(rest, run.ledger);
+    each_layer([&](double value) { EXPECT_EQ(value, std::sqrt(1 - rest)) << diffusivity; });
+    until(run, 0.2);
+    each_layer([&](double value) { EXPECT_LE(value, std::sqrt(1 - 0.2)) << diffusivity; });
+    for (std::size_t i = 0; i < flow.size(); ++i) EXPECT_TRUE(std::isfinite(flow.solutes.scalars->values(0)[i]));
+  }
+}
+
+const std::string sludge = R"toml([biokinetics]
 model = "asm1"
 [[scalar]]
 name = "X_BH"
@@ -82,7 +95,45 @@ initial = "2"
 [[scalar]]
 name = "S_ALK"
 initial = "4"
-)toml");
+)toml";
+
+// What stands behind an outflow has left.
+TEST(WcsphOpeningsSolutes, SludgeThatHasLeftDoesNotReact) {
+  WcsphRun run(below_surface + "[[scalar]]\nname = \"S_O\"\ninitial = \"2\"\ninflow = \"4\"\n[oxygen]\n" + sludge,
+               {"biokinetics.interval=1e-6"});
+  const wcsph::Flow& flow = run.method.flow();
+  const auto oxygen_behind = [&] {
+    std::map<std::int64_t, double> values;
+    for (std::size_t i = 0; i < flow.size(); ++i)
+      if (!flow.in_domain(i) && !flow.openings->leads(i))
+        values[(*flow.particles.identifier)[i]] = flow.solutes.scalars->values(0)[i];
+    return values;
+  };
+  run.method.step(run.method.step_limit().dt, run.ledger);
+  const std::map<std::int64_t, double> before = oxygen_behind();
+  const double uptake = run.series().at("oxygen_uptake");
+  run.method.step(run.method.step_limit().dt, run.ledger);
+  EXPECT_GT(run.series().at("oxygen_uptake"), uptake);
+  std::size_t stayed = 0;
+  for (const auto& [identifier, value] : oxygen_behind()) {
+    const auto found = before.find(identifier);
+    if (found == before.end()) continue;
+    EXPECT_EQ(value, found->second);
+    ++stayed;
+  }
+  EXPECT_GT(stayed, 10U);
+}
+
+// Oxygen of the air, of what enters, and what sludge takes of it.
+TEST(WcsphOpeningsSolutes, OxygenAndSludgeOfTheStreamBalance) {
+  WcsphRun run(below_surface + R"toml([oxygen]
+surface_k_l = 1e-2
+[[scalar]]
+name = "S_O"
+initial = "2"
+inflow = "4"
+diffusivity = 0.01
+)toml" + sludge);
   const double start = run.series().at("amount_of_S_O");
   until(run, 0.2);
   auto series = run.series();

@@ -249,7 +249,7 @@ TEST(WcsphOpenings, APoiseuilleFlowGoesThrough) {
 // ends before t = 20.
 TEST(WcsphOpenings, LiquidComesBackThroughAnOutflow) {
   constexpr double pressure = 20, density = 1000, spacing = 0.0625;
-  // Kernels that reach 2.6 and 3 spacings: with half the skin, less and more than half a layer beyond a whole number.
+  // Kernels that reach 2.6 and 3 spacings: with half the skin, more and less than half a layer beyond a whole number.
   for (const char* ratio : {"resolution.smoothing_ratio=1.3", "resolution.smoothing_ratio=1.5"}) {
     WcsphRun run(between_outflows, {"compressibility.max_speed=0.3", "resolution.spacing=0.0625", ratio});
     const wcsph::Flow& flow = run.method.flow();

@@ -224,6 +224,10 @@ TEST(Openings, TheOpenRestOfTheirSideIsWarnedOf) {
               Contains(HasSubstr("nothing holds the liquid: domain.left is open around its opening and 5 particles lie "
                                  "beside it, which leave the domain and are removed; set  left = \"free-slip\"")));
   EXPECT_THAT(warnings_of(stream), Not(Contains(HasSubstr("nothing holds the liquid"))));
+  // The openings of a shape are asked by all threads: of 100 particles beside the side those above the middle.
+  const std::string half = replaced(replaced(stream, "spacing = 0.1", "spacing = 0.01"), "side = \"left\"",
+                                    "side = \"left\"\nwhere = \"0.5 - y\"");
+  EXPECT_THAT(warnings_of(half), Contains(HasSubstr("around its opening and 50 particles lie")));
   EXPECT_THAT(warnings_of(replaced(patch, "bottom =", "left = \"free-slip\"\nbottom =")),
               Not(Contains(HasSubstr("nothing holds the liquid"))));
 }

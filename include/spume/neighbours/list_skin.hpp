@@ -7,10 +7,11 @@
 //
 //   s sigma(I + G) - 2 r,   sigma the least singular value,
 //
-// whatever the translation m and, to first order, the rotation in G. Bounds of r come from fits in each block and
-// from how far these differ from those of the blocks around. Pairs of blocks that do not touch and have none between
-// them are judged by the two alone; those three blocks apart or more, at a distance of 2 s at least, by the longest
-// way.
+// whatever the translation m; a rotation has sigma = 1. Bounds of r come from fits in each block and from how far these
+// differ from those of the blocks around. Pairs of blocks that do not touch and have none between them are judged by
+// the two alone; those three blocks apart or more, at a distance of 2 s at least, by the longest way. That last part
+// also bounds who may have gone how far at all, (2 s - R) / 2 for a support R: nobody who was too far from a mirror for
+// an image, s, has come within R / 2 of it unseen.
 #pragma once
 
 #include <array>

@@ -55,9 +55,10 @@ class BufferLayers {
   const Column& column_of(std::size_t i) const { return columns_[static_cast<std::size_t>((*column_)[i])]; }
   std::size_t columns() const { return columns_.size(); }
   std::vector<Coming> coming();  // all behind inflows
-  // Per column of an inflow that has particles the liquid particle that is nearest before its side, where there is none
-  // within a support radius the nearest of all liquid; -1 of other columns, and without liquid.
-  std::vector<std::int32_t> nearest_liquid();
+  // Per column of an inflow that has particles the liquid particle that is nearest before its side; where there is none
+  // within a support radius that which is nearest to the first such column of the opening. -1 of other columns, and
+  // without liquid.
+  std::vector<std::int32_t> nearest_liquid(const std::vector<Coming>& coming);
   // The particles of the layers, as numbered when they were found; particles are numbered anew by sorting.
   const Array<std::int32_t>& find_members();
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "spume/neighbours/list_skin.hpp"
@@ -46,9 +47,11 @@ class ListLife {
   void remake() { list_skin_.renew(); }
   void accept() { slack_ = next_slack_; }
   double bytes() const { return list_skin_.bytes(); }
+  bool together() const { return together_; }
+  std::int64_t asked() const { return asked_; }  // how often for the bound
 
-  // State between steps: of the fastest particles |u + delta u| and |a|; and what refused steps too may change, as the
-  // places of the lists.
+  // State between steps: of the fastest particles |u + delta u| and |a|, read where they go together; and what refused
+  // steps too may change, as the places of the lists.
   double fastest = 0, most_accelerated = 0;
   static constexpr std::size_t state_size = 4;
   std::vector<double> state(double beside) const;  // with another number behind it
@@ -63,6 +66,7 @@ class ListLife {
   // Whether the bound has helped these lists, how many it is not asked for, and how many it was not the last time.
   bool helped_ = false;
   int waiting_ = 0, waited_ = 0;
+  std::int64_t asked_ = 0;
   ListSkin list_skin_;
 };
 

@@ -36,7 +36,6 @@ class PhaseSums {
 
  private:
   Sums sums_of(std::size_t phase) const;
-  double inside(int axis, double x) const;
 
   const ParticleStore& particles_;
   const Array<std::int64_t>& phase_;

@@ -143,6 +143,10 @@ struct Domain {
   std::array<std::array<Side, 2>, 3> sides;  // sides[axis][0] at lower, [1] at upper
   std::vector<SolidBox> boxes;
   bool periodic(int axis) const { return sides[axis][0].kind == BoundaryKind::periodic; }
+  // x along an axis, of places beyond periodic sides that between them. Expressions are asked there.
+  double inside(int axis, double x) const;
+  Vec3 inside(Vec3 place) const;
+  Vec3 shortest(Vec3 way) const;  // of a way and its images
 };
 
 // What methods of one fluid solve for, gravity included; its viscosity is kinematic, as groups and equations give it.

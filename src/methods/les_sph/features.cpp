@@ -50,10 +50,6 @@ Features::Features(const LoadedCase& loaded)
       SoluteFeatures(loaded.options) {
   const Scene& scene = loaded.scene;
   const Case& options = loaded.options;
-  for (int axis = 0; axis < scene.domain.dimensions; ++axis)
-    for (int side = 0; side < 2; ++side)
-      open_sides = open_sides || (!scene.domain.sides[axis][side].bounds_liquid() &&
-                                  !(axis == scene.domain.dimensions - 1 && side == 1 && scene.fluid.gravity[axis] < 0));
   free_surface = scene.free_surface;
   sponges = !scene.sponges.empty();
   closed = !scene.free_surface && !outflow;

@@ -46,6 +46,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       fading(fading_beside_voids(options, scene, features)),
       particles(dimensions, scene.particles),
       boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution), make_openings(scene, resolution)),
+      spill(scene, boundary.walls),
       energy(scene.domain, resolution),
       arrangement(scene.domain, resolution, particles.volume, particles.size()),
       moments(particles, {.kernel_sum = features.density_relaxation,
@@ -176,30 +177,9 @@ void Flow::exchange_with_openings() {
   solutes.scalars->count_openings(amounts);
 }
 
-bool Flow::has_left(std::size_t i) const {
-  const int up = dimensions - 1;
-  const bool falls = scene.fluid.gravity[up] < 0;
-  for (int axis = 0; axis < dimensions; ++axis) {
-    const double x = (*particles.position[axis])[i], lower = boundary.walls[axis][0], upper = boundary.walls[axis][1];
-    const double reach = upper - lower;
-    const double below = axis == up && falls ? arrangement.grid.support_radius() * sizes.largest_length_ratio : reach;
-    if (x < lower - below && !scene.domain.sides[axis][0].bounds_liquid()) return true;
-    if (axis == up && falls) continue;
-    if (x > upper + reach && !scene.domain.sides[axis][1].bounds_liquid()) return true;
-  }
-  return false;
-}
-
 std::size_t Flow::remove_left() {
-  if (!features.open_sides) return 0;
-  const double gone = parallel_sum(size(), [&](std::size_t i) { return has_left(i) ? 1.0 : 0.0; });
-  if (gone == 0) return 0;
-  const std::size_t before = size();
-  Array<std::int32_t> kept;
-  parallel_select(before, kept, [&](std::size_t i) { return !has_left(i); });
-  particles.fields.permute(kept);
-  left += static_cast<std::int64_t>(before - kept.size());
-  return before - kept.size();
+  return spill.remove({.particles = particles, .reach = arrangement.grid.support_radius() * sizes.largest_length_ratio},
+                      time);
 }
 
 double Flow::leased_bytes() const {

@@ -81,14 +81,8 @@ void LesSph::step(double dt, Ledger& ledger) {
     plan_.run_recorded(dt, static_cast<double>(flow_.size()), ledger);
     return;
   }
-  const bool first = flow_.left == 0;
-  if (flow_.remove_left() > 0 && first) {
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "liquid leaves through an open side from t = %.4g on: particles that cannot come back are removed",
-                  flow_.time);
-    remarks_.push_back({text, false});
-  }
+  flow_.remove_left();
+  if (std::string remark = flow_.spill.take_remark(); !remark.empty()) remarks_.push_back({std::move(remark), false});
   sampled_step_ = -1;  // sorting changes what the bins of the sampler refer to, also when the step is refused
   plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
   remark_bodies_that_collide();
@@ -253,10 +247,10 @@ void LesSph::declare_saved() {
 }
 
 void LesSph::save(StateWriter& writer) const {
-  const std::int64_t counters[] = {flow_.steps, flow_.started ? 1 : 0, static_cast<std::int64_t>(flow_.size()),
-                                   flow_.left};
+  const std::int64_t counters[] = {flow_.steps, flow_.started ? 1 : 0, static_cast<std::int64_t>(flow_.size())};
   saved_.save(writer);
   writer.i64("counters", counters);
+  flow_.spill.save(writer);
   flow_.boundary.save_walls(writer);
   save_fields(flow_.particles.fields, writer);
   if (flow_.features.openings) flow_.boundary.openings()->save(writer);
@@ -273,12 +267,12 @@ void LesSph::load(StateReader& reader) {
   reader.i64("counters", counters);
   if (flow_.floating != nullptr) flow_.floating->load(reader);
   flow_.boundary.load_walls(reader, flow_.time);
-  if (counters.size() != 4) throw FileError("the checkpoint was written by another version of the method");
+  flow_.spill.load(reader);
+  if (counters.size() != 3) throw FileError("the checkpoint was written by another version of the method");
   load_fields(flow_.particles.fields, static_cast<std::size_t>(counters[2]), "particle", reader);
   flow_.steps = counters[0];
   flow_.started = counters[1] != 0;
   if (flow_.started) flow_.start_columns.reset();
-  flow_.left = counters[3];
   flow_.find_uniform_acceleration(flow_.time);  // samples before the next step need it
   if (flow_.features.openings) flow_.boundary.openings()->load(reader);
   if (flow_.bubbles != nullptr) flow_.bubbles->load(reader);

@@ -93,9 +93,9 @@ void LesSph::declare_series() {
     series_.add("volume_out", unit,
                 [&flow] { return flow.particles.volume * static_cast<double>(flow.boundary.openings()->left()); });
   }
-  if (flow.features.open_sides)
+  if (flow.spill.possible())
     series_.add("mass_removed", "mass, that left through open sides for good",
-                [&flow] { return flow.particle_mass() * static_cast<double>(flow.left); });
+                [&flow] { return flow.particle_mass() * static_cast<double>(flow.spill.count()); });
   if (flow.features.density_relaxation)
     series_.add("volume", flow.dimensions == 3 ? "length^3, by kernel sums" : "length^2, by kernel sums",
                 [&flow] { return flow.volume; });
@@ -152,7 +152,7 @@ std::vector<Invariant> LesSph::invariants() const {
     };
   // Liquid that fills its domain takes its volume: a void presses the other particles together. Below a surface nothing
   // tells it but the level of the liquid. Bubbles lower the kernel sums of the liquid around them.
-  if (has.density_relaxation && !has.bubbles && (has.closed || !has.open_sides)) {
+  if (has.density_relaxation && !has.bubbles && (has.closed || !flow_.spill.possible())) {
     list.push_back({.quantity = "volume_drift",
                     .kind = Invariant::Kind::drift,
                     .column = "volume",

@@ -464,7 +464,7 @@ std::int64_t Flow::transport_scalars(double dt) {
            .shift = shift_of_scalars(),
            .interior = surface != nullptr ? surface->interior_weight.data() : (faded ? weight.data() : nullptr)});
   // Behind diffusion, which may have been found from the values at the start of the step.
-  solutes.scalars->add_sources(time - dt, dt, particles.position);
+  solutes.scalars->add_sources(time - dt, dt);
   return sweeps;
 }
 

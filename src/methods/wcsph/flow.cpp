@@ -76,6 +76,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       openings(features.openings ? std::make_unique<BufferLayers>(scene, resolution, skin, particles) : nullptr),
       boundary(scene.domain, scene.spacing, make_body_walls(scene, resolution), nullptr,
                openings == nullptr ? nullptr : &openings->gates()),
+      spill(scene, boundary.walls),
       arrangement(scene.domain, resolution, particles.volume, particles.size(), skin),
       list_life(arrangement, particles, resolution.support_radius, skin, !features.bodies && !features.openings),
       walls(boundary, wall_gravity, particles.scratch()),
@@ -133,7 +134,7 @@ void Flow::lead_scalars() {
   if (coming.empty()) return;
   solutes.scalars->lead(coming, time, options.time.end, resolution.support_radius);
   if (!solutes.scalars->follows()) return;
-  const std::vector<std::int32_t> nearest = openings->nearest_liquid();
+  const std::vector<std::int32_t> nearest = openings->nearest_liquid(coming);
   for (const Coming& one : coming) {
     const std::int32_t like = nearest[static_cast<std::size_t>(openings->column()[one.particle])];
     if (like >= 0) solutes.scalars->follow(one.particle, static_cast<std::size_t>(like));
@@ -150,6 +151,12 @@ void Flow::start_tension() {
   parallel_for(size(), [&](std::size_t i) {
     (*excess)[i] = law(i).excess(law(i).pressure((*excess)[i]) + tension->mean_jump(phase_of(i)));
   });
+}
+
+double Flow::mass_spilt() const {
+  double mass = 0;
+  for (std::size_t n = 0; n < laws.size(); ++n) mass += laws[n].density * volume_spilt(n);
+  return mass;
 }
 
 double Flow::kinetic_energy() const {
@@ -208,7 +215,7 @@ void Flow::find_signal() {
           const double s = (*excess)[i], speed2 = squared_norm(particles.velocity, dimensions, i);
           so_far.speed2 = larger_or_nan(so_far.speed2, speed2);
           double transport2 = 0, acceleration2 = 0;
-          for (int axis = 0; axis < dimensions; ++axis) {
+          for (int axis = 0; list_life.together() && axis < dimensions; ++axis) {
             const double u = transport(axis, (*particles.velocity[axis])[i], i), a = (*acceleration[axis])[i];
             transport2 += u * u;
             acceleration2 += a * a;
@@ -231,15 +238,6 @@ void Flow::find_signal() {
   largest_speed = std::sqrt(largest.speed2);
   list_life.fastest = std::sqrt(largest.transport2);
   list_life.most_accelerated = std::sqrt(largest.acceleration2);
-}
-
-std::string Flow::laws_in_words() const {
-  std::string text = "(3): largest speed " + brief(expected_speed) + " m/s";
-  for (std::size_t n = 0; n < laws.size(); ++n)
-    text += ", sound in " + scene.phases[n].name + " " + brief(laws[n].sound_speed) + " m/s (exponent " +
-            brief(laws[n].exponent) + ")";
-  if (background > 0) text += ", background " + brief(background) + " Pa";
-  return text;
 }
 
 double Flow::leased_bytes() const {

@@ -56,6 +56,10 @@ void Flow::keep_lists(double dt) {
   const double way = dt * std::min(largest_speed, expected_speed);
   has_moved = features.density_relaxation && steps > 0 && measured_way + way > skin / 2;
   if (has_lists && !(features.openings && openings->stale()) && lists_hold(dt)) return;
+  if (has_lists)
+    spill.remove({particles, arrangement.grid.support_radius(), phase_number,
+                  openings == nullptr ? nullptr : &openings->column()},
+                 time);
   if (features.openings && has_lists) openings->renew();
   listed_time = time;
   if (features.displaced_bodies) boundary.bodies()->move_to(time);
@@ -364,7 +368,7 @@ void Flow::accept(double dt) {
     for (std::size_t i = first; i < last; ++i) {
       Vec3 a = scene.fluid.gravity;
       if (scene.body_force) {
-        const Vec3 f = given(vector_at(place, dimensions, i), time + dt);
+        const Vec3 f = given(scene.domain.inside(vector_at(place, dimensions, i)), time + dt);
         for (std::size_t axis = 0; axis < 3; ++axis) a[axis] += f[axis];
       }
       // Where no wall has moved the particle none has held it.

@@ -35,7 +35,8 @@ Plan make_plan(Flow& f) {
   const ArrayUse lack([&f] { return f.relaxation == nullptr ? 0 : f.relaxation->bytes(); });
   stages.sweep(
       step, "density relaxation", has.density_relaxation,
-      has.density_relaxation ? "kernel sums of (12), every half of lists.skin that the fastest goes"
+      has.density_relaxation
+          ? "kernel sums of (12), every half of lists.skin that the fastest goes, or the largest speed of (3)"
       : f.scene.free_surface ? "compressibility.density_relaxation = 0"
                              : "no free surface",
       [&f](StageRun&) { f.measure_volume(); }, {p.position, *f.excess}, {lack}, [&f] { return f.has_moved; });
@@ -51,7 +52,8 @@ Plan make_plan(Flow& f) {
                &Flow::find_rates, {f.half_velocity, p.velocity, f.acceleration, *f.excess, *f.phase_number, f.shift},
                {f.rate, f.diffusion, f.force, f.carried, f.flux, f.volume, f.reduced_excess, f.density, f.viscosity});
   stages.add(
-      both, "density", true, f.laws_in_words(), &Flow::advance_density,
+      both, "density", true, "(3): " + in_words(f.laws, f.scene, f.expected_speed, f.background),
+      &Flow::advance_density,
       {f.rate, f.diffusion, f.carried, p.position, p.velocity, f.acceleration, f.shift, *f.excess, *f.phase_number},
       {f.next_excess, f.pressure, f.volume, f.place});
   const int interval = f.options.get<CompressibilityOptions>().filter_interval;

@@ -18,22 +18,13 @@ namespace {
 
 // Of h^2 / nu and of sqrt(h / g): Morris et al. (1997).
 constexpr double viscous_limit = 0.125, force_limit = 0.25;
-// Three times the change of density that the sound speeds are chosen for, 1 % in liquids and, with equal stiffness, 5 %
-// in air: impacts of a dam break reach 4 % in water.
-constexpr double liquid_range = 0.03, gas_range = 0.15;
 // Of a liquid with a free surface: twice the change of density that its sound speed is chosen for.
 constexpr double largest_volume_drift = 0.02;
-// The exponents of liquids are 4 to 7, those of gases 1 to 1.7.
-constexpr double least_liquid_exponent = 2;
 
 std::vector<double> densities_of(const Flow& flow) {
   std::vector<double> densities;
   for (const PhaseLaw& law : flow.laws) densities.push_back(law.density);
   return densities;
-}
-
-double range_of(const PhaseLaw& law) {
-  return law.exponent < least_liquid_exponent ? gas_range : liquid_range;
 }
 
 }  // namespace
@@ -128,6 +119,8 @@ void Wcsph::declare_series() {
     phase_sums_.add_columns(series_, n, name);
   }
   if (flow.features.openings) flow.openings->add_columns(series_);
+  if (flow.spill.possible())
+    series_.add("mass_removed", "mass, that left through open sides for good", [&flow] { return flow.mass_spilt(); });
   flow.solutes.add_columns(series_, nullptr);
 }
 
@@ -137,12 +130,13 @@ std::vector<ParticleSnapshot> Wcsph::snapshot_on_demand() {
 
 std::vector<Remark> Wcsph::take_remarks() {
   std::vector<Remark> remarks;
+  if (std::string remark = flow_.spill.take_remark(); !remark.empty()) remarks.push_back({std::move(remark)});
   if (!(flow_.unsettled <= LayerSettling::at_rest))
     remarks.push_back({"the layers are not at rest at the start: a particle is accelerated by " +
                        brief(100 * std::exchange(flow_.unsettled, 0)) + " % of gravity"});
   for (std::size_t n = 0; n < flow_.laws.size(); ++n) {
     if (remarked_[n]) continue;
-    const double change = flow_.largest_excess(n), range = range_of(flow_.laws[n]);
+    const double change = flow_.largest_excess(n), range = flow_.laws[n].largest_change();
     if (change <= range) continue;
     remarked_[n] = true;
     remarks.push_back({"the density of " + flow_.scene.phases[n].name + " has changed by " + brief(100 * change) +
@@ -155,7 +149,7 @@ std::vector<Remark> Wcsph::take_remarks() {
 
 std::vector<Invariant> Wcsph::invariants() const {
   std::vector<Invariant> list;
-  if (flow_.features.density_relaxation && !flow_.features.openings)
+  if (flow_.features.density_relaxation && !flow_.features.openings && !flow_.spill.possible())
     list.push_back({.quantity = "volume_drift",
                     .kind = Invariant::Kind::drift,
                     .column = "volume",
@@ -166,7 +160,7 @@ std::vector<Invariant> Wcsph::invariants() const {
                     .kind = Invariant::Kind::drift,
                     .column = "volume_" + flow_.scene.phases[n].name,
                     .bound = 4 * std::numeric_limits<double>::epsilon(),
-                    .beside = [this, n] { return flow_.openings->net_outflow(n); }});
+                    .beside = [this, n] { return flow_.openings->net_outflow(n) + flow_.volume_spilt(n); }});
   return list;
 }
 
@@ -221,6 +215,7 @@ void Wcsph::save(StateWriter& writer) const {
   saved_.save(writer);
   writer.f64("lists", lists);
   writer.i64("counters", count);
+  flow_.spill.save(writer);
   flow_.boundary.save_walls(writer);
   if (flow_.features.openings) {
     flow_.acoustic->save(writer);
@@ -236,6 +231,7 @@ void Wcsph::load(StateReader& reader) {
   saved_.load(reader);
   reader.f64("lists", lists);
   reader.i64("counters", count);
+  flow_.spill.load(reader);
   flow_.boundary.load_walls(reader, flow_.time);
   if (flow_.features.openings) {
     flow_.acoustic->load(reader);

@@ -53,17 +53,16 @@ void Sludge::react(double dt) {
 void Sludge::keep_left_out() {
   kept_.clear();
   if (scalars_.left_out() == nullptr) return;
-  for (std::size_t i = 0; i < scalars_.particles(); ++i)
-    if (!scalars_.counts(i))
-      for (const double* values : values_) kept_.push_back(values[i]);
+  parallel_select(scalars_.particles(), members_, [this](std::size_t i) { return !scalars_.counts(i); });
+  for (const std::int32_t i : members_)
+    for (const double* values : values_) kept_.push_back(values[i]);
 }
 
 void Sludge::restore_left_out() {
   if (kept_.empty()) return;
   auto kept = kept_.begin();
-  for (std::size_t i = 0; i < scalars_.particles(); ++i)
-    if (!scalars_.counts(i))
-      for (double* values : values_) values[i] = *kept++;
+  for (const std::int32_t i : members_)
+    for (double* values : values_) values[i] = *kept++;
 }
 
 void Sludge::react_in_cells(double dt, std::vector<std::vector<double>>& values, const std::vector<double>& volumes) {

@@ -7,7 +7,6 @@
 
 #include "draft.hpp"
 #include "spume/core/parallel.hpp"
-#include "spume/core/periodic_grid.hpp"
 #include "spume/physics/bubbles/forces.hpp"
 #include "spume/physics/bubbles/options.hpp"
 #include "spume/physics/bubbles/population.hpp"
@@ -284,9 +283,7 @@ void check_bubble_sources(const Draft& draft, const Scene& scene, Problems& prob
   // Wet: some particle within the diagonal of a lattice cell, sqrt(3) spacings.
   const auto wet = [&](Vec3 r) {
     const double diagonal = 1.75 * scene.spacing;
-    for (int a = 0; a < 3; ++a)
-      if (scene.domain.periodic(a))
-        r[a] = wrap_periodic(r[a], scene.domain.lower[a], scene.domain.upper[a] - scene.domain.lower[a]);
+    r = scene.domain.inside(r);
     return parallel_max(liquid.size(), 0.0, [&](std::size_t i) {
              double distance2 = 0;
              for (int a = 0; a < 3; ++a) {

@@ -8,7 +8,6 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
-#include "spume/core/periodic_grid.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/scene/expression.hpp"
 #include "spume/scene/option.hpp"
@@ -84,8 +83,7 @@ std::size_t RecordedFlow::cell_at(const Vec3& place) const {
   for (int axis = dimensions_ - 1; axis >= 0; --axis) {
     const auto a = static_cast<std::size_t>(axis);
     const double lower = scene_.domain.lower[a];
-    const double x =
-        scene_.domain.periodic(axis) ? wrap_periodic(place[a], lower, scene_.domain.upper[a] - lower) : place[a];
+    const double x = scene_.domain.inside(axis, place[a]);
     const auto last = static_cast<double>(count_[a] - 1);
     cell = cell * count_[a] + static_cast<std::size_t>(std::clamp(std::floor((x - lower) / side_[a]), 0.0, last));
   }

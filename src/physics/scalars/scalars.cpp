@@ -21,13 +21,13 @@ constexpr double largest_exchange = 0.5;
 // Of the lattice: below it a surface cuts the kernel, and what is missing there exchanges nothing.
 constexpr double least_divergence_of_position = 0.95;
 
-void set_values(const ParticleStore& particles, const Expression& expression, double t, Array<double>& values,
-                const std::function<bool(std::size_t)>& wanted) {
+void set_values(const ParticleStore& particles, const Domain& domain, const Expression& expression, double t,
+                Array<double>& values, const std::function<bool(std::size_t)>& wanted) {
   parallel_blocks(particles.size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
     const std::unique_ptr<Expression> own = expression.clone();
     for (std::size_t i = first; i < last; ++i) {
       if (!wanted(i)) continue;
-      const Vec3 r = vector_at(particles.position, particles.dimensions, i);
+      const Vec3 r = domain.inside(vector_at(particles.position, particles.dimensions, i));
       values[i] = (*own)(r[0], r[1], r[2], t);
     }
   });
@@ -59,9 +59,10 @@ double least(const Array<double>& values, std::size_t n) {
 
 }  // namespace
 
-Scalars::Scalars(ParticleStore& particles, const Resolution& resolution, const ScalarOptions& options,
-                 const ScalarWalls& walls)
+Scalars::Scalars(ParticleStore& particles, const Resolution& resolution, const Domain& domain,
+                 const ScalarOptions& options, const ScalarWalls& walls)
     : particles_(particles),
+      domain_(domain),
       options_(options),
       bulk_(resolution.lattice.divergence_of_position),
       rate_(options.scalars.size()),
@@ -79,30 +80,43 @@ Scalars::Scalars(ParticleStore& particles, const Resolution& resolution, const S
     fields_.push_back(&particles.fields.add<double>("scalar_" + scalar.name, Lifetime::state));
     fields_.back()->fill(0);
     if (scalar.initial != nullptr)
-      set_values(particles, *scalar.initial, 0, *fields_.back(), [](std::size_t) { return true; });
+      set_values(particles, domain, *scalar.initial, 0, *fields_.back(), [](std::size_t) { return true; });
   }
+}
+
+Vec3 Scalars::place_of(std::size_t i) const {
+  return domain_.inside(vector_at(particles_.position, particles_.dimensions, i));
 }
 
 void Scalars::enter(std::int64_t first, std::int64_t last, double t) {
   if (first == last) return;
   for (std::size_t s = 0; s < size(); ++s)
     if (option(s).inflow != nullptr)
-      set_values(particles_, *option(s).inflow, t, *fields_[s], [&](std::size_t i) {
+      set_values(particles_, domain_, *option(s).inflow, t, *fields_[s], [&](std::size_t i) {
         const std::int64_t id = (*particles_.identifier)[i];
         return id >= first && id < last;
       });
 }
 
 void Scalars::lead(const std::vector<Coming>& coming, double t, double end, double support_radius) {
+  const double most = std::max(0.0, end - t);
   for (std::size_t s = 0; s < size(); ++s) {
     if (option(s).inflow == nullptr) continue;
-    const std::unique_ptr<Expression> brought = option(s).inflow->clone();
     const double diffusivity = option(s).diffusivity;
-    for (const Coming& one : coming) {
-      double later = diffusivity > 0 ? support_radius * support_radius / (2 * diffusivity) : std::max(0.0, end - t);
-      if (one.speed * later > one.depth) later = one.depth / one.speed;
-      (*fields_[s])[one.particle] = (*brought)(one.foot[0], one.foot[1], one.foot[2], t + later);
-    }
+    parallel_blocks(coming.size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+      const std::unique_ptr<Expression> brought = option(s).inflow->clone();
+      for (std::size_t k = first; k < last; ++k) {
+        const Coming& one = coming[k];
+        const auto value = [&](double later) { return (*brought)(one.foot[0], one.foot[1], one.foot[2], t + later); };
+        double later = one.speed > 0 ? one.depth / one.speed : 0;
+        if (one.speed * support_radius < diffusivity)
+          later = std::min(later, one.depth * one.depth / (2 * diffusivity));
+        if (diffusivity == 0) later = std::min(later, most);
+        double& given = (*fields_[s])[one.particle];
+        given = value(later);
+        if (!std::isfinite(given)) given = value(std::min(later, most));  // it need not exist after the end
+      }
+    });
   }
 }
 
@@ -126,7 +140,7 @@ void Scalars::count_openings(const std::vector<double>& before) {
   for (std::size_t s = 0; s < size(); ++s) from_openings_[s] += amount(s) - before[s];
 }
 
-void Scalars::add_sources(double t, double dt, const VectorField& places) {
+void Scalars::add_sources(double t, double dt) {
   for (std::size_t s = 0; s < size(); ++s) {
     if (option(s).source == nullptr) continue;
     double* values = fields_[s]->data();
@@ -139,7 +153,7 @@ void Scalars::add_sources(double t, double dt, const VectorField& places) {
                                            double sum = 0;
                                            for (std::size_t i = first; i < last; ++i) {
                                              if (!counts(i)) continue;
-                                             const Vec3 r = vector_at(places, particles_.dimensions, i);
+                                             const Vec3 r = place_of(i);
                                              const double given = dt * (*own)(r[0], r[1], r[2], t + dt / 2);
                                              const double by = std::max(given, std::min(0.0, least - values[i]));
                                              values[i] += by;
@@ -180,7 +194,7 @@ void Scalars::find_wall_changes(double t, double dt, const Carrier& carrier) {
         const double share = (*wall_profile_)(distance_from(wall, carrier, i));
         change[i] = 0;
         if (!(share > 0) || !counts(i)) continue;
-        const Vec3 r = vector_at(carrier.places, particles_.dimensions, i);
+        const Vec3 r = domain_.inside(vector_at(carrier.places, particles_.dimensions, i));
         const double here = (*own)(r[0], r[1], r[2], t + dt / 2);
         change[i] = wall.flux != nullptr ? dt * share * here : dt * wall_rate(wall, carrier, i) * (here - values[i]);
       }

@@ -24,7 +24,7 @@ void MeasuredTransport::keep_shift(const FloatVectorField& velocity, double dt) 
 
 std::int64_t MeasuredTransport::transport(double t, double dt) {
   const std::int64_t sweeps = move(t, dt);
-  liquid_.solutes.scalars->add_sources(t - dt, dt, liquid_.particles.position);
+  liquid_.solutes.scalars->add_sources(t - dt, dt);
   return sweeps;
 }
 

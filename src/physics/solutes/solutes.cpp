@@ -14,8 +14,8 @@ SoluteFeatures::SoluteFeatures(const Case& options)
 Solutes::Solutes(ParticleStore& particles, const Resolution& resolution, const Case& options, const Scene& scene) {
   const SoluteFeatures has(options);
   if (has.scalars) {
-    scalars =
-        std::make_unique<Scalars>(particles, resolution, options.get<ScalarOptions>(), options.get<ScalarWalls>());
+    scalars = std::make_unique<Scalars>(particles, resolution, scene.domain, options.get<ScalarOptions>(),
+                                        options.get<ScalarWalls>());
     if (!scene.openings.empty()) scalars->expect_openings();
   }
   if (has.oxygen) {

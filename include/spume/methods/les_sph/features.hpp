@@ -18,7 +18,6 @@ bool needs_velocity_gradient(const Case& options);  // of a closure, shift corre
 struct Features : BoundaryFeatures, SoluteFeatures {
   explicit Features(const LoadedCase& loaded);
 
-  bool open_sides = false;  // beside the top: liquid may leave for good
   bool free_surface = false;
   bool shifting = false;
   bool velocity_gradient = false;  // closure, shift correction, centred steps or bubbles

@@ -18,6 +18,7 @@
 #include "spume/particles/point_sampler.hpp"
 #include "spume/particles/projection_solver.hpp"
 #include "spume/particles/shift.hpp"
+#include "spume/particles/spill.hpp"
 #include "spume/particles/step_limits.hpp"
 #include "spume/particles/surface.hpp"
 #include "spume/particles/wall_bends.hpp"
@@ -80,16 +81,15 @@ struct Flow {
   FloatVectorField acceleration{};      // Du/Dt at the end of the last step; null without centring
   VectorField material_acceleration{};  // Du/Dt over the last step, for bubbles: null without
   Boundary boundary;                    // positions and speed of the walls
-  EnergyGuard energy;                   // what the flow may hold
-  double work = 0;                      // of forces.body, gravity along periodic axes and sponges since the start
-  Speeds speeds;                        // of the particles
+  Spill spill;
+  EnergyGuard energy;  // what the flow may hold
+  double work = 0;     // of forces.body, gravity along periodic axes and sponges since the start
+  Speeds speeds;       // of the particles
   double max_eddy_viscosity = 0;
   double max_divergence = 0;      // of u*
   double dissipation = 0;         // integral of rho (nu + nu_t) |S|^2
   double largest_body_force = 0;  // per mass, of one that varies in space, at the end of the last step
   std::array<double, 2> last_steps{};
-
-  std::int64_t left = 0;  // particles that went through open sides and were removed
 
   // --- Results of the last step.
   ParticleSizes sizes;
@@ -161,11 +161,7 @@ struct Flow {
   // What the pressure stores in a compressible liquid: the integral of p^2 / (2 rho c^2).
   double stored_energy() const;
 
-  // Removes what cannot come back: particles that have fallen below an open bottom by more than their support, or lie
-  // farther beyond an open side than the domain is long, but for those above the top that gravity returns. Returns how
-  // many.
-  std::size_t remove_left();
-  bool has_left(std::size_t i) const;
+  std::size_t remove_left();  // through open sides
 
   // The stages, in the order of step.cpp. Numbers refer to King et al., section 3.3.
   void move_to_intermediate_position(double dt);  // (i)

@@ -18,6 +18,7 @@
 #include "spume/particles/excess_relaxation.hpp"
 #include "spume/particles/list_life.hpp"
 #include "spume/particles/phase_law.hpp"
+#include "spume/particles/spill.hpp"
 #include "spume/particles/surface_tension.hpp"
 #include "spume/particles/wall_parting.hpp"
 #include "spume/physics/solutes/measured_transport.hpp"
@@ -70,6 +71,7 @@ struct Flow {
   std::unique_ptr<BufferLayers> openings;    // null: none
   std::unique_ptr<AcousticLayers> acoustic;  // null: none
   Boundary boundary;
+  Spill spill;
   double listed_time = 0;  // of the places of moving bodies in the lists
   double settled = 0;      // 1: settle() has been
   double unsettled = 0;    // the largest acceleration that it has left, over that of gravity
@@ -107,6 +109,8 @@ struct Flow {
   double transport(int axis, double u, std::size_t i) const { return features.shifting ? u + (*shift[axis])[i] : u; }
   bool in_domain(std::size_t i) const { return openings == nullptr || !openings->holds(i); }
   double mass(std::size_t i) const { return in_domain(i) ? particles.volume * law(i).density : 0; }
+  double volume_spilt(std::size_t phase) const { return particles.volume * static_cast<double>(spill.count(phase)); }
+  double mass_spilt() const;
   double kinetic_energy() const;
   double potential_energy() const;  // across axes with sides
   double compression_energy() const;
@@ -114,7 +118,6 @@ struct Flow {
   double largest_excess(std::size_t phase) const;
   double largest_speed_in_domain() const;
   double largest_kinematic_viscosity() const;
-  std::string laws_in_words() const;
 
   // The stages.
   void move_layers(double dt);  // behind openings

@@ -32,7 +32,8 @@ class Sludge {
   const BiokineticsOptions& options_;
   const Integrator integrator_;
   std::vector<double*> values_;   // per component
-  std::vector<double> kept_;      // of what belongs to no liquid
+  Array<std::int32_t> members_;   // of what belongs to no liquid
+  std::vector<double> kept_;      // their values
   double pending_ = 0;            // seconds that have not reacted
   double uptake_ = 0, rate_ = 0;  // g of oxygen since the start; g/m^3/h of the last reaction
   double steps_ = 0;              // per particle, of the last reaction

@@ -32,8 +32,8 @@ namespace spume {
 
 class Scalars {
  public:
-  // Adds a field of state, "scalar_<name>", per scalar. Both outlive it.
-  Scalars(ParticleStore& particles, const Resolution& resolution, const ScalarOptions& options,
+  // Adds a field of state, "scalar_<name>", per scalar. All that is given outlives it.
+  Scalars(ParticleStore& particles, const Resolution& resolution, const Domain& domain, const ScalarOptions& options,
           const ScalarWalls& walls);
 
   struct Carrier {
@@ -65,7 +65,7 @@ class Scalars {
   std::int64_t transport(double dt, const Carrier& carrier);
 
   // Sources over dt from time t on, at the places of the particles: what they add counts to added().
-  void add_sources(double t, double dt, const VectorField& places);
+  void add_sources(double t, double dt);
   // What a source added to the amount by another way.
   void count_source(std::size_t scalar, double amount) { added_[scalar] += amount; }
   // Adds `change` to the values of a scalar; what its float sum differs from `amount` is taken out in proportion to the
@@ -82,9 +82,9 @@ class Scalars {
   void leave_out(const Array<std::int64_t>& column) { left_out_ = &column; }
   const Array<std::int64_t>* left_out() const { return left_out_; }
   bool counts(std::size_t i) const { return left_out_ == nullptr || (*left_out_)[i] < 0; }
-  // Gives particles behind inflows what these bring when they pass: after depth / speed from time t on, but no later
-  // than diffusion takes through the layers, R^2 / (2 D): where next to nothing flows the side has what it gives about
-  // now. What does not diffuse is seen by nobody before it passes; it is not asked for after `end`.
+  // Gives particles behind inflows what these bring when they pass: after depth / speed from time t on, but what
+  // diffuses through the support faster than it flows, speed R < D, no later than it diffuses to the side,
+  // depth^2 / (2 D), and what does not diffuse no later than `end`. Of what does not flow it is the present.
   void lead(const std::vector<Coming>& coming, double t, double end, double support_radius);
   // Gives particle i the values that no inflow gives of particle `like`.
   void follow(std::size_t i, std::size_t like);
@@ -129,7 +129,10 @@ class Scalars {
   void lease(std::size_t scalars);
   void release();
 
+  Vec3 place_of(std::size_t i) const;  // of a particle, inside along periodic axes
+
   ParticleStore& particles_;
+  const Domain& domain_;
   const ScalarOptions& options_;
   const double bulk_;  // div r of the lattice
   std::vector<Array<double>*> fields_;
