@@ -143,6 +143,19 @@ void find_interfaces_of_layers(const Arrangement& arrangement, const ParticleSto
   });
 }
 
+// A way from a place, and as much away from the walls of the domain as its end is nearer to them than `gap`. Where a face
+// meets a wall at an acute angle the two lead out of the pocket; the face alone presses what is there to the wall.
+Vec3 kept_before_sides(const Boundary& boundary, const Vec3& place, Vec3 way, double gap) {
+  for (int axis = 0; axis < boundary.domain().dimensions; ++axis)
+    for (std::size_t end = 0; end < 2; ++end) {
+      if (!is_wall(boundary.domain().sides[axis][end].kind)) continue;
+      const double inwards = end == 0 ? 1 : -1;
+      const double distance = inwards * (place[axis] + way[axis] - boundary.walls[axis][end]);
+      way[axis] += inwards * std::max(0.0, gap - distance);
+    }
+  return way;
+}
+
 Vec3 limited(const Vec3& way, double longest) {
   const double size = length(way);
   return size > longest ? multiply(longest / size, way) : way;
@@ -253,7 +266,9 @@ void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boun
     if (!free_surface || distance > least_gap * resolution.spacing) return moved;
     if (!horizontally) normal = bodies.normal(place);
     const double lack = least_gap * resolution.spacing - distance - dot(moved, normal);
-    return lack > 0 ? add(moved, multiply(lack, horizontally ? multiply(-0.5, across) : normal)) : moved;
+    if (!(lack > 0)) return moved;
+    const Vec3 out = add(moved, multiply(lack, horizontally ? multiply(-0.5, across) : normal));
+    return horizontally ? out : kept_before_sides(boundary, place, out, least_gap * resolution.spacing);
   });
 }
 

@@ -26,6 +26,7 @@ Section body_section() {
       .beside_case()
       .absent("given by shape or where")
       .option("size", &B::size, "length", "box: lengths of its edges")
+      .elsewhere({"lower", "upper"})
       .absent("not a box")
       .option("radius", &B::radius, "length", positive(),
               "ball, cylinder, capsule: radius; cone: radius of its base, at the lower end")
@@ -44,9 +45,11 @@ Section body_section() {
       .option("position", &B::position, "length",
               "where the centre stands, or the origin of an outline, an expression or a mesh; on the face of a "
               "half-space")
+      .elsewhere({"centre", "center", "lower", "upper"})
       .absent("the origin")
       .option("rotation", &B::rotation, "degree",
               "about the position: one angle in 2-D; three in 3-D, about the fixed axes x, then y, then z")
+      .or_one_alone()
       .absent("none")
       .option("scale", &B::scale, "1", positive(), "factor on all lengths of the shape, as from mm to m for a mesh")
       .option("inside", &B::inside, "true: the solid is inside the shape; false: outside it, and the liquid inside")
@@ -95,11 +98,13 @@ Section body_section() {
       .absent("it does not float, unless mass is given")
       .option("inertia", &B::inertia, "mass length^2",
               "of a floating body about its centre of mass: one number in 2-D, three about x, y, z in 3-D")
+      .or_one_alone()
       .absent("that of a uniform body")
       .option("free", &B::free,
               "motions that a floating body is free in: of \"x\", \"y\", \"z\", and \"turn\" in 2-D, \"turn_x\", "
               "\"turn_y\", "
               "\"turn_z\" in 3-D")
+      .or_one_alone()
       .absent("all")
       .option("restitution", &B::restitution, "1", between(0, 1),
               "of a floating body that hits a wall or another body: speed apart over speed of approach")

@@ -32,6 +32,7 @@ Section output() {
       .option("spectrum_every", &O::spectrum_every, "time", not_negative(), "interval of energy spectra; 0: none")
       .steerable()
       .option("fields", &O::fields, "fields of a snapshot; empty: the method's standard set")
+      .or_one_alone()
       .option("h5part_view", &O::h5part_view,
               "add views for ParaView 5.11: <name>.h5part of particles, <name>.hdf.series of fields on a grid")
       .option("interface", &O::interface,

@@ -79,8 +79,10 @@ Section solid() {
   using S = SolidDraft;
   return repeated_section<S>("solid", &Draft::solids)
       .option("lower", &S::lower, "length", "lower corner of a solid box")
+      .elsewhere({"position", "size"})
       .required()
       .option("upper", &S::upper, "length", "upper corner of a solid box")
+      .elsewhere({"position", "size"})
       .required()
       .word("wall", &S::wall, {{"free-slip", BoundaryKind::free_slip}, {"no-slip", BoundaryKind::no_slip}},
             "condition on its faces")
@@ -155,6 +157,7 @@ void add_shape(SectionOf<Region>& section) {
       .option("upper", &L::upper, "length", "upper corner of a box")
       .absent("the domain")
       .option("centre", &L::centre, "length", "centre of a ball (disc in 2-D)")
+      .elsewhere({"position", "center"})
       .absent("no ball")
       .option("radius", &L::radius, "length", positive(),
               "radius of a ball (disc in 2-D); half of one where its centre is on a side")

@@ -222,10 +222,12 @@ class SectionReader {
   }
 
   bool list(const Option& option, const std::string& name, const Node& node, Value& value) {
-    if (node.kind != Node::Kind::array) return wrong_type(option, name, node);
+    const bool alone = option.one_alone && node.kind != Node::Kind::array && node.kind != Node::Kind::table;
+    if (node.kind != Node::Kind::array && !alone) return wrong_type(option, name, node);
+    const std::span<const Node> elements = alone ? std::span<const Node>(&node, 1) : std::span<const Node>(node.children);
     bool good = true;
-    for (std::size_t i = 0; i < node.children.size(); ++i) {
-      const Node& element = node.children[i];
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      const Node& element = elements[i];
       const std::string entry = name + "[" + std::to_string(i) + "]";
       if (option.type == OptionType::numbers) {
         if (!element.is_number()) {
@@ -263,6 +265,17 @@ bool is_free(const Section& section) {
   return section.options.size() == 1 && section.options[0].type == OptionType::free_table;
 }
 
+// What says in a section what a key of other sections says there; empty: nothing does.
+std::string here_it_is(const CaseSchema& schema, const std::string& name, const std::string& key) {
+  std::string hint;
+  for (const Section& section : schema.sections())
+    for (const Option& option : section.options)
+      if (section.name == name &&
+          std::find(option.elsewhere.begin(), option.elsewhere.end(), key) != option.elsewhere.end())
+        hint += (hint.empty() ? "; here it is '" : " and '") + option.key + "'";
+  return hint;
+}
+
 // Every key of a table must be an option of its section or a section below it.
 void refuse_unknown_keys(const CaseSchema& schema, const Node& table, const std::string& name, bool repeated,
                          Problems& problems) {
@@ -285,7 +298,8 @@ void refuse_unknown_keys(const CaseSchema& schema, const Node& table, const std:
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     const Node& child = table.children[i];
     const bool section = name.empty() && (child.kind == Node::Kind::table || child.kind == Node::Kind::array);
-    std::string hint = did_you_mean(key, known);
+    std::string hint = here_it_is(schema, name, key);
+    if (hint.empty()) hint = did_you_mean(key, known);
     if (hint.empty() && owner.count(key) && !owner[key].empty())
       hint = "; '" + key + "' belongs into [" + owner[key] + "]";
     if (hint.empty() && owner.count(key)) hint = "; '" + key + "' belongs above the first section";

@@ -55,6 +55,28 @@ TEST(Load, ProblemsPrintAsClickablePlaces) {
   }
 }
 
+// Boxes and balls of liquid, of solids and of bodies are written differently.
+TEST(Load, KeysOfOtherShapesGetTheirNameHere) {
+  const std::string ball = "[[body]]\nshape = \"ball\"\nradius = 0.1\n", box = "[[body]]\nshape = \"box\"\n";
+  EXPECT_THAT(problems_of(small_case(ball + "centre = [0.5, 0.5]\n")),
+              ElementsAre("17:1 unknown key 'centre' in [[body]]; here it is 'position'"));
+  EXPECT_THAT(problems_of(small_case(box + "size = [0.1, 0.1]\nlower = [0.5, 0.5]\n")),
+              ElementsAre("17:1 unknown key 'lower' in [[body]]; here it is 'size' and 'position'"));
+  EXPECT_THAT(problems_of(small_case("position = [0.5, 0.5]\nradius = 0.3\n")),
+              Contains("14:1 unknown key 'position' in [[liquid]]; here it is 'centre'"));
+}
+
+TEST(Load, AValueStandsForAListOfOneWhereThatIsPossible) {
+  const std::string box = "[[body]]\nshape = \"box\"\nsize = [0.1, 0.1]\nposition = [0.5, 0.5]\n";
+  EXPECT_THAT(problems_of(small_case(box + "rotation = 20\n[output]\nfields = \"velocity\"\n")), IsEmpty());
+  EXPECT_EQ(load_text(small_case(box + "rotation = 20\n")).scene.bodies[0].shape->distance({0.6, 0.52, 0}),
+            load_text(small_case(box + "rotation = [20]\n")).scene.bodies[0].shape->distance({0.6, 0.52, 0}));
+  EXPECT_THAT(problems_of(small_case(box + "rotation = \"20\"\n")),
+              ElementsAre(HasSubstr("body.0.rotation[0] must be a number, found a string")));
+  EXPECT_THAT(problems_of(small_case("[[body]]\nshape = \"box\"\nsize = 0.1\n")),
+              ElementsAre(HasSubstr("body.0.size must be a list of numbers (length), found a number")));
+}
+
 TEST(Load, UnknownSectionsAndMisplacedKeysGetASuggestion) {
   EXPECT_THAT(problems_of(small_case("[turbulance]\nmodel = \"none\"\n")),
               ElementsAre("14:2 unknown section [turbulance]; did you mean 'turbulence'?"));

@@ -109,12 +109,14 @@ struct Option {
   bool required = false;
   Range range = {};
   std::vector<std::string> words = {};
+  std::vector<std::string> elsewhere = {};  // what it is called in other sections: a hint for who writes that
   std::string description = {};
   std::function<void(Draft&, const Value&)> set = {};
   MethodProperty property = nullptr;
   Owners owners = {};        // set by the schema
   Needs needs = {};          // no words: always
   bool steerable = false;    // may change while a run goes on
+  bool one_alone = false;    // of a list: a value stands for a list of one
   bool beside_case = false;  // a path from the folder of the case; the resolved case, elsewhere, names it in full
 };
 
@@ -312,6 +314,14 @@ class SectionOf : public SectionChain {
   }
   SectionOf& beside_case() {
     options.back().beside_case = true;
+    return *this;
+  }
+  SectionOf& or_one_alone() {
+    options.back().one_alone = true;
+    return *this;
+  }
+  SectionOf& elsewhere(std::vector<std::string> keys) {
+    options.back().elsewhere = std::move(keys);
     return *this;
   }
 
