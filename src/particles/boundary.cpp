@@ -8,6 +8,7 @@
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/periodic_grid.hpp"
+#include "spume/particles/pockets.hpp"
 
 namespace spume {
 namespace {
@@ -364,7 +365,10 @@ void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* veloci
       if (velocity != nullptr) (*velocity)[axis] = std::min((*velocity)[axis], 0.0);
     }
   }
-  if (bodies_ != nullptr) bodies_->keep_outside(position, velocity, wall_gap * spacing_);
+  if (bodies_ != nullptr) {
+    bodies_->keep_outside(position, velocity, wall_gap * spacing_);
+    lead_out_of_wedges(*this, position, velocity);
+  }
   if (solids_ == nullptr || !solids_->inside(position)) return;
   // Out through the nearest face, as far before it as it was behind, unless another solid is there.
   const Vec3 foot = solids_->nearest_free(position, 0);

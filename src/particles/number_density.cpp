@@ -7,6 +7,7 @@
 #include "salient_edges.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
+#include "spume/particles/pockets.hpp"
 
 namespace spume {
 namespace {
@@ -67,12 +68,22 @@ struct Reader {
   // one. In foam that falls back into the liquid it is a tenth; left at the density of nine tenths that it arrives
   // with, such liquid raised the second wave of dam_break_3d.
   bool tells_density(std::size_t i) const {
-    if (surface != nullptr && near_box(i) && !submerged(i)) return false;
+    if ((surface != nullptr && near_box(i) && !submerged(i)) || in_pocket(i)) return false;
     if (surface == nullptr || surface->interior_weight[i] == 1) return true;
     if (surface->at_surface[i] != 0) return false;
     const double normal2 = squared_norm(moments.normal, resolution.dimensions, i);
     const double missing = resolution.lattice.divergence_of_position - (*moments.divergence_of_position)[i];
     return std::sqrt(normal2) < largest_isotropic_normal * missing;
+  }
+
+  // What it lacks is where walls leave no room.
+  bool in_pocket(std::size_t i) const {
+    if (boundary.bodies() == nullptr || excess(i) >= -particle_disorder) return false;
+    const Vec3 place = vector_at(at, resolution.dimensions, i);
+    if (in_one_layer(boundary, place)) return true;
+    return moments.normal[0] != nullptr &&
+           ahead_of(boundary, arrangement, i, place, vector_at(moments.normal, resolution.dimensions, i)) ==
+               Ahead::pocket;
   }
 
   // The surface is farther than the support radius.

@@ -9,6 +9,7 @@
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/particles/number_density.hpp"
+#include "spume/particles/pockets.hpp"
 
 namespace spume {
 namespace {
@@ -56,6 +57,7 @@ Vec3 way_to(const NeighbourList& list, int dimensions, std::size_t i, std::int32
 struct Lack {
   double share = 0;
   bool all_around = false;
+  Vec3 normal{};  // towards what it lacks, of any length
 };
 
 void find_lacks(const Arrangement& arrangement, const ParticleStore& particles, const Resolution& resolution,
@@ -79,6 +81,7 @@ void find_lacks(const Arrangement& arrangement, const ParticleStore& particles, 
       lacks[i].share = 1 - sum / resolution.lattice.kernel_sum;
       const double missing = resolution.lattice.divergence_of_position - divergence;
       lacks[i].all_around = h * length(m) < largest_isotropic_normal * missing;
+      lacks[i].normal = multiply(-1, m);
     });
   });
 }
@@ -143,8 +146,8 @@ void find_interfaces_of_layers(const Arrangement& arrangement, const ParticleSto
   });
 }
 
-// A way from a place, and as much away from the walls of the domain as its end is nearer to them than `gap`. Where a face
-// meets a wall at an acute angle the two lead out of the pocket; the face alone presses what is there to the wall.
+// A way from a place, and as much away from the walls of the domain as its end is nearer to them than `gap`: a face at
+// an acute angle to a wall presses what is between to it, and an image that is near repels no more.
 Vec3 kept_before_sides(const Boundary& boundary, const Vec3& place, Vec3 way, double gap) {
   for (int axis = 0; axis < boundary.domain().dimensions; ++axis)
     for (std::size_t end = 0; end < 2; ++end) {
@@ -221,7 +224,13 @@ void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boun
     std::vector<Lack> lacks;
     if (free_surface) {
       find_lacks(arrangement, particles, resolution, lacks);
-      for (Lack& lack : lacks) lack.all_around = false;  // bodies leave no gaps of whole rows
+      // Bodies leave no gaps of whole rows, but pockets.
+      for (Lack& lack : lacks) lack.all_around = false;
+      parallel_for(lacks.size(), [&](std::size_t i) {
+        if (!(lacks[i].share > surface_lack)) return;
+        const Ahead ahead = ahead_of(boundary, arrangement, i, vector_at(at, d, i), lacks[i].normal);
+        lacks[i].all_around = ahead == Ahead::pocket || ahead == Ahead::wall;
+      });
       find_surface(arrangement, particles, resolution, lacks, beyond_support, sees_surface);
     }
     if (phase != nullptr) find_interfaces_of_layers(arrangement, particles, resolution, *phase, sees_surface);
@@ -263,12 +272,15 @@ void pack_beside_bodies(Arrangement& arrangement, ParticleStore& particles, Boun
     if (horizontally) gradient[d - 1] = 0;
     // Less and less towards the lattice, which stays.
     const Vec3 moved = multiply(-coefficient * std::min(1.0, 2 * (1 - distance / reach)), gradient);
-    if (!free_surface || distance > least_gap * resolution.spacing) return moved;
-    if (!horizontally) normal = bodies.normal(place);
-    const double lack = least_gap * resolution.spacing - distance - dot(moved, normal);
-    if (!(lack > 0)) return moved;
-    const Vec3 out = add(moved, multiply(lack, horizontally ? multiply(-0.5, across) : normal));
-    return horizontally ? out : kept_before_sides(boundary, place, out, least_gap * resolution.spacing);
+    const double gap = least_gap * resolution.spacing;
+    if (!free_surface) return moved;
+    Vec3 out = moved;
+    if (distance <= gap) {
+      if (!horizontally) normal = bodies.normal(place);
+      const double lack = gap - distance - dot(moved, normal);
+      if (lack > 0) out = add(moved, multiply(lack, horizontally ? multiply(-0.5, across) : normal));
+    }
+    return horizontally ? out : kept_before_sides(boundary, place, out, gap);
   });
 }
 

@@ -9,6 +9,7 @@
 #include "spume/core/vectors.hpp"
 #include "spume/operators/surface_layers.hpp"
 #include "spume/particles/options.hpp"
+#include "spume/particles/pockets.hpp"
 
 namespace spume {
 namespace {
@@ -54,11 +55,16 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, Momen
   if (boundary.bodies() != nullptr) continue_into_bodies(arrangement, moments, boundary, at);
   const Array<float>& divergence_of_position = obstacles ? counted_ : *moments.divergence_of_position;
   const double least = surface_layer_share(resolution_.dimensions) * options_.interior.threshold;
-  parallel_for(n, [&](std::size_t i) {
+  const auto count_alone = [&](std::size_t i) {
     at_surface[i] = divergence_of_position[i] < options_.interior.threshold ? 1 : 0;
     const bool sparse = boundary.bodies() != nullptr && continued_.is_sparse(i);
     pressure_fixed[i] = at_surface[i] != 0 && (moments.uncorrected[i] != 0 || sparse) ? 1 : 0;
     interior_weight[i] = options_.interior(divergence_of_position[i]);
+  };
+  ScratchArray<std::uint8_t> in_pocket(particles.scratch(), boundary.bodies() != nullptr ? n : 0);
+  parallel_for(n, [&](std::size_t i) {
+    if (boundary.bodies() != nullptr) in_pocket[i] = 0;
+    count_alone(i);
     if (is_covered(i)) {
       at_surface[i] = pressure_fixed[i] = 0;
       interior_weight[i] = 1;
@@ -66,12 +72,20 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, Momen
     }
     // Where the liquid continues into a body, what a surface particle lacks is no gap before it.
     const bool continued = at_surface[i] != 0 && boundary.bodies() != nullptr && continues_into_body(i);
-    if (!obstacles || !is_near(moments, i) || divergence_of_position[i] < least || continued ||
-        !faces_solid(boundary, moments, at, i))
-      return;
-    at_surface[i] = 0;
+    if (!obstacles || interior_weight[i] == 1 || continued) return;
+    const bool before_solid =
+        is_near(moments, i) && divergence_of_position[i] >= least && faces_solid(boundary, moments, at, i);
+    if (!before_solid && !is_in_pocket(arrangement, boundary, moments, at, i)) return;
+    if (!before_solid) in_pocket[i] = 1;
+    at_surface[i] = pressure_fixed[i] = 0;
     interior_weight[i] = 1;
   });
+  if (boundary.bodies() != nullptr) {
+    parallel_select(n, in_pockets_, [&](std::size_t i) { return in_pocket[i] != 0; });
+    const auto is_anchored = [&](std::size_t i) { return interior_weight[i] < 1; };
+    for (const std::int32_t i : in_closed_pools(arrangement, in_pockets_, is_anchored))
+      count_alone(static_cast<std::size_t>(i));
+  }
   if (obstacles) pass_over_gaps(arrangement, at, boundary);
   parallel_select(n, surface_particles, [&](std::size_t i) { return at_surface[i] != 0; });
   parallel_select(n, near_surface, [&](std::size_t i) { return is_near(moments, i); });
@@ -145,6 +159,16 @@ bool FreeSurface::faces_solid(const Boundary& boundary, const MomentFields& mome
     if (std::abs(normal[axis]) > in_front && (face - place[axis]) / normal[axis] < reach) return true;
   }
   return false;
+}
+
+// Spray has room.
+bool FreeSurface::is_in_pocket(const Arrangement& arrangement, const Boundary& boundary, const MomentFields& moments,
+                               const VectorField& at, std::size_t i) const {
+  if (boundary.bodies() == nullptr) return false;
+  const Vec3 place = vector_at(at, resolution_.dimensions, i);
+  const Ahead ahead = ahead_of(boundary, arrangement, i, place, vector_at(moments.normal, resolution_.dimensions, i));
+  const bool pocket = ahead == Ahead::pocket || (ahead == Ahead::wall && in_one_layer(boundary, place));
+  return pocket && (!continued_.is_sparse(i) || !has_room(boundary, place));
 }
 
 void FreeSurface::pass_over_gaps(const Arrangement& arrangement, const VectorField& at, const Boundary& boundary) {

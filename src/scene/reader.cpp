@@ -224,7 +224,8 @@ class SectionReader {
   bool list(const Option& option, const std::string& name, const Node& node, Value& value) {
     const bool alone = option.one_alone && node.kind != Node::Kind::array && node.kind != Node::Kind::table;
     if (node.kind != Node::Kind::array && !alone) return wrong_type(option, name, node);
-    const std::span<const Node> elements = alone ? std::span<const Node>(&node, 1) : std::span<const Node>(node.children);
+    const std::span<const Node> elements =
+        alone ? std::span<const Node>(&node, 1) : std::span<const Node>(node.children);
     bool good = true;
     for (std::size_t i = 0; i < elements.size(); ++i) {
       const Node& element = elements[i];

@@ -76,6 +76,7 @@ class BodyWalls {
   bool is_wet(std::size_t point) const;
   // Distance from the walls, negative inside them; farther than four support radii from a surface a bound of it.
   double distance(const Vec3& point) const;
+  bool moves_at(const Vec3& point) const { return nearest_walls(point).motion() != nullptr; }  // the nearest wall
   Vec3 normal(const Vec3& point) const { return nearest_walls(point).nearest(point).normal; }
   struct NearestWall : NearestPoint {
     std::size_t body = 0;          // among those of the scene

@@ -156,6 +156,7 @@ class Boundary {
   const SolidUnion* solids() const { return solids_.get(); }
 
   // Boxes and bodies in the domain, and whether one of them is nearer than `reach` to a point.
+  double spacing() const { return spacing_; }
   bool has_obstacles() const { return solids_ != nullptr || bodies_ != nullptr; }
   bool obstacle_near(const Vec3& point, double reach) const {
     return (solids_ != nullptr && !solids_->clear_around(point, reach)) ||

@@ -122,6 +122,8 @@ class FreeSurface {
   void count_in_boxes(const Arrangement& arrangement, MomentFields& moments, const VectorField& at,
                       const SolidUnion& solids);
   bool faces_solid(const Boundary& boundary, const MomentFields& moments, const VectorField& at, std::size_t i) const;
+  bool is_in_pocket(const Arrangement& arrangement, const Boundary& boundary, const MomentFields& moments,
+                    const VectorField& at, std::size_t i) const;
   void continue_into_bodies(const Arrangement& arrangement, MomentFields& moments, const Boundary& boundary,
                             const VectorField& at);
   void pass_over_gaps(const Arrangement& arrangement, const VectorField& at, const Boundary& boundary);
@@ -134,6 +136,7 @@ class FreeSurface {
   std::vector<FreeBox> boxes_;
   std::vector<BoxMoments> box_moments_;
   Array<float> counted_;  // div r of the surface rule
+  Array<std::int32_t> in_pockets_;
   ContinuedLiquid continued_;
 };
 

@@ -137,8 +137,8 @@ void LesSph::remark_surface_at_bodies() {
                                  : "join the bodies, or part them by five spacings";
   remarks_.push_back({std::to_string(static_cast<long long>(beside)) +
                           " particles at the start count as a free surface " + where +
-                          ": in a gap too narrow for particles still water does not stay still (0.5 sqrt(g H) where a "
-                          "ball touches a box); " +
+                          ": where a gap too narrow for particles meets the surface still water does not stay still "
+                          "(0.5 sqrt(g H) over a ball that touches a wall there); " +
                           cure,
                       false});
 }

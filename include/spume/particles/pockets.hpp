@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Places between the wall of a body and another wall where no particle has room: the wedge below a ball that lies on
+// the floor, a slot narrower than the spacing. They are filled with nothing, and stay so: liquid drawn in leaves a void
+// behind it, with less pressure, which draws more in; still water beside a cylinder on the floor reached 5 sqrt(gH).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "spume/core/vec3.hpp"
+#include "spume/particles/store.hpp"
+
+namespace spume {
+
+class Arrangement;
+class Boundary;
+
+// Whether a ball of half a spacing fits between the walls around a place, which it may be beside.
+bool has_room(const Boundary& boundary, const Vec3& place);
+
+// What there is along a normal from particle i, at half a spacing, one and one and a half: somewhere a ball of half a
+// spacing fits between the walls that no particle stands in; else, at some of the places, none fits, a pocket; or one
+// fits where i itself stands alone, before a wall; or other particles are everywhere. Who lacks liquid and has a pocket
+// ahead lacks what walls leave no room for: it faces no surface and no void. So does who has a wall ahead in liquid at
+// rest; of a film that runs down a face the other side is free. `room` farther than a support radius from bodies, and
+// beside those that move, which press liquid out of the gaps that they close.
+enum class Ahead { room, liquid, wall, pocket };
+Ahead ahead_of(const Boundary& boundary, const Arrangement& arrangement, std::size_t i, const Vec3& place,
+               const Vec3& normal);
+
+// The particles among `members` whose pool is closed off: from which no particle that `is_anchored` is reached over
+// neighbours, of less than 10,000. The pressure of what bodies enclose is known up to a constant.
+std::vector<std::int32_t> in_closed_pools(const Arrangement& arrangement, const Array<std::int32_t>& members,
+                                          const std::function<bool(std::size_t)>& is_anchored);
+
+// Whether a place is between the face of a body and another wall that are less than two spacings apart, where one layer
+// of particles fits at most: their kernel sums tell how it fits. False beside bodies that move.
+bool in_one_layer(const Boundary& boundary, const Vec3& place);
+
+// A place in a wedge whose faces are nearer to each other than 0.6 spacings there: out along the bisector to where
+// they are not, with the velocity that leads in taken away. Between faces that are parallel to 6 degrees, which lead
+// nowhere out, and beside bodies that move nothing is moved.
+void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity);
+
+}  // namespace spume

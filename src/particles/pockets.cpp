@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/pockets.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "spume/core/vectors.hpp"
+#include "spume/particles/boundary.hpp"
+
+namespace spume {
+namespace {
+
+// Of half a spacing, what a ball that fits keeps from the walls: two push it to and fro.
+constexpr double fits = 0.8;
+// Spacings between the faces of a wedge. A layer of particles, which stand half a spacing from walls, needs one; at 0.6
+// those that press against each other at its mouth stay.
+constexpr double narrow = 0.6;
+// Spacings: along a normal, and from a particle, what it takes.
+constexpr double probes[] = {0.5, 1, 1.5}, taken = 0.8;
+constexpr double pushed = 0.25;   // spacings, by walls back from where it was looked for
+constexpr double parallel = 0.1;  // of the sum of two normals
+constexpr double longest = 0.3;   // spacings, of a way out
+
+// The wall that a place is behind, and by how much.
+struct Across {
+  Vec3 normal{};
+  double behind = 0;
+};
+std::optional<Across> wall_before(const Boundary& boundary, const Vec3& place) {
+  const Domain& domain = boundary.domain();
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    for (std::size_t end = 0; end < 2; ++end) {
+      const double inwards = end == 0 ? 1 : -1, behind = -inwards * (place[axis] - boundary.walls[axis][end]);
+      if (!is_wall(domain.sides[axis][end].kind) || behind < 0) continue;
+      Across across{.behind = behind};
+      across.normal[axis] = inwards;
+      return across;
+    }
+  const double distance = boundary.bodies()->distance(place);
+  if (distance > 0) return std::nullopt;
+  return Across{boundary.bodies()->normal(place), -distance};
+}
+
+// The middle of a ball of half a spacing that fits between the walls around a place.
+std::optional<Vec3> room_at(const Boundary& boundary, Vec3 place) {
+  const Domain& domain = boundary.domain();
+  const double radius = 0.5 * boundary.spacing();
+  const auto leave_sides = [&] {
+    for (int axis = 0; axis < domain.dimensions; ++axis)
+      for (std::size_t end = 0; end < 2; ++end) {
+        if (!is_wall(domain.sides[axis][end].kind)) continue;
+        const double inwards = end == 0 ? 1 : -1;
+        place[axis] += inwards * std::max(0.0, radius - inwards * (place[axis] - boundary.walls[axis][end]));
+      }
+  };
+  for (int round = 0; round < 2; ++round) {
+    leave_sides();
+    const double lack = radius - boundary.bodies()->distance(place);
+    if (lack > 0) place = add(place, multiply(lack, boundary.bodies()->normal(place)));
+  }
+  leave_sides();
+  if (boundary.bodies()->distance(place) > fits * radius) return place;
+  return std::nullopt;
+}
+
+bool is_wall_point(const Arrangement& arrangement, std::int32_t point) {
+  const auto n = static_cast<std::int32_t>(arrangement.list.particles());
+  const std::int32_t* wall_point = arrangement.images.wall_point();
+  return point >= n && wall_point != nullptr && wall_point[point - n] >= 0;
+}
+
+// Whether a particle, i itself or another, or an image of one is nearer to a place off particle i than `reach`.
+bool stands_in(const Arrangement& arrangement, std::size_t i, const Vec3& way, double reach) {
+  if (dot(way, way) < reach * reach) return true;
+  const NeighbourList& list = arrangement.list;
+  for (const std::int32_t j : list.of(i)) {
+    if (is_wall_point(arrangement, j)) continue;
+    double distance2 = 0;
+    for (int axis = 0; axis < arrangement.grid.dimensions(); ++axis) {
+      const double away = double{list.coordinate(axis)[j]} - double{list.coordinate(axis)[i]} - way[axis];
+      distance2 += away * away;
+    }
+    if (distance2 < reach * reach) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool has_room(const Boundary& boundary, const Vec3& place) {
+  return room_at(boundary, place).has_value();
+}
+
+bool in_one_layer(const Boundary& boundary, const Vec3& place) {
+  const BodyWalls& bodies = *boundary.bodies();
+  const double width = 2 * boundary.spacing();
+  if (bodies.surely_farther(place, width)) return false;
+  const double before = bodies.distance(place);
+  if (!(before < width) || bodies.moves_at(place)) return false;
+  const Vec3 face = bodies.normal(place);
+  const std::optional<Across> across = wall_before(boundary, add(place, multiply(width - before, face)));
+  return across && dot(face, across->normal) < 0;
+}
+
+Ahead ahead_of(const Boundary& boundary, const Arrangement& arrangement, std::size_t i, const Vec3& place,
+               const Vec3& normal) {
+  const BodyWalls* bodies = boundary.bodies();
+  if (bodies == nullptr || !bodies->nearer_than(place, arrangement.grid.support_radius()) || bodies->moves_at(place))
+    return Ahead::room;
+  const double size = length(normal), near = taken * boundary.spacing();
+  if (!(size > 0)) return Ahead::room;
+  Ahead found = Ahead::liquid;
+  for (const double distance : probes) {
+    const Vec3 way = multiply(distance * boundary.spacing() / size, normal);
+    const std::optional<Vec3> room = room_at(boundary, add(place, way));
+    if (!room) {
+      found = Ahead::pocket;
+      continue;
+    }
+    const Vec3 to_room = subtract(*room, place);
+    if (!stands_in(arrangement, i, to_room, near)) return Ahead::room;
+    const bool pushed_back = length(to_room) < near && length(subtract(to_room, way)) > pushed * boundary.spacing();
+    if (found == Ahead::liquid && pushed_back) found = Ahead::wall;
+  }
+  return found;
+}
+
+std::vector<std::int32_t> in_closed_pools(const Arrangement& arrangement, const Array<std::int32_t>& members,
+                                          const std::function<bool(std::size_t)>& is_anchored) {
+  constexpr std::size_t most = 10000;
+  const NeighbourList& list = arrangement.list;
+  std::vector<std::int32_t> pool_of(members.size() == 0 ? 0 : list.particles());  // from 1; 0: not looked at
+  std::vector<std::int32_t> pool, found;
+  std::vector<bool> closed{false};
+  for (const std::int32_t member : members) {
+    if (pool_of[static_cast<std::size_t>(member)] != 0) continue;
+    const auto number = static_cast<std::int32_t>(closed.size());
+    closed.push_back(true);
+    pool_of[static_cast<std::size_t>(member)] = number;
+    pool.assign(1, member);
+    for (std::size_t k = 0; k < pool.size() && closed.back(); ++k) {
+      const auto i = static_cast<std::size_t>(pool[k]);
+      closed.back() = !is_anchored(i) && pool.size() < most;
+      for (const std::int32_t point : list.of(i)) {
+        if (is_wall_point(arrangement, point)) continue;
+        const std::size_t j = arrangement.particle_of(point);
+        // Pools that were closed have been looked at as a whole: what meets another one meets one that was not.
+        if (pool_of[j] != 0 && pool_of[j] != number) closed.back() = false;
+        if (pool_of[j] != 0) continue;
+        pool_of[j] = number;
+        pool.push_back(static_cast<std::int32_t>(j));
+      }
+    }
+  }
+  for (const std::int32_t member : members)
+    if (closed[static_cast<std::size_t>(pool_of[static_cast<std::size_t>(member)])]) found.push_back(member);
+  return found;
+}
+
+void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity) {
+  const BodyWalls& bodies = *boundary.bodies();
+  const double least = narrow * boundary.spacing();
+  if (bodies.surely_farther(place, least)) return;
+  const double before = bodies.distance(place);
+  if (!(before < least) || bodies.moves_at(place)) return;
+  const Vec3 face = bodies.normal(place);
+  const std::optional<Across> across = wall_before(boundary, add(place, multiply(least - before, face)));
+  if (!across || !(dot(face, across->normal) < 0)) return;
+  const Vec3 outwards = add(face, across->normal);
+  const double size = length(outwards);
+  if (size < parallel) return;
+  // The distances from the two grow by |outwards| together along their bisector.
+  place = add(place, multiply(std::min(across->behind / size, longest * boundary.spacing()) / size, outwards));
+  if (velocity == nullptr) return;
+  const double inwards = dot(*velocity, outwards) / (size * size);
+  if (inwards < 0) *velocity = subtract(*velocity, multiply(inwards, outwards));
+}
+
+}  // namespace spume

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/pockets.hpp"
+
+#include <gtest/gtest.h>
+
+#include "particles/walled.hpp"
+
+namespace spume::test {
+namespace {
+
+constexpr double spacing = 0.05;
+
+// A box turned by 20 degrees that stands on an edge above the floor of a tank.
+struct Tank {
+  LoadedCase loaded = load_text(
+      scene_text("lower = [-1, 0]\nupper = [1, 2]\nleft = \"free-slip\"\nright = \"free-slip\"\nbottom = \"no-slip\"\n",
+                 spacing, "[[body]]\nshape = \"box\"\nsize = [0.8, 0.8]\nposition = [0, 0.52]\nrotation = [20]\n"));
+  Resolution resolution{2, spacing, KernelKind::wendland_c2, 1.3};
+  Boundary boundary{loaded.scene.domain, spacing, make_body_walls(loaded.scene, resolution)};
+  // Where the face at 20 degrees, right of the lowest corner, is so high above the floor.
+  Vec3 under_face(double height, double share) const {
+    const Vec3 corner{-0.4 * std::cos(angle) + 0.4 * std::sin(angle),
+                      0.52 - 0.4 * std::sin(angle) - 0.4 * std::cos(angle), 0};
+    return {corner[0] + (height - corner[1]) / std::tan(angle), share * height, 0};
+  }
+  static constexpr double angle = 20 * std::numbers::pi / 180;
+};
+
+// A ball of half a spacing, less a fifth, touches both where they are 1 / cos^2(10 degrees) spacings apart, and is up
+// to a radius away.
+TEST(Pockets, AParticleHasRoomWhereABallFits) {
+  const Tank tank;
+  EXPECT_FALSE(has_room(tank.boundary, tank.under_face(0.6 * spacing, 0.5)));
+  EXPECT_TRUE(has_room(tank.boundary, tank.under_face(1.2 * spacing, 0.5)));
+  EXPECT_TRUE(has_room(tank.boundary, tank.under_face(1.2 * spacing, 0.1)));
+  EXPECT_TRUE(has_room(tank.boundary, {-0.9, 0.3, 0}));
+  EXPECT_FALSE(in_one_layer(tank.boundary, tank.under_face(2.3 * spacing, 0.5)));
+  EXPECT_TRUE(in_one_layer(tank.boundary, tank.under_face(1.8 * spacing, 0.5)));
+  EXPECT_FALSE(in_one_layer(tank.boundary, {-0.9, 0.3, 0}));
+}
+
+TEST(Pockets, ParticlesAreLedOutOfWedges) {
+  const Tank tank;
+  const BodyWalls& box = *tank.boundary.bodies();
+  Vec3 place = tank.under_face(0.5 * spacing, 0.4), velocity{-1, 0.2, 0};
+  const Vec3 before = place;
+  lead_out_of_wedges(tank.boundary, place, &velocity);
+  EXPECT_GT(place[0], before[0]);
+  // Between parallels through its foot: to first order in the angle.
+  EXPECT_NEAR(box.distance(place) + place[1], 0.6 * spacing, 0.02 * spacing);
+  const Vec3 outwards{std::sin(Tank::angle), 1 - std::cos(Tank::angle), 0};
+  EXPECT_NEAR(dot(velocity, outwards), 0, 1e-12);
+  const Vec3 along{-outwards[1], outwards[0], 0};
+  EXPECT_NEAR(dot(velocity, along), dot(Vec3{-1, 0.2, 0}, along), 1e-12);
+
+  velocity = {1, 0, 0};  // on its way out
+  place = before;
+  lead_out_of_wedges(tank.boundary, place, &velocity);
+  EXPECT_EQ(velocity[0], 1);
+}
+
+// In wide gaps, before a single face, at the steep face of an obtuse corner, and between parallels.
+TEST(Pockets, OtherPlacesAreLeft) {
+  const Tank tank;
+  const Vec3 beside{-0.4 * std::cos(Tank::angle) + 0.4 * std::sin(Tank::angle) - 0.3 * spacing, 0.5 * spacing, 0};
+  for (const Vec3& at : {tank.under_face(0.7 * spacing, 0.5), beside, Vec3{-0.9, 0.01, 0}, Vec3{0, 1.2, 0}}) {
+    Vec3 place = at, velocity{-1, -1, 0};
+    lead_out_of_wedges(tank.boundary, place, &velocity);
+    EXPECT_EQ(place, at);
+    EXPECT_EQ(velocity, (Vec3{-1, -1, 0}));
+  }
+  const LoadedCase slot = load_text(
+      scene_text("lower = [-1, 0]\nupper = [1, 2]\nbottom = \"no-slip\"\nleft = \"free-slip\"\nright = \"free-slip\"\n",
+                 spacing, "[[body]]\nshape = \"box\"\nsize = [0.8, 0.8]\nposition = [0, 0.42]\n"));
+  const Resolution resolution(2, spacing, KernelKind::wendland_c2, 1.3);
+  const Boundary boundary(slot.scene.domain, spacing, make_body_walls(slot.scene, resolution));
+  Vec3 place{0.1, 0.01, 0};
+  lead_out_of_wedges(boundary, place, nullptr);
+  EXPECT_EQ(place, (Vec3{0.1, 0.01, 0}));
+}
+
+}  // namespace
+}  // namespace spume::test
