@@ -320,8 +320,8 @@ class SectionOf : public SectionChain {
     options.back().one_alone = true;
     return *this;
   }
-  SectionOf& elsewhere(std::vector<std::string> keys) {
-    options.back().elsewhere = std::move(keys);
+  SectionOf& elsewhere(const std::vector<std::string>& keys) {
+    options.back().elsewhere = keys;
     return *this;
   }
 
