@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Places the liquid particles of the start.
-//
-// Lattice: cell centres lower + (k + 1/2) d per axis. Where both sides of an axis are walls or the axis is
-// periodic, d is the length over the nearest integer count; otherwise d is the spacing, measured from the wall
-// if there is one. Every particle has the volume of a lattice cell.
+// Places the liquid particles of the start, on a lattice or in columns of their own.
 #pragma once
 
 #include <memory>
@@ -12,6 +8,7 @@
 
 #include "spume/scene/case.hpp"
 #include "spume/scene/document.hpp"
+#include "spume/scene/lattice.hpp"
 
 namespace spume {
 
@@ -29,17 +26,6 @@ struct LiquidRegion {
   bool conform = false;
   std::int32_t phase = -1;  // index of the phase that fills it, in place of what earlier regions put there; -1: none
 };
-
-struct Lattice {
-  int dimensions = 3;
-  Vec3 origin{};                         // lower corner of the first cell
-  Vec3 spacing{};                        // 1 in directions that do not exist
-  std::array<double, 3> count{1, 1, 1};  // whole numbers, as double because a foolish case may overflow
-  double volume() const { return spacing[0] * spacing[1] * spacing[2]; }
-  double sites() const { return count[0] * count[1] * count[2]; }
-};
-
-Lattice make_lattice(const Domain& domain, double spacing);
 
 // Fills scene.particles and sets scene.free_surface. Regions of phases replace what earlier ones put there; others must
 // not overlap. Reports empty and overlapping regions, values that are not

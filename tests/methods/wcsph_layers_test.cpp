@@ -152,7 +152,7 @@ end = 0.3
 )toml";
   WcsphRun run(text);
   EXPECT_TRUE(run.method.flow().features.weighted);
-  EXPECT_FALSE(run.method.flow().features.layers);  // not settled
+  EXPECT_FALSE(run.method.flow().features.settles);  // not settled
   until(run, 0.3);
   EXPECT_LT(run.method.flow().largest_speed, 0.01 * std::sqrt(9.81 * 0.3));
 }

@@ -2,11 +2,12 @@
 // The stages of a step.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/methods/wcsph/flow.hpp"
-#include "spume/particles/layer_settling.hpp"
+#include "spume/particles/settling.hpp"
 
 namespace spume::wcsph {
 namespace {
@@ -292,11 +293,10 @@ WallParting::Liquid Flow::parted(const std::array<const double*, 3>& at) const {
           .gradient_scale = arrangement.context.gradient_scale};
 }
 
-// The layers are at rest under the forces that a step finds.
+// At rest under the forces that a step finds.
 void Flow::settle() {
-  if (settled != 0) return;
-  settled = 1;
-  const auto with_forces = [this](const LayerSettling::UseForces& use) {
+  if (std::exchange(settled, 1) != 0) return;
+  const auto with_forces = [this](const Settling::UseForces& use) {
     keep_lists(0);
     drift(0);
     lease_properties();
@@ -306,15 +306,16 @@ void Flow::settle() {
     use({pressure.data(), force});
     release_leased();
   };
-  unsettled = LayerSettling{.scene = scene,
-                            .boundary = boundary,
-                            .resolution = resolution,
-                            .particles = particles,
-                            .arrangement = arrangement,
-                            .law = law_of_particles(),
-                            .excess = *excess,
-                            .gravity = wall_gravity,
-                            .with_forces = with_forces}
+  unsettled = Settling{.scene = scene,
+                       .boundary = boundary,
+                       .resolution = resolution,
+                       .particles = particles,
+                       .arrangement = arrangement,
+                       .law = law_of_particles(),
+                       .excess = *excess,
+                       .gravity = wall_gravity,
+                       .chosen = std::move(at_rest),
+                       .with_forces = with_forces}
                   .settle();
 }
 

@@ -15,10 +15,8 @@ Plan make_plan(Flow& f) {
   const ParticleStages stages(plan, f);
   const char* const several = has.several ? "several phases" : "one phase";
 
-  stages.sweep(start, "settling", has.layers,
-               has.layers    ? "phases in layers, to where they are at rest"
-               : has.several ? "for phases that lie in layers in a closed tank"
-                             : several,
+  stages.sweep(start, "settling", has.settles,
+               has.settles ? "to where the liquid is at rest" : "the liquid does not start level, at rest",
                &Flow::settle, {p.position, *f.excess}, {p.position, *f.excess});
   const ArrayUse interfaces([&f] { return f.tension == nullptr ? 0 : f.tension->bytes(); });
   const auto keep_lists = [&f](StageRun& run) {

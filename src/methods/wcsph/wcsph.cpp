@@ -9,7 +9,6 @@
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/particles/interface_contour.hpp"
-#include "spume/particles/layer_settling.hpp"
 #include "spume/particles/step_limits.hpp"
 #include "spume/scene/refusal.hpp"
 
@@ -67,7 +66,7 @@ Wcsph::Wcsph(const LoadedCase& loaded)
     body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
   saved_.add(flow_.time).add(flow_.steps).add(flow_.signal).add(flow_.largest_speed).add(flow_.boundary.wall_speed);
   saved_.add(flow_.list_life.fastest).add(flow_.list_life.most_accelerated);
-  if (flow_.features.layers) saved_.add(flow_.settled).add(flow_.arrangement.context.gradient_scale);
+  if (flow_.features.settles) saved_.add(flow_.settled).add(flow_.arrangement.context.gradient_scale);
   if (flow_.features.tension) saved_.add(flow_.surface_energy);
   if (flow_.features.density_relaxation) saved_.add(flow_.relaxation->volume).add(flow_.measured_way);
 }
@@ -131,9 +130,7 @@ std::vector<ParticleSnapshot> Wcsph::snapshot_on_demand() {
 std::vector<Remark> Wcsph::take_remarks() {
   std::vector<Remark> remarks;
   if (std::string remark = flow_.spill.take_remark(); !remark.empty()) remarks.push_back({std::move(remark)});
-  if (!(flow_.unsettled <= LayerSettling::at_rest))
-    remarks.push_back({"the layers are not at rest at the start: a particle is accelerated by " +
-                       brief(100 * std::exchange(flow_.unsettled, 0)) + " % of gravity"});
+  if (!flow_.unsettled.empty()) remarks.push_back({std::exchange(flow_.unsettled, {})});
   for (std::size_t n = 0; n < flow_.laws.size(); ++n) {
     if (remarked_[n]) continue;
     const double change = flow_.largest_excess(n), range = flow_.laws[n].largest_change();

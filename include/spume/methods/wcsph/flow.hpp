@@ -31,8 +31,10 @@ struct Features : BoundaryFeatures, SoluteFeatures {
   explicit Features(const LoadedCase& loaded);
   bool several = false;   // phases
   bool weighted = false;  // sums of pairs of different phases, by their densities
-  bool layers = false;    // of phases, each heavier than what is above it, in a closed tank
-  bool gravity = false;   // across sides
+  // It starts at rest: phases in layers in a closed tank, one below a level surface. Oxygen would find 8 % too much of
+  // a settled surface, which is denser.
+  bool settles = false;
+  bool gravity = false;  // across sides
   bool viscosity = false;
   bool friction = false;  // at no-slip walls
   bool tension = false;
@@ -72,10 +74,11 @@ struct Flow {
   std::unique_ptr<AcousticLayers> acoustic;  // null: none
   Boundary boundary;
   Spill spill;
-  double listed_time = 0;  // of the places of moving bodies in the lists
-  double settled = 0;      // 1: settle() has been
-  double unsettled = 0;    // the largest acceleration that it has left, over that of gravity
-  double signal = 0;       // largest sum of sound speed and speed
+  double listed_time = 0;             // of the places of moving bodies in the lists
+  double settled = 0;                 // 1: settle() has been
+  std::string unsettled;              // what it says of accelerations that it has left
+  std::vector<std::uint8_t> at_rest;  // the particles that it moves, by identifier; empty: all
+  double signal = 0;                  // largest sum of sound speed and speed
   double largest_speed = 0;
   double measured_way = 0;    // of the fastest particle since (12) was measured
   double surface_energy = 0;  // of the interfaces where the last forces were found
@@ -121,7 +124,7 @@ struct Flow {
 
   // The stages.
   void move_layers(double dt);  // behind openings
-  void settle();                // of layers, to where they are at rest
+  void settle();                // to where the liquid is at rest
   void keep_lists(double dt);
   void measure_volume();            // (12)
   void drift(double dt);            // (5), to the middle of the step

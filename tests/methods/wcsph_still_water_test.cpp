@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// Water at rest below a free surface.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "methods/wcsph_run.hpp"
+
+namespace spume::test {
+namespace {
+
+// sqrt(gH) = 1.05.
+const std::string still_plane = R"toml(method = "wcsph"
+[domain]
+lower = [0, 0]
+upper = [1.6, 1.3]
+left = "free-slip"
+right = "free-slip"
+bottom = "free-slip"
+[resolution]
+spacing = 0.04
+[fluid]
+gravity = 1
+[[phase]]
+name = "water"
+density = 1
+viscosity = 1e-4
+[[region]]
+phase = "water"
+upper = [1.6, 1.1]
+[time]
+end = 20
+)toml";
+const std::string still_space =
+    replaced(replaced(replaced(replaced(still_plane, "lower = [0, 0]", "lower = [0, 0, 0]"), "upper = [1.6, 1.3]",
+                               "upper = [1.6, 1.2, 1.3]\nfront = \"free-slip\"\nback = \"free-slip\""),
+                      "spacing = 0.04", "spacing = 0.1"),
+             "upper = [1.6, 1.1]", "upper = [1.6, 1.2, 1.1]");
+
+const std::string still_ellipse =
+    "[[body]]\nshape = \"ellipsoid\"\nposition = [0.8619, 0.37]\nsemi_axes = [0.3812, 0.2877]\nrotation = [11.8]\n";
+
+double largest_speed_of_still(const std::string& text, double end) {
+  WcsphRun run(text);
+  double largest = 0;
+  while (run.method.time() < end - 1e-12) {
+    run.method.step(std::min(run.method.step_limit().dt, end - run.method.time()), run.ledger);
+    largest = std::max(largest, run.method.flow().largest_speed);
+  }
+  return largest;
+}
+
+// From the lattice it reached 0.052 sqrt(gH) by t = 5, when that breaks up.
+TEST(WcsphStillWater, StaysStill) {
+  EXPECT_LT(largest_speed_of_still(still_plane, 5), 0.02);
+}
+
+// From the lattice that the bodies cut: 0.17, 0.13, 5.6 and 0.19.
+TEST(WcsphStillWater, StaysStillAroundBodies) {
+  const std::string turned =
+                        "[[body]]\nshape = \"box\"\nposition = [0.9, 0.42]\nsize = [0.45, 0.31]\nrotation = [31]\n",
+                    through_the_wall =
+                        "[[body]]\nshape = \"box\"\nposition = [0.2188, 0.3342]\nsize = [0.668, 0.6349]\n"
+                        "rotation = [55.46]\n";
+  EXPECT_LT(largest_speed_of_still(still_plane + still_ellipse, 2), 0.02);
+  EXPECT_LT(largest_speed_of_still(still_plane + turned, 2), 0.02);
+  EXPECT_LT(largest_speed_of_still(still_plane + through_the_wall, 5), 0.02);
+  const std::string ball = "[[body]]\nshape = \"ball\"\nposition = [0.83, 0.57, 0.52]\nradius = 0.31\n";
+  EXPECT_LT(largest_speed_of_still(still_space + ball, 3), 0.03);
+}
+
+// The pool below a drop settles, the drop falls as it is: 9e-3 is what the relaxation of its density stirs.
+TEST(WcsphStillWater, ADropAboveItFalls) {
+  WcsphRun run(replaced(still_plane, "upper = [1.6, 1.1]", "upper = [1.6, 0.4]") +
+               "[[region]]\nphase = \"water\"\ncentre = [0.8, 0.9]\nradius = 0.2\n");
+  const wcsph::Flow& flow = run.method.flow();
+  const double end = 0.4;
+  until(run, end);
+  double drop = 0, pool = 0;
+  for (std::size_t i = 0; i < flow.size(); ++i) {
+    const Vec3 u = vector_at(flow.particles.velocity, 2, i);
+    if ((*flow.particles.position[1])[i] > 0.5)
+      drop = std::max(drop, std::hypot(u[0], u[1] + end));
+    else
+      pool = std::max(pool, std::hypot(u[0], u[1]));
+  }
+  EXPECT_LT(drop, 0.02);
+  EXPECT_LT(pool, 0.01);
+}
+
+// What cannot rest is said, with its place: a particle in a slot that no other fits in.
+TEST(WcsphStillWater, SaysWhatCannotRest) {
+  WcsphRun run(still_plane +
+               "[[body]]\nshape = \"box\"\nposition = [0.4, 0.55]\nsize = [0.5, 1.0]\n"
+               "[[body]]\nshape = \"box\"\nposition = [1.1, 0.55]\nsize = [0.86, 1.0]\n");
+  run.steps(1, 1e-4);
+  const std::vector<Remark> remarks = run.method.take_remarks();
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_TRUE(remarks[0].text.find("not at rest at the start: the particle at (") != std::string::npos);
+  EXPECT_TRUE(run.method.take_remarks().empty());
+}
+
+}  // namespace
+}  // namespace spume::test
