@@ -365,10 +365,7 @@ void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* veloci
       if (velocity != nullptr) (*velocity)[axis] = std::min((*velocity)[axis], 0.0);
     }
   }
-  if (bodies_ != nullptr) {
-    bodies_->keep_outside(position, velocity, wall_gap * spacing_);
-    lead_out_of_wedges(*this, position, velocity);
-  }
+  if (bodies_ != nullptr) bodies_->keep_outside(position, velocity, wall_gap * spacing_);
   if (solids_ == nullptr || !solids_->inside(position)) return;
   // Out through the nearest face, as far before it as it was behind, unless another solid is there.
   const Vec3 foot = solids_->nearest_free(position, 0);
@@ -384,6 +381,19 @@ void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* veloci
   if (velocity == nullptr) return;
   for (int axis = 0; axis < domain_.dimensions; ++axis)
     if ((*velocity)[axis] * outward[axis] < 0) (*velocity)[axis] = 0;
+}
+
+void Boundary::hold_liquid(const WallPositions& at, Vec3& position, Vec3* velocity, const Vec3* from) const {
+  apply_walls(at, position, velocity, from);
+  if (bodies_ == nullptr) return;
+  const Vec3 held = position;
+  lead_out_of_wedges(*this, position, velocity);
+  // Out of a wedge beside one side may be behind another.
+  for (int axis = 0; axis < domain_.dimensions && position != held; ++axis) {
+    if (domain_.periodic(axis)) position[axis] = wrap_periodic(position[axis], at[axis][0], at[axis][1] - at[axis][0]);
+    if (is_wall(domain_.sides[axis][0].kind)) position[axis] = std::max(position[axis], at[axis][0] + gap());
+    if (is_wall(domain_.sides[axis][1].kind)) position[axis] = std::min(position[axis], at[axis][1] - gap());
+  }
 }
 
 double Boundary::gap() const {

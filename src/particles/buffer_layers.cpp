@@ -284,7 +284,7 @@ void BufferLayers::insert(const Array<std::int32_t>& staying, const std::vector<
 
 void BufferLayers::apply_walls(const Boundary& boundary, std::size_t i, Vec3& r, Vec3* u, const Vec3* from) const {
   if (!holds(i)) {
-    boundary.apply_walls(boundary.walls, r, u, from);
+    boundary.hold_liquid(boundary.walls, r, u, from);
     return;
   }
   const OpenGate& gate = gate_of((*column_)[i]);
@@ -294,7 +294,7 @@ void BufferLayers::apply_walls(const Boundary& boundary, std::size_t i, Vec3& r,
     r = vector_at(particles_.position, particles_.dimensions, i);
   } else {
     r[axis] = gate.plane + gate.inwards * scene_.spacing / 2;
-    boundary.apply_walls(boundary.walls, r, u);
+    boundary.hold_liquid(boundary.walls, r, u);
   }
   r[axis] = along;
 }

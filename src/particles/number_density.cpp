@@ -80,7 +80,8 @@ struct Reader {
   bool in_pocket(std::size_t i) const {
     if (boundary.bodies() == nullptr || excess(i) >= -particle_disorder) return false;
     const Vec3 place = vector_at(at, resolution.dimensions, i);
-    if (in_one_layer(boundary, place)) return true;
+    // Films that a surface ends keep their thickness; where liquid fills the domain a void between walls is one.
+    if (surface != nullptr && in_one_layer(boundary, place)) return true;
     return moments.normal[0] != nullptr &&
            ahead_of(boundary, arrangement, i, place, vector_at(moments.normal, resolution.dimensions, i)) ==
                Ahead::pocket;

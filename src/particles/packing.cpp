@@ -182,27 +182,28 @@ void move_in_rounds(Arrangement& arrangement, ParticleStore& particles, Boundary
     boundary.make_images(arrangement, particles, at, 1, {t, t, t}, round % wet_rounds == 0);
     arrangement.find_neighbours(particles, at, {});
     if (round == 0 && !start()) break;
-    double farthest = 0;
     with_plain_kernel(d, resolution.kernel, [&]<int dimensions, class Kernel>() {
       const double h = resolution.smoothing_length;
       const double value = particles.volume * Kernel::normalisation(dimensions) / std::pow(h, dimensions);
-      farthest = parallel_max(n, 0.0, [&](std::size_t i) {
-        if (stays(i)) return 0.0;
+      parallel_for(n, [&](std::size_t i) {
+        if (stays(i)) return;
         const Vec3 moved = limited(move(i, [&](const Vec3& dr) { return value * Kernel::f(length(dr) / h); }), longest);
         for (int axis = 0; axis < d; ++axis) way[axis][i] = moved[axis];
-        return length(moved);
       });
     });
-    parallel_for(n, [&](std::size_t i) {
-      if (stays(i)) return;
-      Vec3 place = add(vector_at(at, d, i), vector_at(way, d, i));
-      boundary.apply_walls(boundary.walls, place, nullptr);
+    // Between the walls of a wedge what pushes never ends, but nothing moves any more.
+    const double farthest = parallel_max(n, 0.0, [&](std::size_t i) {
+      if (stays(i)) return 0.0;
+      const Vec3 before = vector_at(at, d, i);
+      Vec3 place = add(before, vector_at(way, d, i));
+      boundary.hold_liquid(boundary.walls, place, nullptr);
       for (int axis = 0; axis < d; ++axis) {
         // Open sides let it through; its other components move on.
         if (!domain.periodic(axis) && (place[axis] < domain.lower[axis] || place[axis] > domain.upper[axis])) continue;
         (*at[axis])[i] = place[axis];
         (*particles.position[axis])[i] = place[axis];
       }
+      return length(domain.shortest(subtract(vector_at(at, d, i), before)));
     });
     if (farthest < still_enough * resolution.spacing) break;
   }

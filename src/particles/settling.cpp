@@ -37,7 +37,7 @@ void Settling::move(std::size_t i, const Vec3& way) const {
   const int dimensions = particles.dimensions;
   const Vec3 before = vector_at(particles.position, dimensions, i), free = add(before, way);
   Vec3 r = free;
-  boundary.apply_walls(boundary.walls, r, nullptr);
+  boundary.hold_liquid(boundary.walls, r, nullptr);
   double head = 0;
   for (int axis = 0; axis < dimensions; ++axis) {
     // Particles go round periodic sides when lists are made.

@@ -82,8 +82,9 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, Momen
   });
   if (boundary.bodies() != nullptr) {
     parallel_select(n, in_pockets_, [&](std::size_t i) { return in_pocket[i] != 0; });
-    const auto is_anchored = [&](std::size_t i) { return interior_weight[i] < 1; };
-    for (const std::int32_t i : in_closed_pools(arrangement, in_pockets_, is_anchored))
+    // What is not a surface itself may still be passed over.
+    const auto is_anchored = [&](std::size_t i) { return at_surface[i] != 0; };
+    for (const std::int32_t i : closed_pools_.find(arrangement, in_pockets_, is_anchored))
       count_alone(static_cast<std::size_t>(i));
   }
   if (obstacles) pass_over_gaps(arrangement, at, boundary);

@@ -273,7 +273,7 @@ std::string here_it_is(const CaseSchema& schema, const std::string& name, const 
     for (const Option& option : section.options)
       if (section.name == name &&
           std::find(option.elsewhere.begin(), option.elsewhere.end(), key) != option.elsewhere.end())
-        hint += (hint.empty() ? "; here it is '" : " and '") + option.key + "'";
+        hint += (hint.empty() ? "; here it is '" : ", '") + option.key + "'";
   return hint;
 }
 

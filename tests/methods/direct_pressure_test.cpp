@@ -39,9 +39,8 @@ double disagreement(const std::map<std::string, std::vector<double>>& a,
   return largest;
 }
 
-// A residual of 1e-9 is an error of about 1e-9 n^(2 / d) / pi^2 of the pressure of n particles, 4e-8 for 20 x 20; 2e-6
-// leaves room for what two steps make of it, 1.05e-6 at most with vectors of four doubles. The factors leave 1e-12: the
-// rounding of a double times the condition.
+// Sums over pairs are of floats: pressures that differ by a rounding differ by 6e-8 of the largest one in each of 20
+// neighbours, over two steps 2.4e-6 at most. The factors leave 1e-12: the rounding of a double times the condition.
 template <class Run>
 void expect_agreement(const std::string& text, const Overrides& set = {}) {
   SCOPED_TRACE(text);
@@ -52,7 +51,7 @@ void expect_agreement(const std::string& text, const Overrides& set = {}) {
   EXPECT_EQ(report.iterations, 1);
   EXPECT_LT(report.relative_residual, 1e-12);
   EXPECT_GT(iterative.method.flow().solver.report().iterations, 3);
-  EXPECT_LT(disagreement(iterative.saved_state(), factorised.saved_state()), 2e-6);
+  EXPECT_LT(disagreement(iterative.saved_state(), factorised.saved_state()), 2.4e-6);
   EXPECT_EQ(uncounted_stages(factorised.method, factorised.ledger), "");
 }
 

@@ -79,5 +79,43 @@ TEST(Pockets, OtherPlacesAreLeft) {
   EXPECT_EQ(place, (Vec3{0.1, 0.01, 0}));
 }
 
+// Bubbles, for which a place that is moved is one where they have struck a wall, are not.
+TEST(Pockets, LiquidAloneIsLedOut) {
+  const Tank tank;
+  const Vec3 in_wedge = tank.under_face(0.5 * spacing, 0.4);
+  Vec3 bubble = in_wedge, liquid = in_wedge;
+  tank.boundary.apply_walls(tank.boundary.walls, bubble, nullptr);
+  tank.boundary.hold_liquid(tank.boundary.walls, liquid, nullptr);
+  EXPECT_EQ(bubble, in_wedge);
+  EXPECT_GT(liquid[0], in_wedge[0]);
+}
+
+// Out of the wedge before one side of a corner, aslant, lies what is behind another.
+TEST(Pockets, LiquidIsHeldInCornersInSpace) {
+  const Resolution resolution(3, spacing, KernelKind::wendland_c2, 1.3);
+  int moved = 0;
+  for (int k = 0; k < 20; ++k) {
+    const std::string turns = "[" + std::to_string(5 + 17 * k % 80) + ", " + std::to_string(10 + 29 * k % 70) + ", " +
+                              std::to_string(3 + 41 * k % 85) + "]";
+    const LoadedCase corner =
+        load_text(scene_text("lower = [0, 0, 0]\nupper = [1, 1, 1]\nleft = \"free-slip\"\nright = \"free-slip\"\n"
+                             "front = \"free-slip\"\nback = \"free-slip\"\nbottom = \"no-slip\"\n",
+                             spacing,
+                             "[[body]]\nshape = \"box\"\nsize = [0.4, 0.4, 0.4]\nposition = [0.22, 0.22, 0.22]\n"
+                             "rotation = " +
+                                 turns + "\n"));
+    const Boundary boundary(corner.scene.domain, spacing, make_body_walls(corner.scene, resolution));
+    for (int n = 0; n < 1000; ++n) {
+      const Vec3 start{(n % 10 + 0.5) * 0.005, (n / 10 % 10 + 0.5) * 0.005, (n / 100 + 0.5) * 0.005};
+      Vec3 walled = start, held = start;
+      boundary.apply_walls(boundary.walls, walled, nullptr);
+      boundary.hold_liquid(boundary.walls, held, nullptr);
+      moved += held != walled ? 1 : 0;
+      for (int axis = 0; axis < 3; ++axis) ASSERT_GE(held[axis], 0) << turns << n;
+    }
+  }
+  EXPECT_GT(moved, 100);
+}
+
 }  // namespace
 }  // namespace spume::test

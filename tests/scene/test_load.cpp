@@ -61,9 +61,9 @@ TEST(Load, KeysOfOtherShapesGetTheirNameHere) {
   EXPECT_THAT(problems_of(small_case(ball + "centre = [0.5, 0.5]\n")),
               ElementsAre("17:1 unknown key 'centre' in [[body]]; here it is 'position'"));
   EXPECT_THAT(problems_of(small_case(box + "size = [0.1, 0.1]\nlower = [0.5, 0.5]\n")),
-              ElementsAre("17:1 unknown key 'lower' in [[body]]; here it is 'size' and 'position'"));
+              ElementsAre("17:1 unknown key 'lower' in [[body]]; here it is 'size', 'position'"));
   EXPECT_THAT(problems_of(small_case("position = [0.5, 0.5]\nradius = 0.3\n")),
-              Contains("14:1 unknown key 'position' in [[liquid]]; here it is 'centre'"));
+              Contains("14:1 unknown key 'position' in [[liquid]]; here it is 'lower', 'upper', 'centre'"));
 }
 
 TEST(Load, AValueStandsForAListOfOneWhereThatIsPossible) {

@@ -155,8 +155,8 @@ class Boundary {
   // Walls and boxes as one solid; null without boxes.
   const SolidUnion* solids() const { return solids_.get(); }
 
-  // Boxes and bodies in the domain, and whether one of them is nearer than `reach` to a point.
   double spacing() const { return spacing_; }
+  // Boxes and bodies in the domain, and whether one of them is nearer than `reach` to a point.
   bool has_obstacles() const { return solids_ != nullptr || bodies_ != nullptr; }
   bool obstacle_near(const Vec3& point, double reach) const {
     return (solids_ != nullptr && !solids_->clear_around(point, reach)) ||
@@ -166,11 +166,13 @@ class Boundary {
   // Periodic wrap; a point beyond a wall or inside a solid is reflected back, its velocity too when given. `from`:
   // where it was in the last state, or since; it has passed no thin body then.
   void apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity, const Vec3* from = nullptr) const;
+  // The same for a particle of liquid, which is also led out of wedges between bodies and walls (pockets.hpp).
+  void hold_liquid(const WallPositions& at, Vec3& position, Vec3* velocity, const Vec3* from = nullptr) const;
 
   // How near to a wall points may come.
   double gap() const;
-  // Whether apply_walls() would leave a place as it is: before all sides, in scenes without bodies and openings; false
-  // where that is not seen at once.
+  // Whether apply_walls() and hold_liquid() would leave a place as it is: before all sides, in scenes without bodies
+  // and openings; false where that is not seen at once.
   bool clear_of_sides(const Vec3& place) const;
 
   double bytes() const;

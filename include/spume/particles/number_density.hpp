@@ -52,7 +52,8 @@ struct DensityRelaxation {
 // a moving arrangement: without this voids open in a lid-driven cavity. What is let be is what the disorder of an
 // arrangement makes of S: 0.002 in the mean (0.0017 in a cavity), which must not raise the level of a liquid with a
 // surface, and 0.02 from particle to particle. Particles of the uppermost layer, which lack neighbours, and those
-// within reach of both a surface and a solid box are left alone. Returns the volume that the particles take by their
+// within reach of both a surface and a solid box are left alone, and so is what lacks room (pockets.hpp): beside a
+// pocket, and below a surface in one layer between two walls. Returns the volume that the particles take by their
 // kernel sums, over that of one on the lattice: the sum of 1 / (1 + e_i), 1 for those left alone. `surface`: null
 // without one. `at`: where the moments were measured.
 double even_out_density(const DensityRelaxation& relaxation, const Arrangement& arrangement, const Boundary& boundary,

@@ -2,11 +2,15 @@
 // Places between the wall of a body and another wall where no particle has room: the wedge below a ball that lies on
 // the floor, a slot narrower than the spacing. They are filled with nothing, and stay so: liquid drawn in leaves a void
 // behind it, with less pressure, which draws more in; still water beside a cylinder on the floor reached 5 sqrt(gH).
+//
+// All but ahead_of() ask for walls of bodies: boundary.bodies() is not null. Walls are those of the last state
+// (Boundary::walls). Which body moves is asked of the nearest one.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "spume/core/vec3.hpp"
@@ -17,7 +21,8 @@ namespace spume {
 class Arrangement;
 class Boundary;
 
-// Whether a ball of half a spacing fits between the walls around a place, which it may be beside.
+// Whether a ball of half a spacing, of which walls may take a fifth, fits between them around a place that it may be
+// beside.
 bool has_room(const Boundary& boundary, const Vec3& place);
 
 // What there is along a normal from particle i, at half a spacing, one and one and a half: somewhere a ball of half a
@@ -30,10 +35,23 @@ enum class Ahead { room, liquid, wall, pocket };
 Ahead ahead_of(const Boundary& boundary, const Arrangement& arrangement, std::size_t i, const Vec3& place,
                const Vec3& normal);
 
-// The particles among `members` whose pool is closed off: from which no particle that `is_anchored` is reached over
-// neighbours, of less than 10,000. The pressure of what bodies enclose is known up to a constant.
-std::vector<std::int32_t> in_closed_pools(const Arrangement& arrangement, const Array<std::int32_t>& members,
-                                          const std::function<bool(std::size_t)>& is_anchored);
+// Pools that bodies close off, in which the pressure is known up to a constant. Keeps its arrays between calls.
+class ClosedPools {
+ public:
+  // The particles among `members` from which none that `is_anchored` is reached over neighbours. The search goes up
+  // first, where surfaces are: it climbs an open tank, and goes through a closed pool as a whole.
+  const std::vector<std::int32_t>& find(const Arrangement& arrangement, const Array<std::int32_t>& members,
+                                        const std::function<bool(std::size_t)>& is_anchored);
+
+ private:
+  bool is_closed(const Arrangement& arrangement, std::int32_t member, std::int32_t number,
+                 const std::function<bool(std::size_t)>& is_anchored);
+
+  std::vector<std::int32_t> pool_of_;  // of a particle, from 1; 0: not looked at
+  std::vector<std::pair<float, std::int32_t>> ahead_;
+  std::vector<std::uint8_t> closed_;  // of pools
+  std::vector<std::int32_t> found_;
+};
 
 // Whether a place is between the face of a body and another wall that are less than two spacings apart, where one layer
 // of particles fits at most: their kernel sums tell how it fits. False beside bodies that move.

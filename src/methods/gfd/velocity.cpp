@@ -335,7 +335,7 @@ void Flow::accept(double dt) {
     if (features.openings)
       openings->apply_walls(boundary, i, r, &u, &from);
     else
-      boundary.apply_walls(boundary.next_walls, r, &u, &from);
+      boundary.hold_liquid(boundary.next_walls, r, &u, &from);
     for (int axis = 0; axis < dimensions; ++axis) {
       (*particles.position[axis])[i] = r[axis];
       (*particles.velocity[axis])[i] = u[axis];

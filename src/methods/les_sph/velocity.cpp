@@ -90,7 +90,7 @@ void Flow::move_to_intermediate_position(double dt) {
     const Vec3 from = vector_at(particles.position, dimensions, i);
     Vec3 r{};
     for (int axis = 0; axis < dimensions; ++axis) r[axis] = from[axis] + dt * u[axis];
-    boundary.apply_walls(boundary.next_walls, r, nullptr, &from);
+    boundary.hold_liquid(boundary.next_walls, r, nullptr, &from);
     for (int axis = 0; axis < dimensions; ++axis) (*intermediate_position[axis])[i] = r[axis];
   });
 }
@@ -379,7 +379,7 @@ void Flow::accept(double dt) {
       Vec3 straight{};
       for (int axis = 0; axis < dimensions; ++axis) straight[axis] = from[axis] + dt * before[axis];
       Vec3 stopped = before;
-      boundary.apply_walls(boundary.next_walls, straight, &stopped, &from);
+      boundary.hold_liquid(boundary.next_walls, straight, &stopped, &from);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         ahead[axis] += stopped[axis] - before[axis];
         before[axis] = stopped[axis];
@@ -406,8 +406,8 @@ void Flow::accept(double dt) {
     }
     if (rest.share != nullptr) forget_rest(i, dt * length(before));
     Vec3 place = r;
-    boundary.apply_walls(boundary.next_walls, place, &ahead);
-    boundary.apply_walls(boundary.next_walls, r, &u);
+    boundary.hold_liquid(boundary.next_walls, place, &ahead);
+    boundary.hold_liquid(boundary.next_walls, r, &u);
     if (acceleration[0] != nullptr)
       for (int axis = 0; axis < dimensions; ++axis)
         (*acceleration[axis])[i] = static_cast<float>(2 / dt * (ahead[axis] - u[axis]));

@@ -92,7 +92,7 @@ void Flow::apply_walls(std::size_t i, Vec3& r, Vec3* u, const Vec3* from) const 
   if (openings != nullptr)
     openings->apply_walls(boundary, i, r, u, from);
   else
-    boundary.apply_walls(boundary.walls, r, u, from);
+    boundary.hold_liquid(boundary.walls, r, u, from);
 }
 
 void Flow::measure_volume() {

@@ -146,11 +146,12 @@ std::vector<Remark> Wcsph::take_remarks() {
 
 std::vector<Invariant> Wcsph::invariants() const {
   std::vector<Invariant> list;
-  if (flow_.features.density_relaxation && !flow_.features.openings && !flow_.spill.possible())
+  if (flow_.features.density_relaxation && !flow_.features.openings)
     list.push_back({.quantity = "volume_drift",
                     .kind = Invariant::Kind::drift,
                     .column = "volume",
-                    .bound = largest_volume_drift});
+                    .bound = largest_volume_drift,
+                    .beside = [this] { return flow_.volume_spilt(); }});
   // To the rounding of three products.
   for (std::size_t n = 0; n < flow_.laws.size() && flow_.features.openings; ++n)
     list.push_back({.quantity = "balance_" + flow_.scene.phases[n].name,

@@ -112,6 +112,7 @@ struct Flow {
   double transport(int axis, double u, std::size_t i) const { return features.shifting ? u + (*shift[axis])[i] : u; }
   bool in_domain(std::size_t i) const { return openings == nullptr || !openings->holds(i); }
   double mass(std::size_t i) const { return in_domain(i) ? particles.volume * law(i).density : 0; }
+  double volume_spilt() const { return particles.volume * static_cast<double>(spill.count()); }
   double volume_spilt(std::size_t phase) const { return particles.volume * static_cast<double>(spill.count(phase)); }
   double mass_spilt() const;
   double kinetic_energy() const;
