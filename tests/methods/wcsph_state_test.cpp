@@ -301,7 +301,7 @@ end = 1
   }
 }
 
-// Water that settles around a box before it moves.
+// Water that settles around a box before a wall drags it.
 const std::string water_at_rest = R"toml(method = "wcsph"
 [domain]
 lower = [0, 0]
@@ -309,6 +309,8 @@ upper = [1, 1]
 left = "free-slip"
 right = "no-slip"
 bottom = "free-slip"
+[domain.wall_velocity]
+right = ["0", "1"]
 [resolution]
 spacing = 0.05
 [fluid]
@@ -316,7 +318,7 @@ gravity = 1
 [[phase]]
 name = "water"
 density = 1
-viscosity = 1e-3
+viscosity = 0.05
 [[region]]
 phase = "water"
 upper = [1, 0.8]

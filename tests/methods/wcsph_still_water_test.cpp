@@ -53,7 +53,7 @@ double largest_speed_of_still(const std::string& text, double end) {
 
 // From the lattice it reached 0.052 sqrt(gH) by t = 5, when that breaks up.
 TEST(WcsphStillWater, StaysStill) {
-  EXPECT_LT(largest_speed_of_still(still_plane, 5), 0.02);
+  EXPECT_LT(largest_speed_of_still(still_plane, 5), 1e-3);
 }
 
 // From the lattice that the bodies cut: 0.17, 0.13, 5.6 and 0.19.
@@ -63,14 +63,14 @@ TEST(WcsphStillWater, StaysStillAroundBodies) {
                     through_the_wall =
                         "[[body]]\nshape = \"box\"\nposition = [0.2188, 0.3342]\nsize = [0.668, 0.6349]\n"
                         "rotation = [55.46]\n";
-  EXPECT_LT(largest_speed_of_still(still_plane + still_ellipse, 2), 0.02);
-  EXPECT_LT(largest_speed_of_still(still_plane + turned, 2), 0.02);
-  EXPECT_LT(largest_speed_of_still(still_plane + through_the_wall, 5), 0.02);
+  EXPECT_LT(largest_speed_of_still(still_plane + still_ellipse, 2), 1e-3);
+  EXPECT_LT(largest_speed_of_still(still_plane + turned, 2), 1e-3);
+  EXPECT_LT(largest_speed_of_still(still_plane + through_the_wall, 5), 1e-3);
   const std::string ball = "[[body]]\nshape = \"ball\"\nposition = [0.83, 0.57, 0.52]\nradius = 0.31\n";
-  EXPECT_LT(largest_speed_of_still(still_space + ball, 3), 0.03);
+  EXPECT_LT(largest_speed_of_still(still_space + ball, 3), 1e-3);
 }
 
-// The pool below a drop settles, the drop falls as it is: 9e-3 is what the relaxation of its density stirs.
+// The pool below a drop settles, the drop falls as it is. The relaxation of its density stirs both, by 9e-3 and 3e-3.
 TEST(WcsphStillWater, ADropAboveItFalls) {
   WcsphRun run(replaced(still_plane, "upper = [1.6, 1.1]", "upper = [1.6, 0.4]") +
                "[[region]]\nphase = \"water\"\ncentre = [0.8, 0.9]\nradius = 0.2\n");
@@ -86,7 +86,7 @@ TEST(WcsphStillWater, ADropAboveItFalls) {
       pool = std::max(pool, std::hypot(u[0], u[1]));
   }
   EXPECT_LT(drop, 0.02);
-  EXPECT_LT(pool, 0.01);
+  EXPECT_LT(pool, 5e-3);
 }
 
 // What cannot rest is said, with its place: a particle in a slot that no other fits in.

@@ -20,7 +20,7 @@
 namespace spume {
 
 struct Settling {
-  // Of gravity: what is left of accelerations.
+  // Of gravity: accelerations above it that are left are said.
   static constexpr double at_rest = 0.005;
 
   const Scene& scene;
