@@ -301,16 +301,15 @@ end = 1
   }
 }
 
-// Water that settles around a box before a wall drags it.
+// Water that settles around a disc before the floor drags it.
 const std::string water_at_rest = R"toml(method = "wcsph"
 [domain]
 lower = [0, 0]
 upper = [1, 1]
-left = "free-slip"
-right = "no-slip"
-bottom = "free-slip"
+x = "periodic"
+bottom = "no-slip"
 [domain.wall_velocity]
-right = ["0", "1"]
+bottom = ["1", "0"]
 [resolution]
 spacing = 0.05
 [fluid]
@@ -323,10 +322,9 @@ viscosity = 0.05
 phase = "water"
 upper = [1, 0.8]
 [[body]]
-shape = "box"
+shape = "ball"
 position = [0.5, 0.3]
-size = [0.4, 0.3]
-rotation = [30]
+radius = 0.17
 [time]
 end = 1
 )toml";
