@@ -103,6 +103,8 @@ class BodyWalls {
 
  private:
   struct Block;
+  // Whether another wall is so near before it that one layer of particles fits between them at most.
+  bool faces_wall(const WallPoint& point) const;
   template <int dimensions>
   void fit_block(const Arrangement& arrangement, const VectorField& at, double particle_volume, std::size_t first,
                  std::size_t last, Block& block) const;
