@@ -53,6 +53,16 @@ class Scenes(unittest.TestCase):
                 self.assertLessEqual(max(densities) / min(densities), 1.0001e4)
                 self.assertGreater(case["time"]["end"], 0)
 
+    def test_still_water_covers_the_floor_of_its_tank_by_either_method(self):
+        for kind in ("les-sph", "wcsph"):
+            for seed in range(6):
+                scene = SCENES["still"](np.random.default_rng(seed), [kind], {"end": 20.0})
+                case = tomllib.loads(toml_text(scene.case))
+                water = case["region" if kind == "wcsph" else "liquid"][0]
+                self.assertEqual((case["method"], water["upper"][:-1]), (kind, case["domain"]["upper"][:-1]))
+                self.assertAlmostEqual(case["time"]["end"], 20 * 1.1**0.5)
+                self.assertIn(len(case["body"]), (1, 2))
+
     def test_fixed_values_hold(self):
         scene = SCENES["les-sph"](np.random.default_rng(1), ["vortices"], {"courant": 0.3, "mach": 0.1}, True)
         self.assertEqual((scene.case["time"]["courant"], scene.case["fluid"]["mach"]), (0.3, 0.1))
@@ -75,7 +85,7 @@ class Checks(unittest.TestCase):
                 "resolution": {"spacing": 0.1}, "fluid": {"froude": 1.0}, "liquid": [{}], "time": {"end": 1.0}}
         self.scene = Scene("pool", case, {}, free_axes=[0])
 
-    def outcome(self, code=0, said="", timed_out=False, last=None, ids=None, **columns):
+    def outcome(self, code=0, said="", timed_out=False, last=None, ids=None, method="les-sph", **columns):
         t = np.linspace(0, 1, 11)
         values = {"kinetic_energy": 0.1 - 0.05 * t, "potential_energy": 0.2 + 0 * t, "max_speed": 1.0 + 0 * t, "mass": 1.0 + 0 * t,
                   "momentum_x": 0.3 + 0 * t, "momentum_y": 0 * t,
@@ -89,7 +99,7 @@ class Checks(unittest.TestCase):
         write_snapshots(self.folder / "fluid.vtkhdf", [0, 1], where,
                         {"velocity": lambda p, time: p,
                          "id": lambda p, time: (ids(len(p)) if ids and time else np.arange(len(p))).astype(float)})
-        return judge("les-sph", self.scene, self.folder, code, said, timed_out)[:2]
+        return judge(method, self.scene, self.folder, code, said, timed_out)[:2]
 
     def complaint(self, **changes):
         outcome, complaints = self.outcome(**changes)
@@ -108,6 +118,12 @@ class Checks(unittest.TestCase):
         self.assertEqual(self.complaint(pressure_residual=1e-7 + 1e-3 * (t == 0)), "convergence")
         self.assertEqual(self.complaint(pressure_tolerance=2e-7 + 0.02 * (t == 1)), "convergence")
         self.assertEqual(self.complaint(max_speed=np.where(t == 1, np.nan, 1)), "finite")
+
+    def test_water_that_does_not_stay_still_is_named(self):
+        t = np.linspace(0, 1, 11)
+        self.assertEqual(self.outcome(method="still", max_speed=9e-4 + 0 * t), ("ok", []))
+        outcome, complaints = self.outcome(method="still", max_speed=np.where(t < 0.45, 0, 0.2))
+        self.assertEqual((outcome, complaints), ("failed", ["rest: 0.2 sqrt(gH), above 0.001 from t = 0.5 on"]))
 
     def test_energy_that_coupled_particles_cannot_have_supplied_is_seen(self):
         particles = {"count": 1000, "diameter": 0.1, "beta": 3.0, "coupling": "two-way"}

@@ -16,6 +16,7 @@ ENERGY_GROWTH = 0.05  # of the largest energy that has moved; a stable scheme lo
 SPECTRAL_GROWTH = 1e-3  # of the initial energy: transport conserves it, and viscosity is exact
 PAIRWISE_MOMENTUM = 1e-4  # of wcsph: rounding of float sums, 1e-7 of forces a hundred times as large as what they leave
 BALANCE = 0.05  # of what viscosity takes between two rows, courant <= 0.5
+STILL = 1e-3  # of sqrt(gH): speeds of water at rest
 LOADED_BALANCE = 0.25  # the same with particles, whose force is held over a step
 
 
@@ -199,7 +200,18 @@ def check_wcsph(run, scene, complaints):
     check_particles(run, scene, complaints, periodic_margin)
 
 
-CHECKS = {"les-sph": check_les_sph, "spectral": check_spectral, "wcsph": check_wcsph}
+def check_still(run, scene, complaints):
+    complaints += [f"finite: {text}" for text in finite_table(run.series)]
+    if complaints:
+        return
+    speed = run.series["max_speed"] / scene.facts["speed"]
+    if np.max(speed) > STILL:
+        first = run.series["t"][int(np.argmax(speed > STILL))]
+        complaints.append(f"rest: {np.max(speed):.3g} sqrt(gH), above {STILL:g} from t = {first:.3g} on")
+    check_particles(run, scene, complaints)
+
+
+CHECKS = {"les-sph": check_les_sph, "spectral": check_spectral, "wcsph": check_wcsph, "still": check_still}
 
 # What an error must say: its place in the case file or its step, and what was found.
 WORDS = {2: re.compile(r"error: \S+"), 3: re.compile(r"step \d+.*t = ", re.S)}
@@ -222,7 +234,7 @@ def judge(method, scene, folder, code, stderr, timed_out):
                    "retries": run.summary["retries"], "max_speed": float(np.max(run.series["max_speed"]))}
         CHECKS[method](run, scene, complaints)
         if code == 3:  # it said itself that it makes energy
-            complaints = [text for text in complaints if not text.startswith(("energy", "momentum"))]
+            complaints = [text for text in complaints if not text.startswith(("energy", "momentum", "rest"))]
     except (MissingResult, KeyError, IndexError, OSError, ValueError) as error:
         complaints.append(f"results: {type(error).__name__}: {error}")
     if complaints:

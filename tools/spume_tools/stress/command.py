@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Random and worst-case scenes, each run for a few seconds and checked: tools/stress METHOD [options].
 
-METHOD is les-sph, spectral, wcsph, faults (kills, full disks, damaged checkpoints and cases; see faults.py) or long
-(1e5 steps of small scenes; see long.py).
+METHOD is les-sph, spectral, wcsph, still (water at rest over random bodies, by the methods that --kinds names; --sweep
+end=20 for 20 sqrt(H/g); see still_scenes.py), faults (kills, full disks, damaged checkpoints and cases; see faults.py)
+or long (1e5 steps of small scenes; see long.py).
 Writes DIR/stress.csv, DIR/stress.png and, for every run that failed, its case and output in DIR/failures. Exit code 1
 if a run failed or crashed. A scene depends on seed and number only: --first N --runs 1 repeats one.
 """
@@ -21,8 +22,9 @@ from . import faults, long
 from .checks import judge
 from .phase_scenes import wcsph_scene
 from .scenes import SCENES as DRAWN
+from .still_scenes import still_scene
 
-SCENES = DRAWN | {"wcsph": wcsph_scene}
+SCENES = DRAWN | {"wcsph": wcsph_scene, "still": still_scene}
 
 OUTCOMES = {"ok": "tab:green", "slow": "tab:olive", "refused": "tab:gray", "stopped": "tab:orange", "failed": "tab:red",
             "crashed": "black"}
