@@ -8,6 +8,7 @@
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
+#include "spume/particles/boundary.hpp"
 #include "spume/particles/point_fits.hpp"
 #include "spume/particles/thin_bodies.hpp"
 
