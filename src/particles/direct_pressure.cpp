@@ -13,6 +13,7 @@
 #include "spume/particles/options.hpp"
 #include "spume/scene/document.hpp"
 #include "spume/scene/draft.hpp"
+#include "spume/scene/enclosed_liquid.hpp"
 
 namespace spume {
 namespace {
@@ -235,6 +236,13 @@ void check_direct_solver(const Draft& draft, const Scene& scene, Problems& probl
     problems.add(*node,
                  "pressure.solver = \"direct\" does not go with bodies that float, which couple all particles "
                  "around them; use \"bicgstab\"");
+  if (scene.fluid.sound_speed > 0) return;
+  const auto place = enclosed_liquid(scene);
+  if (!place) return;
+  std::string words;
+  for (int axis = 0; axis < scene.domain.dimensions; ++axis) words += (axis == 0 ? "" : ", ") + brief((*place)[axis]);
+  problems.add(*node, "pressure.solver = \"direct\" has one constant of the pressure to find, and the liquid at (" +
+                          words + "), which solids enclose, one of its own; use \"bicgstab\"");
 }
 
 }  // namespace spume

@@ -75,17 +75,22 @@ void PressureRows::release(ScratchPool& scratch) {
 
 // The particle matrix as the Krylov solvers see it.
 struct ProjectionSolver::Operator final : LinearOperator<float> {
-  Operator(ProjectionMatrix& matrix, const PressureRows& rows)
-      : matrix_(matrix), without_mean_(rows.singular && rows.unsymmetric) {}
+  Operator(ProjectionMatrix& matrix, const PressureRows& rows, const PartConstants& enclosed)
+      : matrix_(matrix), enclosed_(enclosed), without_mean_(rows.singular && rows.unsymmetric) {}
   std::size_t size() const override { return matrix_.size(); }
   void apply(std::span<const float> x, std::span<float> y) override {
     matrix_.apply(x, y, x);
-    if (without_mean_) subtract_mean(y);
+    if (!enclosed_.empty())
+      enclosed_.remove(y);
+    else if (without_mean_)
+      subtract_mean(y);
   }
   Dots apply_with_dots(std::span<const float> x, std::span<float> y, std::span<const float> w) override {
-    return without_mean_ ? LinearOperator<float>::apply_with_dots(x, y, w) : matrix_.apply(x, y, w);
+    return without_mean_ || !enclosed_.empty() ? LinearOperator<float>::apply_with_dots(x, y, w)
+                                               : matrix_.apply(x, y, w);
   }
   ProjectionMatrix& matrix_;
+  const PartConstants& enclosed_;
   bool without_mean_;
 };
 
@@ -93,15 +98,20 @@ struct ProjectionSolver::Operator final : LinearOperator<float> {
 // most, which matters to the tolerances that double is for: the mean is taken out of products of a symmetric matrix
 // too.
 struct ProjectionSolver::DoubleOperator final : LinearOperator<double> {
-  DoubleOperator(ProjectionMatrix& matrix, const PressureRows& rows, std::span<const double> zero)
-      : matrix_(matrix), zero_(zero), without_mean_(rows.singular) {}
+  DoubleOperator(ProjectionMatrix& matrix, const PressureRows& rows, const PartConstants& enclosed,
+                 std::span<const double> zero)
+      : matrix_(matrix), enclosed_(enclosed), zero_(zero), without_mean_(rows.singular) {}
   std::size_t size() const override { return matrix_.size(); }
   void apply(std::span<const double> x, std::span<double> y) override {
     matrix_.residual(x, zero_, y, false);
     parallel_for(y.size(), [&](std::size_t i) { y[i] = -y[i]; });
-    if (without_mean_) subtract_mean(y);
+    if (!enclosed_.empty())
+      enclosed_.remove(y);
+    else if (without_mean_)
+      subtract_mean(y);
   }
   ProjectionMatrix& matrix_;
+  const PartConstants& enclosed_;
   std::span<const double> zero_;
   bool without_mean_;
 };
@@ -115,7 +125,7 @@ class ProjectionSolver::MixedSystem final : public RefinedSystem {
   void residual(std::span<double> r) override { solver_.matrix_->residual(q_, rows_.right_hand_side, r, true); }
   KrylovResult correct(std::span<const double> r, const CorrectionTask& task) override {
     size_ = task.size;
-    Operator a(*solver_.matrix_, rows_);
+    Operator a(*solver_.matrix_, rows_, solver_.enclosed_);
     JacobiPreconditioner<float> jacobi(rows_.diagonal);
     return correct_by_krylov<float>(solver_.options_.method, a, solver_.preconditioner(jacobi), r, task, q_, work_);
   }
@@ -140,7 +150,7 @@ class ProjectionSolver::DoubleSystem final : public RefinedSystem {
     solver_.zero_.resize(r.size());
     solver_.double_diagonal_.resize(r.size());
     parallel_for(r.size(), [&](std::size_t i) { solver_.double_diagonal_[i] = rows_.diagonal[i]; });
-    DoubleOperator a(*solver_.matrix_, rows_, solver_.zero_);
+    DoubleOperator a(*solver_.matrix_, rows_, solver_.enclosed_, solver_.zero_);
     JacobiPreconditioner<double> jacobi(solver_.double_diagonal_);
     return correct_by_krylov<double>(solver_.options_.method, a, solver_.preconditioner(jacobi), r, task, q_,
                                      solver_.double_work_);
@@ -173,7 +183,8 @@ double divergence_tolerance(double tolerance) {
   return std::max(tolerance, std::min(1000 * tolerance, 0.01));
 }
 
-ProjectionSolver::ProjectionSolver(const Boundary& boundary, const Options& options) : options_(options) {
+ProjectionSolver::ProjectionSolver(const Boundary& boundary, const Options& options)
+    : options_(options), may_enclose_(boundary.bodies() != nullptr || !boundary.domain().boxes.empty()) {
   if (options.direct) direct_ = std::make_unique<DirectPressure>();
   if (options.multigrid && !options.direct)
     multigrid_ = std::make_unique<CellMultigrid>(cell_geometry(boundary, options.cell_size));
@@ -225,25 +236,55 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
   // At most the share itself: where sources cancel, the right-hand side is smaller than each of them.
   const double of_divergence = rows.reference_norm > 0 ? std::min(1.0, rows.source_norm / rows.reference_norm) : 0;
   const double tolerance = std::max(options_.tolerance, of_divergence * divergence_tolerance(options_.tolerance));
-  const RefinementOptions refinement{tolerance, rows.reference_norm, options_.max_iterations, rows.singular,
-                                     rows.measured};
-  ScratchArray<double> residual(particles.scratch(), n);
+  const double reference_norm = std::max(rows.reference_norm, rows.rounding_norm / tolerance);
+  if (may_enclose_ && (!looked_ || !enclosed_.empty())) find_enclosed(rows);
+  const auto refinement = [&] {
+    return RefinementOptions{tolerance,     reference_norm, options_.max_iterations,
+                             rows.singular, rows.measured,  enclosed_.empty() ? nullptr : &enclosed_};
+  };
   if (direct_ != nullptr) {
-    solve_directly(rows, tolerance, residual, q);
-  } else if (options_.mixed) {
+    ScratchArray<double> residual(particles.scratch(), n);
+    solve_directly(rows, refinement(), residual, q);
+    return;
+  }
+  solve_iteratively(rows, refinement(), particles, q);
+  if (report_.converged || !may_enclose_ || !enclosed_.empty()) return;
+  find_enclosed(rows);
+  if (enclosed_.empty()) return;
+  parallel_for(n, [&](std::size_t i) {
+    if (rows.diagonal[i] != 0) q[i] = 0;
+  });
+  solve_iteratively(rows, refinement(), particles, q);
+}
+
+void ProjectionSolver::find_enclosed(const PressureRows& rows) {
+  looked_ = true;
+  const SweepContext* context = matrix_->context();
+  if (context == nullptr || rows.helmholtz != 0) return;
+  enclosed_ = enclosed_parts(*context, rows.singular, [&](std::size_t i) {
+    return rows.diagonal[i] == 0 || (!rows.diagonal_shift.empty() && rows.diagonal_shift[i] != 0);
+  });
+}
+
+void ProjectionSolver::solve_iteratively(const PressureRows& rows, const RefinementOptions& refinement,
+                                         ParticleStore& particles, Array<double>& q) {
+  ScratchArray<double> residual(particles.scratch(), q.size());
+  if (options_.mixed) {
     MixedSystem system(*this, rows, particles.scratch(), q);
     report_ = solve_refined(system, refinement, residual);
   } else {
     DoubleSystem system(*this, rows, q);
     report_ = solve_refined(system, refinement, residual);
   }
+  if (!enclosed_.empty()) enclosed_.remove(std::span<double>(q.data(), q.size()));
 }
 
 // A correction at least, whatever the guess: the result is exact to rounding then, and one more says so.
-void ProjectionSolver::solve_directly(const PressureRows& rows, double tolerance, std::span<double> r,
-                                      std::span<double> q) {
+void ProjectionSolver::solve_directly(const PressureRows& rows, const RefinementOptions& refinement,
+                                      std::span<double> r, std::span<double> q) {
   constexpr int most_corrections = 3;
-  report_ = {.tolerance = tolerance};
+  const double reference_norm = refinement.reference_norm;
+  report_ = {.tolerance = refinement.tolerance};
   const auto find_residual = [&] {
     matrix_->residual(q, rows.right_hand_side, r, true);
     ++report_.applications;
@@ -256,8 +297,8 @@ void ProjectionSolver::solve_directly(const PressureRows& rows, double tolerance
     ++report_.iterations;
     find_residual();
     const double size = std::sqrt(parallel_sum(r.size(), [&](std::size_t i) { return r[i] * r[i]; }));
-    report_.relative_residual = rows.reference_norm > 0 ? size / rows.reference_norm : 0;
-    report_.converged = size <= tolerance * rows.reference_norm;
+    report_.relative_residual = relative_size(size, reference_norm);
+    report_.converged = size <= refinement.tolerance * reference_norm;
   } while (!report_.converged && report_.iterations < most_corrections);
 }
 

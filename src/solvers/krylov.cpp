@@ -43,7 +43,7 @@ class Solve {
     for (Array<Real>* vector : {&work.residual, &work.shadow, &work.direction, &work.preconditioned, &work.image,
                                 &work.second_image, &work.second_preconditioned})
       vector->resize(n_);
-    if (options.remove_mean)
+    if (options.remove_mean && options.parts == nullptr)
       total_weight_ = options.weights.empty() ? static_cast<double>(n_) : fused_sums<1>(n_, [&](std::size_t i) {
         return std::array{static_cast<double>(options_.weights[i])};
       })[0];
@@ -55,7 +55,7 @@ class Solve {
 
   // Computes the first residual. True when there is nothing (more) to do.
   bool begin() {
-    if (options_.remove_mean) {
+    if (projected()) {
       std::copy(b_.begin(), b_.end(), work_.residual.begin());
       project(work_.residual);
       norm_b = std::sqrt(squared_norm<Real>(work_.residual));
@@ -77,7 +77,7 @@ class Solve {
         x_[i] = 0;
         work_.residual[i] = b_[i];
       });
-      if (options_.remove_mean) project(work_.residual);
+      if (projected()) project(work_.residual);
       norm_r = norm_b;
       measured_ = true;
     } else {
@@ -130,7 +130,7 @@ class Solve {
     Array<Real>& r = work_.residual;
     a_.apply(x_, r);
     ++result.applications;
-    if (options_.remove_mean) {
+    if (projected()) {
       parallel_for(n_, [&](std::size_t i) { r[i] = b_[i] - r[i]; });
       project(r);
       norm_r = std::sqrt(squared_norm<Real>(r));
@@ -146,7 +146,9 @@ class Solve {
 
   KrylovResult finish() {
     if (norm_b > 0 && std::isfinite(norm_b)) result.relative_residual = norm_r / norm_b;
-    if (options_.remove_mean && !result.breakdown) {
+    if (options_.parts != nullptr && !result.breakdown) {
+      options_.parts->remove(x_);
+    } else if (options_.remove_mean && !result.breakdown) {
       const double mean =
           fused_sums<1>(n_, [&](std::size_t i) { return std::array{weight(i) * static_cast<double>(x_[i])}; })[0] /
           total_weight_;
@@ -162,8 +164,14 @@ class Solve {
     return options_.weights.empty() ? 1.0 : static_cast<double>(options_.weights[i]);
   }
 
+  bool projected() const { return options_.remove_mean || options_.parts != nullptr; }
+
   // r -= w sum(r) / sum(w): the constant's component of a residual, in the weights of the rows.
   void project(Array<Real>& r) {
+    if (options_.parts != nullptr) {
+      options_.parts->remove(std::span<Real>(r.data(), n_));
+      return;
+    }
     const double share =
         fused_sums<1>(n_, [&](std::size_t i) { return std::array{static_cast<double>(r[i])}; })[0] / total_weight_;
     parallel_for(n_, [&](std::size_t i) { r[i] -= static_cast<Real>(weight(i) * share); });

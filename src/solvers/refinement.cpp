@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 #include "spume/core/parallel.hpp"
@@ -34,12 +35,19 @@ double norm(std::span<const double> values) {
   return std::sqrt(parallel_sum(values.size(), [&](std::size_t i) { return values[i] * values[i]; }));
 }
 
-void subtract_mean(std::span<double> r) {
+void remove_null_space(const RefinementOptions& options, std::span<double> r) {
+  if (options.parts != nullptr) options.parts->remove(r);
+  if (options.parts != nullptr || !options.remove_mean) return;
   const double mean = parallel_sum(r.size(), [&](std::size_t i) { return r[i]; }) / static_cast<double>(r.size());
   parallel_for(r.size(), [&](std::size_t i) { r[i] -= mean; });
 }
 
 }  // namespace
+
+double relative_size(double size, double reference) {
+  if (size == 0) return 0;
+  return reference > 0 ? size / reference : std::numeric_limits<double>::infinity();
+}
 
 RefinementResult solve_refined(RefinedSystem& system, const RefinementOptions& options, std::span<double> r) {
   RefinementResult result;
@@ -48,14 +56,14 @@ RefinementResult solve_refined(RefinedSystem& system, const RefinementOptions& o
   system.residual(r);
   ++result.applications;
   for (int round = 0;; ++round) {
-    if (options.remove_mean) subtract_mean(r);
+    remove_null_space(options, r);
     const double size = norm(r);
-    result.relative_residual = options.reference_norm > 0 ? size / options.reference_norm : 0;
+    result.relative_residual = relative_size(size, options.reference_norm);
     result.converged = size <= target;
     if (result.converged) return result;
     const int left = options.max_iterations - result.iterations;
     if (!std::isfinite(size) || left <= 0 || round > most_rounds) return result;
-    const KrylovResult solved = system.correct(r, {size, target, left, options.remove_mean});
+    const KrylovResult solved = system.correct(r, {size, target, left, options.remove_mean, options.parts});
     result.applications += solved.applications;
     result.iterations += std::max(solved.iterations, 1);
     if (solved.converged && size <= trusted_reduction * target) {
@@ -64,7 +72,7 @@ RefinementResult solve_refined(RefinedSystem& system, const RefinementOptions& o
       if (options.measure) {
         system.subtract_product(r);
         ++result.applications;
-        if (options.remove_mean) subtract_mean(r);
+        remove_null_space(options, r);
         result.relative_residual = norm(r) / options.reference_norm;
       }
       return result;
@@ -96,6 +104,7 @@ KrylovResult correct_by_krylov(KrylovMethod method, LinearOperator<Real>& a, Pre
   options.zero_guess = true;
   options.confirm = false;
   options.remove_mean = task.remove_mean;
+  options.parts = task.parts;
   const KrylovResult result =
       method == KrylovMethod::conjugate_gradients
           ? conjugate_gradients<Real>(a, m, right_hand_side, work.correction, options, work.krylov)

@@ -15,6 +15,7 @@
 #include "spume/operators/pressure_operator.hpp"
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/direct_pressure.hpp"
+#include "spume/particles/enclosed_parts.hpp"
 #include "spume/particles/options.hpp"
 #include "spume/solvers/cell_multigrid.hpp"
 #include "spume/solvers/refinement.hpp"
@@ -23,7 +24,7 @@ namespace spume {
 
 // One row per particle; arrays are leased for a solve.
 struct PressureRows {
-  Array<float> diagonal_shift;
+  Array<float> diagonal_shift;                          // empty: none
   Array<float> diagonal;                                // of the matrix, 0 where the pressure is fixed
   const Array<std::uint8_t>* pressure_fixed = nullptr;  // null: nowhere
   Array<float> weight, row;                             // of a variable coefficient; empty: constant
@@ -31,6 +32,8 @@ struct PressureRows {
   double reference_norm = 0;  // of the right-hand side, to which residuals are relative
   // Of what it has of the divergence that the projection removes; 0: a residual is held against the whole side alone.
   double source_norm = 0;
+  // Of the residual that rounding of the guess leaves, below which none is asked for. 0: the guess is exact.
+  double rounding_norm = 0;
   double helmholtz = 0;   // diagonal shift of a full row over V, for the preconditioner
   bool singular = false;  // constants are in the null space: the mean is taken out of residuals
   // The matrix is not symmetric: its residuals sum to anything. The mean is taken out of products as well, which makes
@@ -78,12 +81,15 @@ class ProjectionSolver {
   }
   // Improves `q`, which holds the guess and where the pressure is fixed the value, with a matrix bound to these rows.
   // What did not converge is said in the report: the caller decides. A direct solver has the factors of that matrix.
+  // Liquid that solids enclose apart from the rest (particles/enclosed_parts.hpp) is looked for at the first solve and
+  // after one that did not converge, and then at each, as long as there is some; `q` has a mean of zero in it.
   void solve(const PressureRows& rows, ProjectionMatrix& matrix, ParticleStore& particles, Array<double>& q);
 
   const DirectPressure* direct() const { return direct_.get(); }  // null: iterative
   double factor_bytes() const { return direct_ == nullptr ? 0 : direct_->factor_bytes(); }
   bool has_multigrid() const { return multigrid_ != nullptr; }
   const RefinementResult& report() const { return report_; }
+  const PartConstants& enclosed() const { return enclosed_; }
   double bytes() const;  // beside what is leased
 
  private:
@@ -91,7 +97,11 @@ class ProjectionSolver {
   struct DoubleOperator;
   class MixedSystem;
   class DoubleSystem;
-  void solve_directly(const PressureRows& rows, double tolerance, std::span<double> r, std::span<double> q);
+  void solve_directly(const PressureRows& rows, const RefinementOptions& refinement, std::span<double> r,
+                      std::span<double> q);
+  void solve_iteratively(const PressureRows& rows, const RefinementOptions& refinement, ParticleStore& particles,
+                         Array<double>& q);
+  void find_enclosed(const PressureRows& rows);
   template <class Real>
   Preconditioner<Real>& preconditioner(JacobiPreconditioner<Real>& jacobi);
 
@@ -102,6 +112,9 @@ class ProjectionSolver {
   CorrectionWorkspace<double> double_work_;  // empty in mixed precision, as are the next
   Array<double> double_diagonal_, zero_;
   std::unique_ptr<DirectPressure> direct_;
+  bool may_enclose_;  // there are solids
+  bool looked_ = false;
+  PartConstants enclosed_;
   RefinementResult report_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "spume/core/array.hpp"
 #include "spume/solvers/linear_operator.hpp"
+#include "spume/solvers/part_constants.hpp"
 
 namespace spume {
 
@@ -23,6 +24,8 @@ struct KrylovOptions {
   // volumes are right for a volume-weighted operator.
   bool remove_mean = false;
   std::span<const Real> weights;
+  // A null space of more constants than one, taken out instead with weights of one; null: `remove_mean` says.
+  const PartConstants* parts = nullptr;
 };
 
 struct KrylovResult {

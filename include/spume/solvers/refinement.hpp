@@ -22,6 +22,7 @@ struct CorrectionTask {
   double target = 0;       // norm of r - A e
   int max_iterations = 0;  // of the Krylov solver
   bool remove_mean = false;
+  const PartConstants* parts = nullptr;  // KrylovOptions::parts
 };
 
 // A system that keeps its unknowns x.
@@ -37,11 +38,12 @@ class RefinedSystem {
 };
 
 struct RefinementOptions {
-  double tolerance = 1e-6;    // on ||b - A x|| / reference_norm
-  double reference_norm = 0;  // of the right-hand side, as the caller measures it
-  int max_iterations = 500;   // of the Krylov solver, all corrections together
-  bool remove_mean = false;   // of residuals: the null space of A is the constant
-  bool measure = false;       // the residual of the last correction too; x is the same
+  double tolerance = 1e-6;               // on ||b - A x|| / reference_norm
+  double reference_norm = 0;             // of the right-hand side, as the caller measures it
+  int max_iterations = 500;              // of the Krylov solver, all corrections together
+  bool remove_mean = false;              // of residuals: the null space of A is the constant
+  bool measure = false;                  // the residual of the last correction too; x is the same
+  const PartConstants* parts = nullptr;  // the null space of A; null: `remove_mean` says
 };
 
 struct RefinementResult {
@@ -51,6 +53,9 @@ struct RefinementResult {
   double relative_residual = 0;  // that of the last correction's recurrence where that may be trusted, else measured
   bool converged = false;
 };
+
+// size / reference; of nothing to refer to, infinity, unless the size is 0 as well.
+double relative_size(double size, double reference);
 
 // The residual that subtract_product() keeps does not see the rounding of x itself, some 1e-13 of the terms of a row:
 // smaller tolerances mean nothing where it does not measure anew.

@@ -264,8 +264,8 @@ double Flow::leased_bytes() const {
     for (const auto& array : *vector) add(array);
   for (const auto* vector : {&intermediate_velocity, &next_velocity})
     for (const auto& array : *vector) add(array);
-  add(divergence, source, reduced_pressure, reciprocal_density, rows.diagonal, rows.diagonal_shift,
-      rows.right_hand_side, moments.kernel_sum, moments.laplacian_diagonal);
+  add(divergence, source, reduced_pressure, reciprocal_density, rows.diagonal, rows.right_hand_side, moments.kernel_sum,
+      moments.laplacian_diagonal);
   return sum;
 }
 

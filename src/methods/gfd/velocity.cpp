@@ -2,6 +2,7 @@
 // The velocities of a step and its pressure.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
@@ -207,7 +208,7 @@ void Flow::set_matrix(double dt) {
   scratch.lease(force_acceleration, features.interfaces ? dimensions : 0, n);
   for (int axis = 0; axis < dimensions && features.interfaces; ++axis) force_acceleration[axis].fill(0.0F);
   if (!incremental) add_interface_forces({write(force_acceleration), source.data()});
-  for (Array<float>* array : {&rows.diagonal_shift, &rows.diagonal, &reciprocal_density}) scratch.lease(*array, n);
+  for (Array<float>* array : {&rows.diagonal, &reciprocal_density}) scratch.lease(*array, n);
   scratch.lease(rows.right_hand_side, n);
   GfdPressureMatrix pairs{stencils(), density_property()};
   if (features.openings) {
@@ -249,6 +250,16 @@ double Flow::last_norm() {
   return std::sqrt(parallel_sum(n, [&](std::size_t i) { return product[i] * product[i]; }));
 }
 
+// Of the residual where the last pi is the difference of the pressure and its hydrostatic part, each known to eps / 2
+// of itself: 2 eps between two particles. Liquid at rest has no other residual.
+double Flow::guess_rounding() const {
+  constexpr double of_two = 2 * std::numeric_limits<double>::epsilon();
+  return of_two * std::sqrt(parallel_sum(size(), [&](std::size_t i) {
+           const double row = rows.diagonal[i] * hydrostatic_part(i);
+           return row * row;
+         }));
+}
+
 void Flow::prepare_solver() {
   solver.prepare(rows, particles, particles.position, boundary);
 }
@@ -260,6 +271,7 @@ void Flow::solve_pressure() {
   parallel_for(size(), [&](std::size_t i) { reduced_pressure[i] = warm_start ? last_reduced(i) : 0.0; });
   if (arrangement.context.image_pressure != nullptr || features.openings)
     rows.reference_norm = std::hypot(rows.reference_norm, given_norm(matrix, particles));
+  rows.rounding_norm = warm_start ? guess_rounding() : 0;
   rows.measured = steps % steps_between_measured == 0;
   solver.solve(rows, matrix, particles, reduced_pressure);
   if (features.openings) layers->tied().extend(reduced_pressure.data(), true);

@@ -9,7 +9,6 @@
 #include "spume/physics/solutes/solutes.hpp"
 #include "spume/physics/turbulence/options.hpp"
 #include "spume/scene/document.hpp"
-#include "spume/scene/enclosed_liquid.hpp"
 
 namespace spume::les_sph {
 namespace {
@@ -73,22 +72,6 @@ double default_courant(const Case&, const Scene& scene) {
   return scene.free_surface ? courant_with_surface : courant_in_full_domain;
 }
 
-// The solve takes out one constant, that of a liquid that fills its domain.
-void check_enclosed_liquid(const Draft& draft, const Scene& scene, Problems& problems) {
-  if (scene.fluid.sound_speed > 0) return;
-  const auto place = enclosed_liquid(scene);
-  if (!place) return;
-  std::string words;
-  for (int axis = 0; axis < scene.domain.dimensions; ++axis) words += (axis == 0 ? "" : ", ") + brief((*place)[axis]);
-  problems.add(
-      *draft.node("solid.0"),
-      "the liquid at (" + words +
-          ") is enclosed by solids: without a free surface the pressure of an incompressible liquid is known up to "
-          "a constant, and it has one of its own there; set fluid." +
-          (uses_si(draft.fluid) ? "sound_speed" : "mach") +
-          " > 0, leave air above it, or leave a gap between the solids");
-}
-
 }  // namespace
 
 Registration registration() {
@@ -108,7 +91,6 @@ Registration registration() {
   method.check = check;
   method.check_scene = [](const Draft& draft, const Scene& scene, Problems& problems) {
     check_direct_solver(draft, scene, problems);
-    check_enclosed_liquid(draft, scene, problems);
     check_bubble_sources(draft, scene, problems);
     check_initial_scalars(draft, scene, problems);
   };

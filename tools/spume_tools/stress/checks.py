@@ -237,6 +237,8 @@ def judge(method, scene, folder, code, stderr, timed_out):
             complaints = [text for text in complaints if not text.startswith(("energy", "momentum", "rest"))]
     except (MissingResult, KeyError, IndexError, OSError, ValueError) as error:
         complaints.append(f"results: {type(error).__name__}: {error}")
+    if code == 3 and method == "still":  # no jet, no thin film: water at rest ends nowhere
+        complaints.append(stderr.strip().splitlines()[0][:300])
     if complaints:
         return "failed", complaints, figures
     if code == 3:

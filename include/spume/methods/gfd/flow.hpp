@@ -140,8 +140,9 @@ struct Flow {
   bool takes_viscosity_gradient() const;
   double gravity_potential(const Vec3& place) const;  // -g . (x - x_0), of gravity across sides
   double gravity_potential(std::size_t i) const;
-  double hydrostatic_part(std::size_t i) const;                                              // p - pi
-  double hydrostatic_part(const Vec3& place, std::uint8_t of_phase) const;                   // of a particle there
+  double hydrostatic_part(std::size_t i) const;                             // p - pi
+  double hydrostatic_part(const Vec3& place, std::uint8_t of_phase) const;  // of a particle there
+  double guess_rounding() const;
   double last_reduced(std::size_t i) const { return (*pressure)[i] - hydrostatic_part(i); }  // pi of the last step
   double largest_speed() const;                                                              // in the domain
   double kinetic_energy() const;

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// Full tanks with bodies: at rest, and with liquid that solids enclose apart from the rest, whose pressure has a
+// constant of its own.
+#include <gtest/gtest.h>
+
+#include "methods/gfd_run.hpp"
+#include "methods/les_sph_simulation.hpp"
+
+namespace spume::test {
+namespace {
+
+const std::string closed = "left = \"free-slip\"\nright = \"free-slip\"\nbottom = \"free-slip\"\ntop = \"free-slip\"\n";
+
+std::string full_of_water(const std::string& upper, double spacing, const std::string& region) {
+  return "method = \"gfd\"\n[domain]\nlower = [0, 0]\nupper = " + upper + "\n" + closed +
+         "[resolution]\nspacing = " + std::to_string(spacing) +
+         "\n[fluid]\ngravity = 1\n[[phase]]\nname = \"water\"\ndensity = 1\nviscosity = 0.01\n[[region]]\nphase = "
+         "\"water\"\n" +
+         region + "[time]\nend = 1\nmax_step = 0.02\n";
+}
+
+// A vortex left of a wall, which leaves the liquid right of it at rest.
+const std::string vortex = "velocity = [\"sin(pi*x)*cos(pi*y)*(x < 1)\", \"-cos(pi*x)*sin(pi*y)*(x < 1)\"]\n";
+const std::string wall = "[[solid]]\nlower = [1, 0]\nupper = [1.2, 1]\n";
+
+std::string les_sph(const std::string& upper) {
+  return "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = " + upper + "\n" + closed +
+         "[resolution]\nspacing = 0.05\n[fluid]\ndensity = 1\nviscosity = 0.01\n[[liquid]]\n" + vortex +
+         "[time]\nend = 1\nmax_step = 0.02\n";
+}
+
+// Both runs in equal steps: the one with the wall has a vortex as the other has, and still water behind the wall.
+template <class Run>
+void expect_the_vortex_of_a_tank_of_its_own(const std::string& two, const std::string& one) {
+  Run walled(two), alone(one);
+  for (int step = 0; step < 20; ++step) {
+    walled.steps(1, 0.01);
+    alone.steps(1, 0.01);
+  }
+  // A step leaves a thousandth of its divergence to the next one in both.
+  EXPECT_NEAR(walled.series()["kinetic_energy"], alone.series()["kinetic_energy"],
+              1e-3 * alone.series()["kinetic_energy"]);
+  const auto& flow = walled.flow();
+  double behind = 0;
+  for (std::size_t i = 0; i < flow.size(); ++i)
+    if ((*flow.particles.position[0])[i] > 1.1)
+      for (int axis = 0; axis < 2; ++axis) behind = std::max(behind, std::abs((*flow.particles.velocity[axis])[i]));
+  EXPECT_LT(behind, 1e-5);
+}
+
+struct LesSphRun : Simulation {
+  using Simulation::Simulation;
+  const les_sph::Flow& flow() const { return method.flow(); }
+};
+
+}  // namespace
+
+// The residual of liquid at rest is the rounding of its weight, of which no millionth can be asked: the second step did
+// not converge.
+TEST(EnclosedLiquidFlow, AFullTankRestsAroundATurnedBox) {
+  GfdRun run(full_of_water("[1.6, 1.1]", 0.04, "") +
+             "[[body]]\nshape = \"box\"\nposition = [0.7727, 0.1668]\nsize = [0.5234, 0.5048]\nrotation = [118.39]\n");
+  for (int step = 0; step < 20; ++step) run.steps(1, 0.02);
+  EXPECT_LT(run.max_speed(), 1e-9);
+}
+
+// Neither converged.
+TEST(EnclosedLiquidFlow, MovesAsInATankOfItsOwnByGfd) {
+  expect_the_vortex_of_a_tank_of_its_own<GfdRun>(full_of_water("[2.25, 1]", 0.05, vortex) + wall,
+                                                 full_of_water("[1, 1]", 0.05, vortex));
+}
+
+TEST(EnclosedLiquidFlow, MovesAsInATankOfItsOwnByLesSph) {
+  expect_the_vortex_of_a_tank_of_its_own<LesSphRun>(les_sph("[2.25, 1]") + wall, les_sph("[1, 1]"));
+}
+
+// Turned boxes that enclose a drop of some particles between them and the floor.
+TEST(EnclosedLiquidFlow, RestsBetweenBodies) {
+  const std::string boxes =
+      "[[body]]\nshape = \"box\"\nposition = [0.8986, 0.0211]\nsize = [0.5301, 0.7317]\nrotation = [165.0085]\n"
+      "[[body]]\nshape = \"box\"\nposition = [1.3141, 0.2409]\nsize = [0.7949, 0.461]\nrotation = [149.2659]\n";
+  GfdRun run(full_of_water("[1.6, 1.1]", 0.04, "") + boxes);
+  for (int step = 0; step < 20; ++step) run.steps(1, 0.02);
+  EXPECT_LT(run.max_speed(), 1e-9);
+}
+
+}  // namespace spume::test
