@@ -42,23 +42,32 @@ std::string progress_line(const Progress& progress) {
 TerminalObserver::TerminalObserver(bool quiet)
     : quiet_(quiet), live_(::isatty(STDOUT_FILENO) != 0), shown_(std::chrono::steady_clock::now()) {}
 
-void TerminalObserver::draw() {
+void TerminalObserver::draw(const std::string& line) {
   if (live_)
-    std::printf("\r\033[K%s", progress_line(last_).c_str());
+    std::printf("\r\033[K%s", line.c_str());
   else
-    std::printf("%s\n", progress_line(last_).c_str());
+    std::printf("%s\n", line.c_str());
   flush();
   drawn_ = true;
 }
 
-void TerminalObserver::progress(const Progress& progress) {
-  last_ = progress;
-  if (quiet_) return;
+// Whether a line is to be drawn now.
+bool TerminalObserver::due() {
+  if (quiet_) return false;
   const auto now = std::chrono::steady_clock::now();
   if (now - shown_ < (live_ ? std::chrono::milliseconds(live_interval) : std::chrono::milliseconds(plain_interval)))
-    return;
+    return false;
   shown_ = now;
-  draw();
+  return true;
+}
+
+void TerminalObserver::progress(const Progress& progress) {
+  last_ = progress;
+  if (due()) draw(progress_line(last_));
+}
+
+void TerminalObserver::preparing(const std::string& how_far) {
+  if (due()) draw("preparing: " + how_far);
 }
 
 void TerminalObserver::note(const std::string& text) {
@@ -74,7 +83,7 @@ void TerminalObserver::flush() {
 
 void TerminalObserver::finish() {
   if (quiet_ || last_.step == 0) return;
-  draw();
+  draw(progress_line(last_));
   if (live_) std::printf("\n");
 }
 

@@ -20,14 +20,30 @@ double seconds_of_step(Method& method, double dt) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+// At most, of what prepares the first step: from some of its rounds.
+double seconds_of_preparation(Method& method) {
+  constexpr int rounds = 5;  // the first one allocates
+  Ledger ledger;
+  const auto start = std::chrono::steady_clock::now();
+  double share = 0;
+  int told = 0;
+  method.prepare(ledger, [&](const HowFar& how_far) {
+    share = how_far.share;
+    return ++told < rounds;
+  });
+  return share > 0 ? std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / share : 0;
+}
+
 // From the second of two trial steps: the first also allocates and builds what later steps reuse.
 std::string time_estimate(const LoadedCase& loaded, Method& method) {
   try {
+    const double before = seconds_of_preparation(method);
     seconds_of_step(method, method.step_limit().dt);
     const StepLimit limit = method.step_limit();
     const double seconds = seconds_of_step(method, limit.dt), steps = loaded.options.time.end / limit.dt;
     return human_duration(seconds * steps) + " for about " + short_number(steps) + " steps at " +
-           short_number(static_cast<double>(method.particle_count()) / seconds / 1e6) + " Mparticle-steps/s";
+           short_number(static_cast<double>(method.particle_count()) / seconds / 1e6) + " Mparticle-steps/s" +
+           (before > 0 ? ", with at most " + human_duration(before) + " before the first one" : "");
   } catch (const StepFailure& failure) {
     return "unknown time (the first steps are refused: " + failure.details().cause + ")";
   }

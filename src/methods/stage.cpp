@@ -40,11 +40,12 @@ void Plan::run_range(const Run& run, std::size_t first, std::size_t last, std::s
 }
 
 void Plan::run_stage(const Run& run, const Stage& stage) const {
-  const bool belongs = stage.part == run.part || (stage.part == StagePart::both && run.part != StagePart::recorded);
+  const bool of_the_flow = run.part == StagePart::step || run.part == StagePart::start;
+  const bool belongs = stage.part == run.part || (stage.part == StagePart::both && of_the_flow);
   if (!stage.on || !belongs) return;
   if (stage.due && !stage.due()) return;
   auto scope = run.ledger.time(stage.name);
-  StageRun counted{.dt = run.dt, .particles = run.particles};
+  StageRun counted{.dt = run.dt, .particles = run.particles, .go_on = run.go_on};
   // What a stage reads last it may release, and what it writes it may lease.
   double named = 0;
   for (const ArrayUse& use : stage.reads) named += use.bytes();

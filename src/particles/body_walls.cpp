@@ -200,7 +200,13 @@ bool BodyWalls::faces_wall(const WallPoint& point) const {
     if ((across[axis] < domain.lower[axis] && is_wall(domain.sides[axis][0].kind)) ||
         (across[axis] > domain.upper[axis] && is_wall(domain.sides[axis][1].kind)))
       return true;
-  return distance(across) < 0;
+  // What is farther from a wall than it is from the ends has none before it; a plate may be thinner than that.
+  const auto at = [&](double share) {
+    return distance(add(point.foot, multiply(share * faces_wall_within * scene_.spacing, point.normal)));
+  };
+  const double from_middle = at(0.5);
+  if (from_middle > 0.49 * faces_wall_within * scene_.spacing) return false;
+  return from_middle < 0 || at(0.25) < 0 || at(0.75) < 0 || at(1) < 0;
 }
 
 template <int dimensions>

@@ -54,7 +54,7 @@ void ExcessRelaxation::measure() {
   const InteriorWeight interior = interior_weight(particles.dimensions, SurfaceOptions{});
   const auto geometric = [&](std::size_t i) { return kernel_sum[i] / liquid_.resolution.lattice.kernel_sum - 1; };
   const auto difference = [&](std::size_t i) {
-    return std::clamp(geometric(i), -believed_excess, believed_excess) - (reduced(i) - start_);
+    return std::clamp(geometric(i), -believed_excess, believed_excess) - (reduced(i) - start_) - rest;
   };
   const auto in_domain = [&](std::size_t i) { return liquid_.left_out == nullptr || (*liquid_.left_out)[i] < 0; };
   struct Sum {
@@ -77,13 +77,19 @@ void ExcessRelaxation::measure() {
         return Sum{a.weight + b.weight, a.difference + b.difference, a.volume + b.volume};
       });
   volume = particles.volume * total.volume;
-  const double mean = total.difference / std::max(total.weight, 1.0);
+  const double mean = mean_ = total.difference / std::max(total.weight, 1.0);
   parallel_for(n, [&](std::size_t i) {
     if (!in_domain(i)) return;
     const double local = difference(i) - mean;
     const double uneven = local - std::clamp(local, -disorder_of_sums, disorder_of_sums);
     (*lack_)[i] = mean + interior(divergence_of_position[i]) * uneven;
   });
+}
+
+void ExcessRelaxation::take_as_rest() {
+  measure();
+  rest += mean_;
+  measure();
 }
 
 double ExcessRelaxation::share_of(double way) const {

@@ -16,8 +16,7 @@ std::size_t root_of(std::vector<std::size_t>& root, std::size_t k) {
 }  // namespace
 
 LiquidCells::LiquidCells(const Scene& scene) : scene_(scene), lattice_(make_lattice(scene.domain, scene.spacing)) {
-  for (int axis = 0; axis < lattice_.dimensions; ++axis)
-    count_[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(lattice_.count[axis]);
+  keep_around(scene.particles);
   phase_.assign(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]), -1);
   const InitialParticles& particles = scene.particles;
   for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -26,6 +25,44 @@ LiquidCells::LiquidCells(const Scene& scene) : scene_(scene), lattice_(make_latt
     phase_[index(cell_of(place))] = particles.phase.empty() ? 0 : particles.phase[i];
   }
   find_parts();
+}
+
+// A jet in a domain of 460^3 cells would have 1.5 GB of them.
+void LiquidCells::keep_around(const InitialParticles& particles) {
+  for (int axis = 0; axis < lattice_.dimensions; ++axis) {
+    const Array<double>& place = particles.position[axis];
+    if (!scene_.domain.periodic(axis) && !place.empty()) {
+      const auto [least, most] = std::minmax_element(place.begin(), place.end());
+      const auto number = [&](double r) { return std::floor((r - lattice_.origin[axis]) / lattice_.spacing[axis]); };
+      const double first = std::clamp(number(*least) - 1, 0.0, lattice_.count[axis] - 1);
+      lattice_.count[axis] = std::clamp(number(*most) + 2, first + 1, lattice_.count[axis]) - first;
+      lattice_.origin[axis] += first * lattice_.spacing[axis];
+    }
+    count_[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(lattice_.count[axis]);
+  }
+}
+
+Vec3 LiquidCells::centre(const Cell& cell) const {
+  Vec3 place{};
+  for (int axis = 0; axis < lattice_.dimensions; ++axis)
+    place[axis] = lattice_.origin[axis] +
+                  (static_cast<double>(cell[static_cast<std::size_t>(axis)]) + 0.5) * lattice_.spacing[axis];
+  return place;
+}
+
+// `clear`: how far the first one's centre is from bodies; `axes`: along how many they are neighbours.
+bool LiquidCells::meet(const Cell& one, const Cell& other, double clear, int axes) const {
+  const double way = std::sqrt(axes) * scene_.spacing;
+  if (clear > way) return true;
+  const Vec3 from = centre(one);
+  Vec3 middle = from;
+  for (int axis = 0; axis < lattice_.dimensions; ++axis) {
+    // The nearest repetition of the other, across periodic sides.
+    const auto a = static_cast<std::size_t>(axis);
+    const double step = static_cast<double>(other[a] - one[a]);
+    middle[axis] += 0.5 * lattice_.spacing[axis] * (std::abs(step) > 1 ? (step > 0 ? -1 : 1) : step);
+  }
+  return scene_.walls.distance(middle) > 0;
 }
 
 LiquidCells::Cell LiquidCells::cell(std::int64_t column, std::int64_t row) const {
@@ -44,11 +81,7 @@ LiquidCells::Cell LiquidCells::cell_of(const Vec3& place) const {
 
 bool LiquidCells::is_covered(const Cell& cell) const {
   if (scene_.walls.empty()) return false;
-  Vec3 centre{};
-  for (int axis = 0; axis < lattice_.dimensions; ++axis)
-    centre[axis] = lattice_.origin[axis] +
-                   (static_cast<double>(cell[static_cast<std::size_t>(axis)]) + 0.5) * lattice_.spacing[axis];
-  return scene_.walls.distance(centre) < scene_.spacing / 2;
+  return scene_.walls.distance(centre(cell)) < scene_.spacing / 2;
 }
 
 LiquidCells::Beyond LiquidCells::step(Cell& cell, int axis, int by) const {
@@ -72,13 +105,20 @@ void LiquidCells::find_parts() {
   std::vector<std::size_t> root(phase_.size());
   std::iota(root.begin(), root.end(), std::size_t{0});
   const int around = up() == 2 ? 27 : 9;
+  const bool bodies = !scene_.walls.empty();
   for_liquid([&](const Cell& one, std::int64_t) {
+    const double clear = bodies ? scene_.walls.distance(centre(one)) : 0;
     for (int n = 0; n < around; ++n) {
       Cell other = one;
       bool is_cell = true;
-      for (int axis = 0, left = n; axis <= up(); ++axis, left /= 3)
-        if (left % 3 != 1) is_cell = is_cell && step(other, axis, left % 3 - 1) == Beyond::cell;
+      int axes = 0;
+      for (int axis = 0, left = n; axis <= up(); ++axis, left /= 3) {
+        if (left % 3 == 1) continue;
+        ++axes;
+        is_cell = is_cell && step(other, axis, left % 3 - 1) == Beyond::cell;
+      }
       if (!is_cell || phase(other) < 0) continue;
+      if (bodies && !meet(one, other, clear, axes)) continue;
       const std::size_t a = root_of(root, index(one)), b = root_of(root, index(other));
       root[std::max(a, b)] = std::min(a, b);
     }

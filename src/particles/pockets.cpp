@@ -98,8 +98,13 @@ bool in_one_layer(const Boundary& boundary, const Vec3& place) {
   const double before = bodies.distance(place);
   if (!(before < width) || bodies.moves_at(place)) return false;
   const Vec3 face = bodies.normal(place);
-  const std::optional<Across> across = wall_before(boundary, add(place, multiply(width - before, face)));
-  return across && dot(face, across->normal) < 0;
+  // A plate may be thinner than that.
+  for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+    if (share * width <= before) continue;
+    const std::optional<Across> across = wall_before(boundary, add(place, multiply(share * width - before, face)));
+    if (across) return dot(face, across->normal) < 0;
+  }
+  return false;
 }
 
 Ahead ahead_of(const Boundary& boundary, const Arrangement& arrangement, std::size_t i, const Vec3& place,

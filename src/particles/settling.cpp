@@ -118,7 +118,7 @@ void Settling::raise_datum() const {
   parallel_for(particles.size(), [&](std::size_t i) { excess[i] = law(i).excess(law(i).pressure(excess[i]) + rise); });
 }
 
-std::string Settling::settle() const {
+std::string Settling::settle(const GoOn& go_on) const {
   if (!scene.free_surface) raise_datum();
   Round round;
   particles.scratch().lease(round.way, particles.dimensions, particles.size());
@@ -142,9 +142,17 @@ std::string Settling::settle() const {
     // Liquid below a surface can stretch instead.
     if (n == even_after && !scene.free_surface) fit_gradient_scale();
     step(round);
+    if (go_on && !go_on(how_far(n + 1, round))) break;
   }
   particles.scratch().release(round.way);
-  return round.worst <= at_rest ? std::string() : in_words(round);
+  return round.worst <= settled ? std::string() : in_words(round);
+}
+
+HowFar Settling::how_far(int rounds, const Round& round) const {
+  return {"round " + std::to_string(rounds) + " of at most " + std::to_string(most_settling_rounds) +
+              ", largest acceleration " + brief(100 * round.worst) + " % of gravity, settled at " +
+              brief(100 * settled) + " %",
+          static_cast<double>(rounds) / most_settling_rounds};
 }
 
 std::string Settling::in_words(const Round& round) const {

@@ -156,7 +156,7 @@ RunState Simulation::run(Observer& observer) {
   started_ = checkpointed_ = Clock::now();
   marks_.fill({started_, method_->time(), 0});
   try {
-    if (fresh_) record_start();
+    if (fresh_ && !prepare(observer)) return RunState::interrupted;
     tell_warnings(observer);
     for (const std::string& change : changes_) tell(observer, change);
     pass_on_remarks(observer);
@@ -201,6 +201,23 @@ RunState Simulation::run(Observer& observer) {
     close_failed("file error", text);
     throw FileError(text);
   }
+}
+
+// The state that is recorded first. False where the run was to stop meanwhile: there is nothing to resume from.
+bool Simulation::prepare(Observer& observer) {
+  method_->prepare(ledger_, [&](const HowFar& how_far) {
+    observer.preparing(how_far.words);
+    return !stop_requested();
+  });
+  if (!stop_requested()) {
+    record_start();
+    return true;
+  }
+  const std::string text = "interrupted before the first step; there is nothing to continue from: start the run again";
+  tell(observer, text);
+  signals_ = nullptr;
+  write_summary("interrupted", text);
+  return false;
 }
 
 // Of the case. Told at the start, where the run can still be stopped, and again where the result is read.

@@ -141,7 +141,7 @@ std::string plan_table(const std::vector<Stage>& plan) {
   std::string text;
   for (const auto& stage : plan)
     text += format("  %-*s  %-3s  ", static_cast<int>(width), stage.name.c_str(), stage.on ? "on" : "off") +
-            stage.reason + (stage.part == StagePart::start ? " (at the start only)\n" : "\n");
+            stage.reason + (of_the_start(stage.part) ? " (at the start only)\n" : "\n");
   return text;
 }
 

@@ -65,7 +65,7 @@ Json plan_list(const std::vector<Stage>& plan) {
   Json list = Json::array();
   for (const Stage& stage : plan)
     list.push_back(
-        {{"name", stage.name}, {"on", stage.on}, {"start", stage.part == StagePart::start}, {"reason", stage.reason}});
+        {{"name", stage.name}, {"on", stage.on}, {"start", of_the_start(stage.part)}, {"reason", stage.reason}});
   return list;
 }
 

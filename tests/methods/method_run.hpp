@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/helpers.hpp"
@@ -91,7 +92,12 @@ struct MethodRun {
   MethodRun(const MethodRun&) = delete;
   MethodRun& operator=(const MethodRun&) = delete;
 
+  // As a fresh run does before its first step; again, nothing.
+  void prepare() {
+    if (method.step_count() == 0 && !std::exchange(prepared_, true)) method.prepare(ledger, {});
+  }
   void steps(int count, double dt) {
+    prepare();
     for (int k = 0; k < count; ++k) method.step(dt, ledger);
   }
   std::map<std::string, double> series() {
@@ -107,6 +113,9 @@ struct MethodRun {
     method.save(saved);
     return saved.in_order_of_identifiers();
   }
+
+ private:
+  bool prepared_ = false;
 };
 
 // Runs some steps, then one whose pressure cannot converge: what is wrong with the state after it, nothing or a name.

@@ -61,6 +61,24 @@ TEST(Plan, RunsInAStartWhatBelongsToIt) {
   EXPECT_THAT(run.order, ElementsAre("start", "both", "both"));
 }
 
+TEST(Plan, RunsBeforeTheFirstRecordWhatBelongsThere) {
+  Recorded run;
+  run.add("before", StagePart::before);
+  run.add("start", StagePart::start);
+  run.add("both", StagePart::both);
+  bool told = false;
+  run.plan.add({.name = "long",
+                .reason = "test",
+                .work =
+                    [&](StageRun& one) {
+                      told = !one.go_on({"half", 0.5});
+                    },
+                .part = StagePart::before});
+  run.plan.run_before(1, run.ledger, [](const HowFar& how_far) { return how_far.words != "half"; });
+  EXPECT_THAT(run.order, ElementsAre("before"));
+  EXPECT_TRUE(told);
+}
+
 // A start and the steps after it run different stages.
 TEST(Plan, IsTheOrderOfTheLedger) {
   Recorded run;

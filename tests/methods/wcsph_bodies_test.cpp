@@ -31,7 +31,7 @@ void run_to(BodiesRun& run, double end) {
   while (run.method.time() < end - 1e-12) {
     double dt = std::min(run.method.step_limit().dt, end - run.method.time());
     for (int attempt = 0;; ++attempt, dt /= 2) try {
-        run.method.step(dt, run.ledger);
+        run.steps(1, dt);
         break;
       } catch (const StepFailure&) {
         if (attempt == 3) throw;

@@ -53,7 +53,7 @@ double largest_speed(const std::string& text, const Overrides& set = {}) {
   const double depth = 0.5, g = 1;
   double largest = 0;
   while (run.method.time() < 3 * std::sqrt(depth / g)) {
-    run.method.step(run.method.step_limit().dt, run.ledger);
+    run.steps(1, run.method.step_limit().dt);
     largest = std::max(largest, run.method.flow().largest_speed);
   }
   return largest / std::sqrt(g * depth);
@@ -70,7 +70,7 @@ TEST(WcsphLayers, TheyStayAtRestWithoutViscosity) {
 // Liquid that its neighbours hold is accelerated by less than `at_rest`; densities differ from those at rest by 1e-3.
 TEST(WcsphLayers, TheStartLeavesNoAcceleration) {
   WcsphRun run(layers + box_below);
-  run.method.step(1e-9, run.ledger);
+  run.steps(1, 1e-9);
   const wcsph::Flow& flow = run.method.flow();
   for (std::size_t i = 0; i < flow.size(); ++i)
     EXPECT_LT(std::hypot((*flow.acceleration[0])[i], (*flow.acceleration[1])[i]), 0.005 + 2e-3);
@@ -79,7 +79,7 @@ TEST(WcsphLayers, TheStartLeavesNoAcceleration) {
 
 TEST(WcsphLayers, ParticlesStayInTheirLayer) {
   WcsphRun run(layers);
-  run.method.step(1e-9, run.ledger);
+  run.steps(1, 1e-9);
   const wcsph::Flow& flow = run.method.flow();
   for (std::size_t i = 0; i < flow.size(); ++i)
     EXPECT_EQ(flow.phase_of(i) == 0, (*flow.particles.position[1])[i] < 0.5) << i;
@@ -152,9 +152,17 @@ end = 0.3
 )toml";
   WcsphRun run(text);
   EXPECT_TRUE(run.method.flow().features.weighted);
-  EXPECT_FALSE(run.method.flow().features.settles);  // not settled
+  EXPECT_FALSE(run.method.flow().features.rest.settles);  // not settled
   until(run, 0.3);
   EXPECT_LT(run.method.flow().largest_speed, 0.01 * std::sqrt(9.81 * 0.3));
+}
+
+// Settling carries velocities along to where they do not belong.
+TEST(WcsphLayers, ThatMoveDoNotSettle) {
+  const WcsphRun still(layers),
+      moving(replaced(layers, "phase = \"air\"", "phase = \"air\"\nvelocity = [\"0.1*(y-0.5)\", \"0\"]"));
+  EXPECT_TRUE(still.method.flow().features.rest.settles);
+  EXPECT_FALSE(moving.method.flow().features.rest.settles);
 }
 
 TEST(WcsphLayers, AreRecognised) {

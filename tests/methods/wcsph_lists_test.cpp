@@ -141,7 +141,7 @@ TEST_P(WcsphListsOf, NameEverybodyWithinTheSupportForLongerThanHalfASkin) {
   double longest = 0;
   for (int step = 0; step < 60; ++step) {
     const std::int64_t builds = flow.list_builds;
-    run.method.step(run.method.step_limit().dt, run.ledger);
+    run.steps(1, run.method.step_limit().dt);
     for (std::size_t i = 0; i < flow.size(); ++i) {
       if (step % (flow.dimensions == 3 ? 5 : 3) == 0) {
         ASSERT_GE(listed_neighbours_of(flow, i, flow.resolution.support_radius + edge),
@@ -164,7 +164,7 @@ TEST(WcsphLists, WhoLooksSeesParticlesInsideAndAllAroundPeriodicSides) {
   WcsphRun run(text);
   double outside = 0, error = 0;
   for (int step = 0; step < 60; ++step) {
-    run.method.step(run.method.step_limit().dt, run.ledger);
+    run.steps(1, run.method.step_limit().dt);
     for (const double x : (*run.method.flow().particles.position[0])) outside = std::max(outside, x - 1);
     const ParticleSnapshot seen = run.method.snapshot_on_demand()[0];
     for (std::size_t i = 0; i < seen.size; ++i) {
@@ -209,7 +209,7 @@ velocity = ["-1", "0"]
 [time]
 end = 1
 )toml");
-  for (int step = 0; step < 400; ++step) drops.method.step(0.4 * drops.method.step_limit().dt, drops.ledger);
+  for (int step = 0; step < 400; ++step) drops.steps(1, 0.4 * drops.method.step_limit().dt);
   // In vain in the lists 1, 3, 7, 15, ...: of the first 31 in five.
   const std::int64_t lists = drops.method.flow().list_builds;
   EXPECT_GT(lists, 31);
@@ -218,7 +218,7 @@ end = 1
   std::int64_t before = 0;
   for (int step = 0; step < 40; ++step) {
     const std::int64_t builds = stream.method.flow().list_builds;
-    stream.method.step(stream.method.step_limit().dt, stream.ledger);
+    stream.steps(1, stream.method.step_limit().dt);
     const std::int64_t asked = stream.method.flow().list_life.asked();
     if (step > 0 && stream.method.flow().list_builds > builds) EXPECT_GT(asked, before) << "without a question";
     before = asked;
@@ -237,7 +237,7 @@ TEST(WcsphLists, ALifeThatTheBoundProlongsIsRestored) {
     return longest;
   };
   do {
-    straight.method.step(straight.method.step_limit().dt, straight.ledger);
+    straight.steps(1, straight.method.step_limit().dt);
     ASSERT_LT(straight.method.time(), 1) << "no list lives for longer than half a skin";
   } while (longest_way() <= flow.skin);
   MemoryState saved;
@@ -247,8 +247,8 @@ TEST(WcsphLists, ALifeThatTheBoundProlongsIsRestored) {
   const std::int64_t builds = flow.list_builds;
   for (int step = 0; step < 30; ++step) {
     const double dt = straight.method.step_limit().dt;
-    straight.method.step(dt, straight.ledger);
-    restored.method.step(dt, restored.ledger);
+    straight.steps(1, dt);
+    restored.steps(1, dt);
     // The first of the restored are those that were there.
     EXPECT_EQ(restored.method.flow().list_builds - 1, flow.list_builds - builds) << step;
   }
@@ -267,7 +267,7 @@ TEST(WcsphLists, ForcesActWhereAParticleIsBetweenPeriodicSides) {
   WcsphRun run(text);
   double outside = 0;
   for (int step = 0; step < 60; ++step) {
-    run.method.step(run.method.step_limit().dt, run.ledger);
+    run.steps(1, run.method.step_limit().dt);
     const wcsph::Flow& flow = run.method.flow();
     const double x = (*flow.particles.position[0])[0];
     outside = std::max(outside, x - 1);

@@ -73,7 +73,7 @@ TEST(WcsphOpeningsSolutes, InflowsThatStandStillGiveWhatTheyHave) {
         if (!flow.in_domain(i) && flow.openings->leads(i)) check(flow.solutes.scalars->values(0)[i]);
     };
     const double rest = run.method.step_limit().dt;
-    run.method.step(rest, run.ledger);
+    run.steps(1, rest);
     each_layer([&](double value) { EXPECT_EQ(value, std::sqrt(1 - rest)) << diffusivity; });
     until(run, 0.2);
     each_layer([&](double value) { EXPECT_LE(value, std::sqrt(1 - 0.2)) << diffusivity; });
@@ -109,10 +109,10 @@ TEST(WcsphOpeningsSolutes, SludgeThatHasLeftDoesNotReact) {
         values[(*flow.particles.identifier)[i]] = flow.solutes.scalars->values(0)[i];
     return values;
   };
-  run.method.step(run.method.step_limit().dt, run.ledger);
+  run.steps(1, run.method.step_limit().dt);
   const std::map<std::int64_t, double> before = oxygen_behind();
   const double uptake = run.series().at("oxygen_uptake");
-  run.method.step(run.method.step_limit().dt, run.ledger);
+  run.steps(1, run.method.step_limit().dt);
   EXPECT_GT(run.series().at("oxygen_uptake"), uptake);
   std::size_t stayed = 0;
   for (const auto& [identifier, value] : oxygen_behind()) {

@@ -109,7 +109,7 @@ TEST(WcsphOpenings, AStreamAslantGoesRoundPeriodicSides) {
     const wcsph::Flow& flow = run.method.flow();
     const double support = flow.resolution.support_radius;
     while (run.method.time() < 1 - 1e-12) {
-      run.method.step(std::min(run.method.step_limit().dt, 1 - run.method.time()), run.ledger);
+      run.steps(1, std::min(run.method.step_limit().dt, 1 - run.method.time()));
       double behind = 0;
       for (std::size_t i = 0; i < flow.size(); ++i) {
         const Vec3 r = vector_at(flow.particles.position, 2, i);
@@ -166,7 +166,7 @@ TEST(WcsphOpenings, TheFrontIsThatOfTheDomain) {
   WcsphRun run(below_surface);
   EXPECT_NEAR(run.method.front(0, 1), 1, 1e-12);
   while (run.method.time() < 0.2 - 1e-12) {
-    run.method.step(std::min(run.method.step_limit().dt, 0.2 - run.method.time()), run.ledger);
+    run.steps(1, std::min(run.method.step_limit().dt, 0.2 - run.method.time()));
     EXPECT_LE(run.method.front(0, 1), 1);
     EXPECT_GT(run.method.front(0, 1), 1 - 0.05);
   }
@@ -175,7 +175,7 @@ TEST(WcsphOpenings, TheFrontIsThatOfTheDomain) {
 // The layers are in no column, neither the speed of the inflow nor the pressure of the outflow.
 TEST(WcsphOpenings, SeriesAreOfTheDomain) {
   WcsphRun run(below_surface, {"region.0.velocity=[\"0.1\", \"0\"]", "outflow.0.pressure=3000"});
-  run.method.step(run.method.step_limit().dt, run.ledger);
+  run.steps(1, run.method.step_limit().dt);
   const wcsph::Flow& flow = run.method.flow();
   double speed = 0, change = 0;
   for (std::size_t i = 0; i < flow.size(); ++i) {
@@ -397,8 +397,7 @@ TEST(WcsphOpenings, AreTheSameForAnyNumberOfThreadsAndResumeBitForBit) {
     const auto whole = state_after(1);
     EXPECT_EQ(whole, state_after(2));
     WcsphRun first(text);
-    while (first.method.time() < 0.2)
-      first.method.step(std::min(first.method.step_limit().dt, 0.4 - first.method.time()), first.ledger);
+    while (first.method.time() < 0.2) first.steps(1, std::min(first.method.step_limit().dt, 0.4 - first.method.time()));
     MemoryState saved;
     first.method.save(saved);
     WcsphRun second(text);

@@ -10,8 +10,7 @@ namespace spume::test {
 using WcsphRun = MethodRun<wcsph::Wcsph>;
 
 inline void until(WcsphRun& run, double end) {
-  while (run.method.time() < end - 1e-12)
-    run.method.step(std::min(run.method.step_limit().dt, end - run.method.time()), run.ledger);
+  while (run.method.time() < end - 1e-12) run.steps(1, std::min(run.method.step_limit().dt, end - run.method.time()));
 }
 
 }  // namespace spume::test

@@ -92,6 +92,15 @@ TEST(ColumnPressure, OfWhatABodyClosesOffIsItsOwnWeight) {
 }
 
 // Air above a shallow pool is no body: the column beside it presses on none of it.
+// A plate at 45 degrees, thinner than the diagonal of a cell, passes between cells that touch by their corners.
+TEST(ColumnPressure, OfAPoolBelowASlantedPlateIsItsOwnWeight) {
+  const Start start(pool_tank + region_with("where = \"min(0.5 - y, 1.4 - x - y)\"\n") +
+                    region_with("where = \"min(1.1 - y, x + y - 1.4)\"\n") +
+                    box_at(0.8, 0.6, 0.12, 4, "rotation = [45]\n"));
+  EXPECT_NEAR(start.at(0.45, 0.05), 9, 1e-9);
+  EXPECT_NEAR(start.at(0.95, 0.05), 9, 2);  // a cell
+}
+
 TEST(ColumnPressure, OfAShallowPoolBesideAColumnIsItsOwnWeight) {
   const Start start(pool_tank + region_with("upper = [0.6, 0.9]\n") +
                     region_with("lower = [0.6, 0]\nupper = [1.6, 0.2]\n") + box_at(1.4, 0.7, 0.2, 0.2));

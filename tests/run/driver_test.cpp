@@ -7,6 +7,7 @@ namespace spume {
 namespace {
 
 using testing::Each;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Le;
 
@@ -49,6 +50,25 @@ TEST_F(Driver, GivesUpWithWordsAndLeavesTheLastGoodState) {
   checkpoint.f64("driver/clock", clock);
   EXPECT_EQ(static_cast<float>(clock[0]), static_cast<float>(times.back()));
   EXPECT_EQ(summary("run")["state"], "numerical failure");
+}
+
+TEST_F(Driver, RecordsWhatItHasPrepared) {
+  write_case("end = 0.05\nprepares = 3\n");
+  Watch watch;
+  EXPECT_EQ(start("run")->run(watch), RunState::finished);
+  EXPECT_THAT(watch.prepared, ElementsAre("round 0", "round 1", "round 2"));
+  EXPECT_THAT(contents(folder_ / "run" / "series.csv"), HasSubstr(",3,"));  // the first turn
+}
+
+TEST_F(Driver, StoppedWhileItPreparesItLeavesNothingToContinue) {
+  write_case("end = 0.05\nprepares = 3\n");
+  Watch stopping(-1, "round 1"), watch;
+  EXPECT_EQ(start("run")->run(stopping), RunState::interrupted);
+  EXPECT_EQ(stopping.prepared.size(), 2U);
+  EXPECT_TRUE(stopping.steps.empty());
+  EXPECT_THAT(stopping.notes.back(), HasSubstr("start the run again"));
+  EXPECT_EQ(summary("run")["state"], "interrupted");
+  EXPECT_THROW(resume("run"), InputError);
 }
 
 TEST_F(Driver, AFailureBeforeTheFirstStepSaysThatNothingCanBeContinued) {

@@ -25,6 +25,7 @@ struct FakeBehaviour {
   double sleep = 0;            // wall seconds per step
   double memory_until = 1e30;  // the memory ends with the first step at or after this time
   bool solvable = true;        // false: what it solves before the first step fails
+  std::int64_t prepares = 0;   // rounds before the first record
   bool surface = true;         // false: it has no probes of a surface
 };
 
@@ -56,6 +57,14 @@ class FakeMethod final : public Method, public FieldProbes, public SurfaceProbes
   std::int64_t step_count() const override { return step_; }
   StepLimit step_limit() const override {
     return {behaviour_.dt * (1 + 0.3 * std::sin(10 * time_)), std::sin(10 * time_) > 0 ? "courant" : "viscous"};
+  }
+
+  void prepare(Ledger& /*ledger*/, const GoOn& go_on) override {
+    for (std::int64_t k = 0; k < behaviour_.prepares; ++k) {
+      turn_[0] += 1;
+      if (!go_on({"round " + std::to_string(k), static_cast<double>(k + 1) / static_cast<double>(behaviour_.prepares)}))
+        return;
+    }
   }
 
   void step(double dt, Ledger& ledger) override {
@@ -230,6 +239,7 @@ std::unique_ptr<Method> make_fake_method(const LoadedCase& loaded) {
   behaviour.largest_dt = table["largest_dt"].value<double>().value_or(behaviour.largest_dt);
   behaviour.fails_from = table["fails_from"].value<double>().value_or(behaviour.fails_from);
   behaviour.memory_until = table["memory_until"].value<double>().value_or(behaviour.memory_until);
+  behaviour.prepares = table["prepares"].value<std::int64_t>().value_or(behaviour.prepares);
   behaviour.solvable = table["solvable"].value<bool>().value_or(behaviour.solvable);
   behaviour.surface = table["surface"].value<bool>().value_or(behaviour.surface);
   behaviour.sleep = table["sleep"].value<double>().value_or(behaviour.sleep);

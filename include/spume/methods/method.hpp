@@ -30,6 +30,10 @@ class Method {
   // Makes the state that a fresh run starts from; not called before `load`. Throws InputError.
   virtual void start() {}
 
+  // Called once, after start() and before anything is recorded or stepped; not before `load`. May take as long as many
+  // steps and says meanwhile how far it is.
+  virtual void prepare(Ledger& /*ledger*/, const GoOn& /*go_on*/) {}
+
   virtual double time() const = 0;
   virtual std::int64_t step_count() const = 0;
   virtual StepLimit step_limit() const = 0;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "spume/core/array.hpp"
+#include "spume/core/go_on.hpp"
 #include "spume/core/ledger.hpp"
 
 namespace spume {
@@ -64,10 +65,15 @@ struct StageRun {
   double particles = 0;  // that the ledger divides the time by; a stage that handles others than the step says so
   double pairs = 0;      // particle pairs handled
   double bytes = 0;      // traffic beside the arrays that the stage names, such as that of its sweeps
+  GoOn go_on = {};       // of what comes before the first record
 };
 
-// Steps, the start, both of these; or the steps in which a recorded flow carries what is dissolved.
-enum class StagePart { step, start, both, recorded };
+// Steps, the start, both of these; what makes the state that is recorded first, before the start; or the steps in which
+// a recorded flow carries what is dissolved.
+enum class StagePart { step, start, both, before, recorded };
+inline bool of_the_start(StagePart part) {
+  return part == StagePart::start || part == StagePart::before;
+}
 
 // One stage: what it is called, why it runs or not, and what it does. Off stages have no work. A stage that is on and
 // not wanted in every step, such as a sort every so many steps, says when it is due.
@@ -96,6 +102,9 @@ class Plan {
   // ledger divides the time by. What a stage throws passes through.
   void run_step(double dt, double particles, Ledger& ledger) const { run({StagePart::step, dt, particles, ledger}); }
   void run_start(double particles, Ledger& ledger) const { run({StagePart::start, 0, particles, ledger}); }
+  void run_before(double particles, Ledger& ledger, const GoOn& go_on) const {
+    run({StagePart::before, 0, particles, ledger, go_on});
+  }
   void run_recorded(double dt, double particles, Ledger& ledger) const {
     run({StagePart::recorded, dt, particles, ledger});
   }
@@ -105,6 +114,7 @@ class Plan {
     StagePart part;
     double dt, particles;
     Ledger& ledger;
+    GoOn go_on = {};
   };
   struct Loop {
     std::size_t first, last;  // of its stages; one past the last

@@ -3,10 +3,11 @@
 // the arrangement over N spacings that the fastest particle moves,
 //
 //   ds_i/dt = max|u| / (N dr) l_i,   l_i = <c> + b_i (e_i - e_i within 0.01),
-//   c_i = (S_i / S_lattice - 1 within 0.06) - (s'_i - <s'> at the start),  S_i = sum_j V W_ij,  e_i = c_i - <c>,
+//   c_i = (S_i / S_lattice - 1 within 0.06) - (s'_i - <s'> at the start) - c_0,  S_i = sum_j V W_ij,  e_i = c_i - <c>,
 //
 // with <c> the mean with weights b, the interior weight of particles/surface.hpp, and s' the density excess less its
-// hydrostatic part, g . (x - x_0) / c^2, which in a liquid at rest is the same everywhere.
+// hydrostatic part, g . (x - x_0) / c^2, which in a liquid at rest is the same everywhere. c_0: <c> where settled
+// liquid rests (particles/settling.hpp), whose kernel sums are not a lattice's; else 0.
 //
 // The rate of density of the continuity equation is that of the kernel sums; where liquid meets and leaves walls,
 // bodies and itself it is not that of the volume, and nothing takes back what it errs by. A tank 16 spacings deep that
@@ -39,7 +40,11 @@ class ExcessRelaxation {
   // Of l, what is made up for while the fastest particle goes so far.
   double share_of(double way) const;
 
+  // The present arrangement is that of liquid at rest: nothing lacks.
+  void take_as_rest();
+
   double volume = 0;  // by the kernel sums, as measured last; state between steps
+  double rest = 0;    // c_0; state between steps
   double bytes() const { return lack_->bytes(); }
 
  private:
@@ -48,6 +53,7 @@ class ExcessRelaxation {
   const Liquid liquid_;
   const double way_;
   const double start_;  // <s'>
+  double mean_ = 0;     // <c>, as measured last
   Array<double>* lack_;
 };
 

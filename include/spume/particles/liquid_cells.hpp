@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The liquid of the start in the cells of the lattice that fills a scene (scene/lattice.hpp), and its parts: liquid
-// whose cells touch, by a corner too, is one.
+// whose cells touch, by a corner too, is one, unless a body stands between their centres. Kept are the cells around the
+// liquid, by one at least, and along periodic axes all.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +38,7 @@ class LiquidCells {
   // Whether the wall of a body lies nearer to its centre than half a spacing, or beyond it.
   bool is_covered(const Cell& cell) const;
 
-  // Goes one cell on along an axis; where the domain ends there, what it ends with.
+  // Goes one cell on along an axis, from one with liquid; where the domain ends there, what it ends with.
   enum class Beyond { cell, wall, open };
   Beyond step(Cell& cell, int axis, int by) const;
 
@@ -45,10 +46,13 @@ class LiquidCells {
   std::size_t index(const Cell& cell) const {
     return static_cast<std::size_t>((cell[0] * count_[1] + cell[1]) * count_[2] + cell[2]);
   }
+  void keep_around(const InitialParticles& particles);
+  Vec3 centre(const Cell& cell) const;
+  bool meet(const Cell& one, const Cell& other, double clear, int axes) const;
   void find_parts();
 
   const Scene& scene_;
-  const Lattice lattice_;
+  Lattice lattice_;
   Cell count_{1, 1, 1};
   std::vector<std::int32_t> phase_, part_;
   std::vector<std::int64_t> first_row_, last_row_;  // of parts

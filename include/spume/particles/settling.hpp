@@ -14,24 +14,22 @@
 #include <string>
 #include <vector>
 
+#include "spume/core/go_on.hpp"
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/phase_law.hpp"
 
 namespace spume {
 
 struct Settling {
-  // Of gravity: accelerations above it that are left are said.
-  static constexpr double at_rest = 0.005;
-
   const Scene& scene;
   const Boundary& boundary;
   const Resolution& resolution;
   ParticleStore& particles;
   Arrangement& arrangement;  // in a full tank the kernel gradient becomes exact in it: SweepContext::gradient_scale
   ParticleLaws law;
-  Array<double>& excess;             // of each particle that of the pressure at its height; it follows the particle
-  Vec3 gravity{};                    // across sides
-  std::vector<std::uint8_t> chosen;  // by identifier, 1 for those that move; empty: all
+  Array<double>& excess;  // of each particle that of the pressure at its height; it follows the particle
+  Vec3 gravity{};         // across sides
+  const std::vector<std::uint8_t>& chosen;  // by identifier, 1 for those that move; empty: all
 
   struct Forces {
     const float* pressure = nullptr;
@@ -42,8 +40,9 @@ struct Settling {
   // finds those of a step. They are there until `use` has returned.
   std::function<void(const UseForces& use)> with_forces;
 
-  // Moves the particles; says what is left where it ended with an acceleration of more than `at_rest`.
-  std::string settle() const;
+  // Moves the particles; says what is left where it ended with an acceleration of more than 0.0003 of gravity. `go_on`,
+  // which may be empty, is asked after each round.
+  std::string settle(const GoOn& go_on) const;
 
  private:
   struct Round;
@@ -52,6 +51,7 @@ struct Settling {
   void move(std::size_t i, const Vec3& way) const;
   void step(Round& round) const;
   void fit_gradient_scale() const;
+  HowFar how_far(int rounds, const Round& round) const;
   std::string in_words(const Round& round) const;
 };
 

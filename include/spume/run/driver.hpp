@@ -54,6 +54,8 @@ class Observer {
   virtual ~Observer() = default;
   virtual void progress(const Progress& progress) = 0;
   virtual void note(const std::string& text) = 0;
+  // Before the first step, how far what prepares it has come.
+  virtual void preparing(const std::string& /*how_far*/) {}
   // Before every step, and once after the last: may look at the state and steer the run, which waits meanwhile.
   virtual void between_steps(Simulation& /*simulation*/) {}
 };
@@ -127,6 +129,7 @@ class Simulation {
 
   void tell_warnings(Observer& observer);
   void tell_failed_verdicts(Observer& observer);
+  bool prepare(Observer& observer);
   void record_start();
   void advance(Observer& observer);                        // one step, and what is due after it
   double take_step(Observer& observer, StepLimit& limit);  // the length of the accepted step

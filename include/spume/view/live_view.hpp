@@ -24,6 +24,7 @@ class LiveView final : public Observer {
 
   void progress(const Progress& progress) override;
   void note(const std::string& text) override;
+  void preparing(const std::string& how_far) override { next_.preparing(how_far); }
   void between_steps(Simulation& simulation) override;
   // The last state, "finished", "interrupted" or "failed", and for the last the reason. Waits a second at most until
   // viewers have it.

@@ -56,8 +56,7 @@ Features::Features(const LoadedCase& loaded)
   weighted = several && !shifting && !tension && meeting != InterfacePressure::mean;
   const bool undriven = !moving_bodies && !scene.body_force;
   const bool in_layers = weighted && !scene.free_surface && undriven && lie_in_layers(scene);
-  settles = !openings && undriven && !oxygen &&
-            (several ? in_layers : scene.free_surface && !particles_at_rest(scene).empty());
+  rest = StartAtRest(scene, {.moving_bodies = moving_bodies, .oxygen = oxygen, .in_layers = in_layers});
   weighted = in_layers || (weighted && meeting == InterfacePressure::weighted);
 }
 
@@ -103,7 +102,6 @@ Flow::Flow(const LoadedCase& loaded_case)
   });
   if (features.tension) tension = std::make_unique<SurfaceTension>(scene, options.get<InterfaceOptions>().smoothing);
   if (features.gravity) start_density();
-  if (features.settles && scene.free_surface) at_rest = particles_at_rest(scene);
   if (features.density_relaxation)
     relaxation = std::make_unique<ExcessRelaxation>(
         ExcessRelaxation::Liquid{particles, arrangement, resolution, law_of_particles(), *excess, wall_gravity,

@@ -294,8 +294,7 @@ WallParting::Liquid Flow::parted(const std::array<const double*, 3>& at) const {
 }
 
 // At rest under the forces that a step finds.
-void Flow::settle() {
-  if (std::exchange(settled, 1) != 0) return;
+void Flow::settle(const GoOn& go_on) {
   const auto with_forces = [this](const Settling::UseForces& use) {
     keep_lists(0);
     drift(0);
@@ -314,13 +313,13 @@ void Flow::settle() {
                        .law = law_of_particles(),
                        .excess = *excess,
                        .gravity = wall_gravity,
-                       .chosen = std::move(at_rest),
+                       .chosen = features.rest.chosen,
                        .with_forces = with_forces}
-                  .settle();
-}
-
-SurfaceTension::Now Flow::tension_now() {
-  return {arrangement, resolution, boundary.reflection(), particles, volume.data()};
+                  .settle(go_on);
+  keep_lists(0);
+  if (features.density_relaxation) relaxation->take_as_rest();
+  if (features.scalars) solutes.scalars->set_initial();
+  has_lists = false;  // the first step makes its own
 }
 
 void Flow::add_tension() {

@@ -15,9 +15,8 @@ Plan make_plan(Flow& f) {
   const ParticleStages stages(plan, f);
   const char* const several = has.several ? "several phases" : "one phase";
 
-  stages.sweep(start, "settling", has.settles,
-               has.settles ? "to where the liquid is at rest" : "the liquid does not start level, at rest",
-               &Flow::settle, {p.position, *f.excess}, {p.position, *f.excess});
+  stages.sweep(before, "settling", has.rest.settles, has.rest.reason, [&f](StageRun& run) { f.settle(run.go_on); },
+               {p.position, *f.excess}, {p.position, *f.excess});
   const ArrayUse interfaces([&f] { return f.tension == nullptr ? 0 : f.tension->bytes(); });
   const auto keep_lists = [&f](StageRun& run) {
     const std::int64_t builds = f.list_builds;

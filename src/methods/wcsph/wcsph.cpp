@@ -66,9 +66,10 @@ Wcsph::Wcsph(const LoadedCase& loaded)
     body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
   saved_.add(flow_.time).add(flow_.steps).add(flow_.signal).add(flow_.largest_speed).add(flow_.boundary.wall_speed);
   saved_.add(flow_.list_life.fastest).add(flow_.list_life.most_accelerated);
-  if (flow_.features.settles) saved_.add(flow_.settled).add(flow_.arrangement.context.gradient_scale);
+  saved_.add(flow_.arrangement.context.gradient_scale);
   if (flow_.features.tension) saved_.add(flow_.surface_energy);
-  if (flow_.features.density_relaxation) saved_.add(flow_.relaxation->volume).add(flow_.measured_way);
+  if (flow_.features.density_relaxation)
+    saved_.add(flow_.relaxation->volume).add(flow_.relaxation->rest).add(flow_.measured_way);
 }
 
 void Wcsph::step(double dt, Ledger& ledger) {

@@ -79,9 +79,14 @@ Scalars::Scalars(ParticleStore& particles, const Resolution& resolution, const D
   for (const ScalarOption& scalar : options.scalars) {
     fields_.push_back(&particles.fields.add<double>("scalar_" + scalar.name, Lifetime::state));
     fields_.back()->fill(0);
-    if (scalar.initial != nullptr)
-      set_values(particles, domain, *scalar.initial, 0, *fields_.back(), [](std::size_t) { return true; });
   }
+  set_initial();
+}
+
+void Scalars::set_initial() {
+  for (std::size_t s = 0; s < size(); ++s)
+    if (option(s).initial != nullptr)
+      set_values(particles_, domain_, *option(s).initial, 0, *fields_[s], [](std::size_t) { return true; });
 }
 
 Vec3 Scalars::place_of(std::size_t i) const {

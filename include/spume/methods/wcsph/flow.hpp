@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "spume/core/go_on.hpp"
 #include "spume/methods/wcsph/options.hpp"
 #include "spume/operators/wcsph_sums.hpp"
 #include "spume/particles/acoustic_layers.hpp"
@@ -19,6 +20,7 @@
 #include "spume/particles/list_life.hpp"
 #include "spume/particles/phase_law.hpp"
 #include "spume/particles/spill.hpp"
+#include "spume/particles/start_at_rest.hpp"
 #include "spume/particles/surface_tension.hpp"
 #include "spume/particles/wall_parting.hpp"
 #include "spume/physics/solutes/measured_transport.hpp"
@@ -31,9 +33,7 @@ struct Features : BoundaryFeatures, SoluteFeatures {
   explicit Features(const LoadedCase& loaded);
   bool several = false;   // phases
   bool weighted = false;  // sums of pairs of different phases, by their densities
-  // It starts at rest: phases in layers in a closed tank, one below a level surface. Oxygen would find 8 % too much of
-  // a settled surface, which is denser.
-  bool settles = false;
+  StartAtRest rest;
   bool gravity = false;  // across sides
   bool viscosity = false;
   bool friction = false;  // at no-slip walls
@@ -74,11 +74,9 @@ struct Flow {
   std::unique_ptr<AcousticLayers> acoustic;  // null: none
   Boundary boundary;
   Spill spill;
-  double listed_time = 0;             // of the places of moving bodies in the lists
-  double settled = 0;                 // 1: settle() has been
-  std::string unsettled;              // what it says of accelerations that it has left
-  std::vector<std::uint8_t> at_rest;  // the particles that it moves, by identifier; empty: all
-  double signal = 0;                  // largest sum of sound speed and speed
+  double listed_time = 0;  // of the places of moving bodies in the lists
+  std::string unsettled;   // what it says of accelerations that it has left
+  double signal = 0;       // largest sum of sound speed and speed
   double largest_speed = 0;
   double measured_way = 0;    // of the fastest particle since (12) was measured
   double surface_energy = 0;  // of the interfaces where the last forces were found
@@ -124,8 +122,8 @@ struct Flow {
   double largest_kinematic_viscosity() const;
 
   // The stages.
-  void move_layers(double dt);  // behind openings
-  void settle();                // to where the liquid is at rest
+  void move_layers(double dt);     // behind openings
+  void settle(const GoOn& go_on);  // to where the liquid is at rest
   void keep_lists(double dt);
   void measure_volume();            // (12)
   void drift(double dt);            // (5), to the middle of the step
@@ -155,7 +153,9 @@ struct Flow {
   HalfStep half_step(int axis, std::size_t i, double dt) const;
   Vec3 held_velocity(std::size_t i, double dt, Vec3& r) const;
   void apply_walls(std::size_t i, Vec3& r, Vec3* u, const Vec3* from) const;
-  SurfaceTension::Now tension_now();
+  SurfaceTension::Now tension_now() {
+    return {arrangement, resolution, boundary.reflection(), particles, volume.data()};
+  }
   void build_lists();
   bool lists_hold(double dt);
   void move_images(const std::array<const double*, 3>& at, double t);

@@ -36,6 +36,9 @@ class Scalars {
   Scalars(ParticleStore& particles, const Resolution& resolution, const Domain& domain, const ScalarOptions& options,
           const ScalarWalls& walls);
 
+  // The values of `initial` where the particles are now.
+  void set_initial();
+
   struct Carrier {
     Arrangement& arrangement;
     const float* divergence_of_position;
