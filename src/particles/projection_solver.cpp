@@ -32,6 +32,10 @@ CellGeometry cell_geometry(const Boundary& boundary, double cell_size) {
   return geometry;
 }
 
+// Of the diagonal, what a row makes of a constant that is in its null space: rounding of floats leaves 1e-6, a
+// neighbour whose pressure is given at the edge of the support 1e-3.
+constexpr double of_no_constant = 1e-4;
+
 template <class Real>
 void subtract_mean(std::span<Real> values) {
   const double mean = parallel_sum(values.size(), [&](std::size_t i) { return static_cast<double>(values[i]); }) /
@@ -237,7 +241,7 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
   const double of_divergence = rows.reference_norm > 0 ? std::min(1.0, rows.source_norm / rows.reference_norm) : 0;
   const double tolerance = std::max(options_.tolerance, of_divergence * divergence_tolerance(options_.tolerance));
   const double reference_norm = std::max(rows.reference_norm, rows.rounding_norm / tolerance);
-  if (may_enclose_ && (!looked_ || !enclosed_.empty())) find_enclosed(rows);
+  if (may_enclose_ && (!looked_ || !enclosed_.empty())) find_enclosed(rows, particles);
   const auto refinement = [&] {
     return RefinementOptions{tolerance,     reference_norm, options_.max_iterations,
                              rows.singular, rows.measured,  enclosed_.empty() ? nullptr : &enclosed_};
@@ -249,7 +253,7 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
   }
   solve_iteratively(rows, refinement(), particles, q);
   if (report_.converged || !may_enclose_ || !enclosed_.empty()) return;
-  find_enclosed(rows);
+  find_enclosed(rows, particles);
   if (enclosed_.empty()) return;
   parallel_for(n, [&](std::size_t i) {
     if (rows.diagonal[i] != 0) q[i] = 0;
@@ -257,13 +261,23 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
   solve_iteratively(rows, refinement(), particles, q);
 }
 
-void ProjectionSolver::find_enclosed(const PressureRows& rows) {
+// A pressure is known where a constant is not in the null space of the rows: beside surfaces, pressures that are fixed
+// and openings.
+void ProjectionSolver::find_enclosed(const PressureRows& rows, ParticleStore& particles) {
   looked_ = true;
   const SweepContext* context = matrix_->context();
   if (context == nullptr || rows.helmholtz != 0) return;
-  enclosed_ = enclosed_parts(*context, rows.singular, [&](std::size_t i) {
-    return rows.diagonal[i] == 0 || (!rows.diagonal_shift.empty() && rows.diagonal_shift[i] != 0);
+  const std::size_t n = matrix_->size();
+  ScratchPool& scratch = particles.scratch();
+  ScratchArray<double> one(scratch, n), zero(scratch, n), product(scratch, n);
+  parallel_for(n, [&](std::size_t i) {
+    one[i] = rows.diagonal[i] == 0 ? 0 : 1;
+    zero[i] = 0;
   });
+  matrix_->residual(std::span<const double>(one.data(), n), std::span<const double>(zero.data(), n),
+                    std::span(product.data(), n), false);
+  enclosed_ = enclosed_parts(*context, rows.singular,
+                             [&](std::size_t i) { return std::abs(product[i]) >= of_no_constant * rows.diagonal[i]; });
 }
 
 void ProjectionSolver::solve_iteratively(const PressureRows& rows, const RefinementOptions& refinement,

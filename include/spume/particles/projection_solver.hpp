@@ -101,7 +101,7 @@ class ProjectionSolver {
                       std::span<double> q);
   void solve_iteratively(const PressureRows& rows, const RefinementOptions& refinement, ParticleStore& particles,
                          Array<double>& q);
-  void find_enclosed(const PressureRows& rows);
+  void find_enclosed(const PressureRows& rows, ParticleStore& particles);
   template <class Real>
   Preconditioner<Real>& preconditioner(JacobiPreconditioner<Real>& jacobi);
 
