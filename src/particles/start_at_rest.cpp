@@ -21,7 +21,9 @@ bool moves(const Scene& scene) {
 StartAtRest::StartAtRest(const Scene& scene, const Circumstances& circumstances) {
   const bool several = scene.phases.size() > 1;
   reason = "the liquid does not start level, at rest";
-  if (gravity_across_sides(scene) == Vec3{})
+  if (circumstances.unasked)
+    reason = "compressibility.settling_rounds = 0";
+  else if (gravity_across_sides(scene) == Vec3{})
     reason = "no gravity across sides";
   else if (!scene.openings.empty())
     reason = "inflow or outflow";

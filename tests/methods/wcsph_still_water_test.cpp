@@ -121,6 +121,15 @@ TEST(WcsphStillWater, SettlesBeforeAnythingIsRecorded) {
   EXPECT_NEAR(run.series()["potential_energy"], settled, 1e-6 * std::abs(settled));
 }
 
+TEST(WcsphStillWater, StartsAsFilledWhereNobodyAsksForMore) {
+  WcsphRun run(still_plane, {"compressibility.settling_rounds=0"});
+  EXPECT_FALSE(run.method.flow().features.rest.settles);
+  EXPECT_EQ(run.method.flow().features.rest.reason, "compressibility.settling_rounds = 0");
+  const double filled = run.series()["potential_energy"];
+  run.prepare();
+  EXPECT_EQ(run.series()["potential_energy"], filled);
+}
+
 // Particles move by up to two spacings while they settle.
 TEST(WcsphStillWater, CarriesItsScalarsWhereItHasSettled) {
   WcsphRun run(still_plane + still_ellipse + "[[scalar]]\nname = \"height\"\ninitial = \"y\"\n");

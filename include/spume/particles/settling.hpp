@@ -30,6 +30,7 @@ struct Settling {
   Array<double>& excess;  // of each particle that of the pressure at its height; it follows the particle
   Vec3 gravity{};         // across sides
   const std::vector<std::uint8_t>& chosen;  // by identifier, 1 for those that move; empty: all
+  int most_rounds = 0;
 
   struct Forces {
     const float* pressure = nullptr;

@@ -56,7 +56,7 @@ Features::Features(const LoadedCase& loaded)
   weighted = several && !shifting && !tension && meeting != InterfacePressure::mean;
   const bool undriven = !moving_bodies && !scene.body_force;
   const bool in_layers = weighted && !scene.free_surface && undriven && lie_in_layers(scene);
-  rest = StartAtRest(scene, {.moving_bodies = moving_bodies, .oxygen = oxygen, .in_layers = in_layers});
+  rest = StartAtRest(scene, {moving_bodies, oxygen, in_layers, smoothing.settling_rounds == 0});
   weighted = in_layers || (weighted && meeting == InterfacePressure::weighted);
 }
 

@@ -314,6 +314,7 @@ void Flow::settle(const GoOn& go_on) {
                        .excess = *excess,
                        .gravity = wall_gravity,
                        .chosen = features.rest.chosen,
+                       .most_rounds = options.get<CompressibilityOptions>().settling_rounds,
                        .with_forces = with_forces}
                   .settle(go_on);
   keep_lists(0);

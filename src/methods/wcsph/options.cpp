@@ -32,7 +32,9 @@ Section compressibility_section() {
             "what phases meet at: the mean of their pressures, or that weighted with densities, under which "
             "accelerations "
             "are continuous; auto: weighted where phases lie in layers; shifting and tension take the mean")
-      .option("filter_interval", &C::filter_interval, "", between(1, 10000), "steps between kernel averages");
+      .option("filter_interval", &C::filter_interval, "", between(1, 10000), "steps between kernel averages")
+      .option("settling_rounds", &C::settling_rounds, "", between(0, 100000),
+              "most sweeps in which liquid that starts at rest settles before the first step; 0: it starts as filled");
 }
 
 Section list_section() {

@@ -23,6 +23,7 @@ struct CompressibilityOptions {
   double diffusion = 0.1;         // delta of Molteni and Colagrossi (2009)
   double density_relaxation = 2;  // spacings that the fastest particle moves
   int filter_interval = 25;       // steps, of the Shepard filter
+  int settling_rounds = 4000;     // tanks of 28 rows take 490 to 1,000, of 55 rows and in space more
   Shifting shifting = Shifting::automatic;
   InterfacePressure interface_pressure = InterfacePressure::automatic;
 };
