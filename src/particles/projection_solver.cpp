@@ -241,7 +241,7 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
   const double of_divergence = rows.reference_norm > 0 ? std::min(1.0, rows.source_norm / rows.reference_norm) : 0;
   const double tolerance = std::max(options_.tolerance, of_divergence * divergence_tolerance(options_.tolerance));
   const double reference_norm = std::max(rows.reference_norm, rows.rounding_norm / tolerance);
-  if (may_enclose_ && (!looked_ || !enclosed_.empty())) find_enclosed(rows, particles);
+  if (may_enclose_ && looks_for_enclosed != 0) find_enclosed(rows, particles);
   const auto refinement = [&] {
     return RefinementOptions{tolerance,     reference_norm, options_.max_iterations,
                              rows.singular, rows.measured,  enclosed_.empty() ? nullptr : &enclosed_};
@@ -264,7 +264,7 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
 // A pressure is known where a constant is not in the null space of the rows: beside surfaces, pressures that are fixed
 // and openings.
 void ProjectionSolver::find_enclosed(const PressureRows& rows, ParticleStore& particles) {
-  looked_ = true;
+  looks_for_enclosed = 0;
   const SweepContext* context = matrix_->context();
   if (context == nullptr || rows.helmholtz != 0) return;
   const std::size_t n = matrix_->size();
@@ -278,6 +278,7 @@ void ProjectionSolver::find_enclosed(const PressureRows& rows, ParticleStore& pa
                     std::span(product.data(), n), false);
   enclosed_ = enclosed_parts(*context, rows.singular,
                              [&](std::size_t i) { return std::abs(product[i]) >= of_no_constant * rows.diagonal[i]; });
+  looks_for_enclosed = enclosed_.empty() ? 0 : 1;
 }
 
 void ProjectionSolver::solve_iteratively(const PressureRows& rows, const RefinementOptions& refinement,

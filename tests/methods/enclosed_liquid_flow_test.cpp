@@ -48,6 +48,18 @@ void expect_the_vortex_of_a_tank_of_its_own(const std::string& two, const std::s
   EXPECT_LT(behind, 1e-5);
 }
 
+template <class Run>
+void expect_the_same_bits_resumed(const std::string& text) {
+  Run straight(text), resumed(text);
+  straight.steps(3, 0.01);
+  MemoryState saved;
+  straight.method.save(saved);
+  resumed.method.load(saved);
+  straight.steps(3, 0.01);
+  resumed.steps(3, 0.01);
+  EXPECT_EQ(straight.saved_state(), resumed.saved_state());
+}
+
 struct LesSphRun : Simulation {
   using Simulation::Simulation;
   const les_sph::Flow& flow() const { return method.flow(); }
@@ -72,6 +84,11 @@ TEST(EnclosedLiquidFlow, MovesAsInATankOfItsOwnByGfd) {
 
 TEST(EnclosedLiquidFlow, MovesAsInATankOfItsOwnByLesSph) {
   expect_the_vortex_of_a_tank_of_its_own<LesSphRun>(les_sph("[2.25, 1]") + wall, les_sph("[1, 1]"));
+}
+
+TEST(EnclosedLiquidFlow, ResumesBitForBit) {
+  expect_the_same_bits_resumed<GfdRun>(full_of_water("[2.25, 1]", 0.05, vortex) + wall);
+  expect_the_same_bits_resumed<LesSphRun>(les_sph("[2.25, 1]") + wall);
 }
 
 // Turned boxes that enclose a drop of some particles between them and the floor.

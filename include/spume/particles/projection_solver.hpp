@@ -90,7 +90,8 @@ class ProjectionSolver {
   bool has_multigrid() const { return multigrid_ != nullptr; }
   const RefinementResult& report() const { return report_; }
   const PartConstants& enclosed() const { return enclosed_; }
-  double bytes() const;  // beside what is leased
+  double looks_for_enclosed = 1;  // 0: the next solve does not; state between steps
+  double bytes() const;           // beside what is leased
 
  private:
   struct Operator;
@@ -113,7 +114,6 @@ class ProjectionSolver {
   Array<double> double_diagonal_, zero_;
   std::unique_ptr<DirectPressure> direct_;
   bool may_enclose_;  // there are solids
-  bool looked_ = false;
   PartConstants enclosed_;
   RefinementResult report_;
 };

@@ -57,7 +57,8 @@ Gfd::Gfd(const LoadedCase& loaded)
       .add(flow_.speeds.largest)
       .add(flow_.speeds.limiting)
       .add(flow_.energy_supply)
-      .add(flow_.boundary.wall_speed);
+      .add(flow_.boundary.wall_speed)
+      .add(flow_.solver.looks_for_enclosed);
   for (double& volume : flow_.first_volume) saved_.add(volume);
   if (!flow_.features.bodies) return;
   saved_.add(flow_.packed);

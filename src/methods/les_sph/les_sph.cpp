@@ -243,7 +243,8 @@ void LesSph::declare_saved() {
       .add(flow_.boundary.wall_speed)
       .add(flow_.largest_body_force)
       .add(flow_.last_steps[0])
-      .add(flow_.last_steps[1]);
+      .add(flow_.last_steps[1])
+      .add(flow_.solver.looks_for_enclosed);
 }
 
 void LesSph::save(StateWriter& writer) const {
