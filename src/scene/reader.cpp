@@ -229,7 +229,7 @@ class SectionReader {
     bool good = true;
     for (std::size_t i = 0; i < elements.size(); ++i) {
       const Node& element = elements[i];
-      const std::string entry = name + "[" + std::to_string(i) + "]";
+      const std::string entry = alone ? name : name + "[" + std::to_string(i) + "]";
       if (option.type == OptionType::numbers) {
         if (!element.is_number()) {
           good = refuse(element, entry + " must be a number, found " + kind_in_words(element));

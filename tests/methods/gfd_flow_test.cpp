@@ -49,6 +49,19 @@ TEST(GfdFlow, ADropHasTheJumpOfItsCurvature) {
   EXPECT_NEAR((mean_pressure(ball, 0, 0.1) - mean_pressure(ball, 0.47, 0.7)) * radius / 2, 1, 0.04);
 }
 
+// What is recorded before the first step: it was zero.
+TEST(GfdFlow, StartsWithThePressureOfRest) {
+  GfdRun drop(drop_in_a_box, {"fluid.gravity=0"});
+  const double radius = std::sqrt(drop.series()["volume_drop"] / pi);
+  EXPECT_NEAR((mean_pressure(drop, 0, 0.1) - mean_pressure(drop, 0.42, 0.6)) * radius, 1, 0.1);  // 10 across
+  GfdRun still(drop_in_a_box, {"interface.surface_tension=0", "phase.1.density=1"});
+  still.series();
+  const gfd::Flow& flow = still.flow();
+  for (std::size_t i = 0; i < flow.size(); ++i)
+    EXPECT_NEAR((*flow.pressure)[i] - (*flow.pressure)[0],
+                (*flow.particles.position[1])[0] - (*flow.particles.position[1])[i], 1e-12);
+}
+
 // Galilei: a drop that moves with all that surrounds it keeps its shape and its speed.
 TEST(GfdFlow, AUniformStreamCarriesADropAlong) {
   GfdRun run(ball_in_a_box, {"region.1.velocity=[\"0.2\", \"0\", \"0.1\"]", "interface.surface_tension=0"});

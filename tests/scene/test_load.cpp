@@ -72,7 +72,7 @@ TEST(Load, AValueStandsForAListOfOneWhereThatIsPossible) {
   EXPECT_EQ(load_text(small_case(box + "rotation = 20\n")).scene.bodies[0].shape->distance({0.6, 0.52, 0}),
             load_text(small_case(box + "rotation = [20]\n")).scene.bodies[0].shape->distance({0.6, 0.52, 0}));
   EXPECT_THAT(problems_of(small_case(box + "rotation = \"20\"\n")),
-              ElementsAre(HasSubstr("body.0.rotation[0] must be a number, found a string")));
+              ElementsAre(HasSubstr("body.0.rotation must be a number, found a string")));
   EXPECT_THAT(problems_of(small_case("[[body]]\nshape = \"box\"\nsize = 0.1\n")),
               ElementsAre(HasSubstr("body.0.size must be a list of numbers (length), found a number")));
 }

@@ -257,6 +257,12 @@ double Flow::hydrostatic_part(std::size_t i) const {
   return sum;
 }
 
+// Not of a restored run, whose first reports come after the stages of the start, too.
+void Flow::start_pressure() {
+  if (steps > 0) return;
+  parallel_for(size(), [&](std::size_t i) { (*pressure)[i] = hydrostatic_part(i); });
+}
+
 double Flow::leased_bytes() const {
   double sum = particles.fields.scratch().idle_bytes();
   const auto add = [&sum](const auto&... arrays) { ((sum += arrays.bytes()), ...); };

@@ -154,6 +154,7 @@ struct Flow {
   bool gains_no_energy() const;         // forces, walls and openings whose work is not followed do not act
   double roundness() const;             // of the second of two phases: surface of a ball of its volume over that area
   // What the guard of the energy measures by; after the first interfaces have been found.
+  void start_pressure();
   void start_energy();  // of a run that begins
 
   // The stages.
