@@ -24,7 +24,8 @@ constexpr int even_after = 100;  // rounds: neighbours are evenly spaced, no lay
 constexpr double settled = 0.0003;
 // Rounds in which neither the largest nor the mean square of the accelerations falls by a hundredth: a particle in a
 // slot in which it cannot rest has 15.7 g from round 300 to round 4,000, and the mean stays that of its surroundings.
-constexpr int stalled = 500;
+// After 500 such rounds four of 40 tanks around random bodies are left with 0.7 to 6 % of gravity, which then settle.
+constexpr int stalled = 1500;
 constexpr double lower = 0.99;
 
 }  // namespace
