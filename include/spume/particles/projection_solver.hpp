@@ -89,7 +89,6 @@ class ProjectionSolver {
   double factor_bytes() const { return direct_ == nullptr ? 0 : direct_->factor_bytes(); }
   bool has_multigrid() const { return multigrid_ != nullptr; }
   const RefinementResult& report() const { return report_; }
-  const PartConstants& enclosed() const { return enclosed_; }
   double looks_for_enclosed = 1;  // 0: the next solve does not; state between steps
   double bytes() const;           // beside what is leased
 

@@ -16,7 +16,6 @@ class PartConstants {
   PartConstants(std::vector<std::vector<std::int32_t>> parts, bool rest) : parts_(std::move(parts)), rest_(rest) {}
 
   bool empty() const { return parts_.empty(); }
-  std::size_t parts() const { return parts_.size(); }
 
   // Takes from the unknowns of each part, and of the rest where it is one, their mean. For one length: that of the
   // vectors whose unknowns the parts number. Bit-identical for any thread count.
