@@ -89,10 +89,11 @@ void pack_velocity_any(const SweepContext& context, float* records, int width, i
 }  // namespace
 
 void pack_velocity(const SweepContext& context, float* records, int width, int slot,
-                   const std::array<const double*, 3>& velocity, const VelocityImageRule& rule) {
+                   const std::array<const double*, 3>& velocity, const VelocityImageRule& rule, bool of_walls) {
   pack_velocity_any(
       context, records, width, slot, rule, [=](std::size_t i, int axis) { return velocity[axis][i]; },
       [&](std::size_t g) {
+        if (of_walls) return context.walls->surface_velocity(g, context.dimensions);
         return context.walls->velocity(g, context.dimensions, velocity, rule.friction, rule.moving,
                                        rule.before_pressure, rule.bends);
       });

@@ -10,7 +10,19 @@ namespace {
 
 struct WallEntry {
   std::int32_t point, particle, image;
+  bool mirrored;
 };
+using FoundEntries = std::vector<std::vector<WallEntry>>;  // by blocks of particles
+
+// Where the entries of each point begin, in the order of the particles.
+void count_entries(const FoundEntries& found, bool mirrored, std::size_t points, Array<std::int64_t>& first) {
+  first.resize(points + 1);
+  first.fill(0);
+  for (const auto& block : found)
+    for (const WallEntry& entry : block)
+      if (entry.mirrored == mirrored) ++first[static_cast<std::size_t>(entry.point) + 1];
+  for (std::size_t g = 0; g < points; ++g) first[g + 1] += first[g];
+}
 
 Vec3 offset(const SweepContext& context, std::size_t from, std::size_t to) {
   Vec3 d{};
@@ -26,10 +38,11 @@ double ratio(const SweepContext& context, const Vec3& d) {
 }  // namespace
 
 void WallAverages::find_entries(const SweepContext& context, const std::vector<std::array<float, 3>>& reflection,
-                                WallStencils& stencils) {
+                                WallStencils& stencils, bool rates) {
   const std::size_t n = context.list->particles(), points = stencils.size();
   const std::int32_t *wall_point = context.images->wall_point(), *path = context.images->path();
-  std::vector<std::vector<WallEntry>> found(block_count(n, default_block));
+  reflection_ = &reflection;
+  FoundEntries found(block_count(n, default_block));
   if (wall_point != nullptr)
     parallel_blocks(n, default_block, [&](std::size_t b, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i)
@@ -37,15 +50,11 @@ void WallAverages::find_entries(const SweepContext& context, const std::vector<s
           const std::int64_t k = j - static_cast<std::int64_t>(n);
           if (k < 0 || wall_point[k] < 0) continue;
           const auto& sign = reflection[static_cast<std::size_t>(path[k])];
-          if (sign[0] < 0 || sign[1] < 0 || sign[2] < 0) continue;
-          found[b].push_back({wall_point[k], static_cast<std::int32_t>(i), j});
+          const bool mirrored = sign[0] < 0 || sign[1] < 0 || sign[2] < 0;
+          if (!mirrored || rates) found[b].push_back({wall_point[k], static_cast<std::int32_t>(i), j, mirrored});
         }
     });
-  stencils.first.resize(points + 1);
-  stencils.first.fill(0);
-  for (const auto& block : found)
-    for (const WallEntry& entry : block) ++stencils.first[static_cast<std::size_t>(entry.point) + 1];
-  for (std::size_t g = 0; g < points; ++g) stencils.first[g + 1] += stencils.first[g];
+  count_entries(found, false, points, stencils.first);
   const auto entries = static_cast<std::size_t>(stencils.first[points]);
   stencils.source.resize(entries);
   stencils.coefficient.resize(entries);
@@ -53,10 +62,38 @@ void WallAverages::find_entries(const SweepContext& context, const std::vector<s
   std::vector<std::int64_t> next(stencils.first.data(), stencils.first.data() + points);
   for (const auto& block : found)
     for (const WallEntry& entry : block) {
+      if (entry.mirrored) continue;
       const std::int64_t slot = next[static_cast<std::size_t>(entry.point)]++;
       stencils.source[slot] = entry.particle;
       image_[slot] = entry.image;
     }
+  transposed_ = {};
+  if (rates) {
+    count_entries(found, true, points, mirrored_.first);
+    mirrored_.particle.resize(static_cast<std::size_t>(mirrored_.first[points]));
+    mirrored_.image.resize(mirrored_.particle.size());
+  }
+  std::vector<std::int64_t> next_mirrored;
+  if (rates) next_mirrored.assign(mirrored_.first.data(), mirrored_.first.data() + points);
+  next.assign(stencils.first.data(), stencils.first.data() + points);
+  for (const auto& block : found)
+    for (const WallEntry& entry : block) {
+      const auto g = static_cast<std::size_t>(entry.point);
+      if (entry.mirrored) {
+        const std::int64_t slot = next_mirrored[g]++;
+        mirrored_.particle[slot] = entry.particle;
+        mirrored_.image[slot] = entry.image;
+        continue;
+      }
+      if (transposed_.particle.empty() || transposed_.particle.back() != entry.particle) {
+        transposed_.particle.push_back(entry.particle);
+        transposed_.first.push_back(static_cast<std::int64_t>(transposed_.entry.size()));
+      }
+      if (!rates) continue;
+      transposed_.entry.push_back(next[g]++);
+      transposed_.point.push_back(entry.point);
+    }
+  transposed_.first.push_back(static_cast<std::int64_t>(transposed_.entry.size()));
 }
 
 void WallAverages::weigh(const SweepContext& context, WallStencils& stencils) const {
@@ -88,6 +125,50 @@ void WallAverages::extrapolate(const SweepContext& context, const WallStencils& 
     pressure[g] = p;
     density[g] = rho;
   });
+}
+
+// v_i g_ig (u_i - u_g) . (r_g - r_i), without the factor of the kernel gradient.
+double WallAverages::flow_to(const SweepContext& context, const WallStencils& stencils, std::size_t point,
+                             std::int32_t particle, std::int32_t image, const std::array<const double*, 3>& velocity,
+                             const float* volume) const {
+  const auto i = static_cast<std::size_t>(particle);
+  const Vec3 way = offset(context, i, static_cast<std::size_t>(image));
+  const auto k = static_cast<std::size_t>(image) - context.list->particles();
+  const auto& sign = (*reflection_)[static_cast<std::size_t>(context.images->path()[k])];
+  double along = 0;
+  for (int axis = 0; axis < context.dimensions; ++axis)
+    along += (velocity[axis][i] - double{sign[axis]} * double{stencils.wall_velocity[axis][point]}) * way[axis];
+  return -volume[i] * WendlandC2::f(ratio(context, way)) * along;
+}
+
+void WallAverages::add_rates(const SweepContext& context, const WallStencils& stencils,
+                             const std::array<const double*, 3>& velocity, const float* volume, double* flow,
+                             float* rate) const {
+  const int d = context.dimensions;
+  const double scale = context.gradient_scale * context.volume * WendlandC2::normalisation(d) /
+                       std::pow(context.smoothing_length, d + 2);
+  parallel_for(stencils.size(), [&](std::size_t g) {
+    double sum = 0;
+    for (std::int64_t k = stencils.first[g]; k < stencils.first[g + 1]; ++k)
+      sum += flow_to(context, stencils, g, stencils.source[k], image_[k], velocity, volume);
+    for (std::int64_t k = mirrored_.first[g]; k < mirrored_.first[g + 1]; ++k)
+      sum += flow_to(context, stencils, g, mirrored_.particle[k], mirrored_.image[k], velocity, volume);
+    flow[g] = scale * stencils.mirrored(g, volume) * sum;
+  });
+  parallel_for(transposed_.particle.size(), [&](std::size_t m) {
+    const auto i = static_cast<std::size_t>(transposed_.particle[m]);
+    double sum = 0;
+    for (auto k = static_cast<std::size_t>(transposed_.first[m]);
+         k < static_cast<std::size_t>(transposed_.first[m + 1]); ++k)
+      sum += stencils.coefficient[transposed_.entry[k]] * flow[static_cast<std::size_t>(transposed_.point[k])];
+    rate[i] += static_cast<float>(sum / double{volume[i]});
+  });
+}
+
+double WallAverages::bytes() const {
+  return image_.bytes() + mirrored_.first.bytes() + mirrored_.particle.bytes() + mirrored_.image.bytes() +
+         static_cast<double>((transposed_.particle.capacity() + transposed_.point.capacity()) * sizeof(std::int32_t) +
+                             (transposed_.first.capacity() + transposed_.entry.capacity()) * sizeof(std::int64_t));
 }
 
 std::vector<WallForce> wall_forces(const SweepContext& context, const WallForceFields& fields, std::size_t bodies) {

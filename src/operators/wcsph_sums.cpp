@@ -155,20 +155,20 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
   using In = ContinuitySums<dimensions, several, viscous, shifted>;
   constexpr int width = At::width;
   float* records = packed.prepare(context, At::payload);
-  const auto pack = [&](int slot, const VelocityImageRule& rule) {
+  const auto pack = [&](int slot, const VelocityImageRule& rule, bool of_walls) {
     if (fields.acceleration[0] == nullptr)
-      pack_velocity(context, records, width, slot, fields.velocity, rule);
+      pack_velocity(context, records, width, slot, fields.velocity, rule, of_walls);
     else
       pack_velocity(context, records, width, slot, fields.velocity, fields.acceleration, fields.ahead, rule);
   };
-  pack(At::velocity, *fields.mirror);
+  pack(At::velocity, *fields.mirror, fields.walls_move);
   pack_scalar(context, records, width, At::volume, fields.volume);
   pack_scalar(context, records, width, At::excess, fields.excess);
   if constexpr (viscous && several) pack_scalar(context, records, width, At::viscosity, fields.viscosity);
   if constexpr (several) pack_scalar(context, records, width, At::phase, fields.phase);
   if constexpr (walls && viscous) mark_walls(context, records, width, At::viscosity);
   if constexpr (walls) mark_walls(context, records, width, At::phase);
-  if constexpr (friction) pack(At::held, *fields.friction);
+  if constexpr (friction) pack(At::held, *fields.friction, false);
   if constexpr (shifted) pack_vector(context, records, width, At::shift, fields.shift, *fields.reflection);
   const KernelScale<dimensions, Kernel> scale(context);
   const auto of_particle = [&](std::size_t i, [[maybe_unused]] auto& gradients, [[maybe_unused]] std::size_t k) {

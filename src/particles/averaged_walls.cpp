@@ -9,7 +9,7 @@ void AveragedWalls::take_points(double t) {
 
 void AveragedWalls::find_entries(const Arrangement& arrangement) {
   if (boundary_.bodies() == nullptr) return;
-  averages_.find_entries(arrangement.context, boundary_.reflection(), boundary_.bodies()->stencils());
+  averages_.find_entries(arrangement.context, boundary_.reflection(), boundary_.bodies()->stencils(), rates_);
 }
 
 void AveragedWalls::follow(double t) {
@@ -18,6 +18,13 @@ void AveragedWalls::follow(double t) {
 
 void AveragedWalls::weigh(const Arrangement& arrangement) {
   if (boundary_.bodies() != nullptr) averages_.weigh(arrangement.context, boundary_.bodies()->stencils());
+}
+
+void AveragedWalls::add_rates(const Arrangement& arrangement, const std::array<const double*, 3>& velocity,
+                              const float* volume, float* rate) const {
+  const WallStencils& stencils = boundary_.bodies()->stencils();
+  ScratchArray<double> flow(scratch_, stencils.size());
+  averages_.add_rates(arrangement.context, stencils, velocity, volume, flow.data(), rate);
 }
 
 void AveragedWalls::find_pressure(const Arrangement& arrangement, const float* pressure, const float* density) {

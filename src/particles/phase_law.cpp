@@ -34,6 +34,18 @@ std::vector<PhaseLaw> phase_laws(const Scene& scene, double speed) {
   return laws;
 }
 
+double dynamic_pressure(const std::vector<PhaseLaw>& laws, double speed) {
+  double density = 0;
+  for (const PhaseLaw& law : laws) density = std::max(density, law.density);
+  return density * speed * speed;
+}
+
+double largest_kinematic_viscosity(const std::vector<PhaseLaw>& laws) {
+  double largest = 0;
+  for (const PhaseLaw& law : laws) largest = std::max(largest, law.viscosity / law.density);
+  return laws.size() > 1 ? 2 * largest : largest;
+}
+
 std::vector<float> distinct_densities(const std::vector<PhaseLaw>& laws) {
   std::vector<float> densities;
   for (const PhaseLaw& law : laws) {

@@ -12,9 +12,6 @@ namespace {
 
 // Of half a spacing, what a ball that fits keeps from the walls: two push it to and fro.
 constexpr double fits = 0.8;
-// Spacings between the faces of a wedge. A layer of particles, which stand half a spacing from walls, needs one; at 0.6
-// those that press against each other at its mouth stay.
-constexpr double narrow = 0.6;
 // Spacings: along a normal, and from a particle, what it takes.
 constexpr double probes[] = {0.5, 1, 1.5}, taken = 0.8;
 constexpr double pushed = 0.25;   // spacings, by walls back from where it was looked for
@@ -174,10 +171,10 @@ const std::vector<std::int32_t>& ClosedPools::find(const Arrangement& arrangemen
 
 void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity) {
   const BodyWalls& bodies = *boundary.bodies();
-  const double least = narrow * boundary.spacing();
+  const double least = narrowest_wedge * boundary.spacing();
   if (bodies.surely_farther(place, least)) return;
   const double before = bodies.distance(place);
-  if (!(before < least) || bodies.moves_at(place)) return;
+  if (!(before < least) || (boundary.features.displaced_bodies && bodies.moves_at(place))) return;
   const Vec3 face = bodies.normal(place);
   const std::optional<Across> across = wall_before(boundary, add(place, multiply(least - before, face)));
   if (!across || !(dot(face, across->normal) < 0)) return;

@@ -8,6 +8,7 @@
 #include "spume/core/random.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/operators/sph_operators.hpp"
+#include "spume/particles/wall_contacts.hpp"
 #include "spume/scene/document.hpp"
 
 namespace spume {
@@ -34,11 +35,12 @@ constexpr double lower = 0.99;
 // of the last one is kept. Four tanks of 1,000 to 4,000 particles take 490 to 1,030 rounds, with 0.9 throughout (the
 // heavy ball of Polyak 1964) 530 to 1,380.
 struct Settling::Round {
-  VectorScratch way;   // of the last round, by identifier: the order of the particles changes
-  int downhill = 0;    // rounds
-  double worst = 0;    // acceleration, over that of gravity
-  std::size_t of = 0;  // the particle that has it
-  double squares = 0;  // of the accelerations, summed
+  // Of the last round, by identifier: the order of the particles changes.
+  VectorScratch way, outwards;  // the direction of a contact
+  int downhill = 0;             // rounds
+  double worst = 0;             // acceleration, over that of gravity
+  std::size_t of = 0;           // the particle that has it
+  double squares = 0;           // of the accelerations, summed
   double least_worst = INFINITY, least_squares = INFINITY;
   int since = 0;  // rounds since one of them was lowered
 
@@ -51,19 +53,14 @@ struct Settling::Round {
 };
 
 // Its pressure stays that of the layer at its height.
-void Settling::move(std::size_t i, const Vec3& way) const {
+Vec3 Settling::move(std::size_t i, const Vec3& way) const {
   const int dimensions = particles.dimensions;
-  const Vec3 before = vector_at(particles.position, dimensions, i), free = add(before, way);
-  Vec3 r = free;
-  boundary.hold_liquid(boundary.walls, r, nullptr);
-  double head = 0;
-  for (int axis = 0; axis < dimensions; ++axis) {
-    // Particles go round periodic sides when lists are made.
-    if (scene.domain.periodic(axis)) r[axis] = free[axis];
-    head += gravity[axis] * (r[axis] - before[axis]);
-    (*particles.position[axis])[i] = r[axis];
-  }
+  const Vec3 before = vector_at(particles.position, dimensions, i);
+  const WayToContact went = go_to_contact(boundary, before, way);
+  for (int axis = 0; axis < dimensions; ++axis) (*particles.position[axis])[i] = went.end[axis];
+  const double head = dot(gravity, subtract(went.end, before));
   excess[i] = law(i).excess(law(i).pressure(excess[i]) + law(i).density * head);
+  return went.outwards;
 }
 
 void Settling::step(Round& round) const {
@@ -75,8 +72,11 @@ void Settling::step(Round& round) const {
     const auto acceleration = [&](std::size_t i) {
       return add(multiply(1 / law(i).density, vector_at(now.force, dimensions, i)), gravity);
     };
+    const auto free = [&](std::size_t i, const Vec3& v) {
+      return without_inward(v, vector_at(round.outwards, dimensions, identifier(i)));
+    };
     const double power = parallel_sum(particles.size(), [&](std::size_t i) {
-      return law(i).density * dot(acceleration(i), vector_at(round.way, dimensions, identifier(i)));
+      return law(i).density * dot(free(i, acceleration(i)), free(i, vector_at(round.way, dimensions, identifier(i))));
     });
     round.downhill = power < 0 ? 0 : round.downhill + 1;
     const double kept = round.downhill / (round.downhill + 3.0);
@@ -93,13 +93,13 @@ void Settling::step(Round& round) const {
             const std::size_t id = identifier(i);
             if (!moves(id)) continue;
             const Vec3 a = acceleration(i);
-            const double size = length(a) / g;
+            const double size = length(free(i, a)) / g;
             so_far.squares += size * size;
             if (!(size <= so_far.acceleration)) so_far.acceleration = size, so_far.of = i;
             // The force of a move by h^2 grad C, under the largest pressure of a pair: over the support gravity adds
             // 2 h g rho.
             const double rho = law(i).density, of_move = 2 * (std::max(double{now.pressure[i]}, 0.0) + h * g * rho);
-            Vec3 next = add(multiply(kept, vector_at(round.way, dimensions, id)),
+            Vec3 next = add(multiply(kept, free(i, vector_at(round.way, dimensions, id))),
                             multiply(settling_coefficient * h * h * rho / of_move, a));
             if (const double way = length(next); way > longest) next = multiply(longest / way, next);
             for (int axis = 0; axis < dimensions; ++axis) round.way[axis][id] = next[axis];
@@ -142,8 +142,10 @@ void Settling::raise_datum() const {
 std::string Settling::settle(const GoOn& go_on) const {
   if (!scene.free_surface) raise_datum();
   Round round;
-  particles.scratch().lease(round.way, particles.dimensions, particles.size());
-  for (int axis = 0; axis < particles.dimensions; ++axis) round.way[axis].fill(0.0);
+  for (VectorScratch* vector : {&round.way, &round.outwards}) {
+    particles.scratch().lease(*vector, particles.dimensions, particles.size());
+    for (int axis = 0; axis < particles.dimensions; ++axis) (*vector)[axis].fill(0.0);
+  }
   parallel_for(particles.size(), [&](std::size_t i) {
     const auto id = static_cast<std::size_t>((*particles.identifier)[i]);
     if (!moves(id)) return;
@@ -158,7 +160,9 @@ std::string Settling::settle(const GoOn& go_on) const {
   for (int n = 0; n < most_rounds && round.worst > settled && round.since < stalled; ++n) {
     parallel_for(particles.size(), [&](std::size_t i) {
       const auto id = static_cast<std::size_t>((*particles.identifier)[i]);
-      if (moves(id)) move(i, vector_at(round.way, particles.dimensions, id));
+      if (!moves(id)) return;
+      const Vec3 outwards = move(i, vector_at(round.way, particles.dimensions, id));
+      for (int axis = 0; axis < particles.dimensions; ++axis) round.outwards[axis][id] = outwards[axis];
     });
     // Liquid below a surface can stretch instead.
     if (n == even_after && !scene.free_surface) fit_gradient_scale();
@@ -166,7 +170,7 @@ std::string Settling::settle(const GoOn& go_on) const {
     round.find_progress();
     if (go_on && !go_on(how_far(n + 1, round))) break;
   }
-  particles.scratch().release(round.way);
+  for (VectorScratch* vector : {&round.way, &round.outwards}) particles.scratch().release(*vector);
   return round.worst <= settled ? std::string() : in_words(round);
 }
 

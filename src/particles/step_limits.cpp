@@ -31,14 +31,10 @@ void refuse_long_strides(const ParticleStore& particles, const VectorField& at, 
   const double limit = 0.5 * support_radius / dt;
   if (fastest <= limit) return;
   StepFailure::Details details;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double speed = std::sqrt(speed2_at(i));
-    if (speed <= limit) continue;
-    details.particle = (*particles.identifier)[i];
-    for (int axis = 0; axis < d; ++axis) details.position[axis] = (*at[axis])[i];
-    details.value = speed;
-    break;
-  }
+  blame_first(details, particles, at, [&](std::size_t i) {
+    details.value = std::sqrt(speed2_at(i));
+    return !(details.value <= limit);
+  });
   details.cause = std::isfinite(fastest) ? "a particle would cross half its support in one step"
                                          : "a velocity is not a finite number";
   details.option = "time.courant";

@@ -80,8 +80,9 @@ double covered(const WcsphRun& run, double disc_x, double disc_radius) {
   return area / (flow.particles.volume * static_cast<double>(flow.size()));
 }
 
-// Twelve spacings deep, stirred for 32 sqrt(H/g). Half a row of points of the measure is 1 % of the depth; without
-// relaxation it loses more than three times as much.
+// Twelve spacings deep, stirred for 32 sqrt(H/g). Half a row of points of the measure is 1 % of the depth. What is left
+// to the relaxation is little where the rate of density is adjoint to the pressure at walls: beside a rate by
+// extrapolated velocities the tank lost more than 3 % without.
 TEST(WcsphVolume, AStirredTankKeepsItsVolume) {
   const double end = 4, disc = 0.2 + 0.1 * std::sin(3 * end);
   const auto change = [&](const Overrides& overrides) {
@@ -96,7 +97,7 @@ TEST(WcsphVolume, AStirredTankKeepsItsVolume) {
     return covered(run, disc, 0.0375) / before - 1;
   };
   EXPECT_NEAR(change({}), 0, 0.01);
-  EXPECT_LT(change({"compressibility.density_relaxation=0"}), -0.03);
+  EXPECT_NEAR(change({"compressibility.density_relaxation=0"}), 0, 0.02);
 }
 
 // Liquid over a floor, periodic in x, jittered.

@@ -20,7 +20,8 @@ struct WallSumPoint {
   double volume = 1, pressure = 0, excess = 0, density = 0, viscosity = 0;
   int phase = 0, body = -1;  // -1: a particle
   bool no_slip = false;
-  Vec3 held{};  // its velocity under friction
+  Vec3 held{};     // its velocity under friction
+  Vec3 surface{};  // of a wall point: that of the wall
 };
 
 struct WcsphWallSums {
@@ -30,6 +31,7 @@ struct WcsphWallSums {
   double repulsion;
   std::vector<WallSumPoint> particles, walls;
   bool weighted = false;
+  bool adjoint = false;  // the rate of density to the pressure force
 
   // A copy of a point: itself, or what sides make of it.
   struct Copy {
@@ -84,7 +86,7 @@ struct WcsphWallSums {
   void fill_walls() {
     for (std::size_t g = 0; g < walls.size(); ++g) {
       WallSumPoint& wall = walls[g];
-      const Vec3 surface = wall.velocity;
+      const Vec3 surface = wall.surface = wall.velocity;
       const std::vector<double> share = shares(g);
       Vec3 u{};
       wall.volume = wall.pressure = wall.density = 0;
@@ -133,7 +135,7 @@ struct WcsphWallSums {
     double approach = 0, modulus = 0, distance = 0, p = other.pressure;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double d = copy.position[axis] - own.position[axis];
-      const double u = copy.reflection[axis] * other.velocity[axis];
+      const double u = copy.reflection[axis] * (wall && adjoint ? other.surface : other.velocity)[axis];
       approach += (u - own.velocity[axis]) * d;
       modulus += (std::abs(u) + std::abs(own.velocity[axis])) * std::abs(d);
       distance += std::abs(d);
@@ -162,6 +164,26 @@ struct WcsphWallSums {
       pressure[axis] = -g * total * (copy.position[axis] - own.position[axis]);
       s.pressure[axis] += pressure[axis];
     }
+  }
+  // Q_g v_g: the flow into wall point g from all particles that see it or an image of it.
+  double flow(std::size_t g) const { return flow_terms(g, false); }
+  double flow_modulus(std::size_t g) const { return flow_terms(g, true); }
+  double flow_terms(std::size_t g, bool moduli) const {
+    double sum = 0;
+    for (const WallSumPoint& particle : particles)
+      each_copy(walls[g], [&](const Copy& copy) {
+        const double ratio = q(particle.position, copy.position);
+        if (ratio >= 2) return;
+        double along = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const double term = (particle.velocity[axis] - copy.reflection[axis] * walls[g].surface[axis]) *
+                              (copy.position[axis] - particle.position[axis]);
+          along += moduli ? std::abs(term) : term;
+        }
+        sum -= particle.volume * particle_volume * WendlandC2::normalisation(domain.dimensions) /
+               std::pow(h, domain.dimensions + 2) * WendlandC2::f(moduli ? 0.0 : ratio) * along;
+      });
+    return walls[g].volume * sum;
   }
   Sums sums(std::size_t i) const {
     Sums s;

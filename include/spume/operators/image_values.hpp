@@ -93,9 +93,10 @@ void for_each_image_pressure(const SweepContext& context, const T* values, bool 
   });
 }
 
-// Writes components slot .. slot + dimensions - 1 from a velocity per particle.
+// Writes components slot .. slot + dimensions - 1 from a velocity per particle. `of_walls`: wall points have that of
+// their wall, in place of what the liquid has behind it.
 void pack_velocity(const SweepContext& context, float* records, int width, int slot,
-                   const std::array<const double*, 3>& velocity, const VelocityImageRule& rule);
+                   const std::array<const double*, 3>& velocity, const VelocityImageRule& rule, bool of_walls = false);
 
 // The same of u + ahead a, without wall points: what a leap of half a step makes of a velocity need not be kept.
 void pack_velocity(const SweepContext& context, float* records, int width, int slot,

@@ -5,6 +5,12 @@
 //   any value     f_g = sum_j c_j f_j                                        (22); velocities of walls: WallStencils
 //   pressure      p_g = sum_j c_j (p_j + rho_0j (g - a_g) . d)               (27), a_g the acceleration of the wall
 //   density       rho_g = sum_j c_j rho_0j
+//   rate          (d ln rho / dt)_j += sum_g c_j v_g Q_g / v_j,  Q_g = sum_i v_i g_ig (u_i - u_g) . (r_g - r_i)
+//
+// The last is the part of the rate of density that is adjoint to p_g in the pressure force (wcsph_sums.hpp): with u_g
+// the velocity of the wall, in Q_g and in the rate, sum_i V_i u_i . F_i = - sum_i V_i P_i (d ln rho / dt)_i holds pair
+// by pair, images included, so that nothing but the wall's own motion and gravity does work there. With an extrapolated
+// u_g in its place (Adami et al., (23)) sound grows in acute wedges and in slots, by e in 0.07 sqrt(H/g).
 //
 // j are particles of the lists, round periodic sides too; mirror images of liquid or wall do not count. A point that
 // nothing is near has zeros. Results do not depend on the thread count.
@@ -22,9 +28,10 @@ namespace spume {
 class WallAverages {
  public:
   // The particles that each wall point among the images may see, from the lists of the context: the entries of
-  // `stencils`, whose points are there already. `reflection`: of vectors, per path of the images.
+  // `stencils`, whose points are there already. `reflection`: of vectors, per path of the images; it outlives this.
+  // `rates`: for add_rates().
   void find_entries(const SweepContext& context, const std::vector<std::array<float, 3>>& reflection,
-                    WallStencils& stencils);
+                    WallStencils& stencils, bool rates);
   // The coefficients c_j where particles and images are now.
   void weigh(const SweepContext& context, WallStencils& stencils) const;
 
@@ -37,10 +44,33 @@ class WallAverages {
   void extrapolate(const SweepContext& context, const WallStencils& stencils, const Liquid& liquid, double* pressure,
                    double* density) const;
 
-  double bytes() const { return image_.bytes(); }
+  // Adds the rate above where the coefficients are. `flow`: room for a number per wall point.
+  void add_rates(const SweepContext& context, const WallStencils& stencils,
+                 const std::array<const double*, 3>& velocity, const float* volume, double* flow, float* rate) const;
+
+  // The particles that have wall points in their lists, in their order.
+  const std::vector<std::int32_t>& near() const { return transposed_.particle; }
+  double bytes() const;
 
  private:
+  // Particles near each wall point that see an image of it in mirrors.
+  struct Mirrored {
+    Array<std::int64_t> first;  // per wall point
+    Array<std::int32_t> particle, image;
+  };
+  // The entries of each particle that has some.
+  struct Transposed {
+    std::vector<std::int32_t> particle;
+    std::vector<std::int64_t> first, entry;
+    std::vector<std::int32_t> point;  // of the entry
+  };
+  double flow_to(const SweepContext& context, const WallStencils& stencils, std::size_t point, std::int32_t particle,
+                 std::int32_t image, const std::array<const double*, 3>& velocity, const float* volume) const;
+
+  const std::vector<std::array<float, 3>>* reflection_ = nullptr;
   Array<std::int32_t> image_;  // per entry: the point of the lists that stands for the wall point
+  Mirrored mirrored_;
+  Transposed transposed_;
 };
 
 // What the liquid does to the walls: the opposite of what wall points and their images add to the sums of pressure and

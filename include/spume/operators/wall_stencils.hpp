@@ -84,6 +84,12 @@ struct WallStencils {
     if (kind.empty()) return mirrored(g, values);
     return pressure_sign[g] * mirrored(g, values) + (given ? given_pressure[g] : 0.0);
   }
+  // u_w.
+  std::array<double, 3> surface_velocity(std::size_t g, int dimensions) const {
+    std::array<double, 3> u{};
+    for (int axis = 0; axis < dimensions; ++axis) u[axis] = wall_velocity[axis][g];
+    return u;
+  }
   // u_g; `moving` false leaves the velocity of the surface out, as for accelerations beside a steady wall; `before`
   // adds what the pressure of the step is to take away; `bends` false leaves e out, whose bound is not linear.
   std::array<double, 3> velocity(std::size_t g, int dimensions, const std::array<const double*, 3>& velocity,

@@ -45,7 +45,9 @@
 namespace spume {
 
 // Wall points (SweepContext::walls) have the averages of the liquid around them. To each particle they are of its own
-// phase: no repulsion, its viscosity. Density does not diffuse to them where a phase is given.
+// phase: no repulsion, its viscosity. Density does not diffuse to them where a phase is given. In the rate they may
+// move with their walls instead: the part that WallAverages::add_rates() then adds makes it adjoint to the pressure
+// force.
 //
 // Per particle. Images have the values of their sources, and velocities by the rules.
 struct ContinuityFields {
@@ -54,7 +56,8 @@ struct ContinuityFields {
   std::array<const float*, 3> acceleration{};
   double ahead = 0;
   const VelocityImageRule* mirror = nullptr;                      // of rates of volume
-  const VelocityImageRule* friction = nullptr;                    // of the viscous force; null: the same
+  bool walls_move = false;                                        // wall points with their walls, in the rate
+  const VelocityImageRule* friction = nullptr;                    // of the viscous force; null: as in the rate
   const float* volume = nullptr;                                  // v
   const float* excess = nullptr;                                  // s'
   const float* phase = nullptr;                                   // what tells phases apart; null: one phase

@@ -14,9 +14,9 @@ namespace spume {
 class AveragedWalls {
  public:
   // Boundary and scratch memory outlive it. Without walls of bodies it does nothing. Gravity: across sides, which the
-  // pressure at walls follows.
-  AveragedWalls(Boundary& boundary, const Vec3& gravity, ScratchPool& scratch)
-      : boundary_(boundary), gravity_(gravity), scratch_(scratch) {}
+  // pressure at walls follows. `rates`: for add_rates().
+  AveragedWalls(Boundary& boundary, const Vec3& gravity, ScratchPool& scratch, bool rates)
+      : boundary_(boundary), gravity_(gravity), scratch_(scratch), rates_(rates) {}
 
   // Around new lists: take_points() before their images are made, find_entries() behind them.
   void take_points(double t);
@@ -25,12 +25,18 @@ class AveragedWalls {
   void follow(double t);
   void weigh(const Arrangement& arrangement);
 
+  // What the rate of density has beside walls that move in it (ContinuityFields::walls_move). Volumes over those at
+  // rest.
+  void add_rates(const Arrangement& arrangement, const std::array<const double*, 3>& velocity, const float* volume,
+                 float* rate) const;
   // Pressure and density of every point, by those of the liquid as it is now; leased until release().
   void find_pressure(const Arrangement& arrangement, const float* pressure, const float* density);
   void release();
   const double* pressure() const { return pressure_.data(); }
   const double* density() const { return density_.data(); }
   std::array<const double*, 3> place() const;
+  // Particles near walls.
+  const std::vector<std::int32_t>& near() const { return averages_.near(); }
 
   // On each body of the scene, by the pressures found last.
   struct Liquid {
@@ -49,6 +55,7 @@ class AveragedWalls {
   Boundary& boundary_;
   const Vec3 gravity_;
   ScratchPool& scratch_;
+  const bool rates_;
   WallAverages averages_;
   Array<double> pressure_, density_;
 };

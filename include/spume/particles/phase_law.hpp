@@ -47,6 +47,10 @@ struct PhaseLaw {
 // Of the phases of a scene whose flow reaches `speed`, as far as it does not give them: the heaviest has ten times that
 // speed of sound, the others the same stiffness. All zero where the speed is and nothing is given.
 std::vector<PhaseLaw> phase_laws(const Scene& scene, double speed);
+// rho u^2 of the heaviest.
+double dynamic_pressure(const std::vector<PhaseLaw>& laws, double speed);
+// The largest that the viscous force of a particle sees; a mean of two viscosities is at most twice that of either.
+double largest_kinematic_viscosity(const std::vector<PhaseLaw>& laws);
 // What a plan says of them.
 std::string in_words(const std::vector<PhaseLaw>& laws, const Scene& scene, double speed, double background);
 

@@ -57,6 +57,9 @@ class ClosedPools {
 // of particles fits at most: their kernel sums tell how it fits. False beside bodies that move.
 bool in_one_layer(const Boundary& boundary, const Vec3& place);
 
+// Spacings between the faces of a wedge. A layer of particles, which stand half a spacing from walls, needs one; at 0.6
+// those that press against each other at its mouth stay.
+inline constexpr double narrowest_wedge = 0.6;
 // A place in a wedge whose faces are nearer to each other than 0.6 spacings there: out along the bisector to where
 // they are not, with the velocity that leads in taken away. Between faces that are parallel to 6 degrees, which lead
 // nowhere out, and beside bodies that move nothing is moved.

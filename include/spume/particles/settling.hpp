@@ -49,7 +49,7 @@ struct Settling {
   struct Round;
   bool moves(std::size_t id) const { return chosen.empty() || chosen[id] != 0; }
   void raise_datum() const;
-  void move(std::size_t i, const Vec3& way) const;
+  Vec3 move(std::size_t i, const Vec3& way) const;  // the direction of its contact, if any
   void step(Round& round) const;
   void fit_gradient_scale() const;
   HowFar how_far(int rounds, const Round& round) const;

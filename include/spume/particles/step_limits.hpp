@@ -2,6 +2,7 @@
 // How fast particles move, and the steps that follow.
 #pragma once
 
+#include "spume/core/error.hpp"
 #include "spume/core/step_limit.hpp"
 #include "spume/particles/arrangement.hpp"
 
@@ -26,6 +27,16 @@ struct Speeds {
 };
 // By the lists of the last step, where there are any.
 Speeds find_speeds(const Arrangement& arrangement, const ParticleStore& particles);
+
+// Names the first particle that is wrong, and where it is.
+template <class Wrong>
+void blame_first(StepFailure::Details& details, const ParticleStore& particles, const VectorField& at, Wrong&& wrong) {
+  std::size_t i = 0;
+  while (i < particles.size() && !wrong(i)) ++i;
+  if (i == particles.size()) return;
+  details.particle = (*particles.identifier)[i];
+  for (int axis = 0; axis < particles.dimensions; ++axis) details.position[axis] = (*at[axis])[i];
+}
 
 // A particle that crosses half its support in one step has left the neighbours that its pressure was solved with.
 // Throws StepFailure for one, or for a velocity that is not finite. `at`: where to say that it is.

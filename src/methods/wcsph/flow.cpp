@@ -29,9 +29,7 @@ double background_of(const LoadedCase& loaded, const Features& features, double 
   const double given = loaded.options.get<CompressibilityOptions>().background_pressure;
   if (given >= 0) return given;
   if (features.gravity || features.shifting || loaded.scene.free_surface) return 0;
-  double density = 0;
-  for (const PhaseLaw& law : laws) density = std::max(density, law.density);
-  return density * speed * speed;
+  return dynamic_pressure(laws, speed);
 }
 
 }  // namespace
@@ -52,6 +50,7 @@ Features::Features(const LoadedCase& loaded)
   density_relaxation = scene.free_surface && smoothing.density_relaxation > 0;
   shifting = smoothing.shifting == Shifting::on ||
              (smoothing.shifting == Shifting::automatic && (!several || tension) && !scene.free_surface);
+  wall_rates = bodies && !shifting;
   const InterfacePressure meeting = smoothing.interface_pressure;
   weighted = several && !shifting && !tension && meeting != InterfacePressure::mean;
   const bool undriven = !moving_bodies && !scene.body_force;
@@ -80,7 +79,8 @@ Flow::Flow(const LoadedCase& loaded_case)
       spill(scene, boundary.walls),
       arrangement(scene.domain, resolution, particles.volume, particles.size(), skin),
       list_life(arrangement, particles, resolution.support_radius, skin, !features.bodies && !features.openings),
-      walls(boundary, wall_gravity, particles.scratch()),
+      walls(boundary, wall_gravity, particles.scratch(), features.wall_rates),
+      contacts(boundary),
       parting(scene, boundary, resolution, particles.volume, wall_gravity),
       solutes(particles, resolution, options, scene),
       solute_transport(
@@ -192,13 +192,6 @@ double Flow::largest_speed_in_domain() const {
   return std::sqrt(parallel_max(size(), 0.0, [&](std::size_t i) {
     return in_domain(i) ? squared_norm(particles.velocity, dimensions, i) : 0.0;
   }));
-}
-
-// A mean of two viscosities is at most twice that of the particle.
-double Flow::largest_kinematic_viscosity() const {
-  double largest = 0;
-  for (const PhaseLaw& law : laws) largest = std::max(largest, law.viscosity / law.density);
-  return features.several ? 2 * largest : largest;
 }
 
 // Powers are found where the sum may be the largest so far alone: (1 + s)^e, 0 <= e <= 1, lies below its tangent at

@@ -8,6 +8,7 @@
 #include "spume/core/parallel.hpp"
 #include "spume/methods/wcsph/flow.hpp"
 #include "spume/particles/settling.hpp"
+#include "spume/particles/step_limits.hpp"
 
 namespace spume::wcsph {
 namespace {
@@ -75,11 +76,9 @@ void Flow::keep_lists(double dt) {
   build_lists();
   list_life.renew();
   if (lists_hold(dt)) return;
-  StepFailure::Details details;
-  details.cause = "a particle would leave its lists of neighbours in one step";
-  details.option = "time.courant";
-  details.value = largest_speed;
-  throw StepFailure(details);
+  throw StepFailure({.cause = "a particle would leave its lists of neighbours in one step",
+                     .option = "time.courant",
+                     .value = largest_speed});
 }
 
 void Flow::move_images(const std::array<const double*, 3>& at, double t) {
@@ -191,7 +190,8 @@ void Flow::find_rates(double dt) {
                     .acceleration = features.bodies ? std::array<const float*, 3>{} : read(acceleration),
                     .ahead = dt / 2,
                     .mirror = &boundary.volume_rule(),
-                    .friction = features.friction ? &boundary.velocity_rule() : nullptr,
+                    .walls_move = features.wall_rates,
+                    .friction = features.friction || features.wall_rates ? &boundary.velocity_rule() : nullptr,
                     .volume = volume.data(),
                     .excess = reduced_excess.data(),
                     .phase = needs_phase() ? density.data() : nullptr,
@@ -205,6 +205,7 @@ void Flow::find_rates(double dt) {
                     .viscous = write(force),
                     .carried = carried.data(),
                     .flux = write(flux)});
+  if (features.wall_rates) walls.add_rates(arrangement, read(half_velocity), volume.data(), rate.data());
   scratch.release(half_velocity);
   scratch.release(viscosity);
   scratch.release(reduced_excess);
@@ -355,12 +356,9 @@ void Flow::accept(double dt) {
     const bool tears = openings != nullptr && features.several && !features.shifting;
     details.option = tears ? "compressibility.shifting" : "compressibility.max_speed";
     details.value = worst * largest_excess_of_a_flow;
-    for (std::size_t i = 0; i < size(); ++i) {
-      if (std::abs(next_excess[i]) <= largest_excess_of_a_flow && std::isfinite(force[0][i])) continue;
-      details.particle = (*particles.identifier)[i];
-      for (int axis = 0; axis < dimensions; ++axis) details.position[axis] = (*particles.position[axis])[i];
-      break;
-    }
+    blame_first(details, particles, particles.position, [&](std::size_t i) {
+      return !(std::abs(next_excess[i]) <= largest_excess_of_a_flow && std::isfinite(force[0][i]));
+    });
     throw StepFailure(details);
   }
   solute_transport.keep_shift(shift, dt);
@@ -401,6 +399,7 @@ void Flow::accept(double dt) {
       }
     }
   });
+  if (features.bodies) contacts.bear(walls.near(), {particles, acceleration, law_of_particles(), dt});
   release_leased();
   boundary.accept();
   if (features.openings) {
@@ -446,6 +445,7 @@ std::vector<WallForce> Flow::forces_on_bodies() {
                                  .volume = volume.data(),
                                  .viscosity = features.viscosity ? viscosity.data() : nullptr,
                                  .friction = features.friction});
+  contacts.add_to_bodies(forces);
   if (scene.free_surface) parting.add_to_bodies(size(), parted(read(particles.position)), forces);
   release_leased();
   return forces;

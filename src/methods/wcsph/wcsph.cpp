@@ -88,7 +88,7 @@ StepLimit Wcsph::step_limit() const {
   const double h = flow_.resolution.smoothing_length;
   SmallestStep step;
   step.bound(options.courant * h / (flow_.signal + flow_.boundary.wall_speed), "courant");
-  const double nu = flow_.largest_kinematic_viscosity();
+  const double nu = largest_kinematic_viscosity(flow_.laws);
   if (nu > 0) step.bound(viscous_limit * h * h / nu, "viscous");
   double gravity2 = 0;
   for (const double g : flow_.scene.fluid.gravity) gravity2 += g * g;

@@ -22,6 +22,7 @@
 #include "spume/particles/spill.hpp"
 #include "spume/particles/start_at_rest.hpp"
 #include "spume/particles/surface_tension.hpp"
+#include "spume/particles/wall_contacts.hpp"
 #include "spume/particles/wall_parting.hpp"
 #include "spume/physics/solutes/measured_transport.hpp"
 #include "spume/scene/case.hpp"
@@ -36,7 +37,8 @@ struct Features : BoundaryFeatures, SoluteFeatures {
   StartAtRest rest;
   bool gravity = false;  // across sides
   bool viscosity = false;
-  bool friction = false;  // at no-slip walls
+  bool friction = false;    // at no-slip walls
+  bool wall_rates = false;  // of bodies: adjoint to the pressure there
   bool tension = false;
   bool diffusion = false, shepard = false;
   bool shifting = false;
@@ -89,6 +91,7 @@ struct Flow {
   std::int64_t list_builds = 0;
   bool has_moved = false;                        // far enough for (12) to be measured anew
   AveragedWalls walls;                           // of bodies
+  WallContacts contacts;                         // with bodies
   const WallParting parting;                     // (8)
   std::unique_ptr<ExcessRelaxation> relaxation;  // (12); null: none
   std::unique_ptr<SurfaceTension> tension;       // null: none
@@ -119,7 +122,6 @@ struct Flow {
   // Without the layers behind openings.
   double largest_excess(std::size_t phase) const;
   double largest_speed_in_domain() const;
-  double largest_kinematic_viscosity() const;
 
   // The stages.
   void move_layers(double dt);     // behind openings

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/wall_contacts.hpp"
+
+#include <cmath>
+
+#include "spume/core/parallel.hpp"
+#include "spume/core/vectors.hpp"
+#include "spume/particles/pockets.hpp"
+
+namespace spume {
+namespace {
+
+// Of a way to a contact: 2^-16 of a tenth of a spacing is below the gap of 1e-3 spacings that walls keep.
+constexpr int halvings = 16;
+// Of the product of two unit vectors: what bears alone pushes along its own normal.
+constexpr double alone = 0.999;
+
+// By how much walls put a place back; round periodic sides it stays.
+Vec3 put_back(const Boundary& boundary, const Vec3& place) {
+  const Vec3 inside = boundary.domain().inside(place);
+  Vec3 held = inside;
+  boundary.hold_liquid(boundary.walls, held, nullptr);
+  return boundary.domain().shortest(subtract(held, inside));
+}
+
+// Whether a body may hold what is there: by its wall, or out of a wedge beside it.
+bool beside_body_at_rest(const Boundary& boundary, const Vec3& place) {
+  const BodyWalls& bodies = *boundary.bodies();
+  return bodies.nearer_than(place, narrowest_wedge * boundary.spacing()) &&
+         !(boundary.features.displaced_bodies && bodies.moves_at(place));
+}
+
+}  // namespace
+
+Vec3 direction_of_contact(const Boundary& boundary, const Vec3& place, const Vec3& way) {
+  const Vec3 end = boundary.domain().inside(add(place, way));
+  if (!beside_body_at_rest(boundary, end)) return {};
+  const Vec3 back = put_back(boundary, end);
+  const double size = length(back);
+  return size > 0 ? multiply(1 / size, back) : Vec3{};
+}
+
+WayToContact go_to_contact(const Boundary& boundary, const Vec3& place, const Vec3& way) {
+  WayToContact found;
+  const Vec3 free = add(place, way), back = put_back(boundary, free);
+  found.end = add(free, back);
+  if (back == Vec3{} || boundary.bodies() == nullptr || !beside_body_at_rest(boundary, boundary.domain().inside(free)))
+    return found;
+  Vec3 blocked = free;
+  for (int n = 0; n < halvings; ++n) {
+    const Vec3 middle = multiply(0.5, add(found.end, blocked));
+    (put_back(boundary, middle) == Vec3{} ? found.end : blocked) = middle;
+  }
+  const Vec3 last = put_back(boundary, blocked);
+  found.outwards = multiply(1 / length(last), last);
+  return found;
+}
+
+// Of a force along `outwards` on the particle. Two walls push along their bisector, each along its normal.
+WallContacts::Borne WallContacts::borne(const Vec3& place, const Vec3& outwards, double force) const {
+  const BodyWalls::NearestWall near = boundary_.bodies()->nearest_wall(boundary_.domain().inside(place));
+  const double along = dot(outwards, near.normal);
+  const double share = along > alone ? 1 : along > 0 ? 1 / (2 * along) : 0;
+  return {near.body, near.point, multiply(-force * share, near.normal)};
+}
+
+void WallContacts::bear(const std::vector<std::int32_t>& near, const Liquid& liquid) {
+  const ParticleStore& particles = liquid.particles;
+  const int d = particles.dimensions;
+  found_.assign(block_count(near.size(), default_block), {});
+  parallel_blocks(near.size(), default_block, [&](std::size_t block, std::size_t first, std::size_t last) {
+    for (std::size_t m = first; m < last; ++m) {
+      const auto i = static_cast<std::size_t>(near[m]);
+      const Vec3 place = vector_at(particles.position, d, i), a = vector_at(liquid.acceleration, d, i),
+                 u = vector_at(particles.velocity, d, i);
+      const Vec3 way = multiply(liquid.dt, add(u, multiply(liquid.dt / 2, a)));
+      const Vec3 outwards = direction_of_contact(boundary_, place, way);
+      const double into = dot(a, outwards);
+      if (!(into < 0)) continue;
+      for (int axis = 0; axis < d; ++axis) {
+        (*liquid.acceleration[axis])[i] = static_cast<float>(a[axis] - into * outwards[axis]);
+        (*particles.velocity[axis])[i] -= liquid.dt / 2 * into * outwards[axis];
+      }
+      found_[block].push_back(borne(place, outwards, -into * particles.volume * liquid.law(i).density));
+    }
+  });
+}
+
+void WallContacts::add_to_bodies(std::vector<WallForce>& forces) const {
+  for (const auto& block : found_)
+    for (const Borne& borne : block) {
+      WallForce& force = forces[borne.body];
+      force.pressure = add(force.pressure, borne.force);
+      force.pressure_torque = add(force.pressure_torque, cross(borne.foot, borne.force));
+    }
+}
+
+}  // namespace spume

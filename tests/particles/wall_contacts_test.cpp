@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/wall_contacts.hpp"
+
+#include <gtest/gtest.h>
+
+#include "particles/walled.hpp"
+
+namespace spume::test {
+namespace {
+
+constexpr double spacing = 0.05;
+// What walls keep free before them: 1e-3 spacings.
+constexpr double gap = 1e-3 * spacing;
+
+// A box turned by 20 degrees that stands on an edge above the floor: right of it face and floor make a wedge.
+struct Wedge {
+  explicit Wedge(const std::string& motion = "")
+      : loaded(load_text(scene_text(
+            "lower = [-1, 0]\nupper = [1, 2]\nx = \"periodic\"\nbottom = \"free-slip\"\n", spacing,
+            "[[body]]\nshape = \"box\"\nsize = [0.8, 0.8]\nposition = [0, 0.52]\nrotation = [20]\n" + motion))) {}
+  LoadedCase loaded;
+  Resolution resolution{2, spacing, KernelKind::wendland_c2, 1.3};
+  Boundary boundary{loaded.scene.domain, spacing, make_body_walls(loaded.scene, resolution)};
+  // On the bisector of the wedge, where the face is so high above the floor.
+  Vec3 middle(double height) const {
+    const Vec3 corner{-0.4 * std::cos(angle) + 0.4 * std::sin(angle),
+                      0.52 - 0.4 * std::sin(angle) - 0.4 * std::cos(angle), 0};
+    return {corner[0] + (height - corner[1]) / std::tan(angle), height / 2, 0};
+  }
+  // Before the upper face, so far from it.
+  Vec3 before_face(double distance) const {
+    return {-(0.4 + distance) * std::sin(angle), 0.52 + (0.4 + distance) * std::cos(angle), 0};
+  }
+  static constexpr double angle = 20 * std::numbers::pi / 180;
+};
+
+TEST(WallContacts, AWallBearsWhatGoesIntoItAlongItsNormal) {
+  const Wedge wedge;
+  const Vec3 normal{-std::sin(Wedge::angle), std::cos(Wedge::angle), 0}, along{normal[1], -normal[0], 0};
+  const Vec3 place = wedge.before_face(gap), into = add(multiply(-0.1 * spacing, normal), multiply(0.05, along));
+  const Vec3 outwards = direction_of_contact(wedge.boundary, place, into);
+  EXPECT_NEAR(dot(outwards, normal), 1, 1e-9);
+  EXPECT_EQ(direction_of_contact(wedge.boundary, place, multiply(-1, into)), Vec3{});
+  EXPECT_EQ(direction_of_contact(wedge.boundary, wedge.before_face(0.5 * spacing), into), Vec3{});
+}
+
+// Two particles on the face, of which one is drawn away from it, and one beyond it: of the first the part of its
+// acceleration into the wall is the body's, with what its velocity has had of it.
+TEST(WallContacts, BodiesBearWhatPressesOnThem) {
+  Wedge wedge;
+  const Vec3 normal{-std::sin(Wedge::angle), std::cos(Wedge::angle), 0}, along{normal[1], -normal[0], 0};
+  ParticleStore particles(2, wedge.loaded.scene.particles);
+  const std::size_t n = particles.size();
+  ASSERT_GT(n, 3U);
+  std::array<Array<float>, 3> values;
+  FloatVectorField acceleration{&values[0], &values[1], &values[2]};
+  for (auto& component : values) component.resize(n), component.fill(0.0F);
+  Array<std::int64_t> phase(n);
+  phase.fill(0);
+  const std::vector<PhaseLaw> laws{{.density = 5}};
+  const double dt = 1e-3, mass = 5 * particles.volume;
+  const auto put = [&](std::size_t i, const Vec3& place, const Vec3& a) {
+    for (int axis = 0; axis < 2; ++axis) {
+      (*particles.position[axis])[i] = place[axis];
+      (*acceleration[axis])[i] = static_cast<float>(a[axis]);
+      (*particles.velocity[axis])[i] = dt / 2 * a[axis];
+    }
+  };
+  const Vec3 presses = add(multiply(-7, normal), multiply(3, along)), leaves = multiply(2, normal);
+  put(0, wedge.before_face(gap), presses);
+  put(1, wedge.before_face(gap), leaves);
+  put(2, wedge.before_face(0.5 * spacing), presses);
+  WallContacts contacts(wedge.boundary);
+  contacts.bear({0, 1, 2}, {particles, acceleration, ParticleLaws(laws, phase), dt});
+  const auto a = [&](std::size_t i) { return vector_at(acceleration, 2, i); };
+  // Accelerations are floats of up to 7.
+  EXPECT_NEAR(dot(a(0), normal), 0, 1e-6);
+  EXPECT_NEAR(dot(a(0), along), 3, 1e-6);
+  EXPECT_NEAR(dot(vector_at(particles.velocity, 2, 0), normal), 0, 1e-6 * dt);
+  EXPECT_NEAR(dot(a(1), normal), 2, 1e-6);
+  EXPECT_NEAR(dot(a(2), normal), -7, 1e-6);
+  std::vector<WallForce> forces(1);
+  contacts.add_to_bodies(forces);
+  EXPECT_NEAR(dot(forces[0].pressure, normal), -7 * mass, 1e-6 * mass);
+  EXPECT_NEAR(dot(forces[0].pressure, along), 0, 1e-6 * mass);
+  EXPECT_NEAR(forces[0].pressure_torque[2], cross(wedge.before_face(0), multiply(-7 * mass, normal))[2], 1e-5 * mass);
+}
+
+TEST(WallContacts, AWayEndsWhereTheWallHoldsIt) {
+  const Wedge wedge;
+  const Vec3 from = wedge.before_face(0.3 * spacing);
+  const WayToContact free = go_to_contact(wedge.boundary, from, {0.2 * spacing, 0, 0});
+  EXPECT_EQ(free.end, add(from, Vec3{0.2 * spacing, 0, 0}));
+  EXPECT_EQ(free.outwards, Vec3{});
+  const WayToContact stopped = go_to_contact(wedge.boundary, from, {0, -0.5 * spacing, 0});
+  EXPECT_NEAR(wedge.boundary.bodies()->distance(stopped.end), gap, 1e-3 * gap);
+  EXPECT_NEAR(stopped.outwards[1], std::cos(Wedge::angle), 1e-6);
+  // At the mouth of the wedge both walls hold it back, along the bisector, before they are 0.6 spacings apart.
+  const Vec3 inwards = multiply(-spacing, Vec3{std::cos(Wedge::angle / 2), std::sin(Wedge::angle / 2), 0});
+  const WayToContact held = go_to_contact(wedge.boundary, wedge.middle(0.8 * spacing), inwards);
+  EXPECT_LT(dot(held.outwards, inwards), -0.9 * spacing);
+  EXPECT_LT(length(subtract(held.end, wedge.middle(0.6 * spacing))), 0.15 * spacing);
+  // Round a periodic side nothing holds it.
+  const WayToContact round = go_to_contact(wedge.boundary, {0.99, 1.5, 0}, {0.02, 0, 0});
+  EXPECT_NEAR(round.end[0], 1.01, 1e-12);
+  EXPECT_EQ(round.outwards, Vec3{});
+}
+
+TEST(WallContacts, MovingBodiesBearNothing) {
+  const Wedge wedge("displacement = [\"0\", \"0.1*t\"]\n");
+  const Vec3 place = wedge.before_face(gap);
+  EXPECT_EQ(direction_of_contact(wedge.boundary, place, {0, -0.1 * spacing, 0}), Vec3{});
+  EXPECT_EQ(go_to_contact(wedge.boundary, place, {0, -0.1 * spacing, 0}).outwards, Vec3{});
+}
+
+}  // namespace
+}  // namespace spume::test
