@@ -8,6 +8,7 @@
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
+#include "spume/geometry/way_to_wall.hpp"
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/point_fits.hpp"
 #include "spume/particles/thin_bodies.hpp"
@@ -28,6 +29,7 @@ constexpr double full_wall_share = 0.9, most_moduli_beside_void = 1.5;
 // wall. Still water at their mouths grew restless by e in 1 sqrt(H/g), and what fits amplify by 3 at every step.
 constexpr int least_order = 1, least_order_before_wall = 0;
 constexpr double faces_wall_within = 2;  // spacings: of one layer of particles
+constexpr double thinnest = 0.05;        // spacings, of a plate across it
 // Each part costs a particle 6 ns a question; cells cost 1 ns and a pass over the domain at every step.
 constexpr std::size_t many_parts = 4;
 
@@ -200,13 +202,14 @@ bool BodyWalls::faces_wall(const WallPoint& point) const {
     if ((across[axis] < domain.lower[axis] && is_wall(domain.sides[axis][0].kind)) ||
         (across[axis] > domain.upper[axis] && is_wall(domain.sides[axis][1].kind)))
       return true;
-  // What is farther from a wall than it is from the ends has none before it; a plate may be thinner than that.
-  const auto at = [&](double share) {
-    return distance(add(point.foot, multiply(share * faces_wall_within * scene_.spacing, point.normal)));
-  };
-  const double from_middle = at(0.5);
-  if (from_middle > 0.49 * faces_wall_within * scene_.spacing) return false;
-  return from_middle < 0 || at(0.25) < 0 || at(0.75) < 0 || at(1) < 0;
+  // What is farther from a wall than it is from the ends has none before it.
+  const double width = faces_wall_within * scene_.spacing;
+  const auto at = [&](const Vec3& place) { return distance(place); };
+  if (at(add(point.foot, multiply(0.5 * width, point.normal))) > 0.49 * width) return false;
+  const double least = thinnest * scene_.spacing;
+  return way_to_wall(add(point.foot, multiply(least, point.normal)), multiply(width - least, point.normal), least, at,
+                     [&](const Vec3& place) { return at(place) < 0; })
+      .has_value();
 }
 
 template <int dimensions>

@@ -5,8 +5,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "spume/geometry/way_to_wall.hpp"
+
 namespace spume {
 namespace {
+
+constexpr double thinnest = 0.02;  // spacings, of a plate that parts liquid
 
 std::size_t root_of(std::vector<std::size_t>& root, std::size_t k) {
   while (root[k] != k) k = root[k] = root[root[k]];
@@ -54,15 +58,16 @@ Vec3 LiquidCells::centre(const Cell& cell) const {
 bool LiquidCells::meet(const Cell& one, const Cell& other, double clear, int axes) const {
   const double way = std::sqrt(axes) * scene_.spacing;
   if (clear > way) return true;
-  const Vec3 from = centre(one);
-  Vec3 middle = from;
+  Vec3 to_other{};
   for (int axis = 0; axis < lattice_.dimensions; ++axis) {
     // The nearest repetition of the other, across periodic sides.
     const auto a = static_cast<std::size_t>(axis);
     const double step = static_cast<double>(other[a] - one[a]);
-    middle[axis] += 0.5 * lattice_.spacing[axis] * (std::abs(step) > 1 ? (step > 0 ? -1 : 1) : step);
+    to_other[axis] = lattice_.spacing[axis] * (std::abs(step) > 1 ? (step > 0 ? -1 : 1) : step);
   }
-  return scene_.walls.distance(middle) > 0;
+  const auto distance = [&](const Vec3& place) { return scene_.walls.distance(place); };
+  return !way_to_wall(centre(one), to_other, thinnest * scene_.spacing, distance,
+                      [&](const Vec3& place) { return distance(place) <= 0; });
 }
 
 LiquidCells::Cell LiquidCells::cell(std::int64_t column, std::int64_t row) const {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "spume/core/vectors.hpp"
+#include "spume/geometry/way_to_wall.hpp"
 #include "spume/particles/boundary.hpp"
 
 namespace spume {
@@ -14,9 +15,10 @@ namespace {
 constexpr double fits = 0.8;
 // Spacings: along a normal, and from a particle, what it takes.
 constexpr double probes[] = {0.5, 1, 1.5}, taken = 0.8;
-constexpr double pushed = 0.25;   // spacings, by walls back from where it was looked for
-constexpr double parallel = 0.1;  // of the sum of two normals
-constexpr double longest = 0.3;   // spacings, of a way out
+constexpr double pushed = 0.25;    // spacings, by walls back from where it was looked for
+constexpr double parallel = 0.1;   // of the sum of two normals
+constexpr double longest = 0.3;    // spacings, of a way out
+constexpr double thinnest = 0.05;  // spacings, of a plate across a layer
 
 // The wall that a place is behind, and by how much.
 struct Across {
@@ -95,13 +97,12 @@ bool in_one_layer(const Boundary& boundary, const Vec3& place) {
   const double before = bodies.distance(place);
   if (!(before < width) || bodies.moves_at(place)) return false;
   const Vec3 face = bodies.normal(place);
-  // A plate may be thinner than that.
-  for (const double share : {0.25, 0.5, 0.75, 1.0}) {
-    if (share * width <= before) continue;
-    const std::optional<Across> across = wall_before(boundary, add(place, multiply(share * width - before, face)));
-    if (across) return dot(face, across->normal) < 0;
-  }
-  return false;
+  std::optional<Across> across;
+  way_to_wall(
+      place, multiply(width - before, face), thinnest * boundary.spacing(),
+      [&](const Vec3& there) { return bodies.distance(there); },
+      [&](const Vec3& there) { return (across = wall_before(boundary, there)).has_value(); });
+  return across && dot(face, across->normal) < 0;
 }
 
 Ahead ahead_of(const Boundary& boundary, const Arrangement& arrangement, std::size_t i, const Vec3& place,

@@ -241,7 +241,7 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
   const double of_divergence = rows.reference_norm > 0 ? std::min(1.0, rows.source_norm / rows.reference_norm) : 0;
   const double tolerance = std::max(options_.tolerance, of_divergence * divergence_tolerance(options_.tolerance));
   const double reference_norm = std::max(rows.reference_norm, rows.rounding_norm / tolerance);
-  if (may_enclose_ && looks_for_enclosed != 0) find_enclosed(rows, particles);
+  if (may_enclose_ && direct_ == nullptr && looks_for_enclosed != 0) find_enclosed(rows, particles);
   const auto refinement = [&] {
     return RefinementOptions{tolerance,     reference_norm, options_.max_iterations,
                              rows.singular, rows.measured,  enclosed_.empty() ? nullptr : &enclosed_};
@@ -279,6 +279,12 @@ void ProjectionSolver::find_enclosed(const PressureRows& rows, ParticleStore& pa
   enclosed_ = enclosed_parts(*context, rows.singular,
                              [&](std::size_t i) { return std::abs(product[i]) >= of_no_constant * rows.diagonal[i]; });
   looks_for_enclosed = enclosed_.empty() ? 0 : 1;
+  if (enclosed_.empty() || remarked_) return;
+  remarked_ = true;
+  remark_ =
+      "solids enclose liquid apart from the rest: its pressure is known up to a constant, whose choice the forces on "
+      "the "
+      "bodies around it share; a gap between the solids makes it known";
 }
 
 void ProjectionSolver::solve_iteratively(const PressureRows& rows, const RefinementOptions& refinement,

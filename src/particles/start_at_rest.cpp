@@ -21,9 +21,7 @@ bool moves(const Scene& scene) {
 StartAtRest::StartAtRest(const Scene& scene, const Circumstances& circumstances) {
   const bool several = scene.phases.size() > 1;
   reason = "the liquid does not start level, at rest";
-  if (circumstances.unasked)
-    reason = "compressibility.settling_rounds = 0";
-  else if (gravity_across_sides(scene) == Vec3{})
+  if (gravity_across_sides(scene) == Vec3{})
     reason = "no gravity across sides";
   else if (!scene.openings.empty())
     reason = "inflow or outflow";
@@ -35,12 +33,19 @@ StartAtRest::StartAtRest(const Scene& scene, const Circumstances& circumstances)
     reason = "oxygen passes the surface";
   else if (several && scene.free_surface)
     reason = "several phases below a free surface";
+  else if (several && !circumstances.mean_pressures.empty())
+    reason = circumstances.mean_pressures;
   else if (several)
     settles = circumstances.in_layers && !moves(scene);
   else if (!scene.free_surface)
     reason = "one phase fills the tank";
   else
     settles = !(chosen = particles_at_rest(scene)).empty();
+  if (settles && circumstances.unasked) {
+    settles = false;
+    chosen.clear();
+    reason = "compressibility.settling_rounds = 0";
+  }
   if (settles) reason = "to where the liquid is at rest";
 }
 

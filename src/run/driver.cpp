@@ -156,8 +156,8 @@ RunState Simulation::run(Observer& observer) {
   started_ = checkpointed_ = Clock::now();
   marks_.fill({started_, method_->time(), 0});
   try {
-    if (fresh_ && !prepare(observer)) return RunState::interrupted;
     tell_warnings(observer);
+    if (fresh_ && !prepare(observer)) return RunState::interrupted;
     for (const std::string& change : changes_) tell(observer, change);
     pass_on_remarks(observer);
     make_due_changes(observer);

@@ -91,7 +91,14 @@ TEST(ColumnPressure, OfWhatABodyClosesOffIsItsOwnWeight) {
   EXPECT_NEAR(start.at(0.75, 0.55), 20 * 0.25, 1e-12);
 }
 
-// Air above a shallow pool is no body: the column beside it presses on none of it.
+// A plate thinner than a tenth of a cell, wherever it stands between the centres of two rows.
+TEST(ColumnPressure, OfWhatAThinPlateClosesOffIsItsOwnWeight) {
+  for (const double height : {0.41, 0.42, 0.445, 0.46, 0.49}) {
+    const Start start(pool_tank + region_with("upper = [1.6, 0.8]\n") + box_at(0.8, height, 1.8, 0.008));
+    EXPECT_LT(start.at(0.75, 0.05), 20 * 0.46) << height;
+  }
+}
+
 // A plate at 45 degrees, thinner than the diagonal of a cell, passes between cells that touch by their corners.
 TEST(ColumnPressure, OfAPoolBelowASlantedPlateIsItsOwnWeight) {
   const Start start(pool_tank + region_with("where = \"min(0.5 - y, 1.4 - x - y)\"\n") +
@@ -101,6 +108,7 @@ TEST(ColumnPressure, OfAPoolBelowASlantedPlateIsItsOwnWeight) {
   EXPECT_NEAR(start.at(0.95, 0.05), 9, 2);  // a cell
 }
 
+// Air above a shallow pool is no body: the column beside it presses on none of it.
 TEST(ColumnPressure, OfAShallowPoolBesideAColumnIsItsOwnWeight) {
   const Start start(pool_tank + region_with("upper = [0.6, 0.9]\n") +
                     region_with("lower = [0.6, 0]\nupper = [1.6, 0.2]\n") + box_at(1.4, 0.7, 0.2, 0.2));

@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "spume/operators/pressure_operator.hpp"
 #include "spume/particles/boundary.hpp"
@@ -90,7 +91,9 @@ class ProjectionSolver {
   bool has_multigrid() const { return multigrid_ != nullptr; }
   const RefinementResult& report() const { return report_; }
   double looks_for_enclosed = 1;  // 0: the next solve does not; state between steps
-  double bytes() const;           // beside what is leased
+  // Of enclosed liquid, once, after the solve that found it; empty: nothing new.
+  std::string take_remark() { return std::exchange(remark_, {}); }
+  double bytes() const;  // beside what is leased
 
  private:
   struct Operator;
@@ -114,6 +117,8 @@ class ProjectionSolver {
   std::unique_ptr<DirectPressure> direct_;
   bool may_enclose_;  // there are solids
   PartConstants enclosed_;
+  std::string remark_;
+  bool remarked_ = false;
   RefinementResult report_;
 };
 

@@ -18,9 +18,10 @@ struct StartAtRest {
   // What the scene does not say.
   struct Circumstances {
     bool moving_bodies = false;
-    bool oxygen = false;     // passes the surface, of which a settled one has 8 % too much area
-    bool in_layers = false;  // several phases do, in a closed tank, and their pressures meet by densities
-    bool unasked = false;    // nobody wants it to
+    bool oxygen = false;         // passes the surface, of which a settled one has 8 % too much area
+    bool in_layers = false;      // several phases do, in a closed tank, and their pressures meet by densities
+    bool unasked = false;        // nobody wants it to
+    std::string mean_pressures;  // why the pressures of several phases meet otherwise; empty where they do not
   };
   StartAtRest() = default;
   // Particles of the scene, without velocities: of several phases that lie in layers, or of one phase the parts that

@@ -189,6 +189,12 @@ void Gfd::table_rows(const std::string&, std::vector<double>& rows) {
   body_forces_->add_rows(flow_.time, forces, rows);
 }
 
+std::vector<Remark> Gfd::take_remarks() {
+  std::string remark = flow_.solver.take_remark();
+  if (remark.empty()) return {};
+  return {{std::move(remark), false}};
+}
+
 std::vector<Invariant> Gfd::invariants() const {
   std::vector<Invariant> list;
   for (std::size_t n = 0; n < flow_.scene.phases.size(); ++n) {

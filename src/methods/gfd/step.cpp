@@ -53,10 +53,12 @@ Plan make_plan(Flow& f) {
   stages.sweep(both, "potentials", has.interfaces,
                has.interfaces ? "(14) to (17): tension and weight of the interfaces, pairwise" : several,
                &Flow::find_potentials, {colours, f.correction}, {colours});
-  const bool at_rest = has.gravity || has.interfaces;
+  const bool at_rest = (has.gravity || has.interfaces) && !has.openings;
   stages.add(start, "pressure at rest", at_rest,
-             at_rest ? "of weight and tension, until the first step finds it" : "none", &Flow::start_pressure,
-             {p.position, f.phase}, {*f.pressure});
+             at_rest        ? "of weight and tension, until the first step finds it"
+             : has.openings ? "openings give it its datum"
+                            : "none",
+             &Flow::start_pressure, {p.position, f.phase}, {*f.pressure});
   stages.add(start, "energy", true, "what the flow may hold", &Flow::start_energy, {p.position, p.velocity}, {});
   stages.sweep(start, "initial diffusion", has.writes_diffusion,
                has.writes_diffusion ? "output.fields names it" : "output.fields does not name it",

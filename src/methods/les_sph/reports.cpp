@@ -239,6 +239,7 @@ std::vector<Remark> LesSph::take_remarks() {
   std::vector<Remark> remarks = std::exchange(remarks_, {});
   const std::string text = flow_.bubbles != nullptr ? flow_.bubbles->note() : std::string();
   if (!text.empty()) remarks.push_back({text, true});
+  if (std::string remark = flow_.solver.take_remark(); !remark.empty()) remarks.push_back({std::move(remark), false});
   return remarks;
 }
 

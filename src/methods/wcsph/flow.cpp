@@ -55,7 +55,11 @@ Features::Features(const LoadedCase& loaded)
   weighted = several && !shifting && !tension && meeting != InterfacePressure::mean;
   const bool undriven = !moving_bodies && !scene.body_force;
   const bool in_layers = weighted && !scene.free_surface && undriven && lie_in_layers(scene);
-  rest = StartAtRest(scene, {moving_bodies, oxygen, in_layers, smoothing.settling_rounds == 0});
+  const std::string mean = tension    ? "surface tension"
+                           : shifting ? "shifting"
+                           : weighted ? ""
+                                      : "compressibility.interface_pressure = \"mean\"";
+  rest = StartAtRest(scene, {moving_bodies, oxygen, in_layers, smoothing.settling_rounds == 0, mean});
   weighted = in_layers || (weighted && meeting == InterfacePressure::weighted);
 }
 

@@ -45,6 +45,7 @@ class Gfd final : public Method, public FieldProbes {
   PointSample sample(const Vec3& position) override { return sampler().sample(position); }
   PlaneSample plane_average(int axis, double position) override { return sampler().plane_average(axis, position); }
   // The volume of each phase; the residual of the pressure.
+  std::vector<Remark> take_remarks() override;
   std::vector<Invariant> invariants() const override;
   void save(StateWriter& writer) const override;
   void load(StateReader& reader) override;
