@@ -179,6 +179,25 @@ TEST(LesSphBodies, AreRemarkedOnWhereAGapIsTooNarrow) {
   EXPECT_THAT(below.method.take_remarks(), IsEmpty());
 }
 
+// Its upper edge, 0.212 above the middle of the box, stands so far from the surface, at 1.
+TEST(LesSphBodies, AreRemarkedOnWhereAnEdgeEndsAtTheSurface) {
+  using testing::Contains, testing::Field, testing::HasSubstr;
+  const auto remarks = [&](double above) {
+    const double middle = 1 + above - 0.15 * std::numbers::sqrt2;
+    Simulation run(
+        tank + "[[body]]\nname = \"plate\"\nshape = \"box\"\nsize = [0.3, 0.3]\nrotation = [45]\nposition = [0.5, " +
+            std::to_string(middle) + "]\n",
+        wide);
+    run.steps(1, 0.004);
+    return run.method.take_remarks();
+  };
+  const auto says = [](const char* text) { return Contains(Field(&Remark::text, HasSubstr(text))); };
+  EXPECT_THAT(remarks(-0.4 / 20), says("body \"plate\" ends within"));
+  EXPECT_THAT(remarks(0.4 / 20), says("of the surface, where"));
+  EXPECT_THAT(remarks(2.0 / 20), testing::Not(says("the surface, where")));
+  EXPECT_THAT(remarks(-3.0 / 20), testing::Not(says("the surface, where")));
+}
+
 // Half of the disc stands at one end of the domain and half at the other: cut off there, it let liquid into its place,
 // at 3 sqrt(gH).
 TEST(LesSphBodies, GoOnBeyondPeriodicSides) {

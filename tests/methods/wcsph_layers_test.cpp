@@ -68,7 +68,7 @@ TEST(WcsphLayers, TheyStayAtRestWithoutViscosity) {
 }
 
 // Settled liquid is accelerated by less than 0.0003 g; the step has its neighbours in another order. Terms of 2 P |grad
-// W| V sum to 21 at P = 0.5, over a density of 1e-3 in air: 1.25e-3 a unit of the rounding of floats, three for places,
+// W| V sum to 2.1e4 at P = 500, over a density of 1 in air: 1.25e-3 a unit of the rounding of floats, three for places,
 // kernels and sums.
 TEST(WcsphLayers, TheStartLeavesNoAcceleration) {
   WcsphRun run(layers + box_below);

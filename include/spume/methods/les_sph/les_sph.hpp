@@ -60,6 +60,7 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   void ensure_started();
   // Says where walls of bodies are less accurate than elsewhere.
   void remark_surface_at_bodies();
+  void remark_edges_at_surface();
   void remark_wide_kernel();
   void remark_bubbles_beside_thin_bodies();
   void remark_bodies_that_collide();
