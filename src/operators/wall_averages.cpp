@@ -171,6 +171,11 @@ double WallAverages::bytes() const {
                              (transposed_.first.capacity() + transposed_.entry.capacity()) * sizeof(std::int64_t));
 }
 
+void WallForce::press(const Vec3& place, const Vec3& force) {
+  pressure = add(pressure, force);
+  pressure_torque = add(pressure_torque, cross(place, force));
+}
+
 std::vector<WallForce> wall_forces(const SweepContext& context, const WallForceFields& fields, std::size_t bodies) {
   const std::size_t n = context.list->particles();
   const std::int32_t *wall_point = context.images->wall_point(), *path = context.images->path();
@@ -205,9 +210,8 @@ std::vector<WallForce> wall_forces(const SweepContext& context, const WallForceF
             viscous[axis] = -2 * weight * fields.viscosity[i] * (u[axis] - held[axis] * fields.velocity[axis][i]);
         }
         WallForce& own = blocks[b][static_cast<std::size_t>(fields.body[g])];
-        own.pressure = add(own.pressure, pressure);
+        own.press(place, pressure);
         own.viscous = add(own.viscous, viscous);
-        own.pressure_torque = add(own.pressure_torque, cross(place, pressure));
         own.viscous_torque = add(own.viscous_torque, cross(place, viscous));
       }
   });

@@ -88,11 +88,7 @@ void WallContacts::bear(const std::vector<std::int32_t>& near, const Liquid& liq
 
 void WallContacts::add_to_bodies(std::vector<WallForce>& forces) const {
   for (const auto& block : found_)
-    for (const Borne& borne : block) {
-      WallForce& force = forces[borne.body];
-      force.pressure = add(force.pressure, borne.force);
-      force.pressure_torque = add(force.pressure_torque, cross(borne.foot, borne.force));
-    }
+    for (const Borne& borne : block) forces[borne.body].press(borne.foot, borne.force);
 }
 
 }  // namespace spume

@@ -82,11 +82,7 @@ void WallParting::add_to_bodies(std::size_t particles, const Liquid& liquid, std
     }
   });
   for (const auto& block : found)
-    for (const Parting& parting : block) {
-      WallForce& force = forces[parting.body];
-      force.pressure = add(force.pressure, parting.force);
-      force.pressure_torque = add(force.pressure_torque, cross(parting.foot, parting.force));
-    }
+    for (const Parting& parting : block) forces[parting.body].press(parting.foot, parting.force);
 }
 
 }  // namespace spume

@@ -118,6 +118,27 @@ double float_rounding(const WalledLiquid& liquid, double terms) {
   return std::ldexp(16 / liquid.twin.h + terms + 16, -24);
 }
 
+// What the sums below have in common.
+ContinuityFields continuity_fields(const WalledLiquid& liquid, bool weighted) {
+  return {.velocity = read(liquid.velocity),
+          .mirror = &liquid.mirror,
+          .volume = liquid.volume.data(),
+          .excess = liquid.excess.data(),
+          .phase = weighted ? liquid.density.data() : liquid.phase.data(),
+          .weighted = weighted};
+}
+PressureFields pressure_fields(WalledLiquid& liquid, bool weighted) {
+  return {.pressure = liquid.pressure.data(),
+          .volume = liquid.volume.data(),
+          .density = liquid.density.data(),
+          .several = true,
+          .weighted = weighted,
+          .position = read(liquid.walled.particles.position),
+          .wall_pressure = liquid.wall_pressure.data(),
+          .wall_density = liquid.wall_density.data(),
+          .wall_position = liquid.walls().wet().position};
+}
+
 // Rates of density with walls that move in it, and the pressure force, without gravity.
 struct WallSums {
   Array<float> rate;
@@ -130,27 +151,12 @@ struct WallSums {
     Array<double> flow(liquid.walls().stencils().size());
     rate.resize(n);
     for (auto& component : force) component.resize(n);
-    continuity_sweep(liquid.context(), packed,
-                     {.velocity = read(liquid.velocity),
-                      .mirror = &liquid.mirror,
-                      .walls_move = true,
-                      .volume = liquid.volume.data(),
-                      .excess = liquid.excess.data(),
-                      .phase = weighted ? liquid.density.data() : liquid.phase.data(),
-                      .weighted = weighted},
-                     {rate.data(), diffusion.data()});
+    ContinuityFields fields = continuity_fields(liquid, weighted);
+    fields.walls_move = true;
+    continuity_sweep(liquid.context(), packed, fields, {rate.data(), diffusion.data()});
     liquid.averages.add_rates(liquid.context(), liquid.walls().stencils(), read(liquid.velocity), liquid.volume.data(),
                               flow.data(), rate.data());
-    pressure_force_sweep(liquid.context(), packed,
-                         {.pressure = liquid.pressure.data(),
-                          .volume = liquid.volume.data(),
-                          .density = liquid.density.data(),
-                          .several = true,
-                          .weighted = weighted,
-                          .position = read(liquid.walled.particles.position),
-                          .wall_pressure = liquid.wall_pressure.data(),
-                          .wall_density = liquid.wall_density.data(),
-                          .wall_position = liquid.walls().wet().position},
+    pressure_force_sweep(liquid.context(), packed, pressure_fields(liquid, weighted),
                          {force[0].data(), force[1].data(), force[2].data()});
   }
 };
@@ -214,29 +220,14 @@ TEST(WcsphWalls, SumsAndForcesAgreeWithTheSlowTwin) {
         for (auto& component : *vector) component.resize(n);
       const std::array<float*, 3> viscous_out{viscous[0].data(), viscous[1].data(), viscous[2].data()};
       const std::array<float*, 3> force_out{force[0].data(), force[1].data(), force[2].data()};
-      continuity_sweep(liquid.context(), packed,
-                       {.velocity = read(liquid.velocity),
-                        .mirror = &liquid.mirror,
-                        .friction = &boundary.velocity_rule(),
-                        .volume = liquid.volume.data(),
-                        .excess = liquid.excess.data(),
-                        .phase = weighted ? liquid.density.data() : liquid.phase.data(),
-                        .weighted = weighted,
-                        .viscosity = liquid.viscosity.data()},
-                       {rate.data(), diffusion.data(), viscous_out});
-      pressure_force_sweep(liquid.context(), packed,
-                           {.pressure = liquid.pressure.data(),
-                            .volume = liquid.volume.data(),
-                            .density = liquid.density.data(),
-                            .several = true,
-                            .weighted = weighted,
-                            .repulsion = 0.08F,
-                            .gravity = gravity,
-                            .position = read(liquid.walled.particles.position),
-                            .wall_pressure = liquid.wall_pressure.data(),
-                            .wall_density = liquid.wall_density.data(),
-                            .wall_position = liquid.walls().wet().position},
-                           force_out);
+      ContinuityFields rates = continuity_fields(liquid, weighted);
+      rates.friction = &boundary.velocity_rule();
+      rates.viscosity = liquid.viscosity.data();
+      continuity_sweep(liquid.context(), packed, rates, {rate.data(), diffusion.data(), viscous_out});
+      PressureFields pressures = pressure_fields(liquid, weighted);
+      pressures.repulsion = 0.08F;
+      pressures.gravity = gravity;
+      pressure_force_sweep(liquid.context(), packed, pressures, force_out);
       Vec3 lost{};
       double modulus = 0;
       for (std::size_t i = 0; i < n; ++i) {

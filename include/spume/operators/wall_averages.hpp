@@ -77,6 +77,7 @@ class WallAverages {
 // viscosity (wcsph_sums.hpp), times the volumes of the particles.
 struct WallForce {
   Vec3 pressure{}, viscous{}, pressure_torque{}, viscous_torque{};  // torques about the origin
+  void press(const Vec3& place, const Vec3& force);
 };
 struct WallForceFields {
   std::array<const double*, 3> velocity{};
