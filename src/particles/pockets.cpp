@@ -128,48 +128,6 @@ Ahead ahead_of(const Boundary& boundary, const Arrangement& arrangement, std::si
   return found;
 }
 
-bool ClosedPools::is_closed(const Arrangement& arrangement, std::int32_t member, std::int32_t number,
-                            const std::function<bool(std::size_t)>& is_anchored) {
-  const NeighbourList& list = arrangement.list;
-  const float* height = list.coordinate(arrangement.grid.dimensions() - 1);
-  const auto reach = [&](std::int32_t i) {
-    pool_of_[static_cast<std::size_t>(i)] = number;
-    ahead_.emplace_back(height[i], i);
-    std::push_heap(ahead_.begin(), ahead_.end());
-  };
-  ahead_.clear();
-  reach(member);
-  while (!ahead_.empty()) {
-    std::pop_heap(ahead_.begin(), ahead_.end());
-    const auto i = static_cast<std::size_t>(ahead_.back().second);
-    ahead_.pop_back();
-    if (is_anchored(i)) return false;
-    for (const std::int32_t point : list.of(i)) {
-      if (is_wall_point(arrangement, point)) continue;
-      const std::size_t j = arrangement.particle_of(point);
-      // Pools that were closed have been looked at as a whole: what meets another one meets one that was not.
-      if (pool_of_[j] != 0 && pool_of_[j] != number) return false;
-      if (pool_of_[j] == 0) reach(static_cast<std::int32_t>(j));
-    }
-  }
-  return true;
-}
-
-const std::vector<std::int32_t>& ClosedPools::find(const Arrangement& arrangement, const Array<std::int32_t>& members,
-                                                   const std::function<bool(std::size_t)>& is_anchored) {
-  found_.clear();
-  if (members.size() == 0) return found_;
-  pool_of_.assign(arrangement.list.particles(), 0);
-  closed_.assign(1, 0);
-  for (const std::int32_t member : members) {
-    if (pool_of_[static_cast<std::size_t>(member)] != 0) continue;
-    closed_.push_back(is_closed(arrangement, member, static_cast<std::int32_t>(closed_.size()), is_anchored) ? 1 : 0);
-  }
-  for (const std::int32_t member : members)
-    if (closed_[static_cast<std::size_t>(pool_of_[static_cast<std::size_t>(member)])] != 0) found_.push_back(member);
-  return found_;
-}
-
 void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity) {
   const BodyWalls& bodies = *boundary.bodies();
   const double least = narrowest_wedge * boundary.spacing();

@@ -283,8 +283,7 @@ void ProjectionSolver::find_enclosed(const PressureRows& rows, ParticleStore& pa
   remarked_ = true;
   remark_ =
       "solids enclose liquid apart from the rest: its pressure is known up to a constant, whose choice the forces on "
-      "the "
-      "bodies around it share; a gap between the solids makes it known";
+      "the bodies around it share; a gap between the solids makes it known";
 }
 
 void ProjectionSolver::solve_iteratively(const PressureRows& rows, const RefinementOptions& refinement,

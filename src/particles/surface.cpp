@@ -55,38 +55,24 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, Momen
   if (boundary.bodies() != nullptr) continue_into_bodies(arrangement, moments, boundary, at);
   const Array<float>& divergence_of_position = obstacles ? counted_ : *moments.divergence_of_position;
   const double least = surface_layer_share(resolution_.dimensions) * options_.interior.threshold;
-  const auto count_alone = [&](std::size_t i) {
+  parallel_for(n, [&](std::size_t i) {
     at_surface[i] = divergence_of_position[i] < options_.interior.threshold ? 1 : 0;
     const bool sparse = boundary.bodies() != nullptr && continued_.is_sparse(i);
     pressure_fixed[i] = at_surface[i] != 0 && (moments.uncorrected[i] != 0 || sparse) ? 1 : 0;
     interior_weight[i] = options_.interior(divergence_of_position[i]);
-  };
-  ScratchArray<std::uint8_t> in_pocket(particles.scratch(), boundary.bodies() != nullptr ? n : 0);
-  parallel_for(n, [&](std::size_t i) {
-    if (boundary.bodies() != nullptr) in_pocket[i] = 0;
-    count_alone(i);
-    if (is_covered(i)) {
-      at_surface[i] = pressure_fixed[i] = 0;
-      interior_weight[i] = 1;
-      return;
+    bool inside = is_covered(i);
+    if (!inside && obstacles && interior_weight[i] < 1) {
+      // Where the liquid continues into a body, what a surface particle lacks is no gap before it.
+      const bool continued = at_surface[i] != 0 && boundary.bodies() != nullptr && continues_into_body(i);
+      const auto before_solid = [&] {
+        return is_near(moments, i) && divergence_of_position[i] >= least && faces_solid(boundary, moments, at, i);
+      };
+      inside = !continued && (before_solid() || is_in_pocket(arrangement, boundary, moments, at, i));
     }
-    // Where the liquid continues into a body, what a surface particle lacks is no gap before it.
-    const bool continued = at_surface[i] != 0 && boundary.bodies() != nullptr && continues_into_body(i);
-    if (!obstacles || interior_weight[i] == 1 || continued) return;
-    const bool before_solid =
-        is_near(moments, i) && divergence_of_position[i] >= least && faces_solid(boundary, moments, at, i);
-    if (!before_solid && !is_in_pocket(arrangement, boundary, moments, at, i)) return;
-    if (!before_solid) in_pocket[i] = 1;
+    if (!inside) return;
     at_surface[i] = pressure_fixed[i] = 0;
     interior_weight[i] = 1;
   });
-  if (boundary.bodies() != nullptr) {
-    parallel_select(n, in_pockets_, [&](std::size_t i) { return in_pocket[i] != 0; });
-    // What is not a surface itself may still be passed over.
-    const auto is_anchored = [&](std::size_t i) { return at_surface[i] != 0; };
-    for (const std::int32_t i : closed_pools_.find(arrangement, in_pockets_, is_anchored))
-      count_alone(static_cast<std::size_t>(i));
-  }
   if (obstacles) pass_over_gaps(arrangement, at, boundary);
   parallel_select(n, surface_particles, [&](std::size_t i) { return at_surface[i] != 0; });
   parallel_select(n, near_surface, [&](std::size_t i) { return is_near(moments, i); });

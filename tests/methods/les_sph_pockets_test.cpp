@@ -90,36 +90,26 @@ TEST(LesSphPockets, WaterStaysStillInSpace) {
   for (const std::string& bodies : {box, outline}) EXPECT_LT(largest_speed_until(space + bodies, 5), 1e-3) << bodies;
 }
 
-// A pool that bodies close off has no surface to reach: what it lacks stays one.
-TEST(LesSphPockets, ClosedPoolsKeepASurface) {
-  Simulation run(plane +
-                 "[[body]]\nshape = \"outline\"\nposition = [1.1778, 0.035]\npoints = [[-0.4, -0.3], [0.4, -0.3], "
-                 "[0.3, 0.1], [0, 0.35], [-0.35, 0.2]]\nrotation = [51.63]\n");
-  run.steps(3, run.method.step_limit().dt);
-  double surface_in_pool = 0;
-  const les_sph::Flow& flow = run.method.flow();
-  for (const std::int32_t i : flow.surface->surface_particles)
-    if ((*flow.particles.position[0])[i] > 1.5 && (*flow.particles.position[1])[i] < 0.1) ++surface_in_pool;
-  EXPECT_GE(surface_in_pool, 1);
-}
-
-// A chamber of 10,836 particles under water, with a ball on its floor: without sound its pressure is known up to a
-// constant, which the surface that it keeps below its lid fixes. Pools of more than 10,000 were once not looked at:
-// no step was solved.
-TEST(LesSphPockets, AWideClosedPoolKeepsASurfaceWithoutSound) {
-  Simulation run(replaced(replaced(replaced(plane, "mach = 0.05", "mach = 0"), "spacing = 0.04", "spacing = 0.01"),
-                          "upper = [1.6, 1.3]", "upper = [1.6, 1.6]") +
-                     "[[body]]\nshape = \"box\"\nposition = [0.8, 0.63]\nsize = [1.2, 1.2]\n"
-                     "[[body]]\nshape = \"box\"\nposition = [0.8, 0.63]\nsize = [1.1, 1.1]\nsubtract = true\n"
-                     "[[body]]\nshape = \"ball\"\nposition = [0.8, 0.28]\nradius = 0.2\n",
-                 {"liquid.0.upper=[1.6, 1.45]"});
-  run.steps(2, run.method.step_limit().dt);
-  const les_sph::Flow& flow = run.method.flow();
-  double in_chamber = 0;
-  for (const std::int32_t i : flow.surface->surface_particles)
-    if (std::abs((*flow.particles.position[0])[i] - 0.8) < 0.55 && (*flow.particles.position[1])[i] < 1.18)
-      ++in_chamber;
-  EXPECT_GE(in_chamber, 1);
+// Who lacks liquid in a pool that bodies close off lacks what walls leave no room for. Its pressure is known by sound
+// or, without it, up to a constant. Taken for a surface, the one or two that lack some pin it at p = 0: the wide one,
+// of 10,836 particles under water, with a ball on its floor, moved at 2.6e-3 and took 6 iterations a step in place
+// of 2.
+TEST(LesSphPockets, ClosedPoolsRest) {
+  const std::string below_outline =
+                        "[[body]]\nshape = \"outline\"\nposition = [1.1778, 0.035]\npoints = [[-0.4, -0.3], [0.4, "
+                        "-0.3], [0.3, 0.1], [0, 0.35], [-0.35, 0.2]]\nrotation = [51.63]\n",
+                    chamber =
+                        "[[body]]\nshape = \"box\"\nposition = [0.8, 0.63]\nsize = [1.2, 1.2]\n"
+                        "[[body]]\nshape = \"box\"\nposition = [0.8, 0.63]\nsize = [1.1, 1.1]\nsubtract = true\n"
+                        "[[body]]\nshape = \"ball\"\nposition = [0.8, 0.28]\nradius = 0.2\n";
+  const std::string wide =
+      replaced(replaced(replaced(replaced(plane, "mach = 0.05", "mach = 0"), "spacing = 0.04", "spacing = 0.01"),
+                        "upper = [1.6, 1.3]", "upper = [1.6, 1.6]"),
+               "upper = [1.6, 1.1]", "upper = [1.6, 1.45]");
+  const std::string without_sound = replaced(plane, "mach = 0.05", "mach = 0");
+  EXPECT_LT(largest_speed_until(plane + below_outline, 5), 1e-3);
+  EXPECT_LT(largest_speed_until(without_sound + below_outline, 5), 1e-3);
+  EXPECT_LT(largest_speed_until(wide + chamber, 0.05), 1e-4);
 }
 
 }  // namespace

@@ -9,9 +9,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <utility>
-#include <vector>
 
 #include "spume/core/vec3.hpp"
 #include "spume/particles/store.hpp"
@@ -34,24 +31,6 @@ bool has_room(const Boundary& boundary, const Vec3& place);
 enum class Ahead { room, liquid, wall, pocket };
 Ahead ahead_of(const Boundary& boundary, const Arrangement& arrangement, std::size_t i, const Vec3& place,
                const Vec3& normal);
-
-// Pools that bodies close off, in which the pressure is known up to a constant. Keeps its arrays between calls.
-class ClosedPools {
- public:
-  // The particles among `members` from which none that `is_anchored` is reached over neighbours. The search goes up
-  // first, where surfaces are: it climbs an open tank, and goes through a closed pool as a whole.
-  const std::vector<std::int32_t>& find(const Arrangement& arrangement, const Array<std::int32_t>& members,
-                                        const std::function<bool(std::size_t)>& is_anchored);
-
- private:
-  bool is_closed(const Arrangement& arrangement, std::int32_t member, std::int32_t number,
-                 const std::function<bool(std::size_t)>& is_anchored);
-
-  std::vector<std::int32_t> pool_of_;  // of a particle, from 1; 0: not looked at
-  std::vector<std::pair<float, std::int32_t>> ahead_;
-  std::vector<std::uint8_t> closed_;  // of pools
-  std::vector<std::int32_t> found_;
-};
 
 // Whether a place is between the face of a body and another wall that are less than two spacings apart, where one layer
 // of particles fits at most: their kernel sums tell how it fits. False beside bodies that move.

@@ -34,7 +34,6 @@
 #include "spume/particles/continued_liquid.hpp"
 #include "spume/particles/moments.hpp"
 #include "spume/particles/options.hpp"
-#include "spume/particles/pockets.hpp"
 #include "spume/scene/solid_union.hpp"
 
 namespace spume {
@@ -137,8 +136,6 @@ class FreeSurface {
   std::vector<FreeBox> boxes_;
   std::vector<BoxMoments> box_moments_;
   Array<float> counted_;  // div r of the surface rule
-  ClosedPools closed_pools_;
-  Array<std::int32_t> in_pockets_;
   ContinuedLiquid continued_;
 };
 
