@@ -66,7 +66,7 @@ void TerminalObserver::progress(const Progress& progress) {
   if (due()) draw(progress_line(last_));
 }
 
-void TerminalObserver::preparing(const std::string& how_far) {
+void TerminalObserver::preparing(Simulation& /*simulation*/, const std::string& how_far) {
   if (due()) draw("preparing: " + how_far);
 }
 

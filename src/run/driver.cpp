@@ -206,7 +206,7 @@ RunState Simulation::run(Observer& observer) {
 // The state that is recorded first. False where the run was to stop meanwhile: there is nothing to resume from.
 bool Simulation::prepare(Observer& observer) {
   method_->prepare(ledger_, [&](const HowFar& how_far) {
-    observer.preparing(how_far.words);
+    observer.preparing(*this, how_far.words);
     return !stop_requested();
   });
   if (!stop_requested()) {

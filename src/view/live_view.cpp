@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "spume/core/error.hpp"
 #include "spume/run/version.hpp"
@@ -27,6 +28,7 @@ constexpr int run_over_frames = 100, run_over_slow_frames = 20;
 constexpr auto slow_interval = 1s, longest_interval = 5s;
 constexpr auto ledger_interval = 1s;
 constexpr auto pause_poll = 50ms;  // after which a paused run looks for SIGINT
+constexpr auto preparing_words = "preparing";
 constexpr std::size_t longest_line = 2000;
 
 Json steerable_options(const std::vector<OptionInfo>& options, const std::string& resolved) {
@@ -102,9 +104,35 @@ void LiveView::add_row(Simulation& simulation) {
   history_.add(row);
 }
 
+void LiveView::preparing(Simulation& simulation, const std::string& how_far) {
+  next_.preparing(simulation, how_far);
+  words_ = preparing_words;
+  how_far_ = how_far;
+  if (!server_.attention()) return;
+  for (const ViewMessage& message : server_.take_messages()) {
+    if (message.action == ViewMessage::Action::stop)
+      obey(simulation, message);
+    else
+      waiting_.push_back(message);
+  }
+  const auto now = Clock::now();
+  if (now < next_frame_) return;
+  next_frame_ = now + shortest_interval;
+  for (const auto& viewer : server_.viewers()) {
+    const std::optional<FrameWish> wish = viewer->take_wish();
+    if (!wish) continue;
+    viewer->send(texts_for(*viewer, simulation));
+    viewer->give_back(*wish);  // no frame has answered it
+  }
+}
+
 void LiveView::between_steps(Simulation& simulation) {
   add_row(simulation);
-  if (!server_.attention() && !paused_) return;
+  if (words_ == preparing_words) {
+    words_ = "running";
+    ++hello_edition_;  // of the columns
+  }
+  if (!server_.attention() && !paused_ && waiting_.empty()) return;
   steps_wanted_ = 0;  // the one that was asked for is done
   obey(simulation);
   if (simulation.finished() || simulation.stop_requested()) next_frame_ = {};  // the last picture is the last state
@@ -123,7 +151,9 @@ void LiveView::between_steps(Simulation& simulation) {
 }
 
 void LiveView::obey(Simulation& simulation) {
-  for (const ViewMessage& message : server_.take_messages()) {
+  std::vector<ViewMessage> messages = std::exchange(waiting_, {});
+  for (ViewMessage& message : server_.take_messages()) messages.push_back(std::move(message));
+  for (const ViewMessage& message : messages) {
     try {
       obey(simulation, message);
     } catch (const InputError& error) {
@@ -202,8 +232,9 @@ bool LiveView::knows_all(const Viewer& viewer, const FrameWish& wish, const Simu
          told.hello == hello_edition_ && told.lines == lines_told_ + static_cast<std::int64_t>(lines_.size());
 }
 
-std::vector<Packet> LiveView::packets_for(Viewer& viewer, const FrameWish& wish, Simulation& simulation) {
+std::vector<Packet> LiveView::texts_for(Viewer& viewer, const Simulation& simulation) {
   std::vector<Packet> packets;
+  if (progress_.step == 0) progress_.end = simulation.loaded().options.time.end;
   const auto add = [&](std::string text) { packets.push_back({false, shared(std::move(text))}); };
   if (viewer.told.hello != hello_edition_) {
     viewer.told.hello = hello_edition_;
@@ -223,9 +254,14 @@ std::vector<Packet> LiveView::packets_for(Viewer& viewer, const FrameWish& wish,
     viewer.told.ledger = now;
     add(ledger_text(simulation.ledger()));
   }
+  viewer.told.words = words_;
+  return packets;
+}
+
+std::vector<Packet> LiveView::packets_for(Viewer& viewer, const FrameWish& wish, Simulation& simulation) {
+  std::vector<Packet> packets = texts_for(viewer, simulation);
   viewer.told.step = simulation.method().step_count();
   viewer.told.wish = wish;
-  viewer.told.words = words_;
   packets.push_back(
       {true, frames_.make(simulation.method().step_count(), simulation.method().time(), simulation.particles(),
                           simulation.grids(), wish, simulation.loaded().options.spacing)});
@@ -267,9 +303,9 @@ std::string LiveView::state() const {
                  {"time", progress_.time},
                  {"end", progress_.end},
                  {"dt", progress_.dt},
-                 {"limit", progress_.limited_by},
+                 {"limit", words_ == preparing_words ? how_far_ : progress_.limited_by},
                  {"rate", number(progress_.particle_steps_per_second)},
-                 {"remaining", number(progress_.remaining_seconds)}});
+                 {"remaining", progress_.step == 0 ? Json() : number(progress_.remaining_seconds)}});
 }
 
 std::string LiveView::series_for(Viewer& viewer) const {

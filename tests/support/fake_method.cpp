@@ -62,6 +62,7 @@ class FakeMethod final : public Method, public FieldProbes, public SurfaceProbes
   void prepare(Ledger& /*ledger*/, const GoOn& go_on) override {
     for (std::int64_t k = 0; k < behaviour_.prepares; ++k) {
       turn_[0] += 1;
+      if (behaviour_.sleep > 0) std::this_thread::sleep_for(std::chrono::duration<double>(behaviour_.sleep));
       if (!go_on({"round " + std::to_string(k), static_cast<double>(k + 1) / static_cast<double>(behaviour_.prepares)}))
         return;
     }

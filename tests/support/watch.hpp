@@ -24,7 +24,7 @@ class Watch final : public Observer {
     if (progress.step == stop_after_) raise(SIGINT);
   }
   void note(const std::string& text) override { notes.push_back(text); }
-  void preparing(const std::string& how_far) override {
+  void preparing(Simulation& /*simulation*/, const std::string& how_far) override {
     prepared.push_back(how_far);
     if (how_far == stop_at_) raise(SIGINT);
   }

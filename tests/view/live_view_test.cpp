@@ -92,6 +92,37 @@ TEST_F(Viewed, AViewerPausesStepsAndStops) {
   EXPECT_EQ(summary("run")["state"], "interrupted");
 }
 
+TEST_F(Viewed, AViewerStopsARunThatPrepares) {
+  write_case("end = 1\nsleep = 0.001\nprepares = 1000000\n");
+  launch("run", false);
+  FakePage page(server_);
+  ASSERT_TRUE(page.read_until([&] { return page.state.value("limit", "").rfind("round ", 0) == 0; }));
+  EXPECT_EQ(page.state["words"], "preparing");
+  EXPECT_EQ(page.state["end"], 1);
+  EXPECT_EQ(page.hello["dimensions"], 2);
+  page.say(R"({"do": "stop"})");
+  ASSERT_TRUE(page.read_until_words("interrupted"));
+  EXPECT_EQ(result(), RunState::interrupted);
+  EXPECT_EQ(page.frames, 0);
+  EXPECT_NE(page.log.find("start the run again"), std::string::npos);
+}
+
+TEST_F(Viewed, WhatAViewerAsksOfARunThatPreparesWaitsForItsFirstStep) {
+  write_case("end = 1\nsleep = 0.001\nprepares = 1000\n");
+  launch("run", false);
+  FakePage page(server_);
+  ASSERT_TRUE(page.read_until_words("preparing"));
+  page.say(R"({"do": "steer", "key": "dt", "value": "0.002"})");
+  page.say(R"({"do": "pause"})");
+  ASSERT_TRUE(page.read_until_words("paused"));
+  EXPECT_EQ(page.state["step"], 0);
+  ASSERT_TRUE(page.reads_line("steered after step 0: dt = 0.002"));
+  ASSERT_TRUE(page.read_until([&] { return page.frames > 0; }));
+  EXPECT_FALSE(page.hello["columns"].empty());
+  page.say(R"({"do": "stop"})");
+  EXPECT_EQ(result(), RunState::interrupted);
+}
+
 // Frames of a state that is known would keep both sides busy for nothing.
 TEST_F(Viewed, APausedRunSendsNothingTwice) {
   write_case("end = 1000\n");

@@ -14,7 +14,7 @@ class TerminalObserver final : public Observer {
   explicit TerminalObserver(bool quiet);
   void progress(const Progress& progress) override;
   void note(const std::string& text) override;
-  void preparing(const std::string& how_far) override;
+  void preparing(Simulation& simulation, const std::string& how_far) override;
   void finish();  // the live line with the last state stays; call once at the end
 
  private:

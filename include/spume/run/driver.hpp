@@ -54,8 +54,8 @@ class Observer {
   virtual ~Observer() = default;
   virtual void progress(const Progress& progress) = 0;
   virtual void note(const std::string& text) = 0;
-  // Before the first step, how far what prepares it has come.
-  virtual void preparing(const std::string& /*how_far*/) {}
+  // Before the first step, how far what prepares it has come. May ask the run to stop.
+  virtual void preparing(Simulation& /*simulation*/, const std::string& /*how_far*/) {}
   // Before every step, and once after the last: may look at the state and steer the run, which waits meanwhile.
   virtual void between_steps(Simulation& /*simulation*/) {}
 };
@@ -108,7 +108,9 @@ class Simulation {
   void note_pause(std::chrono::steady_clock::duration length);  // in which the run stood still: no part of its pace
   std::vector<ParticleSnapshot> particles() { return method_->snapshot_on_demand(); }
   std::vector<GridSnapshot> grids() { return method_->grid_snapshot(); }
-  const std::vector<SeriesColumn>& series_columns() const { return recorder_->series_columns(); }
+  std::span<const SeriesColumn> series_columns() const {  // empty before the first record
+    return recorder_ == nullptr ? std::span<const SeriesColumn>() : recorder_->series_columns();
+  }
   std::span<const double> series_row() const { return recorder_->series_row(); }  // the last one; empty before it
   Ledger::Scope time_stage(std::string_view stage) { return ledger_.time(stage); }
 

@@ -24,7 +24,8 @@ class LiveView final : public Observer {
 
   void progress(const Progress& progress) override;
   void note(const std::string& text) override;
-  void preparing(const std::string& how_far) override { next_.preparing(how_far); }
+  // Tells viewers in words and lets them stop the run; what else they ask for waits for the first step.
+  void preparing(Simulation& simulation, const std::string& how_far) override;
   void between_steps(Simulation& simulation) override;
   // The last state, "finished", "interrupted" or "failed", and for the last the reason. Waits a second at most until
   // viewers have it.
@@ -38,6 +39,7 @@ class LiveView final : public Observer {
   void serve(Simulation& simulation);
   void add_row(Simulation& simulation);
   bool knows_all(const Viewer& viewer, const FrameWish& wish, const Simulation& simulation) const;
+  std::vector<Packet> texts_for(Viewer& viewer, const Simulation& simulation);
   std::vector<Packet> packets_for(Viewer& viewer, const FrameWish& wish, Simulation& simulation);
   std::string hello(const Simulation& simulation, bool may_steer) const;
   std::string state() const;
@@ -48,13 +50,14 @@ class LiveView final : public Observer {
   Observer& next_;
   std::vector<OptionInfo> options_;
   Progress progress_;
-  std::string words_ = "running";
+  std::string words_ = "running", how_far_;  // before the first step
   bool paused_;
   int steps_wanted_ = 0;            // while paused
   std::int64_t hello_edition_ = 0;  // of plan and options, which a change by hand may alter
   FrameMaker frames_;
   SeriesHistory history_;
   double last_row_step_ = -1;
+  std::vector<ViewMessage> waiting_;  // for the first step
   std::deque<std::string> lines_;
   std::int64_t lines_told_ = 0;  // number of the first line in lines_
   Clock::time_point next_frame_{};

@@ -46,7 +46,7 @@ const link = (() => {
     socket.onmessage = (event) => {
       if (typeof event.data === 'string') {
         const message = JSON.parse(event.data);
-        if (message.type === 'state') ended = !['running', 'paused', 'results'].includes(message.words);
+        if (message.type === 'state') ended = !['running', 'paused', 'preparing', 'results'].includes(message.words);
         handlers[message.type](message);
       } else {
         handlers.frame(decode(event.data));

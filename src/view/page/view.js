@@ -2,7 +2,7 @@
 // The page: what the program tells goes to the picture and the panels, what the user does goes to the program.
 'use strict';
 
-let paused = false, played = false, may_steer = true;
+let paused = false, played = false, preparing = false, may_steer = true;
 
 function show_state(state) {
   played = state.words === 'results';
@@ -12,7 +12,8 @@ function show_state(state) {
   for (const [id, text] of Object.entries(texts)) by_id(id).textContent = text;
   by_id('done').style.width = state.end > 0 ? `${Math.min(100, 100 * state.time / state.end)}%` : 0;
   paused = state.words === 'paused';
-  const runs = paused || state.words === 'running';
+  preparing = state.words === 'preparing';
+  const runs = paused || preparing || state.words === 'running';
   by_id('words').className = paused ? 'paused' : '';
   by_id('pause').textContent = paused ? 'Go on' : 'Pause';
   for (const button of document.querySelectorAll('#steer button, #options button')) button.disabled = !runs;
@@ -115,7 +116,7 @@ by_id('pause').onclick = () => link.send({do: paused ? 'go' : 'pause'});
 by_id('one').onclick = () => link.send({do: 'step'});
 by_id('checkpoint').onclick = () => link.send({do: 'checkpoint'});
 by_id('snapshot').onclick = () => link.send({do: 'snapshot'});
-by_id('stop').onclick = () => { if (confirm('End the run with a checkpoint?')) link.send({do: 'stop'}); };
+by_id('stop').onclick = () => { if (confirm(preparing ? 'End the run before its first step?' : 'End the run with a checkpoint?')) link.send({do: 'stop'}); };
 by_id('size').oninput = () => {
   picture.set_size(Number(by_id('size').value));
   picture.show_again();
