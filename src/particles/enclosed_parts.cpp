@@ -9,17 +9,18 @@
 namespace spume {
 
 PartConstants enclosed_parts(const SweepContext& context, bool singular,
-                             const std::function<bool(std::size_t)>& is_known) {
+                             const std::function<bool(std::size_t)>& is_known,
+                             const std::function<bool(const PartMembers&)>& is_free) {
   const NeighbourList& list = *context.list;
   const auto n = static_cast<std::int32_t>(list.particles());
   const std::int32_t* source = context.images == nullptr ? nullptr : context.images->source();
   const std::int32_t* wall_point = context.walls == nullptr ? nullptr : context.images->wall_point();
   std::vector<std::uint8_t> seen(list.particles(), 0);
-  std::vector<std::vector<std::int32_t>> parts;
+  std::vector<PartMembers> parts;
   std::vector<std::int32_t> ahead;
   for (std::int32_t first = 0; first < n; ++first) {
     if (seen[static_cast<std::size_t>(first)] != 0) continue;
-    std::vector<std::int32_t> members;
+    PartMembers members;
     bool known = false;
     const auto reach = [&](std::int32_t i) {
       if (seen[static_cast<std::size_t>(i)] != 0) return;
@@ -46,6 +47,7 @@ PartConstants enclosed_parts(const SweepContext& context, bool singular,
   if (singular && !parts.empty())
     parts.erase(
         std::max_element(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); }));
+  if (is_free) std::erase_if(parts, [&](const PartMembers& members) { return !is_free(members); });
   return {std::move(parts), singular};
 }
 

@@ -55,6 +55,7 @@ class FloatingBodies::Coupled final : public ProjectionMatrix {
   Coupled(const FloatingBodies& bodies, PressureOperator& liquid) : bodies_(bodies), liquid_(liquid) {}
   std::size_t size() const override { return liquid_.size(); }
   const SweepContext* context() const override { return liquid_.context(); }
+  bool couples() const override { return true; }
   Dots apply(std::span<const float> x, std::span<float> y, std::span<const float> w) override {
     liquid_.apply(x, y, w);
     const std::vector<double> a = bodies_.accelerations(x, false);

@@ -20,24 +20,19 @@ constexpr double parallel = 0.1;   // of the sum of two normals
 constexpr double longest = 0.3;    // spacings, of a way out
 constexpr double thinnest = 0.05;  // spacings, of a plate across a layer
 
-// The wall that a place is behind, and by how much.
-struct Across {
-  Vec3 normal{};
-  double behind = 0;
-};
-std::optional<Across> wall_before(const Boundary& boundary, const Vec3& place) {
+std::optional<WallBehind> wall_before(const Boundary& boundary, const Vec3& place) {
   const Domain& domain = boundary.domain();
   for (int axis = 0; axis < domain.dimensions; ++axis)
     for (std::size_t end = 0; end < 2; ++end) {
       const double inwards = end == 0 ? 1 : -1, behind = -inwards * (place[axis] - boundary.walls[axis][end]);
       if (!is_wall(domain.sides[axis][end].kind) || behind < 0) continue;
-      Across across{.behind = behind};
+      WallBehind across{.behind = behind};
       across.normal[axis] = inwards;
       return across;
     }
-  const double distance = boundary.bodies()->distance(place);
-  if (distance > 0) return std::nullopt;
-  return Across{boundary.bodies()->normal(place), -distance};
+  if (boundary.bodies()->distance(place) > 0) return std::nullopt;
+  const BodyWalls::NearestWall wall = boundary.bodies()->nearest_wall(place);
+  return WallBehind{wall.normal, -wall.distance, wall.body, wall.point};
 }
 
 // The middle of a ball of half a spacing that fits between the walls around a place.
@@ -97,7 +92,7 @@ bool in_one_layer(const Boundary& boundary, const Vec3& place) {
   const double before = bodies.distance(place);
   if (!(before < width) || bodies.moves_at(place)) return false;
   const Vec3 face = bodies.normal(place);
-  std::optional<Across> across;
+  std::optional<WallBehind> across;
   way_to_wall(
       place, multiply(width - before, face), thinnest * boundary.spacing(),
       [&](const Vec3& there) { return bodies.distance(there); },
@@ -128,6 +123,14 @@ Ahead ahead_of(const Boundary& boundary, const Arrangement& arrangement, std::si
   return found;
 }
 
+std::optional<WallBehind> wall_across(const Boundary& boundary, const Vec3& place, double width) {
+  const BodyWalls& bodies = *boundary.bodies();
+  const Vec3 face = bodies.normal(place);
+  std::optional<WallBehind> across = wall_before(boundary, add(place, multiply(width - bodies.distance(place), face)));
+  if (across && !(dot(face, across->normal) < 0)) across.reset();
+  return across;
+}
+
 void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity) {
   const BodyWalls& bodies = *boundary.bodies();
   const double least = narrowest_wedge * boundary.spacing();
@@ -135,8 +138,8 @@ void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity) {
   const double before = bodies.distance(place);
   if (!(before < least) || (boundary.features.displaced_bodies && bodies.moves_at(place))) return;
   const Vec3 face = bodies.normal(place);
-  const std::optional<Across> across = wall_before(boundary, add(place, multiply(least - before, face)));
-  if (!across || !(dot(face, across->normal) < 0)) return;
+  const std::optional<WallBehind> across = wall_across(boundary, place, least);
+  if (!across) return;
   const Vec3 outwards = add(face, across->normal);
   const double size = length(outwards);
   if (size < parallel) return;

@@ -269,15 +269,28 @@ void ProjectionSolver::find_enclosed(const PressureRows& rows, ParticleStore& pa
   if (context == nullptr || rows.helmholtz != 0) return;
   const std::size_t n = matrix_->size();
   ScratchPool& scratch = particles.scratch();
-  ScratchArray<double> one(scratch, n), zero(scratch, n), product(scratch, n);
+  ScratchArray<double> constant(scratch, n), zero(scratch, n), product(scratch, n);
+  const auto multiply = [&] {
+    matrix_->residual(std::span<const double>(constant.data(), n), std::span<const double>(zero.data(), n),
+                      std::span(product.data(), n), false);
+  };
+  const auto is_known = [&](std::size_t i) { return std::abs(product[i]) >= of_no_constant * rows.diagonal[i]; };
   parallel_for(n, [&](std::size_t i) {
-    one[i] = rows.diagonal[i] == 0 ? 0 : 1;
+    constant[i] = rows.diagonal[i] == 0 ? 0 : 1;
     zero[i] = 0;
   });
-  matrix_->residual(std::span<const double>(one.data(), n), std::span<const double>(zero.data(), n),
-                    std::span(product.data(), n), false);
-  enclosed_ = enclosed_parts(*context, rows.singular,
-                             [&](std::size_t i) { return std::abs(product[i]) >= of_no_constant * rows.diagonal[i]; });
+  multiply();
+  // Below a body that floats on what it encloses, the weight of the body makes the pressure known; with as much liquid
+  // above it the constants of both parts together leave it at rest.
+  const auto is_free = [&](const PartMembers& members) {
+    parallel_for(n, [&](std::size_t i) { constant[i] = 0; });
+    for (const std::int32_t i : members) constant[static_cast<std::size_t>(i)] = 1;
+    multiply();
+    return std::none_of(members.begin(), members.end(),
+                        [&](std::int32_t i) { return is_known(static_cast<std::size_t>(i)); });
+  };
+  const auto demand = matrix_->couples() ? std::function<bool(const PartMembers&)>(is_free) : nullptr;
+  enclosed_ = enclosed_parts(*context, rows.singular, is_known, demand);
   looks_for_enclosed = enclosed_.empty() ? 0 : 1;
   if (enclosed_.empty() || remarked_) return;
   remarked_ = true;

@@ -40,10 +40,9 @@ StartAtRest::StartAtRest(const Scene& scene, const Circumstances& circumstances)
   else if (!scene.free_surface)
     reason = "one phase fills the tank";
   else
-    settles = !(chosen = particles_at_rest(scene)).empty();
+    settles = circumstances.unasked || !(chosen = particles_at_rest(scene)).empty();
   if (settles && circumstances.unasked) {
     settles = false;
-    chosen.clear();
     reason = "compressibility.settling_rounds = 0";
   }
   if (settles) reason = "to where the liquid is at rest";

@@ -2,6 +2,7 @@
 #include "spume/particles/wall_contacts.hpp"
 
 #include <cmath>
+#include <optional>
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
@@ -12,8 +13,8 @@ namespace {
 
 // Of a way to a contact: 2^-16 of a tenth of a spacing is below the gap of 1e-3 spacings that walls keep.
 constexpr int halvings = 16;
-// Of the product of two unit vectors: what bears alone pushes along its own normal.
-constexpr double alone = 0.999;
+// Of a place that walls have led out of a wedge to where they are the narrowest apart, for the rounding of that.
+constexpr double across = 1.05 * narrowest_wedge;
 
 // By how much walls put a place back; round periodic sides it stays.
 Vec3 put_back(const Boundary& boundary, const Vec3& place) {
@@ -28,6 +29,24 @@ bool beside_body_at_rest(const Boundary& boundary, const Vec3& place) {
   const BodyWalls& bodies = *boundary.bodies();
   return bodies.nearer_than(place, narrowest_wedge * boundary.spacing()) &&
          !(boundary.features.displaced_bodies && bodies.moves_at(place));
+}
+
+// The wall that holds a particle together with the nearest wall of a body: across a wedge, or the side that it lies on.
+std::optional<WallBehind> other_wall(const Boundary& boundary, const Vec3& place, const Vec3& outwards) {
+  if (std::optional<WallBehind> found = wall_across(boundary, place, across * boundary.spacing())) return found;
+  const Domain& domain = boundary.domain();
+  WallBehind side;
+  double most = 0;
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    for (std::size_t end = 0; end < 2; ++end) {
+      const double inwards = end == 0 ? 1 : -1;
+      const double before = inwards * (place[axis] - boundary.walls[axis][end]), along = inwards * outwards[axis];
+      if (!is_wall(domain.sides[axis][end].kind) || before > across * boundary.spacing() || !(along > most)) continue;
+      most = along;
+      side.normal = {};
+      side.normal[axis] = inwards;
+    }
+  return most > 0 ? std::optional(side) : std::nullopt;
 }
 
 }  // namespace
@@ -56,12 +75,22 @@ WayToContact go_to_contact(const Boundary& boundary, const Vec3& place, const Ve
   return found;
 }
 
-// Of a force along `outwards` on the particle. Two walls push along their bisector, each along its normal.
-WallContacts::Borne WallContacts::borne(const Vec3& place, const Vec3& outwards, double force) const {
-  const BodyWalls::NearestWall near = boundary_.bodies()->nearest_wall(boundary_.domain().inside(place));
+// Of a force along `outwards` on the particle, which the walls hold at `place`: each of two walls pushes along its
+// normal, and together they make the force.
+void WallContacts::share(const Vec3& place, const Vec3& outwards, double force, std::vector<Borne>& borne) const {
+  const BodyWalls::NearestWall near = boundary_.bodies()->nearest_wall(place);
   const double along = dot(outwards, near.normal);
-  const double share = along > alone ? 1 : along > 0 ? 1 / (2 * along) : 0;
-  return {near.body, near.point, multiply(-force * share, near.normal)};
+  const std::optional<WallBehind> other = other_wall(boundary_, place, outwards);
+  double own = along, others = 0;
+  if (other) {
+    const double both = dot(near.normal, other->normal), along_other = dot(outwards, other->normal);
+    own = (along - both * along_other) / (1 - both * both);
+    others = (along_other - both * along) / (1 - both * both);
+    if (!(own > 0)) own = 0, others = along_other;
+    if (!(others > 0)) own = along, others = 0;
+  }
+  if (own > 0) borne.push_back({near.body, near.point, multiply(-force * own, near.normal)});
+  if (others > 0 && other->body) borne.push_back({*other->body, other->foot, multiply(-force * others, other->normal)});
 }
 
 void WallContacts::bear(const std::vector<std::int32_t>& near, const Liquid& liquid) {
@@ -81,7 +110,9 @@ void WallContacts::bear(const std::vector<std::int32_t>& near, const Liquid& liq
         (*liquid.acceleration[axis])[i] = static_cast<float>(a[axis] - into * outwards[axis]);
         (*particles.velocity[axis])[i] -= liquid.dt / 2 * into * outwards[axis];
       }
-      found_[block].push_back(borne(place, outwards, -into * particles.volume * liquid.law(i).density));
+      const Vec3 end = boundary_.domain().inside(add(place, way));
+      share(boundary_.domain().inside(add(end, put_back(boundary_, end))), outwards,
+            -into * particles.volume * liquid.law(i).density, found_[block]);
     }
   });
 }

@@ -219,7 +219,7 @@ std::vector<Problem> release_warnings(const Draft& draft, const Scene& scene, co
     if (const double half = least_half_width(*body.alone, scene.domain.dimensions) / scene.spacing;
         motion.release->grows() && half < few)
       warn("is " + brief(half) +
-           " spacings from its middle to its nearest face: one that grows displaces up to a half less than its volume "
+           " spacings from its middle to its nearest face: one that grows may displace less than half of its volume "
            "below " +
            brief(few) +
            ", and the liquid may lose volume with each; lower resolution.spacing, or watch the level of the liquid");

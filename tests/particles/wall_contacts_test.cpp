@@ -44,8 +44,8 @@ TEST(WallContacts, AWallBearsWhatGoesIntoItAlongItsNormal) {
   EXPECT_EQ(direction_of_contact(wedge.boundary, wedge.before_face(0.5 * spacing), into), Vec3{});
 }
 
-// Two particles on the face, of which one is drawn away from it, and one beyond it: of the first the part of its
-// acceleration into the wall is the body's, with what its velocity has had of it.
+// Two particles on the face, of which one is drawn away from it, and one half a spacing before it: of the first the
+// part of its acceleration into the wall is the body's, with what its velocity has had of it.
 TEST(WallContacts, BodiesBearWhatPressesOnThem) {
   Wedge wedge;
   const Vec3 normal{-std::sin(Wedge::angle), std::cos(Wedge::angle), 0}, along{normal[1], -normal[0], 0};
@@ -83,7 +83,47 @@ TEST(WallContacts, BodiesBearWhatPressesOnThem) {
   contacts.add_to_bodies(forces);
   EXPECT_NEAR(dot(forces[0].pressure, normal), -7 * mass, 1e-6 * mass);
   EXPECT_NEAR(dot(forces[0].pressure, along), 0, 1e-6 * mass);
-  EXPECT_NEAR(forces[0].pressure_torque[2], cross(wedge.before_face(0), multiply(-7 * mass, normal))[2], 1e-5 * mass);
+  // Where it is after the step, in which it goes 3 dt^2 along the face.
+  const Vec3 foot = add(wedge.before_face(0), multiply(3 * dt * dt, along));
+  EXPECT_NEAR(forces[0].pressure_torque[2], cross(foot, multiply(-7 * mass, normal))[2], 1e-6 * mass);
+}
+
+// The walls of a wedge push along their normals: what presses a particle into it along the bisector is borne by the
+// body by 1 / |n + n'| and by the floor, which is none, by as much. Beside a ramp, whose corner is obtuse, the floor
+// alone bears what presses on it.
+TEST(WallContacts, TwoWallsShareWhatPressesIntoTheirWedge) {
+  Wedge wedge("[[body]]\nshape = \"box\"\nsize = [0.4, 0.4]\nposition = [-0.7, 0]\nrotation = [45]\n");
+  ParticleStore particles(2, wedge.loaded.scene.particles);
+  const std::size_t n = particles.size();
+  std::array<Array<float>, 3> values;
+  FloatVectorField acceleration{&values[0], &values[1], &values[2]};
+  for (auto& component : values) component.resize(n), component.fill(0.0F);
+  Array<std::int64_t> phase(n);
+  phase.fill(0);
+  const std::vector<PhaseLaw> laws{{.density = 5}};
+  const double dt = 1e-2, mass = 5 * particles.volume;
+  const auto borne = [&](const Vec3& place, const Vec3& a) {
+    for (int axis = 0; axis < 2; ++axis) {
+      (*particles.position[axis])[0] = place[axis];
+      (*acceleration[axis])[0] = static_cast<float>(a[axis]);
+      (*particles.velocity[axis])[0] = dt / 2 * a[axis];
+    }
+    WallContacts contacts(wedge.boundary);
+    contacts.bear({0}, {particles, acceleration, ParticleLaws(laws, phase), dt});
+    std::vector<WallForce> forces(2);
+    contacts.add_to_bodies(forces);
+    return add(forces[0].pressure, forces[1].pressure);
+  };
+  const double half = Wedge::angle / 2, pressing = 70;
+  const Vec3 face{std::sin(Wedge::angle), -std::cos(Wedge::angle), 0};
+  const Vec3 force = borne(wedge.middle(0.605 * spacing), {-pressing * std::cos(half), -pressing * std::sin(half), 0});
+  // Two unit normals that make an angle of 160 degrees have a sum of 2 sin 10 degrees.
+  const double share = pressing * mass / (2 * std::sin(half));
+  EXPECT_NEAR(dot(force, face), -share, 0.02 * share);
+  EXPECT_NEAR(cross(force, face)[2], 0, 1e-6 * share);
+  const Vec3 before_ramp{-0.7 + 0.2 * std::numbers::sqrt2 + 0.3 * spacing, 2 * gap, 0};
+  EXPECT_LT(length(borne(before_ramp, {0, -pressing, 0})), 1e-9 * pressing * mass);
+  EXPECT_NEAR(vector_at(acceleration, 2, 0)[1], 0, 1e-6 * pressing);  // the floor does
 }
 
 TEST(WallContacts, AWayEndsWhereTheWallHoldsIt) {
@@ -95,6 +135,9 @@ TEST(WallContacts, AWayEndsWhereTheWallHoldsIt) {
   const WayToContact stopped = go_to_contact(wedge.boundary, from, {0, -0.5 * spacing, 0});
   EXPECT_NEAR(wedge.boundary.bodies()->distance(stopped.end), gap, 1e-3 * gap);
   EXPECT_NEAR(stopped.outwards[1], std::cos(Wedge::angle), 1e-6);
+  // Along the wall it goes on: the free end, put back along the normal.
+  EXPECT_NEAR(dot(subtract(stopped.end, from), {std::cos(Wedge::angle), std::sin(Wedge::angle), 0}),
+              -0.5 * spacing * std::sin(Wedge::angle), 1e-3 * spacing);
   // At the mouth of the wedge both walls hold it back, along the bisector, before they are 0.6 spacings apart.
   const Vec3 inwards = multiply(-spacing, Vec3{std::cos(Wedge::angle / 2), std::sin(Wedge::angle / 2), 0});
   const WayToContact held = go_to_contact(wedge.boundary, wedge.middle(0.8 * spacing), inwards);

@@ -17,6 +17,8 @@ class ProjectionMatrix {
   virtual std::size_t size() const = 0;
   // The lists, images and wall points that its rows pass over; null: rows meet more than these.
   virtual const SweepContext* context() const { return nullptr; }
+  // Whether rows meet others beside these: those of all liquid that touches a body which floats.
+  virtual bool couples() const { return false; }
   // Rows whose unknown follows from others; null: none.
   virtual const TiedRows* tied() const { return nullptr; }
   // y = A x in float, with sum w y and sum y y accumulated in double in fixed blocks.

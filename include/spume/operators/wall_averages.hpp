@@ -12,8 +12,8 @@
 // by pair, images included, so that nothing but the wall's own motion and gravity does work there. With an extrapolated
 // u_g in its place (Adami et al., (23)) sound grows in acute wedges and in slots, by e in 0.07 sqrt(H/g).
 //
-// j are particles of the lists, round periodic sides too; mirror images of liquid or wall do not count. A point that
-// nothing is near has zeros. Results do not depend on the thread count.
+// j are particles of the lists, round periodic sides too; mirror images of liquid or wall count in Q_g alone. A point
+// that nothing is near has zeros. Results do not depend on the thread count.
 #pragma once
 
 #include <array>

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "spume/core/vec3.hpp"
 #include "spume/particles/store.hpp"
@@ -39,6 +40,16 @@ bool in_one_layer(const Boundary& boundary, const Vec3& place);
 // Spacings between the faces of a wedge. A layer of particles, which stand half a spacing from walls, needs one; at 0.6
 // those that press against each other at its mouth stay.
 inline constexpr double narrowest_wedge = 0.6;
+// A wall that a place is behind, by how much, and the body whose it is; none: a side.
+struct WallBehind {
+  Vec3 normal{};
+  double behind = 0;
+  std::optional<std::size_t> body;
+  Vec3 foot{};  // on the body
+};
+// The wall across a wedge from the nearest wall of a body: the one that is less than `width` away from that along its
+// normal at `place`, which is in between.
+std::optional<WallBehind> wall_across(const Boundary& boundary, const Vec3& place, double width);
 // A place in a wedge whose faces are nearer to each other than 0.6 spacings there: out along the bisector to where
 // they are not, with the velocity that leads in taken away. Between faces that are parallel to 6 degrees, which lead
 // nowhere out, and beside bodies that move nothing is moved.

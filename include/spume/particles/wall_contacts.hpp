@@ -17,12 +17,12 @@
 namespace spume {
 
 // The direction, of length 1, in which the walls of bodies at rest would put back what goes from `place` by `way`; zero
-// where they would not, and beside sides and moving bodies alone. There are bodies.
+// where they would not, farther than 0.6 spacings from such walls and beside moving bodies. There are bodies.
 Vec3 direction_of_contact(const Boundary& boundary, const Vec3& place, const Vec3& way);
 
-// The end of a way from `place`, or the point of it from which on the walls of bodies at rest would put a particle
-// back, and the direction in which they do; sides and bodies that move hold as Boundary::hold_liquid(). Places go round
-// periodic sides.
+// The end of a way from `place`, or, where walls of bodies at rest would put a particle back from it, the place between
+// the two from which on they would, and the direction in which they do: along a wall the particle goes on. Sides and
+// bodies that move hold as Boundary::hold_liquid(). Places go round periodic sides.
 struct WayToContact {
   Vec3 end{}, outwards{};
 };
@@ -49,7 +49,7 @@ class WallContacts {
   // Takes from accelerations and velocities of the particles `near` walls what the bodies bear in place of what they
   // bore before. Same bits for any thread count.
   void bear(const std::vector<std::int32_t>& near, const Liquid& liquid);
-  // Adds what the bodies bear. In a wedge the other wall bears as much, which is not added.
+  // Adds what the bodies bear: in a wedge of two the part of each, along its normal.
   void add_to_bodies(std::vector<WallForce>& forces) const;
 
  private:
@@ -57,7 +57,7 @@ class WallContacts {
     std::size_t body = 0;
     Vec3 foot{}, force{};
   };
-  Borne borne(const Vec3& place, const Vec3& outwards, double force) const;
+  void share(const Vec3& place, const Vec3& outwards, double force, std::vector<Borne>& borne) const;
 
   const Boundary& boundary_;
   std::vector<std::vector<Borne>> found_;

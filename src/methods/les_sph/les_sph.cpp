@@ -153,28 +153,26 @@ void LesSph::remark_edges_at_surface() {
   const Vec3 gravity = gravity_across_sides(flow_.scene);
   if (flow_.surface == nullptr || walls == nullptr || gravity == Vec3{}) return;
   const Vec3 up = multiply(-1 / length(gravity), gravity);
-  struct Top {
-    double height = -INFINITY;
-    Vec3 place{};
-  };
-  std::vector<Top> tops(walls->bodies().size());
+  std::vector<double> tops(walls->bodies().size(), -INFINITY);
   for (const WallPoint& point : walls->all_points()) {
     if (point.past_edge) continue;
-    Top& top = tops[walls->nearest_wall(point.foot).body];
-    if (const double height = dot(up, point.foot); height > top.height) top = {height, point.foot};
+    double& top = tops[walls->nearest_wall(point.foot).body];
+    top = std::max(top, dot(up, point.foot));
   }
   const double spacing = flow_.scene.spacing;
-  for (std::size_t b = 0; b < tops.size(); ++b) {
-    const double level = parallel_max(flow_.size(), -INFINITY, [&](std::size_t i) {
-      const Vec3 place = vector_at(flow_.particles.position, flow_.dimensions, i);
-      return length(subtract(place, tops[b].place)) < near * spacing ? dot(up, place) + spacing / 2 : -INFINITY;
-    });
+  std::vector<bool> ends(tops.size(), false);
+  for (const std::int32_t i : flow_.surface->surface_particles) {
+    const Vec3 place = vector_at(flow_.particles.position, flow_.dimensions, static_cast<std::size_t>(i));
+    if (!walls->nearer_than(place, near * spacing)) continue;
     // Feet of wall points stand half a spacing from an edge at most.
-    if (!(std::abs(tops[b].height - level) < beside * spacing)) continue;
+    const std::size_t body = walls->nearest_wall(place).body;
+    if (std::abs(tops[body] - dot(up, place) - spacing / 2) < beside * spacing) ends[body] = true;
+  }
+  for (std::size_t b = 0; b < tops.size(); ++b) {
+    if (!ends[b]) continue;
     remarks_.push_back({"body \"" + walls->bodies()[b].name +
                             "\" ends within about a spacing of the surface, where still water does not stay still (up "
-                            "to 0.3 sqrt(g H)): end it two "
-                            "spacings above or three below, or lower resolution.spacing",
+                            "to 0.3 sqrt(g H)): end it two spacings above or below, or lower resolution.spacing",
                         false});
   }
 }

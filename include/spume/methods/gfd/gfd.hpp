@@ -44,8 +44,8 @@ class Gfd final : public Method, public FieldProbes {
   }
   PointSample sample(const Vec3& position) override { return sampler().sample(position); }
   PlaneSample plane_average(int axis, double position) override { return sampler().plane_average(axis, position); }
-  // The volume of each phase; the residual of the pressure.
   std::vector<Remark> take_remarks() override;
+  // The volume of each phase; the residual of the pressure.
   std::vector<Invariant> invariants() const override;
   void save(StateWriter& writer) const override;
   void load(StateReader& reader) override;
