@@ -30,9 +30,9 @@ std::optional<WallBehind> wall_before(const Boundary& boundary, const Vec3& plac
       across.normal[axis] = inwards;
       return across;
     }
-  if (boundary.bodies()->distance(place) > 0) return std::nullopt;
-  const BodyWalls::NearestWall wall = boundary.bodies()->nearest_wall(place);
-  return WallBehind{wall.normal, -wall.distance, wall.body, wall.point};
+  const double distance = boundary.bodies()->distance(place);
+  if (distance > 0) return std::nullopt;
+  return WallBehind{boundary.bodies()->normal(place), -distance, true, place};
 }
 
 // The middle of a ball of half a spacing that fits between the walls around a place.

@@ -90,7 +90,9 @@ void WallContacts::share(const Vec3& place, const Vec3& outwards, double force, 
     if (!(others > 0)) own = along, others = 0;
   }
   if (own > 0) borne.push_back({near.body, near.point, multiply(-force * own, near.normal)});
-  if (others > 0 && other->body) borne.push_back({*other->body, other->foot, multiply(-force * others, other->normal)});
+  if (!(others > 0) || !other->of_body) return;
+  const BodyWalls::NearestWall second = boundary_.bodies()->nearest_wall(other->place);
+  borne.push_back({second.body, second.point, multiply(-force * others, other->normal)});
 }
 
 void WallContacts::bear(const std::vector<std::int32_t>& near, const Liquid& liquid) {

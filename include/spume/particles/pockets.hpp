@@ -40,12 +40,12 @@ bool in_one_layer(const Boundary& boundary, const Vec3& place);
 // Spacings between the faces of a wedge. A layer of particles, which stand half a spacing from walls, needs one; at 0.6
 // those that press against each other at its mouth stay.
 inline constexpr double narrowest_wedge = 0.6;
-// A wall that a place is behind, by how much, and the body whose it is; none: a side.
+// A wall of a side or a body that a place is behind, and by how much.
 struct WallBehind {
   Vec3 normal{};
   double behind = 0;
-  std::optional<std::size_t> body;
-  Vec3 foot{};  // on the body
+  bool of_body = false;
+  Vec3 place{};
 };
 // The wall across a wedge from the nearest wall of a body: the one that is less than `width` away from that along its
 // normal at `place`, which is in between.
