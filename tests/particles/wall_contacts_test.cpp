@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+#include <numeric>
+
 #include "particles/walled.hpp"
 
 namespace spume::test {
@@ -44,86 +47,105 @@ TEST(WallContacts, AWallBearsWhatGoesIntoItAlongItsNormal) {
   EXPECT_EQ(direction_of_contact(wedge.boundary, wedge.before_face(0.5 * spacing), into), Vec3{});
 }
 
-// Two particles on the face, of which one is drawn away from it, and one half a spacing before it: of the first the
-// part of its acceleration into the wall is the body's, with what its velocity has had of it.
-TEST(WallContacts, BodiesBearWhatPressesOnThem) {
-  Wedge wedge;
-  const Vec3 normal{-std::sin(Wedge::angle), std::cos(Wedge::angle), 0}, along{normal[1], -normal[0], 0};
-  ParticleStore particles(2, wedge.loaded.scene.particles);
-  const std::size_t n = particles.size();
-  ASSERT_GT(n, 3U);
-  std::array<Array<float>, 3> values;
-  FloatVectorField acceleration{&values[0], &values[1], &values[2]};
-  for (auto& component : values) component.resize(n), component.fill(0.0F);
-  Array<std::int64_t> phase(n);
-  phase.fill(0);
-  const std::vector<PhaseLaw> laws{{.density = 5}};
-  const double dt = 1e-3, mass = 5 * particles.volume;
-  const auto put = [&](std::size_t i, const Vec3& place, const Vec3& a) {
+// Particles of density 5 about a wedge, at the end of a step: velocities have half of it of the accelerations.
+struct PressedParticles {
+  PressedParticles(const Wedge& around, double step)
+      : wedge(around), dt(step), particles(2, wedge.loaded.scene.particles), phase(particles.size()) {
+    for (auto& component : values) component.resize(particles.size()), component.fill(0.0F);
+    phase.fill(0);
+  }
+  void put(std::size_t i, const Vec3& place, const Vec3& a) {
     for (int axis = 0; axis < 2; ++axis) {
       (*particles.position[axis])[i] = place[axis];
       (*acceleration[axis])[i] = static_cast<float>(a[axis]);
       (*particles.velocity[axis])[i] = dt / 2 * a[axis];
     }
-  };
+  }
+  // What each body has of the first `count` of them.
+  std::vector<WallForce> bear(std::int32_t count) {
+    std::vector<std::int32_t> near(static_cast<std::size_t>(count));
+    std::iota(near.begin(), near.end(), 0);
+    WallContacts contacts(wedge.boundary);
+    contacts.bear(near, {particles, acceleration, ParticleLaws(laws, phase), dt});
+    std::vector<WallForce> forces(wedge.loaded.scene.bodies.size());
+    contacts.add_to_bodies(forces);
+    return forces;
+  }
+  Vec3 a(std::size_t i) const { return vector_at(acceleration, 2, i); }
+  double mass() const { return laws[0].density * particles.volume; }
+
+  const Wedge& wedge;
+  const double dt;
+  ParticleStore particles;
+  std::array<Array<float>, 3> values;
+  FloatVectorField acceleration{&values[0], &values[1], &values[2]};
+  Array<std::int64_t> phase;
+  const std::vector<PhaseLaw> laws{{.density = 5}};
+};
+
+// Two particles on the face, of which one is drawn away from it, and one half a spacing before it: of the first the
+// part of its acceleration into the wall is the body's, with what its velocity has had of it.
+TEST(WallContacts, BodiesBearWhatPressesOnThem) {
+  const Wedge wedge;
+  const Vec3 normal{-std::sin(Wedge::angle), std::cos(Wedge::angle), 0}, along{normal[1], -normal[0], 0};
+  const double dt = 1e-3;
+  PressedParticles pressed(wedge, dt);
+  ASSERT_GT(pressed.particles.size(), 3U);
+  const double mass = pressed.mass();
   const Vec3 presses = add(multiply(-7, normal), multiply(3, along)), leaves = multiply(2, normal);
-  put(0, wedge.before_face(gap), presses);
-  put(1, wedge.before_face(gap), leaves);
-  put(2, wedge.before_face(0.5 * spacing), presses);
-  WallContacts contacts(wedge.boundary);
-  contacts.bear({0, 1, 2}, {particles, acceleration, ParticleLaws(laws, phase), dt});
-  const auto a = [&](std::size_t i) { return vector_at(acceleration, 2, i); };
+  pressed.put(0, wedge.before_face(gap), presses);
+  pressed.put(1, wedge.before_face(gap), leaves);
+  pressed.put(2, wedge.before_face(0.5 * spacing), presses);
+  const WallForce force = pressed.bear(3)[0];
   // Accelerations are floats of up to 7.
-  EXPECT_NEAR(dot(a(0), normal), 0, 1e-6);
-  EXPECT_NEAR(dot(a(0), along), 3, 1e-6);
-  EXPECT_NEAR(dot(vector_at(particles.velocity, 2, 0), normal), 0, 1e-6 * dt);
-  EXPECT_NEAR(dot(a(1), normal), 2, 1e-6);
-  EXPECT_NEAR(dot(a(2), normal), -7, 1e-6);
-  std::vector<WallForce> forces(1);
-  contacts.add_to_bodies(forces);
-  EXPECT_NEAR(dot(forces[0].pressure, normal), -7 * mass, 1e-6 * mass);
-  EXPECT_NEAR(dot(forces[0].pressure, along), 0, 1e-6 * mass);
+  EXPECT_NEAR(dot(pressed.a(0), normal), 0, 1e-6);
+  EXPECT_NEAR(dot(pressed.a(0), along), 3, 1e-6);
+  EXPECT_NEAR(dot(vector_at(pressed.particles.velocity, 2, 0), normal), 0, 1e-6 * dt);
+  EXPECT_NEAR(dot(pressed.a(1), normal), 2, 1e-6);
+  EXPECT_NEAR(dot(pressed.a(2), normal), -7, 1e-6);
+  EXPECT_NEAR(dot(force.pressure, normal), -7 * mass, 1e-6 * mass);
+  EXPECT_NEAR(dot(force.pressure, along), 0, 1e-6 * mass);
   // Where it is after the step, in which it goes 3 dt^2 along the face.
   const Vec3 foot = add(wedge.before_face(0), multiply(3 * dt * dt, along));
-  EXPECT_NEAR(forces[0].pressure_torque[2], cross(foot, multiply(-7 * mass, normal))[2], 1e-6 * mass);
+  EXPECT_NEAR(force.pressure_torque[2], cross(foot, multiply(-7 * mass, normal))[2], 1e-6 * mass);
 }
 
 // The walls of a wedge push along their normals: what presses a particle into it along the bisector is borne by the
 // body by 1 / |n + n'| and by the floor, which is none, by as much. Beside a ramp, whose corner is obtuse, the floor
 // alone bears what presses on it.
 TEST(WallContacts, TwoWallsShareWhatPressesIntoTheirWedge) {
-  Wedge wedge("[[body]]\nshape = \"box\"\nsize = [0.4, 0.4]\nposition = [-0.7, 0]\nrotation = [45]\n");
-  ParticleStore particles(2, wedge.loaded.scene.particles);
-  const std::size_t n = particles.size();
-  std::array<Array<float>, 3> values;
-  FloatVectorField acceleration{&values[0], &values[1], &values[2]};
-  for (auto& component : values) component.resize(n), component.fill(0.0F);
-  Array<std::int64_t> phase(n);
-  phase.fill(0);
-  const std::vector<PhaseLaw> laws{{.density = 5}};
-  const double dt = 1e-2, mass = 5 * particles.volume;
-  const auto borne = [&](const Vec3& place, const Vec3& a) {
-    for (int axis = 0; axis < 2; ++axis) {
-      (*particles.position[axis])[0] = place[axis];
-      (*acceleration[axis])[0] = static_cast<float>(a[axis]);
-      (*particles.velocity[axis])[0] = dt / 2 * a[axis];
-    }
-    WallContacts contacts(wedge.boundary);
-    contacts.bear({0}, {particles, acceleration, ParticleLaws(laws, phase), dt});
-    std::vector<WallForce> forces(2);
-    contacts.add_to_bodies(forces);
-    return add(forces[0].pressure, forces[1].pressure);
-  };
-  const double half = Wedge::angle / 2, pressing = 70;
+  const Wedge wedge("[[body]]\nshape = \"box\"\nsize = [0.4, 0.4]\nposition = [-0.7, 0]\nrotation = [45]\n");
+  PressedParticles pressed(wedge, 1e-2);
+  const double half = Wedge::angle / 2, pressing = 70, mass = pressed.mass();
   const Vec3 face{std::sin(Wedge::angle), -std::cos(Wedge::angle), 0};
-  const Vec3 force = borne(wedge.middle(0.605 * spacing), {-pressing * std::cos(half), -pressing * std::sin(half), 0});
+  pressed.put(0, wedge.middle(0.605 * spacing), {-pressing * std::cos(half), -pressing * std::sin(half), 0});
+  const Vec3 force = pressed.bear(1)[0].pressure;
   // Two unit normals that make an angle of 160 degrees have a sum of 2 sin 10 degrees.
   const double share = pressing * mass / (2 * std::sin(half));
   EXPECT_NEAR(dot(force, face), -share, 0.02 * share);
   EXPECT_NEAR(cross(force, face)[2], 0, 1e-6 * share);
-  const Vec3 before_ramp{-0.7 + 0.2 * std::numbers::sqrt2 + 0.3 * spacing, 2 * gap, 0};
-  EXPECT_LT(length(borne(before_ramp, {0, -pressing, 0})), 1e-9 * pressing * mass);
-  EXPECT_NEAR(vector_at(acceleration, 2, 0)[1], 0, 1e-6 * pressing);  // the floor does
+  pressed.put(0, {-0.7 + 0.2 * std::numbers::sqrt2 + 0.3 * spacing, 2 * gap, 0}, {0, -pressing, 0});
+  for (const WallForce& of_body : pressed.bear(1)) EXPECT_LT(length(of_body.pressure), 1e-9 * pressing * mass);
+  EXPECT_NEAR(pressed.a(0)[1], 0, 1e-6 * pressing);  // the floor does
+}
+
+// Of a wedge between two bodies both have their part, and together what presses. The slab lies 0.4 spacings high.
+TEST(WallContacts, TwoBodiesShareWhatPressesIntoTheirWedge) {
+  const double top = 0.4 * spacing, half = Wedge::angle / 2, pressing = 70;
+  const Wedge wedge("[[body]]\nshape = \"box\"\nsize = [1.6, 0.1]\nposition = [0, " + std::to_string(top - 0.05) +
+                    "]\n");
+  PressedParticles pressed(wedge, 1e-2);
+  const Vec3 into{-pressing * std::cos(half), -pressing * std::sin(half), 0};
+  const double height = 0.605 * spacing;
+  Vec3 place = wedge.middle(top + height);
+  place[1] = top + height / 2;
+  pressed.put(0, place, into);
+  const std::vector<WallForce> forces = pressed.bear(1);
+  const double force = pressing * pressed.mass();
+  EXPECT_NEAR(forces[1].pressure[1], -force / (2 * std::sin(half)), 0.02 * force / half);
+  EXPECT_NEAR(forces[1].pressure[0], 0, 1e-6 * force);
+  const Vec3 missing = subtract(add(forces[0].pressure, forces[1].pressure), multiply(pressed.mass(), into));
+  EXPECT_LT(length(missing), 0.02 * force);
 }
 
 TEST(WallContacts, AWayEndsWhereTheWallHoldsIt) {
