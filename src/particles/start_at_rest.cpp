@@ -40,9 +40,10 @@ StartAtRest::StartAtRest(const Scene& scene, const Circumstances& circumstances)
   else if (!scene.free_surface)
     reason = "one phase fills the tank";
   else
-    settles = circumstances.unasked || !(chosen = particles_at_rest(scene)).empty();
+    settles = !(chosen = particles_at_rest(scene)).empty();
   if (settles && circumstances.unasked) {
     settles = false;
+    chosen = {};
     reason = "compressibility.settling_rounds = 0";
   }
   if (settles) reason = "to where the liquid is at rest";

@@ -29,6 +29,7 @@ constexpr auto slow_interval = 1s, longest_interval = 5s;
 constexpr auto ledger_interval = 1s;
 constexpr auto pause_poll = 50ms;  // after which a paused run looks for SIGINT
 constexpr auto preparing_words = "preparing";
+constexpr std::size_t most_waiting = 64;  // wishes for the first step
 constexpr std::size_t longest_line = 2000;
 
 Json steerable_options(const std::vector<OptionInfo>& options, const std::string& resolved) {
@@ -109,17 +110,18 @@ void LiveView::preparing(Simulation& simulation, const std::string& how_far) {
   words_ = preparing_words;
   how_far_ = how_far;
   if (!server_.attention()) return;
-  for (const ViewMessage& message : server_.take_messages()) {
-    if (message.action == ViewMessage::Action::stop)
+  for (ViewMessage& message : server_.take_messages()) {
+    using Action = ViewMessage::Action;
+    if (message.action == Action::stop || message.action == Action::pause || message.action == Action::go)
       obey(simulation, message);
-    else
-      waiting_.push_back(message);
+    else if (waiting_.size() < most_waiting)
+      waiting_.push_back(std::move(message));
   }
   const auto now = Clock::now();
   if (now < next_frame_) return;
   next_frame_ = now + shortest_interval;
   for (const auto& viewer : server_.viewers()) {
-    const std::optional<FrameWish> wish = viewer->take_wish();
+    const std::optional<FrameWish> wish = viewer->idle() ? viewer->take_wish() : std::nullopt;
     if (!wish) continue;
     viewer->send(texts_for(*viewer, simulation));
     viewer->give_back(*wish);  // no frame has answered it
@@ -299,6 +301,7 @@ std::string LiveView::state() const {
   const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
   return dumped({{"type", "state"},
                  {"words", words_},
+                 {"held", paused_},
                  {"step", progress_.step},
                  {"time", progress_.time},
                  {"end", progress_.end},

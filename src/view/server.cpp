@@ -75,7 +75,7 @@ class Socket final : public Viewer {
     const std::lock_guard lock(mutex_);
     return closed_;
   }
-  bool idle() const {
+  bool idle() const override {
     const std::lock_guard lock(mutex_);
     return closed_ || (packets_.empty() && !sending_);
   }

@@ -4,7 +4,8 @@
 // the file system is served. One token lets its viewer steer, the other only look.
 //
 // The thread of the run never waits here: what it sends goes into the mailbox of a viewer, which a thread of the
-// viewer empties, and it sends only to viewers that have acknowledged what they got before.
+// viewer empties, and it sends only to viewers that have acknowledged what they got before, or, of a run that prepares,
+// whose mailbox is empty.
 #pragma once
 
 #include <chrono>
@@ -34,6 +35,7 @@ class Viewer {
   // Unless another one has come meanwhile.
   virtual void give_back(FrameWish wish) = 0;
   virtual void send(std::vector<Packet> packets) = 0;
+  virtual bool idle() const = 0;  // everything is sent
   virtual bool may_steer() const = 0;
   // Of what the run has told this viewer, kept by the thread of the run.
   struct Told {

@@ -11,8 +11,8 @@ function show_state(state) {
     rate: !state.rate ? '' : `${short(state.rate / 1e6, 3)} Mp-steps/s`};
   for (const [id, text] of Object.entries(texts)) by_id(id).textContent = text;
   by_id('done').style.width = state.end > 0 ? `${Math.min(100, 100 * state.time / state.end)}%` : 0;
-  paused = state.words === 'paused';
   preparing = state.words === 'preparing';
+  paused = state.words === 'paused' || preparing && state.held;
   const runs = paused || preparing || state.words === 'running';
   by_id('words').className = paused ? 'paused' : '';
   by_id('pause').textContent = paused ? 'Go on' : 'Pause';

@@ -47,7 +47,7 @@ def check_particles(run, scene, complaints, periodic_margin=0.0):
     if "id" in first.fields:
         before, after = np.sort(first.fields["id"]), np.sort(last.fields["id"])
         removed = particles_removed(run, len(before), last.time)
-        if len(after) != len(before) - removed or not np.all(np.isin(after, before)):
+        if len(after) != len(before) - removed or len(np.unique(after)) < len(after) or not np.all(np.isin(after, before)):
             complaints.append(f"particles: {len(before)} at the start, {removed} removed, {len(after)} at the end, or other ids")
     lower, upper = run.bounds()
     domain = scene.case["domain"]
@@ -98,12 +98,12 @@ def check_les_sph(run, scene, complaints):
         complaints.append(f"convergence: only {np.max(tolerance):.3g} was asked for")
     gravity = np.zeros(run.dimensions)
     gravity[-1] = -1.0 / scene.case["fluid"].get("froude", np.inf) ** 2
-    speed = max(facts["speed"], float(np.max(series["max_speed"])))
     if spills:
         # What leaves takes momentum and energy with it.
         left = np.abs(lacks + removed) > 4e-15 * mass[0]
         held = int(np.argmax(left)) if np.any(left) else len(left)
         series, mass = {name: values[:held] for name, values in series.items()}, mass[:held]
+    speed = max(facts["speed"], float(np.max(series["max_speed"])))
     axes = facts["free_axes"]
     if axes:
         momentum = np.stack([series["momentum_" + "xyz"[axis]] for axis in axes], axis=1)
