@@ -171,20 +171,15 @@ double WallAverages::bytes() const {
                              (transposed_.first.capacity() + transposed_.entry.capacity()) * sizeof(std::int64_t));
 }
 
-void WallForce::press(const Vec3& place, const Vec3& force) {
-  pressure = add(pressure, force);
-  pressure_torque = add(pressure_torque, cross(place, force));
-}
-
-std::vector<WallForce> wall_forces(const SweepContext& context, const WallForceFields& fields, std::size_t bodies) {
+std::vector<SurfaceForce> wall_forces(const SweepContext& context, const WallForceFields& fields, std::size_t bodies) {
   const std::size_t n = context.list->particles();
   const std::int32_t *wall_point = context.images->wall_point(), *path = context.images->path();
-  std::vector<WallForce> sum(bodies);
+  std::vector<SurfaceForce> sum(bodies);
   if (wall_point == nullptr) return sum;
   const int d = context.dimensions;
   const double h = context.smoothing_length, V = context.volume;
   const double scale = context.gradient_scale * V * V * WendlandC2::normalisation(d) / std::pow(h, d + 2);
-  std::vector<std::vector<WallForce>> blocks(block_count(n, default_block), std::vector<WallForce>(bodies));
+  std::vector<std::vector<SurfaceForce>> blocks(block_count(n, default_block), std::vector<SurfaceForce>(bodies));
   parallel_blocks(n, default_block, [&](std::size_t b, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i)
       for (const std::int32_t j : context.list->of(i)) {
@@ -209,19 +204,13 @@ std::vector<WallForce> wall_forces(const SweepContext& context, const WallForceF
           if (fields.viscosity != nullptr)
             viscous[axis] = -2 * weight * fields.viscosity[i] * (u[axis] - held[axis] * fields.velocity[axis][i]);
         }
-        WallForce& own = blocks[b][static_cast<std::size_t>(fields.body[g])];
+        SurfaceForce& own = blocks[b][static_cast<std::size_t>(fields.body[g])];
         own.press(place, pressure);
-        own.viscous = add(own.viscous, viscous);
-        own.viscous_torque = add(own.viscous_torque, cross(place, viscous));
+        own.rub(place, viscous);
       }
   });
   for (const auto& block : blocks)
-    for (std::size_t k = 0; k < bodies; ++k) {
-      sum[k].pressure = add(sum[k].pressure, block[k].pressure);
-      sum[k].viscous = add(sum[k].viscous, block[k].viscous);
-      sum[k].pressure_torque = add(sum[k].pressure_torque, block[k].pressure_torque);
-      sum[k].viscous_torque = add(sum[k].viscous_torque, block[k].viscous_torque);
-    }
+    for (std::size_t k = 0; k < bodies; ++k) sum[k].add(block[k]);
   return sum;
 }
 

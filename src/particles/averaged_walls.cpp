@@ -48,7 +48,7 @@ std::array<const double*, 3> AveragedWalls::place() const {
   return static_cast<const Boundary&>(boundary_).bodies()->wet().position;
 }
 
-std::vector<WallForce> AveragedWalls::forces(const Arrangement& arrangement, const Liquid& liquid) const {
+std::vector<SurfaceForce> AveragedWalls::forces(const Arrangement& arrangement, const Liquid& liquid) const {
   const BodyWalls& walls = *boundary_.bodies();
   std::vector<std::int32_t> body(walls.stencils().size());
   for (std::size_t g = 0; g < body.size(); ++g) body[g] = walls.body_of_wet(g);

@@ -9,6 +9,7 @@
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/operators/moving_least_squares.hpp"
+#include "spume/particles/column_pressure.hpp"
 #include "spume/particles/near_particles.hpp"
 #include "spume/particles/surface_pieces.hpp"
 
@@ -25,6 +26,12 @@ constexpr double pinned = 10;
 // lattices in two and three dimensions, up to 300 where the liquid ends beside the element. In a boundary layer of four
 // spacings parabolas have slopes 4 % too low and cubics 0.7 %.
 constexpr double steepest = 12;
+// Of a full kernel sum: less before an element is the edge of the liquid.
+constexpr double wet_share = 0.5;
+// Spacings: from an element to a particle that stands in the gap before it, and the narrowest gap with room for one.
+constexpr double in_gap = 1, room_in_gap = 1;
+
+constexpr std::size_t block_of_elements = 256;
 
 // Elements of a body in one cell of a spacing that face one way, as one: facets of a shape are often slivers, 61
 // for a square of a spacing around a cylinder, and each would take a fit. Their areas add up; their middle is the mean.
@@ -83,8 +90,15 @@ struct BodyForces::Sorted {
   }
 };
 
+BodyForces::Fields::Fields(const Arrangement& arrangement, const ParticleStore& store)
+    : grid(arrangement.grid),
+      particles(store.size()),
+      position(read(store.position)),
+      velocity(read(store.velocity)),
+      particle_volume(store.volume) {}
+
 BodyForces::BodyForces(const Scene& scene, const Resolution& resolution, const BodyWalls& walls)
-    : scene_(scene), resolution_(resolution), walls_(walls) {
+    : scene_(scene), resolution_(resolution), walls_(walls), gravity_(gravity_across_sides(scene)) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
     if (scene.bodies[b].wall != BoundaryKind::open) add_elements(static_cast<std::int32_t>(b));
 }
@@ -124,7 +138,7 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
   const ThinWalls* thin = walls_.thin();
   const Vec3 eye = add(element.middle, multiply(before_surface * resolution_.spacing, normal));
   const double free = thin == nullptr ? infinite : thin->distance(eye);
-  double sum = 0, covered = 0;
+  double sum = 0, covered = 0, nearest2 = infinite;
   with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
     const double scale = fields.particle_volume * Kernel::normalisation(d) / std::pow(h, d);
     for (std::size_t k = 0; k < near.size(); ++k) {
@@ -139,11 +153,11 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
       before.push_back(
           {static_cast<std::size_t>(table.cells.order()[static_cast<std::size_t>(near.particle(k))]), offset, weight});
       sum += weight;
+      nearest2 = std::min(nearest2, near.r2(k));
       covered += 2 * scale * Kernel::w(r / h);
     }
   });
   Traction found;
-  if (covered < 0.5) return found;
   MovingLeastSquares<dimensions> fit;
   const auto fill = [&](bool pin) {
     fit.resize(before.size() + (pin ? 1 : 0));
@@ -156,24 +170,34 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
     fit.weight()[before.size()] = pinned * sum;
   };
   fill(false);
-  if (fit.fit(2) < 0) return found;
-  double p = 0;
+  const bool fitted = covered >= wet_share && fit.fit(2) >= 0;
+  if (!fitted) {
+    found.before = before_uncovered(element, before.empty() ? infinite : std::sqrt(nearest2));
+    found.in_gap = found.before != Before::nothing;
+    if (found.before != Before::liquid) return found;
+  }
+  found.before = Before::liquid;
+  for (const Near& one : before) found.density += one.weight / sum * fields.density(one.particle);
+  found.first_weight = weights == nullptr ? 0 : weights->size();
   const auto value = fit.value();
   for (std::size_t k = 0; k < before.size(); ++k) {
+    const double share = fitted ? value[k] : before[k].weight / sum;
+    if (!fitted) found.value -= share * found.density * dot(gravity_, before[k].offset);
     if (weights != nullptr)
       weights->push_back({static_cast<std::int32_t>(before[k].particle), element.body, element.middle,
-                          multiply(-value[k], element.area)});
+                          multiply(-share, element.area)});
     else
-      p += value[k] * fields.pressure[before[k].particle];
+      found.value += share * fields.pressure(before[k].particle);
   }
-  found.pressure = multiply(-p, element.area);
+  found.last_weight = weights == nullptr ? 0 : weights->size();
+  found.pressure = multiply(-found.value, element.area);
   const bool holds = scene_.bodies[static_cast<std::size_t>(element.body)].wall == BoundaryKind::no_slip;
   double viscosity = fields.dynamic_viscosity;
   if (fields.viscosity != nullptr) {
     viscosity = 0;
     for (const Near& one : before) viscosity += one.weight / sum * fields.viscosity[one.particle];
   }
-  if (!(viscosity > 0) || !holds) return found;
+  if (!fitted || !(viscosity > 0) || !holds) return found;
   fill(true);
   std::array<Vec3, 3> gradient{};  // [a][b] = d u_a / d x_b
   const auto differentiate = [&](int order) {
@@ -201,11 +225,56 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
   return found;
 }
 
+// Before an element that lacks liquid, with the nearest particle before it `nearest` away.
+BodyForces::Before BodyForces::before_uncovered(const Element& element, double nearest) const {
+  const double spacing = resolution_.spacing;
+  const std::optional<double> gap = walls_.gap_before(element.middle, multiply(1 / length(element.area), element.area));
+  if (!gap || *gap == 0) return Before::nothing;
+  if (nearest < in_gap * spacing) return Before::liquid;
+  return *gap < room_in_gap * spacing ? Before::gap : Before::nothing;
+}
+
+void BodyForces::fill_gaps(std::vector<Traction>& of, std::vector<std::vector<PressureWeight>>* weights) const {
+  std::vector<std::size_t> gaps;
+  for (std::size_t e = 0; e < of.size(); ++e)
+    if (of[e].before == Before::gap) gaps.push_back(e);
+  // At the start bodies are in one piece.
+  std::vector<std::size_t> nearest(gaps.size());
+  parallel_for(gaps.size(), [&](std::size_t k) {
+    double least = infinite;
+    nearest[k] = gaps[k];
+    for (std::size_t f = 0; f < of.size(); ++f) {
+      if (elements_[f].body != elements_[gaps[k]].body || of[f].before == Before::gap) continue;
+      const Vec3 way = subtract(elements_[f].middle, elements_[gaps[k]].middle);
+      if (dot(way, way) >= least) continue;
+      least = dot(way, way);
+      nearest[k] = f;
+    }
+  });
+  for (std::size_t k = 0; k < gaps.size(); ++k) {
+    const Traction& from = of[nearest[k]];
+    if (from.before != Before::liquid) continue;
+    const Element own = now(elements_[gaps[k]]), other = now(elements_[nearest[k]]);
+    Traction& gap = of[gaps[k]];
+    gap.value = from.value + from.density * dot(gravity_, scene_.domain.shortest(subtract(own.middle, other.middle)));
+    gap.pressure = multiply(-gap.value, own.area);
+    if (weights == nullptr) continue;
+    const double size = dot(other.area, other.area);
+    std::vector<PressureWeight>& block = (*weights)[nearest[k] / block_of_elements];
+    for (std::size_t w = from.first_weight; w < from.last_weight; ++w) {
+      const double share = -dot(block[w].force, other.area) / size;
+      block.push_back({block[w].particle, own.body, own.middle, multiply(-share, own.area)});
+    }
+  }
+}
+
 BodyForces::Element BodyForces::now(const Element& element) const {
   const auto body = static_cast<std::size_t>(element.body);
   if (!scene_.bodies[body].motion) return element;
   const RigidPlace& place = walls_.part_of(body).place;
-  return {scene_.domain.inside(place.now(element.middle)), place.direction_now(element.area), element.body};
+  const double growth = std::pow(place.scale, scene_.domain.dimensions - 1);
+  return {scene_.domain.inside(place.now(element.middle)), multiply(growth, place.direction_now(element.area)),
+          element.body};
 }
 
 bool BodyForces::floats(const Element& element) const {
@@ -237,11 +306,10 @@ std::optional<std::size_t> BodyForces::floats_through() const {
 
 std::vector<BodyForces::Traction> BodyForces::tractions(const Fields& fields, double t,
                                                         std::vector<std::vector<PressureWeight>>* weights) const {
-  constexpr std::size_t block = 256;
   std::vector<Traction> of(elements_.size());
-  if (weights != nullptr) weights->resize(block_count(elements_.size(), block));
+  if (weights != nullptr) weights->resize(block_count(elements_.size(), block_of_elements));
   const Sorted table(fields, scene_.domain.dimensions);
-  parallel_blocks(elements_.size(), block, [&](std::size_t b, std::size_t first, std::size_t last) {
+  parallel_blocks(elements_.size(), block_of_elements, [&](std::size_t b, std::size_t first, std::size_t last) {
     // Expressions keep their variables inside: each block evaluates its own copies.
     std::vector<VectorExpression> velocity;
     for (const Body& body : scene_.bodies)
@@ -249,15 +317,16 @@ std::vector<BodyForces::Traction> BodyForces::tractions(const Fields& fields, do
     NearParticles near;
     std::vector<PressureWeight>* const own = weights == nullptr ? nullptr : &(*weights)[b];
     for (std::size_t e = first; e < last; ++e) {
-      if (weights != nullptr && !floats(elements_[e])) continue;
+      const auto body = static_cast<std::size_t>(elements_[e].body);
+      if ((weights != nullptr && !floats(elements_[e])) || walls_.part_of(body).absent()) continue;
       const Element element = now(elements_[e]);
-      const auto body = static_cast<std::size_t>(element.body);
       const Vec3 wall = scene_.bodies[body].motion ? walls_.part_of(body).velocity_at(element.middle)
                                                    : velocity[body](element.middle, t);
       of[e] = scene_.domain.dimensions == 3 ? traction<3>(fields, table, near, element, wall, own)
                                             : traction<2>(fields, table, near, element, wall, own);
     }
   });
+  fill_gaps(of, weights);
   return of;
 }
 
@@ -265,11 +334,9 @@ std::vector<SurfaceForce> BodyForces::add_up(const std::vector<Traction>& of) co
   std::vector<SurfaceForce> total(scene_.bodies.size());
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     SurfaceForce& body = total[static_cast<std::size_t>(elements_[e].body)];
-    body.pressure = add(body.pressure, of[e].pressure);
-    body.viscous = add(body.viscous, of[e].viscous);
     const Vec3 middle = now(elements_[e]).middle;
-    body.pressure_torque = add(body.pressure_torque, cross(middle, of[e].pressure));
-    body.viscous_torque = add(body.viscous_torque, cross(middle, of[e].viscous));
+    body.press(middle, of[e].pressure);
+    body.rub(middle, of[e].viscous);
   }
   return total;
 }
@@ -278,10 +345,23 @@ std::vector<SurfaceForce> BodyForces::measure(const Fields& fields, double t) co
   return add_up(tractions(fields, t, nullptr));
 }
 
+void BodyForces::integrate_beside_gaps(const Fields& fields, std::vector<SurfaceForce>& forces) const {
+  const std::vector<Traction> of = tractions(fields, 0, nullptr);
+  const std::vector<SurfaceForce> integrals = add_up(of);
+  std::vector<std::uint8_t> has_gap(forces.size(), 0);
+  for (std::size_t e = 0; e < of.size(); ++e)
+    if (of[e].in_gap) has_gap[static_cast<std::size_t>(elements_[e].body)] = 1;
+  for (std::size_t b = 0; b < forces.size(); ++b) {
+    if (has_gap[b] == 0) continue;
+    forces[b].pressure = integrals[b].pressure;
+    forces[b].pressure_torque = integrals[b].pressure_torque;
+  }
+}
+
 void BodyForces::find_weights(const Fields& fields, std::vector<PressureWeight>& weights,
-                              std::vector<SurfaceForce>& viscous) const {
+                              std::vector<SurfaceForce>& given) const {
   std::vector<std::vector<PressureWeight>> blocks;
-  viscous = add_up(tractions(fields, 0, &blocks));
+  given = add_up(tractions(fields, 0, &blocks));
   weights.clear();
   for (const auto& block : blocks) weights.insert(weights.end(), block.begin(), block.end());
 }

@@ -28,8 +28,9 @@ constexpr double full_wall_share = 0.9, most_moduli_beside_void = 1.5;
 // Except before another wall: in slots and wedges, where particles are few, a point that takes no part is a hole in the
 // wall. Still water at their mouths grew restless by e in 1 sqrt(H/g), and what fits amplify by 3 at every step.
 constexpr int least_order = 1, least_order_before_wall = 0;
-constexpr double faces_wall_within = 2;  // spacings: of one layer of particles
-constexpr double thinnest = 0.05;        // spacings, of a plate across it
+constexpr double thinnest = 0.05;  // spacings, of a plate across a gap
+// Spacings before a surface: another wall that is there touches it.
+constexpr double touches_within = 0.005;
 // Each part costs a particle 6 ns a question; cells cost 1 ns and a pass over the domain at every step.
 constexpr std::size_t many_parts = 4;
 
@@ -195,21 +196,26 @@ WallPointView BodyWalls::wet() const {
   return view;
 }
 
-bool BodyWalls::faces_wall(const WallPoint& point) const {
+std::optional<double> BodyWalls::gap_before(const Vec3& foot, const Vec3& normal) const {
   const Domain& domain = scene_.domain;
-  const Vec3 across = add(point.foot, multiply(faces_wall_within * scene_.spacing, point.normal));
-  for (int axis = 0; axis < domain.dimensions; ++axis)
-    if ((across[axis] < domain.lower[axis] && is_wall(domain.sides[axis][0].kind)) ||
-        (across[axis] > domain.upper[axis] && is_wall(domain.sides[axis][1].kind)))
-      return true;
+  const double width = widest_gap * scene_.spacing;
+  std::optional<double> gap;
+  const auto limit = [&](double found) { gap = std::min(found, gap.value_or(width)); };
+  for (int axis = 0; axis < domain.dimensions; ++axis) {
+    const std::size_t end = normal[axis] < 0 ? 0 : 1;
+    const double room = end == 0 ? foot[axis] - domain.lower[axis] : domain.upper[axis] - foot[axis];
+    if (is_wall(domain.sides[axis][end].kind) && width * std::abs(normal[axis]) > room)
+      limit(room > touches_within * scene_.spacing ? room / std::abs(normal[axis]) : 0);
+  }
   // What is farther from a wall than it is from the ends has none before it.
-  const double width = faces_wall_within * scene_.spacing;
   const auto at = [&](const Vec3& place) { return distance(place); };
-  if (at(add(point.foot, multiply(0.5 * width, point.normal))) > 0.49 * width) return false;
-  const double least = thinnest * scene_.spacing;
-  return way_to_wall(add(point.foot, multiply(least, point.normal)), multiply(width - least, point.normal), least, at,
-                     [&](const Vec3& place) { return at(place) < 0; })
-      .has_value();
+  if (at(add(foot, multiply(0.5 * width, normal))) > 0.49 * width) return gap;
+  const double first = touches_within * scene_.spacing;
+  const std::optional<Vec3> wall =
+      way_to_wall(add(foot, multiply(first, normal)), multiply(width - first, normal), thinnest * scene_.spacing, at,
+                  [&](const Vec3& place) { return at(place) < 0; });
+  if (wall) limit(std::max(0.0, dot(subtract(*wall, foot), normal) - first));
+  return gap;
 }
 
 template <int dimensions>
@@ -268,7 +274,7 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
     });
     if (kernel_sum < wet_wall_share || !seen) continue;
     const bool beside_void = !scene_.free_surface && scene_.motions.empty() && kernel_sum < full_wall_share;
-    const bool before_wall = scene_.motions.empty() && faces_wall(point);
+    const bool before_wall = gap_before(point.foot, point.normal).has_value();
     const int least = before_wall ? least_order_before_wall : least_order;
     if (fit.fit(beside_void || before_wall ? most_moduli_beside_void : infinite) < least) continue;
     block.point.push_back(static_cast<std::int32_t>(g));

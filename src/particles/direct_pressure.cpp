@@ -13,7 +13,6 @@
 #include "spume/particles/options.hpp"
 #include "spume/scene/document.hpp"
 #include "spume/scene/draft.hpp"
-#include "spume/scene/enclosed_liquid.hpp"
 
 namespace spume {
 namespace {
@@ -46,12 +45,22 @@ struct DirectPressure::Factors {
 DirectPressure::DirectPressure() : factors_(std::make_unique<Factors>()) {}
 DirectPressure::~DirectPressure() = default;
 
-void DirectPressure::factorise(ProjectionMatrix& matrix, std::span<const float> diagonal, bool singular) {
+void DirectPressure::factorise(ProjectionMatrix& matrix, std::span<const float> diagonal, bool singular,
+                               const PartConstants& enclosed) {
   const SweepContext* context = matrix.context();
   if (context == nullptr) throw std::logic_error("the direct solver needs a matrix of pairs of particles");
   size_ = matrix.size();
-  bordered_ = singular;
   if (size_ == 0) return;
+  borders_ = enclosed.parts();
+  if (singular && (borders_.empty() || enclosed.rest())) {
+    std::vector<char> of_part(size_, 0);
+    for (const auto& part : borders_)
+      for (const std::int32_t i : part) of_part[static_cast<std::size_t>(i)] = 1;
+    std::vector<std::int32_t> rest;
+    for (std::size_t i = 0; i < size_; ++i)
+      if (of_part[i] == 0 && diagonal[i] != 0) rest.push_back(static_cast<std::int32_t>(i));
+    borders_.push_back(std::move(rest));
+  }
   find_pattern(*context, matrix.tied(), diagonal);
   find_colours();
   find_entries(matrix);
@@ -98,13 +107,15 @@ void DirectPressure::find_pattern(const SweepContext& context, const TiedRows* t
     column_.insert(column_.end(), met.begin(), met.end());
     row_first_.push_back(static_cast<int>(column_.size()));
   }
-  // By columns, rows in order; the border last.
-  const std::size_t columns = size_ + (bordered_ ? 1 : 0);
+  // By columns, rows in order; borders last.
+  const std::size_t columns = size_ + borders_.size();
   first_.assign(columns + 1, 0);
-  const double border = bordered_ ? *std::max_element(diagonal.begin(), diagonal.end()) : 0;
+  const double border = *std::max_element(diagonal.begin(), diagonal.end());
   for (const int j : column_) ++first_[static_cast<std::size_t>(j) + 1];
-  for (std::size_t j = 0; j < size_ && bordered_; ++j) ++first_[j + 1];
-  if (bordered_) first_[columns] = n;
+  for (std::size_t b = 0; b < borders_.size(); ++b) {
+    for (const std::int32_t j : borders_[b]) ++first_[static_cast<std::size_t>(j) + 1];
+    first_[size_ + b + 1] = static_cast<int>(borders_[b].size());
+  }
   for (std::size_t j = 0; j < columns; ++j) first_[j + 1] += first_[j];
   row_.resize(static_cast<std::size_t>(first_[columns]));
   entry_.assign(row_.size(), 0.0);
@@ -112,13 +123,14 @@ void DirectPressure::find_pattern(const SweepContext& context, const TiedRows* t
   for (int i = 0; i < n; ++i)
     for (int k = row_first_[static_cast<std::size_t>(i)]; k < row_first_[static_cast<std::size_t>(i) + 1]; ++k)
       row_[static_cast<std::size_t>(next[static_cast<std::size_t>(column_[static_cast<std::size_t>(k)])]++)] = i;
-  if (bordered_)
-    for (int j = 0; j < n; ++j) {
-      row_[static_cast<std::size_t>(next[static_cast<std::size_t>(j)])] = n;
-      entry_[static_cast<std::size_t>(next[static_cast<std::size_t>(j)])] = fixed(j) ? 0 : border;
-      const auto at = static_cast<std::size_t>(next[size_]++);
-      row_[at] = j;
-      entry_[at] = fixed(j) ? 0 : border;
+  for (std::size_t b = 0; b < borders_.size(); ++b)
+    for (const std::int32_t j : borders_[b]) {
+      const auto below = static_cast<std::size_t>(next[static_cast<std::size_t>(j)]++);
+      row_[below] = static_cast<int>(size_ + b);
+      entry_[below] = border;
+      const auto beside = static_cast<std::size_t>(next[size_ + b]++);
+      row_[beside] = j;
+      entry_[beside] = border;
     }
   // Fixed ones have no colour, and 1 on the diagonal.
   colour_.assign(size_, 0);
@@ -138,7 +150,7 @@ void DirectPressure::find_colours() {
     if (colour_[j] < 0) continue;
     for (int k = first_[j]; k < first_[j + 1]; ++k) {
       const auto i = static_cast<std::size_t>(row_[static_cast<std::size_t>(k)]);
-      if (i == size_) continue;
+      if (i >= size_) continue;
       for (int e = row_first_[i]; e < row_first_[i + 1]; ++e) {
         const auto other = static_cast<std::size_t>(column_[static_cast<std::size_t>(e)]);
         if (done[other] != 0) taken[static_cast<std::size_t>(colour_[other])] = static_cast<int>(j);
@@ -236,13 +248,6 @@ void check_direct_solver(const Draft& draft, const Scene& scene, Problems& probl
     problems.add(*node,
                  "pressure.solver = \"direct\" does not go with bodies that float, which couple all particles "
                  "around them; use \"bicgstab\"");
-  if (scene.fluid.sound_speed > 0) return;
-  const auto place = enclosed_liquid(scene);
-  if (!place) return;
-  std::string words;
-  for (int axis = 0; axis < scene.domain.dimensions; ++axis) words += (axis == 0 ? "" : ", ") + brief((*place)[axis]);
-  problems.add(*node, "pressure.solver = \"direct\" has one constant of the pressure to find, and the liquid at (" +
-                          words + "), which solids enclose, one of its own; use \"bicgstab\"");
 }
 
 }  // namespace spume

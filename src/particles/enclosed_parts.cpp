@@ -8,19 +8,17 @@
 
 namespace spume {
 
-PartConstants enclosed_parts(const SweepContext& context, bool singular,
-                             const std::function<bool(std::size_t)>& is_known,
-                             const std::function<bool(const PartMembers&)>& is_free) {
+EnclosedParts enclosed_parts(const SweepContext& context, const std::function<bool(std::size_t)>& is_known) {
   const NeighbourList& list = *context.list;
   const auto n = static_cast<std::int32_t>(list.particles());
   const std::int32_t* source = context.images == nullptr ? nullptr : context.images->source();
   const std::int32_t* wall_point = context.walls == nullptr ? nullptr : context.images->wall_point();
   std::vector<std::uint8_t> seen(list.particles(), 0);
-  std::vector<PartMembers> parts;
+  EnclosedParts found;
   std::vector<std::int32_t> ahead;
   for (std::int32_t first = 0; first < n; ++first) {
     if (seen[static_cast<std::size_t>(first)] != 0) continue;
-    PartMembers members;
+    std::vector<std::int32_t> members;
     bool known = false;
     const auto reach = [&](std::int32_t i) {
       if (seen[static_cast<std::size_t>(i)] != 0) return;
@@ -40,15 +38,14 @@ PartConstants enclosed_parts(const SweepContext& context, bool singular,
           reach(source[point - n]);
       }
     }
-    if (known) continue;
+    if (known) {
+      found.all = false;
+      continue;
+    }
     std::sort(members.begin(), members.end());
-    parts.push_back(std::move(members));
+    found.parts.push_back(std::move(members));
   }
-  if (singular && !parts.empty())
-    parts.erase(
-        std::max_element(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); }));
-  if (is_free) std::erase_if(parts, [&](const PartMembers& members) { return !is_free(members); });
-  return {std::move(parts), singular};
+  return found;
 }
 
 }  // namespace spume

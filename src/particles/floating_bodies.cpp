@@ -50,12 +50,16 @@ Vec3 nearest_arm(const Domain& domain, Vec3 arm) {
 }  // namespace
 
 // K - G m^-1 C.
-class FloatingBodies::Coupled final : public ProjectionMatrix {
+class FloatingBodies::Coupled final : public ProjectionMatrix, public BodyCoupling {
  public:
   Coupled(const FloatingBodies& bodies, PressureOperator& liquid) : bodies_(bodies), liquid_(liquid) {}
   std::size_t size() const override { return liquid_.size(); }
   const SweepContext* context() const override { return liquid_.context(); }
-  bool couples() const override { return true; }
+  BodyCoupling* coupling() override { return this; }
+  ProjectionMatrix& liquid() override { return liquid_; }
+  std::vector<double> relative_response(std::span<const std::int32_t> members) const override {
+    return bodies_.relative_response(members);
+  }
   Dots apply(std::span<const float> x, std::span<float> y, std::span<const float> w) override {
     liquid_.apply(x, y, w);
     const std::vector<double> a = bodies_.accelerations(x, false);
@@ -185,8 +189,8 @@ void FloatingBodies::set_forces(const Liquid& liquid) {
   }
 
   std::vector<BodyForces::PressureWeight> weights;
-  std::vector<SurfaceForce> viscous;
-  forces_.find_weights(liquid.fields, weights, viscous);
+  std::vector<SurfaceForce> given;
+  forces_.find_weights(liquid.fields, weights, given);
   // Per particle, in the order of particles: the sums below have one order.
   std::stable_sort(weights.begin(), weights.end(),
                    [](const auto& a, const auto& b) { return a.particle < b.particle; });
@@ -202,15 +206,18 @@ void FloatingBodies::set_forces(const Liquid& liquid) {
       const auto [body, axis] = freedoms_[k];
       if (scene_.bodies[static_cast<std::size_t>(weight.body)].motion != motions_[body]) continue;
       const Vec3 arm = nearest_arm(scene_.domain, subtract(weight.place, next_[body].place.position));
-      sums[k] += liquid.density * (axis < 3 ? weight.force[axis] : cross(arm, weight.force)[axis - 3]);
+      sums[k] += liquid.fields.density(static_cast<std::size_t>(weight.particle)) *
+                 (axis < 3 ? weight.force[axis] : cross(arm, weight.force)[axis - 3]);
     }
   }
   for (std::size_t k = 0; k < count; ++k) {
     const auto [body, axis] = freedoms_[k];
     for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
       if (scene_.bodies[b].motion != motions_[body]) continue;
-      const Vec3 about = subtract(viscous[b].viscous_torque, cross(next_[body].place.position, viscous[b].viscous));
-      given_force_[k] += axis < 3 ? viscous[b].viscous[axis] : about[axis - 3];
+      const Vec3 force = add(given[b].viscous, given[b].pressure),
+                 torque = add(given[b].viscous_torque, given[b].pressure_torque),
+                 about = subtract(torque, cross(next_[body].place.position, force));
+      given_force_[k] += axis < 3 ? force[axis] : about[axis - 3];
     }
     if (liquid.potential != nullptr)
       for (std::size_t e = 0; e < particle_.size(); ++e)
@@ -330,6 +337,25 @@ std::vector<double> FloatingBodies::accelerations(std::span<const T> q, bool giv
   if (given)
     for (std::size_t k = 0; k < result.size(); ++k) result[k] += held_change_.given[k];
   return result;
+}
+
+std::vector<double> FloatingBodies::relative_response(std::span<const std::int32_t> members) const {
+  const std::size_t count = freedoms_.size();
+  std::vector<double> force(count, 0), moduli(count, 0);
+  for (std::size_t e = 0; e < particle_.size(); ++e) {
+    const bool pushes = std::binary_search(members.begin(), members.end(), particle_[e]);
+    for (std::size_t k = 0; k < count; ++k) {
+      moduli[k] += std::abs(force_[e * count + k]);
+      if (pushes) force[k] += force_[e * count + k];
+    }
+  }
+  std::vector<double> response = multiply_square(held_change_.change, force);
+  for (std::size_t k = 0; k < count; ++k) {
+    double most = 0;
+    for (std::size_t j = 0; j < count; ++j) most += std::abs(inverse_mass_[k * count + j]) * moduli[j];
+    response[k] = most > 0 ? response[k] / most : 0;
+  }
+  return response;
 }
 
 void FloatingBodies::find_accelerations(std::span<const double> q, std::span<double> image_pressure) {

@@ -103,8 +103,7 @@ bool in_one_layer(const Boundary& boundary, const Vec3& place) {
 Ahead ahead_of(const Boundary& boundary, const Arrangement& arrangement, std::size_t i, const Vec3& place,
                const Vec3& normal) {
   const BodyWalls* bodies = boundary.bodies();
-  if (bodies == nullptr || !bodies->nearer_than(place, arrangement.grid.support_radius()) || bodies->moves_at(place))
-    return Ahead::room;
+  if (bodies == nullptr || !bodies->nearer_than(place, arrangement.grid.support_radius())) return Ahead::room;
   const double size = length(normal), near = taken * boundary.spacing();
   if (!(size > 0)) return Ahead::room;
   Ahead found = Ahead::liquid;
@@ -136,17 +135,23 @@ void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity) {
   const double least = narrowest_wedge * boundary.spacing();
   if (bodies.surely_farther(place, least)) return;
   const double before = bodies.distance(place);
-  if (!(before < least) || (boundary.features.displaced_bodies && bodies.moves_at(place))) return;
+  if (!(before < least)) return;
   const Vec3 face = bodies.normal(place);
   const std::optional<WallBehind> across = wall_across(boundary, place, least);
   if (!across) return;
   const Vec3 outwards = add(face, across->normal);
   const double size = length(outwards);
   if (size < parallel) return;
+  Vec3 of_walls{};
+  if (velocity != nullptr) {
+    of_walls = bodies.wall_within(place, least)->velocity;
+    if (across->of_body) of_walls = add(of_walls, bodies.wall_within(across->place, 0)->velocity);
+    of_walls = multiply(0.5, of_walls);
+  }
   // The distances from the two grow by |outwards| together along their bisector.
   place = add(place, multiply(std::min(across->behind / size, longest * boundary.spacing()) / size, outwards));
   if (velocity == nullptr) return;
-  const double inwards = dot(*velocity, outwards) / (size * size);
+  const double inwards = dot(subtract(*velocity, of_walls), outwards) / (size * size);
   if (inwards < 0) *velocity = subtract(*velocity, multiply(inwards, outwards));
 }
 

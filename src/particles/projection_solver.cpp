@@ -7,6 +7,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/solvers/null_space.hpp"
 
 namespace spume {
 namespace {
@@ -35,6 +36,9 @@ CellGeometry cell_geometry(const Boundary& boundary, double cell_size) {
 // Of the diagonal, what a row makes of a constant that is in its null space: rounding of floats leaves 1e-6, a
 // neighbour whose pressure is given at the edge of the support 1e-3.
 constexpr double of_no_constant = 1e-4;
+// Of how fast all liquid could accelerate a body, what counts as nothing: edges of the liquid on its surface leave
+// some.
+constexpr double no_response = 1e-4;
 
 template <class Real>
 void subtract_mean(std::span<Real> values) {
@@ -188,7 +192,9 @@ double divergence_tolerance(double tolerance) {
 }
 
 ProjectionSolver::ProjectionSolver(const Boundary& boundary, const Options& options)
-    : options_(options), may_enclose_(boundary.bodies() != nullptr || !boundary.domain().boxes.empty()) {
+    : options_(options),
+      may_enclose_(boundary.bodies() != nullptr || !boundary.domain().boxes.empty()),
+      changes_volume_(boundary.features.displaced_bodies || boundary.features.displaced_walls) {
   if (options.direct) direct_ = std::make_unique<DirectPressure>();
   if (options.multigrid && !options.direct)
     multigrid_ = std::make_unique<CellMultigrid>(cell_geometry(boundary, options.cell_size));
@@ -241,7 +247,8 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
   const double of_divergence = rows.reference_norm > 0 ? std::min(1.0, rows.source_norm / rows.reference_norm) : 0;
   const double tolerance = std::max(options_.tolerance, of_divergence * divergence_tolerance(options_.tolerance));
   const double reference_norm = std::max(rows.reference_norm, rows.rounding_norm / tolerance);
-  if (may_enclose_ && direct_ == nullptr && looks_for_enclosed != 0) find_enclosed(rows, particles);
+  const bool looks = looks_for_enclosed != 0 || (rows.helmholtz != 0 && (rows.measured || rows.closed_off));
+  if (may_enclose_ && direct_ == nullptr && looks) find_enclosed(rows, particles);
   const auto refinement = [&] {
     return RefinementOptions{tolerance,     reference_norm, options_.max_iterations,
                              rows.singular, rows.measured,  enclosed_.empty() ? nullptr : &enclosed_};
@@ -261,42 +268,76 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
   solve_iteratively(rows, refinement(), particles, q);
 }
 
-// A pressure is known where a constant is not in the null space of the rows: beside surfaces, pressures that are fixed
-// and openings.
+void ProjectionSolver::factorise(const PressureRows& rows, ProjectionMatrix& matrix, ParticleStore& particles) {
+  matrix_ = &matrix;
+  if (may_enclose_) find_enclosed(rows, particles);
+  direct_->factorise(matrix, rows.diagonal, rows.singular, enclosed_);
+}
+
+// A pressure is known where a constant is not in the null space of the rows, but for what sound adds to them: beside
+// surfaces and openings; and where it is fixed.
 void ProjectionSolver::find_enclosed(const PressureRows& rows, ParticleStore& particles) {
+  enclosed_ = {};
   looks_for_enclosed = 0;
   const SweepContext* context = matrix_->context();
-  if (context == nullptr || rows.helmholtz != 0) return;
+  if (context == nullptr || (rows.helmholtz != 0 && changes_volume_)) return;
   const std::size_t n = matrix_->size();
   ScratchPool& scratch = particles.scratch();
   ScratchArray<double> constant(scratch, n), zero(scratch, n), product(scratch, n);
-  const auto multiply = [&] {
-    matrix_->residual(std::span<const double>(constant.data(), n), std::span<const double>(zero.data(), n),
-                      std::span(product.data(), n), false);
-  };
-  const auto is_known = [&](std::size_t i) { return std::abs(product[i]) >= of_no_constant * rows.diagonal[i]; };
   parallel_for(n, [&](std::size_t i) {
-    constant[i] = rows.diagonal[i] == 0 ? 0 : 1;
+    constant[i] = 1;
     zero[i] = 0;
   });
-  multiply();
-  // Below a body that floats on what it encloses, the weight of the body makes the pressure known; with as much liquid
-  // above it the constants of both parts together leave it at rest.
-  const auto is_free = [&](const PartMembers& members) {
-    parallel_for(n, [&](std::size_t i) { constant[i] = 0; });
-    for (const std::int32_t i : members) constant[static_cast<std::size_t>(i)] = 1;
-    multiply();
-    return std::none_of(members.begin(), members.end(),
-                        [&](std::int32_t i) { return is_known(static_cast<std::size_t>(i)); });
+  ProjectionMatrix& liquid = matrix_->coupling() == nullptr ? *matrix_ : matrix_->coupling()->liquid();
+  liquid.residual(std::span<const double>(constant.data(), n), std::span<const double>(zero.data(), n),
+                  std::span(product.data(), n), false);
+  const auto of_sound = [&](std::size_t i) {
+    return rows.helmholtz == 0
+               ? 0.0
+               : particles.volume * rows.helmholtz * (rows.helmholtz_scale ? rows.helmholtz_scale(i) : 1);
   };
-  const auto demand = matrix_->couples() ? std::function<bool(const PartMembers&)>(is_free) : nullptr;
-  enclosed_ = enclosed_parts(*context, rows.singular, is_known, demand);
-  looks_for_enclosed = enclosed_.empty() ? 0 : 1;
+  const auto is_fixed = [&](std::int32_t i) { return rows.diagonal[static_cast<std::size_t>(i)] == 0; };
+  EnclosedParts found = enclosed_parts(*context, [&](std::size_t i) {
+    return rows.diagonal[i] != 0 && std::abs(product[i] + of_sound(i)) >= of_no_constant * rows.diagonal[i];
+  });
+  std::erase_if(found.parts, [&](const auto& part) { return std::all_of(part.begin(), part.end(), is_fixed); });
+  const bool may_close = !found.parts.empty();
+  if (std::erase_if(found.parts, [&](const auto& part) { return std::any_of(part.begin(), part.end(), is_fixed); }) > 0)
+    found.all = false;
+  enclosed_ = constants_of(std::move(found), rows.singular);
+  // With sound no solve says that a pool is closed again which spray in it kept open.
+  if (!enclosed_.empty() || (may_close && rows.helmholtz != 0)) looks_for_enclosed = 1;
   if (enclosed_.empty() || remarked_) return;
   remarked_ = true;
   remark_ =
       "solids enclose liquid apart from the rest: its pressure is known up to a constant, whose choice the forces on "
       "the bodies around it share; a gap between the solids makes it known";
+}
+
+// Where no pressure is known the largest part is the rest. Bodies that float know the constants that accelerate them:
+// those of liquid below a piston, but not those below and above it together.
+PartConstants ProjectionSolver::constants_of(EnclosedParts found, bool singular) {
+  auto& parts = found.parts;
+  const BodyCoupling* coupling = matrix_->coupling();
+  if (coupling != nullptr && !parts.empty()) {
+    std::vector<std::vector<double>> responses;  // of a body, to all parts
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const std::vector<double> response = coupling->relative_response(parts[p]);
+      responses.resize(response.size(), std::vector<double>(parts.size(), 0));
+      for (std::size_t k = 0; k < response.size(); ++k) responses[k][p] = response[k];
+    }
+    std::vector<std::vector<double>> free = null_space(std::move(responses), parts.size(), no_response);
+    // One constant of all liquid is what rows.singular stands for.
+    const bool of_all = (singular || found.all) && free.size() == 1 &&
+                        std::all_of(free[0].begin(), free[0].end(),
+                                    [&](double value) { return std::abs(value - free[0][0]) < no_response; });
+    if (of_all) free.clear();
+    return {std::move(parts), std::move(free)};
+  }
+  if ((singular || found.all) && !parts.empty())
+    parts.erase(
+        std::max_element(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); }));
+  return {std::move(parts), singular};
 }
 
 void ProjectionSolver::solve_iteratively(const PressureRows& rows, const RefinementOptions& refinement,
@@ -321,7 +362,10 @@ void ProjectionSolver::solve_directly(const PressureRows& rows, const Refinement
   const auto find_residual = [&] {
     matrix_->residual(q, rows.right_hand_side, r, true);
     ++report_.applications;
-    if (rows.singular) subtract_mean(r);
+    if (!enclosed_.empty())
+      enclosed_.remove(r);
+    else if (rows.singular)
+      subtract_mean(r);
   };
   find_residual();
   do {
@@ -333,6 +377,7 @@ void ProjectionSolver::solve_directly(const PressureRows& rows, const Refinement
     report_.relative_residual = relative_size(size, reference_norm);
     report_.converged = size <= refinement.tolerance * reference_norm;
   } while (!report_.converged && report_.iterations < most_corrections);
+  if (!enclosed_.empty()) enclosed_.remove(q);
 }
 
 double ProjectionSolver::bytes() const {

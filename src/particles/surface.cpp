@@ -2,6 +2,7 @@
 #include "spume/particles/surface.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -34,6 +35,18 @@ constexpr double beside = 0.4;
 // particle 0.38 spacings beside a pillar, taken for liquid inside, left still water at 4 sqrt(g H).
 constexpr double in_front = 0.5;
 
+// Whether a particle meets walls alone, and images of itself.
+bool is_alone(const Arrangement& arrangement, std::size_t i) {
+  const NeighbourList& list = arrangement.list;
+  const auto n = static_cast<std::int32_t>(list.particles());
+  const std::int32_t* wall_point = arrangement.images.wall_point();
+  for (const std::int32_t j : list.of(i)) {
+    if (j >= n && wall_point != nullptr && wall_point[j - n] >= 0) continue;
+    if (arrangement.particle_of(j) != i) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 InteriorWeight interior_weight(int dimensions, const SurfaceOptions& options) {
@@ -55,6 +68,7 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, Momen
   if (boundary.bodies() != nullptr) continue_into_bodies(arrangement, moments, boundary, at);
   const Array<float>& divergence_of_position = obstacles ? counted_ : *moments.divergence_of_position;
   const double least = surface_layer_share(resolution_.dimensions) * options_.interior.threshold;
+  std::atomic<bool> some_closed_off = false;
   parallel_for(n, [&](std::size_t i) {
     at_surface[i] = divergence_of_position[i] < options_.interior.threshold ? 1 : 0;
     const bool sparse = boundary.bodies() != nullptr && continued_.is_sparse(i);
@@ -69,10 +83,14 @@ void FreeSurface::find(Arrangement& arrangement, ParticleStore& particles, Momen
       };
       inside = !continued && (before_solid() || is_in_pocket(arrangement, boundary, moments, at, i));
     }
-    if (!inside) return;
-    at_surface[i] = pressure_fixed[i] = 0;
-    interior_weight[i] = 1;
+    if (inside) {
+      at_surface[i] = pressure_fixed[i] = 0;
+      interior_weight[i] = 1;
+    }
+    if (boundary.bodies() != nullptr && pressure_fixed[i] == 0 && (sparse || is_alone(arrangement, i)))
+      some_closed_off.store(true, std::memory_order_relaxed);
   });
+  closed_off = some_closed_off.load();
   if (obstacles) pass_over_gaps(arrangement, at, boundary);
   parallel_select(n, surface_particles, [&](std::size_t i) { return at_surface[i] != 0; });
   parallel_select(n, near_surface, [&](std::size_t i) { return is_near(moments, i); });

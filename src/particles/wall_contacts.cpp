@@ -119,7 +119,7 @@ void WallContacts::bear(const std::vector<std::int32_t>& near, const Liquid& liq
   });
 }
 
-void WallContacts::add_to_bodies(std::vector<WallForce>& forces) const {
+void WallContacts::add_to_bodies(std::vector<SurfaceForce>& forces) const {
   for (const auto& block : found_)
     for (const Borne& borne : block) forces[borne.body].press(borne.foot, borne.force);
 }

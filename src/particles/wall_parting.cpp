@@ -70,7 +70,7 @@ void WallParting::add_forces(std::size_t particles, const Liquid& liquid, const 
   });
 }
 
-void WallParting::add_to_bodies(std::size_t particles, const Liquid& liquid, std::vector<WallForce>& forces) const {
+void WallParting::add_to_bodies(std::size_t particles, const Liquid& liquid, std::vector<SurfaceForce>& forces) const {
   if (!boundary_.features.displaced_bodies) return;
   std::vector<std::vector<Parting>> found(block_count(particles, default_block));
   parallel_blocks(particles, default_block, [&](std::size_t block, std::size_t first, std::size_t last) {

@@ -101,43 +101,6 @@ SolidUnion::SolidUnion(const Domain& domain, const Planes& sides, double spacing
     }
 }
 
-std::vector<std::vector<std::array<Vec3, 2>>> SolidUnion::chambers() const {
-  std::vector<std::vector<std::array<Vec3, 2>>> found;
-  std::vector<std::uint8_t> seen(owner_.size(), 0);
-  const auto from_number = [&](std::size_t n) {
-    const auto x = static_cast<std::size_t>(count_[0]), y = static_cast<std::size_t>(count_[1]);
-    return Cell{static_cast<int>(n % x), static_cast<int>(n / x % y), static_cast<int>(n / (x * y))};
-  };
-  for (std::size_t first = 0; first < owner_.size(); ++first) {
-    if (owner_[first] != free_cell || seen[first] != 0) continue;
-    std::vector<std::array<Vec3, 2>> boxes;
-    std::vector<std::size_t> left{first};
-    seen[first] = 1;
-    bool ends = true;
-    while (!left.empty()) {
-      const Cell cell = from_number(left.back());
-      left.pop_back();
-      std::array<Vec3, 2> box{};
-      for (int axis = 0; axis < dimensions_; ++axis) {
-        box[0][axis] = lower_of(axis, cell[axis]);
-        box[1][axis] = upper_of(axis, cell[axis]);
-        ends = ends && cell[axis] > 0 && cell[axis] < count_[axis] - 1;
-        for (const int step : {-1, 1}) {
-          Cell next = cell;
-          next[axis] += step;
-          if (next[axis] < 0 || next[axis] >= count_[axis] || owner(next) != free_cell || seen[number(next)] != 0)
-            continue;
-          seen[number(next)] = 1;
-          left.push_back(number(next));
-        }
-      }
-      boxes.push_back(box);
-    }
-    if (ends) found.push_back(std::move(boxes));
-  }
-  return found;
-}
-
 int SolidUnion::cell_along(int axis, double x) const {
   const std::vector<double>& planes = planes_[axis];
   return static_cast<int>(std::upper_bound(planes.begin(), planes.end(), x) - planes.begin());

@@ -112,5 +112,41 @@ TEST(LesSphPockets, ClosedPoolsRest) {
   EXPECT_LT(largest_speed_until(wide + chamber, 0.05), 1e-4);
 }
 
+const std::string sloshing_over_pool =
+    replaced(plane, "upper = [1.6, 1.1]", "where = \"1.0 + 0.05*cos(pi*x/1.6) - y\"") +
+    "[[body]]\nshape = \"outline\"\nposition = [1.1778, 0.035]\npoints = [[-0.4, -0.3], [0.4, -0.3], [0.3, 0.1], [0, "
+    "0.35], [-0.35, 0.2]]\nrotation = [51.63]\n";
+
+// With sound the errors of the divergence added up in a pool of one particle, which spray opened for a step: the force
+// on the body grew from -0.55 to 97 while the water above sloshed, and a resumed run went another way.
+TEST(LesSphPockets, SloshingOverAClosedPoolKeepsItsPressure) {
+  for (const std::string& solver : {"bicgstab", "direct"}) {
+    SCOPED_TRACE(solver);
+    Simulation run(replaced(sloshing_over_pool, "[time]", "[pressure]\nsolver = \"" + solver + "\"\n[time]"));
+    double lowest = infinite, highest = -infinite;
+    while (run.method.time() < 2) {
+      run.steps(1, run.method.step_limit().dt);
+      std::vector<double> rows;
+      run.method.table_rows("bodies", rows);
+      lowest = std::min(lowest, rows[3]);
+      highest = std::max(highest, rows[3]);
+    }
+    // The wave raises and lowers the water over the body by a twentieth.
+    EXPECT_GT(lowest, -0.61);
+    EXPECT_LT(highest, -0.49);
+  }
+}
+
+TEST(LesSphPockets, AClosedPoolWithSoundResumesBitForBit) {
+  Simulation straight(sloshing_over_pool), resumed(sloshing_over_pool);
+  straight.steps(20, 0.03);
+  MemoryState saved;
+  straight.method.save(saved);
+  resumed.method.load(saved);
+  straight.steps(20, 0.03);
+  resumed.steps(20, 0.03);
+  EXPECT_EQ(straight.saved_state(), resumed.saved_state());
+}
+
 }  // namespace
 }  // namespace spume::test

@@ -62,12 +62,12 @@ struct PressedParticles {
     }
   }
   // What each body has of the first `count` of them.
-  std::vector<WallForce> bear(std::int32_t count) {
+  std::vector<SurfaceForce> bear(std::int32_t count) {
     std::vector<std::int32_t> near(static_cast<std::size_t>(count));
     std::iota(near.begin(), near.end(), 0);
     WallContacts contacts(wedge.boundary);
     contacts.bear(near, {particles, acceleration, ParticleLaws(laws, phase), dt});
-    std::vector<WallForce> forces(wedge.loaded.scene.bodies.size());
+    std::vector<SurfaceForce> forces(wedge.loaded.scene.bodies.size());
     contacts.add_to_bodies(forces);
     return forces;
   }
@@ -96,7 +96,7 @@ TEST(WallContacts, BodiesBearWhatPressesOnThem) {
   pressed.put(0, wedge.before_face(gap), presses);
   pressed.put(1, wedge.before_face(gap), leaves);
   pressed.put(2, wedge.before_face(0.5 * spacing), presses);
-  const WallForce force = pressed.bear(3)[0];
+  const SurfaceForce force = pressed.bear(3)[0];
   // Accelerations are floats of up to 7.
   EXPECT_NEAR(dot(pressed.a(0), normal), 0, 1e-6);
   EXPECT_NEAR(dot(pressed.a(0), along), 3, 1e-6);
@@ -125,7 +125,7 @@ TEST(WallContacts, TwoWallsShareWhatPressesIntoTheirWedge) {
   EXPECT_NEAR(dot(force, face), -share, 0.02 * share);
   EXPECT_NEAR(cross(force, face)[2], 0, 1e-6 * share);
   pressed.put(0, {-0.7 + 0.2 * std::numbers::sqrt2 + 0.3 * spacing, 2 * gap, 0}, {0, -pressing, 0});
-  for (const WallForce& of_body : pressed.bear(1)) EXPECT_LT(length(of_body.pressure), 1e-9 * pressing * mass);
+  for (const SurfaceForce& of_body : pressed.bear(1)) EXPECT_LT(length(of_body.pressure), 1e-9 * pressing * mass);
   EXPECT_NEAR(pressed.a(0)[1], 0, 1e-6 * pressing);  // the floor does
 }
 
@@ -140,7 +140,7 @@ TEST(WallContacts, TwoBodiesShareWhatPressesIntoTheirWedge) {
   Vec3 place = wedge.middle(top + height);
   place[1] = top + height / 2;
   pressed.put(0, place, into);
-  const std::vector<WallForce> forces = pressed.bear(1);
+  const std::vector<SurfaceForce> forces = pressed.bear(1);
   const double force = pressing * pressed.mass();
   EXPECT_NEAR(forces[1].pressure[1], -force / (2 * std::sin(half)), 0.02 * force / half);
   EXPECT_NEAR(forces[1].pressure[0], 0, 1e-6 * force);

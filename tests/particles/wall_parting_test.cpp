@@ -42,7 +42,7 @@ TEST(WallParting, IsTheStressOfTheFormulaAndBodiesTakeTheirs) {
                                    .volume = volume.data(),
                                    .gradient_scale = scale};
   parting.add_forces(n, liquid, {force[0].data(), force[1].data(), nullptr});
-  std::vector<WallForce> taken(2);
+  std::vector<SurfaceForce> taken(2);
   parting.add_to_bodies(n, liquid, taken);
 
   const reference::PlainKernel kernel{KernelKind::wendland_c2, 2};

@@ -242,20 +242,20 @@ TEST(WcsphWalls, SumsAndForcesAgreeWithTheSlowTwin) {
         }
         modulus += rounding * liquid.twin.particle_volume * (s.pressure_modulus + s.viscous_modulus);
       }
-      const std::vector<WallForce> forces = wall_forces(liquid.context(),
-                                                        {.velocity = read(liquid.velocity),
-                                                         .pressure = liquid.pressure.data(),
-                                                         .volume = liquid.volume.data(),
-                                                         .viscosity = liquid.viscosity.data(),
-                                                         .friction = true,
-                                                         .gravity = gravity,
-                                                         .reflection = &boundary.reflection(),
-                                                         .held = &boundary.velocity_rule().sign,
-                                                         .wall_pressure = liquid.wall_pressure.data(),
-                                                         .wall_density = liquid.wall_density.data(),
-                                                         .wall_position = liquid.walls().wet().position,
-                                                         .body = liquid.body.data()},
-                                                        liquid.walls().bodies().size());
+      const std::vector<SurfaceForce> forces = wall_forces(liquid.context(),
+                                                           {.velocity = read(liquid.velocity),
+                                                            .pressure = liquid.pressure.data(),
+                                                            .volume = liquid.volume.data(),
+                                                            .viscosity = liquid.viscosity.data(),
+                                                            .friction = true,
+                                                            .gravity = gravity,
+                                                            .reflection = &boundary.reflection(),
+                                                            .held = &boundary.velocity_rule().sign,
+                                                            .wall_pressure = liquid.wall_pressure.data(),
+                                                            .wall_density = liquid.wall_density.data(),
+                                                            .wall_position = liquid.walls().wet().position,
+                                                            .body = liquid.body.data()},
+                                                           liquid.walls().bodies().size());
       Vec3 taken{};
       for (std::size_t b = 0; b < forces.size(); ++b) {
         const auto wanted = liquid.twin.force(static_cast<int>(b));

@@ -62,5 +62,27 @@ TEST(PartConstants, WhatIsOfNoPartKeepsItsValues) {
   EXPECT_EQ(x[50], before[50]);
 }
 
+// Of two parts the constants that leave a body at rest alone: those of one are twice those of the other.
+TEST(PartConstants, CombinationsLoseWhatLiesAlongThem) {
+  const auto parts = parts_of_a_thousand();
+  std::vector<double> x = something();
+  const std::vector<double> before = x, mean = means(x, parts);
+  const double n0 = static_cast<double>(parts[0].size()), n1 = static_cast<double>(parts[1].size());
+  PartConstants(parts, {{2, 1}}).remove<double>(x);
+  const double along = (2 * n0 * mean[0] + n1 * mean[1]) / (4 * n0 + n1);
+  EXPECT_NEAR(x[7] - before[7], -2 * along, 1e-13);
+  EXPECT_NEAR(x[1] - before[1], -along, 1e-13);
+  EXPECT_EQ(x[50], before[50]);
+  // All combinations are the constants on each.
+  PartConstants(parts, {{2, 1}, {1, 1}}).remove<double>(x);
+  const std::vector<double> left = means(x, parts);
+  EXPECT_NEAR(left[0], 0, 1e-13);
+  EXPECT_NEAR(left[1], 0, 1e-13);
+}
+
+TEST(PartConstants, WithoutCombinationsThereAreNone) {
+  EXPECT_TRUE(PartConstants(parts_of_a_thousand(), std::vector<std::vector<double>>()).empty());
+}
+
 }  // namespace
 }  // namespace spume

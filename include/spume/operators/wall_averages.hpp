@@ -21,6 +21,7 @@
 
 #include "spume/core/vec3.hpp"
 #include "spume/operators/pair_sweep.hpp"
+#include "spume/operators/surface_force.hpp"
 #include "spume/operators/wall_stencils.hpp"
 
 namespace spume {
@@ -73,12 +74,6 @@ class WallAverages {
   Transposed transposed_;
 };
 
-// What the liquid does to the walls: the opposite of what wall points and their images add to the sums of pressure and
-// viscosity (wcsph_sums.hpp), times the volumes of the particles.
-struct WallForce {
-  Vec3 pressure{}, viscous{}, pressure_torque{}, viscous_torque{};  // torques about the origin
-  void press(const Vec3& place, const Vec3& force);
-};
 struct WallForceFields {
   std::array<const double*, 3> velocity{};
   const float* pressure = nullptr;
@@ -94,7 +89,8 @@ struct WallForceFields {
   std::array<const double*, 3> wall_position{};
   const std::int32_t* body = nullptr;
 };
-// Per body; `bodies` of them.
-std::vector<WallForce> wall_forces(const SweepContext& context, const WallForceFields& fields, std::size_t bodies);
+// What the liquid does to the walls, per body, `bodies` of them: the opposite of what wall points and their images add
+// to the sums of pressure and viscosity (wcsph_sums.hpp), times the volumes of the particles.
+std::vector<SurfaceForce> wall_forces(const SweepContext& context, const WallForceFields& fields, std::size_t bodies);
 
 }  // namespace spume

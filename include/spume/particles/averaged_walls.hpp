@@ -46,7 +46,7 @@ class AveragedWalls {
     const float* viscosity = nullptr;  // null: inviscid
     bool friction = false;             // at no-slip walls
   };
-  std::vector<WallForce> forces(const Arrangement& arrangement, const Liquid& liquid) const;
+  std::vector<SurfaceForce> forces(const Arrangement& arrangement, const Liquid& liquid) const;
 
   double bytes() const { return averages_.bytes(); }
   double leased_bytes() const { return pressure_.bytes() + density_.bytes(); }

@@ -6,22 +6,23 @@
 // torque about the origin of the coordinates, in two dimensions its component out of the plane. Surfaces are cut into
 // elements of about a spacing; pressure and velocity gradient of an element are quadratic fits to the particles before
 // it, that of the velocity through the velocity of a no-slip surface. Elements without liquid before them feel nothing.
+//
+// Between a surface and another wall there is liquid in gaps that no particle has room in: it has the pressure of the
+// nearest element of the body before which there is room, at rest from there on. Where one layer of particles fits its
+// pressure is their mean, each at rest from its place on. Surfaces that touch a wall feel nothing there.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "spume/io/record_table.hpp"
+#include "spume/operators/surface_force.hpp"
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/near_particles.hpp"
 
 namespace spume {
-
-struct SurfaceForce {
-  Vec3 pressure{}, viscous{};                // forces
-  Vec3 pressure_torque{}, viscous_torque{};  // torques
-};
 
 class BodyForces {
  public:
@@ -29,25 +30,28 @@ class BodyForces {
   BodyForces(const Scene& scene, const Resolution& resolution, const BodyWalls& walls);
 
   struct Fields {
+    Fields(const Arrangement& arrangement, const ParticleStore& store);
     const CellGrid& grid;
-    std::size_t particles = 0;
+    std::size_t particles;
     std::array<const double*, 3> position, velocity;
-    const double* pressure;
-    double particle_volume = 0;
+    double particle_volume;
     double dynamic_viscosity = 0;
-    const float* viscosity = nullptr;  // of each particle; null: dynamic_viscosity of all
+    const float* viscosity = nullptr;                      // of each particle; null: dynamic_viscosity of all
+    std::function<double(std::size_t)> density, pressure;  // of a particle
   };
   // Per [[body]] entry; zero for those that are no walls.
   std::vector<SurfaceForce> measure(const Fields& fields, double t) const;
+  // For methods that add up what each particle exerts on walls: of bodies with gaps the pressure, which is missing
+  // there, is integrated instead.
+  void integrate_beside_gaps(const Fields& fields, std::vector<SurfaceForce>& forces) const;
 
   // Of bodies that float: the force on an element by the pressure of one of its particles, per pressure.
   struct PressureWeight {
     std::int32_t particle = 0, body = 0;
     Vec3 place{}, force{};
   };
-  // All of them, and per [[body]] entry the forces by viscosity.
-  void find_weights(const Fields& fields, std::vector<PressureWeight>& weights,
-                    std::vector<SurfaceForce>& viscous) const;
+  // All of them, and per [[body]] entry the forces by viscosity and what liquid at rest adds in gaps.
+  void find_weights(const Fields& fields, std::vector<PressureWeight>& weights, std::vector<SurfaceForce>& given) const;
 
   // bodies.csv: t, body, force and torque by pressure and by viscosity; where bodies move, the place of the pivot, by
   // how much and about what the body has turned, and the velocities of both.
@@ -63,8 +67,15 @@ class BodyForces {
     std::int32_t body = 0;
   };
   Element now(const Element& element) const;
+  // What is before an element: liquid that its pressure is fitted to, or nothing; or a gap without room for particles.
+  enum class Before : std::uint8_t { nothing, gap, liquid };
   struct Traction {
     Vec3 pressure{}, viscous{};
+    // Of the element's pressure: its value, the density of the liquid, and where its weights are in their block.
+    double value = 0, density = 0;
+    std::size_t first_weight = 0, last_weight = 0;
+    Before before = Before::nothing;
+    bool in_gap = false;  // too narrow to fit its pressure there
   };
   // Null `weights`: they are not asked for.
   struct Sorted;
@@ -74,6 +85,9 @@ class BodyForces {
   // Of every element; with `weights` those of floating bodies alone, and what they are made of, block by block.
   std::vector<Traction> tractions(const Fields& fields, double t,
                                   std::vector<std::vector<PressureWeight>>* weights) const;
+  Before before_uncovered(const Element& element, double nearest) const;
+  // Gives elements before gaps the pressure of those before liquid.
+  void fill_gaps(std::vector<Traction>& of, std::vector<std::vector<PressureWeight>>* weights) const;
   std::vector<SurfaceForce> add_up(const std::vector<Traction>& of) const;
   bool floats(const Element& element) const;
   void add_elements(std::int32_t body);
@@ -81,6 +95,7 @@ class BodyForces {
   const Scene& scene_;
   const Resolution& resolution_;
   const BodyWalls& walls_;
+  const Vec3 gravity_;
   std::vector<Element> elements_;
 };
 

@@ -99,12 +99,15 @@ class BodyWalls {
   // Nearer than `gap` a velocity that leads to the wall faster than `speed` is no faster than it was before.
   void limit_approach(const Vec3& position, double gap, double speed, const Vec3& before, Vec3& velocity) const;
 
+  // Along the normal at a place of a surface, the way to another wall or a side of the domain that is nearer than two
+  // spacings, where one layer of particles fits between them at most; 0 where they touch, to 0.05 spacings.
+  static constexpr double widest_gap = 2;
+  std::optional<double> gap_before(const Vec3& foot, const Vec3& normal) const;
+
   double bytes() const;
 
  private:
   struct Block;
-  // Whether another wall is so near before it that one layer of particles fits between them at most.
-  bool faces_wall(const WallPoint& point) const;
   template <int dimensions>
   void fit_block(const Arrangement& arrangement, const VectorField& at, double particle_volume, std::size_t first,
                  std::size_t last, Block& block) const;

@@ -17,6 +17,7 @@
 #include "spume/operators/pair_sweep.hpp"
 #include "spume/operators/projection_matrix.hpp"
 #include "spume/operators/tied_rows.hpp"
+#include "spume/solvers/part_constants.hpp"
 
 namespace spume {
 
@@ -35,9 +36,11 @@ class DirectPressure {
   ~DirectPressure();
 
   // The factors of `matrix`, whose rows with a diagonal of zero keep what they have. `singular`: constants are in its
-  // null space; a uniform source takes up what is left over, and the sum of the unknowns is zero. Throws StepFailure
-  // for a matrix that is singular in another way, std::logic_error for one that has no context.
-  void factorise(ProjectionMatrix& matrix, std::span<const float> diagonal, bool singular);
+  // null space; a uniform source takes up what is left over, and the sum of the unknowns is zero. `enclosed`: so they
+  // are on each of these parts, without combinations; empty: on all unknowns. Throws StepFailure for a matrix that is
+  // singular in another way, std::logic_error for one that has no context.
+  void factorise(ProjectionMatrix& matrix, std::span<const float> diagonal, bool singular,
+                 const PartConstants& enclosed = {});
   // x of A x = r, for the size of the matrix.
   void solve(std::span<const double> r, std::span<double> x);
 
@@ -54,8 +57,8 @@ class DirectPressure {
   void factorise_entries();
 
   std::size_t size_ = 0;
-  bool bordered_ = false;
-  // Columns: the rows of each, and their entries. With a border one more of both.
+  std::vector<std::vector<std::int32_t>> borders_;  // the unknowns whose sum each makes zero
+  // Columns: the rows of each, and their entries. With borders as many more of both.
   std::vector<int> first_, row_;
   std::vector<double> entry_;
   std::vector<int> row_first_, column_;  // the same by rows, without the border

@@ -52,8 +52,7 @@ class FloatingBodies {
   void advance(double dt);
 
   struct Liquid {
-    BodyForces::Fields fields;  // at the places of the solve; its pressure is not read
-    double density = 0;
+    BodyForces::Fields fields;                 // at the places of the solve; its pressure is not read
     const Array<double>* potential = nullptr;  // null: zero
   };
   // The matrix with the bodies in it, for a right-hand side without them. Binds that of the solver to the rows.
@@ -93,6 +92,7 @@ class FloatingBodies {
   // F_0 + C q, or without F_0.
   template <class T>
   std::vector<double> forces(std::span<const T> q, bool given) const;
+  std::vector<double> relative_response(std::span<const std::int32_t> members) const;  // of BodyCoupling
   // W times them, with a_c where what is given counts.
   template <class T>
   std::vector<double> accelerations(std::span<const T> q, bool given) const;

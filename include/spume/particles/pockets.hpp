@@ -27,14 +27,14 @@ bool has_room(const Boundary& boundary, const Vec3& place);
 // spacing fits between the walls that no particle stands in; else, at some of the places, none fits, a pocket; or one
 // fits where i itself stands alone, before a wall; or other particles are everywhere. Who lacks liquid and has a pocket
 // ahead lacks what walls leave no room for: it faces no surface and no void. So does who has a wall ahead in liquid at
-// rest; of a film that runs down a face the other side is free. `room` farther than a support radius from bodies, and
-// beside those that move, which press liquid out of the gaps that they close.
+// rest; of a film that runs down a face the other side is free. `room` farther than a support radius from bodies.
 enum class Ahead { room, liquid, wall, pocket };
 Ahead ahead_of(const Boundary& boundary, const Arrangement& arrangement, std::size_t i, const Vec3& place,
                const Vec3& normal);
 
 // Whether a place is between the face of a body and another wall that are less than two spacings apart, where one layer
-// of particles fits at most: their kernel sums tell how it fits. False beside bodies that move.
+// of particles fits at most: their kernel sums tell how it fits. False beside bodies that move: without a surface in
+// the layer that it lands on, what a wave pressed into it threw a plank of four times the density of water up.
 bool in_one_layer(const Boundary& boundary, const Vec3& place);
 
 // Spacings between the faces of a wedge. A layer of particles, which stand half a spacing from walls, needs one; at 0.6
@@ -51,8 +51,8 @@ struct WallBehind {
 // normal at `place`, which is in between.
 std::optional<WallBehind> wall_across(const Boundary& boundary, const Vec3& place, double width);
 // A place in a wedge whose faces are nearer to each other than 0.6 spacings there: out along the bisector to where
-// they are not, with the velocity that leads in taken away. Between faces that are parallel to 6 degrees, which lead
-// nowhere out, and beside bodies that move nothing is moved.
+// they are not, with the velocity that leads in, beside the mean of both faces, taken away. Between faces that are
+// parallel to 6 degrees, which lead nowhere out, nothing is moved.
 void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity);
 
 }  // namespace spume

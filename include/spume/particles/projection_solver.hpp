@@ -19,6 +19,7 @@
 #include "spume/particles/enclosed_parts.hpp"
 #include "spume/particles/options.hpp"
 #include "spume/solvers/cell_multigrid.hpp"
+#include "spume/solvers/part_constants.hpp"
 #include "spume/solvers/refinement.hpp"
 
 namespace spume {
@@ -35,7 +36,9 @@ struct PressureRows {
   double source_norm = 0;
   // Of the residual that rounding of the guess leaves, below which none is asked for. 0: the guess is exact.
   double rounding_norm = 0;
-  double helmholtz = 0;   // diagonal shift of a full row over V, for the preconditioner
+  double helmholtz = 0;                                // diagonal shift of a full row over V, for the preconditioner
+  std::function<double(std::size_t)> helmholtz_scale;  // of each row, what that is multiplied by; empty: 1
+  bool closed_off = false;                             // bodies may have closed off some liquid since the last solve
   bool singular = false;  // constants are in the null space: the mean is taken out of residuals
   // The matrix is not symmetric: its residuals sum to anything. The mean is taken out of products as well, which makes
   // a singular system solvable: what is left over is a uniform source.
@@ -77,13 +80,14 @@ class ProjectionSolver {
   // The matrix of these rows. Pressures given behind walls, in the context, are part of its residuals.
   PressureOperator& bind(const PressureRows& rows, const SweepContext& context, PackedNeighbours& packed);
   // The factors of a matrix bound to these rows, for a direct solver.
-  void factorise(const PressureRows& rows, ProjectionMatrix& matrix) {
-    direct_->factorise(matrix, rows.diagonal, rows.singular);
-  }
+  void factorise(const PressureRows& rows, ProjectionMatrix& matrix, ParticleStore& particles);
   // Improves `q`, which holds the guess and where the pressure is fixed the value, with a matrix bound to these rows.
   // What did not converge is said in the report: the caller decides. A direct solver has the factors of that matrix.
   // Liquid that solids enclose apart from the rest (particles/enclosed_parts.hpp) is looked for at the first solve and
-  // after one that did not converge, and then at each, as long as there is some; `q` has a mean of zero in it.
+  // after one that did not converge, and then at each, as long as there is some; by a direct solver with each matrix.
+  // `q` has a mean of zero in it. With sound a constant is known, every solve converges, and the errors of the
+  // divergence add up in it, within a step of sound to 200 times the pressure: beside walls that do not move it is
+  // taken out as well, and looked for where residuals are measured.
   void solve(const PressureRows& rows, ProjectionMatrix& matrix, ParticleStore& particles, Array<double>& q);
 
   const DirectPressure* direct() const { return direct_.get(); }  // null: iterative
@@ -105,6 +109,7 @@ class ProjectionSolver {
   void solve_iteratively(const PressureRows& rows, const RefinementOptions& refinement, ParticleStore& particles,
                          Array<double>& q);
   void find_enclosed(const PressureRows& rows, ParticleStore& particles);
+  PartConstants constants_of(EnclosedParts found, bool singular);
   template <class Real>
   Preconditioner<Real>& preconditioner(JacobiPreconditioner<Real>& jacobi);
 
@@ -115,7 +120,8 @@ class ProjectionSolver {
   CorrectionWorkspace<double> double_work_;  // empty in mixed precision, as are the next
   Array<double> double_diagonal_, zero_;
   std::unique_ptr<DirectPressure> direct_;
-  bool may_enclose_;  // there are solids
+  bool may_enclose_;     // there are solids
+  bool changes_volume_;  // walls move: the mean of a pressure with sound is what they do
   PartConstants enclosed_;
   std::string remark_;
   bool remarked_ = false;

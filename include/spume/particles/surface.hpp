@@ -80,6 +80,7 @@ class FreeSurface {
   Array<std::uint8_t> at_surface;
   Array<std::uint8_t> pressure_fixed;  // p = 0: at the surface with too few neighbours for a corrected gradient
   Array<float> interior_weight;        // b
+  bool closed_off = false;  // some particle that meets few others or none is none of the surface: in a pocket of bodies
   Array<std::int32_t> surface_particles;
   Array<std::int32_t> near_surface;  // b < 1 and not of fixed pressure
   Array<float> depth;                // s, of the latter

@@ -50,7 +50,7 @@ class WallContacts {
   // bore before. Same bits for any thread count.
   void bear(const std::vector<std::int32_t>& near, const Liquid& liquid);
   // Adds what the bodies bear: in a wedge of two the part of each, along its normal.
-  void add_to_bodies(std::vector<WallForce>& forces) const;
+  void add_to_bodies(std::vector<SurfaceForce>& forces) const;
 
  private:
   struct Borne {

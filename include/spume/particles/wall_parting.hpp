@@ -37,7 +37,7 @@ class WallParting {
   // Adds (rho du/dt)_i of sides and bodies, those standing where they were put last.
   void add_forces(std::size_t particles, const Liquid& liquid, const std::array<float*, 3>& out) const;
   // Adds what the bodies take of it, in the order of the particles.
-  void add_to_bodies(std::size_t particles, const Liquid& liquid, std::vector<WallForce>& forces) const;
+  void add_to_bodies(std::size_t particles, const Liquid& liquid, std::vector<SurfaceForce>& forces) const;
 
  private:
   struct Parting {

@@ -65,8 +65,6 @@ class SolidUnion {
   // the lower and upper side of the domain, 2 + 2 box + side a face of a box, where boxes share it of the first.
   // -1: there is none.
   int face_near(const Vec3& point, int axis, std::size_t plane, double reach) const;
-  // The connected parts of free space that end on all sides, each as boxes that do not overlap.
-  std::vector<std::vector<std::array<Vec3, 2>>> chambers() const;
 
  private:
   using Cell = std::array<int, 3>;

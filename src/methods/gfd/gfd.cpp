@@ -177,16 +177,11 @@ std::vector<RecordTable> Gfd::tables() const {
 
 void Gfd::table_rows(const std::string&, std::vector<double>& rows) {
   ensure_arranged();
-  const std::vector<SurfaceForce> forces =
-      body_forces_->measure({.grid = flow_.arrangement.grid,
-                             .particles = flow_.size(),
-                             .position = read(flow_.particles.position),
-                             .velocity = read(flow_.particles.velocity),
-                             .pressure = flow_.pressure->data(),
-                             .particle_volume = flow_.particles.volume,
-                             .viscosity = flow_.viscosity == nullptr ? nullptr : flow_.viscosity->data()},
-                            flow_.time);
-  body_forces_->add_rows(flow_.time, forces, rows);
+  BodyForces::Fields fields(flow_.arrangement, flow_.particles);
+  fields.viscosity = flow_.viscosity == nullptr ? nullptr : flow_.viscosity->data();
+  fields.density = [this](std::size_t i) { return (*flow_.density)[i]; };
+  fields.pressure = [this](std::size_t i) { return (*flow_.pressure)[i]; };
+  body_forces_->add_rows(flow_.time, body_forces_->measure(fields, flow_.time), rows);
 }
 
 std::vector<Remark> Gfd::take_remarks() {

@@ -25,7 +25,7 @@ inline auto solving(Flow& f) {
 
 inline auto factorising(Flow& f) {
   return [&f](StageRun& run) {
-    f.solver.factorise(f.rows, f.matrix);
+    f.solver.factorise(f.rows, f.matrix, f.particles);
     run.pairs = f.arrangement.pair_count() * f.solver.direct()->products();
   };
 }

@@ -145,6 +145,20 @@ void LesSph::remark_surface_at_bodies() {
                       false});
 }
 
+// Whether no particle stands within 45 degrees above one; upright faces of liquid have some.
+bool LesSph::lies_on_top(std::int32_t particle, const Vec3& up) const {
+  const auto i = static_cast<std::size_t>(particle);
+  const NeighbourList& list = flow_.arrangement.list;
+  for (const std::int32_t j : list.of(i)) {
+    Vec3 way{};
+    for (int axis = 0; axis < flow_.dimensions; ++axis)
+      way[axis] = double{list.coordinate(axis)[j]} - list.coordinate(axis)[i];
+    const bool stands = j < static_cast<std::int32_t>(list.particles());
+    if (stands && dot(way, up) > length(way) / std::sqrt(2.0)) return false;
+  }
+  return true;
+}
+
 // Of the highest place of a body. A slanted plate whose edge ends within 1.2 spacings of the surface stirs still water
 // by 0.02 to 0.28 sqrt(g H), one that ends 1.5 spacings below it or above by 5e-4 and 5e-5.
 void LesSph::remark_edges_at_surface() {
@@ -166,7 +180,7 @@ void LesSph::remark_edges_at_surface() {
     if (!walls->nearer_than(place, near * spacing)) continue;
     // Feet of wall points stand half a spacing from an edge at most.
     const std::size_t body = walls->nearest_wall(place).body;
-    if (std::abs(tops[body] - dot(up, place) - spacing / 2) < beside * spacing) ends[body] = true;
+    if (std::abs(tops[body] - dot(up, place) - spacing / 2) < beside * spacing && lies_on_top(i, up)) ends[body] = true;
   }
   for (std::size_t b = 0; b < tops.size(); ++b) {
     if (!ends[b]) continue;

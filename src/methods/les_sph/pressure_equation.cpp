@@ -130,6 +130,8 @@ void Flow::set_matrix() {
   for (auto* array : {&rows.diagonal_shift, &rows.diagonal}) scratch.lease(*array, n);
   rows.pressure_fixed = surface != nullptr ? &surface->pressure_fixed : nullptr;
   rows.helmholtz = equation.helmholtz;
+  rows.closed_off = surface != nullptr && surface->closed_off;
+  rows.helmholtz_scale = [this](std::size_t i) { return row_scale(i); };
   // Bodies may enclose the liquid in a domain that is open.
   const bool enclosed = surface != nullptr && !features.outflow && surface->near_surface.size() == 0;
   rows.singular = (features.closed || enclosed) && equation.helmholtz == 0;
@@ -146,7 +148,7 @@ void Flow::set_matrix() {
       const auto i = static_cast<std::size_t>(surface->near_surface[k]);
       const SurfaceRow row = surface->row(moments, sizes, acceleration_in_potential(), k);
       rows.diagonal_shift[i] += static_cast<float>(row.laplacian_diagonal);
-      rows.diagonal[i] += static_cast<float>(volume * row.laplacian_diagonal);
+      if (surface->pressure_fixed[i] == 0) rows.diagonal[i] += static_cast<float>(volume * row.laplacian_diagonal);
       surface_source[k] = row.laplacian_diagonal * row.hydrostatic_pressure;
       if (potential != nullptr) potential_laplacian[i] -= static_cast<float>(surface_source[k]);
     });
@@ -214,21 +216,18 @@ void Flow::prepare_solver() {
 }
 
 void Flow::factorise() {
-  solver.factorise(rows, solver.bind(rows, arrangement.context, arrangement.packed));
+  solver.factorise(rows, solver.bind(rows, arrangement.context, arrangement.packed), particles);
 }
 
 void Flow::solve(const char* name) {
   rows.measured = steps % steps_between_measured == 0;
   if (floating != nullptr) {
-    const BodyForces::Fields fields{.grid = arrangement.grid,
-                                    .particles = size(),
-                                    .position = read(intermediate_position),
-                                    .velocity = read(particles.velocity),
-                                    .pressure = pressure->data(),
-                                    .particle_volume = particles.volume,
-                                    .dynamic_viscosity = density() * viscosity()};
+    BodyForces::Fields fields(arrangement, particles);
+    fields.position = read(intermediate_position);
+    fields.dynamic_viscosity = density() * viscosity();
+    fields.density = [rho = density()](std::size_t) { return rho; };
     ProjectionMatrix& matrix =
-        floating->couple(solver, rows, arrangement, particles, {fields, density(), potential},
+        floating->couple(solver, rows, arrangement, particles, {fields, potential},
                          {boundary.next_walls, wall_times.ahead, boundary.absorption_at(wall_times.ahead)});
     const double norm = rows.reference_norm;
     do {

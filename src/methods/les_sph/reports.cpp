@@ -244,16 +244,11 @@ std::vector<Remark> LesSph::take_remarks() {
 }
 
 void LesSph::add_force_rows(std::vector<double>& rows) const {
-  const std::vector<SurfaceForce> forces =
-      body_forces_->measure({.grid = flow_.arrangement.grid,
-                             .particles = flow_.size(),
-                             .position = read(flow_.particles.position),
-                             .velocity = read(flow_.particles.velocity),
-                             .pressure = flow_.pressure->data(),
-                             .particle_volume = flow_.particles.volume,
-                             .dynamic_viscosity = flow_.density() * flow_.viscosity()},
-                            flow_.time);
-  body_forces_->add_rows(flow_.time, forces, rows);
+  BodyForces::Fields fields(flow_.arrangement, flow_.particles);
+  fields.dynamic_viscosity = flow_.density() * flow_.viscosity();
+  fields.density = [this](std::size_t) { return flow_.density(); };
+  fields.pressure = [this](std::size_t i) { return (*flow_.pressure)[i]; };
+  body_forces_->add_rows(flow_.time, body_forces_->measure(fields, flow_.time), rows);
 }
 
 bool LesSph::periodic() const {

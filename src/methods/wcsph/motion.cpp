@@ -425,8 +425,8 @@ void Flow::release_leased() {
   for (auto* array : {&pressure, &volume, &density, &viscosity, &reduced_excess}) scratch.release(*array);
 }
 
-std::vector<WallForce> Flow::forces_on_bodies() {
-  if (!has_lists && steps == 0) return std::vector<WallForce>(scene.bodies.size());
+std::vector<SurfaceForce> Flow::forces_on_bodies() {
+  if (!has_lists && steps == 0) return std::vector<SurfaceForce>(scene.bodies.size());
   if (!has_lists) build_lists();
   move_images(read(particles.position), time);
   ScratchPool& scratch = particles.scratch();
@@ -439,7 +439,7 @@ std::vector<WallForce> Flow::forces_on_bodies() {
     pressure[i] = static_cast<float>(pressure_at((*excess)[i], i));
   });
   walls.find_pressure(arrangement, pressure.data(), density.data());
-  std::vector<WallForce> forces =
+  std::vector<SurfaceForce> forces =
       walls.forces(arrangement, {.velocity = read(particles.velocity),
                                  .pressure = pressure.data(),
                                  .volume = volume.data(),

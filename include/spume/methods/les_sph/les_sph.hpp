@@ -61,6 +61,7 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   // Says where walls of bodies are less accurate than elsewhere.
   void remark_surface_at_bodies();
   void remark_edges_at_surface();
+  bool lies_on_top(std::int32_t particle, const Vec3& up) const;
   void remark_wide_kernel();
   void remark_bubbles_beside_thin_bodies();
   void remark_bodies_that_collide();

@@ -141,7 +141,7 @@ struct Flow {
   void transfer_oxygen(double dt) { solute_transport.transfer_oxygen(time, dt); }
 
   // What the liquid does to each body, as it is.
-  std::vector<WallForce> forces_on_bodies();
+  std::vector<SurfaceForce> forces_on_bodies();
 
   double leased_bytes() const;
 

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+// Forces on bodies so near to a wall that no particle fits between them.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "methods/gfd_run.hpp"
+#include "methods/les_sph_simulation.hpp"
+#include "methods/wcsph_run.hpp"
+
+namespace spume::test {
+namespace {
+
+constexpr double row = 0.04, rod = 0.2, box_width = 0.3, box_height = 0.5;
+
+std::string deep_tank(const std::string& method, const std::string& liquid) {
+  return "method = \"" + method +
+         "\"\n[domain]\nlower = [0, 0]\nupper = [1.6, 1.3]\nleft = \"free-slip\"\nright = \"free-slip\"\nbottom = "
+         "\"free-slip\"\n[resolution]\nspacing = 0.04\n[fluid]\ngravity = 1\n" +
+         liquid + "[time]\nend = 1\nmax_step = 0.02\n";
+}
+
+// A rod and a box that stands on its edge, each so many spacings from the floor.
+std::string rod_and_box(double gap) {
+  const double turn = 23 * std::numbers::pi / 180;
+  const double reach = (box_width * std::sin(turn) + box_height * std::cos(turn)) / 2;
+  return "[[body]]\nshape = \"ball\"\nradius = 0.2\nposition = [0.4, " + std::to_string(rod + gap * row) +
+         "]\n[[body]]\nshape = \"box\"\nsize = [0.3, 0.5]\nrotation = [-23]\nposition = [1.1, " +
+         std::to_string(reach + gap * row) + "]\n";
+}
+
+// Per body: the force by pressure over the weight of what it displaces, and across.
+template <class Run>
+std::vector<std::array<double, 2>> buoyancy(Run& run) {
+  std::vector<double> rows;
+  run.method.table_rows("bodies", rows);
+  const double displaced[] = {std::numbers::pi * rod * rod, box_width * box_height};
+  std::vector<std::array<double, 2>> found;
+  for (std::size_t b = 0; b < 2; ++b) {
+    const double* const of_body = rows.data() + b * rows.size() / 2;
+    found.push_back({of_body[2] / displaced[b], of_body[3] / displaced[b]});
+  }
+  return found;
+}
+
+}  // namespace
+
+// The wedge below the rod is six spacings wide in which no particle stands: without its pressure the rod had 0.11 of
+// its buoyancy, the box 0.68. Elements of a spacing and fits beside the wedge err by a hundredth.
+TEST(GapForces, AreThoseOfArchimedesByLesSph) {
+  for (const double gap : {0.05, 0.15, 0.5, 0.8, 1.0, 1.3}) {
+    SCOPED_TRACE(gap);
+    Simulation run(deep_tank("les-sph", "density = 1\n[[liquid]]\nupper = [1.6, 1.1]\n") + rod_and_box(gap));
+    run.steps(3, 0.02);
+    for (const auto& [across, up] : buoyancy(run)) {
+      EXPECT_NEAR(up, 1, 0.02);
+      EXPECT_NEAR(across, 0, 0.02);
+    }
+  }
+}
+
+TEST(GapForces, AreThoseOfArchimedesByGfd) {
+  for (const double gap : {0.15, 0.5, 1.0}) {
+    SCOPED_TRACE(gap);
+    GfdRun run(replaced(deep_tank("gfd",
+                                  "[[phase]]\nname = \"water\"\ndensity = 1\nviscosity = 0.01\n[[region]]\nphase = "
+                                  "\"water\"\nupper = [1.6, 1.3]\n"),
+                        "bottom =", "top = \"free-slip\"\nbottom =") +
+               rod_and_box(gap));
+    run.steps(3, 0.02);
+    for (const auto& [across, up] : buoyancy(run)) {
+      EXPECT_NEAR(up, 1, 0.02);
+      EXPECT_NEAR(across, 0, 0.02);
+    }
+  }
+}
+
+// Adds up pairs of particles, of bodies with gaps it integrates: with the pairs 0.33 and 0.68.
+TEST(GapForces, AreThoseOfArchimedesByWcsph) {
+  for (const double gap : {0.05, 0.15}) {
+    SCOPED_TRACE(gap);
+    WcsphRun run(deep_tank("wcsph",
+                           "[[phase]]\nname = \"water\"\ndensity = 1\nviscosity = 0.001\n[[region]]\nphase = "
+                           "\"water\"\nupper = [1.6, 1.1]\n") +
+                 rod_and_box(gap));
+    run.steps(20, 5e-4);
+    for (const auto& [across, up] : buoyancy(run)) {
+      EXPECT_NEAR(up, 1, 0.02);
+      EXPECT_NEAR(across, 0, 0.02);
+    }
+  }
+}
+
+// What touches a wall along a face has no liquid below it: the water presses it down.
+TEST(GapForces, ABodyThatStandsOnTheFloorIsPressedDown) {
+  Simulation run(deep_tank("les-sph", "density = 1\n[[liquid]]\nupper = [1.6, 1.1]\n") +
+                 "[[body]]\nshape = \"box\"\nsize = [0.32, 0.4]\nposition = [0.8, 0.2]\n");
+  run.steps(3, 0.02);
+  std::vector<double> rows;
+  run.method.table_rows("bodies", rows);
+  EXPECT_NEAR(rows[3], -0.32 * (1.1 - 0.4), 0.02 * 0.32);
+}
+
+// The heavy one lies there with the force of what it displaces; it was thrown up again and again. The light one leaves
+// the floor, to which the water above had pressed it.
+TEST(GapForces, ABallOnTheFloorStaysOrRisesByItsWeight) {
+  const std::string water = deep_tank("les-sph", "density = 1\n[[liquid]]\nupper = [1.6, 1.1]\n");
+  const std::string ball =
+      "[[body]]\nshape = \"ball\"\nradius = 0.2\nposition = [0.8, 0.206]\nfree = [\"y\"]\ndensity = ";
+  const double displaced = std::numbers::pi * rod * rod;
+  std::vector<double> rows;
+  Simulation heavy(replaced(water, "max_step = 0.02", "max_step = 0.1") + ball + "2\n");
+  while (heavy.method.time() < 1) {
+    heavy.steps(1, heavy.method.step_limit().dt);
+    rows.clear();
+    heavy.method.table_rows("bodies", rows);
+    EXPECT_NEAR(rows[9], 0.206, 0.05 * row);
+  }
+  EXPECT_NEAR(rows[3], displaced, 0.02 * displaced);
+  // Its own mass, and beside a wall at least that of an unbounded liquid: (1 - 1/2) / (1/2 + 1) of gravity at most.
+  Simulation light(replaced(water, "max_step = 0.02", "max_step = 0.1") + ball + "0.5\n");
+  while (light.method.time() < 0.4) light.steps(1, light.method.step_limit().dt);
+  rows.clear();
+  light.method.table_rows("bodies", rows);
+  const double way = 0.5 * (0.5 / 1.5) * light.method.time() * light.method.time();
+  EXPECT_GT(rows[9] - 0.206, way / 2);
+  EXPECT_LT(rows[9] - 0.206, 1.1 * way);
+}
+
+}  // namespace spume::test
