@@ -19,6 +19,7 @@ constexpr double pushed = 0.25;    // spacings, by walls back from where it was 
 constexpr double parallel = 0.1;   // of the sum of two normals
 constexpr double longest = 0.3;    // spacings, of a way out
 constexpr double thinnest = 0.05;  // spacings, of a plate across a layer
+constexpr double caught = 0.9;     // of the narrowest wedge, for the rounding of how far out of it places are led
 
 std::optional<WallBehind> wall_before(const Boundary& boundary, const Vec3& place) {
   const Domain& domain = boundary.domain();
@@ -100,12 +101,26 @@ bool in_one_layer(const Boundary& boundary, const Vec3& place) {
   return across && dot(face, across->normal) < 0;
 }
 
+namespace {
+
+// Between faces from which nothing is led out, for they are parallel, and that are nearer to each other than a layer.
+bool is_caught(const Boundary& boundary, const Vec3& place) {
+  const double width = boundary.spacing();
+  if (!boundary.bodies()->nearer_than(place, width)) return false;
+  const std::optional<WallBehind> across = wall_across(boundary, place, width);
+  if (!across) return false;
+  const bool leads_nowhere = length(add(boundary.bodies()->normal(place), across->normal)) < parallel;
+  return leads_nowhere || across->behind > width - caught * narrowest_wedge * boundary.spacing();
+}
+
+}  // namespace
+
 Ahead ahead_of(const Boundary& boundary, const Arrangement& arrangement, std::size_t i, const Vec3& place,
                const Vec3& normal) {
   const BodyWalls* bodies = boundary.bodies();
   if (bodies == nullptr || !bodies->nearer_than(place, arrangement.grid.support_radius())) return Ahead::room;
   const double size = length(normal), near = taken * boundary.spacing();
-  if (!(size > 0)) return Ahead::room;
+  if (!(size > 0) || (bodies->moves_at(place) && is_caught(boundary, place))) return Ahead::room;
   Ahead found = Ahead::liquid;
   for (const double distance : probes) {
     const Vec3 way = multiply(distance * boundary.spacing() / size, normal);

@@ -101,6 +101,28 @@ TEST(GapForces, ABodyThatStandsOnTheFloorIsPressedDown) {
   EXPECT_NEAR(rows[3], -0.32 * (1.1 - 0.4), 0.02 * 0.32);
 }
 
+// One lands on what it has caught below it, under the other the water comes back. What is caught there had no surface:
+// both were thrown out of the tank.
+TEST(GapForces, HeavyBoxesStayDown) {
+  const std::string landing =
+                        "[[body]]\nshape = \"box\"\nposition = [0.8, 0.1256]\nsize = [0.3653, 0.2118]\nrotation = "
+                        "[5.24]\ndensity = 3\n",
+                    lying =
+                        "[[body]]\nshape = \"box\"\nposition = [0.5, 0.26827]\nsize = [0.4444, 0.3954]\nrotation = "
+                        "[-11.58]\ndensity = 8\n";
+  const std::string water = deep_tank("les-sph", "density = 1\nviscosity = 1e-4\n[[liquid]]\nupper = [1.6, 0.95]\n");
+  for (const auto& [text, start] : {std::pair{replaced(water, "spacing = 0.04", "spacing = 0.035") + landing, 0.1256},
+                                    {replaced(water, "spacing = 0.04", "spacing = 0.05") + lying, 0.26827}}) {
+    Simulation run(replaced(text, "max_step = 0.02", "max_step = 0.1"));
+    while (run.method.time() < 3) {
+      run.steps(1, run.method.step_limit().dt);
+      std::vector<double> rows;
+      run.method.table_rows("bodies", rows);
+      ASSERT_LT(rows[9], start + 0.01) << run.method.time();
+    }
+  }
+}
+
 // The heavy one lies there with the force of what it displaces; it was thrown up again and again. The light one leaves
 // the floor, to which the water above had pressed it.
 TEST(GapForces, ABallOnTheFloorStaysOrRisesByItsWeight) {

@@ -27,7 +27,9 @@ bool has_room(const Boundary& boundary, const Vec3& place);
 // spacing fits between the walls that no particle stands in; else, at some of the places, none fits, a pocket; or one
 // fits where i itself stands alone, before a wall; or other particles are everywhere. Who lacks liquid and has a pocket
 // ahead lacks what walls leave no room for: it faces no surface and no void. So does who has a wall ahead in liquid at
-// rest; of a film that runs down a face the other side is free. `room` farther than a support radius from bodies.
+// rest; of a film that runs down a face the other side is free. `room` farther than a support radius from bodies, and
+// for what is caught between parallel faces less than a spacing apart of which one moves: without a surface its
+// pressure rises with every step, which threw a box up that had landed on it.
 enum class Ahead { room, liquid, wall, pocket };
 Ahead ahead_of(const Boundary& boundary, const Arrangement& arrangement, std::size_t i, const Vec3& place,
                const Vec3& normal);
