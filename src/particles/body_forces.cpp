@@ -234,38 +234,82 @@ BodyForces::Before BodyForces::before_uncovered(const Element& element, double n
   return *gap < room_in_gap * spacing ? Before::gap : Before::nothing;
 }
 
+// From element to element of the same body that are less than two spacings apart and do not face away from each other,
+// by the fewest steps, each of elements as near ones the nearest. Negative: there is no such way.
+std::vector<std::int32_t> BodyForces::along_surface(const std::vector<Traction>& of,
+                                                    const std::vector<std::size_t>& gaps) const {
+  constexpr double facing_away = -0.5;
+  const double reach = 2 * resolution_.spacing;
+  // At the start bodies are whole.
+  std::map<std::array<int, 3>, std::vector<std::size_t>> cells;
+  const auto cell_of = [&](const Vec3& place) {
+    std::array<int, 3> cell{};
+    for (std::size_t axis = 0; axis < 3; ++axis) cell[axis] = static_cast<int>(std::floor(place[axis] / reach));
+    return cell;
+  };
+  for (std::size_t e = 0; e < elements_.size(); ++e) cells[cell_of(elements_[e].middle)].push_back(e);
+  std::vector<std::vector<std::pair<double, std::size_t>>> beside(gaps.size());
+  parallel_for(gaps.size(), [&](std::size_t k) {
+    const Element& own = elements_[gaps[k]];
+    const std::array<int, 3> middle = cell_of(own.middle);
+    for (int n = 0; n < 27; ++n) {
+      const auto found = cells.find({middle[0] + n % 3 - 1, middle[1] + n / 3 % 3 - 1, middle[2] + n / 9 - 1});
+      if (found == cells.end()) continue;
+      for (const std::size_t e : found->second) {
+        const Element& other = elements_[e];
+        const double away = length(subtract(other.middle, own.middle));
+        const double facing = dot(other.area, own.area) / (length(other.area) * length(own.area));
+        if (e != gaps[k] && other.body == own.body && away < reach && facing > facing_away)
+          beside[k].emplace_back(away, e);
+      }
+    }
+    std::sort(beside[k].begin(), beside[k].end());
+  });
+  std::vector<std::int32_t> source(elements_.size(), -1), next(gaps.size(), -1);
+  for (std::size_t e = 0; e < elements_.size(); ++e)
+    if (of[e].before != Before::gap) source[e] = static_cast<std::int32_t>(e);
+  for (bool any = true; any;) {
+    any = false;
+    for (std::size_t k = 0; k < gaps.size(); ++k) {
+      if (next[k] >= 0) continue;
+      for (const auto& [away, e] : beside[k])
+        if (next[k] < 0 && source[e] >= 0) next[k] = source[e];
+      any = any || next[k] >= 0;
+    }
+    for (std::size_t k = 0; k < gaps.size(); ++k) source[gaps[k]] = next[k];
+  }
+  return next;
+}
+
 void BodyForces::fill_gaps(std::vector<Traction>& of, std::vector<std::vector<PressureWeight>>* weights) const {
   std::vector<std::size_t> gaps;
   for (std::size_t e = 0; e < of.size(); ++e)
     if (of[e].before == Before::gap) gaps.push_back(e);
-  // At the start bodies are in one piece.
-  std::vector<std::size_t> nearest(gaps.size());
-  parallel_for(gaps.size(), [&](std::size_t k) {
-    double least = infinite;
-    nearest[k] = gaps[k];
-    for (std::size_t f = 0; f < of.size(); ++f) {
-      if (elements_[f].body != elements_[gaps[k]].body || of[f].before == Before::gap) continue;
-      const Vec3 way = subtract(elements_[f].middle, elements_[gaps[k]].middle);
-      if (dot(way, way) >= least) continue;
-      least = dot(way, way);
-      nearest[k] = f;
-    }
-  });
+  if (gaps.empty()) return;
+  const std::vector<std::int32_t> nearest = along_surface(of, gaps);
   for (std::size_t k = 0; k < gaps.size(); ++k) {
-    const Traction& from = of[nearest[k]];
+    if (nearest[k] < 0) continue;
+    const auto source = static_cast<std::size_t>(nearest[k]);
+    const Traction& from = of[source];
     if (from.before != Before::liquid) continue;
-    const Element own = now(elements_[gaps[k]]), other = now(elements_[nearest[k]]);
+    const Element own = now(elements_[gaps[k]]), other = now(elements_[source]);
     Traction& gap = of[gaps[k]];
     gap.value = from.value + from.density * dot(gravity_, scene_.domain.shortest(subtract(own.middle, other.middle)));
     gap.pressure = multiply(-gap.value, own.area);
     if (weights == nullptr) continue;
     const double size = dot(other.area, other.area);
-    std::vector<PressureWeight>& block = (*weights)[nearest[k] / block_of_elements];
+    std::vector<PressureWeight>& block = (*weights)[source / block_of_elements];
     for (std::size_t w = from.first_weight; w < from.last_weight; ++w) {
       const double share = -dot(block[w].force, other.area) / size;
       block.push_back({block[w].particle, own.body, own.middle, multiply(-share, own.area)});
     }
   }
+}
+
+// Where the body is whole: it may have left the domain by a periodic side.
+Vec3 BodyForces::unwrapped(const Element& element) const {
+  const auto body = static_cast<std::size_t>(element.body);
+  return scene_.bodies[body].motion ? walls_.part_of(body).place.now(element.middle) : element.middle;
 }
 
 BodyForces::Element BodyForces::now(const Element& element) const {
@@ -334,7 +378,7 @@ std::vector<SurfaceForce> BodyForces::add_up(const std::vector<Traction>& of) co
   std::vector<SurfaceForce> total(scene_.bodies.size());
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     SurfaceForce& body = total[static_cast<std::size_t>(elements_[e].body)];
-    const Vec3 middle = now(elements_[e]).middle;
+    const Vec3 middle = unwrapped(elements_[e]);
     body.press(middle, of[e].pressure);
     body.rub(middle, of[e].viscous);
   }
@@ -346,6 +390,13 @@ std::vector<SurfaceForce> BodyForces::measure(const Fields& fields, double t) co
 }
 
 void BodyForces::integrate_beside_gaps(const Fields& fields, std::vector<SurfaceForce>& forces) const {
+  std::vector<std::uint8_t> near_wall(elements_.size(), 0);
+  parallel_for(elements_.size(), [&](std::size_t e) {
+    if (walls_.part_of(static_cast<std::size_t>(elements_[e].body)).absent()) return;
+    const Element element = now(elements_[e]);
+    near_wall[e] = walls_.gap_before(element.middle, multiply(1 / length(element.area), element.area)) ? 1 : 0;
+  });
+  if (std::none_of(near_wall.begin(), near_wall.end(), [](std::uint8_t near) { return near != 0; })) return;
   const std::vector<Traction> of = tractions(fields, 0, nullptr);
   const std::vector<SurfaceForce> integrals = add_up(of);
   std::vector<std::uint8_t> has_gap(forces.size(), 0);

@@ -59,7 +59,7 @@ void DirectPressure::factorise(ProjectionMatrix& matrix, std::span<const float> 
     std::vector<std::int32_t> rest;
     for (std::size_t i = 0; i < size_; ++i)
       if (of_part[i] == 0 && diagonal[i] != 0) rest.push_back(static_cast<std::int32_t>(i));
-    borders_.push_back(std::move(rest));
+    if (!rest.empty()) borders_.push_back(std::move(rest));
   }
   find_pattern(*context, matrix.tied(), diagonal);
   find_colours();

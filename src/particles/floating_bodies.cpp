@@ -196,6 +196,7 @@ void FloatingBodies::set_forces(const Liquid& liquid) {
                    [](const auto& a, const auto& b) { return a.particle < b.particle; });
   particle_.clear();
   force_.clear();
+  moduli_.assign(count, 0);
   for (const BodyForces::PressureWeight& weight : weights) {
     if (particle_.empty() || particle_.back() != weight.particle) {
       particle_.push_back(weight.particle);
@@ -206,8 +207,9 @@ void FloatingBodies::set_forces(const Liquid& liquid) {
       const auto [body, axis] = freedoms_[k];
       if (scene_.bodies[static_cast<std::size_t>(weight.body)].motion != motions_[body]) continue;
       const Vec3 arm = nearest_arm(scene_.domain, subtract(weight.place, next_[body].place.position));
-      sums[k] += liquid.fields.density(static_cast<std::size_t>(weight.particle)) *
-                 (axis < 3 ? weight.force[axis] : cross(arm, weight.force)[axis - 3]);
+      const double density = liquid.fields.density(static_cast<std::size_t>(weight.particle));
+      sums[k] += density * (axis < 3 ? weight.force[axis] : cross(arm, weight.force)[axis - 3]);
+      moduli_[k] += density * length(weight.force) * (axis < 3 ? 1 : length(arm));
     }
   }
   for (std::size_t k = 0; k < count; ++k) {
@@ -341,18 +343,15 @@ std::vector<double> FloatingBodies::accelerations(std::span<const T> q, bool giv
 
 std::vector<double> FloatingBodies::relative_response(std::span<const std::int32_t> members) const {
   const std::size_t count = freedoms_.size();
-  std::vector<double> force(count, 0), moduli(count, 0);
+  std::vector<double> force(count, 0);
   for (std::size_t e = 0; e < particle_.size(); ++e) {
-    const bool pushes = std::binary_search(members.begin(), members.end(), particle_[e]);
-    for (std::size_t k = 0; k < count; ++k) {
-      moduli[k] += std::abs(force_[e * count + k]);
-      if (pushes) force[k] += force_[e * count + k];
-    }
+    if (!std::binary_search(members.begin(), members.end(), particle_[e])) continue;
+    for (std::size_t k = 0; k < count; ++k) force[k] += force_[e * count + k];
   }
   std::vector<double> response = multiply_square(held_change_.change, force);
   for (std::size_t k = 0; k < count; ++k) {
     double most = 0;
-    for (std::size_t j = 0; j < count; ++j) most += std::abs(inverse_mass_[k * count + j]) * moduli[j];
+    for (std::size_t j = 0; j < count; ++j) most += std::abs(inverse_mass_[k * count + j]) * moduli_[j];
     response[k] = most > 0 ? response[k] / most : 0;
   }
   return response;

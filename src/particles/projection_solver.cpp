@@ -36,6 +36,21 @@ CellGeometry cell_geometry(const Boundary& boundary, double cell_size) {
 // Of the diagonal, what a row makes of a constant that is in its null space: rounding of floats leaves 1e-6, a
 // neighbour whose pressure is given at the edge of the support 1e-3.
 constexpr double of_no_constant = 1e-4;
+
+// Whether a particle sees the wall of a body that has a motion. Points behind openings come after those of bodies.
+bool meets_moving_body(const Boundary& boundary, const SweepContext& context, std::int32_t i) {
+  const BodyWalls& bodies = *boundary.bodies();
+  const auto n = static_cast<std::int32_t>(context.list->particles());
+  const std::int32_t* point = context.images->wall_point();
+  for (const std::int32_t j : context.list->of(static_cast<std::size_t>(i))) {
+    const std::int32_t wet = j < n || point == nullptr ? -1 : point[j - n];
+    if (wet < 0 || static_cast<std::size_t>(wet) >= bodies.stencils().size()) continue;
+    const auto body = static_cast<std::size_t>(bodies.body_of_wet(static_cast<std::size_t>(wet)));
+    if (bodies.bodies()[body].motion) return true;
+  }
+  return false;
+}
+
 // Of how fast all liquid could accelerate a body, what counts as nothing: edges of the liquid on its surface leave
 // some.
 constexpr double no_response = 1e-4;
@@ -83,8 +98,8 @@ void PressureRows::release(ScratchPool& scratch) {
 
 // The particle matrix as the Krylov solvers see it.
 struct ProjectionSolver::Operator final : LinearOperator<float> {
-  Operator(ProjectionMatrix& matrix, const PressureRows& rows, const PartConstants& enclosed)
-      : matrix_(matrix), enclosed_(enclosed), without_mean_(rows.singular && rows.unsymmetric) {}
+  Operator(ProjectionMatrix& matrix, const PressureRows& rows, const PartConstants& enclosed, bool singular)
+      : matrix_(matrix), enclosed_(enclosed), without_mean_(singular && rows.unsymmetric) {}
   std::size_t size() const override { return matrix_.size(); }
   void apply(std::span<const float> x, std::span<float> y) override {
     matrix_.apply(x, y, x);
@@ -106,9 +121,8 @@ struct ProjectionSolver::Operator final : LinearOperator<float> {
 // most, which matters to the tolerances that double is for: the mean is taken out of products of a symmetric matrix
 // too.
 struct ProjectionSolver::DoubleOperator final : LinearOperator<double> {
-  DoubleOperator(ProjectionMatrix& matrix, const PressureRows& rows, const PartConstants& enclosed,
-                 std::span<const double> zero)
-      : matrix_(matrix), enclosed_(enclosed), zero_(zero), without_mean_(rows.singular) {}
+  DoubleOperator(ProjectionMatrix& matrix, const PartConstants& enclosed, bool singular, std::span<const double> zero)
+      : matrix_(matrix), enclosed_(enclosed), zero_(zero), without_mean_(singular) {}
   std::size_t size() const override { return matrix_.size(); }
   void apply(std::span<const double> x, std::span<double> y) override {
     matrix_.residual(x, zero_, y, false);
@@ -133,7 +147,7 @@ class ProjectionSolver::MixedSystem final : public RefinedSystem {
   void residual(std::span<double> r) override { solver_.matrix_->residual(q_, rows_.right_hand_side, r, true); }
   KrylovResult correct(std::span<const double> r, const CorrectionTask& task) override {
     size_ = task.size;
-    Operator a(*solver_.matrix_, rows_, solver_.enclosed_);
+    Operator a(*solver_.matrix_, rows_, solver_.enclosed_, solver_.singular_);
     JacobiPreconditioner<float> jacobi(rows_.diagonal);
     return correct_by_krylov<float>(solver_.options_.method, a, solver_.preconditioner(jacobi), r, task, q_, work_);
   }
@@ -158,7 +172,7 @@ class ProjectionSolver::DoubleSystem final : public RefinedSystem {
     solver_.zero_.resize(r.size());
     solver_.double_diagonal_.resize(r.size());
     parallel_for(r.size(), [&](std::size_t i) { solver_.double_diagonal_[i] = rows_.diagonal[i]; });
-    DoubleOperator a(*solver_.matrix_, rows_, solver_.enclosed_, solver_.zero_);
+    DoubleOperator a(*solver_.matrix_, solver_.enclosed_, solver_.singular_, solver_.zero_);
     JacobiPreconditioner<double> jacobi(solver_.double_diagonal_);
     return correct_by_krylov<double>(solver_.options_.method, a, solver_.preconditioner(jacobi), r, task, q_,
                                      solver_.double_work_);
@@ -193,8 +207,8 @@ double divergence_tolerance(double tolerance) {
 
 ProjectionSolver::ProjectionSolver(const Boundary& boundary, const Options& options)
     : options_(options),
-      may_enclose_(boundary.bodies() != nullptr || !boundary.domain().boxes.empty()),
-      changes_volume_(boundary.features.displaced_bodies || boundary.features.displaced_walls) {
+      boundary_(boundary),
+      may_enclose_(boundary.bodies() != nullptr || !boundary.domain().boxes.empty()) {
   if (options.direct) direct_ = std::make_unique<DirectPressure>();
   if (options.multigrid && !options.direct)
     multigrid_ = std::make_unique<CellMultigrid>(cell_geometry(boundary, options.cell_size));
@@ -247,11 +261,13 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
   const double of_divergence = rows.reference_norm > 0 ? std::min(1.0, rows.source_norm / rows.reference_norm) : 0;
   const double tolerance = std::max(options_.tolerance, of_divergence * divergence_tolerance(options_.tolerance));
   const double reference_norm = std::max(rows.reference_norm, rows.rounding_norm / tolerance);
-  const bool looks = looks_for_enclosed != 0 || (rows.helmholtz != 0 && (rows.measured || rows.closed_off));
+  singular_ = rows.singular;
+  const bool looks = looks_for_enclosed != 0 || (rows.helmholtz != 0 && (rows.measured || rows.closed_off)) ||
+                     (rows.singular && matrix.coupling() != nullptr);
   if (may_enclose_ && direct_ == nullptr && looks) find_enclosed(rows, particles);
   const auto refinement = [&] {
-    return RefinementOptions{tolerance,     reference_norm, options_.max_iterations,
-                             rows.singular, rows.measured,  enclosed_.empty() ? nullptr : &enclosed_};
+    return RefinementOptions{tolerance, reference_norm, options_.max_iterations,
+                             singular_, rows.measured,  enclosed_.empty() ? nullptr : &enclosed_};
   };
   if (direct_ != nullptr) {
     ScratchArray<double> residual(particles.scratch(), n);
@@ -270,6 +286,7 @@ void ProjectionSolver::solve(const PressureRows& rows, ProjectionMatrix& matrix,
 
 void ProjectionSolver::factorise(const PressureRows& rows, ProjectionMatrix& matrix, ParticleStore& particles) {
   matrix_ = &matrix;
+  singular_ = rows.singular;
   if (may_enclose_) find_enclosed(rows, particles);
   direct_->factorise(matrix, rows.diagonal, rows.singular, enclosed_);
 }
@@ -280,7 +297,7 @@ void ProjectionSolver::find_enclosed(const PressureRows& rows, ParticleStore& pa
   enclosed_ = {};
   looks_for_enclosed = 0;
   const SweepContext* context = matrix_->context();
-  if (context == nullptr || (rows.helmholtz != 0 && changes_volume_)) return;
+  if (context == nullptr || (rows.helmholtz != 0 && boundary_.features.displaced_walls)) return;
   const std::size_t n = matrix_->size();
   ScratchPool& scratch = particles.scratch();
   ScratchArray<double> constant(scratch, n), zero(scratch, n), product(scratch, n);
@@ -304,7 +321,12 @@ void ProjectionSolver::find_enclosed(const PressureRows& rows, ParticleStore& pa
   const bool may_close = !found.parts.empty();
   if (std::erase_if(found.parts, [&](const auto& part) { return std::any_of(part.begin(), part.end(), is_fixed); }) > 0)
     found.all = false;
-  enclosed_ = constants_of(std::move(found), rows.singular);
+  if (rows.helmholtz != 0 && boundary_.features.displaced_bodies)
+    std::erase_if(found.parts, [&](const auto& part) {
+      return std::any_of(part.begin(), part.end(),
+                         [&](std::int32_t i) { return meets_moving_body(boundary_, *context, i); });
+    });
+  enclosed_ = constants_of(std::move(found));
   // With sound no solve says that a pool is closed again which spray in it kept open.
   if (!enclosed_.empty() || (may_close && rows.helmholtz != 0)) looks_for_enclosed = 1;
   if (enclosed_.empty() || remarked_) return;
@@ -316,7 +338,7 @@ void ProjectionSolver::find_enclosed(const PressureRows& rows, ParticleStore& pa
 
 // Where no pressure is known the largest part is the rest. Bodies that float know the constants that accelerate them:
 // those of liquid below a piston, but not those below and above it together.
-PartConstants ProjectionSolver::constants_of(EnclosedParts found, bool singular) {
+PartConstants ProjectionSolver::constants_of(EnclosedParts found) {
   auto& parts = found.parts;
   const BodyCoupling* coupling = matrix_->coupling();
   if (coupling != nullptr && !parts.empty()) {
@@ -327,17 +349,19 @@ PartConstants ProjectionSolver::constants_of(EnclosedParts found, bool singular)
       for (std::size_t k = 0; k < response.size(); ++k) responses[k][p] = response[k];
     }
     std::vector<std::vector<double>> free = null_space(std::move(responses), parts.size(), no_response);
-    // One constant of all liquid is what rows.singular stands for.
-    const bool of_all = (singular || found.all) && free.size() == 1 &&
+    // One constant of all liquid is what rows.singular stands for, and bodies may know that.
+    const bool of_all = (singular_ || found.all) && free.size() == 1 &&
                         std::all_of(free[0].begin(), free[0].end(),
                                     [&](double value) { return std::abs(value - free[0][0]) < no_response; });
+    if (!of_all) singular_ = false;
     if (of_all) free.clear();
     return {std::move(parts), std::move(free)};
   }
-  if ((singular || found.all) && !parts.empty())
+  // With sound the mean of all liquid is taken out by the method, which one part needs alone.
+  if (singular_ ? !parts.empty() : found.all && parts.size() == 1)
     parts.erase(
         std::max_element(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); }));
-  return {std::move(parts), singular};
+  return {std::move(parts), singular_};
 }
 
 void ProjectionSolver::solve_iteratively(const PressureRows& rows, const RefinementOptions& refinement,
@@ -364,7 +388,7 @@ void ProjectionSolver::solve_directly(const PressureRows& rows, const Refinement
     ++report_.applications;
     if (!enclosed_.empty())
       enclosed_.remove(r);
-    else if (rows.singular)
+    else if (singular_)
       subtract_mean(r);
   };
   find_residual();

@@ -112,7 +112,8 @@ void LiveView::preparing(Simulation& simulation, const std::string& how_far) {
   if (!server_.attention()) return;
   for (ViewMessage& message : server_.take_messages()) {
     using Action = ViewMessage::Action;
-    if (message.action == Action::stop || message.action == Action::pause || message.action == Action::go)
+    if (message.action == Action::stop || message.action == Action::pause || message.action == Action::go ||
+        message.action == Action::step)
       obey(simulation, message);
     else if (waiting_.size() < most_waiting)
       waiting_.push_back(std::move(message));

@@ -91,6 +91,32 @@ TEST(GapForces, AreThoseOfArchimedesByWcsph) {
   }
 }
 
+// What is before the middle of its bottom comes along that from its wet sides, not from its dry deck above, which is
+// nearer: the force was 0.70 of this.
+TEST(GapForces, ComeAlongTheSurface) {
+  const std::string shallow = deep_tank("les-sph", "density = 1\n[[liquid]]\nwhere = \"0.28 - y\"\n");
+  Simulation barge(shallow + "[[body]]\nshape = \"box\"\nsize = [0.9, 0.3]\nposition = [0.8, 0.158]\n");
+  barge.steps(3, 0.02);
+  std::vector<double> rows;
+  barge.method.table_rows("bodies", rows);
+  const double displaced = 0.9 * (0.28 - 0.008);
+  EXPECT_NEAR(rows[3], displaced, 0.02 * displaced);
+}
+
+// Torques are those about the body where it is whole.
+TEST(GapForces, DoNotTurnABodyAcrossAPeriodicSide) {
+  const std::string water = replaced(deep_tank("les-sph", "density = 1\n[[liquid]]\nwhere = \"1.1 - y\"\n"),
+                                     "left = \"free-slip\"\nright = \"free-slip\"", "x = \"periodic\"");
+  Simulation run(water +
+                 "[[body]]\nshape = \"box\"\nsize = [0.4, 0.4]\nposition = [0.02, 0.206]\nfree = [\"x\", \"y\", "
+                 "\"turn\"]\ndensity = 0.5\n");
+  run.steps(5, 0.02);
+  std::vector<double> rows;
+  run.method.table_rows("bodies", rows);
+  // It turned at 11.5 degrees per time.
+  EXPECT_NEAR(rows[10], 0, 0.01);
+}
+
 // What touches a wall along a face has no liquid below it: the water presses it down.
 TEST(GapForces, ABodyThatStandsOnTheFloorIsPressedDown) {
   Simulation run(deep_tank("les-sph", "density = 1\n[[liquid]]\nupper = [1.6, 1.1]\n") +

@@ -8,8 +8,9 @@
 // it, that of the velocity through the velocity of a no-slip surface. Elements without liquid before them feel nothing.
 //
 // Between a surface and another wall there is liquid in gaps that no particle has room in: it has the pressure of the
-// nearest element of the body before which there is room, at rest from there on. Where one layer of particles fits its
-// pressure is their mean, each at rest from its place on. Surfaces that touch a wall feel nothing there.
+// nearest element along the surface before which there is room, at rest under gravity from there on, and is missing
+// where that one is dry. Sides of the domain stand where they did at the start for that. Where one layer of particles
+// fits its pressure is their mean, each at rest from its place on. Surfaces that touch a wall feel nothing there.
 #pragma once
 
 #include <functional>
@@ -67,6 +68,7 @@ class BodyForces {
     std::int32_t body = 0;
   };
   Element now(const Element& element) const;
+  Vec3 unwrapped(const Element& element) const;
   // What is before an element: liquid that its pressure is fitted to, or nothing; or a gap without room for particles.
   enum class Before : std::uint8_t { nothing, gap, liquid };
   struct Traction {
@@ -86,6 +88,8 @@ class BodyForces {
   std::vector<Traction> tractions(const Fields& fields, double t,
                                   std::vector<std::vector<PressureWeight>>* weights) const;
   Before before_uncovered(const Element& element, double nearest) const;
+  // Of each element before a gap the nearest along the surface that is before none.
+  std::vector<std::int32_t> along_surface(const std::vector<Traction>& of, const std::vector<std::size_t>& gaps) const;
   // Gives elements before gaps the pressure of those before liquid.
   void fill_gaps(std::vector<Traction>& of, std::vector<std::vector<PressureWeight>>* weights) const;
   std::vector<SurfaceForce> add_up(const std::vector<Traction>& of) const;

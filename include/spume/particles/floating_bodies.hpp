@@ -119,6 +119,7 @@ class FloatingBodies {
   // C: the force per unit q, by particle.
   std::vector<std::int32_t> particle_;
   std::vector<double> force_;                  // an entry for each freedom
+  std::vector<double> moduli_;                 // of each freedom, what all of them would give along one direction
   std::vector<Array<double>> column_;          // G
   std::vector<Array<double>> image_pressure_;  // behind walls, by unit accelerations
   std::unique_ptr<Coupled> coupled_;

@@ -53,8 +53,8 @@ struct WallBehind {
 // normal at `place`, which is in between.
 std::optional<WallBehind> wall_across(const Boundary& boundary, const Vec3& place, double width);
 // A place in a wedge whose faces are nearer to each other than 0.6 spacings there: out along the bisector to where
-// they are not, with the velocity that leads in, beside the mean of both faces, taken away. Between faces that are
-// parallel to 6 degrees, which lead nowhere out, nothing is moved.
+// they are not, with the velocity that leads in, beside the mean of both faces (sides of the domain stand), taken away.
+// Between faces that are parallel to 6 degrees, which lead nowhere out, nothing is moved.
 void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity);
 
 }  // namespace spume

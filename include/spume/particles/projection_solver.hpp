@@ -73,6 +73,7 @@ class ProjectionSolver {
     double cell_size = 0;  // of the multigrid
     bool direct = false;   // by factorisation instead
   };
+  // `boundary` outlives the solver.
   ProjectionSolver(const Boundary& boundary, const Options& options);
 
   // Cells for the particles at `at`. Without multigrid nothing.
@@ -86,8 +87,9 @@ class ProjectionSolver {
   // Liquid that solids enclose apart from the rest (particles/enclosed_parts.hpp) is looked for at the first solve and
   // after one that did not converge, and then at each, as long as there is some; by a direct solver with each matrix.
   // `q` has a mean of zero in it. With sound a constant is known, every solve converges, and the errors of the
-  // divergence add up in it, within a step of sound to 200 times the pressure: beside walls that do not move it is
-  // taken out as well, and looked for where residuals are measured.
+  // divergence add up in it, to 200 times the pressure around in 30 steps: where no side of the domain moves, and
+  // beside bodies that do not, it is taken out as well, and looked for where residuals are measured and where
+  // rows.closed_off.
   void solve(const PressureRows& rows, ProjectionMatrix& matrix, ParticleStore& particles, Array<double>& q);
 
   const DirectPressure* direct() const { return direct_.get(); }  // null: iterative
@@ -109,19 +111,20 @@ class ProjectionSolver {
   void solve_iteratively(const PressureRows& rows, const RefinementOptions& refinement, ParticleStore& particles,
                          Array<double>& q);
   void find_enclosed(const PressureRows& rows, ParticleStore& particles);
-  PartConstants constants_of(EnclosedParts found, bool singular);
+  PartConstants constants_of(EnclosedParts found);
   template <class Real>
   Preconditioner<Real>& preconditioner(JacobiPreconditioner<Real>& jacobi);
 
   Options options_;
+  const Boundary& boundary_;
   PressureOperator operator_;
   ProjectionMatrix* matrix_ = nullptr;  // of the present solve
   std::unique_ptr<CellMultigrid> multigrid_;
   CorrectionWorkspace<double> double_work_;  // empty in mixed precision, as are the next
   Array<double> double_diagonal_, zero_;
   std::unique_ptr<DirectPressure> direct_;
-  bool may_enclose_;     // there are solids
-  bool changes_volume_;  // walls move: the mean of a pressure with sound is what they do
+  bool may_enclose_;       // there are solids
+  bool singular_ = false;  // PressureRows::singular, unless bodies that float know the constant
   PartConstants enclosed_;
   std::string remark_;
   bool remarked_ = false;
