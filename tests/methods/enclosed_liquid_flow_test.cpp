@@ -62,6 +62,14 @@ void expect_the_same_bits_resumed(const std::string& text) {
   EXPECT_EQ(straight.saved_state(), resumed.saved_state());
 }
 
+// Between walls, up to a level.
+std::string water_below(const std::string& upper, const std::string& spacing, const std::string& level) {
+  return "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = " + upper +
+         "\nleft = \"free-slip\"\nright = \"free-slip\"\nbottom = \"free-slip\"\n[resolution]\nspacing = " + spacing +
+         "\n[fluid]\ndensity = 1\ngravity = 1\n[[liquid]]\nwhere = \"" + level +
+         " - y\"\n[time]\nend = 1\nmax_step = 0.02\n";
+}
+
 struct LesSphRun : Simulation {
   using Simulation::Simulation;
   const les_sph::Flow& flow() const { return method.flow(); }
@@ -111,12 +119,9 @@ TEST(EnclosedLiquidFlow, APistonRestsOnWhatItEncloses) {
   for (const auto& [height, density] :
        {std::pair{"0.35", "1"}, {"0.4", "1"}, {"0.35", "1.5"}, {"0.5", "1"}, {"0.5", "1000"}}) {
     SCOPED_TRACE(std::string(height) + ", density " + density);
-    LesSphRun run(
-        "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [1, 1.2]\nleft = \"free-slip\"\nright = "
-        "\"free-slip\"\nbottom = \"free-slip\"\n[resolution]\nspacing = 0.025\n[fluid]\ndensity = 1\n"
-        "gravity = 1\n[[liquid]]\nwhere = \"1 - y\"\n[time]\nend = 1\nmax_step = 0.02\n"
-        "[[body]]\nshape = \"box\"\nsize = [0.98, 0.3]\nfree = [\"y\"]\nposition = [0.5, " +
-        std::string(height) + "]\ndensity = " + density + "\n");
+    LesSphRun run(water_below("[1, 1.2]", "0.025", "1") +
+                  "[[body]]\nshape = \"box\"\nsize = [0.98, 0.3]\nfree = [\"y\"]\nposition = [0.5, " +
+                  std::string(height) + "]\ndensity = " + density + "\n");
     for (int step = 0; step < 3; ++step) run.steps(1, 0.01);
     std::vector<double> rows;
     run.method.table_rows("bodies", rows);
@@ -129,12 +134,9 @@ TEST(EnclosedLiquidFlow, APistonRestsOnWhatItEncloses) {
 // Two chambers below one piston, which a wall parts: it knows their mean and not their difference, which made the wall
 // bear half of the weight sideways.
 TEST(EnclosedLiquidFlow, APistonOverTwoChambersLeavesTheWallBetweenThemAlone) {
-  LesSphRun run(
-      "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [1, 1.4]\nleft = \"free-slip\"\nright = "
-      "\"free-slip\"\nbottom = \"free-slip\"\n[resolution]\nspacing = 0.025\n[fluid]\ndensity = 1\ngravity = 1\n"
-      "[[liquid]]\nwhere = \"1 - y\"\n[time]\nend = 1\nmax_step = 0.01\n"
-      "[[body]]\nshape = \"box\"\nsize = [0.98, 0.3]\nfree = [\"y\"]\nposition = [0.5, 0.6]\ndensity = 1.5\n"
-      "[[body]]\nshape = \"box\"\nsize = [0.2, 0.98]\nposition = [0.5, 0]\n");
+  LesSphRun run(water_below("[1, 1.4]", "0.025", "1") +
+                "[[body]]\nshape = \"box\"\nsize = [0.98, 0.3]\nfree = [\"y\"]\nposition = [0.5, 0.6]\ndensity = 1.5\n"
+                "[[body]]\nshape = \"box\"\nsize = [0.2, 0.98]\nposition = [0.5, 0]\n");
   for (int step = 0; step < 3; ++step) run.steps(1, 0.01);
   std::vector<double> rows;
   run.method.table_rows("bodies", rows);
@@ -148,9 +150,7 @@ TEST(EnclosedLiquidFlow, APistonOverTwoChambersLeavesTheWallBetweenThemAlone) {
 // than without any water.
 TEST(EnclosedLiquidFlow, APistonBelowAirRestsOnWhatItEncloses) {
   LesSphRun run(
-      "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [1.6, 1.3]\nleft = \"free-slip\"\nright = "
-      "\"free-slip\"\nbottom = \"free-slip\"\n[resolution]\nspacing = 0.04\n[fluid]\ndensity = 1\ngravity = 1\n"
-      "[[liquid]]\nwhere = \"0.56 - y\"\n[time]\nend = 1\nmax_step = 0.02\n"
+      water_below("[1.6, 1.3]", "0.04", "0.56") +
       "[[body]]\nshape = \"box\"\nsize = [1.58, 0.3]\nposition = [0.8, 0.71]\nfree = [\"y\"]\ndensity = 1.5\n");
   run.steps(3, 0.02);
   std::vector<double> rows;
@@ -162,9 +162,7 @@ TEST(EnclosedLiquidFlow, APistonBelowAirRestsOnWhatItEncloses) {
 // No pressure turns a ball: what its torque has is rounding, which counted as what it knows of the constant.
 TEST(EnclosedLiquidFlow, ABallMayTurnInWhatSolidsEnclose) {
   LesSphRun run(
-      "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [1, 1.2]\nleft = \"free-slip\"\nright = "
-      "\"free-slip\"\nbottom = \"free-slip\"\n[resolution]\nspacing = 0.025\n[fluid]\ndensity = 1\ngravity = 1\n"
-      "[[liquid]]\nwhere = \"1 - y\"\n[time]\nend = 1\nmax_step = 0.01\n"
+      water_below("[1, 1.2]", "0.025", "1") +
       "[[body]]\nshape = \"box\"\nsize = [0.98, 0.3]\nposition = [0.5, 0.5]\n"
       "[[body]]\nshape = \"ball\"\nradius = 0.1\nposition = [0.5, 0.15]\nfree = [\"x\", \"y\", \"turn\"]\ndensity = "
       "1.1\n");
