@@ -7,6 +7,7 @@
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/operators/small_matrix.hpp"
+#include "spume/particles/column_pressure.hpp"
 
 namespace spume {
 namespace {
@@ -398,6 +399,25 @@ double FloatingBodies::largest_speed() const {
   double largest = 0;
   for (const std::size_t motion : motions_) largest = std::max(largest, contacts_at_.largest_speed(motion));
   return largest;
+}
+
+double FloatingBodies::kinetic_energy() const {
+  double sum = 0;
+  for (std::size_t b = 0; b < motions_.size(); ++b) {
+    const BodyMotion& motion = scene_.motions[motions_[b]];
+    const RigidPlace& place = now_[b].place;
+    const Vec3 spin = rotated(transposed(place.rotation), place.angular_velocity);
+    sum += (motion.mass * dot(place.velocity, place.velocity) + dot(spin, rotated(motion.inertia, spin))) / 2;
+  }
+  return sum;
+}
+
+double FloatingBodies::potential_energy() const {
+  const Vec3 gravity = gravity_across_sides(scene_);
+  double sum = 0;
+  for (std::size_t b = 0; b < motions_.size(); ++b)
+    sum -= scene_.motions[motions_[b]].mass * dot(gravity, now_[b].place.position);
+  return sum;
 }
 
 void FloatingBodies::save(StateWriter& writer) const {

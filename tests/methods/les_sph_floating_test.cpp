@@ -79,6 +79,22 @@ TEST(LesSphFloating, ADiscAsHeavyAsWaterStays) {
   EXPECT_LT(std::abs(row.y), 0.5 * 0.005 * 10 / 2.4 * 0.25);
 }
 
+// What a disc gains by rising the water has lost: the verdict on the energy has both.
+TEST(LesSphFloating, TheVerdictOnTheEnergyHasThatOfTheBody) {
+  Simulation run(disc_in_tank + "density = 500\n");
+  run.steps(5, 1e-3);
+  const std::vector<Invariant> invariants = run.method.invariants();
+  const auto energy = std::find_if(invariants.begin(), invariants.end(),
+                                   [](const Invariant& one) { return one.quantity == "energy_growth"; });
+  ASSERT_NE(energy, invariants.end());
+  std::vector<double> rows;
+  run.method.table_rows("bodies", rows);
+  const double *const r = rows.data() + 14, spin = r[13] * pi / 180;
+  const double mass = 500 * pi * 0.16, kinetic = mass * (r[11] * r[11] + r[12] * r[12] + 0.16 / 2 * spin * spin) / 2;
+  EXPECT_NEAR(energy->beside(), kinetic + mass * 10 * r[9], 1e-9 * kinetic);
+  EXPECT_NEAR(energy->scale(), run.series()["kinetic_energy"] + kinetic, 1e-9 * kinetic);
+}
+
 TEST(LesSphFloating, APlankTurnsToTheLevelAndFloats) {
   Simulation run(plank);
   while (run.method.time() < 1) run.steps(1, std::min(0.01, run.method.step_limit().dt));
