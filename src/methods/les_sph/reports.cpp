@@ -181,7 +181,7 @@ std::vector<Invariant> LesSph::invariants() const {
   // 1/50), and the rearrangement of particles lifts liquid by a fraction of a spacing: 5e-4 in standing_wave, whose
   // waves are lower than a spacing and hold less than that would. Hence the bound, and the floor of the scale.
   // Bodies that float have some of it. A ball of 4 spacings of radius that rises from the floor makes 11 % of what
-  // moves, of 10 spacings 2 %; cases/floating_box 0.6 %. What goes wrong makes many times as much.
+  // moves, of 10 spacings 2 %; cases/floating_box 0.6 %. What flings a body out of its tank makes all of it.
   const std::vector<Body>& bodies = flow_.scene.bodies;
   const bool given_motion = std::any_of(bodies.begin(), bodies.end(), [&](const Body& body) {
     return body.velocity || (body.motion && !flow_.scene.motions[*body.motion].floats);
