@@ -143,14 +143,7 @@ TEST(LesSphPockets, SloshingOverAClosedPoolKeepsItsPressure) {
 }
 
 TEST(LesSphPockets, AClosedPoolWithSoundResumesBitForBit) {
-  Simulation straight(sloshing_over_pool), resumed(sloshing_over_pool);
-  straight.steps(20, 0.03);
-  MemoryState saved;
-  straight.method.save(saved);
-  resumed.method.load(saved);
-  straight.steps(20, 0.03);
-  resumed.steps(20, 0.03);
-  EXPECT_EQ(straight.saved_state(), resumed.saved_state());
+  expect_the_same_bits_resumed<Simulation>(sloshing_over_pool, 20, 0.03);
 }
 
 }  // namespace

@@ -140,4 +140,17 @@ std::string changed_by_a_refused_step(const std::string& text, const Overrides& 
   return changed;
 }
 
+// After `count` steps, resumed for as many more.
+template <class Run>
+void expect_the_same_bits_resumed(const std::string& text, int count, double dt) {
+  Run straight(text), resumed(text);
+  straight.steps(count, dt);
+  MemoryState saved;
+  straight.method.save(saved);
+  resumed.method.load(saved);
+  straight.steps(count, dt);
+  resumed.steps(count, dt);
+  EXPECT_EQ(straight.saved_state(), resumed.saved_state());
+}
+
 }  // namespace spume::test
