@@ -313,12 +313,15 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
               both = both + fields.repulsion * (jump / (other + own_density)) * simd::max(both, zero - both);
             }
           }
-          const f32n share = Kernel::f(b.q) * b.payload[0];
-          if constexpr (concentrated)
+          const f32n gradient = Kernel::f(b.q);
+          if constexpr (concentrated) {
+            const f32n share = gradient * b.payload[0];
             unrolled<dimensions>([&](auto a) __attribute__((always_inline)) {
               sum[dimensions + a] = sum[dimensions + a] + share * b.d[a];
             });
-          const f32n weight = share * both;
+          }
+          // The kernel comes last of what this waits for.
+          const f32n weight = gradient * (b.payload[0] * both);
           unrolled<dimensions>([&](auto a) __attribute__((always_inline)) { sum[a] = sum[a] + weight * b.d[a]; });
         });
     float total[concentrated ? 2 * dimensions : dimensions];

@@ -39,7 +39,7 @@ struct WendlandC2 {
   template <simd::FloatVector V>
   [[gnu::always_inline]] static V f(V q) {
     const V s = simd::max(1.0F - 0.5F * q, simd::splat<V>(0));
-    return -5.0F * (s * s) * s;
+    return (s * s) * (-5.0F * s);  // two products one after the other, not three
   }
 };
 
