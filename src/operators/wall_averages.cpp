@@ -192,11 +192,12 @@ std::vector<SurfaceForce> wall_forces(const SweepContext& context, const WallFor
         const double weight =
             -scale * WendlandC2::f(ratio(context, way)) * fields.volume[i] * context.walls->mirrored(g, fields.volume);
         double other = fields.wall_pressure[g];
-        Vec3 place{}, pressure{}, viscous{};
+        Vec3 arm{}, pressure{}, viscous{};
         for (int axis = 0; axis < d; ++axis) {
-          place[axis] = fields.wall_position[axis][g];
+          arm[axis] = fields.arm[axis][g];
           if (fields.gravity[axis] != 0)
-            other += fields.wall_density[g] * fields.gravity[axis] * (context.images->position(axis)[k] - place[axis]);
+            other += fields.wall_density[g] * fields.gravity[axis] *
+                     (context.images->position(axis)[k] - fields.wall_position[axis][g]);
         }
         const Vec3 u = context.walls->velocity(g, d, fields.velocity, fields.friction, true, false);
         for (int axis = 0; axis < d; ++axis) {
@@ -205,8 +206,8 @@ std::vector<SurfaceForce> wall_forces(const SweepContext& context, const WallFor
             viscous[axis] = -2 * weight * fields.viscosity[i] * (u[axis] - held[axis] * fields.velocity[axis][i]);
         }
         SurfaceForce& own = blocks[b][static_cast<std::size_t>(fields.body[g])];
-        own.press(place, pressure);
-        own.rub(place, viscous);
+        own.press(arm, pressure);
+        own.rub(arm, viscous);
       }
   });
   for (const auto& block : blocks)

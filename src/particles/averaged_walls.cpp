@@ -50,8 +50,19 @@ std::array<const double*, 3> AveragedWalls::place() const {
 
 std::vector<SurfaceForce> AveragedWalls::forces(const Arrangement& arrangement, const Liquid& liquid) const {
   const BodyWalls& walls = *boundary_.bodies();
-  std::vector<std::int32_t> body(walls.stencils().size());
-  for (std::size_t g = 0; g < body.size(); ++g) body[g] = walls.body_of_wet(g);
+  const std::size_t points = walls.stencils().size();
+  const std::array<const double*, 3> place = walls.wet().position;
+  std::vector<std::int32_t> body(points);
+  std::array<std::vector<double>, 3> arm;
+  const int dimensions = boundary_.domain().dimensions;
+  for (int axis = 0; axis < dimensions; ++axis) arm[axis].resize(points);
+  for (std::size_t g = 0; g < points; ++g) {
+    body[g] = walls.body_of_wet(g);
+    Vec3 at{};
+    for (int axis = 0; axis < dimensions; ++axis) at[axis] = place[axis][g];
+    const Vec3 whole = walls.part_of(static_cast<std::size_t>(body[g])).beside_pivot(at);
+    for (int axis = 0; axis < dimensions; ++axis) arm[axis][g] = whole[axis];
+  }
   return wall_forces(arrangement.context,
                      {.velocity = liquid.velocity,
                       .pressure = liquid.pressure,
@@ -63,7 +74,8 @@ std::vector<SurfaceForce> AveragedWalls::forces(const Arrangement& arrangement, 
                       .held = &boundary_.velocity_rule().sign,
                       .wall_pressure = pressure_.data(),
                       .wall_density = density_.data(),
-                      .wall_position = walls.wet().position,
+                      .wall_position = place,
+                      .arm = {arm[0].data(), arm[1].data(), arm[2].data()},
                       .body = body.data()},
                      walls.bodies().size());
 }

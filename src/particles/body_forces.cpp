@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "spume/core/parallel.hpp"
@@ -11,13 +10,10 @@
 #include "spume/operators/moving_least_squares.hpp"
 #include "spume/particles/column_pressure.hpp"
 #include "spume/particles/near_particles.hpp"
-#include "spume/particles/surface_pieces.hpp"
 
 namespace spume {
 namespace {
 
-// Spacings: an element farther from the walls lies inside another body, or where the scene ends.
-constexpr double on_surface = 0.25;
 // Spacings: a place before the surface that the surface itself does not hide.
 constexpr double before_surface = 0.1;
 // Of the sum of all weights: what pins the fit of a velocity to that of a no-slip surface.
@@ -32,36 +28,6 @@ constexpr double wet_share = 0.5;
 constexpr double in_gap = 1, room_in_gap = 1;
 
 constexpr std::size_t block_of_elements = 256;
-
-// Elements of a body in one cell of a spacing that face one way, as one: facets of a shape are often slivers, 61
-// for a square of a spacing around a cylinder, and each would take a fit. Their areas add up; their middle is the mean.
-template <class Element>
-std::vector<Element> join(const std::vector<Element>& elements, double spacing) {
-  std::map<std::array<int, 4>, std::size_t> found;
-  std::vector<Element> joined;
-  std::vector<double> sizes;
-  for (const Element& element : elements) {
-    std::array<int, 4> key{};
-    std::size_t widest = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      key[axis] = static_cast<int>(std::floor(element.middle[axis] / spacing));
-      if (std::abs(element.area[axis]) > std::abs(element.area[widest])) widest = axis;
-    }
-    key[3] = static_cast<int>(2 * widest) + (element.area[widest] < 0 ? 1 : 0);
-    const auto [at, fresh] = found.try_emplace(key, joined.size());
-    const double size = length(element.area);
-    if (fresh) {
-      joined.push_back({{}, {}, element.body});
-      sizes.push_back(0);
-    }
-    Element& whole = joined[at->second];
-    whole.middle = add(whole.middle, multiply(size, element.middle));
-    whole.area = add(whole.area, element.area);
-    sizes[at->second] += size;
-  }
-  for (std::size_t k = 0; k < joined.size(); ++k) joined[k].middle = multiply(1 / sizes[k], joined[k].middle);
-  return joined;
-}
 
 // Bodies that are not always there, or not of their full size.
 bool any_grows(const Scene& scene) {
@@ -98,29 +64,11 @@ BodyForces::Fields::Fields(const Arrangement& arrangement, const ParticleStore& 
       particle_volume(store.volume) {}
 
 BodyForces::BodyForces(const Scene& scene, const Resolution& resolution, const BodyWalls& walls)
-    : scene_(scene), resolution_(resolution), walls_(walls), gravity_(gravity_across_sides(scene)) {
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-    if (scene.bodies[b].wall != BoundaryKind::open) add_elements(static_cast<std::int32_t>(b));
-}
-
-void BodyForces::add_elements(std::int32_t b) {
-  const Body& body = scene_.bodies[static_cast<std::size_t>(b)];
-  const double spacing = resolution_.spacing, sign = body.inside != body.subtract ? 1 : -1;
-  const RigidWalls& walls = walls_.part_of(static_cast<std::size_t>(b));
-  std::vector<Element> found;
-  for (const SurfacePiece& piece : surface_pieces(scene_.domain, body, spacing))
-    found.push_back({piece.middle, multiply(sign, piece.area), b});
-  // Facets lie within a curved surface: their areas are made those of the volume of the shape, and their middles lie on
-  // it. The half of a spacing that facets have is off by 0.6 % of the volume of a ball of four spacings radius.
-  double volume = 0;
-  for (const Element& element : found) volume += sign * dot(element.middle, element.area) / scene_.domain.dimensions;
-  const double ratio = body.shape->volume() / volume, dimensions = scene_.domain.dimensions;
-  const double stretch = std::isfinite(ratio) && ratio > 0 ? std::pow(ratio, (dimensions - 1) / dimensions) : 1;
-  for (const Element& element : scene_.domain.dimensions == 3 ? join(found, spacing) : found) {
-    if (std::abs(walls.exact_distance(element.middle)) >= on_surface * spacing) continue;
-    elements_.push_back({walls.nearest(element.middle).point, multiply(stretch, element.area), b});
-  }
-}
+    : scene_(scene),
+      resolution_(resolution),
+      walls_(walls),
+      gravity_(gravity_across_sides(scene)),
+      elements_(scene, walls, resolution.spacing) {}
 
 template <int dimensions>
 BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& table, NearParticles& near,
@@ -128,6 +76,12 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
                                           std::vector<PressureWeight>* weights) const {
   const double h = resolution_.smoothing_length, reach = fit_reach * resolution_.support_radius;
   const Vec3 normal = multiply(1 / length(element.area), element.area);
+  Traction found;
+  const std::optional<double> gap = walls_.gap_before(element.middle, normal);
+  if (gap && *gap == 0) {
+    found.before = Before::wall;
+    return found;
+  }
   struct Near {
     std::size_t particle;
     Vec3 offset;
@@ -157,7 +111,6 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
       covered += 2 * scale * Kernel::w(r / h);
     }
   });
-  Traction found;
   MovingLeastSquares<dimensions> fit;
   const auto fill = [&](bool pin) {
     fit.resize(before.size() + (pin ? 1 : 0));
@@ -170,10 +123,11 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
     fit.weight()[before.size()] = pinned * sum;
   };
   fill(false);
-  const bool fitted = covered >= wet_share && fit.fit(2) >= 0;
+  const bool is_wet = covered >= wet_share || (!gap && !before.empty() && covered >= wet_share * free_share(element));
+  const bool fitted = is_wet && fit.fit(2) >= 0;
   if (!fitted) {
-    found.before = before_uncovered(element, before.empty() ? infinite : std::sqrt(nearest2));
-    found.in_gap = found.before != Before::nothing;
+    found.before = before_uncovered(gap, before.empty() ? infinite : std::sqrt(nearest2));
+    found.in_gap = found.before == Before::gap || found.before == Before::liquid;
     if (found.before != Before::liquid) return found;
   }
   found.before = Before::liquid;
@@ -226,67 +180,58 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
 }
 
 // Before an element that lacks liquid, with the nearest particle before it `nearest` away.
-BodyForces::Before BodyForces::before_uncovered(const Element& element, double nearest) const {
+BodyForces::Before BodyForces::before_uncovered(const std::optional<double>& gap, double nearest) const {
   const double spacing = resolution_.spacing;
-  const std::optional<double> gap = walls_.gap_before(element.middle, multiply(1 / length(element.area), element.area));
-  if (!gap || *gap == 0) return Before::nothing;
-  if (nearest < in_gap * spacing) return Before::liquid;
-  return *gap < room_in_gap * spacing ? Before::gap : Before::nothing;
+  if (!gap) return Before::nothing;
+  if (*gap < room_in_gap * spacing) return Before::gap;  // what is caught there has no pressure of its own
+  return nearest < in_gap * spacing ? Before::liquid : Before::nothing;
 }
 
-// From element to element of the same body that are less than two spacings apart and do not face away from each other,
-// by the fewest steps, each of elements as near ones the nearest. Negative: there is no such way.
-std::vector<std::int32_t> BodyForces::along_surface(const std::vector<Traction>& of,
-                                                    const std::vector<std::size_t>& gaps) const {
-  constexpr double facing_away = -0.5;
-  const double reach = 2 * resolution_.spacing;
-  // At the start bodies are whole.
-  std::map<std::array<int, 3>, std::vector<std::size_t>> cells;
-  const auto cell_of = [&](const Vec3& place) {
-    std::array<int, 3> cell{};
-    for (std::size_t axis = 0; axis < 3; ++axis) cell[axis] = static_cast<int>(std::floor(place[axis] / reach));
-    return cell;
-  };
-  for (std::size_t e = 0; e < elements_.size(); ++e) cells[cell_of(elements_[e].middle)].push_back(e);
-  std::vector<std::vector<std::pair<double, std::size_t>>> beside(gaps.size());
-  parallel_for(gaps.size(), [&](std::size_t k) {
-    const Element& own = elements_[gaps[k]];
-    const std::array<int, 3> middle = cell_of(own.middle);
-    for (int n = 0; n < 27; ++n) {
-      const auto found = cells.find({middle[0] + n % 3 - 1, middle[1] + n / 3 % 3 - 1, middle[2] + n / 9 - 1});
-      if (found == cells.end()) continue;
-      for (const std::size_t e : found->second) {
-        const Element& other = elements_[e];
-        const double away = length(subtract(other.middle, own.middle));
-        const double facing = dot(other.area, own.area) / (length(other.area) * length(own.area));
-        if (e != gaps[k] && other.body == own.body && away < reach && facing > facing_away)
-          beside[k].emplace_back(away, e);
-      }
-    }
-    std::sort(beside[k].begin(), beside[k].end());
+// By places of a lattice of a spacing that begins at the element.
+double BodyForces::free_share(const Element& element) const {
+  const Domain& domain = scene_.domain;
+  const double spacing = resolution_.spacing;
+  const Vec3 normal = multiply(1 / length(element.area), element.area);
+  Vec3 least{};  // the axis that the normal is farthest from
+  least[std::abs(normal[0]) < std::abs(normal[1]) ? 0 : 1] = 1;
+  const Vec3 aside = domain.dimensions == 3 ? unit(cross(normal, least)) : Vec3{-normal[1], normal[0]};
+  const Vec3 across = domain.dimensions == 3 ? cross(normal, aside) : Vec3{};
+  const int most = static_cast<int>(resolution_.support_radius / spacing),
+            most_across = domain.dimensions == 3 ? most : 0;
+  double free = 0, all = 0;
+  with_plain_kernel(domain.dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
+    for (int i = 0; i <= most; ++i)
+      for (int j = -most; j <= most; ++j)
+        for (int k = -most_across; k <= most_across; ++k) {
+          const Vec3 offset = add(multiply((i + 0.5) * spacing, normal),
+                                  add(multiply(j * spacing, aside), multiply(k * spacing, across)));
+          const double weight = Kernel::w(length(offset) / resolution_.smoothing_length);
+          if (!(weight > 0)) continue;
+          all += weight;
+          const Vec3 place = add(element.middle, offset);
+          bool is_free = true;
+          for (int axis = 0; axis < d; ++axis)
+            is_free = is_free && !(is_wall(domain.sides[axis][0].kind) && place[axis] < domain.lower[axis]) &&
+                      !(is_wall(domain.sides[axis][1].kind) && place[axis] > domain.upper[axis]);
+          if (is_free && walls_.distance(domain.inside(place)) > 0) free += weight;
+        }
   });
-  std::vector<std::int32_t> source(elements_.size(), -1), next(gaps.size(), -1);
-  for (std::size_t e = 0; e < elements_.size(); ++e)
-    if (of[e].before != Before::gap) source[e] = static_cast<std::int32_t>(e);
-  for (bool any = true; any;) {
-    any = false;
-    for (std::size_t k = 0; k < gaps.size(); ++k) {
-      if (next[k] >= 0) continue;
-      for (const auto& [away, e] : beside[k])
-        if (next[k] < 0 && source[e] >= 0) next[k] = source[e];
-      any = any || next[k] >= 0;
-    }
-    for (std::size_t k = 0; k < gaps.size(); ++k) source[gaps[k]] = next[k];
-  }
-  return next;
+  return free / all;
 }
 
 void BodyForces::fill_gaps(std::vector<Traction>& of, std::vector<std::vector<PressureWeight>>* weights) const {
+  using Role = SurfaceElements::Role;
+  std::vector<Role> role;
   std::vector<std::size_t> gaps;
-  for (std::size_t e = 0; e < of.size(); ++e)
+  for (std::size_t e = 0; e < of.size(); ++e) {
     if (of[e].before == Before::gap) gaps.push_back(e);
+    role.push_back(of[e].before == Before::gap      ? Role::seeks
+                   : of[e].before == Before::liquid ? Role::source
+                   : of[e].before == Before::wall   ? Role::none
+                                                    : Role::end);
+  }
   if (gaps.empty()) return;
-  const std::vector<std::int32_t> nearest = along_surface(of, gaps);
+  const std::vector<std::int32_t> nearest = elements_.nearest_sources(role, gaps);
   for (std::size_t k = 0; k < gaps.size(); ++k) {
     if (nearest[k] < 0) continue;
     const auto source = static_cast<std::size_t>(nearest[k]);
@@ -304,12 +249,6 @@ void BodyForces::fill_gaps(std::vector<Traction>& of, std::vector<std::vector<Pr
       block.push_back({block[w].particle, own.body, own.middle, multiply(-share, own.area)});
     }
   }
-}
-
-// Where the body is whole: it may have left the domain by a periodic side.
-Vec3 BodyForces::unwrapped(const Element& element) const {
-  const auto body = static_cast<std::size_t>(element.body);
-  return scene_.bodies[body].motion ? walls_.part_of(body).place.now(element.middle) : element.middle;
 }
 
 BodyForces::Element BodyForces::now(const Element& element) const {
@@ -330,7 +269,8 @@ std::optional<std::size_t> BodyForces::floats_through() const {
   // Those that lie on each other at the start do not count.
   const double deep = 0.5 * resolution_.spacing;
   const Domain& domain = scene_.domain;
-  for (const Element& element : elements_) {
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const Element& element = elements_[e];
     if (!floats(element)) continue;
     const auto body = static_cast<std::size_t>(element.body);
     const RigidWalls& own = walls_.part_of(body);
@@ -378,7 +318,8 @@ std::vector<SurfaceForce> BodyForces::add_up(const std::vector<Traction>& of) co
   std::vector<SurfaceForce> total(scene_.bodies.size());
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     SurfaceForce& body = total[static_cast<std::size_t>(elements_[e].body)];
-    const Vec3 middle = unwrapped(elements_[e]);
+    const RigidWalls& walls = walls_.part_of(static_cast<std::size_t>(elements_[e].body));
+    const Vec3 middle = walls.motion() == nullptr ? elements_[e].middle : walls.place.now(elements_[e].middle);
     body.press(middle, of[e].pressure);
     body.rub(middle, of[e].viscous);
   }

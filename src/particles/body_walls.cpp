@@ -31,6 +31,7 @@ constexpr int least_order = 1, least_order_before_wall = 0;
 constexpr double thinnest = 0.05;  // spacings, of a plate across a gap
 // Spacings before a surface: another wall that is there touches it.
 constexpr double touches_within = 0.005;
+constexpr double of_rounding = 1e-9;  // of the widest gap: what is inside another wall touches it
 // Each part costs a particle 6 ns a question; cells cost 1 ns and a pass over the domain at every step.
 constexpr std::size_t many_parts = 4;
 
@@ -214,7 +215,10 @@ std::optional<double> BodyWalls::gap_before(const Vec3& foot, const Vec3& normal
   const std::optional<Vec3> wall =
       way_to_wall(add(foot, multiply(first, normal)), multiply(width - first, normal), thinnest * scene_.spacing, at,
                   [&](const Vec3& place) { return at(place) < 0; });
-  if (wall) limit(std::max(0.0, dot(subtract(*wall, foot), normal) - first));
+  if (wall) {
+    const double way = dot(subtract(*wall, foot), normal) - first;
+    limit(way > of_rounding * width ? way : 0);
+  }
   return gap;
 }
 

@@ -413,10 +413,9 @@ double FloatingBodies::kinetic_energy() const {
 }
 
 double FloatingBodies::potential_energy() const {
-  const Vec3 gravity = gravity_across_sides(scene_);
   double sum = 0;
   for (std::size_t b = 0; b < motions_.size(); ++b)
-    sum -= scene_.motions[motions_[b]].mass * dot(gravity, now_[b].place.position);
+    sum -= scene_.motions[motions_[b]].mass * dot(scene_.fluid.gravity, now_[b].place.position);
   return sum;
 }
 

@@ -319,14 +319,14 @@ void ProjectionSolver::find_enclosed(const PressureRows& rows, ParticleStore& pa
   });
   std::erase_if(found.parts, [&](const auto& part) { return std::all_of(part.begin(), part.end(), is_fixed); });
   const bool may_close = !found.parts.empty();
-  if (std::erase_if(found.parts, [&](const auto& part) { return std::any_of(part.begin(), part.end(), is_fixed); }) > 0)
-    found.all = false;
+  const auto leave_out = [&](const auto& chosen) {
+    if (std::erase_if(found.parts, [&](const auto& part) { return std::any_of(part.begin(), part.end(), chosen); }) > 0)
+      found.all = false;
+  };
+  leave_out(is_fixed);
   if (rows.helmholtz != 0 && boundary_.features.displaced_bodies)
-    std::erase_if(found.parts, [&](const auto& part) {
-      return std::any_of(part.begin(), part.end(),
-                         [&](std::int32_t i) { return meets_moving_body(boundary_, *context, i); });
-    });
-  enclosed_ = constants_of(std::move(found));
+    leave_out([&](std::int32_t i) { return meets_moving_body(boundary_, *context, i); });
+  enclosed_ = constants_of(std::move(found), rows.mean_is_removed);
   // With sound no solve says that a pool is closed again which spray in it kept open.
   if (!enclosed_.empty() || (may_close && rows.helmholtz != 0)) looks_for_enclosed = 1;
   if (enclosed_.empty() || remarked_) return;
@@ -338,8 +338,9 @@ void ProjectionSolver::find_enclosed(const PressureRows& rows, ParticleStore& pa
 
 // Where no pressure is known the largest part is the rest. Bodies that float know the constants that accelerate them:
 // those of liquid below a piston, but not those below and above it together.
-PartConstants ProjectionSolver::constants_of(EnclosedParts found) {
+PartConstants ProjectionSolver::constants_of(EnclosedParts found, bool mean_is_removed) {
   auto& parts = found.parts;
+  const bool of_method = found.all && mean_is_removed;
   const BodyCoupling* coupling = matrix_->coupling();
   if (coupling != nullptr && !parts.empty()) {
     std::vector<std::vector<double>> responses;  // of a body, to all parts
@@ -350,15 +351,15 @@ PartConstants ProjectionSolver::constants_of(EnclosedParts found) {
     }
     std::vector<std::vector<double>> free = null_space(std::move(responses), parts.size(), no_response);
     // One constant of all liquid is what rows.singular stands for, and bodies may know that.
-    const bool of_all = (singular_ || found.all) && free.size() == 1 &&
+    const bool of_all = (singular_ || of_method) && free.size() == 1 &&
                         std::all_of(free[0].begin(), free[0].end(),
                                     [&](double value) { return std::abs(value - free[0][0]) < no_response; });
     if (!of_all) singular_ = false;
     if (of_all) free.clear();
     return {std::move(parts), std::move(free)};
   }
-  // With sound the mean of all liquid is taken out by the method, which one part needs alone.
-  if (singular_ ? !parts.empty() : found.all && parts.size() == 1)
+  // One part of which the method takes the mean out needs no more.
+  if (singular_ ? !parts.empty() : of_method && parts.size() == 1)
     parts.erase(
         std::max_element(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); }));
   return {std::move(parts), singular_};

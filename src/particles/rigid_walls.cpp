@@ -193,16 +193,19 @@ std::size_t RigidWalls::body_at(const Vec3& foot) const {
   return best;
 }
 
-Vec3 RigidWalls::start(const Vec3& now) const {
-  if (motion_ == nullptr) return now;
-  Vec3 nearest = now;
-  // The copy of the body that is nearest: exact for bodies that are shorter than half a period, their reach included.
+Vec3 RigidWalls::beside_pivot(const Vec3& point) const {
+  if (motion_ == nullptr) return point;
+  Vec3 nearest = point;
   for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
     if (!scene_.domain.periodic(axis)) continue;
     const double period = scene_.domain.upper[axis] - scene_.domain.lower[axis];
-    nearest[axis] -= period * std::round((now[axis] - place.position[axis]) / period);
+    nearest[axis] -= period * std::round((point[axis] - place.position[axis]) / period);
   }
-  return place.start(nearest);
+  return nearest;
+}
+
+Vec3 RigidWalls::start(const Vec3& now) const {
+  return motion_ == nullptr ? now : place.start(beside_pivot(now));
 }
 
 double RigidWalls::distance_from_bounds(const Vec3& start) const {

@@ -78,7 +78,11 @@ WayToContact go_to_contact(const Boundary& boundary, const Vec3& place, const Ve
 // Of a force along `outwards` on the particle, which the walls hold at `place`: each of two walls pushes along its
 // normal, and together they make the force.
 void WallContacts::share(const Vec3& place, const Vec3& outwards, double force, std::vector<Borne>& borne) const {
-  const BodyWalls::NearestWall near = boundary_.bodies()->nearest_wall(place);
+  const BodyWalls& bodies = *boundary_.bodies();
+  const auto push = [&](const BodyWalls::NearestWall& wall, const Vec3& away) {
+    borne.push_back({wall.body, bodies.part_of(wall.body).beside_pivot(wall.point), away});
+  };
+  const BodyWalls::NearestWall near = bodies.nearest_wall(place);
   const double along = dot(outwards, near.normal);
   const std::optional<WallBehind> other = other_wall(boundary_, place, outwards);
   double own = along, others = 0;
@@ -89,10 +93,8 @@ void WallContacts::share(const Vec3& place, const Vec3& outwards, double force, 
     if (!(own > 0)) own = 0, others = along_other;
     if (!(others > 0)) own = along, others = 0;
   }
-  if (own > 0) borne.push_back({near.body, near.point, multiply(-force * own, near.normal)});
-  if (!(others > 0) || !other->of_body) return;
-  const BodyWalls::NearestWall second = boundary_.bodies()->nearest_wall(other->place);
-  borne.push_back({second.body, second.point, multiply(-force * others, other->normal)});
+  if (own > 0) push(near, multiply(-force * own, near.normal));
+  if (others > 0 && other->of_body) push(bodies.nearest_wall(other->place), multiply(-force * others, other->normal));
 }
 
 void WallContacts::bear(const std::vector<std::int32_t>& near, const Liquid& liquid) {

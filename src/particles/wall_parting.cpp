@@ -82,7 +82,8 @@ void WallParting::add_to_bodies(std::size_t particles, const Liquid& liquid, std
     }
   });
   for (const auto& block : found)
-    for (const Parting& parting : block) forces[parting.body].press(parting.foot, parting.force);
+    for (const Parting& parting : block)
+      forces[parting.body].press(boundary_.bodies()->part_of(parting.body).beside_pivot(parting.foot), parting.force);
 }
 
 }  // namespace spume

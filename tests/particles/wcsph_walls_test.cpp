@@ -254,6 +254,7 @@ TEST(WcsphWalls, SumsAndForcesAgreeWithTheSlowTwin) {
                                                             .wall_pressure = liquid.wall_pressure.data(),
                                                             .wall_density = liquid.wall_density.data(),
                                                             .wall_position = liquid.walls().wet().position,
+                                                            .arm = liquid.walls().wet().position,
                                                             .body = liquid.body.data()},
                                                            liquid.walls().bodies().size());
       Vec3 taken{};

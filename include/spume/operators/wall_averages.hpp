@@ -87,6 +87,7 @@ struct WallForceFields {
   const double* wall_pressure = nullptr;
   const double* wall_density = nullptr;
   std::array<const double*, 3> wall_position{};
+  std::array<const double*, 3> arm{};  // where torques count it: beside the pivot of its body
   const std::int32_t* body = nullptr;
 };
 // What the liquid does to the walls, per body, `bodies` of them: the opposite of what wall points and their images add

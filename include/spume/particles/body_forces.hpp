@@ -8,9 +8,10 @@
 // it, that of the velocity through the velocity of a no-slip surface. Elements without liquid before them feel nothing.
 //
 // Between a surface and another wall there is liquid in gaps that no particle has room in: it has the pressure of the
-// nearest element along the surface before which there is room, at rest under gravity from there on, and is missing
-// where that one is dry. Sides of the domain stand where they did at the start for that. Where one layer of particles
-// fits its pressure is their mean, each at rest from its place on. Surfaces that touch a wall feel nothing there.
+// nearest element along the surface before which there is liquid with room, at rest under gravity from there on, and is
+// missing where one that is dry is nearer. Sides of the domain stand where they did at the start for that. Where one
+// layer of particles fits its pressure is their mean, each at rest from its place on. Surfaces that touch a wall feel
+// nothing there.
 #pragma once
 
 #include <functional>
@@ -22,6 +23,7 @@
 #include "spume/operators/surface_force.hpp"
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/near_particles.hpp"
+#include "spume/particles/surface_elements.hpp"
 
 namespace spume {
 
@@ -63,14 +65,11 @@ class BodyForces {
   std::optional<std::size_t> floats_through() const;
 
  private:
-  struct Element {
-    Vec3 middle{}, area{};  // at the start; area times the normal out of the body
-    std::int32_t body = 0;
-  };
+  using Element = SurfaceElements::Element;
   Element now(const Element& element) const;
-  Vec3 unwrapped(const Element& element) const;
-  // What is before an element: liquid that its pressure is fitted to, or nothing; or a gap without room for particles.
-  enum class Before : std::uint8_t { nothing, gap, liquid };
+  // What is before an element: liquid that its pressure is fitted to, or nothing; or a gap without room for particles,
+  // or a wall that it touches.
+  enum class Before : std::uint8_t { nothing, wall, gap, liquid };
   struct Traction {
     Vec3 pressure{}, viscous{};
     // Of the element's pressure: its value, the density of the liquid, and where its weights are in their block.
@@ -87,20 +86,19 @@ class BodyForces {
   // Of every element; with `weights` those of floating bodies alone, and what they are made of, block by block.
   std::vector<Traction> tractions(const Fields& fields, double t,
                                   std::vector<std::vector<PressureWeight>>* weights) const;
-  Before before_uncovered(const Element& element, double nearest) const;
-  // Of each element before a gap the nearest along the surface that is before none.
-  std::vector<std::int32_t> along_surface(const std::vector<Traction>& of, const std::vector<std::size_t>& gaps) const;
+  Before before_uncovered(const std::optional<double>& gap, double nearest) const;
+  // Of the kernel before an element, the share that no walls fill.
+  double free_share(const Element& element) const;
   // Gives elements before gaps the pressure of those before liquid.
   void fill_gaps(std::vector<Traction>& of, std::vector<std::vector<PressureWeight>>* weights) const;
   std::vector<SurfaceForce> add_up(const std::vector<Traction>& of) const;
   bool floats(const Element& element) const;
-  void add_elements(std::int32_t body);
 
   const Scene& scene_;
   const Resolution& resolution_;
   const BodyWalls& walls_;
   const Vec3 gravity_;
-  std::vector<Element> elements_;
+  const SurfaceElements elements_;
 };
 
 }  // namespace spume

@@ -65,7 +65,7 @@ class FloatingBodies {
   void find_accelerations(std::span<const double> q, std::span<double> image_pressure);
   void accept(double dt);
   double largest_speed() const;  // a bound of those of their surfaces
-  // Of them all, in the last state; potential: of gravity across axes with sides.
+  // Of them all, in the last state; potential: along periodic axes too, which they may go around.
   double kinetic_energy() const;
   double potential_energy() const;
   // Of the last step, if bodies met in it, else 0. A longer one after it would add to the impact, as accelerations last

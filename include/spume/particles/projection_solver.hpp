@@ -39,7 +39,8 @@ struct PressureRows {
   double helmholtz = 0;                                // diagonal shift of a full row over V, for the preconditioner
   std::function<double(std::size_t)> helmholtz_scale;  // of each row, what that is multiplied by; empty: 1
   bool closed_off = false;                             // bodies may have closed off some liquid since the last solve
-  bool singular = false;  // constants are in the null space: the mean is taken out of residuals
+  bool singular = false;         // constants are in the null space: the mean is taken out of residuals
+  bool mean_is_removed = false;  // from the solution, by the method, also where sound makes it known
   // The matrix is not symmetric: its residuals sum to anything. The mean is taken out of products as well, which makes
   // a singular system solvable: what is left over is a uniform source.
   bool unsymmetric = false;
@@ -111,7 +112,7 @@ class ProjectionSolver {
   void solve_iteratively(const PressureRows& rows, const RefinementOptions& refinement, ParticleStore& particles,
                          Array<double>& q);
   void find_enclosed(const PressureRows& rows, ParticleStore& particles);
-  PartConstants constants_of(EnclosedParts found);
+  PartConstants constants_of(EnclosedParts found, bool mean_is_removed);
   template <class Real>
   Preconditioner<Real>& preconditioner(JacobiPreconditioner<Real>& jacobi);
 

@@ -60,7 +60,12 @@ class RigidWalls {
   Vec3 velocity_ahead(const Vec3& point) const { return ahead.velocity_at(ahead.now(start(point))); }
   // From the pivot, then.
   Vec3 arm_ahead(const Vec3& point) const { return subtract(ahead.now(start(point)), ahead.position); }
-  Vec3 velocity_at(const Vec3& point) const { return motion_ == nullptr ? Vec3{} : place.velocity_at(point); }
+  Vec3 velocity_at(const Vec3& point) const {
+    return motion_ == nullptr ? Vec3{} : place.velocity_at(beside_pivot(point));
+  }
+  // Of its periodic copies the one that is nearest to the pivot, where arms and spin are those of the whole body: exact
+  // for bodies that are shorter than half a period, their reach included.
+  Vec3 beside_pivot(const Vec3& point) const;
 
   // At the start, and the bodies that they belong to.
   const std::vector<WallPoint>& points() const { return levels_[level_].points; }

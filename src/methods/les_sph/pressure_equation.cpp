@@ -130,6 +130,7 @@ void Flow::set_matrix() {
   for (auto* array : {&rows.diagonal_shift, &rows.diagonal}) scratch.lease(*array, n);
   rows.pressure_fixed = surface != nullptr ? &surface->pressure_fixed : nullptr;
   rows.helmholtz = equation.helmholtz;
+  rows.mean_is_removed = features.closed;
   rows.closed_off = surface != nullptr && surface->closed_off;
   rows.helmholtz_scale = [this](std::size_t i) { return row_scale(i); };
   // Bodies may enclose the liquid in a domain that is open.
