@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/particles/boundary.hpp"
+#include "spume/particles/convex_corners.hpp"
 #include "spume/particles/surface_pieces.hpp"
 
 namespace spume {
@@ -33,13 +35,24 @@ void BodyContacts::gather_points() {
   for (const Body& body : scene_.bodies) {
     if (body.wall == BoundaryKind::open) continue;
     const std::size_t part = body.motion ? *body.motion + 1 : 0;
+    const std::vector<SurfacePiece> pieces = surface_pieces(scene_.domain, body, resolution_.spacing);
+    const auto corners = static_cast<std::size_t>(scene_.domain.dimensions);
+    std::map<Vec3, Vec3> outwards;
+    for (const SurfacePiece& piece : pieces)
+      for (std::size_t k = 0; k < corners; ++k) {
+        Vec3& sum = outwards[piece.corner[k]];
+        sum = add(sum, unit(piece.area, scene_.domain.dimensions));
+      }
     std::set<Vec3> known;
-    for (const SurfacePiece& piece : surface_pieces(scene_.domain, body, resolution_.spacing))
-      for (std::size_t k = 0; k < static_cast<std::size_t>(scene_.domain.dimensions); ++k) {
+    for (const SurfacePiece& piece : pieces)
+      for (std::size_t k = 0; k < corners; ++k) {
         const Vec3& corner = piece.corner[k];
         if (!known.insert(corner).second) continue;
         if (std::abs(walls_of(part).exact_distance(corner)) > touching * resolution_.spacing) continue;
-        points_.push_back({corner, part});
+        points_.push_back({corner, part, {}});
+        if (part > 0)
+          points_.back().corner =
+              convex_corner(walls_of(part), corner, outwards[corner], resolution_.spacing, scene_.domain.dimensions);
         if (part > 0) radius_[part] = std::max(radius_[part], length(subtract(corner, scene_.motions[part - 1].pivot)));
       }
   }
@@ -65,6 +78,35 @@ void BodyContacts::set_clearances() {
 
 Vec3 BodyContacts::now(const Point& point) const {
   return point.part == 0 ? point.start : walls_of(point.part).place.now(point.start);
+}
+
+// A body that is turned until an edge just becomes the one that reaches farthest, and 0.1 rad on, has its foremost
+// place there where the edge leads no farther on: a rim has it between the points asked.
+std::optional<Vec3> BodyContacts::may_come_foremost(const Point& point, const Vec3& at, const Vec3& towards,
+                                                    const std::optional<Vec3>& foremost, std::size_t other) const {
+  const double spacing = resolution_.spacing;
+  if (point.corner.kind == ConvexCorner::Kind::none) return std::nullopt;
+  if (point.corner.kind == ConvexCorner::Kind::corner) {
+    if (foremost && length(subtract(*foremost, at)) <= touching * spacing) return std::nullopt;
+    return at;
+  }
+  if (foremost) return std::nullopt;
+  if (other < parts_) return at;  // edges meet crosswise wherever they lead
+  const RigidWalls& walls = walls_of(point.part);
+  const Vec3 slide = subtract(walls.nearest(add(at, multiply(spacing, towards))).point, at),
+             along = walls.place.direction_now(point.corner.along),
+             across = subtract(slide, multiply(dot(slide, along), along));
+  // Turned by more than 45 degrees a right edge stands nearer to its other face.
+  const double turn = length(across) / spacing;
+  if (turn < touching || turn > std::sqrt(0.5)) return std::nullopt;
+  const Vec3 turned = subtract(multiply(spacing, towards), multiply(1 + 0.1 / turn, across));
+  return walls.foremost(at, unit(turned), radius_[point.part], spacing);
+}
+
+Vec3 BodyContacts::turning_acceleration(std::size_t part, const Vec3& at) const {
+  const RigidPlace& place = floats(part) ? walls_of(part).place : walls_of(part).ahead;
+  const Vec3& spin = place.angular_velocity;
+  return cross(spin, cross(spin, subtract(at, place.position)));
 }
 
 double BodyContacts::restitution(std::size_t part) const {
@@ -138,14 +180,18 @@ std::vector<BodyContact> BodyContacts::find(const Surroundings& surroundings, do
         contact.normal = normal(other, contact.point);
         // Of a round body the point is one of a polygon: off the place that touches, its force would turn the body.
         if (part > 0) {
+          const Vec3 towards = multiply(-1, contact.normal);
           const std::optional<Vec3> foremost =
-              walls_of(part).foremost(contact.point, multiply(-1, contact.normal), radius_[part], resolution_.spacing);
-          if (!foremost) continue;
-          contact.point = *foremost;
+              walls_of(part).foremost(contact.point, towards, radius_[part], resolution_.spacing);
+          const std::optional<Vec3> turning = may_come_foremost(points_[p], contact.point, towards, foremost, other);
+          if (!turning && !foremost) continue;
+          contact.point = turning ? *turning : *foremost;
           away = distance(other, surroundings.walls, contact.point, infinite);
           contact.normal = normal(other, contact.point);
+          if (turning) away += dt * dt / 2 * dot(contact.normal, turning_acceleration(part, contact.point));
         }
         contact.key = {static_cast<std::int64_t>(p), static_cast<std::int64_t>(other)};
+        contact.clearance = kept;
         contact.room = away - kept;
         contact.restitution = restitution(part);
         const auto given = [&](std::size_t of_part) {

@@ -9,12 +9,23 @@
 // The clearance is a spacing: no fewer than one layer of particles stands for the liquid between two bodies, and what a
 // layer thinner than that would do to its particles is no flow. Bodies that start nearer to each other keep that
 // distance; those that overlap at the start, as hinged ones, pass through each other.
+//
+// Of a round surface the point asked is the one that reaches farthest towards the other. Edges and corners are asked
+// wherever they stand: a box that is stopped at one corner turns about it, and the other one, until then higher, comes
+// down within the same step by as much as the box is long times the turn. Points turn on circles, which takes
+//
+//   dt^2 / 2 n . (omega x (omega x r))
+//
+// from what n . u dt leaves of g: without it a polygon that rolls were held by the corner that it rolls on to, whose
+// way down dt omega is twice as long along its tangent as on its circle.
 #pragma once
 
 #include <compare>
+#include <optional>
 #include <vector>
 
 #include "spume/particles/body_walls.hpp"
+#include "spume/particles/convex_corners.hpp"
 
 namespace spume {
 
@@ -28,6 +39,7 @@ struct BodyContact {
   // Motions of both; none: given.
   std::optional<std::size_t> of_point, of_other;
   Vec3 point{}, normal{};  // now
+  double clearance = 0;
   double room = 0;         // distance less the clearance
   double given_speed = 0;  // n . u of those that are given, as they move on
   double restitution = 0;  // of both
@@ -55,12 +67,19 @@ class BodyContacts {
   struct Point {
     Vec3 start{};
     std::size_t part = 0;
+    ConvexCorner corner;
   };
   bool floats(std::size_t part) const { return part > 0 && scene_.motions[part - 1].floats; }
   const RigidWalls& walls_of(std::size_t part) const { return walls_.part(part); }
   void gather_points();
   void set_clearances();
   Vec3 now(const Point& point) const;
+  // For a point of an edge or a corner, now at a place: what near it may become the place that reaches farthest towards
+  // the other as the body turns, where another does now.
+  std::optional<Vec3> may_come_foremost(const Point& point, const Vec3& at, const Vec3& towards,
+                                        const std::optional<Vec3>& foremost, std::size_t other) const;
+  // Of a point of a body that goes on turning.
+  Vec3 turning_acceleration(std::size_t part, const Vec3& at) const;
   double restitution(std::size_t part) const;
   double largest_speed_of(std::size_t part) const;
   double& clearance(std::size_t part, std::size_t other) { return clearance_[part * others_ + other]; }
