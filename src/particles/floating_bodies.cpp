@@ -33,6 +33,15 @@ std::vector<double> multiply_square(const std::vector<double>& matrix, const std
   return result;
 }
 
+// When a point that is `room` away, with a velocity and an acceleration away, comes there; of what is left of rounding
+// never.
+double time_to(double room, double velocity, double acceleration) {
+  const double square = velocity * velocity - 2 * acceleration * room;
+  if (square < 0) return infinite;
+  const double time = 2 * room / (std::sqrt(square) - velocity);
+  return time > 0 ? time : infinite;
+}
+
 Vec3 along(int axis) {
   Vec3 direction{};
   direction[axis] = 1;
@@ -105,6 +114,7 @@ FloatingBodies::FloatingBodies(const Scene& scene, const Resolution& resolution,
       walls_(walls),
       forces_(scene, resolution, walls),
       centred_(centred),
+      spacing_(resolution.spacing),
       contacts_at_(scene, resolution, walls) {
   for (std::size_t m = 0; m < scene.motions.size(); ++m) {
     const BodyMotion& motion = scene.motions[m];
@@ -377,6 +387,27 @@ void FloatingBodies::find_accelerations(std::span<const double> q, std::span<dou
   });
 }
 
+// A step that is longer than the last goes on with its acceleration until the middle.
+double FloatingBodies::longest_step_after(double dt) const {
+  // Spacings of what stands on a wall from the start: gives way to rounding alone.
+  constexpr double rounding = 1e-3;
+  double longest = infinite;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    double acceleration = 0;
+    for (std::size_t k = 0; k < freedoms_.size(); ++k) {
+      const auto [body, axis] = freedoms_[k];
+      const State& state = next_[body];
+      acceleration += limits_.row[c * freedoms_.size() + k] *
+                      (axis < 3 ? state.acceleration[axis] : state.angular_acceleration[axis - 3]);
+    }
+    const BodyContact& contact = contacts_[c];
+    const double room = std::max(contact.room, 0.0) + 0.1 * contact.clearance + rounding * spacing_;
+    const double velocity = closing_[c] + (centred_ ? dt / 2 : dt) * acceleration;
+    longest = std::min(longest, time_to(room, velocity, centred_ ? acceleration : 0));
+  }
+  return longest;
+}
+
 void FloatingBodies::accept(double dt) {
   const double part = centred_ ? dt / 2 : dt;  // the velocities reached were those of the middle of the step
   for (State& state : next_) {
@@ -392,6 +423,7 @@ void FloatingBodies::accept(double dt) {
     // Faster than what gravity adds while a body lies there.
     if (closing_[c] < -2 * length(scene_.fluid.gravity) * dt) step_of_impact_ = dt;
   }
+  longest_step_ = dt > 0 && step_of_impact_ == 0 ? longest_step_after(dt) : infinite;
   place_walls();
 }
 
@@ -432,7 +464,8 @@ void FloatingBodies::save(StateWriter& writer) const {
   std::vector<std::int64_t> touching;
   for (const BodyContact::Key& key : touching_) touching.insert(touching.end(), {key.point, key.other});
   writer.i64("touching_bodies", touching);
-  writer.f64("step_of_impact", std::span(&step_of_impact_, 1));
+  const double steps[] = {step_of_impact_, longest_step_};
+  writer.f64("steps_at_contacts", steps);
 }
 
 void FloatingBodies::load(StateReader& reader) {
@@ -451,9 +484,10 @@ void FloatingBodies::load(StateReader& reader) {
   reader.i64("touching_bodies", touching);
   touching_.clear();
   for (std::size_t k = 0; k + 1 < touching.size(); k += 2) touching_.push_back({touching[k], touching[k + 1]});
-  reader.f64("step_of_impact", values);
-  if (values.size() != 1) throw FileError("the checkpoint has no length of a step with an impact");
+  reader.f64("steps_at_contacts", values);
+  if (values.size() != 2) throw FileError("the checkpoint has no lengths of steps with contacts");
   step_of_impact_ = values[0];
+  longest_step_ = values[1];
   next_ = now_;
   step_ = 0;
   place_walls();

@@ -71,6 +71,9 @@ class FloatingBodies {
   // Of the last step, if bodies met in it, else 0. A longer one after it would add to the impact, as accelerations last
   // until the middle of the next step.
   double step_of_impact() const { return step_of_impact_; }
+  // Contacts limit the velocity for a step as long as the last one. The longest that takes nothing into a clearance by
+  // more than a tenth of it; infinite without contacts.
+  double longest_step() const { return longest_step_; }
 
   void save(StateWriter& writer) const;
   void load(StateReader& reader);
@@ -90,6 +93,7 @@ class FloatingBodies {
   void set_columns(ProjectionSolver& solver, const PressureRows& rows, Arrangement& arrangement,
                    ParticleStore& particles);
   void set_contacts(const BodyContacts::Surroundings& surroundings);
+  double longest_step_after(double dt) const;
   // n . u of the relative velocity of a contact, as a row over the freedoms and as it is.
   void add_row(const BodyContact& contact, std::size_t motion, double sign, std::span<double> row, double& speed) const;
   // F_0 + C q, or without F_0.
@@ -104,6 +108,7 @@ class FloatingBodies {
   BodyWalls& walls_;
   BodyForces forces_;
   bool centred_;
+  double spacing_ = 0;
   std::vector<std::size_t> motions_;  // that float, among those of the scene
   std::vector<State> now_, next_;     // at the ends of steps
   double step_ = 0;
@@ -117,7 +122,7 @@ class FloatingBodies {
   HeldChange held_change_;             // W, a_c
   int rounds_ = 0;
   std::vector<BodyContact::Key> touching_;  // those held at the end of the last step
-  double step_of_impact_ = 0;
+  double step_of_impact_ = 0, longest_step_ = infinite;
   std::vector<double> given_force_;  // F_0
   // C: the force per unit q, by particle.
   std::vector<std::int32_t> particle_;

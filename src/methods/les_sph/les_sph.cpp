@@ -243,6 +243,7 @@ StepLimit LesSph::step_limit() const {
   if (speed > 0) step.bound(options.courant * h / speed, "courant");
   if (flow_.floating != nullptr && flow_.floating->step_of_impact() > 0)
     step.bound(flow_.floating->step_of_impact(), "impact");
+  if (flow_.floating != nullptr) step.bound(flow_.floating->longest_step(), "contacts");
   // Spray does not count to that speed, but a step that takes any particle across half its support is refused.
   if (flow_.speeds.largest > 0)
     step.bound(spray_stride * flow_.arrangement.grid.support_radius() / flow_.speeds.largest, "spray");

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+// Bodies with corners and edges that land on the floor and on each other.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "methods/les_sph_simulation.hpp"
+#include "spume/core/vectors.hpp"
+
+namespace spume::test {
+namespace {
+
+constexpr double landing_spacing = 0.05;
+
+// Beside a puddle, far from it.
+std::string landing_tank(int dimensions) {
+  const std::string text = dimensions == 2 ? R"toml(lower = [-1, 0]
+upper = [1, 1.5]
+[[liquid]]
+lower = [-1, 0]
+upper = [-0.8, 0.1]
+)toml"
+                                           : R"toml(lower = [-1, -0.5, 0]
+upper = [1, 0.5, 1.5]
+front = "free-slip"
+back = "free-slip"
+[[liquid]]
+lower = [-1, -0.5, 0]
+upper = [-0.9, 0.5, 0.1]
+)toml";
+  return replaced(
+      "method = \"les-sph\"\n[time]\nend = 2\n[resolution]\nspacing = 0.05\n[fluid]\ndensity = "
+      "1000\nviscosity = 1e-3\ngravity = 10\n[domain]\n" +
+          text,
+      "[[liquid]]", "left = \"free-slip\"\nright = \"free-slip\"\nbottom = \"free-slip\"\n[[liquid]]");
+}
+
+struct FallingBody {
+  const char* name;
+  int dimensions;
+  std::string shape;
+  std::vector<Vec3> half;  // corners, before the body is turned
+};
+
+std::vector<Vec3> box_corners(double x, double y, double z = 0) {
+  std::vector<Vec3> corners;
+  for (const double a : {-x, x})
+    for (const double b : {-y, y})
+      for (const double c : {-z, z}) corners.push_back({a / 2, b / 2, c / 2});
+  return corners;
+}
+
+std::vector<Vec3> rim_places(double radius, double length) {
+  std::vector<Vec3> places;
+  for (int k = 0; k < 360; ++k)
+    for (const double z : {-length / 2, length / 2})
+      places.push_back(
+          {radius * std::cos(k * std::numbers::pi / 180), radius * std::sin(k * std::numbers::pi / 180), z});
+  return places;
+}
+
+const RigidPlace& place_now(const Simulation& run, std::size_t motion) {
+  return run.method.flow().boundary.bodies()->moving(motion).place;
+}
+
+// Rotations of a case: about the fixed axes x, then y, then z.
+RotationMatrix turn_of(const Vec3& degrees) {
+  RotationMatrix all = no_rotation;
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 turn{};
+    turn[axis] = degrees[axis] * std::numbers::pi / 180;
+    all = combined(rotation_by_vector(turn), all);
+  }
+  return all;
+}
+
+double lowest_corner(const Simulation& run, std::size_t motion, const std::vector<Vec3>& corners, const Vec3& turn) {
+  const RigidPlace& place = place_now(run, motion);
+  const RotationMatrix start = turn_of(turn);
+  double least = infinite;
+  for (const Vec3& corner : corners)
+    least = std::min(
+        least, add(place.position, rotated(place.rotation, rotated(start, corner)))[run.method.flow().dimensions - 1]);
+  return least;
+}
+
+double corner_radius(const std::vector<Vec3>& corners) {
+  double radius = 0;
+  for (const Vec3& corner : corners) radius = std::max(radius, length(corner));
+  return radius;
+}
+
+std::string landing_body(const std::string& shape, const Vec3& at, const Vec3& turn, int dimensions,
+                         double density = 800) {
+  const auto list = [](const Vec3& v, int count) {
+    std::string text = "[";
+    for (int k = 0; k < count; ++k) text += std::to_string(v[k]) + (k + 1 < count ? ", " : "]\n");
+    return text;
+  };
+  return "[[body]]\n" + shape + "position = " + list(at, dimensions) +
+         "rotation = " + (dimensions == 2 ? "[" + std::to_string(turn[2]) + "]\n" : list(turn, 3)) +
+         "density = " + std::to_string(density) + "\n";
+}
+
+}  // namespace
+
+// The corner that lands first stops the body, which turns about it within the same step: the others came down to the
+// floor and 0.2 spacings below it, through the whole clearance of a spacing. A step takes nothing into that by more
+// than a tenth of it, and goes along tangents, off circles by r turn^2 / 2.
+TEST(LesSphLanding, ABodyThatLandsOnACornerKeepsItsClearance) {
+  const FallingBody bodies[] = {
+      {"box", 2, "shape = \"box\"\nsize = [0.5, 0.2]\n", box_corners(0.5, 0.2)},
+      {"plate", 2, "shape = \"box\"\nsize = [0.8, 0.04]\n", box_corners(0.8, 0.04)},
+      {"box in space", 3, "shape = \"box\"\nsize = [0.5, 0.4, 0.2]\n", box_corners(0.5, 0.4, 0.2)},
+      {"can", 3, "shape = \"cylinder\"\nradius = 0.3\nlength = 0.2\n", rim_places(0.3, 0.2)},
+      {"rod", 3, "shape = \"cylinder\"\nradius = 0.1\nlength = 0.6\n", rim_places(0.1, 0.6)},
+  };
+  for (const FallingBody& falling : bodies) {
+    SCOPED_TRACE(falling.name);
+    const bool rod = std::string(falling.name) == "rod";
+    const Vec3 turn = falling.dimensions == 2 ? Vec3{0, 0, -6} : rod ? Vec3{80, 0, 10} : Vec3{9, 5, 20};
+    const Vec3 at = falling.dimensions == 2 ? Vec3{0.3, 0.7, 0} : Vec3{0.3, 0, 0.7};
+    Simulation run(landing_tank(falling.dimensions) + landing_body(falling.shape, at, turn, falling.dimensions));
+    double fastest_turn = 0, least = infinite;
+    while (run.method.time() < 0.7) {
+      const double dt = std::min(0.02, run.method.step_limit().dt);
+      run.steps(1, dt);
+      fastest_turn = std::max(fastest_turn, dt * length(place_now(run, 0).angular_velocity));
+      least = std::min(least, lowest_corner(run, 0, falling.half, turn));
+    }
+    const double off_tangent = corner_radius(falling.half) * fastest_turn * fastest_turn / 2;
+    EXPECT_GT(least, 0.9 * landing_spacing - off_tangent);
+    EXPECT_LT(off_tangent, 0.5 * landing_spacing);
+    EXPECT_LT(least, 1.01 * landing_spacing);  // it has landed
+  }
+}
+
+// Edges cross where neither body has a corner: they went through each other, and both were flung out of the tank.
+TEST(LesSphLanding, TwoBoxesFallOnEachOther) {
+  const Vec3 turns[] = {{6, -9, 30}, {10, 12, 0}};
+  const std::vector<Vec3> corners[] = {box_corners(0.6, 0.3, 0.2), box_corners(0.3, 0.5, 0.15)};
+  Simulation run(landing_tank(3) +
+                 landing_body("shape = \"box\"\nsize = [0.6, 0.3, 0.2]\n", {0.2, 0, 0.4}, turns[0], 3) +
+                 landing_body("shape = \"box\"\nsize = [0.3, 0.5, 0.15]\n", {0.25, 0.05, 0.9}, turns[1], 3));
+  while (run.method.time() < 1) {
+    run.steps(1, std::min(0.02, run.method.step_limit().dt));
+    for (std::size_t k = 0; k < 2; ++k) {
+      ASSERT_GT(lowest_corner(run, k, corners[k], turns[k]), 0.7 * landing_spacing) << k << " at " << run.method.time();
+      ASSERT_LT(place_now(run, k).position[2], 0.91);
+    }
+  }
+  EXPECT_TRUE(run.method.take_remarks().empty());
+}
+
+}  // namespace spume::test
