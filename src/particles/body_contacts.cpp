@@ -32,16 +32,18 @@ BodyContacts::BodyContacts(const Scene& scene, const Resolution& resolution, con
 }
 
 void BodyContacts::gather_points() {
+  const int dimensions = scene_.domain.dimensions;
+  const auto corners = static_cast<std::size_t>(dimensions);
+  std::vector<Vec3> facing;  // of each point, the sum of the normals of its pieces
   for (const Body& body : scene_.bodies) {
     if (body.wall == BoundaryKind::open) continue;
     const std::size_t part = body.motion ? *body.motion + 1 : 0;
     const std::vector<SurfacePiece> pieces = surface_pieces(scene_.domain, body, resolution_.spacing);
-    const auto corners = static_cast<std::size_t>(scene_.domain.dimensions);
-    std::map<Vec3, Vec3> outwards;
+    std::map<Vec3, Vec3> normals;
     for (const SurfacePiece& piece : pieces)
       for (std::size_t k = 0; k < corners; ++k) {
-        Vec3& sum = outwards[piece.corner[k]];
-        sum = add(sum, unit(piece.area, scene_.domain.dimensions));
+        Vec3& sum = normals[piece.corner[k]];
+        sum = add(sum, unit(piece.area, dimensions));
       }
     std::set<Vec3> known;
     for (const SurfacePiece& piece : pieces)
@@ -50,12 +52,15 @@ void BodyContacts::gather_points() {
         if (!known.insert(corner).second) continue;
         if (std::abs(walls_of(part).exact_distance(corner)) > touching * resolution_.spacing) continue;
         points_.push_back({corner, part, {}});
-        if (part > 0)
-          points_.back().corner =
-              convex_corner(walls_of(part), corner, outwards[corner], resolution_.spacing, scene_.domain.dimensions);
+        facing.push_back(normals[corner]);
         if (part > 0) radius_[part] = std::max(radius_[part], length(subtract(corner, scene_.motions[part - 1].pivot)));
       }
   }
+  parallel_for(points_.size(), [&](std::size_t p) {
+    Point& point = points_[p];
+    if (point.part > 0)
+      point.corner = convex_corner(walls_of(point.part), point.start, facing[p], resolution_.spacing, dimensions);
+  });
 }
 
 // Of those that start nearer to each other than a spacing what they start with.
@@ -74,6 +79,12 @@ void BodyContacts::set_clearances() {
     }
   for (std::size_t a = 0; a < parts_; ++a)
     for (std::size_t b = 0; b < a; ++b) clearance(a, b) = clearance(b, a) = std::min(clearance(a, b), clearance(b, a));
+}
+
+bool BodyContacts::overlaps_at_start(std::size_t motion) const {
+  for (std::size_t other = 0; other < others_; ++other)
+    if (clearance(motion + 1, other) < 0) return true;
+  return false;
 }
 
 Vec3 BodyContacts::now(const Point& point) const {

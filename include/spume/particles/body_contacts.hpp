@@ -62,6 +62,8 @@ class BodyContacts {
 
   // A bound of the speeds of the surface of a motion.
   double largest_speed(std::size_t motion) const { return largest_speed_of(motion + 1); }
+  // With anything that it then passes through.
+  bool overlaps_at_start(std::size_t motion) const;
 
  private:
   struct Point {

@@ -65,6 +65,7 @@ class FloatingBodies {
   void find_accelerations(std::span<const double> q, std::span<double> image_pressure);
   void accept(double dt);
   double largest_speed() const;  // a bound of those of their surfaces
+  bool overlaps_at_start(std::size_t motion) const { return contacts_at_.overlaps_at_start(motion); }
   // Of them all, in the last state; potential: along periodic axes too, which they may go around.
   double kinetic_energy() const;
   double potential_energy() const;

@@ -95,11 +95,14 @@ void LesSph::remark_bodies_that_collide() {
   const std::optional<std::size_t> body = body_forces_->floats_through();
   if (!body) return;
   collided_ = true;
+  const Body& through = flow_.scene.bodies[*body];
   char text[240];
-  std::snprintf(text, sizeof text,
-                "the body '%s' goes through a wall or another body at t = %.4g: bodies that overlap at the start do "
-                "not touch; move them apart, or hold it with free",
-                flow_.scene.bodies[*body].name.c_str(), flow_.time);
+  std::snprintf(text, sizeof text, "the body '%s' goes through a wall or another body at t = %.4g: %s",
+                through.name.c_str(), flow_.time,
+                flow_.floating->overlaps_at_start(*through.motion)
+                    ? "bodies that overlap at the start do not touch; move them apart, or hold it with free"
+                    : "places of its surface a spacing apart touch, within a step as they turn in a short one; shorten "
+                      "time.max_step, or refine resolution.spacing");
   remarks_.push_back({text, false});
 }
 
