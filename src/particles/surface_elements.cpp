@@ -16,7 +16,7 @@ namespace {
 using Element = SurfaceElements::Element;
 
 // Spacings: an element farther from the walls lies inside another body, or where the scene ends.
-constexpr double on_surface = 0.25;
+constexpr double of_own_surface = 0.25;
 // Spacings: corners as near as that are one. Their places differ by rounding alone.
 constexpr double same_corner = 1e-4;
 // Of a lattice of such places, so that no round number lies between two of them.
@@ -88,7 +88,7 @@ void SurfaceElements::add_body(const Scene& scene, std::size_t b, const RigidWal
   std::vector<std::int32_t> number(pieces.size(), -1);
   for (std::size_t n = 0; n < whole.size() && sizes[n] > 0; ++n) {
     const Vec3 middle = multiply(1 / sizes[n], whole[n].middle);
-    if (std::abs(walls.exact_distance(middle)) >= on_surface * spacing) continue;
+    if (std::abs(walls.exact_distance(middle)) >= of_own_surface * spacing) continue;
     number[n] = static_cast<std::int32_t>(elements_.size());
     elements_.push_back({walls.nearest(middle).point, multiply(stretch, whole[n].area), static_cast<std::int32_t>(b)});
   }
