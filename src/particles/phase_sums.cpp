@@ -1,39 +1,62 @@
 // SPDX-License-Identifier: MIT
 #include "spume/particles/phase_sums.hpp"
 
+#include <array>
+
 #include "spume/core/parallel.hpp"
+#include "spume/core/periodic_grid.hpp"
+#include "spume/core/unrolled.hpp"
 
 namespace spume {
 
 void PhaseSums::find() {
-  for (std::size_t n = 0; n < sums_.size(); ++n) sums_[n] = sums_of(n);
-}
-
-PhaseSums::Sums PhaseSums::sums_of(std::size_t phase) const {
-  return parallel_reduce(
-      particles_.size(), Sums{},
+  sums_ = parallel_reduce(
+      particles_.size(), std::vector<Sums>(sums_.size()),
       [&](std::size_t first, std::size_t last) {
-        Sums sums;
-        for (std::size_t i = first; i < last; ++i) {
-          if (static_cast<std::size_t>(phase_[i]) != phase || (left_out_ != nullptr && (*left_out_)[i] >= 0)) continue;
-          const double mass = particles_.volume * density_[phase];
-          sums.mass += mass;
-          for (int axis = 0; axis < particles_.dimensions; ++axis) {
-            sums.momentum[axis] += mass * (*particles_.velocity[axis])[i];
-            const double x = (*particles_.position[axis])[i];
-            sums.moment[axis] += mass * (domain_ == nullptr ? x : domain_->inside(axis, x));
-          }
-        }
-        return sums;
+        return particles_.dimensions == 2 ? sums_of<2>(first, last) : sums_of<3>(first, last);
       },
-      [](Sums a, const Sums& b) {
-        a.mass += b.mass;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          a.momentum[axis] += b.momentum[axis];
-          a.moment[axis] += b.moment[axis];
+      [](std::vector<Sums> a, const std::vector<Sums>& b) {
+        for (std::size_t n = 0; n < a.size(); ++n) {
+          a[n].mass += b[n].mass;
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            a[n].momentum[axis] += b[n].momentum[axis];
+            a[n].moment[axis] += b[n].moment[axis];
+          }
         }
         return a;
       });
+}
+
+// Runs of one phase, whose sums stay in registers; a loop over the particles for each phase reads them all each time.
+template <int dimensions>
+std::vector<PhaseSums::Sums> PhaseSums::sums_of(std::size_t first, std::size_t last) const {
+  std::vector<Sums> sums(sums_.size());
+  const auto x = read(particles_.position), u = read(particles_.velocity);
+  const std::int64_t* const phase = phase_.data();
+  const std::int64_t* const left_out = left_out_ == nullptr ? nullptr : left_out_->data();
+  std::array<double, dimensions> lower{}, length{};  // 0: not periodic
+  for (int axis = 0; axis < dimensions; ++axis) {
+    if (domain_ == nullptr || !domain_->periodic(axis)) continue;
+    lower[axis] = domain_->lower[axis];
+    length[axis] = domain_->upper[axis] - lower[axis];
+  }
+  for (std::size_t i = first; i < last;) {
+    const std::int64_t own = phase[i];
+    const auto n = static_cast<std::size_t>(own);
+    Sums run = sums[n];
+    const double mass = particles_.volume * density_[n];
+    for (; i < last && phase[i] == own; ++i) {
+      if (left_out != nullptr && left_out[i] >= 0) continue;
+      run.mass += mass;
+      unrolled<dimensions>([&](auto axis) {
+        run.momentum[axis] += mass * u[axis][i];
+        const double at = x[axis][i];
+        run.moment[axis] += mass * (length[axis] > 0 ? wrap_periodic(at, lower[axis], length[axis]) : at);
+      });
+    }
+    sums[n] = run;
+  }
+  return sums;
 }
 
 void PhaseSums::add_columns(SeriesTable& series, std::size_t phase, const std::string& name) const {

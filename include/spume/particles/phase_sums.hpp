@@ -35,7 +35,8 @@ class PhaseSums {
   void add_columns(SeriesTable& series, std::size_t phase, const std::string& name) const;
 
  private:
-  Sums sums_of(std::size_t phase) const;
+  template <int dimensions>
+  std::vector<Sums> sums_of(std::size_t first, std::size_t last) const;  // per phase
 
   const ParticleStore& particles_;
   const Array<std::int64_t>& phase_;
