@@ -341,6 +341,19 @@ bool Boundary::clear_of_sides(const Vec3& place) const {
   return true;
 }
 
+bool Boundary::clear_of_sides(const std::array<const double*, 3>& places, std::size_t first, std::size_t last) const {
+  if (has_obstacles() || gates_ != nullptr) return false;
+  for (int axis = 0; axis < domain_.dimensions; ++axis) {
+    if (domain_.periodic(axis)) continue;
+    const double* const x = places[axis];
+    const double lower = walls[axis][0] + gap(), upper = walls[axis][1] - gap();
+    std::int64_t outside = 0;  // as wide as the places, which the compiler then takes several at a time
+    for (std::size_t i = first; i < last; ++i) outside |= x[i] > lower && x[i] < upper ? 0 : 1;
+    if (outside != 0) return false;
+  }
+  return true;
+}
+
 void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity, const Vec3* from) const {
   const double tiny = wall_gap * spacing_;
   if (from != nullptr && bodies_ != nullptr && bodies_->thin() != nullptr)

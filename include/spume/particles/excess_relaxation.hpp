@@ -37,6 +37,7 @@ class ExcessRelaxation {
   // Measures l by the present lists: a pass over the pairs.
   void measure();
   double lack(std::size_t i) const { return (*lack_)[i]; }  // l
+  const double* lack() const { return lack_->data(); }
   // Of l, what is made up for while the fastest particle goes so far.
   double share_of(double way) const;
 
