@@ -13,9 +13,6 @@
 namespace spume::wcsph {
 namespace {
 
-// Of a bound that is not to be missed by rounding.
-constexpr double above_rounding = 1e-12;
-
 double speed_of(const LoadedCase& loaded) {
   const double given = loaded.options.get<CompressibilityOptions>().max_speed;
   return given > 0 ? given : spume::expected_speed(loaded.scene, loaded.options.time.end);
@@ -164,78 +161,41 @@ double Flow::mass_spilt() const {
   return mass;
 }
 
-double Flow::kinetic_energy() const {
-  return parallel_sum(size(),
-                      [&](std::size_t i) { return mass(i) * squared_norm(particles.velocity, dimensions, i) / 2; });
+PhaseEnergies Flow::energies() const {
+  return phase_energies({.particles = particles,
+                         .law = law_of_particles(),
+                         .excess = excess->data(),
+                         .gravity = wall_gravity,
+                         .origin = arrangement.origin,
+                         .left_out = layer()});
 }
 
-double Flow::potential_energy() const {
-  return parallel_sum(size(), [&](std::size_t i) {
-    double sum = 0;
-    for (int axis = 0; axis < dimensions; ++axis)
-      sum -= wall_gravity[axis] * ((*particles.position[axis])[i] - arrangement.origin[axis]);
-    return mass(i) * sum;
-  });
+Fastest::State Flow::moving() const {
+  return {.dimensions = dimensions,
+          .law = law_of_particles(),
+          .excess = excess->data(),
+          .velocity = read(particles.velocity),
+          .acceleration = list_life.together() ? read(acceleration) : std::array<const float*, 3>{},
+          .shift = list_life.together() ? read(shift) : std::array<const float*, 3>{}};
 }
 
-double Flow::compression_energy() const {
-  return parallel_sum(size(), [&](std::size_t i) {
-    if (!in_domain(i)) return 0.0;
-    return particles.volume * law(i).stiffness() * law(i).energy_over_stiffness((*excess)[i]);
-  });
-}
-
-double Flow::largest_excess(std::size_t phase_wanted) const {
-  return parallel_max(size(), 0.0, [&](std::size_t i) {
-    return in_domain(i) && phase_of(i) == phase_wanted ? std::abs((*excess)[i]) : 0.0;
-  });
-}
-
-double Flow::largest_speed_in_domain() const {
-  if (!features.openings) return largest_speed;
-  return std::sqrt(parallel_max(size(), 0.0, [&](std::size_t i) {
-    return in_domain(i) ? squared_norm(particles.velocity, dimensions, i) : 0.0;
-  }));
-}
-
-// Powers are found where the sum may be the largest so far alone: (1 + s)^e, 0 <= e <= 1, lies below its tangent at
-// 0. Those of liquids take none.
 void Flow::find_signal() {
-  struct Largest {
-    double signal = 0, speed2 = 0, transport2 = 0, acceleration2 = 0;
-  };
-  const Largest largest = parallel_reduce(
-      size(), Largest{},
-      [&](std::size_t first, std::size_t last) {
-        Largest so_far;
-        for (std::size_t i = first; i < last; ++i) {
-          const PhaseLaw& own = law(i);
-          const double s = (*excess)[i], speed2 = squared_norm(particles.velocity, dimensions, i);
-          so_far.speed2 = larger_or_nan(so_far.speed2, speed2);
-          double transport2 = 0, acceleration2 = 0;
-          for (int axis = 0; list_life.together() && axis < dimensions; ++axis) {
-            const double u = transport(axis, (*particles.velocity[axis])[i], i), a = (*acceleration[axis])[i];
-            transport2 += u * u;
-            acceleration2 += a * a;
-          }
-          so_far.transport2 = larger_or_nan(so_far.transport2, transport2);
-          so_far.acceleration2 = larger_or_nan(so_far.acceleration2, acceleration2);
-          const double speed = std::sqrt(speed2), e = (own.exponent - 1) / 2;
-          if (own.exponent != liquid_exponent && e >= 0 && e <= 1 &&
-              (1 + above_rounding) * (own.sound_speed * (1 + e * s) + speed) <= so_far.signal)
-            continue;
-          so_far.signal = larger_or_nan(so_far.signal, own.local_sound_speed(s) + speed);
-        }
-        return so_far;
+  take(parallel_reduce(
+      size(), Fastest{},
+      [state = moving()](std::size_t first, std::size_t last) {
+        Fastest fastest;
+        fastest.take(state, first, last);
+        return fastest;
       },
-      [](const Largest& a, const Largest& b) {
-        return Largest{larger_or_nan(a.signal, b.signal), larger_or_nan(a.speed2, b.speed2),
-                       larger_or_nan(a.transport2, b.transport2), larger_or_nan(a.acceleration2, b.acceleration2)};
-      });
-  signal = largest.signal;
-  largest_speed = std::sqrt(largest.speed2);
-  list_life.fastest = std::sqrt(largest.transport2);
-  list_life.most_accelerated = std::sqrt(largest.acceleration2);
+      Fastest::of_both));
+}
+
+void Flow::take(const Fastest& fastest) {
+  signal = fastest.signal;
+  strain = fastest.strain;
+  largest_speed = std::sqrt(fastest.speed2);
+  list_life.fastest = list_life.together() ? std::sqrt(fastest.transport2) : 0;
+  list_life.most_accelerated = std::sqrt(fastest.acceleration2);
 }
 
 double Flow::leased_bytes() const {

@@ -6,7 +6,10 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/core/size_bits.hpp"
 #include "spume/methods/wcsph/flow.hpp"
+#include "spume/particles/bounded_shift.hpp"
+#include "spume/particles/excess_step.hpp"
 #include "spume/particles/settling.hpp"
 #include "spume/particles/step_limits.hpp"
 
@@ -17,6 +20,8 @@ namespace {
 constexpr double largest_excess_of_a_flow = 0.5;
 // Sun et al. (2019): delta u = -2 U h grad C, of U / 2 at most, U the largest expected speed.
 constexpr double shifting_strength = 2, largest_shift = 0.5;
+
+using Block = std::array<double, default_block>;  // of particles
 
 }  // namespace
 
@@ -105,38 +110,41 @@ void Flow::move_layers(double dt) {
 }
 
 void Flow::find_pressure_behind(double dt) {
-  acoustic->find_pressures({.arrangement = arrangement,
-                            .images = boundary.image_map(arrangement.images),
-                            .gravity = wall_gravity,
-                            .background = background,
-                            .time = time + dt,
-                            .velocity = [&](int axis, std::size_t i) { return half_step(axis, i, dt).velocity; }},
-                           next_excess, pressure, volume);
+  acoustic->find_pressures(
+      {.arrangement = arrangement,
+       .images = boundary.image_map(arrangement.images),
+       .gravity = wall_gravity,
+       .background = background,
+       .time = time + dt,
+       .velocity = [half = half_steps(dt)](int axis, std::size_t i) { return half.velocity_of(axis, i); }},
+      next_excess, pressure, volume);
 }
 
-// (5), (6) along one axis.
-Flow::HalfStep Flow::half_step(int axis, std::size_t i, double dt) const {
-  const double u = (*particles.velocity[axis])[i] + dt / 2 * (*acceleration[axis])[i];
-  const double way = dt / 2 * transport(axis, u, i);
-  return {u, (*particles.position[axis])[i] + way, way};
-}
-
-// r' of particle i held by the walls of the end of the step, and u* there. Velocities are found anew where they are
-// wanted instead of being kept for half of a step.
-Vec3 Flow::held_velocity(std::size_t i, double dt, Vec3& r) const {
-  Vec3 u{};
-  for (int axis = 0; axis < dimensions; ++axis) {
-    const HalfStep half = half_step(axis, i, dt);
-    u[axis] = half.velocity;
-    r[axis] = half.place + half.way;
+// Takes a block from the middle of the step to its end; whether walls have held one of it there. Velocities are found
+// anew where they are wanted instead of being kept for half of a step.
+bool Flow::arrive(const HalfSteps& half, std::size_t first, std::size_t last) {
+  for (int axis = 0; axis < dimensions; ++axis) half.go_on(axis, first, last, place[axis].data());
+  if (boundary.clear_of_sides(read(place), first, last)) return false;
+  bool any = false;
+  for (std::size_t i = first; i < last; ++i) {
+    const Vec3 free = vector_at(place, dimensions, i);
+    Vec3 r = free, u{};
+    for (int axis = 0; axis < dimensions; ++axis) u[axis] = half.velocity_of(axis, i);
+    hold(i, r, u);
+    any = any || r != free;
+    for (int axis = 0; axis < dimensions; ++axis) place[axis][i] = r[axis];
   }
-  if (boundary.clear_of_sides(r)) return u;
+  return any;
+}
+
+// r' and u* of particle i held by the walls of the end of the step.
+void Flow::hold(std::size_t i, Vec3& r, Vec3& u) const {
+  if (boundary.clear_of_sides(r)) return;
   const Vec3 before = r, from = vector_at(particles.position, dimensions, i);
   apply_walls(i, r, &u, &from);
   // Particles go round periodic sides when lists are made; those of inflows keep to their columns there too.
   for (int axis = 0; axis < dimensions && !(features.openings && openings->leads(i)); ++axis)
     if (scene.domain.periodic(axis)) r[axis] = before[axis];
-  return u;
 }
 
 void Flow::drift(double dt) {
@@ -147,11 +155,10 @@ void Flow::drift(double dt) {
   // Wall points take averages of it; without them the sweep finds it where it packs it.
   if (features.bodies) scratch.lease(half_velocity, dimensions, size());
   scratch.lease(place, dimensions, size());
-  parallel_for(size(), [&](std::size_t i) {
+  parallel_blocks(size(), default_block, [&, half = half_steps(dt)](std::size_t, std::size_t first, std::size_t last) {
     for (int axis = 0; axis < dimensions; ++axis) {
-      const HalfStep half = half_step(axis, i, dt);
-      if (features.bodies) half_velocity[axis][i] = half.velocity;
-      place[axis][i] = half.place;
+      if (features.bodies) half.velocities(axis, first, last, half_velocity[axis].data());
+      half.middles(axis, first, last, place[axis].data());
     }
   });
   move_images(read(place), time + dt / 2);
@@ -163,15 +170,18 @@ void Flow::lease_properties() {
   scratch.lease(reduced_excess, size());
   if (needs_density()) scratch.lease(density, size());
   if (needs_viscosity()) scratch.lease(viscosity, size());
-  parallel_for(size(), [&](std::size_t i) {
-    const PhaseLaw& own = law(i);
-    double head = 0;
-    for (int axis = 0; axis < dimensions; ++axis)
-      head += wall_gravity[axis] * (place[axis][i] - arrangement.origin[axis]);
-    volume[i] = static_cast<float>(1 / (1 + (*excess)[i]));
-    reduced_excess[i] = static_cast<float>((*excess)[i] - head / (own.sound_speed * own.sound_speed));
-    if (needs_density()) density[i] = phase_density[phase_of(i)];
-    if (needs_viscosity()) viscosity[i] = static_cast<float>(own.viscosity);
+  const ReducedExcess properties{.dimensions = dimensions,
+                                 .law = law_of_particles(),
+                                 .excess = excess->data(),
+                                 .gravity = wall_gravity,
+                                 .origin = arrangement.origin,
+                                 .place = read(place),
+                                 .volume = volume.data(),
+                                 .reduced = reduced_excess.data()};
+  parallel_blocks(size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    properties.find(first, last);
+    for (std::size_t i = first; i < last && needs_density(); ++i) density[i] = phase_density[phase_of(i)];
+    for (std::size_t i = first; i < last && needs_viscosity(); ++i) viscosity[i] = static_cast<float>(law(i).viscosity);
   });
 }
 
@@ -217,30 +227,30 @@ void Flow::advance_density(double dt) {
   scratch.lease(pressure, size());
   const double smoothing =
       features.diffusion ? options.get<CompressibilityOptions>().diffusion * resolution.smoothing_length : 0;
-  const double share =
-      features.density_relaxation ? relaxation->share_of(dt * std::min(largest_speed, expected_speed)) : 0;
+  const double way = dt * std::min(largest_speed, expected_speed);  // of the fastest
   if (features.displaced_bodies) boundary.bodies()->follow_points(time + dt);
-  parallel_for(size(), [&](std::size_t i) {
-    const PhaseLaw& own = law(i);
-    // d rho / dt = rho D by the midpoint rule: rho' = rho (1 + dt D / 2) / (1 - dt D / 2).
-    const double grown = dt / 2 * rate[i];
-    double s = (*excess)[i];
-    s += (1 + s) * 2 * grown / (1 - grown) + dt * smoothing * own.sound_speed * diffusion[i];
-    if (!in_domain(i)) s = (*excess)[i];
-    if (features.density_relaxation) s += share * relaxation->lack(i);
-    if (features.shifting) {
-      // delta u . grad s, of the reduced excess and of the hydrostatic part.
-      double climbed = carried[i];
-      for (int axis = 0; axis < dimensions; ++axis)
-        climbed += wall_gravity[axis] * (*shift[axis])[i] / (own.sound_speed * own.sound_speed);
-      s += dt * climbed;
-    }
-    next_excess[i] = s;
-    pressure[i] = static_cast<float>(pressure_at(s, i));
-    volume[i] = static_cast<float>(1 / (1 + s));
-    Vec3 r{};
-    held_velocity(i, dt, r);
-    for (int axis = 0; axis < dimensions; ++axis) place[axis][i] = r[axis];
+  const ExcessStep excess_step{.dt = dt,
+                               .dimensions = dimensions,
+                               .law = law_of_particles(),
+                               .excess = excess->data(),
+                               .left_out = layer(),
+                               .rate = rate.data(),
+                               .spread = diffusion.data(),
+                               .diffusion = smoothing,
+                               .lack = features.density_relaxation ? relaxation->lack() : nullptr,
+                               .share = features.density_relaxation ? relaxation->share_of(way) : 0,
+                               .carried = carried.data(),
+                               .shift = read(shift),
+                               .gravity = wall_gravity,
+                               .background = background,
+                               .next = next_excess.data(),
+                               .pressure = pressure.data(),
+                               .volume = volume.data()};
+  const HalfSteps half = half_steps(dt);
+  held.resize(block_count(size(), default_block));
+  parallel_blocks(size(), default_block, [&](std::size_t block, std::size_t first, std::size_t last) {
+    excess_step.advance(first, last);
+    held[block] = arrive(half, first, last) ? 1 : 0;
   });
   scratch.release(rate);
   scratch.release(diffusion);
@@ -322,6 +332,7 @@ void Flow::settle(const GoOn& go_on) {
   if (features.density_relaxation) relaxation->take_as_rest();
   if (features.scalars) solutes.scalars->set_initial();
   has_lists = false;  // the first step makes its own
+  strain = infinite;
 }
 
 void Flow::add_tension() {
@@ -329,26 +340,17 @@ void Flow::add_tension() {
   tension->add_force(tension_now(), write(force));
 }
 
-// Towards fewer particles.
-void Flow::find_shift(std::size_t i) {
-  Vec3 velocity{};
-  double speed2 = 0;
-  for (int axis = 0; axis < dimensions; ++axis) {
-    velocity[axis] = -shifting_strength * expected_speed * concentration[axis][i];
-    speed2 += velocity[axis] * velocity[axis];
-  }
-  const double bound = largest_shift * expected_speed;
-  const double factor = speed2 > bound * bound ? bound / std::sqrt(speed2) : 1;
-  for (int axis = 0; axis < dimensions; ++axis) (*shift[axis])[i] = static_cast<float>(factor * velocity[axis]);
-}
-
 void Flow::accept(double dt) {
-  const double worst = parallel_max(size(), 0.0, [&](std::size_t i) {
-    double sum = std::abs(next_excess[i]) / largest_excess_of_a_flow;
-    for (int axis = 0; axis < dimensions; ++axis)
-      if (!std::isfinite(force[axis][i])) sum = NAN;
-    return sum;
-  });
+  const double worst = parallel_reduce(
+      size(), 0.0,
+      [&](std::size_t first, std::size_t last) {
+        double strongest = 0;
+        for (int axis = 0; axis < dimensions; ++axis)
+          strongest = larger_or_nan(strongest, double{largest_size(force[axis].data(), first, last)});
+        return std::isfinite(strongest) ? largest_size(next_excess.data(), first, last) / largest_excess_of_a_flow
+                                        : NAN;
+      },
+      larger_or_nan);
   if (!(worst <= 1)) {
     StepFailure::Details details;
     details.cause =
@@ -362,43 +364,27 @@ void Flow::accept(double dt) {
     throw StepFailure(details);
   }
   solute_transport.keep_shift(shift, dt);
-  parallel_blocks(size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
-    const VectorExpression given = scene.body_force ? scene.body_force->clone() : VectorExpression();
-    for (std::size_t i = first; i < last; ++i) {
-      Vec3 a = scene.fluid.gravity;
-      if (scene.body_force) {
-        const Vec3 f = given(scene.domain.inside(vector_at(place, dimensions, i)), time + dt);
-        for (std::size_t axis = 0; axis < 3; ++axis) a[axis] += f[axis];
-      }
-      // Where no wall has moved the particle none has held it.
-      Vec3 u{}, r{};
-      bool free = true;
-      for (int axis = 0; axis < dimensions; ++axis) {
-        const HalfStep half = half_step(axis, i, dt);
-        u[axis] = half.velocity;
-        free = free && half.place + half.way == place[axis][i];
-      }
-      if (!free) u = held_velocity(i, dt, r);
-      const double specific_volume = 1 / (law(i).density * (1 + next_excess[i]));
-      for (int axis = 0; axis < dimensions; ++axis) {
-        a[axis] += specific_volume * double{force[axis][i]};
-        if (features.shifting) a[axis] += double{flux[axis][i]};
-        // Both halves of a step take the acceleration that is kept between them.
-        (*acceleration[axis])[i] = static_cast<float>(a[axis]);
-        (*particles.position[axis])[i] = place[axis][i];
-        (*particles.velocity[axis])[i] = u[axis] + dt / 2 * (*acceleration[axis])[i];
-      }
-      (*excess)[i] = next_excess[i];
-      if (!in_domain(i)) {
-        for (int axis = 0; axis < dimensions; ++axis) {
-          (*acceleration[axis])[i] = 0;
-          (*particles.velocity[axis])[i] = u[axis];
+  // Contacts and openings change the new state.
+  const bool final = !features.bodies && !features.openings;
+  const HalfSteps half = half_steps(dt);
+  Fastest::State state = moving();
+  state.excess = next_excess.data();
+  const Fastest fastest = parallel_reduce(
+      size(), Fastest{},
+      [&](std::size_t first, std::size_t last) {
+        const VectorExpression given = scene.body_force ? scene.body_force->clone() : VectorExpression();
+        Fastest so_far;
+        for (std::size_t from = first, to = first; from < last; from = to) {
+          to = std::min(last, (from / default_block + 1) * default_block);
+          accept_block(half, given, from, to);
+          if (final) so_far.take(state, from, to);
         }
-      } else if (features.shifting) {
-        find_shift(i);
-      }
-    }
-  });
+        return so_far;
+      },
+      Fastest::of_both);
+  // A copy would move 64 bytes a particle.
+  for (int axis = 0; axis < dimensions; ++axis) particles.position[axis]->swap(place[axis]);
+  excess->swap(next_excess);
   if (features.bodies) contacts.bear(walls.near(), {particles, acceleration, law_of_particles(), dt});
   release_leased();
   boundary.accept();
@@ -413,7 +399,47 @@ void Flow::accept(double dt) {
   if (features.density_relaxation) measured_way += dt * std::min(largest_speed, expected_speed);
   time += dt;
   if (dt > 0) ++steps;
-  find_signal();
+  final ? take(fastest) : find_signal();
+}
+
+// Of particles that one block of `held` speaks of.
+void Flow::accept_block(const HalfSteps& half, const VectorExpression& given, std::size_t first, std::size_t last) {
+  const auto velocity = write(particles.velocity);
+  for (int axis = 0; axis < dimensions; ++axis) half.velocities(axis, first, last, velocity[axis]);
+  for (std::size_t i = first; i < last && held[first / default_block] != 0; ++i) {
+    Vec3 u = vector_at(particles.velocity, dimensions, i), r{};
+    for (int axis = 0; axis < dimensions; ++axis) r[axis] = half.end_of(axis, i, u[axis]);
+    if (r == vector_at(place, dimensions, i)) continue;  // where no wall has moved the particle none has held it
+    hold(i, r, u);
+    for (int axis = 0; axis < dimensions; ++axis) velocity[axis][i] = u[axis];
+  }
+  const std::size_t n = last - first;
+  Block specific_volume, forced;
+  law_of_particles().each_run(first, last, [&](const PhaseLaw& own, std::size_t from, std::size_t to) {
+    const double* const s = next_excess.data() + first;
+    for (std::size_t k = from - first; k < to - first; ++k) specific_volume[k] = 1 / (own.density * (1 + s[k]));
+  });
+  std::array<Vec3, default_block> everywhere;
+  for (std::size_t k = 0; k < n && scene.body_force; ++k)
+    everywhere[k] = given(scene.domain.inside(vector_at(place, dimensions, first + k)), time + half.dt);
+  for (int axis = 0; axis < dimensions; ++axis) {
+    const double g = scene.fluid.gravity[axis];
+    forced.fill(g);
+    for (std::size_t k = 0; k < n && scene.body_force; ++k) forced[k] = g + everywhere[k][axis];
+    const float* const f = force[axis].data() + first;
+    for (std::size_t k = 0; k < n; ++k) forced[k] += specific_volume[k] * f[k];
+    for (std::size_t k = 0; k < n && features.shifting; ++k) forced[k] += flux[axis][first + k];
+    for (std::size_t k = 0; k < n && features.openings; ++k) forced[k] = in_domain(first + k) ? forced[k] : 0;
+    half.finish(first, last, forced.data(), acceleration[axis]->data(), velocity[axis]);
+  }
+  if (features.shifting)
+    BoundedShift{.dimensions = dimensions,
+                 .strength = shifting_strength * expected_speed,
+                 .bound = largest_shift * expected_speed,
+                 .concentration = read(concentration),
+                 .left_out = layer(),
+                 .shift = write(shift)}
+        .find(first, last);
 }
 
 void Flow::release_leased() {

@@ -48,11 +48,10 @@ Plan make_plan(Flow& f) {
                    (has.shifting ? ", and what shifting carries" : ""),
                &Flow::find_rates, {f.half_velocity, p.velocity, f.acceleration, *f.excess, *f.phase_number, f.shift},
                {f.rate, f.diffusion, f.force, f.carried, f.flux, f.volume, f.reduced_excess, f.density, f.viscosity});
-  stages.add(
-      both, "density", true, "(3): " + in_words(f.laws, f.scene, f.expected_speed, f.background),
-      &Flow::advance_density,
-      {f.rate, f.diffusion, f.carried, p.position, p.velocity, f.acceleration, f.shift, *f.excess, *f.phase_number},
-      {f.next_excess, f.pressure, f.volume, f.place});
+  stages.add(both, "density", true, "(3): " + in_words(f.laws, f.scene, f.expected_speed, f.background),
+             &Flow::advance_density,
+             {f.rate, f.diffusion, f.carried, f.place, p.velocity, f.acceleration, f.shift, *f.excess, *f.phase_number},
+             {f.next_excess, f.pressure, f.volume, f.place});
   const int interval = f.options.get<CompressibilityOptions>().filter_interval;
   stages.sweep(both, "density filter", has.shepard,
                has.shepard ? "average of the phase, every " + std::to_string(interval) + " steps"
@@ -66,9 +65,10 @@ Plan make_plan(Flow& f) {
   stages.sweep(both, "surface tension", has.tension,
                has.tension ? "(11): curvature of the interfaces, force of pairs across them" : no_tension,
                &Flow::add_tension, {f.volume, interfaces}, {f.force, interfaces});
+  // Positions and excesses change their memory with f.place and f.next_excess.
   stages.add(both, "acceptance", true, "(6): the new state", &Flow::accept,
-             {p.position, p.velocity, f.acceleration, f.place, f.next_excess, f.force, f.flux, f.concentration},
-             {p.position, p.velocity, f.acceleration, f.shift, *f.excess});
+             {p.velocity, f.acceleration, f.next_excess, f.force, f.flux, f.concentration, *f.phase_number},
+             {p.velocity, f.acceleration, f.shift});
   add_solute_stages(stages, f, has, oxygen::in_words(f.scene), []() -> const oxygen::Supply* { return nullptr; });
   return plan;
 }

@@ -102,17 +102,21 @@ StepLimit Wcsph::step_limit() const {
 
 void Wcsph::declare_series() {
   const Flow& flow = flow_;
-  series_.prepare = [this] { phase_sums_.find(); };
-  series_.add("kinetic_energy", "rho u^2 / 2, integral", [&flow] { return flow.kinetic_energy(); });
+  series_.prepare = [this] {
+    phase_sums_.find();
+    energies_ = flow_.energies();
+  };
+  series_.add("kinetic_energy", "rho u^2 / 2, integral", [this] { return energies_.kinetic; });
   if (flow.features.gravity)
-    series_.add("potential_energy", "rho g z, integral", [&flow] { return flow.potential_energy(); });
-  series_.add("compression_energy", "rho e, integral", [&flow] { return flow.compression_energy(); });
+    series_.add("potential_energy", "rho g z, integral", [this] { return energies_.potential; });
+  series_.add("compression_energy", "rho e, integral", [this] { return energies_.compression; });
   if (flow.features.tension)
     series_.add("surface_energy", "sigma times the area", [&flow] { return flow.surface_energy; });
   if (flow.features.density_relaxation)
     series_.add("volume", flow.dimensions == 3 ? "length^3, by kernel sums" : "length^2, by kernel sums",
                 [&flow] { return flow.relaxation->volume; });
-  series_.add("max_speed", "speed", [&flow] { return flow.largest_speed_in_domain(); });
+  series_.add("max_speed", "speed",
+              [this] { return flow_.features.openings ? energies_.largest_speed : flow_.largest_speed; });
   for (std::size_t n = 0; n < phase_sums_.size(); ++n) {
     const std::string& name = flow.scene.phases[n].name;
     series_.add("density_change_" + name, "1, largest", [&flow, n] { return flow.largest_excess(n); });
@@ -132,7 +136,7 @@ std::vector<Remark> Wcsph::take_remarks() {
   std::vector<Remark> remarks;
   if (std::string remark = flow_.spill.take_remark(); !remark.empty()) remarks.push_back({std::move(remark)});
   if (!flow_.unsettled.empty()) remarks.push_back({std::exchange(flow_.unsettled, {})});
-  for (std::size_t n = 0; n < flow_.laws.size(); ++n) {
+  for (std::size_t n = 0; n < flow_.laws.size() && !(flow_.strain < 1); ++n) {
     if (remarked_[n]) continue;
     const double change = flow_.largest_excess(n), range = flow_.laws[n].largest_change();
     if (change <= range) continue;
@@ -245,6 +249,7 @@ void Wcsph::load(StateReader& reader) {
   flow_.list_life.restore(lists.data());
   flow_.listed_time = lists[ListLife::state_size];
   flow_.has_lists = false;
+  flow_.strain = infinite;
   sampled_step_ = -1;
 }
 

@@ -17,7 +17,10 @@
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/buffer_layers.hpp"
 #include "spume/particles/excess_relaxation.hpp"
+#include "spume/particles/fastest.hpp"
+#include "spume/particles/half_steps.hpp"
 #include "spume/particles/list_life.hpp"
+#include "spume/particles/phase_energies.hpp"
 #include "spume/particles/phase_law.hpp"
 #include "spume/particles/spill.hpp"
 #include "spume/particles/start_at_rest.hpp"
@@ -80,6 +83,7 @@ struct Flow {
   std::string unsettled;   // what it says of accelerations that it has left
   double signal = 0;       // largest sum of sound speed and speed
   double largest_speed = 0;
+  double strain = infinite;   // Fastest::strain, of layers behind openings too; infinite: not known
   double measured_way = 0;    // of the fastest particle since (12) was measured
   double surface_energy = 0;  // of the interfaces where the last forces were found
 
@@ -103,6 +107,7 @@ struct Flow {
   Array<double> next_excess;
   Array<float> pressure, volume, reduced_excess, rate, diffusion, carried, density, viscosity;
   FloatVectorScratch force, flux, concentration;
+  std::vector<std::uint8_t> held;  // whether a wall has held one of a block of particles
 
   std::size_t size() const { return particles.size(); }
   std::size_t phase_of(std::size_t i) const { return static_cast<std::size_t>((*phase_number)[i]); }
@@ -110,18 +115,18 @@ struct Flow {
   ParticleLaws law_of_particles() const { return {laws, *phase_number}; }
   double pressure_at(double s, std::size_t i) const { return law(i).pressure(s) + background; }
   double listed_at(int axis, std::size_t i) const { return arrangement.origin[axis] + double{(*listed[axis])[i]}; }
-  double transport(int axis, double u, std::size_t i) const { return features.shifting ? u + (*shift[axis])[i] : u; }
   bool in_domain(std::size_t i) const { return openings == nullptr || !openings->holds(i); }
   double mass(std::size_t i) const { return in_domain(i) ? particles.volume * law(i).density : 0; }
+  // Of particles of layers behind openings: 0 or more. Null: there are none.
+  const std::int64_t* layer() const { return openings == nullptr ? nullptr : openings->column().data(); }
   double volume_spilt() const { return particles.volume * static_cast<double>(spill.count()); }
   double volume_spilt(std::size_t phase) const { return particles.volume * static_cast<double>(spill.count(phase)); }
   double mass_spilt() const;
-  double kinetic_energy() const;
-  double potential_energy() const;  // across axes with sides
-  double compression_energy() const;
+  PhaseEnergies energies() const;  // potential across axes with sides
   // Without the layers behind openings.
-  double largest_excess(std::size_t phase) const;
-  double largest_speed_in_domain() const;
+  double largest_excess(std::size_t phase) const {
+    return spume::largest_excess(phase, *phase_number, *excess, layer());
+  }
 
   // The stages.
   void move_layers(double dt);     // behind openings
@@ -147,13 +152,14 @@ struct Flow {
 
  private:
   void start_density();
-  void fill_layers();   // what stands behind openings at the start
-  void lead_scalars();  // layers of inflows have what these bring
-  struct HalfStep {
-    double velocity, place, way;
-  };
-  HalfStep half_step(int axis, std::size_t i, double dt) const;
-  Vec3 held_velocity(std::size_t i, double dt, Vec3& r) const;
+  void fill_layers();                      // what stands behind openings at the start
+  void lead_scalars();                     // layers of inflows have what these bring
+  HalfSteps half_steps(double dt) const {  // (5), (6)
+    return {dt, read(particles.position), read(particles.velocity), read(acceleration), read(shift)};
+  }
+  bool arrive(const HalfSteps& half, std::size_t first, std::size_t last);
+  void hold(std::size_t i, Vec3& r, Vec3& u) const;
+  void accept_block(const HalfSteps& half, const VectorExpression& given, std::size_t first, std::size_t last);
   void apply_walls(std::size_t i, Vec3& r, Vec3* u, const Vec3* from) const;
   SurfaceTension::Now tension_now() {
     return {arrangement, resolution, boundary.reflection(), particles, volume.data()};
@@ -169,8 +175,9 @@ struct Flow {
   bool needs_density() const { return features.several || features.bodies || features.gravity; }
   void lease_properties();
   void release_leased();
-  void find_shift(std::size_t i);
   void find_signal();
+  Fastest::State moving() const;
+  void take(const Fastest& fastest);
 };
 
 }  // namespace spume::wcsph

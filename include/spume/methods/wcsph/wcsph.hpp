@@ -68,6 +68,7 @@ class Wcsph final : public Method, public FieldProbes, public SurfaceProbes {
   SnapshotTable snapshot_;
   SavedNumbers saved_{"scalars"};
   PhaseSums phase_sums_;  // of the row of the series that is being read
+  PhaseEnergies energies_;
   PointSampler sampler_;
   Array<double> sampled_pressure_;
   std::int64_t sampled_step_ = -1;                 // that the sampler has binned
