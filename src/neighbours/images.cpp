@@ -312,21 +312,40 @@ void Images::build(const ImageRules& rules, const CellGrid& grid, const double* 
 }
 
 void Images::move(const ImageRules& rules, const std::array<const double*, 3>& position, const WallPointView* walls) {
-  // Along every axis a path is x -> sign x + shift.
+  // Along every axis a path is x -> sign x + shift: a table of both, since sides, which differ from image to image, are
+  // no branches that a processor foresees.
+  struct Change {
+    double sign, shift;
+  };
+  std::vector<Change> changes(paths_.size());
   for (int axis = 0; axis < rules.dimensions; ++axis) {
     const double lower = rules.lower[axis], upper = rules.upper[axis];
-    const double* from = position[axis];
-    double* to = position_[axis].data();
-    parallel_for(source_.size(), [&, from, to, axis](std::size_t k) {
-      const std::int8_t side = paths_[static_cast<std::size_t>(path_[k])].side[axis];
-      const bool of_point = walls != nullptr && wall_point_[k] >= 0;
-      const double x = of_point ? walls->position[axis][wall_point_[k]] : from[source_[k]];
+    for (std::size_t p = 0; p < paths_.size(); ++p) {
+      const std::int8_t side = paths_[p].side[axis];
       if (side < 0)
-        to[k] = x;
+        changes[p] = {1, 0};
       else if (rules.sides[axis][side] == ImageKind::mirror)
-        to[k] = 2 * (side == 0 ? lower : upper) - x;
+        changes[p] = {-1, 2 * (side == 0 ? lower : upper)};
       else
-        to[k] = side == 0 ? x - (upper - lower) : x + (upper - lower);
+        changes[p] = {1, side == 0 ? lower - upper : upper - lower};
+    }
+    const double* const from = position[axis];
+    double* const to = position_[axis].data();
+    const Change* const change = changes.data();
+    const auto* const source = source_.data();
+    const auto* const path = path_.data();
+    if (walls == nullptr) {
+      parallel_for(source_.size(), [=](std::size_t k) {
+        const Change& along = change[path[k]];
+        to[k] = along.sign * from[source[k]] + along.shift;
+      });
+      continue;
+    }
+    const auto* const point = wall_point_.data();
+    const auto* const wall = walls->position[axis];
+    parallel_for(source_.size(), [=](std::size_t k) {
+      const Change& along = change[path[k]];
+      to[k] = along.sign * (point[k] >= 0 ? wall[point[k]] : from[source[k]]) + along.shift;
     });
   }
 }

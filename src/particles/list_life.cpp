@@ -27,18 +27,20 @@ bool ListLife::last(double dt, const Motion& motion, const ImageRules& rules, Sc
   };
   const Longest longest = parallel_reduce(
       n, Longest{},
-      [&](std::size_t first, std::size_t last) {
+      // Copies, since every store of a way would have pointers behind references read again.
+      [dt, dimensions, asks, motion, u = read(particles_.velocity), r = read(particles_.position), ways = write(way),
+       origin = arrangement_.origin](std::size_t first, std::size_t last) {
         Longest so_far;
         for (std::size_t i = first; i < last; ++i) {
           double way2 = 0, step2 = 0;
           for (int axis = 0; axis < dimensions; ++axis) {
-            double u = (*particles_.velocity[axis])[i] + dt / 2 * motion.acceleration[axis][i];
-            if (motion.shift[axis] != nullptr) u += motion.shift[axis][i];
-            const double listed = arrangement_.origin[axis] + double{motion.listed[axis][i]};
-            const double whole = (*particles_.position[axis])[i] + dt * u - listed;
-            if (asks) way[axis][i] = static_cast<float>(whole);
+            double speed = u[axis][i] + dt / 2 * motion.acceleration[axis][i];
+            if (motion.shift[axis] != nullptr) speed += motion.shift[axis][i];
+            const double listed = origin[axis] + double{motion.listed[axis][i]};
+            const double whole = r[axis][i] + dt * speed - listed;
+            if (asks) ways[axis][i] = static_cast<float>(whole);
             way2 += whole * whole;
-            step2 += dt * u * dt * u;
+            step2 += dt * speed * dt * speed;
           }
           so_far = {larger_or_nan(so_far.way2, way2), larger_or_nan(so_far.step2, step2)};
         }
