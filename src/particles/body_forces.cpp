@@ -123,7 +123,8 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
     fit.weight()[before.size()] = pinned * sum;
   };
   fill(false);
-  const bool is_wet = covered >= wet_share || (!gap && !before.empty() && covered >= wet_share * free_share(element));
+  const bool is_wet =
+      covered >= wet_share || (!gap && is_free(eye) && !before.empty() && covered >= wet_share * free_share(element));
   const bool fitted = is_wet && fit.fit(2) >= 0;
   if (!fitted) {
     found.before = before_uncovered(gap, before.empty() ? infinite : std::sqrt(nearest2));
@@ -187,19 +188,27 @@ BodyForces::Before BodyForces::before_uncovered(const std::optional<double>& gap
   return nearest < in_gap * spacing ? Before::liquid : Before::nothing;
 }
 
+bool BodyForces::is_free(const Vec3& place) const {
+  const Domain& domain = scene_.domain;
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    if ((is_wall(domain.sides[axis][0].kind) && place[axis] < domain.lower[axis]) ||
+        (is_wall(domain.sides[axis][1].kind) && place[axis] > domain.upper[axis]))
+      return false;
+  return walls_.distance(domain.inside(place)) > 0;
+}
+
 // By places of a lattice of a spacing that begins at the element.
 double BodyForces::free_share(const Element& element) const {
-  const Domain& domain = scene_.domain;
+  const int dimensions = scene_.domain.dimensions;
   const double spacing = resolution_.spacing;
   const Vec3 normal = multiply(1 / length(element.area), element.area);
   Vec3 least{};  // the axis that the normal is farthest from
   least[std::abs(normal[0]) < std::abs(normal[1]) ? 0 : 1] = 1;
-  const Vec3 aside = domain.dimensions == 3 ? unit(cross(normal, least)) : Vec3{-normal[1], normal[0]};
-  const Vec3 across = domain.dimensions == 3 ? cross(normal, aside) : Vec3{};
-  const int most = static_cast<int>(resolution_.support_radius / spacing),
-            most_across = domain.dimensions == 3 ? most : 0;
+  const Vec3 aside = dimensions == 3 ? unit(cross(normal, least)) : Vec3{-normal[1], normal[0]};
+  const Vec3 across = dimensions == 3 ? cross(normal, aside) : Vec3{};
+  const int most = static_cast<int>(resolution_.support_radius / spacing), most_across = dimensions == 3 ? most : 0;
   double free = 0, all = 0;
-  with_plain_kernel(domain.dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
+  with_plain_kernel(dimensions, resolution_.kernel, [&]<int, class Kernel>() {
     for (int i = 0; i <= most; ++i)
       for (int j = -most; j <= most; ++j)
         for (int k = -most_across; k <= most_across; ++k) {
@@ -208,12 +217,7 @@ double BodyForces::free_share(const Element& element) const {
           const double weight = Kernel::w(length(offset) / resolution_.smoothing_length);
           if (!(weight > 0)) continue;
           all += weight;
-          const Vec3 place = add(element.middle, offset);
-          bool is_free = true;
-          for (int axis = 0; axis < d; ++axis)
-            is_free = is_free && !(is_wall(domain.sides[axis][0].kind) && place[axis] < domain.lower[axis]) &&
-                      !(is_wall(domain.sides[axis][1].kind) && place[axis] > domain.upper[axis]);
-          if (is_free && walls_.distance(domain.inside(place)) > 0) free += weight;
+          if (is_free(add(element.middle, offset))) free += weight;
         }
   });
   return free / all;

@@ -87,6 +87,7 @@ class BodyForces {
   std::vector<Traction> tractions(const Fields& fields, double t,
                                   std::vector<std::vector<PressureWeight>>* weights) const;
   Before before_uncovered(const std::optional<double>& gap, double nearest) const;
+  bool is_free(const Vec3& place) const;  // in no wall and beyond none
   // Of the kernel before an element, the share that no walls fill.
   double free_share(const Element& element) const;
   // Gives elements before gaps the pressure of those before liquid.
