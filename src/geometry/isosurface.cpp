@@ -166,27 +166,32 @@ class Marcher {
     corners_.insert(corners_.end(), {first, last});
   }
 
+  // The point of the body at a node, or between two of which one is positive: triangles that meet there share it.
+  std::int32_t point_of_body(std::size_t from, std::size_t to) {
+    std::vector<Vec3>& points = found_.body.points;
+    const auto [entry, fresh] =
+        edges_.try_emplace({std::min(from, to), std::max(from, to)}, static_cast<std::int32_t>(points.size()));
+    if (fresh) points.push_back(from == to ? grid_.node(from) : positive(from) ? root(from, to) : root(to, from));
+    return entry->second;
+  }
+
   // What of a triangle is positive, as a fan, and the segment where it ends.
   void flat_triangle(const std::array<std::size_t, 3>& corners) {
-    std::vector<Vec3> area, ends;
+    std::vector<std::int32_t> area, ends;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t from = corners[k], to = corners[(k + 1) % 3];
-      if (positive(from)) area.push_back(grid_.node(from));
+      if (positive(from)) area.push_back(point_of_body(from, from));
       if (positive(from) == positive(to)) continue;
-      const auto [entry, fresh] = roots_.try_emplace({std::min(from, to), std::max(from, to)}, Vec3{});
-      if (fresh) entry->second = positive(from) ? root(from, to) : root(to, from);
-      area.push_back(entry->second);
-      ends.push_back(entry->second);
+      area.push_back(point_of_body(from, to));
+      ends.push_back(area.back());
     }
-    const auto first = static_cast<std::int32_t>(found_.body.points.size());
-    for (const Vec3& p : area) found_.body.points.push_back(p);
-    for (std::int32_t k = 1; k + 1 < static_cast<std::int32_t>(area.size()); ++k)
-      found_.body.triangles.push_back({first, first + k, first + k + 1});
-    if (ends.size() != 2 || length(subtract(ends[0], ends[1])) <= thinnest * grid_.spacing) return;
+    for (std::size_t k = 1; k + 1 < area.size(); ++k) found_.body.triangles.push_back({area[0], area[k], area[k + 1]});
+    const auto place = [&](std::size_t k) { return found_.body.points[static_cast<std::size_t>(ends[k])]; };
+    if (ends.size() != 2 || length(subtract(place(0), place(1))) <= thinnest * grid_.spacing) return;
     TriangleSurface& wall = found_.boundary;
     const auto foot = static_cast<std::int32_t>(wall.points.size());
     for (const double z : {-height_, height_})
-      for (const Vec3& p : ends) wall.points.push_back({p[0], p[1], z});
+      for (const std::size_t k : {0U, 1U}) wall.points.push_back({place(k)[0], place(k)[1], z});
     wall.triangles.push_back({foot, foot + 1, foot + 3});
     wall.triangles.push_back({foot, foot + 3, foot + 2});
   }
@@ -200,7 +205,6 @@ class Marcher {
   const NodeGrid& grid_;
   const std::vector<double>& nodes_;
   std::unordered_map<Edge, std::int32_t, Hash> edges_;
-  std::unordered_map<Edge, Vec3, Hash> roots_;
   Isosurface found_;
   std::vector<std::int32_t> corners_;  // of lines
   double height_ = 0;

@@ -60,7 +60,7 @@ std::vector<SurfaceForce> AveragedWalls::forces(const Arrangement& arrangement, 
     body[g] = walls.body_of_wet(g);
     Vec3 at{};
     for (int axis = 0; axis < dimensions; ++axis) at[axis] = place[axis][g];
-    const Vec3 whole = walls.part_of(static_cast<std::size_t>(body[g])).beside_pivot(at);
+    const Vec3 whole = walls.whole_place(static_cast<std::size_t>(body[g]), at);
     for (int axis = 0; axis < dimensions; ++axis) arm[axis][g] = whole[axis];
   }
   return wall_forces(arrangement.context,

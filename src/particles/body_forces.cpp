@@ -16,6 +16,8 @@ namespace {
 
 // Spacings: a place before the surface that the surface itself does not hide.
 constexpr double before_surface = 0.1;
+// Spacings: how deep that place is in another wall that the surface lies on, but for what walls are off.
+constexpr double inside_another = 0.9 * before_surface;
 // Of the sum of all weights: what pins the fit of a velocity to that of a no-slip surface.
 constexpr double pinned = 10;
 // Of a cubic through the surface, the sum of the moduli of a slope times h: 8.8 with liquid all around, on jittered
@@ -24,8 +26,9 @@ constexpr double pinned = 10;
 constexpr double steepest = 12;
 // Of a full kernel sum: less before an element is the edge of the liquid.
 constexpr double wet_share = 0.5;
-// Spacings: from an element to a particle that stands in the gap before it, and the narrowest gap with room for one.
-constexpr double in_gap = 1, room_in_gap = 1;
+// Spacings: from an element to a particle that stands in the gap before it, the narrowest gap with room for one, and
+// the widest in which what is caught has no pressure of its own. Bodies lie on walls with a clearance of 0.1.
+constexpr double in_gap = 1, room_in_gap = 1, crushing_gap = 0.25;
 
 constexpr std::size_t block_of_elements = 256;
 
@@ -56,8 +59,9 @@ struct BodyForces::Sorted {
   }
 };
 
-BodyForces::Fields::Fields(const Arrangement& arrangement, const ParticleStore& store)
-    : grid(arrangement.grid),
+BodyForces::Fields::Fields(const Arrangement& arrangement, const ParticleStore& store, const WallPositions& walls)
+    : sides(walls),
+      grid(arrangement.grid),
       particles(store.size()),
       position(read(store.position)),
       velocity(read(store.velocity)),
@@ -77,11 +81,6 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
   const double h = resolution_.smoothing_length, reach = fit_reach * resolution_.support_radius;
   const Vec3 normal = multiply(1 / length(element.area), element.area);
   Traction found;
-  const std::optional<double> gap = walls_.gap_before(element.middle, normal);
-  if (gap && *gap == 0) {
-    found.before = Before::wall;
-    return found;
-  }
   struct Near {
     std::size_t particle;
     Vec3 offset;
@@ -90,9 +89,14 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
   near.find(scene_.domain, fields.grid, table.cells, table.position, element.middle, reach);
   std::vector<Near> before;
   const ThinWalls* thin = walls_.thin();
-  const Vec3 eye = add(element.middle, multiply(before_surface * resolution_.spacing, normal));
+  const double spacing = resolution_.spacing;
+  const Vec3 eye = add(element.middle, multiply(before_surface * spacing, normal));
+  if (scene_.bodies.size() > 1 && walls_.distance(scene_.domain.inside(eye)) < -inside_another * spacing) {
+    found.before = Before::wall;
+    return found;
+  }
   const double free = thin == nullptr ? infinite : thin->distance(eye);
-  double sum = 0, covered = 0, nearest2 = infinite;
+  double sum = 0, covered = 0, nearest2 = infinite, least_height = infinite;
   with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
     const double scale = fields.particle_volume * Kernel::normalisation(d) / std::pow(h, d);
     for (std::size_t k = 0; k < near.size(); ++k) {
@@ -108,6 +112,7 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
           {static_cast<std::size_t>(table.cells.order()[static_cast<std::size_t>(near.particle(k))]), offset, weight});
       sum += weight;
       nearest2 = std::min(nearest2, near.r2(k));
+      least_height = std::min(least_height, dot(offset, normal));
       covered += 2 * scale * Kernel::w(r / h);
     }
   });
@@ -123,15 +128,29 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
     fit.weight()[before.size()] = pinned * sum;
   };
   fill(false);
-  const bool is_wet =
-      covered >= wet_share || (!gap && is_free(eye) && !before.empty() && covered >= wet_share * free_share(element));
-  const bool fitted = is_wet && fit.fit(2) >= 0;
-  if (!fitted) {
-    found.before = before_uncovered(gap, before.empty() ? infinite : std::sqrt(nearest2));
-    found.in_gap = found.before == Before::gap || found.before == Before::liquid;
-    if (found.before != Before::liquid) return found;
+  bool is_wet = covered >= wet_share;
+  std::optional<double> gap;
+  if (!is_wet || least_height < crushing_gap * spacing) gap = walls_.gap_before(element.middle, normal, fields.sides);
+  if (is_wet && gap && *gap == 0) gap.reset();  // a fold of its own surface
+  if (gap && *gap == 0) {
+    found.before = Before::wall;
+    return found;
   }
-  found.before = Before::liquid;
+  is_wet = is_wet || (!gap && !before.empty() && is_free(eye, fields.sides) &&
+                      covered >= wet_share * free_share(element, fields.sides));
+  const bool fitted = is_wet && fit.fit(2) >= 0;
+  const bool crushed = gap && *gap < crushing_gap * spacing;
+  if (!fitted || crushed) {
+    const bool caught = gap && std::sqrt(nearest2) < in_gap * spacing;
+    found.before = crushed                               ? Before::gap
+                   : caught                              ? Before::liquid
+                   : gap && *gap < room_in_gap * spacing ? Before::gap
+                                                         : Before::nothing;
+    found.in_gap = found.before != Before::nothing;
+  } else {
+    found.before = Before::liquid;
+  }
+  if (!fitted && found.before != Before::liquid) return found;
   for (const Near& one : before) found.density += one.weight / sum * fields.density(one.particle);
   found.first_weight = weights == nullptr ? 0 : weights->size();
   const auto value = fit.value();
@@ -180,25 +199,18 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
   return found;
 }
 
-// Before an element that lacks liquid, with the nearest particle before it `nearest` away.
-BodyForces::Before BodyForces::before_uncovered(const std::optional<double>& gap, double nearest) const {
-  const double spacing = resolution_.spacing;
-  if (!gap) return Before::nothing;
-  if (*gap < room_in_gap * spacing) return Before::gap;  // what is caught there has no pressure of its own
-  return nearest < in_gap * spacing ? Before::liquid : Before::nothing;
-}
-
-bool BodyForces::is_free(const Vec3& place) const {
+bool BodyForces::is_free(const Vec3& place, const WallPositions& sides) const {
   const Domain& domain = scene_.domain;
   for (int axis = 0; axis < domain.dimensions; ++axis)
-    if ((is_wall(domain.sides[axis][0].kind) && place[axis] < domain.lower[axis]) ||
-        (is_wall(domain.sides[axis][1].kind) && place[axis] > domain.upper[axis]))
-      return false;
+    for (const std::size_t end : {0U, 1U}) {
+      const double beyond = place[axis] - sides[static_cast<std::size_t>(axis)][end];
+      if (is_wall(domain.sides[axis][end].kind) && (end == 0 ? beyond < 0 : beyond > 0)) return false;
+    }
   return walls_.distance(domain.inside(place)) > 0;
 }
 
 // By places of a lattice of a spacing that begins at the element.
-double BodyForces::free_share(const Element& element) const {
+double BodyForces::free_share(const Element& element, const WallPositions& sides) const {
   const int dimensions = scene_.domain.dimensions;
   const double spacing = resolution_.spacing;
   const Vec3 normal = multiply(1 / length(element.area), element.area);
@@ -217,7 +229,7 @@ double BodyForces::free_share(const Element& element) const {
           const double weight = Kernel::w(length(offset) / resolution_.smoothing_length);
           if (!(weight > 0)) continue;
           all += weight;
-          if (is_free(add(element.middle, offset))) free += weight;
+          if (is_free(add(element.middle, offset), sides)) free += weight;
         }
   });
   return free / all;
@@ -240,9 +252,14 @@ void BodyForces::fill_gaps(std::vector<Traction>& of, std::vector<std::vector<Pr
     if (nearest[k] < 0) continue;
     const auto source = static_cast<std::size_t>(nearest[k]);
     const Traction& from = of[source];
+    Traction& gap = of[gaps[k]];
+    gap.pressure = {};  // that of what is caught there
+    if (weights != nullptr) {
+      std::vector<PressureWeight>& caught = (*weights)[gaps[k] / block_of_elements];
+      for (std::size_t w = gap.first_weight; w < gap.last_weight; ++w) caught[w].force = {};
+    }
     if (from.before != Before::liquid) continue;
     const Element own = now(elements_[gaps[k]]), other = now(elements_[source]);
-    Traction& gap = of[gaps[k]];
     gap.value = from.value + from.density * dot(gravity_, scene_.domain.shortest(subtract(own.middle, other.middle)));
     gap.pressure = multiply(-gap.value, own.area);
     if (weights == nullptr) continue;
@@ -269,7 +286,7 @@ bool BodyForces::floats(const Element& element) const {
   return motion && scene_.motions[*motion].floats;
 }
 
-std::optional<std::size_t> BodyForces::floats_through() const {
+std::optional<std::size_t> BodyForces::floats_through(const WallPositions& sides) const {
   // Those that lie on each other at the start do not count.
   const double deep = 0.5 * resolution_.spacing;
   const Domain& domain = scene_.domain;
@@ -279,10 +296,12 @@ std::optional<std::size_t> BodyForces::floats_through() const {
     const auto body = static_cast<std::size_t>(element.body);
     const RigidWalls& own = walls_.part_of(body);
     const Vec3 at = own.place.now(element.middle);
-    for (int axis = 0; axis < domain.dimensions; ++axis)
-      if ((is_wall(domain.sides[axis][0].kind) && at[axis] < domain.lower[axis] - deep) ||
-          (is_wall(domain.sides[axis][1].kind) && at[axis] > domain.upper[axis] + deep))
+    for (int axis = 0; axis < domain.dimensions; ++axis) {
+      const auto [lower, upper] = sides[static_cast<std::size_t>(axis)];
+      if ((is_wall(domain.sides[axis][0].kind) && at[axis] < lower - deep) ||
+          (is_wall(domain.sides[axis][1].kind) && at[axis] > upper + deep))
         return body;
+    }
     for (std::size_t other = 0; other < scene_.bodies.size(); ++other) {
       const RigidWalls& walls = walls_.part_of(other);
       if (scene_.bodies[other].wall == BoundaryKind::open || &walls == &own) continue;
@@ -339,7 +358,8 @@ void BodyForces::integrate_beside_gaps(const Fields& fields, std::vector<Surface
   parallel_for(elements_.size(), [&](std::size_t e) {
     if (walls_.part_of(static_cast<std::size_t>(elements_[e].body)).absent()) return;
     const Element element = now(elements_[e]);
-    near_wall[e] = walls_.gap_before(element.middle, multiply(1 / length(element.area), element.area)) ? 1 : 0;
+    near_wall[e] =
+        walls_.gap_before(element.middle, multiply(1 / length(element.area), element.area), fields.sides) ? 1 : 0;
   });
   if (std::none_of(near_wall.begin(), near_wall.end(), [](std::uint8_t near) { return near != 0; })) return;
   const std::vector<Traction> of = tractions(fields, 0, nullptr);

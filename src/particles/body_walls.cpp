@@ -197,14 +197,29 @@ WallPointView BodyWalls::wet() const {
   return view;
 }
 
-std::optional<double> BodyWalls::gap_before(const Vec3& foot, const Vec3& normal) const {
+Vec3 BodyWalls::whole_place(std::size_t body, const Vec3& point) const {
+  const Body& own = scene_.bodies[body];
+  if (own.motion) return part_of(body).beside_pivot(point);
+  const Bounds bounds = own.shape->bounds();
+  Vec3 whole = point;
+  for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
+    const double middle = 0.5 * (bounds.lower[axis] + bounds.upper[axis]);
+    if (!scene_.domain.periodic(axis) || !std::isfinite(middle)) continue;
+    const double period = scene_.domain.upper[axis] - scene_.domain.lower[axis];
+    whole[axis] -= period * std::round((point[axis] - middle) / period);
+  }
+  return whole;
+}
+
+std::optional<double> BodyWalls::gap_before(const Vec3& foot, const Vec3& normal, const WallPositions& sides) const {
   const Domain& domain = scene_.domain;
   const double width = widest_gap * scene_.spacing;
   std::optional<double> gap;
   const auto limit = [&](double found) { gap = std::min(found, gap.value_or(width)); };
   for (int axis = 0; axis < domain.dimensions; ++axis) {
     const std::size_t end = normal[axis] < 0 ? 0 : 1;
-    const double room = end == 0 ? foot[axis] - domain.lower[axis] : domain.upper[axis] - foot[axis];
+    const double room = end == 0 ? foot[axis] - sides[static_cast<std::size_t>(axis)][0]
+                                 : sides[static_cast<std::size_t>(axis)][1] - foot[axis];
     if (is_wall(domain.sides[axis][end].kind) && width * std::abs(normal[axis]) > room)
       limit(room > touches_within * scene_.spacing ? room / std::abs(normal[axis]) : 0);
   }
@@ -226,6 +241,9 @@ template <int dimensions>
 void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at, double particle_volume,
                           std::size_t first, std::size_t last, Block& block) const {
   const double h = resolution_.smoothing_length;
+  const Domain& domain = scene_.domain;
+  WallPositions sides{};  // where they were at the start
+  for (std::size_t axis = 0; axis < 3; ++axis) sides[axis] = {domain.lower[axis], domain.upper[axis]};
   PointFit<dimensions> fit(resolution_);
   std::vector<double> across;  // of the particles near a point, from its tangent plane
   for (std::size_t g = first; g < last; ++g) {
@@ -278,7 +296,7 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
     });
     if (kernel_sum < wet_wall_share || !seen) continue;
     const bool beside_void = !scene_.free_surface && scene_.motions.empty() && kernel_sum < full_wall_share;
-    const bool before_wall = gap_before(point.foot, point.normal).has_value();
+    const bool before_wall = gap_before(point.foot, point.normal, sides).has_value();
     const int least = before_wall ? least_order_before_wall : least_order;
     if (fit.fit(beside_void || before_wall ? most_moduli_beside_void : infinite) < least) continue;
     block.point.push_back(static_cast<std::int32_t>(g));

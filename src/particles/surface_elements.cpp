@@ -86,7 +86,8 @@ void SurfaceElements::add_body(const Scene& scene, std::size_t b, const RigidWal
   const double ratio = body.shape->volume() / volume;
   const double stretch = std::isfinite(ratio) && ratio > 0 ? std::pow(ratio, (d - 1.0) / d) : 1;
   std::vector<std::int32_t> number(pieces.size(), -1);
-  for (std::size_t n = 0; n < whole.size() && sizes[n] > 0; ++n) {
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    if (!(sizes[n] > 0)) continue;
     const Vec3 middle = multiply(1 / sizes[n], whole[n].middle);
     if (std::abs(walls.exact_distance(middle)) >= of_own_surface * spacing) continue;
     number[n] = static_cast<std::int32_t>(elements_.size());

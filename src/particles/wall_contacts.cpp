@@ -80,7 +80,7 @@ WayToContact go_to_contact(const Boundary& boundary, const Vec3& place, const Ve
 void WallContacts::share(const Vec3& place, const Vec3& outwards, double force, std::vector<Borne>& borne) const {
   const BodyWalls& bodies = *boundary_.bodies();
   const auto push = [&](const BodyWalls::NearestWall& wall, const Vec3& away) {
-    borne.push_back({wall.body, bodies.part_of(wall.body).beside_pivot(wall.point), away});
+    borne.push_back({wall.body, bodies.whole_place(wall.body, wall.point), away});
   };
   const BodyWalls::NearestWall near = bodies.nearest_wall(place);
   const double along = dot(outwards, near.normal);

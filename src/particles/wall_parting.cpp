@@ -83,7 +83,7 @@ void WallParting::add_to_bodies(std::size_t particles, const Liquid& liquid, std
   });
   for (const auto& block : found)
     for (const Parting& parting : block)
-      forces[parting.body].press(boundary_.bodies()->part_of(parting.body).beside_pivot(parting.foot), parting.force);
+      forces[parting.body].press(boundary_.bodies()->whole_place(parting.body, parting.foot), parting.force);
 }
 
 }  // namespace spume

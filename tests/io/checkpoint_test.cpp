@@ -109,9 +109,9 @@ TEST(Checkpoint, ForeignFilesAndOtherFormatsAreRefused) {
   const TemporaryFolder folder;
   write_checkpoint(folder / "checkpoint.h5");
   std::string other = contents(folder / "checkpoint.h5");
-  other.replace(other.find("format 1"), 8, "format 9");
+  other.replace(other.find("format 2"), 8, "format 9");
   write_contents(folder / "other.h5", other);
-  EXPECT_THAT(refusal(folder / "other.h5"), HasSubstr("format 9, this program reads format 1"));
+  EXPECT_THAT(refusal(folder / "other.h5"), HasSubstr("format 9, this program reads format 2"));
   write_contents(folder / "foreign.h5", std::string(4000, 'x'));
   EXPECT_THAT(refusal(folder / "foreign.h5"), HasSubstr("not a Spume checkpoint"));
   EXPECT_THAT(refusal(folder.path()), HasSubstr("folder"));

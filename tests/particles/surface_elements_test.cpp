@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <queue>
 #include <random>
 
@@ -86,6 +87,26 @@ TEST(SurfaceElements, AClosedSurfaceIsOnePiece) {
     }
     EXPECT_LT(length(sum), 1e-12 * size);
     for (const int steps : steps_from(elements, {0})) EXPECT_GE(steps, 0);
+  }
+}
+
+// One that an expression gives has the elements of its outline alone: the edges between the cells that it was found in
+// counted as well.
+TEST(SurfaceElements, OfAnExpressionAreThoseOfItsOutline) {
+  const double perimeter = 2 * std::numbers::pi * 0.4;
+  const std::string circle = "[[body]]\nwhere = \"0.4^2 - x^2 - y^2\"\n",
+                    diamond = "[[body]]\nwhere = \"0.4 - abs(x) - abs(y)\"\n";
+  for (const auto& [body, length_of] : {std::pair{circle, perimeter}, {diamond, 4 * 0.4 * std::numbers::sqrt2}}) {
+    SCOPED_TRACE(body);
+    const Surface surface(square, 0.05, body);
+    Vec3 sum{};
+    double size = 0;
+    for (std::size_t e = 0; e < surface.elements.size(); ++e) {
+      sum = add(sum, surface.elements[e].area);
+      size += length(surface.elements[e].area);
+    }
+    EXPECT_NEAR(size, length_of, 0.01 * length_of);
+    EXPECT_LT(length(sum), 1e-3 * size);
   }
 }
 

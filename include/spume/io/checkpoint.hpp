@@ -17,7 +17,7 @@
 
 namespace spume {
 
-inline constexpr int checkpoint_format = 1;
+inline constexpr int checkpoint_format = 2;
 
 struct CheckpointOrigin {
   std::string program_version;

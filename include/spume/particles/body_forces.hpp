@@ -9,7 +9,7 @@
 //
 // Between a surface and another wall there is liquid in gaps that no particle has room in: it has the pressure of the
 // nearest element along the surface before which there is liquid with room, at rest under gravity from there on, and is
-// missing where one that is dry is nearer. Sides of the domain stand where they did at the start for that. Where one
+// missing where one that is dry is nearer; where there is neither, particles that are caught there tell it. Where one
 // layer of particles fits its pressure is their mean, each at rest from its place on. Surfaces that touch a wall feel
 // nothing there.
 #pragma once
@@ -33,7 +33,9 @@ class BodyForces {
   BodyForces(const Scene& scene, const Resolution& resolution, const BodyWalls& walls);
 
   struct Fields {
-    Fields(const Arrangement& arrangement, const ParticleStore& store);
+    // `walls`: where the sides of the domain are.
+    Fields(const Arrangement& arrangement, const ParticleStore& store, const WallPositions& walls);
+    const WallPositions& sides;
     const CellGrid& grid;
     std::size_t particles;
     std::array<const double*, 3> position, velocity;
@@ -62,7 +64,7 @@ class BodyForces {
   void add_rows(double t, const std::vector<SurfaceForce>& forces, std::vector<double>& rows) const;
   std::size_t elements() const { return elements_.size(); }
   // The first body that floats and has gone through a wall of the domain or another body; none: no such body.
-  std::optional<std::size_t> floats_through() const;
+  std::optional<std::size_t> floats_through(const WallPositions& sides) const;
 
  private:
   using Element = SurfaceElements::Element;
@@ -86,10 +88,9 @@ class BodyForces {
   // Of every element; with `weights` those of floating bodies alone, and what they are made of, block by block.
   std::vector<Traction> tractions(const Fields& fields, double t,
                                   std::vector<std::vector<PressureWeight>>* weights) const;
-  Before before_uncovered(const std::optional<double>& gap, double nearest) const;
-  bool is_free(const Vec3& place) const;  // in no wall and beyond none
+  bool is_free(const Vec3& place, const WallPositions& sides) const;  // in no wall and beyond none
   // Of the kernel before an element, the share that no walls fill.
-  double free_share(const Element& element) const;
+  double free_share(const Element& element, const WallPositions& sides) const;
   // Gives elements before gaps the pressure of those before liquid.
   void fill_gaps(std::vector<Traction>& of, std::vector<std::vector<PressureWeight>>* weights) const;
   std::vector<SurfaceForce> add_up(const std::vector<Traction>& of) const;

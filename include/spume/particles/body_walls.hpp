@@ -18,6 +18,8 @@
 
 namespace spume {
 
+using WallPositions = std::array<std::array<double, 2>, 3>;  // of the sides: [axis][0 lower, 1 upper]
+
 class BodyWalls {
  public:
   // `scene` outlives the walls.
@@ -43,6 +45,10 @@ class BodyWalls {
     const auto& motion = scene_.bodies[body].motion;
     return motion ? *parts_[*motion + 1] : *parts_[0];
   }
+
+  // Of the periodic copies of a place on a body the one where it is whole: nearest to its pivot, or to the middle of
+  // one that stands still.
+  Vec3 whole_place(std::size_t body, const Vec3& point) const;
 
   // Stencils of the wet wall points for particles in cell order at `at`, with walls as they move at time t and `ahead`.
   // Throws StepFailure for a wall velocity that is not finite.
@@ -102,7 +108,7 @@ class BodyWalls {
   // Along the normal at a place of a surface, the way to another wall or a side of the domain that is nearer than two
   // spacings, where one layer of particles fits between them at most; 0 where they touch, to 0.05 spacings.
   static constexpr double widest_gap = 2;
-  std::optional<double> gap_before(const Vec3& foot, const Vec3& normal) const;
+  std::optional<double> gap_before(const Vec3& foot, const Vec3& normal, const WallPositions& sides) const;
 
   double bytes() const;
 

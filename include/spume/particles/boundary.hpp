@@ -25,8 +25,6 @@
 
 namespace spume {
 
-using WallPositions = std::array<std::array<double, 2>, 3>;  // [axis][0 lower, 1 upper]
-
 inline bool is_wall(BoundaryKind kind) {
   return kind == BoundaryKind::free_slip || kind == BoundaryKind::no_slip;
 }

@@ -177,7 +177,7 @@ std::vector<RecordTable> Gfd::tables() const {
 
 void Gfd::table_rows(const std::string&, std::vector<double>& rows) {
   ensure_arranged();
-  BodyForces::Fields fields(flow_.arrangement, flow_.particles);
+  BodyForces::Fields fields(flow_.arrangement, flow_.particles, flow_.boundary.walls);
   fields.viscosity = flow_.viscosity == nullptr ? nullptr : flow_.viscosity->data();
   fields.density = [this](std::size_t i) { return (*flow_.density)[i]; };
   fields.pressure = [this](std::size_t i) { return (*flow_.pressure)[i]; };

@@ -92,7 +92,7 @@ void LesSph::step(double dt, Ledger& ledger) {
 
 void LesSph::remark_bodies_that_collide() {
   if (flow_.floating == nullptr || collided_) return;
-  const std::optional<std::size_t> body = body_forces_->floats_through();
+  const std::optional<std::size_t> body = body_forces_->floats_through(flow_.boundary.walls);
   if (!body) return;
   collided_ = true;
   const Body& through = flow_.scene.bodies[*body];

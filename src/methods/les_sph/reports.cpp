@@ -257,7 +257,7 @@ std::vector<Remark> LesSph::take_remarks() {
 }
 
 void LesSph::add_force_rows(std::vector<double>& rows) const {
-  BodyForces::Fields fields(flow_.arrangement, flow_.particles);
+  BodyForces::Fields fields(flow_.arrangement, flow_.particles, flow_.boundary.walls);
   fields.dynamic_viscosity = flow_.density() * flow_.viscosity();
   fields.density = [this](std::size_t) { return flow_.density(); };
   fields.pressure = [this](std::size_t i) { return (*flow_.pressure)[i]; };

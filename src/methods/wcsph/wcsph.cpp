@@ -207,7 +207,7 @@ void Wcsph::table_rows(const std::string&, std::vector<double>& rows) {
   if (flow_.solutes.record_carries()) return;  // bodies and liquid stand where the record ended
   sampled_step_ = -1;
   std::vector<SurfaceForce> forces = flow_.forces_on_bodies();
-  BodyForces::Fields fields(flow_.arrangement, flow_.particles);
+  BodyForces::Fields fields(flow_.arrangement, flow_.particles, flow_.boundary.walls);
   fields.density = [this](std::size_t i) { return flow_.law(i).density; };
   fields.pressure = [this](std::size_t i) { return flow_.law(i).pressure((*flow_.excess)[i]); };
   if (flow_.steps > 0) body_forces_->integrate_beside_gaps(fields, forces);
