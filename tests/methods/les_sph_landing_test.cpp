@@ -135,6 +135,32 @@ TEST(LesSphLanding, ABodyThatLandsOnACornerKeepsItsClearance) {
   }
 }
 
+// Facets of what an expression gives lie off its distances by more than rounding: none was a point of the surface, and
+// the ball fell through the floor.
+TEST(LesSphLanding, ABodyThatAnExpressionGivesLandsAsItsShapeDoes) {
+  const std::string moves = "density = 1800\nfree = [\"x\", \"y\", \"z\"]\n";
+  const struct {
+    int dimensions;
+    std::string body;
+  } bodies[] = {{2, "where = \"0.2003^2 - (x - 0.3017)^2 - (y - 0.5011)^2\"\ndensity = 1800\n"},
+                {3, "where = \"0.2003^2 - (x - 0.3017)^2 - y^2 - (z - 0.5011)^2\"\n" + moves},
+                {3, "where = \"0.2003 - max(max(abs(x - 0.3), abs(y)), abs(z - 0.5))\"\n" + moves}};
+  for (const auto& falling : bodies) {
+    SCOPED_TRACE(falling.body);
+    Simulation run(landing_tank(falling.dimensions) + "[[body]]\n" + falling.body);
+    double least = infinite;
+    while (run.method.time() < 1) {
+      run.steps(1, std::min(0.02, run.method.step_limit().dt));
+      const RigidPlace& place = place_now(run, 0);
+      least = std::min(least, place.now(falling.dimensions == 2
+                                            ? Vec3{0.3017, 0.5011, 0}
+                                            : Vec3{0.3, 0, 0.5})[static_cast<std::size_t>(falling.dimensions) - 1]);
+    }
+    EXPECT_GT(least, 0.2 + 0.8 * landing_spacing);
+    EXPECT_LT(least, 0.2 + 1.2 * landing_spacing);
+  }
+}
+
 // Edges cross where neither body has a corner: they went through each other, and both were flung out of the tank.
 TEST(LesSphLanding, TwoBoxesFallOnEachOther) {
   const Vec3 turns[] = {{6, -9, 30}, {10, 12, 0}};
