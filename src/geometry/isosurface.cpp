@@ -169,10 +169,17 @@ class Marcher {
   // The point of the body at a node, or between two of which one is positive: triangles that meet there share it.
   std::int32_t point_of_body(std::size_t from, std::size_t to) {
     std::vector<Vec3>& points = found_.body.points;
-    const auto [entry, fresh] =
-        edges_.try_emplace({std::min(from, to), std::max(from, to)}, static_cast<std::int32_t>(points.size()));
-    if (fresh) points.push_back(from == to ? grid_.node(from) : positive(from) ? root(from, to) : root(to, from));
-    return entry->second;
+    const auto next = static_cast<std::int32_t>(points.size());
+    const auto [entry, fresh] = edges_.try_emplace({std::min(from, to), std::max(from, to)}, next);
+    if (!fresh) return entry->second;
+    const Vec3 place = from == to ? grid_.node(from) : positive(from) ? root(from, to) : root(to, from);
+    for (const std::size_t node : {from, to})
+      if (from != to && length(subtract(place, grid_.node(node))) <= thinnest * grid_.spacing) {
+        const std::int32_t at_node = point_of_body(node, node);  // `entry` may have moved
+        return edges_[{std::min(from, to), std::max(from, to)}] = at_node;
+      }
+    points.push_back(place);
+    return next;
   }
 
   // What of a triangle is positive, as a fan, and the segment where it ends.
@@ -185,6 +192,9 @@ class Marcher {
       area.push_back(point_of_body(from, to));
       ends.push_back(area.back());
     }
+    // Roots at a node are that node.
+    area.erase(std::unique(area.begin(), area.end()), area.end());
+    if (area.size() > 1 && area.front() == area.back()) area.pop_back();
     for (std::size_t k = 1; k + 1 < area.size(); ++k) found_.body.triangles.push_back({area[0], area[k], area[k + 1]});
     const auto place = [&](std::size_t k) { return found_.body.points[static_cast<std::size_t>(ends[k])]; };
     if (ends.size() != 2 || length(subtract(place(0), place(1))) <= thinnest * grid_.spacing) return;

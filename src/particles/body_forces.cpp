@@ -91,7 +91,8 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
   const ThinWalls* thin = walls_.thin();
   const double spacing = resolution_.spacing;
   const Vec3 eye = add(element.middle, multiply(before_surface * spacing, normal));
-  if (scene_.bodies.size() > 1 && walls_.distance(scene_.domain.inside(eye)) < -inside_another * spacing) {
+  if (is_beyond(element.middle, fields.sides) ||
+      (scene_.bodies.size() > 1 && walls_.distance(scene_.domain.inside(eye)) < -inside_another * spacing)) {
     found.before = Before::wall;
     return found;
   }
@@ -199,14 +200,18 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
   return found;
 }
 
-bool BodyForces::is_free(const Vec3& place, const WallPositions& sides) const {
+bool BodyForces::is_beyond(const Vec3& place, const WallPositions& sides) const {
   const Domain& domain = scene_.domain;
   for (int axis = 0; axis < domain.dimensions; ++axis)
     for (const std::size_t end : {0U, 1U}) {
       const double beyond = place[axis] - sides[static_cast<std::size_t>(axis)][end];
-      if (is_wall(domain.sides[axis][end].kind) && (end == 0 ? beyond < 0 : beyond > 0)) return false;
+      if (is_wall(domain.sides[axis][end].kind) && (end == 0 ? beyond < 0 : beyond > 0)) return true;
     }
-  return walls_.distance(domain.inside(place)) > 0;
+  return false;
+}
+
+bool BodyForces::is_free(const Vec3& place, const WallPositions& sides) const {
+  return !is_beyond(place, sides) && walls_.distance(scene_.domain.inside(place)) > 0;
 }
 
 // By places of a lattice of a spacing that begins at the element.

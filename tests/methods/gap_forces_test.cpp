@@ -192,6 +192,7 @@ TEST(GapForces, HeavyBoxesStayDown) {
     const double clearance = std::min(spacing, lowest(box.start, box.turn));
     const std::size_t particles = run.method.flow().size();
     double fastest_turn = 0;
+    int refused = 0;
     while (run.method.time() < 3) {
       double dt = run.method.step_limit().dt;
       for (bool taken = false; !taken;) {  // as a run does with one that is refused
@@ -200,7 +201,7 @@ TEST(GapForces, HeavyBoxesStayDown) {
           taken = true;
         } catch (const StepFailure&) {
           dt /= 2;
-          ASSERT_GT(dt, 1e-6);
+          ASSERT_LT(++refused, 5);
         }
       }
       std::vector<double> rows;

@@ -102,6 +102,8 @@ TEST(SurfaceElements, OfAnExpressionAreThoseOfItsOutline) {
     Vec3 sum{};
     double size = 0;
     for (std::size_t e = 0; e < surface.elements.size(); ++e) {
+      EXPECT_EQ(surface.elements.beside(e).size(), 2U);
+      EXPECT_GT(length(surface.elements[e].area), 1e-4 * 0.05);
       sum = add(sum, surface.elements[e].area);
       size += length(surface.elements[e].area);
     }

@@ -9,7 +9,7 @@
 //
 // Between a surface and another wall there is liquid in gaps that no particle has room in: it has the pressure of the
 // nearest element along the surface before which there is liquid with room, at rest under gravity from there on, and is
-// missing where one that is dry is nearer; where there is neither, particles that are caught there tell it. Where one
+// missing where one that is dry is nearer; where there is neither, a fit to what is caught there tells it. Where one
 // layer of particles fits its pressure is their mean, each at rest from its place on. Surfaces that touch a wall feel
 // nothing there.
 #pragma once
@@ -88,7 +88,8 @@ class BodyForces {
   // Of every element; with `weights` those of floating bodies alone, and what they are made of, block by block.
   std::vector<Traction> tractions(const Fields& fields, double t,
                                   std::vector<std::vector<PressureWeight>>* weights) const;
-  bool is_free(const Vec3& place, const WallPositions& sides) const;  // in no wall and beyond none
+  bool is_beyond(const Vec3& place, const WallPositions& sides) const;  // a wall of the domain
+  bool is_free(const Vec3& place, const WallPositions& sides) const;    // in no wall and beyond none
   // Of the kernel before an element, the share that no walls fill.
   double free_share(const Element& element, const WallPositions& sides) const;
   // Gives elements before gaps the pressure of those before liquid.

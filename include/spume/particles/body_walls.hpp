@@ -51,7 +51,8 @@ class BodyWalls {
   Vec3 whole_place(std::size_t body, const Vec3& point) const;
 
   // Stencils of the wet wall points for particles in cell order at `at`, with walls as they move at time t and `ahead`.
-  // Throws StepFailure for a wall velocity that is not finite.
+  // Sides of the domain that move count where they were at the start there. Throws StepFailure for a wall velocity that
+  // is not finite.
   void find_stencils(const Arrangement& arrangement, const VectorField& at, double particle_volume, double t,
                      double ahead);
   // For averages over lists of neighbours (operators/wall_averages.hpp): all points count as wet, with walls as they

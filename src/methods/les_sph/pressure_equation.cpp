@@ -223,7 +223,7 @@ void Flow::factorise() {
 void Flow::solve(const char* name) {
   rows.measured = steps % steps_between_measured == 0;
   if (floating != nullptr) {
-    BodyForces::Fields fields(arrangement, particles, boundary.walls);
+    BodyForces::Fields fields(arrangement, particles, boundary.next_walls);  // where the liquid is held to
     fields.position = read(intermediate_position);
     fields.dynamic_viscosity = density() * viscosity();
     fields.density = [rho = density()](std::size_t) { return rho; };
