@@ -175,12 +175,13 @@ Pose pose_of(const BodyDraft& body, int dimensions) {
   return pose;
 }
 
-// The domain and four spacings around it, within which methods ask for distances.
+// The domain and as many spacings around it, within which methods ask for distances.
+constexpr double reach_of_expressions = 4;
 Bounds surroundings(const Draft& draft) {
   Bounds window{to_vec3(draft.lower), to_vec3(draft.upper)};
   for (std::size_t a = 0; a < static_cast<std::size_t>(draft.dimensions); ++a) {
-    window.lower[a] -= 4 * draft.options.spacing;
-    window.upper[a] += 4 * draft.options.spacing;
+    window.lower[a] -= reach_of_expressions * draft.options.spacing;
+    window.upper[a] += reach_of_expressions * draft.options.spacing;
   }
   return window;
 }
@@ -246,6 +247,18 @@ ShapePointer make_shape(const Draft& draft, const BodyDraft& body, const std::st
       break;
   }
   return nullptr;
+}
+
+// What an expression gives is found as far as its surroundings reach, and goes on beyond where it ends on them: its
+// copies a period away would fill the domain.
+void check_periodic_sides(const Draft& draft, const std::string& name, const Bounds& bounds, Problems& problems) {
+  const double reach = (reach_of_expressions - 1) * draft.options.spacing;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(draft.dimensions); ++a)
+    if (draft.periodic[a] && (bounds.lower[a] < draft.lower[a] - reach || bounds.upper[a] > draft.upper[a] + reach))
+      problems.add(*draft.node(name + ".where"),
+                   name + ".where goes on beyond a periodic side along " + std::string(1, "xyz"[a]) +
+                       "; expected a body that ends within " + brief(reach) +
+                       " of the domain there: write it as a shape, which goes around, or let it end before the side");
 }
 
 const char* key_of(BodyKind kind) {
@@ -315,6 +328,7 @@ std::vector<Body> make_bodies(const Draft& draft, const CompileExpression& compi
             if (draft.periodic[a]) periods[a] = draft.upper[a] - draft.lower[a];
           }
           const ShapePointer placed = place(shape, pose, true, draft.dimensions);
+          if (body.kind == "expression") check_periodic_sides(draft, name, placed->bounds(), problems);
           body.shape = repeat(placed, window, periods);
           body.solid = given.inside ? body.shape : place(body.shape, Pose{}, false, draft.dimensions);
           body.alone = given.inside ? placed : place(placed, Pose{}, false, draft.dimensions);
