@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "fill.hpp"
@@ -119,6 +120,7 @@ class Filler {
   bool place_particles() {
     std::vector<std::vector<Chunk>> chunks;
     find_columns();
+    if (layered() && !scene_.walls.empty()) choose_sites_beside_walls();
     for (std::size_t r = 0; r < regions_.size(); ++r) chunks.push_back(fill_region(r));
     if (too_many()) return false;
     report(chunks);
@@ -225,10 +227,11 @@ class Filler {
         chunk.cells += 1;
         chunk.open_cells += open_part(own, p);
       }
-      if (own.walls.at(p) <= 0) {
-        chunk.in_solid.add(p);
-        return;
-      }
+    }
+    const std::optional<Vec3> place = place_of_site(own, p);
+    if (!place) {
+      chunk.in_solid.add(p);
+      return;
     }
     if (is_replaced(own, r, p)) {
       chunk.replaced.add(p);
@@ -239,7 +242,8 @@ class Filler {
       if (q == r || (q > r && regions_[q].conform == regions_[r].conform)) continue;
       if (covers(own, q, p)) chunk.overlap[q].add(p);
     }
-    for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a) chunk.position[a].push_back(p[a]);
+    for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a)
+      chunk.position[a].push_back((*place)[a]);
   }
 
   // Indices of cells whose centres may lie in the region's box.
@@ -286,6 +290,12 @@ class Filler {
   double open_part(ThreadRegions& own, const Vec3& p) const;
   template <class Inside>
   double share_of_cell(const Vec3& p, Inside&& inside) const;
+  // fill_beside_bodies.cpp
+  bool is_cut(ThreadRegions& own, const Vec3& p) const;
+  double rank_of_site(ThreadRegions& own, const Vec3& p) const;
+  void choose_sites_beside_walls();
+  std::optional<Vec3> place_before_walls(const Vec3& p) const;
+  std::optional<Vec3> place_of_site(ThreadRegions& own, const Vec3& p) const;
   void report(const std::vector<std::vector<Chunk>>& chunks);
   void set_volume(const std::vector<std::vector<Chunk>>& chunks);
   bool stands_alone(std::size_t r, const std::vector<std::vector<Chunk>>& chunks) const;
@@ -303,6 +313,7 @@ class Filler {
   std::vector<std::vector<ColumnCell>> columns_;  // of each region
   bool compares_widths_ = false;
   CellMisfit misfit_;
+  double least_rank_ = 0;             // of the sites beside walls of bodies that phases take
   std::vector<double> layer_volume_;  // below the surface of each, in cells of the lattice
 };
 

@@ -2,7 +2,10 @@
 // Phases, the regions that they fill, and what is said of those that cannot be, by a method that these tests register.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
 
 #include "helpers.hpp"
 #include "spume/scene/load.hpp"
@@ -98,6 +101,35 @@ TEST(Phases, FillATankThatIsABody) {
   std::string half = tank;
   half.replace(half.find(everywhere), everywhere.size(), everywhere + "where = \"0.5 - y\"\n");
   EXPECT_TRUE(load_phases(half).scene.free_surface);
+}
+
+// Centres of cells that lie within circles of 8 and 5.5 spacings about a corner of the lattice are 208 and 88, their
+// areas 201.1 and 95.0; within a ball of 5.5 they are 672, its volume is 696.9. Cells of one layer as far from the wall
+// go together: 4 or 8, in two layers at once up to 32.
+TEST(Phases, ARoundTankHasAsManySitesAsItsVolume) {
+  const auto sites = [](int dimensions, double radius, const std::string& shape) {
+    const std::string end = std::to_string(static_cast<int>(std::ceil(radius)) + 2);
+    const std::string third = dimensions == 3 ? ", " : "";
+    const LoadedCase loaded = load_phases(
+        "method = \"mixed\"\n[domain]\nlower = [-" + end + ", -" + end + third + (dimensions == 3 ? "-" + end : "") +
+        "]\nupper = [" + end + ", " + end + third + (dimensions == 3 ? end : "") +
+        "]\n[resolution]\nspacing = 1\n[time]\nend = 1\n" + water + everywhere + "[[body]]\nshape = \"" + shape +
+        "\"\nradius = " + std::to_string(radius) + "\ninside = false\n");
+    EXPECT_FALSE(loaded.scene.free_surface);
+    return static_cast<double>(loaded.scene.particles.size());
+  };
+  EXPECT_NEAR(sites(2, 8, "cylinder"), std::numbers::pi * 64, 3);
+  EXPECT_NEAR(sites(2, 5.5, "cylinder"), std::numbers::pi * 30.25, 3);
+  EXPECT_NEAR(sites(3, 5.5, "ball"), 4.0 / 3 * std::numbers::pi * std::pow(5.5, 3), 16);
+  // Along the axis of a tube 16 columns lack sites here and there.
+  const LoadedCase tube = load_phases(
+      "method = \"mixed\"\n[domain]\nlower = [-10, -10, -6]\nupper = [10, 10, 6]\n[resolution]\nspacing = 1\n[time]\n"
+      "end = 1\n" +
+      water + everywhere + "[[body]]\nshape = \"cylinder\"\nradius = 8\ninside = false\n");
+  EXPECT_NEAR(static_cast<double>(tube.scene.particles.size()), 12 * std::numbers::pi * 64, 16);
+  std::map<double, int> layers;
+  for (const double z : tube.scene.particles.position[2]) ++layers[z];
+  for (const auto& [z, count] : layers) EXPECT_NEAR(count, std::numbers::pi * 64, 10) << z;
 }
 
 // Sites of the lattice are whole or nothing: a column 0.333 wide and 0.47 high gets 3 by 5 of them, less a disc in it.
