@@ -16,7 +16,7 @@ PhaseEnergies energies_of(const PhaseEnergies::State& state, std::size_t first, 
   const auto x = read(state.particles.position), u = read(state.particles.velocity);
   const double* const excess = state.excess;
   const std::int64_t* const left_out = state.left_out;
-  const Vec3 gravity = state.gravity, origin = state.origin;
+  const Vec3 gravity = state.gravity;
   const double volume = state.particles.volume;
   double kinetic = 0, potential = 0, compression = 0, speed2 = 0;
   state.law.each_run(first, last, [&](const PhaseLaw& own, std::size_t from, std::size_t to) {
@@ -26,7 +26,7 @@ PhaseEnergies energies_of(const PhaseEnergies::State& state, std::size_t first, 
       double square = 0, head = 0;
       unrolled<dimensions>([&](auto axis) {
         square += u[axis][i] * u[axis][i];
-        head -= gravity[axis] * (x[axis][i] - origin[axis]);
+        head -= gravity[axis] * x[axis][i];
       });
       kinetic += mass * square / 2;
       potential += mass * head;

@@ -77,7 +77,7 @@ std::vector<std::shared_ptr<const PistonMotion>> add_flaps(const Draft& draft, S
     turning.angle = std::make_shared<FlapAngle>(motion, maker.depth, inwards);
     turning.time_scale = 2 * std::numbers::pi / maker.angular_frequency;
     scene.bodies.push_back({.name = maker.name,
-                            .kind = "half-space",
+                            .kind = "flap",
                             .shape = shape,
                             .solid = shape,
                             .wall = domain.sides[0][left ? 0 : 1].kind,

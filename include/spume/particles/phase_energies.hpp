@@ -11,7 +11,7 @@ namespace spume {
 
 struct PhaseEnergies {
   double kinetic = 0;      // rho u^2 / 2, integral
-  double potential = 0;    // -rho g . (x - origin), integral
+  double potential = 0;    // -rho g . x, integral
   double compression = 0;  // rho e, integral
   double largest_speed = 0;
 
@@ -19,7 +19,7 @@ struct PhaseEnergies {
     const ParticleStore& particles;
     ParticleLaws law;
     const double* excess = nullptr;
-    Vec3 gravity{}, origin{};
+    Vec3 gravity{};
     const std::int64_t* left_out = nullptr;  // particles with 0 or more do not count; null: all do
   };
 };

@@ -159,9 +159,9 @@ double Flow::kinetic_energy() const {
 
 double Flow::potential_energy() const {
   if (!features.gravity) return 0;
-  if (features.openings)
-    return parallel_sum(size(), [&](std::size_t i) { return in_domain(i) ? mass(i) * gravity_potential(i) : 0.0; });
-  return parallel_sum(size(), [&](std::size_t i) { return mass(i) * gravity_potential(i); });
+  const double at_zero = gravity_potential(Vec3{});
+  return parallel_sum(size(),
+                      [&](std::size_t i) { return in_domain(i) ? mass(i) * (gravity_potential(i) - at_zero) : 0.0; });
 }
 
 double Flow::energy_without_potential() const {

@@ -128,20 +128,27 @@ void LesSph::remark_surface_at_bodies() {
   if (flow_.surface == nullptr || flow_.boundary.bodies() == nullptr) return;
   const Array<std::int32_t>& surface = flow_.surface->surface_particles;
   const double reach = flow_.resolution.support_radius;
+  // Water that meets the program's own flap stays still.
+  std::vector<const Body*> bodies;
+  for (const Body& body : flow_.boundary.bodies()->bodies())
+    if (body.wall != BoundaryKind::open && body.kind != "flap") bodies.push_back(&body);
+  const auto is_near = [&](const Vec3& place) {
+    const auto near = [&](const Body* body) { return body->solid->distance(place) < reach; };
+    return flow_.boundary.bodies()->nearer_than(place, reach) && std::any_of(bodies.begin(), bodies.end(), near);
+  };
   const double beside = parallel_sum(surface.size(), [&](std::size_t k) {
     const Vec3 place = vector_at(flow_.particles.position, flow_.dimensions, static_cast<std::size_t>(surface[k]));
     const bool continued = flow_.surface->continues_into_body(static_cast<std::size_t>(surface[k]));
-    return !continued && flow_.boundary.bodies()->nearer_than(place, reach) ? 1.0 : 0.0;
+    return !continued && is_near(place) ? 1.0 : 0.0;
   });
   if (beside == 0) return;
-  const std::vector<Body>& bodies = flow_.boundary.bodies()->bodies();
-  const bool alone =
-      std::count_if(bodies.begin(), bodies.end(), [](const Body& b) { return b.wall != BoundaryKind::open; }) == 1;
+  const bool alone = bodies.size() == 1;
   const std::string where = alone ? "beside the body" : "between bodies";
   const std::string cure = alone ? "part it by five spacings from the walls of the domain, or let it reach them"
                                  : "join the bodies, or part them by five spacings";
   remarks_.push_back({std::to_string(static_cast<long long>(beside)) +
-                          " particles at the start count as a free surface " + where +
+                          (beside == 1 ? " particle at the start counts" : " particles at the start count") +
+                          " as a free surface " + where +
                           ": where a gap too narrow for particles meets the surface still water does not stay still "
                           "(0.5 sqrt(g H) over a ball that touches a wall there); " +
                           cure,

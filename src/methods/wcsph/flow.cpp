@@ -166,7 +166,6 @@ PhaseEnergies Flow::energies() const {
                          .law = law_of_particles(),
                          .excess = excess->data(),
                          .gravity = wall_gravity,
-                         .origin = arrangement.origin,
                          .left_out = layer()});
 }
 

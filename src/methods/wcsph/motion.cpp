@@ -452,7 +452,6 @@ void Flow::release_leased() {
 }
 
 std::vector<SurfaceForce> Flow::forces_on_bodies() {
-  if (!has_lists && steps == 0) return std::vector<SurfaceForce>(scene.bodies.size());
   if (!has_lists) build_lists();
   move_images(read(particles.position), time);
   ScratchPool& scratch = particles.scratch();

@@ -72,6 +72,12 @@ Wcsph::Wcsph(const LoadedCase& loaded)
     saved_.add(flow_.relaxation->volume).add(flow_.relaxation->rest).add(flow_.measured_way);
 }
 
+// With the first forces, which are recorded.
+void Wcsph::prepare(Ledger& ledger, const GoOn& go_on) {
+  plan_.run_before(static_cast<double>(flow_.size()), ledger, go_on);
+  if (!flow_.solutes.record_carries()) plan_.run_start(static_cast<double>(flow_.size()), ledger);
+}
+
 void Wcsph::step(double dt, Ledger& ledger) {
   sampled_step_ = -1;  // sorting changes what the bins of the sampler refer to, also when the step is refused
   if (flow_.solutes.record_carries()) {
@@ -210,7 +216,7 @@ void Wcsph::table_rows(const std::string&, std::vector<double>& rows) {
   BodyForces::Fields fields(flow_.arrangement, flow_.particles, flow_.boundary.walls);
   fields.density = [this](std::size_t i) { return flow_.law(i).density; };
   fields.pressure = [this](std::size_t i) { return flow_.law(i).pressure((*flow_.excess)[i]); };
-  if (flow_.steps > 0) body_forces_->integrate_beside_gaps(fields, forces);
+  body_forces_->integrate_beside_gaps(fields, forces);
   body_forces_->add_rows(flow_.time, forces, rows);
 }
 

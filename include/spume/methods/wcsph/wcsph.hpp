@@ -29,9 +29,7 @@ class Wcsph final : public Method, public FieldProbes, public SurfaceProbes {
   double time() const override { return flow_.time; }
   std::int64_t step_count() const override { return flow_.steps; }
   StepLimit step_limit() const override;
-  void prepare(Ledger& ledger, const GoOn& go_on) override {
-    plan_.run_before(static_cast<double>(flow_.size()), ledger, go_on);
-  }
+  void prepare(Ledger& ledger, const GoOn& go_on) override;
   void step(double dt, Ledger& ledger) override;
   std::vector<SeriesColumn> series_columns() const override { return series_.columns(); }
   void series_values(std::span<double> values) override { series_.values(values); }
