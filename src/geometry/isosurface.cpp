@@ -98,17 +98,19 @@ class Marcher {
 
   Vec3 root(std::size_t in, std::size_t out) const {
     Vec3 inner = grid_.node(in), outer = grid_.node(out);
-    if (nodes_[out] == 0) return outer;
     if (value_ == nullptr) {
       const double share = nodes_[in] / (nodes_[in] - nodes_[out]);
       return add(multiply(1 - share, inner), multiply(share, outer));
     }
+    const Vec3 end = outer;
     // 40 halvings: 1e-12 of the spacing.
     for (int i = 0; i < 40; ++i) {
       const Vec3 middle = multiply(0.5, add(inner, outer));
       ((*value_)(middle) > 0 ? inner : outer) = middle;
     }
-    return multiply(0.5, add(inner, outer));
+    const Vec3 found = multiply(0.5, add(inner, outer));
+    // A root at a node is that node; a condition is 0 there and may end anywhere between.
+    return nodes_[out] == 0 && length(subtract(found, end)) <= thinnest * grid_.spacing ? end : found;
   }
 
   // The point of `points` on the edge between two nodes, one positive, the other not.

@@ -128,6 +128,13 @@ TEST(LevelSet, HasASurfaceOfItsOwnWhichEndsAtTheWindow) {
   for (const Vec3& p : ball->surface({}, 0.1).points) EXPECT_NEAR(length_of(p), 0.5, 1e-10);
 }
 
+// A condition is 0 or 1: its surface lay on the nodes outside, off by up to a cell.
+TEST(LevelSet, OfAConditionHasItsSurfaceWhereThatChanges) {
+  const ShapePointer below =
+      make_level_set([](const Vec3& p) { return p[1] < 0.03 ? 1.0 : 0.0; }, {{-1, -1, 0}, {1, 1, 0}}, 0.1, 2);
+  for (const double y : {-0.5, 0.0, 0.03, 0.07, 0.6}) EXPECT_NEAR(below->distance({0.22, y}), y - 0.03, 1e-9);
+}
+
 std::string refusal_of(const std::function<double(const Vec3&)>& value) {
   try {
     make_level_set(value, {{-1, -1, 0}, {1, 1, 0}}, 0.1, 2);
