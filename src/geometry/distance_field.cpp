@@ -233,6 +233,30 @@ class LevelSet final : public Shape {
   double error_ = 0, volume_ = 0;
 };
 
+// The facets and their copies, but for copies in the grid, where they were found already.
+void add_copies(TriangleSurface& boundary, const NodeGrid& grid, int dimensions, const std::vector<Vec3>& copies) {
+  const std::size_t own_points = boundary.points.size(), own_facets = boundary.triangles.size();
+  const auto covered = [&](const Vec3& p) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a) {
+      const double cells = (p[a] - grid.lower[a]) / grid.spacing;
+      if (!(cells >= 0 && cells <= static_cast<double>(grid.count[a] - 1))) return false;
+    }
+    return true;
+  };
+  for (const Vec3& shift : copies) {
+    const auto before = static_cast<std::int32_t>(boundary.points.size());
+    for (std::size_t k = 0; k < own_points; ++k) boundary.points.push_back(add(boundary.points[k], shift));
+    for (std::size_t k = 0; k < own_facets; ++k) {
+      const auto [a, b, c] = boundary.triangles[k];
+      const auto place = [&](std::int32_t corner) {
+        return boundary.points[static_cast<std::size_t>(before + corner)];
+      };
+      if (!covered(place(a)) || !covered(place(b)) || !covered(place(c)))
+        boundary.triangles.push_back({before + a, before + b, before + c});
+    }
+  }
+}
+
 }  // namespace
 
 ShapePointer make_distance_field(ShapePointer exact, const Bounds& box, double spacing, int dimensions) {
@@ -240,7 +264,7 @@ ShapePointer make_distance_field(ShapePointer exact, const Bounds& box, double s
 }
 
 ShapePointer make_level_set(const std::function<double(const Vec3&)>& value, const Bounds& window, double spacing,
-                            int dimensions) {
+                            int dimensions, const std::vector<Vec3>& copies) {
   const NodeGrid grid = cover(window, spacing, dimensions, most_nodes);
   std::vector<double> nodes(grid.size());
   std::size_t positive = 0;
@@ -254,7 +278,9 @@ ShapePointer make_level_set(const std::function<double(const Vec3&)>& value, con
   if (positive == 0 || positive == nodes.size())
     throw InputError(std::string("it is positive ") + (positive == 0 ? "nowhere" : "everywhere") +
                      " in the domain; expected a surface where it changes its sign");
-  return std::make_shared<LevelSet>(value, grid, nodes, find_isosurface(value, grid, nodes, dimensions), dimensions);
+  Isosurface surface = find_isosurface(value, grid, nodes, dimensions);
+  add_copies(surface.boundary, grid, dimensions, copies);
+  return std::make_shared<LevelSet>(value, grid, nodes, std::move(surface), dimensions);
 }
 
 }  // namespace spume

@@ -40,6 +40,20 @@ void split(const Corners& c, double longest, const Bounds& window, std::vector<C
   split({middle, b, far}, longest, window, out);
 }
 
+// Whether an edge lies on a periodic side that the body goes on beyond: its section is cut there, and has no face.
+bool is_cut(const Domain& domain, const Bounds& bounds, const Vec3& from, const Vec3& to) {
+  constexpr double rounding = 1e-9;  // periods
+  for (int axis = 0; axis < domain.dimensions; ++axis) {
+    if (!domain.periodic(axis) || std::isfinite(bounds.upper[axis] - bounds.lower[axis])) continue;
+    const auto periods = [&](const Vec3& at) {
+      return (at[axis] - domain.lower[axis]) / (domain.upper[axis] - domain.lower[axis]);
+    };
+    const double nearest = std::round(periods(from));
+    if (std::abs(periods(from) - nearest) < rounding && std::abs(periods(to) - nearest) < rounding) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<SurfacePiece> surface_pieces(const Domain& domain, const Body& body, double spacing) {
@@ -73,6 +87,7 @@ std::vector<SurfacePiece> surface_pieces(const Domain& domain, const Body& body,
                        multiply(0.5, cross(subtract(c[1], c[0]), subtract(c[2], c[0])))});
     return found;
   }
+  const Bounds bounds = body.shape->bounds();
   // The edges that belong to one triangle alone go around the shape, counter-clockwise.
   std::map<std::pair<std::int32_t, std::int32_t>, int> edges;
   for (const auto& triangle : surface.triangles)
@@ -80,7 +95,8 @@ std::vector<SurfacePiece> surface_pieces(const Domain& domain, const Body& body,
   for (const auto& [edge, count] : edges) {
     if (edges.contains({edge.second, edge.first})) continue;
     const Vec3 from = surface.points[static_cast<std::size_t>(edge.first)],
-               way = subtract(surface.points[static_cast<std::size_t>(edge.second)], from);
+               to = surface.points[static_cast<std::size_t>(edge.second)], way = subtract(to, from);
+    if (is_cut(domain, bounds, from, to)) continue;
     const double pieces = std::max(1.0, std::ceil(length(way) / spacing));
     for (double k = 0; k < pieces; ++k)
       found.push_back({{add(from, multiply(k / pieces, way)), add(from, multiply((k + 1) / pieces, way))},

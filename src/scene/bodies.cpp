@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <set>
 
 #include "box_bodies.hpp"
 #include "checks.hpp"
+#include "expression_bodies.hpp"
 #include "spume/core/error.hpp"
-#include "spume/geometry/distance_field.hpp"
 #include "spume/geometry/mesh.hpp"
 #include "spume/scene/expression.hpp"
 
@@ -175,33 +174,6 @@ Pose pose_of(const BodyDraft& body, int dimensions) {
   return pose;
 }
 
-// The domain and as many spacings around it, within which methods ask for distances.
-constexpr double reach_of_expressions = 4;
-Bounds surroundings(const Draft& draft) {
-  Bounds window{to_vec3(draft.lower), to_vec3(draft.upper)};
-  for (std::size_t a = 0; a < static_cast<std::size_t>(draft.dimensions); ++a) {
-    window.lower[a] -= reach_of_expressions * draft.options.spacing;
-    window.upper[a] += reach_of_expressions * draft.options.spacing;
-  }
-  return window;
-}
-
-// The box around a window in a body's own coordinates.
-Bounds own_window(const Bounds& window, const Pose& pose) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  Bounds own{{infinite, infinite, infinite}, {-infinite, -infinite, -infinite}};
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3 p{};
-    for (std::size_t a = 0; a < 3; ++a) p[a] = (corner >> a & 1) != 0 ? window.upper[a] : window.lower[a];
-    const Vec3 q = to_own_coordinates(pose, p);
-    for (std::size_t a = 0; a < 3; ++a) {
-      own.lower[a] = std::min(own.lower[a], q[a]);
-      own.upper[a] = std::max(own.upper[a], q[a]);
-    }
-  }
-  return own;
-}
-
 ShapePointer read_body_mesh(const Draft& draft, const std::string& name, const std::string& file, Problems& problems) {
   const fs::path path = fs::path(draft.options.path).parent_path() / file;
   TriangleSurface surface = read_mesh(path.string());
@@ -211,8 +183,8 @@ ShapePointer read_body_mesh(const Draft& draft, const std::string& name, const s
   return faults.empty() ? make_mesh(std::move(surface)) : nullptr;
 }
 
-ShapePointer make_shape(const Draft& draft, const BodyDraft& body, const std::string& name,
-                        const CompileExpression& compile, Problems& problems) {
+// In coordinates of its own.
+ShapePointer make_shape(const Draft& draft, const BodyDraft& body, const std::string& name, Problems& problems) {
   const int dimensions = draft.dimensions;
   switch (body.kind) {
     case BodyKind::box:
@@ -236,29 +208,23 @@ ShapePointer make_shape(const Draft& draft, const BodyDraft& body, const std::st
       return make_outline(body.points, body.length, dimensions);
     case BodyKind::mesh:
       return read_body_mesh(draft, name, body.mesh, problems);
-    case BodyKind::expression: {
-      const auto where = compile(*body.where, name + ".where", Arguments::place);
-      if (!where) return nullptr;
-      const auto value = [&](const Vec3& p) { return (*where)(p[0], p[1], p[2], 0); };
-      return make_level_set(value, own_window(surroundings(draft), pose_of(body, dimensions)),
-                            draft.options.spacing / body.scale, dimensions);
-    }
+    case BodyKind::expression:
     case BodyKind::none:
       break;
   }
   return nullptr;
 }
 
-// What an expression gives is found as far as its surroundings reach, and goes on beyond where it ends on them: its
-// copies a period away would fill the domain.
-void check_periodic_sides(const Draft& draft, const std::string& name, const Bounds& bounds, Problems& problems) {
-  const double reach = (reach_of_expressions - 1) * draft.options.spacing;
-  for (std::size_t a = 0; a < static_cast<std::size_t>(draft.dimensions); ++a)
-    if (draft.periodic[a] && (bounds.lower[a] < draft.lower[a] - reach || bounds.upper[a] > draft.upper[a] + reach))
-      problems.add(*draft.node(name + ".where"),
-                   name + ".where goes on beyond a periodic side along " + std::string(1, "xyz"[a]) +
-                       "; expected a body that ends within " + brief(reach) +
-                       " of the domain there: write it as a shape, which goes around, or let it end before the side");
+// Where it stands at the start, without its copies.
+ShapePointer make_placed(const Draft& draft, const BodyDraft& body, const std::string& name,
+                         const CompileExpression& compile, Problems& problems) {
+  const Pose pose = pose_of(body, draft.dimensions);
+  if (body.kind == BodyKind::expression) {
+    const auto where = compile(*body.where, name + ".where", Arguments::place);
+    return where ? make_expression_body(draft, name, *where, pose, problems) : nullptr;
+  }
+  ShapePointer shape = make_shape(draft, body, name, problems);
+  return shape ? place(std::move(shape), pose, true, draft.dimensions) : nullptr;
 }
 
 const char* key_of(BodyKind kind) {
@@ -318,8 +284,7 @@ std::vector<Body> make_bodies(const Draft& draft, const CompileExpression& compi
               .wall = given.wall};
     if (ready) {
       try {
-        if (ShapePointer shape = make_shape(draft, given, name, compile, problems)) {
-          const Pose pose = pose_of(given, draft.dimensions);
+        if (const ShapePointer placed = make_placed(draft, given, name, compile, problems)) {
           Bounds window;
           Vec3 periods{};
           for (std::size_t a = 0; a < static_cast<std::size_t>(draft.dimensions); ++a) {
@@ -327,8 +292,6 @@ std::vector<Body> make_bodies(const Draft& draft, const CompileExpression& compi
             window.upper[a] = draft.upper[a] + beyond_side * draft.options.spacing;
             if (draft.periodic[a]) periods[a] = draft.upper[a] - draft.lower[a];
           }
-          const ShapePointer placed = place(shape, pose, true, draft.dimensions);
-          if (body.kind == "expression") check_periodic_sides(draft, name, placed->bounds(), problems);
           body.shape = repeat(placed, window, periods);
           body.solid = given.inside ? body.shape : place(body.shape, Pose{}, false, draft.dimensions);
           body.alone = given.inside ? placed : place(placed, Pose{}, false, draft.dimensions);

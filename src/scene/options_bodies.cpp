@@ -20,7 +20,8 @@ Section body_section() {
              {"outline", BodyKind::outline}},
             "shape, in 2-D its section: disc, rectangle, ...; or where, or mesh")
       .absent("given by where or mesh")
-      .option("where", &B::where, "expression of x y z, positive inside the shape, as far as the domain")
+      .option("where", &B::where,
+              "expression of x y z, positive inside the shape, as far as the domain; a bed goes around periodic sides")
       .absent("given by shape or mesh")
       .option("mesh", &B::mesh, "closed triangle mesh: .stl, .obj, .ply or .ply.gz file beside the case (3-D)")
       .beside_case()

@@ -135,6 +135,31 @@ TEST(LevelSet, OfAConditionHasItsSurfaceWhereThatChanges) {
   for (const double y : {-0.5, 0.0, 0.03, 0.07, 0.6}) EXPECT_NEAR(below->distance({0.22, y}), y - 0.03, 1e-9);
 }
 
+// Repeated with a period of 2 the bed is as near to places beside the window as its copies are.
+TEST(LevelSet, SeesItsCopies) {
+  const auto wall = [](const Vec3& p) { return 0.2 - std::abs(p[0] + 0.5 - 2 * std::round((p[0] + 0.5) / 2)); };
+  const Bounds window{{-1.1, -1, 0}, {1.1, 1, 0}};
+  const ShapePointer alone = make_level_set(wall, window, 0.1, 2),
+                     copied = make_level_set(wall, window, 0.1, 2, {{-2, 0, 0}, {2, 0, 0}});
+  for (const double x : {-1.0, -0.5, 0.5, 0.9, 1.0})
+    EXPECT_NEAR(copied->distance({x, 0.3}), -wall({x, 0, 0}), 1e-9) << x;
+  EXPECT_GT(alone->distance({1, 0.3}), 1.2);
+  const ShapePointer endless = continue_periodically(copied, {-1, 0, 0}, {2, 0, 0});
+  for (const double x : {-7.3, -1.0, 3.1, 5.5}) {
+    EXPECT_NEAR(endless->distance({x, 0.3}), -wall({x, 0, 0}), 1e-9) << x;
+    EXPECT_NEAR(std::abs(endless->nearest({x, 0.3}).point[0] - x), std::abs(endless->distance({x, 0.3})), 1e-9);
+  }
+  // Each period of the window has its own wall, and the first is cut by none of its ends.
+  double area = 0;
+  const TriangleSurface surface = endless->surface({{-3, -1, 0}, {3, 1, 0}}, 0.1);
+  for (const auto& [a, b, c] : surface.triangles) {
+    const auto at = [&](std::int32_t i) { return surface.points[static_cast<std::size_t>(i)]; };
+    const Vec3 u = between(at(a), at(b)), v = between(at(a), at(c));
+    area += 0.5 * (u[0] * v[1] - u[1] * v[0]);
+  }
+  EXPECT_NEAR(area, 3 * 0.4 * 2, 1e-9);
+}
+
 std::string refusal_of(const std::function<double(const Vec3&)>& value) {
   try {
     make_level_set(value, {{-1, -1, 0}, {1, 1, 0}}, 0.1, 2);

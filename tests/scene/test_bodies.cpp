@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "helpers.hpp"
@@ -306,24 +307,76 @@ TEST(Bodies, AcuteCornersOfThinBodiesAreWarnedOf) {
       ElementsAre(HasSubstr("the bodies 'a' and 'b' meet at 30 degrees")));
 }
 
-// Its copies a period away filled the domain: of 844 particles 91 were left, without a word.
-TEST(Bodies, AnExpressionThatGoesOnBeyondAPeriodicSideIsRefused) {
-  const auto periodic = [](const std::string& where) {
-    std::string text = head2;
-    text.replace(text.find("[resolution]"), 0, "x = \"periodic\"\n");
-    return load(text + liquid_beside + "[[body]]\nwhere = \"" + where + "\"\n");
+LoadedCase load_periodic(const std::string& where) {
+  std::string text = head2;
+  text.replace(text.find("[resolution]"), 0, "x = \"periodic\"\n");
+  return load(text + liquid_beside + "[[body]]\nwhere = \"" + where + "\"\n");
+}
+
+// The liquid over a bed is the domain less the area below it, and the bed goes around: places beside the side are as
+// far from it as from its copies. These filled the domain: of 844 particles 91 were left.
+TEST(Bodies, ABedByAnExpressionGoesOnBeyondAPeriodicSide) {
+  using std::numbers::pi;
+  const struct {
+    std::string where;
+    std::function<double(double)> height;
+    double free;
+  } beds[] = {
+      {"-0.5 + 0.2*sin(pi*x) - y", [](double x) { return -0.5 + 0.2 * std::sin(pi * x); }, 3},
+      {"-0.5 - y", [](double) { return -0.5; }, 3},
+      {"-0.6 + 0.2*x^2 - y", [](double x) { return -0.6 + 0.2 * x * x; }, 4 - 2 * (0.4 + 0.2 / 3)},
+      {"y < -0.5 + 0.2*cos(2*pi*x)", [](double x) { return -0.5 + 0.2 * std::cos(2 * pi * x); }, 3},
   };
-  for (const std::string where :
-       {"0.16 - (x - 0.9)^2 - y^2", "-0.5 + 0.2*sin(pi*x) - y", "min(x - 0.5, -y)", "-0.5 - y"})
+  for (const auto& given : beds) {
+    SCOPED_TRACE(given.where);
+    const LoadedCase loaded = load_periodic(given.where);
+    // The volume of cells that the bed cuts is shared out by samples.
+    const auto& particles = loaded.scene.particles;
+    EXPECT_NEAR(static_cast<double>(particles.size()) * particles.volume, given.free, 1e-3 * given.free);
+    const Shape& bed = *loaded.scene.bodies[0].shape;
+    for (const double y : {-0.9, -0.2, 0.3, 0.9})
+      for (const double x : {-1.0, -0.9, 0.95, 1.0, 1.1}) {
+        double nearest = infinite;
+        for (int k = -4000; k <= 4000; ++k) {
+          const double at = k / 1000.0, own = at - 2 * std::round(at / 2);
+          nearest = std::min(nearest, std::hypot(at - x, given.height(own) - y));
+        }
+        // Half a spacing where the nearest place changes from one to another between nodes.
+        EXPECT_NEAR(std::abs(bed.distance({x, y})), nearest, 0.5 * 0.05) << x << ", " << y;
+      }
+    EXPECT_EQ(bed.bounds().upper[0], infinite);
+    double left = 1, right = -1;
+    for (const Vec3& p : bed.surface({{-1, -1}, {1, 1}}, 0.05).points) {
+      left = std::min(left, p[0]);
+      right = std::max(right, p[0]);
+    }
+    EXPECT_EQ(left, -1);
+    EXPECT_EQ(right, 1);
+  }
+}
+
+// What stands before one periodic side and not before the other was a wall there on one side alone.
+TEST(Bodies, AnExpressionWhoseSidesDisagreeIsRefused) {
+  for (const auto& [where, place] :
+       {std::pair{"0.16 - (x - 0.9)^2 - y^2", "positive at (1, -0.35) and not at (-1, -0.35)"},
+        {"min(x - 0.5, -y)", "positive at (1, -1) and not at (-1, -1)"},
+        {"-0.5 + 0.01*x - y", "positive at (1, -0.5) and not at (-1, -0.5)"},
+        {"-0.52 - 0.001*x - y", "positive at (-1, -0.52) and not at (1, -0.52)"}})
     try {
-      periodic(where);
+      load_periodic(where);
       ADD_FAILURE() << where << " was taken";
     } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("goes on beyond a periodic side along x")) << where;
+      EXPECT_THAT(error.what(), HasSubstr("body.0.where goes on beyond a periodic side along x")) << where;
+      EXPECT_THAT(error.what(), HasSubstr(place)) << where;
     }
-  // Clear of the side, and across it by less than four spacings, where its copy is whole.
+  // By a hundredth of a spacing at most.
+  EXPECT_NO_THROW(load_periodic("-0.52 + 0.0002*x - y"));
+}
+
+// Clear of the side, and across it by less than four spacings, where its copy is whole.
+TEST(Bodies, AnExpressionThatEndsBesideAPeriodicSideIsOneBody) {
   for (const auto& [where, area] : {std::pair{"0.09 - x^2 - y^2", 0.09}, {"0.04 - (x - 0.9)^2 - y^2", 0.04}}) {
-    const LoadedCase loaded = periodic(where);
+    const LoadedCase loaded = load_periodic(where);
     const double free = 4 - std::numbers::pi * area;
     EXPECT_NEAR(static_cast<double>(loaded.scene.particles.size()) * 0.05 * 0.05, free, 0.02 * free) << where;
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "spume/geometry/shape.hpp"
 
@@ -18,9 +19,10 @@ ShapePointer make_distance_field(ShapePointer exact, const Bounds& box, double s
 // next larger one at which the grid has no more than 4 million nodes: where the sign changes between nodes the root
 // is bisected, and facets join the roots. Features thinner than the grid may be missed. error() is that of the
 // interpolation, as above, and the largest distance from the middle of a facet to the root, to first order. Beyond the
-// window the distance is that of its nearest point and the way to there.
+// window the distance is that of its nearest point and the way to there. A function that repeats itself beyond the
+// window does so shifted by each of `copies`, surfaces of which are as near as others.
 // Throws InputError where the function is not finite, and when its sign does not change in the window.
 ShapePointer make_level_set(const std::function<double(const Vec3&)>& value, const Bounds& window, double spacing,
-                            int dimensions);
+                            int dimensions, const std::vector<Vec3>& copies = {});
 
 }  // namespace spume

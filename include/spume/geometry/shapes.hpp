@@ -62,6 +62,10 @@ ShapePointer place(ShapePointer shape, const Pose& pose, bool inside, int dimens
 // the shape where no copy does.
 ShapePointer repeat(ShapePointer shape, const Bounds& window, const Vec3& periods);
 
+// What a shape is in one period from `lower` on, along axes whose periods are not 0, without end: of any other point
+// what the same place of that period says. Distances are those of the shape, which has seen its copies itself.
+ShapePointer continue_periodically(ShapePointer shape, const Vec3& lower, const Vec3& periods);
+
 // The union of shapes, each of which is added to what those before it make, or taken away from it. Outside a union and
 // inside a difference the distance is exact; else its size is a lower bound of the distance.
 struct CombinedPart {
