@@ -40,6 +40,7 @@ struct BodyWalls::Block {
 
 BodyWalls::BodyWalls(const Scene& scene, const Resolution& resolution, double particle_volume)
     : scene_(scene), resolution_(resolution) {
+  for (std::size_t axis = 0; axis < 3; ++axis) sides_[axis] = {scene.domain.lower[axis], scene.domain.upper[axis]};
   const std::vector<std::uint8_t> thin = find_thin_bodies(scene, resolution);
   parts_.push_back(std::make_unique<RigidWalls>(scene, std::nullopt, resolution, particle_volume, thin));
   for (std::size_t m = 0; m < scene.motions.size(); ++m)
@@ -106,7 +107,7 @@ void BodyWalls::gather_points() {
     std::vector<WallPoint> now(count);
     std::vector<std::uint8_t> seen(count);
     parallel_for(count, [&](std::size_t g) {
-      bool is_first = walls.now(g, now[g]);
+      bool is_first = walls.now(g, sides_, now[g]);
       const Vec3& at = now[g].one_sided ? now[g].foot : now[g].position;
       ask_near(at, [&](std::size_t before) {
         if (!is_first || before >= part) return;
@@ -196,9 +197,6 @@ template <int dimensions>
 void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at, double particle_volume,
                           std::size_t first, std::size_t last, Block& block) const {
   const double h = resolution_.smoothing_length;
-  const Domain& domain = scene_.domain;
-  WallPositions sides{};  // where they were at the start
-  for (std::size_t axis = 0; axis < 3; ++axis) sides[axis] = {domain.lower[axis], domain.upper[axis]};
   PointFit<dimensions> fit(resolution_);
   std::vector<double> across;  // of the particles near a point, from its tangent plane
   for (std::size_t g = first; g < last; ++g) {
@@ -251,7 +249,7 @@ void BodyWalls::fit_block(const Arrangement& arrangement, const VectorField& at,
     });
     if (kernel_sum < wet_wall_share || !seen) continue;
     const bool beside_void = !scene_.free_surface && scene_.motions.empty() && kernel_sum < full_wall_share;
-    const bool before_wall = gap_before(point.foot, point.normal, sides).has_value();
+    const bool before_wall = gap_before(point.foot, point.normal, sides_).has_value();
     const int least = before_wall ? least_order_before_wall : least_order;
     if (fit.fit(beside_void || before_wall ? most_moduli_beside_void : infinite) < least) continue;
     block.point.push_back(static_cast<std::int32_t>(g));
@@ -364,7 +362,7 @@ void BodyWalls::follow_points(double t) {
     const auto [part, number] = origin_[k];
     WallPoint& point = points_[standing_ + k];
     const Vec3 before = point.position;
-    parts_[static_cast<std::size_t>(part)]->now(static_cast<std::size_t>(number), point);
+    parts_[static_cast<std::size_t>(part)]->now(static_cast<std::size_t>(number), sides_, point);
     for (int axis = 0; axis < scene_.domain.dimensions; ++axis) {
       if (!scene_.domain.periodic(axis)) continue;
       // The copy of the body that the point was of.

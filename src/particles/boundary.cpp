@@ -77,16 +77,25 @@ void Boundary::unite_solids(const WallPositions& at) {
   if (!domain_.boxes.empty()) solids_ = std::make_shared<const SolidUnion>(domain_, at, spacing_);
 }
 
+void Boundary::take_walls(const WallPositions& at) {
+  unite_solids(at);
+  if (bodies_ != nullptr) bodies_->set_sides(at);
+}
+
 void Boundary::return_walls() {
   next_walls = walls;
-  if (features.displaced_walls) unite_solids(walls);
+  if (features.displaced_walls) take_walls(walls);
 }
 
 void Boundary::advance(double t, double dt) {
   next_walls = walls;
   if (openings_ != nullptr) openings_->advance(t, dt);
+  if (features.displaced_walls) move_walls(t, dt);
+  // After the sides: wall points beyond them take no part.
   if (features.displaced_bodies) bodies_->move_to(t + dt);
-  if (!features.displaced_walls) return;
+}
+
+void Boundary::move_walls(double t, double dt) {
   if (absorbing_ != nullptr) absorbing_->advance(t, dt);
   for (int axis = 0; axis < domain_.dimensions; ++axis)
     for (int side = 0; side < 2; ++side) {
@@ -102,7 +111,7 @@ void Boundary::advance(double t, double dt) {
       next_walls[axis][side] += mean * dt;
       if (domain_.sides[axis][side].absorption) next_walls[axis][side] += absorbing_->way(side);
     }
-  unite_solids(next_walls);
+  take_walls(next_walls);
 }
 
 ImageRules Boundary::image_rules(double support_radius) const {
@@ -434,9 +443,9 @@ void Boundary::load_walls(StateReader& reader, double t) {
   if (all.size() != 6) throw FileError("the checkpoint was written by another version of the method");
   for (std::size_t axis = 0; axis < 3; ++axis) walls[axis] = {all[2 * axis], all[2 * axis + 1]};
   if (absorbing_ != nullptr) absorbing_->load(reader, t);
+  return_walls();
   if (features.displaced_bodies) bodies_->move_to(t);
   if (bodies_ != nullptr) bodies_->accept();
-  return_walls();
 }
 
 bool inside_solid(const Domain& domain, const Vec3& point) {

@@ -21,8 +21,8 @@ void BodyWalls::keep_outside(Vec3& position, Vec3* velocity, double gap) const {
   const auto is_reached = [&](const Vec3& place) {
     for (int axis = 0; axis < scene_.domain.dimensions; ++axis)
       for (const int side : {0, 1}) {
-        const bool beyond =
-            side == 0 ? place[axis] < scene_.domain.lower[axis] : place[axis] > scene_.domain.upper[axis];
+        const double plane = sides_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)];
+        const bool beyond = side == 0 ? place[axis] < plane : place[axis] > plane;
         const BoundaryKind kind = scene_.domain.sides[axis][side].kind;
         if (beyond && (kind == BoundaryKind::free_slip || kind == BoundaryKind::no_slip)) return false;
       }

@@ -298,7 +298,7 @@ std::optional<Vec3> RigidWalls::foremost(const Vec3& point, const Vec3& directio
   return std::nullopt;
 }
 
-bool RigidWalls::now(std::size_t point, WallPoint& found) const {
+bool RigidWalls::now(std::size_t point, const WallPositions& sides, WallPoint& found) const {
   found = points()[point];
   if (motion_ == nullptr) return true;
   found.position = place.now(found.position);
@@ -317,7 +317,8 @@ bool RigidWalls::now(std::size_t point, WallPoint& found) const {
     } else {
       for (int side = 0; side < 2; ++side) {
         const Side& at = domain.sides[axis][side];
-        const bool beyond = side == 0 ? x < domain.lower[axis] : x > domain.upper[axis];
+        const double plane = sides[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)];
+        const bool beyond = side == 0 ? x < plane : x > plane;
         if (beyond && at.bounds_liquid()) return false;
       }
     }

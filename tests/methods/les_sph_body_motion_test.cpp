@@ -2,6 +2,8 @@
 // les-sph with bodies that move.
 #include <gmock/gmock.h>
 
+#include <numbers>
+
 #include "methods/les_sph_simulation.hpp"
 
 namespace spume::test {
@@ -74,6 +76,27 @@ TEST(LesSphBodyMotion, LiquidMovesWithATankThatIsPushed) {
     squares += x * x;
   }
   EXPECT_NEAR(slope / squares, -0.5, 0.005);
+}
+
+// Still water seen from beside: sides, a ball, and a box half through the right side go by with one speed. Bodies lost
+// their wall points beyond where the sides had stood at the start, and the run ended with 165 sqrt(gH).
+TEST(LesSphBodyMotion, BodiesGoOnWithATankWhoseSidesMoveByItsWidth) {
+  Simulation run(
+      "method = \"les-sph\"\n[time]\nend = 2\n[domain]\nlower = [0, 0]\nupper = [1, 0.8]\nleft = \"free-slip\"\nright "
+      "= "
+      "\"free-slip\"\nbottom = \"free-slip\"\n[domain.wall_velocity]\nleft = [\"0.5\", \"0\"]\nright = [\"0.5\", "
+      "\"0\"]\n"
+      "[resolution]\nspacing = 0.04\n[fluid]\ndensity = 1\ngravity = 1\n[[liquid]]\nupper = [1, 0.5]\nvelocity = "
+      "[\"0.5\", "
+      "\"0\"]\n[[body]]\nshape = \"box\"\nsize = [0.32, 0.2]\nposition = [1, 0.2]\ndisplacement = [\"0.5*t\", \"0\"]\n"
+      "[[body]]\nshape = \"ball\"\nradius = 0.12\nposition = [0.4, 0.25]\ndisplacement = [\"0.5*t\", \"0\"]\n");
+  while (run.method.time() < 2) run.steps(1, std::min(0.02, run.method.step_limit().dt));
+  EXPECT_LT(deviation(run, [](const Vec3&) { return Vec3{0.5, 0, 0}; }), 1e-3);
+  std::vector<double> rows;
+  run.method.table_rows("bodies", rows);
+  const double of_box = 0.16 * 0.2, of_ball = std::numbers::pi * 0.12 * 0.12;
+  EXPECT_NEAR(rows[3], of_box, 0.005 * of_box);
+  EXPECT_NEAR(rows[rows.size() / 2 + 3], of_ball, 0.005 * of_ball);
 }
 
 TEST(LesSphBodyMotion, LiquidTurnsOnWithATankThatTurns) {

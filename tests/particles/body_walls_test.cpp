@@ -291,6 +291,31 @@ TEST(BodyWalls, KeepLiquidOutside) {
 }
 
 // Cells tell which of many moving bodies a place asks: answers are those of all bodies asked in turn.
+// A box that a tank has taken along beyond where its right side stood lost its wall points there, and water went
+// through it.
+TEST(BodyWalls, TakePartAsFarAsTheSidesAreNow) {
+  const LoadedCase loaded =
+      load_text(scene_text("lower = [-1, -1]\nupper = [1, 1]\nleft = \"free-slip\"\nright = \"free-slip\"\n", 0.05,
+                           "[[body]]\nshape = \"box\"\nsize = [0.4, 0.4]\ndensity = 0.5\n"));
+  const Scene& scene = loaded.scene;
+  const Resolution resolution(2, scene.spacing, KernelKind::wendland_c2, 1.3);
+  BodyWalls walls(scene, resolution, scene.particles.volume);
+  const auto all = static_cast<double>(walls.points());
+  RigidPlace place = walls.moving(0).place;
+  const auto points_at = [&](double x, double side) {
+    place.position[0] = x;
+    walls.set_sides({{{-1, side}, {-1, 1}, {0, 0}}});
+    walls.set_place(0, place, place, place);
+    walls.move_to(0);
+    return static_cast<double>(walls.points());
+  };
+  const double column = 0.4 / 0.05;
+  EXPECT_EQ(points_at(1.5, 2), all);
+  EXPECT_NEAR(points_at(1.5, 1.5), all / 2, column);
+  EXPECT_EQ(points_at(1.5, 1), 0);
+  EXPECT_NEAR(points_at(-0.5, -0.5), all / 2, column);
+}
+
 TEST(BodyWalls, OfManyAnswerAsAllAskedInTurn) {
   for (const bool space : {false, true}) {
     SCOPED_TRACE(space ? "3-D" : "2-D");

@@ -18,13 +18,13 @@
 
 namespace spume {
 
-using WallPositions = std::array<std::array<double, 2>, 3>;  // of the sides: [axis][0 lower, 1 upper]
-
 class BodyWalls {
  public:
   // `scene` outlives the walls.
   BodyWalls(const Scene& scene, const Resolution& resolution, double particle_volume);
 
+  // Where the sides of the domain are: wall points beyond them take no part. At first those of the start.
+  void set_sides(const WallPositions& sides) { sides_ = sides; }
   // Bodies with a given motion stand where they are at time t; those that float where they are told to.
   void move_to(double t);
   void set_place(std::size_t motion, const RigidPlace& place, const RigidPlace& behind, const RigidPlace& ahead);
@@ -51,8 +51,7 @@ class BodyWalls {
   Vec3 whole_place(std::size_t body, const Vec3& point) const;
 
   // Stencils of the wet wall points for particles in cell order at `at`, with walls as they move at time t and `ahead`.
-  // Sides of the domain that move count where they were at the start there. Throws StepFailure for a wall velocity that
-  // is not finite.
+  // Throws StepFailure for a wall velocity that is not finite.
   void find_stencils(const Arrangement& arrangement, const VectorField& at, double particle_volume, double t,
                      double ahead);
   // For averages over lists of neighbours (operators/wall_averages.hpp): all points count as wet, with walls as they
@@ -136,6 +135,7 @@ class BodyWalls {
   const RigidWalls& nearest_walls(const Vec3& point) const;
 
   const Scene& scene_;
+  WallPositions sides_{};
   const Resolution resolution_;
   std::vector<std::unique_ptr<RigidWalls>> parts_;   // what stands still, and each motion of the scene
   const RigidWalls* only_ = nullptr;                 // the one of them that has walls, if there is one

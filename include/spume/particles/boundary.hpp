@@ -180,6 +180,9 @@ class Boundary {
  private:
   void keep_before_sides(const WallPositions& at, int axis, Vec3& position, Vec3* velocity) const;
   void unite_solids(const WallPositions& at);
+  // Boxes and wall points of bodies as they are behind sides that are there.
+  void take_walls(const WallPositions& at);
+  void move_walls(double t, double dt);
   bool displaces() const { return features.displaced_walls || features.displaced_bodies; }
   void find_rules(const Images& images, double support_radius, const WallTimes& times);
   void find_offsets(const Images& images, double t, bool friction, VelocityImageRule& rule) const;

@@ -4,6 +4,7 @@
 // their sizes, so that these lie a spacing apart in all of them.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "spume/particles/wall_points.hpp"
 
 namespace spume {
+
+using WallPositions = std::array<std::array<double, 2>, 3>;  // of the sides: [axis][0 lower, 1 upper]
 
 class RigidWalls {
  public:
@@ -74,8 +77,8 @@ class RigidWalls {
   // Takes the points of the size that is nearest to that of now; none of a body that is absent.
   void choose_points();
   // The point as it is now, with the period that brings it into the domain; false where it is beyond a wall of the
-  // domain.
-  bool now(std::size_t point, WallPoint& found) const;
+  // domain, which is now at `sides`.
+  bool now(std::size_t point, const WallPositions& sides, WallPoint& found) const;
 
   double bytes() const;
 
