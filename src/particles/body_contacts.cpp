@@ -77,7 +77,8 @@ void BodyContacts::gather_points() {
   });
 }
 
-// Of those that start nearer to each other than a spacing what they start with.
+// Of those that start nearer to each other than a spacing what they start with. A distance from what an expression
+// gives is off by its error: what lies on it may seem to be in it by that.
 void BodyContacts::set_clearances() {
   const double spacing = resolution_.spacing;
   clearance_.assign(parts_ * others_, spacing);
@@ -87,9 +88,10 @@ void BodyContacts::set_clearances() {
     for (std::size_t other = 0; other < others_; ++other) {
       if (!may_touch(point.part, other)) continue;
       const double start = distance(other, sides, point.start, spacing);
+      const double off = other < parts_ ? walls_of(other).error() : 0;
       double& own = clearance(point.part, other);
-      if (start < -touching * spacing) own = -1;
-      if (own >= 0) own = std::min(own, std::max(0.0, start));
+      if (start < -touching * spacing - off) own = passes_through;
+      if (own > passes_through) own = std::min(own, std::max(-off, start));
     }
   for (std::size_t a = 0; a < parts_; ++a)
     for (std::size_t b = 0; b < a; ++b) clearance(a, b) = clearance(b, a) = std::min(clearance(a, b), clearance(b, a));
@@ -97,7 +99,7 @@ void BodyContacts::set_clearances() {
 
 bool BodyContacts::overlaps_at_start(std::size_t motion) const {
   for (std::size_t other = 0; other < others_; ++other)
-    if (clearance(motion + 1, other) < 0) return true;
+    if (clearance(motion + 1, other) == passes_through) return true;
   return false;
 }
 
@@ -195,7 +197,7 @@ std::vector<BodyContact> BodyContacts::find(const Surroundings& surroundings, do
       const std::size_t part = points_[p].part;
       for (std::size_t other = 0; other < others_; ++other) {
         const double kept = clearance(part, other);
-        if (kept < 0 || !may_touch(part, other)) continue;
+        if (kept == passes_through || !may_touch(part, other)) continue;
         const double other_speed = other < parts_ ? speed[other] : length(side_velocity[other - parts_]);
         const double reach = kept + resolution_.spacing + dt * (speed[part] + other_speed);
         BodyContact contact;

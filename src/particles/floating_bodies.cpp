@@ -401,7 +401,7 @@ double FloatingBodies::longest_step_after(double dt) const {
                       (axis < 3 ? state.acceleration[axis] : state.angular_acceleration[axis - 3]);
     }
     const BodyContact& contact = contacts_[c];
-    const double room = std::max(contact.room, 0.0) + 0.1 * contact.clearance + rounding * spacing_;
+    const double room = std::max(contact.room, 0.0) + 0.1 * std::max(contact.clearance, 0.0) + rounding * spacing_;
     const double velocity = closing_[c] + (centred_ ? dt / 2 : dt) * acceleration;
     longest = std::min(longest, time_to(room, velocity, centred_ ? acceleration : 0));
   }

@@ -39,7 +39,7 @@ struct BodyContact {
   // Motions of both; none: given.
   std::optional<std::size_t> of_point, of_other;
   Vec3 point{}, normal{};  // now
-  double clearance = 0;
+  double clearance = 0;    // below 0 by no more than the error of the distance
   double room = 0;         // distance less the clearance
   double given_speed = 0;  // n . u of those that are given, as they move on
   double restitution = 0;  // of both
@@ -71,6 +71,8 @@ class BodyContacts {
     std::size_t part = 0;
     ConvexCorner corner;
   };
+  static constexpr double passes_through = -infinite;  // a clearance: they do not touch
+
   bool floats(std::size_t part) const { return part > 0 && scene_.motions[part - 1].floats; }
   const RigidWalls& walls_of(std::size_t part) const { return walls_.part(part); }
   void gather_points();
@@ -98,7 +100,7 @@ class BodyContacts {
   std::size_t parts_ = 0, others_ = 0;
   std::vector<Point> points_;
   std::vector<double> radius_;     // of each part about its pivot
-  std::vector<double> clearance_;  // of each part from each other and from sides; negative: they do not touch
+  std::vector<double> clearance_;  // of each part from each other and from sides
 };
 
 }  // namespace spume

@@ -46,6 +46,7 @@ class RigidWalls {
   // A box that the solid is in now; of endless solids it is endless.
   Bounds bounds_now() const;
 
+  double error() const;  // a bound of that of distances from it
   // Negative inside; farther than four support radii from a surface a bound of it.
   double distance(const Vec3& point) const;
   double exact_distance(const Vec3& point) const {
@@ -90,7 +91,6 @@ class RigidWalls {
   Bounds window(double margin) const;
   Domain domain_at_start(double reach) const;
   bool keeps(int axis) const;  // the motion does not lead along it
-  double error() const;
   std::size_t body_at(const Vec3& foot) const;
   bool is_thin(std::size_t body) const;
   std::size_t level_of(double scale) const;
