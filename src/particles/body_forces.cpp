@@ -72,6 +72,7 @@ BodyForces::BodyForces(const Scene& scene, const Resolution& resolution, const B
       resolution_(resolution),
       walls_(walls),
       gravity_(gravity_across_sides(scene)),
+      is_full_(!scene.free_surface && scene.openings.empty()),
       elements_(scene, walls, resolution.spacing) {}
 
 template <int dimensions>
@@ -142,11 +143,11 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
   const bool fitted = is_wet && fit.fit(2) >= 0;
   const bool crushed = gap && *gap < crushing_gap * spacing;
   if (!fitted || crushed) {
+    // In liquid that fills its domain no pressure is that of a void, and what a constant pressure does to a closed
+    // surface is nothing: without its part there it had a force of any size.
+    const bool has_gap = (gap && *gap < room_in_gap * spacing) || (is_full_ && floats(element));
     const bool caught = gap && std::sqrt(nearest2) < in_gap * spacing;
-    found.before = crushed                               ? Before::gap
-                   : caught                              ? Before::liquid
-                   : gap && *gap < room_in_gap * spacing ? Before::gap
-                                                         : Before::nothing;
+    found.before = crushed ? Before::gap : caught ? Before::liquid : has_gap ? Before::gap : Before::nothing;
     found.in_gap = found.before != Before::nothing;
   } else {
     found.before = Before::liquid;

@@ -36,6 +36,14 @@ radius = 0.4
 
 const std::string plank = plank_on_water(400);
 
+// A tank without a surface, and a body of half the density of the water in it.
+const std::string full_tank =
+    "method = \"les-sph\"\n[time]\nend = 2\n[domain]\nlower = [0, 0]\nupper = [1, 1]\nleft = \"free-slip\"\nright = "
+    "\"free-slip\"\nbottom = \"free-slip\"\ntop = \"free-slip\"\n[resolution]\nspacing = 0.05\n[fluid]\ndensity = "
+    "1\ngravity = 1\n[[liquid]]\n";
+const std::string light_box =
+    "[[body]]\nshape = \"box\"\nsize = [0.3, 0.2]\ndensity = 0.5\nfree = [\"x\", \"y\", \"turn\"]\n";
+
 // Columns of bodies.csv.
 struct Row {
   double pressure_y, viscous_y, y, turn, velocity_y, spin;
@@ -113,6 +121,36 @@ TEST(LesSphFloating, ABodyThatSinksThroughTheFloorIsRemarkedOn) {
       remarked = remarked || remark.text.find("overlap at the start") != std::string::npos;
   }
   EXPECT_TRUE(remarked);
+}
+
+// Of a closed liquid a constant pressure moves no body. Without that of the void behind it a box flew to the floor, and
+// the run ended at t = 1.88 with 150 m/s.
+TEST(LesSphFloating, ALightBoxRisesFromTheFloorOfATankThatIsFull) {
+  Simulation run(full_tank + light_box + "position = [0.5, 0.2]\nrotation = [20]\n");
+  while (run.method.time() < 1.9) run.steps(1, std::min(0.02, run.method.step_limit().dt));
+  EXPECT_GT(row_of(run, 0).y, 0.4);
+  EXPECT_LT(run.series()["max_speed"], std::sqrt(2.0));  // of a fall through the tank
+}
+
+// The void below a flat face stays, and nothing has its pressure: what goes wrong there is told before and after.
+TEST(LesSphFloating, AGapBelowABoxInATankThatIsFullIsRemarkedOn) {
+  Simulation run(full_tank + light_box + "position = [0.5, 0.11]\n");
+  run.steps(1, 1e-3);
+  EXPECT_THAT(
+      run.method.take_remarks(),
+      testing::Contains(testing::Field(
+          &Remark::text, testing::HasSubstr("floats in liquid that fills its domain and starts 0.2 spacings"))));
+  Simulation lies(full_tank + light_box + "position = [0.5, 0.1]\n");
+  lies.steps(1, 1e-3);
+  EXPECT_THAT(lies.method.take_remarks(),
+              testing::Not(testing::Contains(testing::Field(&Remark::text, testing::HasSubstr("floats in liquid")))));
+  std::string cause;
+  while (cause.empty() && run.method.time() < 1.9) try {
+      run.steps(1, std::min(0.02, run.method.step_limit().dt));
+    } catch (const StepFailure& failure) {
+      cause = failure.details().cause;
+    }
+  EXPECT_THAT(cause, testing::HasSubstr("a body that floats moves ten times as fast"));
 }
 
 TEST(LesSphFloating, GivesTheSameBitsForAnyNumberOfThreads) {

@@ -101,6 +101,7 @@ class BodyForces {
   const Resolution& resolution_;
   const BodyWalls& walls_;
   const Vec3 gravity_;
+  const bool is_full_;  // liquid fills a domain that is closed
   const SurfaceElements elements_;
 };
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "full_tanks.hpp"
 #include "spume/core/error.hpp"
 #include "spume/methods/les_sph/step.hpp"
 #include "spume/particles/column_pressure.hpp"
@@ -116,6 +117,8 @@ void LesSph::start(Ledger& ledger) {
     flow_.volume = flow_.particles.volume * static_cast<double>(flow_.size());
     flow_.energy.start(flow_.energy_balance(0), flow_.particles, flow_.stored_energy());
     if (!flow_.features.velocity_gradient) flow_.strain->release();
+    if (std::string remark = remark_on_gaps_in_full_tank(flow_); !remark.empty())
+      remarks_.push_back({std::move(remark), false});
     remark_surface_at_bodies();
     remark_edges_at_surface();
     remark_wide_kernel();
