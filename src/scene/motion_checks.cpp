@@ -157,6 +157,67 @@ void check_pressing(const Draft& draft, const Scene& scene, Problems& problems) 
   }
 }
 
+// How far outwards a side of the domain comes, by Simpson's rule between the times of a run.
+double way_outwards(const Draft& draft, const Domain& domain, int axis, int end) {
+  const auto& velocity = domain.sides[axis][end].velocity;
+  if (!velocity || velocity->component[static_cast<std::size_t>(axis)] == nullptr) return 0;
+  const Vec3 middle = multiply(0.5, add(domain.lower, domain.upper));
+  const auto speed = [&](double at) { return (end == 0 ? -1 : 1) * (*velocity)(middle, at)[axis]; };
+  double way = 0, farthest = 0;
+  for (int n = 0; n + 1 < times; ++n) {
+    const double t = time_of(draft, n), dt = time_of(draft, n + 1) - t;
+    way += dt / 6 * (speed(t) + 4 * speed(t + dt / 2) + speed(t + dt));
+    farthest = std::max(farthest, way);
+  }
+  return farthest;
+}
+
+// Whether a body lies beyond a side where that comes to, between the other sides, and leaves some of it free: asked on
+// planes across the way, at places a spacing apart.
+bool is_bared(const Scene& scene, const Body& body, int axis, int end, double way) {
+  const Domain& domain = scene.domain;
+  std::array<std::size_t, 3> count{1, 1, 1};
+  for (int other = 0; other < domain.dimensions; ++other)
+    if (other != axis)
+      count[static_cast<std::size_t>(other)] =
+          static_cast<std::size_t>(std::ceil((domain.upper[other] - domain.lower[other]) / scene.spacing));
+  bool solid = false, free = false;
+  for (const double share : {0.1, 0.5, 1.0})
+    for (std::size_t n = 0; n < count[0] * count[1] * count[2]; ++n) {
+      const std::array<std::size_t, 3> at{n % count[0], n / count[0] % count[1], n / count[0] / count[1]};
+      Vec3 place{};
+      for (int other = 0; other < domain.dimensions; ++other)
+        place[other] =
+            domain.lower[other] + scene.spacing * (static_cast<double>(at[static_cast<std::size_t>(other)]) + 0.5);
+      place[axis] = end == 0 ? domain.lower[axis] - share * way : domain.upper[axis] + share * way;
+      (body.solid->inside(place) ? solid : free) = true;
+    }
+  return solid && free;
+}
+
+// Bodies at rest have wall points as far as the domain at the start, those that move have them all around.
+void warn_of_bared_bodies(const Draft& draft, const Scene& scene, const std::string& file,
+                          std::vector<Problem>& warnings) {
+  const Domain& domain = scene.domain;
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    for (int end = 0; end < 2; ++end) {
+      const double way = way_outwards(draft, domain, axis, end);
+      if (!(way > scene.spacing / 2)) continue;
+      for (std::size_t k = 0; k < draft.bodies.size(); ++k) {
+        const Body& body = scene.bodies[k];
+        if (body.motion || body.wall == BoundaryKind::open || body.subtract) continue;
+        if (!is_bared(scene, body, axis, end, way)) continue;
+        const Node& node = *draft.node("body." + std::to_string(k));
+        warnings.push_back({file, node.place.line, node.place.column,
+                            "the " + side_names(axis, domain.dimensions)[static_cast<std::size_t>(end)] +
+                                " wall moves off by " + brief(way) + " and bares the body '" + body.name +
+                                "', which as a body at rest holds the liquid in the domain of the start alone; add  "
+                                "displacement = [\"0*t\", " +
+                                (domain.dimensions == 3 ? "\"0\", " : "") + "\"0\"]  to it"});
+      }
+    }
+}
+
 bool full_and_closed(const Scene& scene) {
   if (scene.free_surface || !scene.openings.empty()) return false;
   for (int axis = 0; axis < scene.domain.dimensions; ++axis)
@@ -199,6 +260,7 @@ void check_sliding_walls(const Draft& draft, const Scene& scene, const std::stri
 
 std::vector<Problem> collision_warnings(const Draft& draft, const Scene& scene, const std::string& file) {
   std::vector<Problem> warnings;
+  warn_of_bared_bodies(draft, scene, file, warnings);
   const double deep = scene.spacing / 2;
   const Domain& domain = scene.domain;
   std::vector<std::optional<std::vector<Vec3>>> found_places(scene.bodies.size());

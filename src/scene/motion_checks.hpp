@@ -16,7 +16,8 @@ void check_motions(const Draft& draft, const Scene& scene, bool one_liquid, Prob
 // Sides that move along their normal, which the method takes to slide along themselves alone.
 void check_sliding_walls(const Draft& draft, const Scene& scene, const std::string& method, Problems& problems);
 
-// Bodies whose given motion leads into another body or through a wall of the domain.
+// Bodies whose given motion leads into another body or through a wall of the domain, and those at rest that a wall of
+// the domain bares as it moves off.
 std::vector<Problem> collision_warnings(const Draft& draft, const Scene& scene, const std::string& file);
 
 }  // namespace spume

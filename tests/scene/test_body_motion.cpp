@@ -343,6 +343,34 @@ TEST(BodyMotion, OfWallsKeepsTheVolumeOfAFullTank) {
   EXPECT_THAT(complaints(still + flap), Contains(HasSubstr("the flap would press a tank that is full and closed")));
 }
 
+// Behind where a wall stood at the start a body at rest has no wall points: liquid over a bed that a piston bared went
+// through it, and the run ended.
+TEST(BodyMotion, OfAWallThatBaresABodyAtRestIsWarnedOf) {
+  const auto warnings = [](const std::string& velocity, const std::string& body) {
+    std::vector<std::string> found;
+    for (const Problem& problem :
+         test::load_text(
+             "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [1, 1]\nleft = \"free-slip\"\nright = "
+             "\"free-slip\"\nbottom = \"free-slip\"\nwall_velocity.left = [\"" +
+             velocity +
+             "\", \"0\"]\n[resolution]\nspacing = 0.05\n[time]\nend = 2\n[fluid]\nreynolds = 100\n[[liquid]]\n"
+             "upper = [1, 0.5]\n[[body]]\nname = \"bed\"\n" +
+             body)
+             .options.warnings)
+      found.push_back(problem.text);
+    return found;
+  };
+  const std::string bed = "shape = \"half-space\"\nposition = [0, 0.2]\n";
+  EXPECT_THAT(warnings("-0.3*t", bed), Contains(HasSubstr("the left wall moves off by 0.6 and bares the body 'bed'")));
+  // There and back, by the integral of the sine over half of its period.
+  EXPECT_THAT(warnings("-0.3*sin(pi*t)", bed), Contains(HasSubstr("the left wall moves off by 0.19")));
+  for (const auto& [velocity, body] : {std::pair{std::string("0.3*t"), bed},
+                                       {"-0.01*t", bed},
+                                       {"-0.3*t", bed + "displacement = [\"0*t\", \"0\"]\n"},
+                                       {"-0.3*t", "shape = \"box\"\nsize = [0.4, 0.2]\nposition = [0.2, 0.1]\n"}})
+    EXPECT_THAT(warnings(velocity, body), testing::Not(Contains(HasSubstr("bares")))) << velocity << body;
+}
+
 TEST(BodyMotion, IntoABodyOrAWallIsWarnedOf) {
   const auto warnings = [](const std::string& keys, const std::string& more) {
     std::vector<std::string> found;
