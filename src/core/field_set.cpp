@@ -20,7 +20,7 @@ void FieldSet::resize(std::size_t size) {
   for (auto& field : fields_) std::visit([&](auto& array) { array.resize(size); }, field->values);
 }
 
-void FieldSet::permute(const Array<std::int32_t>& order) {
+void FieldSet::permute(std::span<const std::int32_t> order) {
   const std::int32_t* from = order.data();
   const std::size_t size = order.size();
   // Field and scratch keep their own capacities: swapping grows both to the same size within two steps.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "spume/core/borrowed_array.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/neighbours/cell_grid.hpp"
 #include "spume/neighbours/periodic_cells.hpp"
@@ -31,24 +32,29 @@ int slab_shift(std::size_t rows, std::size_t points) {
 
 }  // namespace
 
-template <class Find>
-void CellOrder::sort(std::size_t size, std::size_t cells, std::size_t per_slab, Find&& find) {
-  const std::size_t slabs = (cells + per_slab - 1) / per_slab;
-  const std::size_t block = sort_block(size);
-  const std::size_t blocks = block_count(size, block);
+CellOrder::Memory CellOrder::own_memory(std::size_t size) {
   slab_.resize(size);
   order_.resize(size);
   slab_cell_.resize(size);
   slab_order_.resize(size);
+  return {order_.data(), slab_cell_.data(), slab_order_.data(), slab_.data()};
+}
+
+template <class Find>
+void CellOrder::sort(const Memory& memory, std::size_t size, std::size_t cells, std::size_t per_slab, Find&& find) {
+  const std::size_t slabs = (cells + per_slab - 1) / per_slab;
+  const std::size_t block = sort_block(size);
+  const std::size_t blocks = block_count(size, block);
+  size_ = size;
   first_.resize(cells + 1);
   block_start_.resize((blocks + 1) * slabs + 1);
 
-  std::int32_t* cell = order_.data();  // within its slab
-  std::uint16_t* slab = slab_.data();
-  std::int32_t* order = order_.data();
+  std::int32_t* cell = memory.order;  // within its slab
+  std::uint16_t* slab = memory.slab;
+  std::int32_t* order = memory.order;
   std::int32_t* first = first_.data();
-  std::int32_t* slab_cell = slab_cell_.data();
-  std::int32_t* slab_order = slab_order_.data();
+  std::int32_t* slab_cell = memory.slab_cell;
+  std::int32_t* slab_order = memory.slab_order;
   std::int32_t* start = block_start_.data();  // [block][slab], then the start of every slab
 
   parallel_blocks(size, block, [=](std::size_t b, std::size_t from, std::size_t to) {
@@ -106,11 +112,23 @@ void CellOrder::sort(std::size_t size, std::size_t cells, std::size_t per_slab, 
 }
 
 void CellOrder::build(const CellGrid& grid, const double* x, const double* y, const double* z, std::size_t size) {
+  sort(own_memory(size), grid, x, y, z, size);
+}
+
+void CellOrder::build(const CellGrid& grid, const double* x, const double* y, const double* z, std::size_t size,
+                      ScratchPool& scratch, std::int32_t* order) {
+  const BorrowedArray<std::int32_t> slab_cell(scratch, size), slab_order(scratch, size);
+  const BorrowedArray<std::uint16_t> slab(scratch, size);
+  sort({order, slab_cell.data(), slab_order.data(), slab.data()}, grid, x, y, z, size);
+}
+
+void CellOrder::sort(const Memory& memory, const CellGrid& grid, const double* x, const double* y, const double* z,
+                     std::size_t size) {
   dimensions_ = grid.dimensions();
   const std::size_t rows = static_cast<std::size_t>(grid.rows_y()) * static_cast<std::size_t>(grid.rows_z());
   const int shift = slab_shift(rows, size);
   const int columns = grid.columns();
-  sort(size, static_cast<std::size_t>(grid.cell_count()), static_cast<std::size_t>(columns) << shift,
+  sort(memory, size, static_cast<std::size_t>(grid.cell_count()), static_cast<std::size_t>(columns) << shift,
        [=, &grid](std::size_t i) {
          const std::int32_t row = grid.row(grid.index(1, y[i]), grid.dimensions() == 3 ? grid.index(2, z[i]) : 0);
          const int slab = row >> shift;
@@ -125,7 +143,7 @@ void CellOrder::build(const PeriodicCells& cells, const double* x, const double*
   const double last[3] = {cells.count[0] - 1.0, cells.count[1] - 1.0, cells.count[2] - 1.0};
   const double lower[3] = {cells.lower[0], cells.lower[1], cells.lower[2]};
   const int count_z = cells.count[2];
-  sort(size, cells.size(), cells.plane(), [=](std::size_t i) {
+  sort(own_memory(size), size, cells.size(), cells.plane(), [=](std::size_t i) {
     const int cx = clamped((x[i] - lower[0]) * inverse[0], last[0]);
     const int cy = clamped((y[i] - lower[1]) * inverse[1], last[1]);
     const int cz = clamped((z[i] - lower[2]) * inverse[2], last[2]);
@@ -137,7 +155,7 @@ void CellOrder::build(const PeriodicCells& cells, const double* x, const double*
 // written, the cell read twice and the index once; the order written and read. Cells: zeroed, counted, summed, taken by
 // the points, read.
 double CellOrder::build_traffic() const {
-  return (8.0 * dimensions_ + 6 + 4 + 4 + 8 + 12 + 8) * static_cast<double>(order_.size()) +
+  return (8.0 * dimensions_ + 6 + 4 + 4 + 8 + 12 + 8) * static_cast<double>(size_) +
          28.0 * static_cast<double>(first_.size());
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "spume/core/borrowed_array.hpp"
 #include "spume/core/parallel.hpp"
 
 namespace spume {
@@ -264,7 +265,7 @@ void Images::add_wall_points(const WallPointView& walls) {
 }
 
 void Images::build(const ImageRules& rules, const CellGrid& grid, const double* x, const double* y, const double* z,
-                   std::size_t n, const WallPointView* walls) {
+                   std::size_t n, const WallPointView* walls, ScratchPool* scratch) {
   particle_ = {x, y, z};
   solids_ = rules.solids;
   inside_domain_ = solids_ != nullptr || walls != nullptr;
@@ -295,20 +296,21 @@ void Images::build(const ImageRules& rules, const CellGrid& grid, const double* 
       });
       (side == 0 ? image_free_lower_ : image_free_upper_)[axis] = side == 0 ? plane + depth : plane - depth;
     }
-  table_.build(grid, position_[0].data(), position_[1].data(), rules.dimensions == 3 ? position_[2].data() : nullptr,
-               m);
-  const std::int32_t* order = table_.order().data();
-  const auto reorder = [&](auto& values, auto& scratch) {
-    scratch.resize(m);
-    const auto* from = values.data();
-    auto* to = scratch.data();
+  ScratchPool& pool = scratch == nullptr ? own_scratch_ : *scratch;
+  const BorrowedArray<std::int32_t> sorted(pool, m);
+  table_.build(grid, position_[0].data(), position_[1].data(), rules.dimensions == 3 ? position_[2].data() : nullptr, m,
+               pool, sorted.data());
+  const std::int32_t* order = sorted.data();
+  const auto reorder = [&]<class T>(Array<T>& values) {
+    const BorrowedArray<T> moved(pool, m);
+    T *const from = values.data(), *const to = moved.data();
     parallel_for(m, [=](std::size_t k) { to[k] = from[order[k]]; });
-    values.swap(scratch);
+    parallel_for(m, [=](std::size_t k) { from[k] = to[k]; });
   };
-  for (int axis = 0; axis < 3; ++axis) reorder(position_[axis], scratch_position_);
-  reorder(source_, scratch_);
-  reorder(path_, scratch_);
-  if (!wall_point_.empty()) reorder(wall_point_, scratch_);
+  for (int axis = 0; axis < 3; ++axis) reorder(position_[axis]);
+  reorder(source_);
+  reorder(path_);
+  if (!wall_point_.empty()) reorder(wall_point_);
 }
 
 void Images::move(const ImageRules& rules, const std::array<const double*, 3>& position, const WallPointView* walls) {
@@ -351,9 +353,7 @@ void Images::move(const ImageRules& rules, const std::array<const double*, 3>& p
 }
 
 double Images::bytes() const {
-  double total = table_.bytes() + 4.0 * static_cast<double>(source_.capacity() + path_.capacity() +
-                                                            scratch_.capacity() + wall_point_.capacity());
-  total += scratch_position_.bytes();
+  double total = table_.bytes() + own_scratch_.idle_bytes() + source_.bytes() + path_.bytes() + wall_point_.bytes();
   for (const auto& axis : position_) total += axis.bytes();
   for (const auto& block : reflected_) total += static_cast<double>(sizeof(Reflected) * block.capacity());
   return total;

@@ -3,6 +3,8 @@
 
 #include <variant>
 
+#include "spume/core/borrowed_array.hpp"
+
 namespace spume {
 namespace {
 
@@ -32,8 +34,9 @@ Arrangement::Arrangement(const Domain& domain, const Resolution& resolution, dou
 
 void Arrangement::sort(ParticleStore& particles, const VectorField& at) {
   const auto r = read(at);
-  table.build(grid, r[0], r[1], r[2], particles.size());
-  if (!table.already_sorted()) particles.fields.permute(table.order());
+  const BorrowedArray<std::int32_t> order(particles.scratch(), particles.size());
+  table.build(grid, r[0], r[1], r[2], particles.size(), particles.scratch(), order.data());
+  if (!table.already_sorted()) particles.fields.permute({order.data(), order.size()});
 }
 
 void Arrangement::find_neighbours(const ParticleStore& particles, const VectorField& at, const ParticleSizes& sizes) {

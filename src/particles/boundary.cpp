@@ -135,7 +135,7 @@ ImageRules Boundary::image_rules(double support_radius) const {
   return rules;
 }
 
-void Boundary::make_images(Arrangement& arrangement, const ParticleStore& particles, const VectorField& at,
+void Boundary::make_images(Arrangement& arrangement, ParticleStore& particles, const VectorField& at,
                            double largest_length_ratio, const WallTimes& times, bool find_wet) {
   const double support_radius = arrangement.grid.support_radius() * largest_length_ratio;
   const auto r = read(at);
@@ -167,7 +167,7 @@ void Boundary::make_images(Arrangement& arrangement, const ParticleStore& partic
   const bool wet = wall_points.size > 0;
   arrangement.context.walls = wet ? stencils : nullptr;
   arrangement.images.build(image_rules(support_radius), arrangement.grid, r[0], r[1], r[2], particles.size(),
-                           wet ? &wall_points : nullptr);
+                           wet ? &wall_points : nullptr, &particles.scratch());
   if (bodies_ != nullptr) bodies_->look(arrangement.images);
   find_rules(arrangement.images, support_radius, times);
   find_image_pressure(arrangement, at, times);

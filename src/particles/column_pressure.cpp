@@ -176,7 +176,7 @@ Array<double> column_pressure(const Scene& scene, const ParticleStore& particles
     pressure[i] = 0;
     if (cells.part(cell) < 0 || supported[static_cast<std::size_t>(cells.part(cell))] == 0) return;
     const std::int64_t row = cell[static_cast<std::size_t>(up)], column = cells.column_of(cell);
-    const double density = scene.phases[static_cast<std::size_t>(phase[i])].density;
+    const double density = scene.phases[phase.empty() ? 0 : static_cast<std::size_t>(phase[i])].density;
     pressure[i] = above[static_cast<std::size_t>(column * cells.rows() + row)] +
                   g * density * (cells.bottom(row + 1) - place[up]);
   });

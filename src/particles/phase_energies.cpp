@@ -59,15 +59,17 @@ double largest_excess(std::size_t phase, const Array<std::int64_t>& phases, cons
   const double* const s = excess.data();
   const std::int64_t* const of = phases.data();
   const auto wanted = static_cast<std::int64_t>(phase);
+  const bool all = phases.empty();
   return parallel_reduce(
       excess.size(), 0.0,
       [=](std::size_t first, std::size_t last) {
         std::int64_t most = 0;
         if (left_out == nullptr) {
-          for (std::size_t i = first; i < last; ++i) most = std::max(most, of[i] == wanted ? size_bits(s[i]) : 0);
+          for (std::size_t i = first; i < last; ++i)
+            most = std::max(most, all || of[i] == wanted ? size_bits(s[i]) : 0);
         } else {
           for (std::size_t i = first; i < last; ++i)
-            most = std::max(most, of[i] == wanted && left_out[i] < 0 ? size_bits(s[i]) : 0);
+            most = std::max(most, (all || of[i] == wanted) && left_out[i] < 0 ? size_bits(s[i]) : 0);
         }
         return of_size_bits(most);
       },

@@ -41,11 +41,12 @@ std::vector<PhaseSums::Sums> PhaseSums::sums_of(std::size_t first, std::size_t l
     length[axis] = domain_->upper[axis] - lower[axis];
   }
   for (std::size_t i = first; i < last;) {
-    const std::int64_t own = phase[i];
-    const auto n = static_cast<std::size_t>(own);
+    std::size_t to = sums.size() == 1 ? last : i + 1;
+    const auto n = static_cast<std::size_t>(sums.size() == 1 ? 0 : phase[i]);
+    while (to < last && phase[to] == phase[i]) ++to;
     Sums run = sums[n];
     const double mass = particles_.volume * density_[n];
-    for (; i < last && phase[i] == own; ++i) {
+    for (; i < to; ++i) {
       if (left_out != nullptr && left_out[i] >= 0) continue;
       run.mass += mass;
       unrolled<dimensions>([&](auto axis) {

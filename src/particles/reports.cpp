@@ -70,7 +70,8 @@ ParticleSnapshot SnapshotTable::take(std::string name, std::size_t size, const V
     if (!take) continue;
     ParticleField field{entry.name, {}, {}};
     for (const Array<double>* component : entry.f64) field.f64.push_back(component->data());
-    if (entry.i64 != nullptr) field.i64.push_back(entry.i64->data());
+    if (entry.i64 != nullptr && entry.i64->empty()) zeros_.resize(size);
+    if (entry.i64 != nullptr) field.i64.push_back(entry.i64->empty() ? zeros_.data() : entry.i64->data());
     if (!entry.f32.empty()) {
       for (std::size_t c = 0; c < entry.f32.size(); ++c) {
         Array<double>& values = computed_[entry.name + '_' + std::to_string(c)];

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "neighbours/neighbourhood.hpp"
+#include "spume/core/borrowed_array.hpp"
 #include "spume/core/field_set.hpp"
 
 namespace spume::test {
@@ -65,6 +66,30 @@ TEST_P(Sort, DoesNotDependOnTheThreadCount) {
     EXPECT_TRUE(std::equal(one.table.order().begin(), one.table.order().end(), many.table.order().begin()));
   }
   omp_set_num_threads(before);
+}
+
+// What only a build uses is the pool's again, and the next build finds it there.
+TEST_P(Sort, BorrowedMemoryGivesTheSameOrder) {
+  const auto points = clustered_points(30000, GetParam(), 0.05);
+  const Sorted own(GetParam(), points);
+  ScratchPool pool;
+  CellOrder table;
+  double idle = 0;
+  for (int round = 0; round < 2; ++round) {
+    const BorrowedArray<std::int32_t> order(pool, points.size());
+    table.build(own.grid, own.x.data(), own.y.data(), GetParam() == 3 ? own.z.data() : nullptr, points.size(), pool,
+                order.data());
+    EXPECT_TRUE(std::equal(own.table.order().begin(), own.table.order().end(), order.data()));
+    EXPECT_TRUE(std::equal(own.table.first(), own.table.first() + own.grid.cell_count() + 1, table.first()));
+    EXPECT_EQ(table.already_sorted(), own.table.already_sorted());
+    EXPECT_EQ(table.build_traffic(), own.table.build_traffic());
+    if (round == 1) {
+      EXPECT_EQ(pool.idle_bytes(), idle);
+    }
+    idle = pool.idle_bytes();
+  }
+  EXPECT_EQ(own.table.bytes() - table.bytes(), 14.0 * static_cast<double>(points.size()));
+  EXPECT_GE(idle, 10.0 * static_cast<double>(points.size()));
 }
 
 TEST_P(Sort, SortedPointsStayAndAllFieldsMoveTogether) {

@@ -41,6 +41,23 @@ TEST(Images, EqualBruteForceForEveryPairOfSides) {
       }
 }
 
+// A sort of 30 bytes an image and more leaves none of them.
+TEST(Images, AreTheSameInBorrowedMemory) {
+  const Neighbourhood hood(unit_box_rules(3, 0.2, periodic, mirror, periodic), random_points(3000, 3));
+  ScratchPool pool;
+  Images images;
+  for (int round = 0; round < 2; ++round)
+    images.build(hood.rules, hood.grid, hood.x.data(), hood.y.data(), hood.z.data(), hood.n, nullptr, &pool);
+  ASSERT_EQ(images.size(), hood.images.size());
+  for (std::size_t k = 0; k < images.size(); ++k) {
+    ASSERT_EQ(images.source()[k], hood.images.source()[k]);
+    ASSERT_EQ(images.path()[k], hood.images.path()[k]);
+    for (int axis = 0; axis < 3; ++axis) ASSERT_EQ(images.position(axis)[k], hood.images.position(axis)[k]);
+  }
+  EXPECT_GT(pool.idle_bytes(), 0);
+  EXPECT_EQ(hood.images.bytes() - images.bytes(), pool.idle_bytes());
+}
+
 TEST(Images, EqualBruteForceWithDifferentKindsOnTheTwoSidesOfAnAxis) {
   ImageRules rules = unit_box_rules(3, 0.2, periodic, none, none);
   rules.sides[1] = {mirror, none};

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -41,7 +42,7 @@ class FieldSet {
 
   // field[k] <- field[order[k]] for every field but the results, which belong to the order before. An order of fewer
   // entries drops the others, one that repeats some copies them.
-  void permute(const Array<std::int32_t>& order);
+  void permute(std::span<const std::int32_t> order);
 
   const std::vector<std::unique_ptr<Field>>& fields() const { return fields_; }
   double bytes() const;  // of the fields and of the scratch memory that is not leased now

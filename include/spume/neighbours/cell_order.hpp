@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "spume/core/array.hpp"
+#include "spume/core/scratch_pool.hpp"
 
 namespace spume {
 
@@ -25,6 +26,10 @@ class CellOrder {
   // Points must lie in the box (a coordinate that rounds onto the upper end, or is not a number, counts in a border
   // cell).
   void build(const PeriodicCells& cells, const double* x, const double* y, const double* z, std::size_t size);
+  // The same without memory of its own but for first(), which saves 14 bytes a point: the order goes to `order`, and
+  // the rest is borrowed.
+  void build(const CellGrid& grid, const double* x, const double* y, const double* z, std::size_t size,
+             ScratchPool& scratch, std::int32_t* order);
 
   const Array<std::int32_t>& order() const { return order_; }
   const std::int32_t* first() const { return first_.data(); }
@@ -40,12 +45,21 @@ class CellOrder {
     int slab;
     std::int32_t cell;
   };
+  // Of a number per point each.
+  struct Memory {
+    std::int32_t *order, *slab_cell, *slab_order;
+    std::uint16_t* slab;
+  };
+  Memory own_memory(std::size_t size);
   template <class Find>
-  void sort(std::size_t size, std::size_t cells, std::size_t per_slab, Find&& find);
+  void sort(const Memory& memory, std::size_t size, std::size_t cells, std::size_t per_slab, Find&& find);
+  void sort(const Memory& memory, const CellGrid& grid, const double* x, const double* y, const double* z,
+            std::size_t size);
 
   Array<std::int32_t> order_, first_;  // the first is the cell of each point until the slabs are sorted
   Array<std::int32_t> slab_cell_, slab_order_, block_start_;
   Array<std::uint16_t> slab_;
+  std::size_t size_ = 0;
   int dimensions_ = 3;
   bool already_sorted_ = false;
 };

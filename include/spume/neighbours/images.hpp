@@ -67,9 +67,9 @@ struct WallPointView {
 class Images {
  public:
   // Remakes all images of the n particles at (x, y, z). Sorted by cell of `grid`. `walls`: null without; not beside
-  // solid boxes.
+  // solid boxes. `scratch`: where there is memory for the sort, 30 bytes an image; null: it is kept here.
   void build(const ImageRules& rules, const CellGrid& grid, const double* x, const double* y, const double* z,
-             std::size_t n, const WallPointView* walls = nullptr);
+             std::size_t n, const WallPointView* walls = nullptr, ScratchPool* scratch = nullptr);
 
   // The same images where the particles have gone since, the sides and the wall points. Precondition: no solid boxes.
   void move(const ImageRules& rules, const std::array<const double*, 3>& position,
@@ -115,8 +115,7 @@ class Images {
   std::array<const double*, 3> particle_{};
   std::vector<std::vector<Reflected>> reflected_;  // of blocks of particles, while images at solids are made
   std::array<Array<double>, 3> position_;
-  Array<double> scratch_position_;
-  Array<std::int32_t> source_, path_, scratch_;
+  Array<std::int32_t> source_, path_;
   Array<std::int32_t> wall_point_;  // empty without wall points
   std::vector<ImagePath> paths_;
   std::array<double, 3> image_free_lower_{}, image_free_upper_{};
@@ -125,6 +124,7 @@ class Images {
   const Sight* sight_ = nullptr;
   std::array<double, 3> period_{};  // of periodic axes
   CellOrder table_;
+  ScratchPool own_scratch_;  // of those that are given none
 };
 
 }  // namespace spume

@@ -101,7 +101,7 @@ class Boundary {
   // Images at `at` for walls at `next_walls`, and how they mirror values. Throws StepFailure for a wall
   // velocity that is not finite. `find_wet` false keeps the wet wall points of bodies as they are, for arrangements
   // that hardly differ and images that stand for places alone.
-  void make_images(Arrangement& arrangement, const ParticleStore& particles, const VectorField& at,
+  void make_images(Arrangement& arrangement, ParticleStore& particles, const VectorField& at,
                    double largest_length_ratio, const WallTimes& times, bool find_wet = true);
   // The images that there are, of particles that have moved to `at`, for walls at `next_walls`; then the arrangement
   // there. Precondition: as of Images::move().

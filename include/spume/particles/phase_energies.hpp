@@ -27,7 +27,7 @@ struct PhaseEnergies {
 // One pass over the particles.
 PhaseEnergies phase_energies(const PhaseEnergies::State& state);
 
-// Largest |s| of a phase, of those not left out.
+// Largest |s| of a phase, of those not left out. No phases: all are of it.
 double largest_excess(std::size_t phase, const Array<std::int64_t>& phases, const Array<double>& excess,
                       const std::int64_t* left_out);
 

@@ -61,11 +61,11 @@ std::string in_words(const std::vector<PhaseLaw>& laws, const Scene& scene, doub
 // Densities at rest, of which no two are alike: they tell phases apart too.
 std::vector<float> distinct_densities(const std::vector<PhaseLaw>& laws);
 
-// The laws of particles. Both outlive it.
+// The laws of particles. Both outlive it. Of one phase the numbers are not read.
 class ParticleLaws {
  public:
   ParticleLaws(const std::vector<PhaseLaw>& laws, const Array<std::int64_t>& phase) : laws_(laws), phase_(phase) {}
-  const PhaseLaw& operator()(std::size_t i) const { return laws_[static_cast<std::size_t>(phase_[i])]; }
+  const PhaseLaw& operator()(std::size_t i) const { return laws_[static_cast<std::size_t>(phase_of(i))]; }
 
   // Calls body(law, from, to) for each run of particles of one phase in [first, last), in order. Particles are sorted
   // by cells, so that most blocks are one run; of a law that does not change in the loop the compiler takes several
@@ -73,7 +73,7 @@ class ParticleLaws {
   template <class Body>
   [[gnu::always_inline]] void each_run(std::size_t first, std::size_t last, Body&& body) const {
     while (first < last) {
-      const std::int64_t phase = phase_[first];
+      const std::int64_t phase = phase_of(first);
       std::size_t end = laws_.size() == 1 ? last : first + 1;
       while (end < last && phase_[end] == phase) ++end;
       PhaseLaw law = laws_[static_cast<std::size_t>(phase)];
@@ -88,6 +88,8 @@ class ParticleLaws {
   }
 
  private:
+  std::int64_t phase_of(std::size_t i) const { return laws_.size() == 1 ? 0 : phase_[i]; }
+
   const std::vector<PhaseLaw>& laws_;
   const Array<std::int64_t>& phase_;
 };

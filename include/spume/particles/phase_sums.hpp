@@ -16,8 +16,8 @@ class PhaseSums {
     double mass = 0;
     Vec3 momentum{}, moment{};  // sum m u, sum m x
   };
-  // `density` of each phase; `phase` of each particle, its index. `left_out`: particles with 0 or more do not count;
-  // null: all do.
+  // `density` of each phase; `phase` of each particle, its index, not read of one phase. `left_out`: particles with 0
+  // or more do not count; null: all do.
   PhaseSums(const ParticleStore& particles, const Array<std::int64_t>& phase, std::vector<double> density,
             const Array<std::int64_t>* left_out = nullptr)
       : particles_(particles),

@@ -44,7 +44,7 @@ class SnapshotTable {
   void add(std::string name, bool standard, const VectorField& vector);
   void add(std::string name, bool standard, const FloatVectorField& vector);
   void add(std::string name, bool standard, const Array<double>& values);
-  void add(std::string name, bool standard, const Array<std::int64_t>& values);
+  void add(std::string name, bool standard, const Array<std::int64_t>& values);  // empty: zeros
   // One that is computed for every snapshot.
   void add(std::string name, bool standard, std::function<double(std::size_t)> value);
   // Particles are shown inside along periodic axes of the domain, which outlives the table, wherever they are.
@@ -76,6 +76,7 @@ class SnapshotTable {
   Array<std::int32_t> chosen_;
   std::map<std::string, std::vector<Array<double>>> chosen_values_;
   std::map<std::string, Array<std::int64_t>> chosen_numbers_;
+  Array<std::int64_t> zeros_;  // of fields of numbers that have no memory
 };
 
 // The numbers of a state between steps, under one name of a checkpoint: written and read in the order in which they

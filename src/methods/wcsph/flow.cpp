@@ -94,9 +94,10 @@ Flow::Flow(const LoadedCase& loaded_case)
   particles.add_vector(listed, "listed_place", Lifetime::state);
   if (features.shifting) particles.add_vector(shift, "shifting_velocity", Lifetime::state);
   excess = &fields.add<double>("density_excess", Lifetime::state);
-  phase_number = &fields.add<std::int64_t>("phase", Lifetime::state);
+  const bool numbered = features.several || features.openings;
+  phase_number = numbered ? &fields.add<std::int64_t>("phase", Lifetime::state) : &no_numbers_;
   parallel_for(size(), [&](std::size_t i) {
-    (*phase_number)[i] = scene.particles.phase[i];
+    if (numbered) (*phase_number)[i] = scene.particles.phase[i];
     (*excess)[i] = 0;
     for (int axis = 0; axis < dimensions; ++axis) (*acceleration[axis])[i] = (*listed[axis])[i] = 0;
     for (int axis = 0; features.shifting && axis < dimensions; ++axis) (*shift[axis])[i] = 0;

@@ -64,7 +64,7 @@ void Flow::keep_lists(double dt) {
   has_moved = features.density_relaxation && steps > 0 && measured_way + way > skin / 2;
   if (has_lists && !(features.openings && openings->stale()) && lists_hold(dt)) return;
   if (has_lists)
-    spill.remove({particles, arrangement.grid.support_radius(), phase_number,
+    spill.remove({particles, arrangement.grid.support_radius(), features.several ? phase_number : nullptr,
                   openings == nullptr ? nullptr : &openings->column()},
                  time);
   if (features.openings && has_lists) openings->renew();

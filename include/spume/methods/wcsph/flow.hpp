@@ -74,9 +74,9 @@ struct Flow {
   FloatVectorField listed{};        // where the lists were made, less the origin of the arrangement
   FloatVectorField shift{};         // velocity of shifting, delta u
   Array<double>* excess = nullptr;
-  Array<std::int64_t>* phase_number = nullptr;
-  std::unique_ptr<BufferLayers> openings;    // null: none
-  std::unique_ptr<AcousticLayers> acoustic;  // null: none
+  Array<std::int64_t>* phase_number = nullptr;  // empty of one phase without openings
+  std::unique_ptr<BufferLayers> openings;       // null: none
+  std::unique_ptr<AcousticLayers> acoustic;     // null: none
   Boundary boundary;
   Spill spill;
   double listed_time = 0;  // of the places of moving bodies in the lists
@@ -110,7 +110,9 @@ struct Flow {
   std::vector<std::uint8_t> held;  // whether a wall has held one of a block of particles
 
   std::size_t size() const { return particles.size(); }
-  std::size_t phase_of(std::size_t i) const { return static_cast<std::size_t>((*phase_number)[i]); }
+  std::size_t phase_of(std::size_t i) const {
+    return features.several ? static_cast<std::size_t>((*phase_number)[i]) : 0;
+  }
   const PhaseLaw& law(std::size_t i) const { return laws[phase_of(i)]; }
   ParticleLaws law_of_particles() const { return {laws, *phase_number}; }
   double pressure_at(double s, std::size_t i) const { return law(i).pressure(s) + background; }
@@ -151,6 +153,7 @@ struct Flow {
   double leased_bytes() const;
 
  private:
+  Array<std::int64_t> no_numbers_;
   void start_density();
   void fill_layers();                      // what stands behind openings at the start
   void lead_scalars();                     // layers of inflows have what these bring
