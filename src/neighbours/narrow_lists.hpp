@@ -13,7 +13,6 @@
 namespace spume {
 
 // The entries of a vector as numbers of points beyond that of `low`.
-using Codes = std::uint16_t __attribute__((vector_size(2 * pair_lanes)));
 static_assert(entry_scale == 1 << 2);
 [[gnu::always_inline]] inline Codes codes_of(i32n entries, std::int32_t low) {
   return __builtin_convertvector((entries - low) >> 2, Codes);

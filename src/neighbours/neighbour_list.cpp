@@ -10,8 +10,10 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 
+#include "candidates.hpp"
 #include "narrow_lists.hpp"
 #include "packed_store.hpp"
 #include "spume/core/parallel.hpp"
@@ -113,21 +115,6 @@ struct Runs {
   return {memory.data(), out};
 }
 
-// Candidates of a group, packed. The memory is one array per thread, which grows and is reused.
-struct Candidates {
-  std::array<float*, 3> coordinate{};
-  std::int32_t* entry = nullptr;
-  std::size_t size = 0;
-
-  Candidates(Array<float>& memory, std::size_t most) {
-    // Vector loads and stores reach past the end.
-    const std::size_t stride = (most + 2 * pair_lanes) / pair_lanes * pair_lanes;
-    if (memory.size() < 4 * stride) memory.resize(8 * stride);
-    for (int axis = 0; axis < 3; ++axis) coordinate[axis] = memory.data() + axis * stride;
-    entry = reinterpret_cast<std::int32_t*>(memory.data() + 3 * stride);
-  }
-};
-
 // The next group from `first` on: at most group_size particles in a box that is not too long.
 template <int dimensions>
 Group next_group(const std::array<const float*, 3>& point, std::size_t first, std::size_t end, float support_radius) {
@@ -186,11 +173,14 @@ inline std::size_t slot_of(const Candidates& candidates, std::size_t i, std::siz
   return static_cast<std::size_t>(std::find(begin, end, wanted) - begin);
 }
 
-// put()s the candidates within the support radius of a point; returns the end of what was written.
-template <int dimensions, class Number, class Put>
+// Writes the candidates within the support radius of a point, as entries or as codes; returns the end of what was
+// written.
+template <int dimensions, class Number>
 [[gnu::noinline]] Number* select(const Candidates& candidates, const std::array<float, 3>& centre,
-                                 float support_radius2, Number* out, Put put) {
+                                 float support_radius2, Number* out) {
+  using Numbers = std::conditional_t<sizeof(Number) == 2, Codes, i32n>;
   const Candidates from = candidates;
+  const Number* const number = from.numbers(out);
   const std::array<float, 3> r = centre;
   for (std::size_t j = 0; j < from.size; j += pair_lanes) {
     f32n distance2{};
@@ -199,7 +189,9 @@ template <int dimensions, class Number, class Put>
       distance2 = axis == 0 ? d * d : distance2 + d * d;
     }
     const unsigned mask = simd::less_bits(distance2, simd::splat<f32n>(support_radius2));
-    put(load_int<i32n>(from.entry + j), packing_of(mask), out);
+    Numbers numbers;
+    std::memcpy(&numbers, number + j, sizeof numbers);
+    store_packed(numbers, mask, out);
     out += std::popcount(mask);
   }
   return out;
@@ -359,13 +351,9 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles,
       const std::size_t wanted = filled + (group.last - i) * (candidates.size + 2 * pair_lanes);
       if (wanted > collected.size()) collected.resize(2 * wanted);
       std::int32_t low = 0;
-      const auto put_entries = [](i32n entry, Packing packing, std::int32_t* to) { store_packed(entry, packing, to); };
-      const auto put_codes = [&low](i32n entry, Packing packing, std::uint16_t* to) {
-        const Codes code = codes_of(packed(entry, packing), low);
-        std::memcpy(to, &code, sizeof code);
-      };
       const bool one_base = narrow && images.solids() == nullptr && images.sight() == nullptr &&
                             NarrowBlock::within_reach(candidates.entry, candidates.size, low);
+      if (one_base) candidates.find_codes(low);
       std::size_t slot = 0;
       for (; i < group.last; ++i) {
         std::int32_t* const start = collected.data() + filled;
@@ -379,13 +367,13 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles,
         if (one_base) {
           std::uint16_t* const codes_of_list = encoded.begin_list(candidates.size + pair_lanes);
           const auto count = static_cast<std::size_t>(
-              select<dimensions>(candidates, centre, support_radius2, codes_of_list, put_codes) - codes_of_list);
+              select<dimensions>(candidates, centre, support_radius2, codes_of_list) - codes_of_list);
           own = kept;
           counts[i] = encoded.end_list(count, low);
           pairs += static_cast<std::int64_t>(count);
           continue;
         }
-        std::int32_t* stop = select<dimensions>(candidates, centre, support_radius2, start, put_entries);
+        std::int32_t* stop = select<dimensions>(candidates, centre, support_radius2, start);
         own = kept;
         if (images.solids() != nullptr)
           stop = keep_seen(position, dimensions, i, images, support_radius, n, start, stop);

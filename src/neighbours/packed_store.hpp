@@ -84,6 +84,37 @@ template <class V, class T>
 }
 #endif
 
+// Numbers of 16 bits in the lanes of a vector.
+using Codes = std::uint16_t __attribute__((vector_size(2 * pair_lanes)));
+#if defined(__AVX2__) && !(defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__))
+// The same lanes as in lane_table, two bytes each.
+constexpr std::array<std::array<std::uint8_t, 16>, 256> make_code_table() {
+  std::array<std::array<std::uint8_t, 16>, 256> table{};
+  for (unsigned mask = 0; mask < 256; ++mask)
+    for (unsigned slot = 0; slot < 8; ++slot)
+      for (unsigned half = 0; half < 2; ++half)
+        table[mask][2 * slot + half] = static_cast<std::uint8_t>(2 * (lane_table[mask] >> (8 * slot) & 0xFFU) + half);
+  return table;
+}
+alignas(16) inline constexpr auto code_table = make_code_table();
+#endif
+[[gnu::always_inline]] inline void store_packed(Codes v, unsigned mask, std::uint16_t* out) {
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+  const Codes lanes = __builtin_convertvector(packed(__builtin_convertvector(v, i32n), packing_of(mask)), Codes);
+#elif defined(__AVX2__)
+  const auto order = _mm_load_si128(reinterpret_cast<const __m128i*>(code_table[mask].data()));
+  const Codes lanes = Codes(_mm_shuffle_epi8(__m128i(v), order));
+#else
+  Codes lanes{};
+  Packing packing = packing_of(mask);
+  for (int k = 0; k < 8; ++k, packing >>= 8) lanes[k] = v[packing & 7U];
+#endif
+  std::memcpy(out, &lanes, sizeof lanes);
+}
+[[gnu::always_inline]] inline void store_packed(i32n v, unsigned mask, std::int32_t* out) {
+  store_packed(v, packing_of(mask), out);
+}
+
 [[gnu::always_inline]] inline unsigned mask_of(i32x8 lanes) {
 #if defined(__AVX__)
   return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(__m256i(lanes))));
