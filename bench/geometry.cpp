@@ -75,7 +75,7 @@ void check_mesh(benchmark::State& state) {
 }
 void build_level_set(benchmark::State& state) {
   const auto value = [](const Vec3& p) { return 0.49 - p[0] * p[0] - p[1] * p[1] - p[2] * p[2]; };
-  for (auto _ : state) benchmark::DoNotOptimize(make_level_set(value, box, 0.02, 3));
+  for (auto _ : state) benchmark::DoNotOptimize(make_level_set(value, box, 0.04, 3));
   state.counters["nodes"] = 101.0 * 101 * 101;
 }
 
