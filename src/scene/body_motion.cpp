@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "checks.hpp"
 #include "releases.hpp"
@@ -18,6 +19,21 @@ namespace spume {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Spacings: expressions are looked at as far as four beyond the domain. What reaches farther than this goes on.
+constexpr double ends_of_expressions = 3;
+
+bool goes_on_beyond(const Draft& draft, const Body& body, std::size_t axis, int side) {
+  if (body.kind != "expression" || body.subtract) return false;
+  const double reach = ends_of_expressions * draft.options.spacing;
+  const Bounds own = body.alone->bounds();
+  return side == 0 ? own.lower[axis] < draft.lower[axis] - reach : own.upper[axis] > draft.upper[axis] + reach;
+}
+
+std::string expected_end(const Draft& draft) {
+  return "expected a body that ends within " + brief(ends_of_expressions * draft.options.spacing) +
+         " of the domain: let it end there, or write it as a shape";
+}
 
 std::string place_of(std::size_t k) {
   return "body." + std::to_string(k);
@@ -263,6 +279,7 @@ class MakeMotion {
     for (const std::size_t b : motion_.bodies) {
       if (!bodies_[b].alone) return;  // known to be wrong
       parts.push_back({bodies_[b].alone, bodies_[b].subtract});
+      if (goes_on(b)) return;
       const Bounds own = bodies_[b].alone->bounds();
       for (std::size_t a = 0; a < static_cast<std::size_t>(draft_.dimensions) && !bodies_[b].subtract; ++a) {
         bounds.lower[a] = std::min(bounds.lower[a], own.lower[a]);
@@ -299,6 +316,18 @@ class MakeMotion {
     }
   }
 
+  // What of it lies farther out has no mass that anybody knows.
+  bool goes_on(std::size_t b) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(draft_.dimensions); ++a) {
+      if (!goes_on_beyond(draft_, bodies_[b], a, 0) && !goes_on_beyond(draft_, bodies_[b], a, 1)) continue;
+      problems_.add(*draft_.node(place_of(b) + ".where"),
+                    place_of(b) + ".where floats and goes on beyond the domain along " + std::string(1, "xyz"[a]) +
+                        ", where nothing tells its mass; " + expected_end(draft_));
+      return true;
+    }
+    return false;
+  }
+
   const Draft& draft_;
   const BodyDraft& given_;
   std::string name_;
@@ -319,6 +348,45 @@ Pose start_of(BodyMotion& motion) {
   pose.position = subtract(add(motion.pivot, way), rotated(pose.rotation, motion.pivot));
   motion.pivot = add(motion.pivot, way);
   return pose;
+}
+
+// When a motion leads the end of a body into the domain that its expression has on what is looked at of it, if it does.
+std::optional<double> end_enters(const Draft& draft, const BodyMotion& motion, const Body& body, std::size_t axis,
+                                 int side, double duration) {
+  constexpr int times = 200, places = 9;
+  const Bounds own = body.alone->bounds();
+  const auto d = static_cast<std::size_t>(draft.dimensions);
+  for (int n = 1; n <= times; ++n) {
+    const double t = duration * n / times;
+    const RigidPlace place = given_place(motion, t);
+    for (int k = 0; k < places * places; ++k) {
+      const double share[] = {k % places / (places - 1.0), k / places / (places - 1.0)};
+      Vec3 p{};
+      for (std::size_t a = 0, other = 0; a < d; ++a) {
+        const double part = a == axis ? side : share[other++];
+        p[a] = own.lower[a] + part * (own.upper[a] - own.lower[a]);
+      }
+      p = place.now(p);
+      bool within = place.scale > 0;
+      for (std::size_t a = 0; a < d; ++a) within = within && p[a] > draft.lower[a] && p[a] < draft.upper[a];
+      if (within) return t;
+    }
+  }
+  return std::nullopt;
+}
+
+void check_ends(const Draft& draft, const BodyMotion& motion, const std::vector<Body>& bodies, double duration,
+                Problems& problems) {
+  for (const std::size_t b : motion.bodies)
+    for (std::size_t a = 0; a < static_cast<std::size_t>(draft.dimensions) && bodies[b].alone; ++a)
+      for (const int side : {0, 1}) {
+        if (!goes_on_beyond(draft, bodies[b], a, side)) continue;
+        if (const auto t = end_enters(draft, motion, bodies[b], a, side, duration))
+          problems.add(*draft.node(place_of(b) + ".where"),
+                       place_of(b) + ".where goes on beyond the domain along " + std::string(1, "xyz"[a]) +
+                           ", and its motion leads into it, by t = " + brief(*t) + ", what is not looked at there; " +
+                           expected_end(draft));
+      }
 }
 
 }  // namespace
@@ -343,6 +411,7 @@ std::vector<BodyMotion> make_body_motions(const Draft& draft, const CompileExpre
       for (ShapePointer* shape : {&bodies[b].shape, &bodies[b].solid, &bodies[b].alone})
         if (*shape) *shape = place(*shape, start, true, draft.dimensions);
     }
+    if (!motion.floats) check_ends(draft, motion, bodies, duration, problems);
   }
   return motions;
 }

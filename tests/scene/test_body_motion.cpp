@@ -301,6 +301,26 @@ TEST(BodyMotion, WhatCannotMoveIsRefused) {
   EXPECT_THAT(complaints(plane + "[[body]]\nshape = \"half-space\"\nmass = 1\n"), Contains(HasSubstr("has no end")));
 }
 
+// It was cut at four spacings beyond the domain: the mass of a tower without end was that of 1.4 m at a spacing of 0.05
+// and of 1.3 m at half of it, and a piston left a gap behind it.
+TEST(BodyMotion, AnExpressionThatGoesOnBeyondTheDomainIsRefusedWhereThatMatters) {
+  const auto said = [](const std::string& where, const std::string& keys) {
+    return complaints(plane + "[[body]]\nwhere = \"" + where + "\"\n" + keys);
+  };
+  const std::string tower = "min(0.1 - abs(x), y + 0.5)", mass = "density = 2\n";
+  EXPECT_THAT(said(tower, mass), Contains(HasSubstr("floats and goes on beyond the domain along y")));
+  EXPECT_THAT(said("min(0.1 - abs(y), x)", mass), Contains(HasSubstr("floats and goes on beyond the domain along x")));
+  EXPECT_THAT(said("min(0.1 - abs(x), min(y + 0.5, 1.1 - y))", mass), IsEmpty());
+  // Given motions need no mass, but that its end stays outside.
+  EXPECT_THAT(said("-0.7 - x", "displacement = [\"0.5*t\", \"0\"]\n"),
+              Contains(HasSubstr("goes on beyond the domain along x, and its motion leads into it")));
+  EXPECT_THAT(said("-0.7 - x", "displacement = [\"0.1*sin(t)\", \"t\"]\n"),
+              Contains(HasSubstr("goes on beyond the domain along y, and its motion leads into it")));
+  EXPECT_THAT(said("-0.7 - x", "displacement = [\"0.1*sin(t)\", \"0\"]\n"), IsEmpty());
+  EXPECT_THAT(said(tower, "displacement = [\"0.5*t\", \"-0.05*t\"]\n"), IsEmpty());
+  EXPECT_THAT(said(tower, "angle = \"90*t\"\n"), Contains(HasSubstr("goes on beyond the domain along y, and")));
+}
+
 TEST(BodyMotion, IsNoFasterThanSoundAllows) {
   const auto with_sound = [](double mach, const std::string& keys) {
     return complaints(test::replaced(plane, "reynolds = 100", "reynolds = 100\nmach = " + std::to_string(mach)) + slab +
