@@ -17,9 +17,9 @@ namespace {
 
 // Spacings: what lies deeper in the walls, or farther from them, is no part of their surface.
 constexpr double touching = 1e-3;
-// Mean of the normals around a point of a face: half a spacing of a ball of 500 spacings turns them by 1e-3. Places of
-// facets are bisected to 1e-12.
-constexpr double flat = 1 - 1e-7;
+// Mean of the normals around a point within a flat face: they turn by less than 1e-5, as over half a spacing of a ball
+// of 50,000. Places of facets are bisected to 1e-12, and facets as short as 1e-6 turn by 1e-6 of that.
+constexpr double flat = 1 - 1e-11;
 
 }  // namespace
 
@@ -37,14 +37,14 @@ BodyContacts::BodyContacts(const Scene& scene, const Resolution& resolution, con
 void BodyContacts::gather_points() {
   const int dimensions = scene_.domain.dimensions;
   const auto corners = static_cast<std::size_t>(dimensions);
-  std::vector<Vec3> facing;         // of each point, the mean of the normals of its pieces
-  std::vector<std::uint8_t> exact;  // of each, whether distances from its body are
+  std::vector<Vec3> facing;  // of each point, the mean of the normals of its pieces
   for (const Body& body : scene_.bodies) {
     if (body.wall == BoundaryKind::open) continue;
     const std::size_t part = body.motion ? *body.motion + 1 : 0;
     const std::vector<SurfacePiece> pieces = surface_pieces(scene_.domain, body, resolution_.spacing);
     // Facets of what an expression gives are off its distances by as much as these are.
     const double off = std::max(touching * resolution_.spacing, body.shape->error());
+    const bool faceted = off > touching * resolution_.spacing;
     std::map<Vec3, std::pair<Vec3, int>> normals;
     for (const SurfacePiece& piece : pieces)
       for (std::size_t k = 0; k < corners && length(piece.area) > 0; ++k) {
@@ -58,21 +58,18 @@ void BodyContacts::gather_points() {
         const Vec3& corner = piece.corner[k];
         if (!known.insert(corner).second) continue;
         if (std::abs(walls_of(part).exact_distance(corner)) > off) continue;
-        points_.push_back({corner, part, {}});
         const auto& [sum, count] = normals[corner];
-        facing.push_back(multiply(1.0 / std::max(count, 1), sum));
-        exact.push_back(off > touching * resolution_.spacing ? 0 : 1);
+        const Vec3 mean = multiply(1.0 / std::max(count, 1), sum);
+        // A flat face reaches no farther than its corners do.
+        if (faceted && part > 0 && length(mean) >= flat) continue;
+        points_.push_back({corner, part, {}, faceted});
+        facing.push_back(mean);
         if (part > 0) radius_[part] = std::max(radius_[part], length(subtract(corner, scene_.motions[part - 1].pivot)));
       }
   }
   parallel_for(points_.size(), [&](std::size_t p) {
     Point& point = points_[p];
-    if (point.part == 0) return;
-    if (exact[p] == 0) {
-      // No place far away tells what reaches farthest: the points of its facets do, but for those of flat faces.
-      if (length(facing[p]) < flat) point.corner.kind = ConvexCorner::Kind::corner;
-      return;
-    }
+    if (point.part == 0 || point.faceted) return;
     point.corner = convex_corner(walls_of(point.part), point.start, facing[p], resolution_.spacing, dimensions);
   });
 }
@@ -105,6 +102,20 @@ bool BodyContacts::overlaps_at_start(std::size_t motion) const {
 
 Vec3 BodyContacts::now(const Point& point) const {
   return point.part == 0 ? point.start : walls_of(point.part).place.now(point.start);
+}
+
+std::optional<BodyContacts::Place> BodyContacts::place_towards(const Point& point, const Vec3& at, const Vec3& towards,
+                                                               std::size_t other) const {
+  // Seen from far away interpolated distances lead to places 0.06 spacings off the surface, which come and go as the
+  // body turns: a block hopped on a floor with 0.05 m/s. Facets have their corners on the surface.
+  if (point.faceted) return Place{at, true};
+  // Of a round body the point is one of a polygon: off the place that touches, its force would turn the body.
+  const std::optional<Vec3> foremost =
+      walls_of(point.part).foremost(at, towards, radius_[point.part], resolution_.spacing);
+  const std::optional<Vec3> turning = may_come_foremost(point, at, towards, foremost, other);
+  if (turning) return Place{*turning, true};
+  if (foremost) return Place{*foremost, false};
+  return std::nullopt;
 }
 
 // A body that is turned until an edge just becomes the one that reaches farthest, and 0.1 rad on, has its foremost
@@ -205,17 +216,14 @@ std::vector<BodyContact> BodyContacts::find(const Surroundings& surroundings, do
         double away = distance(other, surroundings.walls, contact.point, reach);
         if (away >= reach) continue;
         contact.normal = normal(other, contact.point);
-        // Of a round body the point is one of a polygon: off the place that touches, its force would turn the body.
         if (part > 0) {
-          const Vec3 towards = multiply(-1, contact.normal);
-          const std::optional<Vec3> foremost =
-              walls_of(part).foremost(contact.point, towards, radius_[part], resolution_.spacing);
-          const std::optional<Vec3> turning = may_come_foremost(points_[p], contact.point, towards, foremost, other);
-          if (!turning && !foremost) continue;
-          contact.point = turning ? *turning : *foremost;
+          const std::optional<Place> place =
+              place_towards(points_[p], contact.point, multiply(-1, contact.normal), other);
+          if (!place) continue;
+          contact.point = place->at;
           away = distance(other, surroundings.walls, contact.point, infinite);
           contact.normal = normal(other, contact.point);
-          if (turning) away += dt * dt / 2 * dot(contact.normal, turning_acceleration(part, contact.point));
+          if (place->turning) away += dt * dt / 2 * dot(contact.normal, turning_acceleration(part, contact.point));
         }
         contact.key = {static_cast<std::int64_t>(p), static_cast<std::int64_t>(other)};
         contact.clearance = kept;

@@ -70,6 +70,12 @@ class BodyContacts {
     Vec3 start{};
     std::size_t part = 0;
     ConvexCorner corner;
+    bool faceted = false;  // a corner of the facets that stand for its body, whose distances are interpolated
+  };
+  // What of a body may touch another: beside what reaches farthest now it may be what does once the body has turned.
+  struct Place {
+    Vec3 at{};
+    bool turning = false;
   };
   static constexpr double passes_through = -infinite;  // a clearance: they do not touch
 
@@ -78,6 +84,8 @@ class BodyContacts {
   void gather_points();
   void set_clearances();
   Vec3 now(const Point& point) const;
+  // Near a point that is now at a place.
+  std::optional<Place> place_towards(const Point& point, const Vec3& at, const Vec3& towards, std::size_t other) const;
   // For a point of an edge or a corner, now at a place: what near it may become the place that reaches farthest towards
   // the other as the body turns, where another does now.
   std::optional<Vec3> may_come_foremost(const Point& point, const Vec3& at, const Vec3& towards,
