@@ -10,7 +10,6 @@
 #include "spume/core/vectors.hpp"
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/convex_corners.hpp"
-#include "spume/particles/surface_pieces.hpp"
 
 namespace spume {
 namespace {
@@ -20,6 +19,14 @@ constexpr double touching = 1e-3;
 // Mean of the normals around a point within a flat face: they turn by less than 1e-5, as over half a spacing of a ball
 // of 50,000. Places of facets are bisected to 1e-12, and facets as short as 1e-6 turn by 1e-6 of that.
 constexpr double flat = 1 - 1e-11;
+
+// Of a sphere that moves as its body does, what reaches farthest along a direction.
+Vec3 farthest_of(const FittedSphere& sphere, const RigidPlace& place, const Vec3& direction) {
+  return add(place.now(sphere.centre), multiply(place.scale * sphere.radius, direction));
+}
+
+// Spacings around a point that a sphere is fitted to: at least two rows of nodes on all sides.
+constexpr double fitted_reach = 1.5;
 
 }  // namespace
 
@@ -53,6 +60,7 @@ void BodyContacts::gather_points() {
         ++count;
       }
     std::set<Vec3> known;
+    const std::size_t first = points_.size();
     for (const SurfacePiece& piece : pieces)
       for (std::size_t k = 0; k < corners; ++k) {
         const Vec3& corner = piece.corner[k];
@@ -60,17 +68,60 @@ void BodyContacts::gather_points() {
         if (std::abs(walls_of(part).exact_distance(corner)) > off) continue;
         const auto& [sum, count] = normals[corner];
         const Vec3 mean = multiply(1.0 / std::max(count, 1), sum);
-        // A flat face reaches no farther than its corners do.
-        if (faceted && part > 0 && length(mean) >= flat) continue;
+        // A flat face reaches no farther than its corners do; what stands still has them asked for no other place.
+        if ((faceted || part == 0) && length(mean) >= flat) continue;
         points_.push_back({corner, part, {}, faceted});
         facing.push_back(mean);
         if (part > 0) radius_[part] = std::max(radius_[part], length(subtract(corner, scene_.motions[part - 1].pivot)));
       }
+    if (faceted && part > 0) fit_spheres(pieces, first, facing);
   }
   parallel_for(points_.size(), [&](std::size_t p) {
     Point& point = points_[p];
     if (point.part == 0 || point.faceted) return;
     point.corner = convex_corner(walls_of(point.part), point.start, facing[p], resolution_.spacing, dimensions);
+  });
+}
+
+// Facets end anywhere between the nodes: two of them may be 1e-6 spacings long, and tell an edge from a round surface
+// together with those around alone.
+void BodyContacts::fit_spheres(const std::vector<SurfacePiece>& pieces, std::size_t first,
+                               const std::vector<Vec3>& facing) {
+  const auto corners = static_cast<std::size_t>(scene_.domain.dimensions);
+  std::map<Vec3, std::size_t> number;
+  std::vector<Vec3> place;
+  std::vector<std::set<std::size_t>> beside;
+  const auto number_of = [&](const Vec3& at) {
+    const auto [entry, fresh] = number.try_emplace(at, place.size());
+    if (fresh) {
+      place.push_back(at);
+      beside.emplace_back();
+    }
+    return entry->second;
+  };
+  for (const SurfacePiece& piece : pieces)
+    for (std::size_t k = 0; k < corners; ++k)
+      for (std::size_t j = 0; j < k; ++j) {
+        const std::size_t a = number_of(piece.corner[k]), b = number_of(piece.corner[j]);
+        if (a == b) continue;
+        beside[a].insert(b);
+        beside[b].insert(a);
+      }
+  parallel_for(points_.size() - first, [&](std::size_t n) {
+    Point& point = points_[first + n];
+    const std::size_t own = number.at(point.start);
+    const auto away = [&](std::size_t other) { return length(subtract(place[other], point.start)); };
+    for (const std::size_t next : beside[own]) point.longest_side = std::max(point.longest_side, away(next));
+    const double reach = std::max(fitted_reach * resolution_.spacing, 2 * point.longest_side);
+    std::vector<std::size_t> found{own};
+    for (std::size_t k = 0; k < found.size(); ++k)
+      for (const std::size_t next : beside[found[k]])
+        if (away(next) <= reach && std::find(found.begin(), found.end(), next) == found.end()) found.push_back(next);
+    std::vector<Vec3> around;
+    for (std::size_t k = 1; k < found.size(); ++k) around.push_back(place[found[k]]);
+    point.round = fitted_sphere(point.start, facing[first + n], around, scene_.domain.dimensions);
+    // More than a sixth of the circle to a side: few places tell it from an edge.
+    if (point.round && point.round->radius < point.longest_side) point.round.reset();
   });
 }
 
@@ -106,10 +157,16 @@ Vec3 BodyContacts::now(const Point& point) const {
 
 std::optional<BodyContacts::Place> BodyContacts::place_towards(const Point& point, const Vec3& at, const Vec3& towards,
                                                                std::size_t other) const {
-  // Seen from far away interpolated distances lead to places 0.06 spacings off the surface, which come and go as the
-  // body turns: a block hopped on a floor with 0.05 m/s. Facets have their corners on the surface.
-  if (point.faceted) return Place{at, true};
   // Of a round body the point is one of a polygon: off the place that touches, its force would turn the body.
+  if (point.round) {
+    const RigidPlace& place = walls_of(point.part).place;
+    const Vec3 foremost = farthest_of(*point.round, place, towards);
+    if (length(subtract(foremost, at)) > place.scale * point.longest_side) return std::nullopt;
+    return Place{foremost, false};
+  }
+  // Seen from far away interpolated distances lead to places 0.06 spacings off the surface, which come and go as the
+  // body turns: a block hopped on a floor with 0.05 m/s. Corners of facets are on the surface.
+  if (point.faceted) return Place{at, true};
   const std::optional<Vec3> foremost =
       walls_of(point.part).foremost(at, towards, radius_[point.part], resolution_.spacing);
   const std::optional<Vec3> turning = may_come_foremost(point, at, towards, foremost, other);
@@ -223,6 +280,9 @@ std::vector<BodyContact> BodyContacts::find(const Surroundings& surroundings, do
           contact.point = place->at;
           away = distance(other, surroundings.walls, contact.point, infinite);
           contact.normal = normal(other, contact.point);
+          // A force through the centre, where an interpolated normal of the other differs by 0.01 from the first.
+          if (const auto& round = points_[p].round)
+            contact.point = farthest_of(*round, walls_of(part).place, multiply(-1, contact.normal));
           if (place->turning) away += dt * dt / 2 * dot(contact.normal, turning_acceleration(part, contact.point));
         }
         contact.key = {static_cast<std::int64_t>(p), static_cast<std::int64_t>(other)};

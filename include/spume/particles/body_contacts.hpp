@@ -26,6 +26,8 @@
 
 #include "spume/particles/body_walls.hpp"
 #include "spume/particles/convex_corners.hpp"
+#include "spume/particles/fitted_spheres.hpp"
+#include "spume/particles/surface_pieces.hpp"
 
 namespace spume {
 
@@ -71,6 +73,8 @@ class BodyContacts {
     std::size_t part = 0;
     ConvexCorner corner;
     bool faceted = false;  // a corner of the facets that stand for its body, whose distances are interpolated
+    std::optional<FittedSphere> round = {};  // what of it facets stand for
+    double longest_side = 0;                 // of these facets
   };
   // What of a body may touch another: beside what reaches farthest now it may be what does once the body has turned.
   struct Place {
@@ -82,6 +86,8 @@ class BodyContacts {
   bool floats(std::size_t part) const { return part > 0 && scene_.motions[part - 1].floats; }
   const RigidWalls& walls_of(std::size_t part) const { return walls_.part(part); }
   void gather_points();
+  // `pieces`: those of the body that the points from `first` on are corners of, with the normals there.
+  void fit_spheres(const std::vector<SurfacePiece>& pieces, std::size_t first, const std::vector<Vec3>& facing);
   void set_clearances();
   Vec3 now(const Point& point) const;
   // Near a point that is now at a place.
