@@ -5,10 +5,15 @@ from types import SimpleNamespace
 
 import paths
 import numpy as np
-from spume_tools.plots.bodies import Body, cut, outline, places, turned
+from spume_tools.plots.bodies import Body, copies, cut, outline, places, turned
 
 # A square of two triangles.
 SQUARE = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0, 0], [1, 1, 0], [0, 1, 0]]], float)
+
+
+def run_in(lower, upper, **sides):
+    domain = {"lower": lower, "upper": upper, **sides}
+    return SimpleNamespace(dimensions=len(lower), case={"domain": domain}, bounds=lambda: (np.array(lower), np.array(upper)))
 
 
 def run_of(**columns):
@@ -27,6 +32,21 @@ class Bodies(unittest.TestCase):
         at = places(run, Body(1, SQUARE, False))
         np.testing.assert_allclose(at(0.1), SQUARE, atol=1e-15)
         np.testing.assert_allclose(at(0.9)[0], [[3, 0, 0], [3, 1, 0], [2, 1, 0]], atol=1e-12)
+
+    def test_bodies_beyond_periodic_sides_are_drawn_where_they_come_back(self):
+        run = run_in([0, 0], [4, 2], x="periodic", bottom="free-slip")
+        corner = lambda body: [tuple(copy.reshape(-1, 3).min(axis=0)[:2]) for copy in copies(run, body, *run.bounds())]
+        self.assertEqual(corner(SQUARE + [1.5, 0, 0]), [(1.5, 0)])
+        self.assertEqual(corner(SQUARE + [3.5, 0, 0]), [(-0.5, 0), (3.5, 0)])
+        self.assertEqual(corner(SQUARE + [9, 1.5, 0]), [(1, 1.5)])      # twice around
+        self.assertEqual(corner(SQUARE - [4.5, 0, 0]), [(-0.5, 0), (3.5, 0)])
+        self.assertEqual(corner(SQUARE + [3, 0, 0]), [(3, 0)])          # ends on the side
+        self.assertEqual(corner(SQUARE * [4, 1, 1]), [(0, 0)])          # without end along x
+        self.assertEqual(corner(SQUARE + [1.5, -0.5, 0]), [(1.5, -0.5)])  # below a wall there is no other side
+
+    def test_a_body_in_a_corner_of_two_periodic_axes_has_four_parts(self):
+        run = run_in([0, 0], [4, 2], x="periodic", y="periodic")
+        self.assertEqual(len(copies(run, SQUARE + [3.5, 1.5, 0], *run.bounds())), 4)
 
     def test_the_outline_leaves_inner_edges_out(self):
         edges = outline(SQUARE)

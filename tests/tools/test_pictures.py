@@ -210,6 +210,23 @@ class Rendering(Scratch):
         stone = lambda image: np.mean(image[..., 0] > image[..., 2] + 8)
         self.assertGreater(stone(self.picture(folder)), 0.005)
 
+    def test_bodies_are_seen_at_both_of_the_periodic_sides_that_they_cross(self):
+        folder = new_folder(self.path, "run")
+        write_tank(folder, x="periodic", front="free-slip", back="free-slip", bottom="free-slip")
+        write_bodies(folder, block([1.8, 0.2, 0.3], [2.4, 0.6, 0.9]))
+        image = self.picture(folder)
+        stone = image[..., 0] > image[..., 2] + 8
+        third = image.shape[1] // 3
+        self.assertGreater(stone[:, :third].mean(), 0.02)
+        self.assertGreater(stone[:, -third:].mean(), 0.01)
+        # Where it comes back the kernel is that of liquid that goes on behind its faces.
+        write_snapshots(folder / "fluid.vtkhdf", [0], lambda t: lattice([0.4, 0, 0], [1.8, 1, 0.5], 0.1),
+                        {"pressure": lambda p, t: p[:, 0]})
+        run = DrawnRun(folder, Request(plane=(1, 0.4)))
+        _, (panel,) = planes.panels_of(run, "pressure", run.snapshots(), [0])
+        x = np.linspace(*panel.extent[:2], panel.values.shape[0])
+        self.assertGreater(panel.share[(x > 0.41) & (x < 0.45), int(0.65 * panel.share.shape[1])].min(), 0.8)
+
     def test_a_tall_tank_fits_the_page(self):
         folder = new_folder(self.path, "run")
         write_tank(folder, height=8.0, left="free-slip", right="free-slip", bottom="free-slip")

@@ -8,6 +8,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from .style import EDGE, SOLID
+from .sums import sides_of
 
 
 @dataclass
@@ -70,6 +71,38 @@ def places(run, body):
     return at
 
 
+def copies(run, corners, lower, upper):
+    """A body and those of its copies beyond periodic sides that reach into a box: the corners of each."""
+    first, last = (extreme(corners, axis=(0, 1)) for extreme in (np.min, np.max))
+    shifts = [np.zeros(3)]
+    for axis in range(run.dimensions):
+        if sides_of(run.case["domain"], axis) != "periodic":
+            continue
+        sides = run.bounds()
+        period = sides[1][axis] - sides[0][axis]
+        # What ends on a side, up to the rounding of corners to floats, does not pass it.
+        periods = np.arange(np.floor((lower[axis] - last[axis]) / period + 1e-5) + 1,
+                            np.ceil((upper[axis] - first[axis]) / period - 1e-5))
+        shifts = [shift + period * k * (np.arange(3) == axis) for shift in shifts for k in periods]
+    return [corners + shift for shift in shifts]
+
+
+def standing(run, time, box=None, taken_away=False):
+    """Pairs of a body and its corners at a time, one for each of its copies that reach into a box, or into the domain.
+
+    taken_away: as for bodies_of().
+    """
+    lower, upper = box or run.bounds()
+    pairs = []
+    for body in bodies_of(run, taken_away):
+        corners = places(run, body)(time)
+        if np.ptp(corners) == 0:
+            continue  # released later, or gone
+        # All around the others is solid.
+        pairs += [(body, copy) for copy in ([corners] if body.outside else copies(run, corners, lower, upper))]
+    return pairs
+
+
 def outline(corners):
     """The edges that belong to one triangle alone."""
     edges = np.concatenate([corners[:, [a, b], :2] for a, b in ((0, 1), (1, 2), (2, 0))])
@@ -95,10 +128,7 @@ def cut(corners, normal, coordinate, axes):
 
 def draw_bodies(axis, run, plane, time):
     """Solids are filled in two dimensions, where they lie inside their shape, and cut by the plane in three."""
-    for body in bodies_of(run):
-        corners = places(run, body)(time)
-        if np.ptp(corners) == 0:
-            continue  # released later, or gone
+    for body, corners in standing(run, time):
         if plane.normal is not None:
             axis.add_collection(LineCollection(cut(corners, plane.normal, plane.coordinate, plane.axes), colors=EDGE,
                                                linewidths=1.2, zorder=3), autolim=False)
@@ -112,17 +142,12 @@ def draw_bodies(axis, run, plane, time):
 def extent_with_bodies(run, plane, times, frame):
     """The frame widened for bodies that are smaller than nine tenths of the domain."""
     low, high = np.array(frame[::2], float), np.array(frame[1::2], float)
-    for body in bodies_of(run):
-        if body.outside:
+    for body, corners in (pair for time in times for pair in standing(run, time)):
+        points = corners[:, :, list(plane.axes)].reshape(-1, 2)
+        own_low, own_high = points.min(axis=0), points.max(axis=0)
+        if body.outside or np.any(own_high - own_low > 0.9 * (plane.high - plane.low)):
             continue
-        for time in times:
-            points = places(run, body)(time)[:, :, list(plane.axes)].reshape(-1, 2)
-            if np.ptp(points) == 0:
-                continue
-            own_low, own_high = points.min(axis=0), points.max(axis=0)
-            if np.any(own_high - own_low > 0.9 * (plane.high - plane.low)):
-                continue
-            margin = 0.05 * (own_high - own_low)
-            low = np.maximum(np.minimum(low, own_low - margin), np.minimum(plane.low, low))
-            high = np.minimum(np.maximum(high, own_high + margin), np.maximum(plane.high, high))
+        margin = 0.05 * (own_high - own_low)
+        low = np.maximum(np.minimum(low, own_low - margin), np.minimum(plane.low, low))
+        high = np.minimum(np.maximum(high, own_high + margin), np.maximum(plane.high, high))
     return low[0], high[0], low[1], high[1]

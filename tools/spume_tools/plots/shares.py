@@ -7,7 +7,7 @@ that of the body.
 """
 import numpy as np
 
-from .bodies import bodies_of, cut, outline, places
+from .bodies import cut, outline, standing
 from .sums import SUPPORT
 
 # Of the kernel, what is divided by at least: less is left only within bodies and in the narrowest of their corners.
@@ -65,10 +65,9 @@ def joined(total, covered, body):
 def share_in_plane(run, plane, time, low, step, shape):
     """The share of each cell of a plane that bodies cover, and the share of the kernel that they take; None without bodies."""
     total = None
-    for body in bodies_of(run, taken_away=True):
-        corners = places(run, body)(time)
-        if np.ptp(corners) == 0:
-            continue
+    lower, upper = run.bounds()
+    reach = SUPPORT * run.spacing
+    for body, corners in standing(run, time, (lower - reach, upper + reach), taken_away=True):
         lines = outline(corners) if plane.normal is None else cut(corners, plane.normal, plane.coordinate, plane.axes)
         covered = covered_cells(lines, low, step, shape)
         total = joined(total, covered, body)
@@ -78,10 +77,9 @@ def share_in_plane(run, plane, time, low, step, shape):
 def share_in_space(run, time, low, step, shape):
     """The share of the kernel that bodies take at the points low + step * (i, j, k); None without bodies."""
     total = None
-    for body in bodies_of(run, taken_away=True):
-        corners = places(run, body)(time)
-        if np.ptp(corners) == 0:
-            continue
+    reach = SUPPORT * run.spacing
+    box = low - reach, low + step * (np.array(shape) - 1) + reach
+    for body, corners in standing(run, time, box, taken_away=True):
         covered = np.zeros(shape)
         for k in range(shape[2]):
             height = low[2] + k * step

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.transforms import offset_copy
 
-from .bodies import bodies_of, places
+from .bodies import standing
 from .liquid import liquid_surface
 from .renderer import Scene, View
 from .shares import share_in_space
@@ -35,8 +35,6 @@ class Stage:
         periodic = sides_of(domain, 1) == "periodic"
         self.copies = copies or (max(1, int(round(0.45 * length / width))) if periodic else 1)
         self.upper[1] += (self.copies - 1) * width
-        # All around the others is solid: they are the tank.
-        self.bodies = [(body, places(run, body)) for body in bodies_of(run) if not body.outside]
         self._fit(snapshots, steps, deepest)
 
     def _fit(self, snapshots, steps, deepest):
@@ -53,8 +51,8 @@ class Stage:
             np.maximum.at(top, index.ravel(), position[:, 2])
             depth.append(np.percentile(top, 0.5))
         solids = [corner for _, corner in boxes_of(run.case)]
-        solids += [corners.reshape(-1, 3).max(axis=0) for step in steps for _, place in self.bodies
-                   for corners in [self._in_domain(place(snapshots.times[int(step)]))] if len(corners)]
+        solids += [self._in_box(corners).reshape(-1, 3).max(axis=0)
+                   for step in steps for corners in self._bodies(snapshots.times[int(step)])]
         highest = max([np.max(high, axis=0)[2] + 2 * spacing, *(corner[2] for corner in solids)])
         self.upper[2] = min(self.upper[2], highest)
         for axis in range(3):
@@ -68,12 +66,14 @@ class Stage:
         if not solids and sides_of(run.case["domain"], 0) == "periodic":
             self.lower[2] = max(self.lower[2], min(np.min(depth) - 0.15 * length, deepest - 0.05 * length))
 
-    def _in_domain(self, corners):
-        """Those of some triangles that reach into the domain; none of a body that is not there."""
-        lower, upper = self.run.bounds()
-        if np.ptp(corners) == 0:
-            return corners[:0]
-        return corners[np.all((corners.max(axis=1) >= lower) & (corners.min(axis=1) <= upper), axis=1)]
+    def _in_box(self, corners):
+        """Those of some triangles that reach into the box that is drawn."""
+        return corners[np.all((corners.max(axis=1) >= self.lower) & (corners.min(axis=1) <= self.upper), axis=1)]
+
+    def _bodies(self, time):
+        """The triangles of each body that reaches into the box; all around the others is solid: they are the tank."""
+        return [corners for body, corners in standing(self.run, time, (self.lower, self.upper))
+                if not body.outside and len(self._in_box(corners))]
 
     def add_to(self, scene, time, floor=True):
         """Floor, solids where they stand at a time, and the edges of the domain."""
@@ -92,15 +92,12 @@ class Stage:
         thickness = 0.01 * (upper[0] - lower[0])
         if floor and bottom in ("free-slip", "no-slip") and lower[2] == self.run.bounds()[0][2]:
             scene.add_box(lower - [0, 0, thickness], [upper[0], upper[1], lower[2]], FLOOR)
-        # Solids cover the surface that the liquid has on their faces.
+        # Solids cover the surface that the liquid has on their faces, and on the sides of the box that cut both.
         cover = 0.2 * self.run.spacing
         for low, high in boxes_of(self.run.case):
             scene.add_box(low - cover, high + cover, STONE)
-        for _, place in self.bodies:
-            corners = place(time)
-            width = self.run.bounds()[1][1] - self.run.bounds()[0][1]
-            for k in range(self.copies if len(self._in_domain(corners)) else 0):
-                scene.add_solid(corners + [0, k * width, 0], lower, upper, STONE)
+        for corners in self._bodies(time):
+            scene.add_solid(corners, lower - 0.1 * cover, upper + 0.1 * cover, STONE)
 
     def cut(self, position):
         """Particles that are drawn."""
