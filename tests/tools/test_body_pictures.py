@@ -2,10 +2,13 @@
 """Bodies in pictures of planes: where they stand at a time, their outline, and where a plane cuts them."""
 import unittest
 from types import SimpleNamespace
+from unittest import mock
 
 import paths
 import numpy as np
+from spume_tools.plots import bodies
 from spume_tools.plots.bodies import Body, copies, cut, outline, places, turned
+from spume_tools.plots.style import plt
 
 # A square of two triangles.
 SQUARE = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0, 0], [1, 1, 0], [0, 1, 0]]], float)
@@ -52,6 +55,28 @@ class Bodies(unittest.TestCase):
         edges = outline(SQUARE)
         self.assertEqual(len(edges), 4)
         self.assertAlmostEqual(np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1).sum(), 4)
+
+    def test_the_outline_is_that_of_the_shape_in_any_unit(self):
+        for length in (1e-9, 1e6):
+            with self.subTest(length=length):
+                moved = (length * (SQUARE + [0.3, 0.7, 0])).astype(np.float32)
+                moved[1] = np.nextafter(moved[1], np.inf, dtype=np.float32)  # corners of floats, found one by one
+                self.assertEqual(len(outline(moved.astype(float))), 4)
+
+    def test_bodies_are_filled_without_seams(self):
+        # A fan of triangles whose edges cross pixels at all angles.
+        angle = np.linspace(0, 2 * np.pi, 41)
+        rim = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+        disc = np.stack([np.zeros((40, 3)), rim[:-1], rim[1:]], axis=1)
+        figure, axis = plt.subplots(figsize=(2, 2), dpi=100)
+        axis.set(xlim=(-1, 1), ylim=(-1, 1), aspect="equal", position=(0, 0, 1, 1))
+        run = SimpleNamespace(**vars(run_in([-1, -1], [1, 1])), has=lambda name: False)
+        with mock.patch.object(bodies, "bodies_of", lambda *_: [Body(0, disc, False)]):
+            bodies.draw_bodies(axis, run, SimpleNamespace(normal=None), 0)
+        figure.canvas.draw()
+        pixels = np.asarray(figure.canvas.buffer_rgba())[30:-30, 30:-30, :3]
+        plt.close(figure)
+        self.assertEqual(len(np.unique(pixels[60:80].reshape(-1, 3), axis=0)), 1)
 
     def test_a_plane_through_corners_cuts_all_around(self):
         corners = np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)

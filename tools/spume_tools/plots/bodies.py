@@ -3,7 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
@@ -106,11 +108,17 @@ def standing(run, time, box=None, taken_away=False):
 def outline(corners):
     """The edges that belong to one triangle alone."""
     edges = np.concatenate([corners[:, [a, b], :2] for a, b in ((0, 1), (1, 2), (2, 0))])
-    ends = np.round(edges, 9)
+    ends = np.round((edges - edges.min(axis=(0, 1))) / np.ptp(edges, axis=(0, 1)).max(), 6)  # corners are floats
     swap = (ends[:, 0, 0] > ends[:, 1, 0]) | ((ends[:, 0, 0] == ends[:, 1, 0]) & (ends[:, 0, 1] > ends[:, 1, 1]))
     ends[swap] = ends[swap][:, ::-1]
     _, first, count = np.unique(ends.reshape(-1, 4), axis=0, return_index=True, return_counts=True)
     return edges[first[count == 1]]
+
+
+def joined(corners):
+    """Triangles, all turned the same way, as one path: drawn one by one they leave seams."""
+    rings = np.concatenate([corners, corners[:, :1]], axis=1)[:, :, :2]
+    return Path(rings.reshape(-1, 2), [Path.MOVETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY] * len(corners))
 
 
 def cut(corners, normal, coordinate, axes):
@@ -133,10 +141,10 @@ def draw_bodies(axis, run, plane, time):
             axis.add_collection(LineCollection(cut(corners, plane.normal, plane.coordinate, plane.axes), colors=EDGE,
                                                linewidths=1.2, zorder=3), autolim=False)
             continue
+        edges = outline(corners)
         if not body.outside:
-            axis.add_collection(PolyCollection(corners[:, :, :2], facecolors=SOLID, edgecolors=SOLID, linewidths=0.3,
-                                               zorder=3), autolim=False)
-        axis.add_collection(LineCollection(outline(corners), colors=EDGE, linewidths=0.8, zorder=3), autolim=False)
+            axis.add_artist(PathPatch(joined(corners), facecolor=SOLID, edgecolor="none", zorder=3))
+        axis.add_collection(LineCollection(edges, colors=EDGE, linewidths=0.8, zorder=3), autolim=False)
 
 
 def extent_with_bodies(run, plane, times, frame):
