@@ -156,6 +156,19 @@ class Planes(Scratch):
             middle = panel.values[int(columns * 0.5), int(rows * 0.25)]
             self.assertEqual(np.isfinite(middle), drawn)
 
+    def test_labels_are_within_the_picture_where_the_layout_changes_the_ticks(self):
+        folder = new_folder(self.path, "run")
+        write_case(folder, "A flume", [0, 0], [0.5, 0.2], 0.005, left="free-slip", bottom="free-slip")
+        write_snapshots(folder / "fluid.vtkhdf", [0, 1, 2, 3], lambda t: lattice([0, 0], [0.5, 0.12], 0.005),
+                        {"pressure": lambda p, t: 1000 * p[:, 1]})
+        run = DrawnRun(folder)
+        plane, panels = planes.panels_of(run, "pressure", run.snapshots(), range(4))
+        figure = planes.plane_figure(run, "pressure", plane, panels, style.Normalize(0, 200), "neither")
+        figure.savefig(self.path / "drawn.png")
+        for axis in figure.axes[:4]:
+            self.assertGreater(axis.yaxis.label.get_window_extent().x0, 0)
+        style.plt.close(figure)
+
     def test_a_plane_outside_the_domain_is_said(self):
         folder = new_folder(self.path, "run")
         write_tank(folder)

@@ -8,7 +8,7 @@ from ..results.units import field_label
 from .planes import draw_panel, drawn_fields, frame_of, panels_of
 from .probes import file_stem, quantities_along
 from .request import request_of
-from .style import evenly, extension, field_norm, finish, length_label, panel_size
+from .style import evenly, extension, field_norm, finish, keep_ticks, length_label, panel_size
 
 COLOURS = ("C0", "C1")
 IGNORED = {"step", "t", "retries"}
@@ -129,6 +129,7 @@ def plot_fields(first, second, out):
                 axis.set_xlabel(length_label("xyz"[plane.axes[0]], run.si))
             row[0].set_ylabel(f"{label}\n{length_label('xyz'[plane.axes[1]], run.si)}")
         figure.colorbar(image, ax=list(axes.flat), label=field_label(name, first.si), extend=extension(norm, samples), aspect=30)
+        keep_ticks(figure, axes.flat)
         files.append(finish(figure, out / f"{name}.png", heading(first, second)))
     return files
 

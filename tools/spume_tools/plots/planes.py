@@ -11,8 +11,8 @@ from ..results.units import field_label
 from .bodies import draw_bodies, extent_with_bodies
 from .request import Request, request_of
 from .shares import beside_bodies, share_in_plane
-from .style import (EDGE, FIELDS, SIGNED, SOLID, chosen_steps, extension, field_norm, finish, length_label, panel_grid,
-                    panel_size, time_title, title_of)
+from .style import (EDGE, FIELDS, SIGNED, SOLID, chosen_steps, extension, field_norm, finish, keep_ticks, length_label,
+                    panel_grid, panel_size, time_title, title_of)
 from .sums import SUPPORT, boxes_of, kernel_sums, sides_of, with_images
 
 FINENESS = 0.5  # distance of the sums of a plane, in spacings; coarser where there are more than MOST along a side
@@ -201,6 +201,7 @@ def plane_figure(run, name, plane, panels, norm, ends, most=None):
                     aspect=30)
     where = "" if plane.normal is None else f", {'xyz'[plane.normal]} = {plane.coordinate:.4g}" + (" m" if run.si else "")
     figure.suptitle(f"{title_of(run)}: {field_label(name)}{where}")
+    keep_ticks(figure, axes.flat[:len(panels)])
     return figure
 
 

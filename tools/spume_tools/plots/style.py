@@ -38,6 +38,16 @@ def fit_title(figure):
         title.set_text(" ".join(words) + " ...")
 
 
+def keep_ticks(figure, axes):
+    """Lays a figure out and keeps the ticks that this gives: their number would follow the layout, and the room that
+    the layout keeps for their labels the ticks before it, so that labels ended beyond the edge."""
+    figure.draw_without_rendering()
+    for one in (one for axis in axes for one in (axis.xaxis, axis.yaxis)):
+        low, high = sorted(one.get_view_interval())
+        rounding = 1e-9 * (high - low)
+        one.set_ticks([tick for tick in one.get_majorticklocs() if low - rounding <= tick <= high + rounding])
+
+
 def finish(figure, path, title=None):
     """Writes a figure in the chosen format and returns the name of the file."""
     fixed = figure.get_constrained_layout() or getattr(figure, "exact", False)
