@@ -5,6 +5,8 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/particles/boundary.hpp"
+#include "spume/scene/side_names.hpp"
 
 namespace spume {
 
@@ -21,6 +23,17 @@ std::vector<SeriesColumn> SeriesTable::columns() const {
 void SeriesTable::values(std::span<double> row) const {
   if (prepare) prepare();
   for (std::size_t k = 0; k < entries_.size(); ++k) row[k] = entries_[k].value();
+}
+
+void add_wall_columns(SeriesTable& series, const Boundary& boundary) {
+  const Domain& domain = boundary.domain();
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    for (std::size_t side = 0; side < 2; ++side) {
+      const auto& velocity = domain.sides[axis][side].velocity;
+      if (!velocity || velocity->component[axis] == nullptr) continue;
+      series.add("wall_" + side_names(axis, domain.dimensions)[side], "length, where it stands",
+                 [&boundary, axis, side] { return boundary.walls[axis][side]; });
+    }
 }
 
 void SnapshotTable::add(std::string name, bool standard, const VectorField& vector) {

@@ -5,6 +5,7 @@
 
 #include "spume/scene/draft.hpp"
 #include "spume/scene/method_declaration.hpp"
+#include "spume/scene/side_names.hpp"
 
 namespace spume {
 
@@ -23,8 +24,6 @@ void check_output_fields(const Draft& draft, const std::vector<OutputFieldInfo>&
 // `scalars` are those of the method; completes the probes of draft.options.
 void check_probes(Draft& draft, const std::vector<ProbeScalar>& scalars, Problems& problems);
 
-// Names of the two sides of an axis: left/right, front/back (3-D), bottom/top.
-std::array<std::string, 2> side_names(int axis, int dimensions);
 std::pair<int, int> side_place(const std::string& side, int dimensions);  // axis and end, or -1
 
 }  // namespace spume

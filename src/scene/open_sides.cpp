@@ -5,17 +5,11 @@
 
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
+#include "spume/scene/side_names.hpp"
 #include "spume/scene/solid_union.hpp"
 
 namespace spume {
 namespace {
-
-std::string side_name(int axis, int side, int dimensions) {
-  static const char* const across[2] = {"left", "right"};
-  static const char* const deep[2] = {"front", "back"};
-  static const char* const along[2] = {"bottom", "top"};
-  return axis == 0 ? across[side] : axis == dimensions - 1 ? along[side] : deep[side];
-}
 
 // Whether the straight way from one place to another meets a wall of a body: by steps of its distance, of which those
 // of unions and differences are never too long.
@@ -119,7 +113,7 @@ std::vector<Problem> open_side_warnings(const Draft& draft, const Scene& scene, 
     for (int side = 0; side < 2; ++side) {
       if (domain.sides[axis][side].bounds_liquid() || (falls && axis == up && side == 1)) continue;
       if (!falls && !has_opening(scene, axis, side)) continue;
-      const std::string name = side_name(axis, side, domain.dimensions);
+      const std::string name = side_names(axis, domain.dimensions)[static_cast<std::size_t>(side)];
       const double plane = side == 0 ? domain.lower[axis] : domain.upper[axis];
       const double loose = count(axis, side, [&](const Vec3& r, const OpeningsOfSide& openings) {
         if ((axis != up || !falls) && std::abs(r[axis] - plane) > scene.spacing) return false;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "particles/walled.hpp"
+#include "spume/particles/reports.hpp"
 
 namespace spume::test {
 namespace {
@@ -49,6 +50,31 @@ TEST(BoundarySides, NoPlaceBesideABodyIsSaidToBeClear) {
   const Walled walled(scene_text("lower = [0, 0]\nupper = [1, 1]\nbottom = \"free-slip\"\n", 0.1,
                                  "[[body]]\nshape = \"ball\"\nradius = 0.2\nposition = [0.5, 0.5]\n"));
   EXPECT_FALSE(walled.boundary.clear_of_sides({0.5, 0.8, 0}));
+}
+
+// Simpson's rule is exact for 0.2 t; the floor slides along itself, and the other sides stand.
+TEST(BoundarySides, ThoseThatMoveAlongTheirNormalsAreInTheSeries) {
+  const LoadedCase loaded = load_text(scene_text(
+      "lower = [0, 0, -1]\nupper = [1, 0.7, 0]\nleft = \"free-slip\"\nright = \"free-slip\"\nback = \"no-slip\"\n"
+      "bottom = \"no-slip\"\n[domain.wall_velocity]\nright = [\"0.2*t\", \"0\", \"0\"]\n"
+      "back = [\"0\", \"-0.1\", \"0\"]\nbottom = [\"1\", \"0\", \"0\"]\n",
+      0.1, ""));
+  Boundary boundary(loaded.scene.domain, loaded.scene.spacing, nullptr);
+  SeriesTable series;
+  add_wall_columns(series, boundary);
+  ASSERT_EQ(series.columns().size(), 2U);
+  EXPECT_EQ(series.columns()[0].name, "wall_right");
+  EXPECT_EQ(series.columns()[1].name, "wall_back");
+  std::array<double, 2> row{};
+  series.values(row);
+  EXPECT_EQ(row, (std::array{1.0, 0.7}));
+  for (int step = 0; step < 4; ++step) {
+    boundary.advance(0.5 * step, 0.5);
+    boundary.accept();
+  }
+  series.values(row);
+  EXPECT_NEAR(row[0], 1.4, 1e-14);
+  EXPECT_NEAR(row[1], 0.5, 1e-14);
 }
 
 }  // namespace

@@ -19,6 +19,8 @@
 
 namespace spume {
 
+class Boundary;
+
 // Columns of series.csv.
 class SeriesTable {
  public:
@@ -36,6 +38,9 @@ class SeriesTable {
   };
   std::vector<Entry> entries_;
 };
+
+// Where the sides stand that move along their normals, as "wall_left"; the boundary outlives the table.
+void add_wall_columns(SeriesTable& series, const Boundary& boundary);
 
 // Fields of a snapshot of particles. A standard one is written unless the case lists others.
 class SnapshotTable {

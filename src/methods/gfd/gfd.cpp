@@ -138,6 +138,7 @@ void Gfd::declare_series() {
   series_.add("pressure_iterations", "1", [&flow] { return double(flow.solver.report().iterations); });
   series_.add("pressure_residual", "relative", [&flow] { return flow.solver.report().relative_residual; });
   series_.add("pressure_tolerance", "relative, asked of the step", [&flow] { return flow.solver.report().tolerance; });
+  add_wall_columns(series_, flow.boundary);
 }
 
 void Gfd::series_values(std::span<double> values) {

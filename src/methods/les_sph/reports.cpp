@@ -112,6 +112,7 @@ void LesSph::declare_series() {
   series_.add("surface_particles", "1", [&flow] {
     return flow.surface == nullptr ? 0.0 : static_cast<double>(flow.surface->surface_particles.size());
   });
+  add_wall_columns(series_, flow.boundary);
   if (flow.bubbles != nullptr) flow.bubbles->add_columns(series_);
   flow_columns_ = series_.columns().size();
   flow.solutes.add_columns(series_, flow.bubbles.get());

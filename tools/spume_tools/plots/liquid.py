@@ -10,22 +10,23 @@ MARGIN = 3.0    # how far beyond a side the surface is made, in spacings
 SMOOTHING = 15, 0.08  # passes and pass band of the filter that takes the lattice out of the surface (Taubin 1995)
 
 
-def liquid_surface(case, position, spacing, copies=1, bottom=None, bodies=None):
+def liquid_surface(case, position, spacing, copies=1, bottom=None, bodies=None, bounds=None):
     """The closed surface of the liquid of a three-dimensional case as vtkPolyData with normals.
 
     Sides of the domain cut it flat. copies: how often a width that is periodic in y is repeated; bottom: a height that
-    cuts it as well, for particles that reach below it; bodies(low, step, shape): the share of the kernel that they take.
+    cuts it as well, for particles that reach below it; bodies(low, step, shape): the share of the kernel that they take;
+    bounds: lower and upper corner of the domain, where these are not those of the case.
     """
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPlane, vtkPlaneCollection
     from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D, vtkPolyDataNormals, vtkTriangleFilter, vtkWindowedSincPolyDataFilter
     from vtkmodules.vtkFiltersGeneral import vtkClipClosedSurface
 
-    lower, upper = np.array(case["domain"]["lower"], float), np.array(case["domain"]["upper"], float)
+    lower, upper = np.array(bounds or (case["domain"]["lower"], case["domain"]["upper"]), float)
     width = upper[1] - lower[1]
     # The surface is made beyond the sides and cut there, so that the filter does not round the edges.
     beyond = MARGIN * spacing
-    place, _ = with_images(case, position, beyond + SUPPORT * spacing)
+    place, _ = with_images(case, position, beyond + SUPPORT * spacing, bounds)
     if copies > 1:
         own = (place[:, 1] >= lower[1]) & (place[:, 1] < upper[1])
         place = np.concatenate([place[place[:, 1] < lower[1]], *(place[own] + [0, k * width, 0] for k in range(copies)),

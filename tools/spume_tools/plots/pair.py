@@ -117,7 +117,7 @@ def plot_fields(first, second, out):
         drawn = [panels_of(run, name, s, k) for run, s, k in zip((first, second), snapshots, steps)]
         samples = [panel.values for _, panels in drawn for panel in panels]
         norm = field_norm(name, samples, request_of(first).ranges.get(name))
-        frames = [frame_of(plane, panels) for plane, panels in drawn]
+        frames = [frame_of(panels) for _, panels in drawn]
         sizes = [(f[1] - f[0], f[3] - f[2]) for f in frames]
         size = panel_size(2, len(times), max(w for w, _ in sizes), max(h for _, h in sizes))
         figure, axes = plt.subplots(2, len(times), squeeze=False, constrained_layout=True,

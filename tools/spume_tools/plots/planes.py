@@ -13,7 +13,8 @@ from .request import Request, request_of
 from .shares import beside_bodies, share_in_plane
 from .style import (EDGE, FIELDS, SIGNED, SOLID, chosen_steps, extension, field_norm, finish, keep_ticks, length_label,
                     panel_grid, panel_size, time_title, title_of)
-from .sums import SUPPORT, boxes_of, kernel_sums, sides_of, with_images
+from .sums import SUPPORT, boxes_of, kernel_sums, with_images
+from .walls import bounds_at, draw_walls, farthest_bounds
 
 FINENESS = 0.5  # distance of the sums of a plane, in spacings; coarser where there are more than MOST along a side
 MOST = 600
@@ -23,7 +24,8 @@ PIXELS = 600    # along the longer side, at least: between the sums pixels are l
 
 @dataclass
 class Plane:
-    """axes: of the picture; normal and its coordinate: None in two dimensions; low, high: corners of the frame."""
+    """axes: of the picture; normal and its coordinate: None in two dimensions; low, high: corners of what the domain ever
+    reaches in it."""
 
     axes: tuple
     normal: int
@@ -34,19 +36,22 @@ class Plane:
 
 @dataclass
 class Panel:
-    """values (columns, rows), nan outside the liquid; extent: left, right, bottom, top; share: the kernel sums that the
-    surface is drawn from, None on grids; phases: of each phase but the first its share, whose half is the interface."""
+    """values (columns, rows), nan outside the liquid; extent: left, right, bottom, top; low, high: corners of the domain
+    then; share: the kernel sums that the surface is drawn from, None on grids; phases: of each phase but the first its
+    share, whose half is the interface."""
 
     time: float
     values: np.ndarray
     extent: tuple
+    low: np.ndarray
+    high: np.ndarray
     share: np.ndarray = None
     phases: tuple = ()
 
 
 def plane_of(run):
     """The plane that is asked for, as large as the domain; without a request the middle of the second axis."""
-    lower, upper = run.bounds()
+    lower, upper = farthest_bounds(run)
     if run.dimensions == 2:
         return Plane((0, 1), None, None, lower, upper)
     normal, coordinate = request_of(run).plane or (1, 0.5 * (lower[1] + upper[1]))
@@ -73,7 +78,8 @@ def particle_plane(run, plane, snapshot, values):
     spacing = run.spacing
     reach = SUPPORT * spacing
     axes = list(plane.axes)
-    position, index = with_images(run.case, snapshot.position, reach)
+    bounds = bounds_at(run, snapshot.time)
+    position, index = with_images(run.case, snapshot.position, reach, bounds)
     beside = None
     if plane.normal is not None:
         away = position[:, plane.normal] - plane.coordinate
@@ -83,8 +89,9 @@ def particle_plane(run, plane, snapshot, values):
     own = position[:, axes]
     if not len(own):
         raise MissingResult(f"no liquid near the plane {'xyz'[plane.normal]} = {plane.coordinate:g} at t = {snapshot.time:g}")
-    low = np.maximum(plane.low, own.min(axis=0) - spacing)
-    high = np.minimum(plane.high, own.max(axis=0) + spacing)
+    sides = [corner[axes] for corner in bounds]
+    low = np.maximum(sides[0], own.min(axis=0) - spacing)
+    high = np.minimum(sides[1], own.max(axis=0) + spacing)
     step = max(FINENESS * spacing, np.max(high - low) / MOST)
     shape = np.maximum(2, np.round((high - low) / step).astype(int) + 1)
     phase = snapshot.field("phase") if "phase" in snapshot.fields else np.zeros(len(values))
@@ -97,7 +104,7 @@ def particle_plane(run, plane, snapshot, values):
         # Bodies are drawn over the liquid in two dimensions, and as lines in three: it ends a little behind these.
         weight[finer(bodies[0]) > WITHIN] = np.nan
     drawn = np.where(weight >= 0.5, total, np.nan)
-    return Panel(snapshot.time, drawn, extent_of(low, low + (shape - 1) * step, drawn.shape), weight, tuple(phases))
+    return Panel(snapshot.time, drawn, extent_of(low, low + (shape - 1) * step, drawn.shape), *sides, weight, tuple(phases))
 
 
 def extent_of(low, high, shape):
@@ -132,7 +139,7 @@ def grid_plane(run, plane, snapshot, values):
     axes = list(plane.axes)
     low = snapshot.origin[axes]
     high = low + snapshot.spacing[axes] * [values.shape[a] for a in axes]
-    return Panel(snapshot.time, drawn, extent_of(low, high, drawn.shape))
+    return Panel(snapshot.time, drawn, extent_of(low, high, drawn.shape), plane.low, plane.high)
 
 
 def panels_of(run, name, snapshots, steps):
@@ -145,11 +152,12 @@ def panels_of(run, name, snapshots, steps):
     return plane, panels
 
 
-def frame_of(plane, panels):
+def frame_of(panels):
     """Left, right, bottom, top of a frame that holds the liquid of all panels."""
     extents = np.array([panel.extent for panel in panels])
-    return (max(extents[:, 0].min(), plane.low[0]), min(extents[:, 1].max(), plane.high[0]),
-            max(extents[:, 2].min(), plane.low[1]), min(extents[:, 3].max(), plane.high[1]))
+    low, high = np.min([panel.low for panel in panels], axis=0), np.max([panel.high for panel in panels], axis=0)
+    return (max(extents[:, 0].min(), low[0]), min(extents[:, 1].max(), high[0]),
+            max(extents[:, 2].min(), low[1]), min(extents[:, 3].max(), high[1]))
 
 
 def draw_panel(axis, run, plane, panel, frame, name, norm):
@@ -165,25 +173,18 @@ def draw_panel(axis, run, plane, panel, frame, name, norm):
     axis.set(xlim=frame[:2], ylim=frame[2:], aspect="equal", title=time_title(panel.time, run.si))
     for side in ("top", "right"):
         axis.spines[side].set_visible(True)
-    for low, high in boxes_of(run.case):
+    for low, high in boxes_of(run.case, bounds_at(run, panel.time)):
         if plane.normal is None or low[plane.normal] <= plane.coordinate <= high[plane.normal]:
             corner = low[list(plane.axes)]
             axis.add_patch(Rectangle(corner, *(high - low)[list(plane.axes)], facecolor=SOLID, edgecolor=EDGE, linewidth=0.8, zorder=3))
     draw_bodies(axis, run, plane, panel.time)
-    # Walls are thick lines.
-    for k, a in enumerate(plane.axes):
-        kinds = sides_of(run.case["domain"], a)
-        for side, kind in enumerate(kinds if kinds != "periodic" else ()):
-            at = (plane.low, plane.high)[side][k]
-            if kind != "open" and frame[2 * k] - 1e-9 <= at <= frame[2 * k + 1] + 1e-9:
-                spine = axis.spines[(("left", "right"), ("bottom", "top"))[k][side]]
-                spine.set(linewidth=2.2, color=EDGE)
+    draw_walls(axis, run, plane, panel.low, panel.high, frame)
     return image
 
 
 def plane_figure(run, name, plane, panels, norm, ends, most=None):
     """Panels of one plane with one colour bar."""
-    frame = extent_with_bodies(run, plane, [panel.time for panel in most or panels], frame_of(plane, most or panels))
+    frame = extent_with_bodies(run, plane, [panel.time for panel in most or panels], frame_of(most or panels))
     width, height = frame[1] - frame[0], frame[3] - frame[2]
     rows, columns = panel_grid(len(panels), width, height)
     size = panel_size(rows, columns, width, height)

@@ -13,27 +13,33 @@ INTEGRAL = {2: 4 * np.pi / 7, 3: 16 * np.pi / 21}
 SIDES = (("left", "right"), ("front", "back"), ("bottom", "top"))
 
 
+def side_names(dimensions, axis):
+    return SIDES[2] if axis == dimensions - 1 else SIDES[axis]
+
+
 def sides_of(domain, axis):
     """"periodic", or the kinds of the two sides of an axis ("open" where none is named)."""
     if domain.get("xyz"[axis]) == "periodic":
         return "periodic"
-    names = SIDES[2] if axis == len(domain["lower"]) - 1 else SIDES[axis]
-    return tuple(domain.get(name, "open") for name in names)
+    return tuple(domain.get(name, "open") for name in side_names(len(domain["lower"]), axis))
 
 
-def boxes_of(case):
-    """Lower and upper corners of the solid boxes of a case, within the domain."""
-    lower, upper = np.array(case["domain"]["lower"], float), np.array(case["domain"]["upper"], float)
+def boxes_of(case, bounds=None):
+    """Lower and upper corners of the solid boxes of a case, within the domain, whose corners may be given."""
+    lower, upper = bounds or (np.array(case["domain"]["lower"], float), np.array(case["domain"]["upper"], float))
     boxes = [(np.maximum(box["lower"], lower), np.minimum(box["upper"], upper)) for box in case.get("solid", [])]
     return [(low, high) for low, high in boxes if np.all(high > low)]
 
 
-def with_images(case, position, reach):
-    """Places of the particles and of their images within `reach` of the sides, and the index of the particle of each."""
-    lower, upper = np.array(case["domain"]["lower"], float), np.array(case["domain"]["upper"], float)
+def with_images(case, position, reach, bounds=None):
+    """Places of the particles and of their images within `reach` of the sides, and the index of the particle of each.
+
+    bounds: lower and upper corner of the domain, where these are not those of the case.
+    """
+    lower, upper = bounds or (np.array(case["domain"]["lower"], float), np.array(case["domain"]["upper"], float))
     d = len(lower)
     index = np.arange(len(position))
-    for low, high in boxes_of(case):
+    for low, high in boxes_of(case, bounds):
         at, of = [position], [index]
         for axis in range(d):
             for plane, outward in ((low[axis], -1), (high[axis], 1)):

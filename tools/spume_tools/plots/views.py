@@ -9,6 +9,7 @@ from .renderer import Scene, View
 from .shares import share_in_space
 from .style import chosen_steps, finish, panel_grid, panel_size, picture_axes, time_title, title_of
 from .sums import boxes_of, sides_of
+from .walls import bounds_at
 
 WATER = (0.62, 0.74, 0.82)
 STONE = (0.80, 0.76, 0.69)
@@ -23,13 +24,14 @@ DOTS_PER_INCH = 130
 class Stage:
     """The part of the domain that is drawn, its walls and solids.
 
-    lower, upper: the box that is drawn; copies: how often a narrow periodic width is repeated for the eye; deepest: a
-    height that is drawn in any case.
+    lower, upper: the box that is drawn, over all times; copies: how often a narrow periodic width is repeated for the eye; deepest: a
+    height that is drawn in any case; cut_below: whether the liquid goes on below the box.
     """
 
     def __init__(self, run, snapshots, steps, copies=None, deepest=np.inf):
         self.run = run
-        self.lower, self.upper = run.bounds()
+        bounds = np.array([bounds_at(run, snapshots.times[int(step)]) for step in steps])
+        self.lower, self.upper = bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0)
         domain = run.case["domain"]
         length, width = (self.upper - self.lower)[:2]
         periodic = sides_of(domain, 1) == "periodic"
@@ -62,9 +64,16 @@ class Stage:
             if kinds[1] == "open" and axis < 2:
                 self.upper[axis] = min(self.upper[axis], np.max(high, axis=0)[axis] + 2 * spacing)
         # Deep water without ends is cut below its surface, where no solid stands in it.
-        length = self.upper[0] - self.lower[0]
+        length, deep = self.upper[0] - self.lower[0], self.lower[2]
         if not solids and sides_of(run.case["domain"], 0) == "periodic":
             self.lower[2] = max(self.lower[2], min(np.min(depth) - 0.15 * length, deepest - 0.05 * length))
+        self.cut_below = self.lower[2] > deep
+
+    def box_at(self, time):
+        """The part of the box that the domain has at a time."""
+        low, high = bounds_at(self.run, time)
+        stays = [sides_of(self.run.case["domain"], axis) == "periodic" for axis in range(3)]
+        return np.where(stays, self.lower, np.maximum(self.lower, low)), np.where(stays, self.upper, np.minimum(self.upper, high))
 
     def _in_box(self, corners):
         """Those of some triangles that reach into the box that is drawn."""
@@ -77,7 +86,7 @@ class Stage:
 
     def add_to(self, scene, time, floor=True):
         """Floor, solids where they stand at a time, and the edges of the domain."""
-        lower, upper = self.lower, self.upper
+        lower, upper = self.box_at(time)
         lines = []
         for axis in range(3):
             a, b = [k for k in range(3) if k != axis]
@@ -90,11 +99,11 @@ class Stage:
         scene.add_lines(lines, EDGES)
         bottom = sides_of(self.run.case["domain"], 2)[0]
         thickness = 0.01 * (upper[0] - lower[0])
-        if floor and bottom in ("free-slip", "no-slip") and lower[2] == self.run.bounds()[0][2]:
+        if floor and bottom in ("free-slip", "no-slip") and not self.cut_below:
             scene.add_box(lower - [0, 0, thickness], [upper[0], upper[1], lower[2]], FLOOR)
         # Solids cover the surface that the liquid has on their faces, and on the sides of the box that cut both.
         cover = 0.2 * self.run.spacing
-        for low, high in boxes_of(self.run.case):
+        for low, high in boxes_of(self.run.case, bounds_at(self.run, time)):
             scene.add_box(low - cover, high + cover, STONE)
         for corners in self._bodies(time):
             scene.add_solid(corners, lower - 0.1 * cover, upper + 0.1 * cover, STONE)
@@ -107,10 +116,10 @@ class Stage:
 def liquid_of(stage, snapshot):
     """The surface of a snapshot in the box that is drawn."""
     case = stage.run.case
-    cut = stage.lower[2] > case["domain"]["lower"][2]
     return liquid_surface(case, stage.cut(snapshot.position), stage.run.spacing, stage.copies,
-                          bottom=stage.lower[2] if cut else None,
-                          bodies=lambda *grid: share_in_space(stage.run, snapshot.time, *grid))
+                          bottom=stage.lower[2] if stage.cut_below else None,
+                          bodies=lambda *grid: share_in_space(stage.run, snapshot.time, *grid),
+                          bounds=bounds_at(stage.run, snapshot.time))
 
 
 def scale_bar(axis, view, stage):
