@@ -156,6 +156,26 @@ class Planes(Scratch):
             middle = panel.values[int(columns * 0.5), int(rows * 0.25)]
             self.assertEqual(np.isfinite(middle), drawn)
 
+    def test_channels_are_filled_up_to_their_openings(self):
+        # The first particles stand up to a spacing from an opening, and more where one has just left.
+        spacing = 0.05
+        grid = lattice([0, 0], [1, 0.5], spacing)
+        ends = np.minimum(grid[:, 0], 1 - grid[:, 0]) < 0.6 * spacing
+        stays = ~ends | (np.floor(grid[:, 1] / spacing) % 4 == 0)
+        for openings, filled in (('[[inflow]]\nside = "left"\n[[outflow]]\nside = "right"\n', True), ("", False)):
+            folder = new_folder(self.path, f"run_{filled}")
+            write_case(folder, "A channel", [0, 0], [1, 0.5], spacing, bottom="no-slip", top="no-slip")
+            with (folder / "case.toml").open("a") as file:
+                file.write(openings)
+            write_snapshots(folder / "fluid.vtkhdf", [0], lambda t: grid[stays], {"pressure": lambda p, t: p[:, 1]})
+            run = DrawnRun(folder)
+            _, (panel,) = planes.panels_of(run, "pressure", run.snapshots(), [0])
+            self.assertEqual(np.isfinite(panel.values).all(), filled)
+            self.assertEqual(panel.share.min() > 0.5, filled)
+            if filled:
+                np.testing.assert_allclose(panel.extent, (0, 1, 0, 0.5), atol=0.002)  # a pixel
+                np.testing.assert_allclose(panel.values[0], panel.values[80], atol=0.01)
+
     def test_labels_are_within_the_picture_where_the_layout_changes_the_ticks(self):
         folder = new_folder(self.path, "run")
         write_case(folder, "A flume", [0, 0], [0.5, 0.2], 0.005, left="free-slip", bottom="free-slip")

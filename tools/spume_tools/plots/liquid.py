@@ -3,7 +3,7 @@
 import numpy as np
 
 from .shares import beside_bodies
-from .sums import SUPPORT, kernel_sums, sides_of, with_images
+from .sums import SUPPORT, continued, kernel_sums, with_images
 
 FINENESS = 0.8  # distance of the points at which sums are taken, in spacings
 MARGIN = 3.0    # how far beyond a side the surface is made, in spacings
@@ -37,9 +37,9 @@ def liquid_surface(case, position, spacing, copies=1, bottom=None, bodies=None, 
     low, high = place.min(axis=0) - SUPPORT * spacing, place.max(axis=0) + SUPPORT * spacing
     cuts = vtkPlaneCollection()
     for axis in range(3):
-        kind = sides_of(case["domain"], axis)
+        goes_on = continued(case, axis)
         for side, limits, keep, nearer in ((0, lower, low, max), (1, upper, high, min)):
-            if kind[side] == "open" and not (axis == 2 and side == 0 and bottom is not None):
+            if not goes_on[side] and not (axis == 2 and side == 0 and bottom is not None):
                 continue
             inward = 1 if side == 0 else -1
             keep[axis] = nearer(keep[axis], limits[axis] - inward * beyond)

@@ -24,6 +24,19 @@ def sides_of(domain, axis):
     return tuple(domain.get(name, "open") for name in side_names(len(domain["lower"]), axis))
 
 
+def opened(case, axis):
+    """Whether each of the two sides of an axis has an opening."""
+    sides = {opening.get("side") for kind in ("inflow", "outflow") for opening in case.get(kind, [])}
+    return tuple(name in sides for name in side_names(len(case["domain"]["lower"]), axis))
+
+
+def continued(case, axis):
+    """Whether there are images behind each of the two sides of an axis: liquid ends at open ones without an opening."""
+    kinds = sides_of(case["domain"], axis)
+    return (True, True) if kinds == "periodic" else tuple(
+        kind != "open" or open_there for kind, open_there in zip(kinds, opened(case, axis)))
+
+
 def boxes_of(case, bounds=None):
     """Lower and upper corners of the solid boxes of a case, within the domain, whose corners may be given."""
     lower, upper = bounds or (np.array(case["domain"]["lower"], float), np.array(case["domain"]["upper"], float))
@@ -58,7 +71,7 @@ def with_images(case, position, reach, bounds=None):
             image = position[near].copy()
             if kind == "periodic":
                 image[:, axis] += other - plane
-            elif kind[side] == "open":
+            elif not continued(case, axis)[side]:
                 continue
             else:
                 image[:, axis] = 2 * plane - image[:, axis]
