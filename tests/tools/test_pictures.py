@@ -189,6 +189,36 @@ class Planes(Scratch):
             self.assertGreater(axis.yaxis.label.get_window_extent().x0, 0)
         style.plt.close(figure)
 
+    def test_the_lowest_panel_of_each_column_has_labels(self):
+        folder = new_folder(self.path, "run")
+        write_tank(folder)
+        run = DrawnRun(folder)
+        plane, panels = planes.panels_of(run, "pressure", run.snapshots(), [0, 1, 2])
+        with mock.patch.object(planes, "panel_grid", lambda *_: (2, 2)):
+            figure = planes.plane_figure(run, "pressure", plane, panels, style.Normalize(0, 1), "neither")
+        labelled = [bool(axis.get_xlabel()) and any(label.get_visible() for label in axis.get_xticklabels()) for axis in figure.axes[:3]]
+        self.assertEqual(labelled, [False, True, True])
+        style.plt.close(figure)
+
+    def test_liquid_is_drawn_up_to_the_line_of_its_surface(self):
+        # A disc of one colour in a round line on a picture as coarse as its pixels are many: no white between the two.
+        folder = new_folder(self.path, "run")
+        write_case(folder, "A drop", [0, 0], [1, 1], 0.05)
+        drop = lattice([0, 0], [1, 1], 0.05)
+        drop = drop[np.hypot(*(drop - 0.5).T) < 0.4]
+        write_snapshots(folder / "fluid.vtkhdf", [0], lambda t: drop, {"pressure": lambda p, t: 1 + 0 * p[:, 0]})
+        run = DrawnRun(folder)
+        plane, (panel,) = planes.panels_of(run, "pressure", run.snapshots(), [0])
+        figure = style.plt.figure(figsize=(12, 12), dpi=100)
+        axis = figure.add_axes((0, 0, 1, 1))
+        planes.draw_panel(axis, run, plane, panel, (0, 1, 0, 1), "pressure", style.Normalize(1, 2))
+        figure.canvas.draw()
+        across = np.asarray(figure.canvas.buffer_rgba())[:, 60:600, 0].astype(int)  # from beside the left edge to the middle
+        style.plt.close(figure)
+        for row in across[400:800]:
+            inside = np.flatnonzero(row < 200)[0]  # the line
+            self.assertLess(row[inside:].max(), 225)  # the line is blended into what it covers
+
     def test_a_plane_outside_the_domain_is_said(self):
         folder = new_folder(self.path, "run")
         write_tank(folder)

@@ -181,16 +181,28 @@ def frame_of(panels):
             max(extents[:, 2].min(), low[1]), min(extents[:, 3].max(), high[1]))
 
 
+def widened(values):
+    """Values with those of a neighbour in two rows of pixels around them."""
+    values = values.copy()
+    for rows in (values, values.T, values, values.T):
+        for here, there in ((rows[:-1], rows[1:]), (rows[1:], rows[:-1])):
+            np.copyto(here, there.copy(), where=np.isnan(here))
+    return values
+
+
 def draw_panel(axis, run, plane, panel, frame, name, norm):
     """One panel with walls and solids; returns the image."""
-    image = axis.imshow(panel.values.T, origin="lower", extent=panel.extent, norm=norm, interpolation="nearest",
-                        cmap=FIELDS.get(name, "RdBu_r" if name in SIGNED else "viridis"), rasterized=True)
-    if panel.share is not None and np.nanmin(panel.share) < 0.5:
-        axis.contour(panel.share.T, levels=[0.5], extent=panel.extent, colors=[EDGE], linewidths=0.7)
+    surface = panel.share is not None and np.nanmin(panel.share) < 0.5
+    image = axis.imshow((widened(panel.values) if surface else panel.values).T, origin="lower", extent=panel.extent, norm=norm,
+                        interpolation="nearest", cmap=FIELDS.get(name, "RdBu_r" if name in SIGNED else "viridis"), rasterized=True)
+    if surface:
+        # Pixels end in steps: they go on a little beyond the surface, and are covered there.
+        axis.contourf(panel.share.T, levels=[-np.inf, 0.5], extent=panel.extent, colors=["white"], origin="lower")
+        axis.contour(panel.share.T, levels=[0.5], extent=panel.extent, colors=[EDGE], linewidths=0.7, origin="lower")
     for phase in panel.phases:
         if phase.min() < 0.5 < phase.max():
             for color, width in ((EDGE, 1.8), ("white", 0.8)):  # seen on dark and on light
-                axis.contour(phase.T, levels=[0.5], extent=panel.extent, colors=[color], linewidths=width)
+                axis.contour(phase.T, levels=[0.5], extent=panel.extent, colors=[color], linewidths=width, origin="lower")
     axis.set(xlim=frame[:2], ylim=frame[2:], aspect="equal", title=time_title(panel.time, run.si))
     for side in ("top", "right"):
         axis.spines[side].set_visible(True)
@@ -215,8 +227,9 @@ def plane_figure(run, name, plane, panels, norm, ends, most=None):
         axis.remove()
     for axis, panel in zip(axes.flat, panels):
         image = draw_panel(axis, run, plane, panel, frame, name, norm)
-    for axis in axes[-1, :]:
+    for axis in axes.flat[max(0, len(panels) - columns):len(panels)]:  # the lowest of each column
         axis.set_xlabel(length_label("xyz"[plane.axes[0]], run.si))
+        axis.tick_params(labelbottom=True)
     for axis in axes[:, 0]:
         axis.set_ylabel(length_label("xyz"[plane.axes[1]], run.si))
     figure.colorbar(image, ax=[a for a in axes.flat if a.figure], label=field_label(name, run.si), shrink=0.9, extend=ends,
