@@ -118,6 +118,19 @@ class Planes(Scratch):
         crossing = [np.interp(0.5, column, y) for column in above]
         np.testing.assert_allclose(crossing, 0.3, atol=0.01)  # a fifth of a spacing: the sums are on half spacings
 
+    def test_there_is_no_interface_in_the_air(self):
+        folder = new_folder(self.path, "run")
+        write_case(folder, "Oil on water", [0, 0], [1, 1], 0.05, x="periodic", bottom="free-slip")
+        layers, jet = lattice([0, 0], [1, 0.5], 0.05), lattice([0.4, 0.5], [0.6, 0.9], 0.05)
+        write_snapshots(folder / "fluid.vtkhdf", [0.0], lambda t: np.concatenate([layers, jet]),
+                        {"pressure": lambda p, t: p[:, 1], "phase": lambda p, t: 1.0 * (p[:, 1] > 0.25)})
+        run = DrawnRun(folder)
+        plane, (panel,) = planes.panels_of(run, "pressure", run.snapshots(), [0])
+        (oil,) = panel.phases
+        y = np.linspace(*panel.extent[2:], oil.shape[1])
+        self.assertTrue((y > 0.8).any())
+        self.assertFalse((oil[:, y > 0.35] < 0.5).any())
+
     def test_liquid_is_drawn_up_to_a_body_and_not_along_its_dry_face(self):
         # Faces are half a spacing from the nearest particles: where they end, half of the kernel sum is missing.
         folder = new_folder(self.path, "run")

@@ -19,6 +19,7 @@ from .walls import bounds_at, draw_walls, farthest_bounds
 FINENESS = 0.5  # distance of the sums of a plane, in spacings; coarser where there are more than MOST along a side
 MOST = 600
 BEHIND_FIRST = 1.5  # spacings from an opening, behind the first particles beside it
+SEEN = 0.02     # kernel sum from which there are averages: beyond it there is no phase, and no interface
 WITHIN = 0.7    # share of a point's cell that a body covers where no liquid is drawn
 PIXELS = 600    # along the longer side, at least: between the sums pixels are linear
 
@@ -99,7 +100,8 @@ def particle_plane(run, plane, snapshot, values):
     inside = [(phase[index] == number).astype(float) for number in np.unique(phase)[1:]]
     weight, *totals = up_to_openings(run.case, plane, sides, low, step, run.spacing,
                                      kernel_sums(own, spacing, low, step, shape, (values[index], *inside), beside))
-    total, *phases = (finer(sums) / np.maximum(finer(weight), 1e-300) for sums in totals)
+    fine = finer(weight)
+    total, *phases = (np.where(fine > SEEN, finer(sums) / np.maximum(fine, SEEN), np.nan) for sums in totals)
     bodies = share_in_plane(run, plane, snapshot.time, low, step, shape)
     weight = finer(weight if bodies is None else beside_bodies(weight, bodies[1]))
     if bodies is not None and plane.normal is not None:
@@ -197,10 +199,10 @@ def draw_panel(axis, run, plane, panel, frame, name, norm):
                         interpolation="nearest", cmap=FIELDS.get(name, "RdBu_r" if name in SIGNED else "viridis"), rasterized=True)
     if surface:
         # Pixels end in steps: they go on a little beyond the surface, and are covered there.
-        axis.contourf(panel.share.T, levels=[-np.inf, 0.5], extent=panel.extent, colors=["white"], origin="lower")
-        axis.contour(panel.share.T, levels=[0.5], extent=panel.extent, colors=[EDGE], linewidths=0.7, origin="lower")
+        axis.contourf(panel.share.T, levels=[-np.inf, 0.5], extent=panel.extent, colors=["white"], origin="lower", zorder=2.1)
+        axis.contour(panel.share.T, levels=[0.5], extent=panel.extent, colors=[EDGE], linewidths=0.7, origin="lower", zorder=2.2)
     for phase in panel.phases:
-        if phase.min() < 0.5 < phase.max():
+        if np.nanmin(phase) < 0.5 < np.nanmax(phase):
             for color, width in ((EDGE, 1.8), ("white", 0.8)):  # seen on dark and on light
                 axis.contour(phase.T, levels=[0.5], extent=panel.extent, colors=[color], linewidths=width, origin="lower")
     axis.set(xlim=frame[:2], ylim=frame[2:], aspect="equal", title=time_title(panel.time, run.si))
