@@ -189,6 +189,15 @@ class Planes(Scratch):
                 np.testing.assert_allclose(panel.extent, (0, 1, 0, 0.5), atol=0.002)  # a pixel
                 np.testing.assert_allclose(panel.values[0], panel.values[80], atol=0.01)
 
+    def test_planes_reach_the_sides_of_domains_of_any_width(self):
+        for width in (1.01, 1.02, 1.03, 1.04):
+            folder = new_folder(self.path, f"run_{width}")
+            write_case(folder, "A channel", [0, 0], [width, 0.5], 0.05, x="periodic", bottom="no-slip", top="no-slip")
+            write_snapshots(folder / "fluid.vtkhdf", [0], lambda t: lattice([0, 0], [width, 0.5], 0.05), {"pressure": lambda p, t: p[:, 1]})
+            run = DrawnRun(folder)
+            plane, (panel,) = planes.panels_of(run, "pressure", run.snapshots(), [0])
+            self.assertGreaterEqual(panel.extent[1], width)
+
     def test_labels_are_within_the_picture_where_the_layout_changes_the_ticks(self):
         folder = new_folder(self.path, "run")
         write_case(folder, "A flume", [0, 0], [0.5, 0.2], 0.005, left="free-slip", bottom="free-slip")
@@ -254,6 +263,22 @@ class Rendering(Scratch):
         run = Results(folder)
         surface = liquid_surface(run.case, run.snapshots()[0].position, run.spacing)
         np.testing.assert_allclose(surface.GetBounds(), (0, 2, 0, 1, 0, 0.5), atol=0.1 * run.spacing)
+
+    def test_the_surface_ends_flat_at_openings(self):
+        folder = new_folder(self.path, "run")
+        write_tank(folder, left="open", right="open", front="free-slip", back="free-slip", bottom="free-slip")
+        with (folder / "case.toml").open("a") as file:
+            file.write('[[inflow]]\nside = "left"\n[[outflow]]\nside = "right"\n')
+        run = Results(folder)
+        position = run.snapshots()[0].position
+        gap = (position[:, 0] < 0.1) | (position[:, 0] > 1.9)
+        surface = liquid_surface(run.case, position[~gap | (position[:, 1] < 0.4)], run.spacing)
+        np.testing.assert_allclose(surface.GetBounds(), (0, 2, 0, 1, 0, 0.5), atol=0.1 * run.spacing)
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        points = vtk_to_numpy(surface.GetPoints().GetData())
+        for side in (0, 2):
+            end = points[np.abs(points[:, 0] - side) < 1e-3]
+            np.testing.assert_allclose(end[:, 1].max(), 1, atol=0.1 * run.spacing)
 
     def picture(self, folder):
         with mock.patch.object(views, "DOTS_PER_INCH", 30):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .shares import beside_bodies
-from .sums import SUPPORT, continued, kernel_sums, with_images
+from .sums import SUPPORT, continued, kernel_sums, up_to_openings, with_images
 
 FINENESS = 0.8  # distance of the points at which sums are taken, in spacings
 MARGIN = 3.0    # how far beyond a side the surface is made, in spacings
@@ -49,7 +49,7 @@ def liquid_surface(case, position, spacing, copies=1, bottom=None, bodies=None, 
             cuts.AddItem(plane)
     cells = np.maximum(2, np.ceil((high - low) / (FINENESS * spacing)).astype(int))
     step = (high - low).max() / cells[np.argmax(high - low)]
-    filled, = kernel_sums(place, spacing, low, step, cells + 1)
+    filled, = up_to_openings(case, range(3), (lower, upper), low, step, spacing, kernel_sums(place, spacing, low, step, cells + 1))
     share = None if bodies is None else bodies(low, step, cells + 1)
     if share is not None:
         filled = beside_bodies(filled, share)

@@ -13,12 +13,11 @@ from .request import Request, request_of
 from .shares import beside_bodies, share_in_plane
 from .style import (EDGE, FIELDS, SIGNED, SOLID, chosen_steps, extension, field_norm, finish, keep_ticks, length_label,
                     panel_grid, panel_size, time_title, title_of)
-from .sums import SUPPORT, boxes_of, kernel_sums, opened, with_images
+from .sums import SUPPORT, boxes_of, kernel_sums, up_to_openings, with_images
 from .walls import bounds_at, draw_walls, farthest_bounds
 
 FINENESS = 0.5  # distance of the sums of a plane, in spacings; coarser where there are more than MOST along a side
 MOST = 600
-BEHIND_FIRST = 1.5  # spacings from an opening, behind the first particles beside it
 SEEN = 0.02     # kernel sum from which there are averages: beyond it there is no phase, and no interface
 WITHIN = 0.7    # share of a point's cell that a body covers where no liquid is drawn
 PIXELS = 600    # along the longer side, at least: between the sums pixels are linear
@@ -95,11 +94,11 @@ def particle_plane(run, plane, snapshot, values):
     low = np.maximum(sides[0], own.min(axis=0) - spacing)
     high = np.minimum(sides[1], own.max(axis=0) + spacing)
     step = max(FINENESS * spacing, np.max(high - low) / MOST)
-    shape = np.maximum(2, np.round((high - low) / step).astype(int) + 1)
+    shape = np.maximum(2, np.ceil((high - low) / step - 1e-6).astype(int) + 1)
     phase = snapshot.field("phase") if "phase" in snapshot.fields else np.zeros(len(values))
     inside = [(phase[index] == number).astype(float) for number in np.unique(phase)[1:]]
-    weight, *totals = up_to_openings(run.case, plane, sides, low, step, run.spacing,
-                                     kernel_sums(own, spacing, low, step, shape, (values[index], *inside), beside))
+    sums = kernel_sums(own, spacing, low, step, shape, (values[index], *inside), beside)
+    weight, *totals = up_to_openings(run.case, axes, sides, low, step, spacing, sums)
     fine = finer(weight)
     total, *phases = (np.where(fine > SEEN, finer(sums) / np.maximum(fine, SEEN), np.nan) for sums in totals)
     bodies = share_in_plane(run, plane, snapshot.time, low, step, shape)
@@ -109,25 +108,6 @@ def particle_plane(run, plane, snapshot, values):
         weight[finer(bodies[0]) > WITHIN] = np.nan
     drawn = np.where(weight >= 0.5, total, np.nan)
     return Panel(snapshot.time, drawn, extent_of(low, low + (shape - 1) * step, drawn.shape), *sides, weight, tuple(phases))
-
-
-def up_to_openings(case, plane, sides, low, step, spacing, sums):
-    """Kernel sums beside openings, where particles enter and leave one by one: as they are behind the first of them, where
-    they lack."""
-    for k, axis in enumerate(plane.axes):
-        for side, open_there in enumerate(opened(case, axis)):
-            rows = [np.moveaxis(one, k, 0) for one in sums]
-            # The rows from the side to where none lacks a particle that has left or is to enter.
-            at = int(round((sides[side][k] - low[k]) / step))
-            deep = int(np.ceil(BEHIND_FIRST * spacing / step))
-            if not open_there or not 0 <= at < len(rows[0]) or len(rows[0]) <= deep:
-                continue
-            inner = at + (deep if side == 0 else -deep)
-            for row in range(at, inner, 1 if side == 0 else -1):
-                lacks = rows[0][row] < rows[0][inner]
-                for one in rows:
-                    one[row][lacks] = one[inner][lacks]
-    return sums
 
 
 def extent_of(low, high, shape):

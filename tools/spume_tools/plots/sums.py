@@ -8,6 +8,7 @@ import numpy as np
 
 SUPPORT = 2.0  # in spacings
 BLOCK = 20000  # particles whose distances fit into the cache
+BEHIND_FIRST = 1.5  # spacings from an opening, behind the first particles beside it
 # Integrals of W in units of the spacing: its sum over a lattice of one spacing, on average over the places of its points.
 INTEGRAL = {2: 4 * np.pi / 7, 3: 16 * np.pi / 21}
 SIDES = (("left", "right"), ("front", "back"), ("bottom", "top"))
@@ -115,3 +116,23 @@ def kernel_sums(position, spacing, origin, step, shape, weights=(), beside=None)
                 total += np.bincount(at, w if weight is None else w * weight[part][near], len(total))
     integral = INTEGRAL[3 if in_plane else d]
     return [total.reshape(shape) / integral for total in out]
+
+
+def up_to_openings(case, axes, sides, low, step, spacing, sums):
+    """Kernel sums at the points low + step * (i, j[, k]), along some axes, as they are without the gaps at openings.
+
+    Particles enter and leave one by one. Where the sums lack some beside an opening they are those behind the first of
+    them. sides: lower and upper ends of these axes.
+    """
+    deep = int(np.ceil(BEHIND_FIRST * spacing / step))
+    for k, axis in enumerate(axes):
+        for side, has_opening in enumerate(opened(case, axis)):
+            rows = [np.moveaxis(one, k, 0) for one in sums]
+            inner = int(round((sides[side][k] - low[k]) / step)) + (deep, -deep)[side]
+            if not has_opening or not 0 <= inner < len(rows[0]):
+                continue
+            for row in (range(inner), range(inner + 1, len(rows[0])))[side]:
+                lacks = rows[0][row] < rows[0][inner]
+                for one in rows:
+                    one[row][lacks] = one[inner][lacks]
+    return sums

@@ -43,5 +43,5 @@ def draw_walls(axis, run, plane, low, high, frame):
                 continue
             corner, size = [frame[0], frame[2]], [frame[1] - frame[0], frame[3] - frame[2]]
             corner[k], size[k] = min(at, edge), abs(edge - at)
-            axis.add_patch(Rectangle(corner, *size, facecolor=SOLID, edgecolor="none", zorder=3.5))
+            axis.add_patch(Rectangle(corner, *size, facecolor=SOLID, edgecolor="none", zorder=2.4))
             (axis.axvline, axis.axhline)[k](at, linewidth=WIDTH, color=EDGE, zorder=3.6)
