@@ -219,6 +219,10 @@ def plane_figure(run, name, plane, panels, norm, ends, most=None):
     where = "" if plane.normal is None else f", {'xyz'[plane.normal]} = {plane.coordinate:.4g}" + (" m" if run.si else "")
     figure.suptitle(f"{title_of(run)}: {field_label(name)}{where}")
     keep_ticks(figure, axes.flat[:len(panels)])
+    # Narrow panels have less room than was meant for them between the labels of one another.
+    place, inches = axes[0, 0].get_position(original=True), figure.get_size_inches()
+    lacks = np.maximum(0, size * np.array([width, height]) - inches * place.size)
+    figure.set_size_inches(inches + lacks * [columns, rows])
     return figure
 
 

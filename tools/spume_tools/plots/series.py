@@ -39,6 +39,17 @@ def plot_numerics(run, out):
     return [finish(figure, out / "numerics.png", title_of(run))] if figure else []
 
 
+def cost_of(stage, item):
+    """What a stage takes per pair, per item where it has no pairs, or in all."""
+    work, item = (stage["pairs"], "pair") if stage["pairs"] else (stage["particles"], item)
+    if not work:
+        return f"{stage['seconds']:.3g} s"
+    seconds = stage["seconds"] / work
+    unit, length = next(((unit, length) for unit, length in (("ns", 1e-9), ("µs", 1e-6), ("ms", 1e-3)) if seconds < 999.5 * length),
+                        ("s", 1.0))
+    return f"{seconds / length:.3g} {unit} per {item}"
+
+
 def plot_ledger(run, out):
     """Share of each stage in the time of the run, the largest first, with its cost."""
     if not run.has("ledger.json"):
@@ -52,9 +63,7 @@ def plot_ledger(run, out):
     shares = [100 * stage["seconds"] / whole for stage in stages]
     axis.barh([stage["stage"] for stage in stages], shares, color="tab:blue")
     for row, (stage, share) in enumerate(zip(stages, shares)):
-        work, unit = (stage["pairs"], "pair") if stage["pairs"] else (stage["particles"], "particle")
-        cost = f"{1e9 * stage['seconds'] / work:.3g} ns per {unit}" if work else f"{stage['seconds']:.3g} s"
-        axis.text(share, row, " " + cost, va="center", fontsize=7)
+        axis.text(share, row, " " + cost_of(stage, "point" if run.on_grid else "particle"), va="center", fontsize=7)
     axis.set(xlabel=f"share of the run's {whole:.3g} s of wall time [%]", xlim=(0, 1.35 * max(shares)),
              title=f"all else: {max(0, 100 - sum(shares)):.1f} %")
     axis.tick_params(axis="y", labelsize=8)
