@@ -6,9 +6,10 @@ from unittest import mock
 
 import paths
 import numpy as np
+from matplotlib.colors import to_rgb
 from spume_tools.plots import bodies
 from spume_tools.plots.bodies import Body, copies, cut, outline, places, turned
-from spume_tools.plots.style import plt
+from spume_tools.plots.style import SOLID, plt
 
 # A square of two triangles.
 SQUARE = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0, 0], [1, 1, 0], [0, 1, 0]]], float)
@@ -22,6 +23,19 @@ def run_in(lower, upper, **sides):
 def run_of(**columns):
     table = {name: np.array(values, float) for name, values in columns.items()}
     return SimpleNamespace(dimensions=2, has=lambda name: True, table=lambda name: table)
+
+
+def pixels_with(body):
+    """A picture, 200 x 200 pixels, of a body in a square from -1 to 1."""
+    figure, axis = plt.subplots(figsize=(2, 2), dpi=100)
+    axis.set(xlim=(-1, 1), ylim=(-1, 1), aspect="equal", position=(0, 0, 1, 1))
+    run = SimpleNamespace(**vars(run_in([-1, -1], [1, 1])), has=lambda name: False)
+    with mock.patch.object(bodies, "bodies_of", lambda *_: [body]):
+        bodies.draw_bodies(axis, run, SimpleNamespace(normal=None), 0)
+    figure.canvas.draw()
+    pixels = np.asarray(figure.canvas.buffer_rgba())[:, :, :3].copy()
+    plt.close(figure)
+    return pixels
 
 
 class Bodies(unittest.TestCase):
@@ -68,15 +82,16 @@ class Bodies(unittest.TestCase):
         angle = np.linspace(0, 2 * np.pi, 41)
         rim = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
         disc = np.stack([np.zeros((40, 3)), rim[:-1], rim[1:]], axis=1)
-        figure, axis = plt.subplots(figsize=(2, 2), dpi=100)
-        axis.set(xlim=(-1, 1), ylim=(-1, 1), aspect="equal", position=(0, 0, 1, 1))
-        run = SimpleNamespace(**vars(run_in([-1, -1], [1, 1])), has=lambda name: False)
-        with mock.patch.object(bodies, "bodies_of", lambda *_: [Body(0, disc, False)]):
-            bodies.draw_bodies(axis, run, SimpleNamespace(normal=None), 0)
-        figure.canvas.draw()
-        pixels = np.asarray(figure.canvas.buffer_rgba())[30:-30, 30:-30, :3]
-        plt.close(figure)
+        pixels = pixels_with(Body(0, disc, False))[30:-30, 30:-30]
         self.assertEqual(len(np.unique(pixels[60:80].reshape(-1, 3), axis=0)), 1)
+
+    def test_what_lies_outside_a_tank_is_solid(self):
+        pixels = pixels_with(Body(0, 0.5 * SQUARE - [0.25, 0.25, 0], True))  # from 75 to 125
+        solid = np.all(pixels == np.round(255 * np.array(to_rgb(SOLID))), axis=-1)
+        inside = (slice(78, 122), slice(78, 122))
+        self.assertFalse(solid[inside].any())
+        for outside in (np.s_[5:70, 5:195], np.s_[130:195, 5:195], np.s_[5:195, 5:70], np.s_[5:195, 130:195]):
+            self.assertTrue(solid[outside].all())
 
     def test_a_plane_through_corners_cuts_all_around(self):
         corners = np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)

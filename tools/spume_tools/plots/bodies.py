@@ -115,10 +115,18 @@ def outline(corners):
     return edges[first[count == 1]]
 
 
-def joined(corners):
-    """Triangles, all turned the same way, as one path: drawn one by one they leave seams."""
+def joined(corners, frame=None):
+    """Triangles, all counter-clockwise, as one path: drawn one by one they leave seams.
+
+    frame: (left, right, bottom, top), of which the path is what lies outside the triangles: they turn against it.
+    """
     rings = np.concatenate([corners, corners[:, :1]], axis=1)[:, :, :2]
-    return Path(rings.reshape(-1, 2), [Path.MOVETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY] * len(corners))
+    shape = Path(rings.reshape(-1, 2), [Path.MOVETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY] * len(corners))
+    if frame is None:
+        return shape
+    low, high = np.minimum(frame[::2], rings.min(axis=(0, 1))), np.maximum(frame[1::2], rings.max(axis=(0, 1)))
+    around = [(low[0], low[1]), (low[0], high[1]), (high[0], high[1]), (high[0], low[1]), (low[0], low[1])]
+    return Path.make_compound_path(Path(around, closed=True), shape)
 
 
 def cut(corners, normal, coordinate, axes):
@@ -135,15 +143,15 @@ def cut(corners, normal, coordinate, axes):
 
 
 def draw_bodies(axis, run, plane, time):
-    """Solids are filled in two dimensions, where they lie inside their shape, and cut by the plane in three."""
+    """Solids are filled in two dimensions, and cut by the plane in three."""
     for body, corners in standing(run, time):
         if plane.normal is not None:
             axis.add_collection(LineCollection(cut(corners, plane.normal, plane.coordinate, plane.axes), colors=EDGE,
                                                linewidths=1.2, zorder=3), autolim=False)
             continue
         edges = outline(corners)
-        if not body.outside:
-            axis.add_artist(PathPatch(joined(corners), facecolor=SOLID, edgecolor="none", zorder=3))
+        frame = (*axis.get_xlim(), *axis.get_ylim()) if body.outside else None
+        axis.add_artist(PathPatch(joined(corners, frame), facecolor=SOLID, edgecolor="none", zorder=3))
         axis.add_collection(LineCollection(edges, colors=EDGE, linewidths=0.8, zorder=3), autolim=False)
 
 
