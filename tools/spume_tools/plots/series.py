@@ -62,8 +62,9 @@ def plot_ledger(run, out):
     figure, axis = plt.subplots(figsize=(6.4, 1 + 0.24 * len(stages)))
     shares = [100 * stage["seconds"] / whole for stage in stages]
     axis.barh([stage["stage"] for stage in stages], shares, color="tab:blue")
+    item = "point" if run.has("case.toml") and run.on_grid else "particle"
     for row, (stage, share) in enumerate(zip(stages, shares)):
-        axis.text(share, row, " " + cost_of(stage, "point" if run.on_grid else "particle"), va="center", fontsize=7)
+        axis.text(share, row, " " + cost_of(stage, item), va="center", fontsize=7)
     axis.set(xlabel=f"share of the run's {whole:.3g} s of wall time [%]", xlim=(0, 1.35 * max(shares)),
              title=f"all else: {max(0, 100 - sum(shares)):.1f} %")
     axis.tick_params(axis="y", labelsize=8)
