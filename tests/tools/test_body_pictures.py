@@ -9,6 +9,9 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from spume_tools.plots import bodies
 from spume_tools.plots.bodies import Body, copies, cut, outline, places, turned
+from spume_tools.plots.closing import closed, open_edges
+from spume_tools.plots.planes import Plane
+from spume_tools.plots.shares import fill_bodies
 from spume_tools.plots.style import SOLID, plt
 
 # A square of two triangles.
@@ -25,13 +28,25 @@ def run_of(**columns):
     return SimpleNamespace(dimensions=2, has=lambda name: True, table=lambda name: table)
 
 
-def pixels_with(body):
-    """A picture, 200 x 200 pixels, of a body in a square from -1 to 1."""
+def box():
+    """The triangles of a cube from -1 to 1, outwards."""
+    corner = lambda i: [1 if i & bit else -1 for bit in (1, 2, 4)]
+    faces = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+    return np.array([[corner(a), corner(b), corner(c)] for w, x, y, z in faces for a, b, c in ((w, x, y), (w, y, z))], float)
+
+
+def volume_of(corners):
+    """What a closed surface holds, by the theorem of Gauss."""
+    return np.sum(np.linalg.det(corners)) / 6
+
+
+def pixels_with(*standing_there, dimensions=2, draw=lambda axis, run: bodies.draw_shapes(axis, run, 0)):
+    """A picture, 200 x 200 pixels, of bodies in a square or cube from -1 to 1."""
     figure, axis = plt.subplots(figsize=(2, 2), dpi=100)
     axis.set(xlim=(-1, 1), ylim=(-1, 1), aspect="equal", position=(0, 0, 1, 1))
-    run = SimpleNamespace(**vars(run_in([-1, -1], [1, 1])), has=lambda name: False)
-    with mock.patch.object(bodies, "bodies_of", lambda *_: [body]):
-        bodies.draw_bodies(axis, run, SimpleNamespace(normal=None), 0)
+    run = SimpleNamespace(**vars(run_in([-1.0] * dimensions, [1.0] * dimensions)), has=lambda name: False, spacing=0.1)
+    with mock.patch.object(bodies, "bodies_of", lambda *_: list(standing_there)):
+        draw(axis, run)
     figure.canvas.draw()
     pixels = np.asarray(figure.canvas.buffer_rgba())[:, :, :3].copy()
     plt.close(figure)
@@ -84,6 +99,40 @@ class Bodies(unittest.TestCase):
         disc = np.stack([np.zeros((40, 3)), rim[:-1], rim[1:]], axis=1)
         pixels = pixels_with(Body(0, disc, False))[30:-30, 30:-30]
         self.assertEqual(len(np.unique(pixels[60:80].reshape(-1, 3), axis=0)), 1)
+
+    def test_what_is_taken_away_from_a_body_is_not_filled(self):
+        ring = [Body(0, SQUARE - [0.5, 0.5, 0], False), Body(1, 0.5 * SQUARE - [0.25, 0.25, 0], False, True)]
+        self.assert_ring(pixels_with(*ring, draw=lambda axis, run: fill_bodies(axis, run, Plane((0, 1), None, None, *run.bounds()), 0)))
+
+    def test_what_a_plane_cuts_of_a_body_is_filled(self):
+        pile, core = (half * box() for half in (0.5, 0.25))
+        pictured = pixels_with(Body(0, pile, False), Body(1, core, False, True), dimensions=3,
+                               draw=lambda axis, run: fill_bodies(axis, run, Plane((0, 2), 1, 0.1, *run.bounds()), 0))
+        self.assert_ring(pictured)
+
+    def assert_ring(self, pixels):
+        """Solid between squares from 50 to 150 and from 75 to 125 pixels."""
+        solid = np.all(pixels == np.round(255 * np.array(to_rgb(SOLID))), axis=-1)
+        for within in (np.s_[55:70, 55:145], np.s_[130:145, 55:145], np.s_[55:145, 55:70], np.s_[55:145, 130:145]):
+            self.assertTrue(solid[within].all())
+        for without in (np.s_[80:120, 80:120], np.s_[5:45, 5:195], np.s_[5:195, 155:195]):
+            self.assertFalse(solid[without].any())
+
+    def test_surfaces_that_leave_the_domain_are_closed(self):
+        lower, upper = np.array([-1.0] * 3), np.array([1.0] * 3)
+        whole = box()
+        along_z = np.ptp(whole[:, :, 2], axis=1) > 0
+        pile = whole[along_z]
+        beach = np.array([[[-2, -2, -1.5], [2, -2, 0.5], [2, 2, 0.5]], [[-2, -2, -1.5], [2, 2, 0.5], [-2, 2, -1.5]]], float)
+        for surface, volume in ((whole, 8.0), (pile, 8.0)):
+            self.assertEqual(len(open_edges(closed(surface, lower, upper))), 0)
+            self.assertAlmostEqual(volume_of(closed(surface, lower, upper)), volume)
+        solid = closed(beach, lower, upper)
+        self.assertEqual(len(open_edges(solid)), 0)
+        self.assertAlmostEqual(volume_of(solid), 16 * (-0.5 - solid[..., 2].min()))
+        ceiling = closed(beach[:, ::-1], lower, upper)
+        self.assertGreater(ceiling[..., 2].max(), 1)
+        self.assertAlmostEqual(volume_of(ceiling), 16 * (ceiling[..., 2].max() + 0.5))
 
     def test_what_lies_outside_a_tank_is_solid(self):
         pixels = pixels_with(Body(0, 0.5 * SQUARE - [0.25, 0.25, 0], True))  # from 75 to 125

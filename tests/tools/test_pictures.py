@@ -12,7 +12,7 @@ import numpy as np
 from PIL import Image
 from spume_tools.plots import bubble_views, planes, style, views
 from spume_tools.plots.liquid import liquid_surface
-from spume_tools.plots.renderer import Scene, View, capped, closed_surface
+from spume_tools.plots.renderer import Scene, View, closed_surface
 from spume_tools.plots.request import DrawnRun, Request
 from spume_tools.plots.sums import kernel_sums
 from spume_tools.results import MissingResult, Results
@@ -256,15 +256,6 @@ class Rendering(Scratch):
         self.assertEqual(image.shape, (100, 200, 3))
         inside = np.all(image != 255, axis=-1)
         self.assertTrue(inside[55:, :95].all() and not inside[:45].any() and not inside[:, 105:].any())
-
-    def test_open_ends_of_solids_are_closed_and_sheets_are_not(self):
-        box = block([0, 0, 0], [1, 2, 3])
-        for open_there, triangles in ((slice(4, 8), 12), (slice(0, 4), 12)):  # across y, across x
-            tube = closed_surface(np.delete(box, open_there, axis=0))
-            self.assertEqual(tube.GetNumberOfPolys(), 8)
-            self.assertEqual(capped(tube).GetNumberOfPolys(), triangles)
-        self.assertEqual(capped(closed_surface(box)).GetNumberOfPolys(), 12)
-        self.assertEqual(capped(closed_surface(box[:2])).GetNumberOfPolys(), 2)
 
     def test_the_surface_is_where_the_liquid_ends(self):
         folder = new_folder(self.path, "run")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The walls of bodies in a plane, where they stand at a time: bodies.vtp has them at the start, bodies.csv where they go."""
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from matplotlib.collections import LineCollection
@@ -9,6 +10,7 @@ from matplotlib.path import Path
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
+from .closing import closed, open_edges
 from .style import EDGE, SOLID
 from .sums import sides_of
 
@@ -28,18 +30,33 @@ def bodies_of(run, taken_away=False):
     path = run.folder / "bodies.vtp"
     if not path.exists():
         return []
+    walls, others = _bodies_in(path, path.stat().st_mtime_ns, tuple(map(tuple, run.bounds())))
+    return sorted(walls + (others if taken_away else []), key=lambda body: body.number)
+
+
+@lru_cache(maxsize=4)
+def _bodies_in(path, _, bounds):
+    """Those that are walls and those that are taken away, of a file as it was at a time."""
     reader = vtkXMLPolyDataReader()
     reader.SetFileName(str(path))
     reader.Update()
     surface = reader.GetOutput()
     if not surface.GetNumberOfPolys():
-        return []
+        return [], []
     cells = surface.GetCellData()
     number, wall, inside, subtract = (vtk_to_numpy(cells.GetArray(name)) for name in ("body", "wall", "inside", "subtract"))
     corners = vtk_to_numpy(surface.GetPolys().GetConnectivityArray()).reshape(-1, 3)
     points = vtk_to_numpy(surface.GetPoints().GetData()).astype(float)[corners]
-    return [Body(int(n), points[number == n], not inside[number == n][0], bool(subtract[number == n][0]))
-            for n in np.unique(number) if (taken_away if subtract[number == n][0] else wall[number == n][0])]
+    walls, others = [], []
+    for n in np.unique(number):
+        own = number == n
+        body = Body(int(n), points[own] if len(bounds[0]) == 2 else closed(points[own], *bounds), not inside[own][0],
+                    bool(subtract[own][0]))
+        if body.taken_away:
+            others.append(body)
+        elif wall[own][0]:
+            walls.append(body)
+    return walls, others
 
 
 def turned(vector, points):
@@ -106,13 +123,8 @@ def standing(run, time, box=None, taken_away=False):
 
 
 def outline(corners):
-    """The edges that belong to one triangle alone."""
-    edges = np.concatenate([corners[:, [a, b], :2] for a, b in ((0, 1), (1, 2), (2, 0))])
-    ends = np.round((edges - edges.min(axis=(0, 1))) / np.ptp(edges, axis=(0, 1)).max(), 6)  # corners are floats
-    swap = (ends[:, 0, 0] > ends[:, 1, 0]) | ((ends[:, 0, 0] == ends[:, 1, 0]) & (ends[:, 0, 1] > ends[:, 1, 1]))
-    ends[swap] = ends[swap][:, ::-1]
-    _, first, count = np.unique(ends.reshape(-1, 4), axis=0, return_index=True, return_counts=True)
-    return edges[first[count == 1]]
+    """The edges (N, 2, 2) of a shape of two dimensions."""
+    return open_edges(corners[:, :, :2])
 
 
 def joined(corners, frame=None):
@@ -142,13 +154,14 @@ def cut(corners, normal, coordinate, axes):
     return ends[crossed].reshape(-1, 2, 3)[:, :, list(axes)]
 
 
-def draw_bodies(axis, run, plane, time):
-    """Solids are filled in two dimensions, and cut by the plane in three."""
+def in_parts(run):
+    """Whether the bodies are shapes of which none is taken away from others."""
+    return not any(body.taken_away for body in bodies_of(run, taken_away=True))
+
+
+def draw_shapes(axis, run, time):
+    """Bodies of two dimensions, of which none is taken away from others, with their outlines."""
     for body, corners in standing(run, time):
-        if plane.normal is not None:
-            axis.add_collection(LineCollection(cut(corners, plane.normal, plane.coordinate, plane.axes), colors=EDGE,
-                                               linewidths=1.2, zorder=3), autolim=False)
-            continue
         edges = outline(corners)
         frame = (*axis.get_xlim(), *axis.get_ylim()) if body.outside else None
         axis.add_artist(PathPatch(joined(corners, frame), facecolor=SOLID, edgecolor="none", zorder=3))

@@ -8,9 +8,9 @@ from matplotlib.patches import Rectangle
 
 from ..results import MissingResult
 from ..results.units import field_label
-from .bodies import draw_bodies, extent_with_bodies
+from .bodies import draw_shapes, extent_with_bodies, in_parts
 from .request import Request, request_of
-from .shares import beside_bodies, share_in_plane
+from .shares import beside_bodies, fill_bodies, share_in_plane
 from .style import (EDGE, FIELDS, SIGNED, SOLID, chosen_steps, extension, field_norm, finish, keep_ticks, length_label,
                     panel_grid, panel_size, time_title, title_of)
 from .sums import SUPPORT, boxes_of, kernel_sums, up_to_openings, with_images
@@ -104,7 +104,7 @@ def particle_plane(run, plane, snapshot, values):
     bodies = share_in_plane(run, plane, snapshot.time, low, step, shape)
     weight = finer(weight if bodies is None else beside_bodies(weight, bodies[1]))
     if bodies is not None and plane.normal is not None:
-        # Bodies are drawn over the liquid in two dimensions, and as lines in three: it ends a little behind these.
+        # Bodies are drawn over the liquid: it ends a little behind their faces.
         weight[finer(bodies[0]) > WITHIN] = np.nan
     drawn = np.where(weight >= 0.5, total, np.nan)
     return Panel(snapshot.time, drawn, extent_of(low, low + (shape - 1) * step, drawn.shape), *sides, weight, tuple(phases))
@@ -180,7 +180,8 @@ def draw_panel(axis, run, plane, panel, frame, name, norm):
     if surface:
         # Pixels end in steps: they go on a little beyond the surface, and are covered there.
         axis.contourf(panel.share.T, levels=[-np.inf, 0.5], extent=panel.extent, colors=["white"], origin="lower", zorder=2.1)
-        axis.contour(panel.share.T, levels=[0.5], extent=panel.extent, colors=[EDGE], linewidths=0.7, origin="lower", zorder=2.2)
+        if np.nanmax(panel.share) > 0.5:
+            axis.contour(panel.share.T, levels=[0.5], extent=panel.extent, colors=[EDGE], linewidths=0.7, origin="lower", zorder=2.2)
     for phase in panel.phases:
         if np.nanmin(phase) < 0.5 < np.nanmax(phase):
             for color, width in ((EDGE, 1.8), ("white", 0.8)):  # seen on dark and on light
@@ -192,7 +193,10 @@ def draw_panel(axis, run, plane, panel, frame, name, norm):
         if plane.normal is None or low[plane.normal] <= plane.coordinate <= high[plane.normal]:
             corner = low[list(plane.axes)]
             axis.add_patch(Rectangle(corner, *(high - low)[list(plane.axes)], facecolor=SOLID, edgecolor=EDGE, linewidth=0.8, zorder=3))
-    draw_bodies(axis, run, plane, panel.time)
+    if plane.normal is None and in_parts(run):
+        draw_shapes(axis, run, panel.time)
+    else:
+        fill_bodies(axis, run, plane, panel.time)
     draw_walls(axis, run, plane, panel.low, panel.high, frame)
     return image
 

@@ -88,35 +88,6 @@ def closed_surface(corners):
     return surface
 
 
-def capped(surface):
-    """A surface whose open ends are closed where they lie in two planes across an axis, as of a pile without end."""
-    from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkFiltersCore import vtkFeatureEdges
-    from vtkmodules.vtkFiltersModeling import vtkFillHolesFilter
-
-    edges = vtkFeatureEdges()
-    edges.SetInputData(surface)
-    edges.BoundaryEdgesOn()
-    edges.FeatureEdgesOff()
-    edges.ManifoldEdgesOff()
-    edges.NonManifoldEdgesOff()
-    edges.Update()
-    if not edges.GetOutput().GetNumberOfLines():
-        return surface
-    ends = vtk_to_numpy(edges.GetOutput().GetPoints().GetData())
-    middles = ends[vtk_to_numpy(edges.GetOutput().GetLines().GetConnectivityArray())].reshape(-1, 2, 3).mean(axis=1)
-    low, high = ends.min(axis=0), ends.max(axis=0)
-    size = surface.GetLength()
-    away = np.max(np.minimum(middles - low, high - middles), axis=0)
-    if not np.any((away < 1e-6 * size) & (high - low > 1e-6 * size)):
-        return surface
-    fill = vtkFillHolesFilter()
-    fill.SetInputData(surface)
-    fill.SetHoleSize(size)
-    fill.Update()
-    return fill.GetOutput()
-
-
 class Scene:
     """Things to be drawn, as VTK actors. Colours are (red, green, blue) from 0 to 1."""
 
@@ -180,7 +151,7 @@ class Scene:
                 plane.SetNormal(*np.where(np.arange(3) == axis, inward, 0.0))
                 sides.AddItem(plane)
         cut = vtkClipClosedSurface()
-        cut.SetInputData(capped(closed_surface(corners)))
+        cut.SetInputData(closed_surface(corners))
         cut.SetClippingPlanes(sides)
         cut.SetTolerance(1e-6)
         whole = vtkTriangleFilter()

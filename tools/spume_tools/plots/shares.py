@@ -8,12 +8,14 @@ that of the body.
 import numpy as np
 
 from .bodies import cut, outline, standing
+from .style import EDGE, SOLID
 from .sums import SUPPORT
 
 # Of the kernel, what is divided by at least: less is left only within bodies and in the narrowest of their corners.
 LEAST_LEFT = 0.2
 FINER = 4  # samples across a cell of the grid in a plane, along each axis; along one of them cells are cut exactly
 FINER_3D = 2
+FILLED = 800  # cells along the longer side of a frame, in which bodies are filled
 
 
 def kernel_weights(spacing, step, d):
@@ -62,8 +64,8 @@ def joined(total, covered, body):
     return covered if total is None else np.maximum(total, covered)
 
 
-def share_in_plane(run, plane, time, low, step, shape):
-    """The share of each cell of a plane that bodies cover, and the share of the kernel that they take; None without bodies."""
+def covered_in_plane(run, plane, time, low, step, shape):
+    """The share of each cell of a plane that bodies cover; None without bodies."""
     total = None
     lower, upper = run.bounds()
     reach = SUPPORT * run.spacing
@@ -71,7 +73,28 @@ def share_in_plane(run, plane, time, low, step, shape):
         lines = outline(corners) if plane.normal is None else cut(corners, plane.normal, plane.coordinate, plane.axes)
         covered = covered_cells(lines, low, step, shape)
         total = joined(total, covered, body)
-    return None if total is None else (total, smeared(total, run.spacing, step))
+    return total
+
+
+def share_in_plane(run, plane, time, low, step, shape):
+    """What covered_in_plane() gives, and the share of the kernel that bodies take; None without bodies."""
+    covered = covered_in_plane(run, plane, time, low, step, shape)
+    return None if covered is None else (covered, smeared(covered, run.spacing, step))
+
+
+def fill_bodies(axis, run, plane, time):
+    """Fills what bodies cover of a plane, up to its frame, where one path does not tell it: where a plane cuts them, or
+    some are taken away from others."""
+    low, high = (np.array([limits[side] for limits in (axis.get_xlim(), axis.get_ylim())]) for side in (0, 1))
+    step = (high - low).max() / FILLED
+    shape = np.ceil((high - low) / step).astype(int) + 1
+    covered = covered_in_plane(run, plane, time, low, step, shape)
+    if covered is None or covered.max() < 0.5:
+        return
+    x, y = (low[k] + step * np.arange(shape[k]) for k in (0, 1))
+    axis.contourf(x, y, covered.T, levels=[0.5, 2], colors=[SOLID], zorder=2.3)
+    if covered.min() < 0.5:
+        axis.contour(x, y, covered.T, levels=[0.5], colors=[EDGE], linewidths=0.8, zorder=2.35)
 
 
 def share_in_space(run, time, low, step, shape):
