@@ -328,6 +328,14 @@ class Rendering(Scratch):
         x = np.linspace(*panel.extent[:2], panel.values.shape[0])
         self.assertGreater(panel.share[(x > 0.41) & (x < 0.45), int(0.65 * panel.share.shape[1])].min(), 0.8)
 
+    def test_the_face_of_a_body_at_a_side_covers_the_liquid_there(self):
+        # A thin plate, which the kernel sums of the liquid do not tell: they share one plane at the front.
+        folder = new_folder(self.path, "run")
+        write_tank(folder)
+        write_bodies(folder, block([1.2, 0, 0.1], [1.24, 1, 0.4]))
+        image = self.picture(folder)
+        self.assertGreater(np.mean(image[..., 0] > image[..., 2] + 8), 0.002)  # 0.0027 of the picture, speckled 0.0013
+
     def test_a_tall_tank_fits_the_page(self):
         folder = new_folder(self.path, "run")
         write_tank(folder, height=8.0, left="free-slip", right="free-slip", bottom="free-slip")

@@ -5,6 +5,7 @@ import numpy as np
 
 from ..results import MissingResult
 from ..results.units import field_label
+from .bodies import extent_with_bodies
 from .planes import draw_panel, drawn_fields, frame_of, panels_of
 from .probes import file_stem, quantities_along
 from .request import request_of
@@ -117,7 +118,8 @@ def plot_fields(first, second, out):
         drawn = [panels_of(run, name, s, k) for run, s, k in zip((first, second), snapshots, steps)]
         samples = [panel.values for _, panels in drawn for panel in panels]
         norm = field_norm(name, samples, request_of(first).ranges.get(name))
-        frames = [frame_of(panels) for _, panels in drawn]
+        frames = [extent_with_bodies(run, plane, [panel.time for panel in panels], frame_of(panels))
+                  for run, (plane, panels) in zip((first, second), drawn)]
         sizes = [(f[1] - f[0], f[3] - f[2]) for f in frames]
         size = panel_size(2, len(times), max(w for w, _ in sizes), max(h for _, h in sizes))
         figure, axes = plt.subplots(2, len(times), squeeze=False, constrained_layout=True,

@@ -105,8 +105,11 @@ class Stage:
         cover = 0.2 * self.run.spacing
         for low, high in boxes_of(self.run.case, bounds_at(self.run, time)):
             scene.add_box(low - cover, high + cover, STONE)
+        beyond = 0.1 * cover
         for corners in self._bodies(time):
-            scene.add_solid(corners, lower - 0.1 * cover, upper + 0.1 * cover, STONE)
+            for side, outside in ((lower, lower - beyond), (upper, upper + beyond)):
+                corners = np.where(np.abs(corners - side) < beyond, outside, corners)
+            scene.add_solid(corners, lower - beyond, upper + beyond, STONE)
 
     def cut(self, position):
         """Particles that are drawn."""
