@@ -41,6 +41,8 @@ class MovingWalls(Scratch):
         write_moving_tank(folder)
         write_table(folder / "series.csv", series_of([0, 2], kinetic_energy=1))
         np.testing.assert_allclose(bounds_at(DrawnRun(folder), 1), [[0, 0], [1.3, 1]])
+        (folder / "series.csv").unlink()
+        np.testing.assert_allclose(bounds_at(DrawnRun(folder), 1), [[0, 0], [1.3, 1]])
 
     def test_planes_show_all_of_the_liquid_between_walls_that_have_moved(self):
         folder = new_folder(self.path, "run")

@@ -127,7 +127,7 @@ def outline(corners):
     return open_edges(corners[:, :, :2])
 
 
-def joined(corners, frame=None):
+def one_path(corners, frame=None):
     """Triangles, all counter-clockwise, as one path: drawn one by one they leave seams.
 
     frame: (left, right, bottom, top), of which the path is what lies outside the triangles: they turn against it.
@@ -164,7 +164,7 @@ def draw_shapes(axis, run, time):
     for body, corners in standing(run, time):
         edges = outline(corners)
         frame = (*axis.get_xlim(), *axis.get_ylim()) if body.outside else None
-        axis.add_artist(PathPatch(joined(corners, frame), facecolor=SOLID, edgecolor="none", zorder=3))
+        axis.add_artist(PathPatch(one_path(corners, frame), facecolor=SOLID, edgecolor="none", zorder=3))
         axis.add_collection(LineCollection(edges, colors=EDGE, linewidths=0.8, zorder=3), autolim=False)
 
 

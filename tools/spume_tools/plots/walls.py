@@ -21,7 +21,7 @@ def farthest_bounds(run):
 
 def _bounds(run, of_places):
     bounds = run.bounds()
-    if not (run.case["domain"].get("wall_velocity") or run.case.get("wavemaker")):
+    if not (run.case["domain"].get("wall_velocity") or run.case.get("wavemaker")) or not run.has("series.csv"):
         return bounds
     for axis in range(run.dimensions):
         for side, name in enumerate(side_names(run.dimensions, axis)):
@@ -35,10 +35,10 @@ def draw_walls(axis, run, plane, low, high, frame):
     for k, a in enumerate(plane.axes):
         kinds = sides_of(run.case["domain"], a)
         for side, kind in enumerate(kinds if kinds != "periodic" else ()):
-            at, edge = (low, high)[side][k], frame[2 * k + side]
-            if kind == "open" or not frame[2 * k] - 1e-9 <= at <= frame[2 * k + 1] + 1e-9:
+            at, edge, width = (low, high)[side][k], frame[2 * k + side], frame[2 * k + 1] - frame[2 * k]
+            if kind == "open" or not frame[2 * k] - 1e-6 * width <= at <= frame[2 * k + 1] + 1e-6 * width:
                 continue
-            if abs(at - edge) < 1e-3 * (frame[2 * k + 1] - frame[2 * k]):
+            if abs(at - edge) < 1e-3 * width:
                 axis.spines[(("left", "right"), ("bottom", "top"))[k][side]].set(linewidth=WIDTH, color=EDGE)
                 continue
             corner, size = [frame[0], frame[2]], [frame[1] - frame[0], frame[3] - frame[2]]
