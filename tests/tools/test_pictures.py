@@ -231,12 +231,15 @@ class Planes(Scratch):
         write_snapshots(folder / "fluid.vtkhdf", [0], lambda t: drop, {"pressure": lambda p, t: 1 + 0 * p[:, 0]})
         run = DrawnRun(folder)
         plane, (panel,) = planes.panels_of(run, "pressure", run.snapshots(), [0])
+        panel.values[5:9, -3] = 1  # a surface that is two pixels from the edge somewhere
         figure = style.plt.figure(figsize=(12, 12), dpi=100)
         axis = figure.add_axes((0, 0, 1, 1))
         planes.draw_panel(axis, run, plane, panel, (0, 1, 0, 1), "pressure", style.Normalize(1, 2))
         figure.canvas.draw()
         across = np.asarray(figure.canvas.buffer_rgba())[:, 60:600, 0].astype(int)  # from beside the left edge to the middle
+        top = np.asarray(figure.canvas.buffer_rgba())[60:110, 60:-60, 0]
         style.plt.close(figure)
+        self.assertTrue((top == 255).all())
         for row in across[400:800]:
             inside = np.flatnonzero(row < 200)[0]  # the line
             self.assertLess(row[inside:].max(), 225)  # the line is blended into what it covers

@@ -178,10 +178,13 @@ def draw_panel(axis, run, plane, panel, frame, name, norm):
     image = axis.imshow((widened(panel.values) if surface else panel.values).T, origin="lower", extent=panel.extent, norm=norm,
                         interpolation="nearest", cmap=FIELDS.get(name, "RdBu_r" if name in SIGNED else "viridis"), rasterized=True)
     if surface:
-        # Pixels end in steps: they go on a little beyond the surface, and are covered there.
-        axis.contourf(panel.share.T, levels=[-np.inf, 0.5], extent=panel.extent, colors=["white"], origin="lower", zorder=2.1)
-        if np.nanmax(panel.share) > 0.5:
-            axis.contour(panel.share.T, levels=[0.5], extent=panel.extent, colors=[EDGE], linewidths=0.7, origin="lower", zorder=2.2)
+        # Pixels end in steps: they go on a little beyond the surface, and are covered there, up to the edges of the outermost.
+        share = np.pad(panel.share, 1, mode="edge").T
+        pixel = np.diff(panel.extent)[::2] / panel.share.shape
+        extent = panel.extent + np.repeat(pixel, 2) * [-1, 1, -1, 1]
+        axis.contourf(share, levels=[-np.inf, 0.5], extent=extent, colors=["white"], origin="lower", zorder=2.1)
+        if np.nanmax(share) > 0.5:
+            axis.contour(share, levels=[0.5], extent=extent, colors=[EDGE], linewidths=0.7, origin="lower", zorder=2.2)
     for phase in panel.phases:
         if np.nanmin(phase) < 0.5 < np.nanmax(phase):
             for color, width in ((EDGE, 1.8), ("white", 0.8)):  # seen on dark and on light
