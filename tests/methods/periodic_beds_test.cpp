@@ -14,7 +14,7 @@ struct Bed {
   std::string size, upper, height;  // of the domain without the last axis, the water's last entry, and the bed
   double spacing;
 };
-const Bed wave{"x = \"periodic\"", "2", "y", "0.3 + 0.1*sin(pi*x)", 0.05},
+const Bed wavy_bed{"x = \"periodic\"", "2", "y", "0.3 + 0.1*sin(pi*x)", 0.05},
     hollow{"x = \"periodic\"", "2", "y", "0.2 + 0.1*(x - 1)^2", 0.05},
     dunes{"x = \"periodic\"\ny = \"periodic\"", "2, 1", "z", "0.3 + 0.1*sin(pi*x)*cos(2*pi*y)", 0.1},
     ridges{"x = \"periodic\"\nfront = \"free-slip\"\nback = \"free-slip\"", "2, 1", "z", "0.3 + 0.1*cos(pi*x)", 0.1};
@@ -46,7 +46,8 @@ void expect_to_bear(Run& run, double volume, double above = 0) {
 }  // namespace
 
 TEST(PeriodicBeds, HoldStillWaterByLesSph) {
-  for (const auto& [bed, volume] : {std::pair{wave, 1.4}, {hollow, 2 * (0.8 - 0.1 / 3)}, {dunes, 1.4}, {ridges, 1.4}}) {
+  for (const auto& [bed, volume] :
+       {std::pair{wavy_bed, 1.4}, {hollow, 2 * (0.8 - 0.1 / 3)}, {dunes, 1.4}, {ridges, 1.4}}) {
     SCOPED_TRACE(bed.height);
     Simulation run(channel_over(bed, "les-sph", false, "density = 1\n[[liquid]]\n"));
     while (run.method.time() < 2) run.steps(1, run.method.step_limit().dt);
@@ -56,14 +57,14 @@ TEST(PeriodicBeds, HoldStillWaterByLesSph) {
 }
 
 TEST(PeriodicBeds, HoldStillWaterByGfd) {
-  GfdRun run(channel_over(wave, "gfd", true, one_phase));
+  GfdRun run(channel_over(wavy_bed, "gfd", true, one_phase));
   run.until(0.5);
   EXPECT_LT(run.max_speed(), 1e-3);
   expect_to_bear(run, 1.4, -0.5 * 2);  // in the middle of the domain the pressure is none
 }
 
 TEST(PeriodicBeds, HoldStillWaterByWcsph) {
-  WcsphRun run(channel_over(wave, "wcsph", false, one_phase));
+  WcsphRun run(channel_over(wavy_bed, "wcsph", false, one_phase));
   until(run, 0.5);
   EXPECT_LT(run.series()["max_speed"], 1e-3);
   expect_to_bear(run, 1.4);
