@@ -8,10 +8,8 @@
 #include "spume/core/machine.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/run/body_report.hpp"
-#include "spume/run/driver.hpp"
 #include "spume/run/probes.hpp"
 #include "spume/run/report.hpp"
-#include "spume/run/schedule.hpp"
 #include "verbs.hpp"
 
 namespace spume {
@@ -38,38 +36,37 @@ double seconds_of_preparation(Method& method) {
   return share > 0 ? std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / share : 0;
 }
 
+// The longest step that a run takes: no longer than the way to the next row or snapshot.
+double longest_step(const Case& options) {
+  double longest = options.time.end;
+  for (const double every : {options.time.max_step, options.output.every, options.output.series_every})
+    if (every > 0) longest = std::min(longest, every);
+  return longest;
+}
+
 // From trial steps after the first, which also allocates: as many as a second allows, as lists are made in some alone.
 std::string time_estimate(const LoadedCase& loaded, Method& method) {
   constexpr int most_steps = 20;
   constexpr double long_enough = 1;  // seconds
-  Schedule schedule(schedule_times(loaded.options));
-  const auto next_step = [&] {
-    const double longest = loaded.options.time.max_step, limit = method.step_limit().dt;
-    return schedule.step(method.time(), longest > 0 ? std::min(longest, limit) : limit);
-  };
-  const auto step = [&] {
-    const double seconds = seconds_of_step(method, next_step());
-    schedule.arrive(method.time());
-    return seconds;
-  };
+  const double longest = longest_step(loaded.options);
+  double seconds = 0, way = 0, before = 0;
+  int steps = 0;
   try {
-    const double before = seconds_of_preparation(method);
-    step();
-    const double start = method.time();
-    double seconds = 0;
-    int steps = 0;
-    do {
-      seconds += step();
+    before = seconds_of_preparation(method);
+    seconds_of_step(method, std::min(longest, method.step_limit().dt));
+    while (steps < most_steps && seconds < long_enough) {
+      const double dt = std::min(longest, method.step_limit().dt);
+      seconds += seconds_of_step(method, dt);
+      way += dt;
       ++steps;
-    } while (steps < most_steps && seconds < long_enough && !schedule.finished(method.time()));
-    const double all = std::max(1.0, std::round(steps * loaded.options.time.end / (method.time() - start)));
-    return human_duration(seconds / steps * all) + " for about " + short_number(all) +
-           " steps like the first ones at " +
-           short_number(static_cast<double>(method.particle_count()) * steps / seconds / 1e6) + " Mparticle-steps/s" +
-           (before > 0 ? ", with at most " + human_duration(before) + " before the first one" : "");
+    }
   } catch (const StepFailure& failure) {
-    return "unknown time (the first steps are refused: " + failure.details().cause + ")";
+    if (steps == 0) return "unknown time (the first steps are refused: " + failure.details().cause + ")";
   }
+  const double all = std::max(1.0, std::round(steps * loaded.options.time.end / way));
+  return human_duration(seconds / steps * all) + " for about " + short_number(all) + " steps like the first ones at " +
+         short_number(static_cast<double>(method.particle_count()) * steps / seconds / 1e6) + " Mparticle-steps/s" +
+         (before > 0 ? ", with at most " + human_duration(before) + " before the first one" : "");
 }
 
 }  // namespace

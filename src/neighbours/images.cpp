@@ -302,7 +302,7 @@ void Images::build(const ImageRules& rules, const CellGrid& grid, const double* 
                pool, sorted.data());
   const std::int32_t* order = sorted.data();
   const auto reorder = [&]<class T>(Array<T>& values) {
-    const BorrowedArray<T> moved(pool, m);
+    ScratchArray<T> moved(pool, m);
     T *const from = values.data(), *const to = moved.data();
     parallel_for(m, [=](std::size_t k) { to[k] = from[order[k]]; });
     parallel_for(m, [=](std::size_t k) { from[k] = to[k]; });

@@ -136,7 +136,7 @@ void BodyContacts::set_clearances() {
     for (std::size_t other = 0; other < others_; ++other) {
       if (!may_touch(point.part, other)) continue;
       const double start = distance(other, sides, point.start, spacing);
-      const double off = other < parts_ ? walls_of(other).error() : 0;
+      const double off = other < parts_ ? walls_of(other).error_near(point.start, spacing) : 0;
       double& own = clearance(point.part, other);
       if (start < -touching * spacing - off) own = passes_through;
       if (own > passes_through) own = std::min(own, std::max(-off, start));

@@ -131,6 +131,15 @@ double RigidWalls::error() const {
   return sum;
 }
 
+double RigidWalls::error_near(const Vec3& start, double reach) const {
+  double sum = 0;
+  for (const std::size_t b : bodies_) {
+    const Shape& solid = *scene_.bodies[b].solid;
+    if (solid.error() > 0 && solid.distance(start) < solid.error() + reach) sum += solid.error();
+  }
+  return sum;
+}
+
 bool RigidWalls::keeps(int axis) const {
   if (grows()) return false;
   if (motion_->floats) {
@@ -141,6 +150,15 @@ bool RigidWalls::keeps(int axis) const {
   }
   const auto& way = motion_->displacement.component[static_cast<std::size_t>(axis)];
   return (way == nullptr || constant_value(*way)) && (motion_->angle == nullptr || is_along(motion_->axis, axis));
+}
+
+// Beds that go on beyond periodic sides: where the motion leads them along the axis, they are the same again.
+bool RigidWalls::is_endless(int axis) const {
+  if (!scene_.domain.periodic(axis) || motion_->floats || motion_->angle != nullptr || grows()) return false;
+  return std::all_of(bodies_.begin(), bodies_.end(), [&](std::size_t b) {
+    const Bounds own = scene_.bodies[b].shape->bounds();
+    return own.lower[axis] == -infinite && own.upper[axis] == infinite;
+  });
 }
 
 Bounds RigidWalls::window(double margin) const {
@@ -166,7 +184,7 @@ Domain RigidWalls::domain_at_start(double reach) const {
   domain.dimensions = scene_.domain.dimensions;
   for (int axis = 0; axis < domain.dimensions; ++axis) {
     // Along such an axis points have the images that they have beside bodies that stand still.
-    const bool same = keeps(axis);
+    const bool same = keeps(axis) || is_endless(axis);
     domain.lower[axis] = same ? scene_.domain.lower[axis] : around.lower[axis];
     domain.upper[axis] = same ? scene_.domain.upper[axis] : around.upper[axis];
     for (int side = 0; side < 2; ++side)

@@ -353,11 +353,19 @@ Pose start_of(BodyMotion& motion) {
 // When a motion leads the end of a body into the domain that its expression has on what is looked at of it, if it does.
 std::optional<double> end_enters(const Draft& draft, const BodyMotion& motion, const Body& body, std::size_t axis,
                                  int side, double duration) {
-  constexpr int times = 200, places = 9;
-  const Bounds own = body.alone->bounds();
+  // Multiples of the golden ratio: equal times would meet a periodic motion in one phase.
+  constexpr int times = 2000, places = 9;
+  constexpr double golden = 0.61803398874989485;
+
   const auto d = static_cast<std::size_t>(draft.dimensions);
+  Bounds own = body.alone->bounds();
+  if (!std::isfinite(side == 0 ? own.lower[axis] : own.upper[axis])) return std::nullopt;
+  for (std::size_t a = 0; a < d; ++a) {  // of beds that go on beyond periodic sides, what is in the domain
+    if (!std::isfinite(own.lower[a])) own.lower[a] = draft.lower[a];
+    if (!std::isfinite(own.upper[a])) own.upper[a] = draft.upper[a];
+  }
   for (int n = 1; n <= times; ++n) {
-    const double t = duration * n / times;
+    const double t = duration * (golden * n - std::floor(golden * n));
     const RigidPlace place = given_place(motion, t);
     for (int k = 0; k < places * places; ++k) {
       const double share[] = {k % places / (places - 1.0), k / places / (places - 1.0)};

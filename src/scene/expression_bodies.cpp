@@ -46,7 +46,8 @@ class Region {
     bool found = false;
     for (const double beyond : {still_whole, 0.5 * (still_whole + reach_of_expressions), reach_of_expressions})
       for (const double plane : {draft_.lower[axis] - beyond * h, draft_.upper[axis] + beyond * h})
-        for_nodes(window, axis, plane, [&](const Vec3& p, std::array<bool, 3>) { found = found || inside(p); });
+        for_nodes(window, axis, plane, 0.5 * h,
+                  [&](const Vec3& p, std::array<bool, 3>) { found = found || inside(p); });
     return found;
   }
 
@@ -54,17 +55,18 @@ class Region {
   // where either of them ends.
   std::optional<Vec3> jump(std::size_t axis) const {
     std::optional<Vec3> found;
-    for_nodes(around(0), axis, draft_.lower[axis], [&](const Vec3& p, std::array<bool, 3> more) {
-      if (!found && differs(p, axis)) found = p;
-      for (std::size_t b = 0; b < d_ && !found; ++b) {
-        Vec3 next = p;
-        next[b] += draft_.options.spacing;
-        if (!more[b]) continue;
-        const std::optional<Vec3> lower = root(p, next, axis, 0), upper = root(p, next, axis, period(axis));
-        if (lower && upper && std::abs((*lower)[b] - (*upper)[b]) > smallest_step * draft_.options.spacing)
-          found = multiply(0.5, add(*lower, *upper));
-      }
-    });
+    for_nodes(around(0), axis, draft_.lower[axis], draft_.options.spacing,
+              [&](const Vec3& p, std::array<bool, 3> more) {
+                if (!found && differs(p, axis)) found = p;
+                for (std::size_t b = 0; b < d_ && !found; ++b) {
+                  Vec3 next = p;
+                  next[b] += draft_.options.spacing;
+                  if (!more[b]) continue;
+                  const std::optional<Vec3> lower = root(p, next, axis, 0), upper = root(p, next, axis, period(axis));
+                  if (lower && upper && std::abs((*lower)[b] - (*upper)[b]) > smallest_step * draft_.options.spacing)
+                    found = multiply(0.5, add(*lower, *upper));
+                }
+              });
     return found;
   }
 
@@ -79,18 +81,16 @@ class Region {
   // The nodes of a lattice of spacings on a plane across an axis, the last beyond the window or on its end, and along
   // which axes there is another in the window.
   template <class Ask>
-  void for_nodes(const Bounds& window, std::size_t axis, double plane, Ask&& ask) const {
+  void for_nodes(const Bounds& window, std::size_t axis, double plane, double h, Ask&& ask) const {
     std::array<std::size_t, 3> count{1, 1, 1};
     for (std::size_t a = 0; a < d_; ++a)
-      if (a != axis)
-        count[a] = 1 + static_cast<std::size_t>(
-                           std::ceil((window.upper[a] - window.lower[a]) / draft_.options.spacing - 1e-6));
+      if (a != axis) count[a] = 1 + static_cast<std::size_t>(std::ceil((window.upper[a] - window.lower[a]) / h - 1e-6));
     for (std::size_t n = 0; n < count[0] * count[1] * count[2]; ++n) {
       const std::array<std::size_t, 3> at{n % count[0], n / count[0] % count[1], n / count[0] / count[1]};
       Vec3 p = window.lower;
       std::array<bool, 3> more{};
       for (std::size_t a = 0; a < d_; ++a) {
-        p[a] += draft_.options.spacing * static_cast<double>(at[a]);
+        p[a] += h * static_cast<double>(at[a]);
         more[a] = at[a] + 1 < count[a];
       }
       p[axis] = plane;

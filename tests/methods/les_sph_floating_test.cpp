@@ -57,6 +57,16 @@ Row row_of(Simulation& run, std::size_t wall) {
 
 }  // namespace
 
+// Nothing but a force drives the liquid and what floats in it: no speed says how fast a body may move.
+TEST(LesSphFloating, MovesWithoutGravity) {
+  std::string text = full_tank + "[forces]\nbody = [\"0.2\", \"0\"]\n" + light_box;
+  text.replace(text.find("gravity = 1\n"), 12, "");
+  text.insert(text.find("[[body]]\n") + 9, "position = [0.5, 0.5]\n");
+  Simulation run(text);
+  run.steps(3, 0.01);
+  EXPECT_GT(run.method.flow().floating->largest_speed(), 0);
+}
+
 // Potential flow: the water that a disc of radius a moves in a tank of radius b weighs (b^2 + a^2) / (b^2 - a^2) times
 // what the disc displaces. Rounded by particles of 1/8 of its radius the disc is off by 1 to 2 %. A body a hundred
 // times lighter than water moves with the water's inertia alone.

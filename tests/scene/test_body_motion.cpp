@@ -319,6 +319,13 @@ TEST(BodyMotion, AnExpressionThatGoesOnBeyondTheDomainIsRefusedWhereThatMatters)
   EXPECT_THAT(said("-0.7 - x", "displacement = [\"0.1*sin(t)\", \"0\"]\n"), IsEmpty());
   EXPECT_THAT(said(tower, "displacement = [\"0.5*t\", \"-0.05*t\"]\n"), IsEmpty());
   EXPECT_THAT(said(tower, "angle = \"90*t\"\n"), Contains(HasSubstr("goes on beyond the domain along y, and")));
+  // A bed between periodic sides ends below alone; one that goes along it is the same again.
+  std::string periodic = plane;
+  periodic.insert(periodic.find("[resolution]"), "x = \"periodic\"\n");
+  const std::string bed = "[[body]]\nwhere = \"-0.9 - y + 0.05*sin(pi*x)\"\n";
+  EXPECT_THAT(complaints(periodic + bed + "displacement = [\"0\", \"t^2\"]\n"),
+              Contains(HasSubstr("goes on beyond the domain along y, and its motion leads into it")));
+  EXPECT_THAT(complaints(periodic + bed + "displacement = [\"3*t\", \"0\"]\n"), IsEmpty());
 }
 
 TEST(BodyMotion, IsNoFasterThanSoundAllows) {

@@ -47,6 +47,8 @@ class RigidWalls {
   Bounds bounds_now() const;
 
   double error() const;  // a bound of that of distances from it
+  double error_near(const Vec3& start,
+                    double reach) const;  // the same of its bodies within reach of a place at the start
   // Negative inside; farther than four support radii from a surface a bound of it.
   double distance(const Vec3& point) const;
   double exact_distance(const Vec3& point) const {
@@ -91,6 +93,7 @@ class RigidWalls {
   Bounds window(double margin) const;
   Domain domain_at_start(double reach) const;
   bool keeps(int axis) const;  // the motion does not lead along it
+  bool is_endless(int axis) const;
   std::size_t body_at(const Vec3& foot) const;
   bool is_thin(std::size_t body) const;
   std::size_t level_of(double scale) const;

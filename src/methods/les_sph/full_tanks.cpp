@@ -17,6 +17,9 @@ namespace {
 // Spacings: a gap that one layer of particles fits in.
 constexpr double one_layer = 1;
 constexpr double far_too_fast = 10;  // as in particles/energy_guard.cpp
+// At walls during a run; multiples of the golden ratio meet no periodic motion in one phase.
+constexpr int looks = 1000;
+constexpr double golden = 0.61803398874989485;
 constexpr const char* leave_a_surface = "end [[liquid]] two spacings below the lid, which leaves a surface";
 
 bool floats_there(const Flow& flow, const Body& body) {
@@ -53,18 +56,23 @@ std::string remark_on_gaps_in_full_tank(const Flow& flow) {
   return "";
 }
 
-void refuse_runaway_bodies(const Flow& flow, double t) {
-  if (flow.floating == nullptr) return;
-  const Domain& domain = flow.scene.domain;
-  const double speed = flow.floating->largest_speed();
-  const double fall = std::sqrt(2 * length(flow.scene.fluid.gravity) * length(subtract(domain.upper, domain.lower)));
-  if (speed <= far_too_fast * fall) return;
-  double fastest = std::max(fall, expected_speed(flow.scene, flow.options.time.end));
+double speed_of_bodies(const Scene& scene, double end) {
+  const Domain& domain = scene.domain;
+  const double fall = std::sqrt(2 * length(scene.fluid.gravity) * length(subtract(domain.upper, domain.lower)));
+  if (fall == 0) return infinite;
+  double fastest = std::max(fall, expected_speed(scene, end));
+  const Vec3 middle = multiply(0.5, add(domain.lower, domain.upper));
   for (int axis = 0; axis < domain.dimensions; ++axis)
     for (const Side& side : domain.sides[axis])
-      if (side.velocity)
-        fastest = std::max(fastest, length((*side.velocity)(multiply(0.5, add(domain.lower, domain.upper)), t)));
-  if (speed <= far_too_fast * fastest) return;
+      for (int n = 0; n < looks && side.velocity; ++n)
+        fastest = std::max(fastest, length((*side.velocity)(middle, end * (golden * n - std::floor(golden * n)))));
+  return fastest;
+}
+
+void refuse_runaway_bodies(const Flow& flow) {
+  if (flow.floating == nullptr) return;
+  const double speed = flow.floating->largest_speed();
+  if (speed <= far_too_fast * flow.speed_of_bodies) return;
   StepFailure::Details details;
   details.cause = "a body that floats moves ten times as fast as anything in the scene may drive it";
   if (flow.features.closed) details.cause += ": where it leaves a wall in liquid that fills its domain a void opens";

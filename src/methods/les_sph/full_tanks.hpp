@@ -12,8 +12,12 @@ namespace spume::les_sph {
 // What to say at the start of one that stands so near to a wall that no particle fits between them; empty: nothing.
 std::string remark_on_gaps_in_full_tank(const Flow& flow);
 
-// Throws StepFailure where a body that floats moves ten times as fast as gravity, inflows and given motions drive
-// anything: the energy of the liquid, which walls may give any, does not tell.
-void refuse_runaway_bodies(const Flow& flow, double t);
+// The fastest that gravity, the liquid at the start, inflows and given motions drive anything with; without gravity,
+// which alone bounds what forces do, infinite. While the scene has its particles.
+double speed_of_bodies(const Scene& scene, double end);
+
+// Throws StepFailure where a body that floats moves ten times as fast: the energy of the liquid, which walls may give
+// any, does not tell.
+void refuse_runaway_bodies(const Flow& flow);
 
 }  // namespace spume::les_sph

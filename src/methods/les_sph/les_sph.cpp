@@ -66,6 +66,7 @@ LesSph::LesSph(const LoadedCase& loaded)
     : flow_(loaded), plan_(make_plan(flow_)), snapshot_(snapshot_table(output_fields(), loaded.options, flow_)) {
   refuse_high_mach(loaded.options, flow_);
   refuse_stirring_shift(loaded.options, flow_);
+  if (flow_.floating != nullptr) flow_.speed_of_bodies = speed_of_bodies(loaded.scene, loaded.options.time.end);
   if (flow_.features.scalars) flow_.solutes.scalars->add_fields(snapshot_);
   declare_series();
   declare_saved();

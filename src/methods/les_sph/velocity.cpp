@@ -362,7 +362,7 @@ void Flow::project_velocity(double dt) {
 
 void Flow::accept(double dt) {
   const std::size_t n = size();
-  refuse_runaway_bodies(*this, time + dt);
+  refuse_runaway_bodies(*this);
   refuse_long_strides(particles, intermediate_position, next_velocity, arrangement.grid.support_radius(), dt);
   const EnergyBalance balance = energy_balance(dt);
   energy.supply =

@@ -59,7 +59,7 @@ void Flow::build_lists() {
 
 // A restored state has the places of its lists: the same lists follow, with their neighbours in the same order.
 void Flow::keep_lists(double dt) {
-  if (!has_lists && steps > 0) build_lists();
+  if (!has_lists && started != 0) build_lists();
   const double way = dt * std::min(largest_speed, expected_speed);
   has_moved = features.density_relaxation && steps > 0 && measured_way + way > skin / 2;
   if (has_lists && !(features.openings && openings->stale()) && lists_hold(dt)) return;

@@ -64,7 +64,12 @@ Wcsph::Wcsph(const LoadedCase& loaded)
   if (flow_.features.scalars) flow_.solutes.scalars->add_fields(snapshot_);
   if (flow_.features.bodies)
     body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
-  saved_.add(flow_.time).add(flow_.steps).add(flow_.signal).add(flow_.largest_speed).add(flow_.boundary.wall_speed);
+  saved_.add(flow_.time)
+      .add(flow_.steps)
+      .add(flow_.started)
+      .add(flow_.signal)
+      .add(flow_.largest_speed)
+      .add(flow_.boundary.wall_speed);
   saved_.add(flow_.list_life.fastest).add(flow_.list_life.most_accelerated);
   saved_.add(flow_.arrangement.context.gradient_scale);
   if (flow_.features.tension) saved_.add(flow_.surface_energy);
@@ -75,7 +80,12 @@ Wcsph::Wcsph(const LoadedCase& loaded)
 // With the first forces, which are recorded.
 void Wcsph::prepare(Ledger& ledger, const GoOn& go_on) {
   plan_.run_before(static_cast<double>(flow_.size()), ledger, go_on);
-  if (!flow_.solutes.record_carries()) plan_.run_start(static_cast<double>(flow_.size()), ledger);
+  if (!flow_.solutes.record_carries()) find_first_forces(ledger);
+}
+
+void Wcsph::find_first_forces(Ledger& ledger) {
+  if (flow_.started == 0) plan_.run_start(static_cast<double>(flow_.size()), ledger);
+  flow_.started = 1;
 }
 
 void Wcsph::step(double dt, Ledger& ledger) {
@@ -84,7 +94,7 @@ void Wcsph::step(double dt, Ledger& ledger) {
     plan_.run_recorded(dt, static_cast<double>(flow_.size()), ledger);
     return;
   }
-  if (flow_.steps == 0 && !flow_.has_lists) plan_.run_start(static_cast<double>(flow_.size()), ledger);
+  find_first_forces(ledger);
   plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
 }
 

@@ -112,6 +112,7 @@ struct Flow {
   std::unique_ptr<turbulence::EddyViscosity> closure;  // null: none
   std::unique_ptr<bubbles::BubbleCoupling> bubbles;    // null: none
   Solutes solutes;                                     // their fields are state
+  double speed_of_bodies = infinite;                   // what the scene may drive those that float with
   std::unique_ptr<FloatingBodies> floating;            // null: none; its places are state
   WallTimes wall_times;                                // of the step
   std::unique_ptr<PointSampler> gauge;                 // of walls that take up waves; null: none

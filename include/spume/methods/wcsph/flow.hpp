@@ -91,6 +91,7 @@ struct Flow {
   Arrangement arrangement;
   ParticleSizes sizes;  // all alike
   ListLife list_life;
+  std::int64_t started = 0;  // 1: the first forces are found
   bool has_lists = false;
   std::int64_t list_builds = 0;
   bool has_moved = false;                        // far enough for (12) to be measured anew

@@ -57,6 +57,7 @@ class Wcsph final : public Method, public FieldProbes, public SurfaceProbes {
   const Flow& flow() const { return flow_; }
 
  private:
+  void find_first_forces(Ledger& ledger);
   void declare_series();
   const PointSampler& sampler();
 
