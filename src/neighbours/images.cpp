@@ -296,13 +296,14 @@ void Images::build(const ImageRules& rules, const CellGrid& grid, const double* 
       });
       (side == 0 ? image_free_lower_ : image_free_upper_)[axis] = side == 0 ? plane + depth : plane - depth;
     }
-  ScratchPool& pool = scratch == nullptr ? own_scratch_ : *scratch;
+  // Numbers of 8 bytes take two floats: fields of particles, which trade their memory with the pool, keep their size.
+  ScratchPool& pool = scratch == nullptr || 2 * m > n ? own_scratch_ : *scratch;
   const BorrowedArray<std::int32_t> sorted(pool, m);
   table_.build(grid, position_[0].data(), position_[1].data(), rules.dimensions == 3 ? position_[2].data() : nullptr, m,
                pool, sorted.data());
   const std::int32_t* order = sorted.data();
   const auto reorder = [&]<class T>(Array<T>& values) {
-    ScratchArray<T> moved(pool, m);
+    const BorrowedArray<T> moved(pool, m);
     T *const from = values.data(), *const to = moved.data();
     parallel_for(m, [=](std::size_t k) { to[k] = from[order[k]]; });
     parallel_for(m, [=](std::size_t k) { from[k] = to[k]; });

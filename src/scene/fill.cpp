@@ -312,7 +312,7 @@ bool Filler::fills_domain() const {
         p[1] = centre(1, j);
         for (double k = 0; k < lattice_.count[2]; ++k) {
           p[2] = lattice_.dimensions == 3 ? centre(2, k) : 0;
-          per_plane[i] += in_solid(p) || !place_of_site(own, p);
+          per_plane[i] += in_solid(p) || !is_open_site(own, p);
         }
       }
     });

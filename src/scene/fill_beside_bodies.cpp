@@ -15,8 +15,6 @@
 namespace spume {
 namespace {
 
-// Spacings from a wall, at least; packing.cpp moves particles there too.
-constexpr double least_gap = 0.25;
 // Of a spacing: what the layer of a cell counts between cells whose centres are as far from the walls. Multiples of the
 // golden ratio spread those that stay empty over the height of a column.
 constexpr double weight_of_layer = 1e-3;
@@ -38,20 +36,6 @@ bool Filler::is_cut(ThreadRegions& own, const Vec3& p) const {
   return std::abs(own.walls.at(p)) < 0.5 * std::sqrt(lattice_.dimensions) * scene_.spacing;
 }
 
-// None where there is no room before the wall.
-std::optional<Vec3> Filler::place_before_walls(const Vec3& p) const {
-  const NearestPoint wall = scene_.walls.nearest(p);
-  const double lack = least_gap * scene_.spacing - wall.distance;
-  if (lack <= 0) return p;
-  Vec3 place = p;
-  for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a) {
-    place[a] += lack * wall.normal[a];
-    if (place[a] < scene_.domain.lower[a] || place[a] > scene_.domain.upper[a]) return {};
-  }
-  if (in_solid(place) || scene_.walls.distance(place) < 0.5 * least_gap * scene_.spacing) return {};
-  return place;
-}
-
 void Filler::choose_sites_beside_walls() {
   const auto columns = static_cast<std::size_t>(lattice_.count[0]), rows = static_cast<std::size_t>(lattice_.count[1]);
   struct Found {
@@ -67,7 +51,7 @@ void Filler::choose_sites_beside_walls() {
                      lattice_.dimensions == 3 ? centre(2, k) : 0};
         if (in_solid(p) || !is_cut(own, p)) continue;
         found[i].volume += open_part(own, p);
-        if (place_before_walls(p)) found[i].ranks.push_back(rank_of_site(own, p));
+        if (own.walls.at(p) > 0) found[i].ranks.push_back(rank_of_site(own, p));
       }
   });
   std::vector<double> ranks;
@@ -87,15 +71,10 @@ void Filler::choose_sites_beside_walls() {
   }
 }
 
-// Where the particle of a site starts; none in a wall, or where phases leave the site empty.
-std::optional<Vec3> Filler::place_of_site(ThreadRegions& own, const Vec3& p) const {
-  if (scene_.walls.empty()) return p;
-  if (layered() && is_cut(own, p)) {
-    if (rank_of_site(own, p) > least_rank_) return place_before_walls(p);
-    return {};
-  }
-  if (own.walls.at(p) > 0) return p;
-  return {};
+bool Filler::is_open_site(ThreadRegions& own, const Vec3& p) const {
+  if (scene_.walls.empty()) return true;
+  if (!(own.walls.at(p) > 0)) return false;
+  return !layered() || !is_cut(own, p) || rank_of_site(own, p) > least_rank_;
 }
 
 }  // namespace spume

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "fill.hpp"
@@ -228,8 +227,7 @@ class Filler {
         chunk.open_cells += open_part(own, p);
       }
     }
-    const std::optional<Vec3> place = place_of_site(own, p);
-    if (!place) {
+    if (!is_open_site(own, p)) {
       chunk.in_solid.add(p);
       return;
     }
@@ -242,8 +240,7 @@ class Filler {
       if (q == r || (q > r && regions_[q].conform == regions_[r].conform)) continue;
       if (covers(own, q, p)) chunk.overlap[q].add(p);
     }
-    for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a)
-      chunk.position[a].push_back((*place)[a]);
+    for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimensions); ++a) chunk.position[a].push_back(p[a]);
   }
 
   // Indices of cells whose centres may lie in the region's box.
@@ -294,8 +291,7 @@ class Filler {
   bool is_cut(ThreadRegions& own, const Vec3& p) const;
   double rank_of_site(ThreadRegions& own, const Vec3& p) const;
   void choose_sites_beside_walls();
-  std::optional<Vec3> place_before_walls(const Vec3& p) const;
-  std::optional<Vec3> place_of_site(ThreadRegions& own, const Vec3& p) const;
+  bool is_open_site(ThreadRegions& own, const Vec3& p) const;
   void report(const std::vector<std::vector<Chunk>>& chunks);
   void set_volume(const std::vector<std::vector<Chunk>>& chunks);
   bool stands_alone(std::size_t r, const std::vector<std::vector<Chunk>>& chunks) const;
