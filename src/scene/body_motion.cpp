@@ -11,6 +11,7 @@
 #include "checks.hpp"
 #include "releases.hpp"
 #include "solid_moments.hpp"
+#include "spume/core/golden_ratio.hpp"
 #include "spume/scene/expression.hpp"
 #include "spume/scene/option.hpp"
 #include "time_table.hpp"
@@ -353,9 +354,8 @@ Pose start_of(BodyMotion& motion) {
 // When a motion leads the end of a body into the domain that its expression has on what is looked at of it, if it does.
 std::optional<double> end_enters(const Draft& draft, const BodyMotion& motion, const Body& body, std::size_t axis,
                                  int side, double duration) {
-  // Multiples of the golden ratio: equal times would meet a periodic motion in one phase.
+  // Equal times would meet a periodic motion in one phase.
   constexpr int times = 2000, places = 9;
-  constexpr double golden = 0.61803398874989485;
 
   const auto d = static_cast<std::size_t>(draft.dimensions);
   Bounds own = body.alone->bounds();
@@ -365,7 +365,7 @@ std::optional<double> end_enters(const Draft& draft, const BodyMotion& motion, c
     if (!std::isfinite(own.upper[a])) own.upper[a] = draft.upper[a];
   }
   for (int n = 1; n <= times; ++n) {
-    const double t = duration * (golden * n - std::floor(golden * n));
+    const double t = duration * golden_part(n);
     const RigidPlace place = given_place(motion, t);
     for (int k = 0; k < places * places; ++k) {
       const double share[] = {k % places / (places - 1.0), k / places / (places - 1.0)};

@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "filler.hpp"
+#include "spume/core/golden_ratio.hpp"
 
 namespace spume {
 namespace {
 
-// Of a spacing: what the layer of a cell counts between cells whose centres are as far from the walls. Multiples of the
-// golden ratio spread those that stay empty over the height of a column.
+// Of a spacing: what the layer of a cell counts between cells whose centres are as far from the walls. Those that stay
+// empty are spread over the height of a column.
 constexpr double weight_of_layer = 1e-3;
-constexpr double golden = 0.61803398874989485;
 // Closer to each other than this are cells that mirror each other.
 constexpr double same_rank = 1e-9;
 
@@ -28,8 +28,8 @@ constexpr double same_rank = 1e-9;
 double Filler::rank_of_site(ThreadRegions& own, const Vec3& p) const {
   const auto up = static_cast<std::size_t>(lattice_.dimensions) - 1;
   const double middle = lattice_.origin[up] + 0.5 * lattice_.count[up] * lattice_.spacing[up];
-  const double multiple = golden * std::abs(p[up] - middle) / lattice_.spacing[up];
-  return own.walls.at(p) / scene_.spacing - weight_of_layer * (multiple - std::floor(multiple));
+  const double layer = std::abs(p[up] - middle) / lattice_.spacing[up];
+  return own.walls.at(p) / scene_.spacing - weight_of_layer * golden_part(layer);
 }
 
 bool Filler::is_cut(ThreadRegions& own, const Vec3& p) const {

@@ -93,6 +93,17 @@ inline double length_of(const Vec3& a) {
 inline Vec3 between(const Vec3& from, const Vec3& to) {
   return {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
 }
+
+// Of a surface in the plane, less what faces down.
+inline double area_in_plane(const TriangleSurface& surface) {
+  double area = 0;
+  for (const auto& [a, b, c] : surface.triangles) {
+    const auto at = [&](std::int32_t i) { return surface.points[static_cast<std::size_t>(i)]; };
+    const Vec3 u = between(at(a), at(b)), v = between(at(a), at(c));
+    area += 0.5 * (u[0] * v[1] - u[1] * v[0]);
+  }
+  return area;
+}
 inline Vec3 moved(const Vec3& p, double way, const Vec3& along) {
   return {p[0] + way * along[0], p[1] + way * along[1], p[2] + way * along[2]};
 }

@@ -61,16 +61,7 @@ end = 1
 )toml";
 
 // A ball in a periodic box, 12^3 particles.
-inline const std::string ball_in_a_box = R"toml(method = "gfd"
-[domain]
-lower = [0, 0, 0]
-upper = [1, 1, 1]
-x = "periodic"
-y = "periodic"
-z = "periodic"
-[resolution]
-spacing = 0.0833333333333333333
-[[phase]]
+inline const std::string ball_in_a_box = periodic_cube("gfd", "0.0833333333333333333") + R"toml([[phase]]
 name = "outside"
 density = 1
 viscosity = 0.1

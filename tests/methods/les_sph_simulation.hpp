@@ -118,16 +118,7 @@ end = 1
 )toml";
 
 // Vortices in a triply periodic cube, 10^3 particles.
-inline const std::string taylor_green_3d = R"toml(method = "les-sph"
-[domain]
-lower = [0, 0, 0]
-upper = [1, 1, 1]
-x = "periodic"
-y = "periodic"
-z = "periodic"
-[resolution]
-spacing = 0.1
-[fluid]
+inline const std::string taylor_green_3d = periodic_cube("les-sph", "0.1") + R"toml([fluid]
 reynolds = 100
 [[liquid]]
 velocity = ["sin(2*pi*x)*cos(2*pi*y)*cos(2*pi*z)", "-cos(2*pi*x)*sin(2*pi*y)*cos(2*pi*z)", "0"]

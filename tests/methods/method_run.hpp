@@ -21,6 +21,14 @@ namespace spume::test {
 
 using Overrides = std::vector<std::string>;
 
+// The beginning of a case in a cube of side 1 without sides; ends within [resolution].
+inline std::string periodic_cube(const std::string& method, const std::string& spacing) {
+  return "method = \"" + method +
+         "\"\n[domain]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\nx = \"periodic\"\ny = \"periodic\"\nz = "
+         "\"periodic\"\n[resolution]\nspacing = " +
+         spacing + "\n";
+}
+
 // One thread for a test that counts allocations: threads keep room of their own for lists, a few blocks long, and which
 // of them meets its first large block when is a matter of chance.
 class OneThread {

@@ -10,16 +10,7 @@
 namespace spume::test {
 namespace {
 
-const std::string box = R"toml(method = "wcsph"
-[domain]
-lower = [0, 0, 0]
-upper = [1, 1, 1]
-x = "periodic"
-y = "periodic"
-z = "periodic"
-[resolution]
-spacing = 0.05
-[compressibility]
+const std::string box = periodic_cube("wcsph", "0.05") + R"toml([compressibility]
 shifting = "off"
 [[phase]]
 name = "liquid"

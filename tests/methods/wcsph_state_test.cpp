@@ -48,16 +48,7 @@ max_speed = 1.5
 end = 1
 )toml";
 
-const std::string ball_in_stream = R"toml(method = "wcsph"
-[domain]
-lower = [0, 0, 0]
-upper = [1, 1, 1]
-x = "periodic"
-y = "periodic"
-z = "periodic"
-[resolution]
-spacing = 0.0833333333333333333
-[[phase]]
+const std::string ball_in_stream = periodic_cube("wcsph", "0.0833333333333333333") + R"toml([[phase]]
 name = "outside"
 density = 1
 viscosity = 0.05

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "spume/core/error.hpp"
+#include "spume/core/golden_ratio.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/particles/expected_speed.hpp"
 #include "spume/particles/surface_pieces.hpp"
@@ -17,9 +18,8 @@ namespace {
 // Spacings: a gap that one layer of particles fits in.
 constexpr double one_layer = 1;
 constexpr double far_too_fast = 10;  // as in particles/energy_guard.cpp
-// At walls during a run; multiples of the golden ratio meet no periodic motion in one phase.
+// At walls during a run.
 constexpr int looks = 1000;
-constexpr double golden = 0.61803398874989485;
 constexpr const char* leave_a_surface = "end [[liquid]] two spacings below the lid, which leaves a surface";
 
 bool floats_there(const Flow& flow, const Body& body) {
@@ -65,7 +65,7 @@ double speed_of_bodies(const Scene& scene, double end) {
   for (int axis = 0; axis < domain.dimensions; ++axis)
     for (const Side& side : domain.sides[axis])
       for (int n = 0; n < looks && side.velocity; ++n)
-        fastest = std::max(fastest, length((*side.velocity)(middle, end * (golden * n - std::floor(golden * n)))));
+        fastest = std::max(fastest, length((*side.velocity)(middle, end * golden_part(n))));
   return fastest;
 }
 
