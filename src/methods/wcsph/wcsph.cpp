@@ -64,13 +64,8 @@ Wcsph::Wcsph(const LoadedCase& loaded)
   if (flow_.features.scalars) flow_.solutes.scalars->add_fields(snapshot_);
   if (flow_.features.bodies)
     body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
-  saved_.add(flow_.time)
-      .add(flow_.steps)
-      .add(flow_.started)
-      .add(flow_.signal)
-      .add(flow_.largest_speed)
-      .add(flow_.boundary.wall_speed);
-  saved_.add(flow_.list_life.fastest).add(flow_.list_life.most_accelerated);
+  saved_.add(flow_.time).add(flow_.steps).add(flow_.started).add(flow_.signal).add(flow_.largest_speed);
+  saved_.add(flow_.boundary.wall_speed).add(flow_.list_life.fastest).add(flow_.list_life.most_accelerated);
   saved_.add(flow_.arrangement.context.gradient_scale);
   if (flow_.features.tension) saved_.add(flow_.surface_energy);
   if (flow_.features.density_relaxation)
