@@ -281,16 +281,22 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
     const bool of_point = point != nullptr && point[k] >= 0;
     const auto source = static_cast<std::size_t>(of_point ? point[k] : context.images->source()[k]);
     const auto& from = of_point ? fields.wall_position : fields.position;
-    double head = 0;
-    for (int a = 0; a < dimensions; ++a)
-      if (fields.gravity[a] != 0) head += fields.gravity[a] * (context.images->position(a)[k] - from[a][source]);
+    double head = 0, out_of_it = 0;
+    for (int a = 0; a < dimensions; ++a) {
+      if (fields.gravity[a] == 0) continue;
+      const double way = context.images->position(a)[k] - from[a][source];
+      head += fields.gravity[a] * way;
+      out_of_it += fields.left_out[a] * way;
+    }
     records[(n + k) * width + dimensions + 1] =
-        of_point
-            ? static_cast<float>(fields.wall_pressure[source] + fields.wall_density[source] * head)
-            : static_cast<float>(double{fields.pressure[source]} + (head == 0 ? 0 : fields.density[source] * head));
+        of_point ? static_cast<float>(fields.wall_pressure[source] + fields.wall_density[source] * head)
+                 : static_cast<float>(double{fields.pressure[source]} +
+                                      (head == 0 ? 0 : fields.density[source] * head - out_of_it));
   });
   if constexpr (several) pack_scalar(context, records, width, 2, fields.density);
   if constexpr (phases == Phases::beside_walls) mark_walls(context, records, width, 2);
+  std::array<float, dimensions> left_out;
+  for (int a = 0; a < dimensions; ++a) left_out[a] = static_cast<float>(fields.left_out[a]);
   const auto h = static_cast<float>(context.smoothing_length);
   const KernelScale<dimensions, Kernel> scale(context);
   sweep(n, [&](std::size_t i) {
@@ -306,7 +312,11 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
               other = simd::max(other, zero) + equals(other, simd::splat<f32n>(of_wall), own_density);
             if constexpr (weighted) {
               const f32n kappa = contrast(own_density, other);
-              both = both + kappa * (own[1] - b.payload[1]);
+              f32n difference = own[1] - b.payload[1];
+              unrolled<dimensions>([&](auto a) __attribute__((always_inline)) {
+                difference = difference - left_out[a] * b.d[a];
+              });
+              both = both + kappa * difference;
               both = both + fields.repulsion * simd::max(kappa, zero - kappa) * simd::max(both, zero - both);
             } else {
               const f32n jump = simd::max(other - own_density, own_density - other);

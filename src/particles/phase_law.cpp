@@ -10,9 +10,8 @@ namespace {
 
 // Sound is ten times as fast as the flow: the density changes by Ma^2 = 1 % (Monaghan 1994, Morris et al. 1997).
 constexpr double sound_over_speed = 10;
-// Exponents of the equation of state (Monaghan 1994; Colagrossi and Landrini 2003). A phase is a gas where its density
-// is below a fiftieth of the largest: the lightest liquids have half of that of water, the heaviest gases a hundredth.
-constexpr double gas_exponent = 1.4, gas_density_ratio = 0.02;
+// Monaghan (1994), Colagrossi and Landrini (2003).
+constexpr double gas_exponent = 1.4;
 
 }  // namespace
 

@@ -70,7 +70,9 @@ void Settling::step(Round& round) const {
   with_forces([&](const Forces& now) {
     const auto identifier = [&](std::size_t i) { return static_cast<std::size_t>((*particles.identifier)[i]); };
     const auto acceleration = [&](std::size_t i) {
-      return add(multiply(1 / law(i).density, vector_at(now.force, dimensions, i)), gravity);
+      const double specific_volume = 1 / law(i).density;
+      return add(multiply(specific_volume, vector_at(now.force, dimensions, i)),
+                 multiply(1 - still.lost_share(specific_volume), gravity));
     };
     const auto free = [&](std::size_t i, const Vec3& v) {
       return without_inward(v, vector_at(round.outwards, dimensions, identifier(i)));

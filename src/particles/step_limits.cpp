@@ -5,6 +5,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/core/size_bits.hpp"
 
 namespace spume {
 
@@ -38,6 +39,29 @@ void refuse_long_strides(const ParticleStore& particles, const VectorField& at, 
   details.cause = std::isfinite(fastest) ? "a particle would cross half its support in one step"
                                          : "a velocity is not a finite number";
   details.option = "time.courant";
+  throw StepFailure(details);
+}
+
+void refuse_burst(const ParticleStore& particles, const CompressedState& state, const char* option) {
+  constexpr double largest_excess_of_a_flow = 0.5;
+  const double largest = parallel_reduce(
+      particles.size(), 0.0,
+      [&](std::size_t first, std::size_t last) {
+        double strongest = 0;
+        for (int axis = 0; axis < particles.dimensions; ++axis)
+          strongest = larger_or_nan(strongest, double{largest_size(state.force[axis].data(), first, last)});
+        return std::isfinite(strongest) ? double{largest_size(state.excess, first, last)} : NAN;
+      },
+      larger_or_nan);
+  if (largest <= largest_excess_of_a_flow) return;
+  StepFailure::Details details;
+  details.cause =
+      std::isfinite(largest) ? "the density has changed by more than half" : "a force is not a finite number";
+  details.option = option;
+  details.value = largest;
+  blame_first(details, particles, state.at, [&](std::size_t i) {
+    return !(std::abs(state.excess[i]) <= largest_excess_of_a_flow && std::isfinite(state.force[0][i]));
+  });
   throw StepFailure(details);
 }
 

@@ -223,11 +223,13 @@ TEST(WcsphSums, PressureAndRepulsionAgreeWithTheSlowTwin) {
     const Fields f(a);
     const reference::WcsphSums twin{a.twin};
     const double* position[3] = {a.hood.x.data(), a.hood.y.data(), a.hood.z.data()};
-    for (const auto& [several, weighted] : {std::pair{false, false}, {true, false}, {true, true}}) {
-      const Vec3 gravity = several ? Vec3{0, -2e-3, 1e-3} : Vec3{};
+    for (const auto& [several, weighted, over_still] :
+         {std::tuple{false, false, false}, {true, false, false}, {true, true, false}, {true, true, true}}) {
+      const Vec3 gravity = several ? Vec3{0, -2e-3, 1e-3} : Vec3{}, left_out = over_still ? Vec3{0, -3, 2} : Vec3{};
       VectorArrays<float> force(a.size(), a.dimensions());
       pressure_force_sweep(a.context, a.packed,
                            {.pressure = f.pressure.data(),
+                            .left_out = left_out,
                             .volume = f.volume.data(),
                             .density = f.density.data(),
                             .several = several,
@@ -239,10 +241,10 @@ TEST(WcsphSums, PressureAndRepulsionAgreeWithTheSlowTwin) {
       Comparison forces(several ? "pressure and repulsion" : "pressure");
       for (std::size_t i = 0; i < a.size(); ++i)
         for (int axis = 0; axis < a.dimensions(); ++axis)
-          forces.add(
-              force[axis][i],
-              twin.pressure_force(i, axis, f.pressure, f.volume, f.density, several ? 0.08 : 0, gravity, weighted),
-              a.twin.tolerance(i), i);
+          forces.add(force[axis][i],
+                     twin.pressure_force(i, axis, f.pressure, f.volume, f.density, several ? 0.08 : 0, gravity,
+                                         weighted, left_out),
+                     a.twin.tolerance(i), i);
     }
   }
 }

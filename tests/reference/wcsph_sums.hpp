@@ -53,16 +53,20 @@ struct WcsphSums {
   }
   template <class Pressure, class Scalar>
   Sum pressure_force(std::size_t i, int a, const Pressure& pressure, const Scalar& volume, const Scalar& density,
-                     double repulsion, const Vec3& gravity, bool weighted = false) const {
+                     double repulsion, const Vec3& gravity, bool weighted = false, const Vec3& left_out = {}) const {
     Sum sum;
     sums.each(i, [&](const SphSums::Pair& p) {
       const std::size_t j = p.point->source;
-      double other = pressure[j];
-      for (int b = 0; b < sums.dimensions(); ++b)
-        other += density[j] * gravity[b] * (p.point->position[b] - sums.points()[j].position[b]);
+      double other = pressure[j], of_all = 0, way = 0;  // the difference of the whole pressures, beside that of these
+      for (int b = 0; b < sums.dimensions(); ++b) {
+        other += (density[j] * gravity[b] - left_out[b]) * (p.point->position[b] - sums.points()[j].position[b]);
+        of_all -= left_out[b] * p.d[b];
+        way += std::abs(left_out[b] * p.d[b]);
+      }
       const double k = kappa(density[i], density[j]), jump = std::abs(k);
-      const double both = pressure[i] + other + (weighted ? k * (pressure[i] - other) : 0);
-      const double modulus = (weighted ? 2 : 1) * (std::abs(pressure[i]) + std::abs(other)) * (1 + repulsion * jump);
+      const double both = pressure[i] + other + (weighted ? k * (pressure[i] - other + of_all) : 0);
+      const double modulus =
+          (weighted ? 2 : 1) * (std::abs(pressure[i]) + std::abs(other) + way) * (1 + repulsion * jump);
       sum.add(-p.g * volume[j], p.largest_g * volume[j], (both + repulsion * jump * std::abs(both)) * p.d[a],
               modulus * std::abs(p.d[a]));
     });

@@ -79,6 +79,7 @@ void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, con
 
 struct PressureFields {
   const float* pressure = nullptr;
+  Vec3 left_out{};                 // gradient of a pressure, linear in space, that `pressure` is without
   const float* volume = nullptr;   // v
   const float* density = nullptr;  // rho_0; null: of one phase without gravity and walls of bodies
   bool several = false;            // phases: repulsion between them
@@ -86,8 +87,8 @@ struct PressureFields {
   float repulsion = 0;             // eps
   // Forces that `out` has beside that of pressure, `out` itself among them; null: none.
   std::array<const float*, 3> others{};
-  // Images at mirrors continue the pressure of their source by density gravity . (r_image - r_source), as Adami et al.
-  // (2012) do at walls.
+  // Images at mirrors continue the pressure of their source by (density gravity - left_out) . (r_image - r_source), as
+  // Adami et al. (2012) do at walls. Wall points do so without `left_out`.
   Vec3 gravity{};
   std::array<const double*, 3> position{};
   // Per wall point; null without.

@@ -15,6 +15,9 @@ namespace spume {
 
 // The exponent of liquids (Monaghan 1994).
 inline constexpr double liquid_exponent = 7;
+// A phase is a gas where its density is below a fiftieth of the largest: the lightest liquids have half of that of
+// water, the heaviest gases a hundredth.
+inline constexpr double gas_density_ratio = 0.02;
 
 // x^7 without a logarithm: water is most of most scenes.
 inline double tait_power(double x, double exponent) {

@@ -16,7 +16,7 @@
 
 #include "spume/core/go_on.hpp"
 #include "spume/particles/boundary.hpp"
-#include "spume/particles/phase_law.hpp"
+#include "spume/particles/still_liquid.hpp"
 
 namespace spume {
 
@@ -29,6 +29,7 @@ struct Settling {
   ParticleLaws law;
   Array<double>& excess;  // of each particle that of the pressure at its height; it follows the particle
   Vec3 gravity{};         // across sides
+  StillLiquid still;      // forces are without its pressure
   const std::vector<std::uint8_t>& chosen;  // by identifier, 1 for those that move; empty: all
   int most_rounds = 0;
 

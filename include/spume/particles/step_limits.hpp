@@ -43,4 +43,14 @@ void blame_first(StepFailure::Details& details, const ParticleStore& particles, 
 void refuse_long_strides(const ParticleStore& particles, const VectorField& at, const VectorScratch& velocity,
                          double support_radius, double dt);
 
+// The new state of a weakly compressible step, where it is.
+struct CompressedState {
+  const VectorField& at;
+  const double* excess = nullptr;
+  const FloatVectorScratch& force;
+};
+// Throws StepFailure for a density that has changed by half, which is that of no weakly compressible flow, or a force
+// that is not finite, and names `option`.
+void refuse_burst(const ParticleStore& particles, const CompressedState& state, const char* option);
+
 }  // namespace spume

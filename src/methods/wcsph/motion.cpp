@@ -6,7 +6,6 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
-#include "spume/core/size_bits.hpp"
 #include "spume/methods/wcsph/flow.hpp"
 #include "spume/particles/bounded_shift.hpp"
 #include "spume/particles/excess_step.hpp"
@@ -16,8 +15,6 @@
 namespace spume::wcsph {
 namespace {
 
-// A density that has changed by half is that of no weakly compressible flow.
-constexpr double largest_excess_of_a_flow = 0.5;
 // Sun et al. (2019): delta u = -2 U h grad C, of U / 2 at most, U the largest expected speed.
 constexpr double shifting_strength = 2, largest_shift = 0.5;
 
@@ -275,12 +272,14 @@ void Flow::filter_density() {
 
 void Flow::find_pressure_force() {
   walls.find_pressure(arrangement, pressure.data(), density.data());
+  if (still) still.subtract(read(place), size(), pressure.data());
   ScratchPool& scratch = particles.scratch();
   const auto viscous = read(force);  // null without viscosity
   scratch.lease(force, dimensions, size());
   if (features.shifting) scratch.lease(concentration, dimensions, size());
   pressure_force_sweep(arrangement.context, arrangement.packed,
                        {.pressure = pressure.data(),
+                        .left_out = still.pressure_gradient(),
                         .volume = volume.data(),
                         .density = density.data(),
                         .several = features.several,
@@ -324,6 +323,7 @@ void Flow::settle(const GoOn& go_on) {
                        .law = law_of_particles(),
                        .excess = *excess,
                        .gravity = wall_gravity,
+                       .still = still,
                        .chosen = features.rest.chosen,
                        .most_rounds = options.get<CompressibilityOptions>().settling_rounds,
                        .with_forces = with_forces}
@@ -341,28 +341,9 @@ void Flow::add_tension() {
 }
 
 void Flow::accept(double dt) {
-  const double worst = parallel_reduce(
-      size(), 0.0,
-      [&](std::size_t first, std::size_t last) {
-        double strongest = 0;
-        for (int axis = 0; axis < dimensions; ++axis)
-          strongest = larger_or_nan(strongest, double{largest_size(force[axis].data(), first, last)});
-        return std::isfinite(strongest) ? largest_size(next_excess.data(), first, last) / largest_excess_of_a_flow
-                                        : NAN;
-      },
-      larger_or_nan);
-  if (!(worst <= 1)) {
-    StepFailure::Details details;
-    details.cause =
-        std::isfinite(worst) ? "the density has changed by more than half" : "a force is not a finite number";
-    const bool tears = openings != nullptr && features.several && !features.shifting;
-    details.option = tears ? "compressibility.shifting" : "compressibility.max_speed";
-    details.value = worst * largest_excess_of_a_flow;
-    blame_first(details, particles, particles.position, [&](std::size_t i) {
-      return !(std::abs(next_excess[i]) <= largest_excess_of_a_flow && std::isfinite(force[0][i]));
-    });
-    throw StepFailure(details);
-  }
+  const bool tears = openings != nullptr && features.several && !features.shifting;
+  refuse_burst(particles, {particles.position, next_excess.data(), force},
+               tears ? "compressibility.shifting" : "compressibility.max_speed");
   solute_transport.keep_shift(shift, dt);
   // Contacts and openings change the new state.
   const bool final = !features.bodies && !features.openings;
@@ -425,7 +406,9 @@ void Flow::accept_block(const HalfSteps& half, const VectorExpression& given, st
   for (int axis = 0; axis < dimensions; ++axis) {
     const double g = scene.fluid.gravity[axis];
     forced.fill(g);
-    for (std::size_t k = 0; k < n && scene.body_force; ++k) forced[k] = g + everywhere[k][axis];
+    for (std::size_t k = 0; k < n && still; ++k)
+      forced[k] -= still.lost_share(specific_volume[k]) * still.gravity[axis];
+    for (std::size_t k = 0; k < n && scene.body_force; ++k) forced[k] += everywhere[k][axis];
     const float* const f = force[axis].data() + first;
     for (std::size_t k = 0; k < n; ++k) forced[k] += specific_volume[k] * f[k];
     for (std::size_t k = 0; k < n && features.shifting; ++k) forced[k] += flux[axis][first + k];

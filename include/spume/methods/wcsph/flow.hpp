@@ -24,6 +24,7 @@
 #include "spume/particles/phase_law.hpp"
 #include "spume/particles/spill.hpp"
 #include "spume/particles/start_at_rest.hpp"
+#include "spume/particles/still_liquid.hpp"
 #include "spume/particles/surface_tension.hpp"
 #include "spume/particles/wall_contacts.hpp"
 #include "spume/particles/wall_parting.hpp"
@@ -63,8 +64,9 @@ struct Flow {
   const double expected_speed;
   const std::vector<PhaseLaw> laws;
   const std::vector<float> phase_density;  // distinct_densities()
+  const Vec3 wall_gravity;                 // across sides: the pressure at walls follows it
+  const StillLiquid still;                 // (16)
   const double background;
-  const Vec3 wall_gravity;  // across sides: the pressure at walls follows it
 
   // --- State between steps: saved.
   double time = 0;

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// What pressures of a closed tank are measured from: a liquid of the lightest density, at rest.
+//
+// The force of a pair is its sum of pressures, under which an arrangement of particles resists shear as a solid does
+// and, in disorder, dissipates: both in proportion to the pressure, not to its differences. An interface of oil and
+// brine (900 and 1100 kg/m3, 28 spacings deep, 0.07 steep) stopped half way to level under that of its depth; by what
+// is left over the still liquid it swings to 0.67 of where it started, by the method of finite differences to 0.99.
+//
+//   P' = P - rho_r g . (r - r_0),  rho du/dt = -grad P' + (rho - rho_r) g
+//
+// r_0 is the highest corner of the tank, so that P' of layers at rest is P there and grows downwards in what is
+// heavier.
+#pragma once
+
+#include <array>
+
+#include "spume/particles/phase_law.hpp"
+
+namespace spume {
+
+struct StillLiquid {
+  double density = 0;  // rho_r; 0: none
+  Vec3 gravity{};      // across sides
+  Vec3 highest{};      // r_0
+  double range = 0;    // of P' of layers at rest that fill the tank: (rho_max - rho_r) |g . extent|
+
+  explicit operator bool() const { return density > 0; }
+  Vec3 pressure_gradient() const { return multiply(density, gravity); }
+  // What gravity loses by buoyancy, where the specific volume is that: rho_r / rho.
+  double lost_share(double specific_volume) const { return density * specific_volume; }
+  // P' of particles [0, n) at `place` in the place of P.
+  void subtract(const std::array<const double*, 3>& place, std::size_t n, float* pressure) const;
+};
+
+// Of a scene without free surface, openings and bodies whose gravity acts across its sides. None where its lightest
+// phase is a gas, which would take less than a fiftieth off the pressure, and of one phase whose particles nothing but
+// their pressure keeps apart.
+StillLiquid still_liquid(const Scene& scene, const std::vector<PhaseLaw>& laws, bool shifting);
+
+}  // namespace spume

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/still_liquid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "spume/core/parallel.hpp"
+#include "spume/particles/column_pressure.hpp"
+
+namespace spume {
+
+StillLiquid still_liquid(const Scene& scene, const std::vector<PhaseLaw>& laws, bool shifting) {
+  const Vec3 gravity = gravity_across_sides(scene);
+  if (scene.free_surface || !scene.bodies.empty() || !scene.openings.empty() || gravity == Vec3{}) return {};
+  const auto [lightest, heaviest] = std::minmax_element(
+      laws.begin(), laws.end(), [](const PhaseLaw& a, const PhaseLaw& b) { return a.density < b.density; });
+  if (lightest->density < gas_density_ratio * heaviest->density || (laws.size() == 1 && !shifting)) return {};
+  StillLiquid still{.density = lightest->density, .gravity = gravity};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    still.highest[axis] = gravity[axis] < 0 ? scene.domain.upper[axis] : scene.domain.lower[axis];
+    still.range += (heaviest->density - still.density) * std::abs(gravity[axis]) *
+                   (scene.domain.upper[axis] - scene.domain.lower[axis]);
+  }
+  return still;
+}
+
+void StillLiquid::subtract(const std::array<const double*, 3>& place, std::size_t n, float* pressure) const {
+  const Vec3 gradient = pressure_gradient();
+  parallel_blocks(n, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (gradient[axis] == 0) continue;
+      const double slope = gradient[axis], from = highest[axis];
+      for (std::size_t i = first; i < last; ++i)
+        pressure[i] = static_cast<float>(pressure[i] - slope * (place[axis][i] - from));
+    }
+  });
+}
+
+}  // namespace spume
