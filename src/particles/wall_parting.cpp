@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/particles/wall_parting.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "spume/core/kernel.hpp"
@@ -10,7 +11,9 @@
 namespace spume {
 namespace {
 
-// Monaghan (2000): R = eps |P| f^4, f = W(r) / W(spacing).
+// Monaghan (2000): R = eps |P| f^4, f = W(r) / W(spacing). Of pressures above zero alone: particles of a film on a
+// wall swing between pressure and tension, and what pushes in both drives them. Above a disc that comes out of the
+// surface they reached 4.5 to 6.7 in twelve runs, where a fall through the depth gives 1.3, and the step was refused.
 constexpr double stress_share = 0.2;
 
 }  // namespace
@@ -36,7 +39,7 @@ double WallParting::force_of(const Liquid& liquid, std::size_t i, double distanc
   const double scale =
       liquid.gradient_scale * particle_volume_ * WendlandC2::normalisation(dimensions_) / std::pow(h_, dimensions_ + 2);
   const double f = WendlandC2::w(way / h_) / WendlandC2::w(2 * gap / h_);
-  const double stress = stress_share * std::abs(2 * double{liquid.pressure[i]} + head) * (f * f * f * f - 1);
+  const double stress = stress_share * std::max(2 * double{liquid.pressure[i]} + head, 0.0) * (f * f * f * f - 1);
   return -scale * WendlandC2::f(way / h_) * liquid.volume[i] * stress * way;
 }
 

@@ -26,17 +26,22 @@ std::string still(const std::string& upper, double spacing, double depth, bool a
          "[[region]]\nphase = \"water\"\nupper = " + top + "\n" + bodies + "[time]\nend = 2\n";
 }
 
-// As the program does, with half of a step that is refused.
-void run_to(BodiesRun& run, double end) {
+// As the program does, with half of a step that is refused. The largest speed on the way.
+double run_to(BodiesRun& run, double end) {
+  double fastest = 0;
   while (run.method.time() < end - 1e-12) {
     double dt = std::min(run.method.step_limit().dt, end - run.method.time());
     for (int attempt = 0;; ++attempt, dt /= 2) try {
         run.steps(1, dt);
         break;
-      } catch (const StepFailure&) {
+      } catch (const StepFailure& f) {
+        fprintf(stderr, "t %.6f dt %g p %lld (%g %g) %s %g\n", run.method.time(), dt, (long long)f.details().particle,
+                f.details().position[0], f.details().position[1], f.details().cause.c_str(), f.details().value);
         if (attempt == 3) throw;
       }
+    fastest = std::max(fastest, run.method.flow().largest_speed);
   }
+  return fastest;
 }
 
 std::string body(const std::string& text) {
@@ -170,7 +175,9 @@ TEST(WcsphBodies, AGrowingBodyDisplacesItsVolume) {
   EXPECT_NEAR(lift, expected, expected * 0.05 / 0.15);
 }
 
-// It rises through the surface and is taken away, twice; nothing is left in it, and nothing where it waits.
+// It rises through the surface and is taken away, twice; nothing is left in it, and nothing where it waits. A fall
+// through the depth gives 1.3; particles between the disc and the surface reached 4.5 to 6.7 where the stress of walls
+// pushed them under tension too.
 TEST(WcsphBodies, AReleasedBodyLeavesThroughTheSurfaceAndComesBack) {
   BodiesRun run(growing_disc("0.5*(t - 0.2*(1 - exp(-5*t)))"));
   const wcsph::Flow& flow = run.method.flow();
@@ -178,7 +185,7 @@ TEST(WcsphBodies, AReleasedBodyLeavesThroughTheSurfaceAndComesBack) {
   const std::size_t particles = flow.size();
   for (const double start : {0.0, 6.0}) {
     for (const double t : {0.02, 0.3, 0.6, 1.2, 1.8, 2.3}) {
-      run_to(run, start + t);
+      EXPECT_LT(run_to(run, start + t), 3);
       for (std::size_t i = 0; i < particles; ++i) {
         const Vec3 r = vector_at(flow.particles.position, 2, i);
         EXPECT_GT(flow.boundary.bodies()->distance(r), 0) << t;

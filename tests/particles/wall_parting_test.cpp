@@ -56,7 +56,8 @@ TEST(WallParting, IsTheStressOfTheFormulaAndBodiesTakeTheirs) {
     double modulus = 0;
     const auto add_wall = [&](double distance, const Vec3& normal) {
       const double head = -2 * distance * laws[static_cast<std::size_t>(phase[i])].density * dot(gravity, normal);
-      const double stress = 0.2 * std::abs(2 * double{pressure[i]} + head) * (std::pow(w(2 * distance) / w(dr), 4) - 1);
+      const double stress =
+          0.2 * std::max(2 * double{pressure[i]} + head, 0.0) * (std::pow(w(2 * distance) / w(dr), 4) - 1);
       const double slope =
           scale * walled.particles.volume * kernel.normalisation() * kernel.f(2 * distance / h) / std::pow(h, 4);
       const Vec3 of_wall = multiply(-slope * volume[i] * stress * 2 * distance, normal);

@@ -5,7 +5,7 @@
 // density field cancels it to first order. Closer to its image than the spacing it feels the artificial stress of
 // Monaghan, SPH without a tensile instability (2000), which is zero at the spacing here:
 //
-//   (rho du/dt)_i = -v g 0.2 |P + P_image| ((W(2 d) / W(spacing))^4 - 1) 2 d n,
+//   (rho du/dt)_i = -v g 0.2 max(P + P_image, 0) ((W(2 d) / W(spacing))^4 - 1) 2 d n,
 //
 // d the distance from the wall, n its normal into the liquid, g of operators/wcsph_sums.hpp at 2 d, v = 1 / (1 + s).
 // The image behind the wall of a body is as far behind it. Bodies that stand still do without: particles that a slanted
