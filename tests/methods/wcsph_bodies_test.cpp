@@ -176,8 +176,8 @@ TEST(WcsphBodies, AGrowingBodyDisplacesItsVolume) {
 }
 
 // It rises through the surface and is taken away, twice; nothing is left in it, and nothing where it waits. A fall
-// through the depth gives 1.3; particles between the disc and the surface reached 4.5 to 6.7 where the stress of walls
-// pushed them under tension too.
+// through the depth gives 1.3; particles between the disc and the surface reached 4.5 to 6.7 where the stress at its
+// wall followed their pressure.
 TEST(WcsphBodies, AReleasedBodyLeavesThroughTheSurfaceAndComesBack) {
   BodiesRun run(growing_disc("0.5*(t - 0.2*(1 - exp(-5*t)))"));
   const wcsph::Flow& flow = run.method.flow();

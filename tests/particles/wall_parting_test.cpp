@@ -23,24 +23,20 @@ TEST(WallParting, IsTheStressOfTheFormulaAndBodiesTakeTheirs) {
   Walled walled(between_sides, 0.9);
   const std::size_t n = walled.particles.size();
   const double dr = walled.scene().spacing, h = walled.resolution.smoothing_length, scale = 1.02;
-  const Vec3 gravity{0, -3, 0};
+  const double speed = 1.7;
   const std::vector<PhaseLaw> laws{{.density = 1000, .sound_speed = 10}, {.density = 2, .sound_speed = 20}};
   Array<std::int64_t> phase(n);
-  Array<float> pressure(n), volume(n);
+  Array<float> volume(n);
   std::array<Array<float>, 3> force;
   for (auto& component : force) component = Array<float>(n, 0.0F);
   for (std::size_t i = 0; i < n; ++i) {
     const auto random = uniform(i, 21);
     phase[i] = random[0] > 0.5;
-    pressure[i] = static_cast<float>(100 * (random[1] - 0.5));
     volume[i] = static_cast<float>(1 + 0.1 * (random[2] - 0.5));
   }
-  const WallParting parting(walled.scene(), walled.boundary, walled.resolution, walled.particles.volume, gravity);
-  const WallParting::Liquid liquid{.law = {laws, phase},
-                                   .place = read(walled.particles.position),
-                                   .pressure = pressure.data(),
-                                   .volume = volume.data(),
-                                   .gradient_scale = scale};
+  const WallParting parting(walled.scene(), walled.boundary, walled.resolution, walled.particles.volume, speed);
+  const WallParting::Liquid liquid{
+      .law = {laws, phase}, .place = read(walled.particles.position), .volume = volume.data(), .gradient_scale = scale};
   parting.add_forces(n, liquid, {force[0].data(), force[1].data(), nullptr});
   std::vector<SurfaceForce> taken(2);
   parting.add_to_bodies(n, liquid, taken);
@@ -55,9 +51,8 @@ TEST(WallParting, IsTheStressOfTheFormulaAndBodiesTakeTheirs) {
     Vec3 expected{};
     double modulus = 0;
     const auto add_wall = [&](double distance, const Vec3& normal) {
-      const double head = -2 * distance * laws[static_cast<std::size_t>(phase[i])].density * dot(gravity, normal);
-      const double stress =
-          0.2 * std::max(2 * double{pressure[i]} + head, 0.0) * (std::pow(w(2 * distance) / w(dr), 4) - 1);
+      const double reference = laws[static_cast<std::size_t>(phase[i])].density * speed * speed;
+      const double stress = 0.2 * reference * (std::pow(w(2 * distance) / w(dr), 4) - 1);
       const double slope =
           scale * walled.particles.volume * kernel.normalisation() * kernel.f(2 * distance / h) / std::pow(h, 4);
       const Vec3 of_wall = multiply(-slope * volume[i] * stress * 2 * distance, normal);

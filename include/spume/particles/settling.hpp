@@ -30,6 +30,7 @@ struct Settling {
   Array<double>& excess;  // of each particle that of the pressure at its height; it follows the particle
   Vec3 gravity{};         // across sides
   StillLiquid still;      // forces are without its pressure
+  double of_sides = 0;    // the stress by which they part particles over its (W / W(spacing))^4 - 1, over rho_0
   const std::vector<std::uint8_t>& chosen;  // by identifier, 1 for those that move; empty: all
   int most_rounds = 0;
 
@@ -48,6 +49,7 @@ struct Settling {
 
  private:
   struct Round;
+  bool meets_side(std::size_t i) const;
   bool moves(std::size_t id) const { return chosen.empty() || chosen[id] != 0; }
   void raise_datum() const;
   Vec3 move(std::size_t i, const Vec3& way) const;  // the direction of its contact, if any

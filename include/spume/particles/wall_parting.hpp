@@ -2,12 +2,13 @@
 // What keeps particles half a spacing from walls beside a free surface.
 //
 // A particle on a mirror is at rest there: its force towards its image vanishes, and what the others leave of a flat
-// density field cancels it to first order. Closer to its image than the spacing it feels the artificial stress of
-// Monaghan, SPH without a tensile instability (2000), which is zero at the spacing here:
+// density field cancels it to first order. Closer to its image than the spacing it feels a stress of the form of that
+// of Monaghan, SPH without a tensile instability (2000), which is zero at the spacing here:
 //
-//   (rho du/dt)_i = -v g 0.2 max(P + P_image, 0) ((W(2 d) / W(spacing))^4 - 1) 2 d n,
+//   (rho du/dt)_i = -v g 0.2 rho_0 U^2 ((W(2 d) / W(spacing))^4 - 1) 2 d n,
 //
-// d the distance from the wall, n its normal into the liquid, g of operators/wcsph_sums.hpp at 2 d, v = 1 / (1 + s).
+// d the distance from the wall, n its normal into the liquid, g of operators/wcsph_sums.hpp at 2 d, v = 1 / (1 + s), U
+// the largest expected speed. It depends on the place alone, so that walls that stand still do no work.
 // The image behind the wall of a body is as far behind it. Bodies that stand still do without: particles that a slanted
 // face leaves nearer than half a spacing are at rest there, and the stress would stir them.
 #pragma once
@@ -23,17 +24,17 @@ namespace spume {
 
 class WallParting {
  public:
-  // Scene and boundary outlive it. Gravity: across sides, whose images continue the pressure by its head.
+  // Scene and boundary outlive it. Speed: U.
   WallParting(const Scene& scene, const Boundary& boundary, const Resolution& resolution, double particle_volume,
-              const Vec3& gravity);
+              double speed);
 
   struct Liquid {
     ParticleLaws law;
     std::array<const double*, 3> place{};
-    const float* pressure = nullptr;
     const float* volume = nullptr;  // v
     double gradient_scale = 1;      // of the kernel gradient: SweepContext
   };
+  double stress() const;  // 0.2 U^2
   // Adds (rho du/dt)_i of sides and bodies, those standing where they were put last.
   void add_forces(std::size_t particles, const Liquid& liquid, const std::array<float*, 3>& out) const;
   // Adds what the bodies take of it, in the order of the particles.
@@ -44,15 +45,14 @@ class WallParting {
     std::size_t body = 0;
     Vec3 foot{}, force{};
   };
-  double force_of(const Liquid& liquid, std::size_t i, double distance, double gap, double head) const;
+  double force_of(const Liquid& liquid, std::size_t i, double distance, double gap) const;
   std::optional<Parting> from_bodies(const Liquid& liquid, std::size_t i, const Vec3& r) const;
   Vec3 place_of(const Liquid& liquid, std::size_t i) const;
 
   const Scene& scene_;
   const Boundary& boundary_;
   const int dimensions_;
-  const double h_, particle_volume_;
-  const Vec3 gravity_;
+  const double h_, particle_volume_, speed_;
 };
 
 }  // namespace spume

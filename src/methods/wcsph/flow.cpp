@@ -88,7 +88,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       list_life(arrangement, particles, resolution.support_radius, skin, !features.bodies && !features.openings),
       walls(boundary, wall_gravity, particles.scratch(), features.wall_rates),
       contacts(boundary),
-      parting(scene, boundary, resolution, particles.volume, wall_gravity),
+      parting(scene, boundary, resolution, particles.volume, expected_speed),
       solutes(particles, resolution, options, scene),
       solute_transport(
           {solutes, particles, arrangement, boundary, scene.spacing, features.shifting, scene.free_surface}) {

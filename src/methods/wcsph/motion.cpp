@@ -298,7 +298,6 @@ void Flow::find_pressure_force() {
 WallParting::Liquid Flow::parted(const std::array<const double*, 3>& at) const {
   return {.law = law_of_particles(),
           .place = at,
-          .pressure = pressure.data(),
           .volume = volume.data(),
           .gradient_scale = arrangement.context.gradient_scale};
 }
@@ -324,6 +323,7 @@ void Flow::settle(const GoOn& go_on) {
                        .excess = *excess,
                        .gravity = wall_gravity,
                        .still = still,
+                       .of_sides = parting.stress(),
                        .chosen = features.rest.chosen,
                        .most_rounds = options.get<CompressibilityOptions>().settling_rounds,
                        .with_forces = with_forces}

@@ -19,6 +19,8 @@ namespace {
 constexpr double viscous_limit = 0.125, force_limit = 0.25;
 // Of a liquid with a free surface: twice the change of density that its sound speed is chosen for.
 constexpr double largest_volume_drift = 0.02;
+// As of gfd; particles that rearrange lift liquid by a fraction of a spacing, hence the floor of its scale.
+constexpr double largest_energy_growth = 0.03, of_a_spacing = 0.1;
 
 std::vector<double> densities_of(const Flow& flow) {
   std::vector<double> densities;
@@ -175,6 +177,17 @@ std::vector<Invariant> Wcsph::invariants() const {
                     .column = "volume_" + flow_.scene.phases[n].name,
                     .bound = 4 * std::numeric_limits<double>::epsilon(),
                     .beside = [this, n] { return flow_.openings->net_outflow(n) + flow_.volume_spilt(n); }});
+  const Features& has = flow_.features;
+  const bool driven = has.moving_walls || has.moving_bodies || has.openings || flow_.scene.body_force ||
+                      flow_.scene.fluid.gravity != flow_.wall_gravity || flow_.spill.possible();
+  if (!driven)
+    list.push_back({.quantity = "energy_growth",
+                    .kind = Invariant::Kind::growth,
+                    .column = "kinetic_energy",
+                    .bound = largest_energy_growth,
+                    .scale_floor = of_a_spacing * flow_.mass() * length(flow_.wall_gravity) * flow_.scene.spacing,
+                    .beside = [this] { return energies_.potential + energies_.compression + flow_.surface_energy; },
+                    .scale = [this] { return energies_.kinetic + flow_.surface_energy; }});
   return list;
 }
 

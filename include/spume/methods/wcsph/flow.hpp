@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "spume/core/go_on.hpp"
+#include "spume/core/parallel.hpp"
 #include "spume/methods/wcsph/options.hpp"
 #include "spume/operators/wcsph_sums.hpp"
 #include "spume/particles/acoustic_layers.hpp"
@@ -121,6 +122,9 @@ struct Flow {
   double pressure_at(double s, std::size_t i) const { return law(i).pressure(s) + background; }
   double listed_at(int axis, std::size_t i) const { return arrangement.origin[axis] + double{(*listed[axis])[i]}; }
   bool in_domain(std::size_t i) const { return openings == nullptr || !openings->holds(i); }
+  double mass() const {
+    return parallel_sum(size(), [this](std::size_t i) { return mass(i); });
+  }
   double mass(std::size_t i) const { return in_domain(i) ? particles.volume * law(i).density : 0; }
   // Of particles of layers behind openings: 0 or more. Null: there are none.
   const std::int64_t* layer() const { return openings == nullptr ? nullptr : openings->column().data(); }
