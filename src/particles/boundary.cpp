@@ -25,6 +25,12 @@ std::vector<Opening> openings_of(const OpenGates* gates) {
   return openings;
 }
 
+bool any_outside(const double* x, std::size_t first, std::size_t last, double lower, double upper) {
+  std::int64_t outside = 0;  // as wide as the places, which the compiler then takes several at a time
+  for (std::size_t i = first; i < last; ++i) outside |= x[i] > lower && x[i] < upper ? 0 : 1;
+  return outside != 0;
+}
+
 }  // namespace
 
 BoundaryKind kind_of_face(const Domain& domain, int axis, int face) {
@@ -350,17 +356,22 @@ bool Boundary::clear_of_sides(const Vec3& place) const {
   return true;
 }
 
-bool Boundary::clear_of_sides(const std::array<const double*, 3>& places, std::size_t first, std::size_t last) const {
+bool Boundary::clear_of_sides(const WallPositions& at, const std::array<const double*, 3>& places, std::size_t first,
+                              std::size_t last) const {
   if (has_obstacles() || gates_ != nullptr) return false;
-  for (int axis = 0; axis < domain_.dimensions; ++axis) {
-    if (domain_.periodic(axis)) continue;
-    const double* const x = places[axis];
-    const double lower = walls[axis][0] + gap(), upper = walls[axis][1] - gap();
-    std::int64_t outside = 0;  // as wide as the places, which the compiler then takes several at a time
-    for (std::size_t i = first; i < last; ++i) outside |= x[i] > lower && x[i] < upper ? 0 : 1;
-    if (outside != 0) return false;
-  }
+  for (int axis = 0; axis < domain_.dimensions; ++axis)
+    if (!domain_.periodic(axis) && any_outside(places[axis], first, last, at[axis][0] + gap(), at[axis][1] - gap()))
+      return false;
   return true;
+}
+
+void Boundary::go_round(const WallPositions& at, const std::array<double*, 3>& places, std::size_t first,
+                        std::size_t last) const {
+  for (int axis = 0; axis < domain_.dimensions; ++axis) {
+    const double lower = at[axis][0], upper = at[axis][1];
+    if (!domain_.periodic(axis) || !any_outside(places[axis], first, last, lower, upper)) continue;
+    for (std::size_t i = first; i < last; ++i) places[axis][i] = wrap_periodic(places[axis][i], lower, upper - lower);
+  }
 }
 
 void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity, const Vec3* from) const {

@@ -6,6 +6,7 @@
 
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
+#include "spume/core/unrolled.hpp"
 
 namespace spume {
 namespace {
@@ -22,29 +23,49 @@ double unfollowed_supply(const EnergyBalance& balance, const Domain& domain, dou
   return 50 * (wall_speed * wall_speed + strength * size);
 }
 
-template <class Velocity>
-double kinetic_energy(const EnergyBalance& balance, const ParticleStore& particles, const Velocity& velocity) {
-  return balance.particle_mass * parallel_sum(particles.size(), [&](std::size_t i) {
-           return squared_norm(velocity, particles.dimensions, i) / 2;
-         });
+struct EnergiesPerMass {
+  double kinetic = 0, potential = 0;
+};
+
+template <int dimensions>
+EnergiesPerMass energies_of(const std::array<const double*, 3>& position, const std::array<const double*, 3>& velocity,
+                            const Vec3& gravity, std::size_t first, std::size_t last) {
+  EnergiesPerMass sums;
+  for (std::size_t i = first; i < last; ++i) {
+    double speed2 = 0, potential = 0;
+    unrolled<dimensions>([&](auto axis) {
+      speed2 += velocity[axis][i] * velocity[axis][i];
+      potential -= gravity[axis] * position[axis][i];
+    });
+    sums.kinetic += speed2 / 2;
+    sums.potential += potential;
+  }
+  return sums;
 }
 
 }  // namespace
 
-// Of gravity across axes with sides; along a periodic axis there is no height.
-double EnergyGuard::potential_energy(const EnergyBalance& balance, const VectorField& position,
-                                     std::size_t particles) const {
-  return balance.particle_mass * parallel_sum(particles, [&](std::size_t i) {
-           double sum = 0;
-           for (int axis = 0; axis < domain_.dimensions; ++axis)
-             if (!domain_.periodic(axis)) sum -= balance.gravity[axis] * (*position[axis])[i];
-           return sum;
-         });
+EnergyGuard::Energies EnergyGuard::energies(const EnergyBalance& balance, const std::array<const double*, 3>& position,
+                                            const std::array<const double*, 3>& velocity, std::size_t particles) const {
+  // Along a periodic axis there is no height.
+  Vec3 gravity = balance.gravity;
+  for (int axis = 0; axis < domain_.dimensions; ++axis)
+    if (domain_.periodic(axis)) gravity[axis] = 0;
+  const EnergiesPerMass sums = parallel_reduce(
+      particles, EnergiesPerMass{},
+      [&](std::size_t first, std::size_t last) {
+        return domain_.dimensions == 3 ? energies_of<3>(position, velocity, gravity, first, last)
+                                       : energies_of<2>(position, velocity, gravity, first, last);
+      },
+      [](const EnergiesPerMass& a, const EnergiesPerMass& b) {
+        return EnergiesPerMass{a.kinetic + b.kinetic, a.potential + b.potential};
+      });
+  return {balance.particle_mass * sums.kinetic, balance.particle_mass * sums.potential};
 }
 
 double EnergyGuard::held(const EnergyBalance& balance, const ParticleStore& particles) const {
-  return kinetic_energy(balance, particles, particles.velocity) +
-         potential_energy(balance, particles.position, particles.size());
+  const Energies now = energies(balance, read(particles.position), read(particles.velocity), particles.size());
+  return now.kinetic + now.potential;
 }
 
 void EnergyGuard::start(const EnergyBalance& balance, const ParticleStore& particles, double stored_energy) {
@@ -57,8 +78,8 @@ double EnergyGuard::after_step(const EnergyBalance& balance, const ParticleStore
   const std::size_t n = particles.size();
   const double mass = balance.particle_mass, all = mass * static_cast<double>(n);
   const double next_supply = supply + balance.work;
-  const double kinetic = kinetic_energy(balance, particles, velocity);
-  const double available = next_supply - potential_energy(balance, at, n);
+  const auto [kinetic, potential] = energies(balance, read(at), read(velocity), n);
+  const double available = next_supply - potential;
   // Particles rearrange within a spacing; float sums leave 1e-6 of a smoothing length in a step.
   const double noise = 1e-6 * resolution_.smoothing_length / dt;
   const double strength = balance.largest_acceleration;

@@ -2,36 +2,15 @@
 #include "spume/particles/fastest.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "spume/core/parallel.hpp"
-#include "spume/core/size_bits.hpp"
+#include "spume/particles/blocks.hpp"
 
 namespace spume {
 namespace {
 
 // Of a bound that is not to be missed by rounding.
 constexpr double above_rounding = 1e-12;
-
-using Block = std::array<double, default_block>;
-
-// The largest of what term(i, axis) gives, squared and summed along the axes in order; the sums are left in `sum`.
-template <class Term>
-[[gnu::always_inline]] inline double largest_square(int dimensions, std::size_t first, std::size_t last, Block& sum,
-                                                    Term&& term) {
-  double* const sums = sum.data();
-  const std::size_t n = last - first;
-  for (int axis = 0; axis < dimensions; ++axis) {
-    const auto of = term(axis);
-    if (axis == 0) {
-      for (std::size_t k = 0; k < n; ++k) sums[k] = of(first + k) * of(first + k);
-    } else {
-      for (std::size_t k = 0; k < n; ++k) sums[k] += of(first + k) * of(first + k);
-    }
-  }
-  return largest_size(sums, 0, n);
-}
 
 // Powers are found where the sum may be the largest so far alone: (1 + s)^e, 0 <= e <= 1, lies below its tangent at 0.
 double largest_of_gas(const PhaseLaw& own, const double* excess, const double* speed2, std::size_t n, double so_far) {
@@ -48,7 +27,7 @@ double largest_of_gas(const PhaseLaw& own, const double* excess, const double* s
 
 void Fastest::take(const State& state, std::size_t first, std::size_t last) {
   for (; last - first > default_block; first += default_block) take(state, first, first + default_block);
-  Block sum;
+  ParticleBlock sum;
   if (state.acceleration[0] != nullptr) {
     const double largest = largest_square(state.dimensions, first, last, sum, [&](int axis) {
       return [a = state.acceleration[axis]](std::size_t i) { return double{a[i]}; };

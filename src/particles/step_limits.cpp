@@ -6,34 +6,72 @@
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/size_bits.hpp"
+#include "spume/particles/blocks.hpp"
 
 namespace spume {
 
+namespace {
+
+// |u|^2 of those that bound a step, of all particles and without spray.
+struct Squares {
+  double largest = 0, limiting = 0;
+};
+
+Squares largest_of_both(const Squares& a, const Squares& b) {
+  return {larger_or_nan(a.largest, b.largest), larger_or_nan(a.limiting, b.limiting)};
+}
+
+}  // namespace
+
 Speeds find_speeds(const Arrangement& arrangement, const ParticleStore& particles) {
-  const int d = particles.dimensions;
-  const auto speed2_at = [&](std::size_t i) { return squared_norm(particles.velocity, d, i); };
-  Speeds speeds;
-  speeds.largest = std::sqrt(parallel_max(particles.size(), 0.0, speed2_at));
-  const int spray = spray_neighbours(d);
+  const int d = particles.dimensions, spray = spray_neighbours(d);
   const bool listed = arrangement.list.particles() == particles.size();
-  speeds.limiting = listed ? std::sqrt(parallel_max(
-                                 particles.size(), 0.0,
-                                 [&](std::size_t i) { return arrangement.list.count(i) < spray ? 0.0 : speed2_at(i); }))
-                           : speeds.largest;
-  return speeds;
+  const auto u = read(particles.velocity);
+  const Squares squares = parallel_reduce(
+      particles.size(), Squares{},
+      [&](std::size_t first, std::size_t last) {
+        Squares so_far;
+        ParticleBlock speed2;
+        each_block(first, last, [&](std::size_t from, std::size_t to) {
+          Squares block;
+          block.limiting = block.largest = largest_square(
+              d, from, to, speed2, [&](int axis) { return [u = u[axis]](std::size_t i) { return u[i]; }; });
+          if (listed) {
+            const std::int32_t* const counts = arrangement.list.counts() + from;
+            for (std::size_t k = 0; k < to - from; ++k) speed2[k] = counts[k] < spray ? 0 : speed2[k];
+            block.limiting = largest_size(speed2.data(), 0, to - from);
+          }
+          so_far = largest_of_both(so_far, block);
+        });
+        return so_far;
+      },
+      largest_of_both);
+  return {.largest = std::sqrt(squares.largest), .limiting = std::sqrt(squares.limiting)};
 }
 
 void refuse_long_strides(const ParticleStore& particles, const VectorField& at, const VectorScratch& velocity,
                          double support_radius, double dt) {
   const int d = particles.dimensions;
   const std::size_t n = particles.size();
-  const auto speed2_at = [&](std::size_t i) { return squared_norm(velocity, d, i); };
-  const double fastest = std::sqrt(parallel_max(n, 0.0, speed2_at));
+  const auto u = read(velocity);
+  const double fastest = std::sqrt(parallel_reduce(
+      n, 0.0,
+      [&](std::size_t first, std::size_t last) {
+        double so_far = 0;
+        ParticleBlock speed2;
+        each_block(first, last, [&](std::size_t from, std::size_t to) {
+          so_far = larger_or_nan(so_far, largest_square(d, from, to, speed2, [&](int axis) {
+                                   return [u = u[axis]](std::size_t i) { return u[i]; };
+                                 }));
+        });
+        return so_far;
+      },
+      larger_or_nan));
   const double limit = 0.5 * support_radius / dt;
   if (fastest <= limit) return;
   StepFailure::Details details;
   blame_first(details, particles, at, [&](std::size_t i) {
-    details.value = std::sqrt(speed2_at(i));
+    details.value = std::sqrt(squared_norm(velocity, d, i));
     return !(details.value <= limit);
   });
   details.cause = std::isfinite(fastest) ? "a particle would cross half its support in one step"

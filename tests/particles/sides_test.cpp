@@ -45,6 +45,41 @@ TEST(BoundarySides, APlaceClearOfThemIsLeftWhereItIs) {
   }
 }
 
+// A block is clear as its places are, of walls that have moved; and goes round as each of them does.
+TEST(BoundarySides, ABlockClearOfThemGoesRoundPeriodicSidesAlone) {
+  const LoadedCase loaded = load_text(scene_text(
+      "lower = [-1, 0, 0]\nupper = [1, 1, 1]\nx = \"periodic\"\nfront = \"free-slip\"\nbottom = \"free-slip\"\n", 0.1,
+      ""));
+  const Boundary boundary(loaded.scene.domain, loaded.scene.spacing, nullptr);
+  WallPositions at = boundary.walls;
+  at[1][0] = 0.3;  // the front has moved
+  constexpr std::size_t n = 64;
+  std::size_t clear = 0;
+  for (std::uint64_t block = 0; block < 200; ++block) {
+    std::array<std::array<double, n>, 3> places;
+    bool each_clear = true;
+    for (std::uint64_t k = 0; k < n; ++k) {
+      const Point r = uniform(block * n + k, 7);
+      places[0][k] = 2.4 * r[0] - 1.2;
+      places[1][k] = (block % 2 == 0 ? 0.301 : 0.27) + 0.69 * r[1];
+      places[2][k] = 0.001 + 0.99 * r[2];
+      each_clear = each_clear && places[1][k] > at[1][0] + boundary.gap() && places[2][k] > boundary.gap();
+    }
+    ASSERT_EQ(boundary.clear_of_sides(at, {places[0].data(), places[1].data(), places[2].data()}, 0, n), each_clear);
+    if (!each_clear) continue;
+    ++clear;
+    const auto before = places;
+    boundary.go_round(at, {places[0].data(), places[1].data(), places[2].data()}, 3, n);
+    for (std::size_t k = 0; k < n; ++k) {
+      Vec3 held{before[0][k], before[1][k], before[2][k]};
+      if (k >= 3) boundary.hold_liquid(at, held, nullptr);
+      EXPECT_EQ((Vec3{places[0][k], places[1][k], places[2][k]}), held);
+    }
+  }
+  EXPECT_GT(clear, 50U);
+  EXPECT_LT(clear, 150U);
+}
+
 // Bodies and openings have sides of their own.
 TEST(BoundarySides, NoPlaceBesideABodyIsSaidToBeClear) {
   const Walled walled(scene_text("lower = [0, 0]\nupper = [1, 1]\nbottom = \"free-slip\"\n", 0.1,

@@ -110,6 +110,7 @@ class NeighbourList {
   }
   // This and what follows: of lists that are not narrow.
   std::int32_t count(std::size_t i) const { return count_[i]; }
+  const std::int32_t* counts() const { return count_.data(); }
   // Entries, padded with that of the sentinel.
   const std::int32_t* begin(std::size_t i) const { return index_.data() + first_[i]; }
   const std::int32_t* padded_end(std::size_t i) const { return begin(i) + (count_[i] + 7) / 8 * 8; }

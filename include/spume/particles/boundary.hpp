@@ -172,8 +172,12 @@ class Boundary {
   // Whether apply_walls() and hold_liquid() would leave a place as it is: before all sides, in scenes without bodies
   // and openings; false where that is not seen at once.
   bool clear_of_sides(const Vec3& place) const;
-  // Of places first .. last - 1, which may be beyond periodic sides.
-  bool clear_of_sides(const std::array<const double*, 3>& places, std::size_t first, std::size_t last) const;
+  // Of places first .. last - 1, which may be beyond periodic sides, for walls at `at`.
+  bool clear_of_sides(const WallPositions& at, const std::array<const double*, 3>& places, std::size_t first,
+                      std::size_t last) const;
+  // Of places that are clear of sides what apply_walls() and hold_liquid() leave to do: they go round periodic sides.
+  void go_round(const WallPositions& at, const std::array<double*, 3>& places, std::size_t first,
+                std::size_t last) const;
 
   double bytes() const;
 

@@ -34,7 +34,12 @@ class EnergyGuard {
                     const VectorScratch& velocity, double wall_speed, double dt) const;
 
  private:
-  double potential_energy(const EnergyBalance& balance, const VectorField& position, std::size_t particles) const;
+  // Kinetic, and potential of gravity across axes with sides.
+  struct Energies {
+    double kinetic = 0, potential = 0;
+  };
+  Energies energies(const EnergyBalance& balance, const std::array<const double*, 3>& position,
+                    const std::array<const double*, 3>& velocity, std::size_t particles) const;
   const Domain& domain_;
   const Resolution& resolution_;
 };

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "full_tanks.hpp"
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
 #include "spume/methods/les_sph/flow.hpp"
+#include "spume/particles/blocks.hpp"
 #include "spume/particles/sponge.hpp"
 
 namespace spume::les_sph {
@@ -17,11 +17,6 @@ namespace {
 // error of the Laplacian. In a lid-driven cavity at 1/40, 0.99 changes the kinetic energy at t = 0.3 by 0.05 % and 0.8
 // by 0.02 %.
 constexpr double least_divergence_of_position = 0.95;
-
-// Of a spacing a step: faster than this the pressure at a surface or a void does not draw a particle into the wall of a
-// body.
-// At wall points a pressure that one particle has alone is lower than its own.
-constexpr double least_approach = 0.05;
 
 [[noreturn]] void refuse_body_force(const Flow& flow, double t) {
   StepFailure::Details details;
@@ -83,24 +78,49 @@ Vec3 Flow::advecting_velocity_of(std::size_t i, double dt) const {
   return u;
 }
 
+void Flow::advecting_velocities(int axis, double dt, std::size_t first, std::size_t last, double* out) const {
+  const double* const u = particles.velocity[axis]->data();
+  if (acceleration[axis] == nullptr) {
+    std::copy(u + first, u + last, out);
+    return;
+  }
+  const float* const a = acceleration[axis]->data();
+  const double half = 0.5 * dt;
+#pragma GCC ivdep
+  for (std::size_t i = first; i < last; ++i) out[i - first] = u[i] + half * a[i];
+}
+
 void Flow::move_to_intermediate_position(double dt) {
   if (floating != nullptr) floating->advance(dt);
   boundary.advance(time, dt);
-  parallel_for(size(), [&](std::size_t i) {
-    const Vec3 u = advecting_velocity_of(i, dt);
-    const Vec3 from = vector_at(particles.position, dimensions, i);
-    Vec3 r{};
-    for (int axis = 0; axis < dimensions; ++axis) r[axis] = from[axis] + dt * u[axis];
-    boundary.hold_liquid(boundary.next_walls, r, nullptr, &from);
-    for (int axis = 0; axis < dimensions; ++axis) (*intermediate_position[axis])[i] = r[axis];
+  const auto to = write(intermediate_position);
+  parallel_blocks(size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    ParticleBlock u;
+    for (int axis = 0; axis < dimensions; ++axis) {
+      advecting_velocities(axis, dt, first, last, u.data());
+      const double* const from = particles.position[axis]->data();
+      double* const r = to[axis];
+#pragma GCC ivdep
+      for (std::size_t i = first; i < last; ++i) r[i] = from[i] + dt * u[i - first];
+    }
+    if (boundary.clear_of_sides(boundary.next_walls, read(intermediate_position), first, last)) {
+      boundary.go_round(boundary.next_walls, to, first, last);
+      return;
+    }
+    for (std::size_t i = first; i < last; ++i) {
+      const Vec3 from = vector_at(particles.position, dimensions, i);
+      Vec3 r = vector_at(intermediate_position, dimensions, i);
+      boundary.hold_liquid(boundary.next_walls, r, nullptr, &from);
+      for (int axis = 0; axis < dimensions; ++axis) to[axis][i] = r[axis];
+    }
   });
 }
 
 void Flow::find_advecting_velocity(double dt) {
   particles.scratch().lease(advecting_velocity, dimensions, size());
-  parallel_for(size(), [&](std::size_t i) {
-    const Vec3 u = advecting_velocity_of(i, dt);
-    for (int axis = 0; axis < dimensions; ++axis) advecting_velocity[axis][i] = u[axis];
+  parallel_blocks(size(), default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (int axis = 0; axis < dimensions; ++axis)
+      advecting_velocities(axis, dt, first, last, advecting_velocity[axis].data() + first);
   });
 }
 
@@ -358,84 +378,6 @@ void Flow::project_velocity(double dt) {
   });
   particles.scratch().release(gradient_of_q);
   particles.scratch().release(varying_force);
-}
-
-void Flow::accept(double dt) {
-  const std::size_t n = size();
-  refuse_runaway_bodies(*this);
-  refuse_long_strides(particles, intermediate_position, next_velocity, arrangement.grid.support_radius(), dt);
-  const EnergyBalance balance = energy_balance(dt);
-  energy.supply =
-      energy.after_step(balance, particles, intermediate_position, next_velocity, boundary.next_wall_speed, dt);
-  work += balance.work;
-
-  parallel_for(n, [&](std::size_t i) {
-    Vec3 before = advecting_velocity_of(i, dt);
-    Vec3 ahead = vector_at(next_velocity, dimensions, i), r = vector_at(intermediate_position, dimensions, i);
-    if (bubbles != nullptr)
-      for (int axis = 0; axis < dimensions; ++axis)
-        (*material_acceleration[axis])[i] = (ahead[axis] - before[axis]) / dt;
-    if (surface != nullptr && surface->pressure_fixed[i] != 0) {
-      // No pressure has stopped what has met a wall on its way here.
-      const Vec3 from = vector_at(particles.position, dimensions, i);
-      Vec3 straight{};
-      for (int axis = 0; axis < dimensions; ++axis) straight[axis] = from[axis] + dt * before[axis];
-      Vec3 stopped = before;
-      boundary.hold_liquid(boundary.next_walls, straight, &stopped, &from);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        ahead[axis] += stopped[axis] - before[axis];
-        before[axis] = stopped[axis];
-      }
-    }
-    const bool sparse = surface != nullptr ? surface->at_surface[i] != 0 : inside(i) < 1;
-    if (sparse && boundary.bodies() != nullptr)
-      boundary.bodies()->limit_approach(r, resolution.spacing, least_approach * resolution.spacing / dt, before, ahead);
-    Vec3 u = ahead;
-    if (acceleration[0] != nullptr)
-      for (int axis = 0; axis < dimensions; ++axis) u[axis] = 0.5 * (before[axis] + ahead[axis]);
-    if (features.shifting) {
-      for (int axis = 0; axis < dimensions; ++axis) r[axis] += (*shift->displacement[axis])[i];
-      if (features.shift_correction) {
-        // A one-sided gradient, at the surface or beside a void of a closed liquid, extrapolates: fed back through the
-        // shift it accelerates particles without any force (0.5 sqrt(g lambda) in a tenth of a period at 1/50). The
-        // change fades out with the interior weight.
-        const double weight = inside(i);
-        for (int axis = 0; axis < dimensions; ++axis) {
-          u[axis] += weight * shift_velocity[axis][i];
-          ahead[axis] += weight * shift_velocity[axis][i];
-        }
-      }
-    }
-    if (rest.share != nullptr) forget_rest(i, dt * length(before));
-    Vec3 place = r;
-    boundary.hold_liquid(boundary.next_walls, place, &ahead);
-    boundary.hold_liquid(boundary.next_walls, r, &u);
-    if (acceleration[0] != nullptr)
-      for (int axis = 0; axis < dimensions; ++axis)
-        (*acceleration[axis])[i] = static_cast<float>(2 / dt * (ahead[axis] - u[axis]));
-    for (int axis = 0; axis < dimensions; ++axis) {
-      (*particles.position[axis])[i] = r[axis];
-      (*particles.velocity[axis])[i] = u[axis];
-    }
-    (*pressure)[i] = density() * ((*reduced_pressure)[i] - potential_of(i));
-  });
-  particles.scratch().release(next_velocity);
-  particles.scratch().release(shift_velocity);
-  if (closure != nullptr) closure->accept(particles.scratch());
-  if (floating != nullptr) floating->accept(dt);
-  boundary.accept();
-  if (features.openings) boundary.follow(read(particles.velocity));
-  max_divergence = next_max_divergence;
-  largest_body_force = next_largest_body_force;
-  time += dt;
-  last_steps = {dt, last_steps[0]};
-  ++steps;
-  find_extremes();
-  if (features.velocity_gradient)
-    dissipation = density() * particles.volume * parallel_sum(n, [&](std::size_t i) {
-                    const double rate = (*strain)[i];
-                    return (viscosity() + eddy_viscosity_of(i)) * rate * rate;
-                  });
 }
 
 // Scalars see the positions and the shift that viscosity sees.

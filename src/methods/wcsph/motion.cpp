@@ -121,7 +121,7 @@ void Flow::find_pressure_behind(double dt) {
 // anew where they are wanted instead of being kept for half of a step.
 bool Flow::arrive(const HalfSteps& half, std::size_t first, std::size_t last) {
   for (int axis = 0; axis < dimensions; ++axis) half.go_on(axis, first, last, place[axis].data());
-  if (boundary.clear_of_sides(read(place), first, last)) return false;
+  if (boundary.clear_of_sides(boundary.walls, read(place), first, last)) return false;
   bool any = false;
   for (std::size_t i = first; i < last; ++i) {
     const Vec3 free = vector_at(place, dimensions, i);

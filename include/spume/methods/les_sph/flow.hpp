@@ -14,6 +14,7 @@
 #include "spume/particles/energy_guard.hpp"
 #include "spume/particles/floating_bodies.hpp"
 #include "spume/particles/force_potential.hpp"
+#include "spume/particles/blocks.hpp"
 #include "spume/particles/moments.hpp"
 #include "spume/particles/point_sampler.hpp"
 #include "spume/particles/projection_solver.hpp"
@@ -234,6 +235,15 @@ struct Flow {
   void set_matrix();
   // u^{n+1/2} = u^n + dt/2 Du/Dt; without centring u^n.
   Vec3 advecting_velocity_of(std::size_t i, double dt) const;
+  void advecting_velocities(int axis, double dt, std::size_t first, std::size_t last, double* out) const;
+  // Parts of accept(), of particles first .. last - 1 of one block, whose values `before` and `ahead` of the pressure
+  // force and place r the blocks hold from their start on.
+  void accept_block(double dt, std::size_t first, std::size_t last);
+  void stop_free_particles(double dt, std::size_t first, std::size_t last, VectorBlock& before,
+                           VectorBlock& ahead) const;
+  void limit_approach(double dt, std::size_t first, std::size_t last, const VectorBlock& r, const VectorBlock& before,
+                      VectorBlock& ahead) const;
+  void hold_at_end(std::size_t n, VectorBlock& r, VectorBlock& ahead, VectorBlock& u) const;  // of n particles
   void add_body_force(double t, double dt);
   void add_force_potential(double t);
   double work_of_step(double dt) const;
