@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "spume/core/joined_lanes.hpp"
 #include "spume/operators/sph_operators.hpp"
 #include "symmetric_matrix.hpp"
 
@@ -71,13 +72,16 @@ void moments(const SweepContext& context, PackedNeighbours& packed, const Kernel
         for (int a = 0; a < dimensions; ++a) concentration[a] = concentration[a] + tensile * b.d[a];
       }
     });
+    // Fourteen sums one by one are a quarter of the instructions of a list of 75 neighbours.
+    const auto sums = simd::sums_of(m, normal, concentration, std::array{kernel_sum, laplacian_diagonal});
+    constexpr int first_normal = matrix, first_concentration = matrix + dimensions, others = matrix + 2 * dimensions;
     std::array<double, 6> sum{}, inverse{};
-    for (int k = 0; k < matrix; ++k) sum[k] = simd::sum(m[k]);
+    for (int k = 0; k < matrix; ++k) sum[k] = sums[k];
     const double trace = dimensions == 2 ? sum[0] + sum[2] : sum[0] + sum[3] + sum[5];
     std::array<float, dimensions> outward;
     auto h = static_cast<float>(context.smoothing_length);
     if constexpr (is_variable_h<Kernel>) h *= context.length_ratio[i];
-    for (int a = 0; a < dimensions; ++a) outward[a] = -h * simd::sum(normal[a]);
+    for (int a = 0; a < dimensions; ++a) outward[a] = -h * sums[first_normal + a];
     if (out.uncorrected != nullptr) {
       const bool corrected = invert(sum, dimensions, inverse);
       if (!corrected)
@@ -93,11 +97,11 @@ void moments(const SweepContext& context, PackedNeighbours& packed, const Kernel
     }
     out.divergence_of_position[i] = static_cast<float>(trace);
     const float centre = scale.value * centre_value * own_volume<Kernel>(context, i);
-    if (out.kernel_sum != nullptr) out.kernel_sum[i] = centre + scale.value * simd::sum(kernel_sum);
-    if (out.laplacian_diagonal != nullptr) out.laplacian_diagonal[i] = 2 * simd::sum(laplacian_diagonal);
+    if (out.kernel_sum != nullptr) out.kernel_sum[i] = centre + scale.value * sums[others];
+    if (out.laplacian_diagonal != nullptr) out.laplacian_diagonal[i] = 2 * sums[others + 1];
     for (int a = 0; a < dimensions; ++a) {
       if (options.normals) out.normal[a][i] = outward[a];
-      if constexpr (shifting) out.concentration_gradient[a][i] = simd::sum(concentration[a]);
+      if constexpr (shifting) out.concentration_gradient[a][i] = sums[first_concentration + a];
     }
   });
 }

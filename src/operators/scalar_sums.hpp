@@ -55,11 +55,11 @@ class ScalarSums {
       if constexpr (eddies) to_sum[(sums - 1) * count + s] = eddy_rate_[s];
     });
     Found found;
-    const std::array<float, sums* count> sum = in_fours<false>(to_sum);
+    const std::array<float, sums* count> sum = simd::sums_of(to_sum);
     std::copy_n(sum.begin(), count, found.rate.begin());
     if constexpr (eddies) std::copy_n(sum.begin() + (sums - 1) * count, count, found.eddy_rate.begin());
     if constexpr (shifted) {
-      const std::array<float, 2 * count> largest = in_fours<true>(to_compare);
+      const std::array<float, 2 * count> largest = simd::largest_of(to_compare);
       for (int s = 0; s < count; ++s)
         found.change[s] = std::clamp(factor * sum[count + s], -0.5F * largest[s], 0.5F * largest[count + s]);
     }
@@ -67,21 +67,6 @@ class ScalarSums {
   }
 
  private:
-  // The sum of the lanes of each, or the largest of them.
-  template <bool extreme, std::size_t size>
-  [[gnu::always_inline]] static std::array<float, size> in_fours(const std::array<simd::f32n, size>& all) {
-    std::array<float, size> joined;
-    unrolled<(static_cast<int>(size) + 3) / 4>([&](auto four) __attribute__((always_inline)) {
-      std::array<simd::f32n, 4> some{};
-      constexpr std::size_t first = 4 * four, left = std::min<std::size_t>(4, size - first);
-      unrolled<left>([&](auto k) __attribute__((always_inline)) { some[k] = all[first + k]; });
-      const simd::f32x4 result =
-          extreme ? simd::largest(some[0], some[1], some[2], some[3]) : simd::sums(some[0], some[1], some[2], some[3]);
-      for (std::size_t k = 0; k < left; ++k) joined[first + k] = result[k];
-    });
-    return joined;
-  }
-
   std::array<simd::f32n, count> own_;
   std::array<simd::f32n, count> rate_{}, eddy_rate_{}, along_{}, low_{}, high_{};
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spume/core/joined_lanes.hpp"
 #include "symmetric_matrix.hpp"
 
 namespace spume {
@@ -42,7 +43,7 @@ void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
     const float centre = centre_value * own_volume<Kernel>(context, i);
     std::array<f32n, dimensions> own{}, filtered{};
     for (int a = 0; a < dimensions; ++a) own[a] = simd::splat<f32n>(records[i * width + dimensions + a]);
-    std::array<std::array<f32n, dimensions>, dimensions> m{};
+    std::array<f32n, dimensions * dimensions> m{};
     std::array<f32n, dimensions> low{}, high{};
     f32n kernel_sum{};
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
@@ -51,7 +52,7 @@ void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
       for (int c = 0; c < dimensions; ++c) gd[c] = g * b.d[c];
       for (int a = 0; a < dimensions; ++a) {
         const f32n difference = b.payload[a] - own[a];
-        for (int c = 0; c < dimensions; ++c) m[a][c] = m[a][c] + difference * gd[c];
+        for (int c = 0; c < dimensions; ++c) m[a * dimensions + c] = m[a * dimensions + c] + difference * gd[c];
         if constexpr (bounded) {
           const f32n within =
               b.q < simd::splat<f32n>(static_cast<float>(Kernel::support)) ? difference : f32n{};  // not the sentinel's
@@ -65,19 +66,27 @@ void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
         for (int a = 0; a < dimensions; ++a) filtered[a] = filtered[a] + w * b.payload[a];
       }
     });
-    const float weight = filter ? 1 / (centre + simd::sum(kernel_sum)) : 0;
+    const auto sum = simd::sums_of(m);
     std::array<std::array<float, dimensions>, dimensions> gradient{};
     for (int a = 0; a < dimensions; ++a) {
-      for (int c = 0; c < dimensions; ++c) gradient[a][c] = simd::sum(m[a][c]);
+      for (int c = 0; c < dimensions; ++c) gradient[a][c] = sum[a * dimensions + c];
       gradient[a] = symmetric_product<dimensions>(correction, i, gradient[a]);
-      if constexpr (filter) out[a][i] = (centre * own[a][0] + simd::sum(filtered[a])) * weight;
+    }
+    if constexpr (filter) {
+      const auto of_filter = simd::sums_of(filtered, std::array{kernel_sum});
+      const float weight = 1 / (centre + of_filter[dimensions]);
+      for (int a = 0; a < dimensions; ++a) out[a][i] = (centre * own[a][0] + of_filter[a]) * weight;
     }
     DifferenceBounds<dimensions> bounds;
-    if constexpr (bounded)
+    if constexpr (bounded) {
+      std::array<f32n, 2 * dimensions> both;
+      for (int a = 0; a < dimensions; ++a) both[a] = -low[a], both[dimensions + a] = high[a];
+      const auto largest = simd::largest_of(both);
       for (int a = 0; a < dimensions; ++a) {
-        bounds.low[a] = simd::least(low[a]);
-        bounds.high[a] = simd::largest(high[a]);
+        bounds.low[a] = -largest[a];
+        bounds.high[a] = largest[dimensions + a];
       }
+    }
     store(i, gradient, bounds);
   });
 }
@@ -201,7 +210,7 @@ void divergence_of(const SweepContext& context, PackedNeighbours& packed, const 
     std::array<f32n, dimensions> own{};
     for (int a = 0; a < dimensions; ++a) own[a] = simd::splat<f32n>(records[i * width + dimensions + a]);
     const f32n own_potential = simd::splat<f32n>(records[i * width + 2 * dimensions]);
-    std::array<std::array<f32n, dimensions>, dimensions> m{};
+    std::array<f32n, dimensions * dimensions> m{};
     f32n laplacian{};
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
       const f32n g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
@@ -209,16 +218,17 @@ void divergence_of(const SweepContext& context, PackedNeighbours& packed, const 
       for (int c = 0; c < dimensions; ++c) gd[c] = g * b.d[c];
       for (int a = 0; a < dimensions; ++a) {
         const f32n difference = b.payload[a] - own[a];
-        for (int c = 0; c < dimensions; ++c) m[a][c] = m[a][c] + difference * gd[c];
+        for (int c = 0; c < dimensions; ++c) m[a * dimensions + c] = m[a * dimensions + c] + difference * gd[c];
       }
       laplacian = laplacian + g * (own_potential - b.payload[dimensions]);
     });
+    const auto sum = simd::sums_of(m, std::array{laplacian});
     double result = 0;
     for (int a = 0; a < dimensions; ++a)
       for (int c = 0; c < dimensions; ++c)
-        result += double{correction[symmetric_index<dimensions>(a, c)][i]} * simd::sum(m[a][c]);
+        result += double{correction[symmetric_index<dimensions>(a, c)][i]} * sum[a * dimensions + c];
     divergence[i] = result;
-    if (potential != nullptr) negative_laplacian[i] = 2 * simd::sum(laplacian);
+    if (potential != nullptr) negative_laplacian[i] = 2 * sum[dimensions * dimensions];
   });
 }
 
@@ -245,9 +255,7 @@ void gradient_of(const SweepContext& context, PackedNeighbours& packed, const do
       const f32n weight = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q) * (b.payload[0] - own), b);
       for (int a = 0; a < dimensions; ++a) sum[a] = sum[a] + weight * b.d[a];
     });
-    std::array<float, dimensions> v{};
-    for (int a = 0; a < dimensions; ++a) v[a] = simd::sum(sum[a]);
-    v = symmetric_product<dimensions>(correction, i, v);
+    const auto v = symmetric_product<dimensions>(correction, i, simd::sums_of(sum));
     for (int a = 0; a < dimensions; ++a) out[a][i] = v[a];
   });
 }
@@ -277,8 +285,9 @@ void filter_listed(const SweepContext& context, PackedNeighbours& packed, const 
       kernel_sum = kernel_sum + w;
       for (int a = 0; a < dimensions; ++a) filtered[a] = filtered[a] + w * b.payload[a];
     });
-    const float weight = 1 / (centre + simd::sum(kernel_sum));
-    for (int a = 0; a < dimensions; ++a) out[a][i] = (centre * values[a][i] + simd::sum(filtered[a])) * weight;
+    const auto sum = simd::sums_of(filtered, std::array{kernel_sum});
+    const float weight = 1 / (centre + sum[dimensions]);
+    for (int a = 0; a < dimensions; ++a) out[a][i] = (centre * values[a][i] + sum[a]) * weight;
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include "scalar_records.hpp"
 #include "scalar_sums.hpp"
+#include "spume/core/joined_lanes.hpp"
 #include "spume/operators/scalar_transport.hpp"
 #include "spume/operators/sph_operators.hpp"
 #include "symmetric_matrix.hpp"
@@ -179,7 +180,8 @@ void viscous(const SweepContext& context, PackedNeighbours& packed, const std::a
                                        tiny, sum);
           beside.add(b, scale.gradient, own_kappa);
         });
-    for (int a = 0; a < dimensions; ++a) out[a][i] = simd::sum(sum[a]);
+    const auto total = simd::sums_of(sum);
+    for (int a = 0; a < dimensions; ++a) out[a][i] = total[a];
     beside.store(scalars, i);
   });
   if (taken_off.share != nullptr)

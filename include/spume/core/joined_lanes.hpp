@@ -2,7 +2,11 @@
 // Sums and extremes over the lanes of four vectors at once.
 #pragma once
 
+#include <algorithm>
+#include <array>
+
 #include "spume/core/simd.hpp"
+#include "spume/core/unrolled.hpp"
 
 namespace spume::simd {
 
@@ -49,6 +53,37 @@ template <FloatVector V>
     else
       return max(x, y);
   });
+}
+
+// The same of all vectors of an array, four at a time.
+template <bool extreme, FloatVector V, std::size_t count>
+[[gnu::always_inline]] inline std::array<float, count> joined_fours(const std::array<V, count>& all) {
+  std::array<float, count> joined;
+  unrolled<(static_cast<int>(count) + 3) / 4>([&](auto four) __attribute__((always_inline)) {
+    std::array<V, 4> some{};
+    constexpr std::size_t first = 4 * four, left = std::min<std::size_t>(4, count - first);
+    unrolled<left>([&](auto k) __attribute__((always_inline)) { some[k] = all[first + k]; });
+    const f32x4 result =
+        extreme ? largest(some[0], some[1], some[2], some[3]) : sums(some[0], some[1], some[2], some[3]);
+    for (std::size_t k = 0; k < left; ++k) joined[first + k] = result[k];
+  });
+  return joined;
+}
+template <FloatVector V, std::size_t count>
+[[gnu::always_inline]] inline std::array<float, count> largest_of(const std::array<V, count>& all) {
+  return joined_fours<true>(all);
+}
+// Of several arrays, one after the other.
+template <FloatVector V, std::size_t... count>
+[[gnu::always_inline]] inline std::array<float, (count + ...)> sums_of(const std::array<V, count>&... arrays) {
+  std::array<V, (count + ...)> all;
+  std::size_t next = 0;
+  const auto append = [&]<std::size_t size>(const std::array<V, size>& some) __attribute__((always_inline)) {
+    unrolled<static_cast<int>(size)>([&](auto k) __attribute__((always_inline)) { all[next + k] = some[k]; });
+    next += size;
+  };
+  (append(arrays), ...);
+  return joined_fours<false>(all);
 }
 
 }  // namespace spume::simd
