@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "spume/core/joined_lanes.hpp"
 #include "spume/operators/sph_operators.hpp"
@@ -23,18 +24,46 @@ constexpr double least_determinant = 1e-12;
 // Of the tensile term, King (3.11) with W(dr) for W(0).
 constexpr double tensile_factor = 0.25;
 
-// Inverse of a symmetric matrix; false when it is singular or amplifies too much.
-bool invert(const std::array<double, 6>& m, int dimensions, std::array<double, 6>& inverse) {
-  double squares = 0;
-  return invert_symmetric(m, dimensions, least_determinant, inverse, squares) &&
-         squares < dimensions * largest_inverse * largest_inverse;
-}
-
+// The corrections of a block of particles: inverses of their sums d (x) d, the identity where that is singular or
+// amplifies too much. A vector of particles at a time: one by one they add 7 % to the sweep.
 template <int dimensions>
-void fade(double weight, std::array<double, 6>& inverse) {
-  for (int a = 0, k = 0; a < dimensions; ++a)
-    for (int c = a; c < dimensions; ++c, ++k) inverse[k] = (a == c ? 1 - weight : 0.0) + weight * inverse[k];
-}
+class Corrections {
+ public:
+  static constexpr int entries = symmetric_entries<dimensions>;
+
+  void keep(std::size_t k, const float* sum) {
+    for (int c = 0; c < entries; ++c) sum_[c][k] = sum[c];
+  }
+  void invert(std::size_t count) {
+    constexpr double most_squares = dimensions * largest_inverse * largest_inverse;
+    for (std::size_t k = 0; k < count; ++k) {
+      double m[entries], inverse[entries], squares;
+      for (int c = 0; c < entries; ++c) m[c] = sum_[c][k];
+      const double determinant = inverse_of<dimensions>(m, inverse, squares);
+      const bool corrected = (determinant > least_determinant) & (squares < most_squares);
+      for (int c = 0; c < entries; ++c) inverse_[c][k] = corrected ? inverse[c] : identity(c);
+      uncorrected_[k] = corrected ? 0 : 1;
+    }
+  }
+  void fade(std::size_t k, double weight) {
+    for (int c = 0; c < entries; ++c) inverse_[c][k] = (1 - weight) * identity(c) + weight * inverse_[c][k];
+  }
+  void store(std::size_t first, std::size_t count, const KernelMoments& out) const {
+    for (int c = 0; c < entries; ++c)
+      for (std::size_t k = 0; k < count; ++k) out.correction[c][first + k] = static_cast<float>(inverse_[c][k]);
+    for (std::size_t k = 0; k < count; ++k) out.uncorrected[first + k] = static_cast<std::uint8_t>(uncorrected_[k]);
+  }
+
+ private:
+  static constexpr double identity(int c) {
+    for (int a = 0; a < dimensions; ++a)
+      if (c == symmetric_index<dimensions>(a, a)) return 1;
+    return 0;
+  }
+  alignas(64) float sum_[entries][sweep_block];
+  alignas(64) double inverse_[entries][sweep_block];
+  std::int64_t uncorrected_[sweep_block];  // as wide as what it follows from
+};
 
 template <int dimensions, class Kernel, bool shifting, bool fading>
 void moments(const SweepContext& context, PackedNeighbours& packed, const KernelMomentOptions& options,
@@ -48,8 +77,9 @@ void moments(const SweepContext& context, PackedNeighbours& packed, const Kernel
   const KernelScale<dimensions, Kernel> common(context);
   const auto centre_value = static_cast<float>(Kernel::w(0.0));
   const auto inverse_reference = static_cast<float>(1 / Kernel::w(options.spacing / context.smoothing_length));
+  const double fades_below = options.fading.weight.threshold + options.fading.weight.width;
 
-  sweep(list.particles(), [&](std::size_t i) {
+  const auto sums_of_particle = [&](std::size_t i) __attribute__((always_inline)) {
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
     f32n kernel_sum{}, laplacian_diagonal{};
     std::array<f32n, matrix> m{};
@@ -75,26 +105,11 @@ void moments(const SweepContext& context, PackedNeighbours& packed, const Kernel
     // Fourteen sums one by one are a quarter of the instructions of a list of 75 neighbours.
     const auto sums = simd::sums_of(m, normal, concentration, std::array{kernel_sum, laplacian_diagonal});
     constexpr int first_normal = matrix, first_concentration = matrix + dimensions, others = matrix + 2 * dimensions;
-    std::array<double, 6> sum{}, inverse{};
-    for (int k = 0; k < matrix; ++k) sum[k] = sums[k];
-    const double trace = dimensions == 2 ? sum[0] + sum[2] : sum[0] + sum[3] + sum[5];
+    const double trace = dimensions == 2 ? double{sums[0]} + sums[2] : double{sums[0]} + sums[3] + sums[5];
     std::array<float, dimensions> outward;
     auto h = static_cast<float>(context.smoothing_length);
     if constexpr (is_variable_h<Kernel>) h *= context.length_ratio[i];
     for (int a = 0; a < dimensions; ++a) outward[a] = -h * sums[first_normal + a];
-    if (out.uncorrected != nullptr) {
-      const bool corrected = invert(sum, dimensions, inverse);
-      if (!corrected)
-        inverse = dimensions == 2 ? std::array<double, 6>{1, 0, 1} : std::array<double, 6>{1, 0, 0, 1, 0, 1};
-      if constexpr (fading) {
-        double squares = 0;
-        for (const float component : outward) squares += double{component} * component;
-        const double of_plane = options.fading.bulk - options.fading.missing * std::sqrt(squares);
-        fade<dimensions>(options.fading.weight(std::max(trace, of_plane)), inverse);
-      }
-      for (int k = 0; k < matrix; ++k) out.correction[k][i] = static_cast<float>(inverse[k]);
-      out.uncorrected[i] = corrected ? 0 : 1;
-    }
     out.divergence_of_position[i] = static_cast<float>(trace);
     const float centre = scale.value * centre_value * own_volume<Kernel>(context, i);
     if (out.kernel_sum != nullptr) out.kernel_sum[i] = centre + scale.value * sums[others];
@@ -103,6 +118,29 @@ void moments(const SweepContext& context, PackedNeighbours& packed, const Kernel
       if (options.normals) out.normal[a][i] = outward[a];
       if constexpr (shifting) out.concentration_gradient[a][i] = sums[first_concentration + a];
     }
+    // By how much the neighbourhood is full, as the fading takes it.
+    double full = trace;
+    if (fading && trace < fades_below) {
+      double squares = 0;
+      for (const float component : outward) squares += double{component} * component;
+      full = std::max(trace, options.fading.bulk - options.fading.missing * std::sqrt(squares));
+    }
+    return std::pair(sums, full);
+  };
+  sweep_blocks(list.particles(), [&](std::size_t first, std::size_t last) {
+    Corrections<dimensions> corrections;
+    std::array<double, sweep_block> full;
+    for (std::size_t i = first; i < last; ++i) {
+      const auto [sums, own_full] = sums_of_particle(i);
+      corrections.keep(i - first, sums.data());
+      full[i - first] = own_full;
+    }
+    if (out.uncorrected == nullptr) return;
+    corrections.invert(last - first);
+    if constexpr (fading)
+      for (std::size_t k = 0; k < last - first; ++k)
+        if (full[k] < fades_below) corrections.fade(k, options.fading.weight(full[k]));
+    corrections.store(first, last - first, out);
   });
 }
 
