@@ -7,6 +7,7 @@
 #include "salient_edges.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
+#include "spume/particles/blocks.hpp"
 #include "spume/particles/pockets.hpp"
 
 namespace spume {
@@ -122,19 +123,34 @@ double displacement_fraction(const Arrangement& arrangement, const ParticleStore
                              const Resolution& resolution, double dt) {
   const int d = particles.dimensions;
   const std::size_t n = particles.size();
-  Vec3 mean{};
-  for (int axis = 0; axis < d; ++axis)
-    mean[axis] = parallel_sum(n, [&](std::size_t i) { return (*particles.velocity[axis])[i]; }) /
-                 static_cast<double>(std::max<std::size_t>(n, 1));
-  const double fastest2 = parallel_max(n, 0.0, [&](std::size_t i) {
-    if (arrangement.list.count(i) < spray_neighbours(d)) return 0.0;
-    double speed2 = 0;
-    for (int axis = 0; axis < d; ++axis) {
-      const double relative = (*particles.velocity[axis])[i] - mean[axis];
-      speed2 += relative * relative;
-    }
-    return speed2;
-  });
+  const auto u = read(particles.velocity);
+  Vec3 mean = parallel_reduce(
+      n, Vec3{},
+      [&](std::size_t first, std::size_t last) {
+        Vec3 sum{};
+        for (std::size_t i = first; i < last; ++i)
+          for (int axis = 0; axis < d; ++axis) sum[axis] += u[axis][i];
+        return sum;
+      },
+      add);
+  for (double& component : mean) component /= static_cast<double>(std::max<std::size_t>(n, 1));
+  const std::int32_t* const counts = arrangement.list.counts();
+  const int spray = spray_neighbours(d);
+  const double fastest2 = parallel_reduce(
+      n, 0.0,
+      [&](std::size_t first, std::size_t last) {
+        double so_far = 0;
+        ParticleBlock relative2;
+        each_block(first, last, [&](std::size_t from, std::size_t to) {
+          largest_square(d, from, to, relative2, [&](int axis) {
+            return [u = u[axis], mean = mean[axis]](std::size_t i) { return u[i] - mean; };
+          });
+          for (std::size_t i = from; i < to; ++i) relative2[i - from] = counts[i] < spray ? 0 : relative2[i - from];
+          so_far = larger_or_nan(so_far, largest_size(relative2.data(), 0, to - from));
+        });
+        return so_far;
+      },
+      larger_or_nan);
   const double fraction = std::sqrt(fastest2) * dt / (full_displacement * resolution.smoothing_length);
   return fraction < least_displacement ? 0.0 : std::min(most_displacement, fraction);
 }
@@ -173,12 +189,15 @@ double even_out_density(const DensityRelaxation& relaxation, const Arrangement& 
   const double expanding = surface != nullptr ? closing / more_steps_below_surface : closing;
   parallel_for(divergence.size(), [&](std::size_t i) {
     if (!read.counts(i) || !read.tells_density(i)) return;
-    const double own = read.excess(i);
-    const double rate =
-        own < 0 ? std::max(closing * std::max(1.0, -own / thin_as_void), at_once * read.void_share(i)) : expanding;
+    const double own = read.excess(i), beyond = own - within(own, particle_disorder);
     const double taken = relaxation.still == nullptr ? 1.0 : 1.0 - double{(*relaxation.still)[i]};
-    divergence[i] -=
-        taken * (expanding * of_all + std::min(rate, 1 / relaxation.dt) * (own - within(own, particle_disorder)));
+    double change = expanding * of_all;
+    if (beyond != 0) {  // of few: the rate takes a division and a look around
+      const double rate =
+          own < 0 ? std::max(closing * std::max(1.0, -own / thin_as_void), at_once * read.void_share(i)) : expanding;
+      change += std::min(rate, 1 / relaxation.dt) * beyond;
+    }
+    divergence[i] -= taken * change;
   });
   return total.volume;
 }
