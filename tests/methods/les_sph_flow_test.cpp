@@ -29,6 +29,31 @@ TEST(LesSphFlow, StillLiquidStaysAtRest) {
   }
 }
 
+// The sums of a row, found in one pass, against a loop for each.
+TEST(LesSphFlow, TotalsAreSumsOverTheParticles) {
+  for (const char* model : {"none", "mixed-scale"}) {
+    Simulation run(tank, {std::string("turbulence.model=\"") + model + "\""});
+    run.steps(2, 0.005);
+    const les_sph::Flow& flow = run.method.flow();
+    double kinetic = 0, potential = 0, unresolved = 0;
+    Vec3 momentum{};
+    for (std::size_t i = 0; i < flow.size(); ++i) {
+      kinetic += squared_norm(flow.particles.velocity, 2, i) / 2;
+      potential -= flow.scene.fluid.gravity[1] * (*flow.particles.position[1])[i];
+      unresolved += flow.eddy_viscosity_of(i) * std::pow((*flow.strain)[i], 2);
+      for (int axis = 0; axis < 2; ++axis) momentum[axis] += (*flow.particles.velocity[axis])[i];
+    }
+    const double mass = flow.particle_mass(), n = static_cast<double>(flow.size());
+    const les_sph::FlowTotals totals = flow.totals();
+    constexpr double rounding = 1e-13;
+    EXPECT_NEAR(totals.kinetic, mass * kinetic, rounding * mass * n);
+    EXPECT_NEAR(totals.potential, mass * potential, rounding * mass * n);
+    EXPECT_NEAR(totals.unresolved_dissipation, mass * unresolved, rounding * mass * n);
+    EXPECT_NEAR(totals.mass, mass * n, rounding * mass * n);
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(totals.momentum[axis], mass * momentum[axis], rounding * mass * n);
+  }
+}
+
 // A compressible liquid starts from its own hydrostatic pressure: without it the first steps are a sound wave.
 TEST(LesSphFlow, CompressibleStillLiquidStaysAtRestFromTheFirstStep) {
   for (const std::string& text : {closed_box, tank}) {

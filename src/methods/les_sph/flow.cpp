@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "spume/core/parallel.hpp"
+#include "spume/core/unrolled.hpp"
+#include "spume/core/vectors.hpp"
 
 namespace spume::les_sph {
 namespace {
@@ -26,6 +28,40 @@ CorrectionFading fading_beside_voids(const Case& options, const Scene& scene, co
 std::unique_ptr<OpenSides> make_openings(const Scene& scene, const Resolution& resolution) {
   if (scene.openings.empty()) return nullptr;
   return std::make_unique<OpenSides>(scene, resolution, scene.particles.volume);
+}
+
+// What the sums of a row read: bounds of the liquid, gravity across axes with sides.
+struct TotalsInput {
+  std::array<const double*, 3> position{}, velocity{};
+  const float* strain = nullptr;
+  const float* eddy_viscosity = nullptr;  // null: none
+  Vec3 gravity{};
+  std::array<std::array<double, 2>, 3> bounds{};
+};
+
+// Per mass of a particle, in one pass: a pass for each sum takes four times as long.
+template <int dimensions>
+FlowTotals totals_of(const TotalsInput& input, std::size_t first, std::size_t last) {
+  FlowTotals sum;
+  for (std::size_t i = first; i < last; ++i) {
+    double speed2 = 0, potential = 0;
+    bool inside = true;
+    unrolled<dimensions>([&](auto axis) {
+      const double x = input.position[axis][i], u = input.velocity[axis][i];
+      speed2 += u * u;
+      potential -= input.gravity[axis] * x;
+      inside = inside & (x >= input.bounds[axis][0]) & (x <= input.bounds[axis][1]);
+      sum.momentum[axis] += u;
+    });
+    sum.kinetic += speed2 / 2;
+    sum.potential += potential;
+    sum.mass += inside ? 1.0 : 0.0;
+  }
+  for (std::size_t i = first; i < last && input.eddy_viscosity != nullptr; ++i) {
+    const double strain = input.strain[i];
+    sum.unresolved_dissipation += input.eddy_viscosity[i] * strain * strain;
+  }
+  return sum;
 }
 
 }  // namespace
@@ -141,7 +177,7 @@ double Flow::weight_at_start() const {
 
 // A wall holds particles back; what stands a hair beyond one, as it moves, has not left. Behind openings liquid goes
 // on.
-double Flow::mass_in_domain() const {
+FlowTotals Flow::totals() const {
   const int up = dimensions - 1;
   std::array<std::array<double, 2>, 3> bounds = boundary.walls;
   for (int axis = 0; axis < dimensions; ++axis)
@@ -154,15 +190,33 @@ double Flow::mass_in_domain() const {
         bounds[axis][end] += (end == 0 ? -1 : 1) * scene.spacing;
     }
   const bool falls_back = scene.fluid.gravity[up] < 0 && scene.domain.sides[up][1].kind == BoundaryKind::open;
-  const double inside = parallel_sum(size(), [&](std::size_t i) {
-    for (int axis = 0; axis < dimensions; ++axis) {
-      const double x = (*particles.position[axis])[i];
-      const double upper = axis == up && falls_back ? infinite : bounds[axis][1];
-      if (!(x >= bounds[axis][0] && x <= upper)) return 0.0;
-    }
-    return 1.0;
-  });
-  return particle_mass() * inside;
+  Vec3 gravity = scene.fluid.gravity;
+  for (int axis = 0; axis < dimensions; ++axis)
+    if (scene.domain.periodic(axis)) gravity[axis] = 0;  // there is no height
+  if (falls_back) bounds[up][1] = infinite;
+  const TotalsInput input{.position = read(particles.position),
+                          .velocity = read(particles.velocity),
+                          .strain = strain->data(),
+                          .eddy_viscosity = closure == nullptr ? nullptr : closure->viscosity().data(),
+                          .gravity = gravity,
+                          .bounds = bounds};
+  FlowTotals totals = parallel_reduce(
+      size(), FlowTotals{},
+      [&](std::size_t first, std::size_t last) {
+        return dimensions == 3 ? totals_of<3>(input, first, last) : totals_of<2>(input, first, last);
+      },
+      [](FlowTotals a, const FlowTotals& b) {
+        a.kinetic += b.kinetic;
+        a.potential += b.potential;
+        a.unresolved_dissipation += b.unresolved_dissipation;
+        a.mass += b.mass;
+        a.momentum = add(a.momentum, b.momentum);
+        return a;
+      });
+  for (double* sum : {&totals.kinetic, &totals.potential, &totals.unresolved_dissipation, &totals.mass})
+    *sum *= particle_mass();
+  totals.momentum = multiply(particle_mass(), totals.momentum);
+  return totals;
 }
 
 void Flow::exchange_with_openings() {

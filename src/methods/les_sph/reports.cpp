@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "spume/core/parallel.hpp"
 #include "spume/methods/les_sph/les_sph.hpp"
 #include "spume/operators/energy_spectrum.hpp"
 
@@ -55,21 +54,10 @@ const std::vector<OutputField<Flow>>& output_fields() {
 
 void LesSph::declare_series() {
   const Flow& flow = flow_;
-  series_.prepare = [this, &flow] {
-    row_energy_.kinetic = flow.particle_mass() * parallel_sum(flow.size(), [&](std::size_t i) {
-                            return squared_norm(flow.particles.velocity, flow.dimensions, i) / 2;
-                          });
-    row_energy_.potential = flow.particle_mass() * parallel_sum(flow.size(), [&](std::size_t i) {
-                              double sum = 0;
-                              for (int axis = 0; axis < flow.dimensions; ++axis)
-                                if (!flow.scene.domain.periodic(axis))  // along which there is no height
-                                  sum -= flow.scene.fluid.gravity[axis] * (*flow.particles.position[axis])[i];
-                              return sum;
-                            });
-  };
-  series_.add("kinetic_energy", "rho u^2 / 2, integral", [this] { return row_energy_.kinetic; });
-  series_.add("potential_energy", "rho g z, integral", [this] { return row_energy_.potential; });
-  series_.add("total_energy", "kinetic + potential", [this] { return row_energy_.kinetic + row_energy_.potential; });
+  series_.prepare = [this, &flow] { row_ = flow.totals(); };
+  series_.add("kinetic_energy", "rho u^2 / 2, integral", [this] { return row_.kinetic; });
+  series_.add("potential_energy", "rho g z, integral", [this] { return row_.potential; });
+  series_.add("total_energy", "kinetic + potential", [this] { return row_.kinetic + row_.potential; });
   if (flow.features.working_forces || flow.features.sponges)
     series_.add("work",
                 flow.features.sponges ? "of forces.body, of gravity along periodic axes and of sponges, since the start"
@@ -77,15 +65,9 @@ void LesSph::declare_series() {
                 [&flow] { return flow.work; });
   series_.add("dissipation", "rho (nu + nu_t) |S|^2, integral", [&flow] { return flow.dissipation; });
   if (flow.features.eddy_viscosity)
-    series_.add("unresolved_dissipation", "rho nu_t |S|^2, integral", [&flow] {
-      return flow.particle_mass() * parallel_sum(flow.size(), [&](std::size_t i) {
-               const double strain = (*flow.strain)[i];
-               return flow.eddy_viscosity_of(i) * strain * strain;
-             });
-    });
+    series_.add("unresolved_dissipation", "rho nu_t |S|^2, integral", [this] { return row_.unresolved_dissipation; });
   series_.add("max_speed", "speed", [&flow] { return flow.speeds.largest; });
-  series_.add("mass", "mass, of the particles in the domain and above an open top",
-              [&flow] { return flow.mass_in_domain(); });
+  series_.add("mass", "mass, of the particles in the domain and above an open top", [this] { return row_.mass; });
   if (flow.features.openings) {
     const char* const unit = flow.dimensions == 3 ? "length^3, since the start" : "length^2, since the start";
     series_.add("volume_in", unit,
@@ -101,10 +83,8 @@ void LesSph::declare_series() {
                 [&flow] { return flow.volume; });
   const char* const momentum[3] = {"momentum_x", "momentum_y", "momentum_z"};
   for (int axis = 0; axis < flow.dimensions; ++axis)
-    series_.add(momentum[axis], "mass times speed", [&flow, axis] {
-      return flow.particle_mass() *
-             parallel_sum(flow.size(), [&](std::size_t i) { return (*flow.particles.velocity[axis])[i]; });
-    });
+    series_.add(momentum[axis], "mass times speed",
+                [this, axis] { return row_.momentum[static_cast<std::size_t>(axis)]; });
   series_.add("max_divergence", "of the predicted velocity, 1 / time", [&flow] { return flow.max_divergence; });
   series_.add("pressure_iterations", "1", [&flow] { return double(flow.solver.report().iterations); });
   series_.add("pressure_residual", "relative", [&flow] { return flow.solver.report().relative_residual; });
@@ -201,8 +181,7 @@ std::vector<Invariant> LesSph::invariants() const {
         return (stores ? flow_.stored_energy() - flow_.work : 0.0) +
                (floating != nullptr ? floating->kinetic_energy() + floating->potential_energy() : 0.0);
       };
-    if (floating != nullptr)
-      energy.scale = [this, floating] { return row_energy_.kinetic + floating->kinetic_energy(); };
+    if (floating != nullptr) energy.scale = [this, floating] { return row_.kinetic + floating->kinetic_energy(); };
     list.push_back(std::move(energy));
   }
   list.push_back({.quantity = "pressure_residual",

@@ -10,11 +10,11 @@
 #include <optional>
 
 #include "spume/methods/les_sph/features.hpp"
+#include "spume/particles/blocks.hpp"
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/energy_guard.hpp"
 #include "spume/particles/floating_bodies.hpp"
 #include "spume/particles/force_potential.hpp"
-#include "spume/particles/blocks.hpp"
 #include "spume/particles/moments.hpp"
 #include "spume/particles/point_sampler.hpp"
 #include "spume/particles/projection_solver.hpp"
@@ -49,6 +49,14 @@ struct StartColumns {
 struct RestMemory {
   Array<float>* share = nullptr;  // 1 where a particle still stands as at the start, 0 a spacing of its way later
   Array<float>* lift = nullptr;   // FreeSurface::lift, times the share
+};
+
+// Sums over the particles that a row of the series reads.
+struct FlowTotals {
+  double kinetic = 0, potential = 0;  // energies; potential of gravity across axes with sides
+  double mass = 0;                    // between the walls, at finite places. Liquid above an open top falls back
+  double unresolved_dissipation = 0;  // rho nu_t |S|^2, integral
+  Vec3 momentum{};
 };
 
 struct Flow {
@@ -157,8 +165,7 @@ struct Flow {
   double eddy_viscosity_of(std::size_t i) const { return closure == nullptr ? 0.0 : closure->viscosity()[i]; }
   // div(2 nu S) spreads the divergence of the velocity three times as fast as div(nu grad u) does.
   double diffusion_rate() const { return features.viscous_stress ? 3 : 1; }
-  // Of particles between the walls, at finite places. Liquid above an open top falls back.
-  double mass_in_domain() const;
+  FlowTotals totals() const;
   double leased_bytes() const;  // scratch memory of a step, leased now or idle
   // What the pressure stores in a compressible liquid: the integral of p^2 / (2 rho c^2).
   double stored_energy() const;

@@ -83,9 +83,7 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   std::vector<double> last_flow_;  // their values at the last step of the flow, while a record carries
   SnapshotTable snapshot_;
   SavedNumbers saved_{"scalars"};
-  struct {
-    double kinetic = 0, potential = 0;
-  } row_energy_;                                   // of the row of the series that is being read
+  FlowTotals row_;                                 // of the row of the series that is being read
   std::unique_ptr<const BodyForces> body_forces_;  // null without walls of bodies
   PointSampler sampler_;
   std::int64_t sampled_step_ = -1;  // that the sampler has binned
