@@ -19,8 +19,7 @@ namespace {
 constexpr double viscous_limit = 0.125, force_limit = 0.25;
 // Of a liquid with a free surface: twice the change of density that its sound speed is chosen for.
 constexpr double largest_volume_drift = 0.02;
-// As of gfd; particles that rearrange lift liquid by a fraction of a spacing, hence the floor of its scale.
-constexpr double largest_energy_growth = 0.03, of_a_spacing = 0.1;
+constexpr double largest_energy_growth = 0.03;  // as of gfd
 
 std::vector<double> densities_of(const Flow& flow) {
   std::vector<double> densities;
@@ -185,7 +184,7 @@ std::vector<Invariant> Wcsph::invariants() const {
                     .kind = Invariant::Kind::growth,
                     .column = "kinetic_energy",
                     .bound = largest_energy_growth,
-                    .scale_floor = of_a_spacing * flow_.mass() * length(flow_.wall_gravity) * flow_.scene.spacing,
+                    .scale_floor = 0.1 * flow_.mass() * length(flow_.wall_gravity) * flow_.scene.spacing,
                     .beside = [this] { return energies_.potential + energies_.compression + flow_.surface_energy; },
                     .scale = [this] { return energies_.kinetic + flow_.surface_energy; }});
   return list;
@@ -223,8 +222,7 @@ const PointSampler& Wcsph::sampler() {
 }
 
 std::vector<RecordTable> Wcsph::tables() const {
-  if (body_forces_ == nullptr) return {};
-  return {body_forces_->table()};
+  return body_forces_ == nullptr ? std::vector<RecordTable>() : std::vector{body_forces_->table()};
 }
 
 void Wcsph::table_rows(const std::string&, std::vector<double>& rows) {
