@@ -30,7 +30,8 @@ struct Settling {
   Array<double>& excess;  // of each particle that of the pressure at its height; it follows the particle
   Vec3 gravity{};         // across sides
   StillLiquid still;      // forces are without its pressure
-  double of_sides = 0;    // the stress by which they part particles over its (W / W(spacing))^4 - 1, over rho_0
+  // The stress by which sides part particles over its (W / W(spacing))^4 - 1, over rho_0; 0: none.
+  double of_sides = 0;
   const std::vector<std::uint8_t>& chosen;  // by identifier, 1 for those that move; empty: all
   int most_rounds = 0;
 

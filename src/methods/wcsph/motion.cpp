@@ -323,7 +323,7 @@ void Flow::settle(const GoOn& go_on) {
                        .excess = *excess,
                        .gravity = wall_gravity,
                        .still = still,
-                       .of_sides = parting.stress(),
+                       .of_sides = scene.free_surface ? parting.stress() : 0,
                        .chosen = features.rest.chosen,
                        .most_rounds = options.get<CompressibilityOptions>().settling_rounds,
                        .with_forces = with_forces}
