@@ -378,7 +378,9 @@ void pressure_force_sweep(const SweepContext& context, PackedNeighbours& packed,
                           const std::array<float*, 3>& out, const std::array<float*, 3>& concentration) {
   with_wcsph_dimensions(context, [&]<int dimensions>() {
     const auto of = [&]<Phases phases>() {
-      if (concentration[0] != nullptr)
+      if (concentration[0] != nullptr && phases != Phases::one && fields.weighted)
+        pressure_force<dimensions, phases, phases != Phases::one, true>(context, packed, fields, out, concentration);
+      else if (concentration[0] != nullptr)
         pressure_force<dimensions, phases, false, true>(context, packed, fields, out, concentration);
       else if (phases != Phases::one && fields.weighted)
         pressure_force<dimensions, phases, phases != Phases::one, false>(context, packed, fields, out, concentration);

@@ -16,9 +16,11 @@ PhaseEnergies energies_of(const PhaseEnergies::State& state, std::size_t first, 
   const auto x = read(state.particles.position), u = read(state.particles.velocity);
   const double* const excess = state.excess;
   const std::int64_t* const left_out = state.left_out;
-  const Vec3 gravity = state.gravity;
+  const Vec3 gravity = state.gravity, gradient = state.reference_gradient, from_there = state.reference_place;
+  const double background = state.background;
+  const bool referred = background != 0 || gradient != Vec3{};
   const double volume = state.particles.volume;
-  double kinetic = 0, potential = 0, compression = 0, speed2 = 0;
+  double kinetic = 0, potential = 0, compression = 0, reference = 0, speed2 = 0;
   state.law.each_run(first, last, [&](const PhaseLaw& own, std::size_t from, std::size_t to) {
     const double mass = volume * own.density, stiffness = volume * own.stiffness();
     for (std::size_t i = from; i < to; ++i) {
@@ -31,10 +33,15 @@ PhaseEnergies energies_of(const PhaseEnergies::State& state, std::size_t first, 
       kinetic += mass * square / 2;
       potential += mass * head;
       compression += stiffness * own.energy_over_stiffness(excess[i]);
+      if (referred) {
+        double pressure = -background;
+        unrolled<dimensions>([&](auto axis) { pressure += gradient[axis] * (x[axis][i] - from_there[axis]); });
+        reference += volume / (1 + excess[i]) * pressure;
+      }
       speed2 = larger_or_nan(speed2, square);
     }
   });
-  return {kinetic, potential, compression, speed2};
+  return {kinetic, potential, compression, reference, speed2};
 }
 
 }  // namespace
@@ -48,7 +55,7 @@ PhaseEnergies phase_energies(const PhaseEnergies::State& state) {
       },
       [](const PhaseEnergies& a, const PhaseEnergies& b) {
         return PhaseEnergies{a.kinetic + b.kinetic, a.potential + b.potential, a.compression + b.compression,
-                             larger_or_nan(a.largest_speed, b.largest_speed)};
+                             a.reference + b.reference, larger_or_nan(a.largest_speed, b.largest_speed)};
       });
   sums.largest_speed = std::sqrt(sums.largest_speed);
   return sums;

@@ -7,16 +7,13 @@
 #include "spume/particles/column_pressure.hpp"
 
 namespace spume {
-namespace {
 
-bool moves(const Scene& scene) {
+bool starts_moving(const Scene& scene) {
   const auto& velocity = scene.particles.velocity;
   for (int axis = 0; axis < scene.domain.dimensions; ++axis)
     if (std::any_of(velocity[axis].begin(), velocity[axis].end(), [](double u) { return u != 0; })) return true;
   return false;
 }
-
-}  // namespace
 
 StartAtRest::StartAtRest(const Scene& scene, const Circumstances& circumstances) {
   const bool several = scene.phases.size() > 1;
@@ -36,7 +33,7 @@ StartAtRest::StartAtRest(const Scene& scene, const Circumstances& circumstances)
   else if (several && !circumstances.mean_pressures.empty())
     reason = circumstances.mean_pressures;
   else if (several)
-    settles = circumstances.in_layers && !moves(scene);
+    settles = circumstances.in_layers && !starts_moving(scene);
   else if (!scene.free_surface)
     reason = "one phase fills the tank";
   else

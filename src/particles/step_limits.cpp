@@ -98,7 +98,9 @@ void refuse_burst(const ParticleStore& particles, const CompressedState& state, 
   details.option = option;
   details.value = largest;
   blame_first(details, particles, state.at, [&](std::size_t i) {
-    return !(std::abs(state.excess[i]) <= largest_excess_of_a_flow && std::isfinite(state.force[0][i]));
+    bool finite = true;
+    for (int axis = 0; axis < particles.dimensions; ++axis) finite = finite && std::isfinite(state.force[axis][i]);
+    return !(std::abs(state.excess[i]) <= largest_excess_of_a_flow && finite);
   });
   throw StepFailure(details);
 }

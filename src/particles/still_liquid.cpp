@@ -6,15 +6,18 @@
 
 #include "spume/core/parallel.hpp"
 #include "spume/particles/column_pressure.hpp"
+#include "spume/particles/phase_law.hpp"
+#include "spume/particles/start_at_rest.hpp"
 
 namespace spume {
 
-StillLiquid still_liquid(const Scene& scene, const std::vector<PhaseLaw>& laws, bool shifting) {
+StillLiquid still_liquid(const Scene& scene, bool shifting) {
   const Vec3 gravity = gravity_across_sides(scene);
   if (scene.free_surface || !scene.bodies.empty() || !scene.openings.empty() || gravity == Vec3{}) return {};
+  if (scene.phases.size() > 1 ? scene.surface_tension > 0 : !shifting) return {};
   const auto [lightest, heaviest] = std::minmax_element(
-      laws.begin(), laws.end(), [](const PhaseLaw& a, const PhaseLaw& b) { return a.density < b.density; });
-  if (lightest->density < gas_density_ratio * heaviest->density || (laws.size() == 1 && !shifting)) return {};
+      scene.phases.begin(), scene.phases.end(), [](const Phase& a, const Phase& b) { return a.density < b.density; });
+  if (lightest->density < gas_density_ratio * heaviest->density) return {};
   StillLiquid still{.density = lightest->density, .gravity = gravity};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     still.highest[axis] = gravity[axis] < 0 ? scene.domain.upper[axis] : scene.domain.lower[axis];
@@ -22,6 +25,12 @@ StillLiquid still_liquid(const Scene& scene, const std::vector<PhaseLaw>& laws, 
                    (scene.domain.upper[axis] - scene.domain.lower[axis]);
   }
   return still;
+}
+
+bool liquids_flow(const Scene& scene, bool driven) {
+  const StillLiquid still = still_liquid(scene, false);
+  return still && scene.phases.size() > 1 &&
+         (driven || still.range == 0 || starts_moving(scene) || !lie_in_layers(scene));
 }
 
 void StillLiquid::subtract(const std::array<const double*, 3>& place, std::size_t n, float* pressure) const {

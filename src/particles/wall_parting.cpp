@@ -39,14 +39,14 @@ double WallParting::stress() const {
   return stress_share * speed_ * speed_;
 }
 
-// Away from the wall, per volume.
+// Away from the wall, per volume: what a mass takes of it goes with the place alone.
 double WallParting::force_of(const Liquid& liquid, std::size_t i, double distance, double gap) const {
   const double way = 2 * distance;
   const double scale =
       liquid.gradient_scale * particle_volume_ * WendlandC2::normalisation(dimensions_) / std::pow(h_, dimensions_ + 2);
   const double f = WendlandC2::w(way / h_) / WendlandC2::w(2 * gap / h_);
   const double own_stress = stress() * liquid.law(i).density * (f * f * f * f - 1);
-  return -scale * WendlandC2::f(way / h_) * liquid.volume[i] * own_stress * way;
+  return -scale * WendlandC2::f(way / h_) * own_stress * way / liquid.volume[i];
 }
 
 // The wall of a body that is nearer than half a spacing, and the force. A bubble that begins to grow appears beside

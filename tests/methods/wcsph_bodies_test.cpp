@@ -34,9 +34,7 @@ double run_to(BodiesRun& run, double end) {
     for (int attempt = 0;; ++attempt, dt /= 2) try {
         run.steps(1, dt);
         break;
-      } catch (const StepFailure& f) {
-        fprintf(stderr, "t %.6f dt %g p %lld (%g %g) %s %g\n", run.method.time(), dt, (long long)f.details().particle,
-                f.details().position[0], f.details().position[1], f.details().cause.c_str(), f.details().value);
+      } catch (const StepFailure&) {
         if (attempt == 3) throw;
       }
     fastest = std::max(fastest, run.method.flow().largest_speed);

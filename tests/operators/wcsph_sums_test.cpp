@@ -226,25 +226,31 @@ TEST(WcsphSums, PressureAndRepulsionAgreeWithTheSlowTwin) {
     for (const auto& [several, weighted, over_still] :
          {std::tuple{false, false, false}, {true, false, false}, {true, true, false}, {true, true, true}}) {
       const Vec3 gravity = several ? Vec3{0, -2e-3, 1e-3} : Vec3{}, left_out = over_still ? Vec3{0, -3, 2} : Vec3{};
-      VectorArrays<float> force(a.size(), a.dimensions());
-      pressure_force_sweep(a.context, a.packed,
-                           {.pressure = f.pressure.data(),
-                            .left_out = left_out,
-                            .volume = f.volume.data(),
-                            .density = f.density.data(),
-                            .several = several,
-                            .weighted = weighted,
-                            .repulsion = 0.08F,
-                            .gravity = gravity,
-                            .position = {position[0], position[1], position[2]}},
-                           force.write());
+      VectorArrays<float> force(a.size(), a.dimensions()), shifted(a.size(), a.dimensions()),
+          concentration(a.size(), a.dimensions());
+      const auto sweep = [&](const std::array<float*, 3>& out, const std::array<float*, 3>& gradient) {
+        pressure_force_sweep(a.context, a.packed,
+                             {.pressure = f.pressure.data(),
+                              .left_out = left_out,
+                              .volume = f.volume.data(),
+                              .density = f.density.data(),
+                              .several = several,
+                              .weighted = weighted,
+                              .repulsion = 0.08F,
+                              .gravity = gravity,
+                              .position = {position[0], position[1], position[2]}},
+                             out, gradient);
+      };
+      sweep(force.write(), {});
+      sweep(shifted.write(), concentration.write());
       Comparison forces(several ? "pressure and repulsion" : "pressure");
       for (std::size_t i = 0; i < a.size(); ++i)
-        for (int axis = 0; axis < a.dimensions(); ++axis)
-          forces.add(force[axis][i],
-                     twin.pressure_force(i, axis, f.pressure, f.volume, f.density, several ? 0.08 : 0, gravity,
-                                         weighted, left_out),
-                     a.twin.tolerance(i), i);
+        for (int axis = 0; axis < a.dimensions(); ++axis) {
+          const Sum slow = twin.pressure_force(i, axis, f.pressure, f.volume, f.density, several ? 0.08 : 0, gravity,
+                                               weighted, left_out);
+          forces.add(force[axis][i], slow, a.twin.tolerance(i), i);
+          forces.add(shifted[axis][i], slow, a.twin.tolerance(i), i);
+        }
     }
   }
 }

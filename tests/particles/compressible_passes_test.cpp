@@ -241,7 +241,7 @@ TEST(PhaseEnergies, AndSumsAreThoseOfTheParticles) {
     domain.lower = {-1, -3, -3};
     domain.upper = {1, 3, 3};
     for (auto& side : domain.sides[0]) side.kind = BoundaryKind::periodic;
-    const Vec3 gravity{0, -2, 0};
+    const Vec3 gravity{0, -2, 0}, gradient{0.5, -3, 0}, from{1, 2, 0};
     for (const bool all : {true, false}) {
       const std::int64_t* const left_out = all ? nullptr : mixed.layer.data();
       PhaseSums sums(particles, mixed.phase, {1000, 2}, all ? nullptr : &mixed.layer);
@@ -258,6 +258,8 @@ TEST(PhaseEnergies, AndSumsAreThoseOfTheParticles) {
         expected.kinetic += mass * speed2 / 2;
         expected.potential += 2 * mass * (*particles.position[1])[i];
         expected.compression += 0.1 * own.stiffness() * own.energy_over_stiffness(mixed.excess[i]);
+        const double head = 0.5 * ((*particles.position[0])[i] - 1) - 3 * ((*particles.position[1])[i] - 2);
+        expected.reference += 0.1 / (1 + mixed.excess[i]) * (head - 7);
         expected.largest_speed = std::max(expected.largest_speed, std::sqrt(speed2));
         most[k] = std::max(most[k], std::abs(mixed.excess[i]));
         of[k].mass += mass;
@@ -270,10 +272,14 @@ TEST(PhaseEnergies, AndSumsAreThoseOfTheParticles) {
                                                   .law = {mixed.laws, mixed.phase},
                                                   .excess = mixed.excess.data(),
                                                   .gravity = gravity,
-                                                  .left_out = left_out});
+                                                  .left_out = left_out,
+                                                  .reference_gradient = gradient,
+                                                  .reference_place = from,
+                                                  .background = 7});
       EXPECT_NEAR(found.kinetic / expected.kinetic, 1, 1e-12);
       EXPECT_NEAR(found.potential, expected.potential, 1e-9 * expected.kinetic);
       EXPECT_NEAR(found.compression / expected.compression, 1, 1e-12);
+      EXPECT_NEAR(found.reference / expected.reference, 1, 1e-12);
       EXPECT_NEAR(found.largest_speed, expected.largest_speed, rounding);
       for (std::size_t k = 0; k < 2; ++k) {
         EXPECT_EQ(largest_excess(k, mixed.phase, mixed.excess, left_out), most[k]);

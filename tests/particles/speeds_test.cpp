@@ -85,6 +85,34 @@ TEST(Speeds, OneParticleInManyRefusesAStep) {
   EXPECT_EQ(blamed(), (*particles.identifier)[nan]);
 }
 
+TEST(Steps, ADensityOffByHalfAndAForceThatIsNotFiniteAlongAnyAxisBlameTheirParticle) {
+  const Walled walled(scene_text(channel, 0.05, turned));
+  const ParticleStore& particles = walled.particles;
+  const std::size_t n = particles.size();
+  Array<double> excess(n);
+  FloatVectorScratch force;
+  for (int axis = 0; axis < 2; ++axis) force[axis].resize(n);
+  for (std::size_t i = 0; i < n; ++i) excess[i] = 0.49 * uniform(i, 5)[0], force[0][i] = force[1][i] = 1;
+  const auto blamed = [&]() -> std::pair<std::int64_t, double> {
+    try {
+      refuse_burst(particles, {particles.position, excess.data(), force}, "time.courant");
+    } catch (const StepFailure& failure) {
+      return {failure.details().particle, failure.details().value};
+    }
+    return {-1, 0};
+  };
+  const auto of = [&](std::size_t i) { return (*particles.identifier)[i]; };
+  EXPECT_EQ(blamed().first, -1);
+  excess[7] = -0.6;
+  EXPECT_EQ(blamed(), (std::pair{of(7), 0.6}));
+  excess[7] = 0;
+  for (const int axis : {0, 1}) {
+    force[axis][9] = NAN;
+    EXPECT_EQ(blamed().first, of(9)) << "axis " << axis;
+    force[axis][9] = 1;
+  }
+}
+
 // Along the periodic axis there is no height.
 TEST(EnergyGuard, HoldsKineticEnergyAndHeightAcrossSides) {
   const Walled walled(scene_text(channel, 0.05, turned));

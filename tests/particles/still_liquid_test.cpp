@@ -43,7 +43,7 @@ end = 1
 
 StillLiquid still_of(const std::string& text, bool shifting = false) {
   const LoadedCase loaded = load_text(text);
-  return still_liquid(loaded.scene, phase_laws(loaded.scene, 1), shifting);
+  return still_liquid(loaded.scene, shifting);
 }
 
 TEST(StillLiquid, IsOfTheLightestDensityBelowTheTop) {
@@ -65,6 +65,7 @@ TEST(StillLiquid, IsNoneBesideASurfaceGasBodiesAndWithoutWeightAcrossSides) {
   EXPECT_FALSE(still_of(replaced(closed_tank, "density = 800", "density = 1.2")));
   EXPECT_FALSE(still_of(closed_tank + "[[body]]\nshape = \"ball\"\nposition = [0, 1.2]\nradius = 0.3\n"));
   EXPECT_FALSE(still_of(replaced(closed_tank, "gravity = 2", "")));
+  EXPECT_FALSE(still_of(closed_tank + "[interface]\nsurface_tension = 1\n"));
 }
 
 TEST(StillLiquid, IsOfOnePhaseWhereItsParticlesAreShifted) {
@@ -75,6 +76,20 @@ TEST(StillLiquid, IsOfOnePhaseWhereItsParticlesAreShifted) {
                "[[region]]\nphase = \"heavy\"\nupper = [1, 1]\n", "");
   EXPECT_TRUE(still_of(alone, true));
   EXPECT_FALSE(still_of(alone));
+}
+
+TEST(StillLiquid, LiquidsFlowUnlessTheyLieInLayersAtRest) {
+  const auto flow = [](const std::string& text, bool driven = false) {
+    return liquids_flow(load_text(text).scene, driven);
+  };
+  EXPECT_FALSE(flow(closed_tank));
+  EXPECT_TRUE(flow(closed_tank, true));
+  EXPECT_TRUE(flow(replaced(closed_tank, "upper = [1, 1]", "upper = [0, 2]")));  // side by side
+  EXPECT_TRUE(flow(replaced(closed_tank, "upper = [1, 1]", "upper = [1, 1]\nvelocity = [\"y\", \"0\"]")));
+  EXPECT_TRUE(flow(replaced(closed_tank, "density = 1200", "density = 700")));  // the lighter one below
+  EXPECT_TRUE(flow(replaced(closed_tank, "density = 1200", "density = 800")));
+  EXPECT_FALSE(flow(replaced(closed_tank, "density = 800", "density = 1.2"), true));
+  EXPECT_FALSE(flow(replaced(closed_tank, "top = \"free-slip\"", ""), true));
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ TEST(WallParting, IsTheStressOfTheFormulaAndBodiesTakeTheirs) {
       const double stress = 0.2 * reference * (std::pow(w(2 * distance) / w(dr), 4) - 1);
       const double slope =
           scale * walled.particles.volume * kernel.normalisation() * kernel.f(2 * distance / h) / std::pow(h, 4);
-      const Vec3 of_wall = multiply(-slope * volume[i] * stress * 2 * distance, normal);
+      const Vec3 of_wall = multiply(-slope / volume[i] * stress * 2 * distance, normal);
       expected = add(expected, of_wall);
       modulus += length(of_wall);
       return of_wall;

@@ -16,6 +16,7 @@
 
 #include "spume/core/go_on.hpp"
 #include "spume/particles/boundary.hpp"
+#include "spume/particles/phase_law.hpp"
 #include "spume/particles/still_liquid.hpp"
 
 namespace spume {

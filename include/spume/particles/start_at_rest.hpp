@@ -10,6 +10,9 @@
 
 namespace spume {
 
+// Some particle has a first velocity.
+bool starts_moving(const Scene& scene);
+
 struct StartAtRest {
   bool settles = false;
   std::string reason;                // why, or why not

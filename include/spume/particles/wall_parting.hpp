@@ -5,10 +5,11 @@
 // density field cancels it to first order. Closer to its image than the spacing it feels a stress of the form of that
 // of Monaghan, SPH without a tensile instability (2000), which is zero at the spacing here:
 //
-//   (rho du/dt)_i = -v g 0.2 rho_0 U^2 ((W(2 d) / W(spacing))^4 - 1) 2 d n,
+//   (rho du/dt)_i = -g / v 0.2 rho_0 U^2 ((W(2 d) / W(spacing))^4 - 1) 2 d n,
 //
 // d the distance from the wall, n its normal into the liquid, g of operators/wcsph_sums.hpp at 2 d, v = 1 / (1 + s), U
-// the largest expected speed. It depends on the place alone, so that walls that stand still do no work.
+// the largest expected speed. The acceleration depends on the place alone, so that walls that stand still
+// do no work.
 // The image behind the wall of a body is as far behind it. Bodies that stand still do without: particles that a slanted
 // face leaves nearer than half a spacing are at rest there, and the stress would stir them.
 #pragma once

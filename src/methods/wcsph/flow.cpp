@@ -23,13 +23,9 @@ double speed_of(const LoadedCase& loaded) {
 // drive its noise: the vortices of cases/taylor_green_wcsph decay too fast by 16 % with it and by 1.4 % without.
 double background_of(const LoadedCase& loaded, const Features& features, double speed,
                      const std::vector<PhaseLaw>& laws, const StillLiquid& still) {
-  // Layers of 900 and 1100 kg/m3 stay at rest within 6e-4 sqrt(gH) with a quarter to twice of the range of (16),
-  // with nothing they do not settle; their wave swings to 0.62, 0.59, 0.43 and 0.11 of its start with a quarter, a
-  // half, the whole and twice of it.
-  constexpr double share_of_range = 0.25;
   const double given = loaded.options.get<CompressibilityOptions>().background_pressure;
   if (given >= 0) return given;
-  if (still && !features.shifting) return share_of_range * still.range;
+  if (still && !features.shifting) return still.background();
   if (features.gravity || features.shifting || loaded.scene.free_surface) return 0;
   return dynamic_pressure(laws, speed);
 }
@@ -50,19 +46,20 @@ Features::Features(const LoadedCase& loaded)
   diffusion = smoothing.density_filter == DensityFilter::delta && smoothing.diffusion > 0;
   shepard = smoothing.density_filter == DensityFilter::shepard;
   density_relaxation = scene.free_surface && smoothing.density_relaxation > 0;
-  shifting = smoothing.shifting == Shifting::on ||
-             (smoothing.shifting == Shifting::automatic && (!several || tension) && !scene.free_surface);
-  wall_rates = bodies && !shifting;
   const InterfacePressure meeting = smoothing.interface_pressure;
-  weighted = several && !shifting && !tension && meeting != InterfacePressure::mean;
   const bool undriven = !moving_bodies && !scene.body_force;
-  const bool in_layers = weighted && !scene.free_surface && undriven && lie_in_layers(scene);
-  const std::string mean = tension    ? "surface tension"
-                           : shifting ? "shifting"
-                           : weighted ? ""
-                                      : "compressibility.interface_pressure = \"mean\"";
+  const bool evened = !scene.free_surface && (!several || tension || liquids_flow(scene, moving_walls || !undriven));
+  shifting = smoothing.shifting == Shifting::on || (smoothing.shifting == Shifting::automatic && evened);
+  wall_rates = bodies && !shifting;
+  const bool by_densities = several && !tension && meeting != InterfacePressure::mean;
+  const bool in_layers = by_densities && !shifting && !scene.free_surface && undriven && lie_in_layers(scene);
+  const std::string mean = tension        ? "surface tension"
+                           : shifting     ? "shifting"
+                           : by_densities ? ""
+                                          : "compressibility.interface_pressure = \"mean\"";
   rest = StartAtRest(scene, {moving_bodies, oxygen, in_layers, smoothing.settling_rounds == 0, mean});
-  weighted = in_layers || (weighted && meeting == InterfacePressure::weighted);
+  weighted =
+      by_densities && (in_layers || meeting == InterfacePressure::weighted || (shifting && still_liquid(scene, true)));
 }
 
 Flow::Flow(const LoadedCase& loaded_case)
@@ -77,7 +74,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       laws(phase_laws(scene, expected_speed)),
       phase_density(distinct_densities(laws)),
       wall_gravity(gravity_across_sides(scene)),
-      still(still_liquid(scene, laws, features.shifting)),
+      still(still_liquid(scene, features.shifting)),
       background(background_of(loaded_case, features, expected_speed, laws, still)),
       particles(dimensions, scene.particles),
       openings(features.openings ? std::make_unique<BufferLayers>(scene, resolution, skin, particles) : nullptr),
@@ -173,7 +170,10 @@ PhaseEnergies Flow::energies() const {
                          .law = law_of_particles(),
                          .excess = excess->data(),
                          .gravity = wall_gravity,
-                         .left_out = layer()});
+                         .left_out = layer(),
+                         .reference_gradient = still.pressure_gradient(),
+                         .reference_place = still.highest,
+                         .background = background});
 }
 
 Fastest::State Flow::moving() const {

@@ -15,7 +15,7 @@
 namespace spume::wcsph {
 namespace {
 
-// Sun et al. (2019): delta u = -2 U h grad C, of U / 2 at most, U the largest expected speed.
+// Sun et al. (2019): delta u = -2 U h grad C, of U / 2 at most.
 constexpr double shifting_strength = 2, largest_shift = 0.5;
 
 using Block = std::array<double, default_block>;  // of particles
@@ -57,7 +57,7 @@ void Flow::build_lists() {
 // A restored state has the places of its lists: the same lists follow, with their neighbours in the same order.
 void Flow::keep_lists(double dt) {
   if (!has_lists && started != 0) build_lists();
-  const double way = dt * std::min(largest_speed, expected_speed);
+  const double way = dt * present_speed();
   has_moved = features.density_relaxation && steps > 0 && measured_way + way > skin / 2;
   if (has_lists && !(features.openings && openings->stale()) && lists_hold(dt)) return;
   if (has_lists)
@@ -224,7 +224,6 @@ void Flow::advance_density(double dt) {
   scratch.lease(pressure, size());
   const double smoothing =
       features.diffusion ? options.get<CompressibilityOptions>().diffusion * resolution.smoothing_length : 0;
-  const double way = dt * std::min(largest_speed, expected_speed);  // of the fastest
   if (features.displaced_bodies) boundary.bodies()->follow_points(time + dt);
   const ExcessStep excess_step{.dt = dt,
                                .dimensions = dimensions,
@@ -235,7 +234,7 @@ void Flow::advance_density(double dt) {
                                .spread = diffusion.data(),
                                .diffusion = smoothing,
                                .lack = features.density_relaxation ? relaxation->lack() : nullptr,
-                               .share = features.density_relaxation ? relaxation->share_of(way) : 0,
+                               .share = features.density_relaxation ? relaxation->share_of(dt * present_speed()) : 0,
                                .carried = carried.data(),
                                .shift = read(shift),
                                .gravity = wall_gravity,
@@ -377,7 +376,7 @@ void Flow::accept(double dt) {
   }
   if (features.tension) surface_energy = tension->energy();
   list_life.accept();
-  if (features.density_relaxation) measured_way += dt * std::min(largest_speed, expected_speed);
+  if (features.density_relaxation) measured_way += dt * present_speed();
   time += dt;
   if (dt > 0) ++steps;
   final ? take(fastest) : find_signal();
@@ -417,8 +416,8 @@ void Flow::accept_block(const HalfSteps& half, const VectorExpression& given, st
   }
   if (features.shifting)
     BoundedShift{.dimensions = dimensions,
-                 .strength = shifting_strength * expected_speed,
-                 .bound = largest_shift * expected_speed,
+                 .strength = shifting_strength * shift_speed(),
+                 .bound = largest_shift * shift_speed(),
                  .concentration = read(concentration),
                  .left_out = layer(),
                  .shift = write(shift)}

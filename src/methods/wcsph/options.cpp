@@ -9,9 +9,10 @@ Section compressibility_section() {
       .option(
           "max_speed", &C::max_speed, "m/s", not_negative(),
           "largest speed that is expected; sound is ten times as fast; 0: from gravity, forces and first velocities")
-      .option("background_pressure", &C::background_pressure, "Pa", any_value,
-              "added to every pressure; negative: rho max_speed^2 in scenes without gravity, free surface and "
-              "shifting, else 0")
+      .option(
+          "background_pressure", &C::background_pressure, "Pa", any_value,
+          "added to every pressure; negative: rho max_speed^2 without gravity, free surface and shifting, a quarter of "
+          "what weighs more than the lightest in a full tank of liquids in layers, else 0")
       .option("repulsion", &C::repulsion, "1", between(0, 0.2), "between phases, of the sum of their pressures")
       .steerable()
       .word("density_filter", &C::density_filter,
@@ -23,15 +24,16 @@ Section compressibility_section() {
               "way of the fastest particle over which densities follow the arrangement, below a free surface; 0: they "
               "do not")
       .word("shifting", &C::shifting, {{"auto", Shifting::automatic}, {"on", Shifting::on}, {"off", Shifting::off}},
-            "of particles towards an even spacing; auto: in scenes without free surface, of one phase or with surface "
-            "tension")
+            "of particles towards an even spacing; auto: in scenes without free surface, of one phase, with surface "
+            "tension, or of liquids that flow in a full tank without bodies and openings")
       .word("interface_pressure", &C::interface_pressure,
             {{"auto", InterfacePressure::automatic},
              {"mean", InterfacePressure::mean},
              {"weighted", InterfacePressure::weighted}},
             "what phases meet at: the mean of their pressures, or that weighted with densities, under which "
-            "accelerations "
-            "are continuous; auto: weighted where phases lie in layers; shifting and tension take the mean")
+            "accelerations are continuous; auto: weighted where phases lie in layers and in full tanks of liquids; "
+            "tension "
+            "takes the mean")
       .option("filter_interval", &C::filter_interval, "", between(1, 10000), "steps between kernel averages")
       .option("settling_rounds", &C::settling_rounds, "", between(0, 100000),
               "most sweeps in which liquid that starts at rest settles before the first step; 0: it starts as filled");

@@ -60,8 +60,10 @@ Plan make_plan(Flow& f) {
                [&f, interval] { return f.steps % interval == interval - 1; });
   stages.add(both, "pressure at openings", has.openings, openings, &Flow::find_pressure_behind,
              {p.position, p.velocity, *f.phase_number}, {f.next_excess, f.pressure, f.volume});
-  stages.sweep(both, "pressure force", true, std::string("(2)") + (has.several ? ", (4)" : "") + ": " + several,
-               &Flow::find_pressure_force, {f.pressure, f.volume, f.density}, {f.force, f.concentration});
+  stages.sweep(both, "pressure force", true,
+               std::string("(2)") + (has.several ? ", (4)" : "") + ": " + several +
+                   (f.still ? ", (16): pressures over a still liquid of " + brief(f.still.density) + " kg/m3" : ""),
+               &Flow::find_pressure_force, {f.pressure, f.volume, f.density, f.place}, {f.force, f.concentration});
   stages.sweep(both, "surface tension", has.tension,
                has.tension ? "(11): curvature of the interfaces, force of pairs across them" : no_tension,
                &Flow::add_tension, {f.volume, interfaces}, {f.force, interfaces});

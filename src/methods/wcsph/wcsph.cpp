@@ -176,16 +176,13 @@ std::vector<Invariant> Wcsph::invariants() const {
                     .column = "volume_" + flow_.scene.phases[n].name,
                     .bound = 4 * std::numeric_limits<double>::epsilon(),
                     .beside = [this, n] { return flow_.openings->net_outflow(n) + flow_.volume_spilt(n); }});
-  const Features& has = flow_.features;
-  const bool driven = has.moving_walls || has.moving_bodies || has.openings || flow_.scene.body_force ||
-                      flow_.scene.fluid.gravity != flow_.wall_gravity || flow_.spill.possible();
-  if (!driven)
+  if (!flow_.driven())
     list.push_back({.quantity = "energy_growth",
                     .kind = Invariant::Kind::growth,
                     .column = "kinetic_energy",
                     .bound = largest_energy_growth,
                     .scale_floor = 0.1 * flow_.mass() * length(flow_.wall_gravity) * flow_.scene.spacing,
-                    .beside = [this] { return energies_.potential + energies_.compression + flow_.surface_energy; },
+                    .beside = [this] { return energies_.stored() + flow_.surface_energy; },
                     .scale = [this] { return energies_.kinetic + flow_.surface_energy; }});
   return list;
 }
