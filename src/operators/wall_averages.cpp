@@ -220,7 +220,7 @@ std::vector<SurfaceForce> wall_forces(const SweepContext& context, const WallFor
         for (int axis = 0; axis < d; ++axis) {
           arm[axis] = fields.arm[axis][g];
           if (fields.gravity[axis] != 0)
-            other += fields.wall_density[g] * fields.gravity[axis] *
+            other += (fields.wall_density[g] * fields.gravity[axis] - fields.left_out[axis]) *
                      (context.images->position(axis)[k] - fields.wall_position[axis][g]);
         }
         const Vec3& u = before[g].velocity;

@@ -289,7 +289,7 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
       out_of_it += fields.left_out[a] * way;
     }
     records[(n + k) * width + dimensions + 1] =
-        of_point ? static_cast<float>(fields.wall_pressure[source] + fields.wall_density[source] * head)
+        of_point ? static_cast<float>(fields.wall_pressure[source] + fields.wall_density[source] * head - out_of_it)
                  : static_cast<float>(double{fields.pressure[source]} +
                                       (head == 0 ? 0 : fields.density[source] * head - out_of_it));
   });

@@ -27,7 +27,8 @@ void AveragedWalls::add_rates(const Arrangement& arrangement, const std::array<c
   averages_.add_rates(arrangement.context, stencils, velocity, volume, flow.data(), rate);
 }
 
-void AveragedWalls::find_pressure(const Arrangement& arrangement, const float* pressure, const float* density) {
+void AveragedWalls::find_pressure(const Arrangement& arrangement, const float* pressure, const float* density,
+                                  const StillLiquid& still) {
   if (boundary_.bodies() == nullptr) return;
   const BodyWalls& walls = *boundary_.bodies();
   scratch_.lease(pressure_, walls.stencils().size());
@@ -36,6 +37,7 @@ void AveragedWalls::find_pressure(const Arrangement& arrangement, const float* p
       arrangement.context, walls.stencils(),
       {.pressure = pressure, .density = density, .gravity = gravity_, .wall_acceleration = read(walls.acceleration())},
       pressure_.data(), density_.data());
+  still.subtract(place(), walls.stencils().size(), pressure_.data());
 }
 
 void AveragedWalls::release() {
@@ -70,6 +72,7 @@ std::vector<SurfaceForce> AveragedWalls::forces(const Arrangement& arrangement, 
                       .viscosity = liquid.viscosity,
                       .friction = liquid.friction,
                       .gravity = gravity_,
+                      .left_out = liquid.left_out,
                       .reflection = &boundary_.reflection(),
                       .held = &boundary_.velocity_rule().sign,
                       .wall_pressure = pressure_.data(),

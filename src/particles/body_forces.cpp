@@ -287,6 +287,11 @@ BodyForces::Element BodyForces::now(const Element& element) const {
           element.body};
 }
 
+Vec3 BodyForces::whole_middle(std::size_t e) const {
+  const RigidWalls& walls = walls_.part_of(static_cast<std::size_t>(elements_[e].body));
+  return walls.motion() == nullptr ? elements_[e].middle : walls.place.now(elements_[e].middle);
+}
+
 bool BodyForces::floats(const Element& element) const {
   const auto& motion = scene_.bodies[static_cast<std::size_t>(element.body)].motion;
   return motion && scene_.motions[*motion].floats;
@@ -347,12 +352,26 @@ std::vector<SurfaceForce> BodyForces::add_up(const std::vector<Traction>& of) co
   std::vector<SurfaceForce> total(scene_.bodies.size());
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     SurfaceForce& body = total[static_cast<std::size_t>(elements_[e].body)];
-    const RigidWalls& walls = walls_.part_of(static_cast<std::size_t>(elements_[e].body));
-    const Vec3 middle = walls.motion() == nullptr ? elements_[e].middle : walls.place.now(elements_[e].middle);
+    const Vec3 middle = whole_middle(e);
     body.press(middle, of[e].pressure);
     body.rub(middle, of[e].viscous);
   }
   return total;
+}
+
+// What touches a wall has no liquid before it.
+void BodyForces::add_pressure(const StillLiquid& still, const WallPositions& sides,
+                              std::vector<SurfaceForce>& forces) const {
+  constexpr double before = 0.05;  // spacings
+  for (std::size_t e = 0; still && e < elements_.size(); ++e) {
+    const auto body = static_cast<std::size_t>(elements_[e].body);
+    if (walls_.part_of(body).absent()) continue;
+    const Element element = now(elements_[e]);
+    if (!is_free(add(element.middle, multiply(before * scene_.spacing / length(element.area), element.area)), sides))
+      continue;
+    const double pressure = dot(still.pressure_gradient(), subtract(element.middle, still.highest));
+    forces[body].press(whole_middle(e), multiply(-pressure, element.area));
+  }
 }
 
 std::vector<SurfaceForce> BodyForces::measure(const Fields& fields, double t) const {

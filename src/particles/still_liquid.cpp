@@ -10,10 +10,27 @@
 #include "spume/particles/start_at_rest.hpp"
 
 namespace spume {
+namespace {
+
+template <class Number>
+void subtract_linear(const Vec3& gradient, const Vec3& from_there, const std::array<const double*, 3>& place,
+                     std::size_t n, Number* pressure) {
+  if (gradient == Vec3{}) return;
+  parallel_blocks(n, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (gradient[axis] == 0) continue;
+      const double slope = gradient[axis], from = from_there[axis];
+      for (std::size_t i = first; i < last; ++i)
+        pressure[i] = static_cast<Number>(pressure[i] - slope * (place[axis][i] - from));
+    }
+  });
+}
+
+}  // namespace
 
 StillLiquid still_liquid(const Scene& scene, bool shifting) {
   const Vec3 gravity = gravity_across_sides(scene);
-  if (scene.free_surface || !scene.bodies.empty() || !scene.openings.empty() || gravity == Vec3{}) return {};
+  if (scene.free_surface || !scene.openings.empty() || gravity == Vec3{}) return {};
   if (scene.phases.size() > 1 ? scene.surface_tension > 0 : !shifting) return {};
   const auto [lightest, heaviest] = std::minmax_element(
       scene.phases.begin(), scene.phases.end(), [](const Phase& a, const Phase& b) { return a.density < b.density; });
@@ -34,15 +51,11 @@ bool liquids_flow(const Scene& scene, bool driven) {
 }
 
 void StillLiquid::subtract(const std::array<const double*, 3>& place, std::size_t n, float* pressure) const {
-  const Vec3 gradient = pressure_gradient();
-  parallel_blocks(n, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (gradient[axis] == 0) continue;
-      const double slope = gradient[axis], from = highest[axis];
-      for (std::size_t i = first; i < last; ++i)
-        pressure[i] = static_cast<float>(pressure[i] - slope * (place[axis][i] - from));
-    }
-  });
+  subtract_linear(pressure_gradient(), highest, place, n, pressure);
+}
+
+void StillLiquid::subtract(const std::array<const double*, 3>& place, std::size_t n, double* pressure) const {
+  subtract_linear(pressure_gradient(), highest, place, n, pressure);
 }
 
 }  // namespace spume

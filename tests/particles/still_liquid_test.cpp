@@ -60,10 +60,10 @@ TEST(StillLiquid, IsOfTheLightestDensityBelowTheTop) {
   EXPECT_DOUBLE_EQ(still.lost_share(1.0 / 800), 1);
 }
 
-TEST(StillLiquid, IsNoneBesideASurfaceGasBodiesAndWithoutWeightAcrossSides) {
+TEST(StillLiquid, IsNoneBesideASurfaceGasTensionAndWithoutWeightAcrossSides) {
   EXPECT_FALSE(still_of(replaced(closed_tank, "top = \"free-slip\"", "")));
   EXPECT_FALSE(still_of(replaced(closed_tank, "density = 800", "density = 1.2")));
-  EXPECT_FALSE(still_of(closed_tank + "[[body]]\nshape = \"ball\"\nposition = [0, 1.2]\nradius = 0.3\n"));
+  EXPECT_TRUE(still_of(closed_tank + "[[body]]\nshape = \"ball\"\nposition = [0, 1.2]\nradius = 0.3\n"));
   EXPECT_FALSE(still_of(replaced(closed_tank, "gravity = 2", "")));
   EXPECT_FALSE(still_of(closed_tank + "[interface]\nsurface_tension = 1\n"));
 }

@@ -211,6 +211,7 @@ TEST(WcsphWalls, SumsAndForcesAgreeWithTheSlowTwin) {
       if (!loaded.scene.domain.periodic(d - 1)) gravity[static_cast<std::size_t>(d - 1)] = -2e-3;
       WalledLiquid liquid(layout, jitter, gravity);
       liquid.twin.weighted = weighted;
+      if (jitter > 0.5) liquid.twin.left_out = multiply(0.7, gravity);
       PackedNeighbours& packed = liquid.walled.arrangement.packed;
       const Boundary& boundary = liquid.walled.boundary;
       const std::size_t n = liquid.twin.particles.size();
@@ -227,6 +228,7 @@ TEST(WcsphWalls, SumsAndForcesAgreeWithTheSlowTwin) {
       PressureFields pressures = pressure_fields(liquid, weighted);
       pressures.repulsion = 0.08F;
       pressures.gravity = gravity;
+      pressures.left_out = liquid.twin.left_out;
       pressure_force_sweep(liquid.context(), packed, pressures, force_out);
       Vec3 lost{};
       double modulus = 0;
@@ -249,6 +251,7 @@ TEST(WcsphWalls, SumsAndForcesAgreeWithTheSlowTwin) {
                                                             .viscosity = liquid.viscosity.data(),
                                                             .friction = true,
                                                             .gravity = gravity,
+                                                            .left_out = liquid.twin.left_out,
                                                             .reflection = &boundary.reflection(),
                                                             .held = &boundary.velocity_rule().sign,
                                                             .wall_pressure = liquid.wall_pressure.data(),

@@ -32,6 +32,7 @@ struct WcsphWallSums {
   std::vector<WallSumPoint> particles, walls;
   bool weighted = false;
   bool adjoint = false;  // the rate of density to the pressure force
+  Vec3 left_out{};       // gradient of a linear pressure that pressures are without
 
   // A copy of a point: itself, or what sides make of it.
   struct Copy {
@@ -132,14 +133,15 @@ struct WcsphWallSums {
                          std::pow(h, domain.dimensions + 2) * other.volume;
     const double g = -scale * WendlandC2::f(ratio), most = -scale * WendlandC2::f(0.0);
     const bool wall = other.body >= 0;
-    double approach = 0, modulus = 0, distance = 0, p = other.pressure;
+    double approach = 0, modulus = 0, distance = 0, p = other.pressure, out_of_pair = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double d = copy.position[axis] - own.position[axis];
       const double u = copy.reflection[axis] * (wall && adjoint ? other.surface : other.velocity)[axis];
       approach += (u - own.velocity[axis]) * d;
       modulus += (std::abs(u) + std::abs(own.velocity[axis])) * std::abs(d);
       distance += std::abs(d);
-      p += other.density * gravity[axis] * (copy.position[axis] - other.position[axis]);
+      p += (other.density * gravity[axis] - left_out[axis]) * (copy.position[axis] - other.position[axis]);
+      out_of_pair += left_out[axis] * d;
     }
     const double kappa = wall ? 0 : (other.density - own.density) / (own.density + other.density);
     const double share = weighted ? kappa : 0;
@@ -152,10 +154,10 @@ struct WcsphWallSums {
     }
     const double both = own.viscosity + other.viscosity;
     const double mu = wall ? own.viscosity : both > 0 ? 2 * own.viscosity * other.viscosity / both : 0;
-    const double of_both = own.pressure + p + share * (own.pressure - p);
+    const double of_both = own.pressure + p + share * (own.pressure - p - out_of_pair);
     const double total = of_both + repulsion * std::abs(kappa) * std::abs(of_both);
-    s.pressure_modulus +=
-        most * (1 + std::abs(share)) * (std::abs(own.pressure) + std::abs(p)) * (1 + repulsion) * distance;
+    s.pressure_modulus += most * (1 + std::abs(share)) *
+                          (std::abs(own.pressure) + std::abs(p) + std::abs(out_of_pair)) * (1 + repulsion) * distance;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double u = copy.held[axis] * (wall ? other.held : other.velocity)[axis];
       viscous[axis] = 2 * g * mu * (u - own.velocity[axis]);

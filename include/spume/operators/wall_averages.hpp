@@ -80,7 +80,7 @@ struct WallForceFields {
   const float* volume = nullptr;     // v
   const float* viscosity = nullptr;  // mu; null: inviscid
   bool friction = false;             // at no-slip walls
-  Vec3 gravity{};                    // as in the pressure force
+  Vec3 gravity{}, left_out{};        // as in the pressure force
   // Per path of the images: of vectors, and of velocities under friction. Sides stand still.
   const std::vector<std::array<float, 3>>*reflection = nullptr, *held = nullptr;
   // Per wall point.

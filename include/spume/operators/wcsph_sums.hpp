@@ -87,8 +87,8 @@ struct PressureFields {
   float repulsion = 0;             // eps
   // Forces that `out` has beside that of pressure, `out` itself among them; null: none.
   std::array<const float*, 3> others{};
-  // Images at mirrors continue the pressure of their source by (density gravity - left_out) . (r_image - r_source), as
-  // Adami et al. (2012) do at walls. Wall points do so without `left_out`.
+  // Images at mirrors continue the pressure of their source, a particle or a wall point, by
+  // (density gravity - left_out) . (r_image - r_source), as Adami et al. (2012) do at walls.
   Vec3 gravity{};
   std::array<const double*, 3> position{};
   // Per wall point; null without.

@@ -8,6 +8,7 @@
 
 #include "spume/operators/wall_averages.hpp"
 #include "spume/particles/boundary.hpp"
+#include "spume/particles/still_liquid.hpp"
 
 namespace spume {
 
@@ -30,7 +31,9 @@ class AveragedWalls {
   void add_rates(const Arrangement& arrangement, const std::array<const double*, 3>& velocity, const float* volume,
                  float* rate) const;
   // Pressure and density of every point, by those of the liquid as it is now; leased until release().
-  void find_pressure(const Arrangement& arrangement, const float* pressure, const float* density);
+  // Of whole pressures; what is found is without that of the still liquid.
+  void find_pressure(const Arrangement& arrangement, const float* pressure, const float* density,
+                     const StillLiquid& still = {});
   void release();
   const double* pressure() const { return pressure_.data(); }
   const double* density() const { return density_.data(); }
@@ -41,7 +44,8 @@ class AveragedWalls {
   // On each body of the scene, by the pressures found last.
   struct Liquid {
     std::array<const double*, 3> velocity{};
-    const float* pressure = nullptr;
+    const float* pressure = nullptr;   // without that of the still liquid
+    Vec3 left_out{};                   // its gradient
     const float* volume = nullptr;     // over that at rest
     const float* viscosity = nullptr;  // null: inviscid
     bool friction = false;             // at no-slip walls

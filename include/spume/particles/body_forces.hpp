@@ -23,6 +23,7 @@
 #include "spume/operators/surface_force.hpp"
 #include "spume/particles/boundary.hpp"
 #include "spume/particles/near_particles.hpp"
+#include "spume/particles/still_liquid.hpp"
 #include "spume/particles/surface_elements.hpp"
 
 namespace spume {
@@ -50,6 +51,9 @@ class BodyForces {
   // there, is integrated instead.
   void integrate_beside_gaps(const Fields& fields, std::vector<SurfaceForce>& forces) const;
 
+  // That of a still liquid, on what is free of walls.
+  void add_pressure(const StillLiquid& still, const WallPositions& sides, std::vector<SurfaceForce>& forces) const;
+
   // Of bodies that float: the force on an element by the pressure of one of its particles, per pressure.
   struct PressureWeight {
     std::int32_t particle = 0, body = 0;
@@ -69,6 +73,7 @@ class BodyForces {
  private:
   using Element = SurfaceElements::Element;
   Element now(const Element& element) const;
+  Vec3 whole_middle(std::size_t e) const;  // where torques count it
   // What is before an element: liquid that its pressure is fitted to, or nothing; or a gap without room for particles,
   // or a wall that it touches.
   enum class Before : std::uint8_t { nothing, wall, gap, liquid };

@@ -35,9 +35,10 @@ struct StillLiquid {
   double lost_share(double specific_volume) const { return density * specific_volume; }
   // P' of particles [0, n) at `place` in the place of P.
   void subtract(const std::array<const double*, 3>& place, std::size_t n, float* pressure) const;
+  void subtract(const std::array<const double*, 3>& place, std::size_t n, double* pressure) const;
 };
 
-// Of a scene without free surface, openings and bodies whose gravity acts across its sides. None where its lightest
+// Of a scene without free surface and openings whose gravity acts across its sides. None where its lightest
 // phase is a gas, which would take less than a fiftieth off the pressure; of one phase whose particles nothing but
 // their pressure keeps apart; nor of phases with surface tension (the centre of the bubble of cases/rising_bubble_2d at
 // a spacing of 1/32 is 0.0132 too low at t = 3 with it, 0.0103 without).

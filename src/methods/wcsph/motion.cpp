@@ -270,8 +270,8 @@ void Flow::filter_density() {
 }
 
 void Flow::find_pressure_force() {
-  walls.find_pressure(arrangement, pressure.data(), density.data());
-  if (still) still.subtract(read(place), size(), pressure.data());
+  walls.find_pressure(arrangement, pressure.data(), density.data(), still);
+  still.subtract(read(place), size(), pressure.data());
   ScratchPool& scratch = particles.scratch();
   const auto viscous = read(force);  // null without viscosity
   scratch.lease(force, dimensions, size());
@@ -436,19 +436,19 @@ void Flow::release_leased() {
 std::vector<SurfaceForce> Flow::forces_on_bodies() {
   if (!has_lists) build_lists();
   move_images(read(particles.position), time);
-  ScratchPool& scratch = particles.scratch();
-  for (auto* array : {&volume, &density, &viscosity}) scratch.lease(*array, size());
-  scratch.lease(pressure, size());
+  for (auto* array : {&volume, &density, &viscosity, &pressure}) particles.scratch().lease(*array, size());
   parallel_for(size(), [&](std::size_t i) {
     volume[i] = static_cast<float>(1 / (1 + (*excess)[i]));
     density[i] = static_cast<float>(law(i).density);
     viscosity[i] = static_cast<float>(law(i).viscosity);
     pressure[i] = static_cast<float>(pressure_at((*excess)[i], i));
   });
-  walls.find_pressure(arrangement, pressure.data(), density.data());
+  walls.find_pressure(arrangement, pressure.data(), density.data(), still);
+  still.subtract(read(particles.position), size(), pressure.data());
   std::vector<SurfaceForce> forces =
       walls.forces(arrangement, {.velocity = read(particles.velocity),
                                  .pressure = pressure.data(),
+                                 .left_out = still.pressure_gradient(),
                                  .volume = volume.data(),
                                  .viscosity = features.viscosity ? viscosity.data() : nullptr,
                                  .friction = features.friction});

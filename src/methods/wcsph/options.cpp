@@ -9,10 +9,10 @@ Section compressibility_section() {
       .option(
           "max_speed", &C::max_speed, "m/s", not_negative(),
           "largest speed that is expected; sound is ten times as fast; 0: from gravity, forces and first velocities")
-      .option(
-          "background_pressure", &C::background_pressure, "Pa", any_value,
-          "added to every pressure; negative: rho max_speed^2 without gravity, free surface and shifting, a quarter of "
-          "what weighs more than the lightest in a full tank of liquids in layers, else 0")
+      .option("background_pressure", &C::background_pressure, "Pa", any_value,
+              "added to every pressure; negative: rho max_speed^2 without gravity, free surface and shifting, what "
+              "layers of "
+              "liquids in a full tank need, else 0")
       .option("repulsion", &C::repulsion, "1", between(0, 0.2), "between phases, of the sum of their pressures")
       .steerable()
       .word("density_filter", &C::density_filter,

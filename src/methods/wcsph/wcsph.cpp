@@ -102,9 +102,8 @@ StepLimit Wcsph::step_limit() const {
   step.bound(options.courant * h / (flow_.signal + flow_.boundary.wall_speed), "courant");
   const double nu = largest_kinematic_viscosity(flow_.laws);
   if (nu > 0) step.bound(viscous_limit * h * h / nu, "viscous");
-  double gravity2 = 0;
-  for (const double g : flow_.scene.fluid.gravity) gravity2 += g * g;
-  if (gravity2 > 0) step.bound(force_limit * std::sqrt(h / std::sqrt(gravity2)), "body force");
+  const double gravity = length(flow_.scene.fluid.gravity);
+  if (gravity > 0) step.bound(force_limit * std::sqrt(h / gravity), "body force");
   if (flow_.features.tension) step.bound(capillary_time(flow_.scene), "capillary");
   if (options.max_step > 0) step.bound(options.max_step, "max_step");
   if (flow_.solutes.recorded != nullptr)
@@ -229,6 +228,7 @@ void Wcsph::table_rows(const std::string&, std::vector<double>& rows) {
   BodyForces::Fields fields(flow_.arrangement, flow_.particles, flow_.boundary.walls);
   fields.density = [this](std::size_t i) { return flow_.law(i).density; };
   fields.pressure = [this](std::size_t i) { return flow_.law(i).pressure((*flow_.excess)[i]); };
+  body_forces_->add_pressure(flow_.still, fields.sides, forces);
   body_forces_->integrate_beside_gaps(fields, forces);
   body_forces_->add_rows(flow_.time, forces, rows);
 }
