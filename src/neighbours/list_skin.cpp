@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spume/core/joined_lanes.hpp"
 #include "spume/core/parallel.hpp"
 
 namespace spume {
@@ -171,7 +172,7 @@ void ListSkin::fit_block(const Points& points, std::size_t slot, Gathered& gathe
     std::fill(gathered.place(axis) + gathered.count(), gathered.place(axis) + gathered.whole(), middle[axis]);
     std::fill(gathered.way(axis) + gathered.count(), gathered.way(axis) + gathered.whole(), mean_way[axis]);
   }
-  f32n sum[moments + dimensions * dimensions]{};
+  std::array<f32n, moments + dimensions * dimensions> sum{};
   std::array<f32n, dimensions> farthest{};
   for (std::size_t k = 0; k < gathered.whole(); k += pair_lanes) {
     std::array<f32n, dimensions> x, d;
@@ -186,8 +187,7 @@ void ListSkin::fit_block(const Points& points, std::size_t slot, Gathered& gathe
     for (int c = 0; c < dimensions; ++c)
       for (int a = 0; a < dimensions; ++a, ++at) sum[at] = sum[at] + d[c] * x[a];
   }
-  float total[moments + dimensions * dimensions];
-  simd::sums(sum, total);
+  const auto total = simd::sums_of(sum);
 
   Eigen::Matrix<float, dimensions, dimensions> squares, products;
   int at = 0;

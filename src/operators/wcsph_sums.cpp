@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "gfd_row.hpp"
+#include "spume/core/joined_lanes.hpp"
 
 namespace spume {
 namespace {
@@ -173,7 +174,7 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
   const KernelScale<dimensions, Kernel> scale(context);
   const auto of_particle = [&](std::size_t i, [[maybe_unused]] auto& gradients, [[maybe_unused]] std::size_t k) {
     const float* own = records + i * width + dimensions;
-    f32n sum[In::count]{};
+    std::array<f32n, In::count> sum{};
     for_each_batch<dimensions, At::payload>(
         *context.list, records, i, scale.inverse_h, [&](const auto& b) __attribute__((always_inline)) {
           const f32n weight = Kernel::f(b.q) * b.payload[At::volume];
@@ -235,8 +236,7 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
               });
           }
         });
-    float total[In::count];
-    simd::sums(sum, total);
+    const std::array<float, In::count> total = simd::sums_of(sum);
     if constexpr (!shifted) out.rate[i] = scale.gradient * total[In::rate];
     out.diffusion[i] = -2 * scale.gradient * total[In::diffusion];
     if constexpr (viscous) {
@@ -247,7 +247,7 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
       out.carried[i] = -scale.gradient * total[In::carried];
       if constexpr (!several)
         for (int a = 0; a < dimensions; ++a) out.flux[a][i] = -scale.gradient * total[In::flux + a];
-      gradients.keep(k, total + In::gradient);
+      gradients.keep(k, total.data() + In::gradient);
     }
   };
   sweep_blocks(context.list->particles(), [&](std::size_t first, std::size_t last) {
@@ -301,7 +301,7 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
   const KernelScale<dimensions, Kernel> scale(context);
   sweep(n, [&](std::size_t i) {
     const float* own = records + i * width + dimensions;
-    f32n sum[concentrated ? 2 * dimensions : dimensions]{};
+    std::array<f32n, concentrated ? 2 * dimensions : dimensions> sum{};
     for_each_batch<dimensions, payload>(
         *context.list, records, i, scale.inverse_h, [&](const auto& b) __attribute__((always_inline)) {
           f32n both = b.payload[1] + own[1];
@@ -334,8 +334,7 @@ void pressure_force(const SweepContext& context, PackedNeighbours& packed, const
           const f32n weight = gradient * (b.payload[0] * both);
           unrolled<dimensions>([&](auto a) __attribute__((always_inline)) { sum[a] = sum[a] + weight * b.d[a]; });
         });
-    float total[concentrated ? 2 * dimensions : dimensions];
-    simd::sums(sum, total);
+    const auto total = simd::sums_of(sum);
     for (int a = 0; a < dimensions; ++a) {
       const float other = fields.others[a] == nullptr ? 0 : fields.others[a][i];
       out[a][i] = other + scale.gradient * total[a];

@@ -20,21 +20,6 @@ std::vector<float> numbers(std::size_t size) {
   return values;
 }
 
-template <class V>
-void expect_sums_of_each() {
-  constexpr int count = 7, width = sizeof(V) / sizeof(float);
-  const std::vector<float> values = numbers(count * width);
-  V vectors[count];
-  for (int k = 0; k < count; ++k) vectors[k] = load<V>(values.data() + k * width);
-  float total[count];
-  sums(vectors, total);
-  for (int k = 0; k < count; ++k) EXPECT_EQ(total[k], sum(vectors[k])) << k;
-}
-TEST(Simd, SumsOfManyVectorsAreThoseOfEach) {
-  expect_sums_of_each<f32x8>();
-  expect_sums_of_each<f32n>();
-}
-
 template <class V, int width, class Entry>
 void expect_records(Entry per_record) {
   constexpr int size = sizeof(V) / sizeof(float), records = 3 * size;

@@ -196,21 +196,6 @@ inline constexpr __mmask16 all_lanes = 0xffff;
   return sum(__builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7));
 }
 
-// What sum() finds of four vectors, in a third of the instructions.
-[[gnu::always_inline]] inline f32x4 sums(f32x16 a, f32x16 b, f32x16 c, f32x16 d) {
-  const auto halves = [](f32x16 x, f32x16 y) __attribute__((always_inline)) {
-    return _mm512_maskz_shuffle_f32x4(all_lanes, __m512(x), __m512(y), 0x44) +
-           _mm512_maskz_shuffle_f32x4(all_lanes, __m512(x), __m512(y), 0xee);
-  };
-  const __m512 ab = halves(a, b), cd = halves(c, d);
-  const __m512 quarters =
-      _mm512_maskz_shuffle_f32x4(all_lanes, ab, cd, 0x88) + _mm512_maskz_shuffle_f32x4(all_lanes, ab, cd, 0xdd);
-  const __m512 two = quarters + _mm512_maskz_shuffle_ps(all_lanes, quarters, quarters, 0x4e);
-  const __m512 one = two + _mm512_maskz_shuffle_ps(all_lanes, two, two, 0xb1);
-  const __m512i first = _mm512_setr_epi32(0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12);
-  return f32x4(_mm512_castps512_ps128(_mm512_maskz_permutexvar_ps(all_lanes, first, one)));
-}
-
 // As below, of sixteen records.
 template <int width, class Entry>
 [[gnu::always_inline]] inline void load_records(const float* records, const Entry* entry, int block, f32x16 out[4]) {
@@ -291,26 +276,6 @@ template <int width, class Entry>
 [[gnu::always_inline]] inline void load_two_blocks(const float* records, const Entry* entry, int block, f32x8 out[8]) {
   load_records<width>(records, entry, block, out);
   load_records<width>(records, entry, block + 1, out + 4);
-}
-[[gnu::always_inline]] inline f32x4 sums(f32x8 a, f32x8 b, f32x8 c, f32x8 d) {
-  return f32x4{sum(a), sum(b), sum(c), sum(d)};
-}
-// Of any number of vectors.
-template <int count, FloatVector V>
-[[gnu::always_inline]] inline void sums(const V (&v)[count], float (&out)[count]) {
-  unrolled<(count + 3) / 4>([&](auto four) __attribute__((always_inline)) {
-    constexpr int first = 4 * four, size = count - first < 4 ? count - first : 4;
-    const auto at = [&](auto k) __attribute__((always_inline)) {
-      if constexpr (k < size)
-        return v[first + k];
-      else
-        return V{};
-    };
-    using std::integral_constant;
-    const f32x4 s = sums(at(integral_constant<int, 0>()), at(integral_constant<int, 1>()),
-                         at(integral_constant<int, 2>()), at(integral_constant<int, 3>()));
-    std::memcpy(out + first, &s, size * sizeof(float));
-  });
 }
 // All floats of the records.
 template <int width, class Entry, FloatVector V>
