@@ -275,7 +275,7 @@ void interface_normals(benchmark::State& state) {
 void interface_curvature(benchmark::State& state) {
   GfdCube cube(state);
   cube.run(state, cube.pairs_of(cube.bands.varying()), 10 + 8 + 6 + 3 + 18 + 12 + 3, 2, 12 + 4, [&] {
-    curvature_sweep(cube.context, cube.packed, cube.bands, GfdCube::read(cube.normal), cube.reflection,
+    curvature_sweep(cube.context, cube.packed, cube.bands.varying(), GfdCube::read(cube.normal), cube.reflection,
                     cube.result.data());
   });
 }

@@ -55,7 +55,7 @@ void restore_length(const SweepContext& context, float* records, const std::arra
 }
 
 template <int dimensions, class Kernel>
-void curvature_of(const SweepContext& context, PackedNeighbours& packed, const InterfaceBands& bands,
+void curvature_of(const SweepContext& context, PackedNeighbours& packed, std::span<const std::int32_t> subset,
                   const std::array<const float*, 3>& normal, const std::vector<std::array<float, 3>>& reflection,
                   float* curvature) {
   constexpr int width = record_width(dimensions, dimensions);
@@ -63,8 +63,8 @@ void curvature_of(const SweepContext& context, PackedNeighbours& packed, const I
   pack_vector(context, records, width, 0, normal, reflection);
   restore_length<dimensions>(context, records, normal);
   const float inverse_h = inverse_width(context);
-  sweep(bands.varying().size(), [&](std::size_t s) {
-    const auto i = static_cast<std::size_t>(bands.varying()[s]);
+  sweep(subset.size(), [&](std::size_t s) {
+    const auto i = static_cast<std::size_t>(subset[s]);
     const auto own = own_vector<dimensions>(normal, i);
     if (!(squared_length<dimensions>(own) > 0)) return;
     std::array<std::array<f32n, dimensions>, dimensions> slopes{};
@@ -108,13 +108,13 @@ void interface_normal_sweep(const SweepContext& context, PackedNeighbours& packe
   });
 }
 
-void curvature_sweep(const SweepContext& context, PackedNeighbours& packed, const InterfaceBands& bands,
+void curvature_sweep(const SweepContext& context, PackedNeighbours& packed, std::span<const std::int32_t> subset,
                      const std::array<const float*, 3>& normal, const std::vector<std::array<float, 3>>& reflection,
                      float* curvature) {
   parallel_for(context.list->particles(), [&](std::size_t i) { curvature[i] = 0; });
-  if (bands.varying().empty()) return;
+  if (subset.empty()) return;
   with_gfd_kernel(context, [&]<int dimensions, class Kernel>() {
-    curvature_of<dimensions, Kernel>(context, packed, bands, normal, reflection, curvature);
+    curvature_of<dimensions, Kernel>(context, packed, subset, normal, reflection, curvature);
   });
 }
 

@@ -34,9 +34,9 @@ void jump_row(const SweepContext& context, const float* records, std::size_t i, 
 
 }  // namespace
 
-void interface_jump_sweep(const SweepContext& context, PackedNeighbours& packed, const InterfaceBands& bands,
+void interface_jump_sweep(const SweepContext& context, PackedNeighbours& packed, std::span<const std::int32_t> subset,
                           const InterfaceJump& jump, const GfdStencils& stencils, const InterfaceForce& out) {
-  if (bands.varying().empty()) return;
+  if (subset.empty()) return;
   with_gfd_kernel(context, [&]<int dimensions, class Kernel>() {
     constexpr int width = record_width(dimensions, 3);
     float* records = packed.prepare(context, 3);
@@ -44,23 +44,24 @@ void interface_jump_sweep(const SweepContext& context, PackedNeighbours& packed,
     pack_scalar(context, records, width, 0, jump.colour);
     pack_coefficient(context, records, width, 1, jump.potential);
     pack_coefficient(context, records, width, 2, jump.density);
-    sweep(bands.varying().size(), [&](std::size_t s) {
-      jump_row<dimensions, Kernel>(context, records, static_cast<std::size_t>(bands.varying()[s]), stencils, out);
+    sweep(subset.size(), [&](std::size_t s) {
+      jump_row<dimensions, Kernel>(context, records, static_cast<std::size_t>(subset[s]), stencils, out);
     });
   });
 }
 
-void interface_average_sweep(const SweepContext& context, PackedNeighbours& packed, const InterfaceBands& bands,
-                             const float* weight, const float* value, float* out) {
-  if (bands.varying().empty()) return;
+void interface_average_sweep(const SweepContext& context, PackedNeighbours& packed,
+                             std::span<const std::int32_t> subset, const float* weight, const float* value,
+                             float* out) {
+  if (subset.empty()) return;
   with_gfd_kernel(context, [&]<int dimensions, class Kernel>() {
     constexpr int width = record_width(dimensions, 2);
     float* records = packed.prepare(context, 2);
     pack_coefficient(context, records, width, 0, weight);
     pack_coefficient(context, records, width, 1, value);
     const auto centre = static_cast<float>(Kernel::w(0.0));
-    sweep(bands.varying().size(), [&](std::size_t s) {
-      const auto i = static_cast<std::size_t>(bands.varying()[s]);
+    sweep(subset.size(), [&](std::size_t s) {
+      const auto i = static_cast<std::size_t>(subset[s]);
       f32n sum{}, total{};
       for_each_batch<dimensions, 2>(*context.list, records, i, inverse_width(context), [&](const auto& b) {
         const f32n w = Kernel::w(b.q) * b.payload[0];

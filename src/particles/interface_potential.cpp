@@ -77,7 +77,10 @@ double capillary_time(const Scene& scene) {
 
 // Normals are those of C alone: divided by the mean densities as (14) is, they see the lighter side.
 InterfaceMeasure::InterfaceMeasure(const InterfaceView& view, Colour& colour, bool curved)
-    : view_(view), colour_(colour), width_(kernel_width(view.resolution)) {
+    : view_(view),
+      facing_(view.bands.facing(view.arrangement.context)),
+      colour_(colour),
+      width_(kernel_width(view.resolution)) {
   Arrangement& arrangement = view_.arrangement;
   const std::size_t n = arrangement.list.particles();
   const int dimensions = arrangement.context.dimensions;
@@ -89,7 +92,7 @@ InterfaceMeasure::InterfaceMeasure(const InterfaceView& view, Colour& colour, bo
   interface_normal_sweep(arrangement.context, arrangement.packed, view_.bands, colour_.value.data(), ones.data(),
                          view_.correction, band_threshold, {write(gradient_), write(normal_)});
   if (curved)
-    curvature_sweep(arrangement.context, arrangement.packed, view_.bands, read(normal_), view_.reflection,
+    curvature_sweep(arrangement.context, arrangement.packed, facing_, read(normal_), view_.reflection,
                     curvature_.data());
   colour_.potential.resize(n);
   colour_.mean_potential = 0;
@@ -133,7 +136,7 @@ void InterfaceMeasure::add_tension() {
 // the square of the wave number. Without it a capillary wave of 32 spacings is 1.3 % too slow with 2 averages.
 void InterfaceMeasure::continue_across_band(double averages) {
   Arrangement& arrangement = view_.arrangement;
-  const auto& band = view_.bands.varying();
+  const auto band = facing_;
   const auto sum_over_band = [&](auto&& value) {
     return parallel_sum(band.size(), [&](std::size_t s) { return value(static_cast<std::size_t>(band[s])); });
   };
@@ -144,8 +147,7 @@ void InterfaceMeasure::continue_across_band(double averages) {
   parallel_for(band.size(), [&](std::size_t s) { potential_[static_cast<std::size_t>(band[s])] -= float(mean); });
   ScratchArray<float> averaged(view_.scratch, arrangement.list.particles());
   const auto average = [&](const Array<float>& from, Array<float>& to) {
-    interface_average_sweep(arrangement.context, arrangement.packed, view_.bands, weight_.data(), from.data(),
-                            to.data());
+    interface_average_sweep(arrangement.context, arrangement.packed, band, weight_.data(), from.data(), to.data());
   };
   averaged.fill(0.0F);
   const int passes = view_.smoothing;

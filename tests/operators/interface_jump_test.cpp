@@ -52,7 +52,7 @@ TEST(InterfaceJump, AgreesWithTheSlowTwinAndIsAdded) {
     VectorArrays<float> acceleration(a.size(), a.dimensions());
     Array<double> source(a.size());
     source.fill(0.5);
-    interface_jump_sweep(a.context, a.packed, drop.bands,
+    interface_jump_sweep(a.context, a.packed, drop.bands.varying(),
                          {drop.colour.data(), drop.potential.data(), drop.density.data()}, drop.stencils.read(),
                          {acceleration.write(), source.data()});
     Comparison accelerations("acceleration"), sources("source");
@@ -91,7 +91,7 @@ TEST(InterfaceJump, OfAUniformPotentialIsBalancedByThePressureOfTheColour) {
     const GfdSums& twin = gfd_twin(a);
     drop.potential.fill(3);
     VectorArrays<float> acceleration(a.size(), a.dimensions()), gradient(a.size(), a.dimensions());
-    interface_jump_sweep(a.context, a.packed, drop.bands,
+    interface_jump_sweep(a.context, a.packed, drop.bands.varying(),
                          {drop.colour.data(), drop.potential.data(), drop.density.data()}, drop.stencils.read(),
                          {acceleration.write(), nullptr});
     Array<double> pressure(a.size());
@@ -117,7 +117,8 @@ TEST(InterfaceAverage, IsTheWeightedMeanAndContinuesItAcrossTheBand) {
     const GfdSums& twin = gfd_twin(a);
     Array<float> average(a.size()), product(a.size());
     average.fill(-7);
-    interface_average_sweep(a.context, a.packed, drop.bands, drop.weight.data(), drop.potential.data(), average.data());
+    interface_average_sweep(a.context, a.packed, drop.bands.varying(), drop.weight.data(), drop.potential.data(),
+                            average.data());
     for (std::size_t i = 0; i < a.size(); ++i) product[i] = drop.weight[i] * drop.potential[i];
     std::size_t found = 0;
     for (const std::int32_t s : drop.bands.varying()) {

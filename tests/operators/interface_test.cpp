@@ -185,7 +185,7 @@ struct Interface {
     filter_property(a.context, a.packed, bands, raw.data(), density);
     interface_normal_sweep(a.context, a.packed, bands, colour.data(), density.data(), stencils.read().correction,
                            band_threshold, {gradient.write(), normal.write()});
-    curvature_sweep(a.context, a.packed, bands, normal.read(), a.reflection, curvature.data());
+    curvature_sweep(a.context, a.packed, bands.varying(), normal.read(), a.reflection, curvature.data());
   }
 };
 
@@ -275,7 +275,7 @@ TEST(InterfaceCurvature, OfLinearNormalsIsExactAtTheEdgeOfTheBand) {
     normal[1][i] = static_cast<float>(3 - a.hood.x[i] + 0.5 * a.hood.y[i]);
   }
   Array<float> curvature(a.size());
-  curvature_sweep(a.context, a.packed, bands, normal.read(), a.reflection, curvature.data());
+  curvature_sweep(a.context, a.packed, bands.varying(), normal.read(), a.reflection, curvature.data());
   const GfdSums twin(a.twin);
   Comparison comparison("-div n");
   for (std::size_t i = 0; i < a.size(); ++i) {

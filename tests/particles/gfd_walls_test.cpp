@@ -246,7 +246,7 @@ TEST(GfdWalls, AUniformJumpIsBalancedByThePressureOfTheColour) {
     const WalledStencils of_all(a.context, a.packed, n, d);
     const GfdStencils& stencils = of_all.read;
     for (auto& component : force.component) component.fill(0);
-    interface_jump_sweep(a.context, a.packed, bands, {colour.data(), potential.data(), density.data()}, stencils,
+    interface_jump_sweep(a.context, a.packed, bands.varying(), {colour.data(), potential.data(), density.data()}, stencils,
                          {force.out, nullptr});
     gfd_gradient_over_density_sweep(a.context, a.packed, pressure.data(), 0, {density.data(), bands.varies()},
                                     stencils.correction, gradient.out);

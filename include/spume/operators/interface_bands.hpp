@@ -26,6 +26,11 @@ class InterfaceBands {
   std::span<const std::int32_t> mixed() const { return mixed_; }
   // Particles whose support holds a mixed one, themselves included: filtered properties vary within it.
   std::span<const std::int32_t> varying() const { return varying_; }
+  // Particles that can meet another phase in a pair: the mixed ones, and where wall points have fits of the phases
+  // around them all that vary.
+  std::span<const std::int32_t> facing(const SweepContext& context) const {
+    return context.walls == nullptr ? mixed_ : varying_;
+  }
   // Not 0 for the varying ones; null when there is none (PhaseProperty::varies).
   const std::uint8_t* varies() const { return varying_.empty() ? nullptr : near_.data(); }
 

@@ -30,8 +30,9 @@ void interface_normal_sweep(const SweepContext& context, PackedNeighbours& packe
                             const float* colour, const float* density, const std::array<const float*, 6>& correction,
                             double threshold, const InterfaceNormals& out);
 
-// (16) of the normals: zero off the band. reflection: of geometric vectors, per path of an image.
-void curvature_sweep(const SweepContext& context, PackedNeighbours& packed, const InterfaceBands& bands,
+// (16) of the normals at the particles `subset`, zero elsewhere and off the band. reflection: of geometric vectors, per
+// path of an image.
+void curvature_sweep(const SweepContext& context, PackedNeighbours& packed, std::span<const std::int32_t> subset,
                      const std::array<const float*, 3>& normal, const std::vector<std::array<float, 3>>& reflection,
                      float* curvature);
 

@@ -19,21 +19,22 @@ namespace spume {
 
 struct InterfaceJump {
   const float* colour = nullptr;     // C
-  const float* potential = nullptr;  // phi; read at the varying particles alone
+  const float* potential = nullptr;  // phi
   const float* density = nullptr;    // filtered
 };
 
-// Adds to the varying particles of the bands; null is not computed.
+// Added to; null is not computed.
 struct InterfaceForce {
   std::array<float*, 3> acceleration{};
   double* source = nullptr;
 };
-void interface_jump_sweep(const SweepContext& context, PackedNeighbours& packed, const InterfaceBands& bands,
+// Of the particles `subset`, which are those that see a jump: InterfaceBands::facing() for the colour of the phases.
+void interface_jump_sweep(const SweepContext& context, PackedNeighbours& packed, std::span<const std::int32_t> subset,
                           const InterfaceJump& jump, const GfdStencils& stencils, const InterfaceForce& out);
 
-// sum_j W s_j v_j / sum_j W s_j with the particle itself, at the varying particles; s is not negative, and 0 off the
+// sum_j W s_j v_j / sum_j W s_j with the particle itself, of the particles `subset`; s is not negative, and 0 off the
 // mixed ones. Continues what is known on an interface across its band. Where all s vanish: 0. Others are not written.
-void interface_average_sweep(const SweepContext& context, PackedNeighbours& packed, const InterfaceBands& bands,
-                             const float* weight, const float* value, float* out);
+void interface_average_sweep(const SweepContext& context, PackedNeighbours& packed,
+                             std::span<const std::int32_t> subset, const float* weight, const float* value, float* out);
 
 }  // namespace spume

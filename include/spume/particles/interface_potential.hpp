@@ -15,7 +15,7 @@ struct Colour {
   double tension = 0;         // share of sigma: sigma_ab = sigma_a + sigma_b
   double density_jump = 0;    // rho_n - rho_0
   Array<float> value{};       // C
-  Array<float> potential{};   // phi - <phi>, at the varying particles
+  Array<float> potential{};   // phi - <phi>, at the particles that face another phase; 0 elsewhere
   double mean_potential = 0;  // <phi>
   double area = 0;            // of the interface: integral of |grad C|
   double is(std::uint8_t number) const { return number == phase ? 1 : 0; }  // c
@@ -69,9 +69,8 @@ class InterfaceMeasure {
   // A potential from value(i, distance), measured through `averages` of the kernel.
   template <class Value>
   void add(double averages, Value&& value) {
-    const auto& band = view_.bands.varying();
-    parallel_for(band.size(), [&](std::size_t s) {
-      const auto i = static_cast<std::size_t>(band[s]);
+    parallel_for(facing_.size(), [&](std::size_t s) {
+      const auto i = static_cast<std::size_t>(facing_[s]);
       potential_[i] = static_cast<float>(value(i, distance(i)));
     });
     continue_across_band(averages);
@@ -79,6 +78,7 @@ class InterfaceMeasure {
   void continue_across_band(double averages);
 
   const InterfaceView view_;
+  const std::span<const std::int32_t> facing_;
   Colour& colour_;
   const double width_;  // of the kernel
   FloatVectorScratch normal_, gradient_;

@@ -136,7 +136,7 @@ void Flow::add_interface_forces(const InterfaceForce& out) {
   for (const Colour& colour : colours) {
     ScratchArray<float> sharp(particles.scratch(), size());
     parallel_for(size(), [&](std::size_t i) { sharp[i] = static_cast<float>(colour.is(phase[i])); });
-    interface_jump_sweep(arrangement.context, arrangement.packed, bands,
+    interface_jump_sweep(arrangement.context, arrangement.packed, bands.facing(arrangement.context),
                          {sharp.data(), colour.potential.data(), density->data()}, stencils(), out);
   }
 }
