@@ -53,14 +53,25 @@ struct Rows {
     return varies(i) ? visit<payload, true>(records, i, add) : visit<payload, false>(records, i, add);
   }
 
-  // Multiplies 1 / rho_ij of the neighbours of row i, in `out`, by W (1 + d . o).
-  void multiply_weights(const float* records, std::size_t i, float* out) const {
+  // Stores W (1 + d . o) / rho_ij of row i, whose records hold rho, and gives their sum.
+  float store_weights(const float* records, std::size_t i, float* out) const {
     const auto o = own_vector<dimensions>(matrix.stencils.offset, i);
-    for_each_batch<dimensions, 0>(*context.list, records, i, inverse_width(context), [&](const auto& b) {
-      const f32n product = Kernel::w(b.q) * offset_factor(b, o) * simd::load<f32n>(out);
+    const f32n own = simd::splat<f32n>(matrix.density.value[i]);
+    f32n sum{};
+    for_each_batch<dimensions, 1>(*context.list, records, i, inverse_width(context), [&](const auto& b) {
+      const f32n product = Kernel::w(b.q) * offset_factor(b, o) * (2.0F / (own + b.payload[0]));
       std::memcpy(out, &product, sizeof product);
       out += simd::pair_lanes;
+      sum = sum + product;
     });
+    return simd::sum(sum);
+  }
+  // The sum of W (1 + d . o) of row i over its density.
+  template <int payload>
+  float weight_sum(const float* records, std::size_t i) const {
+    f32n sum{};
+    const float factor = visit<payload, false>(records, i, [&](f32n weight, const auto&) { sum = sum + weight; });
+    return factor * simd::sum(sum);
   }
 
   // V <-lap x / rho> of row i, whose records hold x.
@@ -97,52 +108,54 @@ struct Rows {
 
 }  // namespace
 
-void GfdPressureOperator::bind(const SweepContext& context, PackedNeighbours& packed, const GfdPressureMatrix& matrix) {
+void GfdPressureOperator::bind(const SweepContext& context, PackedNeighbours& packed, const GfdPressureMatrix& matrix,
+                               std::span<float> diagonal) {
   with_gfd_kernel(context, []<int dimensions, class Kernel>() {});  // refuses sizes
   context_ = context;
   packed_ = &packed;
   matrix_ = matrix;
   partial_.resize(block_count(size(), block));
-  if (matrix.density.varies != nullptr) find_weights();
+  if (matrix.density.varies != nullptr) place_weights();
+  if (matrix.density.varies != nullptr || !diagonal.empty()) find_weights(diagonal);
 }
 
-void GfdPressureOperator::find_weights() {
-  const NeighbourList& list = *context_.list;
+// Where the weights of each block of rows and of each row begin.
+void GfdPressureOperator::place_weights() {
   const std::uint8_t* varies = matrix_.density.varies;
-  const float* density = matrix_.density.value;
   const std::size_t n = size();
-  const auto batches = [&](std::size_t i) {
-    return varies[i] != 0 ? static_cast<std::uint32_t>(block_count(list.of(i).size(), simd::pair_lanes)) : 0U;
-  };
   first_weight_.resize(n);
   block_start_.resize(block_count(n, block) + 1);
   block_start_[0] = 0;
   parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t last) {
     std::uint32_t sum = 0;
-    for (std::size_t i = first; i < last; ++i) sum += batches(i);
+    for (std::size_t i = first; i < last; ++i) {
+      first_weight_[i] = sum;  // within the block
+      if (varies[i] != 0) sum += static_cast<std::uint32_t>(block_count(context_.list->of(i).size(), simd::pair_lanes));
+    }
     block_start_[b + 1] = sum;
   });
   for (std::size_t b = 0; b + 1 < block_start_.size(); ++b) block_start_[b + 1] += block_start_[b];
   weight_.resize(std::size_t{simd::pair_lanes} * block_start_[block_start_.size() - 1]);
-  const std::int32_t* source = context_.images->source();
-  const auto particles = static_cast<std::int32_t>(n);
-  const float* records = packed_->prepare(context_, 0);
+  parallel_blocks(n, block, [&](std::size_t b, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) first_weight_[i] += block_start_[b];
+  });
+}
+
+void GfdPressureOperator::find_weights(std::span<float> diagonal) {
   with_gfd_kernel(context_, [&]<int dimensions, class Kernel>() {
+    constexpr int width = record_width(dimensions, 1);
+    float* records = packed_->prepare(context_, 1);
+    pack_coefficient(context_, records, width, 0, matrix_.density.value);
     const Rows<dimensions, Kernel> rows{context_, matrix_, first_weight_.data(), weight_.data()};
-    parallel_blocks_dynamic(n, block, [&](std::size_t b, std::size_t first, std::size_t last) {
-      std::uint32_t start = block_start_[b];
-      for (std::size_t i = first; i < last; ++i) {
-        first_weight_[i] = start;
-        if (varies[i] == 0) continue;
-        float* out = weight_.data() + std::size_t{simd::pair_lanes} * start;
-        start += batches(i);
-        float* const end = weight_.data() + std::size_t{simd::pair_lanes} * start;
-        float* next = out;
-        for (const std::int32_t j : list.of(i))
-          *next++ = 2 / (density[i] + density[j < particles ? j : source[j - particles]]);
-        std::fill(next, end, 0.0F);
-        rows.multiply_weights(records, i, out);
+    sweep(size(), [&](std::size_t i) {
+      float sum = 0;
+      if (rows.varies(i)) {
+        sum = rows.volume() * matrix_.stencils.laplacian_factor[i] *
+              rows.store_weights(records, i, weight_.data() + std::size_t{simd::pair_lanes} * first_weight_[i]);
+      } else if (!diagonal.empty()) {
+        sum = rows.template weight_sum<1>(records, i);
       }
+      if (!diagonal.empty()) diagonal[i] = rows.masked(i) ? 1 : sum + rows.volume() * rows.shift(i);
     });
   });
 }
@@ -185,19 +198,6 @@ Dots GfdPressureOperator::apply(std::span<const float> x, std::span<float> y, st
   Dots total;
   for (const Dots& part : partial_) total += part;
   return total;
-}
-
-void GfdPressureOperator::diagonal(std::span<float> out) {
-  const float* records = packed_->prepare(context_, 0);
-  with_gfd_kernel(context_, [&]<int dimensions, class Kernel>() {
-    const Rows<dimensions, Kernel> rows{context_, matrix_, first_weight_.data(), weight_.data()};
-    sweep(size(), [&](std::size_t i) {
-      f32n sum{};
-      const float factor =
-          rows.template visit_any<0>(records, i, [&](f32n weight, const auto&) { sum = sum + weight; });
-      out[i] = rows.masked(i) ? 1 : factor * simd::sum(sum) + rows.volume() * rows.shift(i);
-    });
-  });
 }
 
 void GfdPressureOperator::residual(std::span<const double> q, std::span<const double> b, std::span<double> r,

@@ -34,12 +34,11 @@ struct GfdPressureMatrix {
 // they took 2 times as long. bind() again when positions, stencils or densities change.
 class GfdPressureOperator final : public ProjectionMatrix {
  public:
-  void bind(const SweepContext& context, PackedNeighbours& packed, const GfdPressureMatrix& matrix);
+  // diagonal: that of A, with the particle's own images in it, 1 in masked rows; found on the way, empty: not wanted.
+  void bind(const SweepContext& context, PackedNeighbours& packed, const GfdPressureMatrix& matrix,
+            std::span<float> diagonal = {});
   // y = A x in float, with sum w y and sum y y accumulated in double in fixed blocks.
   Dots apply(std::span<const float> x, std::span<float> y, std::span<const float> w) override;
-
-  // The diagonal of A, with the particle's own images in it; 1 in masked rows.
-  void diagonal(std::span<float> out);
 
   // r = b - A q with q, differences and sums in double, as PressureOperator::residual. Masked rows give zero, but their
   // q enters their neighbours' rows. No pressure is given behind openings.
@@ -57,7 +56,8 @@ class GfdPressureOperator final : public ProjectionMatrix {
   }
 
  private:
-  void find_weights();
+  void place_weights();
+  void find_weights(std::span<float> diagonal);
   template <class T>
   const T* extended(std::span<const T> x, bool given, Array<T>& room) const;
 

@@ -218,8 +218,7 @@ void Flow::set_matrix(double dt) {
     pairs.masked = layers->masked().data();
     pairs.tied = &layers->tied();
   }
-  matrix.bind(arrangement.context, arrangement.packed, pairs);
-  matrix.diagonal(rows.diagonal);
+  matrix.bind(arrangement.context, arrangement.packed, pairs, rows.diagonal);
   rows.singular = !features.outflow;
   rows.unsymmetric = true;
   parallel_for(n, [&](std::size_t i) {
