@@ -27,7 +27,11 @@ class GfdSums {
   // Pairs are found once.
   explicit GfdSums(const SphSums& sums) : sums_(sums), d_(sums.dimensions()), pairs_(sums.size()) {
     for (std::size_t i = 0; i < sums.size(); ++i) {
-      sums.each(i, [&](const SphSums::Pair& pair) { pairs_[i].push_back(pair); });
+      sums.each(i, [&](const SphSums::Pair& pair) {
+        Vector r{};
+        for (int a = 0; a < d_; ++a) r[a] = -pair.d[a];
+        pairs_[i].push_back({pair.point, r, sums.kernel().w(pair.r / sums.width(i))});
+      });
       tolerance_.push_back(sums.tolerance(i) + 16 * std::ldexp(1.0, -24));
     }
   }
@@ -318,12 +322,8 @@ class GfdSums {
   // visit(point, r_ij, W, W(0))
   template <class Visit>
   void each(std::size_t i, Visit&& visit) const {
-    const PlainKernel& kernel = sums_.kernel();
-    for (const SphSums::Pair& pair : pairs_[i]) {
-      Vector r{};
-      for (int a = 0; a < d_; ++a) r[a] = -pair.d[a];
-      visit(*pair.point, r, kernel.w(pair.r / sums_.width(i)), kernel.w(0));
-    }
+    const double largest = sums_.kernel().w(0);
+    for (const Pair& pair : pairs_[i]) visit(*pair.point, pair.r, pair.w, largest);
   }
 
   // False where the inverse amplifies more than `largest`.
@@ -351,7 +351,12 @@ class GfdSums {
 
   const SphSums& sums_;
   int d_;
-  std::vector<std::vector<SphSums::Pair>> pairs_;
+  struct Pair {
+    const SphPoint* point;
+    Vector r;
+    double w;
+  };
+  std::vector<std::vector<Pair>> pairs_;
   std::vector<double> tolerance_;
 };
 

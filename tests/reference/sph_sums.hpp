@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -103,7 +104,9 @@ class SphSums {
       points_.back().end = end_of_ray(rules, image, particles[static_cast<std::size_t>(image.source)]);
       points_.back().in_solid = image.path.reflections() > 0;
     }
+    pairs_.resize(n_);
   }
+  SphSums(const SphSums&) = delete;  // pairs name points
 
   // What an image carries, from the reflections of its path in their order.
   static SphPoint transformed(const Image& image, const Boundaries& boundaries) {
@@ -143,6 +146,12 @@ class SphSums {
   // Calls visit(pair) for what particle i sees in its support.
   template <class Visit>
   void each(std::size_t i, Visit&& visit) const {
+    for (const Pair& pair : pairs_of(i)) visit(pair);
+  }
+  // Looked for among all points once.
+  const std::vector<Pair>& pairs_of(std::size_t i) const {
+    if (pairs_[i].has_value()) return *pairs_[i];
+    std::vector<Pair>& pairs = pairs_[i].emplace();
     for (std::size_t j = 0; j < points_.size(); ++j) {
       if (j == i) continue;
       Pair pair{&points_[j], {}, 0, 0, 0, 0, 0};
@@ -159,15 +168,12 @@ class SphSums {
       pair.g = v * slope(pair.r, h);
       pair.largest_w = v * weight(0, h);
       pair.largest_g = v * slope(0, h);
-      visit(pair);
+      pairs.push_back(pair);
     }
+    return pairs;
   }
 
-  std::size_t neighbours(std::size_t i) const {
-    std::size_t count = 0;
-    each(i, [&](const Pair&) { ++count; });
-    return count;
-  }
+  std::size_t neighbours(std::size_t i) const { return pairs_of(i).size(); }
 
   // Bound on the rounding error of a float sum of the neighbours of i, added in eight lanes, in units of its magnitude,
   // eps = 2^-24. Differences of coordinates are exact when the coordinates are floats.
@@ -488,6 +494,7 @@ class SphSums {
   ImageRules rules_;
   std::vector<SolidBox> boxes_;
   std::vector<SphPoint> points_;
+  mutable std::vector<std::optional<std::vector<Pair>>> pairs_;
 };
 
 }  // namespace spume::reference
