@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "spume/operators/gfd_gradient.hpp"
 
+#include <algorithm>
+
 #include "gfd_row.hpp"
+#include "spume/core/joined_lanes.hpp"
 
 namespace spume {
 namespace {
@@ -19,8 +22,8 @@ void gradient_row(const SweepContext& context, const float* records, std::size_t
     if constexpr (over_density) weight = weight * (2.0F / (b.payload[1] + own[1]));
     for (int a = 0; a < dimensions; ++a) sum[a] = sum[a] + weight * b.d[a];
   });
-  std::array<float, dimensions> v;
-  for (int a = 0; a < dimensions; ++a) v[a] = factor * simd::sum(sum[a]);
+  std::array<float, dimensions> v = simd::sums_of(sum);
+  for (float& component : v) component *= factor;
   v = symmetric_product<dimensions>(correction, i, v);
   for (int a = 0; a < dimensions; ++a) out[a][i] = v[a];
 }
@@ -54,36 +57,60 @@ void gradient_over_density(const SweepContext& context, PackedNeighbours& packed
 }
 
 template <int dimensions, class Kernel>
-void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
-                       const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
-                       const std::array<const float*, 6>& correction, const GfdVelocityGradient& out) {
+void divergence_of(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
+                   const VelocityImageRule& rule, const std::array<const float*, 6>& correction, double* out) {
   constexpr int width = record_width(dimensions, dimensions);
   float* records = packed.prepare(context, dimensions);
   pack_velocity(context, records, width, 0, velocity, rule);
   const float inverse_h = inverse_width(context);
   sweep(context.list->particles(), [&](std::size_t i) {
     const float* own = records + i * width + dimensions;
-    std::array<std::array<f32n, dimensions>, dimensions> m{};
+    std::array<float, symmetric_entries<dimensions>> b_of;
+    for (std::size_t k = 0; k < b_of.size(); ++k) b_of[k] = correction[k][i];
+    f32n sum{};
     for_each_batch<dimensions, dimensions>(*context.list, records, i, inverse_h, [&](const auto& b) {
-      const f32n w = Kernel::w(b.q);
-      std::array<f32n, dimensions> wd;
-      for (int c = 0; c < dimensions; ++c) wd[c] = w * b.d[c];
+      f32n product{};
+      for (int a = 0; a < dimensions; ++a) {
+        f32n along{};
+        for (int c = 0; c < dimensions; ++c) along = along + b_of[symmetric_index<dimensions>(a, c)] * b.d[c];
+        product = product + (b.payload[a] - own[a]) * along;
+      }
+      sum = sum + Kernel::w(b.q) * product;
+    });
+    out[i] = simd::sum(sum);
+  });
+}
+
+template <int dimensions, class Kernel>
+void change_of(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
+               const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
+               const std::array<const float*, 3>& displacement, const std::array<float*, 3>& out) {
+  constexpr int width = record_width(dimensions, dimensions);
+  float* records = packed.prepare(context, dimensions);
+  pack_velocity(context, records, width, 0, velocity, rule);
+  const float inverse_h = inverse_width(context);
+  sweep(context.list->particles(), [&](std::size_t i) {
+    const float* own = records + i * width + dimensions;
+    const auto direction = symmetric_product<dimensions>(correction, i, own_vector<dimensions>(displacement, i));
+    std::array<f32n, dimensions> sum{};
+    std::array<f32n, 2 * dimensions> bounds{};  // the largest u_i - u_j, then u_j - u_i; of none 0
+    for_each_batch<dimensions, dimensions>(*context.list, records, i, inverse_h, [&](const auto& b) {
+      f32n along{};
+      for (int c = 0; c < dimensions; ++c) along = along + direction[c] * b.d[c];
+      along = Kernel::w(b.q) * along;
+      const auto near = b.q < simd::splat<f32n>(static_cast<float>(Kernel::support));  // not the sentinel
       for (int a = 0; a < dimensions; ++a) {
         const f32n difference = b.payload[a] - own[a];
-        for (int c = 0; c < dimensions; ++c) m[a][c] = m[a][c] + difference * wd[c];
+        sum[a] = sum[a] + along * difference;
+        const f32n within = near ? difference : f32n{};
+        bounds[a] = simd::max(bounds[a], -within);
+        bounds[dimensions + a] = simd::max(bounds[dimensions + a], within);
       }
     });
-    double divergence = 0;
-    for (int a = 0; a < dimensions; ++a) {
-      std::array<float, dimensions> slope;
-      for (int c = 0; c < dimensions; ++c) slope[c] = simd::sum(m[a][c]);
-      for (int c = 0; c < dimensions; ++c)
-        divergence += double{correction[symmetric_index<dimensions>(a, c)][i]} * slope[c];
-      if (out.gradient[0] == nullptr) continue;
-      slope = symmetric_product<dimensions>(correction, i, slope);
-      for (int c = 0; c < dimensions; ++c) out.gradient[a * dimensions + c][i] = slope[c];
-    }
-    if (out.divergence != nullptr) out.divergence[i] = divergence;
+    const auto change = simd::sums_of(sum);
+    const auto largest = simd::largest_of(bounds);
+    for (int a = 0; a < dimensions; ++a)
+      out[a][i] = std::clamp(change[a], -0.5F * largest[a], 0.5F * largest[dimensions + a]);
   });
 }
 
@@ -123,11 +150,20 @@ void gfd_gradient_over_density_subset(const SweepContext& context, PackedNeighbo
   });
 }
 
-void gfd_velocity_gradient_sweep(const SweepContext& context, PackedNeighbours& packed,
-                                 const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
-                                 const std::array<const float*, 6>& correction, const GfdVelocityGradient& out) {
+void gfd_divergence_sweep(const SweepContext& context, PackedNeighbours& packed,
+                          const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
+                          const std::array<const float*, 6>& correction, double* out) {
   with_gfd_kernel(context, [&]<int dimensions, class Kernel>() {
-    velocity_gradient<dimensions, Kernel>(context, packed, velocity, rule, correction, out);
+    divergence_of<dimensions, Kernel>(context, packed, velocity, rule, correction, out);
+  });
+}
+
+void gfd_change_sweep(const SweepContext& context, PackedNeighbours& packed,
+                      const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
+                      const std::array<const float*, 6>& correction, const std::array<const float*, 3>& displacement,
+                      const std::array<float*, 3>& out) {
+  with_gfd_kernel(context, [&]<int dimensions, class Kernel>() {
+    change_of<dimensions, Kernel>(context, packed, velocity, rule, correction, displacement, out);
   });
 }
 

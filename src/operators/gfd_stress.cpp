@@ -2,6 +2,7 @@
 #include "spume/operators/gfd_stress.hpp"
 
 #include "gfd_row.hpp"
+#include "spume/core/joined_lanes.hpp"
 
 namespace spume {
 namespace {
@@ -74,8 +75,8 @@ void stress_row(const SweepContext& context, const float* records, std::size_t i
   float factor = stencils.laplacian_factor[i];
   if constexpr (!takes_means<form>) factor *= properties.viscosity.value[i];
   if (properties.density != nullptr) factor /= properties.density[i];
-  std::array<float, dimensions> result;
-  for (int a = 0; a < dimensions; ++a) result[a] = factor * simd::sum(sum[a]);
+  std::array<float, dimensions> result = simd::sums_of(sum);
+  for (float& component : result) component *= factor;
   if constexpr (takes_gradient<form>) {
     [[maybe_unused]] std::array<double, 6> b_weighted{};  // of the gradient, over its scale
     [[maybe_unused]] float scale = 1;

@@ -2,6 +2,7 @@
 #include "spume/operators/interface_curvature.hpp"
 
 #include "gfd_row.hpp"
+#include "spume/core/joined_lanes.hpp"
 
 namespace spume {
 namespace {
@@ -23,14 +24,17 @@ float squared_length(const std::array<float, dimensions>& v) {
 
 // div n of a particle on the band from sum W (n_j - n_i)_a d_c and sum W d_a d_c over the band.
 template <int dimensions>
-float divergence(const std::array<std::array<f32n, dimensions>, dimensions>& slopes,
+float divergence(const std::array<f32n, dimensions * dimensions>& slopes,
                  const std::array<f32n, symmetric_entries<dimensions>>& second) {
+  constexpr int entries = symmetric_entries<dimensions>;
+  const auto total = simd::sums_of(second, slopes);
   std::array<double, 6> m{}, b{};
-  for (int k = 0; k < symmetric_entries<dimensions>; ++k) m[k] = simd::sum(second[k]);
+  for (int k = 0; k < entries; ++k) m[k] = total[k];
   const double scale = normalised_inverse<dimensions>(m, b).scale;
   double sum = 0;
   for (int a = 0; a < dimensions; ++a)
-    for (int c = 0; c < dimensions; ++c) sum += scale * b[symmetric_index<dimensions>(a, c)] * simd::sum(slopes[a][c]);
+    for (int c = 0; c < dimensions; ++c)
+      sum += scale * b[symmetric_index<dimensions>(a, c)] * total[entries + a * dimensions + c];
   return static_cast<float>(sum);
 }
 
@@ -67,7 +71,7 @@ void curvature_of(const SweepContext& context, PackedNeighbours& packed, std::sp
     const auto i = static_cast<std::size_t>(subset[s]);
     const auto own = own_vector<dimensions>(normal, i);
     if (!(squared_length<dimensions>(own) > 0)) return;
-    std::array<std::array<f32n, dimensions>, dimensions> slopes{};
+    std::array<f32n, dimensions * dimensions> slopes{};
     std::array<f32n, symmetric_entries<dimensions>> second{};
     for_each_batch<dimensions, dimensions>(*context.list, records, i, inverse_h, [&](const auto& b) {
       f32n square{};
@@ -76,7 +80,8 @@ void curvature_of(const SweepContext& context, PackedNeighbours& packed, std::sp
       int slot = 0;
       for (int c = 0; c < dimensions; ++c) {
         const f32n wd = w * b.d[c];
-        for (int a = 0; a < dimensions; ++a) slopes[a][c] = slopes[a][c] + (b.payload[a] - own[a]) * wd;
+        for (int a = 0; a < dimensions; ++a)
+          slopes[a * dimensions + c] = slopes[a * dimensions + c] + (b.payload[a] - own[a]) * wd;
         for (int e = c; e < dimensions; ++e) second[slot] = second[slot] + wd * b.d[e], ++slot;
       }
     });

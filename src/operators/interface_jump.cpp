@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "spume/operators/interface_jump.hpp"
 
+#include <algorithm>
+
 #include "gfd_row.hpp"
+#include "spume/core/joined_lanes.hpp"
 #include "spume/operators/image_values.hpp"
 
 namespace spume {
@@ -23,13 +26,14 @@ void jump_row(const SweepContext& context, const float* records, std::size_t i, 
     for (int a = 0; a < dimensions; ++a) gradient[a] = gradient[a] + weight * b.d[a];
     laplacian = laplacian + weight * offset_factor(b, o);
   });
+  const auto total = simd::sums_of(gradient, std::array{laplacian});
   if (out.acceleration[0] != nullptr) {
     std::array<float, dimensions> v;
-    for (int a = 0; a < dimensions; ++a) v[a] = simd::sum(gradient[a]);
+    std::copy_n(total.begin(), dimensions, v.begin());
     v = symmetric_product<dimensions>(stencils.correction, i, v);
     for (int a = 0; a < dimensions; ++a) out.acceleration[a][i] += v[a];
   }
-  if (out.source != nullptr) out.source[i] += double{stencils.laplacian_factor[i]} * simd::sum(laplacian);
+  if (out.source != nullptr) out.source[i] += double{stencils.laplacian_factor[i]} * total[dimensions];
 }
 
 }  // namespace

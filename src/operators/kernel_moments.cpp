@@ -7,6 +7,7 @@
 #include "spume/core/joined_lanes.hpp"
 #include "spume/operators/sph_operators.hpp"
 #include "symmetric_matrix.hpp"
+#include "tensile_gradient.hpp"
 
 namespace spume {
 namespace {
@@ -20,9 +21,6 @@ constexpr double largest_inverse = 6;
 // The sums are positive semi-definite, and what passes the bound above has a determinant of 0.014 (2-D) or 9e-4 (3-D)
 // at least: this only keeps zero and what rounding makes of it from being divided by.
 constexpr double least_determinant = 1e-12;
-
-// Of the tensile term, King (3.11) with W(dr) for W(0).
-constexpr double tensile_factor = 0.25;
 
 // The corrections of a block of particles: inverses of their sums d (x) d, the identity where that is singular or
 // amplifies too much. A vector of particles at a time: one by one they add 7 % to the sweep.
@@ -76,7 +74,7 @@ void moments(const SweepContext& context, PackedNeighbours& packed, const Kernel
     pack_scalar(context, records, record_width(dimensions, payload), 0, context.volume_ratio);
   const KernelScale<dimensions, Kernel> common(context);
   const auto centre_value = static_cast<float>(Kernel::w(0.0));
-  const auto inverse_reference = static_cast<float>(1 / Kernel::w(options.spacing / context.smoothing_length));
+  const TensileGradient<Kernel> with_tension(context, options.spacing);
   const double fades_below = options.fading.weight.threshold + options.fading.weight.width;
 
   const auto sums_of_particle = [&](std::size_t i) __attribute__((always_inline)) {
@@ -96,9 +94,7 @@ void moments(const SweepContext& context, PackedNeighbours& packed, const Kernel
         for (int c = a; c < dimensions; ++c) m[slot] = m[slot] + gd * b.d[c], ++slot;
       }
       if constexpr (shifting) {
-        const f32n ratio = w * inverse_reference;
-        const f32n ratio2 = ratio * ratio;
-        const f32n tensile = g + static_cast<float>(tensile_factor) * g * ratio2 * ratio2;
+        const f32n tensile = with_tension(g, w);
         for (int a = 0; a < dimensions; ++a) concentration[a] = concentration[a] + tensile * b.d[a];
       }
     });

@@ -6,6 +6,7 @@
 namespace spume {
 
 MomentFields::MomentFields(ParticleStore& particles, const Wanted& wanted) : wanted_(wanted) {
+  if (!wanted.correction) return;
   divergence_of_position = &particles.fields.add<float>("divergence_of_position", Lifetime::result);
   const int d = particles.dimensions;
   for (int k = 0; k < d * (d + 1) / 2; ++k)
@@ -13,12 +14,16 @@ MomentFields::MomentFields(ParticleStore& particles, const Wanted& wanted) : wan
   if (wanted.normal) particles.add_vector(normal, "normal", Lifetime::result);
 }
 
+void MomentFields::lease(ParticleStore& particles) {
+  if (wanted_.kernel_sum) particles.scratch().lease(kernel_sum, particles.size());
+  if (wanted_.concentration_gradient)
+    particles.scratch().lease(concentration_gradient, particles.dimensions, particles.size());
+}
+
 void MomentFields::measure(Arrangement& arrangement, ParticleStore& particles, double spacing) {
   const std::size_t n = particles.size();
-  ScratchPool& scratch = particles.scratch();
-  scratch.lease(laplacian_diagonal, n);
-  if (wanted_.kernel_sum) scratch.lease(kernel_sum, n);
-  if (wanted_.concentration_gradient) scratch.lease(concentration_gradient, particles.dimensions, n);
+  particles.scratch().lease(laplacian_diagonal, n);
+  lease(particles);
   uncorrected.resize(n);
 
   KernelMomentOptions options;

@@ -32,9 +32,11 @@ struct Stencils {
   VectorArrays<float> offset;
   Array<float> laplacian_factor;
   Array<GfdFallback> fallback;
+  Array<float> kernel_sum;  // this and the next: with sums of the kernel
+  VectorArrays<float> concentration_gradient;
   int dimensions;
 
-  explicit Stencils(Arrangement& a)
+  explicit Stencils(Arrangement& a, bool with_kernel = false)
       : offset(a.size(), a.dimensions()), laplacian_factor(a.size()), fallback(a.size()), dimensions(a.dimensions()) {
     GfdMoments out;
     for (int k = 0; k < dimensions * (dimensions + 1) / 2; ++k) {
@@ -44,6 +46,13 @@ struct Stencils {
     out.offset = offset.write();
     out.laplacian_factor = laplacian_factor.data();
     out.fallback = fallback.data();
+    if (with_kernel) {
+      kernel_sum.resize(a.size());
+      for (int axis = 0; axis < dimensions; ++axis) concentration_gradient[axis].resize(a.size());
+      out.kernel_sum = kernel_sum.data();
+      out.concentration_gradient = concentration_gradient.write();
+      out.spacing = a.setup.spacing;
+    }
     gfd_moment_sweep(a.context, a.packed, out);
   }
   GfdStencils read() const {

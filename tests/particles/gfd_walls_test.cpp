@@ -123,8 +123,7 @@ TEST(GfdWalls, SweepsSeeWallPointsAndTheirImages) {
 
     gfd_gradient_over_density_sweep(context, packed, q.data(), 0, {rho.data(), varies.data()}, stencils.correction,
                                     gradient.out);
-    gfd_velocity_gradient_sweep(context, packed, u, walled.boundary.volume_rule(), stencils.correction,
-                                {{}, divergence.data()});
+    gfd_divergence_sweep(context, packed, u, walled.boundary.volume_rule(), stencils.correction, divergence.data());
     gfd_stress_sweep(context, packed, u, walled.boundary.velocity_rule(), stencils, MomentumDiffusion::split,
                      {{mu.data(), varies.data()}, nullptr, slope.in()}, viscous.out);
     GfdPressureOperator matrix;
@@ -246,8 +245,8 @@ TEST(GfdWalls, AUniformJumpIsBalancedByThePressureOfTheColour) {
     const WalledStencils of_all(a.context, a.packed, n, d);
     const GfdStencils& stencils = of_all.read;
     for (auto& component : force.component) component.fill(0);
-    interface_jump_sweep(a.context, a.packed, bands.varying(), {colour.data(), potential.data(), density.data()}, stencils,
-                         {force.out, nullptr});
+    interface_jump_sweep(a.context, a.packed, bands.varying(), {colour.data(), potential.data(), density.data()},
+                         stencils, {force.out, nullptr});
     gfd_gradient_over_density_sweep(a.context, a.packed, pressure.data(), 0, {density.data(), bands.varies()},
                                     stencils.correction, gradient.out);
     double largest = 0, worst = 0;

@@ -30,13 +30,15 @@ void gfd_gradient_over_density_subset(const SweepContext& context, PackedNeighbo
                                       const float* density, const std::array<const float*, 6>& correction,
                                       std::span<const std::int32_t> subset, const std::array<float*, 3>& out);
 
-// (8) of a velocity and its divergence; null is not computed. Component-major: [a * dimensions + b] = d u_a / d x_b.
-struct GfdVelocityGradient {
-  std::array<float*, 9> gradient{};
-  double* divergence = nullptr;
-};
-void gfd_velocity_gradient_sweep(const SweepContext& context, PackedNeighbours& packed,
-                                 const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
-                                 const std::array<const float*, 6>& correction, const GfdVelocityGradient& out);
+// The trace of (8) of a velocity. B is symmetric: sum_j W (u_j - u_i) . B d.
+void gfd_divergence_sweep(const SweepContext& context, PackedNeighbours& packed,
+                          const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
+                          const std::array<const float*, 6>& correction, double* out);
+
+// What a velocity changes by over a displacement s, sum_j W (u_j - u_i) d . B s, cut as VelocityGradientOut has it.
+void gfd_change_sweep(const SweepContext& context, PackedNeighbours& packed,
+                      const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
+                      const std::array<const float*, 6>& correction, const std::array<const float*, 3>& displacement,
+                      const std::array<float*, 3>& out);
 
 }  // namespace spume

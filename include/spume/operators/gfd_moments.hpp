@@ -39,6 +39,10 @@ struct GfdMoments {
   std::array<float*, 3> offset{};      // o
   float* laplacian_factor = nullptr;   // f
   GfdFallback* fallback = nullptr;
+  // Of all particles alone: sum_j V W, the particle itself included, and as KernelMoments has it, with the sum.
+  float* kernel_sum = nullptr;
+  std::array<float*, 3> concentration_gradient{};
+  double spacing = 0;  // of the latter
 };
 
 // The same as the operators read it. Without any neighbour all of it is zero, and so is every derivative.

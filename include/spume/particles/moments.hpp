@@ -13,10 +13,13 @@ class MomentFields {
     bool kernel_sum = false;
     bool concentration_gradient = false;
     bool normal = false;
+    bool correction = true;     // L, div r and the rest that measure() finds
     CorrectionFading fading{};  // of L, in a closed liquid
   };
   MomentFields(ParticleStore& particles, const Wanted& wanted);
 
+  // Room for the kernel sum and the concentration gradient.
+  void lease(ParticleStore& particles);
   // Measures them; leases what is not kept.
   void measure(Arrangement& arrangement, ParticleStore& particles, double spacing);
 

@@ -112,7 +112,8 @@ Flow::Flow(const LoadedCase& loaded_case)
                openings == nullptr ? nullptr : &openings->gates()),
       first_volume(scene.phases.size()),
       arrangement(scene.domain, resolution, particles.volume, particles.size()),
-      moments(particles, {.kernel_sum = true, .concentration_gradient = features.shifting, .fading = {}}),
+      moments(particles,
+              {.kernel_sum = true, .concentration_gradient = features.shifting, .correction = false, .fading = {}}),
       colours(colours_of(scene)),
       phase_volume(scene.phases.size()),
       solver(boundary, projection_options(options.get<PressureOptions>(), options.spacing)) {
@@ -270,8 +271,8 @@ double Flow::leased_bytes() const {
     for (const auto& array : *vector) add(array);
   for (const auto* vector : {&intermediate_velocity, &next_velocity})
     for (const auto& array : *vector) add(array);
-  add(divergence, source, reduced_pressure, reciprocal_density, rows.diagonal, rows.right_hand_side, moments.kernel_sum,
-      moments.laplacian_diagonal);
+  add(divergence, source, reduced_pressure, reciprocal_density, rows.diagonal, rows.right_hand_side,
+      moments.kernel_sum);
   return sum;
 }
 

@@ -44,9 +44,11 @@ void Flow::measure_stencils() {
   for (std::size_t k = 0; k < 6; ++k) out.correction[k] = correction[k] == nullptr ? nullptr : correction[k]->data();
   out.offset = write(offset);
   out.laplacian_factor = laplacian_factor->data();
+  moments.lease(particles);
+  out.kernel_sum = moments.kernel_sum.data();
+  out.concentration_gradient = write(moments.concentration_gradient);
+  out.spacing = spacing();
   gfd_moment_sweep(arrangement.context, arrangement.packed, out);
-  moments.measure(arrangement, particles, spacing());
-  particles.scratch().release(moments.laplacian_diagonal);
   const double bulk = resolution.lattice.kernel_sum;
   double total = 0;
   for (std::size_t n = 0; n < phase_volume.size(); ++n) {

@@ -38,8 +38,7 @@ Plan make_plan(Flow& f) {
              {lists, f.phase});
   stages.add(step, "layers", has.openings, openings, &Flow::find_layers, {p.position, f.phase}, {p.velocity});
   stages.sweep(both, "stencils", true, "(10), (11) and kernel moments", &Flow::measure_stencils, {},
-               {f.correction, f.offset, *f.laplacian_factor, f.moments.correction, f.moments.kernel_sum,
-                f.moments.concentration_gradient});
+               {f.correction, f.offset, *f.laplacian_factor, f.moments.kernel_sum, f.moments.concentration_gradient});
   // Interfaces
   stages.sweep(both, "bands", has.interfaces, several, &Flow::find_bands, {f.phase}, {band});
   stages.add(both, "properties", true, has.interfaces ? "(6), (7): colours, filtered density and viscosity" : several,
@@ -84,7 +83,7 @@ Plan make_plan(Flow& f) {
   stages.add(step, "shift", has.shifting, has.shifting ? "Fickian shifting" : "shifting.on = false",
              &Flow::compute_shift, {f.moments.concentration_gradient}, {f.displacement_by_shift()});
   stages.sweep(step, "shift velocity", has.shift_correction, has.shift_correction ? "first order" : "not corrected",
-               &Flow::correct_for_shift, {p.velocity, f.displacement_by_shift()}, {f.shift_velocity});
+               &Flow::correct_for_shift, {p.velocity, f.displacement_by_shift(), f.correction}, {f.shift_velocity});
   // (23), (24) the pressure that makes the velocity free of divergence
   stages.sweep(step, "divergence", true, "right-hand side of (23)", &Flow::find_divergence,
                {f.intermediate_velocity, f.correction}, {f.divergence});

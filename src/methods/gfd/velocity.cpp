@@ -151,8 +151,8 @@ DiffusionProperties Flow::diffusion_properties() const {
 
 void Flow::find_divergence() {
   particles.scratch().lease(divergence, size());
-  gfd_velocity_gradient_sweep(arrangement.context, arrangement.packed, read(intermediate_velocity),
-                              boundary.volume_rule(), stencils().correction, {{}, divergence.data()});
+  gfd_divergence_sweep(arrangement.context, arrangement.packed, read(intermediate_velocity), boundary.volume_rule(),
+                       stencils().correction, divergence.data());
   max_divergence =
       parallel_max(size(), 0.0, [&](std::size_t i) { return in_domain(i) ? std::abs(divergence[i]) : 0.0; });
 }
@@ -191,11 +191,8 @@ void Flow::compute_shift() {
 
 void Flow::correct_for_shift() {
   particles.scratch().lease(shift_velocity, dimensions, size());
-  VelocityGradientOut out;
-  out.displacement = read(shift->displacement);
-  out.change = write(shift_velocity);
-  velocity_gradient_sweep(arrangement.context, arrangement.packed, read(particles.velocity), boundary.velocity_rule(),
-                          moments.read_correction(), out);
+  gfd_change_sweep(arrangement.context, arrangement.packed, read(particles.velocity), boundary.velocity_rule(),
+                   stencils().correction, read(shift->displacement), write(shift_velocity));
 }
 
 // (23) for pi, times the particle volume, with the jumps of the potentials on the right-hand side.
