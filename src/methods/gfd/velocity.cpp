@@ -10,6 +10,7 @@
 #include "spume/operators/gfd_gradient.hpp"
 #include "spume/operators/interface_jump.hpp"
 #include "spume/operators/sph_diffusion.hpp"
+#include "spume/particles/blocks.hpp"
 #include "spume/particles/number_density.hpp"
 
 namespace spume::gfd {
@@ -326,29 +327,53 @@ void Flow::refuse_energy_from_nothing() const {
   throw StepFailure(details);
 }
 
+// Passes over one axis, which the compiler takes several particles of at once; only what walls do goes one by one.
+void Flow::accept_block(double dt, std::size_t first, std::size_t last) {
+  const std::size_t n = last - first;
+  VectorBlock r{}, u{};
+  for (int axis = 0; axis < dimensions; ++axis) {
+    const double* const from = particles.position[axis]->data() + first;
+    std::copy_n(next_velocity[axis].data() + first, n, u[axis].data());
+    for (std::size_t k = 0; k < n; ++k) r[axis][k] = from[k] + dt * u[axis][k];
+    ParticleBlock moved{}, gained{};
+    if (features.shifting) std::copy_n(shift->displacement[axis]->data() + first, n, moved.data());
+    if (features.shift_correction) std::copy_n(shift_velocity[axis].data() + first, n, gained.data());
+    for (std::size_t k = 0; k < n && features.openings; ++k)
+      if (!in_domain(first + k)) moved[k] = gained[k] = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      r[axis][k] += moved[k];
+      u[axis][k] += gained[k];
+    }
+  }
+  if (boundary.clear_of_sides(boundary.next_walls, {r[0].data(), r[1].data(), r[2].data()}, 0, n)) {
+    boundary.go_round(boundary.next_walls, {r[0].data(), r[1].data(), r[2].data()}, 0, n);
+  } else {
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vec3 from = vector_at(particles.position, dimensions, first + k);
+      Vec3 place{r[0][k], r[1][k], r[2][k]}, velocity{u[0][k], u[1][k], u[2][k]};
+      if (features.openings)
+        openings->apply_walls(boundary, first + k, place, &velocity, &from);
+      else
+        boundary.hold_liquid(boundary.next_walls, place, &velocity, &from);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        r[axis][k] = place[axis];
+        u[axis][k] = velocity[axis];
+      }
+    }
+  }
+  for (int axis = 0; axis < dimensions; ++axis) {
+    std::copy_n(r[axis].data(), n, particles.position[axis]->data() + first);
+    std::copy_n(u[axis].data(), n, particles.velocity[axis]->data() + first);
+  }
+}
+
 void Flow::accept(double dt) {
   refuse_long_strides(particles, particles.position, next_velocity, arrangement.grid.support_radius(), dt);
   refuse_energy_from_nothing();
   boundary.advance(time, dt);
-  parallel_for(size(), [&](std::size_t i) {
-    const Vec3 from = vector_at(particles.position, dimensions, i);
-    Vec3 u = vector_at(next_velocity, dimensions, i), r = from;
-    for (int axis = 0; axis < dimensions; ++axis) {
-      r[axis] += dt * u[axis];
-      if (!in_domain(i)) continue;
-      if (features.shifting) r[axis] += (*shift->displacement[axis])[i];
-      if (features.shift_correction) u[axis] += shift_velocity[axis][i];
-    }
-    (*pressure)[i] = reduced_pressure[i] + hydrostatic_part(i);
-    if (features.openings)
-      openings->apply_walls(boundary, i, r, &u, &from);
-    else
-      boundary.hold_liquid(boundary.next_walls, r, &u, &from);
-    for (int axis = 0; axis < dimensions; ++axis) {
-      (*particles.position[axis])[i] = r[axis];
-      (*particles.velocity[axis])[i] = u[axis];
-    }
-  });
+  parallel_for(size(), [&](std::size_t i) { (*pressure)[i] = reduced_pressure[i] + hydrostatic_part(i); });
+  parallel_blocks(size(), default_block,
+                  [&](std::size_t, std::size_t first, std::size_t last) { accept_block(dt, first, last); });
   particles.scratch().release(next_velocity);
   particles.scratch().release(shift_velocity);
   particles.scratch().release(reduced_pressure);

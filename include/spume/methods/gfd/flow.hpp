@@ -191,6 +191,7 @@ struct Flow {
   double leased_bytes() const;
 
  private:
+  void accept_block(double dt, std::size_t first, std::size_t last);
   void refuse_energy_from_nothing() const;
   void refuse_unconverged_diffusion() const;
   double last_norm();
