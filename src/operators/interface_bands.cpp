@@ -90,11 +90,13 @@ void InterfaceBands::build(const SweepContext& context, const CellGrid& grid, co
   parallel_for(context.images->size(), [&](std::size_t k) { point_phase_[n + k] = phase[source[k]]; });
   const auto find_mixed = [&](std::int32_t from, std::int32_t to, bool several) {
     for (std::int32_t i = from; i < to; ++i) {
-      unsigned differs = 0;
-      if (several)
-        for (const std::int32_t j : context.list->of(static_cast<std::size_t>(i)))
-          differs |= unsigned{point_phase_[j]} ^ phase[i];
-      near_[i] = differs != 0 ? mixed_flag : 0;
+      bool differs = false;
+      if (several) {
+        const auto listed = context.list->of(static_cast<std::size_t>(i));
+        differs = std::any_of(listed.begin(), listed.end(),
+                              [&, own = phase[i]](std::int32_t j) { return point_phase_[j] != own; });
+      }
+      near_[i] = differs ? mixed_flag : 0;
     }
   };
   const auto rows_y = static_cast<std::size_t>(grid.rows_y()), rows_z = static_cast<std::size_t>(grid.rows_z());
