@@ -140,7 +140,8 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
   }
   is_wet = is_wet || (!gap && !before.empty() && is_free(eye, fields.sides) &&
                       covered >= wet_share * free_share(element, fields.sides));
-  const bool fitted = is_wet && fit.fit(2) >= 0;
+  const int order = is_wet ? fit.fit(2) : -1;
+  const bool fitted = order >= 0;
   const bool crushed = gap && *gap < crushing_gap * spacing;
   if (!fitted || crushed) {
     // In liquid that fills its domain no pressure is that of a void, and what a constant pressure does to a closed
@@ -158,7 +159,7 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
   const auto value = fit.value();
   for (std::size_t k = 0; k < before.size(); ++k) {
     const double share = fitted ? value[k] : before[k].weight / sum;
-    if (!fitted) found.value -= share * found.density * dot(gravity_, before[k].offset);
+    if (order < 1) found.value -= share * found.density * dot(gravity_, before[k].offset);  // a mean
     if (weights != nullptr)
       weights->push_back({static_cast<std::int32_t>(before[k].particle), element.body, element.middle,
                           multiply(-share, element.area)});

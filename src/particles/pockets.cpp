@@ -2,6 +2,8 @@
 #include "spume/particles/pockets.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "spume/core/vectors.hpp"
@@ -20,6 +22,9 @@ constexpr double parallel = 0.1;   // of the sum of two normals
 constexpr double longest = 0.3;    // spacings, of a way out
 constexpr double thinnest = 0.05;  // spacings, of a plate across a layer
 constexpr double caught = 0.9;     // of the narrowest wedge, for the rounding of how far out of it places are led
+// Spacings: from a place in a slot to its mouth at most, in steps that are halved so often. Particles go 0.4 in a step.
+constexpr double to_mouth = 0.6, to_mouth_step = 0.1;
+constexpr int mouth_halvings = 10;
 
 std::optional<WallBehind> wall_before(const Boundary& boundary, const Vec3& place) {
   const Domain& domain = boundary.domain();
@@ -145,6 +150,42 @@ std::optional<WallBehind> wall_across(const Boundary& boundary, const Vec3& plac
   return across;
 }
 
+namespace {
+
+// Whether walls leave a place free, and it is in no wedge.
+bool is_out(const Boundary& boundary, const Vec3& place) {
+  const double least = narrowest_wedge * boundary.spacing();
+  return !wall_before(boundary, place) &&
+         (boundary.bodies()->surely_farther(place, least) || !(boundary.bodies()->distance(place) < least) ||
+          !wall_across(boundary, place, least));
+}
+
+// From a place between parallel faces along them to where the slot ends, in the nearest of two (of eight) directions.
+std::optional<Vec3> way_to_mouth(const Boundary& boundary, const Vec3& place, const Vec3& face) {
+  const bool deep = boundary.domain().dimensions == 3;
+  const Vec3 least = std::abs(face[0]) < std::abs(face[1]) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 first = deep ? unit(cross(face, least)) : Vec3{-face[1], face[0], 0};
+  const Vec3 second = deep ? cross(face, first) : Vec3{};
+  const int directions = deep ? 8 : 2;
+  const auto is_mouth = [&](const Vec3& way) { return is_out(boundary, boundary.domain().inside(add(place, way))); };
+  for (int step = 1; step * to_mouth_step <= to_mouth; ++step)
+    for (int k = 0; k < directions; ++k) {
+      const double angle = 2 * std::numbers::pi * k / directions;
+      const Vec3 along = add(multiply(std::cos(angle), first), multiply(std::sin(angle), second));
+      double out = step * to_mouth_step * boundary.spacing();
+      if (!is_mouth(multiply(out, along))) continue;
+      double in = out - to_mouth_step * boundary.spacing();
+      for (int n = 0; n < mouth_halvings; ++n) {
+        const double middle = 0.5 * (in + out);
+        (is_mouth(multiply(middle, along)) ? out : in) = middle;
+      }
+      return multiply(out, along);
+    }
+  return std::nullopt;
+}
+
+}  // namespace
+
 void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity) {
   const BodyWalls& bodies = *boundary.bodies();
   const double least = narrowest_wedge * boundary.spacing();
@@ -154,17 +195,25 @@ void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity) {
   const Vec3 face = bodies.normal(place);
   const std::optional<WallBehind> across = wall_across(boundary, place, least);
   if (!across) return;
-  const Vec3 outwards = add(face, across->normal);
-  const double size = length(outwards);
-  if (size < parallel) return;
+  Vec3 outwards = add(face, across->normal);
+  double size = length(outwards);
+  Vec3 way{};
+  if (size < parallel) {
+    const std::optional<Vec3> out = way_to_mouth(boundary, place, face);
+    if (!out) return;
+    way = outwards = *out;
+    size = length(outwards);
+  } else {
+    // The distances from the two grow by |outwards| together along their bisector.
+    way = multiply(std::min(across->behind / size, longest * boundary.spacing()) / size, outwards);
+  }
   Vec3 of_walls{};
   if (velocity != nullptr) {
     of_walls = bodies.wall_within(place, least)->velocity;
     if (across->of_body) of_walls = add(of_walls, bodies.wall_within(across->place, 0)->velocity);
     of_walls = multiply(0.5, of_walls);
   }
-  // The distances from the two grow by |outwards| together along their bisector.
-  place = add(place, multiply(std::min(across->behind / size, longest * boundary.spacing()) / size, outwards));
+  place = add(place, way);
   if (velocity == nullptr) return;
   const double inwards = dot(subtract(*velocity, of_walls), outwards) / (size * size);
   if (inwards < 0) *velocity = subtract(*velocity, multiply(inwards, outwards));

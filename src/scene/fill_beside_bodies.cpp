@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "filler.hpp"
+#include "slots.hpp"
 #include "spume/core/golden_ratio.hpp"
 
 namespace spume {
@@ -73,7 +74,8 @@ void Filler::choose_sites_beside_walls() {
 
 bool Filler::is_open_site(ThreadRegions& own, const Vec3& p) const {
   if (scene_.walls.empty()) return true;
-  if (!(own.walls.at(p) > 0)) return false;
+  const double distance = own.walls.at(p), width = too_narrow * scene_.spacing;
+  if (!(distance > 0) || (distance < width && slot_at(scene_.walls, scene_.domain, p, width))) return false;
   return !layered() || !is_cut(own, p) || rank_of_site(own, p) > least_rank_;
 }
 

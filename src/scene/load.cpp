@@ -20,6 +20,7 @@
 #include "reader.hpp"
 #include "releases.hpp"
 #include "resolved.hpp"
+#include "slots.hpp"
 #include "spume/core/machine.hpp"
 #include "spume/scene/expression.hpp"
 #include "spume/scene/find_case.hpp"
@@ -387,6 +388,8 @@ LoadedCase load_case(const std::string& path, const std::vector<std::string>& ov
   for (Problem& warning : unused_options(draft, schema, file)) draft.options.warnings.push_back(std::move(warning));
   for (Problem& warning : body_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
   for (Problem& warning : corner_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
+  if (uses_particles(*method))
+    for (Problem& warning : slot_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
   for (Problem& warning : release_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
   for (Problem& warning : collision_warnings(draft, scene, file)) draft.options.warnings.push_back(std::move(warning));
   if (uses_particles(*method)) {

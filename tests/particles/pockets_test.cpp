@@ -79,6 +79,42 @@ TEST(Pockets, OtherPlacesAreLeft) {
   EXPECT_EQ(place, (Vec3{0.1, 0.01, 0}));
 }
 
+// Boxes 0.4 spacings above the floor, whose edges round which a wedge is 0.6 spacings wide end the slot.
+TEST(Pockets, ParticlesAreLedOutOfSlots) {
+  const std::string plane =
+      "lower = [-1, 0]\nupper = [1, 2]\nbottom = \"no-slip\"\nleft = \"free-slip\"\nright = \"free-slip\"\n";
+  const std::string space =
+      "lower = [-1, -1, 0]\nupper = [1, 1, 2]\nbottom = \"no-slip\"\nleft = \"free-slip\"\nright = \"free-slip\"\n"
+      "front = \"free-slip\"\nback = \"free-slip\"\n";
+  for (const int d : {2, 3}) {
+    const LoadedCase slot =
+        load_text(scene_text(d == 2 ? plane : space, spacing,
+                             d == 2 ? "[[body]]\nshape = \"box\"\nsize = [0.8, 0.8]\nposition = [0, 0.42]\n"
+                                    : "[[body]]\nshape = \"box\"\nsize = [0.8, 0.8, 0.8]\nposition = [0, 0, 0.42]\n"));
+    const Resolution resolution(d, spacing, KernelKind::wendland_c2, 1.3);
+    const Boundary boundary(slot.scene.domain, spacing, make_body_walls(slot.scene, resolution));
+    const auto up = static_cast<std::size_t>(d) - 1;
+    for (const double side : {-1.0, 1.0}) {
+      Vec3 place{side * (0.4 - 0.2 * spacing)}, velocity{-side, 0.3};
+      place[up] = 0.008;
+      const Vec3 before = place;
+      lead_out_of_wedges(boundary, place, &velocity);
+      EXPECT_GT(side * place[0], 0.4);
+      EXPECT_LT(side * place[0], 0.4 + 0.6 * spacing);
+      EXPECT_EQ(place[up], before[up]);
+      EXPECT_NEAR(velocity[0], 0, 1e-12);
+      EXPECT_NEAR(velocity[1], 0.3, 1e-12);
+      // To the mouth and no farther.
+      const Vec3 led = place;
+      lead_out_of_wedges(boundary, place, nullptr);
+      EXPECT_EQ(place, led);
+      place[0] -= side * 2e-3 * spacing;
+      lead_out_of_wedges(boundary, place, nullptr);
+      EXPECT_NEAR(place[0], led[0], 3e-3 * spacing);
+    }
+  }
+}
+
 // Bubbles, for which a place that is moved is one where they have struck a wall, are not.
 TEST(Pockets, LiquidAloneIsLedOut) {
   const Tank tank;

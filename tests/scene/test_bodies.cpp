@@ -275,6 +275,30 @@ TEST(Bodies, SuspiciousBodiesAreWarnedOf) {
               Contains(HasSubstr("thinner than a spacing, 0.1")));
 }
 
+// Boxes whose faces leave 0.3 spacings; not those that touch, have room for a layer, face a wall with an edge, or
+// take something away.
+TEST(Bodies, SlotsThatHoldNoParticleAreWarnedOf) {
+  const std::string walls = "left = \"free-slip\"\nbottom = \"free-slip\"\n";
+  const std::string plane = test::replaced(head2, "[resolution]", walls + "[resolution]"),
+                    space = test::replaced(head3, "[resolution]", walls + "[resolution]");
+  const auto box = [](const char* position, const char* more = "") {
+    return std::string("[[body]]\nname = \"it\"\nshape = \"box\"\nsize = [0.6, 0.6]\nposition = ") + position + "\n" +
+           more;
+  };
+  const std::string start = plane + "[[liquid]]\nlower = [-1, -1]\nupper = [1, 0.9]\n";
+  EXPECT_THAT(warnings(start + box("[0, -0.685]")),
+              ElementsAre(HasSubstr("the body 'it' leaves a slot of 0.015, 0.3 spacings, to a side: no particle")));
+  EXPECT_THAT(warnings(start + box("[0.3, 0]") + test::replaced(box("[-0.315, 0]"), "\"it\"", "\"other\"")),
+              ElementsAre(HasSubstr("the body 'it' leaves a slot of 0.015, 0.3 spacings, to another body"),
+                          HasSubstr("the body 'other' leaves a slot of 0.015")));
+  for (const std::string& good : {box("[0, -0.7]"), box("[0, -0.67]"), box("[0, -0.565]", "rotation = [45]\n"),
+                                  box("[0.3, 0]") + test::replaced(box("[-0.3, 0]"), "\"it\"", "\"other\""),
+                                  box("[0, -0.685]", "wall = \"none\"\n")})
+    EXPECT_THAT(warnings(start + good), testing::Not(Contains(HasSubstr("slot")))) << good;
+  EXPECT_THAT(warnings(space + test::replaced(box("[0, 0, -0.67]"), "[0.6, 0.6]", "[0.6, 0.6, 0.6]")),
+              Contains(HasSubstr("the body 'it' leaves a slot of 0.03, 0.3 spacings, to a side")));
+}
+
 // Two plates two spacings thick, the second turned by an angle and across the first or on it; 3-D; and a fold.
 TEST(Bodies, AcuteCornersOfThinBodiesAreWarnedOf) {
   const std::string start = head2 + "[[liquid]]\nlower = [-1, -1]\nupper = [1, 0.9]\n";

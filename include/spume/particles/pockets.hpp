@@ -54,7 +54,8 @@ struct WallBehind {
 std::optional<WallBehind> wall_across(const Boundary& boundary, const Vec3& place, double width);
 // A place in a wedge whose faces are nearer to each other than 0.6 spacings there: out along the bisector to where
 // they are not, with the velocity that leads in, beside the mean of both faces (sides of the domain stand), taken away.
-// Between faces that are parallel to 6 degrees, which lead nowhere out, nothing is moved.
+// Between faces that are parallel to 6 degrees, which lead nowhere out: along them to where the slot ends, if that is
+// nearer than 0.6 spacings; else the place is left.
 void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity);
 
 }  // namespace spume
