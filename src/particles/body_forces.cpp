@@ -38,6 +38,12 @@ bool any_grows(const Scene& scene) {
                      [](const BodyMotion& motion) { return motion.release.has_value(); });
 }
 
+bool is_outside(const Domain& domain, const Vec3& place) {
+  for (int axis = 0; axis < domain.dimensions; ++axis)
+    if (place[axis] < domain.lower[axis] || place[axis] > domain.upper[axis]) return true;
+  return false;
+}
+
 }  // namespace
 
 // Positions in the order of the cells.
@@ -87,8 +93,6 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
     Vec3 offset;
     double weight;
   };
-  near.find(scene_.domain, fields.grid, table.cells, table.position, element.middle, reach);
-  std::vector<Near> before;
   const ThinWalls* thin = walls_.thin();
   const double spacing = resolution_.spacing;
   const Vec3 eye = add(element.middle, multiply(before_surface * spacing, normal));
@@ -97,6 +101,9 @@ BodyForces::Traction BodyForces::traction(const Fields& fields, const Sorted& ta
     found.before = Before::wall;
     return found;
   }
+  near.find(scene_.domain, fields.grid, table.cells, table.position, element.middle, reach);
+  if (near.size() == 0 && is_outside(scene_.domain, element.middle)) return found;  // of what goes on beyond open sides
+  std::vector<Near> before;
   const double free = thin == nullptr ? infinite : thin->distance(eye);
   double sum = 0, covered = 0, nearest2 = infinite, least_height = infinite;
   with_plain_kernel(dimensions, resolution_.kernel, [&]<int d, class Kernel>() {
