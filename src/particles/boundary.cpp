@@ -416,11 +416,12 @@ void Boundary::apply_walls(const WallPositions& at, Vec3& position, Vec3* veloci
     if ((*velocity)[axis] * outward[axis] < 0) (*velocity)[axis] = 0;
 }
 
-void Boundary::hold_liquid(const WallPositions& at, Vec3& position, Vec3* velocity, const Vec3* from) const {
+void Boundary::hold_liquid(const WallPositions& at, Vec3& position, Vec3* velocity, const Vec3* from,
+                           const Vec3* wedge_from) const {
   apply_walls(at, position, velocity, from);
   if (bodies_ == nullptr) return;
   const Vec3 held = position;
-  lead_out_of_wedges(*this, position, velocity);
+  lead_out_of_wedges(*this, position, velocity, wedge_from != nullptr ? wedge_from : from);
   // Out of a wedge beside one side may be behind another.
   for (int axis = 0; axis < domain_.dimensions && position != held; ++axis) {
     if (domain_.periodic(axis)) position[axis] = wrap_periodic(position[axis], at[axis][0], at[axis][1] - at[axis][0]);

@@ -196,7 +196,7 @@ void move_in_rounds(Arrangement& arrangement, ParticleStore& particles, Boundary
       if (stays(i)) return 0.0;
       const Vec3 before = vector_at(at, d, i);
       Vec3 place = add(before, vector_at(way, d, i));
-      boundary.hold_liquid(boundary.walls, place, nullptr);
+      boundary.hold_liquid(boundary.walls, place, nullptr, nullptr, &before);
       for (int axis = 0; axis < d; ++axis) {
         // Open sides let it through; its other components move on.
         if (!domain.periodic(axis) && (place[axis] < domain.lower[axis] || place[axis] > domain.upper[axis])) continue;

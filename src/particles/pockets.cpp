@@ -22,9 +22,11 @@ constexpr double parallel = 0.1;   // of the sum of two normals
 constexpr double longest = 0.3;    // spacings, of a way out
 constexpr double thinnest = 0.05;  // spacings, of a plate across a layer
 constexpr double caught = 0.9;     // of the narrowest wedge, for the rounding of how far out of it places are led
-// Spacings: from a place in a slot to its mouth at most, in steps that are halved so often. Particles go 0.4 in a step.
-constexpr double to_mouth = 0.6, to_mouth_step = 0.1;
+// Spacings: from a place in a slot to its mouth at most, in steps that are halved so often. Particles go 0.4 in a step,
+// spray 1.2. In slots wider than half a spacing rows that the start has placed rest.
+constexpr double to_mouth = 2, to_mouth_of_rows = 0.6, to_mouth_step = 0.1, room_for_rows = 0.5;
 constexpr int mouth_halvings = 10;
+constexpr double of_same_face = 0.9;  // of the cosine of two normals
 
 std::optional<WallBehind> wall_before(const Boundary& boundary, const Vec3& place) {
   const Domain& domain = boundary.domain();
@@ -144,9 +146,23 @@ Ahead ahead_of(const Boundary& boundary, const Arrangement& arrangement, std::si
 
 std::optional<WallBehind> wall_across(const Boundary& boundary, const Vec3& place, double width) {
   const BodyWalls& bodies = *boundary.bodies();
-  const Vec3 face = bodies.normal(place);
-  std::optional<WallBehind> across = wall_before(boundary, add(place, multiply(width - bodies.distance(place), face)));
-  if (across && !(dot(face, across->normal) < 0)) across.reset();
+  const Vec3 face = bodies.normal(place), way = multiply(width - bodies.distance(place), face);
+  std::optional<WallBehind> across = wall_before(boundary, add(place, way));
+  if (!across) return across;
+  if (across->of_body && bodies.distance(place) > 0) {
+    // Behind an edge the nearest face may be another than the one that the way enters by.
+    double in = 1, out = 0;
+    for (int n = 0; n < mouth_halvings; ++n) {
+      const double middle = 0.5 * (in + out);
+      (bodies.distance(add(place, multiply(middle, way))) > 0 ? out : in) = middle;
+    }
+    const Vec3 entered = bodies.normal(add(place, multiply(out, way)));
+    if (dot(entered, across->normal) < of_same_face) {
+      across->normal = entered;
+      across->behind = -(1 - in) * dot(way, entered);
+    }
+  }
+  if (!(dot(face, across->normal) < 0)) across.reset();
   return across;
 }
 
@@ -160,15 +176,26 @@ bool is_out(const Boundary& boundary, const Vec3& place) {
           !wall_across(boundary, place, least));
 }
 
+// Whether what is led out of a wedge has come into it from its narrow end, past an edge: from before the foot of the
+// place on the face, where no wedge leads the same way.
+bool comes_through(const Boundary& boundary, const Vec3& from, const Vec3& foot, const Vec3& outwards) {
+  if (!(dot(boundary.domain().shortest(subtract(from, foot)), outwards) < 0)) return false;
+  const double least = narrowest_wedge * boundary.spacing();
+  const BodyWalls& bodies = *boundary.bodies();
+  if (!(bodies.distance(from) > 0) || !(bodies.distance(from) < least)) return true;
+  const std::optional<WallBehind> across = wall_across(boundary, from, least);
+  return !across || dot(add(bodies.normal(from), across->normal), outwards) < 0;
+}
+
 // From a place between parallel faces along them to where the slot ends, in the nearest of two (of eight) directions.
-std::optional<Vec3> way_to_mouth(const Boundary& boundary, const Vec3& place, const Vec3& face) {
+std::optional<Vec3> way_to_mouth(const Boundary& boundary, const Vec3& place, const Vec3& face, double farthest) {
   const bool deep = boundary.domain().dimensions == 3;
   const Vec3 least = std::abs(face[0]) < std::abs(face[1]) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 first = deep ? unit(cross(face, least)) : Vec3{-face[1], face[0], 0};
   const Vec3 second = deep ? cross(face, first) : Vec3{};
   const int directions = deep ? 8 : 2;
   const auto is_mouth = [&](const Vec3& way) { return is_out(boundary, boundary.domain().inside(add(place, way))); };
-  for (int step = 1; step * to_mouth_step <= to_mouth; ++step)
+  for (int step = 1; step * to_mouth_step <= farthest; ++step)
     for (int k = 0; k < directions; ++k) {
       const double angle = 2 * std::numbers::pi * k / directions;
       const Vec3 along = add(multiply(std::cos(angle), first), multiply(std::sin(angle), second));
@@ -186,7 +213,7 @@ std::optional<Vec3> way_to_mouth(const Boundary& boundary, const Vec3& place, co
 
 }  // namespace
 
-void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity) {
+void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity, const Vec3* from) {
   const BodyWalls& bodies = *boundary.bodies();
   const double least = narrowest_wedge * boundary.spacing();
   if (bodies.surely_farther(place, least)) return;
@@ -199,10 +226,15 @@ void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity) {
   double size = length(outwards);
   Vec3 way{};
   if (size < parallel) {
-    const std::optional<Vec3> out = way_to_mouth(boundary, place, face);
+    const bool holds_rows = least - across->behind > room_for_rows * boundary.spacing();
+    const std::optional<Vec3> out = way_to_mouth(boundary, place, face, holds_rows ? to_mouth_of_rows : to_mouth);
     if (!out) return;
     way = outwards = *out;
     size = length(outwards);
+  } else if (from != nullptr && comes_through(boundary, *from, subtract(place, multiply(before, face)), outwards)) {
+    way = outwards = boundary.domain().shortest(subtract(*from, place));
+    size = length(outwards);
+    if (!(size > 0)) return;
   } else {
     // The distances from the two grow by |outwards| together along their bisector.
     way = multiply(std::min(across->behind / size, longest * boundary.spacing()) / size, outwards);

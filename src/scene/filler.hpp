@@ -124,6 +124,8 @@ class Filler {
     if (too_many()) return false;
     report(chunks);
     gather(chunks);
+    // Bodies that move open pools.
+    if (!layered() && !scene_.walls.empty() && scene_.motions.empty()) leave_out_small_pools();
     return true;
   }
 
@@ -292,6 +294,12 @@ class Filler {
   double rank_of_site(ThreadRegions& own, const Vec3& p) const;
   void choose_sites_beside_walls();
   bool is_open_site(ThreadRegions& own, const Vec3& p) const;
+  // fill_pools.cpp
+  bool is_open_way(const Vec3& from, const Vec3& to) const;
+  bool is_bare(const Vec3& from, const Vec3& to, const std::vector<Vec3>& pool) const;
+  bool is_closed(const std::vector<Vec3>& pool) const;
+  void leave_out_small_pools();
+  void take_out(const std::vector<std::uint8_t>& out);
   void report(const std::vector<std::vector<Chunk>>& chunks);
   void set_volume(const std::vector<std::vector<Chunk>>& chunks);
   bool stands_alone(std::size_t r, const std::vector<std::vector<Chunk>>& chunks) const;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double parallel = 0.1;           // of the sum of two normals: 6 degrees
 constexpr double off_surface = 0.005;      // spacings: nearer walls touch (particles/wall_gaps.cpp)
+constexpr int halvings = 20;               // of the way across a slot
 constexpr double most_along = 64;          // pieces along an edge of a facet
 constexpr std::size_t most_facets = 4000;  // of a mesh, which some of its facets tell to a per cent
 
@@ -106,9 +107,16 @@ std::optional<SlotWidth> slot_at(const Combination& walls, const Domain& domain,
       const double behind = inwards[axis] * ((end == 0 ? domain.lower : domain.upper)[axis] - across[axis]);
       if (behind > 0 && faces(inwards)) return SlotWidth{width - behind, true};
     }
-  const NearestPoint other = walls.nearest(across);
-  if (other.distance < 0 && faces(other.normal)) return SlotWidth{width + other.distance, false};
-  return std::nullopt;
+  if (!(walls.distance(across) < 0)) return std::nullopt;
+  // The face that the way enters by: behind an edge another may be nearer.
+  double in = 1, out = 0;
+  const Vec3 way = subtract(across, place);
+  for (int n = 0; n < halvings; ++n) {
+    const double middle = 0.5 * (in + out);
+    (walls.distance(add(place, multiply(middle, way))) > 0 ? out : in) = middle;
+  }
+  if (!faces(walls.nearest(add(place, multiply(out, way))).normal)) return std::nullopt;
+  return SlotWidth{face.distance + in * length(way), false};
 }
 
 std::vector<Problem> slot_warnings(const Draft& draft, const Scene& scene, const std::string& file) {

@@ -115,6 +115,29 @@ TEST(Pockets, ParticlesAreLedOutOfSlots) {
   }
 }
 
+// An edge 0.2 spacings from a wall: what comes past it from above goes back, what was below is led farther down, and
+// so is what comes along the face.
+TEST(Pockets, NothingComesThroughAThroat) {
+  const LoadedCase loaded = load_text(scene_text(
+      "lower = [-1, 0]\nupper = [1, 2]\nleft = \"free-slip\"\nright = \"free-slip\"\nbottom = \"free-slip\"\n", spacing,
+      "[[body]]\nshape = \"box\"\nsize = [0.6, 0.6]\nposition = [0.5657359313, 1]\nrotation = [45]\n"));
+  const Resolution resolution(2, spacing, KernelKind::wendland_c2, 1.3);
+  const Boundary boundary(loaded.scene.domain, spacing, make_body_walls(loaded.scene, resolution));
+  const auto led = [&](const Vec3& from, Vec3 place, Vec3& velocity) {
+    lead_out_of_wedges(boundary, place, &velocity, &from);
+    return place;
+  };
+  const Vec3 above{0.992, 1.012, 0}, below{0.995, 0.996, 0};
+  Vec3 velocity{0.1, -1, 0};
+  const Vec3 back = led(above, below, velocity);
+  for (std::size_t axis = 0; axis < 2; ++axis) EXPECT_NEAR(back[axis], above[axis], 1e-12);
+  EXPECT_GE(dot(velocity, subtract(above, below)), -1e-12);
+  velocity = {0, -1, 0};
+  EXPECT_LT(led({0.995, 0.98, 0}, below, velocity)[1], below[1]);
+  EXPECT_EQ(velocity[1], -1);
+  EXPECT_LT(led({0.995, 0.995, 0}, below, velocity)[1], below[1]);
+}
+
 // Bubbles, for which a place that is moved is one where they have struck a wall, are not.
 TEST(Pockets, LiquidAloneIsLedOut) {
   const Tank tank;

@@ -299,6 +299,30 @@ TEST(Bodies, SlotsThatHoldNoParticleAreWarnedOf) {
               Contains(HasSubstr("the body 'it' leaves a slot of 0.03, 0.3 spacings, to a side")));
 }
 
+// A body on the floor has a notch there, 2.2 spacings high, with room for four particles; one of six holds more.
+TEST(Bodies, PoolsOfAFewParticlesAreLeftEmptyAndWarnedOf) {
+  const std::string start =
+      test::replaced(test::replaced(head2, "walled", "les-sph"), "[resolution]",
+                     "left = \"free-slip\"\nright = \"free-slip\"\nbottom = \"free-slip\"\n[resolution]");
+  const auto tank = [&](double height, const char* top) {
+    return start + "[[liquid]]\nupper = [1, " + top + "]\n[[body]]\nshape = \"outline\"\npoints = [[-0.9, -1.2], [" +
+           std::to_string(-height) + ", -1], [0, " + std::to_string(-1 + height) + "], [" + std::to_string(height) +
+           ", -1], [0.9, -1.2], [0.9, -0.5], [-0.9, -0.5]]\n";
+  };
+  const LoadedCase small = test::load_text(tank(0.11, "0.9"));
+  std::vector<std::string> texts;
+  for (const Problem& problem : small.options.warnings) texts.push_back(problem.text);
+  EXPECT_THAT(texts, Contains(HasSubstr("in pools of fewer than 7 that bodies close off, left out")));
+  const auto below = [](const LoadedCase& loaded, double y) {
+    int count = 0;
+    for (std::size_t i = 0; i < loaded.scene.particles.size(); ++i)
+      if (std::abs(loaded.scene.particles.position[0][i]) < 0.5 && loaded.scene.particles.position[1][i] < y) ++count;
+    return count;
+  };
+  EXPECT_EQ(below(small, -0.6), 0);
+  EXPECT_GT(below(test::load_text(tank(0.3, "0.9")), -0.6), 20);
+}
+
 // Two plates two spacings thick, the second turned by an angle and across the first or on it; 3-D; and a fold.
 TEST(Bodies, AcuteCornersOfThinBodiesAreWarnedOf) {
   const std::string start = head2 + "[[liquid]]\nlower = [-1, -1]\nupper = [1, 0.9]\n";

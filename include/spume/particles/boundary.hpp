@@ -165,7 +165,9 @@ class Boundary {
   // where it was in the last state, or since; it has passed no thin body then.
   void apply_walls(const WallPositions& at, Vec3& position, Vec3* velocity, const Vec3* from = nullptr) const;
   // The same for a particle of liquid, which is also led out of wedges between bodies and walls (pockets.hpp).
-  void hold_liquid(const WallPositions& at, Vec3& position, Vec3* velocity, const Vec3* from = nullptr) const;
+  // `wedge_from`: where it was as far as wedges are concerned; null: `from`.
+  void hold_liquid(const WallPositions& at, Vec3& position, Vec3* velocity, const Vec3* from = nullptr,
+                   const Vec3* wedge_from = nullptr) const;
 
   // How near to a wall points may come.
   double gap() const;
