@@ -138,7 +138,7 @@ void Filler::leave_out_small_pools() {
     const Vec3 own = table.place(i);
     const bool covered = distance[i] >= far_from_walls * spacing || table.any_near(own, [&](std::size_t j) {
       return distance[j] >= far_from_walls * spacing &&
-             distance[i] + distance[j] > length(subtract(table.place(j), own));
+             distance[i] + far_from_walls * spacing > length(subtract(table.place(j), own));
     });
     if (!covered) state[i] = unknown;
   }

@@ -104,6 +104,11 @@ TEST(Pockets, ParticlesAreLedOutOfSlots) {
       EXPECT_EQ(place[up], before[up]);
       EXPECT_NEAR(velocity[0], 0, 1e-12);
       EXPECT_NEAR(velocity[1], 0.3, 1e-12);
+      // As far as spray goes in a step.
+      Vec3 deep = before;
+      deep[0] -= side * 1.2 * spacing;
+      lead_out_of_wedges(boundary, deep, nullptr);
+      EXPECT_NEAR(deep[0], place[0], 1e-3 * spacing);
       // To the mouth and no farther.
       const Vec3 led = place;
       lead_out_of_wedges(boundary, place, nullptr);
@@ -112,6 +117,25 @@ TEST(Pockets, ParticlesAreLedOutOfSlots) {
       lead_out_of_wedges(boundary, place, nullptr);
       EXPECT_NEAR(place[0], led[0], 3e-3 * spacing);
     }
+  }
+}
+
+// Where a slot between two boxes meets that below them, the box across is entered by its side, though its lower face is
+// nearer to what is behind that.
+TEST(Pockets, TheWallAcrossASlotIsTheFaceBeforeIt) {
+  const LoadedCase loaded = load_text(scene_text(
+      "lower = [-1, 0]\nupper = [1, 2]\nleft = \"free-slip\"\nright = \"free-slip\"\nbottom = \"free-slip\"\n", spacing,
+      "[[body]]\nshape = \"box\"\nsize = [0.6, 0.6]\nposition = [-0.28, 0.315]\n[[body]]\nshape = "
+      "\"box\"\nsize = [0.6, 0.6]\nposition = [0.33, 0.315]\n"));
+  const Resolution resolution(2, spacing, KernelKind::wendland_c2, 1.3);
+  const Boundary boundary(loaded.scene.domain, spacing, make_body_walls(loaded.scene, resolution));
+  const std::optional<WallBehind> across = wall_across(boundary, {0.029, 0.025, 0}, 0.6 * spacing);
+  ASSERT_TRUE(across.has_value());
+  EXPECT_NEAR(across->normal[0], 1, 1e-9);
+  EXPECT_NEAR(across->behind, 0.6 * spacing - 0.01, 0.01 * spacing);
+  for (std::size_t i = 0; i < loaded.scene.particles.size(); ++i) {
+    const double x = loaded.scene.particles.position[0][i] - 0.025, y = loaded.scene.particles.position[1][i];
+    EXPECT_FALSE((std::abs(x) < 0.605 && y < 0.015) || (std::abs(x) < 0.005 && y < 0.615)) << x << ' ' << y;
   }
 }
 
