@@ -40,7 +40,7 @@ bool any_grows(const Scene& scene) {
 
 bool is_outside(const Domain& domain, const Vec3& place) {
   for (int axis = 0; axis < domain.dimensions; ++axis)
-    if (place[axis] < domain.lower[axis] || place[axis] > domain.upper[axis]) return true;
+    if (!domain.periodic(axis) && (place[axis] < domain.lower[axis] || place[axis] > domain.upper[axis])) return true;
   return false;
 }
 
