@@ -23,8 +23,8 @@ constexpr double longest = 0.3;    // spacings, of a way out
 constexpr double thinnest = 0.05;  // spacings, of a plate across a layer
 constexpr double caught = 0.9;     // of the narrowest wedge, for the rounding of how far out of it places are led
 // Spacings: from a place in a slot to its mouth at most, in steps that are halved so often. Particles go 0.4 in a step,
-// spray 1.2. In slots wider than half a spacing rows that the start has placed rest.
-constexpr double to_mouth = 2, to_mouth_of_rows = 0.6, to_mouth_step = 0.1, room_for_rows = 0.5;
+// spray 1.2. In slots of half a spacing rows that the start has placed rest, turned by 0.2 degrees too.
+constexpr double to_mouth = 2, to_mouth_of_rows = 0.6, to_mouth_step = 0.1, room_for_rows = 0.4;
 constexpr int mouth_halvings = 10;
 constexpr double of_same_face = 0.9;  // of the cosine of two normals
 
