@@ -48,7 +48,7 @@ double squared_speed_of_tension(const Scene& scene) {
 
 }  // namespace
 
-double expected_speed(const Scene& scene, double end) {
+double expected_speed(const Scene& scene, double end, bool falls) {
   const Domain& domain = scene.domain;
   const InitialParticles& p = scene.particles;
   double speed2 = std::max(squared_speed_of_tension(scene), std::pow(speed_of_inflows(scene, end), 2)), length = 0;
@@ -56,7 +56,8 @@ double expected_speed(const Scene& scene, double end) {
   for (int axis = 0; axis < domain.dimensions; ++axis) {
     length = std::max(length, domain.upper[axis] - domain.lower[axis]);
     centre[axis] = (domain.lower[axis] + domain.upper[axis]) / 2;
-    speed2 = std::max(speed2, 2 * std::abs(scene.fluid.gravity[axis]) * (domain.upper[axis] - domain.lower[axis]));
+    const double fall2 = 2 * std::abs(scene.fluid.gravity[axis]) * (domain.upper[axis] - domain.lower[axis]);
+    if (falls) speed2 = std::max(speed2, fall2);
   }
   for (int axis = 0; axis < domain.dimensions; ++axis)
     for (const Side& side : domain.sides[axis])

@@ -92,12 +92,12 @@ TEST(WcsphStillWater, StaysStillInAcuteWedges) {
             1e-3);
 }
 
-// A full tank, whose particles are shifted: under the whole weight of the water that stirred it by 0.05.
+// A full tank, whose particles are shifted: under the whole weight of the water that stirred it by 0.05, with the speed
+// of a fall by 0.004.
 TEST(WcsphStillWater, StaysStillInAFullTank) {
   const std::string full = replaced(
       replaced(still_plane, "upper = [1.6, 1.3]", "upper = [1.6, 1.3]\ntop = \"free-slip\""), "upper = [1.6, 1.1]", "");
-  EXPECT_LT(largest_speed_of_still(full, 5), 2e-3);
-  EXPECT_LT(largest_speed_of_still(full, 20), 1e-2);
+  EXPECT_LT(largest_speed_of_still(full, 20), 1e-3);
 }
 
 // The mean pressure of what lies below the height of 0.5.

@@ -13,9 +13,9 @@
 namespace spume::wcsph {
 namespace {
 
-double speed_of(const LoadedCase& loaded) {
+double speed_of(const LoadedCase& loaded, bool falls = true) {
   const double given = loaded.options.get<CompressibilityOptions>().max_speed;
-  return given > 0 ? given : spume::expected_speed(loaded.scene, loaded.options.time.end);
+  return given > 0 ? given : spume::expected_speed(loaded.scene, loaded.options.time.end, falls);
 }
 
 // Particles under tension clump, and pressures below zero would let them: where no hydrostatic pressure keeps them
@@ -75,6 +75,7 @@ Flow::Flow(const LoadedCase& loaded_case)
       phase_density(distinct_densities(laws)),
       wall_gravity(gravity_across_sides(scene)),
       still(still_liquid(scene, features.shifting)),
+      lone_speed(speed_of(loaded_case, features.several || !still)),
       background(background_of(loaded_case, features, expected_speed, laws, still)),
       particles(dimensions, scene.particles),
       openings(features.openings ? std::make_unique<BufferLayers>(scene, resolution, skin, particles) : nullptr),
@@ -176,10 +177,10 @@ PhaseEnergies Flow::energies() const {
                          .background = background});
 }
 
-Fastest::State Flow::moving() const {
+Fastest::State Flow::moving(const double* density_excess) const {
   return {.dimensions = dimensions,
           .law = law_of_particles(),
-          .excess = excess->data(),
+          .excess = density_excess,
           .velocity = read(particles.velocity),
           .acceleration = list_life.together() ? read(acceleration) : std::array<const float*, 3>{},
           .shift = list_life.together() ? read(shift) : std::array<const float*, 3>{}};
@@ -188,7 +189,7 @@ Fastest::State Flow::moving() const {
 void Flow::find_signal() {
   take(parallel_reduce(
       size(), Fastest{},
-      [state = moving()](std::size_t first, std::size_t last) {
+      [state = moving(excess->data())](std::size_t first, std::size_t last) {
         Fastest fastest;
         fastest.take(state, first, last);
         return fastest;

@@ -347,8 +347,7 @@ void Flow::accept(double dt) {
   // Contacts and openings change the new state.
   const bool final = !features.bodies && !features.openings;
   const HalfSteps half = half_steps(dt);
-  Fastest::State state = moving();
-  state.excess = next_excess.data();
+  const Fastest::State state = moving(next_excess.data());
   const Fastest fastest = parallel_reduce(
       size(), Fastest{},
       [&](std::size_t first, std::size_t last) {

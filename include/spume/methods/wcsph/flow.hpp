@@ -67,6 +67,7 @@ struct Flow {
   const std::vector<float> phase_density;  // distinct_densities()
   const Vec3 wall_gravity;                 // across sides: the pressure at walls follows it
   const StillLiquid still;                 // (16)
+  const double lone_speed;                 // U of (7) in one liquid: where it fills its tank not that of a fall
   const double background;
 
   // --- State between steps: saved.
@@ -189,7 +190,7 @@ struct Flow {
   // U of (7). The noise that a shift makes at interfaces goes with it: of several liquids, which buoyancy moves slowly,
   // it is the largest present speed. Those of 1010 and 1000 kg/m3 that exchange a tank turn over to -0.61 of their
   // start with that, to -0.32 with the speed of a free fall, by the method of finite differences to -0.66.
-  double shift_speed() const { return features.several && !features.tension ? present_speed() : expected_speed; }
+  double shift_speed() const { return features.several && !features.tension ? present_speed() : lone_speed; }
   // Density does not diffuse to wall points: they have a phase of their own.
   bool needs_phase() const { return features.several || (features.bodies && !features.shifting); }
   bool needs_viscosity() const { return features.viscosity && needs_phase(); }
@@ -198,7 +199,7 @@ struct Flow {
   void lease_properties();
   void release_leased();
   void find_signal();
-  Fastest::State moving() const;
+  Fastest::State moving(const double* density_excess) const;
   void take(const Fastest& fastest);
 };
 
