@@ -25,7 +25,7 @@ Section compressibility_section() {
               "do not")
       .word("shifting", &C::shifting, {{"auto", Shifting::automatic}, {"on", Shifting::on}, {"off", Shifting::off}},
             "of particles towards an even spacing; auto: in scenes without free surface, of one phase, with surface "
-            "tension, or of liquids that flow in a full tank without openings")
+            "tension, or of liquids that flow in a full tank without bodies and openings")
       .word("interface_pressure", &C::interface_pressure,
             {{"auto", InterfacePressure::automatic},
              {"mean", InterfacePressure::mean},
