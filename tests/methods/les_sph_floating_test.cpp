@@ -142,7 +142,8 @@ TEST(LesSphFloating, ALightBoxRisesFromTheFloorOfATankThatIsFull) {
   EXPECT_LT(run.series()["max_speed"], std::sqrt(2.0));  // of a fall through the tank
 }
 
-// The void below a flat face stays, and nothing has its pressure: what goes wrong there is told before and after.
+// The void below a flat face stays, and nothing has its pressure: the start says so. Where corrections of gradients do
+// not fade beside it the body was thrown to the lid and the run ended.
 TEST(LesSphFloating, AGapBelowABoxInATankThatIsFullIsRemarkedOn) {
   Simulation run(full_tank + light_box + "position = [0.5, 0.11]\n");
   run.steps(1, 1e-3);
@@ -154,13 +155,8 @@ TEST(LesSphFloating, AGapBelowABoxInATankThatIsFullIsRemarkedOn) {
   lies.steps(1, 1e-3);
   EXPECT_THAT(lies.method.take_remarks(),
               testing::Not(testing::Contains(testing::Field(&Remark::text, testing::HasSubstr("floats in liquid")))));
-  std::string cause;
-  while (cause.empty() && run.method.time() < 1.9) try {
-      run.steps(1, std::min(0.02, run.method.step_limit().dt));
-    } catch (const StepFailure& failure) {
-      cause = failure.details().cause;
-    }
-  EXPECT_THAT(cause, testing::HasSubstr("a body that floats moves ten times as fast"));
+  while (run.method.time() < 1.9) run.steps(1, std::min(0.02, run.method.step_limit().dt));
+  EXPECT_GT(row_of(run, 0).y, 0.2);
 }
 
 TEST(LesSphFloating, GivesTheSameBitsForAnyNumberOfThreads) {
