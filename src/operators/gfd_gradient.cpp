@@ -56,19 +56,30 @@ void gradient_over_density(const SweepContext& context, PackedNeighbours& packed
   });
 }
 
-template <int dimensions, class Kernel>
-void divergence_of(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
-                   const VelocityImageRule& rule, const std::array<const float*, 6>& correction, double* out) {
+// row(i, u_i, each): each(use) calls use(batch) for the neighbours of particle i, whose payload is their velocity.
+template <int dimensions, class Row>
+void sweep_velocities(const SweepContext& context, PackedNeighbours& packed,
+                      const std::array<const double*, 3>& velocity, const VelocityImageRule& rule, const Row& row) {
   constexpr int width = record_width(dimensions, dimensions);
   float* records = packed.prepare(context, dimensions);
   pack_velocity(context, records, width, 0, velocity, rule);
   const float inverse_h = inverse_width(context);
   sweep(context.list->particles(), [&](std::size_t i) {
-    const float* own = records + i * width + dimensions;
+    row(
+        i, records + i * width + dimensions, [&](const auto& use) __attribute__((always_inline)) {
+          for_each_batch<dimensions, dimensions>(*context.list, records, i, inverse_h, use);
+        });
+  });
+}
+
+template <int dimensions, class Kernel>
+void divergence_of(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
+                   const VelocityImageRule& rule, const std::array<const float*, 6>& correction, double* out) {
+  sweep_velocities<dimensions>(context, packed, velocity, rule, [&](std::size_t i, const float* own, const auto& each) {
     std::array<float, symmetric_entries<dimensions>> b_of;
     for (std::size_t k = 0; k < b_of.size(); ++k) b_of[k] = correction[k][i];
     f32n sum{};
-    for_each_batch<dimensions, dimensions>(*context.list, records, i, inverse_h, [&](const auto& b) {
+    each([&](const auto& b) {
       f32n product{};
       for (int a = 0; a < dimensions; ++a) {
         f32n along{};
@@ -85,16 +96,11 @@ template <int dimensions, class Kernel>
 void change_of(const SweepContext& context, PackedNeighbours& packed, const std::array<const double*, 3>& velocity,
                const VelocityImageRule& rule, const std::array<const float*, 6>& correction,
                const std::array<const float*, 3>& displacement, const std::array<float*, 3>& out) {
-  constexpr int width = record_width(dimensions, dimensions);
-  float* records = packed.prepare(context, dimensions);
-  pack_velocity(context, records, width, 0, velocity, rule);
-  const float inverse_h = inverse_width(context);
-  sweep(context.list->particles(), [&](std::size_t i) {
-    const float* own = records + i * width + dimensions;
+  sweep_velocities<dimensions>(context, packed, velocity, rule, [&](std::size_t i, const float* own, const auto& each) {
     const auto direction = symmetric_product<dimensions>(correction, i, own_vector<dimensions>(displacement, i));
     std::array<f32n, dimensions> sum{};
     std::array<f32n, 2 * dimensions> bounds{};  // the largest u_i - u_j, then u_j - u_i; of none 0
-    for_each_batch<dimensions, dimensions>(*context.list, records, i, inverse_h, [&](const auto& b) {
+    each([&](const auto& b) {
       f32n along{};
       for (int c = 0; c < dimensions; ++c) along = along + direction[c] * b.d[c];
       along = Kernel::w(b.q) * along;

@@ -133,6 +133,20 @@ TEST(WcsphFullTanks, WaterAroundBodiesStaysStillAndLiftsThemByTheirWeight) {
   EXPECT_NEAR(rows[width + 3], 0.06, 0.005 * 0.06);
 }
 
+// A lid that sets out from rest: the scene at its start tells no speed, and particles would not be shifted.
+TEST(WcsphFullTanks, ALidThatSetsOutFromRestShiftsWhatItMoves) {
+  WcsphRun run(replaced(full_tank("gravity = 1\n", "0.01", ""), "top = \"free-slip\"\n",
+                        "top = \"no-slip\"\nwall_velocity.top = [\"0.5*min(1, t)\", \"0\"]\n"));
+  run.prepare();
+  until(run, 2);
+  const wcsph::Flow& flow = run.method.flow();
+  EXPECT_EQ(flow.lone_speed, 0);
+  double moved = 0;
+  for (std::size_t i = 0; i < flow.size(); ++i) moved = std::max(moved, std::abs(double{(*flow.shift[0])[i]}));
+  EXPECT_GT(moved, 0);
+  EXPECT_LT(moved, 0.5 * 0.5 * 1.05);  // half of the largest speed at most
+}
+
 // Gravity moves nothing in a tank that one liquid fills: by whole pressures it made 45 times the kinetic energy of a
 // stirrer that turns by 2 degrees in a second.
 TEST(WcsphFullTanks, AStirrerMovesTheLiquidAsWithoutGravity) {
