@@ -8,13 +8,12 @@
 namespace spume {
 
 void save_fields(const FieldSet& fields, StateWriter& writer) {
-  Array<double> wide;  // floats are saved as the doubles that they are
   for (const auto& field : fields.fields()) {
     if (field->lifetime != Lifetime::state) continue;
     if (const auto* f64 = std::get_if<Array<double>>(&field->values)) writer.f64(field->name, *f64);
     if (const auto* i64 = std::get_if<Array<std::int64_t>>(&field->values)) writer.i64(field->name, *i64);
     if (const auto* f32 = std::get_if<Array<float>>(&field->values)) {
-      wide.resize(f32->size());
+      ScratchArray<double> wide(fields.scratch(), f32->size());  // floats are saved as the doubles that they are
       std::copy(f32->begin(), f32->end(), wide.begin());
       writer.f64(field->name, wide);
     }

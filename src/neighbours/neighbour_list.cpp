@@ -316,7 +316,7 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles,
   std::uint16_t* const codes = code_.data();
   std::int32_t* const bases = base_.data();
   std::int32_t* const counts = count_.data();
-  std::int64_t* const firsts = first_.data();
+  std::uint32_t* const firsts = first_.data();
   std::int32_t* const indices = index_.data();
   const std::int32_t nobody = entry_scale * sentinel();
 
@@ -398,14 +398,16 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles,
       encoded.copy_to(codes + target * pair_lanes, bases + target);
     else
       stream(collected.data(), filled, indices + target);
-    std::int64_t running = target;
+    std::int64_t running = narrow ? target : target / simd::lanes;
     for (std::size_t i = begin; i < end; ++i) {
-      firsts[i] = running;
-      running += narrow ? counts[i] : padded(counts[i]);
+      firsts[i] = static_cast<std::uint32_t>(running);
+      running += narrow ? counts[i] : padded(counts[i]) / simd::lanes;
     }
   });
   pairs_ = found;
   const std::int64_t wanted = used;
+  if (wanted / (narrow ? 1 : simd::lanes) > std::numeric_limits<std::uint32_t>::max())
+    throw std::length_error("neighbour lists hold at most 3e10 entries, here are " + std::to_string(found.load()));
   const bool found_room = wanted <= capacity;
   // A little more than this step needs, so that a flow that compresses slowly does not search twice again.
   const auto room = static_cast<std::size_t>(found_room ? wanted : wanted + wanted / 32);

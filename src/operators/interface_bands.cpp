@@ -90,12 +90,9 @@ void InterfaceBands::build(const SweepContext& context, const CellGrid& grid, co
   parallel_for(context.images->size(), [&](std::size_t k) { point_phase_[n + k] = phase[source[k]]; });
   const auto find_mixed = [&](std::int32_t from, std::int32_t to, bool several) {
     for (std::int32_t i = from; i < to; ++i) {
-      bool differs = false;
-      if (several) {
-        const auto listed = context.list->of(static_cast<std::size_t>(i));
-        differs = std::any_of(listed.begin(), listed.end(),
-                              [&, own = phase[i]](std::int32_t j) { return point_phase_[j] != own; });
-      }
+      const bool differs =
+          several && context.list->any_of(static_cast<std::size_t>(i),
+                                          [&, own = phase[i]](std::int32_t j) { return point_phase_[j] != own; });
       near_[i] = differs ? mixed_flag : 0;
     }
   };
@@ -109,10 +106,11 @@ void InterfaceBands::build(const SweepContext& context, const CellGrid& grid, co
   });
   parallel_select(n, mixed_, [&](std::size_t i) { return near_[i] == mixed_flag; });
   parallel_for(mixed_.size(), [&](std::size_t k) {
-    for (const std::int32_t j : context.list->of(static_cast<std::size_t>(mixed_[k]))) {
+    context.list->any_of(static_cast<std::size_t>(mixed_[k]), [&](std::int32_t j) {
       std::atomic_ref<std::uint8_t> mark(near_[j < particles ? j : source[j - particles]]);
       if (mark.load(std::memory_order_relaxed) == 0) mark.store(varying_flag, std::memory_order_relaxed);
-    }
+      return false;
+    });
   });
   parallel_select(n, varying_, [&](std::size_t i) { return near_[i] != 0; });
 }

@@ -85,12 +85,8 @@ InterfaceMeasure::InterfaceMeasure(const InterfaceView& view, Colour& colour, bo
   const std::size_t n = arrangement.list.particles();
   const int dimensions = arrangement.context.dimensions;
   view_.scratch.lease(normal_, dimensions, n);
-  view_.scratch.lease(gradient_, dimensions, n);
+  find_normals_and_area();
   for (Array<float>* array : {&curvature_, &weight_, &potential_}) view_.scratch.lease(*array, n);
-  ScratchArray<float> ones(view_.scratch, n);
-  ones.fill(1.0F);
-  interface_normal_sweep(arrangement.context, arrangement.packed, view_.bands, colour_.value.data(), ones.data(),
-                         view_.correction, band_threshold, {write(gradient_), write(normal_)});
   if (curved)
     curvature_sweep(arrangement.context, arrangement.packed, facing_, read(normal_), view_.reflection,
                     curvature_.data());
@@ -100,18 +96,30 @@ InterfaceMeasure::InterfaceMeasure(const InterfaceView& view, Colour& colour, bo
     weight_[i] = static_cast<float>(band_weight(colour_.value[i]));
     potential_[i] = colour_.potential[i] = 0;
   });
-  const auto& band = view_.bands.varying();
-  colour_.area = view_.particle_volume * parallel_sum(band.size(), [&](std::size_t s) {
-                   const auto i = static_cast<std::size_t>(band[s]);
-                   if (view_.left_out != nullptr && (*view_.left_out)[i] >= 0) return 0.0;
-                   return std::sqrt(squared_norm(gradient_, dimensions, i));
-                 });
 }
 
 InterfaceMeasure::~InterfaceMeasure() {
   view_.scratch.release(normal_);
-  view_.scratch.release(gradient_);
   for (Array<float>* array : {&curvature_, &weight_, &potential_}) view_.scratch.release(*array);
+}
+
+// The gradients, three numbers a particle, are given back before other arrays are leased.
+void InterfaceMeasure::find_normals_and_area() {
+  Arrangement& arrangement = view_.arrangement;
+  const int dimensions = arrangement.context.dimensions;
+  ScratchArray<float> ones(view_.scratch, arrangement.list.particles());
+  ones.fill(1.0F);
+  FloatVectorScratch gradient;
+  view_.scratch.lease(gradient, dimensions, arrangement.list.particles());
+  interface_normal_sweep(arrangement.context, arrangement.packed, view_.bands, colour_.value.data(), ones.data(),
+                         view_.correction, band_threshold, {write(gradient), write(normal_)});
+  const auto& band = view_.bands.varying();
+  colour_.area = view_.particle_volume * parallel_sum(band.size(), [&](std::size_t s) {
+                   const auto i = static_cast<std::size_t>(band[s]);
+                   if (view_.left_out != nullptr && (*view_.left_out)[i] >= 0) return 0.0;
+                   return std::sqrt(squared_norm(gradient, dimensions, i));
+                 });
+  view_.scratch.release(gradient);
 }
 
 double InterfaceMeasure::distance(std::size_t i) const {

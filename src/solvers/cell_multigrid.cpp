@@ -31,8 +31,8 @@ void CellMultigrid::spread(const float* r) {
                         to[s] = partial_.data() + (static_cast<std::size_t>(s) * level.rows() + row) * pitch;
                         std::fill_n(to[s], pitch, 0.0F);
                       }
-                      const std::int32_t* start = start_.data() + row * static_cast<std::size_t>(n[0]);
-                      if (row_total_[row] == row_total_[row + 1]) continue;
+                      const std::int32_t* start = start_.data() + level.corner_row(row) * level.corner_columns();
+                      if (start[0] == start[n[0]]) continue;
                       for (int i = 0; i < n[0]; ++i) {
                         if (start[i] == start[i + 1]) continue;
                         f32x8 sum{};
@@ -157,7 +157,7 @@ void CellMultigrid::apply_any(std::span<const Real> r, std::span<Real> z) {
 
 double CellMultigrid::bytes() const {
   double total = stencil_.bytes() + status_.bytes() + hierarchy_.bytes();
-  for (const auto* array : {&corner_, &stencil_cell_, &rank_, &start_, &order_, &row_total_}) total += array->bytes();
+  for (const auto* array : {&corner_, &start_, &order_, &row_total_}) total += array->bytes();
   for (const auto* array : {&open_volume_, &open_face_[0], &open_face_[1], &open_face_[2], &cell_coefficient_,
                             &partial_, &corner_value_, &residual_, &correction_})
     total += array->bytes();

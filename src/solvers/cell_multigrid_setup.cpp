@@ -163,15 +163,14 @@ void CellMultigrid::bin(std::span<const double> const (&position)[3], std::span<
     for (std::size_t p = first; p < last; ++p) place(p, position, interior[p]);
     // Apart from the loop above: a locked increment waits for every store before it.
     for (std::size_t p = first; p < last; ++p)
-      if (corner_[p] >= 0)
-        rank_[p] = std::atomic_ref<std::int32_t>(start_[static_cast<std::size_t>(stencil_cell_[p])])
-                       .fetch_add(1, std::memory_order_relaxed);
+      if (corner_[p] >= 0) start_of(p).fetch_add(1, std::memory_order_relaxed);
   });
-  counts_to_starts();
+  counts_to_ends();
+  // Each particle takes the last free place of its cell: where all have theirs, the ends have become starts.
   parallel_blocks(particles_, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p)
       if (corner_[p] >= 0)
-        order_[static_cast<std::size_t>(start_[static_cast<std::size_t>(stencil_cell_[p])] + rank_[p])] =
+        order_[static_cast<std::size_t>(start_of(p).fetch_sub(1, std::memory_order_relaxed) - 1)] =
             static_cast<std::int32_t>(p);
   });
   sort_cells();
@@ -179,17 +178,18 @@ void CellMultigrid::bin(std::span<const double> const (&position)[3], std::span<
 
 void CellMultigrid::clear_cells() {
   const CellLevel& level = hierarchy_.finest();
-  const std::size_t stencil_cells = level.rows() * static_cast<std::size_t>(level.cells[0]);
+  const std::size_t cells = level.rows() * static_cast<std::size_t>(level.cells[0]);
+  const std::size_t corners = level.corner_rows() * level.corner_columns();
   stencil_.resize(particles_);
   corner_.resize(particles_);
-  rank_.resize(particles_);
-  stencil_cell_.resize(particles_);
   order_.resize(particles_);
-  start_.resize(stencil_cells + 1);
-  status_.resize(stencil_cells);
-  row_total_.resize(level.rows() + 1);
-  parallel_blocks(stencil_cells, 16 * default_block, [&](std::size_t, std::size_t first, std::size_t last) {
+  start_.resize(corners + 1);
+  status_.resize(cells);
+  row_total_.resize(level.corner_rows());
+  parallel_blocks(corners, 16 * default_block, [&](std::size_t, std::size_t first, std::size_t last) {
     std::fill(start_.data() + first, start_.data() + last, 0);
+  });
+  parallel_blocks(cells, 16 * default_block, [&](std::size_t, std::size_t first, std::size_t last) {
     std::fill(status_.data() + first, status_.data() + last, std::uint8_t{no_liquid});
   });
 }
@@ -232,27 +232,29 @@ void CellMultigrid::place(std::size_t p, std::span<const double> const (&positio
            static_cast<std::size_t>(cell[0]);
   };
   corner_[p] = static_cast<std::int32_t>(index(at.lowest, n[0] + 1, n[1] + 1));
-  stencil_cell_[p] = static_cast<std::int32_t>(index(at.lowest, n[0], n[1]));
   const std::atomic_ref<std::uint8_t> status(status_[index(at.own, n[0], n[1])]);
   if (status.load(std::memory_order_relaxed) != interior_cell) status.store(interior_cell, std::memory_order_relaxed);
 }
 
-// From how many particles a cell holds to where its list begins.
-void CellMultigrid::counts_to_starts() {
+std::atomic_ref<std::int32_t> CellMultigrid::start_of(std::size_t particle) {
+  return std::atomic_ref<std::int32_t>(start_[static_cast<std::size_t>(corner_[particle])]);
+}
+
+// From how many particles a cell holds to where its list ends.
+void CellMultigrid::counts_to_ends() {
   const CellLevel& level = hierarchy_.finest();
-  const auto columns = static_cast<std::size_t>(level.cells[0]);
+  const std::size_t columns = level.corner_columns(), rows = level.corner_rows();
   const auto row_cells = [&](std::size_t row) { return start_.data() + row * columns; };
-  parallel_blocks(level.rows(), level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
+  parallel_blocks(rows, level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t row = first; row < last; ++row)
       row_total_[row] = std::accumulate(row_cells(row), row_cells(row) + columns, std::int32_t{0});
   });
   std::int32_t running = 0;
-  for (std::size_t row = 0; row < level.rows(); ++row) running += std::exchange(row_total_[row], running);
-  row_total_[level.rows()] = running;
-  start_[level.rows() * columns] = running;
-  parallel_blocks(level.rows(), level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
+  for (std::size_t row = 0; row < rows; ++row) running += std::exchange(row_total_[row], running);
+  start_[rows * columns] = running;
+  parallel_blocks(rows, level.rows_per_block(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t row = first; row < last; ++row)
-      std::exclusive_scan(row_cells(row), row_cells(row) + columns, row_cells(row), row_total_[row]);
+      std::inclusive_scan(row_cells(row), row_cells(row) + columns, row_cells(row), std::plus<>(), row_total_[row]);
   });
 }
 

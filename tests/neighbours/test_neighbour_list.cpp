@@ -104,6 +104,17 @@ std::size_t batches_of(const NeighbourList& list) {
   return sum;
 }
 
+// What any_of() asks of a list, to its end and up to the entry `last`.
+std::vector<std::int32_t> asked(const NeighbourList& list, std::size_t i, std::int32_t last = -1) {
+  std::vector<std::int32_t> entries;
+  const bool found = list.any_of(i, [&](std::int32_t j) {
+    entries.push_back(entry_scale * j);
+    return entries.back() == last;
+  });
+  EXPECT_EQ(found, last >= 0);
+  return entries;
+}
+
 // Points are numbered beyond what 16 bits reach, and images far from the particles that see them.
 TEST(NarrowLists, HoldWhatTheOthersHoldInTheSameOrder) {
   for (const int points_across : {40, 280}) {
@@ -114,13 +125,20 @@ TEST(NarrowLists, HoldWhatTheOthersHoldInTheSameOrder) {
     for (std::size_t i = 0; i < hood.n; ++i) {
       wide[i].assign(hood.list.begin(i), hood.list.begin(i) + hood.list.count(i));
       whole += (wide[i].size() + simd::pair_lanes - 1) / simd::pair_lanes;
+      ASSERT_EQ(asked(hood.list, i), wide[i]) << i;
     }
     const double bytes = hood.list.list_bytes();
     hood.list.keep_narrow();
     for (const int threads : {1, 3}) {
       omp_set_num_threads(threads);
       hood.build();
-      for (std::size_t i = 0; i < hood.n; ++i) ASSERT_EQ(decoded(hood.list, i), wide[i]) << i;
+      for (std::size_t i = 0; i < hood.n; ++i) {
+        ASSERT_EQ(decoded(hood.list, i), wide[i]) << i;
+        ASSERT_EQ(asked(hood.list, i), wide[i]) << i;
+      }
+      const std::size_t half = wide[0].size() / 2;
+      EXPECT_EQ(asked(hood.list, 0, wide[0][half]),
+                std::vector<std::int32_t>(wide[0].begin(), wide[0].begin() + static_cast<std::ptrdiff_t>(half) + 1));
     }
     // One batch more than there must be where images are too far for the base of the particles, and nowhere else.
     EXPECT_GE(batches_of(hood.list), whole);

@@ -47,16 +47,16 @@ class FieldSet {
   const std::vector<std::unique_ptr<Field>>& fields() const { return fields_; }
   double bytes() const;  // of the fields and of the scratch memory that is not leased now
 
-  // Memory that the users of these fields share within a step; permute() takes what it needs from it.
-  ScratchPool& scratch() { return scratch_; }
-  const ScratchPool& scratch() const { return scratch_; }
+  // Memory that the users of these fields share within a step, no part of what they hold; permute() and save_fields()
+  // take what they need from it.
+  ScratchPool& scratch() const { return scratch_; }
 
  private:
   Field& find_or_add(std::string_view name, Lifetime lifetime, decltype(Field::values) empty);
 
   std::vector<std::unique_ptr<Field>> fields_;
   std::size_t size_ = 0;
-  ScratchPool scratch_;
+  mutable ScratchPool scratch_;
 };
 
 }  // namespace spume

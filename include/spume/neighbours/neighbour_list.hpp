@@ -81,11 +81,11 @@ class NeighbourList {
   void keep_narrow() { narrow_ = true; }
   bool narrow() const { return narrow_; }
   NarrowBatches batches(std::size_t i) const {
-    const auto first = static_cast<std::size_t>(first_[i]);
+    const std::size_t first = first_[i];
     return {code_.data() + first * simd::pair_lanes, base_.data() + first, static_cast<std::size_t>(count_[i])};
   }
 
-  // Throws std::length_error for more points than entries can number, 5e8.
+  // Throws std::length_error for more points than entries can number, 5e8, and for more than 3e10 entries.
   // Positions must be sorted by `particles` (of `grid`). Coordinates are kept as floats relative to
   // `origin`: a domain 1000 spacings across is resolved to 6e-5 spacings.
   void build(const CellGrid& grid, const CellOrder& particles, const double* x, const double* y, const double* z,
@@ -104,6 +104,23 @@ class NeighbourList {
   std::size_t points() const { return points_; }  // particles and images
   std::int32_t sentinel() const { return static_cast<std::int32_t>(points_); }
   std::int64_t pair_count() const { return pairs_; }  // directed, without padding
+  // Whether one of the points in the list of i has a property, has(j), however lists are kept; none is asked after it.
+  template <class Has>
+  bool any_of(std::size_t i, Has&& has) const {
+    if (!narrow_) {
+      for (const std::int32_t j : of(i))
+        if (has(j)) return true;
+      return false;
+    }
+    const NarrowBatches some = batches(i);
+    for (std::size_t b = 0; b < some.size; ++b) {
+      const std::uint16_t* const code = some.code + b * simd::pair_lanes;
+      const std::int32_t base = some.base[b] / entry_scale;
+      for (int l = 0; l < simd::pair_lanes && (l == 0 || code[l] != code[0]); ++l)
+        if (has(base + code[l])) return true;
+    }
+    return false;
+  }
   // Of all lists, with their padding.
   double list_bytes() const {
     return 4.0 * static_cast<double>(index_.size() + base_.size()) + 2.0 * static_cast<double>(code_.size());
@@ -112,7 +129,7 @@ class NeighbourList {
   std::int32_t count(std::size_t i) const { return count_[i]; }
   const std::int32_t* counts() const { return count_.data(); }
   // Entries, padded with that of the sentinel.
-  const std::int32_t* begin(std::size_t i) const { return index_.data() + first_[i]; }
+  const std::int32_t* begin(std::size_t i) const { return index_.data() + std::size_t{simd::lanes} * first_[i]; }
   const std::int32_t* padded_end(std::size_t i) const { return begin(i) + (count_[i] + 7) / 8 * 8; }
   ListedPoints of(std::size_t i) const {
     if (narrow_) throw std::logic_error("narrow lists are read batch by batch");
@@ -130,7 +147,7 @@ class NeighbourList {
   std::array<Array<float>, 3> coordinate_;
   bool narrow_ = false;
   Array<std::int32_t> index_, count_;  // narrow: none, and batches
-  Array<std::int64_t> first_;          // narrow: batch
+  Array<std::uint32_t> first_;         // eight entries; narrow: batch
   Array<std::uint16_t> code_;
   Array<std::int32_t> base_;
   std::size_t points_ = 0;

@@ -64,6 +64,7 @@ class InterfaceMeasure {
   }
 
  private:
+  void find_normals_and_area();
   static double averages_of_height();
   double distance(std::size_t i) const;  // from the interface along the normal
   // A potential from value(i, distance), measured through `averages` of the kernel.
@@ -81,7 +82,7 @@ class InterfaceMeasure {
   const std::span<const std::int32_t> facing_;
   Colour& colour_;
   const double width_;  // of the kernel
-  FloatVectorScratch normal_, gradient_;
+  FloatVectorScratch normal_;
   Array<float> curvature_, weight_, potential_;
 };
 

@@ -31,6 +31,13 @@ struct CellLevel {
   std::size_t rows() const { return static_cast<std::size_t>(cells[1]) * static_cast<std::size_t>(cells[2]); }
   std::size_t pitch() const { return static_cast<std::size_t>(cells[0]) + 2; }
   std::size_t row_start(std::size_t row) const { return row * pitch() + 1; }
+  // Of arrays with one entry more along each row and one row more along y, whose entries stand for the lowest of the
+  // cells between whose centres a place lies.
+  std::size_t corner_columns() const { return static_cast<std::size_t>(cells[0]) + 1; }
+  std::size_t corner_rows() const {
+    return (static_cast<std::size_t>(cells[1]) + 1) * static_cast<std::size_t>(cells[2]);
+  }
+  std::size_t corner_row(std::size_t row) const { return row + row / static_cast<std::size_t>(cells[1]); }
   std::size_t rows_per_block() const;  // rows that make a parallel block worth its dispatch
   void resize(const std::array<int, 3>& size, int axes_of_faces);
 };

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -101,7 +102,8 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
   void clear_cells();
   bool place_along(std::size_t axis, double position, CellPlace& place) const;  // false: not at a finite place
   void place(std::size_t p, std::span<const double> const (&position)[3], float interior);
-  void counts_to_starts();
+  std::atomic_ref<std::int32_t> start_of(std::size_t particle);  // of the list of its stencil cell
+  void counts_to_ends();
   void sort_cells();
   void bin(std::span<const double> const (&position)[3], std::span<const float> interior);
   void mark_solids();
@@ -125,15 +127,13 @@ class CellMultigrid final : public Preconditioner<float>, public Preconditioner<
   std::size_t particles_ = 0;
   bool empty_ = true;  // no interior particle: M = D^-1
 
-  Array<Stencil> stencil_;            // per particle
-  Array<std::int32_t> corner_;        // per particle: lowest cell of the stencil in the corner array, -1 for none
-  Array<std::int32_t> stencil_cell_;  // per particle: lowest cell of the stencil among the cells
-  Array<std::int32_t> rank_;          // per particle: arrival order within its stencil cell
-  std::span<const float> diagonal_;   // the caller's
-  Array<std::int32_t> start_;         // per stencil cell: first entry in order_
-  Array<std::int32_t> order_;         // particles sorted by stencil cell, then by index
-  Array<std::int32_t> row_total_;     // particles per row of stencil cells
-  Array<std::uint8_t> status_;        // per cell: empty, interior or solid
+  Array<Stencil> stencil_;           // per particle
+  Array<std::int32_t> corner_;       // per particle: lowest cell of the stencil in the corner array, -1 for none
+  std::span<const float> diagonal_;  // the caller's
+  Array<std::int32_t> start_;        // per entry of the corner array but for its last plane: first entry in order_
+  Array<std::int32_t> order_;        // particles sorted by stencil cell, then by index
+  Array<std::int32_t> row_total_;    // particles before each row of that
+  Array<std::uint8_t> status_;       // per cell: empty, interior or solid
   Array<float> open_volume_, open_face_[3];  // open fractions, only with solids
   // Solid cells beside liquid, which particles before the solid interpolate between: each has the mean of the liquid
   // across its faces, else its edges, else its corners, cells shore_next_[k] for k from shore_first_[s] to

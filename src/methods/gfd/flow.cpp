@@ -271,8 +271,7 @@ double Flow::leased_bytes() const {
     for (const auto& array : *vector) add(array);
   for (const auto* vector : {&intermediate_velocity, &next_velocity})
     for (const auto& array : *vector) add(array);
-  add(divergence, source, reduced_pressure, reciprocal_density, rows.diagonal, rows.right_hand_side,
-      moments.kernel_sum);
+  add(divergence, reduced_pressure, reciprocal_density, rows.diagonal, rows.right_hand_side, moments.kernel_sum);
   return sum;
 }
 

@@ -201,13 +201,19 @@ void Flow::set_matrix(double dt) {
   const std::size_t n = size();
   ScratchPool& scratch = particles.scratch();
   scratch.release(moments.kernel_sum);
-  scratch.lease(source, n);
+  scratch.lease(rows.right_hand_side, n);
+  rows.source_norm = std::sqrt(parallel_sum(n, [&](std::size_t i) {
+    const double value = in_domain(i) ? -particles.volume * divergence[i] / dt : 0.0;
+    rows.right_hand_side[i] = value;
+    return value * value;
+  }));
+  scratch.release(divergence);
+  ScratchArray<double> source(scratch, n);  // of the forces at interfaces
   source.fill(0.0);
   scratch.lease(force_acceleration, features.interfaces ? dimensions : 0, n);
   for (int axis = 0; axis < dimensions && features.interfaces; ++axis) force_acceleration[axis].fill(0.0F);
   if (!incremental) add_interface_forces({write(force_acceleration), source.data()});
   for (Array<float>* array : {&rows.diagonal, &reciprocal_density}) scratch.lease(*array, n);
-  scratch.lease(rows.right_hand_side, n);
   GfdPressureMatrix pairs{stencils(), density_property()};
   if (features.openings) {
     layers->give_pressures(time + dt, read(particles.velocity),
@@ -224,17 +230,11 @@ void Flow::set_matrix(double dt) {
     if (!in_domain(i)) rows.diagonal[i] = 0;
   });
   rows.coefficient = reciprocal_density.data();
-  const auto of_divergence = [&](std::size_t i) { return in_domain(i) ? -particles.volume * divergence[i] / dt : 0.0; };
-  const double squares = parallel_sum(n, [&](std::size_t i) {
-    const double value = in_domain(i) ? of_divergence(i) - particles.volume * source[i] : 0.0;
-    rows.right_hand_side[i] = value;
-    return value * value;
-  });
-  rows.reference_norm = std::sqrt(squares);
-  rows.source_norm = std::sqrt(parallel_sum(n, [&](std::size_t i) { return std::pow(of_divergence(i), 2); }));
+  rows.reference_norm = std::sqrt(parallel_sum(n, [&](std::size_t i) {
+    if (in_domain(i)) rows.right_hand_side[i] -= particles.volume * source[i];
+    return rows.right_hand_side[i] * rows.right_hand_side[i];
+  }));
   if (incremental) rows.reference_norm = std::hypot(rows.reference_norm, last_norm());
-  scratch.release(divergence);
-  scratch.release(source);
 }
 
 // What the last pressure brings to the right-hand side of the whole one.

@@ -90,8 +90,8 @@ Flow::Flow(const LoadedCase& loaded_case)
       solutes(particles, resolution, options, scene),
       solute_transport(
           {solutes, particles, arrangement, boundary, scene.spacing, features.shifting, scene.free_surface}) {
-  // Bands of interfaces and averages behind walls and openings read lists one neighbour at a time.
-  if (!features.tension && !features.bodies && !features.openings) arrangement.list.keep_narrow();
+  // Averages behind walls and openings read lists one neighbour at a time.
+  if (!features.bodies && !features.openings) arrangement.list.keep_narrow();
   arrangement.context.gradient_scale = dimensions / resolution.lattice.divergence_of_position;
   FieldSet& fields = particles.fields;
   particles.add_vector(acceleration, "acceleration", Lifetime::state);

@@ -122,7 +122,7 @@ struct Flow {
   FloatVectorScratch viscosity_gradient;  // <grad mu / rho>
   FloatVectorScratch viscous_acceleration, force_acceleration, shift_velocity;
   VectorScratch intermediate_velocity, next_velocity;
-  Array<double> divergence, source, reduced_pressure;
+  Array<double> divergence, reduced_pressure;
   Array<float> reciprocal_density;
   PressureRows rows;
 
