@@ -19,10 +19,23 @@ constexpr double touching = 1e-3;
 // Mean of the normals around a point within a flat face: they turn by less than 1e-5, as over half a spacing of a ball
 // of 50,000. Places of facets are bisected to 1e-12, and facets as short as 1e-6 turn by 1e-6 of that.
 constexpr double flat = 1 - 1e-11;
+// Of the sine between a direction and the axis of a cylinder: along it an end reaches farther.
+constexpr double least_across = 0.1;
 
-// Of a sphere that moves as its body does, what reaches farthest along a direction.
-Vec3 farthest_of(const FittedSphere& sphere, const RigidPlace& place, const Vec3& direction) {
-  return add(place.now(sphere.centre), multiply(place.scale * sphere.radius, direction));
+// Of a sphere that moves as its body does, what reaches farthest along a direction; of a cylinder as far along its axis
+// as a place. None where the direction leads along that.
+std::optional<Vec3> farthest_of(const FittedSphere& sphere, const RigidPlace& place, const Vec3& direction,
+                                const Vec3& at) {
+  Vec3 centre = place.now(sphere.centre), way = direction;
+  if (dot(sphere.along, sphere.along) > 0) {
+    const Vec3 axis = place.direction_now(sphere.along);
+    way = subtract(way, multiply(dot(axis, way), axis));
+    const double size = length(way);
+    if (size < least_across) return std::nullopt;
+    way = multiply(1 / size, way);
+    centre = add(centre, multiply(dot(axis, subtract(at, centre)), axis));
+  }
+  return add(centre, multiply(place.scale * sphere.radius, way));
 }
 
 // Spacings around a point that a sphere is fitted to: at least two rows of nodes on all sides.
@@ -120,6 +133,8 @@ void BodyContacts::fit_spheres(const std::vector<SurfacePiece>& pieces, std::siz
     std::vector<Vec3> around;
     for (std::size_t k = 1; k < found.size(); ++k) around.push_back(place[found[k]]);
     point.round = fitted_sphere(point.start, facing[first + n], around, scene_.domain.dimensions);
+    if (!point.round && scene_.domain.dimensions == 3)
+      point.round = fitted_cylinder(point.start, facing[first + n], around);
     // More than a sixth of the circle to a side: few places tell it from an edge.
     if (point.round && point.round->radius < point.longest_side) point.round.reset();
   });
@@ -160,9 +175,9 @@ std::optional<BodyContacts::Place> BodyContacts::place_towards(const Point& poin
   // Of a round body the point is one of a polygon: off the place that touches, its force would turn the body.
   if (point.round) {
     const RigidPlace& place = walls_of(point.part).place;
-    const Vec3 foremost = farthest_of(*point.round, place, towards);
-    if (length(subtract(foremost, at)) > place.scale * point.longest_side) return std::nullopt;
-    return Place{foremost, false};
+    const std::optional<Vec3> foremost = farthest_of(*point.round, place, towards, at);
+    if (!foremost || length(subtract(*foremost, at)) > place.scale * point.longest_side) return std::nullopt;
+    return Place{*foremost, false};
   }
   // Seen from far away interpolated distances lead to places 0.06 spacings off the surface, which come and go as the
   // body turns: a block hopped on a floor with 0.05 m/s. Corners of facets are on the surface.
@@ -173,6 +188,13 @@ std::optional<BodyContacts::Place> BodyContacts::place_towards(const Point& poin
   if (turning) return Place{*turning, true};
   if (foremost) return Place{*foremost, false};
   return std::nullopt;
+}
+
+Vec3 BodyContacts::through_centre(const Point& point, const Place& place, const Vec3& normal) const {
+  const Vec3 towards = multiply(-1, normal);
+  if (point.round) return farthest_of(*point.round, walls_of(point.part).place, towards, place.at).value_or(place.at);
+  if (place.turning || point.faceted) return place.at;
+  return walls_of(point.part).foremost(place.at, towards, radius_[point.part], resolution_.spacing).value_or(place.at);
 }
 
 // A body that is turned until an edge just becomes the one that reaches farthest, and 0.1 rad on, has its foremost
@@ -280,9 +302,7 @@ std::vector<BodyContact> BodyContacts::find(const Surroundings& surroundings, do
           contact.point = place->at;
           away = distance(other, surroundings.walls, contact.point, infinite);
           contact.normal = normal(other, contact.point);
-          // A force through the centre, where an interpolated normal of the other differs by 0.01 from the first.
-          if (const auto& round = points_[p].round)
-            contact.point = farthest_of(*round, walls_of(part).place, multiply(-1, contact.normal));
+          contact.point = through_centre(points_[p], *place, contact.normal);
           if (place->turning) away += dt * dt / 2 * dot(contact.normal, turning_acceleration(part, contact.point));
         }
         contact.key = {static_cast<std::int64_t>(p), static_cast<std::int64_t>(other)};

@@ -34,6 +34,33 @@ TEST(FittedSpheres, FindTheSphereThatAllPointsLieOn) {
   }
 }
 
+// A patch of a cylinder on a slanted axis. A ball has no axis, and the edge between two faces no radius.
+TEST(FittedSpheres, FindTheCylinderThatAllPointsLieOn) {
+  const Vec3 axis = unit({1, 2, -0.5}), u = unit(cross(axis, {0, 0, 1})), v = cross(axis, u);
+  const auto on_it = [&](double angle, double z) {
+    return add(add({0.3, -0.2, 0.1}, multiply(z, axis)),
+               multiply(0.7, add(multiply(std::cos(angle), u), multiply(std::sin(angle), v))));
+  };
+  const double angle = 0.4;
+  const Vec3 outwards = add(multiply(std::cos(angle), u), multiply(std::sin(angle), v));
+  std::vector<Vec3> around, of_edge;
+  for (const double turn : {-0.5, -0.2, 0.25, 0.45})
+    for (const double z : {-0.3, -0.1, 0.05, 0.4}) {
+      around.push_back(on_it(angle + turn, z + 0.1 * turn));
+      const double way = 0.7 * turn;
+      of_edge.push_back(add(add(on_it(angle, 0), multiply(z, axis)),
+                            add(multiply(way, cross(axis, outwards)), multiply(-std::abs(way), outwards))));
+    }
+  const auto found = fitted_cylinder(on_it(angle, 0), outwards, around);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->radius, 0.7, 1e-10);
+  EXPECT_NEAR(std::abs(dot(found->along, axis)), 1, 1e-12);
+  const Vec3 foremost = add(found->centre, multiply(0.7, outwards));
+  EXPECT_LT(length(subtract(foremost, on_it(angle, 0))), 1e-10);
+  EXPECT_FALSE(fitted_cylinder(on_it(angle, 0), multiply(-1, outwards), around));
+  EXPECT_FALSE(fitted_cylinder(on_it(angle, 0), outwards, of_edge));
+}
+
 TEST(FittedSpheres, AreNoneOfEdgesAndOfFlatFaces) {
   const auto bent = [](double turn) {
     std::vector<Vec3> around;

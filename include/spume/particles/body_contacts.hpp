@@ -73,7 +73,7 @@ class BodyContacts {
     std::size_t part = 0;
     ConvexCorner corner;
     bool faceted = false;  // a corner of the facets that stand for its body, whose distances are interpolated
-    std::optional<FittedSphere> round = {};  // what of it facets stand for
+    std::optional<FittedSphere> round = {};  // what of it facets stand for, or a cylinder
     double longest_side = 0;                 // of these facets
   };
   // What of a body may touch another: beside what reaches farthest now it may be what does once the body has turned.
@@ -96,6 +96,9 @@ class BodyContacts {
   // the other as the body turns, where another does now.
   std::optional<Vec3> may_come_foremost(const Point& point, const Vec3& at, const Vec3& towards,
                                         const std::optional<Vec3>& foremost, std::size_t other) const;
+  // Of a round surface the place that a force along the normal there leads through the centre from: the normal of what
+  // it meets differs between the place asked for it and the one found, by 0.01 where distances are interpolated.
+  Vec3 through_centre(const Point& point, const Place& place, const Vec3& normal) const;
   // Of a point of a body that goes on turning.
   Vec3 turning_acceleration(std::size_t part, const Vec3& at) const;
   double restitution(std::size_t part) const;
