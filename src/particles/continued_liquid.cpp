@@ -23,8 +23,9 @@ double layer_divergence_of_position(int dimensions) {
 }
 constexpr double sparse_share = 0.75;
 
-// A particle or an image of one; a wall point counted by planes, and one that counts whole.
-enum class Seen { particle, continued, wet };
+// A particle or an image of one; a wall point that planes count by less than its whole, whole, and one that no plane is
+// near.
+enum class Seen { particle, beside_surface, continued, wet };
 
 // Calls visit(seen, sign) for the place and its mirror images in walls nearer than `reach`; what is found beside an
 // image is seen at the place with the components of its offset multiplied by `sign`.
@@ -74,7 +75,7 @@ void ContinuedLiquid::sort_points(const Boundary& boundary) {
 void ContinuedLiquid::find(const Arrangement& arrangement, MomentFields& moments, const Boundary& boundary,
                            const VectorField& at, Array<float>& counted) {
   if (point_.empty() || boundary.features.displaced_bodies) sort_points(boundary);
-  for (auto* flags : {&sees_surface_, &sparse_}) flags->resize(moments.divergence_of_position->size());
+  for (auto* flags : {&sees_planes_, &sees_surface_, &sparse_}) flags->resize(moments.divergence_of_position->size());
   const int d = resolution_.dimensions;
   const double reach = resolution_.support_radius;
   const NeighbourList& list = arrangement.list;
@@ -89,7 +90,7 @@ void ContinuedLiquid::find(const Arrangement& arrangement, MomentFields& moments
     for (const std::int32_t j : list.of(i)) sees = sees || is_near(arrangement.particle_of(j));
     return sees && bodies.nearer_than(place, reach);
   });
-  parallel_for(sees_surface_.size(), [&](std::size_t i) { sees_surface_[i] = sparse_[i] = 0; });
+  parallel_for(sees_surface_.size(), [&](std::size_t i) { sees_planes_[i] = sees_surface_[i] = sparse_[i] = 0; });
   depths_.resize(beside_.size());
   if (beside_.size() == 0) return;
   with_plain_kernel(d, resolution_.kernel, [&]<int dimensions, class Kernel>() {
@@ -102,6 +103,7 @@ void ContinuedLiquid::find(const Arrangement& arrangement, MomentFields& moments
     counted[i] = static_cast<float>(count_[k].divergence_of_position);
     for (int axis = 0; axis < d; ++axis) (*moments.normal[axis])[i] = static_cast<float>(count_[k].normal[axis]);
     depths_[k] = {beside_[k], static_cast<float>(count_[k].depth)};
+    sees_planes_[i] = count_[k].sees_planes ? 1 : 0;
     sees_surface_[i] = count_[k].sees_surface ? 1 : 0;
     sparse_[i] = count_[k].of_particles < sparse_share * layer_divergence_of_position(d) ? 1 : 0;
   });
@@ -218,8 +220,9 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
                           point))
             return;
         }
-        visit(double{share_[static_cast<std::size_t>(g)]}, offset, r2,
-              continued_[static_cast<std::size_t>(g)] != 0 ? Seen::continued : Seen::wet);
+        const auto k = static_cast<std::size_t>(g);
+        const Seen counted = continued_[k] == 0 ? Seen::wet : share_[k] < 1 ? Seen::beside_surface : Seen::continued;
+        visit(double{share_[k]}, offset, r2, counted);
       });
     };
     visit_reflections(boundary.domain(), boundary.next_walls, vector_at(at, dimensions, i), reach, visit_points);
@@ -231,7 +234,8 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
       Count& count = count_[k];
       count = {.depth = dr};
       visit_liquid(i, [&](double share, const Vec3& offset, double r2, Seen seen) {
-        count.sees_surface = count.sees_surface || seen == Seen::continued;
+        count.sees_planes = count.sees_planes || seen == Seen::continued || seen == Seen::beside_surface;
+        count.sees_surface = count.sees_surface || seen == Seen::beside_surface;
         const double g = -share * gradient * Kernel::f(std::sqrt(r2) / h);
         count.divergence_of_position += g * r2;
         if (seen == Seen::particle) count.of_particles += g * r2;
@@ -253,8 +257,8 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
 double ContinuedLiquid::bytes() const {
   return static_cast<double>(point_.capacity() * sizeof(Vec3) + plane_.capacity() * sizeof(Plane) +
                              count_.capacity() * sizeof(Count) + depths_.capacity() * sizeof(KnownDepth)) +
-         share_.bytes() + continued_.bytes() + sees_surface_.bytes() + sparse_.bytes() + plane_table_.bytes() +
-         table_.bytes() + beside_.bytes() + planar_.bytes();
+         share_.bytes() + continued_.bytes() + sees_planes_.bytes() + sees_surface_.bytes() + sparse_.bytes() +
+         plane_table_.bytes() + table_.bytes() + beside_.bytes() + planar_.bytes();
 }
 
 }  // namespace spume

@@ -35,7 +35,9 @@ class ContinuedLiquid {
   void find(const Arrangement& arrangement, MomentFields& moments, const Boundary& boundary, const VectorField& at,
             Array<float>& counted);
   std::span<const KnownDepth> depths() const { return depths_; }
-  // Whether wall points that particle i sees were counted by planes.
+  // Whether wall points that particle i sees were counted by planes, and by less than their whole: planes reach eight
+  // spacings down, where all of what they count lies below the surface.
+  bool sees_planes(std::size_t i) const { return sees_planes_[i] != 0; }
   bool sees_surface(std::size_t i) const { return sees_surface_[i] != 0; }
   // Whether the particles around i, without wall points, are fewer than three quarters of a layer one particle thick:
   // spray. Wall points, there as soon as a particle is near the wall, make up for the neighbours that a corrected
@@ -54,7 +56,7 @@ class ContinuedLiquid {
     Vec3 normal{};  // outward, times h
     double depth = 0;
     double of_particles = 0;  // div r without wall points
-    bool sees_surface = false;
+    bool sees_planes = false, sees_surface = false;
   };
   const WallPoint& sorted_point(const Boundary& boundary, std::size_t sorted) const;
   void sort_points(const Boundary& boundary);
@@ -72,10 +74,10 @@ class ContinuedLiquid {
   CellGrid grid_;
   CellOrder table_;
   std::vector<Vec3> point_;
-  Array<std::uint8_t> continued_;              // 1 where w_g follows from planes
-  Array<std::uint8_t> sees_surface_, sparse_;  // of particles
-  Array<float> share_;                         // w_g
-  Array<std::int32_t> planar_;                 // particles with a plane
+  Array<std::uint8_t> continued_;                            // 1 where w_g follows from planes
+  Array<std::uint8_t> sees_planes_, sees_surface_, sparse_;  // of particles
+  Array<float> share_;                                       // w_g
+  Array<std::int32_t> planar_;                               // particles with a plane
   std::vector<Plane> plane_;
   std::array<Array<double>, 3> plane_place_;
   CellOrder plane_table_;  // of the planes, by the cells of their particles

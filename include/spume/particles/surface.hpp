@@ -102,8 +102,9 @@ class FreeSurface {
   // spacings 0.2 %. find() sets it to 0.
   void find_rise(const Arrangement& arrangement, const MomentFields& moments, const VectorField& velocity,
                  const std::vector<std::array<float, 3>>& reflection, double dt);
-  // At the surface beside a body, into which the surface of the liquid around continues.
+  // At the surface beside a body, into which the surface of the liquid around continues; with a surface around.
   bool continues_into_body(std::size_t i) const { return continued_.sees_surface(i); }
+  bool has_planes_around(std::size_t i) const { return continued_.sees_planes(i); }
   bool is_near(const MomentFields& moments, std::size_t i) const {
     return interior_weight[i] < 1 && moments.uncorrected[i] == 0;
   }

@@ -142,8 +142,8 @@ void LesSph::remark_surface_at_bodies() {
   };
   const double beside = parallel_sum(surface.size(), [&](std::size_t k) {
     const Vec3 place = vector_at(flow_.particles.position, flow_.dimensions, static_cast<std::size_t>(surface[k]));
-    const bool continued = flow_.surface->continues_into_body(static_cast<std::size_t>(surface[k]));
-    return !continued && is_near(place) ? 1.0 : 0.0;
+    const bool around = flow_.surface->has_planes_around(static_cast<std::size_t>(surface[k]));
+    return !around && is_near(place) ? 1.0 : 0.0;
   });
   if (beside == 0) return;
   const bool alone = bodies.size() == 1;
