@@ -75,7 +75,8 @@ void Flow::accept_block(double dt, std::size_t first, std::size_t last) {
     double* const rate = material_acceleration[axis]->data() + first;
     for (std::size_t k = 0; k < n; ++k) rate[k] = (ahead[axis][k] - before[axis][k]) / dt;
   }
-  if (surface != nullptr) stop_free_particles(dt, first, last, before, ahead);
+  if (surface != nullptr || (features.closed && moves_in_liquid(scene)))
+    stop_free_particles(dt, first, last, before, ahead);
   if (boundary.bodies() != nullptr) limit_approach(dt, first, last, r, before, ahead);
   for (std::size_t k = 0; k < n && rest.share != nullptr; ++k)
     forget_rest(first + k, dt * length(vector_of(before, k)));
@@ -120,7 +121,7 @@ void Flow::accept_block(double dt, std::size_t first, std::size_t last) {
 void Flow::stop_free_particles(double dt, std::size_t first, std::size_t last, VectorBlock& before,
                                VectorBlock& ahead) const {
   for (std::size_t i = first; i < last; ++i) {
-    if (surface->pressure_fixed[i] == 0) continue;
+    if (surface != nullptr && surface->pressure_fixed[i] == 0) continue;
     const Vec3 from = vector_at(particles.position, dimensions, i), u = vector_of(before, i - first);
     Vec3 straight{}, stopped = u, next = vector_of(ahead, i - first);
     for (int axis = 0; axis < dimensions; ++axis) straight[axis] = from[axis] + dt * u[axis];

@@ -56,6 +56,11 @@ std::string remark_on_gaps_in_full_tank(const Flow& flow) {
   return "";
 }
 
+bool moves_in_liquid(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const Body& body) { return body.motion && body.inside; });
+}
+
 double speed_of_bodies(const Scene& scene, double end) {
   const Domain& domain = scene.domain;
   const double fall = std::sqrt(2 * length(scene.fluid.gravity) * length(subtract(domain.upper, domain.lower)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bodies that float in liquid that fills its domain: where one leaves a wall a void opens, and no equation has its
+// Bodies that move in liquid that fills its domain: where one leaves a wall a void opens, and no equation has its
 // pressure.
 #pragma once
 
@@ -11,6 +11,16 @@ namespace spume::les_sph {
 
 // What to say at the start of one that stands so near to a wall that no particle fits between them; empty: nothing.
 std::string remark_on_gaps_in_full_tank(const Flow& flow);
+
+// Whether a body moves among the liquid: a tank that moves around it does not. In a full tank two rules then differ.
+//
+// What neighbours share of the shift stays in it. It lifts a surface, of which there is none, and fills the lack that a
+// body leaves over more than a spacing; without it the pressure alone closes that, with jets.
+//
+// Particles that met a wall on their way lose what leads into it, as spray does at a surface. Nearer to its image than
+// half a spacing a particle sees little of it, and no pressure stops it: reflected in every step, it kept 0.4 sqrt(gH)
+// into the face that it slid along.
+bool moves_in_liquid(const Scene& scene);
 
 // The fastest that gravity, the liquid at the start, inflows and given motions drive anything with; without gravity,
 // which alone bounds what forces do, infinite. While the scene has its particles.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "full_tanks.hpp"
 #include "spume/core/error.hpp"
 #include "spume/core/parallel.hpp"
 #include "spume/core/vectors.hpp"
@@ -125,8 +126,9 @@ void Flow::find_advecting_velocity(double dt) {
 }
 
 void Flow::compute_shift() {
-  shift->compute(arrangement, particles, shift_input(options.get<ShiftingOptions>(), largest_shift, displacement),
-                 sizes, moments, surface.get(), boundary.reflection());
+  ShiftInput input = shift_input(options.get<ShiftingOptions>(), largest_shift, displacement);
+  if (features.closed && moves_in_liquid(scene)) input.remove_drift = false;
+  shift->compute(arrangement, particles, input, sizes, moments, surface.get(), boundary.reflection());
   if (rest.share == nullptr) return;
   // In proportion to the speed the shift would drive what stands unevenly, and so feed any motion: a film of 1.88
   // layers gained e in 0.07 s from rounding.
