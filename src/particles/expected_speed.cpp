@@ -57,7 +57,7 @@ double expected_speed(const Scene& scene, double end, bool falls) {
     length = std::max(length, domain.upper[axis] - domain.lower[axis]);
     centre[axis] = (domain.lower[axis] + domain.upper[axis]) / 2;
     const double fall2 = 2 * std::abs(scene.fluid.gravity[axis]) * (domain.upper[axis] - domain.lower[axis]);
-    if (falls) speed2 = std::max(speed2, fall2);
+    if (falls || domain.periodic(axis)) speed2 = std::max(speed2, fall2);
   }
   for (int axis = 0; axis < domain.dimensions; ++axis)
     for (const Side& side : domain.sides[axis])

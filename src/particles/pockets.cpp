@@ -22,9 +22,11 @@ constexpr double parallel = 0.1;   // of the sum of two normals
 constexpr double longest = 0.3;    // spacings, of a way out
 constexpr double thinnest = 0.05;  // spacings, of a plate across a layer
 constexpr double caught = 0.9;     // of the narrowest wedge, for the rounding of how far out of it places are led
-// Spacings: from a place in a slot to its mouth at most, in steps that are halved so often. Particles go 0.4 in a step,
-// spray 1.2. In slots of half a spacing rows that the start has placed rest, turned by 0.2 degrees too.
-constexpr double to_mouth = 2, to_mouth_of_rows = 0.6, to_mouth_step = 0.1, room_for_rows = 0.4;
+// Spacings, and from a place in a slot to its mouth at most so many of these steps, which are halved so often.
+// Particles go 0.4 in a step, spray 1.2. In slots of half a spacing rows that the start has placed rest, turned by 0.2
+// degrees too.
+constexpr double to_mouth_step = 0.1, room_for_rows = 0.4;
+constexpr int to_mouth = 20, to_mouth_of_rows = 5;
 constexpr int mouth_halvings = 10;
 constexpr double of_same_face = 0.9;  // of the cosine of two normals
 
@@ -178,24 +180,28 @@ bool is_out(const Boundary& boundary, const Vec3& place) {
 
 // Whether what is led out of a wedge has come into it from its narrow end, past an edge: from before the foot of the
 // place on the face, where no wedge leads the same way.
-bool comes_through(const Boundary& boundary, const Vec3& from, const Vec3& foot, const Vec3& outwards) {
+// What a body that moves has come over since has not: bodies stand where the way ends.
+bool comes_through(const Boundary& boundary, Vec3 from, const Vec3& foot, const Vec3& outwards) {
   if (!(dot(boundary.domain().shortest(subtract(from, foot)), outwards) < 0)) return false;
+  from = boundary.domain().inside(from);
   const double least = narrowest_wedge * boundary.spacing();
   const BodyWalls& bodies = *boundary.bodies();
-  if (!(bodies.distance(from) > 0) || !(bodies.distance(from) < least)) return true;
+  const double before = bodies.distance(from);
+  if (!(before > 0)) return false;
+  if (!(before < least)) return true;
   const std::optional<WallBehind> across = wall_across(boundary, from, least);
   return !across || dot(add(bodies.normal(from), across->normal), outwards) < 0;
 }
 
 // From a place between parallel faces along them to where the slot ends, in the nearest of two (of eight) directions.
-std::optional<Vec3> way_to_mouth(const Boundary& boundary, const Vec3& place, const Vec3& face, double farthest) {
+std::optional<Vec3> way_to_mouth(const Boundary& boundary, const Vec3& place, const Vec3& face, int farthest) {
   const bool deep = boundary.domain().dimensions == 3;
   const Vec3 least = std::abs(face[0]) < std::abs(face[1]) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 first = deep ? unit(cross(face, least)) : Vec3{-face[1], face[0], 0};
   const Vec3 second = deep ? cross(face, first) : Vec3{};
   const int directions = deep ? 8 : 2;
   const auto is_mouth = [&](const Vec3& way) { return is_out(boundary, boundary.domain().inside(add(place, way))); };
-  for (int step = 1; step * to_mouth_step <= farthest; ++step)
+  for (int step = 1; step <= farthest; ++step)
     for (int k = 0; k < directions; ++k) {
       const double angle = 2 * std::numbers::pi * k / directions;
       const Vec3 along = add(multiply(std::cos(angle), first), multiply(std::sin(angle), second));

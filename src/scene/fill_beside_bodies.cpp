@@ -37,6 +37,15 @@ bool Filler::is_cut(ThreadRegions& own, const Vec3& p) const {
   return std::abs(own.walls.at(p)) < 0.5 * std::sqrt(lattice_.dimensions) * scene_.spacing;
 }
 
+// Of a cell whose centre is behind a wall the place before it.
+bool Filler::is_in_slot(const Vec3& p) const {
+  const double width = too_narrow * scene_.spacing;
+  const NearestPoint face = scene_.walls.nearest(p);
+  if (face.distance > 0) return slot_at(scene_.walls, scene_.domain, p, width).has_value();
+  const Vec3 before = add(p, multiply(0.01 * scene_.spacing - face.distance, face.normal));
+  return slot_at(scene_.walls, scene_.domain, before, width).has_value();
+}
+
 void Filler::choose_sites_beside_walls() {
   const auto columns = static_cast<std::size_t>(lattice_.count[0]), rows = static_cast<std::size_t>(lattice_.count[1]);
   struct Found {
@@ -50,7 +59,7 @@ void Filler::choose_sites_beside_walls() {
       for (double k = 0; k < (lattice_.dimensions == 3 ? lattice_.count[2] : 1); ++k) {
         const Vec3 p{centre(0, static_cast<double>(i)), centre(1, static_cast<double>(j)),
                      lattice_.dimensions == 3 ? centre(2, k) : 0};
-        if (in_solid(p) || !is_cut(own, p)) continue;
+        if (in_solid(p) || !is_cut(own, p) || is_in_slot(p)) continue;
         found[i].volume += open_part(own, p);
         if (own.walls.at(p) > 0) found[i].ranks.push_back(rank_of_site(own, p));
       }

@@ -291,6 +291,7 @@ class Filler {
   double share_of_cell(const Vec3& p, Inside&& inside) const;
   // fill_beside_bodies.cpp
   bool is_cut(ThreadRegions& own, const Vec3& p) const;
+  bool is_in_slot(const Vec3& p) const;
   double rank_of_site(ThreadRegions& own, const Vec3& p) const;
   void choose_sites_beside_walls();
   bool is_open_site(ThreadRegions& own, const Vec3& p) const;

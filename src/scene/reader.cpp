@@ -182,6 +182,11 @@ class SectionReader {
     if (node.text == "periodic" && section_.name == "domain") {
       return refuse(node, name + " is one side; a periodic direction is written by its axis: x = \"periodic\"");
     }
+    const bool is_key = std::any_of(section_.options.begin(), section_.options.end(),
+                                    [&](const Option& other) { return other.key == node.text; });
+    if (is_key && node.text != option.key)
+      return refuse(node, name + " must be " + words_in_words(option.words) + "; '" + node.text +
+                              "' is a key of its own: write  " + node.text + " = ...  in its place");
     const std::string best = nearest(node.text, option.words);
     return refuse(node, name + " must be " + words_in_words(option.words) + ", found " + to_toml(node) +
                             (best.empty() ? "" : "; did you mean \"" + best + "\"?"));

@@ -79,24 +79,25 @@ TEST(Pockets, OtherPlacesAreLeft) {
   EXPECT_EQ(place, (Vec3{0.1, 0.01, 0}));
 }
 
-// Boxes 0.4 spacings above the floor, whose edges round which a wedge is 0.6 spacings wide end the slot.
+// Boxes 0.3 and 0.45 spacings above the floor, whose edges round which a wedge is 0.6 spacings wide end the slot.
 TEST(Pockets, ParticlesAreLedOutOfSlots) {
   const std::string plane =
       "lower = [-1, 0]\nupper = [1, 2]\nbottom = \"no-slip\"\nleft = \"free-slip\"\nright = \"free-slip\"\n";
   const std::string space =
       "lower = [-1, -1, 0]\nupper = [1, 1, 2]\nbottom = \"no-slip\"\nleft = \"free-slip\"\nright = \"free-slip\"\n"
       "front = \"free-slip\"\nback = \"free-slip\"\n";
-  for (const int d : {2, 3}) {
-    const LoadedCase slot =
-        load_text(scene_text(d == 2 ? plane : space, spacing,
-                             d == 2 ? "[[body]]\nshape = \"box\"\nsize = [0.8, 0.8]\nposition = [0, 0.42]\n"
-                                    : "[[body]]\nshape = \"box\"\nsize = [0.8, 0.8, 0.8]\nposition = [0, 0, 0.42]\n"));
+  for (const auto& [d, height] : {std::pair{2, 0.3}, {2, 0.45}, {3, 0.3}, {3, 0.45}}) {
+    const std::string middle = std::to_string(0.4 + height * spacing);
+    const LoadedCase slot = load_text(
+        scene_text(d == 2 ? plane : space, spacing,
+                   d == 2 ? "[[body]]\nshape = \"box\"\nsize = [0.8, 0.8]\nposition = [0, " + middle + "]\n"
+                          : "[[body]]\nshape = \"box\"\nsize = [0.8, 0.8, 0.8]\nposition = [0, 0, " + middle + "]\n"));
     const Resolution resolution(d, spacing, KernelKind::wendland_c2, 1.3);
     const Boundary boundary(slot.scene.domain, spacing, make_body_walls(slot.scene, resolution));
     const auto up = static_cast<std::size_t>(d) - 1;
     for (const double side : {-1.0, 1.0}) {
-      Vec3 place{side * (0.4 - 0.2 * spacing)}, velocity{-side, 0.3};
-      place[up] = 0.008;
+      Vec3 place{side * (0.4 - 0.1 * spacing)}, velocity{-side, 0.3};
+      place[up] = 0.4 * height * spacing;
       const Vec3 before = place;
       lead_out_of_wedges(boundary, place, &velocity);
       EXPECT_GT(side * place[0], 0.4);
@@ -160,6 +161,10 @@ TEST(Pockets, NothingComesThroughAThroat) {
   EXPECT_LT(led({0.995, 0.98, 0}, below, velocity)[1], below[1]);
   EXPECT_EQ(velocity[1], -1);
   EXPECT_LT(led({0.995, 0.995, 0}, below, velocity)[1], below[1]);
+  // A body that moves has come over where the way began.
+  const Vec3 covered{0.989, 1.0009, 0};
+  ASSERT_LT(boundary.bodies()->distance(covered), 0);
+  EXPECT_LT(led(covered, below, velocity)[1], below[1]);
 }
 
 // Bubbles, for which a place that is moved is one where they have struck a wall, are not.

@@ -177,6 +177,8 @@ TEST(Bodies, KeysThatDoNotFitTheShapeAreRefused) {
               ElementsAre("14:1 missing key 'radius' in [[body]], a ball; add  radius = <number>  # length, > 0"));
   EXPECT_THAT(problems(start + "shape = \"boll\""),
               ElementsAre(AllOf(HasSubstr("15:9 body.0.shape must be"), HasSubstr("did you mean \"ball\"?"))));
+  EXPECT_THAT(problems(start + "shape = \"where\""),
+              ElementsAre(HasSubstr("'where' is a key of its own: write  where = ...  in its place")));
   EXPECT_THAT(problems(start + "shape = \"ball\"\nradius = 1\nsize = [1, 1]"),
               ElementsAre("17:1 body.0.size is no key of a ball in 2-D; remove it"));
   EXPECT_THAT(problems(start + "shape = \"cylinder\"\nradius = 1\nlength = 1"),
@@ -277,6 +279,23 @@ TEST(Bodies, SuspiciousBodiesAreWarnedOf) {
 
 // Boxes whose faces leave 0.3 spacings; not those that touch, have room for a layer, face a wall with an edge, or
 // take something away.
+// Layers are filled by whole sites, as many as the volume holds. A slot of 13 sites holds none: neither are these
+// counted where they stand, before a lattice that they lie in, nor is the room elsewhere, behind one that they do not.
+TEST(Bodies, SlotsTakeNoParticlesFromLayersAndGiveThemNone) {
+  const std::string tank =
+      "title = \"Slot\"\nmethod = \"wcsph\"\n[domain]\nlower = [0, 0]\nupper = [2, 1]\n"
+      "left = \"free-slip\"\nright = \"free-slip\"\nbottom = \"free-slip\"\ntop = \"free-slip\"\n"
+      "[resolution]\nspacing = 0.05\n[fluid]\ngravity = 1\n[[phase]]\nname = \"water\"\n"
+      "density = 1\nviscosity = 1e-3\n[[region]]\nphase = \"water\"\n[time]\nend = 1\n";
+  for (const double slot : {0.2, 0.45}) {
+    const double height = 0.3;
+    const LoadedCase loaded = load(tank + "[[body]]\nshape = \"box\"\nsize = [0.65, 0.3]\nposition = [1, " +
+                                   std::to_string(0.05 * slot + height / 2) + "]\n");
+    const double cells = (2 - 0.65 * (height + 0.05 * slot)) / (0.05 * 0.05);
+    EXPECT_NEAR(static_cast<double>(loaded.scene.particles.size()), cells, 2) << slot;
+  }
+}
+
 TEST(Bodies, SlotsThatHoldNoParticleAreWarnedOf) {
   const std::string walls = "left = \"free-slip\"\nbottom = \"free-slip\"\n";
   const std::string plane = test::replaced(head2, "[resolution]", walls + "[resolution]"),

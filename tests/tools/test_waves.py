@@ -43,7 +43,7 @@ class WaveFlume(CaseTest):
         if solitary:
             text = (folder / "case.toml").read_text()
             (folder / "case.toml").write_text(text.replace('waves = "regular"', 'waves = "solitary"')
-                                              .replace("height = 0.3", "height = 0.2"))
+                                              .replace("height = 0.22", "height = 0.2"))
         run = Results(folder)
         t = np.arange(0, end, 0.2 if solitary else float(run.case["output"]["series_every"]))
         write_table(folder / "probes.csv", {"t": t} | {
@@ -51,7 +51,7 @@ class WaveFlume(CaseTest):
         write_table(folder / "series.csv", series_of(t, mass=1))
         return module.measure({"run": run})
 
-    def regular(self, height=0.3, reflected=0.0, decay=0.0, periods=30.0, free=0.0):
+    def regular(self, height=0.22, reflected=0.0, decay=0.0, periods=30.0, free=0.0):
         w, k = 2 * np.pi / 5.392304144, 1.5
         faster = waves.wavenumber(2 * w, 1, 1)
 
@@ -68,7 +68,7 @@ class WaveFlume(CaseTest):
         self.assertEqual(measured["mass_drift"], 0)
 
     def test_wrong_heights_losses_reflections_and_free_waves_are_seen(self):
-        self.assertAlmostEqual(self.regular(height=0.3 * 1.04)["height_error"], 0.04, places=6)
+        self.assertAlmostEqual(self.regular(height=0.22 * 1.04)["height_error"], 0.04, places=6)
         # Between the middles of the probes lie 9.75 wavelengths of 4.18879.
         self.assertAlmostEqual(self.regular(decay=0.001)["loss"], 1 - np.exp(-0.001 * 9.75 * 4.18879), places=5)
         measured = self.regular(reflected=0.07)

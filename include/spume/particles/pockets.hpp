@@ -55,7 +55,7 @@ std::optional<WallBehind> wall_across(const Boundary& boundary, const Vec3& plac
 // A place in a wedge whose faces are nearer to each other than 0.6 spacings there: out along the bisector to where
 // they are not, with the velocity that leads in, beside the mean of both faces (sides of the domain stand), taken away.
 // Between faces that are parallel to 6 degrees, which lead nowhere out: along them to where the slot ends, if that is
-// nearer than two spacings, 0.6 where the faces are more than 0.4 spacings apart; else the place is left.
+// nearer than two spacings, 0.5 where the faces are more than 0.4 spacings apart; else the place is left.
 // What was at `from`, which may be null, and has come through the narrow end of the wedge goes back there.
 void lead_out_of_wedges(const Boundary& boundary, Vec3& place, Vec3* velocity, const Vec3* from = nullptr);
 

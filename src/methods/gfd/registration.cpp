@@ -85,7 +85,7 @@ double bytes_per_particle(const Draft& draft) {
   const int dimensions = draft.dimensions;
   const double support = support_ratio(options.resolution);
   const double neighbours = std::numbers::pi * support * support * (dimensions == 3 ? 4.0 / 3 * support : 1);
-  return (dimensions == 3 ? 446 : 376) + 4.63 * neighbours;
+  return (dimensions == 3 ? 426 : 356) + 4.63 * neighbours;
 }
 
 constexpr double standard_courant = 0.2;

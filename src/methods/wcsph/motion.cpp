@@ -139,9 +139,10 @@ void Flow::hold(std::size_t i, Vec3& r, Vec3& u) const {
   if (boundary.clear_of_sides(r)) return;
   const Vec3 before = r, from = vector_at(particles.position, dimensions, i);
   apply_walls(i, r, &u, &from);
-  // Particles go round periodic sides when lists are made; those of inflows keep to their columns there too.
+  // Particles go round periodic sides when lists are made, those of inflows keep to their columns: walls alone count.
+  const Vec3 pushed = scene.domain.shortest(subtract(r, scene.domain.inside(before)));
   for (int axis = 0; axis < dimensions && !(features.openings && openings->leads(i)); ++axis)
-    if (scene.domain.periodic(axis)) r[axis] = before[axis];
+    if (scene.domain.periodic(axis)) r[axis] = before[axis] + pushed[axis];
 }
 
 void Flow::drift(double dt) {

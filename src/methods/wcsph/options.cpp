@@ -31,9 +31,8 @@ Section compressibility_section() {
              {"mean", InterfacePressure::mean},
              {"weighted", InterfacePressure::weighted}},
             "what phases meet at: the mean of their pressures, or that weighted with densities, under which "
-            "accelerations are continuous; auto: weighted where phases lie in layers and in full tanks of liquids; "
-            "tension "
-            "takes the mean")
+            "accelerations are continuous; auto: weighted where phases lie in layers and where shifted liquids fill "
+            "their tank; tension takes the mean")
       .option("filter_interval", &C::filter_interval, "", between(1, 10000), "steps between kernel averages")
       .option("settling_rounds", &C::settling_rounds, "", between(0, 100000),
               "most sweeps in which liquid that starts at rest settles before the first step; 0: it starts as filled");

@@ -77,12 +77,12 @@ double bytes_per_particle(const Draft& draft) {
   const bool deep = draft.dimensions == 3, tension = draft.surface_tension > 0 && draft.phases.size() > 1;
   const bool bodies = std::any_of(draft.bodies.begin(), draft.bodies.end(),
                                   [](const auto& body) { return body.wall != BoundaryKind::open; });
-  double bytes = (deep ? 185 : 142) + (draft.phases.size() > 1 ? 8 : 0);
+  double bytes = (deep ? 181 : 138) + (draft.phases.size() > 1 ? 8 : 0);
   if (tension) bytes += deep ? 160 : 102;  // shifting, bands, colours, normals and curvatures
   if (bodies) bytes += deep ? 36 : 28;     // velocities of half a step, densities, viscosities
   const double reach = support_ratio(draft.options.resolution) + draft.options.get<ListOptions>().skin;
   const double neighbours = std::numbers::pi * reach * reach * (deep ? 4.0 / 3 * reach : 1);
-  return bytes + (tension || bodies ? 3.8 : 2.3) * neighbours;
+  return bytes + (bodies ? 3.8 : 2.3) * neighbours;
 }
 
 // Of the smoothing length over the sum of sound speed and speed.
