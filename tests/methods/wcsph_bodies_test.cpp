@@ -47,6 +47,19 @@ std::string body(const std::string& text) {
 }
 const std::string wedge = body("shape = \"outline\"\npoints = [[0.5, -0.1], [1, 0.5], [1.5, -0.1]]\n");
 
+// Tanks are filled by whole sites, as many as the volume holds. A slot of 13 sites holds none: neither are these
+// counted where they stand in it, nor is its room filled elsewhere.
+TEST(WcsphBodies, ASlotTakesNoParticlesFromATankAndGivesItNone) {
+  const double spacing = 0.05, width = 0.65, height = 0.3;
+  for (const double slot : {0.2, 0.45}) {
+    const BodiesRun run(still("[2, 1]", spacing, 1, false,
+                              body("shape = \"box\"\nsize = [0.65, 0.3]\nposition = [1, " +
+                                   std::to_string(slot * spacing + height / 2) + "]\n")));
+    const double sites = (2 - width * (height + slot * spacing)) / (spacing * spacing);
+    EXPECT_NEAR(static_cast<double>(run.method.flow().size()), sites, 2) << slot;
+  }
+}
+
 // Particles go round periodic sides when lists are made, and what a wall pushes them along these stays.
 TEST(WcsphBodies, APostInAPeriodicChannelHoldsWhatMeetsIt) {
   BodiesRun run(

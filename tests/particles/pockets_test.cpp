@@ -105,11 +105,11 @@ TEST(Pockets, ParticlesAreLedOutOfSlots) {
       EXPECT_EQ(place[up], before[up]);
       EXPECT_NEAR(velocity[0], 0, 1e-12);
       EXPECT_NEAR(velocity[1], 0.3, 1e-12);
-      // As far as spray goes in a step.
+      // As far as spray goes in a step, where no rows of the start may stand.
       Vec3 deep = before;
       deep[0] -= side * 1.2 * spacing;
       lead_out_of_wedges(boundary, deep, nullptr);
-      EXPECT_NEAR(deep[0], place[0], 1e-3 * spacing);
+      EXPECT_NEAR(deep[0], height < 0.4 ? place[0] : before[0] - side * 1.2 * spacing, 1e-3 * spacing);
       // To the mouth and no farther.
       const Vec3 led = place;
       lead_out_of_wedges(boundary, place, nullptr);

@@ -279,23 +279,6 @@ TEST(Bodies, SuspiciousBodiesAreWarnedOf) {
 
 // Boxes whose faces leave 0.3 spacings; not those that touch, have room for a layer, face a wall with an edge, or
 // take something away.
-// Layers are filled by whole sites, as many as the volume holds. A slot of 13 sites holds none: neither are these
-// counted where they stand, before a lattice that they lie in, nor is the room elsewhere, behind one that they do not.
-TEST(Bodies, SlotsTakeNoParticlesFromLayersAndGiveThemNone) {
-  const std::string tank =
-      "title = \"Slot\"\nmethod = \"wcsph\"\n[domain]\nlower = [0, 0]\nupper = [2, 1]\n"
-      "left = \"free-slip\"\nright = \"free-slip\"\nbottom = \"free-slip\"\ntop = \"free-slip\"\n"
-      "[resolution]\nspacing = 0.05\n[fluid]\ngravity = 1\n[[phase]]\nname = \"water\"\n"
-      "density = 1\nviscosity = 1e-3\n[[region]]\nphase = \"water\"\n[time]\nend = 1\n";
-  for (const double slot : {0.2, 0.45}) {
-    const double height = 0.3;
-    const LoadedCase loaded = load(tank + "[[body]]\nshape = \"box\"\nsize = [0.65, 0.3]\nposition = [1, " +
-                                   std::to_string(0.05 * slot + height / 2) + "]\n");
-    const double cells = (2 - 0.65 * (height + 0.05 * slot)) / (0.05 * 0.05);
-    EXPECT_NEAR(static_cast<double>(loaded.scene.particles.size()), cells, 2) << slot;
-  }
-}
-
 TEST(Bodies, SlotsThatHoldNoParticleAreWarnedOf) {
   const std::string walls = "left = \"free-slip\"\nbottom = \"free-slip\"\n";
   const std::string plane = test::replaced(head2, "[resolution]", walls + "[resolution]"),
