@@ -152,6 +152,8 @@ struct Flow {
   void find_pressure_force();            // (2), (4)
   void add_tension();                    // (11)
   void accept(double dt);                // (2)
+  // The place that particle i is on its way to and its velocity there, as walls let them.
+  void hold(std::size_t i, Vec3& r, Vec3& u) const;
   std::int64_t transport_scalars(double dt);
   void transfer_oxygen(double dt) { solute_transport.transfer_oxygen(time, dt); }
 
@@ -175,7 +177,6 @@ struct Flow {
     return {dt, read(particles.position), read(particles.velocity), read(acceleration), read(shift)};
   }
   bool arrive(const HalfSteps& half, std::size_t first, std::size_t last);
-  void hold(std::size_t i, Vec3& r, Vec3& u) const;
   void accept_block(const HalfSteps& half, const VectorExpression& given, std::size_t first, std::size_t last);
   void apply_walls(std::size_t i, Vec3& r, Vec3* u, const Vec3* from) const;
   SurfaceTension::Now tension_now() {
