@@ -100,7 +100,7 @@ void around_bubbles(benchmark::State& state, bool with_lines) {
   Array<float> lines(with_lines ? line_floats * swarm.particles.n : 0), sums(line_floats * swarm.size);
   for (std::size_t k = 0; k < lines.size(); ++k) lines[k] = static_cast<float>(k % 7);
   for (auto _ : state)
-    parallel_blocks_dynamic(swarm.size, 64, [&](std::size_t, std::size_t first, std::size_t last) {
+    parallel_blocks(swarm.size, 64, [&](std::size_t, std::size_t first, std::size_t last) {
       thread_local CrossSearch::Found thread_found;
       CrossSearch::Found& found = thread_found;
       for (std::size_t b = first; b < last; ++b) {

@@ -87,7 +87,7 @@ void CellOrder::sort(const Memory& memory, std::size_t size, std::size_t cells, 
     }
   });
   // Counting backwards from the end of every cell leaves `first` at the starts, without a second cursor array.
-  parallel_blocks_dynamic(slabs, 1, [&](std::size_t s, std::size_t, std::size_t) {
+  parallel_blocks(slabs, 1, [&](std::size_t s, std::size_t, std::size_t) {
     std::int32_t* here = first + s * per_slab;
     const std::size_t slab_cells = std::min(per_slab, cells - s * per_slab);
     const std::int32_t from = slab_start[s], to = slab_start[s + 1];

@@ -320,7 +320,7 @@ bool NeighbourList::search(const CellGrid& grid, const CellOrder& particles,
   std::int32_t* const indices = index_.data();
   const std::int32_t nobody = entry_scale * sentinel();
 
-  parallel_blocks_dynamic(n, list_block, [=, &used, &found, &images](std::size_t, std::size_t begin, std::size_t end) {
+  parallel_blocks(n, list_block, [=, &used, &found, &images](std::size_t, std::size_t begin, std::size_t end) {
     // One set per thread, kept from build to build.
     thread_local Array<Block> thread_blocks;
     thread_local Array<float> thread_candidates;

@@ -178,7 +178,7 @@ Dots GfdPressureOperator::apply(std::span<const float> x, std::span<float> y, st
   packed_->count(static_cast<double>(size()) * (24 + 4 * context_.dimensions));
   with_gfd_kernel(context_, [&]<int dimensions, class Kernel>() {
     const Rows<dimensions, Kernel> rows{context_, matrix_, first_weight_.data(), weight_.data()};
-    parallel_blocks_dynamic(size(), block, [&](std::size_t b, std::size_t first, std::size_t last) {
+    parallel_blocks(size(), block, [&](std::size_t b, std::size_t first, std::size_t last) {
       Dots dots;
       const auto add_row = [&]<bool stored>(std::size_t i) {
         if (rows.masked(i)) {

@@ -86,7 +86,7 @@ GridInterpolationReport interpolate(const UniformGrid& grid, const GridInterpola
   std::vector<Workspace<Dimensions>> workspaces(static_cast<std::size_t>(thread_count()));
   std::vector<GridInterpolationReport> reports(bins.cell_count());
   const auto [cells_x, cells_y, cells_z] = bins.cells();
-  parallel_blocks_dynamic(
+  parallel_blocks(
       bins.cell_count(), 1, [&, cells_x = cells_x, cells_y = cells_y](std::size_t cell, std::size_t, std::size_t) {
         const std::array<std::size_t, 3> c{cell % cells_x, cell / cells_x % cells_y, cell / cells_x / cells_y};
         for (int axis = 0; axis < 3; ++axis)

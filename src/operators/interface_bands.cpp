@@ -97,7 +97,7 @@ void InterfaceBands::build(const SweepContext& context, const CellGrid& grid, co
     }
   };
   const auto rows_y = static_cast<std::size_t>(grid.rows_y()), rows_z = static_cast<std::size_t>(grid.rows_z());
-  parallel_blocks_dynamic(rows_y * rows_z, 1, [&](std::size_t row_number, std::size_t, std::size_t) {
+  parallel_blocks(rows_y * rows_z, 1, [&](std::size_t row_number, std::size_t, std::size_t) {
     const int iy = static_cast<int>(row_number % rows_y), iz = static_cast<int>(row_number / rows_y);
     const std::size_t start = static_cast<std::size_t>(grid.row(iy, iz)) * columns;
     for (std::size_t column = 0; column < columns; ++column)

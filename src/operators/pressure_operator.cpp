@@ -23,7 +23,7 @@ void apply_rows(const SweepContext& context, const float* records, const Pressur
   const KernelScale<dimensions, Kernel> common(context);
   const auto volume = static_cast<float>(context.volume);
   const float common_factor = -2 * common.gradient * volume;
-  parallel_blocks_dynamic(list.particles(), block, [&](std::size_t b, std::size_t first, std::size_t last) {
+  parallel_blocks(list.particles(), block, [&](std::size_t b, std::size_t first, std::size_t last) {
     Dots dots;
     for (std::size_t i = first; i < last; ++i) {
       if (matrix.masked != nullptr && matrix.masked[i] != 0) {

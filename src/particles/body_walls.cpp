@@ -264,7 +264,7 @@ void BodyWalls::find_stencils(const Arrangement& arrangement, const VectorField&
   const int d = scene_.domain.dimensions;
   std::vector<PointFits> fits(block_count(points_.size(), PointFits::block));
   std::vector<std::vector<std::int32_t>> wet_of(fits.size());
-  parallel_blocks_dynamic(points_.size(), PointFits::block, [&](std::size_t b, std::size_t first, std::size_t last) {
+  parallel_blocks(points_.size(), PointFits::block, [&](std::size_t b, std::size_t first, std::size_t last) {
     Block block{wet_of[b], fits[b]};
     if (d == 3)
       fit_block<3>(arrangement, at, particle_volume, first, last, block);

@@ -155,7 +155,7 @@ template <int dimensions, class Kernel>
 void ContinuedLiquid::find_shares(const Arrangement& arrangement, const Boundary& boundary) {
   const double reach = plane_reach * resolution_.support_radius, dr = resolution_.spacing;
   const ThinWalls* thin = boundary.bodies()->thin();
-  parallel_blocks_dynamic(share_.size(), 256, [&](std::size_t, std::size_t first, std::size_t last) {
+  parallel_blocks(share_.size(), 256, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t g = first; g < last; ++g) {
       double weights = 0, sum = 0;
       const auto weigh = [&](const Vec3& seen, const Vec3& sign) {
@@ -228,7 +228,7 @@ void ContinuedLiquid::count(const Arrangement& arrangement, const Boundary& boun
     visit_reflections(boundary.domain(), boundary.next_walls, vector_at(at, dimensions, i), reach, visit_points);
   };
   count_.resize(beside_.size());
-  parallel_blocks_dynamic(beside_.size(), 64, [&](std::size_t, std::size_t first, std::size_t last) {
+  parallel_blocks(beside_.size(), 64, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
       const auto i = static_cast<std::size_t>(beside_[k]);
       Count& count = count_[k];

@@ -27,7 +27,7 @@ template <class Value>
 void DistanceCells::fill(std::vector<float>& values, const std::array<std::size_t, 3>& count, const Vec3& lower,
                          double side, Value&& value) const {
   values.resize(count[0] * count[1] * count[2]);
-  parallel_blocks_dynamic(count[1] * count[2], 1, [&](std::size_t row, std::size_t, std::size_t) {
+  parallel_blocks(count[1] * count[2], 1, [&](std::size_t row, std::size_t, std::size_t) {
     const std::size_t j = row % count[1], k = row / count[1];
     for (std::size_t i = 0; i < count[0]; ++i) {
       const Vec3 place{lower[0] + (static_cast<double>(i) + 0.5) * side,

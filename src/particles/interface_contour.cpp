@@ -117,7 +117,7 @@ std::vector<double> colours_at_nodes(const PointSampler& sampler, const ContourL
   kinds = kinds_near(lattice, std::move(kinds), state.arrangement->grid.support_radius());
   std::vector<double> values(grid.size());
   constexpr std::size_t block = 256;
-  parallel_blocks_dynamic(grid.size(), block, [&](std::size_t, std::size_t first, std::size_t last) {
+  parallel_blocks(grid.size(), block, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
       values[k] = kinds[k] == in_phase ? 0.5 : kinds[k] == in_another ? -0.5 : std::numeric_limits<double>::quiet_NaN();
       if (kinds[k] != (in_phase | in_another)) continue;

@@ -39,7 +39,7 @@ NearDistances::NearDistances(const Combination& walls, int dimensions, const Vec
     }
   distance_.resize(near.size() * cells_);
   const double step = 1.0 / static_cast<double>(finer);
-  parallel_blocks_dynamic(near.size(), 16, [&](std::size_t, std::size_t first, std::size_t last) {
+  parallel_blocks(near.size(), 16, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k)
       for (std::size_t cell = 0; cell < cells_; ++cell)
         distance_[k * cells_ + cell] = static_cast<float>(walls.distance(place_in(near[k], step / 2, cell, step)));

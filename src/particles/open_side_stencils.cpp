@@ -92,7 +92,7 @@ void OpenSides::give_pressures(const std::function<double(const Vec3&)>& potenti
   std::vector<bool> comes_back(gates_.size());
   for (const OpeningPoint& point : points_)
     if (head_of(point) > 0) comes_back[static_cast<std::size_t>(point.gate)] = true;
-  parallel_blocks_dynamic(corners_.size(), 16, [&](std::size_t, std::size_t first, std::size_t last) {
+  parallel_blocks(corners_.size(), 16, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
       const auto g = static_cast<std::size_t>(corners_[k].gate);
       if (gates_[g].opening->inflow || !comes_back[g]) continue;

@@ -174,7 +174,7 @@ void OpenSides::add_copies_of_nearest(const ParticleStore& particles, const std:
     for (std::size_t i = 0; i < particles.size(); ++i) candidates.push_back(static_cast<std::int32_t>(i));
   order.resize(staying + newcomers.size());
   const auto r = read(particles.position);
-  parallel_blocks_dynamic(newcomers.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+  parallel_blocks(newcomers.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
     double nearest2 = std::numeric_limits<double>::infinity();
     order[staying + k] = 0;
     for (const std::int32_t i : candidates) {

@@ -94,7 +94,7 @@ std::size_t append_opening_points(const OpeningLiquid& liquid, std::span<const O
   const int d = liquid.domain.dimensions;
   const std::size_t n = points.size();
   std::vector<PointFits> blocks(block_count(n, PointFits::block));
-  parallel_blocks_dynamic(n, PointFits::block, [&](std::size_t b, std::size_t first, std::size_t last) {
+  parallel_blocks(n, PointFits::block, [&](std::size_t b, std::size_t first, std::size_t last) {
     const auto own = points.subspan(first, last - first);
     if (d == 3)
       fit_points<3>(liquid, own, blocks[b]);

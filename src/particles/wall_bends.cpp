@@ -183,7 +183,7 @@ void WallBends::fit_bends(const Arrangement& arrangement, const VectorField& at,
   const Domain& domain = boundary_.domain();
   const auto r = read(at);
   const double seen = resolution_.support_radius - nearest_row * resolution_.spacing;
-  parallel_blocks_dynamic(arrangement.list.particles(), 256, [&](std::size_t, std::size_t first, std::size_t last) {
+  parallel_blocks(arrangement.list.particles(), 256, [&](std::size_t, std::size_t first, std::size_t last) {
     BendFit<d> fit(boundary_, arrangement, resolution_, at);
     for (int axis = 0; axis < d; ++axis) {
       if (bends[axis][0].empty()) continue;

@@ -99,7 +99,7 @@ std::vector<ShellPoint> cut_shells(const Combination& walls, const Domain& domai
   const auto shells = static_cast<std::size_t>(2 * layers);
   std::vector<std::vector<Site>> rows(lattice.count[1] * lattice.count[2]);
   std::vector<std::vector<double>> parts(rows.size(), std::vector<double>(shells, 0.0));  // of cells, by row and shell
-  parallel_blocks_dynamic(rows.size(), 1, [&](std::size_t row, std::size_t, std::size_t) {
+  parallel_blocks(rows.size(), 1, [&](std::size_t row, std::size_t, std::size_t) {
     for (std::size_t i = 0; i < lattice.count[0];) {
       const std::size_t j = row % lattice.count[1], k = row / lattice.count[1];
       const Vec3 place = lattice.place(i, j, k);

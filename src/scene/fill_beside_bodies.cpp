@@ -53,7 +53,7 @@ void Filler::choose_sites_beside_walls() {
     double volume = 0;  // of all cells that are cut
   };
   std::vector<Found> found(columns);
-  parallel_blocks_dynamic(columns, 1, [&](std::size_t i, std::size_t, std::size_t) {
+  parallel_blocks(columns, 1, [&](std::size_t i, std::size_t, std::size_t) {
     ThreadRegions& own = this->own();
     for (std::size_t j = 0; j < rows; ++j)
       for (double k = 0; k < (lattice_.dimensions == 3 ? lattice_.count[2] : 1); ++k) {

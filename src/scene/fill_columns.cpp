@@ -161,7 +161,7 @@ std::vector<Chunk> Filler::fill_region(std::size_t r) {
   const LiquidRegion& region = regions_[r];
   const std::vector<ColumnCell>& columns = columns_[r];
   std::vector<Chunk> chunks(block_count(columns.size(), column_block));
-  parallel_blocks_dynamic(columns.size(), column_block, [&](std::size_t block, std::size_t first, std::size_t last) {
+  parallel_blocks(columns.size(), column_block, [&](std::size_t block, std::size_t first, std::size_t last) {
     if (too_many()) return;
     ThreadRegions& own = this->own();
     Chunk& chunk = chunks[block];

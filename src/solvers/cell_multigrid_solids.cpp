@@ -22,7 +22,7 @@ void CellMultigrid::mark_bodies() {
   const CellLevel& level = hierarchy_.finest();
   const auto& n = level.cells;
   const auto dimensions = static_cast<std::size_t>(geometry_.dimensions);
-  parallel_blocks_dynamic(level.rows(), 1, [&](std::size_t row, std::size_t, std::size_t) {
+  parallel_blocks(level.rows(), 1, [&](std::size_t row, std::size_t, std::size_t) {
     const int start[3] = {0, static_cast<int>(row) % n[1], static_cast<int>(row) / n[1]};
     for (int i = 0; i < n[0]; ++i) {
       const std::size_t c = row * static_cast<std::size_t>(n[0]) + static_cast<std::size_t>(i);

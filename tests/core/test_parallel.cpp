@@ -2,11 +2,14 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <atomic>
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "spume/core/parallel.hpp"
@@ -57,15 +60,50 @@ TEST_F(EveryThreadCount, SumOfIntegersIsExact) {
 TEST_F(EveryThreadCount, LoopsVisitEachItemOnce) {
   for (const std::size_t n : {0U, 1U, 512U, 100003U})
     on_each([&](int) {
-      std::vector<int> visits(n, 0), dynamic(n, 0);
+      std::vector<int> visits(n, 0), stolen(n, 0);
       parallel_for(n, [&](std::size_t i) { ++visits[i]; });
-      parallel_blocks_dynamic(n, 100, [&](std::size_t b, std::size_t first, std::size_t last) {
+      parallel_blocks(n, 100, [&](std::size_t b, std::size_t first, std::size_t last) {
         ASSERT_EQ(first, b * 100);
-        for (std::size_t i = first; i < last; ++i) ++dynamic[i];
+        for (std::size_t i = first; i < last; ++i) ++stolen[i];
       });
       EXPECT_EQ(visits, std::vector<int>(n, 1));
-      EXPECT_EQ(dynamic, std::vector<int>(n, 1));
+      EXPECT_EQ(stolen, std::vector<int>(n, 1));
     });
+}
+
+TEST(BlockShares, GiveOutEveryBlockOnceFromBothEnds) {
+  for (const int threads : {1, 2, 3, 70}) {
+    BlockShares shares(100, threads);
+    std::vector<int> given(100, 0);
+    std::size_t block = 0;
+    for (int k = 0; shares.next(k % 2 == 0 ? 0 : threads - 1, block); ++k) ++given[block];
+    EXPECT_EQ(given, std::vector<int>(100, 1)) << threads;
+  }
+}
+
+TEST(BlockShares, AThreadTakesItsOwnFromTheFrontAndOthersFromTheBack) {
+  BlockShares shares(8, 2);
+  std::vector<std::size_t> taken;
+  for (std::size_t block = 0; shares.next(1, block);) taken.push_back(block);
+  EXPECT_EQ(taken, (std::vector<std::size_t>{4, 5, 6, 7, 3, 2, 1, 0}));
+}
+
+// A thread that is held up in its first block until the rest of its share is done: by another one, or never.
+TEST_F(EveryThreadCount, AThreadThatIsHeldUpLosesTheRestOfItsShare) {
+  omp_set_num_threads(2);
+  constexpr std::size_t blocks = 64;
+  std::atomic<std::size_t> done = 0;
+  std::atomic<bool> others_came = false;
+  parallel_blocks(blocks, 1, [&](std::size_t b, std::size_t, std::size_t) {
+    if (b == 0) {
+      const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+      while (done < blocks - 1 && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+      others_came = done == blocks - 1;
+    }
+    ++done;
+  });
+  EXPECT_TRUE(others_came);
+  EXPECT_EQ(done, blocks);
 }
 
 TEST_F(EveryThreadCount, LargestTermIsFoundAndNotANumberKept) {
@@ -106,10 +144,10 @@ TEST_F(EveryThreadCount, AnExceptionReachesTheCaller) {
       if (i == 70000) throw std::runtime_error("at 70000");
     };
     EXPECT_THROW(parallel_for(100000, fail), std::runtime_error);
-    EXPECT_THROW(parallel_blocks_dynamic(100000, 10,
-                                         [&](std::size_t, std::size_t first, std::size_t last) {
-                                           for (std::size_t i = first; i < last; ++i) fail(i);
-                                         }),
+    EXPECT_THROW(parallel_blocks(100000, 10,
+                                 [&](std::size_t, std::size_t first, std::size_t last) {
+                                   for (std::size_t i = first; i < last; ++i) fail(i);
+                                 }),
                  std::runtime_error);
   });
 }

@@ -14,6 +14,8 @@
 #include <exception>
 #include <type_traits>
 
+#include "spume/core/block_shares.hpp"
+
 namespace spume {
 
 // Particles per block of a sweep: large enough that dispatch (about 0.1 us) is noise beside about 50 us of
@@ -24,9 +26,9 @@ inline std::size_t block_count(std::size_t n, std::size_t block) {
   return (n + block - 1) / block;
 }
 
-// Calls body(block_index, first, last) for every block of [0, n). Blocks are scheduled statically in
-// contiguous runs, so that a thread touches the memory that it touched first; an exception thrown in a
-// block is rethrown on the caller's thread.
+// Calls body(block_index, first, last) for every block of [0, n). Every thread begins with a contiguous run of blocks,
+// so that it touches the memory that it touched first, and takes from the others' when it is done; an exception thrown
+// in a block is rethrown on the caller's thread.
 template <class Body>
 void parallel_blocks(std::size_t n, std::size_t block, Body&& body) {
   const std::size_t blocks = block_count(n, block);
@@ -35,14 +37,18 @@ void parallel_blocks(std::size_t n, std::size_t block, Body&& body) {
     body(std::size_t{0}, std::size_t{0}, n);
     return;
   }
+  BlockShares shares(blocks, omp_get_max_threads());
   std::exception_ptr failure;
-#pragma omp parallel for schedule(static)
-  for (std::size_t b = 0; b < blocks; ++b) {
-    try {
-      body(b, b * block, std::min(n, (b + 1) * block));
-    } catch (...) {
+#pragma omp parallel
+  {
+    const int thread = omp_get_thread_num();
+    for (std::size_t b = 0; shares.next(thread, b);) {
+      try {
+        body(b, b * block, std::min(n, (b + 1) * block));
+      } catch (...) {
 #pragma omp critical(spume_parallel_blocks)
-      if (!failure) failure = std::current_exception();
+        if (!failure) failure = std::current_exception();
+      }
     }
   }
   if (failure) std::rethrow_exception(failure);
@@ -54,24 +60,6 @@ void parallel_for(std::size_t n, Body&& body) {
   parallel_blocks(n, default_block, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) body(i);
   });
-}
-
-// As parallel_blocks, for work whose cost varies between blocks (sparse regions, different lists).
-template <class Body>
-void parallel_blocks_dynamic(std::size_t n, std::size_t block, Body&& body) {
-  const std::size_t blocks = block_count(n, block);
-  if (blocks == 0) return;
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic, 8)
-  for (std::size_t b = 0; b < blocks; ++b) {
-    try {
-      body(b, b * block, std::min(n, (b + 1) * block));
-    } catch (...) {
-#pragma omp critical(spume_parallel_blocks)
-      if (!failure) failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
 }
 
 // The most partial results a reduction keeps: enough for 64 threads, few enough to live on the stack.

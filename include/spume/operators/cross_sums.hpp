@@ -89,7 +89,7 @@ void sum_over_points(const CrossTargets& targets, const CrossSearch& search, dou
   // The least distance that counts as outside, (r / h)^2: a thousandth beyond the support, far above float rounding.
   const f32x8 beyond = simd::splat(static_cast<float>(1.001 * Kernel::support * Kernel::support));
   const auto longest = static_cast<float>(detail::cross_length * grid_support_radius);
-  parallel_blocks_dynamic(targets.size, detail::cross_block, [&](std::size_t, std::size_t first, std::size_t last) {
+  parallel_blocks(targets.size, detail::cross_block, [&](std::size_t, std::size_t first, std::size_t last) {
     thread_local CrossSearch::Found thread_found;
     CrossSearch::Found& found = thread_found;
     const detail::CrossBlock block(targets, first, last);

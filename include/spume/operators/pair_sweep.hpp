@@ -209,8 +209,7 @@ template <int dimensions, int payload, class Body>
 inline constexpr std::size_t sweep_block = 256;
 template <class Body>
 void sweep_blocks(std::size_t particles, Body&& body) {
-  parallel_blocks_dynamic(particles, sweep_block,
-                          [&](std::size_t, std::size_t first, std::size_t last) { body(first, last); });
+  parallel_blocks(particles, sweep_block, [&](std::size_t, std::size_t first, std::size_t last) { body(first, last); });
 }
 
 // The same one by one: body(i).

@@ -171,7 +171,7 @@ void BubbleCoupling::interpolate() {
   with_kernel(carrier_.arrangement.context, [&]<int d, class Kernel>() {
     if constexpr (d == 3) {
       const float scale = KernelScale<3, Kernel>(carrier_.arrangement.context).value;
-      parallel_blocks_dynamic(nb, 64, [&](std::size_t, std::size_t first, std::size_t last) {
+      parallel_blocks(nb, 64, [&](std::size_t, std::size_t first, std::size_t last) {
         thread_local CrossSearch::Found thread_found;
         CrossSearch::Found& found = thread_found;
         for (std::size_t b = first; b < last; ++b) {
@@ -297,7 +297,7 @@ void BubbleCoupling::move_bubbles(double dt) {
   if (population_.merge_time != nullptr) next_merge_time_.resize(nb);
   for (auto& component : reaction_) component.resize(nb);
   next_gas_.resize(exchanges_gas() ? nb : 0);
-  parallel_blocks_dynamic(nb, 256, [&](std::size_t, std::size_t first, std::size_t last) {
+  parallel_blocks(nb, 256, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t b = first; b < last; ++b) move_bubble(b, dt);
   });
   float* records = bubble_records_.data();

@@ -107,7 +107,7 @@ void BubbleCoupling::weigh_beside_walls(const std::array<const float*, 3>& point
       }
       return sum;
     };
-    parallel_blocks_dynamic(beside_walls_.size(), 64, [&](std::size_t, std::size_t first, std::size_t last) {
+    parallel_blocks(beside_walls_.size(), 64, [&](std::size_t, std::size_t first, std::size_t last) {
       thread_local CrossSearch::Found found;
       for (std::size_t k = first; k < last; ++k) {
         const auto b = static_cast<std::size_t>(beside_walls_[k]);
