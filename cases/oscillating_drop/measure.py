@@ -1,23 +1,38 @@
 # SPDX-License-Identifier: MIT
-"""Frequency of a two-dimensional drop against Lamb and Rayleigh (reference/drop_bubble_frequencies.csv), unbounded and
-without viscosity."""
+"""Frequency of a two-dimensional drop against linear theory, unbounded: with the viscosities of the run
+(reference/viscous_frequencies.csv), and without any (reference/drop_bubble_frequencies.csv, Lamb and Rayleigh)."""
 from pathlib import Path
 
 import numpy as np
 from spume_tools.results import read_reference
 from spume_tools.waves import damped_oscillation
 
-REFERENCE = Path(__file__).parent / "reference" / "drop_bubble_frequencies.csv"
+FOLDER = Path(__file__).parent / "reference"
 
 
-def exact(run):
-    outside, drop = (float(phase["density"]) for phase in run.case["phase"])
-    n = int(run.case["constants"]["n"])
-    table = read_reference(REFERENCE, ("dim", "rho_d", "rho_c", "n", "omega"))
-    for row in zip(*(table[name] for name in ("dim", "rho_d", "rho_c", "n", "omega"))):
-        if tuple(float(v) for v in row[:4]) == (2.0, drop, outside, float(n)):
-            return float(row[4])
-    raise ValueError("the reference has no drop of these fluids")
+def row_of(file, wanted, column):
+    """The entry in a column of the row whose columns hold what is wanted."""
+    table = read_reference(FOLDER / file, (*wanted, column))
+    for k, value in enumerate(table[column]):
+        if all(np.isclose(float(table[name][k]), number, rtol=1e-9) for name, number in wanted.items()):
+            return float(value)
+    raise ValueError(f"{file} has no drop of these fluids: {wanted}")
+
+
+def fluids(run):
+    outside, drop = run.case["phase"]
+    rho_c, rho_d = float(outside["density"]), float(drop["density"])
+    nu_c, nu_d = float(outside["viscosity"]) / rho_c, float(drop["viscosity"]) / rho_d
+    return {"rho_d": rho_d, "rho_c": rho_c, "n": int(run.case["constants"]["n"])}, {"nu_d": nu_d, "nu_c": nu_c}
+
+
+def inviscid(run):
+    return row_of("drop_bubble_frequencies.csv", {"dim": 2, **fluids(run)[0]}, "omega")
+
+
+def viscous(run):
+    densities, viscosities = fluids(run)
+    return row_of("viscous_frequencies.csv", {**densities, **viscosities}, "omega")
 
 
 def moment(run):
@@ -35,11 +50,12 @@ def moment(run):
 def measure(runs):
     measured = {}
     for name, run in runs.items():
-        omega = exact(run)
+        omega = viscous(run)
         t, a = moment(run)
         _, _, rate, found = damped_oscillation(t, a, 0.01 * omega, omega)
         measured[f"{name}_frequency_ratio"] = found / omega
         measured[f"{name}_frequency_error"] = abs(found / omega - 1)
+        measured[f"{name}_frequency_inviscid_ratio"] = found / inviscid(run)
         measured[f"{name}_growth_over_frequency"] = -rate / omega
     return measured
 
@@ -48,8 +64,8 @@ def curves(runs):
     lines, longest = [], 0
     for name, run in runs.items():
         t, a = moment(run)
-        lines.append((f"Spume, {name}", exact(run) * t, a / a[0], "-"))
-        longest = max(longest, exact(run) * t[-1])
+        lines.append((f"Spume, {name}", inviscid(run) * t, a / a[0], "-"))
+        longest = max(longest, inviscid(run) * t[-1])
     phase = np.linspace(0, longest, 500)
     lines.append(("Lamb, without viscosity", phase, np.cos(phase), "k--"))
     return [{"file": "oscillation", "x": "omega t", "y": "amplitude over that of the start", "curves": lines}]
