@@ -234,8 +234,20 @@ class Oscillations(CaseTest):
                 return np.hypot(p[:, 0], p[:, 1]) < size
             write_snapshots(folder / "fluid.vtkhdf", np.linspace(0, 8, 81), lambda t: at, {"phase": phase})
             measured = module.measure({"equal": Results(folder)})
-            self.assertAlmostEqual(measured["equal_frequency_ratio"], slower, delta=0.003)
+            self.assertAlmostEqual(measured["equal_frequency_inviscid_ratio"], slower, delta=0.003)
             self.assertAlmostEqual(measured["equal_growth_over_frequency"], growth, delta=0.003)
+
+    def test_boundary_layers_slow_a_drop_by_what_they_damp_and_a_heavy_one_has_none(self):
+        table = read_reference(CASES / "oscillating_drop" / "reference" / "viscous_frequencies.csv",
+                               ("rho_c", "nu_d", "n", "omega", "decay"))
+        rows = list(zip(*(map(float, table[name]) for name in ("rho_c", "nu_d", "n", "omega", "decay"))))
+        self.assertEqual(len(rows), 4)
+        for rho_c, nu_d, n, omega, decay in rows:
+            inviscid = np.sqrt(n * (n * n - 1) / (1 + rho_c))
+            if rho_c == 1:  # layers of sqrt(nu): their next order is sqrt(nu / omega) = 1 % of them
+                self.assertAlmostEqual((1 - omega / inviscid) / (decay / inviscid), 1, delta=0.02)
+            else:           # potential flow decays with 2 n (n - 1) nu; the air adds 2 to 6 % to that
+                self.assertAlmostEqual(decay / (2 * n * (n - 1) * nu_d), 1, delta=0.06)
 
 
 class Franke(CaseTest):
