@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "spume/core/joined_lanes.hpp"
 #include "symmetric_matrix.hpp"
@@ -18,17 +19,47 @@ void pack_volumes(const SweepContext& context, float* records, int width, int sl
   if constexpr (is_variable_h<Kernel>) pack_scalar(context, records, width, slot, context.volume_ratio);
 }
 
-// The differences u_j - u_i of a particle from all its neighbours lie between `low` and `high`, which include 0.
+// What the velocity changes by along a displacement s, as neighbours show it one by one: the difference u_j - u_i of
+// each, in proportion to how far along it s goes, s . d / d^2. Those ahead of the particle and those behind it both have
+// what lies between `low` and `high`, which include 0.
 template <int dimensions>
-struct DifferenceBounds {
+struct ChangeBounds {
   std::array<float, dimensions> low{}, high{};
 };
+
+// The extremes over one side of a particle.
+template <int dimensions>
+struct SideExtremes {
+  std::array<f32n, dimensions> least{}, largest{};
+
+  [[gnu::always_inline]] void add(int a, f32n change) {
+    least[a] = simd::min(least[a], change);
+    largest[a] = simd::max(largest[a], change);
+  }
+  // The least with the sign changed before the largest.
+  std::array<float, 2 * dimensions> sizes() const {
+    std::array<f32n, 2 * dimensions> both;
+    for (int a = 0; a < dimensions; ++a) both[a] = -least[a], both[dimensions + a] = largest[a];
+    return simd::largest_of(both);
+  }
+};
+
+template <int dimensions>
+ChangeBounds<dimensions> common_bounds(const SideExtremes<dimensions>& ahead, const SideExtremes<dimensions>& behind) {
+  const auto of_ahead = ahead.sizes(), of_behind = behind.sizes();
+  ChangeBounds<dimensions> bounds;
+  for (int a = 0; a < dimensions; ++a) {
+    bounds.low[a] = -std::min(of_ahead[a], of_behind[a]);
+    bounds.high[a] = std::min(of_ahead[dimensions + a], of_behind[dimensions + a]);
+  }
+  return bounds;
+}
 
 // store(i, d u_a / d x_c as [a][c], bounds) for every particle; without `bounded` the bounds are zero.
 template <int dimensions, class Kernel, bool filter, bool bounded, class Store>
 void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
                        const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
-                       const std::array<const float*, 6>& correction, const std::array<float*, 3>& out, Store&& store) {
+                       const std::array<const float*, 6>& correction, const VelocityGradientOut& out, Store&& store) {
   const NeighbourList& list = *context.list;
   constexpr int payload = dimensions + volume_slots<Kernel>;
   float* records = packed.prepare(context, payload);
@@ -37,6 +68,7 @@ void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
   pack_volumes<Kernel>(context, records, width, dimensions);
   const KernelScale<dimensions, Kernel> common(context);
   const auto centre_value = static_cast<float>(Kernel::w(0.0));
+  const bool changes = bounded && out.displacement[0] != nullptr;
 
   sweep(list.particles(), [&](std::size_t i) {
     const KernelScale<dimensions, Kernel> scale = common.at(context, i);
@@ -44,20 +76,32 @@ void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
     std::array<f32n, dimensions> own{}, filtered{};
     for (int a = 0; a < dimensions; ++a) own[a] = simd::splat<f32n>(records[i * width + dimensions + a]);
     std::array<f32n, dimensions * dimensions> m{};
-    std::array<f32n, dimensions> low{}, high{};
+    std::array<f32n, dimensions> displacement{};
+    for (int c = 0; c < dimensions && changes; ++c) displacement[c] = simd::splat<f32n>(out.displacement[c][i]);
+    SideExtremes<dimensions> ahead, behind;
     f32n kernel_sum{};
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
       const f32n g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
       std::array<f32n, dimensions> gd;
       for (int c = 0; c < dimensions; ++c) gd[c] = g * b.d[c];
+      f32n share_ahead{}, share_behind{};
+      if constexpr (bounded) {
+        f32n along{}, square{};
+        for (int c = 0; c < dimensions; ++c) {
+          along = along + displacement[c] * b.d[c];
+          square = square + b.d[c] * b.d[c];
+        }
+        const f32n share = along / simd::max(square, simd::splat<f32n>(std::numeric_limits<float>::min()));
+        const f32n of_neighbour = b.q < simd::splat<f32n>(static_cast<float>(Kernel::support)) ? share : f32n{};
+        share_ahead = simd::max(of_neighbour, f32n{});
+        share_behind = simd::min(of_neighbour, f32n{});
+      }
       for (int a = 0; a < dimensions; ++a) {
         const f32n difference = b.payload[a] - own[a];
         for (int c = 0; c < dimensions; ++c) m[a * dimensions + c] = m[a * dimensions + c] + difference * gd[c];
         if constexpr (bounded) {
-          const f32n within =
-              b.q < simd::splat<f32n>(static_cast<float>(Kernel::support)) ? difference : f32n{};  // not the sentinel's
-          low[a] = simd::min(low[a], within);
-          high[a] = simd::max(high[a], within);
+          ahead.add(a, share_ahead * difference);
+          behind.add(a, share_behind * difference);
         }
       }
       if constexpr (filter) {
@@ -75,18 +119,10 @@ void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
     if constexpr (filter) {
       const auto of_filter = simd::sums_of(filtered, std::array{kernel_sum});
       const float weight = 1 / (centre + of_filter[dimensions]);
-      for (int a = 0; a < dimensions; ++a) out[a][i] = (centre * own[a][0] + of_filter[a]) * weight;
+      for (int a = 0; a < dimensions; ++a) out.filtered[a][i] = (centre * own[a][0] + of_filter[a]) * weight;
     }
-    DifferenceBounds<dimensions> bounds;
-    if constexpr (bounded) {
-      std::array<f32n, 2 * dimensions> both;
-      for (int a = 0; a < dimensions; ++a) both[a] = -low[a], both[dimensions + a] = high[a];
-      const auto largest = simd::largest_of(both);
-      for (int a = 0; a < dimensions; ++a) {
-        bounds.low[a] = -largest[a];
-        bounds.high[a] = largest[dimensions + a];
-      }
-    }
+    ChangeBounds<dimensions> bounds;
+    if constexpr (bounded) bounds = common_bounds(ahead, behind);
     store(i, gradient, bounds);
   });
 }
@@ -95,7 +131,7 @@ void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
 template <int dimensions>
 void store_gradient(const VelocityGradientOut& out, std::size_t i,
                     const std::array<std::array<float, dimensions>, dimensions>& gradient,
-                    const DifferenceBounds<dimensions>& bounds) {
+                    const ChangeBounds<dimensions>& bounds) {
   double trace = 0, squares = 0;
   for (int a = 0; a < dimensions; ++a)
     for (int c = 0; c < dimensions; ++c) {
@@ -110,7 +146,7 @@ void store_gradient(const VelocityGradientOut& out, std::size_t i,
   for (int a = 0; a < dimensions; ++a) {
     float change = 0;
     for (int c = 0; c < dimensions; ++c) change += gradient[a][c] * out.displacement[c][i];
-    out.change[a][i] = std::clamp(change, 0.5F * bounds.low[a], 0.5F * bounds.high[a]);
+    out.change[a][i] = std::clamp(change, allowed_change * bounds.low[a], allowed_change * bounds.high[a]);
   }
 }
 
@@ -337,8 +373,7 @@ void velocity_gradient_sweep(const SweepContext& context, PackedNeighbours& pack
       store_gradient<dimensions>(out, i, gradient, bounds);
     };
     const auto run = [&]<bool filter, bool bounded>() {
-      velocity_gradient<dimensions, Kernel, filter, bounded>(context, packed, velocity, rule, correction, out.filtered,
-                                                             store);
+      velocity_gradient<dimensions, Kernel, filter, bounded>(context, packed, velocity, rule, correction, out, store);
     };
     // The bounds cost little beside a filter: one variant less to compile.
     const bool filter = out.filtered[0] != nullptr, bounded = out.change[0] != nullptr;

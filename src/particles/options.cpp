@@ -60,7 +60,7 @@ Section shifting_section(bool removes_drift) {
           {{"none", ShiftCorrection::none},
            {"first-order", ShiftCorrection::first_order},
            {"second-order", ShiftCorrection::second_order}},
-          "Taylor terms of the velocity at the shifted position; the first is bounded by the velocities of neighbours")
+          "Taylor terms of the velocity at the shifted position; the first is bounded by what neighbours ahead and behind show")
       .when("on", {"true"});
   return made;
 }

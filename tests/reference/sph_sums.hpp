@@ -271,6 +271,23 @@ class SphSums {
     return point.velocity_sign[a] * u[a][point.source] + point.velocity_offset[a];
   }
 
+  // What single neighbours show of the change of component a over the displacement s, (s . d) / d^2 (u_j - u_i): the
+  // least and the largest of 0 and of what neighbours ahead, and of what neighbours behind show; of the two the nearer
+  // to 0.
+  template <class Velocity>
+  std::array<double, 2> change_bounds(std::size_t i, const Velocity& u, const Vector& s, int a) const {
+    std::array<double, 2> ahead{}, behind{};
+    each(i, [&](const Pair& p) {
+      double along = 0, square = 0;
+      for (int axis = 0; axis < dimensions(); ++axis) along += s[axis] * p.d[axis], square += p.d[axis] * p.d[axis];
+      if (square == 0) return;
+      const double change = along / square * (velocity_at(u, *p.point, a) - u[a][i]);
+      auto& side = along > 0 ? ahead : behind;
+      side = {std::min(side[0], change), std::max(side[1], change)};
+    });
+    return {std::max(ahead[0], behind[0]), std::min(ahead[1], behind[1])};
+  }
+
   // The least and the largest of 0 and the differences u_j - u_i of component a.
   template <class Velocity>
   std::array<double, 2> difference_bounds(std::size_t i, const Velocity& u, int a) const {

@@ -13,7 +13,7 @@
 // in solid boxes and points behind openings exchange nothing.
 //
 // A particle that is shifted by s takes the change s . grad c with the corrected gradient (3.8), bounded by half of the
-// extreme differences c_j - c_i from its neighbours, as the velocity does.
+// extreme differences c_j - c_i from its neighbours.
 #pragma once
 
 #include <array>
