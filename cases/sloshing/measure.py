@@ -21,13 +21,12 @@ def impact(t, p):
     return onset, float(np.max(p[(t >= onset) & (t <= onset + WITHIN)]))
 
 
-def errors(run, liquid):
+def errors(run, name):
     t, p = run.probes["t"], np.nan_to_num(run.probes["sensor_pressure"])
-    (onset, peak), (expected, expected_peak) = impact(t, p), impact(*measured(liquid))
-    return {f"{liquid}_impact_time_error": onset / expected - 1, f"{liquid}_peak": peak,
-            f"{liquid}_measured_peak": expected_peak}
+    (onset, peak), (expected, expected_peak) = impact(t, p), impact(*measured("water" if "water" in name else "oil"))
+    return {f"{name}_impact_time_error": onset / expected - 1, f"{name}_peak": peak,
+            f"{name}_measured_peak": expected_peak}
 
 
 def measure(runs):
-    return {key: value for name, run in runs.items()
-            for key, value in errors(run, "water" if name.endswith("water") else "oil").items()}
+    return {key: value for name, run in runs.items() for key, value in errors(run, name).items()}

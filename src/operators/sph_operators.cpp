@@ -20,8 +20,8 @@ void pack_volumes(const SweepContext& context, float* records, int width, int sl
 }
 
 // What the velocity changes by along a displacement s, as neighbours show it one by one: the difference u_j - u_i of
-// each, in proportion to how far along it s goes, s . d / d^2. Those ahead of the particle and those behind it both have
-// what lies between `low` and `high`, which include 0.
+// each, in proportion to how far along it s goes, s . d / d^2. Those ahead of the particle and those behind it both
+// have what lies between `low` and `high`, which include 0.
 template <int dimensions>
 struct ChangeBounds {
   std::array<float, dimensions> low{}, high{};

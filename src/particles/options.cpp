@@ -55,12 +55,12 @@ Section shifting_section(bool removes_drift) {
   if (removes_drift)
     made.option("remove_drift", &S::remove_drift, "subtract the Shepard mean of the shift: no net transport")
         .when("on", {"true"});
-  made.word(
-          "velocity_correction", &S::velocity_correction,
-          {{"none", ShiftCorrection::none},
-           {"first-order", ShiftCorrection::first_order},
-           {"second-order", ShiftCorrection::second_order}},
-          "Taylor terms of the velocity at the shifted position; the first is bounded by what neighbours ahead and behind show")
+  made.word("velocity_correction", &S::velocity_correction,
+            {{"none", ShiftCorrection::none},
+             {"first-order", ShiftCorrection::first_order},
+             {"second-order", ShiftCorrection::second_order}},
+            "Taylor terms of the velocity at the shifted position; the first is bounded by what neighbours ahead and "
+            "behind show")
       .when("on", {"true"});
   return made;
 }

@@ -292,8 +292,8 @@ class Sloshing(CaseTest):
             t, p = module.measured(liquid)
             write_table(folder / "probes.csv", {"t": 1.01 * t, "sensor_pressure": p})
             measured = module.measure({f"the_{liquid}": Results(folder)})
-            self.assertAlmostEqual(measured[f"{liquid}_impact_time_error"], 0.01, places=6)
-            self.assertAlmostEqual(measured[f"{liquid}_peak"], measured[f"{liquid}_measured_peak"])
+            self.assertAlmostEqual(measured[f"the_{liquid}_impact_time_error"], 0.01, places=6)
+            self.assertAlmostEqual(measured[f"the_{liquid}_peak"], measured[f"the_{liquid}_measured_peak"])
             self.assertAlmostEqual(module.impact(t, p)[0], expected)
 
 

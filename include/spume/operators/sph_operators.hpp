@@ -73,8 +73,8 @@ struct VelocityGradientOut {
   // displacement s as well as those behind: in both the largest (s . d) / d^2 (u_j - u_i)_a, times `allowed_change`. A
   // smooth field is not cut. Where velocities bend within a spacing the gradient says nothing of the way that the
   // particle goes: beside a no-slip wall whose layer is thinner it is that from liquid to image, while a particle comes
-  // to the wall at the speed of the liquid; carried away from the wall by the displacement again and again it would gain
-  // speed without bound.
+  // to the wall at the speed of the liquid; carried away from the wall by the displacement again and again it would
+  // gain speed without bound.
   std::array<const float*, 3> displacement{};
   std::array<float*, 3> change{};
 };

@@ -69,6 +69,7 @@ LesSph::LesSph(const LoadedCase& loaded)
   if (flow_.floating != nullptr) flow_.speed_of_bodies = speed_of_bodies(loaded.scene, loaded.options.time.end);
   if (flow_.features.scalars) flow_.solutes.scalars->add_fields(snapshot_);
   declare_series();
+  if (flow_.features.moving_bodies && WorkOfBodies::tells_all(flow_.scene)) work_of_bodies_.emplace(flow_.scene);
   declare_saved();
   if (flow_.features.bodies)
     body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
@@ -308,6 +309,7 @@ void LesSph::declare_saved() {
       .add(flow_.last_steps[0])
       .add(flow_.last_steps[1])
       .add(flow_.solver.looks_for_enclosed);
+  if (work_of_bodies_) work_of_bodies_->save_with(saved_);
 }
 
 void LesSph::save(StateWriter& writer) const {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "spume/methods/les_sph/flow.hpp"
@@ -15,6 +16,8 @@
 #include "spume/particles/body_forces.hpp"
 #include "spume/particles/output_fields.hpp"
 #include "spume/particles/point_sampler.hpp"
+#include "spume/particles/reports.hpp"
+#include "spume/particles/work_of_bodies.hpp"
 
 namespace spume::les_sph {
 
@@ -70,7 +73,8 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   void declare_saved();
   bool periodic() const;  // in all directions: the flow has an energy spectrum
   void add_spectrum_rows(std::vector<double>& rows) const;
-  void add_force_rows(std::vector<double>& rows) const;
+  void add_force_rows(std::vector<double>& rows);
+  bool tells_energy() const;  // all that gives energy to the liquid is followed
   const PointSampler& sampler();
 
   std::vector<Remark> remarks_;  // not yet passed on
@@ -85,6 +89,7 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   SavedNumbers saved_{"scalars"};
   FlowTotals row_;                                 // of the row of the series that is being read
   std::unique_ptr<const BodyForces> body_forces_;  // null without walls of bodies
+  std::optional<WorkOfBodies> work_of_bodies_;     // of those that move as given, where it can be told
   PointSampler sampler_;
   std::int64_t sampled_step_ = -1;  // that the sampler has binned
 };

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// The work that bodies with a given motion do on the liquid, from the forces that the rows of bodies.csv hold:
+//
+//   W = -sum_b int (F_b . V_b + T_b . omega_b) dt,   T_b about the pivot,
+//
+// by the trapezoidal rule from row to row. It judges a run by its energy where walls move: what the liquid has beyond
+// this work, and beyond what the work may be off by, has come from nowhere.
+#pragma once
+
+#include <vector>
+
+#include "spume/operators/surface_force.hpp"
+#include "spume/particles/body_walls.hpp"
+#include "spume/particles/reports.hpp"
+
+namespace spume {
+
+class WorkOfBodies {
+ public:
+  // Outlived by the scene.
+  explicit WorkOfBodies(const Scene& scene);
+
+  // Whether these forces tell all of the work that bodies do: not of surfaces that slide along themselves, of bodies
+  // that come, go or grow, and of those that may push others that float.
+  static bool tells_all(const Scene& scene);
+
+  // The forces of a row, per [[body]] entry, torques about the origin, and where the bodies are.
+  void add(double t, const std::vector<SurfaceForce>& forces, const BodyWalls& walls);
+
+  double done() const { return done_; }
+  // sum |dP| dt / 2 over the intervals, which no power that stays between the values of its rows can pass, and 5 % of
+  // int |P| dt for the forces.
+  double uncertainty() const;
+
+  void save_with(SavedNumbers& saved);
+
+ private:
+  double power(const std::vector<SurfaceForce>& forces, const BodyWalls& walls) const;
+
+  std::vector<std::size_t> bodies_;  // with a given motion
+  double done_ = 0, gross_ = 0, rule_ = 0;
+  double rows_ = 0, time_ = 0, power_ = 0;  // of the last row
+};
+
+}  // namespace spume

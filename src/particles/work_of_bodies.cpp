@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "spume/particles/work_of_bodies.hpp"
+
+#include <cmath>
+
+namespace spume {
+namespace {
+
+// Drag and torque of cylinder_2d and taylor_couette are within 2 %, of hydrostatic_bodies within 0.5 %, at 20 to 40
+// spacings; of coarse bodies forces are off by more.
+constexpr double share_of_forces = 0.05;
+
+bool moves_as_given(const Scene& scene, const Body& body) {
+  return body.wall != BoundaryKind::open && body.motion && !scene.motions[*body.motion].floats;
+}
+
+}  // namespace
+
+WorkOfBodies::WorkOfBodies(const Scene& scene) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    if (moves_as_given(scene, scene.bodies[b])) bodies_.push_back(b);
+}
+
+bool WorkOfBodies::tells_all(const Scene& scene) {
+  bool given = false, floats = false, other = false;
+  for (const Body& body : scene.bodies) {
+    given = given || moves_as_given(scene, body);
+    floats = floats || (body.motion && scene.motions[*body.motion].floats);
+    other = other || body.velocity || (body.motion && scene.motions[*body.motion].release);
+  }
+  return !other && !(given && floats);
+}
+
+double WorkOfBodies::power(const std::vector<SurfaceForce>& forces, const BodyWalls& walls) const {
+  double sum = 0;
+  for (const std::size_t b : bodies_) {
+    const RigidPlace& place = walls.part_of(b).place;
+    const Vec3 force = spume::add(forces[b].pressure, forces[b].viscous);
+    const Vec3 torque =
+        subtract(spume::add(forces[b].pressure_torque, forces[b].viscous_torque), cross(place.position, force));
+    sum -= dot(force, place.velocity) + dot(torque, place.angular_velocity);
+  }
+  return sum;
+}
+
+void WorkOfBodies::add(double t, const std::vector<SurfaceForce>& forces, const BodyWalls& walls) {
+  if (rows_ > 0 && t <= time_) return;  // a row that is taken again
+  const double now = power(forces, walls);
+  if (rows_ > 0) {
+    const double half = (t - time_) / 2;
+    done_ += half * (power_ + now);
+    gross_ += half * (std::abs(power_) + std::abs(now));
+    rule_ += half * std::abs(now - power_);
+  }
+  time_ = t, power_ = now, ++rows_;
+}
+
+double WorkOfBodies::uncertainty() const {
+  return rule_ + share_of_forces * gross_;
+}
+
+void WorkOfBodies::save_with(SavedNumbers& saved) {
+  for (double* value : {&done_, &gross_, &rule_, &rows_, &time_, &power_}) saved.add(*value);
+}
+
+}  // namespace spume
