@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/operators/gfd_gradient.hpp"
 
-#include <algorithm>
-
+#include "change_bounds.hpp"
 #include "gfd_row.hpp"
 #include "spume/core/joined_lanes.hpp"
 
@@ -99,24 +98,21 @@ void change_of(const SweepContext& context, PackedNeighbours& packed, const std:
   sweep_velocities<dimensions>(context, packed, velocity, rule, [&](std::size_t i, const float* own, const auto& each) {
     const auto direction = symmetric_product<dimensions>(correction, i, own_vector<dimensions>(displacement, i));
     std::array<f32n, dimensions> sum{};
-    std::array<f32n, 2 * dimensions> bounds{};  // the largest u_i - u_j, then u_j - u_i; of none 0
+    ChangeBounds<dimensions> bounds(own_vector<dimensions>(displacement, i));
     each([&](const auto& b) {
       f32n along{};
       for (int c = 0; c < dimensions; ++c) along = along + direction[c] * b.d[c];
       along = Kernel::w(b.q) * along;
-      const auto near = b.q < simd::splat<f32n>(static_cast<float>(Kernel::support));  // not the sentinel
+      const auto shares = bounds.template shares<Kernel>(b);
       for (int a = 0; a < dimensions; ++a) {
         const f32n difference = b.payload[a] - own[a];
         sum[a] = sum[a] + along * difference;
-        const f32n within = near ? difference : f32n{};
-        bounds[a] = simd::max(bounds[a], -within);
-        bounds[dimensions + a] = simd::max(bounds[dimensions + a], within);
+        bounds.add(a, shares, difference);
       }
     });
-    const auto change = simd::sums_of(sum);
-    const auto largest = simd::largest_of(bounds);
-    for (int a = 0; a < dimensions; ++a)
-      out[a][i] = std::clamp(change[a], -0.5F * largest[a], 0.5F * largest[dimensions + a]);
+    std::array<float, dimensions> change = simd::sums_of(sum);
+    bounds.cut(change);
+    for (int a = 0; a < dimensions; ++a) out[a][i] = change[a];
   });
 }
 

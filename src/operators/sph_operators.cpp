@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "spume/core/joined_lanes.hpp"
+#include "change_bounds.hpp"
 #include "symmetric_matrix.hpp"
 
 namespace spume {
@@ -19,43 +18,7 @@ void pack_volumes(const SweepContext& context, float* records, int width, int sl
   if constexpr (is_variable_h<Kernel>) pack_scalar(context, records, width, slot, context.volume_ratio);
 }
 
-// What the velocity changes by along a displacement s, as neighbours show it one by one: the difference u_j - u_i of
-// each, in proportion to how far along it s goes, s . d / d^2. Those ahead of the particle and those behind it both
-// have what lies between `low` and `high`, which include 0.
-template <int dimensions>
-struct ChangeBounds {
-  std::array<float, dimensions> low{}, high{};
-};
-
-// The extremes over one side of a particle.
-template <int dimensions>
-struct SideExtremes {
-  std::array<f32n, dimensions> least{}, largest{};
-
-  [[gnu::always_inline]] void add(int a, f32n change) {
-    least[a] = simd::min(least[a], change);
-    largest[a] = simd::max(largest[a], change);
-  }
-  // The least with the sign changed before the largest.
-  std::array<float, 2 * dimensions> sizes() const {
-    std::array<f32n, 2 * dimensions> both;
-    for (int a = 0; a < dimensions; ++a) both[a] = -least[a], both[dimensions + a] = largest[a];
-    return simd::largest_of(both);
-  }
-};
-
-template <int dimensions>
-ChangeBounds<dimensions> common_bounds(const SideExtremes<dimensions>& ahead, const SideExtremes<dimensions>& behind) {
-  const auto of_ahead = ahead.sizes(), of_behind = behind.sizes();
-  ChangeBounds<dimensions> bounds;
-  for (int a = 0; a < dimensions; ++a) {
-    bounds.low[a] = -std::min(of_ahead[a], of_behind[a]);
-    bounds.high[a] = std::min(of_ahead[dimensions + a], of_behind[dimensions + a]);
-  }
-  return bounds;
-}
-
-// store(i, d u_a / d x_c as [a][c], bounds) for every particle; without `bounded` the bounds are zero.
+// store(i, d u_a / d x_c as [a][c], bounds) for every particle; without `bounded` the bounds are of nothing.
 template <int dimensions, class Kernel, bool filter, bool bounded, class Store>
 void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
                        const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
@@ -76,33 +39,23 @@ void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
     std::array<f32n, dimensions> own{}, filtered{};
     for (int a = 0; a < dimensions; ++a) own[a] = simd::splat<f32n>(records[i * width + dimensions + a]);
     std::array<f32n, dimensions * dimensions> m{};
-    std::array<f32n, dimensions> displacement{};
-    for (int c = 0; c < dimensions && changes; ++c) displacement[c] = simd::splat<f32n>(out.displacement[c][i]);
-    SideExtremes<dimensions> ahead, behind;
+    ChangeBounds<dimensions> bounds;
+    if (changes) {
+      std::array<float, dimensions> displacement;
+      for (int c = 0; c < dimensions; ++c) displacement[c] = out.displacement[c][i];
+      bounds = ChangeBounds<dimensions>(displacement);
+    }
     f32n kernel_sum{};
     for_each_batch<dimensions, payload>(list, records, i, scale.inverse_h, [&](const auto& b) {
       const f32n g = times_volume<Kernel>(-scale.gradient * Kernel::f(b.q), b);
       std::array<f32n, dimensions> gd;
       for (int c = 0; c < dimensions; ++c) gd[c] = g * b.d[c];
-      f32n share_ahead{}, share_behind{};
-      if constexpr (bounded) {
-        f32n along{}, square{};
-        for (int c = 0; c < dimensions; ++c) {
-          along = along + displacement[c] * b.d[c];
-          square = square + b.d[c] * b.d[c];
-        }
-        const f32n share = along / simd::max(square, simd::splat<f32n>(std::numeric_limits<float>::min()));
-        const f32n of_neighbour = b.q < simd::splat<f32n>(static_cast<float>(Kernel::support)) ? share : f32n{};
-        share_ahead = simd::max(of_neighbour, f32n{});
-        share_behind = simd::min(of_neighbour, f32n{});
-      }
+      typename ChangeBounds<dimensions>::Shares shares{};
+      if constexpr (bounded) shares = bounds.template shares<Kernel>(b);
       for (int a = 0; a < dimensions; ++a) {
         const f32n difference = b.payload[a] - own[a];
         for (int c = 0; c < dimensions; ++c) m[a * dimensions + c] = m[a * dimensions + c] + difference * gd[c];
-        if constexpr (bounded) {
-          ahead.add(a, share_ahead * difference);
-          behind.add(a, share_behind * difference);
-        }
+        if constexpr (bounded) bounds.add(a, shares, difference);
       }
       if constexpr (filter) {
         const f32n w = times_volume<Kernel>(Kernel::w(b.q), b);
@@ -121,8 +74,6 @@ void velocity_gradient(const SweepContext& context, PackedNeighbours& packed,
       const float weight = 1 / (centre + of_filter[dimensions]);
       for (int a = 0; a < dimensions; ++a) out.filtered[a][i] = (centre * own[a][0] + of_filter[a]) * weight;
     }
-    ChangeBounds<dimensions> bounds;
-    if constexpr (bounded) bounds = common_bounds(ahead, behind);
     store(i, gradient, bounds);
   });
 }
@@ -143,11 +94,11 @@ void store_gradient(const VelocityGradientOut& out, std::size_t i,
   // S:S = (grad u : grad u + tr(grad u . grad u)) / 2
   if (out.strain != nullptr) out.strain[i] = static_cast<float>(std::sqrt(std::max(squares + trace, 0.0)));
   if (out.change[0] == nullptr) return;
-  for (int a = 0; a < dimensions; ++a) {
-    float change = 0;
-    for (int c = 0; c < dimensions; ++c) change += gradient[a][c] * out.displacement[c][i];
-    out.change[a][i] = std::clamp(change, allowed_change * bounds.low[a], allowed_change * bounds.high[a]);
-  }
+  std::array<float, dimensions> change{};
+  for (int a = 0; a < dimensions; ++a)
+    for (int c = 0; c < dimensions; ++c) change[a] += gradient[a][c] * out.displacement[c][i];
+  bounds.cut(change);
+  for (int a = 0; a < dimensions; ++a) out.change[a][i] = change[a];
 }
 
 // The velocity gradient G of the nearest particle as wall point g has it: S G R, with R the reflection at the surface

@@ -144,7 +144,7 @@ TEST(GfdOperators, GradientsAndLaplacianOfAScalarAgreeWithTheSlowTwin) {
 }
 
 // Of velocities the divergence, and the change over a displacement of up to a tenth of a spacing, or ten times that:
-// random velocities are as rough as a field can be, and more than half the extreme difference is cut off.
+// random velocities are as rough as a field can be, and a particle in three is an extreme on one side or on both.
 TEST(GfdOperators, DivergenceAndChangeOverADisplacementAgreeWithTheSlowTwin) {
   std::size_t cut = 0, free = 0;
   for_every_equal_arrangement([&](Arrangement& a) {
@@ -166,6 +166,8 @@ TEST(GfdOperators, DivergenceAndChangeOverADisplacementAgreeWithTheSlowTwin) {
     for (std::size_t i = 0; i < a.size(); ++i) {
       const double rounding = twin.tolerance(i);
       reference::Sum sum;
+      reference::Vector over{};
+      for (int axis = 0; axis < d; ++axis) over[axis] = displacement[axis][i];
       for (int r = 0; r < d; ++r) {
         const auto slow = twin.gradient(
             i, [&](const SphPoint& p) { return a.twin.velocity_at(u, p, r); }, GfdSums::one, stencils.of(i).correction);
@@ -176,8 +178,8 @@ TEST(GfdOperators, DivergenceAndChangeOverADisplacementAgreeWithTheSlowTwin) {
           along.value += slow[c].value * displacement[c][i];
           along.magnitude += slow[c].magnitude * std::abs(displacement[c][i]);
         }
-        const auto [low, high] = a.twin.difference_bounds(i, u, r);
-        const double bounded = std::clamp(along.value, low / 2, high / 2);
+        const auto [low, high] = a.twin.change_bounds(i, u, over, r);
+        const double bounded = std::clamp(along.value, allowed_change * low, allowed_change * high);
         (bounded == along.value ? free : cut) += 1;
         along.value = bounded;
         along.magnitude += std::abs(low) + std::abs(high);
@@ -186,7 +188,7 @@ TEST(GfdOperators, DivergenceAndChangeOverADisplacementAgreeWithTheSlowTwin) {
       divergences.add(divergence[i], sum, rounding, i);
     }
   });
-  EXPECT_GT(free, cut);
+  EXPECT_GT(free, 100U);
   EXPECT_GT(cut, 100U);
 }
 

@@ -288,17 +288,6 @@ class SphSums {
     return {std::max(ahead[0], behind[0]), std::min(ahead[1], behind[1])};
   }
 
-  // The least and the largest of 0 and the differences u_j - u_i of component a.
-  template <class Velocity>
-  std::array<double, 2> difference_bounds(std::size_t i, const Velocity& u, int a) const {
-    std::array<double, 2> bounds{};
-    each(i, [&](const Pair& p) {
-      const double difference = velocity_at(u, *p.point, a) - u[a][i];
-      bounds = {std::min(bounds[0], difference), std::max(bounds[1], difference)};
-    });
-    return bounds;
-  }
-
   // sum g (u_j - u_i)_a d_b without the correction
   template <class Velocity>
   std::array<std::array<Sum, 3>, 3> velocity_difference_moments(std::size_t i, const Velocity& u) const {

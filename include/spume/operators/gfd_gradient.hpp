@@ -35,8 +35,7 @@ void gfd_divergence_sweep(const SweepContext& context, PackedNeighbours& packed,
                           const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
                           const std::array<const float*, 6>& correction, double* out);
 
-// What a velocity changes by over a displacement s, sum_j W (u_j - u_i) d . B s, cut at half of the largest difference
-// u_j - u_i from a neighbour or image on that side.
+// What a velocity changes by over a displacement s, sum_j W (u_j - u_i) d . B s, cut as VelocityGradientOut has it.
 void gfd_change_sweep(const SweepContext& context, PackedNeighbours& packed,
                       const std::array<const double*, 3>& velocity, const VelocityImageRule& rule,
                       const std::array<const float*, 6>& correction, const std::array<const float*, 3>& displacement,
