@@ -155,8 +155,7 @@ TEST(GfdFlow, ThePressureNeedsFewIterationsAtAThousandToOne) {
 
 // A quarter of a heavy drop in mode 2, between planes of symmetry, without viscosity. With 8 spacings a radius the
 // crests of the disorder that it is cut from are as high as a third of its amplitude.
-TEST(GfdFlow, ADropWithoutViscosityGainsNoAmplitude) {
-  GfdRun run(R"toml(method = "gfd"
+const std::string drop_without_viscosity = R"toml(method = "gfd"
 [domain]
 lower = [0, 0]
 upper = [2, 2]
@@ -185,7 +184,15 @@ phase = "drop"
 where = "1 + a*cos(2*atan2(y, x)) - a^2/4 - sqrt(x^2 + y^2)"
 [time]
 end = 6
-)toml");
+)toml";
+
+struct Oscillation {
+  double largest = 0;         // after the first zero, over that of the start
+  std::vector<double> zeros;  // times
+};
+
+Oscillation oscillation(const std::vector<std::string>& options) {
+  GfdRun run(drop_without_viscosity, options);
   const auto mode = [&run] {
     const gfd::Flow& f = run.flow();
     double sum = 0;
@@ -194,21 +201,31 @@ end = 6
         sum += std::pow((*f.particles.position[0])[i], 2) - std::pow((*f.particles.position[1])[i], 2);
     return sum;
   };
-  const double first = mode(), omega = std::sqrt(6 / 1.001), sample = 0.1;
-  double before = first, largest = 0;
-  std::vector<double> zeros;
+  Oscillation found;
+  const double first = mode(), sample = 0.1;
+  double before = first;
   for (double t = sample; t < 6; t += sample) {
     run.until(t);
     const double now = mode();
-    if (now * before < 0) zeros.push_back(t - sample * now / (now - before));
-    if (!zeros.empty()) largest = std::max(largest, std::abs(now));
+    if (now * before < 0) found.zeros.push_back(t - sample * now / (now - before));
+    if (!found.zeros.empty()) found.largest = std::max(found.largest, std::abs(now / first));
     before = now;
   }
-  EXPECT_LT(largest, std::abs(first));
-  // The disorder moves the moment by a few hundredths of its amplitude, and a zero by as much of a radian: of the 3 pi
-  // between the first and the fourth that is 1 %. The rest is what 8 spacings do.
-  ASSERT_GE(zeros.size(), 4U);
-  EXPECT_NEAR((zeros[3] - zeros[0]) * omega / (3 * pi), 1, 0.04);
+  return found;
+}
+
+// The disorder moves the moment by a few hundredths of its amplitude, 0.025 from run to run, and a zero by as much of a
+// radian: of the 3 pi between the first and the fourth that is 1 %. The rest is what 8 spacings do.
+TEST(GfdFlow, ADropWithoutViscosityGainsNoAmplitude) {
+  double mean = 0;
+  for (const char* const seed : {"seed=1", "seed=2", "seed=3"}) {
+    const Oscillation found = oscillation({"initial.jitter=0.1", seed});
+    mean += found.largest / 3;
+    ASSERT_GE(found.zeros.size(), 4U);
+    const double omega = std::sqrt(6 / 1.001);
+    EXPECT_NEAR((found.zeros[3] - found.zeros[0]) * omega / (3 * pi), 1, 0.04);
+  }
+  EXPECT_LT(mean, 1 + 2 * 0.025 / std::sqrt(3));
 }
 
 // Deviations of the number density that are let be for single particles, 2 %, must not add up over a phase. The mean of
