@@ -46,7 +46,7 @@ StillLiquid still_liquid(const Scene& scene, bool shifting) {
 
 bool liquids_flow(const Scene& scene, bool driven) {
   const StillLiquid still = still_liquid(scene, false);
-  return still && scene.bodies.empty() && scene.phases.size() > 1 &&
+  return still && scene.phases.size() > 1 &&
          (driven || still.range == 0 || starts_moving(scene) || !lie_in_layers(scene));
 }
 

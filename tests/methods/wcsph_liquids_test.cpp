@@ -57,6 +57,22 @@ TEST(WcsphLiquids, ThoseSideBySideTurnOver) {
   EXPECT_NEAR(lean(run), -0.888 * start, 0.03 * std::abs(start));
 }
 
+// Beside bodies they are not shifted by themselves, and what they lose by that is said; shifted, or alone, nothing is.
+TEST(WcsphLiquids, ThatAreNotShiftedBesideBodiesAreRemarkedOn) {
+  const std::string post = "[[body]]\nshape = \"box\"\nsize = [0.03, 0.03]\nposition = [0.1, 0.05]\n",
+                    liquids = two_liquids(1050, 1000, "upper = [0.1, 0.1]", 0.005);
+  const auto remarks = [](const std::string& text, const std::vector<std::string>& options = {}) {
+    WcsphRun run(text, options);
+    std::size_t found = 0;
+    for (const Remark& one : run.method.take_remarks()) found += one.text == wcsph::uneven_liquids ? 1 : 0;
+    EXPECT_TRUE(run.method.take_remarks().empty());
+    return found;
+  };
+  EXPECT_EQ(remarks(liquids + post), 1U);
+  EXPECT_EQ(remarks(liquids + post, {"compressibility.shifting=on"}), 0U);
+  EXPECT_EQ(remarks(liquids), 0U);
+}
+
 // The most that the energy of the verdict has grown by, over its scale, until `end`.
 double energy_growth(WcsphRun& run, double end) {
   const std::vector<Invariant> invariants = run.method.invariants();

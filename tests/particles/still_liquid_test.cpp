@@ -89,7 +89,7 @@ TEST(StillLiquid, LiquidsFlowUnlessTheyLieInLayersAtRest) {
   EXPECT_TRUE(flow(replaced(closed_tank, "density = 1200", "density = 700")));  // the lighter one below
   EXPECT_TRUE(flow(replaced(closed_tank, "density = 1200", "density = 800")));
   EXPECT_FALSE(flow(replaced(closed_tank, "density = 800", "density = 1.2"), true));
-  EXPECT_FALSE(flow(closed_tank + "[[body]]\nshape = \"ball\"\nposition = [0, 1.2]\nradius = 0.3\n", true));
+  EXPECT_TRUE(flow(closed_tank + "[[body]]\nshape = \"ball\"\nposition = [0, 1.2]\nradius = 0.3\n", true));
   EXPECT_FALSE(flow(replaced(closed_tank, "top = \"free-slip\"", ""), true));
 }
 

@@ -44,10 +44,8 @@ struct StillLiquid {
 // a spacing of 1/32 is 0.0132 too low at t = 3 with it, 0.0103 without).
 StillLiquid still_liquid(const Scene& scene, bool shifting);
 
-// Whether several phases, closed in as above and without bodies, flow from the start: they do not lie in layers at
-// rest, something drives them, or they are of one density, which nothing keeps in layers. Shifted beside bodies they
-// gain energy in acute wedges between no-slip walls: at a box turned by 10 degrees on the floor, in space, brine below
-// water reached 3.6 m/s within 3 s under a lid that moves with 0.1; unshifted 0.09.
+// Whether several phases, closed in as above, flow from the start: they do not lie in layers at rest, something drives
+// them, or they are of one density, which nothing keeps in layers.
 bool liquids_flow(const Scene& scene, bool driven);
 
 }  // namespace spume

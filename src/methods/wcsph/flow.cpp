@@ -48,8 +48,10 @@ Features::Features(const LoadedCase& loaded)
   density_relaxation = scene.free_surface && smoothing.density_relaxation > 0;
   const InterfacePressure meeting = smoothing.interface_pressure;
   const bool undriven = !moving_bodies && !scene.body_force;
-  const bool evened = !scene.free_surface && (!several || tension || liquids_flow(scene, moving_walls || !undriven));
+  const bool flows = liquids_flow(scene, moving_walls || !undriven), beside = !scene.bodies.empty();
+  const bool evened = !scene.free_surface && (!several || tension || (flows && !beside));
   shifting = smoothing.shifting == Shifting::on || (smoothing.shifting == Shifting::automatic && evened);
+  uneven = flows && beside && smoothing.shifting == Shifting::automatic;
   wall_rates = bodies && !shifting;
   const bool by_densities = several && !tension && meeting != InterfacePressure::mean;
   const bool in_layers = by_densities && !shifting && !scene.free_surface && undriven && lie_in_layers(scene);

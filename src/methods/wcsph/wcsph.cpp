@@ -62,6 +62,7 @@ Wcsph::Wcsph(const LoadedCase& loaded)
                         " times its sound speed; expected a flow slower than sound: raise compressibility.max_speed");
   }
   declare_series();
+  if (flow_.features.uneven) flow_.unsettled = uneven_liquids;
   if (flow_.features.scalars) flow_.solutes.scalars->add_fields(snapshot_);
   if (flow_.features.bodies)
     body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
@@ -86,10 +87,7 @@ void Wcsph::find_first_forces(Ledger& ledger) {
 
 void Wcsph::step(double dt, Ledger& ledger) {
   sampled_step_ = -1;  // sorting changes what the bins of the sampler refer to, also when the step is refused
-  if (flow_.solutes.record_carries()) {
-    plan_.run_recorded(dt, static_cast<double>(flow_.size()), ledger);
-    return;
-  }
+  if (flow_.solutes.record_carries()) return plan_.run_recorded(dt, static_cast<double>(flow_.size()), ledger);
   find_first_forces(ledger);
   plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
 }
@@ -100,8 +98,8 @@ StepLimit Wcsph::step_limit() const {
   const double h = flow_.resolution.smoothing_length;
   SmallestStep step;
   step.bound(options.courant * h / (flow_.signal + flow_.boundary.wall_speed), "courant");
-  const double nu = largest_kinematic_viscosity(flow_.laws);
-  if (nu > 0) step.bound(viscous_limit * h * h / nu, "viscous");
+  if (const double nu = largest_kinematic_viscosity(flow_.laws); nu > 0)
+    step.bound(viscous_limit * h * h / nu, "viscous");
   const double gravity = length(flow_.scene.fluid.gravity);
   if (gravity > 0) step.bound(force_limit * std::sqrt(h / gravity), "body force");
   if (flow_.features.tension) step.bound(capillary_time(flow_.scene), "capillary");
@@ -150,8 +148,7 @@ std::vector<Remark> Wcsph::take_remarks() {
   for (std::size_t n = 0; n < flow_.laws.size() && !(flow_.strain < 1); ++n) {
     if (remarked_[n]) continue;
     const double change = flow_.largest_excess(n), range = flow_.laws[n].largest_change();
-    if (change <= range) continue;
-    remarked_[n] = true;
+    if (!(remarked_[n] = change > range)) continue;
     remarks.push_back({"the density of " + flow_.scene.phases[n].name + " has changed by " + brief(100 * change) +
                        " %, where " + brief(100 * range) +
                        " % is what its sound speed allows for: raise compressibility.max_speed above " +
@@ -235,9 +232,8 @@ void Wcsph::table_rows(const std::string&, std::vector<double>& rows) {
 
 void Wcsph::save(StateWriter& writer) const {
   const std::int64_t count[] = {static_cast<std::int64_t>(flow_.size())};
-  const std::vector<double> lists = flow_.list_life.state(flow_.listed_time);
   saved_.save(writer);
-  writer.f64("lists", lists);
+  writer.f64("lists", flow_.list_life.state(flow_.listed_time));
   writer.i64("counters", count);
   flow_.spill.save(writer);
   flow_.boundary.save_walls(writer);

@@ -47,6 +47,7 @@ struct Features : BoundaryFeatures, SoluteFeatures {
   bool tension = false;
   bool diffusion = false, shepard = false;
   bool shifting = false;
+  bool uneven = false;  // liquids that flow beside bodies, and by default are not shifted there
   bool density_relaxation = false;
 };
 
