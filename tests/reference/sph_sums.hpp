@@ -14,45 +14,15 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "reference/brute_force.hpp"
+#include "reference/plain_kernel.hpp"
 #include "spume/scene/case.hpp"
 
 namespace spume::reference {
-
-// w(q) and F(q) = w'(q) / q of the kernels, from their printed forms.
-struct PlainKernel {
-  KernelKind kind = KernelKind::wendland_c2;
-  int dimensions = 3;
-
-  double support() const { return kind == KernelKind::wendland_c2 ? 2 : 3; }
-  double normalisation() const {
-    const double pi = std::numbers::pi;
-    if (kind == KernelKind::wendland_c2) return dimensions == 2 ? 7 / (4 * pi) : 21 / (16 * pi);
-    return dimensions == 2 ? 7 / (478 * pi) : 1 / (120 * pi);
-  }
-  double w(double q) const {
-    if (q >= support()) return 0;
-    if (kind == KernelKind::wendland_c2) return std::pow(1 - q / 2, 4) * (2 * q + 1);
-    double sum = std::pow(3 - q, 5);
-    if (q < 2) sum -= 6 * std::pow(2 - q, 5);
-    if (q < 1) sum += 15 * std::pow(1 - q, 5);
-    return sum;
-  }
-  double f(double q) const {
-    if (q >= support()) return 0;
-    if (kind == KernelKind::wendland_c2) return -5 * std::pow(1 - q / 2, 3);
-    if (q < 1e-3) return -120;  // the limit; the next term is 120 q^2
-    double sum = std::pow(3 - q, 4);
-    if (q < 2) sum -= 6 * std::pow(2 - q, 4);
-    if (q < 1) sum += 15 * std::pow(1 - q, 4);
-    return -5 * sum / q;
-  }
-};
 
 // What the sides do to velocities; `wall` is the uniform velocity of a side.
 struct Boundaries {
@@ -271,21 +241,19 @@ class SphSums {
     return point.velocity_sign[a] * u[a][point.source] + point.velocity_offset[a];
   }
 
-  // What single neighbours show of the change of component a over the displacement s, (s . d) / d^2 (u_j - u_i): the
-  // least and the largest of 0 and of what neighbours ahead, and of what neighbours behind show; of the two the nearer
-  // to 0.
+  // VelocityGradientOut: the least and the largest change of component a over s that both those ahead and those behind
+  // show.
   template <class Velocity>
   std::array<double, 2> change_bounds(std::size_t i, const Velocity& u, const Vector& s, int a) const {
-    std::array<double, 2> ahead{}, behind{};
+    std::array<std::array<double, 2>, 2> sides{};  // behind, ahead
     each(i, [&](const Pair& p) {
-      double along = 0, square = 0;
+      double along = 0, square = 1e-300;
       for (int axis = 0; axis < dimensions(); ++axis) along += s[axis] * p.d[axis], square += p.d[axis] * p.d[axis];
-      if (square == 0) return;
       const double change = along / square * (velocity_at(u, *p.point, a) - u[a][i]);
-      auto& side = along > 0 ? ahead : behind;
+      auto& side = sides[along > 0 ? 1 : 0];
       side = {std::min(side[0], change), std::max(side[1], change)};
     });
-    return {std::max(ahead[0], behind[0]), std::min(ahead[1], behind[1])};
+    return {std::max(sides[0][0], sides[1][0]), std::min(sides[0][1], sides[1][1])};
   }
 
   // sum g (u_j - u_i)_a d_b without the correction
