@@ -361,6 +361,24 @@ void check_phases_filled(const Draft& draft, const Scene& scene, Problems& probl
               "[[inflow]], or remove it");
 }
 
+// In SI units, which gravity tells: of all liquids helium alone is thinner than mercury, 1.1e-7 m2/s.
+void warn_of_kinematic_viscosity(const Draft& draft, Problems& problems) {
+  const double gravity = draft.fluid.gravity.value_or(0);
+  const auto look = [&](const std::string& key, double density, double viscosity) {
+    const Node* given = draft.node(key);
+    if (given == nullptr || !draft.usable(key) || !(density >= 500 && viscosity > 0)) return;
+    if (viscosity / density >= 1e-7) return;
+    problems.warn(*given, key + " = " + brief(viscosity) + " Pa s is " + brief(viscosity / density) + " m2/s at " +
+                              brief(density) +
+                              " kg/m3, thinner than mercury; expected the dynamic viscosity, of water " +
+                              "1e-3 Pa s: is it the kinematic one, in m2/s?");
+  };
+  if (!(gravity > 9.7 && gravity < 9.9)) return;
+  look("fluid.viscosity", draft.fluid.density.value_or(0), draft.fluid.viscosity.value_or(0));
+  for (std::size_t n = 0; n < draft.phases.size(); ++n)
+    look("phase." + std::to_string(n) + ".viscosity", draft.phases[n].density, draft.phases[n].viscosity);
+}
+
 // A step ends at each of these times: an interval far below the steps is a slip of the pen, which would fill the disk
 // or take for ever. The cases ask for at most 1,000 of a kind; a million rows of series.csv have 200 to 440 MB.
 void check_output(const Draft& draft, Problems& problems) {

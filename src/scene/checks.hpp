@@ -18,6 +18,7 @@ void check_liquids(const Draft& draft, Problems& problems);
 void check_phases(const Draft& draft, Problems& problems);  // and the regions that they fill
 // Regions may lie below others or be cut away by solids: only the particles tell which phases there are.
 void check_phases_filled(const Draft& draft, const Scene& scene, Problems& problems);
+void warn_of_kinematic_viscosity(const Draft& draft, Problems& problems);
 void check_output(const Draft& draft, Problems& problems);
 // Of output.fields; `known` are those of the method.
 void check_output_fields(const Draft& draft, const std::vector<OutputFieldInfo>& known, Problems& problems);

@@ -269,6 +269,7 @@ void check(const MethodDeclaration* method, Draft& draft, Problems& problems) {
   if (!phases) check_fluid(draft, problems);
   if (liquids) check_liquids(draft, problems);
   if (phases) check_phases(draft, problems);
+  warn_of_kinematic_viscosity(draft, problems);
   check_wavemakers(draft, problems);
   check_sponges(draft, problems);
   check_openings(draft, problems);

@@ -166,6 +166,21 @@ TEST(Load, FluidTakesGroupsOrSiValuesButNotBoth) {
   EXPECT_DOUBLE_EQ(groups.sound_speed, 0);
 }
 
+// A liquid whose dynamic viscosity is its kinematic one has a thousandth of it.
+TEST(Load, ViscositiesThatNoLiquidHasAreWarnedOf) {
+  const auto warned = [](const std::string& fluid) {
+    std::string texts;
+    for (const Problem& one : load_text(small_case("", fluid)).options.warnings) texts += one.text + '\n';
+    return texts;
+  };
+  const std::string oil = warned("density = 990\nviscosity = 4.5e-5\ngravity = 9.81\n");
+  EXPECT_NE(oil.find("fluid.viscosity = 4.5e-05 Pa s is 4.54545e-08 m2/s at 990 kg/m3"), std::string::npos) << oil;
+  EXPECT_EQ(warned("density = 990\nviscosity = 0.045\ngravity = 9.81\n"), "");
+  EXPECT_EQ(warned("density = 13546\nviscosity = 1.53e-3\ngravity = 9.81\n"), "");  // mercury
+  EXPECT_EQ(warned("density = 1000\nviscosity = 0\ngravity = 9.81\n"), "");
+  EXPECT_EQ(warned("density = 1000\nviscosity = 1e-6\ngravity = 1\n"), "");  // in other units
+}
+
 TEST(Load, KeysOfTooManyPartsAreRefusedBeforeTheyExhaustTheStack) {
   std::string key = "a";
   for (int i = 1; i < 20'000; ++i) key += ".a";
