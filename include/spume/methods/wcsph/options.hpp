@@ -19,9 +19,8 @@ enum class InterfacePressure { automatic, mean, weighted };
 // no-slip walls: at a box turned by 10 degrees on the floor, in space, brine below water reached 3.6 m/s within 3 s
 // under a lid that moves with 0.1; unshifted 0.09.
 inline constexpr const char* uneven_liquids =
-    "liquids that flow beside bodies are not shifted, and lose energy by the disorder of their particles, a third of "
-    "it "
-    "in exchanges; where no body makes an acute wedge with a no-slip wall set compressibility.shifting = \"on\"";
+    "liquids that flow beside bodies are not shifted, and lose energy by the disorder of their particles, in exchanges "
+    "a third of it; where no body makes an acute wedge with a no-slip wall set compressibility.shifting = \"on\"";
 
 struct CompressibilityOptions {
   double max_speed = 0;             // that the flow will reach; 0: estimated
