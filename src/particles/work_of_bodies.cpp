@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "spume/particles/work_of_bodies.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace spume {
@@ -31,6 +32,13 @@ bool WorkOfBodies::tells_all(const Scene& scene) {
   return !other && !(given && floats);
 }
 
+bool WorkOfBodies::any_moves(const BodyWalls& walls) const {
+  return std::any_of(bodies_.begin(), bodies_.end(), [&](std::size_t b) {
+    const RigidPlace& place = walls.part_of(b).place;
+    return place.velocity != Vec3{} || place.angular_velocity != Vec3{};
+  });
+}
+
 double WorkOfBodies::power(const std::vector<SurfaceForce>& forces, const BodyWalls& walls) const {
   double sum = 0;
   for (const std::size_t b : bodies_) {
@@ -43,9 +51,12 @@ double WorkOfBodies::power(const std::vector<SurfaceForce>& forces, const BodyWa
   return sum;
 }
 
-void WorkOfBodies::add(double t, const std::vector<SurfaceForce>& forces, const BodyWalls& walls) {
+void WorkOfBodies::add(double t, const std::vector<SurfaceForce>& forces, const BodyWalls& walls,
+                       double kinetic_energy) {
   if (rows_ > 0 && t <= time_) return;  // a row that is taken again
   const double now = power(forces, walls);
+  if (rows_ == 0) set_out_ = any_moves(walls) ? 1 : 0, first_energy_ = kinetic_energy;
+  if (rows_ == 1 && set_out_ > 0) rule_ += std::abs(kinetic_energy - first_energy_);
   if (rows_ > 0) {
     const double half = (t - time_) / 2;
     done_ += half * (power_ + now);
@@ -60,7 +71,7 @@ double WorkOfBodies::uncertainty() const {
 }
 
 void WorkOfBodies::save_with(SavedNumbers& saved) {
-  for (double* value : {&done_, &gross_, &rule_, &rows_, &time_, &power_}) saved.add(*value);
+  for (double* value : {&done_, &gross_, &rule_, &rows_, &time_, &power_, &set_out_, &first_energy_}) saved.add(*value);
 }
 
 }  // namespace spume

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "particles/walled.hpp"
@@ -18,14 +19,15 @@ const std::string box_that_rests = "[[body]]\nshape = \"box\"\nsize = [0.1, 0.2]
 
 // Rows a hundredth of a second apart to t = 1. `force`: of the pivot's place.
 template <class Force>
-WorkOfBodies work_until_one(Walled& walled, Force&& force) {
+WorkOfBodies work_until_one(
+    Walled& walled, Force&& force, const std::function<double(int)>& kinetic_energy = [](int) { return 0.0; }) {
   WorkOfBodies work(walled.scene());
   const double dt = 0.01;
   for (int row = 0; row <= 100; ++row) {
     walled.boundary.advance(row == 0 ? 0 : (row - 1) * dt, row == 0 ? 0 : dt);
     walled.boundary.accept();
     const BodyWalls& walls = *walled.boundary.bodies();
-    work.add(row * dt, force(walls.part_of(0).place.position), walls);
+    work.add(row * dt, force(walls.part_of(0).place.position), walls, kinetic_energy(row));
   }
   return work;
 }
@@ -56,7 +58,20 @@ TEST(WorkOfBodies, OfAConstantTorqueIsThatAboutTheTurn) {
   EXPECT_NEAR(work.done(), -2 * std::numbers::pi / 2, 1e-6);
 }
 
-// A row that is asked for again, and one of rows farther apart, change nothing but what they say of the error.
+// A box that sets out at a speed pushes the liquid at once, which the force of no row tells; one that sets out from
+// rest does not.
+TEST(WorkOfBodies, WhatASuddenStartGivesIsUncertain) {
+  const auto uncertainty = [](const std::string& motion, const std::function<double(int)>& energy) {
+    Walled walled(scene_text(square, 0.05, "[[body]]\nshape = \"box\"\nsize = [0.5, 0.4]\n" + motion), 0);
+    const auto no_force = [](const Vec3&) { return std::vector<SurfaceForce>(1); };
+    return work_until_one(walled, no_force, energy).uncertainty();
+  };
+  const auto gained = [](int row) { return row == 0 ? 1.0 : 3.0 + row; };
+  EXPECT_EQ(uncertainty("displacement = [\"0.3*t\", \"0\"]\n", gained), 3);
+  EXPECT_EQ(uncertainty("displacement = [\"0.3*t*t\", \"0\"]\n", gained), 0);
+}
+
+// A row that is asked for again changes nothing.
 TEST(WorkOfBodies, RowsThatAreTakenAgainCountOnce) {
   Walled walled(scene_text(square, 0.05, box_that_moves), 0);
   WorkOfBodies once(walled.scene()), twice(walled.scene());
@@ -66,8 +81,8 @@ TEST(WorkOfBodies, RowsThatAreTakenAgainCountOnce) {
       walled.boundary.accept();
     }
     const std::vector<SurfaceForce> force{{{1, 0.5, 0}, {}, {}, {}}};
-    once.add(row * 0.1, force, *walled.boundary.bodies());
-    for (int k = 0; k < 2; ++k) twice.add(row * 0.1, force, *walled.boundary.bodies());
+    once.add(row * 0.1, force, *walled.boundary.bodies(), 0);
+    for (int k = 0; k < 2; ++k) twice.add(row * 0.1, force, *walled.boundary.bodies(), 0);
   }
   EXPECT_EQ(once.done(), twice.done());
   EXPECT_EQ(once.uncertainty(), twice.uncertainty());

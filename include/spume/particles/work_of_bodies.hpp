@@ -24,8 +24,10 @@ class WorkOfBodies {
   // that come, go or grow, and of those that may push others that float.
   static bool tells_all(const Scene& scene);
 
-  // The forces of a row, per [[body]] entry, torques about the origin, and where the bodies are.
-  void add(double t, const std::vector<SurfaceForce>& forces, const BodyWalls& walls);
+  // The forces of a row, per [[body]] entry, torques about the origin, where the bodies are, and the kinetic energy of
+  // the liquid. Bodies that set out at a speed push at once, which no row holds: what the liquid gains until the second
+  // row is uncertain then.
+  void add(double t, const std::vector<SurfaceForce>& forces, const BodyWalls& walls, double kinetic_energy);
 
   double done() const { return done_; }
   // sum |dP| dt / 2 over the intervals, which no power that stays between the values of its rows can pass, and 5 % of
@@ -35,11 +37,13 @@ class WorkOfBodies {
   void save_with(SavedNumbers& saved);
 
  private:
+  bool any_moves(const BodyWalls& walls) const;
   double power(const std::vector<SurfaceForce>& forces, const BodyWalls& walls) const;
 
   std::vector<std::size_t> bodies_;  // with a given motion
   double done_ = 0, gross_ = 0, rule_ = 0;
   double rows_ = 0, time_ = 0, power_ = 0;  // of the last row
+  double set_out_ = 0, first_energy_ = 0;   // 1: at a speed
 };
 
 }  // namespace spume

@@ -250,7 +250,7 @@ void LesSph::add_force_rows(std::vector<double>& rows) {
   const std::vector<SurfaceForce> forces = body_forces_->measure(fields, flow_.time);
   body_forces_->add_rows(flow_.time, forces, rows);
   if (work_of_bodies_ && !flow_.solutes.record_carries())
-    work_of_bodies_->add(flow_.time, forces, *flow_.boundary.bodies());
+    work_of_bodies_->add(flow_.time, forces, *flow_.boundary.bodies(), row_.kinetic);
 }
 
 bool LesSph::periodic() const {
