@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Frequency of a two-dimensional drop against linear theory, unbounded: with the viscosities of the run
-(reference/viscous_frequencies.csv), and without any (reference/drop_bubble_frequencies.csv, Lamb and Rayleigh)."""
+"""Frequency and decay of a two-dimensional drop. Frequency: that of potential flow of the run's amplitude in the run's box
+(reference/potential_frequencies.csv), times what viscosity takes from it in linear theory (reference/
+viscous_frequencies.csv, unbounded); and the linear one without viscosity, drop_bubble_frequencies.csv, Lamb and Rayleigh."""
 from pathlib import Path
 
 import numpy as np
@@ -30,9 +31,16 @@ def inviscid(run):
     return row_of("drop_bubble_frequencies.csv", {"dim": 2, **fluids(run)[0]}, "omega")
 
 
-def viscous(run):
+def viscous(run, column="omega"):
     densities, viscosities = fluids(run)
-    return row_of("viscous_frequencies.csv", {**densities, **viscosities}, "omega")
+    return row_of("viscous_frequencies.csv", {**densities, **viscosities}, column)
+
+
+def expected(run):
+    upper = run.case["domain"]["upper"]
+    shape = {"amplitude": float(run.case["constants"]["a"]), "half_width": float(upper[0]), "height": float(upper[1])}
+    potential = row_of("potential_frequencies.csv", {**fluids(run)[0], **shape}, "omega")
+    return potential * viscous(run) / inviscid(run)
 
 
 def moment(run):
@@ -50,13 +58,14 @@ def moment(run):
 def measure(runs):
     measured = {}
     for name, run in runs.items():
-        omega = viscous(run)
+        omega = expected(run)
         t, a = moment(run)
-        _, _, rate, found = damped_oscillation(t, a, 0.01 * omega, omega)
+        _, _, rate, found = damped_oscillation(t, a, viscous(run, "decay"), omega)
         measured[f"{name}_frequency_ratio"] = found / omega
         measured[f"{name}_frequency_error"] = abs(found / omega - 1)
         measured[f"{name}_frequency_inviscid_ratio"] = found / inviscid(run)
-        measured[f"{name}_growth_over_frequency"] = -rate / omega
+        measured[f"{name}_decay_over_frequency"] = rate / omega
+        measured[f"{name}_decay_beyond_theory"] = (rate - viscous(run, "decay")) / omega
     return measured
 
 

@@ -45,6 +45,9 @@ BodyWalls::BodyWalls(const Scene& scene, const Resolution& resolution, double pa
   parts_.push_back(std::make_unique<RigidWalls>(scene, std::nullopt, resolution, particle_volume, thin));
   for (std::size_t m = 0; m < scene.motions.size(); ++m)
     parts_.push_back(std::make_unique<RigidWalls>(scene, m, resolution, particle_volume, thin));
+  // With the speed that it may set out at.
+  for (std::size_t m = 0; m < scene.motions.size(); ++m)
+    if (!scene.motions[m].floats) parts_[m + 1]->place = given_place(scene.motions[m], 0);
   std::vector<const RigidWalls*> with_thin;
   for (const auto& part : parts_)
     if (part->has_thin()) with_thin.push_back(part.get());

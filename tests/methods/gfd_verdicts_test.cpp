@@ -130,5 +130,43 @@ TEST(GfdVerdicts, ColumnsOfTheMomentumAreThoseOfTheParticles) {
   EXPECT_EQ(found, 3);
 }
 
+
+// Two liquids in a tank that is shaken and turned: all that they have is the work of its walls, which the verdict takes
+// off; a run that is continued goes on with it. Belts do work that forces at rest do not tell.
+TEST(GfdVerdicts, TheEnergyHasTheWorkOfMovingBodies) {
+  const std::string tank =
+      "method = \"gfd\"\n[domain]\nlower = [-1.6, -1.1]\nupper = [1.6, 1.1]\nleft = \"free-slip\"\nright = "
+      "\"free-slip\"\nbottom = \"free-slip\"\ntop = \"free-slip\"\n[resolution]\nspacing = 0.05\n"
+      "[[phase]]\nname = \"heavy\"\ndensity = 2\nviscosity = 1e-3\n[[phase]]\nname = \"light\"\ndensity = 1\n"
+      "viscosity = 1e-3\n[[region]]\nphase = \"heavy\"\n[[region]]\nphase = \"light\"\nlower = [-1.6, 0]\n"
+      "upper = [1.6, 1.1]\n[time]\nend = 1\n[[body]]\nshape = \"box\"\nsize = [1, 0.8]\ninside = false\n";
+  const std::string shaken = tank + "displacement = [\"0.25*t^2\", \"0\"]\nangle = \"90*t^2\"\n";
+  GfdRun straight(shaken), restored(shaken);
+  const auto to_next_row = [](GfdRun& run) {
+    run.until(run.method.time() + 0.01);
+    std::vector<double> rows;
+    run.method.table_rows("bodies", rows);
+  };
+  const auto beside = [](const GfdRun& run) {
+    for (const Invariant& one : run.method.invariants())
+      if (one.quantity == "energy_growth") return one.beside();
+    return std::nan("");
+  };
+  std::vector<double> rows;
+  straight.method.table_rows("bodies", rows);
+  const double before = beside(straight);
+  for (int row = 0; row < 30; ++row) to_next_row(straight);
+  MemoryState saved;
+  straight.method.save(saved);
+  restored.method.load(saved);
+  for (int row = 0; row < 20; ++row) to_next_row(straight), to_next_row(restored);
+  const double energy = straight.flow().kinetic_energy(), now = beside(straight);
+  EXPECT_GT(energy, 0.01);
+  EXPECT_LT(energy + now - before, 0.05 * energy);
+  EXPECT_NEAR(energy + now, before, 0.25 * energy);
+  EXPECT_EQ(beside(restored), now);
+  EXPECT_TRUE(std::isnan(beside(GfdRun(tank + "velocity = [\"1\", \"0\"]\n"))));
+}
+
 }  // namespace
 }  // namespace spume::test

@@ -133,4 +133,22 @@ TEST(ThinBodiesMotion, ARaftFloatsLevel) {
   EXPECT_LT(turn, 1.0);
 }
 
+// Rows before the first step too tell the speed that a body sets out at.
+TEST(ThinBodiesMotion, TheFirstRowHasTheSpeedThatABodySetsOutAt) {
+  const auto speed = [](auto run) {
+    const std::vector<RecordTable> tables = run.method.tables();
+    const auto& columns = tables.at(0).columns;
+    std::vector<double> rows;
+    run.method.table_rows("bodies", rows);
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      if (columns[c].name == "velocity_x") return rows.at(c);
+    return std::nan("");
+  };
+  const auto setting_out = [](const std::string& method) {
+    return replaced(swinging_plate(method), "0.1*(1-cos(3*t))", "0.2*t");
+  };
+  EXPECT_NEAR(speed(GfdRun(setting_out("gfd"))), 0.2, 1e-6);
+  EXPECT_NEAR(speed(WcsphRun(setting_out("wcsph"))), 0.2, 1e-6);
+}
+
 }  // namespace spume::test

@@ -235,19 +235,38 @@ class Oscillations(CaseTest):
             write_snapshots(folder / "fluid.vtkhdf", np.linspace(0, 8, 81), lambda t: at, {"phase": phase})
             measured = module.measure({"equal": Results(folder)})
             self.assertAlmostEqual(measured["equal_frequency_inviscid_ratio"], slower, delta=0.003)
-            self.assertAlmostEqual(measured["equal_growth_over_frequency"], growth, delta=0.003)
+            omega = 1.717224 * 1.66622682 / np.sqrt(3)   # of this amplitude, box and viscosity
+            self.assertAlmostEqual(measured["equal_frequency_ratio"], slower * np.sqrt(3) / omega, delta=0.003)
+            self.assertAlmostEqual(measured["equal_decay_over_frequency"], -growth * np.sqrt(3) / omega, delta=0.003)
 
     def test_boundary_layers_slow_a_drop_by_what_they_damp_and_a_heavy_one_has_none(self):
         table = read_reference(CASES / "oscillating_drop" / "reference" / "viscous_frequencies.csv",
                                ("rho_c", "nu_d", "n", "omega", "decay"))
         rows = list(zip(*(map(float, table[name]) for name in ("rho_c", "nu_d", "n", "omega", "decay"))))
-        self.assertEqual(len(rows), 4)
+        self.assertEqual(len(rows), 6)
         for rho_c, nu_d, n, omega, decay in rows:
             inviscid = np.sqrt(n * (n * n - 1) / (1 + rho_c))
-            if rho_c == 1:  # layers of sqrt(nu): their next order is sqrt(nu / omega) = 1 % of them
-                self.assertAlmostEqual((1 - omega / inviscid) / (decay / inviscid), 1, delta=0.02)
+            if rho_c == 1:  # layers of sqrt(nu / omega): their next order is that small beside them
+                layers = np.sqrt(nu_d / inviscid)
+                self.assertAlmostEqual((1 - omega / inviscid) / (decay / inviscid), 1, delta=3 * layers)
             else:           # potential flow decays with 2 n (n - 1) nu; the air adds 2 to 6 % to that
                 self.assertAlmostEqual(decay / (2 * n * (n - 1) * nu_d), 1, delta=0.06)
+
+
+    def test_a_high_amplitude_slows_a_drop_with_its_square_and_walls_of_the_box_by_their_added_mass(self):
+        table = read_reference(CASES / "oscillating_drop" / "reference" / "potential_frequencies.csv",
+                               ("rho_c", "n", "amplitude", "half_width", "omega"))
+        names = ("rho_c", "n", "amplitude", "half_width", "omega")
+        omega = {row[:4]: row[4] for row in zip(*(map(float, table[name]) for name in names))}
+        for rho_c in (1, 1e-3):
+            for n, half_width in ((2, 4), (3, 3)):
+                linear = np.sqrt(n * (n * n - 1) / (1 + rho_c))
+                low, high = (1 - omega[rho_c, n, a, 0] / linear for a in (0.05, 0.1))
+                self.assertAlmostEqual(high / low, 4, delta=0.1)    # the next order: (n a)^2 of it
+                inertia = rho_c / (1 + rho_c)
+                slower = 1 - omega[rho_c, n, 0.1, half_width] / omega[rho_c, n, 0.1, 0]
+                self.assertGreaterEqual(slower, 0)
+                self.assertLess(slower, inertia * half_width**(-2.0 * n))    # of a round wall: half of 2 / L^2n
 
 
 class Franke(CaseTest):

@@ -10,7 +10,7 @@ r = 1, the normal stress jumps by sigma (n^2 - 1) u_r / s; s is where the determ
 import numpy as np
 from scipy.special import ive, kve
 
-CASES = [(1.0, 1.0, 1e-4, 1e-4), (1.0, 1e-3, 2e-3, 2e-2)]    # rho_d, rho_c, nu_d, nu_c
+CASES = [(1.0, 1.0, 5e-3, 5e-3), (1.0, 1.0, 1e-4, 1e-4), (1.0, 1e-3, 2e-3, 2e-2)]    # rho_d, rho_c, nu_d, nu_c
 
 
 def solutions(s, n, drop, outside):

@@ -188,8 +188,9 @@ bool Flow::keeps_momentum(int axis) const {
   return scene.domain.boxes.empty();
 }
 
-bool Flow::gains_no_energy() const {
-  return !features.forces && !features.moving_walls && !features.moving_bodies && !features.openings;
+bool Flow::gains_no_energy(bool work_of_bodies_is_known) const {
+  return !features.forces && !features.moving_walls && !features.openings &&
+         (!features.moving_bodies || work_of_bodies_is_known);
 }
 
 double Flow::roundness() const {

@@ -63,6 +63,8 @@ Gfd::Gfd(const LoadedCase& loaded)
   if (!flow_.features.bodies) return;
   saved_.add(flow_.packed);
   body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
+  if (!flow_.features.moving_bodies || !WorkOfBodies::tells_all(flow_.scene)) return;
+  work_of_bodies_.emplace(flow_.scene).save_with(saved_);
 }
 
 void Gfd::ensure_arranged() {
@@ -182,7 +184,10 @@ void Gfd::table_rows(const std::string&, std::vector<double>& rows) {
   fields.viscosity = flow_.viscosity == nullptr ? nullptr : flow_.viscosity->data();
   fields.density = [this](std::size_t i) { return (*flow_.density)[i]; };
   fields.pressure = [this](std::size_t i) { return (*flow_.pressure)[i]; };
-  body_forces_->add_rows(flow_.time, body_forces_->measure(fields, flow_.time), rows);
+  const std::vector<SurfaceForce> forces = body_forces_->measure(fields, flow_.time);
+  body_forces_->add_rows(flow_.time, forces, rows);
+  if (work_of_bodies_)
+    work_of_bodies_->add(flow_.time, forces, *flow_.boundary.bodies(), flow_.energy_without_potential());
 }
 
 std::vector<Remark> Gfd::take_remarks() {
@@ -216,13 +221,17 @@ std::vector<Invariant> Gfd::invariants() const {
                       .column = momentum_columns[static_cast<std::size_t>(axis)],
                       .bound = largest_momentum_change,
                       .scale = [this] { return std::sqrt(2 * flow_.mass() * flow_.energy_without_potential()); }});
-  if (flow_.gains_no_energy())
+  if (flow_.gains_no_energy(work_of_bodies_.has_value()))
     list.push_back({.quantity = "energy_growth",
                     .kind = Invariant::Kind::growth,
                     .column = "kinetic_energy",
                     .bound = largest_energy_growth,
                     .scale_floor = 0.1 * flow_.weight * flow_.resolution.spacing,
-                    .beside = [this] { return flow_.potential_energy() + surface_energy(flow_.colours); },
+                    .beside =
+                        [this] {
+                          return flow_.potential_energy() + surface_energy(flow_.colours) -
+                                 (work_of_bodies_ ? work_of_bodies_->done() + work_of_bodies_->uncertainty() : 0.0);
+                        },
                     .scale = [this] { return flow_.energy_without_potential(); }});
   list.push_back({.quantity = "pressure_residual",
                   .kind = Invariant::Kind::largest,

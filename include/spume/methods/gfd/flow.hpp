@@ -151,7 +151,8 @@ struct Flow {
   double mass() const;                      // this and the next: in the domain
   double momentum(int axis) const;
   bool keeps_momentum(int axis) const;  // nothing acts along it
-  bool gains_no_energy() const;         // forces, walls and openings whose work is not followed do not act
+  // Forces, walls, bodies unless theirs is known, and openings whose work is not followed do not act.
+  bool gains_no_energy(bool work_of_bodies_is_known = false) const;
   double roundness() const;             // of the second of two phases: surface of a ball of its volume over that area
   // What the guard of the energy measures by; after the first interfaces have been found.
   void start_pressure();

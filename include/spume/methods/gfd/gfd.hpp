@@ -3,6 +3,7 @@
 // knows of it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "spume/particles/output_fields.hpp"
 #include "spume/particles/phase_sums.hpp"
 #include "spume/particles/point_sampler.hpp"
+#include "spume/particles/work_of_bodies.hpp"
 
 namespace spume::gfd {
 
@@ -45,7 +47,7 @@ class Gfd final : public Method, public FieldProbes {
   PointSample sample(const Vec3& position) override { return sampler().sample(position); }
   PlaneSample plane_average(int axis, double position) override { return sampler().plane_average(axis, position); }
   std::vector<Remark> take_remarks() override;
-  // The volume of each phase; the residual of the pressure.
+  // The volume of each phase; momentum and energy where nothing else gives any; the residual of the pressure.
   std::vector<Invariant> invariants() const override;
   void save(StateWriter& writer) const override;
   void load(StateReader& reader) override;
@@ -67,6 +69,7 @@ class Gfd final : public Method, public FieldProbes {
   PhaseSums phase_sums_;  // of the row of the series that is being read
   PointSampler sampler_;
   std::unique_ptr<const BodyForces> body_forces_;  // null without walls of bodies
+  std::optional<WorkOfBodies> work_of_bodies_;     // where bodies move and it can be told
   bool arranged_ = false;
   std::int64_t sampled_step_ = -1;
 };
