@@ -8,6 +8,19 @@
 #include "spume/core/unrolled.hpp"
 
 namespace spume {
+namespace {
+
+std::vector<double> densities_of(const Scene& scene) {
+  std::vector<double> densities;
+  for (const Phase& phase : scene.phases) densities.push_back(phase.density);
+  return densities;
+}
+
+}  // namespace
+
+PhaseSums::PhaseSums(const ParticleStore& particles, const Array<std::int64_t>& phase, const Scene& scene,
+                     const Array<std::int64_t>* left_out)
+    : PhaseSums(particles, phase, densities_of(scene), left_out) {}
 
 void PhaseSums::find() {
   sums_ = parallel_reduce(

@@ -52,18 +52,20 @@ double WorkOfBodies::power(const std::vector<SurfaceForce>& forces, const BodyWa
 }
 
 void WorkOfBodies::add(double t, const std::vector<SurfaceForce>& forces, const BodyWalls& walls,
-                       double kinetic_energy) {
-  if (rows_ > 0 && t <= time_) return;  // a row that is taken again
+                       const std::function<double()>& energy) {
+  if (samples_ > 0 && t <= time_) return;
   const double now = power(forces, walls);
-  if (rows_ == 0) set_out_ = any_moves(walls) ? 1 : 0, first_energy_ = kinetic_energy;
-  if (rows_ == 1 && set_out_ > 0) rule_ += std::abs(kinetic_energy - first_energy_);
-  if (rows_ > 0) {
+  if (samples_ == 0) {
+    set_out_ = any_moves(walls) ? 1 : 0;
+    first_energy_ = energy();
+  } else {
+    if (samples_ == 1 && set_out_ > 0) rule_ += std::abs(energy() - first_energy_);
     const double half = (t - time_) / 2;
     done_ += half * (power_ + now);
     gross_ += half * (std::abs(power_) + std::abs(now));
     rule_ += half * std::abs(now - power_);
   }
-  time_ = t, power_ = now, ++rows_;
+  time_ = t, power_ = now, ++samples_;
 }
 
 double WorkOfBodies::uncertainty() const {
@@ -71,7 +73,8 @@ double WorkOfBodies::uncertainty() const {
 }
 
 void WorkOfBodies::save_with(SavedNumbers& saved) {
-  for (double* value : {&done_, &gross_, &rule_, &rows_, &time_, &power_, &set_out_, &first_energy_}) saved.add(*value);
+  for (double* value : {&done_, &gross_, &rule_, &samples_, &time_, &power_, &set_out_, &first_energy_})
+    saved.add(*value);
 }
 
 }  // namespace spume

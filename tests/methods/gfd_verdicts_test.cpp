@@ -130,7 +130,6 @@ TEST(GfdVerdicts, ColumnsOfTheMomentumAreThoseOfTheParticles) {
   EXPECT_EQ(found, 3);
 }
 
-
 // Two liquids in a tank that is shaken and turned: all that they have is the work of its walls, which the verdict takes
 // off; a run that is continued goes on with it. Belts do work that forces at rest do not tell.
 TEST(GfdVerdicts, TheEnergyHasTheWorkOfMovingBodies) {

@@ -27,7 +27,7 @@ WorkOfBodies work_until_one(
     walled.boundary.advance(row == 0 ? 0 : (row - 1) * dt, row == 0 ? 0 : dt);
     walled.boundary.accept();
     const BodyWalls& walls = *walled.boundary.bodies();
-    work.add(row * dt, force(walls.part_of(0).place.position), walls, kinetic_energy(row));
+    work.add(row * dt, force(walls.part_of(0).place.position), walls, [&] { return kinetic_energy(row); });
   }
   return work;
 }
@@ -81,8 +81,8 @@ TEST(WorkOfBodies, RowsThatAreTakenAgainCountOnce) {
       walled.boundary.accept();
     }
     const std::vector<SurfaceForce> force{{{1, 0.5, 0}, {}, {}, {}}};
-    once.add(row * 0.1, force, *walled.boundary.bodies(), 0);
-    for (int k = 0; k < 2; ++k) twice.add(row * 0.1, force, *walled.boundary.bodies(), 0);
+    once.add(row * 0.1, force, *walled.boundary.bodies(), [] { return 0.0; });
+    for (int k = 0; k < 2; ++k) twice.add(row * 0.1, force, *walled.boundary.bodies(), [] { return 0.0; });
   }
   EXPECT_EQ(once.done(), twice.done());
   EXPECT_EQ(once.uncertainty(), twice.uncertainty());

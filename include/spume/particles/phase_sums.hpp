@@ -7,6 +7,7 @@
 
 #include "spume/particles/reports.hpp"
 #include "spume/particles/store.hpp"
+#include "spume/scene/scene.hpp"
 
 namespace spume {
 
@@ -25,6 +26,9 @@ class PhaseSums {
         density_(std::move(density)),
         left_out_(left_out),
         sums_(density_.size()) {}
+  // Of the phases of a scene.
+  PhaseSums(const ParticleStore& particles, const Array<std::int64_t>& phase, const Scene& scene,
+            const Array<std::int64_t>* left_out);
 
   // Particles count inside along periodic axes of the domain, which outlives the sums, wherever they are.
   void go_round(const Domain& domain) { domain_ = &domain; }

@@ -49,7 +49,7 @@ Gfd::Gfd(const LoadedCase& loaded)
     : flow_(loaded),
       plan_(make_plan(flow_)),
       snapshot_(snapshot_table(output_fields(), loaded.options, flow_)),
-      phase_sums_(flow_.particles, *flow_.phase_number, flow_.densities, flow_.left_out()) {
+      phase_sums_(flow_.particles, *flow_.phase_number, flow_.scene, flow_.left_out()) {
   if (flow_.features.openings) snapshot_.leave_out(flow_.openings->column());
   declare_series();
   saved_.add(flow_.time)
@@ -86,6 +86,10 @@ void Gfd::step(double dt, Ledger& ledger) {
   } catch (...) {
     flow_.undo_exchange();
     throw;
+  }
+  if (work_of_bodies_ && WorkOfBodies::due(flow_.steps)) {
+    const Ledger::Scope timed = ledger.time("work of bodies");
+    forces_on_bodies();
   }
 }
 
@@ -180,14 +184,19 @@ std::vector<RecordTable> Gfd::tables() const {
 
 void Gfd::table_rows(const std::string&, std::vector<double>& rows) {
   ensure_arranged();
+  body_forces_->add_rows(flow_.time, forces_on_bodies(), rows);
+}
+
+std::vector<SurfaceForce> Gfd::forces_on_bodies() {
   BodyForces::Fields fields(flow_.arrangement, flow_.particles, flow_.boundary.walls);
   fields.viscosity = flow_.viscosity == nullptr ? nullptr : flow_.viscosity->data();
   fields.density = [this](std::size_t i) { return (*flow_.density)[i]; };
   fields.pressure = [this](std::size_t i) { return (*flow_.pressure)[i]; };
-  const std::vector<SurfaceForce> forces = body_forces_->measure(fields, flow_.time);
-  body_forces_->add_rows(flow_.time, forces, rows);
+  std::vector<SurfaceForce> forces = body_forces_->measure(fields, flow_.time);
   if (work_of_bodies_)
-    work_of_bodies_->add(flow_.time, forces, *flow_.boundary.bodies(), flow_.energy_without_potential());
+    work_of_bodies_->add(flow_.time, forces, *flow_.boundary.bodies(),
+                         [this] { return flow_.energy_without_potential() + flow_.potential_energy(); });
+  return forces;
 }
 
 std::vector<Remark> Gfd::take_remarks() {
@@ -230,7 +239,7 @@ std::vector<Invariant> Gfd::invariants() const {
                     .beside =
                         [this] {
                           return flow_.potential_energy() + surface_energy(flow_.colours) -
-                                 (work_of_bodies_ ? work_of_bodies_->done() + work_of_bodies_->uncertainty() : 0.0);
+                                 (work_of_bodies_ ? work_of_bodies_->most() : 0.0);
                         },
                     .scale = [this] { return flow_.energy_without_potential(); }});
   list.push_back({.quantity = "pressure_residual",

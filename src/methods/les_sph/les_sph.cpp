@@ -89,6 +89,10 @@ void LesSph::step(double dt, Ledger& ledger) {
   if (std::string remark = flow_.spill.take_remark(); !remark.empty()) remarks_.push_back({std::move(remark), false});
   sampled_step_ = -1;  // sorting changes what the bins of the sampler refer to, also when the step is refused
   plan_.run_step(dt, static_cast<double>(flow_.size()), ledger);
+  if (work_of_bodies_ && WorkOfBodies::due(flow_.steps)) {
+    const Ledger::Scope timed = ledger.time("work of bodies");
+    forces_on_bodies();
+  }
   remark_bodies_that_collide();
   if (flow_.solutes.record_carries()) keep_last_flow();
 }

@@ -185,7 +185,7 @@ std::vector<Invariant> LesSph::invariants() const {
       energy.beside = [this, stores, floating] {
         return (stores ? flow_.stored_energy() - flow_.work : 0.0) +
                (floating != nullptr ? floating->kinetic_energy() + floating->potential_energy() : 0.0) -
-               (work_of_bodies_ ? work_of_bodies_->done() + work_of_bodies_->uncertainty() : 0.0);
+               (work_of_bodies_ ? work_of_bodies_->most() : 0.0);
       };
     if (floating != nullptr) energy.scale = [this, floating] { return row_.kinetic + floating->kinetic_energy(); };
     list.push_back(std::move(energy));
@@ -243,14 +243,21 @@ std::vector<Remark> LesSph::take_remarks() {
 }
 
 void LesSph::add_force_rows(std::vector<double>& rows) {
+  body_forces_->add_rows(flow_.time, forces_on_bodies(), rows);
+}
+
+std::vector<SurfaceForce> LesSph::forces_on_bodies() {
   BodyForces::Fields fields(flow_.arrangement, flow_.particles, flow_.boundary.walls);
   fields.dynamic_viscosity = flow_.density() * flow_.viscosity();
   fields.density = [this](std::size_t) { return flow_.density(); };
   fields.pressure = [this](std::size_t i) { return (*flow_.pressure)[i]; };
-  const std::vector<SurfaceForce> forces = body_forces_->measure(fields, flow_.time);
-  body_forces_->add_rows(flow_.time, forces, rows);
+  std::vector<SurfaceForce> forces = body_forces_->measure(fields, flow_.time);
   if (work_of_bodies_ && !flow_.solutes.record_carries())
-    work_of_bodies_->add(flow_.time, forces, *flow_.boundary.bodies(), row_.kinetic);
+    work_of_bodies_->add(flow_.time, forces, *flow_.boundary.bodies(), [this] {
+      const FlowTotals totals = flow_.totals();
+      return totals.kinetic + totals.potential;
+    });
+  return forces;
 }
 
 bool LesSph::periodic() const {

@@ -21,12 +21,6 @@ constexpr double viscous_limit = 0.125, force_limit = 0.25;
 constexpr double largest_volume_drift = 0.02;
 constexpr double largest_energy_growth = 0.03;  // as of gfd
 
-std::vector<double> densities_of(const Flow& flow) {
-  std::vector<double> densities;
-  for (const PhaseLaw& law : flow.laws) densities.push_back(law.density);
-  return densities;
-}
-
 }  // namespace
 
 const std::vector<OutputField<Flow>>& output_fields() {
@@ -44,7 +38,7 @@ Wcsph::Wcsph(const LoadedCase& loaded)
     : flow_(loaded),
       plan_(make_plan(flow_)),
       snapshot_(snapshot_table(output_fields(), loaded.options, flow_)),
-      phase_sums_(flow_.particles, *flow_.phase_number, densities_of(flow_),
+      phase_sums_(flow_.particles, *flow_.phase_number, flow_.scene,
                   flow_.openings == nullptr ? nullptr : &flow_.openings->column()),
       remarked_(flow_.laws.size(), false) {
   for (const PhaseLaw& law : flow_.laws)

@@ -153,7 +153,7 @@ struct Flow {
   bool keeps_momentum(int axis) const;  // nothing acts along it
   // Forces, walls, bodies unless theirs is known, and openings whose work is not followed do not act.
   bool gains_no_energy(bool work_of_bodies_is_known = false) const;
-  double roundness() const;             // of the second of two phases: surface of a ball of its volume over that area
+  double roundness() const;  // of the second of two phases: surface of a ball of its volume over that area
   // What the guard of the energy measures by; after the first interfaces have been found.
   void start_pressure();
   void start_energy();  // of a run that begins

@@ -58,6 +58,7 @@ class Gfd final : public Method, public FieldProbes {
   // Finds the arrangement and the interfaces of a state that no step has left, for who looks at it.
   void ensure_arranged();
   void declare_series();
+  std::vector<SurfaceForce> forces_on_bodies();  // which the work of those that move is summed of
   const PointSampler& sampler();
 
   Ledger start_ledger_;  // of an arrangement that came before the first step

@@ -74,7 +74,8 @@ class LesSph final : public Method, public FieldProbes, public SurfaceProbes {
   bool periodic() const;  // in all directions: the flow has an energy spectrum
   void add_spectrum_rows(std::vector<double>& rows) const;
   void add_force_rows(std::vector<double>& rows);
-  bool tells_energy() const;  // all that gives energy to the liquid is followed
+  std::vector<SurfaceForce> forces_on_bodies();  // which the work of those that move is summed of
+  bool tells_energy() const;                     // all that gives energy to the liquid is followed
   const PointSampler& sampler();
 
   std::vector<Remark> remarks_;  // not yet passed on
