@@ -202,38 +202,47 @@ std::vector<SurfaceForce> wall_forces(const SweepContext& context, const WallFor
       before[g].velocity = context.walls->velocity(g, d, fields.velocity, fields.friction, true, false);
   });
   std::vector<std::vector<SurfaceForce>> blocks(block_count(n, default_block), std::vector<SurfaceForce>(bodies));
-  parallel_blocks(n, default_block, [&](std::size_t b, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      if (!lists_images(*context.list, i)) continue;
-      for (const std::int32_t j : context.list->of(i)) {
-        const std::int64_t k = j - static_cast<std::int64_t>(n);
-        if (k < 0 || wall_point[k] < 0) continue;
-        const auto g = static_cast<std::size_t>(wall_point[k]);
-        const auto& sign = (*fields.reflection)[static_cast<std::size_t>(path[k])];
-        const auto& held = (*fields.held)[static_cast<std::size_t>(path[k])];
-        const Vec3 way = offset(context, i, static_cast<std::size_t>(j));
-        const double slope = WendlandC2::f(ratio(context, way));
-        if (slope == 0) continue;  // of the lists, beyond the support
-        const double weight = -scale * slope * fields.volume[i] * before[g].volume;
-        double other = fields.wall_pressure[g];
-        Vec3 arm{}, pressure{}, viscous{};
-        for (int axis = 0; axis < d; ++axis) {
-          arm[axis] = fields.arm[axis][g];
-          if (fields.gravity[axis] != 0)
-            other += (fields.wall_density[g] * fields.gravity[axis] - fields.left_out[axis]) *
-                     (context.images->position(axis)[k] - fields.wall_position[axis][g]);
-        }
-        const Vec3& u = before[g].velocity;
-        for (int axis = 0; axis < d; ++axis) {
-          pressure[axis] = sign[axis] * weight * (double{fields.pressure[i]} + other) * way[axis];
-          if (fields.viscosity != nullptr)
-            viscous[axis] = -2 * weight * fields.viscosity[i] * (u[axis] - held[axis] * fields.velocity[axis][i]);
-        }
-        SurfaceForce& own = blocks[b][static_cast<std::size_t>(fields.body[g])];
-        own.press(arm, pressure);
-        own.rub(arm, viscous);
+  const auto add = [&](std::vector<SurfaceForce>& to, std::size_t i) {
+    for (const std::int32_t j : context.list->of(i)) {
+      const std::int64_t k = j - static_cast<std::int64_t>(n);
+      if (k < 0 || wall_point[k] < 0) continue;
+      const auto g = static_cast<std::size_t>(wall_point[k]);
+      const auto& sign = (*fields.reflection)[static_cast<std::size_t>(path[k])];
+      const auto& held = (*fields.held)[static_cast<std::size_t>(path[k])];
+      const Vec3 way = offset(context, i, static_cast<std::size_t>(j));
+      const double slope = WendlandC2::f(ratio(context, way));
+      if (slope == 0) continue;  // of the lists, beyond the support
+      const double weight = -scale * slope * fields.volume[i] * before[g].volume;
+      double other = fields.wall_pressure[g];
+      Vec3 arm{}, pressure{}, viscous{};
+      for (int axis = 0; axis < d; ++axis) {
+        arm[axis] = fields.arm[axis][g];
+        if (fields.gravity[axis] != 0)
+          other += (fields.wall_density[g] * fields.gravity[axis] - fields.left_out[axis]) *
+                   (context.images->position(axis)[k] - fields.wall_position[axis][g]);
       }
+      const Vec3& u = before[g].velocity;
+      for (int axis = 0; axis < d; ++axis) {
+        pressure[axis] = sign[axis] * weight * (double{fields.pressure[i]} + other) * way[axis];
+        if (fields.viscosity != nullptr)
+          viscous[axis] = -2 * weight * fields.viscosity[i] * (u[axis] - held[axis] * fields.velocity[axis][i]);
+      }
+      SurfaceForce& own = to[static_cast<std::size_t>(fields.body[g])];
+      own.press(arm, pressure);
+      own.rub(arm, viscous);
     }
+  };
+  // The same blocks either way, for the same sums.
+  parallel_blocks(n, default_block, [&](std::size_t b, std::size_t first, std::size_t last) {
+    if (fields.near != nullptr) {
+      const auto from = [&](std::size_t i) {
+        return std::lower_bound(fields.near->begin(), fields.near->end(), static_cast<std::int32_t>(i));
+      };
+      std::for_each(from(first), from(last), [&](std::int32_t i) { add(blocks[b], static_cast<std::size_t>(i)); });
+      return;
+    }
+    for (std::size_t i = first; i < last; ++i)
+      if (lists_images(*context.list, i)) add(blocks[b], i);
   });
   for (const auto& block : blocks)
     for (std::size_t k = 0; k < bodies; ++k) sum[k].add(block[k]);

@@ -24,6 +24,7 @@ void with_wcsph_dimensions(const SweepContext& context, Body&& body) {
 
 // What pairs differ in: nothing; phases; or also walls, which are of the phase of the particle that they meet.
 enum class Phases { one, several, beside_walls };
+enum class Drag { none, of_one_viscosity, of_viscosities };
 
 // In the place of a property, which is never negative.
 constexpr float of_wall = -1;
@@ -134,10 +135,10 @@ struct ContinuitySums {
 
 // Payload of the continuity records: u, v, s', and then what the scene has: mu and the number of phases that differ,
 // the velocity under friction, the shifting velocity.
-template <int dimensions, bool several, bool viscous, bool friction, bool shifted>
+template <int dimensions, bool several, bool viscosities, bool friction, bool shifted>
 struct ContinuityLayout {
   static constexpr int velocity = 0, volume = dimensions, excess = dimensions + 1;
-  static constexpr int viscosity = excess + 1, phase = viscosity + (viscous && several ? 1 : 0);
+  static constexpr int viscosity = excess + 1, phase = viscosity + (viscosities ? 1 : 0);
   static constexpr int held = phase + (several ? 1 : 0);
   static constexpr int shift = held + (friction ? dimensions : 0);
   static constexpr int payload = shift + (shifted ? dimensions : 0);
@@ -148,11 +149,12 @@ float own_viscosity(const ContinuityFields& fields, std::size_t i) {
   return fields.viscosity == nullptr ? fields.common_viscosity : fields.viscosity[i];
 }
 
-template <int dimensions, Phases phases, bool weighted, bool viscous, bool friction, bool shifted>
+template <int dimensions, Phases phases, bool weighted, Drag of, bool friction, bool shifted>
 void continuity(const SweepContext& context, PackedNeighbours& packed, const ContinuityFields& fields,
                 const ContinuityOut& out) {
   constexpr bool several = phases != Phases::one, walls = phases == Phases::beside_walls;
-  using At = ContinuityLayout<dimensions, several, viscous, friction, shifted>;
+  constexpr bool viscous = of != Drag::none, viscosities = of == Drag::of_viscosities;
+  using At = ContinuityLayout<dimensions, several, viscosities, friction, shifted>;
   using In = ContinuitySums<dimensions, several, viscous, shifted>;
   constexpr int width = At::width;
   float* records = packed.prepare(context, At::payload);
@@ -165,9 +167,9 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
   pack(At::velocity, *fields.mirror, fields.walls_move);
   pack_scalar(context, records, width, At::volume, fields.volume);
   pack_scalar(context, records, width, At::excess, fields.excess);
-  if constexpr (viscous && several) pack_scalar(context, records, width, At::viscosity, fields.viscosity);
+  if constexpr (viscosities) pack_scalar(context, records, width, At::viscosity, fields.viscosity);
   if constexpr (several) pack_scalar(context, records, width, At::phase, fields.phase);
-  if constexpr (walls && viscous) mark_walls(context, records, width, At::viscosity);
+  if constexpr (walls && viscosities) mark_walls(context, records, width, At::viscosity);
   if constexpr (walls) mark_walls(context, records, width, At::phase);
   if constexpr (friction) pack(At::held, *fields.friction, false);
   if constexpr (shifted) pack_vector(context, records, width, At::shift, fields.shift, *fields.reflection);
@@ -198,7 +200,7 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
           sum[In::diffusion] = sum[In::diffusion] + same * rise;
           if constexpr (viscous) {
             f32n drag = weight;
-            if constexpr (several) {
+            if constexpr (viscosities) {
               const f32n own_viscosity = simd::splat<f32n>(own[At::viscosity]), other = b.payload[At::viscosity];
               if constexpr (walls)
                 drag = drag * (harmonic_mean(own_viscosity, simd::max(other, f32n{})) +
@@ -240,7 +242,7 @@ void continuity(const SweepContext& context, PackedNeighbours& packed, const Con
     if constexpr (!shifted) out.rate[i] = scale.gradient * total[In::rate];
     out.diffusion[i] = -2 * scale.gradient * total[In::diffusion];
     if constexpr (viscous) {
-      const float factor = -2 * scale.gradient * (several ? 1 : own_viscosity(fields, i));
+      const float factor = -2 * scale.gradient * (viscosities ? 1 : own_viscosity(fields, i));
       for (int a = 0; a < dimensions; ++a) out.viscous[a][i] = factor * total[In::force + a];
     }
     if constexpr (shifted) {
@@ -349,12 +351,20 @@ void continuity_sweep(const SweepContext& context, PackedNeighbours& packed, con
                       const ContinuityOut& out) {
   with_wcsph_dimensions(context, [&]<int dimensions>() {
     const auto run = [&]<Phases phases, bool weighted, bool shifted>() {
+      const auto with = [&]<Drag of, bool friction>() {
+        continuity<dimensions, phases, weighted, of, friction, shifted>(context, packed, fields, out);
+      };
       if (fields.viscosity == nullptr && fields.common_viscosity == 0)
-        continuity<dimensions, phases, weighted, false, false, shifted>(context, packed, fields, out);
-      else if (fields.friction == nullptr)
-        continuity<dimensions, phases, weighted, true, false, shifted>(context, packed, fields, out);
+        return with.template operator()<Drag::none, false>();
+      if constexpr (phases != Phases::one)
+        if (fields.viscosity != nullptr)
+          return fields.friction == nullptr ? with.template operator()<Drag::of_viscosities, false>()
+                                            : with.template operator()<Drag::of_viscosities, true>();
+      if constexpr (phases != Phases::several)
+        return fields.friction == nullptr ? with.template operator()<Drag::of_one_viscosity, false>()
+                                          : with.template operator()<Drag::of_one_viscosity, true>();
       else
-        continuity<dimensions, phases, weighted, true, true, shifted>(context, packed, fields, out);
+        throw std::logic_error("several phases need the viscosity of each particle");
     };
     const auto of = [&]<Phases phases>() {
       if (fields.shift[0] != nullptr)

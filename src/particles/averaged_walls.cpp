@@ -79,7 +79,8 @@ std::vector<SurfaceForce> AveragedWalls::forces(const Arrangement& arrangement, 
                       .wall_density = density_.data(),
                       .wall_position = place,
                       .arm = {arm[0].data(), arm[1].data(), arm[2].data()},
-                      .body = body.data()},
+                      .body = body.data(),
+                      .near = &near()},
                      walls.bodies().size());
 }
 

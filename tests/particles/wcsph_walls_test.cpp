@@ -201,6 +201,40 @@ TEST(WcsphWalls, AveragesAtWallPointsAgreeWithTheSlowTwin) {
     }
 }
 
+// A viscosity of all particles is that of each.
+TEST(WcsphWalls, OneViscosityGivesTheForcesOfAsManyAsParticles) {
+  for (const Layout& layout : wcsph_layouts())
+    for (const bool friction : {false, true}) {
+      SCOPED_TRACE(layout.name);
+      WalledLiquid liquid(layout, 0.2, {});
+      const std::size_t n = liquid.twin.particles.size();
+      const int d = liquid.context().dimensions;
+      constexpr float viscosity = 0.3F;
+      Array<float> of_each(n), rate(n), diffusion(n);
+      of_each.fill(viscosity);
+      std::array<Array<float>, 3> viscous, wanted;
+      for (auto* vector : {&viscous, &wanted})
+        for (auto& component : *vector) component.resize(n);
+      ContinuityFields fields = continuity_fields(liquid, false);
+      fields.friction = friction ? &liquid.walled.boundary.velocity_rule() : nullptr;
+      fields.viscosity = of_each.data();
+      PackedNeighbours& packed = liquid.walled.arrangement.packed;
+      continuity_sweep(liquid.context(), packed, fields,
+                       {rate.data(), diffusion.data(), {wanted[0].data(), wanted[1].data(), wanted[2].data()}});
+      fields.viscosity = nullptr;
+      fields.common_viscosity = viscosity;
+      continuity_sweep(liquid.context(), packed, fields,
+                       {rate.data(), diffusion.data(), {viscous[0].data(), viscous[1].data(), viscous[2].data()}});
+      double largest = 0;
+      for (std::size_t i = 0; i < n; ++i)
+        for (int axis = 0; axis < d; ++axis) largest = std::max(largest, double{std::abs(wanted[axis][i])});
+      ASSERT_GT(largest, 0);
+      // Of a hundred terms in single precision.
+      for (std::size_t i = 0; i < n; ++i)
+        for (int axis = 0; axis < d; ++axis) EXPECT_NEAR(viscous[axis][i], wanted[axis][i], 100 * 6e-8 * largest);
+    }
+}
+
 TEST(WcsphWalls, SumsAndForcesAgreeWithTheSlowTwin) {
   for (const Layout& layout : wcsph_layouts())
     for (const auto& [jitter, weighted] : {std::pair{0.2, false}, {0.2, true}, {0.9, false}, {0.9, true}}) {
@@ -244,22 +278,29 @@ TEST(WcsphWalls, SumsAndForcesAgreeWithTheSlowTwin) {
         }
         modulus += rounding * liquid.twin.particle_volume * (s.pressure_modulus + s.viscous_modulus);
       }
-      const std::vector<SurfaceForce> forces = wall_forces(liquid.context(),
-                                                           {.velocity = read(liquid.velocity),
-                                                            .pressure = liquid.pressure.data(),
-                                                            .volume = liquid.volume.data(),
-                                                            .viscosity = liquid.viscosity.data(),
-                                                            .friction = true,
-                                                            .gravity = gravity,
-                                                            .left_out = liquid.twin.left_out,
-                                                            .reflection = &boundary.reflection(),
-                                                            .held = &boundary.velocity_rule().sign,
-                                                            .wall_pressure = liquid.wall_pressure.data(),
-                                                            .wall_density = liquid.wall_density.data(),
-                                                            .wall_position = liquid.walls().wet().position,
-                                                            .arm = liquid.walls().wet().position,
-                                                            .body = liquid.body.data()},
-                                                           liquid.walls().bodies().size());
+      const WallForceFields to_walls = {.velocity = read(liquid.velocity),
+                                        .pressure = liquid.pressure.data(),
+                                        .volume = liquid.volume.data(),
+                                        .viscosity = liquid.viscosity.data(),
+                                        .friction = true,
+                                        .gravity = gravity,
+                                        .left_out = liquid.twin.left_out,
+                                        .reflection = &boundary.reflection(),
+                                        .held = &boundary.velocity_rule().sign,
+                                        .wall_pressure = liquid.wall_pressure.data(),
+                                        .wall_density = liquid.wall_density.data(),
+                                        .wall_position = liquid.walls().wet().position,
+                                        .arm = liquid.walls().wet().position,
+                                        .body = liquid.body.data()};
+      const std::vector<SurfaceForce> forces = wall_forces(liquid.context(), to_walls, liquid.walls().bodies().size());
+      // The same sums from the particles alone that are known to be near walls.
+      WallForceFields near_walls = to_walls;
+      near_walls.near = &liquid.averages.near();
+      const std::vector<SurfaceForce> of_near = wall_forces(liquid.context(), near_walls, forces.size());
+      for (std::size_t b = 0; b < forces.size(); ++b) {
+        EXPECT_EQ(of_near[b].pressure, forces[b].pressure);
+        EXPECT_EQ(of_near[b].viscous_torque, forces[b].viscous_torque);
+      }
       Vec3 taken{};
       for (std::size_t b = 0; b < forces.size(); ++b) {
         const auto wanted = liquid.twin.force(static_cast<int>(b));

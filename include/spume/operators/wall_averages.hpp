@@ -89,6 +89,7 @@ struct WallForceFields {
   std::array<const double*, 3> wall_position{};
   std::array<const double*, 3> arm{};  // where torques count it: beside the pivot of its body
   const std::int32_t* body = nullptr;
+  const std::vector<std::int32_t>* near = nullptr;  // as of WallAverages: no other particles feel walls; null: any may
 };
 // What the liquid does to the walls, per body, `bodies` of them: the opposite of what wall points and their images add
 // to the sums of pressure and viscosity (wcsph_sums.hpp), times the volumes of the particles.

@@ -63,7 +63,7 @@ struct ContinuityFields {
   const float* phase = nullptr;                                   // what tells phases apart; null: one phase
   bool weighted = false;                                          // `phase` is rho_0, of no two phases alike
   const float* viscosity = nullptr;                               // mu; null: that of all
-  float common_viscosity = 0;                                     // of one phase; 0: inviscid
+  float common_viscosity = 0;                                     // of one phase, beside walls too; 0: inviscid
   std::array<const float*, 3> shift{};                            // delta u; null: none
   const std::vector<std::array<float, 3>>* reflection = nullptr;  // of delta u
 };

@@ -205,7 +205,7 @@ void Flow::find_rates(double dt) {
                     .phase = needs_phase() ? density.data() : nullptr,
                     .weighted = features.weighted,
                     .viscosity = needs_viscosity() ? viscosity.data() : nullptr,
-                    .common_viscosity = needs_phase() ? 0 : static_cast<float>(laws[0].viscosity),
+                    .common_viscosity = features.several ? 0 : static_cast<float>(laws[0].viscosity),
                     .shift = read(shift),
                     .reflection = &boundary.reflection()},
                    {.rate = rate.data(),

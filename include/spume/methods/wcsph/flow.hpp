@@ -198,7 +198,7 @@ struct Flow {
   }
   // Density does not diffuse to wall points: they have a phase of their own.
   bool needs_phase() const { return features.several || (features.bodies && !features.shifting); }
-  bool needs_viscosity() const { return features.viscosity && needs_phase(); }
+  bool needs_viscosity() const { return features.viscosity && features.several; }
   // Pressures of images have the weight of what is between them and their sources.
   bool needs_density() const { return features.several || features.bodies || features.gravity; }
   void lease_properties();
