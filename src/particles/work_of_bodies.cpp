@@ -22,6 +22,11 @@ WorkOfBodies::WorkOfBodies(const Scene& scene) {
     if (moves_as_given(scene, scene.bodies[b])) bodies_.push_back(b);
 }
 
+bool WorkOfBodies::any(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [&](const Body& body) { return moves_as_given(scene, body); });
+}
+
 bool WorkOfBodies::tells_all(const Scene& scene) {
   bool given = false, floats = false, other = false;
   for (const Body& body : scene.bodies) {
@@ -53,27 +58,32 @@ double WorkOfBodies::power(const std::vector<SurfaceForce>& forces, const BodyWa
 
 void WorkOfBodies::add(double t, const std::vector<SurfaceForce>& forces, const BodyWalls& walls,
                        const std::function<double()>& energy) {
-  if (samples_ > 0 && t <= time_) return;
-  const double now = power(forces, walls);
+  if (samples_ > 0 && t <= last_.time) return;
+  const Sample now{t, power(forces, walls)};
+  const auto between = [](const Sample& a, const Sample& b) { return (b.time - a.time) * (a.power + b.power) / 2; };
   if (samples_ == 0) {
     set_out_ = any_moves(walls) ? 1 : 0;
     first_energy_ = energy();
   } else {
-    if (samples_ == 1 && set_out_ > 0) rule_ += std::abs(energy() - first_energy_);
-    const double half = (t - time_) / 2;
-    done_ += half * (power_ + now);
-    gross_ += half * (std::abs(power_) + std::abs(now));
-    rule_ += half * std::abs(now - power_);
+    if (samples_ == 1 && set_out_ > 0) start_ = std::abs(energy() - first_energy_);
+    done_ += between(last_, now);
+    gross_ += (t - last_.time) * (std::abs(last_.power) + std::abs(now.power)) / 2;
   }
-  time_ = t, power_ = now, ++samples_;
+  if (samples_ > 1 && std::fmod(samples_, 2) == 0) {
+    const double e = between(before_, last_) + between(last_, now) - between(before_, now);
+    off_ += e;
+    scatter2_ += e * e;
+  }
+  before_ = last_, last_ = now, ++samples_;
 }
 
 double WorkOfBodies::uncertainty() const {
-  return rule_ + share_of_forces * gross_;
+  return std::abs(off_) + 3 * std::sqrt(scatter2_) + start_ + share_of_forces * gross_;
 }
 
 void WorkOfBodies::save_with(SavedNumbers& saved) {
-  for (double* value : {&done_, &gross_, &rule_, &samples_, &time_, &power_, &set_out_, &first_energy_})
+  for (double* value : {&done_, &gross_, &off_, &scatter2_, &samples_, &last_.time, &last_.power, &before_.time,
+                        &before_.power, &set_out_, &first_energy_, &start_})
     saved.add(*value);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <random>
 
 #include "particles/walled.hpp"
 
@@ -69,6 +70,29 @@ TEST(WorkOfBodies, WhatASuddenStartGivesIsUncertain) {
   const auto gained = [](int row) { return row == 0 ? 1.0 : 3.0 + row; };
   EXPECT_EQ(uncertainty("displacement = [\"0.3*t\", \"0\"]\n", gained), 3);
   EXPECT_EQ(uncertainty("displacement = [\"0.3*t*t\", \"0\"]\n", gained), 0);
+}
+
+// Forces that scatter from sample to sample leave an error of the square root of their number, which is allowed for
+// and not much more: a gain of a tenth of the work shows.
+TEST(WorkOfBodies, OfForcesThatScatterIsAsUncertainAsTheirMean) {
+  Walled walled(scene_text(square, 0.05,
+                           "[[body]]\nshape = \"box\"\nsize = [0.5, 0.4]\ndisplacement = [\"0.5*t\", "
+                           "\"0\"]\n"),
+                0);
+  WorkOfBodies work(walled.scene());
+  std::mt19937 generator(3);
+  std::normal_distribution<double> noise(0, 2);
+  constexpr int samples = 1000;
+  constexpr double dt = 1e-3;
+  for (int k = 0; k <= samples; ++k) {
+    if (k > 0) walled.boundary.advance((k - 1) * dt, dt), walled.boundary.accept();
+    const std::vector<SurfaceForce> force{{{-10 - noise(generator), 0, 0}, {}, {}, {}}};
+    work.add(k * dt, force, *walled.boundary.bodies(), [] { return 0.0; });
+  }
+  const double done = 10 * 0.5, deviation = 2 * 0.5 * dt * std::sqrt(samples);
+  EXPECT_NEAR(work.done(), done, 4 * deviation);
+  EXPECT_GT(work.uncertainty(), 2 * deviation);
+  EXPECT_LT(work.uncertainty(), 0.05 * (done + 4 * deviation) + 6 * deviation);
 }
 
 // A row that is asked for again changes nothing.

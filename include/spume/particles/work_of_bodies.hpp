@@ -19,11 +19,12 @@ namespace spume {
 
 class WorkOfBodies {
  public:
-  // Outlived by the scene.
   explicit WorkOfBodies(const Scene& scene);
 
-  // Whether these forces tell all of the work that bodies do: not of surfaces that slide along themselves, of bodies
-  // that come, go or grow, and of those that may push others that float.
+  // Whether bodies move as given.
+  static bool any(const Scene& scene);
+  // Whether the forces on these tell all of the work that bodies do: not of surfaces that slide along themselves, of
+  // bodies that come, go or grow, and of those that may push others that float.
   static bool tells_all(const Scene& scene);
 
   // Whether a sample belongs after so many steps: every fourth, which resolves motions that steps resolve for a quarter
@@ -38,8 +39,9 @@ class WorkOfBodies {
            const std::function<double()>& energy);
 
   double done() const { return done_; }
-  // sum |dP| dt / 2 over the intervals, which no power that stays between the values of its samples can pass, and 5 %
-  // of int |P| dt for the forces.
+  // What the work may be off by. Of the rule: e, what it gives over two intervals less what it gives without the sample
+  // between them; |sum e| of a power that varies smoothly, of which the rule errs by a third, and 3 sqrt(sum e^2) of
+  // one that scatters from sample to sample. Of the forces: 5 % of int |P| dt.
   double uncertainty() const;
   // That they may have done.
   double most() const { return done_ + uncertainty(); }
@@ -47,13 +49,18 @@ class WorkOfBodies {
   void save_with(SavedNumbers& saved);
 
  private:
+  struct Sample {
+    double time = 0, power = 0;
+  };
   bool any_moves(const BodyWalls& walls) const;
   double power(const std::vector<SurfaceForce>& forces, const BodyWalls& walls) const;
 
   std::vector<std::size_t> bodies_;  // with a given motion
-  double done_ = 0, gross_ = 0, rule_ = 0;
-  double samples_ = 0, time_ = 0, power_ = 0;  // of the last
-  double set_out_ = 0, first_energy_ = 0;      // 1: at a speed
+  double done_ = 0, gross_ = 0;
+  double off_ = 0, scatter2_ = 0;  // sum e, sum e^2
+  double samples_ = 0;
+  Sample last_, before_;
+  double set_out_ = 0, first_energy_ = 0, start_ = 0;  // 1: at a speed; gained until the second sample
 };
 
 }  // namespace spume

@@ -63,8 +63,8 @@ Gfd::Gfd(const LoadedCase& loaded)
   if (!flow_.features.bodies) return;
   saved_.add(flow_.packed);
   body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());
-  if (!flow_.features.moving_bodies || !WorkOfBodies::tells_all(flow_.scene)) return;
-  work_of_bodies_.emplace(flow_.scene).save_with(saved_);
+  if (WorkOfBodies::any(flow_.scene) && WorkOfBodies::tells_all(flow_.scene) && flow_.gains_no_energy(true))
+    work_of_bodies_.emplace(flow_.scene).save_with(saved_);
 }
 
 void Gfd::ensure_arranged() {

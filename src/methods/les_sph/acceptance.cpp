@@ -75,7 +75,7 @@ void Flow::accept_block(double dt, std::size_t first, std::size_t last) {
     double* const rate = material_acceleration[axis]->data() + first;
     for (std::size_t k = 0; k < n; ++k) rate[k] = (ahead[axis][k] - before[axis][k]) / dt;
   }
-  if (surface != nullptr || moves_in_full_tank(*this)) stop_free_particles(dt, first, last, before, ahead);
+  if (surface != nullptr || features.moves_in_full_tank) stop_free_particles(dt, first, last, before, ahead);
   if (boundary.bodies() != nullptr) limit_approach(dt, first, last, r, before, ahead);
   for (std::size_t k = 0; k < n && rest.share != nullptr; ++k)
     forget_rest(first + k, dt * length(vector_of(before, k)));

@@ -53,7 +53,10 @@ Features::Features(const LoadedCase& loaded)
   free_surface = scene.free_surface;
   sponges = !scene.sponges.empty();
   closed = !scene.free_surface && !outflow;
+  moves_in_full_tank = closed && std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                             [](const Body& body) { return body.motion && body.inside; });
   shifting = options.get<ShiftingOptions>().on;
+  removes_drift = shifting && options.get<ShiftingOptions>().remove_drift && !moves_in_full_tank;
   shift_correction = corrects_shift(options);
   shift_curvature = shifting && options.get<ShiftingOptions>().velocity_correction == ShiftCorrection::second_order;
   const TurbulenceModel model = options.get<TurbulenceOptions>().model;

@@ -79,8 +79,7 @@ Flow::Flow(const LoadedCase& loaded_case)
                           ? ForcePotential::find(*scene.body_force, scene.domain, scene.spacing, options.time.end)
                           : std::nullopt),
       largest_shift(largest_stable_shift(scene.domain.dimensions, options.resolution.kernel,
-                                         options.resolution.smoothing_ratio,
-                                         features.shifting && options.get<ShiftingOptions>().remove_drift)),
+                                         options.resolution.smoothing_ratio, features.removes_drift)),
       dimensions(scene.domain.dimensions),
       fading(fading_beside_voids(options, scene, features)),
       particles(dimensions, scene.particles),

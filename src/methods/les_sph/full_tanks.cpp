@@ -56,12 +56,6 @@ std::string remark_on_gaps_in_full_tank(const Flow& flow) {
   return "";
 }
 
-bool moves_in_full_tank(const Flow& flow) {
-  const std::vector<Body>& bodies = flow.scene.bodies;
-  return flow.features.closed &&
-         std::any_of(bodies.begin(), bodies.end(), [](const Body& body) { return body.motion && body.inside; });
-}
-
 double speed_of_bodies(const Scene& scene, double end) {
   const Domain& domain = scene.domain;
   const double fall = std::sqrt(2 * length(scene.fluid.gravity) * length(subtract(domain.upper, domain.lower)));

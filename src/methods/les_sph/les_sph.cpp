@@ -69,7 +69,13 @@ LesSph::LesSph(const LoadedCase& loaded)
   if (flow_.floating != nullptr) flow_.speed_of_bodies = speed_of_bodies(loaded.scene, loaded.options.time.end);
   if (flow_.features.scalars) flow_.solutes.scalars->add_fields(snapshot_);
   declare_series();
-  if (flow_.features.moving_bodies && WorkOfBodies::tells_all(flow_.scene)) work_of_bodies_.emplace(flow_.scene);
+  if (tells_energy() && WorkOfBodies::any(flow_.scene)) work_of_bodies_.emplace(flow_.scene);
+  if (flow_.features.moves_in_full_tank && !flow_.features.removes_drift &&
+      loaded.options.places.count("shifting.remove_drift") > 0 && loaded.options.get<ShiftingOptions>().remove_drift)
+    remarks_.push_back(
+        {"shifting.remove_drift = true has no effect where a body moves among liquid that fills its "
+         "domain: what it would take off closes the void behind the body",
+         false});
   declare_saved();
   if (flow_.features.bodies)
     body_forces_ = std::make_unique<const BodyForces>(flow_.scene, flow_.resolution, *flow_.boundary.bodies());

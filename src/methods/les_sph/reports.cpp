@@ -123,7 +123,8 @@ bool LesSph::tells_energy() const {
   const Features& has = flow_.features;
   const bool slides = std::any_of(flow_.scene.bodies.begin(), flow_.scene.bodies.end(),
                                   [](const Body& body) { return body.velocity.has_value(); });
-  return !has.moving_walls && !has.openings && !has.bubbles && !slides && (!has.moving_bodies || work_of_bodies_);
+  return !has.moving_walls && !has.openings && !has.bubbles && !slides &&
+         (!has.moving_bodies || WorkOfBodies::tells_all(flow_.scene));
 }
 
 std::vector<Invariant> LesSph::invariants() const {

@@ -127,7 +127,7 @@ void Flow::find_advecting_velocity(double dt) {
 
 void Flow::compute_shift() {
   ShiftInput input = shift_input(options.get<ShiftingOptions>(), largest_shift, displacement);
-  if (moves_in_full_tank(*this)) input.remove_drift = false;
+  input.remove_drift = features.removes_drift;
   shift->compute(arrangement, particles, input, sizes, moments, surface.get(), boundary.reflection());
   if (rest.share == nullptr) return;
   // In proportion to the speed the shift would drive what stands unevenly, and so feed any motion: a film of 1.88

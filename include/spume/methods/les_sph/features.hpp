@@ -38,6 +38,8 @@ struct Features : BoundaryFeatures, SoluteFeatures {
   bool working_forces = false;      // forces whose work the potential energy does not hold
   bool sponges = false;             // layers that damp the velocity
   bool closed = false;              // pressure known up to a constant
+  bool moves_in_full_tank = false;  // a body, among liquid that fills its domain: full_tanks.hpp
+  bool removes_drift = false;       // what neighbours share of the shift does not stay in it
   bool bubbles = false;
   bool starts_at_rest = false;  // liquid with a level surface beside solid boxes may
 };
