@@ -326,7 +326,7 @@ void velocity_gradient_sweep(const SweepContext& context, PackedNeighbours& pack
     const auto run = [&]<bool filter, bool bounded>() {
       velocity_gradient<dimensions, Kernel, filter, bounded>(context, packed, velocity, rule, correction, out, store);
     };
-    // The bounds cost little beside a filter: one variant less to compile.
+    // Beside a filter the bounds come along where nobody asks for the change: one variant less to compile.
     const bool filter = out.filtered[0] != nullptr, bounded = out.change[0] != nullptr;
     if (filter)
       run.template operator()<true, true>();

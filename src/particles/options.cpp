@@ -53,7 +53,8 @@ Section shifting_section(bool removes_drift) {
       .option("limit", &S::limit, "h", above_up_to(0, 0.5), limit_text.c_str())
       .when("on", {"true"});
   if (removes_drift)
-    made.option("remove_drift", &S::remove_drift, "subtract the Shepard mean of the shift: no net transport")
+    made.option("remove_drift", &S::remove_drift,
+                "subtract the Shepard mean of the shift: no net transport; not where a body moves in a full tank")
         .when("on", {"true"});
   made.word("velocity_correction", &S::velocity_correction,
             {{"none", ShiftCorrection::none},

@@ -83,9 +83,10 @@ TEST(LesSphStability, EnergyFromNothingIsRefused) {
 }
 
 // What the method says against the vortices with one more option; "" when it takes them.
-std::string refusal_of(const std::string& option) {
+std::string refusal_of(const std::string& option, std::vector<std::string> others = {}) {
+  others.push_back(option);
   try {
-    Simulation run(taylor_green, {option});
+    Simulation run(taylor_green, others);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -100,6 +101,25 @@ TEST(LesSphStability, AStartNearTheSoundSpeedIsRefusedInWords) {
 TEST(LesSphStability, AShiftThatWouldStirTheParticlesIsRefused) {
   EXPECT_EQ(refusal_of("shifting.coefficient=0.41"), "");
   EXPECT_THAT(refusal_of("shifting.coefficient=0.42"), HasSubstr("shifting.coefficient is 0.42; above 0.416"));
+  // What neighbours share of the shift stays in it where it is not taken off, and in full tanks with a body that moves.
+  EXPECT_THAT(refusal_of("shifting.remove_drift=false", {"shifting.coefficient=0.36"}), HasSubstr("above 0.349"));
+  const auto in_a_full_tank = [](const std::string& coefficient) {
+    const std::string tank =
+        "method = \"les-sph\"\n[domain]\nlower = [0, 0]\nupper = [1, 1]\nleft = \"no-slip\"\nright = \"no-slip\"\n"
+        "bottom = \"no-slip\"\ntop = \"no-slip\"\n[resolution]\nspacing = 0.05\n[fluid]\nreynolds = 100\n[[liquid]]\n"
+        "[[body]]\nshape = \"box\"\nsize = [0.3, 0.3]\nposition = [0.5, 0.5]\nangle = \"90*t\"\n[time]\nend = 1\n";
+    try {
+      Simulation run(tank, {"shifting.coefficient=" + coefficient, "shifting.remove_drift=true"});
+      run.steps(1, 1e-3);
+      std::string texts;
+      for (const Remark& one : run.method.take_remarks()) texts += one.text;
+      return texts;
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_THAT(in_a_full_tank("0.36"), HasSubstr("above 0.349"));
+  EXPECT_THAT(in_a_full_tank("0.25"), HasSubstr("shifting.remove_drift = true has no effect"));
 }
 
 // Shifts in proportion to the step would pass what a lattice stands at courant 0.34: this wave gained a quarter of its

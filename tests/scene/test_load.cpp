@@ -177,6 +177,7 @@ TEST(Load, ViscositiesThatNoLiquidHasAreWarnedOf) {
   EXPECT_NE(oil.find("fluid.viscosity = 4.5e-05 Pa s is 4.54545e-08 m2/s at 990 kg/m3"), std::string::npos) << oil;
   EXPECT_EQ(warned("density = 990\nviscosity = 0.045\ngravity = 9.81\n"), "");
   EXPECT_EQ(warned("density = 13546\nviscosity = 1.53e-3\ngravity = 9.81\n"), "");  // mercury
+  EXPECT_EQ(warned("density = 773\nviscosity = 6.6e-5\ngravity = 9.81\n"), "");     // carbon dioxide
   EXPECT_EQ(warned("density = 1000\nviscosity = 0\ngravity = 9.81\n"), "");
   EXPECT_EQ(warned("density = 1000\nviscosity = 1e-6\ngravity = 1\n"), "");  // in other units
 }

@@ -77,7 +77,7 @@ inline constexpr std::int32_t narrow_reach = 0x10000;  // points
 
 class NeighbourList {
  public:
-  // From the next build on. Lists are then read by pair loops alone (for_each_batch).
+  // From the next build on. Lists are then read by for_each_batch and any_of alone.
   void keep_narrow() { narrow_ = true; }
   bool narrow() const { return narrow_; }
   NarrowBatches batches(std::size_t i) const {

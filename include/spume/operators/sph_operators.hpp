@@ -60,7 +60,7 @@ void kernel_moment_sweep(const SweepContext& context, PackedNeighbours& packed, 
                          const KernelMoments& out);
 
 // Neighbours of a lattice show 0.91 of a linear change in the worst direction (support of 2.6 spacings, in space), of a
-// lattice jittered by a fifth of a spacing 0.86.
+// lattice jittered by a fifth of a spacing 0.86 in 99.8 % of them and 0.80 in the worst.
 constexpr float allowed_change = 1 / 0.86F;
 
 // grad u (component-major: [a * dimensions + b] = d u_a / d x_b) and what follows from it; null where nobody asks.
