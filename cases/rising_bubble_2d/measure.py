@@ -5,6 +5,9 @@ Circularity: perimeter of the circle of equal area over the perimeter of the int
 r(theta) about the centre of the bubble, a Fourier series of MODES modes that is fitted so that particles of the two
 phases lie on their sides of it: least squares of the distances of the particles within a band from the curve, which in
 the mean of a lattice are uniform on both sides. A circle on a lattice has a circularity of 1 within 0.001.
+
+Rise velocity: that of the centre of mass, by cubics through its heights over WINDOW. The mean velocity of the particles
+lacks what the shift, which moves particles without being part of their velocity, carries the bubble.
 """
 from pathlib import Path
 
@@ -14,6 +17,7 @@ from spume_tools.results import read_reference
 REFERENCE = Path(__file__).parent / "reference"
 MODES = 8
 BAND = 1.5  # spacings
+WINDOW = 0.2  # a fifth of the time to the largest velocity; its error there is below 1e-4 of that
 
 
 def reference():
@@ -61,9 +65,20 @@ def circularity(position, inside, spacing):
     return 2 * np.sqrt(np.pi * area) / np.sum(np.hypot(np.diff(x), np.diff(y)))
 
 
+def centre_velocity(t, height):
+    """Times, a hundredth apart, and the velocity of the centre."""
+    times = np.arange(t[0] + WINDOW / 2, t[-1] - WINDOW / 2, 0.01)
+    velocity = []
+    for middle in times:
+        near = np.abs(t - middle) < WINDOW / 2
+        velocity.append(np.polyfit(t[near] - middle, height[near], 3)[-2])
+    return times, np.array(velocity)
+
+
 def errors(run):
     known, extrema, series = reference(), table(), run.series
-    t, height, speed = (np.asarray(series[key]) for key in ("t", "centre_bubble_y", "velocity_bubble_y"))
+    t, height, of_particles = (np.asarray(series[key]) for key in ("t", "centre_bubble_y", "velocity_bubble_y"))
+    times, speed = centre_velocity(t, height)
     spacing = float(run.case["resolution"]["spacing"])
     shapes = [(s.time, circularity(s.position[:, :2], s.field("phase") == 1, spacing)) for s in run.snapshots()]
     differences = [abs(value - np.interp(time, known[:, 0], known[:, 1])) for time, value in shapes]
@@ -75,7 +90,8 @@ def errors(run):
         "y_com_error": abs(float(height[-1] - np.interp(t[-1], known[:, 0], known[:, 2]))),
         "rise_velocity": float(speed.max()),
         "rise_velocity_error": abs(float(speed.max()) / extrema["rise_velocity"] - 1),
-        "rise_time_error": abs(float(t[speed.argmax()]) / extrema["rise_time"] - 1),
+        "mean_of_particles_error": abs(float(of_particles.max()) / extrema["rise_velocity"] - 1),
+        "rise_time_error": abs(float(times[speed.argmax()]) / extrema["rise_time"] - 1),
         "circularity": float(min(value for _, value in shapes)),
         "circularity_error": float(max(differences)),
         **drift,
@@ -93,7 +109,8 @@ def curves(runs):
     rise, speed = [], []
     for name, run in runs.items():
         rise.append((f"Spume, {name}", run.series["t"], run.series["centre_bubble_y"], "-"))
-        speed.append((f"Spume, {name}", run.series["t"], run.series["velocity_bubble_y"], "-"))
+        times, velocity = centre_velocity(np.asarray(run.series["t"]), np.asarray(run.series["centre_bubble_y"]))
+        speed.append((f"Spume, {name}", times, velocity, "-"))
     rise.append(("Hysing et al., group 3", known[:, 0], known[:, 2], "k--"))
     speed.append(("Hysing et al., group 3", known[:, 0], known[:, 3], "k--"))
     return [{"file": "height", "x": "t", "y": "y of the centre of mass", "curves": rise},
